@@ -1,0 +1,1 @@
+//! Sampled, named channels of an axis: reading, writing, error metrics

@@ -1,0 +1,1 @@
+//! Timoshenko beam finite elements: element matrices, assembly, moving-node mesh, natural modes

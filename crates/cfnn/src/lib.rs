@@ -1,0 +1,1 @@
+//! Cascade-forward neural networks: evaluation, analytic Jacobian, Levenberg-Marquardt training

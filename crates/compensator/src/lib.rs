@@ -1,0 +1,1 @@
+//! Correction strategies for a servo axis behind one trait

@@ -1,0 +1,1 @@
+//! Latin hypercube designs from a seed: plain, centred, optimised; any marginal

@@ -1,0 +1,1 @@
+//! Tables and series to one self-contained HTML page with SVG plots

@@ -1,0 +1,1 @@
+//! Jerk-limited S-curves and motion programs, evaluated exactly at any time
