@@ -1,1 +1,1 @@
-//! Acceptance tests across the crates
+//! Acceptance tests across the crates; see `tests/`.

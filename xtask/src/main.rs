@@ -1,2 +1,73 @@
-//! Commands of the project.
-fn main() {}
+//! Commands of the project, `cargo xtask <command>`: one file each, which
+//! parses, calls one library function and writes. Nothing here knows physics.
+
+mod commands;
+mod context;
+mod output;
+mod page;
+mod paper;
+mod progress;
+mod store;
+
+use clap::{Parser, Subcommand};
+
+use commands::{
+    compensate, identify, layers, pipeline, report, sample, simulate, study, train, validate,
+};
+use context::Common;
+
+/// Dynamic error of ball-screw axes: simulate, predict, compensate.
+///
+/// Start with `cargo xtask pipeline`: it takes the axis of Liu et al. 2025
+/// (Machines 13(5), 433) through every stage and writes a report to
+/// runs/liu2025/report.html. The stages can also be run one by one; each needs
+/// the results of those above it.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// All stages: sample, train, identify, validate, compensate, study, report
+    Pipeline(Common),
+    /// Simulate one-cycle samples over a Latin hypercube (Section 4.2)
+    Sample(sample::Options),
+    /// Train the cascade-forward network on the samples (Section 4.3)
+    Train(Common),
+    /// Identify friction on the machine, and the transfer function from the model
+    Identify(Common),
+    /// Model against machine, and both predictors against the machine (Tables 13, 14)
+    Validate(Common),
+    /// Run the machine under every compensation (Tables 15, 16)
+    Compensate(Common),
+    /// Damping, layers, neurons and epochs over several seeds (Tables 7 to 10)
+    Study(Common),
+    /// Write summary.json and report.html from the stages' results
+    Report(Common),
+    /// Simulate one motion and write its log
+    Simulate(simulate::Options),
+    /// Check that every crate depends strictly downward
+    Layers,
+}
+
+fn main() -> miette::Result<()> {
+    tracing_subscriber::fmt()
+        .with_writer(std::io::stderr)
+        .with_max_level(tracing::Level::WARN)
+        .init();
+    match Cli::parse().command {
+        Command::Pipeline(common) => pipeline::run(&common),
+        Command::Sample(options) => sample::command(&options),
+        Command::Train(common) => train::command(&common),
+        Command::Identify(common) => identify::command(&common),
+        Command::Validate(common) => validate::command(&common),
+        Command::Compensate(common) => compensate::command(&common),
+        Command::Study(common) => study::command(&common),
+        Command::Report(common) => report::command(&common),
+        Command::Simulate(options) => simulate::command(&options),
+        Command::Layers => layers::command(),
+    }
+}

@@ -1,1 +1,68 @@
-//! Sampled, named channels of an axis: reading, writing, error metrics
+//! Sampled, named channels of a machine axis: the log, CSV in and out, and
+//! the error metrics taken from it.
+//!
+//! # The problem
+//!
+//! A drive, or its simulation, records `C` quantities at `N` instants. The log
+//! is the matrix `Y` of shape `N × C` with the instants in its first column,
+//!
+//! ```text
+//! t_0 < t_1 < … < t_{N-1}   [s],      Y = [ t | y_1 | … | y_{C-1} ],
+//! ```
+//!
+//! every entry a finite `f64`, every column named, and the unit of a column
+//! written as the suffix of its name: `position_ref_m`, `motor_speed_rad_s`,
+//! `iq_a` ([`unit_of`]). A [`Log`] holds such a matrix column by column; once
+//! built it is sorted, rectangular and finite, so code that reads it cannot
+//! meet a hole.
+//!
+//! From an error sequence `e_k = r_k − y_k`, `k = 0 … N−1`, [`metrics`] takes
+//!
+//! ```text
+//! max |e|,    (1/N) Σ |e_k|,    sqrt( (1/N) Σ e_k² ).
+//! ```
+//!
+//! [`write_csv`] followed by [`read_csv`] gives back the same bits, and a
+//! reader never sees half a file: the text goes to a temporary file in the same
+//! folder, which then takes the final name.
+//!
+//! # Example
+//!
+//! ```
+//! use axis_log::{Channel, Log, metrics::ErrorSummary};
+//!
+//! let log = Log::new(vec![
+//!     Channel::new("t_s", vec![0.0, 1e-3, 2e-3])?,
+//!     Channel::new("position_ref_m", vec![0.6, 0.601, 0.602])?,
+//!     Channel::new("position_m", vec![0.6, 0.6009, 0.6021])?,
+//! ])?;
+//! let error = ErrorSummary::between(log.channel("position_ref_m")?, log.channel("position_m")?)?;
+//! assert!((error.max - 1e-4).abs() < 1e-12);
+//!
+//! let mut text = Vec::new();
+//! axis_log::write_csv_to(&mut text, &log)?;
+//! let again = axis_log::read_csv_from(text.as_slice(), "memory", &["position_m"])?;
+//! assert_eq!(again, log);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What it knows nothing of
+//!
+//! Machines, controllers and models. It does not resample, filter or convert
+//! units: a column in millimetres is a column in millimetres.
+#![forbid(unsafe_code)]
+
+mod channel;
+mod csv_in;
+mod csv_out;
+mod error;
+mod log;
+pub mod metrics;
+mod unit;
+
+pub use channel::Channel;
+pub use csv_in::{read_csv, read_csv_from};
+pub use csv_out::{write_csv, write_csv_to};
+pub use error::{CsvError, CsvProblem, LogError};
+pub use log::{Log, TIME_CHANNEL};
+pub use unit::{unit_of, unit_suffixes};

@@ -1,1 +1,139 @@
-//! Correction strategies for a servo axis behind one trait
+//! Corrections for a servo axis, one trait for the simulator and for a controller.
+//!
+//! Once a control cycle, at `t_k`, a controller knows the [`Sample`]: the
+//! reference now and a cycle ahead, the table position, the motor speed, the
+//! currents, and what it commanded last. From these alone a [`Compensator`]
+//! makes a [`Correction`]:
+//!
+//! ```text
+//! ΔS(k) = S_ref(k) − S(k) + position          position loop input (m)
+//! i_q,ref(k) = speed controller + iq          current reference  (A)
+//! ```
+//!
+//! Strategies:
+//!
+//! | strategy | file | correction |
+//! |---|---|---|
+//! | [`NoCompensation`] | `none.rs` | nothing |
+//! | [`NetworkCompensation`] | `network.rs` | the error that a network predicts for the end of the cycle (Section 4.4 of Liu et al. 2025, doi:10.3390/machines13050433) |
+//! | [`TransferFunction`] | `transfer_function.rs` | the error that a linear model predicts from the reference alone |
+//! | [`FrictionFeedforward`] | `friction.rs` | the current that LuGre friction asks for |
+//! | [`Combined`] | `combined.rs` | the sum of two |
+//!
+//! Speed and acceleration, which the network asks for, come from the
+//! [`MotionEstimator`]: motor speed, set right by the scale. The linear model
+//! comes from `identify_transfer_function` (feature `identify`, least squares).
+//!
+//! Everything but the identification works without `std`, and nothing is
+//! allocated in a cycle. The crate knows nothing of the simulator: no inner
+//! state of a plant comes in. It does not read or write files, plan motions,
+//! or train networks.
+//!
+//! ```
+//! use compensator::{Combined, Compensator, FrictionFeedforward, NoCompensation, Sample};
+//! use lugre::{LuGre, Parameters};
+//!
+//! let friction = LuGre::new(Parameters {
+//!     coulomb: 0.6757,
+//!     stiction: 0.7653,
+//!     stribeck_speed: 2.714,
+//!     stiffness: 15.16,
+//!     damping: 1.521,
+//!     viscous: 0.0298,
+//! })?;
+//! let mut law = Combined::new(
+//!     NoCompensation,
+//!     FrictionFeedforward::new(friction, 0.01 / std::f64::consts::TAU, 1.641, 1e-4)?,
+//! );
+//! // At 100 mm/s, after the bristles have settled, friction asks for T/K_t.
+//! let mut sample = Sample::default();
+//! sample.reference.velocity = 0.1;
+//! let mut iq = 0.0;
+//! for _ in 0..1000 {
+//!     iq = law.correct(&sample).iq;
+//! }
+//! assert!((iq - (0.6757 + 0.0298 * 62.83) / 1.641).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![cfg_attr(not(feature = "std"), no_std)]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
+
+mod combined;
+mod error;
+mod estimator;
+mod friction;
+#[cfg(feature = "identify")]
+mod identify;
+mod network;
+mod none;
+mod transfer_function;
+
+pub use combined::Combined;
+pub use error::CompensatorError;
+pub use estimator::{Estimate, MotionEstimator, NoiseGains, ObserverGains};
+pub use friction::FrictionFeedforward;
+#[cfg(feature = "identify")]
+pub use identify::{
+    Candidates, IdentifyError, Motion, TransferFunctionFit, Trial, identify_transfer_function,
+};
+pub use network::{IncrementModel, NetworkCompensation};
+pub use none::NoCompensation;
+pub use transfer_function::{MAX_ORDER, TransferFunction, TransferFunctionModel};
+
+/// The reference motion at one instant. SI units, table side.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reference {
+    /// Position, m.
+    pub position: f64,
+    /// Velocity, m/s.
+    pub velocity: f64,
+    /// Acceleration, m/s².
+    pub acceleration: f64,
+}
+
+/// What a controller knows at the start of a control cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Reference at this instant.
+    pub reference: Reference,
+    /// Reference one cycle ahead: known, because the motion is planned.
+    pub next_reference: Reference,
+    /// Measured table position, m.
+    pub position: f64,
+    /// Measured motor speed, rad/s.
+    pub motor_speed: f64,
+    /// Measured q current, A.
+    pub iq: f64,
+    /// q current that was commanded in the cycle before, A.
+    pub iq_command: f64,
+}
+
+/// What is added to the controller in this cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Correction {
+    /// Added to the position error, m.
+    pub position: f64,
+    /// Added to the speed controller's current command, A.
+    pub iq: f64,
+}
+
+/// A correction strategy. It keeps its own estimates; a cycle cannot fail.
+pub trait Compensator {
+    /// Forgets everything; the next sample is the first of a motion from rest.
+    fn reset(&mut self);
+
+    /// The correction for the cycle that begins with `sample`.
+    fn correct(&mut self, sample: &Sample) -> Correction;
+}
+
+impl<C: Compensator + ?Sized> Compensator for &mut C {
+    fn reset(&mut self) {
+        (**self).reset();
+    }
+
+    fn correct(&mut self, sample: &Sample) -> Correction {
+        (**self).correct(sample)
+    }
+}

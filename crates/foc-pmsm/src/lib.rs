@@ -1,1 +1,105 @@
-//! Field-oriented control of a permanent-magnet synchronous motor: frames, motor, PI, SVPWM, inverter, cascade
+//! Field-oriented control of a permanent-magnet synchronous motor.
+//!
+//! # Problem
+//! A motor with p pole pairs turns at ω (mechanical, rad/s). Its currents
+//! i = (i_d, i_q) ∈ ℝ² (A) in the rotor's frame answer to the voltage
+//! u = (u_d, u_q) (V):
+//!
+//! ```text
+//! L_d di_d/dt = u_d − R i_d + p ω L_q i_q                       (1)
+//! L_q di_q/dt = u_q − R i_q − p ω (L_d i_d + ψ)                 (2)
+//! T = 1.5 p (ψ i_q + (L_d − L_q) i_d i_q)            [N·m]      (3)
+//! ```
+//!
+//! Once in a period T_s a controller samples the load's position S (m), ω
+//! and i, and finds the voltage to hold until the next sample:
+//!
+//! ```text
+//! ω_ref = P_Sw (S_ref − S) + ω_ff                               (4)
+//! I_ω  += I_ωR (ω_ref − ω) T_s
+//! i_ref = P_ωR (ω_ref − ω) + I_ω,  |i_ref| ≤ i_max              (5)
+//! I_x  += I_ix e_x T_s,  u_x = P_ix e_x + I_x,  x = d, q        (6)
+//!         e_d = 0 − i_d,  e_q = i_ref − i_q,  |u| ≤ U_dc/√3
+//! ```
+//!
+//! An inverter makes that voltage from its DC link U_dc by switching three
+//! legs, with duty cycles D ∈ \[0, 1\]³ per period.
+//!
+//! # What is here
+//! - [`Phases`], [`AlphaBeta`], [`Dq`]: Clarke and Park, amplitude-invariant.
+//! - [`Pmsm`]: equations (1) to (3), one implicit step, one exact step.
+//! - [`Pi`]: a sampled PI with two kinds of anti-windup.
+//! - [`Servo`]: the cascade (4) to (6) with i_d = 0.
+//! - [`svpwm`]: duty cycles, linear range, overmodulation, six-step.
+//! - [`inverter`]: averaged and switched, with dead time.
+//!
+//! Laws are immutable and validated once; states are plain structs of the
+//! caller's. After construction nothing fails, panics or allocates; a NaN
+//! passes through to the outputs.
+//!
+//! # Example
+//! A step of 5 A in the q current, with the motor held:
+//! ```
+//! use foc_pmsm::{Dq, MotorParameters, Pmsm, Servo, ServoGains, ServoLimits, ServoState};
+//!
+//! let motor = Pmsm::new(
+//!     MotorParameters {
+//!         pole_pairs: 4,
+//!         resistance: 0.75,
+//!         inductance_d: 4.11e-3,
+//!         inductance_q: 13.2e-3,
+//!         flux_linkage: 0.0,
+//!     }
+//!     .from_torque_constant(1.641),
+//! )?;
+//! let gains = ServoGains {
+//!     position: 29_342.0, speed_p: 0.6474, speed_i: 6.801,
+//!     d_p: 2.776, d_i: 626.2, q_p: 8.805, q_i: 1003.3,
+//! };
+//! let limits = ServoLimits { current: 15.0, voltage: 540.0 / 3.0_f64.sqrt() };
+//! let servo = Servo::new(gains, limits, 1e-4)?;
+//!
+//! let mut state = ServoState::default();
+//! let mut i = Dq::ZERO;
+//! for _ in 0..100 {
+//!     let error = Dq { d: 0.0, q: 5.0 } - i;
+//!     let (u, _, _) = servo.current_loop(&mut state, error, Dq::ZERO);
+//!     i = motor.step(i, u, 0.0, servo.period());
+//! }
+//! assert!((i.q - 5.0).abs() < 0.2 && i.d == 0.0);
+//! assert!((motor.torque(i) - 1.641 * i.q).abs() < 1e-12);
+//! # Ok::<(), foc_pmsm::FocError>(())
+//! ```
+//!
+//! # What it knows nothing of
+//! Mechanics (inertia, friction, screws), trajectories, how a compensation
+//! finds its correction, the resolution and noise of sensors, files and
+//! units other than SI. It leaves out iron loss, magnetic saturation,
+//! cogging, and the delay of a real controller.
+//!
+//! # Features
+//! `std` (default) uses the processor's square root; results are the same
+//! without it, and then the crate needs neither `std` nor `alloc`.
+#![no_std]
+
+#[cfg(feature = "std")]
+extern crate std;
+
+mod error;
+mod exact;
+mod frames;
+pub mod inverter;
+mod math;
+mod motor;
+mod pi;
+mod servo;
+pub mod svpwm;
+
+pub use error::FocError;
+pub use frames::{AlphaBeta, Dq, Phases};
+pub use motor::{MotorParameters, Pmsm};
+pub use pi::{AntiWindup, Pi, PiOutput, PiParameters, PiState};
+pub use servo::{
+    Command, Correction, Measurement, Reference, Saturated, Servo, ServoGains, ServoLimits,
+    ServoState,
+};

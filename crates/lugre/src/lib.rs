@@ -1,1 +1,80 @@
-//! LuGre friction: the law, its steady-state curve, its exact stiff step, and its identification
+//! LuGre friction: the law, its steady-state curve, its exact stiff step, and
+//! its identification from measurements.
+//!
+//! # The problem
+//! Two surfaces touch through elastic bristles of mean deflection `z`. With
+//! the sliding speed `ω`,
+//!
+//! ```text
+//! dz/dt = ω − σ0 |ω| z / G(ω)                                (1)
+//! G(ω)  = T_C + (T_S − T_C) exp(−(ω/Ω_S)²)                   (2)
+//! T_f   = σ0 z + σ1 dz/dt + σ2 ω                             (3)
+//! ```
+//!
+//! and at constant speed, where `dz/dt = 0` and `z = G sign ω / σ0`,
+//!
+//! ```text
+//! T_ss(ω) = G(ω) sign ω + σ2 ω                               (4)
+//! ```
+//!
+//! (C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky, "A new model
+//! for control of systems with friction", IEEE Trans. Automatic Control 40(3),
+//! 1995, doi 10.1109/9.376053.)
+//!
+//! # Shapes and units
+//! One scalar state `z` (rad), one scalar input `ω` (rad/s), one scalar output
+//! `T_f` (N·m, positive when it opposes positive `ω`). Read N for N·m, m for
+//! rad and m/s for rad/s and the same code describes a sliding contact: no
+//! equation holds a conversion.
+//!
+//! # The step
+//! Equation (1) is linear in `z`, with the time constant `G / (σ0 |ω|)`, which
+//! is under a millisecond at traverse speed and infinite at rest.
+//! [`LuGre::step`] is therefore an exponential integrator: exact for a constant
+//! `ω` however long the step, second order for one that changes.
+//!
+//! ```
+//! use lugre::{LuGre, Parameters};
+//!
+//! // Liu et al., Machines 13(5), 433, 2025, Table 1, in SI units.
+//! let law = LuGre::new(Parameters {
+//!     coulomb: 0.6757,
+//!     stiction: 0.7653,
+//!     stribeck_speed: 2.713781,
+//!     stiffness: 15.159508,
+//!     damping: 1.521203,
+//!     viscous: 0.002865,
+//! })?;
+//!
+//! let speed = 10.0;
+//! let mut z = 0.0; // the law is immutable: the state is the caller's
+//! for _ in 0..2_000 {
+//!     z = law.step(z, speed, speed, 1e-4);
+//! }
+//! assert!((law.torque(z, speed) - law.steady_state(speed)).abs() < 1e-12);
+//! # Ok::<(), lugre::LugreError>(())
+//! ```
+//!
+//! # Features
+//! Without features the crate is `no_std` and allocates nothing. `identify`
+//! (on by default, needs `std`) finds the six parameters from records, see
+//! the module `identify`. `serde` reads and writes [`Parameters`] and
+//! [`LuGre`], validated on the way in.
+//!
+//! # What this crate does not know
+//! Nothing of machines, of where friction acts, of transmissions, control,
+//! files or time stepping of the mass that slides. It keeps no state.
+
+#![cfg_attr(not(feature = "std"), no_std)]
+
+mod exponential;
+#[cfg(feature = "identify")]
+pub mod identify;
+mod law;
+mod parameters;
+mod passivity;
+mod sliding;
+mod step;
+
+pub use law::LuGre;
+pub use parameters::{LugreError, Parameters};

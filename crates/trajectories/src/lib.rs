@@ -1,1 +1,81 @@
-//! Jerk-limited S-curves and motion programs, evaluated exactly at any time
+//! Jerk-limited S-curves and motion programs, evaluated exactly at any time.
+//!
+//! # The problem
+//! A position `s(t)` in m is wanted that starts at rest at `s₀`, ends at rest at `s₁`, and on the
+//! way obeys
+//!
+//! ```text
+//! |s'(t)| ≤ V   m/s      velocity limit
+//! |s''(t)| ≤ A  m/s²     acceleration limit
+//! |s'''(t)| ≤ J m/s³     jerk limit
+//! ```
+//!
+//! in the least time. For a motion between two rests the answer has at most seven segments of
+//! constant jerk, `+J 0 −J | 0 | −J 0 +J`, symmetric about the middle of its time, each of which
+//! drives one limit to its bound; [`SCurve::plan`] finds the three durations in closed form for
+//! every case, those included that reach neither the speed nor the acceleration limit.
+//!
+//! A [`Program`] (feature `alloc`) chains such moves with dwells, sines and chirps, and both are
+//! [`Motion`]s: a duration in s and a [`Setpoint`] at any `t`, shapes `f64 -> (m, m/s, m/s², m/s³)`.
+//!
+//! ```
+//! use trajectories::{Limits, Motion, SCurve};
+//!
+//! // 300 mm at 100 mm/s, 225 mm/s² and 1200 mm/s³.
+//! let limits = Limits::new(0.1, 0.225, 1.2)?;
+//! let curve = SCurve::plan(0.6, 0.9, &limits)?;
+//!
+//! // All limits are reached, so the time is d/V + V/A + A/J.
+//! let closed_form = 0.3 / 0.1 + 0.1 / 0.225 + 0.225 / 1.2;
+//! assert!((curve.duration() - closed_form).abs() < 1e-14);
+//!
+//! let middle = curve.at(0.5 * curve.duration());
+//! assert_eq!(middle.velocity, 0.1);
+//! assert!((middle.position - 0.75).abs() < 1e-15);
+//!
+//! // The end is met exactly, and kept.
+//! let end = curve.at(curve.duration());
+//! assert_eq!((end.position, end.velocity, end.acceleration), (0.9, 0.0, 0.0));
+//! # Ok::<(), trajectories::TrajectoryError>(())
+//! ```
+//!
+//! # What it deliberately knows nothing of
+//! The machine that follows the motion: no axis, stroke, control period, controller or error
+//! enters here. Callers compare [`Extremes`] with their own stroke and sample at their own
+//! instants. There is one axis and rest at both ends of each step: no blending between moves, no
+//! synchronisation of axes, no start from a state in motion.
+//!
+//! # Features
+//! `std` (default) implies `alloc`; `alloc` gives [`Program`]; `serde` reads and writes programs
+//! and steps with keys in millimetres (see [`Step`]) and implies `alloc`. Without any of them the
+//! crate is `no_std` and allocates nothing.
+#![no_std]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
+
+mod envelope;
+mod error;
+mod extremes;
+#[cfg(feature = "serde")]
+mod file;
+mod limits;
+mod motion;
+mod oscillation;
+mod phases;
+#[cfg(feature = "alloc")]
+mod program;
+mod scurve;
+mod step;
+mod sweep;
+
+pub use error::TrajectoryError;
+pub use extremes::Extremes;
+pub use limits::Limits;
+pub use motion::{Motion, Setpoint};
+pub use oscillation::{Chirp, Oscillation, Sine};
+#[cfg(feature = "alloc")]
+pub use program::Program;
+pub use scurve::{SCurve, Segment};
+pub use step::Step;
+pub use sweep::Sweep;

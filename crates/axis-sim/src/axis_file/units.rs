@@ -1,0 +1,103 @@
+//! Units of the axis file: the last part of a key.
+
+use std::f64::consts::TAU;
+
+/// A physical dimension with the units that a key may end in.
+pub(super) struct Dimension {
+    /// What it is called in a message.
+    pub(super) name: &'static str,
+    units: &'static [(&'static str, f64)],
+}
+
+impl Dimension {
+    /// The keys that give the quantity `name`.
+    pub(super) fn keys(&self, name: &str) -> impl Iterator<Item = String> {
+        self.units
+            .iter()
+            .map(move |(unit, _)| format!("{name}_{unit}"))
+    }
+
+    /// Factors to SI, in the order of [`Self::keys`].
+    pub(super) fn factors(&self) -> impl Iterator<Item = f64> {
+        self.units.iter().map(|(_, factor)| *factor)
+    }
+}
+
+/// rad/s in one rpm.
+const RPM: f64 = TAU / 60.0;
+
+macro_rules! dimensions {
+    ($($constant:ident $name:literal: $($unit:literal $factor:expr),+;)+) => {
+        $(pub(super) const $constant: Dimension = Dimension {
+            name: $name,
+            units: &[$(($unit, $factor)),+],
+        };)+
+    };
+}
+
+dimensions! {
+    LENGTH "unit of length": "mm" 1e-3, "m" 1.0, "um" 1e-6;
+    SPEED "unit of speed": "mm_per_s" 1e-3, "m_per_s" 1.0, "m_per_min" 1.0 / 60.0;
+    ACCELERATION "unit of acceleration": "mm_per_s2" 1e-3, "m_per_s2" 1.0;
+    JERK "unit of jerk": "mm_per_s3" 1e-3, "m_per_s3" 1.0;
+    TIME "unit of time": "s" 1.0, "ms" 1e-3, "us" 1e-6;
+    FREQUENCY "unit of frequency": "khz" 1e3, "hz" 1.0;
+    MASS "unit of mass": "kg" 1.0, "t" 1e3;
+    DENSITY "unit of density": "kg_per_m3" 1.0, "g_per_cm3" 1e3;
+    PRESSURE "unit of an elastic modulus": "gpa" 1e9, "mpa" 1e6, "pa" 1.0;
+    INERTIA "unit of inertia": "kg_m2" 1.0, "kg_cm2" 1e-4;
+    STIFFNESS "unit of stiffness": "n_per_m" 1.0, "n_per_um" 1e6;
+    TORSION "unit of torsional stiffness": "n_m_per_rad" 1.0, "kn_m_per_rad" 1e3;
+    TORQUE "unit of torque": "n_m" 1.0, "n_mm" 1e-3;
+    ROTATION "unit of rotational speed": "rpm" RPM, "rad_per_s" 1.0;
+    BRISTLE_STIFFNESS "unit of bristle stiffness":
+        "n_m_per_rad" 1.0, "n_m_per_rpm_s" 1.0 / RPM;
+    ROTARY_DAMPING "unit of rotary damping": "n_m_s_per_rad" 1.0, "n_m_per_rpm" 1.0 / RPM;
+    TORQUE_CONSTANT "unit of a torque constant": "n_m_per_a" 1.0;
+    RESISTANCE "unit of resistance": "ohm" 1.0, "mohm" 1e-3;
+    INDUCTANCE "unit of inductance": "mh" 1e-3, "h" 1.0, "uh" 1e-6;
+    VOLTAGE "unit of voltage": "v" 1.0;
+    CURRENT "unit of current": "a" 1.0, "ma" 1e-3;
+    POSITION_GAIN "unit of a position gain":
+        "rpm_per_mm" RPM * 1e3, "rad_per_s_per_m" 1.0;
+    SPEED_PROPORTIONAL "unit of a speed controller's proportional gain":
+        "a_per_rpm" 1.0 / RPM, "a_s_per_rad" 1.0;
+    SPEED_INTEGRAL "unit of a speed controller's integral gain":
+        "a_per_rpm_s" 1.0 / RPM, "a_per_rad" 1.0;
+    CURRENT_PROPORTIONAL "unit of a current controller's proportional gain": "v_per_a" 1.0;
+    CURRENT_INTEGRAL "unit of a current controller's integral gain": "v_per_a_s" 1.0;
+}
+
+/// What a number must satisfy besides being finite.
+#[derive(Clone, Copy)]
+pub(super) enum Valid {
+    /// Any finite number.
+    Finite,
+    /// Above zero.
+    Positive,
+    /// Zero or above.
+    NotNegative,
+    /// Above −1 and below ½: Poisson's ratio of a stable material.
+    PoissonRatio,
+}
+
+impl Valid {
+    pub(super) fn accepts(self, number: f64) -> bool {
+        number.is_finite()
+            && match self {
+                Valid::Finite => true,
+                Valid::Positive => number > 0.0,
+                Valid::NotNegative => number >= 0.0,
+                Valid::PoissonRatio => number > -1.0 && number < 0.5,
+            }
+    }
+
+    pub(super) fn text(self) -> &'static str {
+        match self {
+            Valid::Finite => "a finite number",
+            Valid::Positive => "a finite number above zero",
+            Valid::NotNegative => "a finite number, zero or above",
+            Valid::PoissonRatio => "a number above -1 and below 0.5",
+        }
+    }
+}

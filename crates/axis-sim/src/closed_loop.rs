@@ -1,0 +1,315 @@
+//! The electromechanical coupling model of Section 3.3 as one loop.
+
+use compensator::{Compensator, Correction, Reference, Sample};
+use feed_dynamics::{DriveError, ImplicitStepper, ModalStepper, NutCoupling, TimeStepper};
+use foc_pmsm::{Command, Dq, Measurement, ServoState};
+use thiserror::Error;
+use trajectories::{Motion, Setpoint};
+
+use crate::Axis;
+use crate::plant::{Plant, substeps};
+
+/// What one control cycle leaves behind, at its start `t_k`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cycle {
+    /// Time since the motion began, s.
+    pub time: f64,
+    /// Reference.
+    pub reference: Setpoint,
+    /// Table position, m from the driven end.
+    pub position: f64,
+    /// Table speed, m/s. Not seen by the controller.
+    pub table_speed: f64,
+    /// Motor angle since the start, rad.
+    pub motor_angle: f64,
+    /// Motor speed, rad/s.
+    pub motor_speed: f64,
+    /// Currents, A.
+    pub current: Dq,
+    /// What the controller commands for the cycle.
+    pub command: Command,
+    /// What the compensator added.
+    pub correction: Correction,
+}
+
+impl Cycle {
+    /// Tracking error S_ref − S, m.
+    pub fn error(&self) -> f64 {
+        self.reference.position - self.position
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// The motion was followed to its end.
+    Completed,
+    /// The run was given up.
+    Stopped {
+        /// When, s.
+        time: f64,
+        /// Why.
+        reason: StopReason,
+        /// Table position then, m.
+        position: f64,
+        /// Tracking error then, m.
+        error: f64,
+        /// Motor speed then, rad/s.
+        motor_speed: f64,
+        /// q current then, A.
+        iq: f64,
+    },
+}
+
+/// Why a run was given up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StopReason {
+    /// A state is no longer a finite number.
+    NotFinite,
+    /// The tracking error is beyond what any drive tolerates.
+    FollowingError,
+    /// The table has left its stroke.
+    LeftStroke,
+}
+
+/// Tracking error at which a run is given up, m.
+pub const FOLLOWING_ERROR_LIMIT: f64 = 0.02;
+
+/// A run that did not come to its end.
+#[derive(Clone, Copy, Debug, Error)]
+#[error(
+    "the simulation stopped at t = {time:.4} s because {}: table at {position:.6} m, tracking error {error:.3e} m, motor speed {motor_speed:.3} rad/s, q current {iq:.3} A",
+    describe(.reason)
+)]
+pub struct RunStopped {
+    /// When, s.
+    pub time: f64,
+    /// Why.
+    pub reason: StopReason,
+    /// Table position then, m.
+    pub position: f64,
+    /// Tracking error then, m.
+    pub error: f64,
+    /// Motor speed then, rad/s.
+    pub motor_speed: f64,
+    /// q current then, A.
+    pub iq: f64,
+}
+
+fn describe(reason: &StopReason) -> &'static str {
+    match reason {
+        StopReason::NotFinite => "a state is no longer a finite number",
+        StopReason::FollowingError => {
+            "the tracking error passed 20 mm (an unstable loop, or a motion too fast for the current limit)"
+        }
+        StopReason::LeftStroke => "the table left its stroke",
+    }
+}
+
+impl Outcome {
+    /// The run as a success or the error that tells why it is none.
+    ///
+    /// # Errors
+    /// [`RunStopped`] where the run was given up.
+    pub fn completed(self) -> Result<(), RunStopped> {
+        match self {
+            Self::Completed => Ok(()),
+            Self::Stopped {
+                time,
+                reason,
+                position,
+                error,
+                motor_speed,
+                iq,
+            } => Err(RunStopped {
+                time,
+                reason,
+                position,
+                error,
+                motor_speed,
+                iq,
+            }),
+        }
+    }
+}
+
+/// The closed loop of an axis, prepared once for any number of runs.
+#[derive(Clone, Debug)]
+pub struct ClosedLoop {
+    axis: Axis,
+    plant: AnyPlant,
+}
+
+#[derive(Clone, Debug)]
+enum AnyPlant {
+    Modal(Plant<ModalStepper>),
+    Implicit(Plant<ImplicitStepper>),
+}
+
+impl ClosedLoop {
+    /// Prepares the axis as its file says: shape functions run on the modal
+    /// stepper, the moving node on the implicit one with steps of at most 10 µs.
+    ///
+    /// # Errors
+    /// [`DriveError`] where the mechanics cannot be set up.
+    pub fn new(axis: &Axis) -> Result<Self, DriveError> {
+        match axis.coupling {
+            NutCoupling::ShapeFunctions => {
+                let step = axis.period / f64::from(substeps(axis));
+                let stepper = ModalStepper::new(&axis.drive, step)?;
+                Ok(Self {
+                    plant: AnyPlant::Modal(Plant::new(axis, stepper)),
+                    axis: axis.clone(),
+                })
+            }
+            NutCoupling::MovingNode => {
+                let mut axis = axis.clone();
+                axis.simulation.step = axis.simulation.step.min(1e-5);
+                Self::implicit(&axis)
+            }
+        }
+    }
+
+    /// Prepares the axis on the implicit stepper, whatever the coupling: the
+    /// obvious way, to check the fast one against.
+    ///
+    /// # Errors
+    /// As [`ClosedLoop::new`].
+    pub fn implicit(axis: &Axis) -> Result<Self, DriveError> {
+        let step = axis.period / f64::from(substeps(axis));
+        let stepper = ImplicitStepper::new(&axis.drive, axis.coupling, step)?;
+        Ok(Self {
+            plant: AnyPlant::Implicit(Plant::new(axis, stepper)),
+            axis: axis.clone(),
+        })
+    }
+
+    /// The axis.
+    pub fn axis(&self) -> &Axis {
+        &self.axis
+    }
+
+    /// Follows `motion` from rest at its start, and shows every cycle at a
+    /// sampling instant from 0 to the motion's end to `observe`.
+    pub fn run(
+        &self,
+        motion: &(impl Motion + ?Sized),
+        compensator: &mut (impl Compensator + ?Sized),
+        observe: impl FnMut(&Cycle),
+    ) -> Outcome {
+        match &self.plant {
+            AnyPlant::Modal(plant) => self.run_on(plant, motion, compensator, observe),
+            AnyPlant::Implicit(plant) => self.run_on(plant, motion, compensator, observe),
+        }
+    }
+
+    fn run_on<S: TimeStepper>(
+        &self,
+        plant: &Plant<S>,
+        motion: &(impl Motion + ?Sized),
+        compensator: &mut (impl Compensator + ?Sized),
+        mut observe: impl FnMut(&Cycle),
+    ) -> Outcome {
+        let axis = &self.axis;
+        let period = axis.period;
+        let cycles = (motion.duration() / period * (1.0 + 1e-12)).floor() as u64;
+        let speed_feedforward = axis.velocity_feedforward / axis.travel_per_radian();
+
+        let mut reference = motion.at(0.0);
+        let origin = reference.position;
+        let mut state = plant.at_rest(origin);
+        let mut servo = ServoState::default();
+        let mut last_command = Command::default();
+        compensator.reset();
+
+        for k in 0..=cycles {
+            // Sample.
+            let time = k as f64 * period;
+            let next_reference = motion.at((k + 1) as f64 * period);
+            let seen = state.seen;
+            let position = origin + seen.displacement;
+
+            // Correct.
+            let correction = compensator.correct(&Sample {
+                reference: reference_of(&reference),
+                next_reference: reference_of(&next_reference),
+                position,
+                motor_speed: seen.motor_speed,
+                iq: state.current.q,
+                iq_command: last_command.iq_ref,
+            });
+
+            // Control: position, speed and current loops (Fig. 5).
+            let command = axis.servo.cycle(
+                &mut servo,
+                &Measurement {
+                    position,
+                    motor_speed: seen.motor_speed,
+                    current: state.current,
+                },
+                &foc_pmsm::Reference {
+                    position: reference.position,
+                    motor_speed: speed_feedforward * reference.velocity,
+                },
+                &foc_pmsm::Correction {
+                    position_offset: correction.position,
+                    speed: 0.0,
+                    iq: correction.iq,
+                },
+            );
+
+            // Record.
+            let cycle = Cycle {
+                time,
+                reference,
+                position,
+                table_speed: seen.speed,
+                motor_angle: seen.motor_angle,
+                motor_speed: seen.motor_speed,
+                current: state.current,
+                command,
+                correction,
+            };
+            if let Some(reason) = self.stop_reason(&cycle) {
+                return Outcome::Stopped {
+                    time,
+                    reason,
+                    position,
+                    error: cycle.error(),
+                    motor_speed: seen.motor_speed,
+                    iq: state.current.q,
+                };
+            }
+            observe(&cycle);
+
+            // Let the machine run on, the voltage held (averaged SVPWM).
+            plant.advance(&mut state, command.voltage);
+            reference = next_reference;
+            last_command = command;
+        }
+        Outcome::Completed
+    }
+
+    fn stop_reason(&self, cycle: &Cycle) -> Option<StopReason> {
+        let stroke = &self.axis.stroke;
+        let current = cycle.current.d + cycle.current.q + cycle.command.iq_ref;
+        let state = cycle.position + cycle.motor_speed + current;
+        if !state.is_finite() {
+            Some(StopReason::NotFinite)
+        } else if cycle.error().abs() > FOLLOWING_ERROR_LIMIT {
+            Some(StopReason::FollowingError)
+        } else if !(stroke.minimum..=stroke.maximum).contains(&cycle.position) {
+            Some(StopReason::LeftStroke)
+        } else {
+            None
+        }
+    }
+}
+
+fn reference_of(setpoint: &Setpoint) -> Reference {
+    Reference {
+        position: setpoint.position,
+        velocity: setpoint.velocity,
+        acceleration: setpoint.acceleration,
+    }
+}

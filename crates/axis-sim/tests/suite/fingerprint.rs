@@ -1,0 +1,125 @@
+//! The fingerprint follows the values, and nothing else.
+
+use axis_sim::Axis;
+
+use crate::{PRINTED, text};
+
+fn fingerprint(content: &str) -> String {
+    Axis::parse("axis.toml", content).unwrap().fingerprint
+}
+
+#[test]
+fn comments_names_order_and_units_do_not_count() {
+    let original = text(PRINTED);
+    let expected = fingerprint(&original);
+
+    let bare: String = original
+        .lines()
+        .map(|line| line.split('#').next().unwrap_or_default().trim_end())
+        .filter(|line| !line.is_empty())
+        .map(|line| format!("{line}\n"))
+        .collect();
+    assert_eq!(fingerprint(&bare), expected);
+
+    let renamed = original.replace("name = \"liu2025\"", "name = \"other\"");
+    assert_ne!(renamed, original);
+    assert_eq!(fingerprint(&renamed), expected);
+
+    // Tables from the last to the first, the keys in them too; the list of
+    // trajectories keeps its order, which has a meaning.
+    let mut tables: Vec<Vec<&str>> = vec![Vec::new()];
+    for line in bare.lines() {
+        if line.starts_with('[') {
+            tables.push(Vec::new());
+        }
+        tables.last_mut().unwrap().push(line);
+    }
+    let (moves, mut others): (Vec<_>, Vec<_>) =
+        tables[1..].iter().partition(|t| t[0] == "[[trajectory]]");
+    others.reverse();
+    let mut shuffled = tables[0]
+        .iter()
+        .rev()
+        .fold(String::new(), |s, l| s + l + "\n");
+    for table in others.into_iter().chain(moves) {
+        shuffled += &format!("{}\n", table[0]);
+        for line in table[1..].iter().rev() {
+            shuffled += &format!("{line}\n");
+        }
+    }
+    assert_ne!(shuffled, bare);
+    assert_eq!(fingerprint(&shuffled), expected);
+
+    // Another unit counts as the same value where both convert to the same
+    // f64. That is not so for every decimal (the last bit may differ), so
+    // these are chosen: 1500 × 1e-3 = 1.5, 10 × 1e3 = 1e4, 100 × 1e-6 = 1e-4.
+    let units = original
+        .replace("length_mm = 1500 ", "length_m = 1.5 ")
+        .replace("frequency_khz = 10", "frequency_hz = 10000")
+        .replace("table_mass_kg = 515 ", "table_mass_kg = 5.15e2 ");
+    assert_ne!(units, original);
+    assert_eq!(fingerprint(&units), expected);
+}
+
+#[test]
+fn every_value_counts() {
+    let original = text(PRINTED);
+    let mut seen = vec![fingerprint(&original)];
+    let mut changed = 0;
+    for (i, line) in original.lines().enumerate() {
+        let code = line.split('#').next().unwrap_or_default();
+        let Some((key, value)) = code.split_once('=') else {
+            continue;
+        };
+        let Ok(number) = value.trim().parse::<f64>() else {
+            continue;
+        };
+        if key.trim() == "schema" {
+            continue;
+        }
+        // A hundredth less or more, whichever is still an axis; counts by one.
+        let whole = ["elements", "pole_pairs"].contains(&key.trim());
+        let others = if whole {
+            [number + 1.0, number - 1.0]
+        } else if number == 0.0 {
+            [1.0, -1.0]
+        } else {
+            [0.99 * number, 1.01 * number]
+        };
+        let with = |other: f64| -> String {
+            let replace = |(j, l): (usize, &str)| {
+                if i == j {
+                    format!("{key}= {other}\n")
+                } else {
+                    format!("{l}\n")
+                }
+            };
+            original.lines().enumerate().map(replace).collect()
+        };
+        let parsed = others
+            .iter()
+            .find_map(|&o| Axis::parse("axis.toml", &with(o)).ok());
+        let found = parsed
+            .unwrap_or_else(|| panic!("line {}: {line}", i + 1))
+            .fingerprint;
+        assert!(!seen.contains(&found), "line {}: {line}", i + 1);
+        seen.push(found);
+        changed += 1;
+    }
+    // 7 of the screw, 7 of the drive, 6 of the friction, 5 of the motor, 1 of
+    // the inverter, 10 of the control, 3 of the stroke, 8 of the samples, the
+    // step, and 4 of each of the six trajectories.
+    assert_eq!(changed, 72);
+    let moving = original.replace("\"shape-functions\"", "\"moving-node\"");
+    assert!(!seen.contains(&fingerprint(&moving)));
+}
+
+#[test]
+fn the_order_of_trajectories_counts() {
+    let original = text(PRINTED);
+    let swapped = original
+        .replace("jerk_mm_per_s3 = 1200", "jerk_mm_per_s3 = 0.5")
+        .replace("jerk_mm_per_s3 = 1400", "jerk_mm_per_s3 = 1200")
+        .replace("jerk_mm_per_s3 = 0.5", "jerk_mm_per_s3 = 1400");
+    assert_ne!(fingerprint(&swapped), fingerprint(&original));
+}

@@ -1,0 +1,55 @@
+//! Trajectory 1, millisecond by millisecond, against an independent program.
+
+use std::path::PathBuf;
+
+use axis_sim::ClosedLoop;
+
+use crate::{PRINTED, axis, follow};
+
+#[test]
+fn trajectory_1_of_the_independent_program() {
+    let file = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("../../../shared/golden/trajectory1_published.csv");
+    let Ok(golden) = std::fs::read_to_string(&file) else {
+        println!("skipped: {} is not there", file.display());
+        return;
+    };
+    let cycles = follow(&ClosedLoop::new(&axis(PRINTED)).unwrap(), 1);
+    let mut lines = golden.lines();
+    assert_eq!(
+        lines.next(),
+        Some("t_s,position_ref_m,position_m,motor_angle_rad,motor_speed_rad_s,iq_a")
+    );
+    let mut most = [0.0_f64; 5];
+    let mut rows = 0;
+    for (i, line) in lines.enumerate() {
+        let row: Vec<f64> = line.split(',').map(|v| v.parse().unwrap()).collect();
+        let c = &cycles[10 * i];
+        assert!((c.time - row[0]).abs() < 1e-9);
+        let ours = [
+            c.reference.position,
+            c.position,
+            c.motor_angle,
+            c.motor_speed,
+            c.current.q,
+        ];
+        for (most, (a, b)) in most.iter_mut().zip(ours.iter().zip(&row[1..])) {
+            *most = most.max((a - b).abs());
+        }
+        rows += 1;
+    }
+    println!("{rows} rows; greatest deviations of reference, position, angle, speed, iq: {most:?}");
+    assert_eq!(rows, 3632);
+    // The file has 12 decimals of a metre.
+    assert!(most[0] < 2e-12, "{most:?}");
+    // 0.02 µm at the table, and the same at the motor.
+    assert!(most[1] < 2e-8, "{most:?}");
+    assert!(
+        most[2] < 2e-8 / axis(PRINTED).travel_per_radian(),
+        "{most:?}"
+    );
+    // Speed and current have no agreed tolerance: the deviations measured are
+    // 3e-6 rad/s and 1e-5 A, of 63 rad/s and 3 A.
+    assert!(most[3] < 1e-4, "{most:?}");
+    assert!(most[4] < 1e-4, "{most:?}");
+}

@@ -1,0 +1,189 @@
+//! How runs end that do not come to their end.
+
+use axis_sim::{Axis, ClosedLoop, Cycle, FOLLOWING_ERROR_LIMIT, Outcome, StopReason};
+use compensator::{Compensator, Correction, NoCompensation, Sample};
+use foc_pmsm::{Servo, ServoGains, ServoLimits};
+use trajectories::{Limits, SCurve};
+
+use crate::{PRINTED, axis};
+
+fn with(axis: &Axis, gains: ServoGains, limits: ServoLimits) -> Axis {
+    Axis {
+        servo: Servo::new(gains, limits, axis.period).unwrap(),
+        ..axis.clone()
+    }
+}
+
+/// Runs trajectory 1 and checks that nothing observed was not a number.
+fn run(axis: &Axis, compensator: &mut impl Compensator) -> (Outcome, usize) {
+    let motion = axis.plan(&axis.trajectories[0]).unwrap();
+    let mut seen = 0;
+    let outcome = ClosedLoop::new(axis)
+        .unwrap()
+        .run(&motion, compensator, |c| {
+            assert!(numbers(c).iter().all(|v| v.is_finite()), "{c:?}");
+            seen += 1;
+        });
+    (outcome, seen)
+}
+
+fn numbers(c: &Cycle) -> [f64; 13] {
+    [
+        c.time,
+        c.position,
+        c.table_speed,
+        c.motor_angle,
+        c.motor_speed,
+        c.error(),
+        c.current.d,
+        c.current.q,
+        c.command.speed_ref,
+        c.command.iq_ref,
+        c.command.voltage.d,
+        c.command.voltage.q,
+        c.correction.position,
+    ]
+}
+
+fn stopped(outcome: Outcome) -> (f64, StopReason) {
+    let Outcome::Stopped {
+        time,
+        reason,
+        position,
+        error,
+        motor_speed,
+        iq,
+    } = outcome
+    else {
+        panic!("it came to its end");
+    };
+    // The message says when and in which state.
+    let text = outcome.completed().unwrap_err().to_string();
+    for part in [
+        format!("t = {time:.4} s"),
+        format!("table at {position:.6} m"),
+        format!("error {error:.3e} m"),
+        format!("motor speed {motor_speed:.3} rad/s"),
+        format!("q current {iq:.3} A"),
+    ] {
+        assert!(text.contains(&part), "{text}: {part}");
+    }
+    (time, reason)
+}
+
+#[test]
+fn a_current_limit_that_cannot_move_it() {
+    // Friction alone needs 0.4 A.
+    let axis = axis(PRINTED);
+    let limits = ServoLimits {
+        current: 0.01,
+        ..*axis.servo.limits()
+    };
+    let (outcome, seen) = run(
+        &with(&axis, *axis.servo.gains(), limits),
+        &mut NoCompensation,
+    );
+    let (time, reason) = stopped(outcome);
+    assert_eq!(reason, StopReason::FollowingError);
+    // It stands still: given up when the reference has moved 20 mm.
+    let motion = axis.plan(&axis.trajectories[0]).unwrap();
+    let moved = trajectories::Motion::at(&motion, time).position - 0.6;
+    assert!((moved - FOLLOWING_ERROR_LIMIT).abs() < 1e-4, "{moved}");
+    assert_eq!(seen, (time / axis.period).round() as usize);
+}
+
+#[test]
+fn gains_that_no_loop_survives() {
+    let axis = axis(PRINTED);
+    let (gains, limits) = (*axis.servo.gains(), *axis.servo.limits());
+    let unlimited = ServoLimits {
+        current: f64::INFINITY,
+        voltage: f64::INFINITY,
+    };
+    for (name, gains, limits) in [
+        (
+            "position × 100, no limits",
+            ServoGains {
+                position: 100.0 * gains.position,
+                ..gains
+            },
+            unlimited,
+        ),
+        (
+            "speed × 1e4, no limits",
+            ServoGains {
+                speed_p: 1e4 * gains.speed_p,
+                ..gains
+            },
+            unlimited,
+        ),
+        (
+            "current × 1e6, no limits",
+            ServoGains {
+                q_p: 1e6 * gains.q_p,
+                ..gains
+            },
+            unlimited,
+        ),
+        (
+            "position × 100",
+            ServoGains {
+                position: 100.0 * gains.position,
+                ..gains
+            },
+            limits,
+        ),
+    ] {
+        let (outcome, seen) = run(&with(&axis, gains, limits), &mut NoCompensation);
+        println!("{name}: {outcome:?} after {seen} cycles");
+        if limits.current.is_infinite() {
+            let (time, _) = stopped(outcome);
+            assert!(time > 0.0 && seen as f64 * axis.period <= time + axis.period);
+        }
+        // With its limits on, the last one may only hunt within ±20 mm: then
+        // `run` has seen that it did so in finite numbers.
+    }
+}
+
+/// Works for a while, then hands out what is no number.
+struct Broken(u32);
+
+impl Compensator for Broken {
+    fn reset(&mut self) {
+        self.0 = 0;
+    }
+    fn correct(&mut self, _: &Sample) -> Correction {
+        self.0 += 1;
+        let position = if self.0 > 100 { f64::NAN } else { 0.0 };
+        Correction {
+            position,
+            ..Correction::default()
+        }
+    }
+}
+
+#[test]
+fn a_compensator_that_returns_nan() {
+    let (outcome, seen) = run(&axis(PRINTED), &mut Broken(0));
+    let (time, reason) = stopped(outcome);
+    assert_eq!(reason, StopReason::NotFinite);
+    assert_eq!(seen, 100);
+    assert!((time - 0.01).abs() < 1e-12);
+}
+
+#[test]
+fn a_motion_beyond_the_stroke() {
+    let axis = axis(PRINTED);
+    let limits = Limits::new(0.3, 2.0, 20.0).unwrap();
+    for to in [-0.1, 1.6] {
+        let motion = SCurve::plan(0.6, to, &limits).unwrap();
+        let mut last = 0.6;
+        let outcome = ClosedLoop::new(&axis)
+            .unwrap()
+            .run(&motion, &mut NoCompensation, |c| last = c.position);
+        assert_eq!(stopped(outcome).1, StopReason::LeftStroke);
+        // The last position shown was still on the stroke, a cycle from its end.
+        assert!((0.0..=1.5).contains(&last));
+        assert!((last - to.clamp(0.0, 1.5)).abs() < 0.3 * 2e-4, "{last}");
+    }
+}

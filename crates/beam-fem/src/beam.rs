@@ -1,0 +1,161 @@
+//! A beam and its assembled matrices, dense and banded.
+
+use nalgebra::DMatrix;
+
+use crate::element::Coefficients;
+use crate::{BandedMatrices, BeamError, Material, Mesh, Section};
+
+/// The six degrees of freedom of a node, in the paper's order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dof {
+    /// Axial displacement u, m.
+    U = 0,
+    /// Deflection v along y, m.
+    V = 1,
+    /// Deflection w along z, m.
+    W = 2,
+    /// Twist θx, rad: the paper's RX direction.
+    ThetaX = 3,
+    /// Rotation θy, rad.
+    ThetaY = 4,
+    /// Rotation θz, rad.
+    ThetaZ = 5,
+}
+
+impl Dof {
+    /// All six, in order.
+    pub const ALL: [Dof; 6] = [
+        Dof::U,
+        Dof::V,
+        Dof::W,
+        Dof::ThetaX,
+        Dof::ThetaY,
+        Dof::ThetaZ,
+    ];
+
+    /// Row of this degree of freedom of `node` in the assembled matrices.
+    pub fn at(self, node: usize) -> usize {
+        6 * node + self as usize
+    }
+}
+
+/// A straight beam of one section and material on a mesh. Any combination of
+/// checked parts is valid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beam {
+    /// Cross-section.
+    pub section: Section,
+    /// Material.
+    pub material: Material,
+    /// Nodes along the axis.
+    pub mesh: Mesh,
+}
+
+/// Assembled matrices of `M q̈ + K q = F`, each (6N + 6)², rows as [`Dof::at`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matrices {
+    /// Mass M, kg, kg·m and kg·m².
+    pub mass: DMatrix<f64>,
+    /// Stiffness K, N/m, N and N·m.
+    pub stiffness: DMatrix<f64>,
+}
+
+impl Beam {
+    /// Puts the parts together.
+    pub fn new(section: Section, material: Material, mesh: Mesh) -> Self {
+        Self {
+            section,
+            material,
+            mesh,
+        }
+    }
+
+    /// Number of degrees of freedom, 6 N + 6.
+    pub fn order(&self) -> usize {
+        6 * self.mesh.nodes().len()
+    }
+
+    /// Dense M and K of the free beam (paper, Eqs. A52 and A53). Memory
+    /// grows with N²: for many elements use [`Beam::assemble_banded`].
+    pub fn assemble(&self) -> Matrices {
+        let order = self.order();
+        let mut mass = DMatrix::zeros(order, order);
+        let mut stiffness = DMatrix::zeros(order, order);
+        for (element, length) in self.mesh.lengths().enumerate() {
+            let first = 6 * element;
+            for e in Coefficients::new(&self.section, &self.material, length).lower() {
+                let (row, column) = (first + e.row, first + e.column);
+                mass[(row, column)] += e.mass;
+                stiffness[(row, column)] += e.stiffness;
+            }
+        }
+        mass.fill_upper_triangle_with_lower_triangle();
+        stiffness.fill_upper_triangle_with_lower_triangle();
+        Matrices { mass, stiffness }
+    }
+
+    /// M and K of the free beam in banded storage: memory and time
+    /// proportional to N.
+    pub fn assemble_banded(&self) -> BandedMatrices {
+        let mut matrices = BandedMatrices::zeros(self.order());
+        self.add_to(&mut matrices);
+        matrices
+    }
+
+    /// The same into matrices made before, without allocation.
+    ///
+    /// # Errors
+    /// [`BeamError::Shape`] if they are not those of a beam with as many nodes.
+    pub fn assemble_banded_into(&self, matrices: &mut BandedMatrices) -> Result<(), BeamError> {
+        matrices.check(self.order())?;
+        matrices.clear();
+        self.add_to(matrices);
+        Ok(())
+    }
+
+    /// Adds every element; elements of one length are computed once.
+    fn add_to(&self, matrices: &mut BandedMatrices) {
+        let mut known = 0.0;
+        let mut entries = None;
+        for (element, length) in self.mesh.lengths().enumerate() {
+            if length != known || entries.is_none() {
+                entries = Some(Coefficients::new(&self.section, &self.material, length).lower());
+                known = length;
+            }
+            if let Some(entries) = &entries {
+                matrices.add_element(6 * element, entries);
+            }
+        }
+    }
+}
+
+impl Matrices {
+    /// The matrices with the `fixed` degrees of freedom held at zero: their
+    /// rows and columns are left out. The others keep their order.
+    ///
+    /// # Errors
+    /// [`BeamError::Index`] for a degree of freedom that does not exist.
+    pub fn fixed(&self, fixed: &[usize]) -> Result<Self, BeamError> {
+        let free = free_dofs(self.mass.nrows(), fixed)?;
+        let pick = |m: &DMatrix<f64>| {
+            DMatrix::from_fn(free.len(), free.len(), |i, j| m[(free[i], free[j])])
+        };
+        Ok(Self {
+            mass: pick(&self.mass),
+            stiffness: pick(&self.stiffness),
+        })
+    }
+}
+
+/// All of 0..order that is not in `fixed`, ascending.
+pub(crate) fn free_dofs(order: usize, fixed: &[usize]) -> Result<Vec<usize>, BeamError> {
+    let mut held = vec![false; order];
+    for &index in fixed {
+        *held.get_mut(index).ok_or(BeamError::Index {
+            field: "fixed",
+            index,
+            bound: order,
+        })? = true;
+    }
+    Ok((0..order).filter(|&i| !held[i]).collect())
+}

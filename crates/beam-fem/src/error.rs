@@ -1,0 +1,108 @@
+//! What can be wrong with the input of this crate.
+
+use thiserror::Error;
+
+/// An input that was refused, or a computation that did not end.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum BeamError {
+    /// A number lies outside its range.
+    #[error("{field} = {value} is not valid: it must be {valid}")]
+    Parameter {
+        /// Name of the field or argument.
+        field: &'static str,
+        /// The value given.
+        value: f64,
+        /// What would be valid.
+        valid: &'static str,
+    },
+    /// Too few or too many finite elements.
+    #[error("elements = {elements} is not valid: it must lie between {minimum} and {maximum}")]
+    Elements {
+        /// The number given.
+        elements: usize,
+        /// The least that is valid.
+        minimum: usize,
+        /// The most that is valid.
+        maximum: usize,
+    },
+    /// Mesh nodes that do not start at zero or do not ascend.
+    #[error(
+        "node {index} at {value} m is not valid: nodes must be finite, the first 0, each above the one before it"
+    )]
+    Node {
+        /// Index of the first bad node.
+        index: usize,
+        /// Its coordinate, m.
+        value: f64,
+    },
+    /// A degree of freedom or node that the model does not have.
+    #[error("{field} = {index} is not valid: it must be below {bound}")]
+    Index {
+        /// Name of the argument.
+        field: &'static str,
+        /// The index given.
+        index: usize,
+        /// The first index that is out of range.
+        bound: usize,
+    },
+    /// Two matrices that do not belong together, or one that is not square.
+    #[error("{field} is {rows} x {columns}: it must be {order} x {order}")]
+    Shape {
+        /// Name of the matrix.
+        field: &'static str,
+        /// Its rows.
+        rows: usize,
+        /// Its columns.
+        columns: usize,
+        /// The order it must have.
+        order: usize,
+    },
+    /// A banded matrix whose band is not that of a beam.
+    #[error("{field} has half bandwidth {found}: it must be {needed}")]
+    Band {
+        /// Name of the matrix.
+        field: &'static str,
+        /// Its half bandwidth.
+        found: usize,
+        /// The one that it must have.
+        needed: usize,
+    },
+    /// A matrix with an infinite entry or a NaN.
+    #[error("the {field} matrix holds an entry that is not finite")]
+    NotFinite {
+        /// Name of the matrix.
+        field: &'static str,
+    },
+    /// A mass matrix that is not positive definite.
+    #[error("the mass matrix is not positive definite: every degree of freedom must carry mass")]
+    MassNotPositiveDefinite,
+    /// A stiffness matrix with a negative eigenvalue beyond rounding.
+    #[error("the stiffness matrix is not positive semidefinite: its spring energy can be negative")]
+    StiffnessNegative,
+    /// More modes asked for than there are degrees of freedom, or none.
+    #[error("count = {count} modes is not valid: it must lie between 1 and {order}")]
+    ModeCount {
+        /// The number asked for.
+        count: usize,
+        /// Number of degrees of freedom.
+        order: usize,
+    },
+    /// The eigenvalue iteration stopped at its limit.
+    #[error("the eigenvalue iteration did not converge")]
+    NotConverged,
+}
+
+/// Refuses what is not finite and above zero.
+pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64, BeamError> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        let valid = "finite and above zero";
+        Err(BeamError::Parameter {
+            field,
+            value,
+            valid,
+        })
+    }
+}

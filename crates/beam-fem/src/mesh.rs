@@ -1,0 +1,96 @@
+//! Node positions along the beam.
+
+use crate::BeamError;
+use crate::error::positive;
+
+/// Nodes along the beam axis, ascending from 0 at the driven end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    nodes: Vec<f64>,
+}
+
+impl Mesh {
+    /// The most elements a mesh may have: a bound on memory, not on theory.
+    pub const MAX_ELEMENTS: usize = 1_000_000;
+
+    /// `elements` equal elements over `length` metres.
+    ///
+    /// # Errors
+    /// [`BeamError::Parameter`] for a length that is not finite and above
+    /// zero, [`BeamError::Elements`] for none or over
+    /// [`Mesh::MAX_ELEMENTS`].
+    pub fn uniform(length: f64, elements: usize) -> Result<Self, BeamError> {
+        positive("length", length)?;
+        check_elements(elements, 1)?;
+        let n = elements as f64;
+        let mut nodes: Vec<f64> = (0..elements).map(|i| length * (i as f64 / n)).collect();
+        nodes.push(length);
+        Self::from_nodes(nodes)
+    }
+
+    /// A mesh of any lengths from its node coordinates in metres.
+    ///
+    /// # Errors
+    /// [`BeamError::Node`] unless they start at 0 and ascend strictly,
+    /// [`BeamError::Elements`] for fewer than two nodes.
+    pub fn from_nodes(nodes: Vec<f64>) -> Result<Self, BeamError> {
+        check_elements(nodes.len().saturating_sub(1), 1)?;
+        let mut previous = 0.0;
+        for (index, &value) in nodes.iter().enumerate() {
+            let valid = if index == 0 {
+                value == 0.0
+            } else {
+                value.is_finite() && value > previous
+            };
+            if !valid {
+                return Err(BeamError::Node { index, value });
+            }
+            previous = value;
+        }
+        Ok(Self { nodes })
+    }
+
+    /// Node coordinates, m; one more than elements.
+    pub fn nodes(&self) -> &[f64] {
+        &self.nodes
+    }
+
+    /// Number N of elements.
+    pub fn elements(&self) -> usize {
+        self.nodes.len() - 1
+    }
+
+    /// Length of the whole beam, m.
+    pub fn length(&self) -> f64 {
+        self.nodes[self.nodes.len() - 1]
+    }
+
+    /// Element lengths, m, from the driven end.
+    pub fn lengths(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        self.nodes.windows(2).map(|pair| pair[1] - pair[0])
+    }
+
+    /// The element that holds `x` (metres) and the local coordinate
+    /// ξ ∈ [0, 1] in it. Positions off the beam give the nearest end; a node
+    /// belongs to the element on its far side (ξ = 0), the last to the last
+    /// element. The position is a continuous function of (element + ξ).
+    pub fn locate(&self, x: f64) -> (usize, f64) {
+        let beyond = self.nodes.partition_point(|&node| node <= x);
+        let element = beyond.saturating_sub(1).min(self.elements() - 1);
+        let (a, b) = (self.nodes[element], self.nodes[element + 1]);
+        (element, ((x - a) / (b - a)).clamp(0.0, 1.0))
+    }
+}
+
+/// Refuses meshes with fewer than `minimum` or too many elements.
+pub(crate) fn check_elements(elements: usize, minimum: usize) -> Result<(), BeamError> {
+    if (minimum..=Mesh::MAX_ELEMENTS).contains(&elements) {
+        Ok(())
+    } else {
+        Err(BeamError::Elements {
+            elements,
+            minimum,
+            maximum: Mesh::MAX_ELEMENTS,
+        })
+    }
+}

@@ -1,0 +1,176 @@
+//! L D Lᵀ of K − μ M in its band, for solving and for counting.
+
+use crate::banded::SymmetricBanded;
+use crate::pencil::Block;
+
+/// A factorisation without pivoting; its memory serves again and again.
+///
+/// For μ below the spectrum the matrix is positive definite, and no pivoting
+/// is needed. Above, the signs of D count the eigenvalues below μ (Sylvester's
+/// law of inertia), and only they are used.
+pub(crate) struct Ldlt {
+    order: usize,
+    half_bandwidth: usize,
+    /// Columns of L below its unit diagonal; the diagonal's place holds D.
+    data: Vec<f64>,
+}
+
+impl Ldlt {
+    pub fn new(mass: &SymmetricBanded, stiffness: &SymmetricBanded) -> Self {
+        let half_bandwidth = mass.half_bandwidth().max(stiffness.half_bandwidth());
+        let order = mass.order();
+        Self {
+            order,
+            half_bandwidth,
+            data: vec![0.0; order * (half_bandwidth + 1)],
+        }
+    }
+
+    /// Factorises K − μ M; returns the number of negative pivots, which is
+    /// that of eigenvalues below μ.
+    pub fn factorise(
+        &mut self,
+        mass: &SymmetricBanded,
+        stiffness: &SymmetricBanded,
+        mu: f64,
+    ) -> usize {
+        self.load(mass, stiffness, mu);
+        match self.half_bandwidth {
+            0 => self.data.iter().filter(|d| **d < 0.0).count(),
+            1 => self.eliminate::<2>(),
+            3 => self.eliminate::<4>(),
+            _ => self.eliminate_any(),
+        }
+    }
+
+    /// Writes K − μ M into the band.
+    fn load(&mut self, mass: &SymmetricBanded, stiffness: &SymmetricBanded, mu: f64) {
+        if mass.half_bandwidth() == stiffness.half_bandwidth() {
+            let entries = stiffness.data().iter().zip(mass.data());
+            for (target, (k, m)) in self.data.iter_mut().zip(entries) {
+                *target = k - mu * m;
+            }
+            return;
+        }
+        self.data.fill(0.0);
+        let width = self.half_bandwidth + 1;
+        for (matrix, factor) in [(stiffness, 1.0), (mass, -mu)] {
+            let columns = self.data.chunks_exact_mut(width);
+            let sources = matrix.data().chunks_exact(matrix.half_bandwidth() + 1);
+            for (column, source) in columns.zip(sources) {
+                for (c, s) in column.iter_mut().zip(source) {
+                    *c += factor * s;
+                }
+            }
+        }
+    }
+
+    /// For the bands of rods (2) and of bending (4), with the loops unrolled.
+    fn eliminate<const WIDTH: usize>(&mut self) -> usize {
+        let mut negative = 0;
+        let (columns, _) = self.data.as_chunks_mut::<WIDTH>();
+        for j in 0..self.order {
+            let (done, rest) = columns.split_at_mut(j + 1);
+            let column = &mut done[j];
+            negative += pivot(&mut column[0]);
+            let inverse = 1.0 / column[0];
+            for p in 1..WIDTH.min(rest.len() + 1) {
+                let l = column[p] * inverse;
+                for q in p..WIDTH {
+                    rest[p - 1][q - p] -= l * column[q];
+                }
+            }
+            for entry in &mut column[1..] {
+                *entry *= inverse;
+            }
+        }
+        negative
+    }
+
+    /// The same for any band. Entries that are exactly zero stay out of the
+    /// work: a band of twelve rows is mostly empty.
+    fn eliminate_any(&mut self) -> usize {
+        let width = self.half_bandwidth + 1;
+        let mut negative = 0;
+        for j in 0..self.order {
+            let (done, rest) = self.data.split_at_mut((j + 1) * width);
+            let column = &mut done[j * width..];
+            negative += pivot(&mut column[0]);
+            let inverse = 1.0 / column[0];
+            for (p, target) in (1..width).zip(rest.chunks_exact_mut(width)) {
+                let l = column[p] * inverse;
+                if l != 0.0 {
+                    for (t, c) in target.iter_mut().zip(&column[p..]) {
+                        *t -= l * c;
+                    }
+                }
+            }
+            for entry in &mut column[1..] {
+                *entry *= inverse;
+            }
+        }
+        negative
+    }
+
+    /// Replaces `x` by (K − μ M)⁻¹ x, for all columns of the block at once.
+    pub fn solve(&self, x: &mut Block) {
+        match self.half_bandwidth {
+            1 => self.substitute::<2>(x),
+            3 => self.substitute::<4>(x),
+            _ => self.substitute_any(x),
+        }
+    }
+
+    fn substitute<const WIDTH: usize>(&self, x: &mut Block) {
+        let (columns, _) = self.data.as_chunks::<WIDTH>();
+        for (j, l) in columns.iter().enumerate() {
+            forward(l, j, x);
+        }
+        for (j, l) in columns.iter().enumerate().rev() {
+            backward(l, j, x);
+        }
+    }
+
+    fn substitute_any(&self, x: &mut Block) {
+        let width = self.half_bandwidth + 1;
+        for (j, l) in self.data.chunks_exact(width).enumerate() {
+            forward(l, j, x);
+        }
+        for (j, l) in self.data.chunks_exact(width).enumerate().rev() {
+            backward(l, j, x);
+        }
+    }
+}
+
+/// A pivot that cancelled to nothing is given a tiny positive size (as in
+/// LAPACK's tridiagonal bisection): the count is then that of a pencil
+/// changed by rounding. Returns 1 for a negative one.
+#[inline(always)]
+fn pivot(d: &mut f64) -> usize {
+    if d.abs() < f64::MIN_POSITIVE * 1e16 {
+        *d = f64::MIN_POSITIVE * 1e16;
+    }
+    usize::from(*d < 0.0)
+}
+
+#[inline(always)]
+fn forward(l: &[f64], j: usize, x: &mut Block) {
+    let (done, rest) = x.split_at_mut(j + 1);
+    let own = done[j];
+    for (factor, row) in l[1..].iter().zip(rest) {
+        row[0] -= factor * own[0];
+        row[1] -= factor * own[1];
+    }
+}
+
+#[inline(always)]
+fn backward(l: &[f64], j: usize, x: &mut Block) {
+    let (head, rest) = x.split_at_mut(j + 1);
+    let inverse = 1.0 / l[0];
+    let mut own = [head[j][0] * inverse, head[j][1] * inverse];
+    for (factor, row) in l[1..].iter().zip(rest.iter()) {
+        own[0] -= factor * row[0];
+        own[1] -= factor * row[1];
+    }
+    head[j] = own;
+}

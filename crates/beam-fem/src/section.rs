@@ -1,0 +1,67 @@
+//! Cross-section of a beam.
+
+use std::f64::consts::PI;
+
+use crate::error::positive;
+use crate::{BeamError, Material};
+
+/// A cross-section whose y and z axes are principal and pass through both the
+/// centroid and the shear centre. Made by [`Section::new`] or
+/// [`Section::solid_circle`], which check it; fields are public to be read.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Section {
+    /// Area A, m².
+    pub area: f64,
+    /// Second moment of area I_y about the y axis (bending in x–z), m⁴.
+    pub second_moment_y: f64,
+    /// Second moment of area I_z about the z axis (bending in x–y), m⁴.
+    pub second_moment_z: f64,
+    /// Torsion constant J, m⁴: torque = G J × twist per length.
+    pub torsion_constant: f64,
+    /// Shear coefficient κ (the paper's v), dimensionless: shear force =
+    /// κ G A × shear angle.
+    pub shear_coefficient: f64,
+}
+
+impl Section {
+    /// Checks and makes a section from A (m²), I_y, I_z, J (m⁴) and κ.
+    ///
+    /// # Errors
+    /// [`BeamError::Parameter`] for whatever is not finite and above zero.
+    pub fn new(
+        area: f64,
+        second_moment_y: f64,
+        second_moment_z: f64,
+        torsion_constant: f64,
+        shear_coefficient: f64,
+    ) -> Result<Self, BeamError> {
+        Ok(Self {
+            area: positive("area", area)?,
+            second_moment_y: positive("second_moment_y", second_moment_y)?,
+            second_moment_z: positive("second_moment_z", second_moment_z)?,
+            torsion_constant: positive("torsion_constant", torsion_constant)?,
+            shear_coefficient: positive("shear_coefficient", shear_coefficient)?,
+        })
+    }
+
+    /// Solid circle of `diameter` metres (paper, Appendix A): A = π (D/2)²,
+    /// I_y = I_z = π D⁴ / 64, J = I_y + I_z and Cowper's
+    /// κ = 6 (1 + ν) / (7 + 6 ν) (doi 10.1115/1.3625046).
+    ///
+    /// # Errors
+    /// [`BeamError::Parameter`] unless the diameter is finite and above zero.
+    pub fn solid_circle(diameter: f64, material: &Material) -> Result<Self, BeamError> {
+        let d = positive("diameter", diameter)?;
+        let i = PI * d.powi(4) / 64.0;
+        let nu = material.poisson_ratio;
+        let kappa = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu);
+        Self::new(0.25 * PI * d * d, i, i, 2.0 * i, kappa)
+    }
+
+    /// Polar second moment of area I_y + I_z, m⁴: what carries the rotary
+    /// inertia about x. It equals J only where a section does not warp.
+    pub fn polar_moment(&self) -> f64 {
+        self.second_moment_y + self.second_moment_z
+    }
+}

@@ -1,0 +1,122 @@
+//! One Levenberg–Marquardt epoch of the 4-34-19-8-1 cascade on 5000 samples,
+//! beside faer's own triangular product on the whole 5000 x 1441 Jacobian;
+//! and one prediction of that network.
+
+use std::hint::black_box;
+
+use cfnn::train::{Dataset, Settings, Trainer, nguyen_widrow};
+use cfnn::{FixedNetwork, Network, Predictor, Range, Scaling, Shape};
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::{Accum, Mat, Par};
+
+const SAMPLES: usize = 5000;
+const THREADS: usize = 2;
+
+fn shape() -> Shape {
+    Shape {
+        inputs: 4,
+        hidden: vec![34, 19, 8],
+        outputs: 1,
+    }
+}
+
+fn data() -> Dataset {
+    // An additive recurrence with irrational steps fills the cube evenly.
+    let input: Vec<f64> = (1..=SAMPLES)
+        .flat_map(|s| [2.0f64, 3.0, 5.0, 7.0].map(|p| (s as f64 * p.sqrt()).fract() * 2.0 - 1.0))
+        .collect();
+    let target = input
+        .chunks(4)
+        .map(|x| x[0] + 0.1 * (20.0 * x[1]).tanh() + 0.05 * x[2] * x[3])
+        .collect();
+    Dataset::new(4, 1, input, target).expect("a valid data set")
+}
+
+fn epoch(c: &mut Criterion) {
+    let data = data();
+    let settings = Settings {
+        threads: THREADS,
+        epochs: usize::MAX,
+        ..Settings::default()
+    };
+    let scaling = data.scaling().expect("the columns vary");
+    let mut trainer = Trainer::new(shape(), scaling, &data, settings).expect("valid settings");
+    c.bench_function("epoch 4-34-19-8-1, 5000 samples", |b| {
+        b.iter(|| black_box(trainer.epoch()));
+    });
+    let trials: usize = trainer.history().iter().map(|e| e.trials).sum();
+    println!(
+        "trial steps an epoch: {:.2}",
+        trials as f64 / trainer.history().len() as f64
+    );
+}
+
+fn product(c: &mut Criterion) {
+    let n = shape().parameters();
+    let jacobian = Mat::from_fn(SAMPLES, n, |i, j| ((i * 31 + j * 17) % 101) as f64 / 101.0);
+    let mut square = Mat::<f64>::zeros(n, n);
+    c.bench_function("faer triangular product, 5000 x 1441", |b| {
+        b.iter(|| {
+            triangular::matmul(
+                square.as_mut(),
+                BlockStructure::TriangularLower,
+                Accum::Replace,
+                jacobian.transpose(),
+                BlockStructure::Rectangular,
+                jacobian.as_ref(),
+                BlockStructure::Rectangular,
+                1.0,
+                Par::rayon(THREADS),
+            );
+        });
+    });
+}
+
+fn prediction(c: &mut Criterion) {
+    let scaling = Scaling::from_ranges(&[(-1.0, 1.0); 4], &[(-1.0, 1.0)]).expect("valid ranges");
+    let weights = nguyen_widrow(&shape(), 1);
+    let network = Network::new(shape(), scaling, weights).expect("a valid network");
+    let packed = network.packed_weights().to_vec();
+    let mut predictor = Predictor::<4, 1>::new(network).expect("four inputs, one output");
+    let mut x = [0.1, -0.2, 0.3, 0.4];
+    c.bench_function("prediction f64, Predictor", |b| {
+        b.iter(|| {
+            let [y] = predictor.predict(black_box(&x));
+            black_box(y)
+        });
+    });
+    c.bench_function("prediction f64, Predictor, each after the last", |b| {
+        b.iter(|| {
+            let [y] = predictor.predict(&x);
+            x[0] = y * 1e-3;
+            y
+        });
+    });
+    let unit = Range::new("input", -1.0, 1.0).expect("a valid range");
+    let fixed = FixedNetwork::<f64, 4, 1, 66>::new(&[34, 19, 8], &packed, [unit; 4], [unit])
+        .expect("a valid network");
+    c.bench_function("prediction f64, FixedNetwork", |b| {
+        b.iter(|| fixed.evaluate(black_box(&[0.1, -0.2, 0.3, 0.4])));
+    });
+    let single: Vec<f32> = packed.iter().map(|&w| w as f32).collect();
+    let unit = Range::new("input", -1.0f32, 1.0).expect("a valid range");
+    let fixed = FixedNetwork::<f32, 4, 1, 66>::new(&[34, 19, 8], &single, [unit; 4], [unit])
+        .expect("a valid network");
+    c.bench_function("prediction f32, FixedNetwork", |b| {
+        b.iter(|| fixed.evaluate(black_box(&[0.1, -0.2, 0.3, 0.4])));
+    });
+}
+
+fn setup(c: &mut Criterion) {
+    c.bench_function("starting weights", |b| {
+        b.iter_batched(shape, |s| nguyen_widrow(&s, 1), BatchSize::SmallInput);
+    });
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(20);
+    targets = product, epoch, prediction, setup
+}
+criterion_main!(benches);

@@ -1,0 +1,209 @@
+//! Networks and checkpoints as bytes that refuse to be read when damaged.
+//!
+//! A payload (bincode 2.0.1, fixed-width integers, little-endian) lies in a
+//! frame with magic, kind, schema number, length and the BLAKE3 hash of all
+//! that; length and hash are checked before anything is decoded, and decoding
+//! must use every byte. What is decoded is validated like any other input.
+//!
+//! Every artifact carries a *provenance*: a string of the caller's, for
+//! instance the hash of the parameter file that the samples came from. This
+//! module stores it and gives it back; the caller compares.
+//!
+//! bincode is unmaintained (RUSTSEC-2025-0141) and pinned; the plain data
+//! structs that it sees are listed in this module, one for each schema number.
+
+#[cfg(feature = "train")]
+mod checkpoint;
+mod frame;
+
+use std::string::String;
+use std::vec::Vec;
+
+use bincode::config::{Configuration, Fixint, Limit, LittleEndian};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use thiserror::Error as ThisError;
+
+#[cfg(feature = "train")]
+pub use checkpoint::{checkpoint_from_bytes, checkpoint_to_bytes};
+use frame::Format;
+
+use crate::{Error, Network, Scaling, Shape};
+
+/// Why an artifact was refused or could not be written.
+#[derive(Debug, Clone, PartialEq, ThisError)]
+#[non_exhaustive]
+pub enum ArtifactError {
+    /// The first bytes are not those of an artifact of this crate.
+    #[error("not a cfnn artifact: the first bytes differ")]
+    NotAnArtifact,
+    /// Bytes are missing at the end.
+    #[error("artifact truncated: {found} bytes, must be {expected}")]
+    Truncated {
+        /// Bytes there.
+        found: u64,
+        /// Bytes that the header announces.
+        expected: u64,
+    },
+    /// Bytes follow the end.
+    #[error("artifact has {found} bytes, more than the {expected} that it announces")]
+    TrailingBytes {
+        /// Bytes there.
+        found: u64,
+        /// Bytes that the header announces.
+        expected: u64,
+    },
+    /// The hash does not match the content.
+    #[error("artifact damaged: its hash does not match its content")]
+    Damaged,
+    /// An artifact of another kind.
+    #[error("artifact is of kind {found:?}, must be {expected:?}")]
+    WrongKind {
+        /// Kind found.
+        found: String,
+        /// Kind asked for.
+        expected: String,
+    },
+    /// An artifact in another version of the format.
+    #[error("artifact has schema {found}, this version reads {expected}")]
+    OtherSchema {
+        /// Schema number found.
+        found: u32,
+        /// Schema number that can be read.
+        expected: u32,
+    },
+    /// The payload does not decode although its hash is right.
+    #[error("artifact payload does not decode: {reason}")]
+    Payload {
+        /// What the decoder said.
+        reason: String,
+    },
+    /// The payload decodes into something that is no network.
+    #[error("artifact content: {0}")]
+    Content(#[from] Error),
+}
+
+const NETWORK: Format = Format {
+    kind: *b"NETW",
+    schema: 1,
+};
+
+/// At most 1 GB of decoded data: a hostile length cannot exhaust the memory.
+type Config = Configuration<LittleEndian, Fixint, Limit<{ 1 << 30 }>>;
+
+fn config() -> Config {
+    bincode::config::standard()
+        .with_fixed_int_encoding()
+        .with_limit::<{ 1 << 30 }>()
+}
+
+/// Schema 1 of a network. Field order is the format.
+#[derive(Debug, Serialize, Deserialize)]
+struct NetworkV1 {
+    inputs: u64,
+    hidden: Vec<u64>,
+    outputs: u64,
+    input_ranges: Vec<(f64, f64)>,
+    output_ranges: Vec<(f64, f64)>,
+    weights: Vec<f64>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct WithProvenance<T> {
+    provenance: String,
+    content: T,
+}
+
+impl From<&Network> for NetworkV1 {
+    fn from(network: &Network) -> Self {
+        let shape = network.shape();
+        let ends = |ranges: &[crate::Range<f64>]| {
+            ranges.iter().map(|r| (r.minimum(), r.maximum())).collect()
+        };
+        Self {
+            inputs: shape.inputs as u64,
+            hidden: shape.hidden.iter().map(|&n| n as u64).collect(),
+            outputs: shape.outputs as u64,
+            input_ranges: ends(network.scaling().input()),
+            output_ranges: ends(network.scaling().output()),
+            weights: network.weights().to_vec(),
+        }
+    }
+}
+
+impl TryFrom<NetworkV1> for Network {
+    type Error = Error;
+
+    fn try_from(stored: NetworkV1) -> Result<Self, Error> {
+        // A size beyond this machine's words is refused as too large below.
+        let size = |n: u64| usize::try_from(n).unwrap_or(usize::MAX);
+        let shape = Shape {
+            inputs: size(stored.inputs),
+            hidden: stored.hidden.into_iter().map(size).collect(),
+            outputs: size(stored.outputs),
+        };
+        let scaling = Scaling::from_ranges(&stored.input_ranges, &stored.output_ranges)?;
+        Network::new(shape, scaling, stored.weights)
+    }
+}
+
+/// The bytes of a network.
+///
+/// ```
+/// use cfnn::{Network, Scaling, Shape, artifact};
+/// let shape = Shape { inputs: 1, hidden: vec![], outputs: 1 };
+/// let scaling = Scaling::from_ranges(&[(0.0, 1.0)], &[(0.0, 2.0)])?;
+/// let network = Network::new(shape, scaling, vec![0.0, 1.0])?;
+/// let bytes = artifact::network_to_bytes(&network, "axis 1f3a")?;
+/// let (again, provenance) = artifact::network_from_bytes(&bytes)?;
+/// assert_eq!((again, provenance.as_str()), (network, "axis 1f3a"));
+/// assert!(artifact::network_from_bytes(&bytes[..40]).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`ArtifactError::Payload`] when encoding fails, which memory alone can
+/// cause.
+pub fn network_to_bytes(network: &Network, provenance: &str) -> Result<Vec<u8>, ArtifactError> {
+    encode(NETWORK, NetworkV1::from(network), provenance)
+}
+
+/// A network and its provenance from bytes.
+///
+/// # Errors
+/// Any [`ArtifactError`]: every truncation and every flipped bit is refused.
+pub fn network_from_bytes(bytes: &[u8]) -> Result<(Network, String), ArtifactError> {
+    let (stored, provenance) = decode::<NetworkV1>(NETWORK, bytes)?;
+    Ok((stored.try_into()?, provenance))
+}
+
+fn encode<T: Serialize>(
+    format: Format,
+    content: T,
+    provenance: &str,
+) -> Result<Vec<u8>, ArtifactError> {
+    let whole = WithProvenance {
+        provenance: provenance.into(),
+        content,
+    };
+    let payload = bincode::serde::encode_to_vec(&whole, config()).map_err(payload_error)?;
+    Ok(frame::wrap(format, &payload))
+}
+
+fn decode<T: DeserializeOwned>(format: Format, bytes: &[u8]) -> Result<(T, String), ArtifactError> {
+    let payload = frame::unwrap(format, bytes)?;
+    let (whole, used): (WithProvenance<T>, usize) =
+        bincode::serde::decode_from_slice(payload, config()).map_err(payload_error)?;
+    if used != payload.len() {
+        return Err(ArtifactError::Payload {
+            reason: std::format!("{used} of {} bytes used", payload.len()),
+        });
+    }
+    Ok((whole.content, whole.provenance))
+}
+
+fn payload_error(error: impl std::fmt::Display) -> ArtifactError {
+    ArtifactError::Payload {
+        reason: std::format!("{error}"),
+    }
+}

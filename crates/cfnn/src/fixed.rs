@@ -1,0 +1,92 @@
+use crate::error::same_length;
+use crate::{Error, Range, Real, forward::forward};
+
+/// A network that borrows its weights, for use without an allocator.
+///
+/// `I` inputs, `O` outputs, and `A` activations: `1 + I` plus the number of
+/// hidden neurons ([`FixedNetwork::new`] checks it and says what it must be).
+/// The working memory, `A` scalars, lies on the stack of
+/// [`FixedNetwork::evaluate`], which cannot fail.
+///
+/// ```
+/// use cfnn::{FixedNetwork, Range};
+/// // y = x + tanh(2 x - 1) on scaled values: one hidden neuron.
+/// // Order: [bias, input] of the hidden neuron, then [bias, input, hidden].
+/// const WEIGHTS: [f64; 5] = [-1.0, 2.0, 0.0, 1.0, 1.0];
+/// let mut packed = [0.0; cfnn::packed_len(1, &[1], 1)];
+/// cfnn::pack(1, &[1], 1, &WEIGHTS, &mut packed)?;
+/// let unit = Range::new("input", -1.0, 1.0)?;
+/// let network = FixedNetwork::<f64, 1, 1, 3>::new(&[1], &packed, [unit], [unit])?;
+/// let [y] = network.evaluate(&[0.25]);
+/// assert!((y - (0.25 + (-0.5f64).tanh())).abs() < 1e-15);
+/// # Ok::<(), cfnn::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct FixedNetwork<'a, T, const I: usize, const O: usize, const A: usize> {
+    hidden: &'a [usize],
+    weights: &'a [T],
+    input: [Range<T>; I],
+    output: [Range<T>; O],
+}
+
+impl<'a, T: Real, const I: usize, const O: usize, const A: usize> FixedNetwork<'a, T, I, O, A> {
+    /// A network with the given hidden layer sizes and weights (in the order
+    /// that [`crate::pack`] makes), and the scaling of each input and output.
+    ///
+    /// # Errors
+    /// [`Error::EmptyLayer`], [`Error::Length`] (of `A` or of the weights) or
+    /// [`Error::NotFinite`].
+    pub fn new(
+        hidden: &'a [usize],
+        weights: &'a [T],
+        input: [Range<T>; I],
+        output: [Range<T>; O],
+    ) -> Result<Self, Error> {
+        if I == 0 || O == 0 {
+            let what = if I == 0 { "inputs" } else { "outputs" };
+            return Err(Error::EmptyLayer { what, index: 0 });
+        }
+        if let Some(index) = hidden.iter().position(|&n| n == 0) {
+            return Err(Error::EmptyLayer {
+                what: "hidden",
+                index,
+            });
+        }
+        let activations = crate::count(I, hidden, O).0;
+        same_length("activations A", A, activations)?;
+        let length = crate::packed_len(I, hidden, O);
+        same_length("packed weights", weights.len(), length)?;
+        for (index, &w) in weights.iter().enumerate() {
+            let value: f64 = w.into();
+            if !value.is_finite() {
+                return Err(Error::NotFinite {
+                    what: "weights",
+                    index,
+                    value,
+                });
+            }
+        }
+        Ok(Self {
+            hidden,
+            weights,
+            input,
+            output,
+        })
+    }
+
+    /// The outputs, in the caller's units, for one vector of inputs in theirs.
+    #[must_use]
+    pub fn evaluate(&self, input: &[T; I]) -> [T; O] {
+        let mut activations = [T::ZERO; A];
+        activations[0] = T::ONE;
+        for i in 0..I {
+            activations[1 + i] = self.input[i].to_unit(input[i]);
+        }
+        let mut out = [T::ZERO; O];
+        forward(I, self.hidden, self.weights, &mut activations, &mut out);
+        for (value, range) in out.iter_mut().zip(&self.output) {
+            *value = range.from_unit(*value);
+        }
+        out
+    }
+}

@@ -1,0 +1,59 @@
+use core::ops::{Add, AddAssign, Div, Mul, Sub};
+
+use crate::tansig::{tansig_f32, tansig_f64};
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// The scalar of an evaluation: `f64` or `f32`.
+///
+/// Training is in `f64` only; `f32` exists for controllers.
+pub trait Real:
+    sealed::Sealed
+    + Copy
+    + PartialOrd
+    + Add<Output = Self>
+    + AddAssign
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Into<f64>
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// 2.
+    const TWO: Self;
+
+    /// The transfer function of the hidden layers,
+    /// `2 / (1 + e^{-2x}) - 1 = tanh x`, to a few units in the last place.
+    /// NaN gives NaN.
+    #[must_use]
+    fn tansig(self) -> Self;
+}
+
+impl Real for f64 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const TWO: Self = 2.0;
+
+    #[inline(always)]
+    fn tansig(self) -> Self {
+        tansig_f64(self)
+    }
+}
+
+impl Real for f32 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const TWO: Self = 2.0;
+
+    #[inline(always)]
+    fn tansig(self) -> Self {
+        tansig_f32(self)
+    }
+}

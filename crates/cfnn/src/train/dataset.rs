@@ -1,0 +1,149 @@
+use std::vec::Vec;
+
+use crate::error::{all_finite, same_length};
+use crate::{Error, Scaling};
+
+/// Samples to train on, in the caller's units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dataset {
+    inputs: usize,
+    outputs: usize,
+    input_rows: Vec<f64>,
+    target_rows: Vec<f64>,
+}
+
+impl Dataset {
+    /// Samples as two row-major tables: `inputs` numbers a sample in
+    /// `input_rows`, `outputs` numbers a sample in `target_rows`.
+    ///
+    /// # Errors
+    /// [`Error::EmptyLayer`] for zero inputs, outputs or samples,
+    /// [`Error::Length`] where a table does not divide into rows or the
+    /// tables differ in their number of rows, [`Error::NotFinite`].
+    pub fn new(
+        inputs: usize,
+        outputs: usize,
+        input_rows: Vec<f64>,
+        target_rows: Vec<f64>,
+    ) -> Result<Self, Error> {
+        let sizes = [
+            ("inputs", inputs),
+            ("outputs", outputs),
+            ("samples", input_rows.len()),
+        ];
+        for (what, size) in sizes {
+            if size == 0 {
+                return Err(Error::EmptyLayer { what, index: 0 });
+            }
+        }
+        let samples = input_rows.len() / inputs;
+        same_length("input values", input_rows.len(), samples * inputs)?;
+        same_length("target values", target_rows.len(), samples * outputs)?;
+        all_finite("input values", &input_rows)?;
+        all_finite("target values", &target_rows)?;
+        Ok(Self {
+            inputs,
+            outputs,
+            input_rows,
+            target_rows,
+        })
+    }
+
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.input_rows.len() / self.inputs
+    }
+
+    /// Never true: an empty data set cannot be made.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.input_rows.is_empty()
+    }
+
+    /// Numbers per sample on the input side.
+    #[must_use]
+    pub fn inputs(&self) -> usize {
+        self.inputs
+    }
+
+    /// Numbers per sample on the target side.
+    #[must_use]
+    pub fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    /// The inputs of one sample.
+    #[must_use]
+    pub fn input(&self, sample: usize) -> &[f64] {
+        &self.input_rows[sample * self.inputs..][..self.inputs]
+    }
+
+    /// The targets of one sample.
+    #[must_use]
+    pub fn target(&self, sample: usize) -> &[f64] {
+        &self.target_rows[sample * self.outputs..][..self.outputs]
+    }
+
+    /// Min-max scaling fitted to these samples.
+    ///
+    /// # Errors
+    /// As [`Scaling::fit`].
+    pub fn scaling(&self) -> Result<Scaling, Error> {
+        Scaling::fit(
+            self.inputs,
+            &self.input_rows,
+            self.outputs,
+            &self.target_rows,
+        )
+    }
+
+    /// A hash of sizes and bits (64-bit FNV-1a over words), by which a
+    /// checkpoint recognises its data. Not proof against intent.
+    #[must_use]
+    pub fn fingerprint(&self) -> u64 {
+        let sizes = [self.inputs as u64, self.outputs as u64];
+        let values = self.input_rows.iter().chain(&self.target_rows);
+        sizes.into_iter().chain(values.map(|v| v.to_bits())).fold(
+            0xcbf2_9ce4_8422_2325,
+            |hash, word| {
+                let mixed = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
+                mixed ^ (mixed >> 29)
+            },
+        )
+    }
+}
+
+/// Number of samples worked on together. Part of the definition of the
+/// result's bits: sums run over a block first and over the blocks after that.
+pub(super) const BLOCK: usize = 256;
+
+/// Up to [`BLOCK`] samples, scaled, column by column.
+#[derive(Debug, Clone)]
+pub(super) struct SampleBlock {
+    pub rows: usize,
+    /// `rows x inputs`, column-major.
+    pub inputs: Vec<f64>,
+    /// `rows x outputs`, column-major.
+    pub targets: Vec<f64>,
+}
+
+/// Cuts the chosen samples into scaled blocks.
+pub(super) fn blocks(data: &Dataset, chosen: &[usize], scaling: &Scaling) -> Vec<SampleBlock> {
+    let column_major = |chosen: &[usize], width: usize, value: &dyn Fn(usize, usize) -> f64| {
+        let columns = (0..width).flat_map(|c| chosen.iter().map(move |&s| (s, c)));
+        columns.map(|(s, c)| value(s, c)).collect::<Vec<_>>()
+    };
+    chosen
+        .chunks(BLOCK)
+        .map(|chosen| SampleBlock {
+            rows: chosen.len(),
+            inputs: column_major(chosen, data.inputs, &|s, c| {
+                scaling.input()[c].to_unit(data.input(s)[c])
+            }),
+            targets: column_major(chosen, data.outputs, &|s, c| {
+                scaling.output()[c].to_unit(data.target(s)[c])
+            }),
+        })
+        .collect()
+}

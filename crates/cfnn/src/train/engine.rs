@@ -1,0 +1,126 @@
+//! Passes over all samples: loss, normal equations, output layer.
+
+use std::vec;
+use std::vec::Vec;
+
+use rayon::prelude::*;
+
+use super::block::{BlockWork, Layout};
+use super::cholesky;
+use super::dataset::SampleBlock;
+use super::gram::Gram;
+use super::output_fit::{Triangles, block_triangle};
+use crate::Shape;
+
+/// Blocks worked on at a time: bounds the memory whatever the sample count.
+const GROUP: usize = 32;
+
+/// Working memory of the passes. Sums run over the blocks in their order, so
+/// no result depends on the number of threads.
+#[derive(Debug, Clone)]
+pub(super) struct Engine {
+    pub layout: Layout,
+    works: Vec<BlockWork>,
+    gram: Gram,
+    /// `Jᵀ r`.
+    pub gradient: Vec<f64>,
+    matrix: Vec<f64>,
+}
+
+impl Engine {
+    pub fn new(shape: &Shape, blocks: usize) -> Self {
+        let layout = Layout::new(shape);
+        Self {
+            works: vec![BlockWork::new(&layout); blocks.clamp(1, GROUP)],
+            gram: Gram::new(&layout),
+            gradient: vec![0.0; layout.parameters],
+            matrix: vec![0.0; layout.parameters * layout.parameters],
+            layout,
+        }
+    }
+
+    /// Sum of squared residuals.
+    pub fn sum_of_squares(&mut self, blocks: &[SampleBlock], weights: &[f64]) -> f64 {
+        let layout = &self.layout;
+        let mut total = 0.0;
+        for group in blocks.chunks(self.works.len()) {
+            let sums: Vec<f64> = (self.works.par_iter_mut().zip(group))
+                .map(|(work, samples)| {
+                    work.forward_hidden(layout, weights, samples);
+                    work.residuals(layout, weights, samples)
+                })
+                .collect();
+            total = sums.iter().fold(total, |sum, s| sum + s);
+        }
+        total
+    }
+
+    /// `JᵀJ` (kept inside) and `Jᵀ r`.
+    pub fn normal_equations(&mut self, blocks: &[SampleBlock], weights: &[f64]) {
+        let layout = &self.layout;
+        self.gram.clear();
+        self.gradient.fill(0.0);
+        for group in blocks.chunks(self.works.len()) {
+            (self.works.par_iter_mut().zip(group)).for_each(|(work, samples)| {
+                work.forward_hidden(layout, weights, samples);
+                work.residuals(layout, weights, samples);
+                work.backward(layout, weights);
+            });
+            for work in &self.works[..group.len()] {
+                self.gram.add(layout, work);
+                for (sum, g) in self.gradient.iter_mut().zip(&work.gradient) {
+                    *sum += g;
+                }
+            }
+        }
+    }
+
+    /// Solves `(factor JᵀJ + damping I) step = -factor Jᵀ r`; none where the
+    /// matrix is not positive definite to working precision.
+    pub fn step(&mut self, factor: f64, damping: f64) -> Option<Vec<f64>> {
+        self.gram
+            .write_lower(&self.layout, factor, damping, &mut self.matrix);
+        let mut step: Vec<f64> = self.gradient.iter().map(|g| -factor * g).collect();
+        cholesky::solve(&mut self.matrix, &mut step).then_some(step)
+    }
+
+    /// Sets the output layer's weights from the first `unknowns` activations
+    /// by least squares, its other weights to zero.
+    pub fn fit_output(
+        &mut self,
+        blocks: &[SampleBlock],
+        weights: &mut [f64],
+        unknowns: usize,
+        ridge: f64,
+    ) {
+        let layout = &self.layout;
+        let mut triangles = Triangles::new(unknowns + layout.outputs);
+        for group in blocks.chunks(self.works.len()) {
+            let parts: Vec<Vec<f64>> = (self.works.par_iter_mut().zip(group))
+                .map(|(work, samples)| {
+                    work.forward_hidden(layout, weights, samples);
+                    let seen = &work.activations[..work.rows * unknowns];
+                    block_triangle(work.rows, [seen, &samples.targets])
+                })
+                .collect();
+            parts.iter().for_each(|part| triangles.push(part));
+            triangles.reduce();
+        }
+        let fitted = triangles.solve(unknowns, ridge);
+        let own = &mut weights[layout.split().1.first_parameter..];
+        own.fill(0.0);
+        own[..fitted.len()].copy_from_slice(&fitted);
+    }
+
+    /// `JᵀJ` as a full symmetric matrix, column-major (for checks).
+    #[cfg(test)]
+    pub fn dense(&mut self) -> Vec<f64> {
+        let n = self.layout.parameters;
+        self.gram
+            .write_lower(&self.layout, 1.0, 0.0, &mut self.matrix);
+        (0..n * n)
+            .map(|e| (e % n, e / n))
+            .map(|(r, c)| self.matrix[r.max(c) + r.min(c) * n])
+            .collect()
+    }
+}

@@ -1,0 +1,38 @@
+use std::vec::Vec;
+
+/// Why a training ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Outcome {
+    /// The number of epochs asked for is done.
+    EpochsDone,
+    /// The loss reached the goal.
+    GoalMet,
+    /// The gradient fell to the limit.
+    GradientSmall,
+    /// The damping passed its limit: no step lowers the loss any more.
+    DampingLimit,
+    /// The validation loss has not improved for as long as the patience.
+    ValidationStopped,
+}
+
+/// What one epoch did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EpochReport {
+    /// Number of the epoch, from 1.
+    pub epoch: usize,
+    /// Mean square of the scaled residuals after the epoch, over the training
+    /// samples and all outputs.
+    pub loss: f64,
+    /// The same over the validation samples, where there are any.
+    pub validation_loss: Option<f64>,
+    /// Norm of the gradient before the step (see `Settings::min_gradient`).
+    pub gradient: f64,
+    /// Damping that the next epoch starts with.
+    pub damping: f64,
+    /// Trial steps, the one taken included.
+    pub trials: usize,
+}
+
+/// The reports of all epochs so far.
+pub type History = Vec<EpochReport>;

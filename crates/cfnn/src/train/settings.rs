@@ -1,0 +1,144 @@
+use crate::Error;
+
+/// Starting weights.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Initialisation {
+    /// Nguyen and Widrow (1990), doi 10.1109/IJCNN.1990.137819, as MATLAB's
+    /// `initnw` does it; random output layer in `[-1, 1]`.
+    NguyenWidrow,
+    /// Hidden layers as [`Initialisation::NguyenWidrow`]; output layer: the
+    /// least-squares affine map of the inputs, other links zero. Training
+    /// starts at the best linear map.
+    LinearStart,
+    /// First hidden layer placed by the samples: centres at random samples,
+    /// slopes from the spacing of the samples around them, at scales from a
+    /// neuron's share of the samples up to all of them. So neurons are dense
+    /// and steep where the samples are. Meant for use with
+    /// [`Settings::resolve_output`]; the joint step alone moves steep neurons
+    /// slowly. Later hidden layers as
+    /// [`Initialisation::NguyenWidrow`]; output layer fitted by least squares.
+    DataAdapted {
+        /// Share of the first layer's neurons that look along one input only,
+        /// the inputs in turn, 0 to 1.
+        axis_aligned: f64,
+    },
+}
+
+/// What the damping is added to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Normalisation {
+    /// `JᵀJ + μ I` of the sum of squares, as the paper prints it.
+    Sum,
+    /// `JᵀJ / m + μ I` with `m` residuals: the damping's meaning does not
+    /// depend on the number of samples.
+    Mean,
+}
+
+/// Early stopping on samples set apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Validation {
+    /// Share of the samples set apart, above 0 and below 1; drawn from the
+    /// seed.
+    pub fraction: f64,
+    /// Epochs without a new best validation loss after which training stops;
+    /// at least 1.
+    pub patience: usize,
+}
+
+/// Settings of a training. The defaults are MATLAB's `trainlm` ones, with its
+/// validation switched off.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Number of epochs after which to stop.
+    pub epochs: usize,
+    /// Initial damping μ (the paper's u, there called learning rate), in the
+    /// units of `JᵀJ` on scaled data; above 0.
+    pub initial_damping: f64,
+    /// Factor on μ after a trial step that does not lower the loss; above 1.
+    pub damping_increase: f64,
+    /// Factor on μ after a step taken; above 0, at most 1.
+    pub damping_decrease: f64,
+    /// μ above which training stops.
+    pub max_damping: f64,
+    /// Training stops at or below this mean square of the scaled residuals.
+    pub goal: f64,
+    /// Training stops at or below this Euclidean norm of `Jᵀr` (divided by
+    /// the number of residuals under [`Normalisation::Mean`]).
+    pub min_gradient: f64,
+    /// Early stopping, or none.
+    pub validation: Option<Validation>,
+    /// What the damping is added to.
+    pub normalisation: Normalisation,
+    /// Starting weights.
+    pub initialisation: Initialisation,
+    /// Solve the output layer exactly, by least squares, in every trial step
+    /// (the step of the hidden layers still comes from all parameters).
+    pub resolve_output: bool,
+    /// Seed of the starting weights and of the validation split.
+    pub seed: u64,
+    /// Worker threads; 0 takes all cores. No influence on the result's bits.
+    pub threads: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            epochs: 1000,
+            initial_damping: 1e-3,
+            damping_increase: 10.0,
+            damping_decrease: 0.1,
+            max_damping: 1e10,
+            goal: 0.0,
+            min_gradient: 1e-7,
+            validation: None,
+            normalisation: Normalisation::Sum,
+            initialisation: Initialisation::NguyenWidrow,
+            resolve_output: false,
+            seed: 0,
+            threads: 0,
+        }
+    }
+}
+
+impl Settings {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] with the first field outside its domain.
+    pub fn validate(&self) -> Result<(), Error> {
+        let check = |name, value: f64, good: bool, valid| {
+            if good {
+                Ok(())
+            } else {
+                Err(Error::Setting { name, value, valid })
+            }
+        };
+        let positive = |v: f64| v > 0.0 && v.is_finite();
+        let v = self.initial_damping;
+        check("initial_damping", v, positive(v), "positive and finite")?;
+        let v = self.damping_increase;
+        check("damping_increase", v, positive(v) && v > 1.0, "above 1")?;
+        let v = self.damping_decrease;
+        let good = positive(v) && v <= 1.0;
+        check("damping_decrease", v, good, "above 0 and at most 1")?;
+        let v = self.max_damping;
+        check("max_damping", v, positive(v), "positive and finite")?;
+        check("goal", self.goal, self.goal >= 0.0, "0 or above")?;
+        let v = self.min_gradient;
+        check("min_gradient", v, v >= 0.0, "0 or above")?;
+        if let Some(validation) = self.validation {
+            let v = validation.fraction;
+            let good = v > 0.0 && v < 1.0;
+            check("validation.fraction", v, good, "above 0 and below 1")?;
+            let v = validation.patience;
+            check("validation.patience", v as f64, v >= 1, "at least 1")?;
+        }
+        if let Initialisation::DataAdapted { axis_aligned: v } = self.initialisation {
+            let good = (0.0..=1.0).contains(&v);
+            check("initialisation.axis_aligned", v, good, "from 0 to 1")?;
+        }
+        Ok(())
+    }
+}

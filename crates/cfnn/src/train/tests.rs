@@ -1,0 +1,166 @@
+use std::vec;
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::block::BlockWork;
+use super::dataset::blocks;
+use super::engine::Engine;
+use super::{Dataset, cholesky, nguyen_widrow};
+use crate::{Scaling, Shape};
+
+fn samples(shape: &Shape, count: usize) -> (Dataset, Scaling) {
+    let fraction = |x: f64| x - libm::floor(x);
+    let value = |k: usize| 2.0 * fraction(k as f64 * 0.754_877_666_246_692_8) - 1.0;
+    let input: Vec<f64> = (0..count * shape.inputs).map(value).collect();
+    let target: Vec<f64> = (0..count * shape.outputs)
+        .map(|k| 0.5 * value(7 * k + 3))
+        .collect();
+    let data = Dataset::new(shape.inputs, shape.outputs, input, target).unwrap();
+    let scaling = Scaling::from_ranges(
+        &vec![(-1.0, 1.0); shape.inputs],
+        &vec![(-1.0, 1.0); shape.outputs],
+    )
+    .unwrap();
+    (data, scaling)
+}
+
+/// The Jacobian of all scaled outputs, one row for each output and sample,
+/// from the deltas and activations: `(rows, values)`, row-major.
+fn analytic_jacobian(engine: &Engine, work: &BlockWork) -> Vec<Vec<f64>> {
+    let layout = &engine.layout;
+    let rows = work.rows;
+    let mut jacobian = Vec::new();
+    for k in 0..layout.outputs {
+        for s in 0..rows {
+            let mut row = vec![0.0; layout.parameters];
+            for layer in &layout.layers {
+                for i in 0..layer.seen {
+                    for j in 0..layer.neurons {
+                        let neuron = k * layout.neurons + layer.first_neuron + j;
+                        row[layer.first_parameter + i * layer.neurons + j] =
+                            work.deltas[neuron * rows + s] * work.activations[i * rows + s];
+                    }
+                }
+            }
+            jacobian.push(row);
+        }
+    }
+    jacobian
+}
+
+fn shapes() -> impl Strategy<Value = Shape> {
+    (1..4usize, prop::collection::vec(1..6usize, 0..4), 1..4usize).prop_map(
+        |(inputs, hidden, outputs)| Shape {
+            inputs,
+            hidden,
+            outputs,
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Central differences with step 1e-5 err by h² f'''/6, about 1e-9 for
+    /// weights of a few units, and by rounding 1e-16/h = 1e-11.
+    #[test]
+    fn jacobian_agrees_with_finite_differences(shape in shapes(), seed in 0..1000u64) {
+        let (data, scaling) = samples(&shape, 7);
+        let chosen: Vec<usize> = (0..data.len()).collect();
+        let block = &blocks(&data, &chosen, &scaling)[0];
+        let engine = Engine::new(&shape, 1);
+        let mut work = BlockWork::new(&engine.layout);
+        let weights = nguyen_widrow(&shape, seed);
+        work.forward_hidden(&engine.layout, &weights, block);
+        work.residuals(&engine.layout, &weights, block);
+        work.backward(&engine.layout, &weights);
+        let jacobian = analytic_jacobian(&engine, &work);
+        let h = 1e-5;
+        for c in 0..shape.parameters() {
+            let residuals = |change: f64| {
+                let mut moved = weights.clone();
+                moved[c] += change;
+                let mut work = work.clone();
+                work.forward_hidden(&engine.layout, &moved, block);
+                work.residuals(&engine.layout, &moved, block);
+                work.residuals
+            };
+            let (above, below) = (residuals(h), residuals(-h));
+            for (r, row) in jacobian.iter().enumerate() {
+                let difference = (above[r] - below[r]) / (2.0 * h);
+                prop_assert!(
+                    (row[c] - difference).abs() <= 1e-7 * (1.0 + difference.abs()),
+                    "parameter {c}, row {r}: {} against {difference}", row[c]
+                );
+            }
+        }
+    }
+
+    /// The products of pairs against `JᵀJ` and `Jᵀr` of the explicit matrix;
+    /// what differs is the order of at most 1800 additions.
+    #[test]
+    fn blocked_normal_equations_equal_dense_ones(shape in shapes(), seed in 0..1000u64) {
+        let (data, scaling) = samples(&shape, 600);
+        let chosen: Vec<usize> = (0..data.len()).collect();
+        let blocks = blocks(&data, &chosen, &scaling);
+        prop_assert_eq!(blocks.len(), 3);
+        let weights = nguyen_widrow(&shape, seed);
+        // Room for two blocks only, so that they come in two groups.
+        let mut engine = Engine::new(&shape, 2);
+        engine.normal_equations(&blocks, &weights);
+        let n = shape.parameters();
+        let (mut square, mut gradient) = (vec![0.0; n * n], vec![0.0; n]);
+        for block in &blocks {
+            let mut work = BlockWork::new(&engine.layout);
+            work.forward_hidden(&engine.layout, &weights, block);
+            work.residuals(&engine.layout, &weights, block);
+            work.backward(&engine.layout, &weights);
+            for (row, r) in analytic_jacobian(&engine, &work).iter().zip(&work.residuals) {
+                for c in 0..n {
+                    gradient[c] += row[c] * r;
+                    for d in 0..n {
+                        square[c * n + d] += row[c] * row[d];
+                    }
+                }
+            }
+        }
+        let largest = square.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        for (a, b) in engine.dense().iter().zip(&square) {
+            prop_assert!((a - b).abs() <= 1e-12 * largest, "{a} against {b}");
+        }
+        for (a, b) in engine.gradient.iter().zip(&gradient) {
+            prop_assert!((a - b).abs() <= 1e-12 * largest, "{a} against {b}");
+        }
+    }
+}
+
+/// Large enough for several panels and tiles: `A = B Bᵀ + n I` is well
+/// conditioned, so the solution is good to about 1e-13.
+#[test]
+fn cholesky_solves_and_refuses() {
+    let n = 307;
+    let b = |i: usize, j: usize| ((i * 37 + j * 101) % 211) as f64 / 211.0 - 0.5;
+    let mut a = vec![0.0; n * n];
+    for c in 0..n {
+        for r in 0..n {
+            a[r + c * n] = (0..n).map(|k| b(r, k) * b(c, k)).sum::<f64>();
+        }
+        a[c + c * n] += n as f64;
+    }
+    let truth: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();
+    let mut x: Vec<f64> = (0..n)
+        .map(|r| (0..n).map(|c| a[r + c * n] * truth[c]).sum())
+        .collect();
+    let mut indefinite = a.clone();
+    // What lies above the diagonal must not matter.
+    for c in 0..n {
+        a[c * n..c * n + c].fill(f64::NAN);
+    }
+    assert!(cholesky::solve(&mut a, &mut x));
+    for (x, t) in x.iter().zip(&truth) {
+        assert!((x - t).abs() < 1e-11, "{x} against {t}");
+    }
+    indefinite[250 + 250 * n] = -1.0;
+    assert!(!cholesky::solve(&mut indefinite, &mut x));
+}

@@ -1,0 +1,375 @@
+use std::vec::Vec;
+
+use rand::RngExt;
+
+use super::checkpoint::Best;
+use super::dataset::{SampleBlock, blocks};
+use super::engine::Engine;
+use super::initial::{adapt_first_layer, generator};
+use super::{
+    Checkpoint, Dataset, EpochReport, History, Initialisation, Normalisation, Outcome, Settings,
+    nguyen_widrow,
+};
+use crate::error::same_length;
+use crate::{Error, Network, Scaling, Shape};
+
+/// Below this the damping no longer changes `JᵀJ` and is not lowered further.
+const MIN_DAMPING: f64 = 1e-20;
+
+/// Ridge of the output layer's exact solution: as small as rounding allows.
+const EXACT: f64 = 1e-13;
+/// Ridge of the fitted start: moderate weights, from which training can move.
+const MODERATE: f64 = 1e-4;
+
+/// A training in progress: the caller asks for one epoch after the other.
+#[derive(Debug)]
+pub struct Trainer {
+    settings: Settings,
+    shape: Shape,
+    scaling: Scaling,
+    training: Vec<SampleBlock>,
+    validation: Vec<SampleBlock>,
+    engine: Engine,
+    pool: rayon::ThreadPool,
+    weights: Vec<f64>,
+    sum_of_squares: f64,
+    damping: f64,
+    best: Option<Best>,
+    history: History,
+    outcome: Option<Outcome>,
+    fingerprint: u64,
+}
+
+impl Trainer {
+    /// Prepares a training from new starting weights.
+    ///
+    /// # Errors
+    /// What [`Settings::validate`] and [`Shape::validate`] refuse,
+    /// [`Error::Length`] where shape, scaling and data do not fit, or where
+    /// the validation split leaves one side empty; [`Error::Threads`].
+    pub fn new(
+        shape: Shape,
+        scaling: Scaling,
+        data: &Dataset,
+        settings: Settings,
+    ) -> Result<Self, Error> {
+        shape.validate()?;
+        let weights = nguyen_widrow(&shape, settings.seed);
+        let network = Network::new(shape, scaling, weights)?;
+        let mut trainer = Self::prepare(network, data, settings, data.fingerprint())?;
+        trainer.initialise(data);
+        trainer.enter();
+        Ok(trainer)
+    }
+
+    /// Goes on from a checkpoint, with the same bits as without the break.
+    ///
+    /// # Errors
+    /// [`Error::OtherData`] for data other than the checkpoint's, and as
+    /// [`Trainer::new`].
+    pub fn resume(data: &Dataset, checkpoint: Checkpoint) -> Result<Self, Error> {
+        let found = data.fingerprint();
+        if found != checkpoint.fingerprint {
+            return Err(Error::OtherData {
+                found,
+                expected: checkpoint.fingerprint,
+            });
+        }
+        let mut trainer = Self::prepare(checkpoint.current, data, checkpoint.settings, found)?;
+        trainer.damping = checkpoint.damping;
+        trainer.best = checkpoint.best;
+        trainer.history = checkpoint.history;
+        trainer.enter();
+        trainer.outcome = trainer.judge();
+        Ok(trainer)
+    }
+
+    fn prepare(
+        network: Network,
+        data: &Dataset,
+        settings: Settings,
+        fingerprint: u64,
+    ) -> Result<Self, Error> {
+        settings.validate()?;
+        let shape = network.shape().clone();
+        same_length("inputs of the data", data.inputs(), shape.inputs)?;
+        same_length("outputs of the data", data.outputs(), shape.outputs)?;
+        let (training, validation) = split(data.len(), &settings)?;
+        let scaling = network.scaling().clone();
+        let training = blocks(data, &training, &scaling);
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(settings.threads)
+            .build()
+            .map_err(|_| Error::Threads {
+                threads: settings.threads,
+            })?;
+        Ok(Self {
+            engine: Engine::new(&shape, training.len()),
+            validation: blocks(data, &validation, &scaling),
+            weights: network.weights().to_vec(),
+            damping: settings.initial_damping,
+            sum_of_squares: f64::INFINITY,
+            best: None,
+            history: History::new(),
+            outcome: None,
+            training,
+            settings,
+            shape,
+            scaling,
+            pool,
+            fingerprint,
+        })
+    }
+
+    /// Starting weights other than Nguyen–Widrow's, which are there already.
+    fn initialise(&mut self, data: &Dataset) {
+        let (unknowns, ridge) = match self.settings.initialisation {
+            Initialisation::NguyenWidrow => return,
+            Initialisation::LinearStart => (1 + self.shape.inputs, EXACT),
+            Initialisation::DataAdapted { axis_aligned } => {
+                if let [first, _, ..] = self.engine.layout.layers[..] {
+                    // The split was possible a moment ago, so it is again.
+                    let chosen = split(data.len(), &self.settings)
+                        .map_or_else(|_| (0..data.len()).collect(), |(training, _)| training);
+                    let seed = self.settings.seed;
+                    adapt_first_layer(
+                        &mut self.weights,
+                        &first,
+                        data,
+                        &chosen,
+                        &self.scaling,
+                        axis_aligned,
+                        seed,
+                    );
+                }
+                (self.shape.activations(), MODERATE)
+            }
+        };
+        let (engine, training, weights) = (&mut self.engine, &self.training, &mut self.weights);
+        self.pool
+            .install(|| engine.fit_output(training, weights, unknowns, ridge));
+    }
+
+    /// The loss at the present weights.
+    fn enter(&mut self) {
+        let (engine, training, weights) = (&mut self.engine, &self.training, &self.weights);
+        self.sum_of_squares = self
+            .pool
+            .install(|| engine.sum_of_squares(training, weights));
+    }
+
+    /// One epoch of Levenberg–Marquardt: `JᵀJ` once, then trial steps with
+    /// rising damping until one lowers the loss. Once the training has ended
+    /// this does nothing and returns the last report.
+    pub fn epoch(&mut self) -> EpochReport {
+        if let (Some(_), Some(last)) = (self.outcome, self.history.last()) {
+            return *last;
+        }
+        // The normal equations at the present weights.
+        let (engine, training, weights) = (&mut self.engine, &self.training, &self.weights);
+        self.pool
+            .install(|| engine.normal_equations(training, weights));
+        let gradient = self.factor() * norm(&self.engine.gradient);
+
+        // Trial steps, eq. of the paper: Δ = -(JᵀJ + μI)⁻¹ Jᵀr.
+        let mut trials = 0;
+        while gradient > self.settings.min_gradient && self.damping <= self.settings.max_damping {
+            trials += 1;
+            if self.try_step() {
+                self.damping = (self.damping * self.settings.damping_decrease).max(MIN_DAMPING);
+                break;
+            }
+            self.damping *= self.settings.damping_increase;
+        }
+
+        // Validation, report, verdict.
+        let validation_loss = self.validate();
+        let report = EpochReport {
+            epoch: self.history.len() + 1,
+            loss: self.loss(),
+            validation_loss,
+            gradient,
+            damping: self.damping,
+            trials,
+        };
+        self.history.push(report);
+        self.outcome = self.judge();
+        tracing::debug!(
+            epoch = report.epoch,
+            loss = report.loss,
+            damping = report.damping
+        );
+        report
+    }
+
+    /// Runs until the training ends, telling each epoch to `each`.
+    pub fn run(&mut self, mut each: impl FnMut(&EpochReport)) -> Outcome {
+        loop {
+            if let Some(outcome) = self.outcome {
+                return outcome;
+            }
+            if self.history.len() >= self.settings.epochs {
+                return Outcome::EpochsDone;
+            }
+            each(&self.epoch());
+        }
+    }
+
+    /// Tries the step at the present damping; takes it if the loss falls.
+    fn try_step(&mut self) -> bool {
+        let (factor, damping) = (self.factor(), self.damping);
+        let refit = self.settings.resolve_output;
+        let unknowns = self.shape.activations();
+        let (engine, training, weights) = (&mut self.engine, &self.training, &self.weights);
+        let trial = self.pool.install(|| {
+            let step = engine.step(factor, damping)?;
+            let mut trial: Vec<f64> = weights.iter().zip(&step).map(|(w, d)| w + d).collect();
+            if refit {
+                engine.fit_output(training, &mut trial, unknowns, EXACT);
+            }
+            let sum = engine.sum_of_squares(training, &trial);
+            Some((trial, sum))
+        });
+        match trial {
+            // A NaN is not smaller than anything.
+            Some((trial, sum)) if sum < self.sum_of_squares => {
+                self.weights = trial;
+                self.sum_of_squares = sum;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    fn validate(&mut self) -> Option<f64> {
+        if self.validation.is_empty() {
+            return None;
+        }
+        let (engine, blocks, weights) = (&mut self.engine, &self.validation, &self.weights);
+        let sum = self.pool.install(|| engine.sum_of_squares(blocks, weights));
+        let loss = sum / self.residuals(&self.validation);
+        match &mut self.best {
+            Some(best) if loss >= best.loss => best.age += 1,
+            best => {
+                *best = Some(Best {
+                    weights: self.weights.clone(),
+                    loss,
+                    age: 0,
+                });
+            }
+        }
+        Some(loss)
+    }
+
+    /// Why the training has ended, judged by its last report.
+    fn judge(&self) -> Option<Outcome> {
+        let settings = &self.settings;
+        let last = self.history.last()?;
+        let patience = settings.validation.map_or(usize::MAX, |v| v.patience);
+        if last.gradient <= settings.min_gradient {
+            Some(Outcome::GradientSmall)
+        } else if last.damping > settings.max_damping {
+            Some(Outcome::DampingLimit)
+        } else if last.loss <= settings.goal {
+            Some(Outcome::GoalMet)
+        } else if self.best.as_ref().is_some_and(|b| b.age >= patience) {
+            Some(Outcome::ValidationStopped)
+        } else if self.history.len() >= settings.epochs {
+            Some(Outcome::EpochsDone)
+        } else {
+            None
+        }
+    }
+
+    /// Why the training has ended; none while it goes on.
+    #[must_use]
+    pub fn outcome(&self) -> Option<Outcome> {
+        self.outcome
+    }
+
+    /// Mean square of the scaled residuals over the training samples, now.
+    #[must_use]
+    pub fn loss(&self) -> f64 {
+        self.sum_of_squares / self.residuals(&self.training)
+    }
+
+    /// Reports of all epochs so far.
+    #[must_use]
+    pub fn history(&self) -> &[EpochReport] {
+        &self.history
+    }
+
+    /// The network: at the best validation loss where there is a validation
+    /// split, as it is now otherwise.
+    #[must_use]
+    pub fn network(&self) -> Network {
+        let weights = self.best.as_ref().map_or(&self.weights, |b| &b.weights);
+        self.network_of(weights)
+    }
+
+    /// The network at the last epoch, whatever its validation loss.
+    #[must_use]
+    pub fn latest_network(&self) -> Network {
+        self.network_of(&self.weights)
+    }
+
+    /// Everything from which [`Trainer::resume`] goes on.
+    #[must_use]
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
+            settings: self.settings.clone(),
+            current: self.latest_network(),
+            damping: self.damping,
+            best: self.best.clone(),
+            history: self.history.clone(),
+            fingerprint: self.fingerprint,
+        }
+    }
+
+    fn network_of(&self, weights: &[f64]) -> Network {
+        let parts = (self.shape.clone(), self.scaling.clone(), weights.to_vec());
+        Network::new(parts.0, parts.1, parts.2).expect(
+            "shape, scaling and lengths were checked at construction, and a \
+             step with a weight that is not finite has no finite loss",
+        )
+    }
+
+    fn residuals(&self, blocks: &[SampleBlock]) -> f64 {
+        (blocks.iter().map(|b| b.rows).sum::<usize>() * self.shape.outputs) as f64
+    }
+
+    fn factor(&self) -> f64 {
+        match self.settings.normalisation {
+            Normalisation::Sum => 1.0,
+            Normalisation::Mean => 1.0 / self.residuals(&self.training),
+        }
+    }
+}
+
+/// Training and validation samples, each in rising order.
+fn split(samples: usize, settings: &Settings) -> Result<(Vec<usize>, Vec<usize>), Error> {
+    let mut order: Vec<usize> = (0..samples).collect();
+    let Some(validation) = settings.validation else {
+        return Ok((order, Vec::new()));
+    };
+    let apart = libm::round(validation.fraction * samples as f64) as usize;
+    if apart == 0 || apart == samples {
+        return Err(Error::Length {
+            what: "validation samples (neither none nor all)",
+            found: apart,
+            expected: (samples / 5).max(1),
+        });
+    }
+    let mut rng = generator(settings.seed, 1);
+    for i in (1..samples).rev() {
+        order.swap(i, rng.random_range(0..=i));
+    }
+    let mut training = order.split_off(apart);
+    training.sort_unstable();
+    order.sort_unstable();
+    Ok((training, order))
+}
+
+fn norm(v: &[f64]) -> f64 {
+    libm::sqrt(v.iter().map(|x| x * x).sum())
+}

@@ -1,0 +1,129 @@
+//! Artifacts come back bit for bit, or are refused with a telling error.
+
+use cfnn::artifact::{
+    ArtifactError, checkpoint_from_bytes, checkpoint_to_bytes, network_from_bytes, network_to_bytes,
+};
+use cfnn::train::{Dataset, Settings, Trainer, Validation, nguyen_widrow};
+use cfnn::{Network, Scaling, Shape};
+
+fn network() -> Network {
+    let shape = Shape {
+        inputs: 2,
+        hidden: vec![3, 2],
+        outputs: 2,
+    };
+    let scaling =
+        Scaling::from_ranges(&[(0.0, 1.5), (-0.1, 0.7)], &[(-1e-9, 3e-9), (0.0, 1.0)]).unwrap();
+    let weights = nguyen_widrow(&shape, 9);
+    Network::new(shape, scaling, weights).unwrap()
+}
+
+fn checkpoint() -> (Dataset, cfnn::train::Checkpoint) {
+    let input: Vec<f64> = (0..60).map(|i| f64::from(i) / 59.0).collect();
+    let target = input.iter().map(|x| (6.0 * x).sin()).collect();
+    let data = Dataset::new(1, 1, input, target).unwrap();
+    let shape = Shape {
+        inputs: 1,
+        hidden: vec![4],
+        outputs: 1,
+    };
+    let settings = Settings {
+        validation: Some(Validation {
+            fraction: 0.25,
+            patience: 9,
+        }),
+        ..Settings::default()
+    };
+    let mut trainer = Trainer::new(shape, data.scaling().unwrap(), &data, settings).unwrap();
+    trainer.epoch();
+    trainer.epoch();
+    (data, trainer.checkpoint())
+}
+
+#[test]
+fn round_trips() {
+    let network = network();
+    let bytes = network_to_bytes(&network, "axis blake3 0f1e").unwrap();
+    let (again, provenance) = network_from_bytes(&bytes).unwrap();
+    assert_eq!(again, network);
+    assert_eq!(provenance, "axis blake3 0f1e");
+
+    let (data, checkpoint) = checkpoint();
+    let bytes = checkpoint_to_bytes(&checkpoint, "axis").unwrap();
+    let (again, _) = checkpoint_from_bytes(&bytes).unwrap();
+    assert_eq!(again, checkpoint);
+    let mut one = Trainer::resume(&data, checkpoint).unwrap();
+    let mut two = Trainer::resume(&data, again).unwrap();
+    assert_eq!(one.epoch(), two.epoch());
+}
+
+#[test]
+fn every_flipped_bit_is_refused() {
+    let mut bytes = network_to_bytes(&network(), "p").unwrap();
+    for position in 0..bytes.len() * 8 {
+        bytes[position / 8] ^= 1 << (position % 8);
+        assert!(network_from_bytes(&bytes).is_err(), "bit {position}");
+        bytes[position / 8] ^= 1 << (position % 8);
+    }
+    assert!(network_from_bytes(&bytes).is_ok());
+}
+
+#[test]
+fn every_truncation_and_extension_is_refused() {
+    let bytes = network_to_bytes(&network(), "p").unwrap();
+    for length in 0..bytes.len() {
+        let refused = network_from_bytes(&bytes[..length]);
+        assert!(
+            matches!(refused, Err(ArtifactError::Truncated { .. })),
+            "{length}: {refused:?}"
+        );
+    }
+    let mut longer = bytes.clone();
+    longer.push(0);
+    let refused = network_from_bytes(&longer);
+    assert!(matches!(refused, Err(ArtifactError::TrailingBytes { .. })));
+}
+
+#[test]
+fn each_fault_has_its_own_error() {
+    let bytes = network_to_bytes(&network(), "p").unwrap();
+    let refused = checkpoint_from_bytes(&bytes).unwrap_err();
+    assert!(
+        matches!(refused, ArtifactError::WrongKind { .. }),
+        "{refused}"
+    );
+
+    // Another schema, with a hash that fits it.
+    let mut other = bytes[..bytes.len() - 32].to_vec();
+    other[12] = 2;
+    other.extend_from_slice(blake3::hash(&other).as_bytes());
+    let refused = network_from_bytes(&other).unwrap_err();
+    let expected = ArtifactError::OtherSchema {
+        found: 2,
+        expected: 1,
+    };
+    assert_eq!(refused, expected);
+
+    // A payload that is whole but longer than its content.
+    let mut longer = bytes[..bytes.len() - 32].to_vec();
+    longer.push(7);
+    let length = longer.len() as u64 - 24;
+    longer[16..24].copy_from_slice(&length.to_le_bytes());
+    longer.extend_from_slice(blake3::hash(&longer).as_bytes());
+    let refused = network_from_bytes(&longer).unwrap_err();
+    assert!(
+        matches!(refused, ArtifactError::Payload { .. }),
+        "{refused}"
+    );
+
+    assert_eq!(
+        network_from_bytes(b"PK\x03\x04something else").unwrap_err(),
+        ArtifactError::NotAnArtifact
+    );
+    let mut flipped = bytes.clone();
+    flipped[60] ^= 4;
+    assert_eq!(
+        network_from_bytes(&flipped).unwrap_err(),
+        ArtifactError::Damaged
+    );
+}

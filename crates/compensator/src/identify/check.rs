@@ -1,0 +1,79 @@
+//! Refusal of motions and candidates that cannot be used.
+
+use std::vec::Vec;
+
+use super::{Candidates, IdentifyError, Motion};
+use crate::error::require;
+use crate::{MAX_ORDER, TransferFunctionModel};
+
+/// Returns the period that all motions share.
+pub(super) fn check(
+    training: &[Motion],
+    validation: &[Motion],
+    candidates: &Candidates,
+) -> Result<f64, IdentifyError> {
+    let first = training
+        .first()
+        .ok_or(IdentifyError::Empty("training motion"))?
+        .period;
+    if validation.is_empty() {
+        return Err(IdentifyError::Empty("validation motion"));
+    }
+    if candidates.pole_cycles.is_empty() || candidates.pole_cycles.iter().any(Vec::is_empty) {
+        return Err(IdentifyError::Empty("pole"));
+    }
+    let order = candidates.max_order;
+    let inside = (1..=MAX_ORDER).contains(&order);
+    require(inside, "max_order", order as f64, "1 to 16")?;
+    for &pole in candidates.pole_cycles.iter().flatten() {
+        TransferFunctionModel::new(first, 0.0, &[pole], &[0.0])?;
+    }
+    for (set, motions) in [("training", training), ("validation", validation)] {
+        for (index, motion) in motions.iter().enumerate() {
+            check_motion(set, index, motion, first)?;
+        }
+    }
+    Ok(first)
+}
+
+fn check_motion(
+    set: &'static str,
+    index: usize,
+    motion: &Motion,
+    first: f64,
+) -> Result<(), IdentifyError> {
+    let period = motion.period;
+    if period != first {
+        return Err(IdentifyError::Period {
+            set,
+            index,
+            period,
+            first,
+        });
+    }
+    let (accelerations, errors) = (motion.acceleration.len(), motion.error.len());
+    if accelerations != errors {
+        return Err(IdentifyError::Length {
+            set,
+            index,
+            accelerations,
+            errors,
+        });
+    }
+    let series = [
+        ("acceleration", motion.acceleration),
+        ("error", motion.error),
+    ];
+    for (what, values) in series {
+        if let Some(sample) = values.iter().position(|value| !value.is_finite()) {
+            return Err(IdentifyError::NotFinite {
+                set,
+                index,
+                sample,
+                what,
+                value: values[sample],
+            });
+        }
+    }
+    Ok(())
+}

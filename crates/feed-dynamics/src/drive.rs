@@ -1,0 +1,180 @@
+//! The drive's parameters, checked once.
+
+use beam_fem::{BeamError, Material, Section};
+use thiserror::Error;
+
+/// Everything that makes a drive. SI units.
+#[derive(Clone, Debug)]
+pub struct DriveParameters {
+    /// Cross-section of the screw.
+    pub section: Section,
+    /// Material of the screw.
+    pub material: Material,
+    /// Length L of the screw between its ends, m.
+    pub screw_length: f64,
+    /// Number N of finite elements along the screw, at least 2.
+    pub elements: usize,
+    /// Travel per screw turn, m.
+    pub lead: f64,
+    /// Inertia j_m of the motor's rotor, kg·m².
+    pub motor_inertia: f64,
+    /// Inertia j_TS of the torque sensor, kg·m².
+    pub sensor_inertia: f64,
+    /// Torsional stiffness K_R1 between motor and sensor, N·m/rad.
+    pub motor_coupling_stiffness: f64,
+    /// Torsional stiffness K_R2 between sensor and screw, N·m/rad.
+    pub screw_coupling_stiffness: f64,
+    /// Mass m_wt of the table, kg.
+    pub table_mass: f64,
+    /// Axial stiffness k_scn of the screw–nut pair, N/m.
+    pub nut_stiffness: f64,
+    /// Stiffness-proportional damping β in C = βK, s.
+    pub stiffness_damping: f64,
+}
+
+/// What can be wrong with a drive or with a question about it.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum DriveError {
+    /// A parameter lies outside its range.
+    #[error("{name} = {value} is not valid: it must be {valid}")]
+    Parameter {
+        /// Name of the field.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What would be valid.
+        valid: &'static str,
+    },
+    /// A table position beyond the screw's ends.
+    #[error("table position {position} m is off the screw: it must lie between 0 and {length} m")]
+    OffScrew {
+        /// The position asked for, m.
+        position: f64,
+        /// Length of the screw, m.
+        length: f64,
+    },
+    /// The beam model refused its input or did not solve.
+    #[error(transparent)]
+    Beam(#[from] BeamError),
+    /// The dynamic stiffness is singular (a resonance without damping, or zero frequency).
+    #[error(
+        "the dynamic stiffness at {angular_frequency} rad/s is singular: ask off the resonance, above zero"
+    )]
+    Singular {
+        /// The frequency asked for, rad/s.
+        angular_frequency: f64,
+    },
+}
+
+/// A ball-screw feed drive: immutable, shared by any number of simulations.
+#[derive(Clone, Debug)]
+pub struct FeedDrive {
+    parameters: DriveParameters,
+}
+
+impl FeedDrive {
+    /// Checks the parameters and makes the drive.
+    ///
+    /// # Errors
+    /// [`DriveError::Parameter`] names the first field that is out of range.
+    pub fn new(parameters: DriveParameters) -> Result<Self, DriveError> {
+        let p = &parameters;
+        let positive = [
+            ("screw_length", p.screw_length),
+            ("lead", p.lead),
+            ("motor_inertia", p.motor_inertia),
+            ("sensor_inertia", p.sensor_inertia),
+            ("motor_coupling_stiffness", p.motor_coupling_stiffness),
+            ("screw_coupling_stiffness", p.screw_coupling_stiffness),
+            ("table_mass", p.table_mass),
+            ("nut_stiffness", p.nut_stiffness),
+        ];
+        for (name, value) in positive {
+            if !(value.is_finite() && value > 0.0) {
+                let valid = "finite and above zero";
+                return Err(DriveError::Parameter { name, value, valid });
+            }
+        }
+        if !(p.stiffness_damping.is_finite() && p.stiffness_damping >= 0.0) {
+            return Err(DriveError::Parameter {
+                name: "stiffness_damping",
+                value: p.stiffness_damping,
+                valid: "finite and not negative",
+            });
+        }
+        if !(2..=1000).contains(&p.elements) {
+            return Err(DriveError::Parameter {
+                name: "elements",
+                value: p.elements as f64,
+                valid: "between 2 and 1000",
+            });
+        }
+        Ok(Self { parameters })
+    }
+
+    /// The parameters it was made from.
+    pub fn parameters(&self) -> &DriveParameters {
+        &self.parameters
+    }
+
+    /// Travel per radian of the screw, r = lead / 2π, m/rad.
+    pub fn travel_per_radian(&self) -> f64 {
+        self.parameters.lead / std::f64::consts::TAU
+    }
+
+    /// Number of generalised coordinates, N + 4.
+    pub fn coordinates(&self) -> usize {
+        self.parameters.elements + 4
+    }
+
+    /// Inertia of everything that rotates, kg·m².
+    pub fn rotating_inertia(&self) -> f64 {
+        let p = &self.parameters;
+        let polar = p.section.second_moment_y + p.section.second_moment_z;
+        p.motor_inertia + p.sensor_inertia + p.material.density * polar * p.screw_length
+    }
+
+    /// Inertia of the whole axis seen at the motor, table included, kg·m².
+    pub fn total_inertia(&self) -> f64 {
+        self.rotating_inertia() + self.parameters.table_mass * self.travel_per_radian().powi(2)
+    }
+
+    /// Refuses positions off the screw.
+    pub(crate) fn check_position(&self, x: f64) -> Result<(), DriveError> {
+        let length = self.parameters.screw_length;
+        if (0.0..=length).contains(&x) {
+            Ok(())
+        } else {
+            Err(DriveError::OffScrew {
+                position: x,
+                length,
+            })
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests_support {
+    use super::*;
+
+    /// The paper's drive with another stiffness-proportional damping, s.
+    pub(crate) fn drive_with_damping(stiffness_damping: f64) -> FeedDrive {
+        let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
+        FeedDrive::new(DriveParameters {
+            section: Section::solid_circle(0.040, &steel).unwrap(),
+            material: steel,
+            screw_length: 1.5,
+            elements: 10,
+            lead: 0.010,
+            motor_inertia: 0.0053,
+            sensor_inertia: 1e-4,
+            motor_coupling_stiffness: 2800.0,
+            screw_coupling_stiffness: 2800.0,
+            table_mass: 515.0,
+            nut_stiffness: 7.45e7,
+            stiffness_damping,
+        })
+        .unwrap()
+    }
+}

@@ -1,0 +1,311 @@
+//! The obvious stepper: Newmark's average acceleration (γ = ½, β = ¼) on the
+//! drive's own M(x), C(x) and K(x), with either nut coupling.
+//!
+//! `S a₁ = F₁ − K (q_p + β v_p)` with `S = M + (h²/4 + βh/2) K`, where q_p
+//! and v_p hold all that is known at the start. S is tridiagonal but for the
+//! table, which is eliminated first, so a step costs a few operations a node.
+
+use beam_fem::Tridiagonal;
+
+use super::modal::check_step;
+use super::{Observation, Settled, TableMotion, TimeStepper, settle_load};
+use crate::matrices::{Chain, NutCoupling, NutSeat};
+use crate::{DriveError, FeedDrive};
+
+/// The drive for implicit steps of one length.
+#[derive(Clone, Debug)]
+pub struct ImplicitStepper {
+    drive: FeedDrive,
+    coupling: NutCoupling,
+    step: f64,
+    fixed: Chain,
+}
+
+/// State of an [`ImplicitStepper`]: displacement, velocity and acceleration of
+/// each of the N + 4 coordinates.
+#[derive(Clone, Debug)]
+pub struct ImplicitState {
+    q: Vec<f64>,
+    v: Vec<f64>,
+    a: Vec<f64>,
+    origin: f64,
+    nut_force: f64,
+    load: f64,
+    seat: NutSeat,
+    /// Where the screw's nodes are, m; only kept where one of them moves.
+    nodes: Vec<f64>,
+}
+
+impl ImplicitStepper {
+    /// Prepares steps of `step` seconds with the given nut coupling.
+    ///
+    /// # Errors
+    /// [`DriveError::Parameter`] where the step is not positive and finite.
+    pub fn new(drive: &FeedDrive, coupling: NutCoupling, step: f64) -> Result<Self, DriveError> {
+        check_step(step)?;
+        let middle = 0.5 * drive.parameters().screw_length;
+        Ok(Self {
+            fixed: drive.chain(middle, coupling)?,
+            drive: drive.clone(),
+            coupling,
+            step,
+        })
+    }
+
+    /// The chain with the table at `x`, kept on the screw.
+    fn chain(&self, x: f64) -> Chain {
+        let x = x.clamp(0.0, self.drive.parameters().screw_length);
+        // Every x on the screw gives a mesh: the parameters were checked.
+        self.drive
+            .chain(x, self.coupling)
+            .unwrap_or_else(|_| self.fixed.clone())
+    }
+
+    /// Positions of the screw's nodes with the table at `x`.
+    fn nodes(&self, x: f64) -> Vec<f64> {
+        let p = self.drive.parameters();
+        let x = x.clamp(0.0, p.screw_length);
+        beam_fem::MovingNode::at(
+            p.screw_length,
+            p.elements,
+            x,
+            beam_fem::MovingNode::MIN_FRACTION,
+        )
+        .map(|moved| moved.mesh.nodes().to_vec())
+        .unwrap_or_default()
+    }
+
+    /// The moving node follows the nut; where it jumps to the next place in
+    /// the mesh, the rotations are carried over by interpolation.
+    fn move_node(&self, state: &mut ImplicitState, x: f64, seat: NutSeat) {
+        if self.coupling == NutCoupling::MovingNode {
+            let nodes = self.nodes(x);
+            if seat.node != state.seat.node {
+                for values in [&mut state.q, &mut state.v, &mut state.a] {
+                    let screw = &mut values[2..2 + nodes.len()];
+                    let carried: Vec<f64> = nodes
+                        .iter()
+                        .map(|&at| interpolate(&state.nodes, screw, at))
+                        .collect();
+                    screw.copy_from_slice(&carried);
+                }
+            }
+            state.nodes = nodes;
+        }
+        state.seat = seat;
+    }
+
+    /// `(rθ − y)` at the nut, from values laid out as the coordinates are.
+    fn stretch(&self, values: &[f64], seat: &NutSeat) -> f64 {
+        let at = 2 + seat.node;
+        let rotation = seat.weights[0] * values[at] + seat.weights[1] * values[at + 1];
+        self.drive.travel_per_radian() * rotation - values[values.len() - 1]
+    }
+}
+
+impl TimeStepper for ImplicitStepper {
+    type State = ImplicitState;
+
+    fn step_length(&self) -> f64 {
+        self.step
+    }
+
+    fn settled(&self, x: f64, motion: &Settled) -> ImplicitState {
+        let p = self.drive.parameters();
+        let r = self.drive.travel_per_radian();
+        let chain = self.chain(x);
+        let n = self.drive.coordinates();
+        let alpha = motion.acceleration / r;
+        let torque = motion.motor_torque(&self.drive);
+        let nut_force = motion.nut_force(&self.drive);
+
+        // Walk down the chain: each spring carries the torque that what lies
+        // beyond it needs.
+        let mut q = vec![0.0; n];
+        let mut carried = torque;
+        for i in 0..n - 2 {
+            carried -= row_sum(&chain.mass, i) * alpha;
+            if i >= 2 && i - 2 == chain.seat.node {
+                carried -= r * nut_force * chain.seat.weights[0];
+            }
+            if i >= 2 && i - 2 == chain.seat.node + 1 {
+                carried -= r * nut_force * chain.seat.weights[1];
+            }
+            q[i + 1] = q[i] + carried / chain.stiffness.off_diagonal[i];
+        }
+        let turn = (nut_force / p.nut_stiffness - self.stretch(&q, &chain.seat)) / r;
+        q[..n - 1].iter_mut().for_each(|angle| *angle += turn);
+        let rigid = |rate: f64| {
+            let mut values = vec![rate / r; n];
+            values[n - 1] = rate;
+            values
+        };
+        ImplicitState {
+            q,
+            v: rigid(motion.speed),
+            a: rigid(motion.acceleration),
+            origin: x,
+            nut_force,
+            load: motion.load,
+            seat: chain.seat,
+            nodes: self.nodes(x),
+        }
+    }
+
+    fn step(&self, state: &mut ImplicitState, torque: f64, load: impl FnMut(TableMotion) -> f64) {
+        let h = self.step;
+        let p = self.drive.parameters();
+        let (r, k, beta) = (
+            self.drive.travel_per_radian(),
+            p.nut_stiffness,
+            p.stiffness_damping,
+        );
+        let last = state.q.len() - 1;
+        let s = 0.25 * h * h + 0.5 * beta * h;
+
+        // Matrices for the table at the end of the step.
+        let x = state.origin + state.q[last] + h * state.v[last];
+        let moved;
+        let (chain, seat) = match self.coupling {
+            NutCoupling::MovingNode => {
+                moved = self.chain(x);
+                (&moved, moved.seat)
+            }
+            NutCoupling::ShapeFunctions => {
+                let cells = p.elements as f64;
+                let along = (x / p.screw_length * cells).clamp(0.0, cells);
+                let node = (along as usize).min(p.elements - 1);
+                let weights = [1.0 - (along - node as f64), along - node as f64];
+                (&self.fixed, NutSeat { node, weights })
+            }
+        };
+        self.move_node(state, x, seat);
+
+        // q_p + β v_p, and with it the right-hand side.
+        for i in 0..=last {
+            state.q[i] += h * state.v[i] + 0.25 * h * h * state.a[i];
+            state.v[i] += 0.5 * h * state.a[i];
+        }
+        let known: Vec<f64> = (0..=last).map(|i| state.q[i] + beta * state.v[i]).collect();
+        let mut rhs = multiply(&chain.stiffness, &known[..last]);
+        rhs.iter_mut().for_each(|f| *f = -*f);
+        rhs[0] += torque;
+        let pull = k * self.stretch(&known, &seat);
+        let at = 2 + seat.node;
+        for (i, n) in seat.weights.iter().enumerate() {
+            rhs[at + i] -= r * n * pull;
+        }
+
+        // Eliminate the table, then solve the chain for the forces and for a
+        // unit load on the table.
+        let table = p.table_mass + s * k;
+        let mut lhs = chain.mass.clone();
+        add_scaled(&mut lhs, s, &chain.stiffness);
+        let nut = s * k * r * r * (1.0 - s * k / table);
+        let [n1, n2] = seat.weights;
+        lhs.diagonal[at] += nut * n1 * n1;
+        lhs.diagonal[at + 1] += nut * n2 * n2;
+        lhs.off_diagonal[at] += nut * n1 * n2;
+        let mut unit = vec![0.0; last];
+        for (i, n) in seat.weights.iter().enumerate() {
+            rhs[at + i] += s * k * r * n * pull / table;
+            unit[at + i] = -s * k * r * n / table;
+        }
+        solve_tridiagonal(lhs, [&mut rhs, &mut unit]);
+        let turn = |a: &[f64]| r * (n1 * a[at] + n2 * a[at + 1]);
+        let free = (pull + s * k * turn(&rhs)) / table;
+        let per_load = (s * k * turn(&unit) - 1.0) / table;
+
+        // The load that the table's own motion asks for.
+        let motion = |load: f64| {
+            let a = free + per_load * load;
+            TableMotion {
+                displacement: state.q[last] + 0.25 * h * h * a,
+                speed: state.v[last] + 0.5 * h * a,
+            }
+        };
+        let end_load = settle_load(state.load, 0.5 * h * per_load.abs(), motion, load);
+
+        for i in 0..last {
+            state.a[i] = rhs[i] + end_load * unit[i];
+        }
+        state.a[last] = free + per_load * end_load;
+        for i in 0..=last {
+            state.q[i] += 0.25 * h * h * state.a[i];
+            state.v[i] += 0.5 * h * state.a[i];
+        }
+        let (stretch, rate) = (self.stretch(&state.q, &seat), self.stretch(&state.v, &seat));
+        state.nut_force = k * stretch + k * beta * rate;
+        state.load = end_load;
+    }
+
+    fn observe(&self, state: &ImplicitState) -> Observation {
+        let last = state.q.len() - 1;
+        Observation {
+            motor_angle: state.q[0],
+            motor_speed: state.v[0],
+            displacement: state.q[last],
+            speed: state.v[last],
+            nut_force: state.nut_force,
+        }
+    }
+}
+
+/// Value at `at` of what is linear between the nodes.
+fn interpolate(nodes: &[f64], values: &[f64], at: f64) -> f64 {
+    let after = nodes
+        .partition_point(|&node| node < at)
+        .clamp(1, nodes.len() - 1);
+    let (x0, x1) = (nodes[after - 1], nodes[after]);
+    let part = (at - x0) / (x1 - x0);
+    values[after - 1] + part * (values[after] - values[after - 1])
+}
+
+fn row_sum(t: &Tridiagonal, i: usize) -> f64 {
+    let before = if i > 0 { t.off_diagonal[i - 1] } else { 0.0 };
+    before + t.diagonal[i] + t.off_diagonal.get(i).copied().unwrap_or(0.0)
+}
+
+fn add_scaled(to: &mut Tridiagonal, factor: f64, from: &Tridiagonal) {
+    for (a, b) in to.diagonal.iter_mut().zip(&from.diagonal) {
+        *a += factor * b;
+    }
+    for (a, b) in to.off_diagonal.iter_mut().zip(&from.off_diagonal) {
+        *a += factor * b;
+    }
+}
+
+fn multiply(t: &Tridiagonal, v: &[f64]) -> Vec<f64> {
+    let mut product: Vec<f64> = t.diagonal.iter().zip(v).map(|(d, x)| d * x).collect();
+    for (i, o) in t.off_diagonal.iter().enumerate() {
+        product[i] += o * v[i + 1];
+        product[i + 1] += o * v[i];
+    }
+    product
+}
+
+/// Thomas' elimination for two right-hand sides at once; the matrix is
+/// positive definite, so no pivoting is needed.
+fn solve_tridiagonal(mut t: Tridiagonal, mut sides: [&mut Vec<f64>; 2]) {
+    let n = t.diagonal.len();
+    for i in 1..n {
+        let factor = t.off_diagonal[i - 1] / t.diagonal[i - 1];
+        t.diagonal[i] -= factor * t.off_diagonal[i - 1];
+        for b in &mut sides {
+            b[i] -= factor * b[i - 1];
+        }
+    }
+    for i in (0..n).rev() {
+        for b in &mut sides {
+            let after = if i + 1 < n {
+                t.off_diagonal[i] * b[i + 1]
+            } else {
+                0.0
+            };
+            b[i] = (b[i] - after) / t.diagonal[i];
+        }
+    }
+}
+
+#[cfg(test)]
+mod energy_tests;

@@ -1,0 +1,67 @@
+//! The modal stepper's energy, which only its inner state shows.
+
+use super::{LANES, ModalState, ModalStepper};
+use crate::drive::tests_support::drive_with_damping;
+use crate::{Settled, TimeStepper};
+
+/// Kinetic and elastic energy, J: of the modes, the table and the nut.
+fn energy(s: &ModalStepper, state: &ModalState) -> f64 {
+    let p = s.drive.parameters();
+    let mut sum = 0.5 * p.table_mass * state.speed * state.speed;
+    for (m, k) in state.modal.iter().zip(&s.stiffness) {
+        for i in 0..LANES {
+            sum += 0.5 * (m[1][i] * m[1][i] + k[i] * m[0][i] * m[0][i]);
+        }
+    }
+    let stretch = s.r * s.nut_rotation(&state.modal, &state.seat)[0] - state.displacement;
+    sum + 0.5 * p.nut_stiffness * stretch * stretch
+}
+
+/// Energies after a load of 1 kN is let go, the nut held on the screw's last
+/// node (a start beyond the end), as a nut that moves changes K.
+fn ringing(damping: f64, step: f64, duration: f64) -> Vec<f64> {
+    let drive = drive_with_damping(damping);
+    let stepper = ModalStepper::new(&drive, step).unwrap();
+    let mut state = stepper.settled(
+        10.0,
+        &Settled {
+            load: 1000.0,
+            ..Settled::default()
+        },
+    );
+    // Torque and load fall to zero over the first step; then it is free.
+    (0..(duration / step).round() as usize)
+        .map(|_| {
+            stepper.step(&mut state, 0.0, |_| 0.0);
+            energy(&stepper, &state)
+        })
+        .collect()
+}
+
+#[test]
+fn undamped_energy_is_kept_within_the_order() {
+    let drift = |step| {
+        let energies = ringing(0.0, step, 0.1);
+        let off = energies.iter().map(|e| (e / energies[0] - 1.0).abs());
+        off.fold(0.0, f64::max)
+    };
+    let drifts = [1e-4, 5e-5, 2.5e-5].map(drift);
+    println!("modal energy drift over 0.1 s: {drifts:?}");
+    assert!(drifts[0] < 5e-4, "{drifts:?}");
+    // Second order: sixteenfold over two halvings.
+    assert!(drifts[2] < drifts[0] / 12.0, "{drifts:?}");
+}
+
+#[test]
+fn damping_only_takes_energy() {
+    let energies = ringing(1e-5, 1e-4, 0.5);
+    // The scheme is no energy method: allow a step to gain what its order
+    // does, a millionth of the energy at the start.
+    let gain = energies.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
+    println!(
+        "modal greatest gain {:.2e} of the start",
+        gain / energies[0]
+    );
+    assert!(gain < 1e-6 * energies[0], "{gain:e}");
+    assert!(energies[energies.len() - 1] < 0.9 * energies[0]);
+}

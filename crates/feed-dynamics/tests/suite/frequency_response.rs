@@ -1,0 +1,88 @@
+//! Receptance: limits, symmetry, peaks.
+
+use feed_dynamics::{Coordinate, DriveError, DriveParameters, FeedDrive};
+
+use crate::{COUPLINGS, drive, paper, relative};
+
+#[test]
+fn low_frequency_moves_the_total_inertia() {
+    let drive = drive();
+    // The first elastic terms come in as ω²/ω₁², 1e-5 here.
+    let w = 1.0;
+    for coupling in COUPLINGS {
+        for x in [0.0, 0.6, 1.234] {
+            let h = drive
+                .receptance(x, coupling, Coordinate::Motor, Coordinate::Motor, &[w])
+                .unwrap()[0];
+            let rigid = -1.0 / (drive.total_inertia() * w * w);
+            assert!(relative(h.re, rigid) < 1e-4, "{h} {rigid}");
+            let table = drive
+                .receptance(x, coupling, Coordinate::Motor, Coordinate::Table, &[w])
+                .unwrap()[0];
+            assert!(relative(table.re, rigid * drive.travel_per_radian()) < 1e-4);
+        }
+    }
+}
+
+#[test]
+fn reciprocal_and_built_from_the_modes() {
+    let drive = drive();
+    let (x, coupling) = (0.81, COUPLINGS[0]);
+    let ws: Vec<f64> = (1..60).map(|i| 37.0 * f64::from(i)).collect();
+    let h = |a, b| drive.receptance(x, coupling, a, b, &ws).unwrap();
+    let forth = h(Coordinate::Motor, Coordinate::Screw(7));
+    let back = h(Coordinate::Screw(7), Coordinate::Motor);
+    // Modal sum: Σ φ_a φ_b / (ω_i² + iωβω_i² − ω²).
+    let modes = drive.modes(x, coupling).unwrap();
+    let (a, b) = (0, drive.row(Coordinate::Screw(7)).unwrap());
+    for ((&w, f), g) in ws.iter().zip(&forth).zip(&back) {
+        assert!((f - g).norm() < 1e-11 * f.norm().max(1e-9));
+        let sum: nalgebra::Complex<f64> = (0..drive.coordinates())
+            .map(|i| {
+                let square = modes.frequencies[i].powi(2);
+                let below = nalgebra::Complex::new(square - w * w, w * 1e-5 * square);
+                modes.shapes[(a, i)] * modes.shapes[(b, i)] / below
+            })
+            .sum();
+        assert!((f - sum).norm() < 1e-7 * f.norm(), "{f} {sum} at {w}");
+    }
+}
+
+#[test]
+fn peaks_stand_at_the_modes() {
+    let drive = FeedDrive::new(DriveParameters {
+        stiffness_damping: 1e-7,
+        ..paper()
+    })
+    .unwrap();
+    for coupling in COUPLINGS {
+        let modes = drive.modes(0.6, coupling).unwrap();
+        for &w in &modes.frequencies[1..4] {
+            // ζ is below 1e-3 there: the peak lies within 1e-3 of ω.
+            let grid: Vec<f64> = (-40..=40)
+                .map(|i| w * (1.0 + 5e-4 * f64::from(i)))
+                .collect();
+            let h = drive
+                .receptance(0.6, coupling, Coordinate::Motor, Coordinate::Motor, &grid)
+                .unwrap();
+            let best = (0..grid.len()).max_by(|&i, &j| h[i].norm().total_cmp(&h[j].norm()));
+            assert!(relative(grid[best.unwrap()], w) <= 1.1e-3, "{w}");
+        }
+    }
+}
+
+#[test]
+fn refuses_what_has_no_answer() {
+    let drive = drive();
+    let ask = |x, node, w| {
+        let c = COUPLINGS[0];
+        drive.receptance(x, c, Coordinate::Screw(node), Coordinate::Table, &[w])
+    };
+    let zero = ask(0.6, 3, 0.0).unwrap_err();
+    assert!(matches!(zero, DriveError::Singular { .. }));
+    assert!(zero.to_string().contains("0 rad/s"));
+    let node = ask(0.6, 11, 1.0).unwrap_err().to_string();
+    assert!(node.contains("screw node = 11"), "{node}");
+    let off = ask(1.6, 3, 1.0).unwrap_err().to_string();
+    assert!(off.contains("1.6 m") && off.contains("1.5 m"), "{off}");
+}

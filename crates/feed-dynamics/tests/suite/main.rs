@@ -1,0 +1,44 @@
+//! One test binary: matrices and modes against laws and closed forms, the two
+//! steppers against each other and against an independent integration.
+
+mod boundary;
+mod frequency_response;
+mod matrices;
+mod modes;
+mod parameters;
+mod reference;
+mod settled;
+mod stepping;
+
+use beam_fem::{Material, Section};
+use feed_dynamics::{DriveParameters, FeedDrive, NutCoupling};
+
+const COUPLINGS: [NutCoupling; 2] = [NutCoupling::ShapeFunctions, NutCoupling::MovingNode];
+
+/// The drive of Liu et al. 2025 (doi:10.3390/machines13050433, Tables 2 and 3).
+fn paper() -> DriveParameters {
+    let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
+    DriveParameters {
+        section: Section::solid_circle(0.040, &steel).unwrap(),
+        material: steel,
+        screw_length: 1.5,
+        elements: 10,
+        lead: 0.010,
+        motor_inertia: 0.0053,
+        sensor_inertia: 1e-4,
+        motor_coupling_stiffness: 2800.0,
+        screw_coupling_stiffness: 2800.0,
+        table_mass: 515.0,
+        nut_stiffness: 7.45e7,
+        stiffness_damping: 1e-5,
+    }
+}
+
+fn drive() -> FeedDrive {
+    FeedDrive::new(paper()).unwrap()
+}
+
+/// |a − b| relative to the greater of the two.
+fn relative(a: f64, b: f64) -> f64 {
+    (a - b).abs() / a.abs().max(b.abs())
+}

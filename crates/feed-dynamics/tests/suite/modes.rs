@@ -1,0 +1,137 @@
+//! Natural modes against closed forms and against x.
+
+use beam_fem::{Material, Section};
+use feed_dynamics::{DriveParameters, FeedDrive, NutCoupling};
+use nalgebra::{DMatrix, DVector};
+use proptest::prelude::*;
+
+use crate::{COUPLINGS, drive, paper, relative};
+
+#[test]
+fn stiff_chain_leaves_two_masses() {
+    // Screw and couplings 10⁴ times as stiff: J on one side of the nut, m on
+    // the other, ω² = k (1/m + r²/J). The chain's own compliance is then
+    // 1e-5 of the nut's, the fixed-free wind-up included.
+    let steel = Material::new(206e13, 0.3, 7850.0).unwrap();
+    let drive = FeedDrive::new(DriveParameters {
+        section: Section::solid_circle(0.040, &steel).unwrap(),
+        material: steel,
+        motor_coupling_stiffness: 2800e4,
+        screw_coupling_stiffness: 2800e4,
+        ..paper()
+    })
+    .unwrap();
+    let p = drive.parameters();
+    let r = drive.travel_per_radian();
+    let square = p.nut_stiffness * (1.0 / p.table_mass + r * r / drive.rotating_inertia());
+    for coupling in COUPLINGS {
+        for x in [0.05, 0.33, 0.68, 1.13, 1.45] {
+            let first = drive.modes(x, coupling).unwrap().frequencies[1];
+            assert!(relative(first, square.sqrt()) < 5e-5, "{first} at {x}");
+        }
+    }
+}
+
+#[test]
+fn free_chain_approaches_the_rod() {
+    // With motor, sensor and table all but gone the chain is a free-free rod:
+    // ω_n = n π / L √(G/ρ). Linear elements with consistent mass meet it from
+    // above with a relative error of (n π / N)²/24: second order.
+    let frequency = |elements| {
+        let drive = FeedDrive::new(DriveParameters {
+            elements,
+            motor_inertia: 1e-12,
+            sensor_inertia: 1e-12,
+            table_mass: 1e-6,
+            nut_stiffness: 1e-3,
+            motor_coupling_stiffness: 1e2,
+            screw_coupling_stiffness: 1e2,
+            ..paper()
+        })
+        .unwrap();
+        let modes = drive.modes(0.7, NutCoupling::ShapeFunctions).unwrap();
+        // Below the rod's first lie the rigid motion and the table on its soft nut.
+        modes.frequencies[2]
+    };
+    let shear = 206e9 / 2.6;
+    let exact = std::f64::consts::PI / 1.5 * (shear / 7850.0_f64).sqrt();
+    let errors = [10, 20, 40].map(|n| frequency(n) / exact - 1.0);
+    for (error, n) in errors.iter().zip([10.0, 20.0, 40.0]) {
+        let expected = (std::f64::consts::PI / n).powi(2) / 24.0;
+        assert!(
+            relative(*error, expected) < 0.03,
+            "N = {n}: {error:e} {expected:e}"
+        );
+    }
+}
+
+#[test]
+fn shapes_are_mass_normalised_and_damping_grows_with_frequency() {
+    let drive = drive();
+    for coupling in COUPLINGS {
+        let m = drive.matrices(0.43, coupling).unwrap();
+        let modes = drive.modes(0.43, coupling).unwrap();
+        let n = drive.coordinates();
+        let mass = modes.shapes.transpose() * &m.mass * &modes.shapes;
+        assert!((mass - DMatrix::identity(n, n)).abs().max() < 1e-10);
+        let squares = DVector::from_iterator(n, modes.frequencies.iter().map(|w| w * w));
+        let energy = modes.shapes.transpose() * &m.stiffness * &modes.shapes;
+        let largest = squares.max();
+        assert!((energy - DMatrix::from_diagonal(&squares)).abs().max() < 1e-10 * largest);
+        // C = βK: ζ = βω/2 (Rayleigh).
+        for (w, zeta) in modes.frequencies.iter().zip(&modes.damping_ratios) {
+            assert_eq!(*zeta, 0.5 * 1e-5 * w);
+        }
+        assert_eq!(modes.frequencies[0], 0.0);
+    }
+}
+
+proptest! {
+    /// The nut's shape functions are continuous in x, so every mode is:
+    /// ω² moves by less than (∂/∂x) of the nut's term, and a step of a
+    /// micrometre anywhere, boundaries included, moves no ω by more than 1e-4.
+    #[test]
+    fn shape_functions_are_continuous_in_x(x in 0.0..1.5, boundary in 1..10_u32) {
+        let drive = drive();
+        for at in [x, f64::from(boundary) * 0.15] {
+            let frequencies = |x: f64| drive.modes(x.clamp(0.0, 1.5), NutCoupling::ShapeFunctions)
+                .unwrap().frequencies;
+            let (before, after) = (frequencies(at - 5e-7), frequencies(at + 5e-7));
+            for (a, b) in before.iter().zip(&after).skip(1) {
+                prop_assert!(relative(*a, *b) < 1e-4, "{a} {b} at {at}");
+            }
+        }
+    }
+}
+
+#[test]
+fn moving_node_jumps_only_where_the_mesh_does() {
+    let drive = drive();
+    let low = |x: f64, coupling| drive.modes(x, coupling).unwrap().frequencies[1..4].to_vec();
+    // Where the node is handed over, a thousandth of an element past each
+    // boundary, an even mesh becomes one with a double element; the lowest
+    // elastic modes feel that by their own discretisation error only.
+    let mut largest = [0.0_f64; 3];
+    for boundary in 1..9 {
+        let at = 0.15 * (f64::from(boundary) + 1e-3);
+        let (before, after) = (
+            low(at - 1e-7, NutCoupling::MovingNode),
+            low(at + 1e-7, NutCoupling::MovingNode),
+        );
+        for (i, (a, b)) in before.iter().zip(&after).enumerate() {
+            largest[i] = largest[i].max(relative(*a, *b));
+        }
+    }
+    println!("jumps of the first three elastic modes: {largest:?}");
+    assert!(
+        largest[0] < 1e-6 && largest[1] < 1e-4 && largest[2] < 1e-2,
+        "{largest:?}"
+    );
+
+    // And the two couplings agree on them.
+    for i in 0..=60 {
+        let x = f64::from(i) * 0.025;
+        let pair = COUPLINGS.map(|c| low(x, c));
+        assert!(relative(pair[0][0], pair[1][0]) < 1e-3, "{pair:?} at {x}");
+    }
+}

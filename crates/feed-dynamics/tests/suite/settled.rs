@@ -1,0 +1,159 @@
+//! Settled states: their statics, and that they stay as they are.
+
+use feed_dynamics::{
+    ImplicitStepper, ModalStepper, NutCoupling, Observation, Settled, TimeStepper,
+};
+use std::f64::consts::PI;
+
+use crate::{COUPLINGS, drive, relative};
+
+/// Runs a test on every stepper.
+fn on_each(
+    step: f64,
+    mut test: impl FnMut(&str, &dyn Fn(f64, Settled, usize) -> Vec<Observation>),
+) {
+    let drive = drive();
+    let modal = ModalStepper::new(&drive, step).unwrap();
+    test("modal", &|x, motion, steps| {
+        keep_up(&modal, x, motion, steps)
+    });
+    for coupling in COUPLINGS {
+        let implicit = ImplicitStepper::new(&drive, coupling, step).unwrap();
+        let name = format!("implicit, {coupling:?}");
+        test(&name, &|x, motion, steps| {
+            keep_up(&implicit, x, motion, steps)
+        });
+    }
+}
+
+fn keep_up<S: TimeStepper>(s: &S, x: f64, motion: Settled, steps: usize) -> Vec<Observation> {
+    let torque = motion.motor_torque(&drive());
+    let mut state = s.settled(x, &motion);
+    let mut seen = vec![s.observe(&state)];
+    for _ in 0..steps {
+        s.step(&mut state, torque, |_| motion.load);
+        seen.push(s.observe(&state));
+    }
+    seen
+}
+
+#[test]
+fn statics_are_those_of_springs_in_series() {
+    // A load F on the table winds the chain up by r F (1/K₁ + 1/K₂ + x/GJ) and
+    // compresses the nut by F/k. Between nodes the shape functions are stiffer
+    // by ξ(1 − ξ) l/GJ (beam-fem); the moving node sits on the nut.
+    let (load, r) = (1000.0, drive().travel_per_radian());
+    let rigidity = 206e9 / 2.6 * PI * 0.040_f64.powi(4) / 32.0;
+    for x in [0.15, 0.43, 0.6, 0.825, 1.3] {
+        let motion = Settled {
+            load,
+            ..Settled::default()
+        };
+        on_each(1e-4, |name, run| {
+            let seen = run(x, motion, 0)[0];
+            let xi = x / 0.15 - (x / 0.15_f64).floor();
+            let moving = name.contains("MovingNode");
+            let deficit = if moving {
+                0.0
+            } else {
+                xi * (1.0 - xi) * 0.15 / rigidity
+            };
+            let soft = 2.0 / 2800.0 + x / rigidity - deficit;
+            let angle = r * load * soft + load / 7.45e7 / r;
+            assert!(
+                relative(seen.motor_angle, angle) < 1e-11,
+                "{name} {x}: {seen:?} {angle}"
+            );
+            assert_eq!(seen.displacement, 0.0);
+            assert!(relative(seen.nut_force, load) < 1e-14);
+        });
+    }
+}
+
+#[test]
+fn a_loaded_axis_at_rest_stays_at_rest() {
+    let motion = Settled {
+        load: 750.0,
+        ..Settled::default()
+    };
+    on_each(1e-4, |name, run| {
+        let seen = run(0.43, motion, 1000);
+        for o in &seen {
+            // The axis is free, so what torque and load miss each other by in
+            // rounding lets it drift: 1e-16 m and 1e-14 m/s over 0.1 s measured,
+            // of 11 µm of wind-up.
+            assert!(o.displacement.abs() < 1e-15, "{name}: {o:?}");
+            assert!(
+                o.speed.abs() < 1e-13 && o.motor_speed.abs() < 1e-10,
+                "{name}: {o:?}"
+            );
+            assert!(
+                relative(o.motor_angle, seen[0].motor_angle) < 1e-10,
+                "{name}: {o:?}"
+            );
+            assert!(relative(o.nut_force, 750.0) < 1e-12, "{name}: {o:?}");
+        }
+    });
+}
+
+#[test]
+fn accelerated_motion_stays_settled() {
+    // Past the screw's end the nut stays on the last node, so that deflections
+    // need not change with x: the acceleration must then be exact.
+    let r = drive().travel_per_radian();
+    let motion = Settled {
+        speed: 0.08,
+        acceleration: 0.9,
+        load: 425.0,
+    };
+    let h = 1e-4;
+    on_each(h, |name, run| {
+        let seen = run(1.5, motion, 500);
+        // The implicit stepper finds 4 N·m as the difference of stiffness times
+        // angle: rounding is 1e-11 with 1e5 N·m/rad times a few rad, and 1e-8
+        // with the moved node's element a thousandth as long at the end.
+        let rounding = match name {
+            "modal" => 1e-12,
+            "implicit, ShapeFunctions" => 1e-11,
+            _ => 1e-8,
+        };
+        for (i, o) in seen.iter().enumerate() {
+            let t = i as f64 * h;
+            let speed = 0.08 + 0.9 * t;
+            let way = 0.08 * t + 0.45 * t * t;
+            assert!(relative(o.speed, speed) < rounding, "{name} {t}: {o:?}");
+            assert!(
+                relative(o.motor_speed, speed / r) < rounding,
+                "{name} {t}: {o:?}"
+            );
+            assert!(
+                (o.displacement - way).abs() < rounding * way.max(1e-3),
+                "{name} {t}: {o:?}"
+            );
+            // k (rθ − y) loses the digits of y: 7.45e7 N/m × 1e-17 m = 1e-9 N.
+            let lost = 2e-8_f64.max(888.5 * rounding);
+            assert!((o.nut_force - 888.5).abs() < lost, "{name} {t}: {o:?}");
+        }
+    });
+}
+
+#[test]
+fn away_from_the_end_it_changes_only_with_x() {
+    // The wind-up grows with x by F r²/GJ per metre, 1e-7 of the way; a
+    // settled start must show nothing beyond that.
+    let r = drive().travel_per_radian();
+    let motion = Settled {
+        speed: 0.1,
+        acceleration: 0.5,
+        load: 300.0,
+    };
+    on_each(1e-4, |name, run| {
+        // Across the element boundary at 0.6 m.
+        for o in run(0.59, motion, 2000) {
+            let slip = (r * o.motor_speed - o.speed).abs() / o.speed;
+            assert!(slip < 2e-4, "{name}: slip {slip:e}");
+        }
+    });
+    // The moving node is in here too: its hand-over is in `boundary`.
+    assert!(COUPLINGS.contains(&NutCoupling::MovingNode));
+}

@@ -1,0 +1,156 @@
+//! A sampled PI controller with a limited output.
+
+use crate::error::{FocError, check, limit, not_negative, positive};
+
+/// The constants of a [`Pi`]. Plain data; [`Pi::new`] validates them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PiParameters {
+    /// Proportional gain, output unit per error unit, 0 or more.
+    pub kp: f64,
+    /// Integral gain, output unit per error unit and second, 0 or more.
+    pub ki: f64,
+    /// Limit of the output's magnitude, output unit, greater than 0
+    /// (infinity: none).
+    pub limit: f64,
+    /// Sampling period T_s, s, greater than 0.
+    pub period: f64,
+}
+
+/// What becomes of the integral while the output is at its limit.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum AntiWindup {
+    /// Conditional integration: the integral keeps its old value in a period
+    /// in which the output saturates and the error would drive it further
+    /// the same way.
+    #[default]
+    Conditional,
+    /// Back-calculation: the integral is moved by (limited − unlimited
+    /// output) T_s / T_t in each period (Åström and Rundqwist, "Integrator
+    /// windup and how to avoid it", American Control Conference 1989,
+    /// 1693–1698).
+    BackCalculation {
+        /// Tracking time T_t, s, at least one period.
+        tracking_time: f64,
+    },
+}
+
+/// A validated PI law, in the order integrate, then output:
+///
+/// ```text
+/// I ← I + ki e T_s ;  y = kp e + I + feed-forward ;  output = y limited to ±limit
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pi {
+    parameters: PiParameters,
+    anti_windup: AntiWindup,
+    ki_period: f64,
+    /// T_s / T_t of back-calculation; negative for conditional integration.
+    tracking: f64,
+}
+
+/// The memory of one PI controller; zero at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PiState {
+    /// The integral I, in the output's unit.
+    pub integral: f64,
+}
+
+/// One output of a PI controller.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PiOutput {
+    /// The limited output.
+    pub value: f64,
+    /// Whether the limit changed it.
+    pub saturated: bool,
+}
+
+impl Pi {
+    /// Validates the parameters; anti-windup is [`AntiWindup::Conditional`].
+    ///
+    /// # Errors
+    /// [`FocError`] naming the first field out of the range its doc gives.
+    pub fn new(parameters: PiParameters) -> Result<Self, FocError> {
+        not_negative("kp", parameters.kp)?;
+        not_negative("ki", parameters.ki)?;
+        limit("limit", parameters.limit)?;
+        positive("period", parameters.period)?;
+        Ok(Self {
+            parameters,
+            anti_windup: AntiWindup::Conditional,
+            ki_period: parameters.ki * parameters.period,
+            tracking: -1.0,
+        })
+    }
+
+    /// The same law with another anti-windup.
+    ///
+    /// # Errors
+    /// [`FocError`] for a tracking time that is not finite or shorter than
+    /// one period (the correction would overshoot).
+    pub fn with_anti_windup(self, anti_windup: AntiWindup) -> Result<Self, FocError> {
+        let tracking = match anti_windup {
+            AntiWindup::Conditional => -1.0,
+            AntiWindup::BackCalculation { tracking_time: t } => {
+                let ok = t.is_finite() && t >= self.parameters.period;
+                let valid = "finite and at least one period";
+                self.parameters.period / check(ok, "tracking_time", t, valid)?
+            }
+        };
+        Ok(Self {
+            anti_windup,
+            tracking,
+            ..self
+        })
+    }
+
+    /// The parameters the law was built from.
+    pub fn parameters(&self) -> &PiParameters {
+        &self.parameters
+    }
+
+    /// The anti-windup in use.
+    pub fn anti_windup(&self) -> AntiWindup {
+        self.anti_windup
+    }
+
+    /// One period: from the `error` to the limited output. `limit` is this
+    /// period's limit of the magnitude where it varies (what another axis
+    /// leaves of a voltage); the lower of it and the law's own holds. Pass
+    /// infinity for the law's own.
+    #[inline]
+    pub fn update(&self, state: &mut PiState, error: f64, limit: f64) -> PiOutput {
+        self.update_with_feed_forward(state, error, 0.0, limit)
+    }
+
+    /// As [`Pi::update`], with a `feed_forward` (output unit) added before
+    /// the limit, so that anti-windup sees it. A NaN passes through to the
+    /// output instead of being hidden by the limit.
+    #[inline]
+    pub fn update_with_feed_forward(
+        &self,
+        state: &mut PiState,
+        error: f64,
+        feed_forward: f64,
+        limit: f64,
+    ) -> PiOutput {
+        // `min` and `max` skip a NaN limit; a negative one leaves nothing.
+        let limit = self.parameters.limit.min(limit).max(0.0);
+        let integral = state.integral + self.ki_period * error;
+        let output = self.parameters.kp * error + integral + feed_forward;
+        let saturated = output.abs() > limit;
+        if !saturated {
+            state.integral = integral;
+            return PiOutput {
+                value: output,
+                saturated,
+            };
+        }
+        let value = limit.copysign(output);
+        if self.tracking >= 0.0 {
+            state.integral = integral + self.tracking * (value - output);
+        } else if error * output <= 0.0 {
+            state.integral = integral;
+        }
+        PiOutput { value, saturated }
+    }
+}

@@ -1,0 +1,152 @@
+//! Space-vector pulse-width modulation: duty cycles of the three half
+//! bridges from a voltage vector.
+//!
+//! A leg with duty D ∈ \[0, 1\] puts D·U_dc on its phase in the mean. The
+//! vectors that can be made fill the hexagon max − min ≤ U_dc of the phase
+//! voltages (a, b, c); its inscribed circle, radius U_dc/√3, is the linear
+//! range, its corners are 2 U_dc/3 long.
+
+use crate::error::{FocError, positive};
+use crate::frames::{AlphaBeta, FRAC_1_SQRT_3, Phases};
+use core::f64::consts::FRAC_2_PI;
+
+/// The mean fraction of a period that each leg is on the upper rail.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Duties {
+    /// Leg a, in \[0, 1\].
+    pub a: f64,
+    /// Leg b, in \[0, 1\].
+    pub b: f64,
+    /// Leg c, in \[0, 1\].
+    pub c: f64,
+}
+
+/// What is made of a vector outside the hexagon. The two names are those of
+/// Hava, Sul, Kerkman and Lipo, "Dynamic overmodulation characteristics of
+/// triangle intersection PWM methods", IEEE Trans. Ind. Appl. 35 (1999).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Overmodulation {
+    /// Minimum phase error: shortened to the hexagon at the same angle. The
+    /// fundamental of a turning vector grows to √3 ln 3/π U_dc = 0.6057 U_dc.
+    #[default]
+    MinimumPhaseError,
+    /// Minimum magnitude error: the nearest point of the hexagon, which is
+    /// what clipping each duty to \[0, 1\] gives. The fundamental of a turning
+    /// vector tends to the six-step limit 2/π U_dc = 0.6366 U_dc.
+    MinimumMagnitudeError,
+}
+
+/// A modulator for one DC-link voltage. Immutable, without memory.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Svpwm {
+    dc_voltage: f64,
+    inverse: f64,
+    overmodulation: Overmodulation,
+}
+
+impl Svpwm {
+    /// A modulator for the DC-link voltage U_dc (V, greater than 0).
+    ///
+    /// # Errors
+    /// [`FocError`] if the voltage is not finite and greater than 0.
+    pub fn new(dc_voltage: f64, overmodulation: Overmodulation) -> Result<Self, FocError> {
+        positive("dc_voltage", dc_voltage)?;
+        Ok(Self {
+            dc_voltage,
+            inverse: 1.0 / dc_voltage,
+            overmodulation,
+        })
+    }
+
+    /// Radius of the linear range, U_dc/√3, V.
+    #[inline]
+    pub fn linear_limit(&self) -> f64 {
+        self.dc_voltage * FRAC_1_SQRT_3
+    }
+
+    /// Fundamental of six-step operation, 2/π U_dc, V: the most there is.
+    #[inline]
+    pub fn six_step_limit(&self) -> f64 {
+        self.dc_voltage * FRAC_2_PI
+    }
+
+    /// Duty cycles for the voltage vector `u` (V): the phase voltages plus
+    /// the zero sequence −(max + min)/2, which centres them between the
+    /// rails and splits the zero-vector time evenly, as space-vector
+    /// modulation does (van der Broeck, Skudelny and Stanke, IEEE Trans. Ind.
+    /// Appl. 24 (1988) 142–150). Outside the hexagon [`Overmodulation`]
+    /// decides.
+    #[inline]
+    pub fn duties(&self, u: AlphaBeta) -> Duties {
+        let phases = u.inverse_clarke();
+        let max = phases.a.max(phases.b).max(phases.c);
+        let min = phases.a.min(phases.b).min(phases.c);
+        let range = max - min;
+        let shorten =
+            range > self.dc_voltage && self.overmodulation == Overmodulation::MinimumPhaseError;
+        // A ray meets the hexagon where its range is U_dc.
+        let scale = if shorten { 1.0 / range } else { self.inverse };
+        let centre = 0.5 * (max + min);
+        // The clamp clips outside the hexagon, and takes off rounding inside.
+        let duty = |x: f64| (0.5 + (x - centre) * scale).clamp(0.0, 1.0);
+        Duties {
+            a: duty(phases.a),
+            b: duty(phases.b),
+            c: duty(phases.c),
+        }
+    }
+
+    /// Six-step operation: each leg on the rail of its phase's sign, the
+    /// hexagon's corner nearest to `u` in angle.
+    pub fn six_step(&self, u: AlphaBeta) -> Duties {
+        let phases = u.inverse_clarke();
+        let rail = |x: f64| match x {
+            x if x.is_nan() => x,
+            x if x > 0.0 => 1.0,
+            _ => 0.0,
+        };
+        Duties {
+            a: rail(phases.a),
+            b: rail(phases.b),
+            c: rail(phases.c),
+        }
+    }
+
+    /// The mean voltage vector (V) that the duties make.
+    #[inline]
+    pub fn voltage(&self, duties: Duties) -> AlphaBeta {
+        duties.voltage(self.dc_voltage)
+    }
+}
+
+impl Duties {
+    /// The mean voltage vector (V) at the DC-link voltage `dc_voltage` (V).
+    #[inline]
+    pub fn voltage(self, dc_voltage: f64) -> AlphaBeta {
+        Phases {
+            a: self.a * dc_voltage,
+            b: self.b * dc_voltage,
+            c: self.c * dc_voltage,
+        }
+        .clarke()
+    }
+}
+
+/// The hexagon's sector of a vector, 1 to 6: sector n holds the angles from
+/// (n − 1)·60° up to, not including, n·60°. The zero vector is in sector 1.
+pub fn sector(u: AlphaBeta) -> u8 {
+    let Phases { a, b, c } = u.inverse_clarke();
+    if b >= a && a > c {
+        2
+    } else if b > c && c >= a {
+        3
+    } else if c >= b && b > a {
+        4
+    } else if c > a && a >= b {
+        5
+    } else if a >= c && c > b {
+        6
+    } else {
+        1
+    }
+}

@@ -1,0 +1,261 @@
+//! The cascade: one cycle by hand, limits, corrections, a rigid drive.
+
+mod axis;
+
+use axis::{PERIOD, RPM, gains, limits, motor, servo};
+use foc_pmsm::{
+    AntiWindup, Correction, Dq, FocError, Measurement, Reference, Servo, ServoGains, ServoLimits,
+    ServoState,
+};
+use proptest::prelude::*;
+
+/// The specification's cycle with its own units: mm, rpm, A, V, s.
+#[test]
+fn one_cycle_by_hand() {
+    let mut state = ServoState::default();
+    let m = Measurement {
+        position: 0.599_99,
+        motor_speed: 30.0 * RPM,
+        current: Dq { d: 0.2, q: 1.5 },
+    };
+    let r = Reference {
+        position: 0.6,
+        motor_speed: 60.0 * RPM,
+    };
+    let command = servo().cycle(&mut state, &m, &r, &Correction::default());
+
+    let speed_ref = 280.2 * 0.01 + 60.0; // rpm: 10 µm of error
+    let delta = speed_ref - 30.0;
+    let integral = 0.7122 * delta * 1e-4;
+    let iq_ref = 0.0678 * delta + integral;
+    let d_integral = 626.2 * -0.2 * 1e-4;
+    let q_integral = 1003.3 * (iq_ref - 1.5) * 1e-4;
+    let ud = 2.776 * -0.2 + d_integral;
+    let uq = 8.805 * (iq_ref - 1.5) + q_integral;
+
+    // The position difference loses 1e-16/1e-5 = 1e-11 of the 2.8 rpm.
+    assert!((command.speed_ref / RPM - speed_ref).abs() < 1e-9);
+    assert!((command.iq_ref - iq_ref).abs() < 1e-11);
+    assert!((command.voltage.d - ud).abs() < 1e-13);
+    assert!((command.voltage.q - uq).abs() < 1e-10);
+    assert!((state.speed.integral - integral).abs() < 1e-14);
+    assert!((state.d.integral - d_integral).abs() < 1e-16);
+    assert!((state.q.integral - q_integral).abs() < 1e-12);
+    assert_eq!(command.saturated, Default::default());
+}
+
+#[test]
+fn corrections_act_where_they_say() {
+    let servo = servo();
+    let (m, r) = (Measurement::default(), Reference::default());
+    let run = |c: Correction| servo.cycle(&mut ServoState::default(), &m, &r, &c);
+    let zero = Correction::default();
+    // A position offset is a position error, a speed adds to the reference.
+    let offset = run(Correction {
+        position_offset: 1e-5,
+        ..zero
+    });
+    let shifted = Reference {
+        position: 1e-5,
+        ..r
+    };
+    assert_eq!(
+        offset,
+        servo.cycle(&mut ServoState::default(), &m, &shifted, &zero)
+    );
+    assert_eq!(run(Correction { speed: 2.0, ..zero }).speed_ref, 2.0);
+    // A current is added before the limit and leaves the integral alone.
+    let mut state = ServoState::default();
+    let c = Correction { iq: 4.0, ..zero };
+    assert_eq!(servo.cycle(&mut state, &m, &r, &c).iq_ref, 4.0);
+    assert_eq!(state.speed.integral, 0.0);
+    let over = run(Correction { iq: 40.0, ..zero });
+    assert!(over.iq_ref == 15.0 && over.saturated.current);
+}
+
+#[test]
+fn d_axis_has_the_first_claim_on_the_voltage() {
+    let servo = servo();
+    let limit = limits().voltage;
+    // 100 A of d error ask for 277.6 + 6.262 V; 100 A of q error for 880 V.
+    let mut state = ServoState::default();
+    let error = Dq { d: 100.0, q: 100.0 };
+    let (u, d, q) = servo.current_loop(&mut state, error, Dq::ZERO);
+    assert!(!d && q);
+    assert!((u.d - (277.6 + 6.262)).abs() < 1e-12);
+    assert!((u.q - (limit * limit - u.d * u.d).sqrt()).abs() < 1e-12);
+    assert_eq!(state.q.integral, 0.0);
+    // More d error than voltage: nothing is left for q.
+    let error = Dq {
+        d: -500.0,
+        q: 100.0,
+    };
+    let (u, d, q) = servo.current_loop(&mut ServoState::default(), error, Dq::ZERO);
+    assert!(d && q && u.d == -limit && u.q == 0.0);
+}
+
+#[test]
+fn a_settled_state_stays_settled() {
+    let (motor, servo) = (motor(), servo());
+    let speed = 62.8;
+    let i = Dq { d: 0.0, q: 3.0 };
+    let u = motor.steady_voltage(i, speed);
+    let mut state = ServoState::settled(i.q, u);
+    let m = Measurement {
+        position: 0.2,
+        motor_speed: speed,
+        current: i,
+    };
+    let r = Reference {
+        position: 0.2,
+        motor_speed: speed,
+    };
+    for _ in 0..10 {
+        let command = servo.cycle(&mut state, &m, &r, &Correction::default());
+        assert_eq!((command.iq_ref, command.voltage), (3.0, u));
+        assert_eq!(motor.step(i, command.voltage, speed, PERIOD), i);
+    }
+}
+
+struct Rigid {
+    angle: f64,
+    speed: f64,
+    current: Dq,
+}
+
+const RADIUS: f64 = 0.01 / core::f64::consts::TAU;
+/// A table of 515 kg, and 0.005 kg·m² of rotor and screw.
+const INERTIA: f64 = 515.0 * RADIUS * RADIUS + 0.005;
+
+impl Rigid {
+    fn measure(&self) -> Measurement {
+        Measurement {
+            position: RADIUS * self.angle,
+            motor_speed: self.speed,
+            current: self.current,
+        }
+    }
+
+    fn advance(&mut self, u: Dq, load: f64) {
+        let next = motor().step(self.current, u, self.speed, PERIOD);
+        let acceleration = (motor().torque((self.current + next) * 0.5) - load) / INERTIA;
+        self.angle += (self.speed + 0.5 * acceleration * PERIOD) * PERIOD;
+        self.speed += acceleration * PERIOD;
+        self.current = next;
+    }
+}
+
+/// A rigid drive at 100 mm/s against a load: with velocity feed-forward and
+/// the speed integral there is no error left, the current carries the load,
+/// and i_d is 0.
+#[test]
+fn a_rigid_drive_follows_a_ramp_without_error() {
+    for kind in [
+        AntiWindup::Conditional,
+        AntiWindup::BackCalculation {
+            tracking_time: 1e-3,
+        },
+    ] {
+        let servo = servo().with_anti_windup(kind).unwrap();
+        let mut state = ServoState::default();
+        let mut drive = Rigid {
+            angle: 0.0,
+            speed: 0.0,
+            current: Dq::ZERO,
+        };
+        let (velocity, load) = (0.1, 5.0);
+        let mut saturated = false;
+        for k in 0..30_000 {
+            let t = f64::from(k) * PERIOD;
+            let r = Reference {
+                position: velocity * t,
+                motor_speed: velocity / RADIUS,
+            };
+            let command = servo.cycle(&mut state, &drive.measure(), &r, &Correction::default());
+            assert!(command.iq_ref.abs() <= 15.0);
+            saturated |= command.saturated.current;
+            drive.advance(command.voltage, load);
+        }
+        assert!(saturated, "a step of velocity must reach the current limit");
+        let error = velocity * 3.0 - RADIUS * drive.angle;
+        // 3 s are 30 time constants (about 0.1 s) of the slowest loop.
+        assert!(error.abs() < 1e-9, "{error} m");
+        assert!((motor().torque(drive.current) - load).abs() < 1e-6);
+        assert!(drive.current.d.abs() < 1e-9);
+    }
+}
+
+#[test]
+fn validation_names_the_field() {
+    let field = |g: ServoGains, l: ServoLimits, t: f64| match Servo::new(g, l, t) {
+        Err(FocError::OutOfRange { field, .. }) => field,
+        other => panic!("{other:?}"),
+    };
+    let (g, l) = (gains(), limits());
+    assert_eq!(
+        field(
+            ServoGains {
+                position: f64::NAN,
+                ..g
+            },
+            l,
+            PERIOD
+        ),
+        "position"
+    );
+    assert_eq!(
+        field(ServoGains { speed_p: -1.0, ..g }, l, PERIOD),
+        "speed_p"
+    );
+    assert_eq!(
+        field(
+            ServoGains {
+                d_i: f64::INFINITY,
+                ..g
+            },
+            l,
+            PERIOD
+        ),
+        "d_i"
+    );
+    assert_eq!(
+        field(
+            g,
+            ServoLimits {
+                current: -15.0,
+                ..l
+            },
+            PERIOD
+        ),
+        "current"
+    );
+    assert_eq!(
+        field(g, ServoLimits { voltage: 0.0, ..l }, PERIOD),
+        "voltage"
+    );
+    assert_eq!(field(g, l, -PERIOD), "period");
+}
+
+proptest! {
+    /// Limits hold for any input, and with none there is none.
+    #[test]
+    fn limits_hold(
+        position in -1.0..1.0, speed in -500.0..500.0, id in -50.0..50.0, iq in -50.0..50.0,
+        cycles in 1..50,
+    ) {
+        let (servo, l) = (servo(), limits());
+        let m = Measurement { position, motor_speed: speed, current: Dq { d: id, q: iq } };
+        let mut state = ServoState::default();
+        for _ in 0..cycles {
+            let c = servo.cycle(&mut state, &m, &Reference::default(), &Correction::default());
+            prop_assert!(c.iq_ref.abs() <= l.current);
+            // √(U² − u_d²) rounds once or twice.
+            prop_assert!(c.voltage.dot(c.voltage).sqrt() <= l.voltage * (1.0 + 1e-15));
+        }
+        let free = ServoLimits { current: f64::INFINITY, voltage: f64::INFINITY };
+        let free = Servo::new(gains(), free, PERIOD).unwrap();
+        let c = free.cycle(&mut ServoState::default(), &m, &Reference::default(), &Correction::default());
+        prop_assert_eq!(c.saturated, Default::default());
+        prop_assert!(c.voltage.q.is_finite());
+    }
+}

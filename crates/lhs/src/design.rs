@@ -1,0 +1,96 @@
+//! A finished design: n points of m coordinates, in memory.
+
+use crate::LhsError;
+
+/// An n × m table of coordinates, stored row after row (one row, one point).
+///
+/// Every constructor of this crate that returns a sample fills it with
+/// cumulative probabilities, the matrix Q of Eq. (23); [`map`](crate::map)
+/// turns it into physical values, the matrix V of Eq. (25), whose columns
+/// then carry the units of their marginals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Design {
+    dims: usize,
+    values: Vec<f64>,
+}
+
+impl Design {
+    /// Takes `values`, row after row, as points of `dims` coordinates.
+    ///
+    /// # Errors
+    /// `dims` is zero, `values` is empty or not a whole number of rows, or a
+    /// value is not finite.
+    pub fn from_rows(dims: usize, values: Vec<f64>) -> Result<Self, LhsError> {
+        if dims == 0 {
+            return Err(LhsError::Dims { dims });
+        }
+        let len = values.len();
+        if len == 0 || !len.is_multiple_of(dims) {
+            return Err(LhsError::Shape { len, dims });
+        }
+        match values.iter().position(|v| !v.is_finite()) {
+            Some(at) => Err(LhsError::NotFinite {
+                row: at / dims,
+                dim: at % dims,
+                value: values[at],
+            }),
+            None => Ok(Self { dims, values }),
+        }
+    }
+
+    /// As [`from_rows`](Self::from_rows), for values known to be finite and
+    /// of the right length.
+    pub(crate) fn from_valid(dims: usize, values: Vec<f64>) -> Self {
+        debug_assert!(dims > 0 && !values.is_empty() && values.len().is_multiple_of(dims));
+        Self { dims, values }
+    }
+
+    /// Number of points n, at least 1.
+    pub fn len(&self) -> usize {
+        self.values.len() / self.dims
+    }
+
+    /// Always false: a design has at least one point.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Number of coordinates m of a point.
+    pub fn dims(&self) -> usize {
+        self.dims
+    }
+
+    /// The points, in order, each a slice of m coordinates.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = &[f64]> + DoubleEndedIterator + Clone {
+        self.values.chunks_exact(self.dims)
+    }
+
+    /// Point `i`.
+    ///
+    /// # Panics
+    /// As a slice does, when `i` is not below [`len`](Self::len).
+    pub fn row(&self, i: usize) -> &[f64] {
+        &self.values[i * self.dims..(i + 1) * self.dims]
+    }
+
+    /// Coordinate `dim` of every point, in order. A `dim` that does not exist
+    /// gives no items.
+    pub fn column(&self, dim: usize) -> impl ExactSizeIterator<Item = f64> + Clone + '_ {
+        let start = if dim < self.dims {
+            dim
+        } else {
+            self.values.len()
+        };
+        self.values[start..].iter().step_by(self.dims).copied()
+    }
+
+    /// All n·m values, row after row.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Gives the n·m values away, row after row.
+    pub fn into_values(self) -> Vec<f64> {
+        self.values
+    }
+}

@@ -1,0 +1,254 @@
+//! The random Latin hypercube: Steps 1, 2 and 4 of the paper.
+
+use crate::permutation::{BLOCK, Permutation, Purpose, stream};
+use crate::stratum::Strata;
+use crate::{Design, LhsError};
+use rand_chacha::rand_core::Rng;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Rows filled by one task: 1024 rows of a few columns stay in the first
+/// cache, and the task outweighs its scheduling.
+const ROWS_PER_TASK: usize = 1024;
+
+/// Fewer rows than this are made by the calling thread alone.
+const PARALLEL_FROM: usize = 8 * ROWS_PER_TASK;
+
+/// Where in its stratum a point lies: u of Eq. (23).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Placement {
+    /// u uniform on (0, 1), drawn for each row and column.
+    #[default]
+    Random,
+    /// u = 1/2, the middle of the stratum.
+    Centred,
+}
+
+/// A Latin hypercube design of n points in m variables, held as its seed:
+/// any row can be computed alone, without memory and without the others.
+#[derive(Debug, Clone)]
+pub struct LatinHypercube {
+    strata: Strata,
+    seed: u64,
+    placement: Placement,
+    columns: Vec<Column>,
+}
+
+/// What fixes one column: its permutation, and the key of its jitter.
+#[derive(Debug, Clone)]
+struct Column {
+    permutation: Permutation,
+    jitter: u64,
+}
+
+impl LatinHypercube {
+    /// The design of `n` points in `dims` variables that belongs to `seed`.
+    ///
+    /// # Errors
+    /// `n` is zero or above 2^53 (strata narrower than f64 resolves), or
+    /// `dims` is zero.
+    pub fn new(n: usize, dims: usize, seed: u64) -> Result<Self, LhsError> {
+        let strata = Strata::new(n)?;
+        if dims == 0 {
+            return Err(LhsError::Dims { dims });
+        }
+        let column = |dim: usize| {
+            let mut rng = stream(seed, Purpose::Column, dim as u64);
+            Column {
+                jitter: rng.next_u64(),
+                permutation: Permutation::draw(n, &mut rng),
+            }
+        };
+        Ok(Self {
+            strata,
+            seed,
+            placement: Placement::Random,
+            columns: (0..dims).map(column).collect(),
+        })
+    }
+
+    /// The same strata and combinations, each point in the middle of its
+    /// stratum.
+    pub fn centred(self) -> Self {
+        self.with_placement(Placement::Centred)
+    }
+
+    /// The same strata and combinations, placed as told.
+    pub fn with_placement(self, placement: Placement) -> Self {
+        Self { placement, ..self }
+    }
+
+    /// Number of points n.
+    pub fn len(&self) -> usize {
+        self.strata.count()
+    }
+
+    /// Always false: a design has at least one point.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Number of variables m.
+    pub fn dims(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// The seed that the design belongs to.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Where in their strata the points lie.
+    pub fn placement(&self) -> Placement {
+        self.placement
+    }
+
+    /// The stratum, 0 to n − 1, of variable `dim` in row `row`: k − 1 of
+    /// Eq. (23) after the random combination of Eq. (26).
+    ///
+    /// # Panics
+    /// As a slice does, when `row` ≥ n or `dim` ≥ m.
+    pub fn cell(&self, row: usize, dim: usize) -> usize {
+        self.check_row(row);
+        self.columns[dim].permutation.apply(row as u64) as usize
+    }
+
+    /// Writes the m coordinates of row `i`, each in (0, 1), to `out`: the
+    /// same bits as row `i` of [`design`](Self::design).
+    ///
+    /// # Panics
+    /// As a slice does, when `i` ≥ n or `out` has not m elements.
+    pub fn row(&self, i: usize, out: &mut [f64]) {
+        self.check_row(i);
+        assert_eq!(out.len(), self.dims(), "out must hold one row");
+        for (dim, value) in out.iter_mut().enumerate() {
+            let cell = self.columns[dim].permutation.apply(i as u64);
+            *value = self.place(i, dim, cell as usize);
+        }
+    }
+
+    /// The whole design, made by the current rayon pool when it is large.
+    /// The bits do not depend on the number of threads.
+    ///
+    /// Allocates n·m values as a `Vec` does, and so ends the program when
+    /// there is no such memory; [`shard`](Self::shard) reports it instead.
+    pub fn design(&self) -> Design {
+        let values = vec![0.0; self.len() * self.dims()];
+        self.filled(0, values)
+    }
+
+    /// Rows `rows` of the design, without making the others.
+    ///
+    /// # Errors
+    /// The range is empty, leaves 0..n, or does not fit in memory.
+    pub fn shard(&self, rows: Range<usize>) -> Result<Design, LhsError> {
+        let Range { start, end } = rows;
+        let (n, dims) = (self.len(), self.dims());
+        if start >= end || end > n {
+            return Err(LhsError::Rows { start, end, n });
+        }
+        let refused = LhsError::Memory {
+            rows: end - start,
+            dims,
+        };
+        let len = (end - start).checked_mul(dims).ok_or(refused.clone())?;
+        let mut values = Vec::new();
+        values.try_reserve_exact(len).map_err(|_| refused)?;
+        values.resize(len, 0.0);
+        Ok(self.filled(start, values))
+    }
+
+    fn filled(&self, first: usize, mut values: Vec<f64>) -> Design {
+        let dims = self.dims();
+        if values.len() / dims < PARALLEL_FROM {
+            self.fill(first, &mut values);
+        } else {
+            values
+                .par_chunks_mut(ROWS_PER_TASK * dims)
+                .enumerate()
+                .for_each(|(task, chunk)| self.fill(first + task * ROWS_PER_TASK, chunk));
+        }
+        Design::from_valid(dims, values)
+    }
+
+    /// Fills whole rows, from row `first` on, a block of one column at a time.
+    fn fill(&self, first: usize, out: &mut [f64]) {
+        let dims = self.dims();
+        let mut cells = [0; BLOCK];
+        for (block, rows) in out.chunks_mut(BLOCK * dims).enumerate() {
+            let first = (first + block * BLOCK) as u64;
+            let cells = &mut cells[..rows.len() / dims];
+            for (dim, column) in self.columns.iter().enumerate() {
+                column.permutation.apply_block(first, cells);
+                let values = rows[dim..].iter_mut().step_by(dims);
+                self.place_block(column.jitter, first, values.zip(cells.iter().copied()));
+            }
+        }
+    }
+
+    fn place_block<'a>(
+        &self,
+        jitter: u64,
+        first: u64,
+        values: impl Iterator<Item = (&'a mut f64, u64)>,
+    ) {
+        match self.placement {
+            Placement::Centred => {
+                for (value, cell) in values {
+                    *value = self.strata.middle(cell);
+                }
+            }
+            Placement::Random => {
+                for (row, (value, cell)) in (first..).zip(values) {
+                    *value = self.strata.point(cell, counter_hash(jitter, row));
+                }
+            }
+        }
+    }
+
+    /// A point of stratum `cell`, placed as row `row` of column `dim` is.
+    pub(crate) fn place(&self, row: usize, dim: usize, cell: usize) -> f64 {
+        match self.placement {
+            Placement::Centred => self.strata.middle(cell as u64),
+            Placement::Random => {
+                let bits = counter_hash(self.columns[dim].jitter, row as u64);
+                self.strata.point(cell as u64, bits)
+            }
+        }
+    }
+
+    fn check_row(&self, row: usize) {
+        let n = self.len();
+        assert!(row < n, "row {row} of a design of {n} rows");
+    }
+}
+
+/// Output number `counter` of the SplitMix64 generator started at `key`
+/// (Steele, Lea and Flood 2014, doi 10.1145/2714064.2660195), which can be
+/// computed alone.
+#[inline]
+fn counter_hash(key: u64, counter: u64) -> u64 {
+    let mut z = key.wrapping_add(counter.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::counter_hash;
+
+    /// The first outputs of SplitMix64 from state 1234567, as published with
+    /// the generator's reference implementation.
+    #[test]
+    fn jitter_is_splitmix64() {
+        let expected = [
+            6_457_827_717_110_365_317_u64,
+            3_203_168_211_198_807_973,
+            9_817_491_932_198_370_423,
+        ];
+        for (counter, value) in expected.into_iter().enumerate() {
+            assert_eq!(counter_hash(1_234_567, counter as u64), value);
+        }
+    }
+}

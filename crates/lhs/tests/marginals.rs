@@ -1,0 +1,254 @@
+//! Marginals: round trips, order, published quantiles, refusals.
+
+use lhs::{
+    Cumulative, Design, LatinHypercube, LhsError, LogUniform, Marginal, Mixture, Normal, Tabulated,
+    Triangular, Truncated, Uniform, map,
+};
+use proptest::prelude::*;
+
+const TABLE: [(f64, f64); 5] = [(-1.0, 0.0), (0.0, 0.2), (0.5, 0.7), (2.0, 0.9), (4.0, 1.0)];
+
+fn two_humps() -> Mixture {
+    let humps: Vec<(f64, Box<dyn Cumulative>)> = vec![
+        (2.0, Box::new(Normal::new(-1.0, 0.3).unwrap())),
+        (1.0, Box::new(Uniform::new(0.0, 4.0).unwrap())),
+    ];
+    Mixture::new(humps).unwrap()
+}
+
+/// One of each kind, all continuous and rising on their support.
+fn all() -> Vec<(&'static str, Box<dyn Cumulative>)> {
+    let normal = Normal::new(3.0, 2.0).unwrap();
+    let standard = Normal::new(0.0, 1.0).unwrap();
+    vec![
+        ("uniform", Box::new(Uniform::new(-0.333, 0.333).unwrap())),
+        ("log-uniform", Box::new(LogUniform::new(1e-4, 1e3).unwrap())),
+        (
+            "triangular",
+            Box::new(Triangular::new(1.0, 1.5, 4.0).unwrap()),
+        ),
+        (
+            "left triangle",
+            Box::new(Triangular::new(0.0, 0.0, 1.0).unwrap()),
+        ),
+        (
+            "right triangle",
+            Box::new(Triangular::new(0.0, 1.0, 1.0).unwrap()),
+        ),
+        ("normal", Box::new(normal)),
+        (
+            "truncated",
+            Box::new(Truncated::new(normal, 0.0, 5.0).unwrap()),
+        ),
+        (
+            "one-sided",
+            Box::new(Truncated::new(normal, 4.0, f64::INFINITY).unwrap()),
+        ),
+        (
+            "far tail",
+            Box::new(Truncated::new(standard, 9.0, 12.0).unwrap()),
+        ),
+        (
+            "far lower tail",
+            Box::new(Truncated::new(standard, -12.0, -9.0).unwrap()),
+        ),
+        ("table", Box::new(Tabulated::new(&TABLE).unwrap())),
+        ("mixture", Box::new(two_humps())),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn cdf_undoes_its_inverse(p in 1e-12..1.0_f64) {
+        for (name, marginal) in all() {
+            let x = marginal.inverse_cdf(p);
+            prop_assert!(x.is_finite(), "{name}: {x}");
+            // p itself, a few operations, and the rounding of x seen through
+            // the slope of the distribution function: x·g(x) is below 150 for
+            // all of these (the far tails are the steepest).
+            let error = (marginal.cdf(x) - p).abs();
+            prop_assert!(error < 5e-14, "{name}: p = {p}, error {error:e}");
+            let error = (marginal.survival(x) - (1.0 - p)).abs();
+            prop_assert!(error < 5e-14, "{name}: 1 - p, error {error:e}");
+            let back = marginal.inverse_survival(marginal.survival(x));
+            prop_assert!((back - x).abs() < 1e-9 * (1.0 + x.abs()) || p > 1.0 - 1e-6,
+                "{name}: {back} for {x}");
+        }
+    }
+
+    #[test]
+    fn inverses_never_fall(p in 0.0..1.0_f64, q in 0.0..1.0_f64, tiny in 0.0..1e-13_f64) {
+        for (name, marginal) in all() {
+            let (low, high) = (p.min(q), p.max(q));
+            prop_assert!(marginal.inverse_cdf(low) <= marginal.inverse_cdf(high), "{name}");
+            // Neighbouring probabilities may swap by rounding, not by more.
+            let (x, y) = (marginal.inverse_cdf(p), marginal.inverse_cdf((p + tiny).min(1.0)));
+            prop_assert!(y >= x - 1e-14 * (1.0 + x.abs()), "{name}: {x} then {y}");
+        }
+    }
+
+    /// Relative error in the lower tail, down to the smallest normal p. With
+    /// x = Φ⁻¹(p), an error ε in x is one of about x² ε in p.
+    #[test]
+    fn normal_tail_is_accurate_relatively(exponent in -307.0..-0.31_f64) {
+        let normal = Normal::new(0.0, 1.0).unwrap();
+        let p = 10.0_f64.powf(exponent);
+        let x = normal.inverse_cdf(p);
+        let error = (normal.cdf(x) / p - 1.0).abs();
+        prop_assert!(error < 4.0 * f64::EPSILON * (2.0 + x * x), "p = {p:e}: {error:e}");
+        prop_assert_eq!(normal.inverse_survival(p), -x);
+    }
+}
+
+/// Quantiles of the standard normal from tables of many digits (for instance
+/// NIST/SEMATECH e-Handbook 1.3.6.7.1 and the R manual's `qnorm`).
+#[test]
+fn normal_quantiles() {
+    let normal = Normal::new(0.0, 1.0).unwrap();
+    for (p, x) in [
+        (0.5, 0.0),
+        (0.75, 0.674_489_750_196_081_7),
+        (0.975, 1.959_963_984_540_054),
+        (0.99, 2.326_347_874_040_841),
+        (1e-10, -6.361_340_902_404_056),
+    ] {
+        assert!(
+            (normal.inverse_cdf(p) - x).abs() < 2e-15 * (1.0 + x.abs()),
+            "p = {p}"
+        );
+    }
+}
+
+#[test]
+fn ends_of_the_support() {
+    for (name, marginal) in all() {
+        let (a, b) = (marginal.inverse_cdf(0.0), marginal.inverse_cdf(1.0));
+        let expected = match name {
+            "uniform" => (-0.333, 0.333),
+            "log-uniform" => (1e-4, 1e3),
+            "triangular" => (1.0, 4.0),
+            "left triangle" | "right triangle" => (0.0, 1.0),
+            "truncated" => (0.0, 5.0),
+            "one-sided" => (4.0, f64::INFINITY),
+            "far tail" => (9.0, 12.0),
+            "far lower tail" => (-12.0, -9.0),
+            "table" => (-1.0, 4.0),
+            _ => (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        assert_eq!((a, b), expected, "{name}");
+        for outside in [-1e-9, 1.0 + 1e-9, f64::NAN] {
+            assert!(
+                marginal.inverse_cdf(outside).is_nan(),
+                "{name} at {outside}"
+            );
+        }
+    }
+}
+
+/// Medians that can be written down.
+#[test]
+fn hand_calculated_medians() {
+    let median = |m: &dyn Marginal| m.inverse_cdf(0.5);
+    assert_eq!(median(&Uniform::new(-2.0, 6.0).unwrap()), 2.0);
+    // √(1e-4 · 1e4) = 1.
+    assert!((median(&LogUniform::new(1e-4, 1e4).unwrap()) - 1.0).abs() < 1e-14);
+    // Mode at lo: (1 − x)² = 1/2.
+    let left = Triangular::new(0.0, 0.0, 1.0).unwrap();
+    assert!((median(&left) - (1.0 - 0.5_f64.sqrt())).abs() < 1e-15);
+    // 0.2 + (x/0.5)·0.5 = 0.5.
+    assert!((median(&Tabulated::new(&TABLE).unwrap()) - 0.3).abs() < 1e-15);
+}
+
+/// Flat parts are skipped, jumps are hit with their probability.
+#[test]
+fn tables_with_gaps_and_jumps() {
+    let points = [
+        (0.0, 0.0),
+        (1.0, 0.0),
+        (2.0, 0.25),
+        (5.0, 0.25),
+        (5.0, 0.75),
+        (6.0, 1.0),
+        (9.0, 1.0),
+    ];
+    let table = Tabulated::new(&points).unwrap();
+    assert_eq!((table.inverse_cdf(0.0), table.inverse_cdf(1.0)), (1.0, 6.0));
+    assert_eq!(table.inverse_cdf(0.25), 2.0);
+    assert_eq!(table.inverse_cdf(0.5), 5.0);
+    assert_eq!(table.inverse_cdf(0.875), 5.5);
+    assert_eq!(
+        (
+            table.cdf(0.5),
+            table.cdf(3.0),
+            table.cdf(5.0),
+            table.cdf(7.0)
+        ),
+        (0.0, 0.25, 0.75, 1.0)
+    );
+}
+
+#[test]
+fn a_mapped_design_follows_its_marginals() {
+    let n = 2000;
+    let design = LatinHypercube::new(n, 3, 8).unwrap().design();
+    let normal = Normal::new(10.0, 2.0).unwrap();
+    let square = |p: f64| p * p;
+    let mapped = map(&design, &[&normal, &square, &|_: f64| 7.0]).unwrap();
+    let mean = mapped.column(0).sum::<f64>() / n as f64;
+    // A stratified mean: its error is far below the 0.045 of random sampling.
+    assert!((mean - 10.0).abs() < 0.005, "{mean}");
+    for (row, p) in mapped.rows().zip(design.rows()) {
+        assert_eq!(row, [normal.inverse_cdf(p[0]), p[1] * p[1], 7.0]);
+    }
+}
+
+#[test]
+fn refusals_name_the_field() {
+    let parameter = |r: Result<(), LhsError>, field: &str| {
+        let message = r.unwrap_err().to_string();
+        assert!(message.contains(field), "{message}");
+    };
+    let (nan, inf) = (f64::NAN, f64::INFINITY);
+    parameter(Uniform::new(1.0, 1.0).map(drop), "Uniform: hi = 1");
+    parameter(Uniform::new(nan, 1.0).map(drop), "Uniform: lo = NaN");
+    parameter(Uniform::new(f64::MIN, f64::MAX).map(drop), "hi - lo finite");
+    parameter(LogUniform::new(0.0, 1.0).map(drop), "LogUniform: lo = 0");
+    parameter(Triangular::new(0.0, 2.0, 1.0).map(drop), "mode = 2");
+    parameter(Normal::new(inf, 1.0).map(drop), "mean = inf");
+    parameter(Normal::new(0.0, 0.0).map(drop), "standard_deviation = 0");
+    let normal = Normal::new(0.0, 1.0).unwrap();
+    parameter(Truncated::new(normal, 2.0, 1.0).map(drop), "hi = 1");
+    parameter(
+        Truncated::new(normal, 50.0, 60.0).map(drop),
+        "has probability",
+    );
+    parameter(Mixture::new(vec![]).map(drop), "at least 1");
+    parameter(
+        Mixture::new(vec![(-1.0, Box::new(normal))]).map(drop),
+        "weight = -1",
+    );
+    for (points, valid) in [
+        (&[(0.0, 0.0)][..], "at least 2"),
+        (&[(0.0, 0.1), (1.0, 1.0)], "must be 0"),
+        (&[(0.0, 0.0), (1.0, 0.9)], "must be 1"),
+        (&[(0.0, 0.0), (1.0, nan), (2.0, 1.0)], "point 1"),
+        (
+            &[(0.0, 0.0), (1.0, 0.6), (2.0, 0.5), (3.0, 1.0)],
+            "must not fall",
+        ),
+        (&[(0.0, 0.0), (-1.0, 1.0)], "x must not fall"),
+        (&[(0.0, 0.0), (inf, 1.0)], "finite"),
+        (&[(0.0, 0.0), (1.0, 1.5), (2.0, 1.0)], "nor pass 1"),
+    ] {
+        parameter(Tabulated::new(points).map(drop), valid);
+    }
+    let design = Design::from_rows(1, vec![0.5, 1.0]).unwrap();
+    parameter(map(&design, &[]).map(drop), "0 marginals for 1 columns");
+    parameter(map(&design, &[&normal]).map(drop), "row 1, column 0: 1");
+    let half = Design::from_rows(1, vec![0.25, 0.5]).unwrap();
+    let broken = |p: f64| if p > 0.3 { f64::NAN } else { p };
+    parameter(
+        map(&half, &[&broken]).map(drop),
+        "row 1, column 0: value NaN",
+    );
+}

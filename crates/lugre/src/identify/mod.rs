@@ -1,0 +1,47 @@
+//! Identification of the six parameters, in two experiments.
+//!
+//! 1. Constant speeds, both directions, many speeds on either side of `Ω_S`:
+//!    [`ConstantSpeedRun::from_record`] condenses each record,
+//!    [`identify_static`] fits `T_C`, `T_S`, `Ω_S`, `σ2` of the steady-state
+//!    curve and leaves out runs in which the machine vibrated.
+//! 2. Small to-and-fro motion about a standstill: [`identify_presliding`] fits
+//!    `σ0` and `σ1` by simulating the bristle along the measured motion.
+//!
+//! Speeds, displacements and torques are those at the friction's location:
+//! whatever sits between it and the sensors is for the caller to take out.
+//! The machine's inertia torque, too, where it is accelerating.
+
+mod curve;
+mod error;
+mod least_squares;
+mod presliding;
+mod record;
+mod statics;
+mod trial;
+
+pub use error::IdentifyError;
+pub use least_squares::Outcome;
+pub use presliding::{Motion, PreslidingFit, PreslidingRecord, identify_presliding};
+pub use record::ConstantSpeedRun;
+pub use statics::{
+    LeftOut, Reason, StaticFit, StaticKnowledge, StaticParameters, VIBRATION_LIMIT,
+    identify_static, identify_static_within,
+};
+
+/// A value with its standard error, both in the unit of the quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// The estimate.
+    pub value: f64,
+    /// Its standard error: one standard deviation of the estimate over
+    /// repeated noise.
+    pub standard_error: f64,
+}
+
+impl Estimate {
+    /// Whether `truth` lies within `value ± sigmas · standard_error`.
+    #[must_use]
+    pub fn covers(&self, truth: f64, sigmas: f64) -> bool {
+        (truth - self.value).abs() <= sigmas * self.standard_error
+    }
+}

@@ -1,0 +1,314 @@
+//! The law itself: closed forms, symmetry, bounds, limits.
+
+use lugre::{LuGre, LugreError, Parameters};
+use proptest::prelude::*;
+
+/// Liu et al. 2025, Table 1, in SI units.
+const PAPER: Parameters = Parameters {
+    coulomb: 0.6757,
+    stiction: 0.7653,
+    stribeck_speed: 2.713781,
+    stiffness: 15.159508,
+    damping: 1.521203,
+    viscous: 0.002865,
+};
+
+fn paper() -> LuGre {
+    LuGre::new(PAPER).expect("valid")
+}
+
+prop_compose! {
+    fn any_law()(
+        coulomb in 1e-3f64..1e3, rise in 0.0f64..2.0, stribeck in 1e-3f64..1e2,
+        stiffness in 1e-1f64..1e6, damping in 0.0f64..1e3, viscous in 0.0f64..10.0,
+    ) -> LuGre {
+        LuGre::new(Parameters {
+            coulomb, stiction: coulomb * (1.0 + rise), stribeck_speed: stribeck,
+            stiffness, damping, viscous,
+        }).expect("in range")
+    }
+}
+
+#[test]
+fn the_papers_curve() {
+    let law = paper();
+    // Equation (2) by hand: at Ω_S a share 1/e of T_S − T_C is left.
+    assert_eq!(law.level(0.0), 0.7653);
+    let at_stribeck = 0.6757 + 0.0896 * (-1.0f64).exp();
+    assert!((law.level(PAPER.stribeck_speed) - at_stribeck).abs() < 1e-15);
+    assert_eq!(law.level(100.0), 0.6757);
+    let traverse = law.steady_state(62.83185);
+    assert!((traverse - (0.6757 + 0.002865 * 62.83185)).abs() < 1e-15);
+    // Break-away deflection of the paper's bristles: 0.05 rad of screw.
+    assert!((law.bristle_limit() - 0.050483).abs() < 1e-6);
+}
+
+#[test]
+fn rest_is_steady_anywhere() {
+    let law = paper();
+    assert_eq!(law.steady_state(0.0), 0.0);
+    assert_eq!(law.steady_bristle(0.0), 0.0);
+    assert_eq!(law.rate(0.03, 0.0), 0.0);
+    assert_eq!(law.torque(0.03, 0.0), PAPER.stiffness * 0.03);
+}
+
+#[test]
+fn presliding_starts_with_the_bristle_stiffness_and_softens() {
+    // Slow motion from the relaxed state: T = σ0 z, and dT/dx = σ0 (1 − σ0 z/G)
+    // falls from σ0 monotonically (the hysteresis of Dahl's model).
+    let law = LuGre::new(Parameters {
+        damping: 0.0,
+        viscous: 0.0,
+        ..PAPER
+    })
+    .expect("valid");
+    let (speed, dx) = (1e-6, 1e-4);
+    let mut z = 0.0;
+    let mut last_slope = f64::INFINITY;
+    for i in 0..500 {
+        let z1 = law.step(z, speed, speed, dx / speed);
+        let slope = (law.torque(z1, 0.0) - law.torque(z, 0.0)) / dx;
+        if i == 0 {
+            // After dx the mean slope is σ0 (1 − dx σ0 / 2 T_S + …): −0.1 %.
+            assert!((slope / PAPER.stiffness - 1.0).abs() < 1.1e-3);
+        }
+        assert!(slope < last_slope && slope > 0.0);
+        last_slope = slope;
+        z = z1;
+    }
+}
+
+#[test]
+fn null_friction_is_exactly_nothing() {
+    for stiffness in [0.0, 15.0] {
+        let law = LuGre::new(Parameters {
+            coulomb: 0.0,
+            stiction: 0.0,
+            stiffness,
+            viscous: 0.0,
+            ..PAPER
+        })
+        .expect("null friction is a law");
+        for w in [-3.0, -1e-300, 0.0, 1.0, 1e9] {
+            let (z, torque) = law.step_torque(0.0, w, 2.0 * w, 1e-4);
+            assert_eq!((z, torque), (0.0, 0.0));
+            assert_eq!(law.step_impulse(0.0, w, 2.0 * w, 1e-4).1, 0.0);
+            assert_eq!(law.steady_state(w), 0.0);
+            assert_eq!(law.level(w), 0.0);
+        }
+    }
+}
+
+#[test]
+fn viscous_friction_alone() {
+    let law = LuGre::new(Parameters {
+        coulomb: 0.0,
+        stiction: 0.0,
+        ..PAPER
+    })
+    .expect("valid");
+    assert_eq!(law.step_torque(0.0, 5.0, 7.0, 1e-3), (0.0, 0.002865 * 7.0));
+    assert_eq!(law.steady_state(-7.0), -0.002865 * 7.0);
+}
+
+#[test]
+fn bad_parameters_are_named() {
+    let cases = [
+        (
+            Parameters {
+                coulomb: f64::NAN,
+                ..PAPER
+            },
+            "coulomb",
+        ),
+        (
+            Parameters {
+                coulomb: 0.0,
+                ..PAPER
+            },
+            "coulomb",
+        ),
+        (
+            Parameters {
+                stiction: f64::INFINITY,
+                ..PAPER
+            },
+            "stiction",
+        ),
+        (
+            Parameters {
+                stribeck_speed: 0.0,
+                ..PAPER
+            },
+            "stribeck_speed",
+        ),
+        (
+            Parameters {
+                stiffness: 0.0,
+                ..PAPER
+            },
+            "stiffness",
+        ),
+        (
+            Parameters {
+                stiffness: 1e-310,
+                ..PAPER
+            },
+            "stiffness",
+        ),
+        (
+            Parameters {
+                damping: -1.0,
+                ..PAPER
+            },
+            "damping",
+        ),
+        (
+            Parameters {
+                viscous: -1e-9,
+                ..PAPER
+            },
+            "viscous",
+        ),
+    ];
+    for (parameters, expected) in cases {
+        match LuGre::new(parameters) {
+            Err(LugreError::Invalid { field, .. }) => assert_eq!(field, expected),
+            other => panic!("{expected}: {other:?}"),
+        }
+    }
+    let swapped = Parameters {
+        stiction: 0.5,
+        ..PAPER
+    };
+    let error = LuGre::new(swapped).expect_err("T_S < T_C");
+    assert_eq!(
+        error.to_string(),
+        "LuGre parameter `stiction` is 0.5, but must be at least `coulomb` = 0.6757"
+    );
+}
+
+proptest! {
+    #[test]
+    fn level_lies_between_coulomb_and_stiction_and_falls(
+        law in any_law(), w in -200.0f64..200.0, more in 1.0f64..2.0,
+    ) {
+        let p = law.parameters();
+        let g = law.level(w);
+        prop_assert!(g >= p.coulomb && g <= p.stiction);
+        // Monotone up to the last bit of the exponential.
+        prop_assert!(law.level(w * more) <= g * (1.0 + 1e-15));
+    }
+
+    /// Leaving the exponential out changes no bit: from `flat_above` on the
+    /// formula itself rounds to T_C.
+    #[test]
+    fn skipping_the_exponential_is_exact(law in any_law(), factor in 1.0f64..3.0) {
+        let p = law.parameters();
+        let w = law.flat_above() * factor;
+        let term = (p.stiction - p.coulomb) * (-(w / p.stribeck_speed).powi(2)).exp();
+        prop_assert_eq!(p.coulomb + term, p.coulomb);
+        prop_assert_eq!(law.level(w), p.coulomb);
+    }
+
+    #[test]
+    fn odd_symmetry_to_the_bit(
+        law in any_law(), z in -1.0f64..1.0, w0 in -50.0f64..50.0, w1 in -50.0f64..50.0,
+    ) {
+        prop_assert_eq!(law.steady_state(-w0), -law.steady_state(w0));
+        prop_assert_eq!(law.steady_bristle(-w0), -law.steady_bristle(w0));
+        prop_assert_eq!(law.rate(-z, -w0), -law.rate(z, w0));
+        prop_assert_eq!(law.torque(-z, -w0), -law.torque(z, w0));
+        let (z1, t1) = law.step_torque(z, w0, w1, 1e-3);
+        prop_assert_eq!(law.step_torque(-z, -w0, -w1, 1e-3), (-z1, -t1));
+    }
+
+    /// The steady deflection is a zero of the rate, and its torque the curve.
+    #[test]
+    fn steady_state_solves_the_law(law in any_law(), w in -100.0f64..100.0) {
+        let z = law.steady_bristle(w);
+        let p = law.parameters();
+        prop_assert!(law.rate(z, w).abs() <= 4.0 * f64::EPSILON * w.abs());
+        let scale = p.stiction + (p.damping + p.viscous) * w.abs();
+        prop_assert!((law.torque(z, w) - law.steady_state(w)).abs() <= 8.0 * f64::EPSILON * scale);
+    }
+
+    /// The rate is equation (1) as printed.
+    #[test]
+    fn rate_is_equation_one(law in any_law(), z in -1.0f64..1.0, w in -50.0f64..50.0) {
+        let p = law.parameters();
+        let relaxation = p.stiffness * w.abs() * z / law.level(w);
+        let scale = w.abs() + relaxation.abs();
+        prop_assert!((law.rate(z, w) - (w - relaxation)).abs() <= 8.0 * f64::EPSILON * scale);
+    }
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn serde_validates() {
+    use serde::Deserialize;
+    use serde::de::value::{Error, MapDeserializer};
+    let fields = |stiction: f64| {
+        [
+            ("coulomb", 0.6757),
+            ("stiction", stiction),
+            ("stribeck_speed", 2.713781),
+            ("stiffness", 15.159508),
+            ("damping", 1.521203),
+            ("viscous", 0.002865),
+        ]
+    };
+    let read = |stiction| {
+        LuGre::deserialize(MapDeserializer::<_, Error>::new(
+            fields(stiction).into_iter(),
+        ))
+    };
+    assert_eq!(read(0.7653).expect("valid"), paper());
+    let message = read(0.1).expect_err("T_S < T_C").to_string();
+    assert!(message.contains("stiction"), "{message}");
+}
+
+#[test]
+fn vibration_damping_is_the_in_phase_torque_of_a_small_oscillation() {
+    use std::f64::consts::TAU;
+    let law = paper();
+    for (speed, hertz) in [
+        (1.3, 62.0),
+        (2.7, 62.0),
+        (2.7, 5.0),
+        (-4.4, 20.0),
+        (30.0, 62.0),
+    ] {
+        // One period, measured after twenty relaxation times.
+        let amplitude = 1e-4;
+        let n = 4000;
+        let h = 1.0 / hertz / f64::from(n);
+        let w = |k: i32| speed + amplitude * (TAU * f64::from(k % n) / f64::from(n)).sin();
+        let mut z = law.steady_bristle(speed);
+        // 1/τ = σ0 |ω| / G; whole periods for at least 20 τ.
+        let tau = law.level(speed) / (PAPER.stiffness * speed.abs());
+        let settle = ((20.0 * tau * hertz).ceil() as i32) * n;
+        for k in 0..settle {
+            z = law.step(z, w(k), w(k + 1), h);
+        }
+        let mut in_phase = 0.0;
+        for k in 0..n {
+            in_phase += law.torque(z, w(k)) * (w(k) - speed);
+            z = law.step(z, w(k), w(k + 1), h);
+        }
+        let measured = 2.0 * in_phase / (f64::from(n) * amplitude * amplitude);
+        let expected = law.vibration_damping(speed, TAU * hertz);
+        // Transients of e^−20, terms of the order of the amplitude squared and
+        // h² remain.
+        assert!(
+            (measured - expected).abs() < 1e-5,
+            "{speed} {hertz}: {measured} {expected}"
+        );
+    }
+    // At zero frequency: the slope of the curve, by a central difference.
+    for speed in [0.5, 2.0, 3.0, 50.0] {
+        let d = 1e-5;
+        let slope = (law.steady_state(speed + d) - law.steady_state(speed - d)) / (2.0 * d);
+        assert!((law.vibration_damping(speed, 0.0) - slope).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,60 @@
+//! What can go wrong in a stage.
+
+use thiserror::Error;
+
+/// Why a stage gave no result.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum PipelineError {
+    /// The mechanics cannot be set up.
+    #[error("the axis' mechanics cannot be set up: {0}")]
+    Drive(#[from] feed_dynamics::DriveError),
+    /// The sample design is not valid.
+    #[error("the sample design is not valid: {0}")]
+    Design(#[from] lhs::LhsError),
+    /// The network or its training is not valid.
+    #[error("the network cannot be trained: {0}")]
+    Network(#[from] cfnn::Error),
+    /// A compensation strategy cannot be set up.
+    #[error("the compensation cannot be set up: {0}")]
+    Compensator(#[from] compensator::CompensatorError),
+    /// A motion has no plan.
+    #[error("trajectory {index} cannot be planned: {source}")]
+    Trajectory {
+        /// Its number, from 1; 0 for a motion of an experiment.
+        index: usize,
+        /// Why.
+        source: trajectories::TrajectoryError,
+    },
+    /// A run diverged.
+    #[error("{what}: {source}")]
+    Run {
+        /// Which run.
+        what: String,
+        /// When and in which state.
+        source: axis_sim::RunStopped,
+    },
+    /// Friction parameters cannot be found.
+    #[error("friction cannot be identified: {0}")]
+    Identify(#[from] lugre::identify::IdentifyError),
+    /// Friction parameters make no law.
+    #[error("the friction law is not valid: {0}")]
+    Friction(#[from] lugre::LugreError),
+    /// An error series has no figures.
+    #[error("no error figures: {0}")]
+    Metric(#[from] axis_log::metrics::MetricError),
+    /// The transfer function cannot be found.
+    #[error("the transfer function cannot be identified: {0}")]
+    Transfer(#[from] compensator::IdentifyError),
+    /// Too few samples for a fit.
+    #[error("{found} samples that differ in every input: at least {needed} are needed")]
+    TooFewSamples {
+        /// How many there are.
+        found: usize,
+        /// How many it takes.
+        needed: usize,
+    },
+    /// The axis file lists no trajectories.
+    #[error("the axis file lists no [[trajectory]]: give at least one")]
+    NoTrajectories,
+}

@@ -1,0 +1,29 @@
+//! Maximum and mean of an error, the two figures of the paper's tables.
+
+use axis_log::metrics::ErrorSummary;
+use serde::{Deserialize, Serialize};
+
+use crate::PipelineError;
+
+/// Maximum and mean of an absolute error, µm.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Figures {
+    /// Greatest absolute error, µm.
+    pub max: f64,
+    /// Mean absolute error, µm.
+    pub mean: f64,
+}
+
+impl Figures {
+    /// The figures of errors given in metres.
+    ///
+    /// # Errors
+    /// [`PipelineError::Metric`] for an empty or not finite series.
+    pub fn of_metres(errors: &[f64]) -> Result<Self, PipelineError> {
+        let summary = ErrorSummary::of(errors)?;
+        Ok(Self {
+            max: 1e6 * summary.max,
+            mean: 1e6 * summary.mean,
+        })
+    }
+}

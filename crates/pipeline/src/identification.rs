@@ -1,0 +1,240 @@
+//! Friction identification on the simulated machine, as the paper does it on
+//! its machine: constant-speed runs, then a pre-sliding test (Section 3.2).
+
+use axis_sim::{Axis, ClosedLoop, Cycle};
+use compensator::NoCompensation;
+use lugre::identify::{
+    ConstantSpeedRun, Motion as Measured, PreslidingFit, PreslidingRecord, StaticFit,
+    identify_presliding, identify_static,
+};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use trajectories::{Limits, Motion, Program, SCurve, Sine, Step};
+
+use crate::PipelineError;
+
+/// The experiments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IdentificationPlan {
+    /// Table speeds of the constant-speed runs, m/s; each is run both ways.
+    pub speeds: Vec<f64>,
+    /// Time recorded at constant speed, s.
+    pub record_time: f64,
+    /// Noise on the measured torque, as a share of its value (one standard
+    /// deviation, white, a sample each control cycle).
+    pub torque_noise: f64,
+    /// Amplitude of the pre-sliding test, m of table travel.
+    pub presliding_amplitude: f64,
+    /// Frequencies of the pre-sliding test, Hz.
+    pub presliding_frequencies: Vec<f64>,
+    /// Seed of the noise.
+    pub seed: u64,
+}
+
+impl Default for IdentificationPlan {
+    /// 21 speeds from 0.2 to 300 mm/s, one second each, 1 % torque noise.
+    fn default() -> Self {
+        let speeds = [
+            0.2, 0.4, 0.7, 1.0, 1.4, 1.8, 2.2, 2.6, 4.0, 5.0, 6.0, 8.0, 9.0, 10.0, 12.0, 15.0,
+            20.0, 40.0, 80.0, 150.0, 300.0,
+        ];
+        Self {
+            speeds: speeds.map(|mm| 1e-3 * mm).to_vec(),
+            record_time: 1.0,
+            torque_noise: 0.01,
+            presliding_amplitude: 20e-6,
+            presliding_frequencies: vec![1.0, 4.0, 10.0],
+            seed: 0,
+        }
+    }
+}
+
+/// What the experiments found.
+#[derive(Clone, Debug)]
+pub struct Identified {
+    /// Every constant-speed run.
+    pub runs: Vec<ConstantSpeedRun>,
+    /// Static parameters.
+    pub statics: StaticFit,
+    /// Bristle parameters.
+    pub presliding: PreslidingFit,
+    /// All six parameters.
+    pub parameters: lugre::Parameters,
+}
+
+/// Runs the experiments on the axis and identifies its friction.
+///
+/// Nothing but what a drive logs is used: motor current and speed, and table
+/// position. The torque noise is drawn from the plan's seed.
+///
+/// # Errors
+/// [`PipelineError`] where a run diverges or leaves its stroke, or where the
+/// records do not show a parameter.
+pub fn identify(
+    axis: &Axis,
+    plan: &IdentificationPlan,
+    each: impl Fn() + Sync,
+) -> Result<Identified, PipelineError> {
+    let closed_loop = ClosedLoop::new(axis)?;
+    let both_ways: Vec<f64> = plan.speeds.iter().flat_map(|&v| [v, -v]).collect();
+    let runs: Result<Vec<ConstantSpeedRun>, PipelineError> = both_ways
+        .par_iter()
+        .enumerate()
+        .map(|(index, &speed)| {
+            let run = constant_speed_run(&closed_loop, plan, speed, index as u64);
+            each();
+            run
+        })
+        .collect();
+    let runs = runs?;
+    let statics = identify_static(&runs)?;
+    let presliding = presliding_test(&closed_loop, plan, &statics)?;
+    each();
+    let parameters = statics
+        .parameters()
+        .with_bristles(presliding.stiffness.value, presliding.damping.value);
+    Ok(Identified {
+        runs,
+        statics,
+        presliding,
+        parameters,
+    })
+}
+
+/// Bristles forget their past within some tens of micrometres of sliding, the
+/// drive's controllers within some tenths of a second: wait for both.
+const SETTLE_DISTANCE: f64 = 1.5e-3;
+const SETTLE_TIME: f64 = 0.6;
+
+fn constant_speed_run(
+    closed_loop: &ClosedLoop,
+    plan: &IdentificationPlan,
+    speed: f64,
+    stream: u64,
+) -> Result<ConstantSpeedRun, PipelineError> {
+    let axis = closed_loop.axis();
+    let stroke = &axis.stroke;
+    let settle = SETTLE_TIME.max(SETTLE_DISTANCE / speed.abs());
+    let limits = limits(speed.abs(), 2.0, 50.0)?;
+    // Ramps take speed²/2a each, plus the jerk's share; a tenth of a second more is enough.
+    let wanted = speed.abs() * (settle + plan.record_time + 0.1) + speed * speed / 2.0;
+    // Start where the run has the room that it needs.
+    let room = stroke.maximum - stroke.minimum;
+    let travel = wanted.min(0.98 * room);
+    let middle = 0.5 * (stroke.minimum + stroke.maximum);
+    let from = middle - 0.5 * travel.copysign(speed);
+    let motion = planned(SCurve::plan(from, from + travel.copysign(speed), &limits))?;
+    let (begin, end) = motion.cruise().unwrap_or((0.0, motion.duration()));
+    let from_time = (begin + settle).max(end - plan.record_time);
+
+    let r = axis.travel_per_radian();
+    let mut positions = Vec::new();
+    let mut torques = Vec::new();
+    follow(
+        closed_loop,
+        &motion,
+        &format!("constant-speed run at {speed} m/s"),
+        |cycle| {
+            if (from_time..end).contains(&cycle.time) {
+                positions.push(cycle.position);
+                torques.push(axis.torque_constant * cycle.current.q);
+            }
+        },
+    )?;
+    add_noise(&mut torques, plan, stream);
+    let speeds: Vec<f64> = positions
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]) / axis.period / r)
+        .collect();
+    torques.pop();
+    Ok(ConstantSpeedRun::from_record(
+        &speeds,
+        &torques,
+        1.0 / axis.period,
+    )?)
+}
+
+/// Small sines about a standstill. The friction torque is the motor's less
+/// what the axis' inertia takes.
+fn presliding_test(
+    closed_loop: &ClosedLoop,
+    plan: &IdentificationPlan,
+    statics: &StaticFit,
+) -> Result<PreslidingFit, PipelineError> {
+    let axis = closed_loop.axis();
+    let mut steps = Vec::new();
+    for &frequency in &plan.presliding_frequencies {
+        let cycles = (2.0 * frequency).ceil().max(3.0);
+        steps.push(Step::Sine(Sine {
+            amplitude: plan.presliding_amplitude,
+            frequency,
+            cycles: cycles as u32,
+        }));
+    }
+    let middle = 0.5 * (axis.stroke.minimum + axis.stroke.maximum);
+    let motion = planned(Program::new(middle, steps))?;
+
+    let (mut positions, mut speeds, mut torques) = (Vec::new(), Vec::new(), Vec::new());
+    follow(closed_loop, &motion, "pre-sliding test", |cycle| {
+        positions.push(cycle.position);
+        speeds.push(cycle.motor_speed);
+        torques.push(axis.torque_constant * cycle.current.q);
+    })?;
+    add_noise(&mut torques, plan, u64::MAX);
+
+    // Every tenth cycle is enough for motions of some hertz.
+    const EVERY: usize = 10;
+    let r = axis.travel_per_radian();
+    let (rotating, mass) = (
+        axis.drive.rotating_inertia(),
+        axis.drive.parameters().table_mass,
+    );
+    let (mut displacement, mut friction) = (Vec::new(), Vec::new());
+    for k in (EVERY..positions.len() - EVERY).step_by(EVERY) {
+        let span = 2.0 * EVERY as f64 * axis.period;
+        let motor = (speeds[k + EVERY] - speeds[k - EVERY]) / span;
+        let table = (positions[k + EVERY] - 2.0 * positions[k] + positions[k - EVERY])
+            / (0.5 * span).powi(2);
+        displacement.push((positions[k] - positions[0]) / r);
+        friction.push(torques[k] - rotating * motor - r * mass * table);
+    }
+    let record = PreslidingRecord {
+        time_step: EVERY as f64 * axis.period,
+        motion: Measured::Displacement(&displacement),
+        torque: &friction,
+    };
+    Ok(identify_presliding(statics, &record)?)
+}
+
+fn follow(
+    closed_loop: &ClosedLoop,
+    motion: &impl Motion,
+    what: &str,
+    observe: impl FnMut(&Cycle),
+) -> Result<(), PipelineError> {
+    let outcome = closed_loop.run(motion, &mut NoCompensation, observe);
+    outcome.completed().map_err(|source| PipelineError::Run {
+        what: what.to_owned(),
+        source,
+    })
+}
+
+fn add_noise(torques: &mut [f64], plan: &IdentificationPlan, stream: u64) {
+    let mut rng = ChaCha8Rng::seed_from_u64(plan.seed);
+    rng.set_stream(stream);
+    for torque in torques {
+        // Box and Muller; 1 − u keeps the logarithm finite.
+        let (u, angle) = (1.0 - rng.random::<f64>(), rng.random::<f64>());
+        let normal = (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * angle).cos();
+        *torque *= 1.0 + plan.torque_noise * normal;
+    }
+}
+
+fn limits(speed: f64, acceleration: f64, jerk: f64) -> Result<Limits, PipelineError> {
+    planned(Limits::new(speed, acceleration, jerk))
+}
+
+fn planned<T>(result: Result<T, trajectories::TrajectoryError>) -> Result<T, PipelineError> {
+    result.map_err(|source| PipelineError::Trajectory { index: 0, source })
+}

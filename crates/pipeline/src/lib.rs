@@ -1,0 +1,34 @@
+//! The work of Liu et al. 2025 (doi:10.3390/machines13050433) as library
+//! calls: sample, train, identify, validate, compensate, study.
+//!
+//! Each call takes typed inputs and gives typed results; files, folders,
+//! terminals and pages belong to the caller. Progress is a callback, called
+//! from any thread, once a unit of work.
+//!
+//! ```text
+//! Axis ─ sampling ─► SampleSet ─ training ─► Network ─┐
+//!   │                                                 ├─► Predictors ─► validation, compensation
+//!   └─ identification (friction), transfer ───────────┘
+//! ```
+//!
+//! Errors are in µm where a name says so, SI otherwise.
+
+pub mod compensation;
+mod error;
+mod figures;
+pub mod identification;
+mod linear_map;
+pub mod sample_file;
+pub mod sampling;
+pub mod strategies;
+pub mod study;
+pub mod summary;
+pub mod tracking;
+pub mod training;
+pub mod transfer;
+pub mod validation;
+pub mod vibration;
+
+pub use error::PipelineError;
+pub use figures::Figures;
+pub use linear_map::LinearMap;

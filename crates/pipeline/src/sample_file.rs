@@ -1,0 +1,195 @@
+//! Samples on disk: written as a stream, read back whole and checked.
+//!
+//! ```text
+//! magic "AXSMPL\0\0" | schema u32 | count u64 | fingerprint [u8; 64]
+//! count rows of S, Ṡ, S̈, I_qr, S(k+1) − S(k) as f64
+//! blake3 of everything before it, 32 bytes
+//! ```
+//!
+//! All numbers little-endian, SI units. A million samples take 40 MB and no memory.
+
+use std::fs::File;
+use std::io::{BufReader, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+
+use axis_sim::CycleInput;
+use thiserror::Error;
+
+use crate::linear_map::input_row;
+use crate::sampling::{SampleSet, Sampler};
+
+const MAGIC: &[u8; 8] = b"AXSMPL\0\0";
+const SCHEMA: u32 = 1;
+const ROW: usize = 5 * 8;
+/// Rows simulated and written at a time.
+const CHUNK: usize = 1 << 16;
+
+/// Why a sample file could not be written or was refused.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SampleFileError {
+    /// The system refused.
+    #[error("cannot {action} the sample file {path}: {reason}")]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        reason: std::io::Error,
+    },
+    /// The content is not what a whole sample file holds.
+    #[error("the sample file {path} is refused: {what}; make it anew with `cargo xtask sample`")]
+    Refused {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        what: String,
+    },
+}
+
+/// Simulates all samples of a plan and writes them, a chunk at a time.
+/// `each` is told how many rows a chunk had. The file appears whole or not at all.
+///
+/// # Errors
+/// [`SampleFileError::Io`] where the folder is not writable or the disk full.
+pub fn write(
+    path: &Path,
+    sampler: &Sampler,
+    fingerprint: &str,
+    mut each: impl FnMut(usize),
+) -> Result<(), SampleFileError> {
+    let failed = |reason| SampleFileError::Io {
+        action: "write",
+        path: path.to_owned(),
+        reason,
+    };
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let aside = tempfile::NamedTempFile::new_in(folder).map_err(failed)?;
+    readable(aside.as_file()).map_err(failed)?;
+    let mut out = Hashing {
+        file: BufWriter::new(aside.as_file()),
+        hasher: blake3::Hasher::new(),
+    };
+    out.put(MAGIC).map_err(failed)?;
+    out.put(&SCHEMA.to_le_bytes()).map_err(failed)?;
+    out.put(&(sampler.count() as u64).to_le_bytes())
+        .map_err(failed)?;
+    out.put(&fixed(fingerprint)).map_err(failed)?;
+    for start in (0..sampler.count()).step_by(CHUNK) {
+        let end = (start + CHUNK).min(sampler.count());
+        let samples = sampler.rows(start..end);
+        let mut bytes = Vec::with_capacity((end - start) * ROW);
+        for (input, increment) in samples.inputs.iter().zip(&samples.increments) {
+            for value in input_row(input).iter().chain([increment]) {
+                bytes.extend_from_slice(&value.to_le_bytes());
+            }
+        }
+        out.put(&bytes).map_err(failed)?;
+        each(end - start);
+    }
+    let hash = out.hasher.finalize();
+    out.file.write_all(hash.as_bytes()).map_err(failed)?;
+    out.file.flush().map_err(failed)?;
+    drop(out);
+    aside.as_file().sync_all().map_err(failed)?;
+    aside.persist(path).map_err(|e| failed(e.error))?;
+    Ok(())
+}
+
+/// Reads a sample file that was made from the axis with this fingerprint.
+///
+/// # Errors
+/// [`SampleFileError::Refused`] for a file that is truncated, changed, of
+/// another schema or from another axis.
+pub fn read(path: &Path, fingerprint: &str) -> Result<SampleSet, SampleFileError> {
+    let failed = |reason| SampleFileError::Io {
+        action: "read",
+        path: path.to_owned(),
+        reason,
+    };
+    let refused = |what: &str| SampleFileError::Refused {
+        path: path.to_owned(),
+        what: what.to_owned(),
+    };
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(failed)?;
+    BufReader::new(file)
+        .read_to_end(&mut bytes)
+        .map_err(failed)?;
+
+    let header = MAGIC.len() + 4 + 8 + 64;
+    if bytes.len() < header + 32 {
+        return Err(refused("it is too short (truncated?)"));
+    }
+    if &bytes[..8] != MAGIC {
+        return Err(refused("it is not a sample file"));
+    }
+    let schema = u32::from_le_bytes([bytes[8], bytes[9], bytes[10], bytes[11]]);
+    if schema != SCHEMA {
+        let what = format!("its schema is {schema}, this program reads {SCHEMA}");
+        return Err(refused(&what));
+    }
+    let (body, hash) = bytes.split_at(bytes.len() - 32);
+    if blake3::hash(body).as_bytes() != hash {
+        return Err(refused(
+            "its checksum does not match (truncated or changed)",
+        ));
+    }
+    let count = u64::from_le_bytes(std::array::from_fn(|i| bytes[12 + i]));
+    if body[20..header] != fixed(fingerprint) {
+        return Err(refused("it was made from another axis file"));
+    }
+    let rows = &body[header..];
+    if rows.len() as u64 != count.saturating_mul(ROW as u64) {
+        return Err(refused("its length does not match its header"));
+    }
+    let mut samples = SampleSet::default();
+    for row in rows.chunks_exact(ROW) {
+        let value = |i: usize| f64::from_le_bytes(std::array::from_fn(|b| row[8 * i + b]));
+        samples.inputs.push(CycleInput {
+            position: value(0),
+            speed: value(1),
+            acceleration: value(2),
+            iq_command: value(3),
+        });
+        samples.increments.push(value(4));
+    }
+    Ok(samples)
+}
+
+/// The fingerprint in its 64 bytes.
+fn fixed(fingerprint: &str) -> [u8; 64] {
+    let mut bytes = [0; 64];
+    let given = fingerprint.as_bytes();
+    let length = given.len().min(64);
+    bytes[..length].copy_from_slice(&given[..length]);
+    bytes
+}
+
+/// Temporary files are private; samples are for everyone to read.
+#[cfg(unix)]
+fn readable(file: &File) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    file.set_permissions(std::fs::Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn readable(_: &File) -> std::io::Result<()> {
+    Ok(())
+}
+
+struct Hashing<W> {
+    file: W,
+    hasher: blake3::Hasher,
+}
+
+impl<W: Write> Hashing<W> {
+    fn put(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        self.hasher.update(bytes);
+        self.file.write_all(bytes)
+    }
+}

@@ -1,0 +1,239 @@
+//! The model against the machine, and the predictors against the machine's
+//! tracking error: Tables 13 and 14.
+
+use axis_sim::{Axis, ClosedLoop};
+use compensator::{Compensator, Correction, NoCompensation, Sample};
+use feed_dynamics::NutCoupling;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use trajectories::Motion;
+
+use crate::strategies::Predictors;
+use crate::tracking::{Planned, Profile, Run, follow, plan_all, profile, run_of, track};
+use crate::vibration::{Vibration, vibration};
+use crate::{Figures, PipelineError};
+
+/// One trajectory without compensation.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ValidatedTrajectory {
+    /// Number in the axis file, from 1.
+    pub id: usize,
+    /// Duration of the motion, s.
+    pub motion_time_s: f64,
+    /// Reference.
+    pub profile: Profile,
+    /// Tracking error of the model.
+    pub model: Run,
+    /// Tracking error of what stands for the machine.
+    pub machine: Run,
+    /// The machine's error as the network predicts it, one cycle ahead.
+    pub network: Run,
+    /// The machine's error as the transfer function predicts it from the reference.
+    pub transfer_function: Run,
+    /// What the network misses of the machine's error.
+    pub network_deviation: Figures,
+    /// What the transfer function misses of it.
+    pub transfer_function_deviation: Figures,
+}
+
+/// Natural frequencies at one table position.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ModesAt {
+    /// Table position, m from the driven end.
+    pub position_m: f64,
+    /// Frequencies of the first elastic modes, Hz.
+    pub frequencies_hz: Vec<f64>,
+}
+
+/// How far the numerical choices move the figures, µm.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct NumericalChecks {
+    /// Largest change of a maximum or mean when the internal step is halved.
+    pub half_step: Figures,
+    /// Largest change of them from shape functions to the moving node.
+    pub moving_node: Figures,
+}
+
+/// Everything that validation shows.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Validation {
+    /// Each trajectory.
+    pub trajectories: Vec<ValidatedTrajectory>,
+    /// Constant-speed runs of the model.
+    pub vibration_model: Vec<Vibration>,
+    /// Constant-speed runs of what stands for the machine.
+    pub vibration_machine: Vec<Vibration>,
+    /// Modes of the model along the stroke.
+    pub modes: Vec<ModesAt>,
+    /// Numerical checks on the model.
+    pub checks: NumericalChecks,
+}
+
+/// Speeds of the constant-speed runs, mm/s.
+pub const VIBRATION_SPEEDS: [f64; 10] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 20.0];
+
+/// Elastic modes shown.
+const MODES: usize = 4;
+
+/// Runs the validation. `each` is called once a run of the closed loop;
+/// [`runs`] tells how often.
+///
+/// # Errors
+/// [`PipelineError`] where a run diverges.
+pub fn validate(
+    model: &Axis,
+    machine: &Axis,
+    predictors: &Predictors,
+    each: impl Fn() + Sync,
+) -> Result<Validation, PipelineError> {
+    let loops = [ClosedLoop::new(model)?, ClosedLoop::new(machine)?];
+    let planned = plan_all(model)?;
+    let trajectory = |planned: &Planned| {
+        let result = one(&loops, planned, predictors);
+        each();
+        result
+    };
+    let trajectories: Result<Vec<_>, PipelineError> = planned.par_iter().map(trajectory).collect();
+    let trajectories = trajectories?;
+    let checks = checks(model, &planned, &trajectories, &each)?;
+    Ok(Validation {
+        vibration_model: vibration(model, &VIBRATION_SPEEDS)?,
+        vibration_machine: vibration(machine, &VIBRATION_SPEEDS)?,
+        modes: modes(model)?,
+        trajectories,
+        checks,
+    })
+}
+
+/// How often [`validate`] calls back.
+pub fn runs(model: &Axis) -> usize {
+    3 * model.trajectories.len()
+}
+
+fn one(
+    [model, machine]: &[ClosedLoop; 2],
+    planned: &Planned,
+    predictors: &Predictors,
+) -> Result<ValidatedTrajectory, PipelineError> {
+    let mut watch = Watch::new(predictors)?;
+    let mut errors = Vec::new();
+    follow(machine, planned, &mut watch, |cycle| {
+        errors.push(cycle.error())
+    })?;
+    let deviation = |predicted: &[f64]| {
+        let missed: Vec<f64> = errors.iter().zip(predicted).map(|(e, p)| e - p).collect();
+        Figures::of_metres(&missed)
+    };
+    // What was predicted at k is for k + 1; the last one has no counterpart.
+    watch.network.truncate(errors.len());
+    watch.transfer_function.truncate(errors.len());
+    Ok(ValidatedTrajectory {
+        id: planned.id,
+        motion_time_s: planned.motion.duration(),
+        profile: profile(planned, model.axis().period),
+        model: track(model, planned, &mut NoCompensation)?,
+        machine: run_of(&errors)?,
+        network: run_of(&watch.network)?,
+        transfer_function: run_of(&watch.transfer_function)?,
+        network_deviation: deviation(&watch.network)?,
+        transfer_function_deviation: deviation(&watch.transfer_function)?,
+    })
+}
+
+/// Asks both predictors in every cycle and corrects nothing.
+struct Watch {
+    predictors: crate::strategies::BothPredictors,
+    /// Predicted errors from the first cycle on, which nothing predicts: zero.
+    network: Vec<f64>,
+    transfer_function: Vec<f64>,
+}
+
+impl Watch {
+    fn new(predictors: &Predictors) -> Result<Self, PipelineError> {
+        Ok(Self {
+            predictors: predictors.both()?,
+            network: vec![0.0],
+            transfer_function: vec![0.0],
+        })
+    }
+}
+
+impl Compensator for Watch {
+    fn reset(&mut self) {
+        self.predictors.network.reset();
+        self.predictors.transfer_function.reset();
+        self.network.truncate(1);
+        self.transfer_function.truncate(1);
+    }
+
+    fn correct(&mut self, sample: &Sample) -> Correction {
+        let both = &mut self.predictors;
+        self.network.push(both.network.correct(sample).position);
+        self.transfer_function
+            .push(both.transfer_function.correct(sample).position);
+        Correction::default()
+    }
+}
+
+fn modes(axis: &Axis) -> Result<Vec<ModesAt>, PipelineError> {
+    const POSITIONS: usize = 60;
+    let stroke = &axis.stroke;
+    let at = |i: usize| {
+        let part = i as f64 / POSITIONS as f64;
+        let position = stroke.minimum + part * (stroke.maximum - stroke.minimum);
+        let modes = axis.drive.modes(position, NutCoupling::ShapeFunctions)?;
+        let hertz = |w: &f64| w / std::f64::consts::TAU;
+        Ok(ModesAt {
+            position_m: position,
+            frequencies_hz: modes
+                .frequencies
+                .iter()
+                .skip(1)
+                .take(MODES)
+                .map(hertz)
+                .collect(),
+        })
+    };
+    (0..=POSITIONS).map(at).collect()
+}
+
+fn checks(
+    model: &Axis,
+    planned: &[Planned],
+    reference: &[ValidatedTrajectory],
+    each: &(impl Fn() + Sync),
+) -> Result<NumericalChecks, PipelineError> {
+    let mut halved = model.clone();
+    halved.simulation.step = 0.5 * model.simulation.step.min(model.period);
+    let mut other = model.clone();
+    other.coupling = match model.coupling {
+        NutCoupling::ShapeFunctions => NutCoupling::MovingNode,
+        NutCoupling::MovingNode => NutCoupling::ShapeFunctions,
+    };
+    let change = |axis: &Axis| -> Result<Figures, PipelineError> {
+        let closed_loop = ClosedLoop::new(axis)?;
+        let pairs: Result<Vec<Figures>, PipelineError> = planned
+            .par_iter()
+            .zip(reference)
+            .map(|(planned, reference)| {
+                let run = track(&closed_loop, planned, &mut NoCompensation)?;
+                each();
+                let (a, b) = (run.figures, reference.model.figures);
+                Ok(Figures {
+                    max: (a.max - b.max).abs(),
+                    mean: (a.mean - b.mean).abs(),
+                })
+            })
+            .collect();
+        Ok(pairs?
+            .into_iter()
+            .fold(Figures::default(), |most, f| Figures {
+                max: most.max.max(f.max),
+                mean: most.mean.max(f.mean),
+            }))
+    };
+    Ok(NumericalChecks {
+        half_step: change(&halved)?,
+        moving_node: change(&other)?,
+    })
+}

@@ -1,0 +1,164 @@
+//! Figure to SVG. kuva lays out and draws axes, ticks, grid and series.
+
+use kuva::plot::{LinePlot, ScatterPlot};
+use kuva::render::layout::{Layout, TickFormat};
+use kuva::render::plots::Plot;
+use kuva::render::render::render_multiple;
+use kuva::render::render_utils::wrap_text;
+
+use crate::decimate;
+use crate::figure::{Figure, Scale, Series, Style};
+use crate::scale::Fitted;
+use crate::svg;
+
+/// Okabe and Ito's colours, safe for colour-blind readers
+/// (<https://jfly.uni-koeln.de/color/>), in an order that tells neighbours
+/// apart; without the yellow, which fades on white.
+const PALETTE: [&str; 7] = [
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
+];
+
+/// Size of a drawing in its own pixels.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Canvas {
+    pub width: f64,
+    pub height: f64,
+    pub font: u32,
+}
+
+/// For a figure over the full width of a desktop page.
+pub(crate) const WIDE: Canvas = Canvas {
+    width: 880.0,
+    height: 340.0,
+    font: 13,
+};
+
+/// For a phone and for a figure in a grid.
+pub(crate) const NARROW: Canvas = Canvas {
+    width: 420.0,
+    height: 280.0,
+    font: 13,
+};
+
+/// Colour of series number `index` of its figure.
+pub(crate) fn colour(series: &Series, index: usize) -> &'static str {
+    PALETTE[series.colour.unwrap_or(index) % PALETTE.len()]
+}
+
+/// Whether series number `index` is dashed: on request, and from the eighth on
+/// to tell it from the series that has the same colour.
+pub(crate) fn is_dashed(series: &Series, index: usize) -> bool {
+    series.dashed || (series.colour.is_none() && index >= PALETTE.len())
+}
+
+/// Draws a checked figure, without title and legend. `id` must be unique in the
+/// page.
+pub(crate) fn draw(figure: &Figure, canvas: Canvas, id: &str) -> String {
+    let (x, y) = fit(figure, canvas);
+    let plots = figure
+        .series
+        .iter()
+        .enumerate()
+        .map(|(index, series)| plot(series, index, canvas, &x, &y))
+        .collect();
+    let scene = render_multiple(plots, layout(figure, canvas, &x, &y));
+    svg::write(&scene, &figure.alt_text(), id)
+}
+
+fn fit(figure: &Figure, canvas: Canvas) -> (Fitted, Fitted) {
+    let all = |pick: fn(&Series) -> &Vec<f64>| {
+        figure
+            .series
+            .iter()
+            .flat_map(move |s| pick(s).iter().copied())
+    };
+    // Dots on the frame would be cut in half, so only lines end at the frame.
+    let tight = figure.series.iter().all(|s| s.style != Style::Dots);
+    (
+        Fitted::new(figure.x_scale, all(|s| &s.x), canvas.width / 90.0, tight),
+        Fitted::new(figure.y_scale, all(|s| &s.y), canvas.height / 55.0, false),
+    )
+}
+
+fn layout(figure: &Figure, canvas: Canvas, x: &Fitted, y: &Fitted) -> Layout {
+    let format = |axis: &Fitted| {
+        let axis = axis.clone();
+        TickFormat::Custom(std::sync::Arc::new(move |v| axis.tick_label(v)))
+    };
+    let mut layout = Layout::new(x.range, y.range)
+        .with_width(canvas.width)
+        .with_height(canvas.height)
+        .with_x_tick_format(format(x))
+        .with_y_tick_format(format(y))
+        .with_x_axis_min(x.range.0)
+        .with_x_axis_max(x.range.1)
+        .with_y_axis_min(y.range.0)
+        .with_y_axis_max(y.range.1)
+        .with_label_size(canvas.font)
+        .with_tick_size(canvas.font - 1)
+        .with_box_axes();
+    layout = match figure.x_scale {
+        Scale::Linear => layout.with_x_tick_step(x.step),
+        Scale::Log => layout.with_log_x(),
+    };
+    layout = match figure.y_scale {
+        Scale::Linear => layout.with_y_tick_step(y.step),
+        Scale::Log => layout.with_log_y(),
+    };
+    layout.theme.grid_color = "#e3e6ea".into();
+    layout.theme.axis_color = "#8a929b".into();
+    layout.theme.tick_color = "#8a929b".into();
+    with_labels(layout, figure, canvas, x, y)
+}
+
+/// Axis labels, wrapped where they are longer than their axis, and the margins
+/// that they and the tick labels need. kuva would measure its own labels of a
+/// logarithmic axis, not these.
+fn with_labels(layout: Layout, figure: &Figure, canvas: Canvas, x: &Fitted, y: &Fitted) -> Layout {
+    let font = f64::from(canvas.font);
+    let (character, line) = (0.56 * font, 1.2 * font);
+    let x_label = format!("{}{}", figure.x_label, x.label_suffix());
+    let y_label = format!("{}{}", figure.y_label, y.label_suffix());
+    let x_wrap = ((canvas.width - 90.0) / character) as usize;
+    let y_wrap = ((canvas.height - 60.0) / character) as usize;
+    let lines = |label: &str, wrap| wrap_text(label, wrap).len() as f64;
+    let left = line * lines(&y_label, y_wrap) + 0.58 * font * y.widest_label() as f64 + 20.0;
+    let right = (0.3 * font * x.widest_label() as f64).max(12.0);
+    let bottom = line * lines(&x_label, x_wrap) + font + 18.0;
+    layout
+        .with_x_label(x_label)
+        .with_y_label(y_label)
+        .with_x_label_wrap(x_wrap)
+        .with_y_label_wrap(y_wrap)
+        .with_force_margins(left, right)
+        .with_force_margins_y(10.0, bottom)
+}
+
+fn plot(series: &Series, index: usize, canvas: Canvas, x: &Fitted, y: &Fitted) -> Plot {
+    let pixels: Vec<(f64, f64)> = series
+        .x
+        .iter()
+        .zip(&series.y)
+        .map(|(&a, &b)| (x.fraction(a) * canvas.width, y.fraction(b) * canvas.height))
+        .collect();
+    let point = |k: usize| (x.drawn(series.x[k]), y.drawn(series.y[k]));
+    // A line through one point would not be seen.
+    if series.style == Style::Dots || series.x.len() == 1 {
+        return ScatterPlot::new()
+            .with_data(decimate::dots(&pixels).into_iter().map(point))
+            .with_color(colour(series, index))
+            .with_size(2.0)
+            .into();
+    }
+    let mut line = LinePlot::new()
+        .with_data(decimate::line(&pixels).into_iter().map(point))
+        .with_color(colour(series, index))
+        .with_stroke_width(1.5);
+    if is_dashed(series, index) {
+        line = line.with_line_style(kuva::plot::LineStyle::Custom("6 4".into()));
+    }
+    if series.style == Style::Step {
+        line = line.with_step();
+    }
+    line.into()
+}

@@ -1,0 +1,295 @@
+//! Range, ticks and tick labels of an axis.
+
+use crate::figure::Scale;
+
+/// An axis fitted to its data. What is drawn is `value · 10^-exponent`: drawing
+/// then works on numbers near one, whatever the unit.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Fitted {
+    pub scale: Scale,
+    /// Power of ten taken out of the values.
+    pub exponent: i32,
+    /// Ends of the axis, drawn values.
+    pub range: (f64, f64),
+    /// Distance of the ticks, drawn values; unused on a logarithmic axis.
+    pub step: f64,
+    /// Decades between labelled ticks of a logarithmic axis.
+    pub stride: i32,
+}
+
+impl Fitted {
+    /// Fits an axis with about `ticks` ticks to values that are finite (and
+    /// positive where `scale` is logarithmic). `tight` ends it at the data,
+    /// otherwise it ends at ticks.
+    pub fn new(scale: Scale, values: impl Iterator<Item = f64>, ticks: f64, tight: bool) -> Self {
+        let (min, max) = values.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
+        match scale {
+            Scale::Linear => Self::linear(min, max, ticks, tight),
+            Scale::Log => Self::log(min, max, ticks, tight),
+        }
+    }
+
+    fn linear(min: f64, max: f64, ticks: f64, tight: bool) -> Self {
+        let greatest = min.abs().max(max.abs());
+        let exponent = if greatest == 0.0 || (1e-2..1e5).contains(&greatest) {
+            0
+        } else {
+            (greatest.log10() / 3.0).floor() as i32 * 3
+        };
+        let (mut lo, mut hi) = (scaled(min, exponent), scaled(max, exponent));
+        // A flat series, or one flat to rounding, gets room around it.
+        let flat = hi - lo <= 1e-12 * lo.abs().max(hi.abs());
+        if flat {
+            let room = if hi == 0.0 { 1.0 } else { 0.1 * hi.abs() };
+            (lo, hi) = (lo - room, hi + room);
+        }
+        let step = nice_step((hi - lo) / ticks);
+        if flat || !tight {
+            // Data on the frame would be hard to see, except where it starts
+            // from zero.
+            let room = 0.03 * (hi - lo);
+            lo -= if lo == 0.0 { 0.0 } else { room };
+            hi += if hi == 0.0 { 0.0 } else { room };
+            lo = (lo / step + 1e-9).floor() * step;
+            hi = (hi / step - 1e-9).ceil() * step;
+        }
+        Self {
+            scale: Scale::Linear,
+            exponent,
+            range: (lo, hi),
+            step,
+            stride: 1,
+        }
+    }
+
+    fn log(min: f64, max: f64, ticks: f64, tight: bool) -> Self {
+        let exponent = min.log10().floor() as i32;
+        let (mut lo, mut hi) = (scaled(min, exponent), scaled(max, exponent));
+        if hi / lo < 1.0 + 1e-9 {
+            (lo, hi) = (lo / 2.0, hi * 2.0);
+        }
+        if !tight {
+            let wide = hi / lo > 1e3;
+            lo = snap_down(lo, wide);
+            hi = snap_up(hi, wide);
+        }
+        let decades = (hi / lo).log10();
+        Self {
+            scale: Scale::Log,
+            exponent,
+            range: (lo, hi),
+            step: 1.0,
+            stride: (decades / ticks).ceil().max(1.0) as i32,
+        }
+    }
+
+    /// The drawn value of a value.
+    pub fn drawn(&self, value: f64) -> f64 {
+        scaled(value, self.exponent)
+    }
+
+    /// Place of a value between the ends of the axis, 0 to 1.
+    pub fn fraction(&self, value: f64) -> f64 {
+        let f = |v: f64| match self.scale {
+            Scale::Linear => v,
+            Scale::Log => v.log10(),
+        };
+        let (lo, hi) = (f(self.range.0), f(self.range.1));
+        (f(self.drawn(value)) - lo) / (hi - lo)
+    }
+
+    /// What the axis label must add: the power of ten, where one is taken out of
+    /// the tick labels.
+    pub fn label_suffix(&self) -> String {
+        match self.scale {
+            Scale::Linear if self.exponent != 0 => format!(" (×10{})", superscript(self.exponent)),
+            _ => String::new(),
+        }
+    }
+
+    /// Label of the tick at a drawn value.
+    pub fn tick_label(&self, drawn: f64) -> String {
+        match self.scale {
+            Scale::Linear => {
+                let digits = (-(self.step.log10() + 1e-9).floor()).max(0.0) as usize;
+                let text = format!("{:.*}", digits, drawn);
+                match text.strip_prefix('-') {
+                    Some(rest) if rest.bytes().any(|b| (b'1'..=b'9').contains(&b)) => {
+                        format!("\u{2212}{rest}")
+                    }
+                    Some(zero) => zero.to_owned(),
+                    None => text,
+                }
+            }
+            Scale::Log => self.log_label(drawn),
+        }
+    }
+
+    fn log_label(&self, drawn: f64) -> String {
+        let decade = (drawn.log10() + 1e-9).floor() as i32;
+        let mantissa = (drawn / 10f64.powi(decade)).round() as i32;
+        let decade = decade + self.exponent;
+        if decade.rem_euclid(self.stride) != 0 {
+            return String::new();
+        }
+        let plain = self.range.1 / self.range.0 <= 1.001e3 && (-2..=4).contains(&decade);
+        match mantissa {
+            m if plain => {
+                let digits = (-decade).max(0) as usize;
+                format!("{:.*}", digits, f64::from(m) * 10f64.powi(decade))
+            }
+            1 => format!("10{}", superscript(decade)),
+            m => format!("{m}·10{}", superscript(decade)),
+        }
+    }
+
+    /// Number of characters of the longest tick label.
+    pub fn widest_label(&self) -> usize {
+        let length = |v: f64| self.tick_label(v).chars().count();
+        match self.scale {
+            Scale::Linear => length(self.range.0).max(length(self.range.1)),
+            Scale::Log => {
+                let decades = (self.range.1 / self.range.0).log10().ceil() as i32;
+                (0..=decades)
+                    .flat_map(|d| [1.0, 2.0, 5.0].map(|m| m * 10f64.powi(d)))
+                    .map(length)
+                    .max()
+                    .unwrap_or(1)
+            }
+        }
+    }
+}
+
+/// `value · 10^-exponent`, in two steps so that the power cannot overflow.
+fn scaled(value: f64, exponent: i32) -> f64 {
+    let half = exponent / 2;
+    value / 10f64.powi(half) / 10f64.powi(exponent - half)
+}
+
+/// The least of 1, 2, 5 times a power of ten that is not below `rough`.
+fn nice_step(rough: f64) -> f64 {
+    let base = 10f64.powf(rough.log10().floor());
+    [1.0, 2.0, 5.0]
+        .into_iter()
+        .map(|m| m * base)
+        .find(|step| *step >= rough * (1.0 - 1e-9))
+        .unwrap_or(10.0 * base)
+}
+
+fn snap_down(value: f64, whole_decades: bool) -> f64 {
+    let base = 10f64.powf((value.log10() + 1e-9).floor());
+    let choices: &[f64] = if whole_decades {
+        &[1.0]
+    } else {
+        &[5.0, 2.0, 1.0]
+    };
+    choices
+        .iter()
+        .map(|m| m * base)
+        .find(|v| *v <= value * (1.0 + 1e-9))
+        .unwrap_or(base)
+}
+
+fn snap_up(value: f64, whole_decades: bool) -> f64 {
+    let base = 10f64.powf((value.log10() - 1e-9).floor());
+    let choices: &[f64] = if whole_decades {
+        &[10.0]
+    } else {
+        &[1.0, 2.0, 5.0]
+    };
+    choices
+        .iter()
+        .map(|m| m * base)
+        .find(|v| *v >= value * (1.0 - 1e-9))
+        .unwrap_or(10.0 * base)
+}
+
+/// An integer in Unicode superscripts.
+pub(crate) fn superscript(value: i32) -> String {
+    value
+        .to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '0' | '4'..='9' => char::from_u32(0x2070 + c as u32 - '0' as u32).unwrap_or(c),
+            other => other,
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn fit(scale: Scale, values: &[f64]) -> Fitted {
+        Fitted::new(scale, values.iter().copied(), 6.0, false)
+    }
+
+    #[test]
+    fn steps_are_one_two_or_five() {
+        for (rough, nice) in [
+            (0.9, 1.0),
+            (1.1, 2.0),
+            (2.0, 2.0),
+            (21.0, 50.0),
+            (0.06, 0.1),
+        ] {
+            assert!((nice_step(rough) - nice).abs() < 1e-12 * nice, "{rough}");
+        }
+    }
+
+    #[test]
+    fn labels_are_short_whatever_the_unit() {
+        let axis = fit(Scale::Linear, &[-5.4e-5, 5.4e-5]);
+        assert_eq!(axis.exponent, -6);
+        assert_eq!(axis.label_suffix(), " (×10⁻⁶)");
+        assert_eq!(axis.tick_label(-40.0), "\u{2212}40");
+        assert_eq!(axis.tick_label(-1e-9), "0");
+        let axis = fit(Scale::Linear, &[0.0, 0.7]);
+        assert_eq!((axis.range.0, axis.label_suffix().as_str()), (0.0, ""));
+        assert_eq!(axis.tick_label(0.2), "0.2");
+    }
+
+    #[test]
+    fn decades_are_labelled_as_powers_where_there_are_many() {
+        let wide = fit(Scale::Log, &[3e-9, 0.5]);
+        assert_eq!((wide.exponent, wide.range), (-9, (1.0, 1e9)));
+        assert_eq!(wide.stride, 2);
+        assert_eq!(wide.tick_label(10.0), "10⁻⁸");
+        assert_eq!(wide.tick_label(1.0), "");
+        let few = fit(Scale::Log, &[0.3, 40.0]);
+        // Drawn values carry the factor 10.
+        assert_eq!(few.tick_label(2.0), "0.2");
+        assert_eq!(few.tick_label(500.0), "50");
+    }
+
+    proptest! {
+        #[test]
+        fn every_value_lies_on_the_axis(
+            values in prop::collection::vec(prop::num::f64::NORMAL | prop::num::f64::ZERO, 1..20),
+            tight in any::<bool>(),
+        ) {
+            let axis = Fitted::new(Scale::Linear, values.iter().copied(), 6.0, tight);
+            for v in &values {
+                let f = axis.fraction(*v);
+                prop_assert!((-1e-9..=1.0 + 1e-9).contains(&f), "{v} at {f} of {axis:?}");
+            }
+        }
+
+        #[test]
+        fn every_positive_value_lies_on_a_logarithmic_axis(
+            exponents in prop::collection::vec(-149.0..149.0f64, 1..20), tight in any::<bool>(),
+        ) {
+            let values: Vec<f64> = exponents.iter().map(|e| 10f64.powf(*e)).collect();
+            let axis = Fitted::new(Scale::Log, values.iter().copied(), 6.0, tight);
+            for v in &values {
+                let f = axis.fraction(*v);
+                prop_assert!((-1e-9..=1.0 + 1e-9).contains(&f), "{v} at {f} of {axis:?}");
+            }
+        }
+    }
+}

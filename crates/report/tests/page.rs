@@ -1,0 +1,295 @@
+//! The whole page: well formed, self-contained, escaped, deterministic.
+
+use report::{
+    Block, Cell, Figure, KeyValues, Mark, Notice, Page, ReportError, Section, Series, Table,
+    WriteError, render, write_atomic,
+};
+
+fn ramp(n: usize) -> Vec<f64> {
+    (0..n).map(|k| k as f64).collect()
+}
+
+fn figure(title: &str) -> Figure {
+    Figure::new(title, "t (s)", "e (µm)").series(Series::line("a", ramp(5), ramp(5)))
+}
+
+fn table() -> Table {
+    Table::new("Peaks", ["case", "max"]).row([Cell::text("none"), Cell::number(-1.5, 2)])
+}
+
+/// One of everything, with text that would break out of elements, attributes,
+/// styles and comments.
+fn full_page() -> Page {
+    let evil = "</style><script>alert('x')</script> \" onload=\"x --> & ${1}";
+    Page::new(evil)
+        .lead(evil)
+        .section(
+            Section::new(evil)
+                .paragraph(evil)
+                .notice(Notice::Warn, evil)
+                .block(Block::List(vec![evil.into()]))
+                .block(Block::Preformatted(evil.into()))
+                .table(
+                    Table::new(evil, [evil, "n", "m"])
+                        .group("", 1)
+                        .group(evil, 2)
+                        .row([
+                            Cell::text(evil),
+                            Cell::number(1.0, 1).marked(Mark::Best),
+                            Cell::Missing,
+                        ])
+                        .note(evil)
+                        .folded(),
+                )
+                .key_values(KeyValues::new(evil).entry(evil, evil))
+                .folded(evil, vec![Block::Paragraph(evil.into())]),
+        )
+        .section(
+            Section::new("Figures")
+                .figure(
+                    Figure::new(evil, evil, evil)
+                        .series(Series::line(evil, ramp(9), ramp(9)).dashed())
+                        .caption(evil),
+                )
+                .figure_grid(vec![figure("one").alt(evil), figure("two")], 2),
+        )
+}
+
+/// Opening and closing tags must nest; comments and scripts must not occur.
+fn assert_well_formed(html: &str) {
+    const VOID: [&str; 2] = ["meta", "br"];
+    let body = html.strip_prefix("<!DOCTYPE html>").expect("doctype");
+    let mut open: Vec<&str> = Vec::new();
+    for piece in body.split('<').skip(1) {
+        let (tag, _) = piece.split_once('>').expect("a tag ends");
+        assert!(!tag.starts_with('!'), "comment or declaration: {tag}");
+        assert_eq!(tag.matches('"').count() % 2, 0, "quotes: {tag}");
+        let name = tag
+            .trim_start_matches('/')
+            .split([' ', '/'])
+            .next()
+            .unwrap();
+        assert_ne!(name, "script");
+        if tag.starts_with('/') {
+            assert_eq!(open.pop(), Some(name), "closing {tag}");
+        } else if !tag.ends_with('/') && !VOID.contains(&name) {
+            open.push(name);
+        }
+    }
+    assert!(open.is_empty(), "left open: {open:?}");
+}
+
+#[test]
+fn the_page_is_well_formed_and_escaped() {
+    let html = render(&full_page()).unwrap();
+    assert_well_formed(&html);
+    assert!(!html.contains("alert('x')</script>"));
+    assert!(html.contains("&lt;script&gt;"));
+    assert!(!html.contains("\" onload="));
+    // Text passes through the plotting library untouched.
+    assert!(html.contains("${1}"));
+}
+
+#[test]
+fn the_page_refers_to_nothing_outside() {
+    let html = render(&full_page()).unwrap();
+    for word in ["http:", "https:", "//", "src=", "@import", "<link", "data:"] {
+        assert!(!html.contains(word), "{word}");
+    }
+    for reference in html
+        .split("url(")
+        .skip(1)
+        .chain(html.split("href=\"").skip(1))
+    {
+        assert!(reference.starts_with('#'), "{}", &reference[..20]);
+    }
+}
+
+#[test]
+fn the_same_page_gives_the_same_text() {
+    assert_eq!(render(&full_page()), render(&full_page()));
+}
+
+#[test]
+fn ids_are_unique() {
+    let html = render(&full_page()).unwrap();
+    let mut ids: Vec<&str> = html
+        .split(" id=\"")
+        .skip(1)
+        .map(|s| s.split('"').next().unwrap())
+        .collect();
+    let all = ids.len();
+    ids.sort_unstable();
+    ids.dedup();
+    // Two sections; one wide figure in two drawings, two small ones.
+    assert_eq!((all, ids.len()), (6, 6));
+}
+
+#[test]
+fn every_series_is_drawn() {
+    let figure = Figure::new("f", "x", "y")
+        .series(Series::line("line", ramp(9), ramp(9)))
+        .series(Series::step("step", ramp(9), ramp(9)).dashed())
+        .series(Series::dots("dots", ramp(9), ramp(9)))
+        .series(Series::line("one point", vec![3.0], vec![4.0]));
+    let page = Page::new("p").section(Section::new("s").figure_grid(vec![figure], 1));
+    let html = render(&page).unwrap();
+    for colour in ["#0072b2", "#d55e00", "#009e73", "#cc79a7"] {
+        // Once in the legend, once in the drawing.
+        let shown = html.matches(&format!("stroke=\"{colour}\"")).count()
+            + html.matches(&format!("fill=\"{colour}\"")).count();
+        assert_eq!(shown, 2, "{colour}");
+    }
+    assert_eq!(html.matches("stroke-dasharray").count(), 2);
+}
+
+#[test]
+fn a_long_series_stays_small_and_keeps_its_spike() {
+    let mut y = vec![0.0; 36_000];
+    y[20_000] = 1.0;
+    let draw = |y: Vec<f64>| {
+        let figure = Figure::new("f", "x", "y").series(Series::line("", ramp(36_000), y));
+        let page = Page::new("p").section(Section::new("s").figure_grid(vec![figure], 1));
+        render(&page).unwrap()
+    };
+    let html = draw(y);
+    // The line is the last path; its points go up to the spike and back: the
+    // plot is about 220 px high, and the axis ends close above the spike.
+    let path = html.rsplit(" d=\"").next().unwrap();
+    let climbs: f64 = path
+        .split('"')
+        .next()
+        .unwrap()
+        .split('l')
+        .skip(1)
+        .filter_map(|step| step.rfind('-').map(|at| step[at..].parse::<f64>().unwrap()))
+        .sum();
+    assert!(climbs < -150.0, "{climbs}");
+    // About 420 columns of at most two points of at most 10 bytes, and the frame.
+    assert!(html.len() < 25_000, "{}", html.len());
+}
+
+#[test]
+fn forty_noisy_figures_stay_below_five_megabytes() {
+    // A fixed linear congruential generator: noise that no thinning can shorten.
+    let mut state = 1u64;
+    let mut noise = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 11) as f64
+    };
+    let noisy = |name, y| Series::line(name, ramp(36_000), y);
+    let mut section = Section::new("s");
+    for _ in 0..40 {
+        let mut figure = Figure::new("f", "x", "y");
+        for name in ["a", "b", "c"] {
+            figure = figure.series(noisy(name, (0..36_000).map(|_| noise()).collect()));
+        }
+        section = section.figure(figure);
+    }
+    let size = render(&Page::new("p").section(section)).unwrap().len();
+    println!("{size} bytes");
+    assert!(size < 5_000_000, "{size}");
+}
+
+#[test]
+fn numbers_that_are_none_are_refused_by_name() {
+    let refused = |section| render(&Page::new("p").section(section)).unwrap_err();
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for cell in [Cell::number(value, 2), Cell::scientific(value, 2)] {
+            let error = refused(Section::new("s").table(table().row([Cell::text("x"), cell])));
+            let text = error.to_string();
+            assert!(
+                text.starts_with("table \"Peaks\", row 2, column 2 (\"max\"): "),
+                "{text}"
+            );
+        }
+        let bad = figure("f").series(Series::dots("b", vec![0.0, 1.0], vec![0.0, value]));
+        let text = refused(Section::new("s").figure(bad.clone())).to_string();
+        assert!(
+            text.starts_with("figure \"f\", series \"b\", point 2: y = "),
+            "{text}"
+        );
+        let folded = Block::FigureGrid {
+            figures: vec![bad],
+            columns: 2,
+        };
+        refused(Section::new("s").folded("more", vec![folded]));
+    }
+}
+
+#[test]
+fn shapes_that_do_not_fit_are_refused() {
+    let refused = |section| render(&Page::new("p").section(section)).unwrap_err();
+    let error = refused(Section::new("s").table(table().row([Cell::Missing])));
+    assert!(matches!(
+        error,
+        ReportError::RowLength {
+            row: 2,
+            found: 1,
+            expected: 2,
+            ..
+        }
+    ));
+    let error = refused(Section::new("s").table(table().group("g", 3)));
+    assert!(matches!(error, ReportError::GroupSpan { found: 3, .. }));
+    let error = refused(Section::new("s").figure(Figure::new("f", "x", "y")));
+    assert!(matches!(error, ReportError::NoSeries { .. }));
+    let with = |x, y| Section::new("s").figure(figure("f").series(Series::line("b", x, y)));
+    let error = refused(with(vec![], vec![]));
+    assert!(matches!(error, ReportError::EmptySeries { .. }));
+    let error = refused(with(ramp(2), ramp(3)));
+    assert!(matches!(
+        error,
+        ReportError::SeriesLength { x: 2, y: 3, .. }
+    ));
+    // `ramp` starts at zero, which has no logarithm.
+    let error = refused(Section::new("s").figure(figure("f").log_y()));
+    assert!(matches!(error, ReportError::PointValue { point: 1, .. }));
+}
+
+#[test]
+fn figures_are_shown_as_written() {
+    let row = [
+        Cell::text("r"),
+        Cell::number(-0.0004, 2),
+        Cell::number(-1234.5, 1),
+        Cell::scientific(-1.7e-5, 1),
+        Cell::scientific(2.0, 1),
+        Cell::Missing,
+    ];
+    let table = Table::new("t", ["", "a", "b", "c", "d", "e"]).row(row);
+    let html = render(&Page::new("p").section(Section::new("s").table(table))).unwrap();
+    for shown in ["0.00", "\u{2212}1234.5", "\u{2212}1.7·10⁻⁵", "2.0", "–"] {
+        assert!(
+            html.contains(&format!("<td class=\"n\">{shown}</td>")),
+            "{shown}"
+        );
+    }
+}
+
+#[test]
+fn pages_are_written_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("report.html");
+    write_atomic(&path, &full_page()).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert_eq!(text, render(&full_page()).unwrap());
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let mode = std::fs::metadata(&path).unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o644);
+    }
+    let bad = Page::new("p").section(Section::new("s").figure(Figure::new("f", "x", "y")));
+    assert!(matches!(
+        write_atomic(&path, &bad),
+        Err(WriteError::Report(_))
+    ));
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    let absent = folder.path().join("absent").join("report.html");
+    let error = write_atomic(&absent, &full_page()).unwrap_err().to_string();
+    assert!(error.starts_with(&absent.display().to_string()), "{error}");
+}

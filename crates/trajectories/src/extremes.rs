@@ -1,0 +1,45 @@
+//! How far a motion goes in each quantity, for checks against an axis.
+
+/// Bounds on a motion over its whole time.
+///
+/// For S-curves and dwells they are the values reached. For sines and chirps they are safe: never
+/// passed, but not all reached; for a sine at most 2 % above what is reached in velocity, 10 % in
+/// acceleration and 25 % in jerk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extremes {
+    /// Least position, m.
+    pub position_min: f64,
+    /// Greatest position, m.
+    pub position_max: f64,
+    /// Greatest |velocity|, m/s.
+    pub velocity: f64,
+    /// Greatest |acceleration|, m/s².
+    pub acceleration: f64,
+    /// Greatest |jerk|, m/s³.
+    pub jerk: f64,
+}
+
+impl Extremes {
+    /// Standing still at `position` (m).
+    pub const fn at_rest(position: f64) -> Self {
+        Self {
+            position_min: position,
+            position_max: position,
+            velocity: 0.0,
+            acceleration: 0.0,
+            jerk: 0.0,
+        }
+    }
+
+    /// Bounds that hold for both motions.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            position_min: self.position_min.min(other.position_min),
+            position_max: self.position_max.max(other.position_max),
+            velocity: self.velocity.max(other.velocity),
+            acceleration: self.acceleration.max(other.acceleration),
+            jerk: self.jerk.max(other.jerk),
+        }
+    }
+}

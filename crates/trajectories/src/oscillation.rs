@@ -1,0 +1,242 @@
+//! Sines and chirps about a position, from rest to rest.
+
+use crate::envelope::{Envelope, RISE_DERIVATIVE_BOUNDS, rise};
+use crate::error::{check, finite, positive};
+use crate::sweep::Phase;
+use crate::{Extremes, Motion, Setpoint, Sweep, TrajectoryError};
+
+/// A sine of constant frequency.
+///
+/// The amplitude rises over one cycle before the `cycles` at full amplitude and falls over one
+/// cycle after them: the whole lasts `(cycles + 2) / frequency`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sine {
+    /// Amplitude, m; negative to set out in the negative direction.
+    pub amplitude: f64,
+    /// Frequency, Hz, greater than zero.
+    pub frequency: f64,
+    /// Cycles at full amplitude, at least one.
+    pub cycles: u32,
+}
+
+/// A sine whose frequency runs from one value to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chirp {
+    /// Amplitude, m; negative to set out in the negative direction.
+    pub amplitude: f64,
+    /// Frequency at the start, Hz, greater than zero.
+    pub from_frequency: f64,
+    /// Frequency at the end, Hz, greater than zero; may be the lower one.
+    pub to_frequency: f64,
+    /// Whole length, both ramps included, s.
+    pub duration: f64,
+    /// Length of the rise of the amplitude at the start and of its fall at the end, s: greater
+    /// than zero, at most half the duration. The frequency runs during the ramps too.
+    pub ramp: f64,
+    /// Course of the frequency.
+    pub sweep: Sweep,
+}
+
+/// A sine or chirp `s(t) = s₀ + A w(t) sin φ(t)`, with φ(0) = 0 and w the amplitude factor.
+///
+/// The factor rises and falls by the polynomial x³(10 − 15x + 6x²), so position, velocity and
+/// acceleration are continuous everywhere, also with the rests before and after; the jerk is
+/// bounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Oscillation {
+    about: f64,
+    amplitude: f64,
+    phase: Phase,
+    envelope: Envelope,
+    extremes: Extremes,
+}
+
+/// Pieces into which a ramp is cut to bound its derivatives: more would narrow the bounds little.
+/// Costs some microseconds, once.
+const RAMP_PIECES: u32 = 128;
+
+/// Phases above this many cycles have lost a millionth of a cycle to rounding.
+const CYCLES_MAX: f64 = 1e9;
+
+impl Oscillation {
+    /// A sine about the position `about` (m).
+    ///
+    /// # Errors
+    /// [`TrajectoryError::Invalid`] naming the field that is out of its range.
+    pub fn sine(about: f64, sine: &Sine) -> Result<Self, TrajectoryError> {
+        let frequency = positive("frequency", sine.frequency, "Hz")?;
+        let cycles = f64::from(sine.cycles);
+        check(sine.cycles > 0, "cycles", cycles, "", "1 or more")?;
+        let phase = Phase::Linear {
+            frequency,
+            slope: 0.0,
+        };
+        let envelope = Envelope {
+            duration: (cycles + 2.0) / frequency,
+            ramp: 1.0 / frequency,
+        };
+        Self::new(about, sine.amplitude, phase, envelope)
+    }
+
+    /// A chirp about the position `about` (m).
+    ///
+    /// # Errors
+    /// [`TrajectoryError::Invalid`] naming the field that is out of its range.
+    pub fn chirp(about: f64, chirp: &Chirp) -> Result<Self, TrajectoryError> {
+        let f0 = positive("from_frequency", chirp.from_frequency, "Hz")?;
+        let f1 = positive("to_frequency", chirp.to_frequency, "Hz")?;
+        let duration = positive("duration", chirp.duration, "s")?;
+        check(
+            chirp.ramp > 0.0 && chirp.ramp <= 0.5 * duration,
+            "ramp",
+            chirp.ramp,
+            "s",
+            "greater than zero and at most half the duration",
+        )?;
+        let phase = Phase::new(f0, f1, duration, chirp.sweep);
+        let envelope = Envelope {
+            duration,
+            ramp: chirp.ramp,
+        };
+        Self::new(about, chirp.amplitude, phase, envelope)
+    }
+
+    fn new(
+        about: f64,
+        amplitude: f64,
+        phase: Phase,
+        envelope: Envelope,
+    ) -> Result<Self, TrajectoryError> {
+        finite("about", about, "m")?;
+        finite("amplitude", amplitude, "m")?;
+        check(
+            phase.cycles(envelope.duration) <= CYCLES_MAX,
+            "total cycles",
+            phase.cycles(envelope.duration),
+            "",
+            "at most 1e9",
+        )?;
+        let extremes = bounds(about, amplitude.abs(), &phase, &envelope);
+        let ends = [extremes.position_min, extremes.position_max];
+        let rates = [extremes.velocity, extremes.acceleration, extremes.jerk];
+        let representable =
+            ends.iter().chain(&rates).all(|x| x.is_finite()) && envelope.duration.is_finite();
+        if !representable {
+            return Err(TrajectoryError::Unrepresentable {
+                what: "the oscillation's range, velocity, acceleration, jerk or duration",
+            });
+        }
+        Ok(Self {
+            about,
+            amplitude,
+            phase,
+            envelope,
+            extremes,
+        })
+    }
+
+    /// Position it starts from, swings about and ends at, m.
+    pub const fn about(&self) -> f64 {
+        self.about
+    }
+
+    /// Time during which the amplitude is full: begin and end, s after the start.
+    pub const fn full_amplitude(&self) -> (f64, f64) {
+        let Envelope { duration, ramp } = self.envelope;
+        (ramp, duration - ramp)
+    }
+
+    /// Safe bounds on position, velocity, acceleration and jerk.
+    pub const fn extremes(&self) -> Extremes {
+        self.extremes
+    }
+}
+
+impl Motion for Oscillation {
+    #[inline]
+    fn duration(&self) -> f64 {
+        self.envelope.duration
+    }
+
+    fn at(&self, t: f64) -> Setpoint {
+        // Written so that NaN is caught too.
+        if !(t >= 0.0 && t < self.envelope.duration) {
+            return Setpoint::at_rest(self.about);
+        }
+        let [w, w1, w2, w3] = self.envelope.at(t);
+        let [p1, p2, p3] = self.phase.derivatives(t);
+        let (sin, cos) = self.phase.sin_cos(t);
+        let amplitude = self.amplitude;
+        // d/dt, d²/dt² and d³/dt³ of w sin φ.
+        let velocity = w1 * sin + w * p1 * cos;
+        let acceleration = (w2 - w * p1 * p1) * sin + (2.0 * w1 * p1 + w * p2) * cos;
+        let jerk_sin = w3 - 3.0 * p1 * (w1 * p1 + w * p2);
+        let jerk_cos = 3.0 * (w2 * p1 + w1 * p2) + w * (p3 - p1 * p1 * p1);
+        Setpoint {
+            position: self.about + amplitude * (w * sin),
+            velocity: amplitude * velocity,
+            acceleration: amplitude * acceleration,
+            jerk: amplitude * (jerk_sin * sin + jerk_cos * cos),
+        }
+    }
+}
+
+/// Safe bounds on `about + amplitude · w sin φ` and its derivatives.
+fn bounds(about: f64, amplitude: f64, phase: &Phase, envelope: &Envelope) -> Extremes {
+    let (ramp, duration) = (envelope.ramp, envelope.duration);
+    // At full amplitude, where each derivative of the phase is greatest at one of the two ends.
+    let steady = greatest(phase, ramp, duration - ramp);
+    let mut worst = rate_bounds([1.0, 0.0, 0.0, 0.0], steady);
+    let step = 1.0 / f64::from(RAMP_PIECES);
+    for i in 0..RAMP_PIECES {
+        let (begin, end) = (f64::from(i) * step, f64::from(i + 1) * step);
+        let w = envelope.in_time(rise_bounds(begin, end));
+        let rising = greatest(phase, begin * ramp, end * ramp);
+        let falling = greatest(phase, duration - end * ramp, duration - begin * ramp);
+        for p in [rising, falling] {
+            let here = rate_bounds(w, p);
+            worst = core::array::from_fn(|k| worst[k].max(here[k]));
+        }
+    }
+    // The bounds are exact mathematics; evaluation rounds a few times.
+    let [velocity, acceleration, jerk] = worst.map(|x| amplitude * x * (1.0 + 1e-12));
+    Extremes {
+        position_min: about - amplitude,
+        position_max: about + amplitude,
+        velocity,
+        acceleration,
+        jerk,
+    }
+}
+
+/// Bounds on |w|, |w'|, |w''|, |w'''| of the rise between `begin` and `end`: w grows, and each
+/// derivative differs from its value in the middle by at most its own slope times half the width.
+fn rise_bounds(begin: f64, end: f64) -> [f64; 4] {
+    let middle = rise(0.5 * (begin + end));
+    let half = 0.5 * (end - begin);
+    let [_, s2, s3, s4] = RISE_DERIVATIVE_BOUNDS;
+    [
+        rise(end)[0],
+        middle[1].abs() + s2 * half,
+        middle[2].abs() + s3 * half,
+        middle[3].abs() + s4 * half,
+    ]
+}
+
+/// Greatest absolute phase derivatives between two instants.
+fn greatest(phase: &Phase, begin: f64, end: f64) -> [f64; 3] {
+    let (first, last) = (phase.derivatives(begin), phase.derivatives(end));
+    core::array::from_fn(|k| first[k].abs().max(last[k].abs()))
+}
+
+/// Bounds on the first three derivatives of w sin φ from bounds on those of w and φ.
+fn rate_bounds([w, w1, w2, w3]: [f64; 4], [p1, p2, p3]: [f64; 3]) -> [f64; 3] {
+    [
+        libm::hypot(w1, w * p1),
+        libm::hypot(w2 + w * p1 * p1, 2.0 * w1 * p1 + w * p2),
+        libm::hypot(
+            w3 + 3.0 * p1 * (w1 * p1 + w * p2),
+            3.0 * (w2 * p1 + w1 * p2) + w * (p3 + p1 * p1 * p1),
+        ),
+    ]
+}

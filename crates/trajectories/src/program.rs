@@ -1,0 +1,225 @@
+//! Steps one after another, as one motion.
+
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
+use crate::error::{check, finite};
+use crate::{Extremes, Motion, Oscillation, SCurve, Setpoint, Step, TrajectoryError};
+
+/// A motion made of [`Step`]s, planned once; evaluation finds the step by binary search.
+///
+/// ```
+/// use trajectories::{Limits, Motion, Program, Sine, Step};
+///
+/// let limits = Limits::new(0.1, 0.225, 1.2)?;
+/// let program = Program::new(
+///     0.6,
+///     vec![
+///         Step::Move { to: 0.9, limits },
+///         Step::Dwell { duration: 0.5 },
+///         Step::Sine(Sine { amplitude: 1e-3, frequency: 5.0, cycles: 10 }),
+///     ],
+/// )?;
+/// assert_eq!(program.at(program.duration()).position, 0.9);
+/// assert_eq!(program.extremes().position_max, 0.901);
+/// # Ok::<(), trajectories::TrajectoryError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "crate::file::ProgramFile",
+        into = "crate::file::ProgramFile"
+    )
+)]
+pub struct Program {
+    start: f64,
+    steps: Vec<Step>,
+    pieces: Vec<Piece>,
+    /// Start of each piece, s; kept apart from the pieces so that the search touches little memory.
+    times: Vec<f64>,
+    duration: f64,
+    extremes: Extremes,
+}
+
+/// A planned step.
+#[derive(Clone, Debug, PartialEq)]
+enum Piece {
+    // Boxed: it is far larger than the others.
+    Curve(Box<SCurve>),
+    Rest { position: f64, duration: f64 },
+    Oscillation(Oscillation),
+}
+
+impl Program {
+    /// Plans `steps` from rest at `start` (m). No steps at all is a program of no duration.
+    ///
+    /// # Errors
+    /// [`TrajectoryError::Invalid`] for a start that is not finite; [`TrajectoryError::Step`] with
+    /// the number of the step and what is wrong with it.
+    pub fn new(start: f64, steps: Vec<Step>) -> Result<Self, TrajectoryError> {
+        let mut present = finite("start", start, "m")?;
+        let mut pieces = Vec::with_capacity(steps.len());
+        let mut times = Vec::with_capacity(steps.len());
+        let mut clock = Clock::default();
+        let mut extremes = Extremes::at_rest(start);
+        for (i, step) in steps.iter().enumerate() {
+            let piece = Piece::plan(present, step)
+                .and_then(|piece| clock.advance(piece.duration()).map(|begin| (begin, piece)));
+            let (begin, piece) = piece.map_err(|source| TrajectoryError::Step {
+                number: i + 1,
+                kind: step.kind(),
+                source: Box::new(source),
+            })?;
+            present = piece.end();
+            extremes = extremes.union(piece.extremes());
+            times.push(begin);
+            pieces.push(piece);
+        }
+        Ok(Self {
+            start,
+            steps,
+            pieces,
+            times,
+            duration: clock.now(),
+            extremes,
+        })
+    }
+
+    /// Position at the start, m.
+    pub const fn start(&self) -> f64 {
+        self.start
+    }
+
+    /// Position at the end, m.
+    pub fn end(&self) -> f64 {
+        self.pieces.last().map_or(self.start, Piece::end)
+    }
+
+    /// The steps, as given.
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
+    }
+
+    /// Time at which each step begins, s; as many as there are steps.
+    pub fn step_times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Bounds on position, velocity, acceleration and jerk: exact for moves and dwells, safe for
+    /// sines and chirps.
+    pub const fn extremes(&self) -> Extremes {
+        self.extremes
+    }
+}
+
+impl Motion for Program {
+    #[inline]
+    fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    #[inline]
+    fn at(&self, t: f64) -> Setpoint {
+        if t >= self.duration {
+            return Setpoint::at_rest(self.end());
+        }
+        // Steps that have begun; of steps of no length the last counts.
+        let begun = self.times.partition_point(|&begin| begin <= t);
+        let Some(i) = begun.checked_sub(1) else {
+            return Setpoint::at_rest(self.start);
+        };
+        self.pieces[i].at(t - self.times[i])
+    }
+}
+
+impl Piece {
+    /// Plans one step from rest at `present`.
+    fn plan(present: f64, step: &Step) -> Result<Self, TrajectoryError> {
+        Ok(match step {
+            Step::Move { to, limits } => Self::Curve(Box::new(SCurve::plan(present, *to, limits)?)),
+            Step::MoveBy { by, limits } => {
+                finite("by", *by, "m")?;
+                Self::Curve(Box::new(SCurve::plan(present, present + by, limits)?))
+            }
+            Step::Dwell { duration } => {
+                let valid = duration.is_finite() && *duration >= 0.0;
+                check(valid, "duration", *duration, "s", "finite and zero or more")?;
+                Self::Rest {
+                    position: present,
+                    duration: *duration,
+                }
+            }
+            Step::Sine(sine) => Self::Oscillation(Oscillation::sine(present, sine)?),
+            Step::Chirp(chirp) => Self::Oscillation(Oscillation::chirp(present, chirp)?),
+        })
+    }
+
+    fn duration(&self) -> f64 {
+        match self {
+            Self::Curve(curve) => curve.duration(),
+            Self::Rest { duration, .. } => *duration,
+            Self::Oscillation(oscillation) => oscillation.duration(),
+        }
+    }
+
+    #[inline]
+    fn at(&self, t: f64) -> Setpoint {
+        match self {
+            Self::Curve(curve) => curve.at(t),
+            Self::Rest { position, .. } => Setpoint::at_rest(*position),
+            Self::Oscillation(oscillation) => oscillation.at(t),
+        }
+    }
+
+    fn end(&self) -> f64 {
+        match self {
+            Self::Curve(curve) => curve.to(),
+            Self::Rest { position, .. } => *position,
+            Self::Oscillation(oscillation) => oscillation.about(),
+        }
+    }
+
+    fn extremes(&self) -> Extremes {
+        match self {
+            Self::Curve(curve) => curve.extremes(),
+            Self::Rest { position, .. } => Extremes::at_rest(*position),
+            Self::Oscillation(oscillation) => oscillation.extremes(),
+        }
+    }
+}
+
+/// Sum of durations by Neumaier's compensated summation: after ten thousand steps the time is
+/// still right to rounding.
+#[derive(Default)]
+struct Clock {
+    sum: f64,
+    lost: f64,
+}
+
+impl Clock {
+    fn now(&self) -> f64 {
+        self.sum + self.lost
+    }
+
+    /// Adds a duration (≥ 0) and returns the time before it.
+    fn advance(&mut self, duration: f64) -> Result<f64, TrajectoryError> {
+        let begin = self.now();
+        let sum = self.sum + duration;
+        let (large, small) = if self.sum >= duration {
+            (self.sum, duration)
+        } else {
+            (duration, self.sum)
+        };
+        self.lost += (large - sum) + small;
+        self.sum = sum;
+        if self.now().is_finite() {
+            Ok(begin)
+        } else {
+            Err(TrajectoryError::Unrepresentable {
+                what: "the duration of the program",
+            })
+        }
+    }
+}

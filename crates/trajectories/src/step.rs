@@ -1,0 +1,68 @@
+//! The steps a motion program is made of.
+
+use crate::{Chirp, Limits, Sine};
+
+/// One step of a motion program. It begins at rest where the step before it ended.
+///
+/// With the feature `serde` a step is read and written under the name of its kind, with one key
+/// per value and the unit in the key; unknown keys are refused:
+///
+/// ```toml
+/// start_mm = 600.0
+///
+/// [[steps]]
+/// move = { to_mm = 900.0, velocity_mm_s = 100.0, acceleration_mm_s2 = 225.0, jerk_mm_s3 = 1200.0 }
+/// [[steps]]
+/// dwell = { duration_s = 0.5 }
+/// [[steps]]
+/// move_by = { by_mm = -50.0, velocity_mm_s = 20.0, acceleration_mm_s2 = 225.0, jerk_mm_s3 = 1200.0 }
+/// [[steps]]
+/// sine = { amplitude_mm = 1.0, frequency_hz = 5.0, cycles = 10 }
+/// [[steps]]
+/// # `ramp_s` may be left out (a tenth of the duration), `sweep` too (linear).
+/// chirp = { amplitude_mm = 0.1, from_frequency_hz = 1.0, to_frequency_hz = 100.0, duration_s = 10.0, ramp_s = 1.0, sweep = "logarithmic" }
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(try_from = "crate::file::StepFile", into = "crate::file::StepFile")
+)]
+pub enum Step {
+    /// Time-optimal S-curve to a position of the axis. With a long travel, a constant-speed run.
+    Move {
+        /// Position to reach, m.
+        to: f64,
+        /// Limits of the move.
+        limits: Limits,
+    },
+    /// Time-optimal S-curve over a distance from the present position.
+    MoveBy {
+        /// Signed distance, m.
+        by: f64,
+        /// Limits of the move.
+        limits: Limits,
+    },
+    /// Standing still.
+    Dwell {
+        /// How long, s; zero or more.
+        duration: f64,
+    },
+    /// Sine about the present position.
+    Sine(Sine),
+    /// Chirp about the present position.
+    Chirp(Chirp),
+}
+
+impl Step {
+    /// Name of the step's kind, as used in files and errors.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Move { .. } => "move",
+            Self::MoveBy { .. } => "move_by",
+            Self::Dwell { .. } => "dwell",
+            Self::Sine(_) => "sine",
+            Self::Chirp(_) => "chirp",
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Programs read from and written to TOML.
+#![cfg(feature = "serde")]
+
+use proptest::prelude::*;
+use trajectories::{Chirp, Limits, Motion, Program, Sine, Step, Sweep};
+
+const PROGRAM: &str = r#"
+start_mm = 600.0
+
+[[steps]]
+move = { to_mm = 900.0, velocity_mm_s = 100.0, acceleration_mm_s2 = 225.0, jerk_mm_s3 = 1200.0 }
+[[steps]]
+dwell = { duration_s = 0.5 }
+[[steps]]
+move_by = { by_mm = -50.0, velocity_mm_s = 20.0, acceleration_mm_s2 = 225.0, jerk_mm_s3 = 1200.0 }
+[[steps]]
+sine = { amplitude_mm = 1.0, frequency_hz = 5.0, cycles = 10 }
+[[steps]]
+chirp = { amplitude_mm = 0.1, from_frequency_hz = 1.0, to_frequency_hz = 100.0, duration_s = 10.0, ramp_s = 2.0, sweep = "logarithmic" }
+[[steps]]
+chirp = { amplitude_mm = 0.1, from_frequency_hz = 1.0, to_frequency_hz = 10.0, duration_s = 10.0 }
+"#;
+
+#[test]
+fn millimetres_become_the_nearest_metres() {
+    let program: Program = toml::from_str(PROGRAM).unwrap();
+    assert_eq!(program.start(), 0.6);
+    let steps = program.steps();
+    let limits = Limits::new(0.1, 0.225, 1.2).unwrap();
+    assert_eq!(steps[0], Step::Move { to: 0.9, limits });
+    assert_eq!(steps[1], Step::Dwell { duration: 0.5 });
+    let limits = Limits::new(0.02, 0.225, 1.2).unwrap();
+    assert_eq!(steps[2], Step::MoveBy { by: -0.05, limits });
+    assert_eq!(
+        steps[3],
+        Step::Sine(Sine {
+            amplitude: 1e-3,
+            frequency: 5.0,
+            cycles: 10
+        })
+    );
+    let chirp = Chirp {
+        amplitude: 1e-4,
+        from_frequency: 1.0,
+        to_frequency: 100.0,
+        duration: 10.0,
+        ramp: 2.0,
+        sweep: Sweep::Logarithmic,
+    };
+    assert_eq!(steps[4], Step::Chirp(chirp));
+    // Left out: a tenth of the duration, and linear.
+    let chirp = Chirp {
+        to_frequency: 10.0,
+        ramp: 1.0,
+        sweep: Sweep::Linear,
+        ..chirp
+    };
+    assert_eq!(steps[5], Step::Chirp(chirp));
+    assert!((program.end() - 0.85).abs() < 1e-15);
+    assert!(program.duration() > 20.0);
+}
+
+#[test]
+fn a_written_program_reads_back_the_same() {
+    let program: Program = toml::from_str(PROGRAM).unwrap();
+    let written = toml::to_string(&program).unwrap();
+    assert_eq!(toml::from_str::<Program>(&written).unwrap(), program);
+}
+
+proptest! {
+    /// Numbers that came from a file in millimetres go back to it bit for bit.
+    #[test]
+    fn numbers_survive_the_round_trip(start in -1e4..1e4f64, by in -1e4..1e4f64, v in 1e-3..1e4f64) {
+        let text = format!(
+            "start_mm = {start:?}\n[[steps]]\nmove_by = {{ by_mm = {by:?}, velocity_mm_s = {v:?}, \
+             acceleration_mm_s2 = 1.0, jerk_mm_s3 = 1.0 }}\n"
+        );
+        let program: Program = toml::from_str(&text).unwrap();
+        let written = toml::to_string(&program).unwrap();
+        prop_assert_eq!(toml::from_str::<Program>(&written).unwrap(), program);
+    }
+}
+
+#[test]
+fn bad_files_are_refused() {
+    let with = |step: &str| {
+        let text = format!("start_mm = 0.0\n[[steps]]\n{step}\n");
+        toml::from_str::<Program>(&text).unwrap_err().to_string()
+    };
+    let unit = with("dwell = { duration_ms = 5.0 }");
+    assert!(
+        unit.contains("available keys: duration_s") && unit.contains("line 3"),
+        "{unit}"
+    );
+    let extra = with("dwell = { duration_s = 5.0, speed = 1.0 }");
+    assert!(extra.contains("unexpected keys in table: speed"), "{extra}");
+    let kind = with("jump = { to_mm = 5.0 }");
+    assert!(kind.contains("unknown variant `jump`"), "{kind}");
+    let missing = with("sine = { amplitude_mm = 1.0, cycles = 3 }");
+    assert!(
+        missing.contains("missing field `frequency_hz`"),
+        "{missing}"
+    );
+    let wrong = with("dwell = { duration_s = \"long\" }");
+    assert!(wrong.contains("invalid type"), "{wrong}");
+    let invalid = with("dwell = { duration_s = nan }");
+    assert!(
+        invalid.contains("step 1 (dwell): duration is NaN s"),
+        "{invalid}"
+    );
+    let limit = with(
+        "move = { to_mm = 1.0, velocity_mm_s = -1.0, acceleration_mm_s2 = 1.0, jerk_mm_s3 = 1.0 }",
+    );
+    assert!(
+        limit.contains("step 1 (move): velocity is -0.001 m/s"),
+        "{limit}"
+    );
+    let top = toml::from_str::<Program>("start_mm = 0.0\nsteps = []\nstop_mm = 1.0").unwrap_err();
+    assert!(top.to_string().contains("unknown field `stop_mm`"), "{top}");
+}

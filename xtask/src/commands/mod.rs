@@ -1,0 +1,12 @@
+//! One file a command.
+
+pub mod compensate;
+pub mod identify;
+pub mod layers;
+pub mod pipeline;
+pub mod report;
+pub mod sample;
+pub mod simulate;
+pub mod study;
+pub mod train;
+pub mod validate;

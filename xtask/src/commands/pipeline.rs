@@ -1,0 +1,31 @@
+//! `pipeline`: every stage in its order; those up to date are left alone.
+
+use miette::Result;
+
+use super::{compensate, identify, report, sample, study, train, validate};
+use crate::context::{Common, Context};
+use crate::output::say;
+use crate::store::Stage;
+
+type Run = fn(&Context) -> Result<()>;
+
+/// Runs the command.
+pub fn run(common: &Common) -> Result<()> {
+    let context = common.open()?;
+    let stages: [(Stage<'_>, &str, Run); 6] = [
+        (sample::stage(&context), "sample", sample::run),
+        (train::stage(&context), "train", train::run),
+        (identify::stage(&context), "identify", identify::run),
+        (validate::stage(&context), "validate", validate::run),
+        (compensate::stage(&context), "compensate", compensate::run),
+        (study::stage(&context), "study", study::run),
+    ];
+    for (stage, name, run) in &stages {
+        if stage.is_current() {
+            say(format!("{name}: up to date"))?;
+        } else {
+            run(&context)?;
+        }
+    }
+    report::run(&context)
+}

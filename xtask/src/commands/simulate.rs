@@ -1,0 +1,116 @@
+//! `simulate`: one motion, its error and its log.
+
+use std::path::PathBuf;
+
+use axis_log::write_csv;
+use axis_sim::{ClosedLoop, Recorder};
+use clap::{Args, ValueEnum};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use pipeline::Figures;
+use pipeline::strategies::Strategy;
+use trajectories::{Motion, Program};
+
+use super::validate;
+use crate::context::{Common, Context, read_text};
+use crate::output::say;
+
+/// Options of `simulate`.
+#[derive(Args)]
+pub struct Options {
+    #[command(flatten)]
+    common: Common,
+    /// Trajectory of the axis file, from 1
+    #[arg(
+        long,
+        value_name = "N",
+        conflicts_with = "program",
+        required_unless_present = "program"
+    )]
+    trajectory: Option<usize>,
+    /// Motion program (TOML; see docs/theory/trajectories.md)
+    #[arg(long, value_name = "FILE")]
+    program: Option<PathBuf>,
+    /// Compensation; all but `none` need `train` and `identify` first
+    #[arg(long, value_enum, default_value_t = Compensation::None)]
+    compensation: Compensation,
+    /// Where to write the log (CSV, a row each control cycle)
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Compensation {
+    None,
+    Network,
+    NetworkLugre,
+    TransferFunction,
+    TransferFunctionLugre,
+    Lugre,
+    NetworkLugrePrinted,
+}
+
+impl Compensation {
+    fn strategy(self) -> Strategy {
+        match self {
+            Self::None => Strategy::None,
+            Self::Network => Strategy::Network,
+            Self::NetworkLugre => Strategy::NetworkLugre,
+            Self::TransferFunction => Strategy::TransferFunction,
+            Self::TransferFunctionLugre => Strategy::TransferFunctionLugre,
+            Self::Lugre => Strategy::Lugre,
+            Self::NetworkLugrePrinted => Strategy::NetworkLugrePrinted,
+        }
+    }
+}
+
+/// Runs the command: the axis file itself is simulated, not its machine.
+pub fn command(options: &Options) -> Result<()> {
+    let context = options.common.open()?;
+    let motion = motion(options, &context)?;
+    let closed_loop = ClosedLoop::new(&context.axis).into_diagnostic()?;
+    let mut recorder = Recorder::default();
+    let observe = |cycle: &axis_sim::Cycle| recorder.push(cycle);
+    let outcome = if options.compensation == Compensation::None {
+        closed_loop.run(&*motion, &mut compensator::NoCompensation, observe)
+    } else {
+        let strategy = options.compensation.strategy();
+        let mut law = validate::predictors(&context)?
+            .compensator(strategy)
+            .into_diagnostic()?;
+        closed_loop.run(&*motion, &mut *law, observe)
+    };
+    // What was computed before the run stopped is kept.
+    if let Some(file) = &options.log {
+        write_csv(file, &recorder.log().into_diagnostic()?)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot write the log {}", file.display()))?;
+    }
+    outcome.completed().into_diagnostic()?;
+    let errors: Vec<f64> = recorder.cycles().iter().map(|c| c.error()).collect();
+    let figures = Figures::of_metres(&errors).into_diagnostic()?;
+    say(format!(
+        "{} s, {} cycles: tracking error max {:.3} µm, mean {:.4} µm (simulated)",
+        motion.duration(),
+        errors.len(),
+        figures.max,
+        figures.mean
+    ))
+}
+
+fn motion(options: &Options, context: &Context) -> Result<Box<dyn Motion>> {
+    if let Some(file) = &options.program {
+        let program: Program = toml::from_str(&read_text(file)?)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("{} is not a motion program", file.display()))?;
+        return Ok(Box::new(program));
+    }
+    let number = options.trajectory.unwrap_or(0);
+    let count = context.axis.trajectories.len();
+    let spec = number
+        .checked_sub(1)
+        .and_then(|index| context.axis.trajectories.get(index))
+        .ok_or_else(|| {
+            miette!("--trajectory {number}: the axis file has trajectories 1 to {count}")
+        })?;
+    Ok(Box::new(context.axis.plan(spec).into_diagnostic()?))
+}

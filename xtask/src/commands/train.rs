@@ -1,0 +1,165 @@
+//! `train`: the one-cycle network.
+
+use cfnn::Network;
+use cfnn::artifact::{
+    checkpoint_from_bytes, checkpoint_to_bytes, network_from_bytes, network_to_bytes,
+};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use pipeline::training::{NetworkPlan, Trained, test, train};
+use pipeline::{Figures, LinearMap};
+use serde::{Deserialize, Serialize};
+
+use super::sample;
+use crate::context::{Common, Context};
+use crate::output::{say, write_whole};
+use crate::progress::bar;
+use crate::store::Stage;
+
+const NETWORK: &str = "network.cfnn";
+const TRAINING: &str = "training.json";
+const CHECKPOINT: &str = "checkpoint.cfnn";
+/// Epochs from one checkpoint to the next.
+const CHECKPOINT_EVERY: usize = 25;
+
+/// What a training showed.
+#[derive(Serialize, Deserialize)]
+pub struct Training {
+    pub hidden: Vec<usize>,
+    pub epochs: usize,
+    pub initial_damping: f64,
+    pub train_samples: usize,
+    pub test_samples: usize,
+    /// Errors on the unseen samples, µm.
+    pub network: Figures,
+    /// Errors there of the best linear map of as many evenly spread samples.
+    pub linear: Figures,
+    /// Errors of the network on its own training samples, µm.
+    pub seen: Figures,
+    /// Root mean square over the training samples after each epoch, µm.
+    pub rms_um: Vec<f64>,
+    pub seconds: f64,
+}
+
+/// Runs the command.
+pub fn command(common: &Common) -> Result<()> {
+    run(&common.open()?)
+}
+
+/// The stage, for this context.
+pub fn stage(context: &Context) -> Stage<'_> {
+    let settings = format!(
+        "{:?}",
+        NetworkPlan {
+            threads: 0,
+            ..plan(context)
+        }
+    );
+    Stage::new(context, "train", &settings, &[&sample::stage(context)])
+}
+
+/// Runs the stage; goes on from a checkpoint where one is left.
+pub fn run(context: &Context) -> Result<()> {
+    let stage = stage(context);
+    let [seen, even, unseen] = sample::load(context)?;
+    stage.begin()?;
+    let plan = plan(context);
+    let progress = bar("train", plan.epochs as u64);
+    let checkpoint_path = stage.path(CHECKPOINT);
+    let checkpoint = std::fs::read(&checkpoint_path)
+        .ok()
+        .and_then(|bytes| checkpoint_from_bytes(&bytes).ok())
+        .filter(|(_, made_for)| made_for == stage.key())
+        .map(|(checkpoint, _)| checkpoint);
+
+    let mut unsaved = Ok(());
+    let trained = train(
+        &context.axis.samples,
+        &seen,
+        &plan,
+        checkpoint,
+        |report, trainer| {
+            progress.set_position(report.epoch as u64);
+            if report.epoch % CHECKPOINT_EVERY == 0 && unsaved.is_ok() {
+                unsaved = checkpoint_to_bytes(&trainer.checkpoint(), stage.key())
+                    .into_diagnostic()
+                    .and_then(|bytes| write_whole(&checkpoint_path, &bytes));
+            }
+        },
+    )
+    .into_diagnostic()?;
+    progress.finish_and_clear();
+    unsaved?;
+
+    let training = Training {
+        hidden: plan.hidden.clone(),
+        epochs: trained.history.len(),
+        initial_damping: plan.initial_damping,
+        train_samples: seen.inputs.len(),
+        test_samples: unseen.inputs.len(),
+        network: test(&trained.network, &unseen).into_diagnostic()?,
+        linear: LinearMap::fit(&even)
+            .and_then(|map| map.errors(&unseen))
+            .into_diagnostic()?,
+        seen: test(&trained.network, &seen).into_diagnostic()?,
+        rms_um: rms(&trained),
+        seconds: trained.seconds,
+    };
+    let provenance = &context.axis.fingerprint;
+    let bytes = network_to_bytes(&trained.network, provenance).into_diagnostic()?;
+    write_whole(&stage.path(NETWORK), &bytes)?;
+    stage.write_json(TRAINING, &training)?;
+    stage.finish(&[NETWORK, TRAINING])?;
+    // Only a help for a killed training; what is left of it does no harm.
+    let _ = std::fs::remove_file(&checkpoint_path);
+    say(format!(
+        "train: {} epochs in {:.1} s; unseen samples max {:.2e} µm, mean {:.2e} µm (linear map {:.2e}, {:.2e})",
+        training.epochs,
+        training.seconds,
+        training.network.max,
+        training.network.mean,
+        training.linear.max,
+        training.linear.mean
+    ))
+}
+
+/// The network of a finished stage.
+pub fn load_network(context: &Context) -> Result<Network> {
+    let stage = stage(context);
+    let path = stage.path(NETWORK);
+    let (network, made_from) = network_from_bytes(&stage.read(NETWORK)?)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{} is refused", path.display()))?;
+    if made_from == context.axis.fingerprint {
+        return Ok(network);
+    }
+    Err(miette!(
+        "{} was made from another axis file",
+        path.display()
+    ))
+}
+
+/// What a finished stage showed.
+pub fn load_training(context: &Context) -> Result<Training> {
+    stage(context).read_json(TRAINING)
+}
+
+fn rms(trained: &Trained) -> Vec<f64> {
+    let unit = 1e6 * trained.residual_scale;
+    let reports = trained.history.iter();
+    reports.map(|report| unit * report.loss.sqrt()).collect()
+}
+
+fn plan(context: &Context) -> NetworkPlan {
+    let (hidden, epochs) = if context.quick {
+        (vec![14, 8, 4], 150)
+    } else {
+        (vec![34, 19, 8], 500)
+    };
+    NetworkPlan {
+        hidden,
+        epochs,
+        initial_damping: 0.97,
+        seed: context.seed,
+        threads: context.threads,
+    }
+}

@@ -1,0 +1,62 @@
+//! `validate`: Tables 13 and 14.
+
+use miette::{IntoDiagnostic, Result};
+use pipeline::strategies::Predictors;
+use pipeline::validation::{self, Validation};
+
+use super::{identify, train};
+use crate::context::{Common, Context};
+use crate::output::say;
+use crate::progress::bar;
+use crate::store::Stage;
+
+const VALIDATION: &str = "validation.json";
+
+/// Runs the command.
+pub fn command(common: &Common) -> Result<()> {
+    run(&common.open()?)
+}
+
+/// The stage, for this context.
+pub fn stage(context: &Context) -> Stage<'_> {
+    let after = [&train::stage(context), &identify::stage(context)];
+    Stage::new(context, "validate", &context.machine.fingerprint, &after)
+}
+
+/// Runs the stage.
+pub fn run(context: &Context) -> Result<()> {
+    let stage = stage(context);
+    let predictors = predictors(context)?;
+    stage.begin()?;
+    let progress = bar("validate", validation::runs(&context.axis) as u64);
+    let found = validation::validate(&context.axis, &context.machine, &predictors, || {
+        progress.inc(1);
+    })
+    .into_diagnostic()?;
+    progress.finish_and_clear();
+    stage.write_json(VALIDATION, &found)?;
+    stage.finish(&[VALIDATION])?;
+    say("validate: tracking error, max / mean in µm")?;
+    say("  trajectory      model          machine (simulated)")?;
+    for t in &found.trajectories {
+        let (a, b) = (t.model.figures, t.machine.figures);
+        say(format!(
+            "  {:>10} {:>8.3} / {:.4} {:>10.3} / {:.4}",
+            t.id, a.max, a.mean, b.max, b.mean
+        ))?;
+    }
+    Ok(())
+}
+
+/// The results of a finished stage.
+pub fn load(context: &Context) -> Result<Validation> {
+    stage(context).read_json(VALIDATION)
+}
+
+/// The predictors from the results of `train` and `identify`.
+pub fn predictors(context: &Context) -> Result<Predictors> {
+    let network = train::load_network(context)?;
+    let (_, transfer) = identify::load_transfer(context)?;
+    let (_, friction) = identify::load_friction(context)?;
+    Ok(Predictors::new(&context.axis, network, transfer, friction))
+}

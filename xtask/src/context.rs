@@ -1,0 +1,82 @@
+//! What every stage is told: axis, machine, folder, seed.
+
+use std::path::{Path, PathBuf};
+
+use axis_sim::Axis;
+use clap::Args;
+use miette::{IntoDiagnostic, Result, WrapErr};
+
+/// Options of every stage.
+#[derive(Args, Clone)]
+pub struct Common {
+    /// Axis file
+    #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
+    pub axis: PathBuf,
+    /// Axis file of what stands for the measured machine [default: the one
+    /// that the axis file names, or the axis itself]
+    #[arg(long, value_name = "FILE")]
+    pub machine: Option<PathBuf>,
+    /// Folder for results [default: runs/<name of the axis>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Seed of everything random: the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Threads, 0 for all cores; results do not depend on it
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+    /// A small version of every stage, for trying out: fewer samples, a
+    /// smaller network, fewer epochs and seeds; figures are rougher
+    #[arg(long)]
+    pub quick: bool,
+}
+
+/// The options, with the axis files read.
+pub struct Context {
+    pub axis: Axis,
+    pub machine: Axis,
+    /// Whether the machine is another file than the axis.
+    pub has_machine: bool,
+    pub out: PathBuf,
+    pub seed: u64,
+    pub threads: usize,
+    pub quick: bool,
+}
+
+impl Common {
+    /// Reads the axis files and sets the number of threads.
+    pub fn open(&self) -> Result<Context> {
+        let axis = Axis::read(&self.axis)?;
+        let machine_file = self.machine.clone().or_else(|| {
+            let experiment = axis.experiment.as_ref();
+            experiment.map(|experiment| experiment.machine.clone())
+        });
+        let machine = match &machine_file {
+            Some(file) => Axis::read(file)?,
+            None => axis.clone(),
+        };
+        // A second call finds the pool built already, with the same number.
+        let _ = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads)
+            .build_global();
+        Ok(Context {
+            out: self
+                .out
+                .clone()
+                .unwrap_or_else(|| Path::new("runs").join(&axis.name)),
+            has_machine: machine_file.is_some(),
+            axis,
+            machine,
+            seed: self.seed,
+            threads: self.threads,
+            quick: self.quick,
+        })
+    }
+}
+
+/// Reads a text file, naming it where that fails.
+pub fn read_text(path: &Path) -> Result<String> {
+    std::fs::read_to_string(path)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot read {}", path.display()))
+}

@@ -1,0 +1,50 @@
+//! Writing to the terminal and to files so that failures are told, not thrown.
+
+use std::io::Write;
+use std::path::Path;
+
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+
+/// A line on standard output; an error where nobody reads it any more.
+pub fn say(line: impl AsRef<str>) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{}", line.as_ref())
+        .and_then(|()| out.flush())
+        .map_err(|e| miette!("cannot write to standard output: {e}"))
+}
+
+/// Writes a file whole: aside first, then renamed.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let attempt = || -> std::io::Result<()> {
+        std::fs::create_dir_all(folder)?;
+        let mut aside = tempfile::NamedTempFile::new_in(folder)?;
+        aside.write_all(bytes)?;
+        readable(&aside)?;
+        aside.as_file().sync_all()?;
+        aside.persist(path).map_err(|e| e.error)?;
+        Ok(())
+    };
+    attempt().into_diagnostic().wrap_err_with(|| {
+        format!(
+            "cannot write {}: is the folder writable, the disk full?",
+            path.display()
+        )
+    })
+}
+
+/// Temporary files are private; results are for everyone to read.
+#[cfg(unix)]
+fn readable(file: &tempfile::NamedTempFile) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    let mode = std::fs::Permissions::from_mode(0o644);
+    file.as_file().set_permissions(mode)
+}
+
+#[cfg(not(unix))]
+fn readable(_: &tempfile::NamedTempFile) -> std::io::Result<()> {
+    Ok(())
+}

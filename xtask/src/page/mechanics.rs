@@ -1,0 +1,132 @@
+//! Friction, self-excited vibration, modes.
+
+use lugre::LuGre;
+use pipeline::vibration::Vibration;
+use report::{Cell, Figure, Section, Series, Table};
+
+use crate::commands::report::Results;
+use crate::context::Context;
+
+/// Identification: parameters and curve.
+pub fn friction(context: &Context, results: &Results) -> Section {
+    let mut table = Table::new(
+        "Friction as identified on the simulated machine",
+        [
+            "Parameter",
+            "unit",
+            "found",
+            "standard error",
+            "true",
+            "off by",
+        ],
+    );
+    for p in &results.friction.parameters {
+        table = table.row([
+            Cell::text(p.name.clone()),
+            Cell::text(p.unit.clone()),
+            Cell::number(p.value, 5),
+            Cell::number(p.standard_error, 5),
+            Cell::number(p.truth, 5),
+            Cell::text(format!("{:+.2} %", 100.0 * (p.value / p.truth - 1.0))),
+        ]);
+    }
+    let runs = |left_out: bool| {
+        let chosen = results
+            .friction
+            .runs
+            .iter()
+            .filter(|run| run.left_out.is_some() == left_out && run.speed > 0.0);
+        let (x, y) = chosen.map(|run| (run.speed, run.torque)).unzip();
+        (x, y)
+    };
+    let (used, left_out): ((Vec<f64>, Vec<f64>), (Vec<f64>, Vec<f64>)) = (runs(false), runs(true));
+    // 0.1 to 200 rad/s, evenly on the logarithmic axis.
+    let speeds: Vec<f64> = (0..=200)
+        .map(|i| 0.1 * 2000f64.powf(f64::from(i) / 200.0))
+        .collect();
+    let curve = |law: &LuGre| {
+        speeds
+            .iter()
+            .map(|&w| law.steady_state(w))
+            .collect::<Vec<f64>>()
+    };
+    let mut figure = Figure::new(
+        "Steady-state friction",
+        "speed at the screw, rad/s",
+        "torque, N·m",
+    )
+    .series(Series::line(
+        "axis file",
+        speeds.clone(),
+        curve(&context.axis.friction),
+    ))
+    .series(Series::line(
+        "machine",
+        speeds.clone(),
+        curve(&context.machine.friction),
+    ))
+    .series(Series::line("identified", speeds.clone(), curve(&results.friction_law)).dashed())
+    .log_x()
+    .alt("Steady-state friction torque against speed");
+    if !used.0.is_empty() {
+        figure = figure.series(Series::dots("runs used", used.0, used.1));
+    }
+    if !left_out.0.is_empty() {
+        figure = figure.series(Series::dots(
+            "runs left out: they vibrate",
+            left_out.0,
+            left_out.1,
+        ));
+    }
+    Section::new("Friction")
+        .paragraph("Constant-speed runs both ways and a pre-sliding test, with 1 % noise on the torque. Runs in which the axis vibrates by itself are recognised by their own speed and left out: their mean torque is not a point of the curve.")
+        .table(table)
+        .figure(figure)
+}
+
+/// Constant-speed runs.
+pub fn vibration(results: &Results) -> Section {
+    let mut table = Table::new(
+        "Tracking error at constant speed, last second of four",
+        [
+            "Speed, mm/s",
+            "peak to peak, µm",
+            "frequency, Hz",
+            "peak to peak, µm",
+            "frequency, Hz",
+        ],
+    )
+    .group("", 1)
+    .group("Model", 2)
+    .group("Machine (simulated)", 2);
+    let cells = |v: &Vibration| {
+        [
+            Cell::number(v.peak_to_peak_um, 2),
+            v.frequency_hz
+                .map_or(Cell::text("quiet"), |f| Cell::number(f, 1)),
+        ]
+    };
+    let v = &results.validation;
+    for (a, b) in v.vibration_model.iter().zip(&v.vibration_machine) {
+        let speed = [Cell::number(a.speed_mm_s, 0)];
+        table = table.row(speed.into_iter().chain(cells(a)).chain(cells(b)));
+    }
+    Section::new("Self-excited vibration")
+        .paragraph("Where friction falls with speed it feeds the table's vibration on the nut's stiffness.")
+        .table(table)
+}
+
+/// Frequencies against position.
+pub fn modes(results: &Results) -> Section {
+    let modes = &results.validation.modes;
+    let x: Vec<f64> = modes.iter().map(|m| 1e3 * m.position_m).collect();
+    let count = modes.first().map_or(0, |m| m.frequencies_hz.len());
+    let mut figure = Figure::new("Natural frequencies", "table position, mm", "frequency, Hz")
+        .log_y()
+        .alt("Natural frequencies of the drive against the table's position");
+    for mode in 0..count {
+        let y = modes.iter().map(|m| m.frequencies_hz[mode]).collect();
+        figure = figure.series(Series::line(format!("mode {}", mode + 1), x.clone(), y));
+    }
+    Section::new("Modes").figure(figure)
+}

@@ -1,0 +1,214 @@
+//! Results on disk: one folder a stage, with a manifest written last.
+//!
+//! The manifest holds the key of the stage's inputs and the hash of each
+//! file. A stage is up to date when its key is the same and its files are
+//! whole; a file that does not match its manifest is refused.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::context::Context;
+use crate::output::write_whole;
+
+/// Layout of manifests and of the JSON files beside them.
+const SCHEMA: u32 = 1;
+
+/// What a stage was made from, and what it made.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Manifest {
+    schema: u32,
+    stage: String,
+    /// Hash of everything that the results depend on.
+    key: String,
+    axis: String,
+    axis_fingerprint: String,
+    seed: u64,
+    quick: bool,
+    version: String,
+    /// blake3 of each file.
+    files: BTreeMap<String, String>,
+}
+
+/// One stage of one run folder.
+pub struct Stage<'a> {
+    context: &'a Context,
+    name: &'static str,
+    key: String,
+}
+
+impl<'a> Stage<'a> {
+    /// The stage `name`, whose results depend on the axis, the seed, the
+    /// program's version, `settings` and the files of the stages `after`.
+    pub fn new(
+        context: &'a Context,
+        name: &'static str,
+        settings: &str,
+        after: &[&Stage<'_>],
+    ) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        let mut put = |text: &str| {
+            hasher.update(&(text.len() as u64).to_le_bytes());
+            hasher.update(text.as_bytes());
+        };
+        put(name);
+        put(env!("CARGO_PKG_VERSION"));
+        put(&context.axis.fingerprint);
+        put(&context.seed.to_string());
+        put(settings);
+        for stage in after {
+            put(&stage.key);
+        }
+        let key = hasher.finalize().to_hex().to_string();
+        Self { context, name, key }
+    }
+
+    /// Hash of all inputs.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// Path of one of the stage's files.
+    pub fn path(&self, file: &str) -> PathBuf {
+        self.context.out.join(self.name).join(file)
+    }
+
+    /// Whether the results are there, whole, and made from these inputs.
+    pub fn is_current(&self) -> bool {
+        self.manifest().is_ok_and(|manifest| {
+            manifest.key == self.key
+                && manifest.files.iter().all(|(file, hash)| {
+                    std::fs::read(self.path(file)).is_ok_and(|bytes| hash_of(&bytes) == *hash)
+                })
+        })
+    }
+
+    /// Makes the stage's folder.
+    pub fn begin(&self) -> Result<()> {
+        let folder = self.path("");
+        std::fs::create_dir_all(&folder)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot make the folder {}", folder.display()))?;
+        // Results without manifest are unfinished; the old one must not vouch for them.
+        match std::fs::remove_file(self.path("manifest.json")) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(miette!(
+                "cannot replace {}: {e}",
+                self.path("manifest.json").display()
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes a result as JSON.
+    pub fn write_json(&self, file: &str, value: &impl Serialize) -> Result<()> {
+        let bytes = serde_json::to_vec_pretty(value).into_diagnostic()?;
+        write_whole(&self.path(file), &bytes)
+    }
+
+    /// Declares the stage done, with these files.
+    pub fn finish(&self, files: &[&str]) -> Result<()> {
+        let hash = |file: &&str| -> Result<(String, String)> {
+            Ok(((*file).to_owned(), hash_of(&read(&self.path(file))?)))
+        };
+        let manifest = Manifest {
+            schema: SCHEMA,
+            stage: self.name.to_owned(),
+            key: self.key.clone(),
+            axis: self.context.axis.name.clone(),
+            axis_fingerprint: self.context.axis.fingerprint.clone(),
+            seed: self.context.seed,
+            quick: self.context.quick,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            files: files.iter().map(hash).collect::<Result<_>>()?,
+        };
+        self.write_json("manifest.json", &manifest)
+    }
+
+    /// A result of this stage, for a later one: checked against the manifest.
+    pub fn read(&self, file: &str) -> Result<Vec<u8>> {
+        let manifest = self.manifest()?;
+        let path = self.path(file);
+        let again = || {
+            format!(
+                "run `cargo xtask {}` with the same options again",
+                self.name
+            )
+        };
+        if manifest.axis_fingerprint != self.context.axis.fingerprint {
+            return Err(miette!(
+                "{} was made from another axis file ({}); {}",
+                path.display(),
+                manifest.axis,
+                again()
+            ));
+        }
+        if manifest.key != self.key {
+            return Err(miette!(
+                "{} was made with other settings (seed, --quick, machine, version) or from other results; {}",
+                path.display(),
+                again()
+            ));
+        }
+        let bytes = read(&path)?;
+        if manifest.files.get(file) != Some(&hash_of(&bytes)) {
+            return Err(miette!(
+                "{} does not match its manifest (truncated or changed); {}",
+                path.display(),
+                again()
+            ));
+        }
+        Ok(bytes)
+    }
+
+    /// A JSON result of this stage.
+    pub fn read_json<T: DeserializeOwned>(&self, file: &str) -> Result<T> {
+        serde_json::from_slice(&self.read(file)?)
+            .into_diagnostic()
+            .wrap_err_with(|| {
+                format!(
+                    "{} is not what this version writes",
+                    self.path(file).display()
+                )
+            })
+    }
+
+    fn manifest(&self) -> Result<Manifest> {
+        let path = self.path("manifest.json");
+        let bytes = std::fs::read(&path).map_err(|e| {
+            miette!(
+                "no finished results in {} ({e}); run `cargo xtask {}` first",
+                self.path("").display(),
+                self.name
+            )
+        })?;
+        let manifest: Manifest = serde_json::from_slice(&bytes).map_err(|e| {
+            miette!(
+                "{} is not a manifest ({e}); run `cargo xtask {}` again",
+                path.display(),
+                self.name
+            )
+        })?;
+        if manifest.schema != SCHEMA {
+            return Err(miette!(
+                "{} has schema {}, this program reads {SCHEMA}; run `cargo xtask {}` again",
+                path.display(),
+                manifest.schema,
+                self.name
+            ));
+        }
+        Ok(manifest)
+    }
+}
+
+fn hash_of(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex().to_string()
+}
+
+fn read(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot read {}", path.display()))
+}
