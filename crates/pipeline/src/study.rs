@@ -145,6 +145,8 @@ fn one(
     let options = Settings {
         epochs: setting.epochs,
         initial_damping: setting.initial_damping,
+        // Near the linear map gradients are small; the epochs are to be run.
+        min_gradient: 0.0,
         seed,
         threads: 1,
         ..Settings::default()
