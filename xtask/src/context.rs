@@ -16,7 +16,7 @@ pub struct Common {
     /// that the axis file names, or the axis itself]
     #[arg(long, value_name = "FILE")]
     pub machine: Option<PathBuf>,
-    /// Folder for results [default: runs/<name of the axis>]
+    /// Folder for results [default: runs/, then the name of the axis]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Seed of everything random: the same seed gives the same bits

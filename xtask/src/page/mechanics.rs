@@ -30,16 +30,14 @@ pub fn friction(context: &Context, results: &Results) -> Section {
             Cell::text(format!("{:+.2} %", 100.0 * (p.value / p.truth - 1.0))),
         ]);
     }
-    let runs = |left_out: bool| {
-        let chosen = results
-            .friction
-            .runs
-            .iter()
-            .filter(|run| run.left_out.is_some() == left_out && run.speed > 0.0);
-        let (x, y) = chosen.map(|run| (run.speed, run.torque)).unzip();
-        (x, y)
+    let runs = |name: &str, left_out: bool| {
+        let forward = results.friction.runs.iter().filter(|run| run.speed > 0.0);
+        let (x, y): (Vec<f64>, Vec<f64>) = forward
+            .filter(|run| run.left_out.is_some() == left_out)
+            .map(|run| (run.speed, run.torque))
+            .unzip();
+        (!x.is_empty()).then(|| Series::dots(name, x, y))
     };
-    let (used, left_out): ((Vec<f64>, Vec<f64>), (Vec<f64>, Vec<f64>)) = (runs(false), runs(true));
     // 0.1 to 200 rad/s, evenly on the logarithmic axis.
     let speeds: Vec<f64> = (0..=200)
         .map(|i| 0.1 * 2000f64.powf(f64::from(i) / 200.0))
@@ -68,15 +66,12 @@ pub fn friction(context: &Context, results: &Results) -> Section {
     .series(Series::line("identified", speeds.clone(), curve(&results.friction_law)).dashed())
     .log_x()
     .alt("Steady-state friction torque against speed");
-    if !used.0.is_empty() {
-        figure = figure.series(Series::dots("runs used", used.0, used.1));
-    }
-    if !left_out.0.is_empty() {
-        figure = figure.series(Series::dots(
-            "runs left out: they vibrate",
-            left_out.0,
-            left_out.1,
-        ));
+    let dots = [
+        runs("runs used", false),
+        runs("runs left out: they vibrate", true),
+    ];
+    for series in dots.into_iter().flatten() {
+        figure = figure.series(series);
     }
     Section::new("Friction")
         .paragraph("Constant-speed runs both ways and a pre-sliding test, with 1 % noise on the torque. Runs in which the axis vibrates by itself are recognised by their own speed and left out: their mean torque is not a point of the curve.")
