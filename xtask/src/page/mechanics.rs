@@ -25,7 +25,7 @@ pub fn friction(context: &Context, results: &Results) -> Section {
             Cell::text(p.name.clone()),
             Cell::text(p.unit.clone()),
             Cell::number(p.value, 5),
-            Cell::number(p.standard_error, 5),
+            Cell::scientific(p.standard_error, 1),
             Cell::number(p.truth, 5),
             Cell::text(format!("{:+.2} %", 100.0 * (p.value / p.truth - 1.0))),
         ]);
