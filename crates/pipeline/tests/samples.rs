@@ -3,7 +3,7 @@
 use axis_sim::Axis;
 use pipeline::LinearMap;
 use pipeline::sample_file::{SampleFileError, read, write};
-use pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity};
+use pipeline::sampling::{SamplePlan, Sampler, SpeedDensity};
 use pipeline::training::{NetworkPlan, residuals, train};
 
 fn axis() -> Axis {
@@ -106,13 +106,9 @@ fn a_folded_network_is_map_plus_residual() {
 #[test]
 fn a_linear_map_is_found_exactly() {
     let mut set = sampler(40, SpeedDensity::Uniform).all();
-    let made = |set: &SampleSet| -> Vec<f64> {
-        let inputs = set.inputs.iter();
-        inputs
-            .map(|i| 2.0 + 3.0 * i.position - i.speed + 0.5 * i.acceleration + 0.25 * i.iq_command)
-            .collect()
-    };
-    set.increments = made(&set);
+    set.increments = (set.inputs.iter())
+        .map(|i| 2.0 + 3.0 * i.position - i.speed + 0.5 * i.acceleration + 0.25 * i.iq_command)
+        .collect();
     let map = LinearMap::fit(&set).unwrap();
     assert!((map.offset - 2.0).abs() < 1e-13);
     for (found, truth) in map.slopes.iter().zip([3.0, -1.0, 0.5, 0.25]) {
