@@ -8,6 +8,7 @@ use std::path::Path;
 use csv::StringRecord;
 
 use crate::channel::Channel;
+use crate::csv_text::Text;
 use crate::error::{CsvError, CsvProblem};
 use crate::log::{Log, TIME_CHANNEL};
 use crate::unit::unit_of;
@@ -62,13 +63,7 @@ fn read(mut reader: impl Read, required: &[&str]) -> Result<Log, CsvProblem> {
             source,
         })?;
     let text = Text::new(&bytes)?;
-    let mut rows = csv::ReaderBuilder::new()
-        .has_headers(false)
-        // Ragged rows are refused here, with the line, not inside the parser.
-        .flexible(true)
-        .comment(Some(COMMENT))
-        .trim(csv::Trim::All)
-        .from_reader(text.0.as_bytes());
+    let mut rows = text.parser();
     let mut record = StringRecord::new();
     if !rows.read_record(&mut record)? {
         return Err(CsvProblem::NoHeader);
@@ -82,42 +77,6 @@ fn read(mut reader: impl Read, required: &[&str]) -> Result<Log, CsvProblem> {
         return Err(CsvProblem::NoRows { line: header.line });
     }
     Ok(header.into_log(columns))
-}
-
-const COMMENT: u8 = b'#';
-
-/// The whole text, without byte-order mark.
-#[derive(Clone, Copy)]
-struct Text<'a>(&'a str);
-
-impl<'a> Text<'a> {
-    fn new(bytes: &'a [u8]) -> Result<Self, CsvProblem> {
-        match std::str::from_utf8(bytes) {
-            Ok(text) => Ok(Self(text.strip_prefix('\u{feff}').unwrap_or(text))),
-            Err(e) => Err(CsvProblem::NotText {
-                line: 1 + newlines(&bytes[..e.valid_up_to()]),
-            }),
-        }
-    }
-
-    /// Line of a record, from 1. The parser's own count is of the place where it
-    /// began to look for the record, before any blank lines and comments.
-    fn line_of(self, record: &StringRecord) -> u64 {
-        let offset = record.position().map_or(0, csv::Position::byte);
-        let mut start = usize::try_from(offset).unwrap_or(0).min(self.0.len());
-        for line in self.0.as_bytes()[start..].split_inclusive(|&b| b == b'\n') {
-            let blank = line.iter().all(|b| matches!(b, b'\r' | b'\n'));
-            if !blank && line[0] != COMMENT {
-                break;
-            }
-            start += line.len();
-        }
-        1 + newlines(&self.0.as_bytes()[..start])
-    }
-}
-
-fn newlines(bytes: &[u8]) -> u64 {
-    bytes.iter().filter(|&&b| b == b'\n').count() as u64
 }
 
 struct Header<'a> {

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::unit::suffix_list;
+
 /// A log that cannot be built, or a channel that is not in it.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -219,14 +221,10 @@ pub enum CsvProblem {
     },
 }
 
-fn quoted(names: &[String]) -> String {
+pub(crate) fn quoted(names: &[String]) -> String {
+    if names.is_empty() {
+        return "none".to_owned();
+    }
     let quoted: Vec<String> = names.iter().map(|n| format!("\"{n}\"")).collect();
     quoted.join(", ")
-}
-
-fn suffix_list() -> String {
-    let all: Vec<String> = crate::unit::unit_suffixes()
-        .map(|s| format!("_{s}"))
-        .collect();
-    all.join(" ")
 }

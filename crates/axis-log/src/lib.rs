@@ -1,5 +1,5 @@
-//! Sampled, named channels of a machine axis: the log, CSV in and out, and
-//! the error metrics taken from it.
+//! Sampled, named channels of a machine axis: the log; CSV, Parquet and MAT in,
+//! CSV out; whether a log can be trusted; and the error metrics taken from it.
 //!
 //! # The problem
 //!
@@ -26,6 +26,12 @@
 //! reader never sees half a file: the text goes to a temporary file in the same
 //! folder, which then takes the final name.
 //!
+//! Drives export their own names and units. [`read_log`] reads CSV, Parquet and
+//! MAT files and makes each channel `scale · column + offset` as a [`Mapping`]
+//! says. [`quality`] then judges what was read: instants on an even grid
+//! `t_k ≈ t_0 + k T` without gaps, channels that move, units that agree with the
+//! reference.
+//!
 //! # Example
 //!
 //! ```
@@ -46,18 +52,57 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A drive's export in milliseconds and millimetres:
+//!
+//! ```
+//! use axis_log::{ColumnMap, Mapping, read_log};
+//!
+//! # let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("drive.csv");
+//! std::fs::write(&path, "Time,Pos SP,Pos PV\n0,600,600\n1,601,600.9\n")?;
+//! let map = |source: &str, channel: &str, scale| ColumnMap {
+//!     source: source.into(),
+//!     channel: channel.into(),
+//!     scale,
+//!     offset: 0.0,
+//! };
+//! let mapping = Mapping {
+//!     columns: vec![
+//!         map("Time", "t_s", 1e-3),
+//!         map("Pos SP", "position_ref_m", 1e-3),
+//!         map("Pos PV", "position_m", 1e-3),
+//!     ],
+//!     sample_rate_hz: None,
+//! };
+//! let log = read_log(&path, &mapping, &["position_ref_m", "position_m"])?;
+//! assert_eq!(log.time(), [0.0, 1e-3]);
+//! assert!((log.channel("position_m")?[1] - 0.6009).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # What it knows nothing of
 //!
-//! Machines, controllers and models. It does not resample, filter or convert
-//! units: a column in millimetres is a column in millimetres.
+//! Machines, controllers and models. It does not resample or filter, and
+//! converts units only as a [`Mapping`] tells it to: [`quality::unit_slip`]
+//! notices a slip and changes nothing.
 #![forbid(unsafe_code)]
 
 mod channel;
 mod csv_in;
 mod csv_out;
+mod csv_table;
+mod csv_text;
 mod error;
 mod log;
+mod mapping;
+mod mat_table;
 pub mod metrics;
+mod parquet_table;
+pub mod quality;
+mod read;
+mod read_error;
+mod select;
+mod table;
 mod unit;
 
 pub use channel::Channel;
@@ -65,4 +110,7 @@ pub use csv_in::{read_csv, read_csv_from};
 pub use csv_out::{write_csv, write_csv_to};
 pub use error::{CsvError, CsvProblem, LogError};
 pub use log::{Log, TIME_CHANNEL};
+pub use mapping::{ColumnMap, Mapping, MappingError};
+pub use read::read_log;
+pub use read_error::{Place, ReadError, ReadProblem};
 pub use unit::{unit_of, unit_suffixes};

@@ -61,6 +61,12 @@ pub fn unit_suffixes() -> impl Iterator<Item = &'static str> {
     UNITS.iter().map(|&(suffix, _)| suffix)
 }
 
+/// The suffixes as error messages list them.
+pub(crate) fn suffix_list() -> String {
+    let all: Vec<String> = unit_suffixes().map(|s| format!("_{s}")).collect();
+    all.join(" ")
+}
+
 fn has_suffix(name: &str, suffix: &str) -> bool {
     name.strip_suffix(suffix)
         .and_then(|stem| stem.strip_suffix('_'))

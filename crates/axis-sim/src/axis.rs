@@ -2,10 +2,13 @@
 
 use std::path::PathBuf;
 
-use feed_dynamics::{FeedDrive, NutCoupling};
+use axis_log::Mapping;
+use feed_dynamics::{DriveError, FeedDrive, NutCoupling};
 use foc_pmsm::{Pmsm, Servo};
 use lugre::LuGre;
 use trajectories::{Limits, SCurve, TrajectoryError};
+
+use crate::effects::{ActiveEffect, Changes, Hooks, MachineMut};
 
 /// A ball-screw axis with its motor, drive controller and friction. SI units.
 ///
@@ -46,6 +49,12 @@ pub struct Axis {
     pub trajectories: Vec<MoveSpec>,
     /// What its results are compared with, if anything.
     pub experiment: Option<Experiment>,
+    /// Effects beyond the model above: the file's `[[effects]]`.
+    pub effects: Vec<ActiveEffect>,
+    /// How far a known parameter may be off, as a share of its value.
+    pub tolerance: f64,
+    /// How the columns of logs of this axis are called.
+    pub log: Mapping,
     /// Hash of every value in SI units: the same for files that differ only
     /// in comments, units or order.
     pub fingerprint: String,
@@ -111,6 +120,22 @@ pub struct Experiment {
 }
 
 impl Axis {
+    /// The axis with its effects' changes made, and their hooks.
+    ///
+    /// # Errors
+    /// [`DriveError`] where an effect carries a parameter out of its range.
+    pub(crate) fn with_effects(&self) -> Result<(Self, Hooks), DriveError> {
+        let (mut axis, mut hooks) = (self.clone(), Hooks::default());
+        for active in &self.effects {
+            let mut changes = Changes {
+                machine: MachineMut::BallScrew(&mut axis),
+                hooks: &mut hooks,
+            };
+            (active.effect.install)(&active.values, &mut changes)?;
+        }
+        Ok((axis, hooks))
+    }
+
     /// Table travel per radian of the screw, r = lead / 2π, m/rad.
     pub fn travel_per_radian(&self) -> f64 {
         self.drive.travel_per_radian()

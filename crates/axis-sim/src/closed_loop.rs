@@ -1,12 +1,15 @@
 //! The electromechanical coupling model of Section 3.3 as one loop.
 
+use std::collections::VecDeque;
+
 use compensator::{Compensator, Correction, Reference, Sample};
 use feed_dynamics::{DriveError, ImplicitStepper, ModalStepper, NutCoupling, TimeStepper};
-use foc_pmsm::{Command, Dq, Measurement, ServoState};
+use foc_pmsm::{Command, Dq, Measurement, Saturated, Servo, ServoState};
 use thiserror::Error;
 use trajectories::{Motion, Setpoint};
 
 use crate::Axis;
+use crate::effects::Hooks;
 use crate::plant::{Plant, substeps};
 
 /// What one control cycle leaves behind, at its start `t_k`.
@@ -26,10 +29,25 @@ pub struct Cycle {
     pub motor_speed: f64,
     /// Currents, A.
     pub current: Dq,
+    /// What the sensors show: the above where they are perfect.
+    pub measured: Measured,
     /// What the controller commands for the cycle.
     pub command: Command,
     /// What the compensator added.
     pub correction: Correction,
+}
+
+/// What the sensors show at a sampling instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measured {
+    /// Table position, m from the driven end.
+    pub position: f64,
+    /// Motor angle since the start, rad.
+    pub motor_angle: f64,
+    /// Motor speed, rad/s.
+    pub motor_speed: f64,
+    /// Currents, A.
+    pub current: Dq,
 }
 
 impl Cycle {
@@ -137,6 +155,7 @@ impl Outcome {
 #[derive(Clone, Debug)]
 pub struct ClosedLoop {
     axis: Axis,
+    hooks: Hooks,
     plant: AnyPlant,
 }
 
@@ -155,11 +174,13 @@ impl ClosedLoop {
     pub fn new(axis: &Axis) -> Result<Self, DriveError> {
         match axis.coupling {
             NutCoupling::ShapeFunctions => {
-                let step = axis.period / f64::from(substeps(axis));
+                let (axis, hooks) = axis.with_effects()?;
+                let step = axis.period / f64::from(substeps(&axis));
                 let stepper = ModalStepper::new(&axis.drive, step)?;
                 Ok(Self {
-                    plant: AnyPlant::Modal(Plant::new(axis, stepper)),
-                    axis: axis.clone(),
+                    plant: AnyPlant::Modal(Plant::new(&axis, hooks.clone(), stepper)),
+                    axis,
+                    hooks,
                 })
             }
             NutCoupling::MovingNode => {
@@ -176,17 +197,32 @@ impl ClosedLoop {
     /// # Errors
     /// As [`ClosedLoop::new`].
     pub fn implicit(axis: &Axis) -> Result<Self, DriveError> {
-        let step = axis.period / f64::from(substeps(axis));
+        let (axis, hooks) = axis.with_effects()?;
+        let step = axis.period / f64::from(substeps(&axis));
         let stepper = ImplicitStepper::new(&axis.drive, axis.coupling, step)?;
         Ok(Self {
-            plant: AnyPlant::Implicit(Plant::new(axis, stepper)),
-            axis: axis.clone(),
+            plant: AnyPlant::Implicit(Plant::new(&axis, hooks.clone(), stepper)),
+            axis,
+            hooks,
         })
     }
 
-    /// The axis.
+    /// The axis, its effects' changes of parameters made.
     pub fn axis(&self) -> &Axis {
         &self.axis
+    }
+
+    /// Adds hooks to the plant.
+    pub(crate) fn add(&mut self, change: impl FnOnce(&mut Hooks)) {
+        match &mut self.plant {
+            AnyPlant::Modal(plant) => change(plant.hooks()),
+            AnyPlant::Implicit(plant) => change(plant.hooks()),
+        }
+    }
+
+    /// Time by which the table's channel is late in logs, s.
+    pub(crate) fn clock_offset(&self) -> f64 {
+        self.hooks.clock_offset
     }
 
     /// Follows `motion` from rest at its start, and shows every cycle at a
@@ -197,9 +233,22 @@ impl ClosedLoop {
         compensator: &mut (impl Compensator + ?Sized),
         observe: impl FnMut(&Cycle),
     ) -> Outcome {
+        self.run_sensed(motion, compensator, |_| (), observe)
+    }
+
+    /// As [`ClosedLoop::run`], with sensors: `sense` is shown what perfect ones
+    /// would read in each cycle, and makes of it what the controller and the
+    /// log get to see (noise, quantisation).
+    pub fn run_sensed(
+        &self,
+        motion: &(impl Motion + ?Sized),
+        compensator: &mut (impl Compensator + ?Sized),
+        sense: impl FnMut(&mut Measured),
+        observe: impl FnMut(&Cycle),
+    ) -> Outcome {
         match &self.plant {
-            AnyPlant::Modal(plant) => self.run_on(plant, motion, compensator, observe),
-            AnyPlant::Implicit(plant) => self.run_on(plant, motion, compensator, observe),
+            AnyPlant::Modal(plant) => self.run_on(plant, motion, compensator, sense, observe),
+            AnyPlant::Implicit(plant) => self.run_on(plant, motion, compensator, sense, observe),
         }
     }
 
@@ -208,6 +257,7 @@ impl ClosedLoop {
         plant: &Plant<S>,
         motion: &(impl Motion + ?Sized),
         compensator: &mut (impl Compensator + ?Sized),
+        mut sense: impl FnMut(&mut Measured),
         mut observe: impl FnMut(&Cycle),
     ) -> Outcome {
         let axis = &self.axis;
@@ -220,6 +270,7 @@ impl ClosedLoop {
         let mut state = plant.at_rest(origin);
         let mut servo = ServoState::default();
         let mut last_command = Command::default();
+        let mut delay = DelayLine::new(self.hooks.delay / period);
         compensator.reset();
 
         for k in 0..=cycles {
@@ -228,34 +279,39 @@ impl ClosedLoop {
             let next_reference = motion.at((k + 1) as f64 * period);
             let seen = state.seen;
             let position = origin + seen.displacement;
+            let mut measured = self.hooks.sensors.show(Measured {
+                position,
+                motor_angle: seen.motor_angle,
+                motor_speed: seen.motor_speed,
+                current: state.current,
+            });
+            sense(&mut measured);
 
             // Correct.
             let correction = compensator.correct(&Sample {
                 reference: reference_of(&reference),
                 next_reference: reference_of(&next_reference),
-                position,
-                motor_speed: seen.motor_speed,
-                iq: state.current.q,
+                position: measured.position,
+                motor_speed: measured.motor_speed,
+                iq: measured.current.q,
                 iq_command: last_command.iq_ref,
             });
 
             // Control: position, speed and current loops (Fig. 5).
-            let command = axis.servo.cycle(
+            let command = control(
+                &axis.servo,
                 &mut servo,
-                &Measurement {
-                    position,
-                    motor_speed: seen.motor_speed,
-                    current: state.current,
+                &mut delay,
+                &foc_pmsm::Measurement {
+                    position: measured.position,
+                    motor_speed: measured.motor_speed,
+                    current: measured.current,
                 },
                 &foc_pmsm::Reference {
                     position: reference.position,
                     motor_speed: speed_feedforward * reference.velocity,
                 },
-                &foc_pmsm::Correction {
-                    position_offset: correction.position,
-                    speed: 0.0,
-                    iq: correction.iq,
-                },
+                &correction,
             );
 
             // Record.
@@ -267,6 +323,7 @@ impl ClosedLoop {
                 motor_angle: seen.motor_angle,
                 motor_speed: seen.motor_speed,
                 current: state.current,
+                measured,
                 command,
                 correction,
             };
@@ -303,6 +360,78 @@ impl ClosedLoop {
         } else {
             None
         }
+    }
+}
+
+/// One cycle of the cascade; a late current reference is logged as it was
+/// asked for, and reaches the current controllers late.
+fn control(
+    servo: &Servo,
+    state: &mut ServoState,
+    delay: &mut DelayLine,
+    measured: &Measurement,
+    reference: &foc_pmsm::Reference,
+    correction: &Correction,
+) -> Command {
+    let correction = foc_pmsm::Correction {
+        position_offset: correction.position,
+        speed: 0.0,
+        iq: correction.iq,
+    };
+    if delay.is_none() {
+        return servo.cycle(state, measured, reference, &correction);
+    }
+    let error = reference.position - measured.position + correction.position_offset;
+    let speed_ref = servo.position_loop(error, reference.motor_speed + correction.speed);
+    let speed_error = speed_ref - measured.motor_speed;
+    let (iq_ref, current) = servo.speed_loop(state, speed_error, correction.iq);
+    let late = Dq {
+        d: 0.0,
+        q: delay.push(iq_ref),
+    };
+    let (voltage, d, q) = servo.current_loop(state, late - measured.current, Dq::ZERO);
+    Command {
+        speed_ref,
+        iq_ref,
+        voltage,
+        saturated: Saturated {
+            current,
+            voltage_d: d,
+            voltage_q: q,
+        },
+    }
+}
+
+/// The last few current references, and the one that is a delay old.
+#[derive(Clone, Debug)]
+struct DelayLine {
+    /// In control cycles, whole and part.
+    cycles: f64,
+    past: VecDeque<f64>,
+}
+
+impl DelayLine {
+    fn new(cycles: f64) -> Self {
+        let length = cycles.ceil() as usize + 2;
+        Self {
+            cycles,
+            past: VecDeque::from(vec![0.0; length]),
+        }
+    }
+
+    fn is_none(&self) -> bool {
+        self.cycles <= 0.0
+    }
+
+    /// Takes the newest value and gives the late one, linear between cycles.
+    fn push(&mut self, newest: f64) -> f64 {
+        self.past.pop_back();
+        self.past.push_front(newest);
+        let whole = self.cycles.floor();
+        let part = self.cycles - whole;
+        let at = |i: usize| self.past.get(i).copied().unwrap_or(newest);
+        let after = whole as usize;
+        (1.0 - part) * at(after) + part * at(after + 1)
     }
 }
 

@@ -80,12 +80,19 @@
 mod axis;
 mod axis_file;
 mod closed_loop;
+pub mod effects;
 mod one_cycle;
 mod plant;
 mod recorder;
+mod replay;
+mod rigid;
 
 pub use axis::{Axis, Experiment, MoveSpec, Range, SampleRanges, Simulation, Stroke};
 pub use axis_file::AxisFileError;
-pub use closed_loop::{ClosedLoop, Cycle, FOLLOWING_ERROR_LIMIT, Outcome, RunStopped, StopReason};
+pub use closed_loop::{
+    ClosedLoop, Cycle, FOLLOWING_ERROR_LIMIT, Measured, Outcome, RunStopped, StopReason,
+};
 pub use one_cycle::{CycleInput, OneCycle};
 pub use recorder::Recorder;
+pub use replay::{LoggedReference, Probe, Replay, ReplayError, Trace};
+pub use rigid::{RigidAxis, Start};

@@ -43,11 +43,11 @@ impl OneCycle {
     /// # Errors
     /// [`DriveError`] where the mechanics cannot be set up.
     pub fn new(axis: &Axis) -> Result<Self, DriveError> {
-        let mut axis = axis.clone();
+        let (mut axis, hooks) = axis.with_effects()?;
         axis.simulation.step = axis.simulation.step.min(LONGEST_STEP);
         let step = axis.period / f64::from(substeps(&axis));
         Ok(Self {
-            plant: Plant::new(&axis, ModalStepper::new(&axis.drive, step)?),
+            plant: Plant::new(&axis, hooks, ModalStepper::new(&axis.drive, step)?),
             axis,
         })
     }

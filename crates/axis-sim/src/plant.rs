@@ -1,10 +1,11 @@
 //! The machine between two samples: motor, drive and friction under a held voltage.
 
-use feed_dynamics::{Observation, Settled, TimeStepper};
+use feed_dynamics::{NutErrors, Observation, Settled, TimeStepper};
 use foc_pmsm::{Dq, Pmsm};
 use lugre::LuGre;
 
 use crate::Axis;
+use crate::effects::{Hooks, ScrewState, TableState};
 
 /// The machine, for control cycles of one length.
 #[derive(Clone, Debug)]
@@ -12,6 +13,9 @@ pub struct Plant<S> {
     stepper: S,
     motor: Pmsm,
     friction: LuGre,
+    /// Unit element that friction effects act through.
+    unit_friction: LuGre,
+    hooks: Hooks,
     travel_per_radian: f64,
     substeps: u32,
 }
@@ -20,8 +24,14 @@ pub struct Plant<S> {
 #[derive(Clone, Debug)]
 pub struct PlantState<D> {
     drive: D,
+    /// Since the motion began, s.
+    time: f64,
+    /// Table position there, m.
+    origin: f64,
     /// Bristle deflection z at the screw, rad.
     bristle: f64,
+    /// Bristle deflection of the unit element, rad.
+    unit_bristle: f64,
     /// Currents, A.
     pub(crate) current: Dq,
     /// What the drive shows.
@@ -40,8 +50,10 @@ pub(crate) fn substeps(axis: &Axis) -> u32 {
 impl<S: TimeStepper> Plant<S> {
     /// The plant of `axis` on a stepper whose step is the control period
     /// divided by [`substeps`].
-    pub(crate) fn new(axis: &Axis, stepper: S) -> Self {
+    pub(crate) fn new(axis: &Axis, hooks: Hooks, stepper: S) -> Self {
         Self {
+            unit_friction: unit_friction(&axis.friction),
+            hooks,
             stepper,
             motor: axis.motor,
             friction: axis.friction,
@@ -50,13 +62,20 @@ impl<S: TimeStepper> Plant<S> {
         }
     }
 
+    pub(crate) fn hooks(&mut self) -> &mut Hooks {
+        &mut self.hooks
+    }
+
     /// Everything at rest and relaxed, the table at `x` (m).
     pub(crate) fn at_rest(&self, x: f64) -> PlantState<S::State> {
         let drive = self.stepper.settled(x, &Settled::default());
         PlantState {
             seen: self.stepper.observe(&drive),
             drive,
+            time: 0.0,
+            origin: x,
             bristle: 0.0,
+            unit_bristle: 0.0,
             current: Dq::ZERO,
             motor_acceleration: 0.0,
         }
@@ -74,7 +93,15 @@ impl<S: TimeStepper> Plant<S> {
     ) -> PlantState<S::State> {
         let r = self.travel_per_radian;
         let bristle = self.friction.steady_bristle(speed / r);
-        let load = self.friction.torque(bristle, speed / r) / r;
+        let own = self.friction.torque(bristle, speed / r) / r;
+        let load = own
+            + self.hooks.loads_at(&TableState {
+                time: SETTLED,
+                position: x,
+                speed,
+                bristle: if speed == 0.0 { 0.0 } else { speed.signum() },
+                pressed: 1.0,
+            });
         let motion = Settled {
             speed,
             acceleration,
@@ -84,7 +111,10 @@ impl<S: TimeStepper> Plant<S> {
         PlantState {
             seen: self.stepper.observe(&drive),
             drive,
+            time: SETTLED,
+            origin: x,
             bristle,
+            unit_bristle: self.unit_friction.steady_bristle(speed / r),
             current: Dq {
                 d: 0.0,
                 q: self.motor.q_current(torque(&motion)),
@@ -101,20 +131,99 @@ impl<S: TimeStepper> Plant<S> {
             // Currents, over the mean motor speed of the step.
             let start = state.seen;
             let mean_speed = start.motor_speed + 0.5 * h * state.motor_acceleration;
+            let voltage = voltage + self.lost_voltage(state);
             state.current = self.motor.step(state.current, voltage, mean_speed, h);
-            let torque = self.motor.torque(state.current);
+            state.time += h;
+            let angle = start.motor_angle + h * mean_speed;
+            let torque = self.hooks.torque_at(angle, self.motor.torque(state.current));
 
             // Mechanics; the friction follows the table's speed at the end of the step.
+            let errors = self.nut_errors(state, angle);
             let (z0, w0) = (state.bristle, start.speed / r);
-            let mut z1 = z0;
-            self.stepper.step(&mut state.drive, torque, |table| {
-                let (z, friction) = self.friction.step_torque(z0, w0, table.speed / r, h);
+            let (u0, time, origin) = (state.unit_bristle, state.time, state.origin);
+            let (mut z1, mut u1) = (z0, u0);
+            let moving = &mut state.drive;
+            self.stepper.step_through(moving, torque, &errors, |table| {
+                let w1 = table.speed / r;
+                let (z, friction) = self.friction.step_torque(z0, w0, w1, h);
                 z1 = z;
-                friction / r
+                let mut load = friction / r;
+                if self.hooks.has_loads() {
+                    u1 = self.unit_friction.step(u0, w0, w1, h);
+                    load += self.hooks.loads_at(&TableState {
+                        time,
+                        position: origin + table.displacement,
+                        speed: table.speed,
+                        bristle: self.unit_friction.torque(u1, w1),
+                        pressed: (time / STANDING_LOAD_RISE).min(1.0),
+                    });
+                }
+                load
             });
             state.bristle = z1;
+            state.unit_bristle = u1;
             state.seen = self.stepper.observe(&state.drive);
             state.motor_acceleration = (state.seen.motor_speed - start.motor_speed) / h;
         }
     }
+
+    /// Errors of the nut's kinematics at the end of a step.
+    fn nut_errors(&self, state: &PlantState<S::State>, angle: f64) -> NutErrors {
+        let [offset, offset_rate] = self.hooks.offset_at(&ScrewState {
+            time: state.time,
+            angle,
+            rate: state.seen.motor_speed,
+            position: state.origin + state.seen.displacement,
+            speed: state.seen.speed,
+        });
+        NutErrors {
+            offset,
+            offset_rate,
+            gap: self.hooks.gap,
+        }
+    }
+
+    /// What dead time takes from the voltage, in the rotor's frame: in each
+    /// phase against its current, softened below [`DEAD_TIME_CURRENT`], where
+    /// the current's ripple makes it cross zero in every period.
+    fn lost_voltage(&self, state: &PlantState<S::State>) -> Dq {
+        let lost = self.hooks.dead_time_voltage;
+        if lost == 0.0 {
+            return Dq::ZERO;
+        }
+        let at = self.motor.electrical_speed(state.seen.motor_angle);
+        let phases = state.current.inverse_park(at).inverse_clarke();
+        let soft = |i: f64| -lost * (i / DEAD_TIME_CURRENT).tanh();
+        foc_pmsm::Phases {
+            a: soft(phases.a),
+            b: soft(phases.b),
+            c: soft(phases.c),
+        }
+        .clarke()
+        .park(at)
+    }
+}
+
+/// Time over which a standing load comes up, s.
+const STANDING_LOAD_RISE: f64 = 0.02;
+
+/// A time at which everything that comes up has come up, s.
+const SETTLED: f64 = 1.0;
+
+/// Half the current ripple below which dead time counts less, A.
+const DEAD_TIME_CURRENT: f64 = 0.05;
+
+/// The law with its Coulomb level scaled to 1 N·m, without break-away,
+/// bristle damping and viscous part: the same pre-sliding distance.
+fn unit_friction(law: &LuGre) -> LuGre {
+    let p = law.parameters();
+    let unit = lugre::Parameters {
+        coulomb: 1.0,
+        stiction: 1.0,
+        stribeck_speed: p.stribeck_speed,
+        stiffness: if p.coulomb > 0.0 { p.stiffness / p.coulomb } else { p.stiffness },
+        damping: 0.0,
+        viscous: 0.0,
+    };
+    LuGre::new(unit).unwrap_or(*law)
 }

@@ -20,13 +20,13 @@ const COLUMNS: [Column; 15] = [
     ("acceleration_ref_m_s2", "m/s²", |c| {
         c.reference.acceleration
     }),
-    ("position_m", "m", |c| c.position),
-    ("motor_angle_rad", "rad", |c| c.motor_angle),
-    ("motor_speed_rad_s", "rad/s", |c| c.motor_speed),
+    ("position_m", "m", |c| c.measured.position),
+    ("motor_angle_rad", "rad", |c| c.measured.motor_angle),
+    ("motor_speed_rad_s", "rad/s", |c| c.measured.motor_speed),
     ("speed_ref_rad_s", "rad/s", |c| c.command.speed_ref),
     ("iq_ref_a", "A", |c| c.command.iq_ref),
-    ("iq_a", "A", |c| c.current.q),
-    ("id_a", "A", |c| c.current.d),
+    ("iq_a", "A", |c| c.measured.current.q),
+    ("id_a", "A", |c| c.measured.current.d),
     ("ud_v", "V", |c| c.command.voltage.d),
     ("uq_v", "V", |c| c.command.voltage.q),
     ("correction_m", "m", |c| c.correction.position),

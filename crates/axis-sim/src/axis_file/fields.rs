@@ -181,6 +181,30 @@ impl<'a> Fields<'a> {
         Ok(number)
     }
 
+    /// A quantity that may be left out.
+    pub(super) fn optional_quantity(
+        &self,
+        name: &str,
+        dimension: &Dimension,
+        valid: Valid,
+    ) -> Result<Option<f64>, AxisFileError> {
+        let mut keys = dimension.keys(name);
+        if keys.any(|key| self.table.contains_key(key.as_str())) {
+            return self.quantity(name, dimension, valid).map(Some);
+        }
+        self.valid_keys.borrow_mut().extend(dimension.keys(name));
+        Ok(None)
+    }
+
+    /// A number that is `default` where it is left out.
+    pub(super) fn optional_number(&self, key: &str, default: f64) -> Result<f64, AxisFileError> {
+        if self.table.contains_key(key) {
+            return self.number(key, Valid::Finite);
+        }
+        self.valid_keys.borrow_mut().push(key.to_owned());
+        Ok(default)
+    }
+
     /// A whole number between `least` and `most`.
     pub(super) fn count(&self, key: &str, least: u32, most: u32) -> Result<u32, AxisFileError> {
         self.valid_keys.borrow_mut().push(key.to_owned());

@@ -1,7 +1,9 @@
 //! The axis file: TOML to a checked [`Axis`].
 
 mod error;
+mod extras;
 mod fields;
+mod rigid;
 mod units;
 
 use std::cell::RefCell;
@@ -16,6 +18,7 @@ use toml::de::DeTable;
 use trajectories::Limits;
 
 use crate::axis::{Axis, Experiment, MoveSpec, Range, SampleRanges, Simulation, Stroke};
+use crate::effects::Machine;
 pub use error::AxisFileError;
 use error::Source;
 use fields::{Fields, Record};
@@ -48,25 +51,84 @@ impl Axis {
     /// # Errors
     /// As [`Axis::read`].
     pub fn parse(name: &str, content: &str) -> Result<Self, AxisFileError> {
-        let source = Source {
-            name: name.to_owned(),
-            content: content.to_owned(),
-        };
-        let table = DeTable::parse(content).map_err(|e| AxisFileError::syntax(&source, &e))?;
-        let record: Record = Rc::new(RefCell::new(Vec::new()));
-        let root = Fields::root(&source, &table, record.clone());
-        let mut axis = axis(root)?;
-        let mut lines = record.take();
-        lines.sort();
-        axis.fingerprint = blake3::hash(lines.join("\n").as_bytes())
-            .to_hex()
-            .to_string();
+        let (mut axis, fingerprint) = parse(name, content, axis)?;
+        axis.fingerprint = fingerprint;
         Ok(axis)
     }
 }
 
+impl Machine {
+    /// Reads the file of either kind of machine: `kind = "rigid-mass"`, or
+    /// `kind = "ball-screw"`, which is what a file without a kind is.
+    ///
+    /// # Errors
+    /// As [`Axis::read`].
+    pub fn read(path: &Path) -> Result<Self, AxisFileError> {
+        let content = std::fs::read_to_string(path).map_err(|reason| AxisFileError::Read {
+            path: path.to_owned(),
+            reason,
+        })?;
+        match Self::parse(&path.display().to_string(), &content)? {
+            Self::BallScrew(_) => Ok(Self::BallScrew(Box::new(Axis::read(path)?))),
+            rigid => Ok(rigid),
+        }
+    }
+
+    /// Reads the text of an axis file; `name` stands for it in messages.
+    ///
+    /// # Errors
+    /// As [`Axis::read`].
+    pub fn parse(name: &str, content: &str) -> Result<Self, AxisFileError> {
+        let (mut machine, fingerprint) = parse(name, content, |root| {
+            if kind(&root)? {
+                root.count("schema", SCHEMA, SCHEMA)?;
+                let rigid = rigid::rigid(&root)?;
+                root.finish()?;
+                return Ok(Self::Rigid(rigid));
+            }
+            Ok(Self::BallScrew(Box::new(axis(root)?)))
+        })?;
+        match &mut machine {
+            Self::BallScrew(axis) => axis.fingerprint = fingerprint,
+            Self::Rigid(axis) => axis.fingerprint = fingerprint,
+        }
+        Ok(machine)
+    }
+}
+
+/// Whether the file is of a rigid mass.
+fn kind(root: &Fields<'_>) -> Result<bool, AxisFileError> {
+    match root.optional_text("kind")? {
+        None => Ok(false),
+        Some(_) => root.word("kind", &[("ball-screw", false), ("rigid-mass", true)]),
+    }
+}
+
+/// What `read` makes of the file, and the hash of its values.
+fn parse<T>(
+    name: &str,
+    content: &str,
+    read: impl FnOnce(Fields<'_>) -> Result<T, AxisFileError>,
+) -> Result<(T, String), AxisFileError> {
+    let source = Source {
+        name: name.to_owned(),
+        content: content.to_owned(),
+    };
+    let table = DeTable::parse(content).map_err(|e| AxisFileError::syntax(&source, &e))?;
+    let record: Record = Rc::new(RefCell::new(Vec::new()));
+    let read = read(Fields::root(&source, &table, record.clone()))?;
+    let mut lines = record.take();
+    lines.sort();
+    let hash = blake3::hash(lines.join("\n").as_bytes());
+    Ok((read, hash.to_hex().to_string()))
+}
+
 fn axis(root: Fields<'_>) -> Result<Axis, AxisFileError> {
     root.count("schema", SCHEMA, SCHEMA)?;
+    if kind(&root)? {
+        let what = "is \"rigid-mass\": this command needs a ball screw".to_owned();
+        return Err(root.refuse_table(what, "\"ball-screw\", or no kind"));
+    }
     let (simulation, coupling) = simulation(root.table("simulation")?)?;
     let (servo, period) = servo(root.table("control")?, root.table("inverter")?)?;
     let (motor, torque_constant) = motor(root.table("motor")?)?;
@@ -90,6 +152,9 @@ fn axis(root: Fields<'_>) -> Result<Axis, AxisFileError> {
         period,
         coupling,
         simulation,
+        effects: extras::effects(&root, false)?,
+        tolerance: extras::tolerance(&root)?,
+        log: extras::log(&root)?,
         fingerprint: String::new(),
     };
     root.finish()?;

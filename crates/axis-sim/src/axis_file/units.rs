@@ -64,6 +64,11 @@ dimensions! {
         "a_per_rpm" 1.0 / RPM, "a_s_per_rad" 1.0;
     SPEED_INTEGRAL "unit of a speed controller's integral gain":
         "a_per_rpm_s" 1.0 / RPM, "a_per_rad" 1.0;
+    FORCE "unit of force": "n" 1.0, "kn" 1e3;
+    LINEAR_DAMPING "unit of damping": "n_s_per_m" 1.0;
+    FORCE_GAIN "unit of a force gain": "n_per_v" 1.0;
+    RATE "unit of a position gain": "per_s" 1.0;
+    SPEED_GAIN "unit of a speed gain": "v_s_per_m" 1.0;
     CURRENT_PROPORTIONAL "unit of a current controller's proportional gain": "v_per_a" 1.0;
     CURRENT_INTEGRAL "unit of a current controller's integral gain": "v_per_a_s" 1.0;
 }

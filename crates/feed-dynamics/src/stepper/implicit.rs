@@ -8,7 +8,7 @@
 use beam_fem::Tridiagonal;
 
 use super::modal::check_step;
-use super::{Observation, Settled, TableMotion, TimeStepper, settle_load};
+use super::{NutErrors, Observation, Settled, TableMotion, TimeStepper, settle_load};
 use crate::matrices::{Chain, NutCoupling, NutSeat};
 use crate::{DriveError, FeedDrive};
 
@@ -152,7 +152,13 @@ impl TimeStepper for ImplicitStepper {
         }
     }
 
-    fn step(&self, state: &mut ImplicitState, torque: f64, load: impl FnMut(TableMotion) -> f64) {
+    fn step_through(
+        &self,
+        state: &mut ImplicitState,
+        torque: f64,
+        errors: &NutErrors,
+        load: impl FnMut(TableMotion) -> f64,
+    ) {
         let h = self.step;
         let p = self.drive.parameters();
         let (r, k, beta) = (
@@ -181,6 +187,12 @@ impl TimeStepper for ImplicitStepper {
         };
         self.move_node(state, x, seat);
 
+        // Where in its gap the nut is going to be, from the motion so far.
+        let half = 0.5 * errors.gap;
+        let going = self.stretch(&state.q, &seat) + h * self.stretch(&state.v, &seat);
+        let slack = (going + errors.offset).clamp(-half, half);
+        let shift = errors.offset + beta * errors.offset_rate - slack;
+
         // q_p + β v_p, and with it the right-hand side.
         for i in 0..=last {
             state.q[i] += h * state.v[i] + 0.25 * h * h * state.a[i];
@@ -190,7 +202,7 @@ impl TimeStepper for ImplicitStepper {
         let mut rhs = multiply(&chain.stiffness, &known[..last]);
         rhs.iter_mut().for_each(|f| *f = -*f);
         rhs[0] += torque;
-        let pull = k * self.stretch(&known, &seat);
+        let pull = k * (self.stretch(&known, &seat) + shift);
         let at = 2 + seat.node;
         for (i, n) in seat.weights.iter().enumerate() {
             rhs[at + i] -= r * n * pull;
@@ -235,7 +247,7 @@ impl TimeStepper for ImplicitStepper {
             state.v[i] += 0.5 * h * state.a[i];
         }
         let (stretch, rate) = (self.stretch(&state.q, &seat), self.stretch(&state.v, &seat));
-        state.nut_force = k * stretch + k * beta * rate;
+        state.nut_force = k * (stretch + shift) + k * beta * rate;
         state.load = end_load;
     }
 

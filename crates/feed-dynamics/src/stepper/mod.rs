@@ -62,6 +62,23 @@ impl Settled {
     }
 }
 
+/// What the nut's kinematics have beyond `table = r · rotation`, at the end of
+/// a step. The default is none.
+///
+/// The nut is compressed by `δ = r θ + offset − y`; within ± half the gap it
+/// carries nothing, beyond it `k (δ ∓ gap/2) + βk δ̇`, and it never pulls. The
+/// reaction on the screw keeps the lever r: a lead error of 1e-4 changes it by
+/// as little.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NutErrors {
+    /// Displacement that is added to what the rotation commands, m.
+    pub offset: f64,
+    /// Its rate, m/s.
+    pub offset_rate: f64,
+    /// Free travel between the flanks, m, zero or more.
+    pub gap: f64,
+}
+
 /// Advances the drive by steps of a fixed length.
 ///
 /// The motor torque goes linearly from its last value to the one given. The
@@ -81,7 +98,19 @@ pub trait TimeStepper {
 
     /// One step, to the motor torque `torque` (N·m) and the table load `load`
     /// (N, positive against positive motion) at its end.
-    fn step(&self, state: &mut Self::State, torque: f64, load: impl FnMut(TableMotion) -> f64);
+    fn step(&self, state: &mut Self::State, torque: f64, load: impl FnMut(TableMotion) -> f64) {
+        self.step_through(state, torque, &NutErrors::default(), load);
+    }
+
+    /// As [`TimeStepper::step`], with errors of the nut's kinematics. Without
+    /// any the result is the same to the bit.
+    fn step_through(
+        &self,
+        state: &mut Self::State,
+        torque: f64,
+        nut: &NutErrors,
+        load: impl FnMut(TableMotion) -> f64,
+    );
 
     /// What can be seen of a state.
     fn observe(&self, state: &Self::State) -> Observation;

@@ -15,7 +15,7 @@
 
 use nalgebra::Matrix4;
 
-use super::{Observation, Settled, TableMotion, TimeStepper, settle_load};
+use super::{NutErrors, Observation, Settled, TableMotion, TimeStepper, settle_load};
 use crate::matrices::{NutCoupling, NutSeat, dense};
 use crate::{DriveError, FeedDrive};
 
@@ -186,7 +186,13 @@ impl TimeStepper for ModalStepper {
         }
     }
 
-    fn step(&self, state: &mut ModalState, torque: f64, load: impl FnMut(TableMotion) -> f64) {
+    fn step_through(
+        &self,
+        state: &mut ModalState,
+        torque: f64,
+        errors: &NutErrors,
+        load: impl FnMut(TableMotion) -> f64,
+    ) {
         let (h, r) = (self.step, self.r);
         let p = self.drive.parameters();
         let (k, c, mass) = (
@@ -209,10 +215,17 @@ impl TimeStepper for ModalStepper {
         };
         let (give, give_speed) = (h * h / (6.0 * mass), 0.5 * h / mass);
 
-        // F = k (rθ − y) + βk (rθ̇ − v), all at the end, is linear in F and the load.
+        // F = k (rθ − y) + βk (rθ̇ − v), all at the end, is linear in F and the
+        // load; with a gap, F times its stiffness falls short by that of half
+        // the gap, and is nothing where it does not reach so far.
         let stiff = 1.0 + k * (r * r * soft + give) + c * (r * r * soft_rate + give_speed);
-        let unloaded = k * (r * rotation - free.displacement) + c * (r * rate - free.speed);
-        let nut = |load: f64| (unloaded + (k * give + c * give_speed) * load) / stiff;
+        let turned = [r * rotation + errors.offset, r * rate + errors.offset_rate];
+        let unloaded = k * (turned[0] - free.displacement) + c * (turned[1] - free.speed);
+        let slack = 0.5 * k * errors.gap;
+        let nut = |load: f64| {
+            let pressed = unloaded + (k * give + c * give_speed) * load;
+            (pressed - pressed.clamp(-slack, slack)) / stiff
+        };
         let motion = |load: f64| {
             let force = nut(load) - load;
             TableMotion {

@@ -1,0 +1,91 @@
+//! CSV as a table.
+
+use csv::{Position, StringRecord};
+
+use crate::csv_text::Text;
+use crate::error::CsvProblem;
+use crate::read_error::{Place, ReadProblem};
+use crate::table::{Head, Table};
+
+pub(crate) struct CsvTable<'a> {
+    text: Text<'a>,
+    heads: Vec<Head>,
+    /// Byte from which the parser looked for each row, to find its line in case
+    /// of an error.
+    offsets: Vec<u64>,
+}
+
+impl<'a> CsvTable<'a> {
+    pub(crate) fn open(bytes: &'a [u8]) -> Result<Self, ReadProblem> {
+        let text = Text::new(bytes)?;
+        let mut record = StringRecord::new();
+        if !read_record(&mut text.parser(), &mut record)? {
+            return Err(CsvProblem::NoHeader.into());
+        }
+        let head = |name: &str| Head {
+            name: name.to_owned(),
+            fault: None,
+        };
+        Ok(Self {
+            text,
+            heads: record.iter().map(head).collect(),
+            offsets: Vec::new(),
+        })
+    }
+
+    fn number(&self, row: usize, column: usize, text: &str) -> Result<f64, ReadProblem> {
+        let at = || (self.place(row, column), self.heads[column].name.clone());
+        if text.is_empty() {
+            let (place, name) = at();
+            return Err(ReadProblem::MissingValue { place, name });
+        }
+        text.parse().map_err(|_| {
+            let (place, name) = at();
+            let text = text.to_owned();
+            ReadProblem::NotANumber { place, name, text }
+        })
+    }
+}
+
+impl Table for CsvTable<'_> {
+    fn heads(&self) -> &[Head] {
+        &self.heads
+    }
+
+    fn read(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, ReadProblem> {
+        let mut columns = vec![Vec::new(); wanted.len()];
+        let (mut rows, mut record) = (self.text.parser(), StringRecord::new());
+        read_record(&mut rows, &mut record)?; // the header
+        while read_record(&mut rows, &mut record)? {
+            let row = self.offsets.len();
+            self.offsets
+                .push(record.position().map_or(0, Position::byte));
+            if record.len() != self.heads.len() {
+                return Err(ReadProblem::Csv(CsvProblem::Ragged {
+                    line: self.text.line_of(&record),
+                    found: record.len(),
+                    expected: self.heads.len(),
+                }));
+            }
+            for (column, &index) in columns.iter_mut().zip(wanted) {
+                column.push(self.number(row, index, &record[index])?);
+            }
+        }
+        Ok(columns)
+    }
+
+    fn place(&self, row: usize, column: usize) -> Place {
+        Place::Line {
+            line: self.text.line_at(self.offsets.get(row).map_or(0, |&o| o)),
+            column: column + 1,
+        }
+    }
+}
+
+fn read_record(
+    rows: &mut csv::Reader<&[u8]>,
+    record: &mut StringRecord,
+) -> Result<bool, ReadProblem> {
+    rows.read_record(record)
+        .map_err(|e| ReadProblem::Csv(CsvProblem::Csv(e)))
+}

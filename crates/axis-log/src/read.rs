@@ -1,0 +1,165 @@
+//! A file of any known format to a log.
+
+use std::fs::File;
+use std::path::Path;
+
+use crate::channel::Channel;
+use crate::csv_table::CsvTable;
+use crate::log::{Log, TIME_CHANNEL};
+use crate::mapping::Mapping;
+use crate::mat_table::MatTable;
+use crate::parquet_table::ParquetTable;
+use crate::read_error::{ReadError, ReadProblem};
+use crate::select::{Pick, select};
+use crate::table::Table;
+
+/// Reads a log from a CSV, Parquet or MAT file, by its extension (`.csv`,
+/// `.parquet`, `.mat`, in any case), renaming and scaling columns as `mapping`
+/// says.
+///
+/// A column that the mapping names becomes `scale · value + offset` under the
+/// channel's name. Any other column is taken as it stands if its name ends in a
+/// known unit ([`unit_of`](crate::unit_of)) and no mapped column has taken that
+/// name, and is skipped otherwise. A mapped column that the file does not have
+/// is left out, unless its channel is `required`; so the mapping of a drive also
+/// reads files that hold fewer channels, or already have these names. The time
+/// `t_s` comes from its column, or from the mapping's sample rate; it stands
+/// first, then the mapped channels, then the others in the file's order.
+///
+/// - **CSV** as for [`read_csv`](crate::read_csv), except that columns without a
+///   known unit are skipped, whatever they hold.
+/// - **Parquet**, uncompressed or Snappy: flat columns of float, double, int32
+///   and int64; other columns are skipped. Time stamps are read as the integers
+///   that they are stored as: map them with their unit as scale.
+/// - **MAT version 5** (`-v6`, `-v7`), compressed or not: each real numeric
+///   vector, n × 1 or 1 × n, is a column under its variable's name. Skipped are
+///   matrices, scalars and vectors of another length than the time, complex and
+///   sparse arrays, text, cells, structs, and arrays of class int32, which the
+///   parser does not know. Version 7.3 is HDF5 and refused with that hint.
+///
+/// # Errors
+/// A [`ReadError`] with file, line (CSV) or row, and what would be valid: file
+/// not readable, a mapping that makes no sense, a required channel or the time
+/// missing (the columns that exist are listed), a wanted column doubled, of
+/// another type or length, a value missing, not a number or not finite, a time
+/// repeated or unsorted.
+pub fn read_log(
+    path: impl AsRef<Path>,
+    mapping: &Mapping,
+    required: &[&str],
+) -> Result<Log, ReadError> {
+    let path = path.as_ref();
+    read(path, mapping, required).map_err(|problem| ReadError {
+        file: path.display().to_string(),
+        problem,
+    })
+}
+
+fn read(path: &Path, mapping: &Mapping, required: &[&str]) -> Result<Log, ReadProblem> {
+    mapping.check()?;
+    let found = path.extension().unwrap_or_default().to_string_lossy();
+    match found.to_ascii_lowercase().as_str() {
+        "csv" => to_log(CsvTable::open(&whole(path)?)?, mapping, required),
+        "parquet" => to_log(ParquetTable::open(open(path)?)?, mapping, required),
+        "mat" => to_log(MatTable::open(&whole(path)?)?, mapping, required),
+        _ => Err(ReadProblem::Extension {
+            found: found.into_owned(),
+        }),
+    }
+}
+
+fn open(path: &Path) -> Result<File, ReadProblem> {
+    File::open(path).map_err(|source| ReadProblem::Io {
+        action: "open it",
+        source,
+    })
+}
+
+fn whole(path: &Path) -> Result<Vec<u8>, ReadProblem> {
+    std::fs::read(path).map_err(|source| ReadProblem::Io {
+        action: "read it",
+        source,
+    })
+}
+
+fn to_log(mut table: impl Table, mapping: &Mapping, required: &[&str]) -> Result<Log, ReadProblem> {
+    let mut picks = select(&table, mapping, required)?;
+    // The time goes first, the others keep their order.
+    picks.sort_by_key(|p| p.map.channel != TIME_CHANNEL);
+    let mut wanted: Vec<usize> = picks.iter().map(|p| p.column).collect();
+    wanted.sort_unstable();
+    wanted.dedup();
+    let columns = table.read(&wanted)?;
+    let values = |pick: &Pick| {
+        let at = wanted.iter().position(|&c| c == pick.column);
+        at.map_or(&[][..], |at| columns[at].as_slice())
+    };
+    let samples = length(&mut picks, values)?;
+    let mut channels = Vec::with_capacity(picks.len() + 1);
+    if picks.first().is_none_or(|p| p.map.channel != TIME_CHANNEL)
+        && let Some(rate) = mapping.sample_rate_hz
+    {
+        let time = (0..samples).map(|k| k as f64 / rate).collect();
+        channels.push(Channel::new(TIME_CHANNEL, time)?);
+    }
+    for pick in &picks {
+        channels.push(channel(&table, pick, values(pick))?);
+    }
+    Ok(Log::new(channels)?)
+}
+
+/// The number of samples, set by the first column that someone asked for (the
+/// time, if it is a column). Others of another length are refused, or dropped if
+/// nobody asked for them.
+fn length<'a>(
+    picks: &mut Vec<Pick>,
+    values: impl Fn(&Pick) -> &'a [f64],
+) -> Result<usize, ReadProblem> {
+    let Some(first) = picks.iter().find(|p| p.asked).or(picks.first()) else {
+        return Err(ReadProblem::NoRows);
+    };
+    let (expected, other) = (values(first).len(), first.map.source.clone());
+    if expected == 0 {
+        return Err(ReadProblem::NoRows);
+    }
+    for pick in picks.iter().filter(|p| p.asked) {
+        let found = values(pick).len();
+        if found != expected {
+            let name = pick.map.source.clone();
+            return Err(ReadProblem::Length {
+                name,
+                found,
+                other,
+                expected,
+            });
+        }
+    }
+    picks.retain(|p| values(p).len() == expected);
+    Ok(expected)
+}
+
+/// Scales and checks one column.
+fn channel(table: &impl Table, pick: &Pick, values: &[f64]) -> Result<Channel, ReadProblem> {
+    let samples: Vec<f64> = values.iter().map(|&v| pick.map.apply(v)).collect();
+    let at = |row| (table.place(row, pick.column), pick.map.source.clone());
+    if let Some(row) = samples.iter().position(|v| !v.is_finite()) {
+        let ((place, name), value) = (at(row), samples[row]);
+        return Err(ReadProblem::NotFinite { place, name, value });
+    }
+    if pick.map.channel == TIME_CHANNEL
+        && let Some(row) = samples.windows(2).position(|w| w[1] <= w[0])
+    {
+        let ((place, name), previous, value) = (at(row + 1), samples[row], samples[row + 1]);
+        return Err(if value == previous {
+            ReadProblem::TimeRepeated { place, name, value }
+        } else {
+            ReadProblem::TimeUnsorted {
+                place,
+                name,
+                previous,
+                value,
+            }
+        });
+    }
+    Ok(Channel::new(&pick.map.channel, samples)?)
+}

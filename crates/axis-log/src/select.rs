@@ -1,0 +1,123 @@
+//! Which columns of a table become which channels.
+
+use crate::log::TIME_CHANNEL;
+use crate::mapping::{ColumnMap, Mapping};
+use crate::read_error::ReadProblem;
+use crate::table::{Head, Table};
+use crate::unit::unit_of;
+
+/// A column that becomes a channel.
+pub(crate) struct Pick {
+    /// Index of the column.
+    pub column: usize,
+    /// Name, scale and offset.
+    pub map: ColumnMap,
+    /// Whether someone asked for it by name; otherwise it is left out where it
+    /// does not fit.
+    pub asked: bool,
+}
+
+/// The mapped columns in the mapping's order, then those with a unit in the
+/// file's order.
+pub(crate) fn select(
+    table: &impl Table,
+    mapping: &Mapping,
+    required: &[&str],
+) -> Result<Vec<Pick>, ReadProblem> {
+    let heads = table.heads();
+    let mut picks = Vec::new();
+    for map in &mapping.columns {
+        if let Some(column) = find(heads, &map.source)? {
+            picks.push(Pick {
+                column,
+                map: map.clone(),
+                asked: true,
+            });
+        }
+    }
+    for (index, head) in heads.iter().enumerate() {
+        let source = mapping.columns.iter().any(|m| m.source == head.name);
+        let taken = picks.iter().any(|p| p.asked && p.map.channel == head.name);
+        if source || taken || unit_of(&head.name).is_none() {
+            continue;
+        }
+        let asked = head.name == TIME_CHANNEL || required.contains(&head.name.as_str());
+        find(heads, &head.name)?;
+        if asked || head.fault.is_none() {
+            picks.push(Pick {
+                column: index,
+                map: own(&head.name),
+                asked,
+            });
+        }
+    }
+    check_required(table, mapping, required, &picks)?;
+    check_readable(heads, &picks)?;
+    Ok(picks)
+}
+
+fn own(name: &str) -> ColumnMap {
+    ColumnMap {
+        source: name.to_owned(),
+        channel: name.to_owned(),
+        scale: 1.0,
+        // Adding −0 keeps every bit, the sign of a zero too.
+        offset: -0.0,
+    }
+}
+
+/// The only column of that name.
+fn find(heads: &[Head], name: &str) -> Result<Option<usize>, ReadProblem> {
+    let mut found = heads.iter().enumerate().filter(|(_, h)| h.name == name);
+    match (found.next(), found.next()) {
+        (Some((first, _)), Some((second, _))) => Err(ReadProblem::DuplicateColumn {
+            name: name.to_owned(),
+            first: first + 1,
+            second: second + 1,
+        }),
+        (first, _) => Ok(first.map(|(index, _)| index)),
+    }
+}
+
+fn check_required(
+    table: &impl Table,
+    mapping: &Mapping,
+    required: &[&str],
+    picks: &[Pick],
+) -> Result<(), ReadProblem> {
+    let has = |channel: &str| picks.iter().any(|p| p.map.channel == channel);
+    for &channel in required {
+        // The time may come from the rate.
+        if has(channel) || channel == TIME_CHANNEL {
+            continue;
+        }
+        let map = mapping.columns.iter().find(|m| m.channel == channel);
+        return Err(ReadProblem::MissingColumn {
+            channel: channel.to_owned(),
+            column: map.map_or(channel, |m| m.source.as_str()).to_owned(),
+            available: table.names(),
+            unreadable: table.unreadable(),
+        });
+    }
+    if !has(TIME_CHANNEL) && mapping.sample_rate_hz.is_none() {
+        return Err(ReadProblem::NoTime {
+            available: table.names(),
+            unreadable: table.unreadable(),
+        });
+    }
+    Ok(())
+}
+
+fn check_readable(heads: &[Head], picks: &[Pick]) -> Result<(), ReadProblem> {
+    for pick in picks {
+        let head = &heads[pick.column];
+        if let Some(fault) = &head.fault {
+            return Err(ReadProblem::Unreadable {
+                name: head.name.clone(),
+                found: fault.found.clone(),
+                valid: fault.valid,
+            });
+        }
+    }
+    Ok(())
+}

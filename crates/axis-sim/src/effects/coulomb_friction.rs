@@ -1,0 +1,19 @@
+//! `coulomb-friction`: dry friction of one size in both directions.
+
+use super::{Effect, EffectChannel, size};
+
+pub(super) const EFFECT: Effect = Effect {
+    name: "coulomb-friction",
+    summary: "dry friction of one size in both directions",
+    channel: EffectChannel::Torque,
+    depends_on: "sign of speed",
+    parameters: &[size("force", "N", 60.0, 5e3)],
+    on_rigid: true,
+    install,
+};
+
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+    let v: [f64; 1] = super::changes::array(values);
+    to.hooks.load(move |t| v[0] * t.bristle);
+    Ok(())
+}

@@ -1,0 +1,199 @@
+//! Effects that a model may lack: a registry of components of the closed loop.
+//!
+//! An [`Effect`] is one file and one line of [`EFFECTS`]. It changes a machine
+//! by [`Changes`]: parameters of the machine, and hooks where the loop calls
+//! it (a load on the table, a torque at the motor, the nut's kinematics, what
+//! the sensors show). At its null value it changes nothing, to the bit.
+//!
+//! Friction effects act through the unit bristle `u ∈ [−1, 1]` of a LuGre
+//! element with the Coulomb level 1 and the axis' own pre-sliding distance, so
+//! that none of them jumps at zero speed (Canudas de Wit et al., IEEE Trans.
+//! Automat. Contr. 40 (1995) 419–425, doi:10.1109/9.376053).
+
+mod changes;
+mod asymmetric_friction;
+mod backlash;
+mod clock_offset;
+mod cogging_torque;
+mod constant_load;
+mod control_delay;
+mod controller_gain;
+mod coulomb_friction;
+mod current_sensor_offset;
+mod encoder_eccentricity;
+mod inverter_dead_time;
+mod lead_error;
+mod motor_inertia;
+mod payload_mass;
+mod periodic_lead_error;
+mod position_dependent_friction;
+mod presliding;
+mod process_force;
+mod speed_controller_gain;
+mod stator_resistance;
+mod stribeck_friction;
+mod thermal_expansion;
+mod torque_constant;
+mod torque_ripple;
+mod transmission_stiffness;
+mod velocity_feedforward;
+mod viscous_friction;
+
+pub use changes::{Changes, Machine};
+pub(crate) use changes::{Hooks, MachineMut, ScrewState, TableState};
+
+use feed_dynamics::DriveError;
+
+/// Where in the machine an effect shows itself first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EffectChannel {
+    /// Torque balance: current against motion.
+    Torque,
+    /// Table against motor angle.
+    Kinematics,
+    /// Voltage against current and speed.
+    Voltage,
+    /// What the controller asks for against what it was shown.
+    Controller,
+    /// Time between channels.
+    Clock,
+}
+
+impl EffectChannel {
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Torque => "torque balance",
+            Self::Kinematics => "kinematics",
+            Self::Voltage => "voltage",
+            Self::Controller => "controller",
+            Self::Clock => "clock",
+        }
+    }
+}
+
+/// One number of an effect. All values in SI units.
+#[derive(Clone, Copy, Debug)]
+pub struct EffectParameter {
+    /// Its name in files.
+    pub name: &'static str,
+    /// Its SI unit; empty for a ratio.
+    pub unit: &'static str,
+    /// Where the search starts for it while the effect is small; for a size,
+    /// this is a typical one, whose null value is 0.
+    pub typical: f64,
+    /// Whether the effect vanishes where this is 0.
+    pub size: bool,
+    /// Least and greatest value.
+    pub bounds: [f64; 2],
+}
+
+/// An effect of the registry.
+#[derive(Clone, Copy, Debug)]
+pub struct Effect {
+    /// Its name, as in files and reports.
+    pub name: &'static str,
+    /// One line for people.
+    pub summary: &'static str,
+    /// Where it shows first.
+    pub channel: EffectChannel,
+    /// What it depends on, in words.
+    pub depends_on: &'static str,
+    /// Its numbers.
+    pub parameters: &'static [EffectParameter],
+    /// Whether it exists on a rigid mass with a force gain too.
+    pub on_rigid: bool,
+    /// Changes a machine; `values` are in the order of `parameters`.
+    pub(crate) install: fn(values: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError>,
+}
+
+impl Effect {
+    /// The values at which it changes nothing.
+    pub fn null(&self) -> Vec<f64> {
+        let null = |p: &EffectParameter| if p.size { 0.0 } else { p.typical };
+        self.parameters.iter().map(null).collect()
+    }
+
+    /// Typical values.
+    pub fn typical(&self) -> Vec<f64> {
+        self.parameters.iter().map(|p| p.typical).collect()
+    }
+
+    /// The effect of that name.
+    pub fn named(name: &str) -> Option<&'static Effect> {
+        EFFECTS.iter().copied().find(|effect| effect.name == name)
+    }
+}
+
+/// An effect with its values: one `[[effects]]` entry of an axis file.
+#[derive(Clone, Debug)]
+pub struct ActiveEffect {
+    /// Which.
+    pub effect: &'static Effect,
+    /// SI, in the order of its parameters.
+    pub values: Vec<f64>,
+}
+
+impl PartialEq for ActiveEffect {
+    fn eq(&self, other: &Self) -> bool {
+        self.effect.name == other.effect.name && self.values == other.values
+    }
+}
+
+/// A number that is a size: the effect vanishes at 0.
+const fn size(name: &'static str, unit: &'static str, typical: f64, most: f64) -> EffectParameter {
+    EffectParameter {
+        name,
+        unit,
+        typical,
+        size: true,
+        bounds: [-most, most],
+    }
+}
+
+/// A number that shapes the effect.
+const fn shape(
+    name: &'static str,
+    unit: &'static str,
+    typical: f64,
+    bounds: [f64; 2],
+) -> EffectParameter {
+    EffectParameter {
+        name,
+        unit,
+        typical,
+        size: false,
+        bounds,
+    }
+}
+
+/// All effects, one line each.
+pub const EFFECTS: &[&Effect] = &[
+    &viscous_friction::EFFECT,
+    &coulomb_friction::EFFECT,
+    &asymmetric_friction::EFFECT,
+    &stribeck_friction::EFFECT,
+    &presliding::EFFECT,
+    &position_dependent_friction::EFFECT,
+    &constant_load::EFFECT,
+    &process_force::EFFECT,
+    &payload_mass::EFFECT,
+    &motor_inertia::EFFECT,
+    &torque_constant::EFFECT,
+    &cogging_torque::EFFECT,
+    &torque_ripple::EFFECT,
+    &current_sensor_offset::EFFECT,
+    &backlash::EFFECT,
+    &lead_error::EFFECT,
+    &periodic_lead_error::EFFECT,
+    &thermal_expansion::EFFECT,
+    &transmission_stiffness::EFFECT,
+    &encoder_eccentricity::EFFECT,
+    &inverter_dead_time::EFFECT,
+    &stator_resistance::EFFECT,
+    &control_delay::EFFECT,
+    &controller_gain::EFFECT,
+    &speed_controller_gain::EFFECT,
+    &velocity_feedforward::EFFECT,
+    &clock_offset::EFFECT,
+];

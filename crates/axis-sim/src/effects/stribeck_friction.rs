@@ -1,0 +1,22 @@
+//! `stribeck-friction`: dry friction that falls with speed.
+
+use super::{Effect, EffectChannel, size, shape};
+
+pub(super) const EFFECT: Effect = Effect {
+    name: "stribeck-friction",
+    summary: "dry friction that falls with speed",
+    channel: EffectChannel::Torque,
+    depends_on: "low speed",
+    parameters: &[size("force", "N", 60.0, 5e3), shape("velocity", "m/s", 0.02, [1e-3, 1.0])],
+    on_rigid: true,
+    install,
+};
+
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+    let v: [f64; 2] = super::changes::array(values);
+    to.hooks.load(move |t| {
+        let ratio = t.speed / v[1];
+        v[0] * (-ratio * ratio).exp() * t.bristle
+    });
+    Ok(())
+}

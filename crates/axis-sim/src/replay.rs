@@ -1,0 +1,315 @@
+//! Replaying a logged reference through the whole closed loop.
+//!
+//! The reference carries no noise, so nothing that was measured is fed back
+//! into the simulation, and its residuals are free of that bias (closed-loop
+//! output error: Gautier, Janot, Vandanjon, IEEE Trans. Control Syst. Technol.
+//! 21 (2013) 428–444, doi:10.1109/TCST.2012.2185697).
+
+use std::sync::Arc;
+
+use axis_log::{Log, LogError};
+use compensator::NoCompensation;
+use feed_dynamics::DriveError;
+use thiserror::Error;
+use trajectories::{Motion, Setpoint};
+
+use crate::effects::{ActiveEffect, Hooks, Machine};
+use crate::rigid::Start;
+use crate::{ClosedLoop, Cycle, Measured, RunStopped};
+
+/// Why a replay failed.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReplayError {
+    /// A channel that a replay needs is not in the log.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// The mechanics cannot be set up.
+    #[error(transparent)]
+    Drive(#[from] DriveError),
+    /// The closed loop was given up.
+    #[error(transparent)]
+    Stopped(#[from] RunStopped),
+    /// A state is no longer a number.
+    #[error("the replay diverged at t = {time:.4} s")]
+    Diverged {
+        /// When, s.
+        time: f64,
+    },
+}
+
+/// A logged reference as a motion: cubic between samples, through positions
+/// and velocities.
+#[derive(Clone, Debug)]
+pub struct LoggedReference {
+    period: f64,
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+}
+
+impl LoggedReference {
+    /// The reference of a uniformly sampled log with the sampling period
+    /// `period` (s). Without `velocity_ref_m_s` the velocity is the central
+    /// difference of the position.
+    ///
+    /// # Errors
+    /// [`LogError::MissingChannel`] without `position_ref_m`.
+    pub fn new(log: &Log, period: f64) -> Result<Self, LogError> {
+        let position = log.channel("position_ref_m")?.to_vec();
+        let last = position.len() - 1;
+        let difference = |k: usize| {
+            let (a, b) = (k.saturating_sub(1), (k + 1).min(last));
+            (position[b] - position[a]) / (period * (b - a).max(1) as f64)
+        };
+        let velocity = match log.channel("velocity_ref_m_s") {
+            Ok(samples) => samples.to_vec(),
+            Err(_) => (0..=last).map(difference).collect(),
+        };
+        Ok(Self {
+            period,
+            position,
+            velocity,
+        })
+    }
+}
+
+impl Motion for LoggedReference {
+    fn duration(&self) -> f64 {
+        (self.position.len() - 1) as f64 * self.period
+    }
+
+    fn at(&self, t: f64) -> Setpoint {
+        let last = self.position.len() - 1;
+        let along = (t / self.period).clamp(0.0, last as f64);
+        let near = along.round();
+        if (along - near).abs() < 1e-6 {
+            let k = near as usize;
+            let inside = t > -self.period && t < self.duration() + self.period;
+            return Setpoint {
+                position: self.position[k],
+                velocity: if inside { self.velocity[k] } else { 0.0 },
+                ..Setpoint::default()
+            };
+        }
+        let k = (along as usize).min(last.saturating_sub(1));
+        let (s, h) = (along - k as f64, self.period);
+        let (p0, p1) = (self.position[k], self.position[k + 1]);
+        let (m0, m1) = (h * self.velocity[k], h * self.velocity[k + 1]);
+        let (s2, s3) = (s * s, s * s * s);
+        let position = (2.0 * s3 - 3.0 * s2 + 1.0) * p0
+            + (s3 - 2.0 * s2 + s) * m0
+            + (3.0 * s2 - 2.0 * s3) * p1
+            + (s3 - s2) * m1;
+        let velocity = (6.0 * (s2 - s) * (p0 - p1)
+            + (3.0 * s2 - 4.0 * s + 1.0) * m0
+            + (3.0 * s2 - 2.0 * s) * m1)
+            / h;
+        Setpoint {
+            position,
+            velocity,
+            ..Setpoint::default()
+        }
+    }
+}
+
+/// Simulated channels at the instants of a log, named as in logs.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    /// Name with unit, samples.
+    pub channels: Vec<(&'static str, Vec<f64>)>,
+    /// Table speed, m/s, for looking at residuals.
+    pub speed: Vec<f64>,
+}
+
+impl Trace {
+    /// The samples of a channel.
+    pub fn channel(&self, name: &str) -> Option<&[f64]> {
+        let found = self.channels.iter().find(|(n, _)| *n == name);
+        found.map(|(_, samples)| samples.as_slice())
+    }
+}
+
+/// A disturbance given in time, for asking how the loop answers to it: one
+/// sample per sampling period of the log, linear between.
+#[derive(Clone, Debug)]
+pub enum Probe {
+    /// Force on the table, N, against positive motion.
+    Load(Arc<[f64]>),
+    /// Displacement between screw and table, m.
+    Offset(Arc<[f64]>),
+}
+
+/// One log's reference, ready to be run through any machine.
+#[derive(Clone, Debug)]
+pub struct Replay {
+    reference: LoggedReference,
+    samples: usize,
+    start: Start,
+    added: Option<Vec<f64>>,
+}
+
+/// Column of a log: a reading of the sensors, or of the command.
+type Column = (&'static str, fn(&Cycle) -> f64);
+
+const COLUMNS: [Column; 6] = [
+    ("position_m", |c| c.measured.position),
+    ("motor_angle_rad", |c| c.measured.motor_angle),
+    ("iq_ref_a", |c| c.command.iq_ref),
+    ("iq_a", |c| c.measured.current.q),
+    ("ud_v", |c| c.command.voltage.d),
+    ("uq_v", |c| c.command.voltage.q),
+];
+
+impl Replay {
+    /// The reference of a uniformly sampled log.
+    ///
+    /// Where the table moves at the log's first samples, its position and speed
+    /// there are the start of a rigid machine.
+    ///
+    /// # Errors
+    /// [`LogError::MissingChannel`].
+    pub fn new(log: &Log, period: f64) -> Result<Self, LogError> {
+        let position = log.channel("position_m")?;
+        let few = position.len().min(6) - 1;
+        let start = Start {
+            position: position[0],
+            speed: (position[few] - position[0]) / (few.max(1) as f64 * period),
+        };
+        Ok(Self {
+            reference: LoggedReference::new(log, period)?,
+            samples: log.len(),
+            start,
+            added: log.channel("drive_command_added_v").ok().map(<[f64]>::to_vec),
+        })
+    }
+
+    /// The reference.
+    pub fn reference(&self) -> &LoggedReference {
+        &self.reference
+    }
+
+    /// Where a rigid machine starts.
+    pub fn start(&self) -> Start {
+        self.start
+    }
+
+    /// Runs the reference through the machine, with `effects` beside its own.
+    ///
+    /// # Errors
+    /// [`ReplayError`]: the machine cannot be set up, or its loop does not hold.
+    pub fn run(
+        &self,
+        machine: &Machine,
+        effects: &[ActiveEffect],
+        probe: Option<&Probe>,
+    ) -> Result<Trace, ReplayError> {
+        match machine {
+            Machine::BallScrew(axis) => {
+                let mut axis = (**axis).clone();
+                axis.effects.extend_from_slice(effects);
+                let mut closed_loop = ClosedLoop::new(&axis)?;
+                if let Some(probe) = probe {
+                    closed_loop.add(|hooks| self.attach(hooks, probe));
+                }
+                self.follow(&closed_loop, |_| ())
+            }
+            Machine::Rigid(axis) => {
+                let mut axis = axis.clone();
+                axis.effects.extend_from_slice(effects);
+                let (axis, mut hooks) = axis.with_effects()?;
+                if let Some(probe) = probe {
+                    self.attach(&mut hooks, probe);
+                }
+                let cycles = (self.reference.duration() / axis.period * (1.0 + 1e-12)) as usize + 1;
+                let added = |k: usize| {
+                    let at = k as f64 * axis.period / self.reference.period;
+                    let added = self.added.as_ref();
+                    added.and_then(|a| a.get(at.round() as usize)).copied().unwrap_or(0.0)
+                };
+                let log = axis.follow(&hooks, &self.reference, self.start, cycles, added);
+                if let Some(k) = log.iter().position(|c| !(c.position + c.command).is_finite()) {
+                    let time = k as f64 * axis.period;
+                    return Err(ReplayError::Diverged { time });
+                }
+                let position: Vec<f64> = log.iter().map(|c| c.position).collect();
+                let command: Vec<f64> = log.iter().map(|c| c.command).collect();
+                let position = self.resample(&position, axis.period, 0.0);
+                Ok(Trace {
+                    speed: self.differences(&position),
+                    channels: vec![
+                        ("position_m", position),
+                        ("drive_command_v", self.resample(&command, axis.period, 0.0)),
+                    ],
+                })
+            }
+        }
+    }
+
+    /// Runs the reference through a prepared closed loop; `sense` as in
+    /// [`ClosedLoop::run_sensed`].
+    ///
+    /// # Errors
+    /// [`ReplayError::Stopped`] where the loop does not hold.
+    pub fn follow(
+        &self,
+        closed_loop: &ClosedLoop,
+        sense: impl FnMut(&mut Measured),
+    ) -> Result<Trace, ReplayError> {
+        let mut cycles: Vec<Cycle> = Vec::new();
+        closed_loop
+            .run_sensed(&self.reference, &mut NoCompensation, sense, |c| cycles.push(*c))
+            .completed()?;
+        let period = closed_loop.axis().period;
+        let late = closed_loop.clock_offset();
+        let channel = |(name, read): &Column| {
+            let samples: Vec<f64> = cycles.iter().map(read).collect();
+            let by = if *name == "position_m" { late } else { 0.0 };
+            (*name, self.resample(&samples, period, by))
+        };
+        let speed: Vec<f64> = cycles.iter().map(|c| c.table_speed).collect();
+        Ok(Trace {
+            channels: COLUMNS.iter().map(channel).collect(),
+            speed: self.resample(&speed, period, 0.0),
+        })
+    }
+
+    /// Samples at the log's instants of what was recorded every `period`, late by `by`.
+    fn resample(&self, samples: &[f64], period: f64, by: f64) -> Vec<f64> {
+        let last = (samples.len() - 1) as f64;
+        let at = |k: usize| {
+            let along = ((k as f64 * self.reference.period - by) / period).clamp(0.0, last);
+            let near = along.round();
+            if (along - near).abs() < 1e-6 {
+                return samples[near as usize];
+            }
+            let i = along as usize;
+            let part = along - i as f64;
+            (1.0 - part) * samples[i] + part * samples[i + 1]
+        };
+        (0..self.samples).map(at).collect()
+    }
+
+    fn differences(&self, position: &[f64]) -> Vec<f64> {
+        let last = position.len() - 1;
+        let at = |k: usize| {
+            let (a, b) = (k.saturating_sub(1), (k + 1).min(last));
+            (position[b] - position[a]) / (self.reference.period * (b - a).max(1) as f64)
+        };
+        (0..=last).map(at).collect()
+    }
+
+    fn attach(&self, hooks: &mut Hooks, probe: &Probe) {
+        let h = self.reference.period;
+        let value = move |samples: &[f64], t: f64| {
+            let last = samples.len() - 1;
+            let along = (t / h).clamp(0.0, last as f64);
+            let i = (along as usize).min(last.saturating_sub(1));
+            let next = samples[(i + 1).min(last)];
+            [samples[i] + (along - i as f64) * (next - samples[i]), (next - samples[i]) / h]
+        };
+        match probe.clone() {
+            Probe::Load(samples) => hooks.load(move |t| value(&samples, t.time)[0]),
+            Probe::Offset(samples) => hooks.offset(move |s| value(&samples, s.time)),
+        }
+    }
+}

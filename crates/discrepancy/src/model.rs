@@ -1,0 +1,170 @@
+//! The simulated side: a machine with known parameters and effects, replayed.
+
+use axis_log::Log;
+use axis_sim::effects::{ActiveEffect, Machine};
+use axis_sim::{Probe, Replay, ReplayError, Trace};
+use rayon::prelude::*;
+
+use crate::known::{known_parameters, with_known};
+use crate::spectrum::{Amplitudes, Layout};
+
+/// A log, ready to be compared with simulations of it.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// Its name in messages.
+    pub name: String,
+    /// Sampling period, s.
+    pub period: f64,
+    /// Its reference.
+    pub replay: Replay,
+    /// The channels compared, in the order of [`LogSet::channels`].
+    pub measured: Vec<Vec<f64>>,
+    /// The log itself.
+    pub log: Log,
+}
+
+/// Logs that are compared together.
+#[derive(Clone, Debug)]
+pub struct LogSet {
+    /// The logs.
+    pub logs: Vec<Prepared>,
+    /// The channels that all of them have and that a simulation gives.
+    pub channels: Vec<&'static str>,
+    /// Bins and bands.
+    pub layout: Layout,
+}
+
+/// A point in the space of models.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Shares by which the known parameters are off.
+    pub shares: Vec<f64>,
+    /// Effects.
+    pub effects: Vec<ActiveEffect>,
+}
+
+/// Channels that are compared where they are present.
+const COMPARED: [&str; 7] = [
+    "position_m",
+    "motor_angle_rad",
+    "iq_ref_a",
+    "iq_a",
+    "uq_v",
+    "ud_v",
+    "drive_command_v",
+];
+
+impl State {
+    /// The machine as its file says.
+    pub fn initial(machine: &Machine) -> Self {
+        Self {
+            shares: vec![0.0; known_parameters(machine).len()],
+            effects: Vec::new(),
+        }
+    }
+}
+
+impl LogSet {
+    /// Takes logs with their names and sampling periods, for this machine.
+    ///
+    /// # Errors
+    /// [`ReplayError::Log`] where a channel that must be there is missing.
+    pub fn new(logs: Vec<(String, Log, f64)>, machine: &Machine) -> Result<Self, ReplayError> {
+        let simulated: &[&str] = match machine {
+            Machine::BallScrew(_) => &COMPARED[..6],
+            Machine::Rigid(_) => &["position_m", "drive_command_v"],
+        };
+        let everywhere = |name: &&&str| logs.iter().all(|(_, log, _)| log.has(name));
+        let channels: Vec<&'static str> = COMPARED
+            .iter()
+            .filter(|name| simulated.contains(name))
+            .filter(everywhere)
+            .copied()
+            .collect();
+        let prepare = |(name, log, period): (String, Log, f64)| {
+            let channel = |name: &&str| Ok(relative(name, log.channel(name)?));
+            Ok(Prepared {
+                replay: Replay::new(&log, period)?,
+                measured: channels.iter().map(channel).collect::<Result<_, ReplayError>>()?,
+                name,
+                period,
+                log,
+            })
+        };
+        let logs: Vec<Prepared> = logs.into_iter().map(prepare).collect::<Result<_, ReplayError>>()?;
+        let sizes: Vec<(usize, f64)> = logs.iter().map(|l| (l.log.len(), l.period)).collect();
+        Ok(Self {
+            layout: Layout::new(channels.len(), &sizes),
+            logs,
+            channels,
+        })
+    }
+
+    /// Simulates every log.
+    ///
+    /// # Errors
+    /// [`ReplayError`] of the first log that does not run.
+    pub fn simulate(&self, machine: &Machine, state: &State) -> Result<Vec<Trace>, ReplayError> {
+        self.simulate_with(machine, state, None)
+    }
+
+    /// As [`LogSet::simulate`], with one disturbance per log.
+    ///
+    /// # Errors
+    /// As [`LogSet::simulate`].
+    pub fn simulate_with(
+        &self,
+        machine: &Machine,
+        state: &State,
+        probes: Option<&[Probe]>,
+    ) -> Result<Vec<Trace>, ReplayError> {
+        let machine = with_known(machine, &state.shares);
+        let run = |(i, log): (usize, &Prepared)| {
+            log.replay.run(&machine, &state.effects, probes.map(|p| &p[i]))
+        };
+        self.logs.par_iter().enumerate().map(run).collect()
+    }
+
+    /// Measured minus simulated, per log and channel.
+    pub fn rest(&self, traces: &[Trace]) -> Vec<Vec<Vec<f64>>> {
+        let channel = |log: &Prepared, trace: &Trace, c: usize| {
+            let simulated = self.simulated(trace, c);
+            let pairs = log.measured[c].iter().zip(simulated);
+            pairs.map(|(m, s)| m - s).collect::<Vec<f64>>()
+        };
+        let one = |(log, trace): (&Prepared, &Trace)| {
+            (0..self.channels.len()).map(|c| channel(log, trace, c)).collect()
+        };
+        self.logs.iter().zip(traces).map(one).collect()
+    }
+
+    /// Difference of two simulations divided by `by`, as amplitudes.
+    pub fn difference(&self, a: &[Trace], b: &[Trace], by: f64) -> Amplitudes {
+        let one = |(i, (a, b)): (usize, (&Trace, &Trace))| {
+            let channel = |c: usize| {
+                let pairs = self.simulated(a, c).into_iter().zip(self.simulated(b, c));
+                pairs.map(|(x, y)| (x - y) / by).collect()
+            };
+            let series: Vec<Vec<f64>> = (0..self.channels.len()).map(channel).collect();
+            self.layout.transform(i, &series)
+        };
+        a.iter().zip(b).enumerate().map(one).collect()
+    }
+
+    /// Amplitudes of series per log and channel.
+    pub fn amplitudes(&self, series: &[Vec<Vec<f64>>]) -> Amplitudes {
+        let one = |(i, s): (usize, &Vec<Vec<f64>>)| self.layout.transform(i, s);
+        series.iter().enumerate().map(one).collect()
+    }
+
+    fn simulated(&self, trace: &Trace, channel: usize) -> Vec<f64> {
+        let name = self.channels[channel];
+        relative(name, trace.channel(name).unwrap_or_default())
+    }
+}
+
+/// Angles count from where a log begins, whatever the encoder's zero.
+fn relative(name: &str, samples: &[f64]) -> Vec<f64> {
+    let zero = if name == "motor_angle_rad" { samples.first().copied().unwrap_or(0.0) } else { 0.0 };
+    samples.iter().map(|v| v - zero).collect()
+}

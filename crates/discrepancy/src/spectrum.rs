@@ -1,0 +1,197 @@
+//! Residuals in frequency: complex amplitudes per channel, and the spectral
+//! matrix of what is left.
+//!
+//! Noise in a closed loop is coloured, and common to all channels: sensor
+//! noise goes round the loop. For a stationary Gaussian rest the transformed
+//! samples of different frequencies are independent, with the spectral matrix
+//! S(f) between channels, and minus twice the log-likelihood is (P. Whittle,
+//! Arkiv för Matematik 2 (1953) 423–434, doi:10.1007/BF02590998)
+//!
+//! ```text
+//! D = 2 Σ_f [ log det S(f) + r(f)ᴴ S(f)⁻¹ r(f) ]
+//! ```
+//!
+//! S is taken constant over bands of neighbouring frequencies and estimated
+//! from the rest itself, S_b = Σ r rᴴ / n_b; then D = 2 Σ_b n_b log det S_b
+//! but for a constant.
+
+use nalgebra::{Complex, DMatrix, DVector};
+use realfft::RealFftPlanner;
+
+type C64 = Complex<f64>;
+
+/// Amplitudes of all channels of all logs: `bins[log][bin * channels + channel]`.
+pub type Amplitudes = Vec<Vec<C64>>;
+
+/// How bands and bins are laid out for a set of logs.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    channels: usize,
+    /// Per log: sample count, sampling period.
+    logs: Vec<(usize, f64)>,
+    /// Band of each bin, per log.
+    bands: Vec<Vec<usize>>,
+    /// Number of bins in each band.
+    counts: Vec<usize>,
+}
+
+/// Frequency above which nothing mechanical is left to see, Hz.
+const HIGHEST: f64 = 400.0;
+
+/// Fewest bins of a band, for each channel: S_b must be well above singular
+/// even after a few dozen parameters were fitted to it.
+const BINS_PER_CHANNEL: usize = 16;
+
+impl Layout {
+    /// Bands for logs of these lengths (samples, s) and this many channels.
+    pub fn new(channels: usize, logs: &[(usize, f64)]) -> Self {
+        let bin_width = |&(n, h): &(usize, f64)| 1.0 / (n as f64 * h);
+        let top = |log: &(usize, f64)| HIGHEST.min(0.45 / log.1);
+        let per_hertz: f64 = logs.iter().map(|log| 1.0 / bin_width(log)).sum();
+        let narrowest = (BINS_PER_CHANNEL * channels) as f64 / per_hertz;
+        let end = logs.iter().map(top).fold(0.0, f64::max);
+        let mut edges = vec![0.0_f64];
+        while let Some(&last) = edges.last() {
+            if last >= end {
+                break;
+            }
+            edges.push((last + narrowest).max(1.25 * last));
+        }
+        // A last band that is too narrow belongs to the one before.
+        if edges.len() > 2 && end - edges[edges.len() - 2] < narrowest {
+            edges.remove(edges.len() - 2);
+        }
+        let mut counts = vec![0; edges.len() - 1];
+        let bands = logs
+            .iter()
+            .map(|log| {
+                let bins = (top(log) / bin_width(log)) as usize;
+                (0..bins)
+                    .map(|k| {
+                        let f = k as f64 * bin_width(log);
+                        let band = edges.partition_point(|&e| e <= f).clamp(1, counts.len()) - 1;
+                        counts[band] += 1;
+                        band
+                    })
+                    .collect()
+            })
+            .collect();
+        Self {
+            channels,
+            logs: logs.to_vec(),
+            bands,
+            counts,
+        }
+    }
+
+    /// Number of real numbers in the amplitudes.
+    pub fn size(&self) -> usize {
+        2 * self.channels * self.bins()
+    }
+
+    /// Number of frequencies.
+    pub fn bins(&self) -> usize {
+        self.counts.iter().sum()
+    }
+
+    /// Transforms the channels of one log, scaled so that white noise of unit
+    /// variance has amplitudes of unit variance.
+    pub fn transform(&self, log: usize, series: &[Vec<f64>]) -> Vec<C64> {
+        let bins = self.bands[log].len();
+        let n = self.logs[log].0;
+        let fft = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+        let mut out = vec![C64::new(0.0, 0.0); bins * self.channels];
+        let mut spectrum = fft.make_output_vec();
+        let scale = 1.0 / (n as f64).sqrt();
+        for (c, samples) in series.iter().enumerate() {
+            let mut input = samples.clone();
+            // The lengths agree by construction, so the transform cannot fail.
+            if fft.process(&mut input, &mut spectrum).is_ok() {
+                for (k, value) in spectrum.iter().take(bins).enumerate() {
+                    out[k * self.channels + c] = value * scale;
+                }
+            }
+        }
+        out
+    }
+
+    /// The spectral matrix of each band.
+    pub fn spectral_matrices(&self, rest: &Amplitudes) -> Vec<DMatrix<C64>> {
+        let m = self.channels;
+        let mut sums = vec![DMatrix::<C64>::zeros(m, m); self.counts.len()];
+        for (bands, bins) in self.bands.iter().zip(rest) {
+            for (&band, r) in bands.iter().zip(bins.chunks_exact(m)) {
+                for i in 0..m {
+                    for j in 0..m {
+                        sums[band][(i, j)] += r[i] * r[j].conj();
+                    }
+                }
+            }
+        }
+        for (sum, &count) in sums.iter_mut().zip(&self.counts) {
+            *sum *= C64::new(1.0 / count.max(1) as f64, 0.0);
+            for i in 0..m {
+                let own = sum[(i, i)].re;
+                sum[(i, i)] += C64::new(own * REGULAR + f64::MIN_POSITIVE, 0.0);
+            }
+        }
+        sums
+    }
+
+    /// D for the rest, S estimated from it.
+    pub fn deviance(&self, rest: &Amplitudes) -> f64 {
+        let matrices = self.spectral_matrices(rest);
+        let one = |(s, &n): (&DMatrix<C64>, &usize)| match s.clone().cholesky() {
+            Some(c) => {
+                let log_det: f64 = c.l_dirty().diagonal().iter().map(|d| 2.0 * d.re.ln()).sum();
+                2.0 * n as f64 * log_det
+            }
+            None => f64::INFINITY,
+        };
+        matrices.iter().zip(&self.counts).map(one).sum()
+    }
+
+    /// What makes the rest white, for the spectral matrices given.
+    pub fn whitener(&self, matrices: &[DMatrix<C64>]) -> Whitener {
+        let identity = DMatrix::<C64>::identity(self.channels, self.channels);
+        let inverse = |s: &DMatrix<C64>| {
+            let factor = s.clone().cholesky().map(|c| c.l());
+            let inverse = factor.and_then(|l| l.solve_lower_triangular(&identity));
+            inverse.unwrap_or_else(|| identity.clone())
+        };
+        Whitener {
+            factors: matrices.iter().map(inverse).collect(),
+        }
+    }
+
+    /// Whitened amplitudes as one vector of real numbers of unit variance.
+    pub fn whiten(&self, whitener: &Whitener, amplitudes: &Amplitudes) -> DVector<f64> {
+        let m = self.channels;
+        let mut out = Vec::with_capacity(self.size());
+        for (bands, bins) in self.bands.iter().zip(amplitudes) {
+            for (&band, r) in bands.iter().zip(bins.chunks_exact(m)) {
+                let factor = &whitener.factors[band];
+                for i in 0..m {
+                    let mut sum = C64::new(0.0, 0.0);
+                    for j in 0..=i {
+                        sum += factor[(i, j)] * r[j];
+                    }
+                    out.push(std::f64::consts::SQRT_2 * sum.re);
+                    out.push(std::f64::consts::SQRT_2 * sum.im);
+                }
+            }
+        }
+        DVector::from_vec(out)
+    }
+}
+
+/// What of a channel's own variance is added to the diagonal: channels that
+/// follow from others to rounding (the controller's output from its inputs)
+/// would have none of their own.
+const REGULAR: f64 = 1e-4;
+
+/// Inverse Cholesky factors of the spectral matrices.
+#[derive(Clone, Debug)]
+pub struct Whitener {
+    factors: Vec<DMatrix<C64>>,
+}
