@@ -12,7 +12,8 @@ mod store;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    compensate, identify, layers, pipeline, report, sample, simulate, study, train, validate,
+    compensate, discover, identify, layers, pipeline, report, sample, simulate, study, train,
+    validate,
 };
 use context::Common;
 
@@ -49,6 +50,8 @@ enum Command {
     Report(Common),
     /// Simulate one motion and write its log
     Simulate(simulate::Options),
+    /// Name what a model lacks, from logs of the real axis
+    Discover(discover::Options),
     /// Check that every crate depends strictly downward
     Layers,
 }
@@ -68,6 +71,7 @@ fn main() -> miette::Result<()> {
         Command::Study(common) => study::command(&common),
         Command::Report(common) => report::command(&common),
         Command::Simulate(options) => simulate::command(&options),
+        Command::Discover(options) => discover::command(&options),
         Command::Layers => layers::command(),
     }
 }

@@ -135,7 +135,9 @@ impl<S: TimeStepper> Plant<S> {
             state.current = self.motor.step(state.current, voltage, mean_speed, h);
             state.time += h;
             let angle = start.motor_angle + h * mean_speed;
-            let torque = self.hooks.torque_at(angle, self.motor.torque(state.current));
+            let torque = self
+                .hooks
+                .torque_at(angle, self.motor.torque(state.current));
 
             // Mechanics; the friction follows the table's speed at the end of the step.
             let errors = self.nut_errors(state, angle);
@@ -221,7 +223,11 @@ fn unit_friction(law: &LuGre) -> LuGre {
         coulomb: 1.0,
         stiction: 1.0,
         stribeck_speed: p.stribeck_speed,
-        stiffness: if p.coulomb > 0.0 { p.stiffness / p.coulomb } else { p.stiffness },
+        stiffness: if p.coulomb > 0.0 {
+            p.stiffness / p.coulomb
+        } else {
+            p.stiffness
+        },
         damping: 0.0,
         viscous: 0.0,
     };

@@ -179,7 +179,10 @@ impl Replay {
             reference: LoggedReference::new(log, period)?,
             samples: log.len(),
             start,
-            added: log.channel("drive_command_added_v").ok().map(<[f64]>::to_vec),
+            added: log
+                .channel("drive_command_added_v")
+                .ok()
+                .map(<[f64]>::to_vec),
         })
     }
 
@@ -224,10 +227,16 @@ impl Replay {
                 let added = |k: usize| {
                     let at = k as f64 * axis.period / self.reference.period;
                     let added = self.added.as_ref();
-                    added.and_then(|a| a.get(at.round() as usize)).copied().unwrap_or(0.0)
+                    added
+                        .and_then(|a| a.get(at.round() as usize))
+                        .copied()
+                        .unwrap_or(0.0)
                 };
                 let log = axis.follow(&hooks, &self.reference, self.start, cycles, added);
-                if let Some(k) = log.iter().position(|c| !(c.position + c.command).is_finite()) {
+                if let Some(k) = log
+                    .iter()
+                    .position(|c| !(c.position + c.command).is_finite())
+                {
                     let time = k as f64 * axis.period;
                     return Err(ReplayError::Diverged { time });
                 }
@@ -257,7 +266,9 @@ impl Replay {
     ) -> Result<Trace, ReplayError> {
         let mut cycles: Vec<Cycle> = Vec::new();
         closed_loop
-            .run_sensed(&self.reference, &mut NoCompensation, sense, |c| cycles.push(*c))
+            .run_sensed(&self.reference, &mut NoCompensation, sense, |c| {
+                cycles.push(*c)
+            })
             .completed()?;
         let period = closed_loop.axis().period;
         let late = closed_loop.clock_offset();
@@ -305,7 +316,10 @@ impl Replay {
             let along = (t / h).clamp(0.0, last as f64);
             let i = (along as usize).min(last.saturating_sub(1));
             let next = samples[(i + 1).min(last)];
-            [samples[i] + (along - i as f64) * (next - samples[i]), (next - samples[i]) / h]
+            [
+                samples[i] + (along - i as f64) * (next - samples[i]),
+                (next - samples[i]) / h,
+            ]
         };
         match probe.clone() {
             Probe::Load(samples) => hooks.load(move |t| value(&samples, t.time)[0]),

@@ -125,7 +125,9 @@ impl RigidAxis {
                 let torque = hooks.torque_at(angle, self.force_gain * command * per_radian);
                 let force = torque / per_radian;
                 let (v0, z0, u0) = (v, z, u);
-                for _ in 0..3 {
+                // The mass makes this contract by hundredths a round.
+                for _ in 0..6 {
+                    let last = load;
                     v = v0 + h * (force - load) / self.mass;
                     (z, load) = self.friction.step_torque(z0, v0, v, h);
                     if hooks.has_loads() {
@@ -137,6 +139,9 @@ impl RigidAxis {
                             bristle: unit.torque(u, v),
                             pressed: 1.0,
                         });
+                    }
+                    if (load - last).abs() < 1e-6 {
+                        break;
                     }
                 }
                 x += 0.5 * h * (v0 + v);

@@ -46,7 +46,11 @@ fn step_of(parameter: &EffectParameter, value: f64) -> f64 {
         0.02 * value.abs().max(0.05 * parameter.typical.abs())
     };
     // Towards the inside.
-    if value + scale > parameter.bounds[1] { -scale } else { scale }
+    if value + scale > parameter.bounds[1] {
+        -scale
+    } else {
+        scale
+    }
 }
 
 /// The fit of a set of logs by a machine.
@@ -87,7 +91,10 @@ impl Fitter<'_> {
             state.shares[i] += step;
             self.column(fit, state, step)
         };
-        (0..fit.state.shares.len()).into_par_iter().map(column).collect()
+        (0..fit.state.shares.len())
+            .into_par_iter()
+            .map(column)
+            .collect()
     }
 
     /// Derivatives with respect to the free parameters of the effects.
@@ -99,14 +106,21 @@ impl Fitter<'_> {
             state.effects[e].values[p] += step;
             self.column(fit, state, step)
         };
-        free_parameters(&fit.state).into_par_iter().map(column).collect()
+        free_parameters(&fit.state)
+            .into_par_iter()
+            .map(column)
+            .collect()
     }
 
     /// A difference quotient; a simulation that does not run has none.
     pub fn column(&self, fit: &Fit, moved: State, step: f64) -> Amplitudes {
         match self.set.simulate(self.machine, &moved) {
             Ok(traces) => self.set.difference(&traces, &fit.traces, step),
-            Err(_) => fit.rest.iter().map(|bins| vec![Default::default(); bins.len()]).collect(),
+            Err(_) => fit
+                .rest
+                .iter()
+                .map(|bins| vec![Default::default(); bins.len()])
+                .collect(),
         }
     }
 
@@ -117,8 +131,11 @@ impl Fitter<'_> {
     /// [`ReplayError`] never of trial steps, which are shortened instead.
     pub fn refine(&self, mut fit: Fit, known: &Columns, rounds: usize) -> Fit {
         for _ in 0..rounds {
-            let columns: Vec<Amplitudes> =
-                known.iter().cloned().chain(self.effect_columns(&fit)).collect();
+            let columns: Vec<Amplitudes> = known
+                .iter()
+                .cloned()
+                .chain(self.effect_columns(&fit))
+                .collect();
             let (step, _) = self.solve(&fit, &columns);
             let before = fit.deviance;
             let mut best = fit.clone();
@@ -167,10 +184,63 @@ impl Fitter<'_> {
         let scaled = DMatrix::from_fn(n, n, |i, j| {
             normal[(i, j)] * scale[i] * scale[j] + if i == j { 1e-12 } else { 0.0 }
         });
-        let inverse = scaled.cholesky().map(|c| c.inverse());
+        let inverse = scaled.clone().cholesky().map(|c| c.inverse());
         let inverse = inverse.unwrap_or_else(|| DMatrix::zeros(n, n));
         let covariance = DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * scale[i] * scale[j]);
-        (&covariance * right, covariance)
+        let right = right.component_mul(&scale);
+        let room = |i: usize| {
+            (i < known).then(|| {
+                let (share, most) = (fit.state.shares[i], tolerance(self.machine));
+                [(-most - share) / scale[i], (most - share) / scale[i]]
+            })
+        };
+        (
+            bounded(&scaled, &right, room).component_mul(&scale),
+            covariance,
+        )
+    }
+}
+
+/// The step that minimises the quadratic with some coordinates kept in their
+/// `room`: those that would leave it are set to its edge, one by one, the worst
+/// first, and the others are solved for again.
+fn bounded(
+    normal: &DMatrix<f64>,
+    right: &DVector<f64>,
+    room: impl Fn(usize) -> Option<[f64; 2]>,
+) -> DVector<f64> {
+    let n = right.len();
+    let mut fixed: Vec<Option<f64>> = vec![None; n];
+    loop {
+        let free: Vec<usize> = (0..n).filter(|&i| fixed[i].is_none()).collect();
+        let matrix = DMatrix::from_fn(free.len(), free.len(), |a, b| normal[(free[a], free[b])]);
+        let side = DVector::from_fn(free.len(), |a, _| {
+            let held = (0..n).filter_map(|j| fixed[j].map(|value| normal[(free[a], j)] * value));
+            right[free[a]] - held.sum::<f64>()
+        });
+        let solved = matrix.cholesky().map(|c| c.solve(&side));
+        let solved = solved.unwrap_or_else(|| DVector::zeros(free.len()));
+        let beyond = |(a, &i): (usize, &usize)| {
+            let [low, high] = room(i)?;
+            let edge = solved[a].clamp(low.min(0.0), high.max(0.0));
+            let by = (solved[a] - edge).abs();
+            (by > 1e-9 * (1.0 + edge.abs())).then_some((i, edge, by))
+        };
+        let worst = free
+            .iter()
+            .enumerate()
+            .filter_map(beyond)
+            .max_by(|a, b| a.2.total_cmp(&b.2));
+        match worst {
+            Some((i, edge, _)) => fixed[i] = Some(edge),
+            None => {
+                let mut step = DVector::from_fn(n, |i, _| fixed[i].unwrap_or(0.0));
+                for (a, &i) in free.iter().enumerate() {
+                    step[i] = solved[a];
+                }
+                return step;
+            }
+        }
     }
 }
 
@@ -195,7 +265,14 @@ fn moved(state: &State, step: &DVector<f64>, length: f64) -> State {
         let mut by = length * step[known + i];
         if !parameter.size {
             // A shape that moves far has left the range of its derivative.
-            let most = if parameter.unit == "rad" { 1.0 } else { 0.3 * parameter.typical.abs().max(state.effects[e].values[p].abs()) };
+            let most = if parameter.unit == "rad" {
+                1.0
+            } else {
+                0.3 * parameter
+                    .typical
+                    .abs()
+                    .max(state.effects[e].values[p].abs())
+            };
             by = by.clamp(-most, most);
         }
         let value = state.effects[e].values[p] + by;

@@ -38,7 +38,9 @@ const BALL_SCREW: [Known; 13] = [
         p.stiction += p.coulomb * (by - 1.0);
         p.coulomb *= by;
     }),
-    friction("break-away", |p, by| p.stiction = (p.stiction * by).max(p.coulomb)),
+    friction("break-away", |p, by| {
+        p.stiction = (p.stiction * by).max(p.coulomb)
+    }),
     friction("stribeck-speed", |p, by| p.stribeck_speed *= by),
     friction("bristle-stiffness", |p, by| p.stiffness *= by),
     friction("viscous", |p, by| p.viscous *= by),

@@ -1,13 +1,48 @@
-//! Finds where a simulated axis and its logs disagree, and names what is missing.
+//! Finds where a simulated axis and its measured logs disagree, and names the
+//! effect that the model lacks.
+//!
+//! # The problem
+//! Logs y of a closed loop, N samples of C channels each (m, rad, A, V), and a
+//! simulation ŷ(θ, e) of the same loop on the same reference, with known
+//! parameters θ inside their tolerance and effects e of a library
+//! ([`axis_sim::effects`]). With the rest r = y − ŷ in frequency,
+//!
+//! ```text
+//! D(θ, e) = 2 Σ_b n_b log det S_b + Σ_i (θ_i / s_i)²,     S_b = Σ_{f in b} r(f) r(f)ᴴ / n_b
+//! ```
+//!
+//! is minus twice the log-likelihood of a stationary rest with any spectrum
+//! (Whittle 1953). An effect is named when it lowers D by more than chance
+//! could in any candidate, on logs that were not fitted as well, and by more
+//! than a hundredth of what was found before.
+//!
+//! # Steps
+//! [`intake`] looks at the logs; [`LogSet`] prepares them; [`search`] moves the
+//! known parameters, screens all effects by what they would do to these logs,
+//! refines the best few by simulation, adds the best, and begins again;
+//! [`discovery`] puts what was found into a [`Verdict`], intervals and gaps.
+//! [`summary`] is for where only a table of errors was measured; [`hidden`]
+//! makes simulated logs with effects hidden in them.
+//!
+//! # What this crate knows nothing of
+//! Files, terminals and pictures. It simulates nothing itself.
 
 mod fit;
+pub mod hidden;
+pub mod intake;
 mod known;
 mod model;
+mod outcome;
 mod screen;
 mod search;
 mod spectrum;
+pub mod summary;
 
 pub use fit::{Fit, Fitter, free_parameters, known_deviation};
 pub use known::{Known, known_parameters, tolerance, with_known};
 pub use model::{LogSet, Prepared, State};
+pub use outcome::{
+    ChannelGap, Discovery, EffectFound, Gap, Overlay, ParameterFound, Recalibrated, Verdict,
+    discovery,
+};
 pub use search::{Found, Named, ONE_CLASS, RunnerUp, Settings, search};

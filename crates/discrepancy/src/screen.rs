@@ -39,18 +39,33 @@ pub struct Screened {
 fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
     let duration = |l: &crate::model::Prepared| l.log.len() as f64 * l.period;
     let end = fitter.set.logs.iter().map(duration).fold(0.0, f64::max);
-    let positions = fitter.set.logs.iter().flat_map(|l| l.log.channel("position_m").unwrap_or(&[]));
+    let positions = fitter
+        .set
+        .logs
+        .iter()
+        .flat_map(|l| l.log.channel("position_m").unwrap_or(&[]));
     let (low, high) = positions.fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
     let typical = effect.typical();
     let along = |i: usize, n: usize| low + (high - low) * (i as f64 + 0.5) / n as f64;
     match effect.name {
-        "stribeck-friction" => [0.004, 0.015, 0.05].iter().map(|&v| vec![typical[0], v]).collect(),
+        "stribeck-friction" => [0.004, 0.015, 0.05]
+            .iter()
+            .map(|&v| vec![typical[0], v])
+            .collect(),
         "position-dependent-friction" => {
             let width = (high - low) / 16.0;
-            (0..8).map(|i| vec![typical[0], along(i, 8), width]).collect()
+            (0..8)
+                .map(|i| vec![typical[0], along(i, 8), width])
+                .collect()
         }
         "process-force" => (0..10)
-            .map(|i| vec![typical[0], end * i as f64 / 10.0, end * (i + 1) as f64 / 10.0])
+            .map(|i| {
+                vec![
+                    typical[0],
+                    end * i as f64 / 10.0,
+                    end * (i + 1) as f64 / 10.0,
+                ]
+            })
             .collect(),
         "cogging-torque" => [1.0, 2.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0]
             .iter()
@@ -64,13 +79,22 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
 /// All candidates of the library but those `left_out`, at the state of `fit`.
 pub fn candidates(fitter: &Fitter<'_>, fit: &Fit, left_out: &[String]) -> Vec<Candidate> {
     let rigid = matches!(fitter.machine, Machine::Rigid(_));
-    let active = |effect: &Effect| fit.state.effects.iter().any(|a| a.effect.name == effect.name);
+    let active = |effect: &Effect| {
+        fit.state
+            .effects
+            .iter()
+            .any(|a| a.effect.name == effect.name)
+    };
     let wanted: Vec<(&'static Effect, Vec<f64>)> = EFFECTS
         .iter()
         .filter(|e| (e.on_rigid || !rigid) && !left_out.iter().any(|name| name == e.name))
         // A second bump or harmonic of the same kind may be there.
         .filter(|e| !active(e) || e.name == "cogging-torque")
-        .flat_map(|e| shapes(fitter, e).into_iter().map(move |values| (*e, values)))
+        .flat_map(|e| {
+            shapes(fitter, e)
+                .into_iter()
+                .map(move |values| (*e, values))
+        })
         .collect();
     wanted
         .into_par_iter()
@@ -100,7 +124,10 @@ fn responses(fitter: &Fitter<'_>, fit: &Fit, effect: &'static Effect, values: &[
             tried[at] = angle;
         }
         let mut state = fit.state.clone();
-        state.effects.push(ActiveEffect { effect, values: tried });
+        state.effects.push(ActiveEffect {
+            effect,
+            values: tried,
+        });
         fitter.column(fit, state, SHARE)
     };
     match phase {
@@ -117,18 +144,27 @@ pub fn screen(fitter: &Fitter<'_>, fit: &Fit, own: &Columns, all: Vec<Candidate>
     let layout = &fitter.set.layout;
     let whitener = layout.whitener(&layout.spectral_matrices(&fit.rest));
     let white = |a: &Amplitudes| layout.whiten(&whitener, a);
-    let projector = Projector::new(fitter, own.iter().map(white).collect(), fit.state.shares.len());
+    let projector = Projector::new(
+        fitter,
+        own.iter().map(white).collect(),
+        fit.state.shares.len(),
+    );
     let rest = projector.reject(&white(&fit.rest));
     let total = rest.norm_squared();
     let mut screened: Vec<Screened> = all
         .into_par_iter()
         .map(|candidate| {
-            let columns: Vec<DVector<f64>> =
-                candidate.columns.iter().map(|c| projector.reject(&white(c))).collect();
+            let columns: Vec<DVector<f64>> = candidate
+                .columns
+                .iter()
+                .map(|c| projector.reject(&white(c)))
+                .collect();
             let matrix = DMatrix::from_columns(&columns);
             let svd = matrix.clone().svd(true, true);
             let largest = svd.singular_values.max();
-            let solution = svd.solve(&rest, 1e-6 * largest.max(1e-300)).unwrap_or_else(|_| DMatrix::zeros(columns.len(), 1).column(0).into());
+            let solution = svd
+                .solve(&rest, 1e-6 * largest.max(1e-300))
+                .unwrap_or_else(|_| DMatrix::zeros(columns.len(), 1).column(0).into());
             let fingerprint = &matrix * &solution;
             let explained = 2.0 * rest.dot(&fingerprint) - fingerprint.norm_squared();
             let share = (explained / total).clamp(0.0, 0.999_999);
@@ -177,7 +213,11 @@ impl Projector {
         let mut normal = columns.tr_mul(&columns);
         let weight = known_deviation(fitter.machine).powi(-2);
         for i in 0..n {
-            normal[(i, i)] += if i < known { weight } else { 1e-9 * normal[(i, i)] + 1e-300 };
+            normal[(i, i)] += if i < known {
+                weight
+            } else {
+                1e-9 * normal[(i, i)] + 1e-300
+            };
         }
         let inverse = normal.cholesky().map(|c| c.inverse());
         Self {

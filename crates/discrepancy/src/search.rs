@@ -1,7 +1,7 @@
 //! Stepwise search: screen, refine the best few by simulation, add, drop.
 
 use axis_sim::ReplayError;
-use axis_sim::effects::{ActiveEffect, Machine};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Machine};
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -90,12 +90,18 @@ pub fn search(
     settings: &Settings,
     mut progress: impl FnMut(&str),
 ) -> Result<Found, ReplayError> {
-    let fitter = Fitter { machine, set: fit_logs };
-    let checker = Fitter { machine, set: check_logs };
+    let fitter = Fitter {
+        machine,
+        set: fit_logs,
+    };
+    let checker = Fitter {
+        machine,
+        set: check_logs,
+    };
     progress("known parameters");
     let start = fitter.at(State::initial(machine))?;
     let mut known = fitter.known_columns(&start);
-    let base = fitter.refine(start, &known, 4);
+    let base = fitter.refine(start, &known, 8);
     let mut fit = base.clone();
     let mut check = checker.at(base.state.clone())?;
     let mut named: Vec<Named> = Vec::new();
@@ -103,10 +109,25 @@ pub fn search(
 
     while named.len() < settings.most_effects {
         progress("screening all effects");
-        let own: Columns = known.iter().cloned().chain(fitter.effect_columns(&fit)).collect();
+        let own: Columns = known
+            .iter()
+            .cloned()
+            .chain(fitter.effect_columns(&fit))
+            .collect();
         let all = candidates(&fitter, &fit, &settings.rejected);
         let tried = all.len();
-        let screened = screen(&fitter, &fit, &own, all);
+        let mut screened = screen(&fitter, &fit, &own, all);
+        // What the engineer takes as there goes first, whatever speaks for it.
+        let active = |name: &str| named.iter().any(|n| n.name == name);
+        let awaited = settings.accepted.iter().any(|name| !active(name));
+        if awaited {
+            screened.retain(|s| {
+                settings
+                    .accepted
+                    .iter()
+                    .any(|a| a == s.candidate.effect.name)
+            });
+        }
 
         progress("refining the best");
         let refined: Vec<(usize, Fit, f64)> = {
@@ -124,13 +145,8 @@ pub fn search(
             let top: Vec<(usize, &Screened)> =
                 screened.iter().enumerate().take(settings.refined).collect();
             let mut refined: Vec<_> = top.into_par_iter().filter_map(one).collect();
-            // Fewer parameters win between equals.
-            let price = |r: &(usize, Fit, f64)| {
-                let free = free_parameters(&r.1.state).len() as f64;
-                r.2 - free * (fit_logs.layout.bins() as f64).ln()
-            };
-            refined.sort_by(|a, b| price(b).total_cmp(&price(a)));
-            refined
+            refined.sort_by(|a, b| b.2.total_cmp(&a.2));
+            simplest_first(refined, &screened)
         };
         let runners: Vec<RunnerUp> = refined
             .iter()
@@ -145,12 +161,22 @@ pub fn search(
         let best = &screened[index];
         let added = free_parameters(&better.state).len() - free_parameters(&fit.state).len();
         let better_check = checker.at(better.state.clone());
-        let held_out = better_check.as_ref().map_or(f64::NEG_INFINITY, |c| check.deviance - c.deviance);
+        let held_out = better_check
+            .as_ref()
+            .map_or(f64::NEG_INFINITY, |c| check.deviance - c.deviance);
         let needed = threshold(added, tried, settings.false_alarm);
         tracing::debug!(
-            effect = best.candidate.effect.name, gain, held_out, needed, "best candidate"
+            effect = best.candidate.effect.name,
+            gain,
+            held_out,
+            needed,
+            "best candidate"
         );
-        if gain < needed || held_out < LEAST_HELD_OUT {
+        // Beside what was found, a hundredth of its weight is what the model's
+        // own simplifications may bring.
+        let largest = named.iter().map(|n| n.evidence).fold(0.0, f64::max);
+        let material = gain >= MATERIAL * largest;
+        if !awaited && (gain < needed || held_out < LEAST_HELD_OUT || !material) {
             leftover = runners;
             break;
         }
@@ -158,10 +184,14 @@ pub fn search(
             .iter()
             .enumerate()
             .filter(|(i, other)| {
-                *i != index
-                    && other.candidate.columns.len() <= best.candidate.columns.len()
+                *i != index && other.candidate.columns.len() <= best.candidate.columns.len()
             })
-            .map(|(_, other)| (other.candidate.effect.name, sine(&best.fingerprint, &other.basis)))
+            .map(|(_, other)| {
+                (
+                    other.candidate.effect.name,
+                    sine(&best.fingerprint, &other.basis),
+                )
+            })
             .filter(|(_, sine)| *sine < ONE_CLASS)
             .collect();
         named.push(Named {
@@ -176,12 +206,16 @@ pub fn search(
         }
         fit = better;
         known = fitter.known_columns(&fit);
-        fit = fitter.refine(fit, &known, 2);
+        fit = fitter.refine(fit, &known, 8);
     }
 
-    drop_needless(&fitter, &known, &mut fit, &mut named, settings.false_alarm);
+    drop_needless(&fitter, &known, &mut fit, &mut named, settings);
     progress("intervals");
-    let columns: Columns = known.iter().cloned().chain(fitter.effect_columns(&fit)).collect();
+    let columns: Columns = known
+        .iter()
+        .cloned()
+        .chain(fitter.effect_columns(&fit))
+        .collect();
     let (_, covariance) = fitter.solve(&fit, &columns);
     Ok(Found {
         base,
@@ -191,6 +225,28 @@ pub fn search(
         leftover,
     })
 }
+
+/// Moves the simplest of those that explain about as much as the best to the
+/// front: further parameters must bring a hundredth of the whole, and no less
+/// than chance could.
+fn simplest_first(
+    mut refined: Vec<(usize, Fit, f64)>,
+    screened: &[Screened],
+) -> Vec<(usize, Fit, f64)> {
+    let Some(best) = refined.first().map(|r| r.2) else {
+        return refined;
+    };
+    let enough = best - (0.01 * best).max(25.0);
+    let parameters = |r: &(usize, Fit, f64)| screened[r.0].candidate.effect.parameters.len();
+    let near = refined.iter().enumerate().filter(|(_, r)| r.2 >= enough);
+    if let Some((at, _)) = near.min_by_key(|(_, r)| parameters(r)) {
+        refined[..=at].rotate_right(1);
+    }
+    refined
+}
+
+/// Least evidence of a further effect, as a share of the largest so far.
+const MATERIAL: f64 = 0.01;
 
 /// Least fall of D on logs that were not fitted.
 const LEAST_HELD_OUT: f64 = 10.0;
@@ -211,7 +267,7 @@ fn drop_needless(
     known: &Columns,
     fit: &mut Fit,
     named: &mut Vec<Named>,
-    false_alarm: f64,
+    settings: &Settings,
 ) {
     let mut index = 0;
     while named.len() > 1 && index < named.len() {
@@ -223,7 +279,17 @@ fn drop_needless(
         };
         let without = fitter.refine(start, known, 4);
         let loss = without.deviance - fit.deviance;
-        if loss < threshold(dropped.effect.parameters.len(), 27, false_alarm) {
+        let largest = named.iter().map(|n| n.evidence).fold(0.0, f64::max);
+        let accepted = settings
+            .accepted
+            .iter()
+            .any(|name| *name == named[index].name);
+        let needed = threshold(
+            dropped.effect.parameters.len(),
+            EFFECTS.len(),
+            settings.false_alarm,
+        );
+        if !accepted && loss < needed.max(MATERIAL * largest) {
             named.remove(index);
             *fit = without;
         } else {

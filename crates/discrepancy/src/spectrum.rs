@@ -38,6 +38,11 @@ pub struct Layout {
 /// Frequency above which nothing mechanical is left to see, Hz.
 const HIGHEST: f64 = 400.0;
 
+/// Upper edge of the first band, Hz. Motion has its power below it; were it cut
+/// finer, what the model lacks would pass for noise just where it sits, and the
+/// fit would look away from it.
+const FIRST_BAND: f64 = 25.0;
+
 /// Fewest bins of a band, for each channel: S_b must be well above singular
 /// even after a few dozen parameters were fitted to it.
 const BINS_PER_CHANNEL: usize = 16;
@@ -55,7 +60,7 @@ impl Layout {
             if last >= end {
                 break;
             }
-            edges.push((last + narrowest).max(1.25 * last));
+            edges.push((last + narrowest).max(FIRST_BAND).max(1.5 * last));
         }
         // A last band that is too narrow belongs to the one before.
         if edges.len() > 2 && end - edges[edges.len() - 2] < narrowest {

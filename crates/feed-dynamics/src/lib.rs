@@ -66,6 +66,6 @@ pub use matrices::{Matrices, NutCoupling};
 pub use modes::DriveModes;
 pub use response::Coordinate;
 pub use stepper::{
-    ImplicitState, ImplicitStepper, ModalState, ModalStepper, NutErrors, Observation, Settled, TableMotion,
-    TimeStepper,
+    ImplicitState, ImplicitStepper, ModalState, ModalStepper, NutErrors, Observation, Settled,
+    TableMotion, TimeStepper,
 };

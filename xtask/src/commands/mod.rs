@@ -1,6 +1,7 @@
 //! One file a command.
 
 pub mod compensate;
+pub mod discover;
 pub mod identify;
 pub mod layers;
 pub mod pipeline;

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use axis_log::write_csv;
 use axis_sim::{ClosedLoop, Recorder};
 use clap::{Args, ValueEnum};
+use discrepancy::hidden::Noise;
+use feed_dynamics::NutCoupling;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use pipeline::Figures;
 use pipeline::strategies::Strategy;
@@ -33,6 +35,11 @@ pub struct Options {
     /// Compensation; all but `none` need `train` and `identify` first
     #[arg(long, value_enum, default_value_t = Compensation::None)]
     compensation: Compensation,
+    /// Noise of every sensor, in multiples of a good linear scale's (10 nm), a
+    /// good motor encoder's and current sensor's; 0 for perfect ones. With
+    /// noise the axis is simulated the slow, exact way, to stand for a machine
+    #[arg(long, value_name = "FACTOR", default_value_t = 0.0)]
+    noise: f64,
     /// Where to write the log (CSV, a row each control cycle)
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
@@ -67,17 +74,37 @@ impl Compensation {
 pub fn command(options: &Options) -> Result<()> {
     let context = options.common.open()?;
     let motion = motion(options, &context)?;
-    let closed_loop = ClosedLoop::new(&context.axis).into_diagnostic()?;
+    let closed_loop = if options.noise > 0.0 {
+        let mut exact = context.axis.clone();
+        exact.coupling = NutCoupling::MovingNode;
+        exact.simulation.step = exact.simulation.step.min(2e-5);
+        ClosedLoop::implicit(&exact)
+    } else {
+        ClosedLoop::new(&context.axis)
+    }
+    .into_diagnostic()?;
     let mut recorder = Recorder::default();
     let observe = |cycle: &axis_sim::Cycle| recorder.push(cycle);
+    if !(options.noise.is_finite() && options.noise >= 0.0) {
+        return Err(miette!(
+            "--noise {}: give 0 or a factor above it",
+            options.noise
+        ));
+    }
+    let mut sensors = Noise::GOOD.scaled(options.noise).sensors(context.seed);
+    let sense = |seen: &mut axis_sim::Measured| {
+        if options.noise > 0.0 {
+            sensors(seen);
+        }
+    };
     let outcome = if options.compensation == Compensation::None {
-        closed_loop.run(&*motion, &mut compensator::NoCompensation, observe)
+        closed_loop.run_sensed(&*motion, &mut compensator::NoCompensation, sense, observe)
     } else {
         let strategy = options.compensation.strategy();
         let mut law = validate::predictors(&context)?
             .compensator(strategy)
             .into_diagnostic()?;
-        closed_loop.run(&*motion, &mut *law, observe)
+        closed_loop.run_sensed(&*motion, &mut *law, sense, observe)
     };
     // What was computed before the run stopped is kept.
     if let Some(file) = &options.log {

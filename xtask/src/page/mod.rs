@@ -1,6 +1,7 @@
 //! The report: results to a page. Order and words are here, looks in `report`.
 
 mod compensation;
+pub mod discovery;
 mod mechanics;
 mod network;
 mod tracking;

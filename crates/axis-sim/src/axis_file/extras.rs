@@ -26,7 +26,11 @@ pub(super) fn effects(root: &Fields<'_>, rigid: bool) -> Result<Vec<ActiveEffect
             let valid = format!("{} from {least} to {most} {}", p.name, p.unit);
             Err(f.refuse_table(what, valid.trim_end()))
         };
-        let values = effect.parameters.iter().map(value).collect::<Result<_, _>>()?;
+        let values = effect
+            .parameters
+            .iter()
+            .map(value)
+            .collect::<Result<_, _>>()?;
         f.finish()?;
         Ok(ActiveEffect { effect, values })
     };
@@ -59,7 +63,11 @@ pub(super) fn log(root: &Fields<'_>) -> Result<Mapping, AxisFileError> {
         c.finish()?;
         Ok(map)
     };
-    let columns = f.tables("column")?.into_iter().map(one).collect::<Result<_, _>>()?;
+    let columns = f
+        .tables("column")?
+        .into_iter()
+        .map(one)
+        .collect::<Result<_, _>>()?;
     f.finish()?;
     Ok(Mapping {
         columns,

@@ -84,7 +84,7 @@ impl Machine {
                 root.count("schema", SCHEMA, SCHEMA)?;
                 let rigid = rigid::rigid(&root)?;
                 root.finish()?;
-                return Ok(Self::Rigid(rigid));
+                return Ok(Self::Rigid(Box::new(rigid)));
             }
             Ok(Self::BallScrew(Box::new(axis(root)?)))
         })?;

@@ -7,7 +7,10 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction that differs between the directions",
     channel: EffectChannel::Torque,
     depends_on: "sign of speed",
-    parameters: &[size("forward", "N", 60.0, 5e3), size("backward", "N", 20.0, 5e3)],
+    parameters: &[
+        size("forward", "N", 60.0, 5e3),
+        size("backward", "N", 20.0, 5e3),
+    ],
     on_rigid: true,
     install,
 };

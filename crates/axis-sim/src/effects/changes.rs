@@ -14,7 +14,7 @@ pub enum Machine {
     /// Ball screw, permanent-magnet motor, field-oriented control.
     BallScrew(Box<Axis>),
     /// A rigid mass with a force gain.
-    Rigid(RigidAxis),
+    Rigid(Box<RigidAxis>),
 }
 
 /// The table as a load sees it.
@@ -169,7 +169,10 @@ impl Changes<'_> {
         }
     }
 
-    pub(super) fn drive(&mut self, change: impl Fn(&mut DriveParameters)) -> Result<(), DriveError> {
+    pub(super) fn drive(
+        &mut self,
+        change: impl Fn(&mut DriveParameters),
+    ) -> Result<(), DriveError> {
         let axis = self.ball_screw()?;
         let mut parameters = axis.drive.parameters().clone();
         change(&mut parameters);
@@ -177,7 +180,10 @@ impl Changes<'_> {
         Ok(())
     }
 
-    pub(super) fn motor(&mut self, change: impl Fn(&mut MotorParameters)) -> Result<(), DriveError> {
+    pub(super) fn motor(
+        &mut self,
+        change: impl Fn(&mut MotorParameters),
+    ) -> Result<(), DriveError> {
         let axis = self.ball_screw()?;
         let mut parameters = *axis.motor.parameters();
         change(&mut parameters);
@@ -199,7 +205,11 @@ impl Changes<'_> {
             MachineMut::BallScrew(_) => self.drive(|p| p.table_mass += added),
             MachineMut::Rigid(axis) => {
                 axis.mass += added;
-                if axis.mass > 0.0 { Ok(()) } else { Err(out_of_range("mass", added)) }
+                if axis.mass > 0.0 {
+                    Ok(())
+                } else {
+                    Err(out_of_range("mass", added))
+                }
             }
         }
     }

@@ -1,13 +1,16 @@
 //! `encoder-eccentricity`: reading error of the motor's encoder, once per turn.
 
-use super::{Effect, EffectChannel, size, shape};
+use super::{Effect, EffectChannel, shape, size};
 
 pub(super) const EFFECT: Effect = Effect {
     name: "encoder-eccentricity",
     summary: "reading error of the motor's encoder, once per turn",
     channel: EffectChannel::Kinematics,
     depends_on: "motor angle",
-    parameters: &[size("amplitude", "rad", 1e-3, 0.1), shape("phase", "rad", 0.0, [-7.0, 7.0])],
+    parameters: &[
+        size("amplitude", "rad", 1e-3, 0.1),
+        shape("phase", "rad", 0.0, [-7.0, 7.0]),
+    ],
     on_rigid: false,
     install,
 };

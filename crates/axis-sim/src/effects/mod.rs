@@ -10,9 +10,9 @@
 //! that none of them jumps at zero speed (Canudas de Wit et al., IEEE Trans.
 //! Automat. Contr. 40 (1995) 419–425, doi:10.1109/9.376053).
 
-mod changes;
 mod asymmetric_friction;
 mod backlash;
+mod changes;
 mod clock_offset;
 mod cogging_torque;
 mod constant_load;

@@ -1,13 +1,16 @@
 //! `periodic-lead-error`: travel error that repeats with the screw's turn.
 
-use super::{Effect, EffectChannel, size, shape};
+use super::{Effect, EffectChannel, shape, size};
 
 pub(super) const EFFECT: Effect = Effect {
     name: "periodic-lead-error",
     summary: "travel error that repeats with the screw's turn",
     channel: EffectChannel::Kinematics,
     depends_on: "screw angle",
-    parameters: &[size("amplitude", "m", 2e-6, 1e-3), shape("phase", "rad", 0.0, [-7.0, 7.0])],
+    parameters: &[
+        size("amplitude", "m", 2e-6, 1e-3),
+        shape("phase", "rad", 0.0, [-7.0, 7.0]),
+    ],
     on_rigid: false,
     install,
 };

@@ -1,6 +1,6 @@
 //! `presliding`: stiffness of the contact before it slides.
 
-use super::{Effect, EffectChannel, size, changes::out_of_range};
+use super::{Effect, EffectChannel, changes::out_of_range, size};
 
 pub(super) const EFFECT: Effect = Effect {
     name: "presliding",

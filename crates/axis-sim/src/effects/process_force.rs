@@ -1,13 +1,17 @@
 //! `process-force`: a force during a part of the time.
 
-use super::{Effect, EffectChannel, size, shape};
+use super::{Effect, EffectChannel, shape, size};
 
 pub(super) const EFFECT: Effect = Effect {
     name: "process-force",
     summary: "a force during a part of the time",
     channel: EffectChannel::Torque,
     depends_on: "time",
-    parameters: &[size("force", "N", 60.0, 1e4), shape("start", "s", 1.0, [0.0, 1e3]), shape("end", "s", 1.6, [0.0, 1e3])],
+    parameters: &[
+        size("force", "N", 60.0, 1e4),
+        shape("start", "s", 1.0, [0.0, 1e3]),
+        shape("end", "s", 1.6, [0.0, 1e3]),
+    ],
     on_rigid: true,
     install,
 };
@@ -16,6 +20,7 @@ fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynam
     let v: [f64; 3] = super::changes::array(values);
     // Rises and falls over 10 ms, so that the times can be estimated.
     let ramp = |t: f64| (t / 0.01).clamp(0.0, 1.0);
-    to.hooks.load(move |t| v[0] * (ramp(t.time - v[1]) - ramp(t.time - v[2])));
+    to.hooks
+        .load(move |t| v[0] * (ramp(t.time - v[1]) - ramp(t.time - v[2])));
     Ok(())
 }

@@ -1,13 +1,16 @@
 //! `stribeck-friction`: dry friction that falls with speed.
 
-use super::{Effect, EffectChannel, size, shape};
+use super::{Effect, EffectChannel, shape, size};
 
 pub(super) const EFFECT: Effect = Effect {
     name: "stribeck-friction",
     summary: "dry friction that falls with speed",
     channel: EffectChannel::Torque,
     depends_on: "low speed",
-    parameters: &[size("force", "N", 60.0, 5e3), shape("velocity", "m/s", 0.02, [1e-3, 1.0])],
+    parameters: &[
+        size("force", "N", 60.0, 5e3),
+        shape("velocity", "m/s", 0.02, [1e-3, 1.0]),
+    ],
     on_rigid: true,
     install,
 };

@@ -1,13 +1,16 @@
 //! `thermal-expansion`: growth of the screw with time.
 
-use super::{Effect, EffectChannel, size, shape};
+use super::{Effect, EffectChannel, shape, size};
 
 pub(super) const EFFECT: Effect = Effect {
     name: "thermal-expansion",
     summary: "growth of the screw with time",
     channel: EffectChannel::Kinematics,
     depends_on: "time and position",
-    parameters: &[size("strain", "", 4e-5, 2e-3), shape("time_constant", "s", 5.0, [0.2, 1e3])],
+    parameters: &[
+        size("strain", "", 4e-5, 2e-3),
+        shape("time_constant", "s", 5.0, [0.2, 1e3]),
+    ],
     on_rigid: false,
     install,
 };

@@ -1,13 +1,16 @@
 //! `torque-ripple`: torque that repeats at six times the electrical turn, in proportion to it.
 
-use super::{Effect, EffectChannel, size, shape};
+use super::{Effect, EffectChannel, shape, size};
 
 pub(super) const EFFECT: Effect = Effect {
     name: "torque-ripple",
     summary: "torque that repeats at six times the electrical turn, in proportion to it",
     channel: EffectChannel::Torque,
     depends_on: "motor angle and current",
-    parameters: &[size("relative_amplitude", "", 0.03, 0.5), shape("phase", "rad", 0.0, [-7.0, 7.0])],
+    parameters: &[
+        size("relative_amplitude", "", 0.03, 0.5),
+        shape("phase", "rad", 0.0, [-7.0, 7.0]),
+    ],
     on_rigid: false,
     install,
 };

@@ -3,6 +3,7 @@
 
 mod bad_files;
 mod closed_loop;
+mod effects;
 mod files;
 mod fingerprint;
 mod golden;

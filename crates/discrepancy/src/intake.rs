@@ -1,0 +1,229 @@
+//! Looking at logs before anything is concluded from them.
+
+use axis_log::Log;
+use axis_log::quality::{SamplingError, check_sampling, constant_channels, unit_slip};
+use axis_sim::Stroke;
+use axis_sim::effects::Machine;
+use thiserror::Error;
+
+/// Why a log cannot be used. The message names the file first.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum IntakeError {
+    /// Samples that are not uniform in time.
+    #[error("{file}: {reason}")]
+    Sampling {
+        /// The log.
+        file: String,
+        /// What is wrong.
+        reason: SamplingError,
+    },
+    /// A channel that never changes.
+    #[error(
+        "{file}: channel \"{channel}\" has the same value in every sample: it is not connected, or belongs to another axis; leave the column out, or map another one to it in [log]"
+    )]
+    Constant {
+        /// The log.
+        file: String,
+        /// Its channel.
+        channel: String,
+    },
+    /// Position and reference differ by the factor between two units.
+    #[error(
+        "{file}: \"position_m\" is {factor} times \"position_ref_m\" ({guess}): give the column a scale in the axis file, [[log.column]] source = …, channel = \"position_m\", scale = {scale}"
+    )]
+    Unit {
+        /// The log.
+        file: String,
+        /// Measured by reference.
+        factor: f64,
+        /// In words.
+        guess: &'static str,
+        /// What would mend it.
+        scale: f64,
+    },
+    /// Positions that the axis cannot take.
+    #[error(
+        "{file}: \"{channel}\" is {position} m at t = {time:.4} s, outside the axis' stroke of {minimum} to {maximum} m: the log belongs to another axis, is in another unit, or counts from another zero (offset in [log])"
+    )]
+    OffStroke {
+        /// The log.
+        file: String,
+        /// Its channel.
+        channel: &'static str,
+        /// Where, m.
+        position: f64,
+        /// When, s.
+        time: f64,
+        /// Least position, m.
+        minimum: f64,
+        /// Greatest position, m.
+        maximum: f64,
+    },
+    /// The table does not follow the reference at all.
+    #[error(
+        "{file}: at t = {time:.4} s the table is {error} m from its reference, more than a tenth of the motion's {travel} m: the two columns are not of one axis and one time"
+    )]
+    NotFollowing {
+        /// The log.
+        file: String,
+        /// When, s.
+        time: f64,
+        /// Reference minus measured, m.
+        error: f64,
+        /// Range of the reference, m.
+        travel: f64,
+    },
+    /// Nothing moves, or only one way.
+    #[error(
+        "{file}: the motion is too poor to tell effects apart: {missing}; record a move and the way back, with a rest between"
+    )]
+    Poor {
+        /// The log.
+        file: String,
+        /// What it lacks.
+        missing: &'static str,
+    },
+    /// The same samples to fit and to check.
+    #[error(
+        "{check} holds the same samples as {fit}: a check must be motion that was not fitted to; give another log"
+    )]
+    SameLog {
+        /// Given to fit.
+        fit: String,
+        /// Given to check.
+        check: String,
+    },
+}
+
+/// Checks a log against its axis; its sampling period, s.
+///
+/// # Errors
+/// The first thing found that would make a verdict worthless.
+pub fn check_log(file: &str, log: &Log, machine: &Machine) -> Result<f64, IntakeError> {
+    let file = || file.to_owned();
+    let sampling = check_sampling(log).map_err(|reason| IntakeError::Sampling {
+        file: file(),
+        reason,
+    })?;
+    let (Ok(reference), Ok(position)) = (log.channel("position_ref_m"), log.channel("position_m"))
+    else {
+        return Ok(sampling.period);
+    };
+    if let Some(slip) = unit_slip(reference, position) {
+        return Err(IntakeError::Unit {
+            file: file(),
+            factor: slip.factor,
+            guess: slip.guess,
+            scale: 1.0 / slip.exact,
+        });
+    }
+    let used = [
+        "position_ref_m",
+        "position_m",
+        "motor_angle_rad",
+        "iq_a",
+        "iq_ref_a",
+        "uq_v",
+        "drive_command_v",
+    ];
+    if let Some(channel) = constant_channels(log)
+        .into_iter()
+        .find(|name| used.contains(&name.as_str()))
+    {
+        return Err(IntakeError::Constant {
+            file: file(),
+            channel,
+        });
+    }
+    on_stroke(&file(), log, machine)?;
+    follows(&file(), log, reference, position)?;
+    let step = |w: &[f64]| w[1] - w[0];
+    let moved = |sign: f64| {
+        reference
+            .windows(2)
+            .map(step)
+            .filter(|d| d * sign > 0.0)
+            .sum::<f64>()
+            .abs()
+    };
+    let (forward, back) = (moved(1.0), moved(-1.0));
+    let missing = match (forward > 1e-4, back > 1e-4) {
+        (true, true) => return Ok(sampling.period),
+        (false, false) => "the reference moves by less than 0.1 mm",
+        _ => "the axis moves in one direction only, so dry friction and a standing load look alike",
+    };
+    Err(IntakeError::Poor {
+        file: file(),
+        missing,
+    })
+}
+
+fn on_stroke(file: &str, log: &Log, machine: &Machine) -> Result<(), IntakeError> {
+    let stroke: &Stroke = match machine {
+        Machine::BallScrew(axis) => &axis.stroke,
+        Machine::Rigid(axis) => &axis.stroke,
+    };
+    for channel in ["position_ref_m", "position_m"] {
+        let samples = log.channel(channel).unwrap_or_default();
+        let outside = |x: &f64| !(stroke.minimum - 1e-6..=stroke.maximum + 1e-6).contains(x);
+        if let Some(k) = samples.iter().position(outside) {
+            return Err(IntakeError::OffStroke {
+                file: file.to_owned(),
+                channel,
+                position: samples[k],
+                time: log.time()[k],
+                minimum: stroke.minimum,
+                maximum: stroke.maximum,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn follows(file: &str, log: &Log, reference: &[f64], position: &[f64]) -> Result<(), IntakeError> {
+    let (low, high) = reference
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+    let travel = high - low;
+    let error = |k: &usize| (reference[*k] - position[*k]).abs();
+    let worst = (0..reference.len())
+        .max_by(|a, b| error(a).total_cmp(&error(b)))
+        .unwrap_or(0);
+    if travel > 0.0 && error(&worst) > 0.1 * travel {
+        return Err(IntakeError::NotFollowing {
+            file: file.to_owned(),
+            time: log.time()[worst],
+            error: reference[worst] - position[worst],
+            travel,
+        });
+    }
+    Ok(())
+}
+
+/// Refuses a check log that is one of the fit logs.
+///
+/// # Errors
+/// [`IntakeError::SameLog`].
+pub fn check_distinct(
+    fit: &[(String, Log, f64)],
+    check: &[(String, Log, f64)],
+) -> Result<(), IntakeError> {
+    let same = |a: &Log, b: &Log| {
+        a.len() == b.len()
+            && a.channel("position_m")
+                .ok()
+                .is_some_and(|x| Some(x) == b.channel("position_m").ok())
+    };
+    for (fit_name, fit_log, _) in fit {
+        for (check_name, check_log, _) in check {
+            if same(fit_log, check_log) {
+                return Err(IntakeError::SameLog {
+                    fit: fit_name.clone(),
+                    check: check_name.clone(),
+                });
+            }
+        }
+    }
+    Ok(())
+}

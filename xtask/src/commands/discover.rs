@@ -1,0 +1,304 @@
+//! `discover`: what a model lacks, from logs or from a table of errors.
+
+use std::path::{Path, PathBuf};
+
+use axis_log::{Log, read_log};
+use axis_sim::Axis;
+use axis_sim::effects::{ActiveEffect, Effect, Machine};
+use clap::Args;
+use discrepancy::intake::{check_distinct, check_log};
+use discrepancy::summary::{MeasuredError, SummaryFound, rank, tried};
+use discrepancy::{Discovery, LogSet, Settings, Verdict, discovery, search};
+use indicatif::ProgressBar;
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+
+use crate::context::read_text;
+use crate::output::{say, write_whole};
+use crate::page;
+use crate::progress::bar;
+
+/// Options of the command.
+#[derive(Args)]
+pub struct Options {
+    /// Axis file: the model that the logs are compared with
+    #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
+    axis: PathBuf,
+    /// Logs to fit to: CSV, Parquet or MAT v5, 1 to 20 kHz
+    #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
+    fit: Vec<PathBuf>,
+    /// Logs of other motion, to check on; never fitted to
+    #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
+    check: Vec<PathBuf>,
+    /// Instead of logs: CSV with the columns trajectory, experiment_max_um and
+    /// experiment_mean_um (or max_um, mean_um), one row a trajectory of the axis file
+    #[arg(long, value_name = "TABLE", conflicts_with_all = ["fit", "check", "accept", "reject"])]
+    summary: Option<PathBuf>,
+    /// Folder for discovery.json, report.html and axis.toml [default:
+    /// runs/, the name of the axis, /discover]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Take this effect as there, and go on from it (may be repeated)
+    #[arg(long, value_name = "NAME")]
+    accept: Vec<String>,
+    /// Never name this effect (may be repeated)
+    #[arg(long, value_name = "NAME")]
+    reject: Vec<String>,
+    /// Threads, 0 for all cores; results do not depend on it
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
+}
+
+/// Runs the command.
+pub fn command(options: &Options) -> Result<()> {
+    let _ = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads)
+        .build_global();
+    let machine = Machine::read(&options.axis)?;
+    let name = match &machine {
+        Machine::BallScrew(axis) => &axis.name,
+        Machine::Rigid(axis) => &axis.name,
+    };
+    let default = || Path::new("runs").join(name).join("discover");
+    let out = options.out.clone().unwrap_or_else(default);
+    match &options.summary {
+        Some(table) => from_summary(options, &machine, table, &out),
+        None => from_logs(options, &machine, &out),
+    }
+}
+
+fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
+    let known = |name: &String| {
+        if Effect::named(name).is_some() {
+            return Ok(());
+        }
+        let all: Vec<&str> = axis_sim::effects::EFFECTS.iter().map(|e| e.name).collect();
+        Err(miette!(
+            "no effect is called \"{name}\"; there are: {}",
+            all.join(", ")
+        ))
+    };
+    options
+        .accept
+        .iter()
+        .chain(&options.reject)
+        .try_for_each(known)?;
+    if let Some(both) = options
+        .accept
+        .iter()
+        .find(|name| options.reject.contains(name))
+    {
+        return Err(miette!(
+            "\"{both}\" is both accepted and rejected; give it once"
+        ));
+    }
+    let fit = read_all(&options.fit, machine)?;
+    let check = read_all(&options.check, machine)?;
+    check_distinct(&fit, &check).into_diagnostic()?;
+    let fit = LogSet::new(fit, machine).into_diagnostic()?;
+    let check = LogSet::new(check, machine).into_diagnostic()?;
+    say(format!("channels compared: {}", fit.channels.join(", ")))?;
+
+    let settings = Settings {
+        accepted: options.accept.clone(),
+        rejected: options.reject.clone(),
+        ..Settings::default()
+    };
+    let progress = ProgressBar::new_spinner();
+    progress.enable_steady_tick(std::time::Duration::from_millis(120));
+    let found = search(machine, &fit, &check, &settings, |what| {
+        progress.set_message(what.to_owned());
+    })
+    .into_diagnostic()
+    .wrap_err("the axis as its file says does not run these logs")?;
+    let (discovery, overlays) = discovery(machine, &fit, &check, &found).into_diagnostic()?;
+    progress.finish_and_clear();
+
+    let added: String = found.fit.state.effects.iter().map(entry).collect();
+    let text = format!("{}{added}", read_text(&options.axis)?);
+    let json = serde_json::to_vec_pretty(&discovery).into_diagnostic()?;
+    write_whole(&out.join("discovery.json"), &json)?;
+    write_whole(&out.join("axis.toml"), text.as_bytes())?;
+    let html = page::discovery::page(&discovery, &overlays)?;
+    write_whole(&out.join("report.html"), html.as_bytes())?;
+    tell(&discovery, &added, out)
+}
+
+fn read_all(paths: &[PathBuf], machine: &Machine) -> Result<Vec<(String, Log, f64)>> {
+    let mapping = match machine {
+        Machine::BallScrew(axis) => &axis.log,
+        Machine::Rigid(axis) => &axis.log,
+    };
+    let one = |path: &PathBuf| {
+        let name = path.display().to_string();
+        let log = read_log(path, mapping, &["position_ref_m", "position_m"]).into_diagnostic()?;
+        let period = check_log(&name, &log, machine).into_diagnostic()?;
+        Ok((name, log, period))
+    };
+    paths.iter().map(one).collect()
+}
+
+/// An effect as an axis file has it.
+fn entry(active: &ActiveEffect) -> String {
+    let mut text = format!("\n[[effects]]\nname = \"{}\"\n", active.effect.name);
+    for (p, value) in active.effect.parameters.iter().zip(&active.values) {
+        let unit = if p.unit.is_empty() {
+            String::new()
+        } else {
+            format!("    # {}", p.unit)
+        };
+        text += &format!("{} = {value:e}{unit}\n", p.name);
+    }
+    text
+}
+
+fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
+    say(format!("\n{}\n", discovery.sentence))?;
+    for effect in &discovery.effects {
+        say(format!(
+            "{} ({}; {})",
+            effect.name, effect.summary, effect.channel
+        ))?;
+        for p in &effect.parameters {
+            say(format!(
+                "  {} = {:.5e} {}   95 %: {:.5e} to {:.5e}",
+                p.name, p.value, p.unit, p.ci95[0], p.ci95[1]
+            ))?;
+        }
+    }
+    say("\nRMS gap on check motion        before        after        noise")?;
+    for c in &discovery.check.channels {
+        say(format!(
+            "  {:<24} {:>12.4e} {:>12.4e} {:>12.4e}",
+            c.channel, c.before, c.after, c.floor
+        ))?;
+    }
+    if !added.is_empty() {
+        say("\naxis file:")?;
+        for line in added.trim_start().lines() {
+            say(format!("+ {line}"))?;
+        }
+    }
+    if discovery.verdict == Verdict::PartlyExplained || discovery.verdict == Verdict::Unknown {
+        say(
+            "\nRejecting an effect (--reject NAME) or accepting another (--accept NAME) runs the search on from there.",
+        )?;
+    }
+    say(format!("\n{}", out.join("report.html").display()))
+}
+
+fn from_summary(options: &Options, machine: &Machine, table: &Path, out: &Path) -> Result<()> {
+    let Machine::BallScrew(axis) = machine else {
+        return Err(miette!(
+            "{} is a rigid mass without trajectories; --summary needs a ball-screw axis",
+            options.axis.display()
+        ));
+    };
+    let measured = read_summary(table, axis)?;
+    let progress = bar("effects", tried() as u64);
+    let found = rank(axis, &measured, || progress.inc(1)).into_diagnostic()?;
+    progress.finish_and_clear();
+    let json = serde_json::to_vec_pretty(&found).into_diagnostic()?;
+    write_whole(&out.join("summary.json"), &json)?;
+    let html = page::discovery::summary_page(axis, &found)?;
+    write_whole(&out.join("report.html"), html.as_bytes())?;
+    tell_summary(axis, &found, measured.len())?;
+    say(format!("\n{}", out.join("report.html").display()))
+}
+
+fn tell_summary(axis: &Axis, found: &SummaryFound, trajectories: usize) -> Result<()> {
+    say(format!(
+        "RMS gap over {} figures, model as its file says: {:.2} %\n",
+        2 * trajectories,
+        100.0 * found.before
+    ))?;
+    let r = axis.travel_per_radian();
+    for (place, closing) in found.ranked.iter().take(8).enumerate() {
+        let values: Vec<String> = closing
+            .parameters
+            .iter()
+            .map(|(n, v, u)| format!("{n} {v:.4e} {u}"))
+            .collect();
+        say(format!(
+            "{}. {:<28} leaves {:>6.2} %   {}",
+            place + 1,
+            closing.name,
+            100.0 * closing.gap,
+            values.join(", ")
+        ))?;
+        if closing.name == "viscous-friction" {
+            let total = axis.friction.parameters().viscous + closing.parameters[0].1 * r * r;
+            let rpm = std::f64::consts::TAU / 60.0;
+            say(format!(
+                "   with the file's own: σ2 = {:.5} N·m/rpm at the screw",
+                total * rpm
+            ))?;
+        }
+    }
+    say(
+        "\nA table of errors has no noise floor and cannot tell apart effects that close the gap alike; logs can (--fit, --check).",
+    )
+}
+
+fn read_summary(path: &Path, axis: &Axis) -> Result<Vec<MeasuredError>> {
+    let text = read_text(path)?;
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().into_diagnostic()?.clone();
+    let column = |names: [&str; 2]| {
+        let at = header.iter().position(|h| names.contains(&h.trim()));
+        at.ok_or_else(|| {
+            let found: Vec<&str> = header.iter().collect();
+            miette!(
+                "{}: no column {}; it has {}",
+                path.display(),
+                names.join(" or "),
+                found.join(", ")
+            )
+        })
+    };
+    let [number, max, mean] = [
+        column(["trajectory", "number"])?,
+        column(["experiment_max_um", "max_um"])?,
+        column(["experiment_mean_um", "mean_um"])?,
+    ];
+    let mut rows = Vec::new();
+    for (i, record) in reader.records().enumerate() {
+        let record = record
+            .into_diagnostic()
+            .wrap_err_with(|| path.display().to_string())?;
+        let value = |c: usize| -> Result<f64> {
+            let text = record.get(c).unwrap_or("").trim();
+            let number = text
+                .parse::<f64>()
+                .ok()
+                .filter(|v| v.is_finite() && *v > 0.0);
+            number.ok_or_else(|| {
+                miette!(
+                    "{}, line {}: \"{text}\" is not a number above zero",
+                    path.display(),
+                    i + 2
+                )
+            })
+        };
+        let trajectory = value(number)?;
+        if trajectory.fract() != 0.0 || trajectory > axis.trajectories.len() as f64 {
+            return Err(miette!(
+                "{}, line {}: there is no trajectory {trajectory}; the axis file has 1 to {}",
+                path.display(),
+                i + 2,
+                axis.trajectories.len()
+            ));
+        }
+        rows.push(MeasuredError {
+            trajectory: trajectory as usize,
+            max: 1e-6 * value(max)?,
+            mean: 1e-6 * value(mean)?,
+        });
+    }
+    if rows.is_empty() {
+        return Err(miette!(
+            "{} has no rows; give at least one trajectory",
+            path.display()
+        ));
+    }
+    Ok(rows)
+}

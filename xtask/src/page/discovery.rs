@@ -1,0 +1,156 @@
+//! The page of a discovery: verdict, effects, gap, pictures.
+
+use axis_sim::Axis;
+use discrepancy::summary::SummaryFound;
+use discrepancy::{Discovery, Gap, Overlay, Verdict};
+use miette::{IntoDiagnostic, Result};
+use report::{Cell, Figure, Notice, Page, Section, Series, Table, render};
+
+/// The page as HTML.
+pub fn page(discovery: &Discovery, overlays: &[Overlay]) -> Result<String> {
+    let kind = match discovery.verdict {
+        Verdict::Explained | Verdict::NothingMissing => Notice::Good,
+        Verdict::PartlyExplained | Verdict::Unknown => Notice::Warn,
+    };
+    let verdict = Section::new("Verdict").notice(kind, discovery.sentence.clone());
+    let page = Page::new(format!("What the model of {} lacks", discovery.axis))
+        .lead("Logs replayed through the simulated closed loop; what is left, and which effect explains it.")
+        .section(verdict)
+        .section(effects(discovery))
+        .section(gaps(discovery))
+        .section(pictures(overlays))
+        .section(known(discovery));
+    render(&page).into_diagnostic()
+}
+
+fn effects(discovery: &Discovery) -> Section {
+    let mut table = Table::new(
+        "Named effects, largest share of the gap first",
+        [
+            "Effect",
+            "shows in",
+            "depends on",
+            "parameter",
+            "value",
+            "95 % from",
+            "to",
+            "unit",
+            "share of gap",
+            "not told apart from",
+        ],
+    );
+    for effect in &discovery.effects {
+        for p in &effect.parameters {
+            table = table.row([
+                Cell::text(effect.name.clone()),
+                Cell::text(effect.channel.clone()),
+                Cell::text(effect.depends_on.clone()),
+                Cell::text(p.name.clone()),
+                Cell::scientific(p.value, 4),
+                Cell::scientific(p.ci95[0], 4),
+                Cell::scientific(p.ci95[1], 4),
+                Cell::text(p.unit.clone()),
+                Cell::text(format!("{:.1} %", 100.0 * effect.share_of_gap)),
+                Cell::text(effect.indistinguishable_from.join(", ")),
+            ]);
+        }
+    }
+    let mut others = Table::new(
+        "What else was tried in its place, and what was left out",
+        ["In place of", "effect", "fall of −2 log L"],
+    )
+    .note("The fall on the fit logs; the effect named reached the most, or about as much with fewer parameters.");
+    for effect in &discovery.effects {
+        for (name, gain) in &effect.runners_up {
+            others = others.row([
+                Cell::text(effect.name.clone()),
+                Cell::text(name.clone()),
+                Cell::number(*gain, 0),
+            ]);
+        }
+    }
+    for (name, gain) in &discovery.not_added {
+        others = others.row([
+            Cell::text("(not added)"),
+            Cell::text(name.clone()),
+            Cell::number(*gain, 0),
+        ]);
+    }
+    Section::new("Effects").table(table).table(others)
+}
+
+fn gaps(discovery: &Discovery) -> Section {
+    let table = |title: &str, gap: &Gap| {
+        let mut table = Table::new(title, ["Channel", "before", "after", "noise"]);
+        for c in &gap.channels {
+            table = table.row([
+                Cell::text(c.channel.clone()),
+                Cell::scientific(c.before, 3),
+                Cell::scientific(c.after, 3),
+                Cell::scientific(c.floor, 3),
+            ]);
+        }
+        table.note(format!(
+            "{:.1} % of the gap above the noise is gone.",
+            100.0 * gap.reduction
+        ))
+    };
+    Section::new("Gap, RMS in the unit of each channel")
+        .table(table("Check motion, never fitted to", &discovery.check))
+        .table(table("Fit motion", &discovery.fit))
+}
+
+fn pictures(overlays: &[Overlay]) -> Section {
+    let figure = |o: &Overlay| {
+        Figure::new(
+            o.title.clone(),
+            "time, s",
+            format!("measured − model: {}", o.channel),
+        )
+        .series(Series::line("before", o.time.clone(), o.before.clone()))
+        .series(Series::line("after", o.time.clone(), o.after.clone()))
+    };
+    Section::new("Check motion, channel by channel")
+        .paragraph("Before: known parameters moved inside their tolerance, no effect added.")
+        .figure_grid(overlays.iter().map(figure).collect(), 2)
+}
+
+fn known(discovery: &Discovery) -> Section {
+    let mut table = Table::new(
+        "Known parameters, moved inside their tolerance",
+        ["Parameter", "moved by", "tolerance"],
+    );
+    for k in &discovery.recalibrated {
+        table = table.row([
+            Cell::text(k.name.clone()),
+            Cell::text(format!("{:+.3} %", 100.0 * k.share)),
+            Cell::text(format!("± {:.1} %", 100.0 * k.tolerance)),
+        ]);
+    }
+    Section::new("Known parameters").table(table)
+}
+
+/// The page of a table of errors.
+pub fn summary_page(axis: &Axis, found: &SummaryFound) -> Result<String> {
+    let mut table = Table::new(
+        "Effects by how far each alone closes the gap",
+        ["Effect", "RMS gap left", "parameters"],
+    )
+    .note(format!("Without any: {:.2} %.", 100.0 * found.before));
+    for c in &found.ranked {
+        let values: Vec<String> = c
+            .parameters
+            .iter()
+            .map(|(n, v, u)| format!("{n} {v:.4e} {u}"))
+            .collect();
+        table = table.row([
+            Cell::text(c.name.clone()),
+            Cell::text(format!("{:.2} %", 100.0 * c.gap)),
+            Cell::text(values.join(", ")),
+        ]);
+    }
+    let page = Page::new(format!("What the model of {} lacks", axis.name))
+        .lead("From a table of maximum and mean errors: one effect at a time, all relative gaps alike.")
+        .section(Section::new("Ranking").table(table));
+    render(&page).into_diagnostic()
+}
