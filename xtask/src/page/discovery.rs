@@ -105,7 +105,7 @@ fn pictures(overlays: &[Overlay]) -> Section {
         Figure::new(
             o.title.clone(),
             "time, s",
-            format!("measured − model: {}", o.channel),
+            format!("log − model: {}", o.channel),
         )
         .series(Series::line("before", o.time.clone(), o.before.clone()))
         .series(Series::line("after", o.time.clone(), o.after.clone()))
