@@ -27,35 +27,29 @@ pub(crate) fn forward<T: Real>(
         // With the filling where there is room: what lies behind the layer is
         // overwritten next, and whole strips are faster.
         let whole = padded(neurons).min(free.len());
-        affine(layer, input, &mut free[..whole]);
-        tansig(&mut free[..whole]);
+        affine(layer, input, &mut free[..whole], Transfer::Tansig);
         seen += neurons;
         rest = later;
     }
-    affine(rest, &activations[..seen], output);
+    affine(rest, &activations[..seen], output, Transfer::Linear);
 }
 
-/// Elements of tansig taken together.
-const CHUNK: usize = 4;
-
-#[inline(always)]
-fn tansig<T: Real>(values: &mut [T]) {
-    let (chunks, rest) = values.as_chunks_mut::<CHUNK>();
-    for chunk in chunks {
-        for value in chunk {
-            *value = value.tansig();
-        }
-    }
-    for value in rest {
-        *value = value.tansig();
-    }
+/// What becomes of a layer's sums.
+#[derive(Clone, Copy)]
+enum Transfer {
+    Tansig,
+    Linear,
 }
 
 /// `out = Wᵀ input`, with `W` packed in strips.
 #[inline(always)]
-fn affine<T: Real>(weights: &[T], input: &[T], out: &mut [T]) {
+fn affine<T: Real>(weights: &[T], input: &[T], out: &mut [T], transfer: Transfer) {
     if let [single] = out {
-        *single = dot(weights, input);
+        let sum = dot(weights, input);
+        *single = match transfer {
+            Transfer::Tansig => sum.tansig(),
+            Transfer::Linear => sum,
+        };
         return;
     }
     let (mut weights, mut out) = (weights, out);
@@ -65,21 +59,30 @@ fn affine<T: Real>(weights: &[T], input: &[T], out: &mut [T]) {
         weights = later;
         let (to, rest) = out.split_at_mut(width.min(out.len()));
         match width {
-            16 => write(to, &wide::<T, 16>(own, input)),
-            12 => write(to, &wide::<T, 12>(own, input)),
-            8 => write(to, &narrow::<T, 8>(own, input)),
-            4 => write(to, &narrow::<T, 4>(own, input)),
+            20 => write(to, wide::<T, 20>(own, input), transfer),
+            16 => write(to, wide::<T, 16>(own, input), transfer),
+            12 => write(to, wide::<T, 12>(own, input), transfer),
+            8 => write(to, narrow::<T, 8>(own, input), transfer),
+            4 => write(to, narrow::<T, 4>(own, input), transfer),
             _ => return,
         }
         out = rest;
     }
 }
 
+/// The transfer function is taken while the sums are in registers: the length
+/// is known, so the compiler needs no remainder, and the next strip's products
+/// overlap with it.
 #[inline(always)]
-fn write<T: Real, const C: usize>(to: &mut [T], sums: &[T; C]) {
+fn write<T: Real, const C: usize>(to: &mut [T], mut sums: [T; C], transfer: Transfer) {
+    if let Transfer::Tansig = transfer {
+        sums = T::tansig_of(sums);
+    }
     // The usual case as one copy of known length.
     if let Some(whole) = to.first_chunk_mut::<C>() {
-        *whole = *sums;
+        for (to, sum) in whole.iter_mut().zip(sums) {
+            *to = sum;
+        }
     } else {
         to.copy_from_slice(&sums[..to.len()]);
     }

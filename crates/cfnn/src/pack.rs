@@ -1,17 +1,21 @@
 //! The order of the weights for evaluation.
 //!
-//! A layer's neurons are cut into strips of 16, and what is left is filled up
-//! with zeros to 12, 8 or 4. In a strip the weights of one input to all its
-//! neurons lie side by side, then come those of the next input. A single
-//! output neuron stays as it is.
+//! A layer's neurons are cut into strips of 16 until 20 or fewer are left;
+//! these are filled up with zeros to a multiple of 4. In a strip the weights
+//! of one input to all its neurons lie side by side, then come those of the
+//! next input. A single output neuron stays as it is.
 
 use crate::error::same_length;
 use crate::{Error, Real};
 
+/// Most neurons of a strip: their sums, what is multiplied, and a little more
+/// fit into the sixteen vector registers of plain x86-64.
+const WIDEST: usize = 20;
+
 /// Width of the first strip of a layer with this many neurons left.
 #[inline(always)]
 pub(crate) const fn strip_width(neurons: usize) -> usize {
-    if neurons >= 16 {
+    if neurons > WIDEST {
         16
     } else {
         neurons.div_ceil(4) * 4

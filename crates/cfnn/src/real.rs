@@ -30,10 +30,19 @@ pub trait Real:
     const TWO: Self;
 
     /// The transfer function of the hidden layers,
-    /// `2 / (1 + e^{-2x}) - 1 = tanh x`, to a few units in the last place.
+    /// `2 / (1 + e^{-2x}) - 1 = tanh x`, within 8 units in the last place.
     /// NaN gives NaN.
     #[must_use]
-    fn tansig(self) -> Self;
+    #[inline(always)]
+    fn tansig(self) -> Self {
+        let [value] = Self::tansig_of([self]);
+        value
+    }
+
+    /// [`Real::tansig`] of each element, with the same bits; several at once
+    /// keep the processor's vectors full.
+    #[must_use]
+    fn tansig_of<const C: usize>(values: [Self; C]) -> [Self; C];
 }
 
 impl Real for f64 {
@@ -42,8 +51,8 @@ impl Real for f64 {
     const TWO: Self = 2.0;
 
     #[inline(always)]
-    fn tansig(self) -> Self {
-        tansig_f64(self)
+    fn tansig_of<const C: usize>(values: [Self; C]) -> [Self; C] {
+        tansig_f64(values)
     }
 }
 
@@ -53,7 +62,7 @@ impl Real for f32 {
     const TWO: Self = 2.0;
 
     #[inline(always)]
-    fn tansig(self) -> Self {
-        tansig_f32(self)
+    fn tansig_of<const C: usize>(values: [Self; C]) -> [Self; C] {
+        tansig_f32(values)
     }
 }

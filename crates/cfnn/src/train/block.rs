@@ -7,6 +7,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 
 use super::dataset::{BLOCK, SampleBlock};
+use super::gram::LANES;
 use crate::simd::{Kernel, Vectors};
 use crate::{Layer, Real, Shape};
 
@@ -57,7 +58,8 @@ pub(super) struct BlockWork {
     /// `Jᵀ r` of this block.
     pub gradient: Vec<f64>,
     /// The deltas again, sample by sample: `neurons x (outputs, rows)`,
-    /// column-major.
+    /// column-major, and [`LANES`] numbers more, so that whole vectors can be
+    /// read from any place.
     pub deltas_by_sample: Vec<f64>,
     weighted: Vec<f64>,
     vectors: Vectors,
@@ -71,7 +73,11 @@ impl Kernel for Tansig<'_> {
 
     #[inline(always)]
     fn run(self) {
-        for value in self.0 {
+        let (eights, rest) = self.0.as_chunks_mut::<8>();
+        for eight in eights {
+            *eight = f64::tansig_of(*eight);
+        }
+        for value in rest {
             *value = value.tansig();
         }
     }
@@ -85,7 +91,7 @@ impl BlockWork {
             deltas: vec![0.0; BLOCK * layout.neurons * layout.outputs],
             residuals: vec![0.0; BLOCK * layout.outputs],
             gradient: vec![0.0; layout.parameters],
-            deltas_by_sample: vec![0.0; BLOCK * layout.neurons * layout.outputs],
+            deltas_by_sample: vec![0.0; BLOCK * layout.neurons * layout.outputs + LANES],
             weighted: vec![0.0; BLOCK * layout.neurons],
             vectors: Vectors::detect(),
         }

@@ -1,73 +1,186 @@
-//! Cholesky factorisation and solution in place, parallel over tiles whose
-//! cut depends on the size alone: the bits do not depend on the threads.
+//! Cholesky factorisation and solution of the damped normal equations.
+//!
+//! The lower triangle is kept in square tiles, each contiguous. In one large
+//! column-major square the columns lie more than a page apart, and reading a
+//! few rows of many columns costs an address translation for each of them.
+//! Parallel over tiles whose cut depends on the size alone: the bits do not
+//! depend on the threads.
+
+use std::vec;
+use std::vec::Vec;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
-use faer::reborrow::ReborrowMut;
-use faer::{Accum, MatMut, Par};
+use faer::{Accum, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
-/// Columns eliminated together.
-const PANEL: usize = 128;
-/// Columns (trailing part) or rows (panel) of one task.
-const TILE: usize = 96;
+/// Rows and columns of a tile, but for the last.
+const TILE: usize = 128;
 
-/// Replaces `b` by the solution of `A x = b`, where `a` holds the lower
-/// triangle of the symmetric `A` (column-major, `n x n`) and is overwritten.
-/// Returns false, with both arguments spoilt, unless `A` is positive definite
-/// to working precision.
-pub(super) fn solve(a: &mut [f64], b: &mut [f64]) -> bool {
-    let n = b.len();
-    let mut a = MatMut::from_column_major_slice_mut(a, n, n);
-    if !factorise(a.rb_mut()) {
-        return false;
-    }
-    let l = a.as_ref();
-    let mut x = MatMut::from_column_major_slice_mut(b, n, 1);
-    solve_lower_triangular_in_place(l, x.rb_mut(), Par::Seq);
-    solve_upper_triangular_in_place(l.transpose(), x, Par::Seq);
-    b.iter().all(|v| v.is_finite())
+/// The lower triangle of a symmetric matrix; what a tile on the diagonal holds
+/// above it is never read.
+#[derive(Debug, Clone)]
+pub(super) struct Symmetric {
+    n: usize,
+    /// Column by column of tiles, from the diagonal down; each column-major.
+    columns: Vec<Vec<Vec<f64>>>,
 }
 
-fn factorise(mut rest: MatMut<'_, f64>) -> bool {
-    loop {
-        let n = rest.nrows();
-        let width = PANEL.min(n);
-        let (mut corner, _, mut below, trailing) = rest.split_at_mut(width, width);
-        if !factorise_corner(corner.rb_mut()) {
+impl Symmetric {
+    /// Zero, with `n` rows.
+    pub fn new(n: usize) -> Self {
+        let count = n.div_ceil(TILE);
+        let column = |k: usize| {
+            let tile = |i: usize| vec![0.0; size(n, i) * size(n, k)];
+            (k..count).map(tile).collect()
+        };
+        Self {
+            n,
+            columns: (0..count).map(column).collect(),
+        }
+    }
+
+    /// Sets the matrix: `write` gets the number of a column and the whole
+    /// column, in which it sets the rows from the diagonal down.
+    pub fn fill(&mut self, write: impl Fn(usize, &mut [f64]) + Sync) {
+        let n = self.n;
+        let fill_tiles = |column: &mut Vec<f64>, (k, tiles): (usize, &mut Vec<Vec<f64>>)| {
+            for c in 0..size(n, k) {
+                write(k * TILE + c, column);
+                for (tile, rows) in tiles.iter_mut().zip(column[k * TILE..].chunks(TILE)) {
+                    tile[c * rows.len()..][..rows.len()].copy_from_slice(rows);
+                }
+            }
+        };
+        self.columns
+            .par_iter_mut()
+            .enumerate()
+            .with_max_len(1)
+            .for_each_init(|| vec![0.0; n], fill_tiles);
+    }
+
+    /// Replaces `b` by the solution of `A x = b`; the matrix is overwritten.
+    /// Returns false, with both spoilt, unless the matrix is positive definite
+    /// to working precision.
+    pub fn solve(&mut self, b: &mut [f64]) -> bool {
+        if !self.factorise() {
             return false;
         }
-        if n == width {
-            return true;
-        }
-        let l = corner.as_ref();
-        below.rb_mut().par_row_chunks_mut(TILE).for_each(|rows| {
-            solve_lower_triangular_in_place(l, rows.transpose_mut(), Par::Seq);
-        });
-        rest = trailing;
-        let below = below.as_ref();
-        // Whole columns below and a little above the diagonal: what lies
-        // above it is never read.
-        rest.rb_mut()
-            .par_col_chunks_mut(TILE)
-            .enumerate()
-            .for_each(|(t, columns)| {
-                let first = t * TILE;
-                let count = columns.ncols();
-                let left = below.subrows(first, below.nrows() - first);
-                matmul(
-                    columns.subrows_mut(first, left.nrows()),
-                    Accum::Add,
-                    left,
-                    below.subrows(first, count).transpose(),
-                    -1.0,
-                    Par::Seq,
-                );
+        self.substitute_forward(b);
+        self.substitute_backward(b);
+        b.iter().all(|v| v.is_finite())
+    }
+
+    fn factorise(&mut self) -> bool {
+        let n = self.n;
+        for k in 0..self.columns.len() {
+            let width = size(n, k);
+            let (done, later) = self.columns.split_at_mut(k + 1);
+            let Some((corner, below)) = done[k].split_first_mut() else {
+                return false;
+            };
+            if !factorise_corner(tile_mut(corner, width, width)) {
+                return false;
+            }
+            let l = tile_ref(corner, width, width);
+            below.par_iter_mut().with_max_len(1).for_each(|tile| {
+                let rows = tile.len() / width;
+                let tile = tile_mut(tile, rows, width);
+                solve_lower_triangular_in_place(l, tile.transpose_mut(), Par::Seq);
             });
+            // Tile (i, j) of what follows loses L_ik L_jkᵀ.
+            let below: Vec<_> = below
+                .iter()
+                .map(|tile| tile_ref(tile, tile.len() / width, width))
+                .collect();
+            let mut tiles = Vec::new();
+            for (j, column) in later.iter_mut().enumerate() {
+                tiles.extend((j..).zip(column).map(|(i, tile)| (tile, i, j)));
+            }
+            tiles
+                .into_par_iter()
+                .with_max_len(1)
+                .for_each(|(tile, i, j)| subtract(tile, below[i], below[j], i == j));
+        }
+        true
+    }
+
+    fn substitute_forward(&self, b: &mut [f64]) {
+        for (k, tiles) in self.columns.iter().enumerate() {
+            let width = size(self.n, k);
+            let (own, below) = b[k * TILE..].split_at_mut(width);
+            let l = tile_ref(&tiles[0], width, width);
+            solve_lower_triangular_in_place(l, tile_mut(own, width, 1), Par::Seq);
+            for (tile, rest) in tiles[1..].iter().zip(below.chunks_mut(TILE)) {
+                let rows = rest.len();
+                let (tile, own) = (tile_ref(tile, rows, width), tile_ref(own, width, 1));
+                let rest = tile_mut(rest, rows, 1);
+                matmul(rest, Accum::Add, tile, own, -1.0, Par::Seq);
+            }
+        }
+    }
+
+    fn substitute_backward(&self, b: &mut [f64]) {
+        for (k, tiles) in self.columns.iter().enumerate().rev() {
+            let width = size(self.n, k);
+            let (own, below) = b[k * TILE..].split_at_mut(width);
+            let mut own = tile_mut(own, width, 1);
+            for (tile, rest) in tiles[1..].iter().zip(below.chunks(TILE)) {
+                let rows = rest.len();
+                let (tile, rest) = (tile_ref(tile, rows, width), tile_ref(rest, rows, 1));
+                let tile = tile.transpose();
+                matmul(own.as_mut(), Accum::Add, tile, rest, -1.0, Par::Seq);
+            }
+            let l = tile_ref(&tiles[0], width, width);
+            solve_upper_triangular_in_place(l.transpose(), own, Par::Seq);
+        }
+    }
+
+    /// One entry, by symmetry (for checks).
+    #[cfg(test)]
+    pub fn at(&self, r: usize, c: usize) -> f64 {
+        let (r, c) = (r.max(c), r.min(c));
+        let (i, k) = (r / TILE, c / TILE);
+        self.columns[k][i - k][r % TILE + (c % TILE) * size(self.n, i)]
+    }
+}
+
+/// Rows of the tiles in row `i` of tiles.
+fn size(n: usize, i: usize) -> usize {
+    TILE.min(n - i * TILE)
+}
+
+fn tile_ref(tile: &[f64], rows: usize, columns: usize) -> MatRef<'_, f64> {
+    MatRef::from_column_major_slice(tile, rows, columns)
+}
+
+fn tile_mut(tile: &mut [f64], rows: usize, columns: usize) -> MatMut<'_, f64> {
+    MatMut::from_column_major_slice_mut(tile, rows, columns)
+}
+
+fn subtract(tile: &mut [f64], left: MatRef<'_, f64>, right: MatRef<'_, f64>, diagonal: bool) {
+    use BlockStructure::{Rectangular, TriangularLower};
+    let tile = tile_mut(tile, left.nrows(), right.nrows());
+    let right = right.transpose();
+    if diagonal {
+        triangular::matmul(
+            tile,
+            TriangularLower,
+            Accum::Add,
+            left,
+            Rectangular,
+            right,
+            Rectangular,
+            -1.0,
+            Par::Seq,
+        );
+    } else {
+        matmul(tile, Accum::Add, left, right, -1.0, Par::Seq);
     }
 }
 

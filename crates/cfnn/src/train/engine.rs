@@ -6,7 +6,7 @@ use std::vec::Vec;
 use rayon::prelude::*;
 
 use super::block::{BlockWork, Layout};
-use super::cholesky;
+use super::cholesky::Symmetric;
 use super::dataset::SampleBlock;
 use super::gram::Gram;
 use super::output_fit::{Triangles, block_triangle};
@@ -24,7 +24,7 @@ pub(super) struct Engine {
     gram: Gram,
     /// `Jᵀ r`.
     pub gradient: Vec<f64>,
-    matrix: Vec<f64>,
+    matrix: Symmetric,
 }
 
 impl Engine {
@@ -34,7 +34,7 @@ impl Engine {
             works: vec![BlockWork::new(&layout); blocks.clamp(1, GROUP)],
             gram: Gram::new(&layout),
             gradient: vec![0.0; layout.parameters],
-            matrix: vec![0.0; layout.parameters * layout.parameters],
+            matrix: Symmetric::new(layout.parameters),
             layout,
         }
     }
@@ -66,8 +66,9 @@ impl Engine {
                 work.residuals(layout, weights, samples);
                 work.backward(layout, weights);
             });
-            for work in &self.works[..group.len()] {
-                self.gram.add(layout, work);
+            let works = &self.works[..group.len()];
+            self.gram.add(layout, works);
+            for work in works {
                 for (sum, g) in self.gradient.iter_mut().zip(&work.gradient) {
                     *sum += g;
                 }
@@ -81,7 +82,7 @@ impl Engine {
         self.gram
             .write_lower(&self.layout, factor, damping, &mut self.matrix);
         let mut step: Vec<f64> = self.gradient.iter().map(|g| -factor * g).collect();
-        cholesky::solve(&mut self.matrix, &mut step).then_some(step)
+        self.matrix.solve(&mut step).then_some(step)
     }
 
     /// Sets the output layer's weights from the first `unknowns` activations
@@ -120,7 +121,7 @@ impl Engine {
             .write_lower(&self.layout, 1.0, 0.0, &mut self.matrix);
         (0..n * n)
             .map(|e| (e % n, e / n))
-            .map(|(r, c)| self.matrix[r.max(c) + r.min(c) * n])
+            .map(|(r, c)| self.matrix.at(r, c))
             .collect()
     }
 }

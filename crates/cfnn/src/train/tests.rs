@@ -4,9 +4,10 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::block::BlockWork;
+use super::cholesky::Symmetric;
 use super::dataset::blocks;
 use super::engine::Engine;
-use super::{Dataset, cholesky, nguyen_widrow};
+use super::{Dataset, nguyen_widrow};
 use crate::{Scaling, Shape};
 
 fn samples(shape: &Shape, count: usize) -> (Dataset, Scaling) {
@@ -135,6 +136,54 @@ proptest! {
     }
 }
 
+/// The paper's network, whose entries are cut into many tiles: every entry
+/// against the plain sum, and the same bits on one thread and on three.
+#[test]
+fn tiled_normal_equations_equal_dense_ones() {
+    let shape = Shape {
+        inputs: 4,
+        hidden: vec![34, 19, 8],
+        outputs: 1,
+    };
+    let (data, scaling) = samples(&shape, 261);
+    let chosen: Vec<usize> = (0..data.len()).collect();
+    let blocks = blocks(&data, &chosen, &scaling);
+    let weights = nguyen_widrow(&shape, 1);
+    let on_threads = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let mut engine = Engine::new(&shape, 1);
+        pool.build().unwrap().install(|| {
+            engine.normal_equations(&blocks, &weights);
+            engine.dense()
+        })
+    };
+    let square = on_threads(1);
+    let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&square), bits(&on_threads(3)));
+
+    let n = shape.parameters();
+    let mut plain = vec![0.0; n * n];
+    for block in &blocks {
+        let engine = Engine::new(&shape, 1);
+        let mut work = BlockWork::new(&engine.layout);
+        work.forward_hidden(&engine.layout, &weights, block);
+        work.residuals(&engine.layout, &weights, block);
+        work.backward(&engine.layout, &weights);
+        for row in analytic_jacobian(&engine, &work) {
+            for (column, x) in plain.chunks_exact_mut(n).zip(&row) {
+                for (sum, y) in column.iter_mut().zip(&row) {
+                    *sum += x * y;
+                }
+            }
+        }
+    }
+    // What differs is the order of 261 additions.
+    let largest = plain.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    for (a, b) in square.iter().zip(&plain) {
+        assert!((a - b).abs() <= 1e-13 * largest, "{a} against {b}");
+    }
+}
+
 /// Large enough for several panels and tiles: `A = B Bᵀ + n I` is well
 /// conditioned, so the solution is good to about 1e-13.
 #[test]
@@ -152,15 +201,20 @@ fn cholesky_solves_and_refuses() {
     let mut x: Vec<f64> = (0..n)
         .map(|r| (0..n).map(|c| a[r + c * n] * truth[c]).sum())
         .collect();
-    let mut indefinite = a.clone();
-    // What lies above the diagonal must not matter.
-    for c in 0..n {
-        a[c * n..c * n + c].fill(f64::NAN);
-    }
-    assert!(cholesky::solve(&mut a, &mut x));
+    let fill = |matrix: &mut Symmetric, a: &[f64]| {
+        matrix.fill(|c, column| {
+            // What lies above the diagonal must not matter.
+            column[..c].fill(f64::NAN);
+            column[c..].copy_from_slice(&a[c * n + c..(c + 1) * n]);
+        });
+    };
+    let mut matrix = Symmetric::new(n);
+    fill(&mut matrix, &a);
+    assert!(matrix.solve(&mut x));
     for (x, t) in x.iter().zip(&truth) {
         assert!((x - t).abs() < 1e-11, "{x} against {t}");
     }
-    indefinite[250 + 250 * n] = -1.0;
-    assert!(!cholesky::solve(&mut indefinite, &mut x));
+    a[250 + 250 * n] = -1.0;
+    fill(&mut matrix, &a);
+    assert!(!matrix.solve(&mut x));
 }
