@@ -12,8 +12,8 @@ mod store;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    compensate, discover, identify, layers, pipeline, report, sample, simulate, study, train,
-    validate,
+    bench, compensate, discover, identify, layers, pipeline, report, sample, simulate, study,
+    train, validate,
 };
 use context::Common;
 
@@ -52,6 +52,8 @@ enum Command {
     Simulate(simulate::Options),
     /// Name what a model lacks, from logs of the real axis
     Discover(discover::Options),
+    /// Measure the speed of every hot path (docs/performance.md)
+    Bench(bench::Options),
     /// Check that every crate depends strictly downward
     Layers,
 }
@@ -72,6 +74,7 @@ fn main() -> miette::Result<()> {
         Command::Report(common) => report::command(&common),
         Command::Simulate(options) => simulate::command(&options),
         Command::Discover(options) => discover::command(&options),
+        Command::Bench(options) => bench::command(&options),
         Command::Layers => layers::command(),
     }
 }

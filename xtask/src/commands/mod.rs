@@ -1,5 +1,6 @@
 //! One file a command.
 
+pub mod bench;
 pub mod compensate;
 pub mod discover;
 pub mod identify;

@@ -1,0 +1,133 @@
+//! One correction of each strategy: what a controller spends on it in each
+//! control cycle of 100 µs. `cargo bench -p compensator`
+
+use std::f64::consts::TAU;
+use std::hint::black_box;
+
+use cfnn::{FixedNetwork, Network, Range, Scaling, Shape, packed_len};
+use compensator::{
+    Combined, Compensator, FrictionFeedforward, MotionEstimator, NetworkCompensation,
+    NoCompensation, ObserverGains, Reference, Sample, TransferFunction, TransferFunctionModel,
+};
+use criterion::{Criterion, criterion_group, criterion_main};
+use lugre::{LuGre, Parameters};
+
+const T: f64 = 1e-4; // control period, s
+const R: f64 = 0.01 / TAU; // travel per radian, m
+const RANGES: [(f64, f64); 4] = [(0.1, 1.3), (-0.2, 0.2), (-3.0, 3.0), (-15.0, 15.0)];
+const HIDDEN: [usize; 3] = [34, 19, 8];
+
+/// Cycles of a motion, long enough that every cycle differs from the last.
+const CYCLES: usize = 1000;
+
+/// A sinusoidal motion, 50 mm at 0.5 Hz, its middle third of a second.
+fn cycles() -> Vec<Sample> {
+    let reference = |k: usize| {
+        let (amplitude, rate) = (0.05, TAU * 0.5);
+        let (sine, cosine) = (rate * (k as f64 * T + 0.3)).sin_cos();
+        Reference {
+            position: 0.6 + amplitude * sine,
+            velocity: amplitude * rate * cosine,
+            acceleration: -amplitude * rate * rate * sine,
+        }
+    };
+    (0..CYCLES)
+        .map(|k| Sample {
+            reference: reference(k),
+            next_reference: reference(k + 1),
+            position: reference(k).position - 1e-6,
+            motor_speed: reference(k).velocity / R,
+            iq: 0.5,
+            iq_command: 0.5,
+        })
+        .collect()
+}
+
+fn friction() -> FrictionFeedforward {
+    let law = LuGre::new(Parameters {
+        coulomb: 0.6757,
+        stiction: 0.7653,
+        stribeck_speed: 2.714,
+        stiffness: 15.16,
+        damping: 1.521,
+        viscous: 0.0298,
+    })
+    .expect("valid parameters");
+    FrictionFeedforward::new(law, R, 1.641, T).expect("valid parameters")
+}
+
+fn estimator() -> MotionEstimator {
+    MotionEstimator::new(R, T, ObserverGains::default()).expect("valid parameters")
+}
+
+/// Weights of the paper's size; what they say does not matter for the time.
+fn weights(count: usize) -> Vec<f64> {
+    (0..count)
+        .map(|k| (k as f64 * 0.618_033_988_749_895).fract() - 0.5)
+        .collect()
+}
+
+fn network() -> Network {
+    let shape = Shape {
+        inputs: 4,
+        hidden: HIDDEN.to_vec(),
+        outputs: 1,
+    };
+    let scaling = Scaling::from_ranges(&RANGES, &[(-2e-5, 2e-5)]).expect("valid ranges");
+    let weights = weights(shape.parameters());
+    Network::new(shape, scaling, weights).expect("a valid network")
+}
+
+fn bench(c: &mut Criterion, name: &str, mut law: impl Compensator) {
+    let cycles = cycles();
+    let mut next = 0;
+    c.bench_function(name, |b| {
+        b.iter(|| {
+            next = (next + 1) % CYCLES;
+            law.correct(black_box(&cycles[next]))
+        });
+    });
+}
+
+fn corrections(c: &mut Criterion) {
+    bench(c, "none", NoCompensation);
+    bench(c, "friction feedforward", friction());
+    let poles = [0.9, 0.8, 0.7, 0.6];
+    for order in [1, 2, 4] {
+        let coefficients = [1e-7; 4];
+        let model = TransferFunctionModel::new(T, 1e-6, &poles[..order], &coefficients[..order])
+            .expect("stable poles");
+        let name = format!("transfer function, order {order}");
+        bench(c, &name, TransferFunction::new(model));
+    }
+    let predictor = || cfnn::Predictor::<4, 1>::new(network()).expect("four inputs, one output");
+    let compensation = || NetworkCompensation::new(predictor(), estimator());
+    bench(c, "network 4-34-19-8-1, f64", compensation());
+    bench(
+        c,
+        "network 4-34-19-8-1 and friction",
+        Combined::new(compensation(), friction()),
+    );
+    single(c);
+}
+
+/// The controller's form: borrowed weights in single precision.
+fn single(c: &mut Criterion) {
+    let packed: Vec<f32> = weights(packed_len(4, &HIDDEN, 1))
+        .iter()
+        .map(|&w| w as f32)
+        .collect();
+    let range = |low: f64, high: f64| Range::new("bench", low as f32, high as f32);
+    let input = RANGES.map(|(low, high)| range(low, high).expect("a valid range"));
+    let output = [range(-2e-5, 2e-5).expect("a valid range")];
+    let model = FixedNetwork::<f32, 4, 1, 66>::new(&HIDDEN, &packed, input, output)
+        .expect("a valid network");
+    bench(
+        c,
+        "network 4-34-19-8-1, f32, borrowed weights",
+        NetworkCompensation::new(model, estimator()),
+    );
+}
+
+criterion_group!(benches, corrections);
+criterion_main!(benches);
