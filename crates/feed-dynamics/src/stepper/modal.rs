@@ -41,7 +41,8 @@ pub struct ModalStepper {
     step: f64,
     /// Rotation of the nut (rad) to table travel (m).
     r: f64,
-    element_length: f64,
+    elements_per_metre: f64,
+    table: TableCompliance,
     propagators: Vec<Propagator>,
     /// ω² of each mode, padded with ones.
     stiffness: Vec<Lane>,
@@ -52,18 +53,40 @@ pub struct ModalStepper {
     flexibility: Vec<[[f64; 2]; 2]>,
 }
 
+/// What a newton on the table that grows over a step gives at its end.
+#[derive(Clone, Copy, Debug)]
+struct TableCompliance {
+    /// m/N
+    travel: f64,
+    /// (m/s)/N
+    speed: f64,
+}
+
+/// Four modes at the end of a step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Modes {
+    /// η.
+    coordinate: Lane,
+    /// η̇.
+    rate: Lane,
+    /// The modal load.
+    load: Lane,
+    /// Mode shape at the nut.
+    nut: Lane,
+}
+
 /// State of a [`ModalStepper`].
 #[derive(Clone, Debug)]
 pub struct ModalState {
-    modal: Vec<[Lane; 2]>,
+    modes: Vec<Modes>,
+    /// Motor angle and speed.
+    motor: [f64; 2],
     origin: f64,
     displacement: f64,
     speed: f64,
-    torque: f64,
     nut_force: f64,
     load: f64,
     load_before: f64,
-    seat: NutSeat,
 }
 
 impl ModalStepper {
@@ -101,7 +124,11 @@ impl ModalStepper {
         Ok(Self {
             step,
             r: drive.travel_per_radian(),
-            element_length: p.screw_length / p.elements as f64,
+            elements_per_metre: p.elements as f64 / p.screw_length,
+            table: TableCompliance {
+                travel: step * step / (6.0 * p.table_mass),
+                speed: 0.5 * step / p.table_mass,
+            },
             propagators,
             stiffness,
             nodes,
@@ -112,7 +139,7 @@ impl ModalStepper {
 
     fn seat(&self, x: f64) -> NutSeat {
         let last = self.nodes.len() - 2;
-        let along = (x / self.element_length).clamp(0.0, (last + 1) as f64);
+        let along = (x * self.elements_per_metre).clamp(0.0, (last + 1) as f64);
         let node = (along as usize).min(last);
         let xi = along - node as f64;
         NutSeat {
@@ -127,21 +154,6 @@ impl ModalStepper {
         let (own, next) = (&self.flexibility[at], &self.flexibility[at + 1]);
         [0, 1].map(|i| n1 * n1 * own[0][i] + 2.0 * n1 * n2 * own[1][i] + n2 * n2 * next[0][i])
     }
-
-    /// Rotation and its rate at the nut.
-    fn nut_rotation(&self, modal: &[[Lane; 2]], seat: &NutSeat) -> [f64; 2] {
-        let [n1, n2] = seat.weights;
-        let (first, second) = (&self.nodes[seat.node], &self.nodes[seat.node + 1]);
-        let mut sums = [[0.0; LANES]; 2];
-        for ((m, a), b) in modal.iter().zip(first).zip(second) {
-            for i in 0..LANES {
-                let w = n1 * a[i] + n2 * b[i];
-                sums[0][i] += w * m[0][i];
-                sums[1][i] += w * m[1][i];
-            }
-        }
-        sums.map(add_lanes)
-    }
 }
 
 impl TimeStepper for ModalStepper {
@@ -155,34 +167,31 @@ impl TimeStepper for ModalStepper {
         let seat = self.seat(x);
         let nut_force = motion.nut_force(&self.drive);
         let torque = motion.motor_torque(&self.drive);
-        let [n1, n2] = seat.weights;
-        let (first, second) = (&self.nodes[seat.node], &self.nodes[seat.node + 1]);
-        let mut modal = vec![[[0.0; LANES]; 2]; self.nodes[0].len()];
-        for (lane, m) in modal.iter_mut().enumerate() {
+        let mut modes = vec![Modes::default(); self.propagators.len()];
+        self.place_nut(&mut modes, &seat);
+        for ((m, q), k) in modes.iter_mut().zip(&self.propagators).zip(&self.stiffness) {
             for i in 0..LANES {
-                let w = n1 * first[lane][i] + n2 * second[lane][i];
-                let force = self.propagators[lane].motor[i] * torque - self.r * nut_force * w;
-                m[0][i] = force / self.stiffness[lane][i];
+                m.load[i] = q.motor[i] * torque - self.r * nut_force * m.nut[i];
+                m.coordinate[i] = m.load[i] / k[i];
             }
         }
         // The rigid mode carries the speed, and turns the chain until the nut
         // is compressed just as its force asks.
-        modal[0][0][0] = 0.0;
-        let rigid = self.nodes[0][0][0];
-        modal[0][1][0] = motion.speed / self.r / rigid;
+        modes[0].coordinate[0] = 0.0;
+        let rigid = modes[0].nut[0];
+        modes[0].rate[0] = motion.speed / self.r / rigid;
         let wanted = nut_force / self.drive.parameters().nut_stiffness / self.r;
-        let elastic = self.nut_rotation(&modal, &seat)[0];
-        modal[0][0][0] = (wanted - elastic) / rigid;
+        let elastic = nut_rotation(&modes)[0];
+        modes[0].coordinate[0] = (wanted - elastic) / rigid;
         ModalState {
-            modal,
+            motor: self.motor_rotation(&modes),
+            modes,
             origin: x,
             displacement: 0.0,
             speed: motion.speed,
-            torque,
             nut_force,
             load: motion.load,
             load_before: motion.load,
-            seat,
         }
     }
 
@@ -202,9 +211,10 @@ impl TimeStepper for ModalStepper {
         );
 
         // Chain, without the nut force at the step's end.
-        self.propagate_free(state, torque);
         let seat = self.seat(state.origin + state.displacement + h * state.speed);
-        let [rotation, rate] = self.nut_rotation(&state.modal, &seat);
+        self.propagate_free(&mut state.modes, torque);
+        self.place_nut(&mut state.modes, &seat);
+        let [rotation, rate] = nut_rotation(&state.modes);
         let [soft, soft_rate] = self.nut_flexibility(&seat);
 
         // Table, without the forces at the step's end: linear acceleration.
@@ -213,7 +223,7 @@ impl TimeStepper for ModalStepper {
             displacement: state.displacement + h * (state.speed + h * start / 3.0),
             speed: state.speed + 0.5 * h * start,
         };
-        let (give, give_speed) = (h * h / (6.0 * mass), 0.5 * h / mass);
+        let (give, give_speed) = (self.table.travel, self.table.speed);
 
         // F = k (rθ − y) + βk (rθ̇ − v), all at the end, is linear in F and the
         // load; with a gap, F times its stiffness falls short by that of half
@@ -238,27 +248,18 @@ impl TimeStepper for ModalStepper {
         let end = motion(end_load);
         let nut_force = nut(end_load);
 
-        self.add_nut(state, &seat, nut_force);
+        state.motor = self.add_nut(&mut state.modes, nut_force);
         state.displacement = end.displacement;
         state.speed = end.speed;
-        state.torque = torque;
         state.nut_force = nut_force;
         state.load_before = state.load;
         state.load = end_load;
-        state.seat = seat;
     }
 
     fn observe(&self, state: &ModalState) -> Observation {
-        let mut sums = [[0.0; LANES]; 2];
-        for (m, p) in state.modal.iter().zip(&self.propagators) {
-            for i in 0..LANES {
-                sums[0][i] += p.motor[i] * m[0][i];
-                sums[1][i] += p.motor[i] * m[1][i];
-            }
-        }
         Observation {
-            motor_angle: add_lanes(sums[0]),
-            motor_speed: add_lanes(sums[1]),
+            motor_angle: state.motor[0],
+            motor_speed: state.motor[1],
             displacement: state.displacement,
             speed: state.speed,
             nut_force: state.nut_force,
@@ -269,33 +270,68 @@ impl TimeStepper for ModalStepper {
 impl ModalStepper {
     /// Propagates every mode under the loads at the step's start and the motor
     /// torque at its end.
-    fn propagate_free(&self, state: &mut ModalState, torque: f64) {
-        let [n1, n2] = state.seat.weights.map(|n| -self.r * state.nut_force * n);
-        let at = state.seat.node;
-        let nodes = self.nodes[at].iter().zip(&self.nodes[at + 1]);
-        for ((m, q), (a, b)) in state.modal.iter_mut().zip(&self.propagators).zip(nodes) {
+    fn propagate_free(&self, modes: &mut [Modes], torque: f64) {
+        for (m, q) in modes.iter_mut().zip(&self.propagators) {
             for i in 0..LANES {
-                let f0 = q.motor[i] * state.torque + n1 * a[i] + n2 * b[i];
-                let f1 = q.motor[i] * torque;
-                let [eta, rate] = [m[0][i], m[1][i]];
-                m[0][i] = q.p[0][i] * eta + q.p[1][i] * rate + q.p[2][i] * f0 + q.p[3][i] * f1;
-                m[1][i] = q.s[0][i] * eta + q.s[1][i] * rate + q.s[2][i] * f0 + q.s[3][i] * f1;
+                let (eta, rate) = (m.coordinate[i], m.rate[i]);
+                let (f0, f1) = (m.load[i], q.motor[i] * torque);
+                m.coordinate[i] =
+                    q.p[0][i] * eta + q.p[1][i] * rate + q.p[2][i] * f0 + q.p[3][i] * f1;
+                m.rate[i] = q.s[0][i] * eta + q.s[1][i] * rate + q.s[2][i] * f0 + q.s[3][i] * f1;
+                m.load[i] = f1;
             }
         }
     }
 
-    /// Adds what the nut force at the step's end does to the modes.
-    fn add_nut(&self, state: &mut ModalState, seat: &NutSeat, nut_force: f64) {
-        let [n1, n2] = seat.weights.map(|n| -self.r * nut_force * n);
+    /// Mode shapes at the nut.
+    fn place_nut(&self, modes: &mut [Modes], seat: &NutSeat) {
+        let [n1, n2] = seat.weights;
         let nodes = self.nodes[seat.node].iter().zip(&self.nodes[seat.node + 1]);
-        for ((m, q), (a, b)) in state.modal.iter_mut().zip(&self.propagators).zip(nodes) {
+        for (m, (a, b)) in modes.iter_mut().zip(nodes) {
             for i in 0..LANES {
-                let f1 = n1 * a[i] + n2 * b[i];
-                m[0][i] += q.p[3][i] * f1;
-                m[1][i] += q.s[3][i] * f1;
+                m.nut[i] = n1 * a[i] + n2 * b[i];
             }
         }
     }
+
+    /// Adds what the nut force at the step's end does to the modes, and gives
+    /// motor angle and speed.
+    fn add_nut(&self, modes: &mut [Modes], nut_force: f64) -> [f64; 2] {
+        let torque = -self.r * nut_force;
+        for (m, q) in modes.iter_mut().zip(&self.propagators) {
+            for i in 0..LANES {
+                let f1 = torque * m.nut[i];
+                m.coordinate[i] += q.p[3][i] * f1;
+                m.rate[i] += q.s[3][i] * f1;
+                m.load[i] += f1;
+            }
+        }
+        self.motor_rotation(modes)
+    }
+
+    /// Angle and speed of the motor.
+    fn motor_rotation(&self, modes: &[Modes]) -> [f64; 2] {
+        let motor = self.propagators.iter().map(|q| &q.motor);
+        rotation(modes.iter().zip(motor))
+    }
+}
+
+/// Rotation of the screw at the nut, and its rate.
+fn nut_rotation(modes: &[Modes]) -> [f64; 2] {
+    rotation(modes.iter().map(|m| (m, &m.nut)))
+}
+
+/// Rotation and its rate where the modes have the given shapes.
+#[inline(always)]
+fn rotation<'a>(modes: impl Iterator<Item = (&'a Modes, &'a Lane)>) -> [f64; 2] {
+    let mut sums = [[0.0; LANES]; 2];
+    for (m, shape) in modes {
+        for i in 0..LANES {
+            sums[0][i] += shape[i] * m.coordinate[i];
+            sums[1][i] += shape[i] * m.rate[i];
+        }
+    }
+    sums.map(add_lanes)
 }
 
 pub(super) fn check_step(step: f64) -> Result<(), DriveError> {

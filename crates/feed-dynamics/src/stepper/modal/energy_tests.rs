@@ -1,6 +1,6 @@
 //! The modal stepper's energy, which only its inner state shows.
 
-use super::{LANES, ModalState, ModalStepper};
+use super::{LANES, ModalState, ModalStepper, nut_rotation};
 use crate::drive::tests_support::drive_with_damping;
 use crate::{Settled, TimeStepper};
 
@@ -8,12 +8,12 @@ use crate::{Settled, TimeStepper};
 fn energy(s: &ModalStepper, state: &ModalState) -> f64 {
     let p = s.drive.parameters();
     let mut sum = 0.5 * p.table_mass * state.speed * state.speed;
-    for (m, k) in state.modal.iter().zip(&s.stiffness) {
+    for (m, k) in state.modes.iter().zip(&s.stiffness) {
         for i in 0..LANES {
-            sum += 0.5 * (m[1][i] * m[1][i] + k[i] * m[0][i] * m[0][i]);
+            sum += 0.5 * (m.rate[i] * m.rate[i] + k[i] * m.coordinate[i] * m.coordinate[i]);
         }
     }
-    let stretch = s.r * s.nut_rotation(&state.modal, &state.seat)[0] - state.displacement;
+    let stretch = s.r * nut_rotation(&state.modes)[0] - state.displacement;
     sum + 0.5 * p.nut_stiffness * stretch * stretch
 }
 
