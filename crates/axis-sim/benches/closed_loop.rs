@@ -1,14 +1,18 @@
-//! The closed loop over trajectory 1, and one-cycle samples.
+//! The closed loop over trajectory 1, all trajectories one after the other and
+//! on two threads, and one-cycle samples.
 //!
 //! Elements are control cycles of 100 µs: at 3 Melem/s the closed loop runs
 //! 300 times faster than real time.
 
 use std::hint::black_box;
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 use axis_sim::{Axis, ClosedLoop, CycleInput, OneCycle};
 use compensator::NoCompensation;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use trajectories::{Motion, SCurve};
 
 fn axis() -> Axis {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/axes");
@@ -41,6 +45,40 @@ fn closed_loop(c: &mut Criterion) {
         group.sample_size(samples);
         group.throughput(Throughput::Elements(run()));
         group.bench_function(name, |b| b.iter(run));
+    }
+    group.finish();
+}
+
+/// Every trajectory of the file, four times: on one thread, and the same
+/// shared out to two, each of which takes the next motion when it is free.
+fn batch(c: &mut Criterion) {
+    let axis = axis();
+    let closed_loop = ClosedLoop::new(&axis).expect("the axis was checked");
+    let motions: Vec<SCurve> = std::iter::repeat_n(&axis.trajectories, 4)
+        .flatten()
+        .map(|spec| axis.plan(spec).expect("the trajectory has an S-curve"))
+        .collect();
+    let seconds: f64 = motions.iter().map(Motion::duration).sum();
+    let mut group = c.benchmark_group("closed loop, all trajectories four times");
+    group.sample_size(10);
+    group.throughput(Throughput::Elements((seconds / axis.period) as u64));
+    for threads in [1, 2] {
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while let Some(motion) = motions.get(next.fetch_add(1, Ordering::Relaxed)) {
+                black_box(closed_loop.run(motion, &mut NoCompensation, |_| ()));
+            }
+        };
+        group.bench_function(format!("{threads} threads"), |b| {
+            b.iter(|| {
+                next.store(0, Ordering::Relaxed);
+                thread::scope(|scope| {
+                    for _ in 0..threads {
+                        scope.spawn(work);
+                    }
+                });
+            });
+        });
     }
     group.finish();
 }
@@ -78,5 +116,5 @@ fn samples(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, closed_loop, samples);
+criterion_group!(benches, closed_loop, batch, samples);
 criterion_main!(benches);
