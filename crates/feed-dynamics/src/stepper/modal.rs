@@ -170,9 +170,9 @@ impl TimeStepper for ModalStepper {
         let mut modes = vec![Modes::default(); self.propagators.len()];
         self.place_nut(&mut modes, &seat);
         for ((m, q), k) in modes.iter_mut().zip(&self.propagators).zip(&self.stiffness) {
-            for i in 0..LANES {
+            for (i, k) in k.iter().enumerate() {
                 m.load[i] = q.motor[i] * torque - self.r * nut_force * m.nut[i];
-                m.coordinate[i] = m.load[i] / k[i];
+                m.coordinate[i] = m.load[i] / k;
             }
         }
         // The rigid mode carries the speed, and turns the chain until the nut

@@ -1,6 +1,6 @@
 //! The modal stepper's energy, which only its inner state shows.
 
-use super::{LANES, ModalState, ModalStepper, nut_rotation};
+use super::{ModalState, ModalStepper, nut_rotation};
 use crate::drive::tests_support::drive_with_damping;
 use crate::{Settled, TimeStepper};
 
@@ -9,8 +9,8 @@ fn energy(s: &ModalStepper, state: &ModalState) -> f64 {
     let p = s.drive.parameters();
     let mut sum = 0.5 * p.table_mass * state.speed * state.speed;
     for (m, k) in state.modes.iter().zip(&s.stiffness) {
-        for i in 0..LANES {
-            sum += 0.5 * (m.rate[i] * m.rate[i] + k[i] * m.coordinate[i] * m.coordinate[i]);
+        for (i, k) in k.iter().enumerate() {
+            sum += 0.5 * (m.rate[i] * m.rate[i] + k * m.coordinate[i] * m.coordinate[i]);
         }
     }
     let stretch = s.r * nut_rotation(&state.modes)[0] - state.displacement;
