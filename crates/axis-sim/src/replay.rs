@@ -242,12 +242,12 @@ impl Replay {
                 }
                 let position: Vec<f64> = log.iter().map(|c| c.position).collect();
                 let command: Vec<f64> = log.iter().map(|c| c.command).collect();
-                let position = self.resample(&position, axis.period, 0.0);
+                let position = self.resample(position, axis.period, 0.0);
                 Ok(Trace {
                     speed: self.differences(&position),
                     channels: vec![
                         ("position_m", position),
-                        ("drive_command_v", self.resample(&command, axis.period, 0.0)),
+                        ("drive_command_v", self.resample(command, axis.period, 0.0)),
                     ],
                 })
             }
@@ -264,28 +264,36 @@ impl Replay {
         closed_loop: &ClosedLoop,
         sense: impl FnMut(&mut Measured),
     ) -> Result<Trace, ReplayError> {
-        let mut cycles: Vec<Cycle> = Vec::new();
+        let period = closed_loop.axis().period;
+        let cycles = (self.reference.duration() / period) as usize + 2;
+        let mut columns: [Vec<f64>; COLUMNS.len()] =
+            std::array::from_fn(|_| Vec::with_capacity(cycles));
+        let mut speed: Vec<f64> = Vec::with_capacity(cycles);
         closed_loop
             .run_sensed(&self.reference, &mut NoCompensation, sense, |c| {
-                cycles.push(*c)
+                for (column, (_, read)) in columns.iter_mut().zip(&COLUMNS) {
+                    column.push(read(c));
+                }
+                speed.push(c.table_speed);
             })
             .completed()?;
-        let period = closed_loop.axis().period;
         let late = closed_loop.clock_offset();
-        let channel = |(name, read): &Column| {
-            let samples: Vec<f64> = cycles.iter().map(read).collect();
+        let channel = |((name, _), samples): (&Column, Vec<f64>)| {
             let by = if *name == "position_m" { late } else { 0.0 };
-            (*name, self.resample(&samples, period, by))
+            (*name, self.resample(samples, period, by))
         };
-        let speed: Vec<f64> = cycles.iter().map(|c| c.table_speed).collect();
         Ok(Trace {
-            channels: COLUMNS.iter().map(channel).collect(),
-            speed: self.resample(&speed, period, 0.0),
+            channels: COLUMNS.iter().zip(columns).map(channel).collect(),
+            speed: self.resample(speed, period, 0.0),
         })
     }
 
     /// Samples at the log's instants of what was recorded every `period`, late by `by`.
-    fn resample(&self, samples: &[f64], period: f64, by: f64) -> Vec<f64> {
+    fn resample(&self, mut samples: Vec<f64>, period: f64, by: f64) -> Vec<f64> {
+        if by == 0.0 && period == self.reference.period && samples.len() >= self.samples {
+            samples.truncate(self.samples);
+            return samples;
+        }
         let last = (samples.len() - 1) as f64;
         let at = |k: usize| {
             let along = ((k as f64 * self.reference.period - by) / period).clamp(0.0, last);

@@ -74,6 +74,11 @@ pub(crate) struct RigidCycle {
 }
 
 impl RigidAxis {
+    /// Table travel per radian of the screw, lead / 2π, m/rad.
+    pub fn travel_per_radian(&self) -> f64 {
+        self.lead / std::f64::consts::TAU
+    }
+
     /// The axis with its effects' changes made, and their hooks.
     pub(crate) fn with_effects(&self) -> Result<(Self, Hooks), DriveError> {
         let (mut axis, mut hooks) = (self.clone(), Hooks::default());
@@ -100,7 +105,7 @@ impl RigidAxis {
         let unit = self.unit_friction();
         let steps = (self.period / self.step * (1.0 - 1e-9)).ceil().max(1.0);
         let h = self.period / steps;
-        let per_radian = self.lead / std::f64::consts::TAU;
+        let per_radian = self.travel_per_radian();
         let (mut x, mut v) = (start.position, start.speed);
         let (mut z, mut u) = (self.friction.steady_bristle(v), unit.steady_bristle(v));
         let mut load = self.friction.torque(z, v);

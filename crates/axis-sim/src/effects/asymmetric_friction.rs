@@ -17,7 +17,7 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
     let v: [f64; 2] = super::changes::array(values);
-    to.hooks.load(move |t| {
+    to.load(move |t| {
         let level = if t.bristle > 0.0 { v[0] } else { v[1] };
         level * t.bristle
     });

@@ -1,13 +1,13 @@
 //! `backlash`: free travel between screw and nut.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, positive};
 
 pub(super) const EFFECT: Effect = Effect {
     name: "backlash",
     summary: "free travel between screw and nut",
     channel: EffectChannel::Kinematics,
     depends_on: "sign of nut force",
-    parameters: &[size("gap", "m", 4e-6, 1e-3)],
+    parameters: &[positive("gap", "m", 4e-6, 1e-3)],
     on_rigid: false,
     install,
 };

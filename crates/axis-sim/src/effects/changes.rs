@@ -19,7 +19,7 @@ pub enum Machine {
 
 /// The table as a load sees it.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct TableState {
+pub struct TableState {
     /// Since the motion began, s.
     pub time: f64,
     /// m, absolute.
@@ -35,7 +35,7 @@ pub(crate) struct TableState {
 
 /// The screw at the nut as an error of its kinematics sees it.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct ScrewState {
+pub struct ScrewState {
     /// Since the motion began, s.
     pub time: f64,
     /// Motor angle since then, rad.
@@ -160,6 +160,21 @@ pub(super) fn out_of_range(name: &'static str, value: f64) -> DriveError {
 }
 
 impl Changes<'_> {
+    /// Adds a load on the table, N, positive against positive motion.
+    pub fn load(&mut self, load: impl Fn(&TableState) -> f64 + Send + Sync + 'static) {
+        self.hooks.load(load);
+    }
+
+    /// Adds a motor torque, N·m, from motor angle (rad) and air-gap torque (N·m).
+    pub fn torque(&mut self, torque: impl Fn(f64, f64) -> f64 + Send + Sync + 'static) {
+        self.hooks.torque(torque);
+    }
+
+    /// Adds a displacement of the nut on the screw, and its rate: m, m/s.
+    pub fn offset(&mut self, offset: impl Fn(&ScrewState) -> [f64; 2] + Send + Sync + 'static) {
+        self.hooks.offset(offset);
+    }
+
     /// The ball-screw axis. Effects that ask for it are never installed on
     /// another machine ([`super::Effect::on_rigid`]).
     pub(super) fn ball_screw(&mut self) -> Result<&mut Axis, DriveError> {

@@ -18,7 +18,6 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
     let v: [f64; 3] = super::changes::array(values);
-    to.hooks
-        .torque(move |angle, _| v[0] * (v[1] * angle + v[2]).sin());
+    to.torque(move |angle, _| v[0] * (v[1] * angle + v[2]).sin());
     Ok(())
 }

@@ -14,6 +14,6 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
     let v: [f64; 1] = super::changes::array(values);
-    to.hooks.load(move |t| v[0] * t.pressed);
+    to.load(move |t| v[0] * t.pressed);
     Ok(())
 }

@@ -1,13 +1,13 @@
 //! `control-delay`: time by which the current reference comes late.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, positive};
 
 pub(super) const EFFECT: Effect = Effect {
     name: "control-delay",
     summary: "time by which the current reference comes late",
     channel: EffectChannel::Controller,
     depends_on: "change of the current reference",
-    parameters: &[size("time", "s", 1e-4, 5e-3)],
+    parameters: &[positive("time", "s", 1e-4, 5e-3)],
     on_rigid: false,
     install,
 };

@@ -15,7 +15,6 @@ pub(super) const EFFECT: Effect = Effect {
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
     let v: [f64; 1] = super::changes::array(values);
     let r = to.ball_screw()?.travel_per_radian();
-    to.hooks
-        .offset(move |s| [v[0] * r * s.angle, v[0] * r * s.rate]);
+    to.offset(move |s| [v[0] * r * s.angle, v[0] * r * s.rate]);
     Ok(())
 }

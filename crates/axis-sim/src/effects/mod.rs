@@ -11,6 +11,7 @@
 //! Automat. Contr. 40 (1995) 419–425, doi:10.1109/9.376053).
 
 mod asymmetric_friction;
+mod asymmetric_viscous_friction;
 mod backlash;
 mod changes;
 mod clock_offset;
@@ -39,8 +40,8 @@ mod transmission_stiffness;
 mod velocity_feedforward;
 mod viscous_friction;
 
-pub use changes::{Changes, Machine};
-pub(crate) use changes::{Hooks, MachineMut, ScrewState, TableState};
+pub use changes::{Changes, Machine, ScrewState, TableState};
+pub(crate) use changes::{Hooks, MachineMut};
 
 use feed_dynamics::DriveError;
 
@@ -104,7 +105,10 @@ pub struct Effect {
     /// Whether it exists on a rigid mass with a force gain too.
     pub on_rigid: bool,
     /// Changes a machine; `values` are in the order of `parameters`.
-    pub(crate) install: fn(values: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError>,
+    ///
+    /// An effect made elsewhere, outside of [`EFFECTS`], can be put into
+    /// [`crate::Axis::effects`] all the same; no search will name it.
+    pub install: fn(values: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError>,
 }
 
 impl Effect {
@@ -151,6 +155,19 @@ const fn size(name: &'static str, unit: &'static str, typical: f64, most: f64) -
     }
 }
 
+/// A size that cannot be negative.
+const fn positive(
+    name: &'static str,
+    unit: &'static str,
+    typical: f64,
+    most: f64,
+) -> EffectParameter {
+    EffectParameter {
+        bounds: [0.0, most],
+        ..size(name, unit, typical, most)
+    }
+}
+
 /// A number that shapes the effect.
 const fn shape(
     name: &'static str,
@@ -172,6 +189,7 @@ pub const EFFECTS: &[&Effect] = &[
     &viscous_friction::EFFECT,
     &coulomb_friction::EFFECT,
     &asymmetric_friction::EFFECT,
+    &asymmetric_viscous_friction::EFFECT,
     &stribeck_friction::EFFECT,
     &presliding::EFFECT,
     &position_dependent_friction::EFFECT,

@@ -17,7 +17,7 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
     let v: [f64; 2] = super::changes::array(values);
-    to.hooks.offset(move |s| {
+    to.offset(move |s| {
         let at = s.angle + v[1];
         [v[0] * (at.sin() - v[1].sin()), v[0] * s.rate * at.cos()]
     });

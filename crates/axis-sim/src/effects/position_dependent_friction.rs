@@ -18,7 +18,7 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
     let v: [f64; 3] = super::changes::array(values);
-    to.hooks.load(move |t| {
+    to.load(move |t| {
         let ratio = (t.position - v[1]) / v[2];
         v[0] * (-0.5 * ratio * ratio).exp() * t.bristle
     });

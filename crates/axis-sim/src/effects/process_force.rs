@@ -20,7 +20,6 @@ fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynam
     let v: [f64; 3] = super::changes::array(values);
     // Rises and falls over 10 ms, so that the times can be estimated.
     let ramp = |t: f64| (t / 0.01).clamp(0.0, 1.0);
-    to.hooks
-        .load(move |t| v[0] * (ramp(t.time - v[1]) - ramp(t.time - v[2])));
+    to.load(move |t| v[0] * (ramp(t.time - v[1]) - ramp(t.time - v[2])));
     Ok(())
 }

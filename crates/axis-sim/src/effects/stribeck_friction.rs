@@ -17,7 +17,7 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
     let v: [f64; 2] = super::changes::array(values);
-    to.hooks.load(move |t| {
+    to.load(move |t| {
         let ratio = t.speed / v[1];
         v[0] * (-ratio * ratio).exp() * t.bristle
     });

@@ -17,7 +17,7 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
     let v: [f64; 2] = super::changes::array(values);
-    to.hooks.offset(move |s| {
+    to.offset(move |s| {
         let left = (-s.time / v[1]).exp();
         let grown = v[0] * (1.0 - left);
         [

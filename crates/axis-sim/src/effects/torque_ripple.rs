@@ -18,7 +18,6 @@ pub(super) const EFFECT: Effect = Effect {
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
     let v: [f64; 2] = super::changes::array(values);
     let order = 6.0 * f64::from(to.ball_screw()?.motor.parameters().pole_pairs);
-    to.hooks
-        .torque(move |angle, torque| v[0] * torque * (order * angle + v[1]).sin());
+    to.torque(move |angle, torque| v[0] * torque * (order * angle + v[1]).sin());
     Ok(())
 }
