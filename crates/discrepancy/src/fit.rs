@@ -5,6 +5,7 @@ use axis_sim::{ReplayError, Trace};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::bounded::{bounded, inverse_of};
 use crate::known::tolerance;
 use crate::model::{LogSet, State};
 use crate::spectrum::Amplitudes;
@@ -36,21 +37,25 @@ pub fn known_deviation(machine: &Machine) -> f64 {
     tolerance(machine) / 3f64.sqrt()
 }
 
-/// Step for a difference quotient of an effect's parameter.
-fn step_of(parameter: &EffectParameter, value: f64) -> f64 {
-    let scale = if parameter.size {
-        0.1 * parameter.typical.abs().max(value.abs())
-    } else if parameter.unit == "rad" {
-        0.1
+/// Steps up and down for a difference quotient of an effect's parameter, inside
+/// its bounds. A hidden effect and a known parameter may be one quantity: their
+/// columns must agree to far better than a hundredth, or the data seem to tell
+/// them apart; so quotients are central and steps small.
+fn steps_of(parameter: &EffectParameter, value: f64) -> [f64; 2] {
+    let scale = if parameter.unit == "rad" && !parameter.size {
+        0.02
     } else {
-        0.02 * value.abs().max(0.05 * parameter.typical.abs())
+        0.02 * value.abs().max(parameter.typical.abs())
     };
-    // Towards the inside.
-    if value + scale > parameter.bounds[1] {
-        -scale
-    } else {
-        scale
-    }
+    let [low, high] = parameter.bounds;
+    [(high - value).min(scale), (low - value).max(-scale)]
+}
+
+/// Which known parameters are at the edge of their tolerance: they cannot move
+/// on, whatever a linearised problem would like.
+pub fn pinned(machine: &Machine, shares: &[f64]) -> Vec<bool> {
+    let most = 0.999 * tolerance(machine);
+    shares.iter().map(|s| s.abs() >= most).collect()
 }
 
 /// The fit of a set of logs by a machine.
@@ -87,9 +92,12 @@ impl Fitter<'_> {
     pub fn known_columns(&self, fit: &Fit) -> Columns {
         let step = 0.2 * tolerance(self.machine);
         let column = |i: usize| {
-            let mut state = fit.state.clone();
-            state.shares[i] += step;
-            self.column(fit, state, step)
+            let at = |by: f64| {
+                let mut state = fit.state.clone();
+                state.shares[i] += by;
+                state
+            };
+            self.quotient(fit, [at(step), at(-step)], 2.0 * step)
         };
         (0..fit.state.shares.len())
             .into_par_iter()
@@ -100,11 +108,14 @@ impl Fitter<'_> {
     /// Derivatives with respect to the free parameters of the effects.
     pub fn effect_columns(&self, fit: &Fit) -> Columns {
         let column = |(e, p): (usize, usize)| {
-            let mut state = fit.state.clone();
-            let parameter = &state.effects[e].effect.parameters[p];
-            let step = step_of(parameter, state.effects[e].values[p]);
-            state.effects[e].values[p] += step;
-            self.column(fit, state, step)
+            let active = &fit.state.effects[e];
+            let steps = steps_of(&active.effect.parameters[p], active.values[p]);
+            let at = |by: f64| {
+                let mut state = fit.state.clone();
+                state.effects[e].values[p] += by;
+                state
+            };
+            self.quotient(fit, steps.map(at), steps[0] - steps[1])
         };
         free_parameters(&fit.state)
             .into_par_iter()
@@ -112,15 +123,25 @@ impl Fitter<'_> {
             .collect()
     }
 
+    fn quotient(&self, fit: &Fit, states: [State; 2], width: f64) -> Amplitudes {
+        let run = |state: &State| self.set.simulate(self.machine, state);
+        match (run(&states[0]), run(&states[1])) {
+            (Ok(up), Ok(down)) => self.set.difference(&up, &down, width),
+            _ => self.nothing(fit),
+        }
+    }
+
+    /// No change at all.
+    pub fn nothing(&self, fit: &Fit) -> Amplitudes {
+        let zeros = |bins: &Vec<_>| vec![Default::default(); bins.len()];
+        fit.rest.iter().map(zeros).collect()
+    }
+
     /// A difference quotient; a simulation that does not run has none.
     pub fn column(&self, fit: &Fit, moved: State, step: f64) -> Amplitudes {
         match self.set.simulate(self.machine, &moved) {
             Ok(traces) => self.set.difference(&traces, &fit.traces, step),
-            Err(_) => fit
-                .rest
-                .iter()
-                .map(|bins| vec![Default::default(); bins.len()])
-                .collect(),
+            Err(_) => self.nothing(fit),
         }
     }
 
@@ -136,7 +157,10 @@ impl Fitter<'_> {
                 .cloned()
                 .chain(self.effect_columns(&fit))
                 .collect();
-            let (step, _) = self.solve(&fit, &columns);
+            let Solved { step, promised, .. } = self.solve(&fit, &columns);
+            if promised < ENOUGH {
+                break;
+            }
             let before = fit.deviance;
             let mut best = fit.clone();
             let mut length = 1.0;
@@ -151,7 +175,7 @@ impl Fitter<'_> {
                 length *= 0.35;
             }
             fit = best;
-            if before - fit.deviance < 0.1 {
+            if before - fit.deviance < ENOUGH {
                 break;
             }
         }
@@ -160,7 +184,7 @@ impl Fitter<'_> {
 
     /// Step and covariance of all parameters from the linearised problem: the
     /// rest's own spectral matrices as weights, the tolerances as priors.
-    pub fn solve(&self, fit: &Fit, columns: &Columns) -> (DVector<f64>, DMatrix<f64>) {
+    pub fn solve(&self, fit: &Fit, columns: &Columns) -> Solved {
         let layout = &self.set.layout;
         let whitener = layout.whitener(&layout.spectral_matrices(&fit.rest));
         let rest = layout.whiten(&whitener, &fit.rest);
@@ -177,72 +201,33 @@ impl Fitter<'_> {
             normal[(i, i)] += weight;
             right[i] -= weight * fit.state.shares[i];
         }
-        let scale = DVector::from_fn(n, |i, _| {
-            let own = normal[(i, i)];
-            if own > 0.0 { 1.0 / own.sqrt() } else { 1.0 }
-        });
-        let scaled = DMatrix::from_fn(n, n, |i, j| {
-            normal[(i, j)] * scale[i] * scale[j] + if i == j { 1e-12 } else { 0.0 }
-        });
-        let inverse = scaled.clone().cholesky().map(|c| c.inverse());
-        let inverse = inverse.unwrap_or_else(|| DMatrix::zeros(n, n));
-        let covariance = DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * scale[i] * scale[j]);
-        let right = right.component_mul(&scale);
         let room = |i: usize| {
             (i < known).then(|| {
                 let (share, most) = (fit.state.shares[i], tolerance(self.machine));
-                [(-most - share) / scale[i], (most - share) / scale[i]]
+                [-most - share, most - share]
             })
         };
-        (
-            bounded(&scaled, &right, room).component_mul(&scale),
-            covariance,
-        )
-    }
-}
-
-/// The step that minimises the quadratic with some coordinates kept in their
-/// `room`: those that would leave it are set to its edge, one by one, the worst
-/// first, and the others are solved for again.
-fn bounded(
-    normal: &DMatrix<f64>,
-    right: &DVector<f64>,
-    room: impl Fn(usize) -> Option<[f64; 2]>,
-) -> DVector<f64> {
-    let n = right.len();
-    let mut fixed: Vec<Option<f64>> = vec![None; n];
-    loop {
-        let free: Vec<usize> = (0..n).filter(|&i| fixed[i].is_none()).collect();
-        let matrix = DMatrix::from_fn(free.len(), free.len(), |a, b| normal[(free[a], free[b])]);
-        let side = DVector::from_fn(free.len(), |a, _| {
-            let held = (0..n).filter_map(|j| fixed[j].map(|value| normal[(free[a], j)] * value));
-            right[free[a]] - held.sum::<f64>()
-        });
-        let solved = matrix.cholesky().map(|c| c.solve(&side));
-        let solved = solved.unwrap_or_else(|| DVector::zeros(free.len()));
-        let beyond = |(a, &i): (usize, &usize)| {
-            let [low, high] = room(i)?;
-            let edge = solved[a].clamp(low.min(0.0), high.max(0.0));
-            let by = (solved[a] - edge).abs();
-            (by > 1e-9 * (1.0 + edge.abs())).then_some((i, edge, by))
-        };
-        let worst = free
-            .iter()
-            .enumerate()
-            .filter_map(beyond)
-            .max_by(|a, b| a.2.total_cmp(&b.2));
-        match worst {
-            Some((i, edge, _)) => fixed[i] = Some(edge),
-            None => {
-                let mut step = DVector::from_fn(n, |i, _| fixed[i].unwrap_or(0.0));
-                for (a, &i) in free.iter().enumerate() {
-                    step[i] = solved[a];
-                }
-                return step;
-            }
+        let step = bounded(&normal, &right, room);
+        Solved {
+            promised: 2.0 * step.dot(&right) - step.dot(&(&normal * &step)),
+            step,
+            covariance: inverse_of(&normal),
         }
     }
 }
+
+/// The linearised problem, solved.
+pub struct Solved {
+    /// To its minimum inside the known parameters' tolerance.
+    pub step: DVector<f64>,
+    /// By how much D falls on the way, if the problem is as linear as that.
+    pub promised: f64,
+    /// Of all parameters.
+    pub covariance: DMatrix<f64>,
+}
+
+/// Fall of D that is not worth another round.
+const ENOUGH: f64 = 0.1;
 
 /// Indices (effect, parameter) of what a fit moves.
 pub fn free_parameters(state: &State) -> Vec<(usize, usize)> {

@@ -27,10 +27,14 @@
 //! # What this crate knows nothing of
 //! Files, terminals and pictures. It simulates nothing itself.
 
+mod bounded;
+mod experiment;
 mod fit;
 pub mod hidden;
 pub mod intake;
 mod known;
+mod lack;
+pub mod matrix;
 mod model;
 mod outcome;
 mod screen;
@@ -38,11 +42,13 @@ mod search;
 mod spectrum;
 pub mod summary;
 
+pub use experiment::Proposal;
 pub use fit::{Fit, Fitter, free_parameters, known_deviation};
 pub use known::{Known, known_parameters, tolerance, with_known};
+pub use lack::{Curve, Unknown};
 pub use model::{LogSet, Prepared, State};
 pub use outcome::{
-    ChannelGap, Discovery, EffectFound, Gap, Overlay, ParameterFound, Recalibrated, Verdict,
-    discovery,
+    AtScrew, ChannelGap, Discovered, Discovery, EffectFound, Gap, Gaps, NextExperiment, Overlay,
+    ParameterFound, Recalibrated, Verdict, discovery,
 };
-pub use search::{Found, Named, ONE_CLASS, RunnerUp, Settings, search};
+pub use search::{Alike, Found, Library, Named, ONE_CLASS, RunnerUp, Settings, search};

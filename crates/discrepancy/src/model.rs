@@ -33,6 +33,10 @@ pub struct LogSet {
     pub logs: Vec<Prepared>,
     /// The channels that all of them have and that a simulation gives.
     pub channels: Vec<&'static str>,
+    /// Places in `channels` of those that are fitted. Of a rigid machine's two,
+    /// command and position, the controller makes one of the other without
+    /// noise of its own: they are one measurement, and the command is taken.
+    pub fitted: Vec<usize>,
     /// Bins and bands.
     pub layout: Layout,
 }
@@ -57,6 +61,9 @@ const COMPARED: [&str; 7] = [
     "drive_command_v",
 ];
 
+/// The channel that counts from wherever the encoder was.
+const ANGLE: &str = "motor_angle_rad";
+
 impl State {
     /// The machine as its file says.
     pub fn initial(machine: &Machine) -> Self {
@@ -73,6 +80,16 @@ impl LogSet {
     /// # Errors
     /// [`ReplayError::Log`] where a channel that must be there is missing.
     pub fn new(logs: Vec<(String, Log, f64)>, machine: &Machine) -> Result<Self, ReplayError> {
+        let mut set = Self::prepared(logs, machine)?;
+        set.correct_defects(machine, &State::initial(machine))?;
+        Ok(set)
+    }
+
+    /// As [`LogSet::new`], defects taken for 0.
+    pub(crate) fn prepared(
+        logs: Vec<(String, Log, f64)>,
+        machine: &Machine,
+    ) -> Result<Self, ReplayError> {
         let simulated: &[&str] = match machine {
             Machine::BallScrew(_) => &COMPARED[..6],
             Machine::Rigid(_) => &["position_m", "drive_command_v"],
@@ -88,7 +105,7 @@ impl LogSet {
             let channel = |name: &&str| Ok(relative(name, log.channel(name)?));
             Ok(Prepared {
                 replay: Replay::new(&log, period)?,
-                defect: vec![Vec::new(); channels.len()],
+                defect: vec![vec![0.0; log.len()]; channels.len()],
                 measured: channels
                     .iter()
                     .map(channel)
@@ -103,12 +120,44 @@ impl LogSet {
             .map(prepare)
             .collect::<Result<_, ReplayError>>()?;
         let sizes: Vec<(usize, f64)> = logs.iter().map(|l| (l.log.len(), l.period)).collect();
-        let mut set = Self {
-            layout: Layout::new(channels.len(), &sizes),
+        let command = channels.iter().position(|c| *c == "drive_command_v");
+        let fitted = match (machine, command) {
+            (Machine::Rigid(_), Some(at)) => vec![at],
+            _ => (0..channels.len()).collect(),
+        };
+        Ok(Self {
+            layout: Layout::new(fitted.len(), &sizes),
             logs,
             channels,
-        };
-        set.correct_defects(machine)?;
+            fitted,
+        })
+    }
+
+    /// Further logs of the same motions: where a reference is the same to the
+    /// bit, so is what the fast simulation is short of on it.
+    ///
+    /// # Errors
+    /// As [`LogSet::new`].
+    pub fn again(&self, logs: Vec<Log>, machine: &Machine) -> Result<Self, ReplayError> {
+        let named =
+            |(log, as_before): (Log, &Prepared)| (as_before.name.clone(), log, as_before.period);
+        let same = logs.len() == self.logs.len()
+            && logs.iter().zip(&self.logs).all(|(log, before)| {
+                let reference = |log: &Log| log.channel("position_ref_m").map(<[f64]>::to_vec).ok();
+                reference(log) == reference(&before.log)
+            });
+        let logs = logs.into_iter().zip(&self.logs).map(named).collect();
+        if !same {
+            return Self::new(logs, machine);
+        }
+        let mut set = Self::prepared(logs, machine)?;
+        if set.channels == self.channels {
+            for (log, before) in set.logs.iter_mut().zip(&self.logs) {
+                log.defect.clone_from(&before.defect);
+            }
+        } else {
+            set.correct_defects(machine, &State::initial(machine))?;
+        }
         Ok(set)
     }
 
@@ -116,11 +165,16 @@ impl LogSet {
     /// in short implicit steps, and keeps the difference: the fast simulation's
     /// fixed mesh is too stiff between its nodes by nanometres, and these would
     /// be found as an effect.
-    fn correct_defects(&mut self, machine: &Machine) -> Result<(), ReplayError> {
-        let Machine::BallScrew(axis) = machine else {
+    ///
+    /// # Errors
+    /// [`ReplayError`] where the machine does not run at this state.
+    pub fn correct_defects(&mut self, machine: &Machine, state: &State) -> Result<(), ReplayError> {
+        let known = with_known(machine, &state.shares);
+        let Machine::BallScrew(axis) = &known else {
             return Ok(());
         };
         let mut slow = (**axis).clone();
+        slow.effects.extend_from_slice(&state.effects);
         slow.coupling = NutCoupling::MovingNode;
         slow.simulation.step = slow.simulation.step.min(5e-5);
         let slow = ClosedLoop::implicit(&slow)?;
@@ -129,7 +183,7 @@ impl LogSet {
             .par_iter()
             .map(|log| {
                 let exact = log.replay.follow(&slow, |_| ())?;
-                let fast = log.replay.run(machine, &[], None)?;
+                let fast = log.replay.run(&known, &state.effects, None)?;
                 let channel = |c: usize| {
                     let pairs = self
                         .simulated(&exact, c)
@@ -193,21 +247,32 @@ impl LogSet {
 
     /// Difference of two simulations divided by `by`, as amplitudes.
     pub fn difference(&self, a: &[Trace], b: &[Trace], by: f64) -> Amplitudes {
+        let free = self.free();
         let one = |(i, (a, b)): (usize, (&Trace, &Trace))| {
             let channel = |c: usize| {
                 let pairs = self.simulated(a, c).into_iter().zip(self.simulated(b, c));
                 pairs.map(|(x, y)| (x - y) / by).collect()
             };
-            let series: Vec<Vec<f64>> = (0..self.channels.len()).map(channel).collect();
-            self.layout.transform(i, &series)
+            let series: Vec<Vec<f64>> = self.fitted.iter().map(|&c| channel(c)).collect();
+            self.layout.transform(i, &series, &free)
         };
         a.iter().zip(b).enumerate().map(one).collect()
     }
 
-    /// Amplitudes of series per log and channel.
+    /// Amplitudes of series per log and channel, of the channels that are fitted.
     pub fn amplitudes(&self, series: &[Vec<Vec<f64>>]) -> Amplitudes {
-        let one = |(i, s): (usize, &Vec<Vec<f64>>)| self.layout.transform(i, s);
+        let free = self.free();
+        let one = |(i, all): (usize, &Vec<Vec<f64>>)| {
+            let fitted: Vec<Vec<f64>> = self.fitted.iter().map(|&c| all[c].clone()).collect();
+            self.layout.transform(i, &fitted, &free)
+        };
         series.iter().enumerate().map(one).collect()
+    }
+
+    /// Which of the fitted channels have no zero of their own.
+    fn free(&self) -> Vec<bool> {
+        let fitted = self.fitted.iter();
+        fitted.map(|&c| self.channels[c] == ANGLE).collect()
     }
 
     fn simulated(&self, trace: &Trace, channel: usize) -> Vec<f64> {
@@ -219,7 +284,7 @@ impl LogSet {
 /// Angles count from their mean, whatever the encoder's zero; the first sample
 /// would carry its noise into all others.
 fn relative(name: &str, samples: &[f64]) -> Vec<f64> {
-    if name != "motor_angle_rad" {
+    if name != ANGLE {
         return samples.to_vec();
     }
     let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;

@@ -5,7 +5,7 @@ use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Machine};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::fit::{Columns, Fit, Fitter, known_deviation};
+use crate::fit::{Columns, Fit, Fitter, known_deviation, pinned};
 use crate::spectrum::Amplitudes;
 
 /// An effect with one choice of its shape.
@@ -24,7 +24,7 @@ pub struct Candidate {
 #[derive(Clone, Debug)]
 pub struct Screened {
     /// Which.
-    pub candidate: Candidate,
+    pub effect: &'static Effect,
     /// By how much D falls in the linearised problem.
     pub gain: f64,
     /// Starting values for a fit.
@@ -58,38 +58,32 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
                 .map(|i| vec![typical[0], along(i, 8), width])
                 .collect()
         }
-        "process-force" => (0..10)
+        "process-force" => (0..SLOTS)
             .map(|i| {
-                vec![
-                    typical[0],
-                    end * i as f64 / 10.0,
-                    end * (i + 1) as f64 / 10.0,
-                ]
+                let slot = end / SLOTS as f64;
+                vec![typical[0], slot * i as f64, slot * (i + 1) as f64]
             })
             .collect(),
-        "cogging-torque" => [1.0, 2.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0]
-            .iter()
-            .map(|&order| vec![typical[0], order, 0.0])
+        "cogging-torque" => (1..=ORDERS)
+            .map(|order| vec![typical[0], f64::from(order), 0.0])
             .collect(),
         "thermal-expansion" => [1.0, 5.0].iter().map(|&t| vec![typical[0], t]).collect(),
         _ => vec![typical],
     }
 }
 
-/// All candidates of the library but those `left_out`, at the state of `fit`.
-pub fn candidates(fitter: &Fitter<'_>, fit: &Fit, left_out: &[String]) -> Vec<Candidate> {
+/// Highest order of cogging that is looked for, per motor turn.
+const ORDERS: u8 = 24;
+
+/// Parts of a motion's time in which a force may begin and end.
+const SLOTS: usize = 24;
+
+/// All candidates of the library, at the state of `fit`.
+pub fn candidates(fitter: &Fitter<'_>, fit: &Fit) -> Vec<Candidate> {
     let rigid = matches!(fitter.machine, Machine::Rigid(_));
-    let active = |effect: &Effect| {
-        fit.state
-            .effects
-            .iter()
-            .any(|a| a.effect.name == effect.name)
-    };
     let wanted: Vec<(&'static Effect, Vec<f64>)> = EFFECTS
         .iter()
-        .filter(|e| (e.on_rigid || !rigid) && !left_out.iter().any(|name| name == e.name))
-        // A second bump or harmonic of the same kind may be there.
-        .filter(|e| !active(e) || e.name == "cogging-torque")
+        .filter(|e| e.on_rigid || !rigid)
         .flat_map(|e| {
             shapes(fitter, e)
                 .into_iter()
@@ -138,55 +132,141 @@ fn responses(fitter: &Fitter<'_>, fit: &Fit, effect: &'static Effect, values: &[
     }
 }
 
-/// What each candidate explains of the rest of `fit` beyond what the columns
-/// of its own parameters (`own`) can; best first, one entry an effect.
-pub fn screen(fitter: &Fitter<'_>, fit: &Fit, own: &Columns, all: Vec<Candidate>) -> Vec<Screened> {
+/// What each of the candidates that are `wanted` explains of the rest of `fit`
+/// beyond what the columns of its own parameters (`own`) can; best first, one
+/// entry an effect.
+pub fn screen(
+    fitter: &Fitter<'_>,
+    fit: &Fit,
+    own: &Columns,
+    library: &[Candidate],
+    wanted: impl Fn(&Effect) -> bool + Sync,
+) -> Vec<Screened> {
     let layout = &fitter.set.layout;
     let whitener = layout.whitener(&layout.spectral_matrices(&fit.rest));
     let white = |a: &Amplitudes| layout.whiten(&whitener, a);
+    let own: Vec<DVector<f64>> = own.iter().map(white).collect();
     let projector = Projector::new(
-        fitter,
-        own.iter().map(white).collect(),
-        fit.state.shares.len(),
+        fitter.machine,
+        &own,
+        &pinned(fitter.machine, &fit.state.shares),
     );
-    let rest = projector.reject(&white(&fit.rest));
+    let rest = projector.reject_at(&white(&fit.rest), &fit.state.shares);
     let total = rest.norm_squared();
-    let mut screened: Vec<Screened> = all
-        .into_par_iter()
-        .map(|candidate| {
-            let columns: Vec<DVector<f64>> = candidate
-                .columns
-                .iter()
-                .map(|c| projector.reject(&white(c)))
-                .collect();
-            let matrix = DMatrix::from_columns(&columns);
-            let svd = matrix.clone().svd(true, true);
-            let largest = svd.singular_values.max();
-            let solution = svd
-                .solve(&rest, 1e-6 * largest.max(1e-300))
-                .unwrap_or_else(|_| DMatrix::zeros(columns.len(), 1).column(0).into());
-            let fingerprint = &matrix * &solution;
-            let explained = 2.0 * rest.dot(&fingerprint) - fingerprint.norm_squared();
-            let share = (explained / total).clamp(0.0, 0.999_999);
-            Screened {
-                gain: -(rest.len() as f64) * (1.0 - share).ln(),
-                values: starting_values(&candidate, solution.as_slice()),
-                basis: svd.u.unwrap_or_else(|| DMatrix::zeros(rest.len(), 1)),
-                fingerprint,
-                candidate,
-            }
-        })
-        .collect();
+    let mut screened: Vec<Screened> = responses_in(
+        library,
+        wanted,
+        |column| projector.reject(&white(column)),
+        &rest,
+    )
+    .into_par_iter()
+    .map(|response| {
+        let matrix = DMatrix::from_columns(&response.columns);
+        let svd = matrix.clone().svd(true, true);
+        let largest = svd.singular_values.max();
+        let solution = svd
+            .solve(&rest, 1e-6 * largest.max(1e-300))
+            .unwrap_or_else(|_| DVector::zeros(matrix.ncols()));
+        let fingerprint = &matrix * &solution;
+        let explained = 2.0 * rest.dot(&fingerprint) - fingerprint.norm_squared();
+        let share = (explained / total).clamp(0.0, 0.999_999);
+        Screened {
+            gain: -(rest.len() as f64) * (1.0 - share).ln(),
+            values: starting_values(&response, solution.as_slice()),
+            basis: svd.u.unwrap_or_else(|| DMatrix::zeros(rest.len(), 1)),
+            fingerprint,
+            effect: response.effect,
+        }
+    })
+    .collect();
     screened.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     let mut seen: Vec<&str> = Vec::new();
     screened.retain(|s| {
-        let name = s.candidate.effect.name;
+        let name = s.effect.name;
         !seen.contains(&name) && {
             seen.push(name);
             true
         }
     });
     screened
+}
+
+/// What a candidate does, in a space where other parameters are fitted out.
+pub struct Response {
+    /// Which.
+    pub effect: &'static Effect,
+    /// As of its [`Candidate`].
+    pub values: Vec<f64>,
+    /// One entry a size; two of an effect with a phase.
+    pub columns: Vec<DVector<f64>>,
+}
+
+/// Responses of those candidates that are `wanted`, `seen` through some
+/// projection; of a force in time, the stretch that explains most of `rest`.
+pub fn responses_in(
+    library: &[Candidate],
+    wanted: impl Fn(&Effect) -> bool + Sync,
+    seen: impl Fn(&Amplitudes) -> DVector<f64> + Sync,
+    rest: &DVector<f64>,
+) -> Vec<Response> {
+    let one = |c: &Candidate| Response {
+        effect: c.effect,
+        values: c.values.clone(),
+        columns: c.columns.iter().map(&seen).collect(),
+    };
+    let all: Vec<Response> = library
+        .par_iter()
+        .filter(|c| wanted(c.effect))
+        .map(one)
+        .collect();
+    let (slots, mut all): (Vec<_>, Vec<_>) = all
+        .into_iter()
+        .partition(|r| r.effect.name == "process-force");
+    all.extend(window(&slots, rest));
+    all
+}
+
+/// The stretch of neighbouring slots in which a force explains most: what a
+/// force does over several is the sum of what it does in each. None where that
+/// is the whole motion, as it is a constant load then.
+fn window(slots: &[Response], rest: &DVector<f64>) -> Option<Response> {
+    let columns: Vec<&DVector<f64>> = slots.iter().filter_map(|s| s.columns.first()).collect();
+    let n = columns.len();
+    let along: Vec<f64> = columns.iter().map(|c| c.dot(rest)).collect();
+    let mut best = (0.0, 0..n);
+    let mut gram = DMatrix::zeros(n, n);
+    for j in 0..n {
+        for i in 0..=j {
+            gram[(i, j)] = columns[i].dot(columns[j]);
+        }
+    }
+    for first in 0..n {
+        let (mut explained, mut size) = (0.0, 0.0);
+        for last in first..n {
+            explained += along[last];
+            let cross: f64 = (first..last).map(|i| gram[(i, last)]).sum();
+            size += gram[(last, last)] + 2.0 * cross;
+            let gain = explained * explained / size.max(f64::MIN_POSITIVE);
+            if gain > best.0 {
+                best = (gain, first..last + 1);
+            }
+        }
+    }
+    if best.1.len() == n {
+        return None;
+    }
+    let chosen = slots.get(best.1.clone())?;
+    let (first, last) = (chosen.first()?, chosen.last()?);
+    let mut values = first.values.clone();
+    values[2] = last.values[2];
+    let sum = columns[best.1]
+        .iter()
+        .fold(DVector::zeros(rest.len()), |sum, c| sum + *c);
+    Some(Response {
+        effect: first.effect,
+        values,
+        columns: vec![sum],
+    })
 }
 
 /// Sine of the angle between what was found and the nearest thing that another
@@ -200,40 +280,77 @@ pub fn sine(found: &DVector<f64>, other: &DMatrix<f64>) -> f64 {
     (left.norm() / norm).min(1.0)
 }
 
-/// Takes out what the fit's own parameters can do, known ones at a price.
-struct Projector {
+/// Takes out what the fit's own parameters can do.
+///
+/// Known parameters have a price, (s/σ)². It is one more row of the problem for
+/// each of them: columns of known parameters end in 1/σ there, what is
+/// explained ends in 0, and a rest at shares s in −s/σ. So an effect that a
+/// known parameter could do, were it allowed to move so far, shows in these rows.
+pub struct Projector {
     columns: DMatrix<f64>,
     solved: DMatrix<f64>,
+    deviation: f64,
+    known: usize,
 }
 
 impl Projector {
-    fn new(fitter: &Fitter<'_>, columns: Vec<DVector<f64>>, known: usize) -> Self {
+    /// Of whitened columns, the first of them those of known parameters, of which
+    /// some are `pinned` to the edge of their tolerance.
+    pub fn new(machine: &Machine, columns: &[DVector<f64>], pinned: &[bool]) -> Self {
+        let deviation = known_deviation(machine);
+        let known = pinned.len();
+        let rows = columns.first().map_or(0, |c| c.len());
         let n = columns.len();
-        let columns = DMatrix::from_columns(&columns);
-        let mut normal = columns.tr_mul(&columns);
-        let weight = known_deviation(fitter.machine).powi(-2);
-        for i in 0..n {
-            normal[(i, i)] += if i < known {
-                weight
+        let columns = DMatrix::from_fn(rows + known, n, |i, j| {
+            if j < known && pinned[j] {
+                0.0
+            } else if i < rows {
+                columns[j][i]
+            } else if i - rows == j {
+                1.0 / deviation
             } else {
-                1e-9 * normal[(i, i)] + 1e-300
-            };
+                0.0
+            }
+        });
+        let mut normal = columns.tr_mul(&columns);
+        for i in 0..n {
+            if i >= known {
+                normal[(i, i)] += 1e-9 * normal[(i, i)] + 1e-300;
+            } else if pinned[i] {
+                normal[(i, i)] = 1.0;
+            }
         }
         let inverse = normal.cholesky().map(|c| c.inverse());
         Self {
             solved: inverse.unwrap_or_else(|| DMatrix::zeros(n, n)),
             columns,
+            deviation,
+            known,
         }
     }
 
-    fn reject(&self, v: &DVector<f64>) -> DVector<f64> {
-        v - &self.columns * (&self.solved * self.columns.tr_mul(v))
+    /// What they leave of a whitened column.
+    pub fn reject(&self, v: &DVector<f64>) -> DVector<f64> {
+        self.reject_at(v, &vec![0.0; self.known])
+    }
+
+    /// What they leave of a whitened rest at these shares of the known parameters.
+    pub fn reject_at(&self, v: &DVector<f64>, shares: &[f64]) -> DVector<f64> {
+        let rows = v.len();
+        let whole = DVector::from_fn(rows + self.known, |i, _| {
+            if i < rows {
+                v[i]
+            } else {
+                -shares[i - rows] / self.deviation
+            }
+        });
+        &whole - &self.columns * (&self.solved * self.columns.tr_mul(&whole))
     }
 }
 
-fn starting_values(candidate: &Candidate, solution: &[f64]) -> Vec<f64> {
-    let parameters = candidate.effect.parameters;
-    let mut values = candidate.values.clone();
+fn starting_values(response: &Response, solution: &[f64]) -> Vec<f64> {
+    let parameters = response.effect.parameters;
+    let mut values = response.values.clone();
     let phase = parameters.iter().position(|p| p.name == "phase");
     let mut next = solution.iter();
     for (i, p) in parameters.iter().enumerate().filter(|(_, p)| p.size) {

@@ -27,8 +27,10 @@ pub type Amplitudes = Vec<Vec<C64>>;
 #[derive(Clone, Debug)]
 pub struct Layout {
     channels: usize,
-    /// Per log: sample count, sampling period.
-    logs: Vec<(usize, f64)>,
+    /// Per log: samples averaged into one, averages.
+    logs: Vec<(usize, usize)>,
+    /// Per log: time between averages, s.
+    periods: Vec<f64>,
     /// Band of each bin, per log.
     bands: Vec<Vec<usize>>,
     /// Number of bins in each band.
@@ -37,6 +39,13 @@ pub struct Layout {
 
 /// Frequency above which nothing mechanical is left to see, Hz.
 const HIGHEST: f64 = 400.0;
+
+/// Rate to which faster logs are averaged in blocks before they are
+/// transformed, Hz: measured and simulated ones alike, so nothing is biased.
+const BLOCKS: f64 = 1e3;
+
+/// Longest ramp at either end of a log, s.
+const RAMP: f64 = 0.15;
 
 /// Upper edge of the first band, Hz. Motion has its power below it; were it cut
 /// finer, what the model lacks would pass for noise just where it sits, and the
@@ -50,6 +59,11 @@ const BINS_PER_CHANNEL: usize = 16;
 impl Layout {
     /// Bands for logs of these lengths (samples, s) and this many channels.
     pub fn new(channels: usize, logs: &[(usize, f64)]) -> Self {
+        let block = |&(_, h): &(usize, f64)| ((1.0 / (h * BLOCKS)).round() as usize).max(1);
+        let blocks: Vec<usize> = logs.iter().map(block).collect();
+        let averaged = |(&(n, h), &q): (&(usize, f64), &usize)| (n / q, h * q as f64);
+        let logs: Vec<(usize, f64)> = logs.iter().zip(&blocks).map(averaged).collect();
+        let logs = logs.as_slice();
         let bin_width = |&(n, h): &(usize, f64)| 1.0 / (n as f64 * h);
         let top = |log: &(usize, f64)| HIGHEST.min(0.45 / log.1);
         let per_hertz: f64 = logs.iter().map(|log| 1.0 / bin_width(log)).sum();
@@ -83,7 +97,11 @@ impl Layout {
             .collect();
         Self {
             channels,
-            logs: logs.to_vec(),
+            logs: blocks
+                .into_iter()
+                .zip(logs.iter().map(|log| log.0))
+                .collect(),
+            periods: logs.iter().map(|log| log.1).collect(),
             bands,
             counts,
         }
@@ -100,16 +118,30 @@ impl Layout {
     }
 
     /// Transforms the channels of one log, scaled so that white noise of unit
-    /// variance has amplitudes of unit variance.
-    pub fn transform(&self, log: usize, series: &[Vec<f64>]) -> Vec<C64> {
+    /// variance in its samples has amplitudes of unit variance at low frequency.
+    ///
+    /// Channels that are `free` count from no zero of their own: their mean is
+    /// taken out.
+    pub fn transform(&self, log: usize, series: &[Vec<f64>], free: &[bool]) -> Vec<C64> {
         let bins = self.bands[log].len();
-        let n = self.logs[log].0;
+        let (block, n) = self.logs[log];
         let fft = RealFftPlanner::<f64>::new().plan_fft_forward(n);
         let mut out = vec![C64::new(0.0, 0.0); bins * self.channels];
         let mut spectrum = fft.make_output_vec();
-        let scale = 1.0 / (n as f64).sqrt();
+        let taper = self.taper(log);
+        let power: f64 = taper.iter().map(|w| w * w).sum();
+        let scale = (block as f64 / power).sqrt();
         for (c, samples) in series.iter().enumerate() {
-            let mut input = samples.clone();
+            let mean = |block: &[f64]| block.iter().sum::<f64>() / block.len() as f64;
+            let averages: Vec<f64> = samples.chunks_exact(block).map(mean).collect();
+            let weighed = averages.iter().zip(&taper).map(|(x, w)| x * w);
+            let zero = if free[c] {
+                weighed.sum::<f64>() / taper.iter().sum::<f64>()
+            } else {
+                0.0
+            };
+            let pairs = averages.iter().zip(&taper);
+            let mut input: Vec<f64> = pairs.map(|(x, w)| (x - zero) * w).collect();
             // The lengths agree by construction, so the transform cannot fail.
             if fft.process(&mut input, &mut spectrum).is_ok() {
                 for (k, value) in spectrum.iter().take(bins).enumerate() {
@@ -118,6 +150,19 @@ impl Layout {
             }
         }
         out
+    }
+
+    /// Cosine ramps at both ends of a log. Noise that has gone round the loop
+    /// wanders, and ends elsewhere than it began; a transform takes that for a
+    /// step, which something that happens at the start would explain.
+    fn taper(&self, log: usize) -> Vec<f64> {
+        let n = self.logs[log].1;
+        let ramp = (RAMP / self.periods[log]).min(0.05 * n as f64).max(1.0);
+        let at = |k: usize| {
+            let edge = (k.min(n - 1 - k) as f64 + 0.5) / ramp;
+            0.5 - 0.5 * (std::f64::consts::PI * edge.min(1.0)).cos()
+        };
+        (0..n).map(at).collect()
     }
 
     /// The spectral matrix of each band.

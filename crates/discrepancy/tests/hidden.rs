@@ -45,7 +45,7 @@ fn find(hidden: &Hidden, settings: &Settings) -> Discovery {
     let machine = Machine::BallScrew(Box::new(axis()));
     let (fit, check) = (logs(hidden, false), logs(hidden, true));
     let found = search(&machine, &fit, &check, settings, |_| ()).unwrap();
-    discovery(&machine, &fit, &check, &found).unwrap().0
+    discovery(&machine, &fit, &check, &found).unwrap().discovery
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn viscous_friction_is_named_and_what_is_rejected_is_not() {
         (found.effects[0].parameters[0].value / 4000.0 - 1.0).abs() < 0.02,
         "{found:?}"
     );
-    assert!(found.check.reduction > 0.9, "{found:?}");
+    assert!(found.gap.check.reduction > 0.9, "{found:?}");
 
     let settings = Settings {
         rejected: vec!["viscous-friction".to_owned()],

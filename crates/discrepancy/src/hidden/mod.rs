@@ -4,6 +4,10 @@
 //! finer mesh, Newmark's rule in steps of 20 µs, known parameters off, and
 //! noise in every sensor that the controller sees as well.
 
+mod outside;
+
+pub use outside::OUTSIDE;
+
 use axis_log::{Channel, Log};
 use axis_sim::effects::{ActiveEffect, Machine};
 use axis_sim::{Axis, ClosedLoop, Measured, Recorder, ReplayError};
@@ -11,6 +15,7 @@ use compensator::NoCompensation;
 use feed_dynamics::{FeedDrive, NutCoupling};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 use trajectories::{Limits, Motion, Program, Step, TrajectoryError};
 
 use crate::known::{known_parameters, with_known};
@@ -161,7 +166,8 @@ fn shifted(log: &Log, late: f64) -> Result<Log, ReplayError> {
 }
 
 /// Motions that a log may be taken on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Exercise {
     /// A move and the way back.
     ThereAndBack,
@@ -169,6 +175,20 @@ pub enum Exercise {
     SlowAndFast,
     /// That, and a small chirp.
     WithChirp,
+}
+
+impl Exercise {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::ThereAndBack, Self::SlowAndFast, Self::WithChirp];
+
+    /// In tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ThereAndBack => "there-and-back",
+            Self::SlowAndFast => "slow-and-fast",
+            Self::WithChirp => "with-chirp",
+        }
+    }
 }
 
 /// The exercise on this axis; `check` gives one of the same kind that differs
@@ -185,11 +205,11 @@ pub fn exercise(axis: &Axis, kind: Exercise, check: bool) -> Result<Program, Tra
             limits: Limits::new(share * speed, share * 0.225 * (speed / 0.1), 1.2)?,
         })
     };
-    let rest = Step::Dwell { duration: 0.25 };
+    let rest = Step::Dwell { duration: 0.2 };
     let mut steps = vec![rest, to(start + length, 0.1)?, rest, to(start, 0.1)?, rest];
     if kind != Exercise::ThereAndBack {
         steps.extend([
-            to(start + 0.3 * length, 0.03)?,
+            to(start + 0.2 * length, 0.03)?,
             rest,
             to(start, 0.03)?,
             rest,
@@ -201,7 +221,7 @@ pub fn exercise(axis: &Axis, kind: Exercise, check: bool) -> Result<Program, Tra
             amplitude: if check { 2.5e-5 } else { 3e-5 },
             from_frequency: 2.0,
             to_frequency: 90.0,
-            duration: 3.0,
+            duration: 2.5,
             ramp: 0.1,
             sweep: trajectories::Sweep::default(),
         };

@@ -1,0 +1,286 @@
+//! The motion that would tell apart what these logs cannot.
+//!
+//! Two explanations A and B fit the logs alike. On a further motion, B is
+//! fitted again, to the old logs and to what A predicts for the new one; what
+//! is left of A's prediction then, whitened by the sensors' noise, is the fall
+//! of D to be expected from running it. The motion with the largest is
+//! proposed (experiments that discriminate between models: Hunter and Reiner,
+//! Technometrics 7 (1965) 307–323, doi:10.1080/00401706.1965.10490265).
+
+use axis_sim::effects::{ActiveEffect, Machine};
+use axis_sim::{Axis, ClosedLoop, Recorder, ReplayError};
+use compensator::NoCompensation;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use trajectories::{Chirp, Limits, Program, Sine, Step, Sweep, TrajectoryError};
+
+use crate::fit::{Columns, Fitter, known_deviation};
+use crate::hidden::Noise;
+use crate::known::with_known;
+use crate::model::{LogSet, State};
+use crate::search::Found;
+use crate::spectrum::Amplitudes;
+
+/// A motion to run next.
+#[derive(Clone, Debug)]
+pub struct Proposal {
+    /// What it is, in words.
+    pub what: &'static str,
+    /// The motion.
+    pub program: Program,
+    /// Effects that it separates: the one named, and its rival.
+    pub pair: [ActiveEffect; 2],
+    /// Which of the named effects that is.
+    pub index: usize,
+    /// Fall of D to be expected between the two.
+    pub separation: f64,
+}
+
+/// Fall of D below which a motion separates nothing.
+const SEPARATES: f64 = 25.0;
+
+/// The motion that best separates the first named effect with a class from
+/// its nearest rival; `None` where no effect has one, or no motion does.
+///
+/// # Errors
+/// [`ReplayError`] where the fitted machine no longer runs its own logs.
+pub fn propose(
+    machine: &Machine,
+    found: &Found,
+    noise: Noise,
+) -> Result<Option<Proposal>, ReplayError> {
+    let Machine::BallScrew(axis) = machine else {
+        return Ok(None);
+    };
+    let with_class = found.named.iter().position(|n| !n.alike.is_empty());
+    let Some(index) = with_class else {
+        return Ok(None);
+    };
+    let question = Question::new(machine, found, index)?;
+    let Ok(motions) = motions(axis) else {
+        return Ok(None);
+    };
+    let answers: Vec<Proposal> = motions
+        .into_par_iter()
+        .filter_map(|(what, program)| {
+            let separation = question.separation(&program, noise).ok()?;
+            Some(Proposal {
+                what,
+                program,
+                pair: question.pair.clone(),
+                index,
+                separation,
+            })
+        })
+        .collect();
+    // The first of equals, which is the shorter to describe.
+    let best = answers.into_iter().reduce(|a, b| {
+        if b.separation > 1.2 * a.separation {
+            b
+        } else {
+            a
+        }
+    });
+    Ok(best.filter(|p| p.separation >= SEPARATES))
+}
+
+/// Motions to choose from, inside the stroke and the speeds of the axis.
+fn motions(axis: &Axis) -> Result<Vec<(&'static str, Program)>, TrajectoryError> {
+    let start = axis.stroke.start;
+    let room = axis.stroke.maximum - start;
+    let fastest = axis.samples.speed.most.min(0.3);
+    let to = |share: f64, speed: f64| -> Result<Step, TrajectoryError> {
+        Ok(Step::Move {
+            to: start + share * room,
+            limits: Limits::new(speed, 2.25 * speed, 12.0 * speed)?,
+        })
+    };
+    let rest = |duration| Step::Dwell { duration };
+    let chirp = |amplitude| {
+        Step::Chirp(Chirp {
+            amplitude,
+            from_frequency: 2.0,
+            to_frequency: 90.0,
+            duration: 3.0,
+            ramp: 0.1,
+            sweep: Sweep::default(),
+        })
+    };
+    let wave = Step::Sine(Sine {
+        amplitude: 1e-3,
+        frequency: 4.0,
+        cycles: 10,
+    });
+    let there_and_back = |share: f64, speed: f64| -> Result<Vec<Step>, TrajectoryError> {
+        Ok(vec![
+            rest(0.2),
+            to(share, speed)?,
+            rest(0.2),
+            to(0.0, speed)?,
+            rest(0.2),
+        ])
+    };
+    let medium = 0.1_f64.min(fastest);
+    let mut all = vec![
+        (
+            "a small chirp from 2 to 90 Hz",
+            vec![rest(0.2), chirp(3e-5), rest(0.2)],
+        ),
+        ("small waves of 1 mm", vec![rest(0.2), wave, rest(0.2)]),
+        ("there and back, slowly", there_and_back(0.06, 0.02)?),
+        ("there and back, fast", there_and_back(0.4, fastest)?),
+        (
+            "over the whole stroke and back",
+            there_and_back(0.9, medium)?,
+        ),
+    ];
+    let mut halting = Vec::new();
+    for share in [0.15, 0.3, 0.15, 0.0] {
+        halting.extend([rest(0.5), to(share, medium)?]);
+    }
+    all.push(("in steps with rests of half a second", halting));
+    let mut mixed = there_and_back(0.06, 0.03)?;
+    mixed.extend(there_and_back(0.3, fastest)?);
+    mixed.extend([chirp(3e-5), rest(0.2)]);
+    all.push(("slow, fast, and a small chirp", mixed));
+    all.into_iter()
+        .map(|(what, steps)| Ok((what, Program::new(start, steps)?)))
+        .collect()
+}
+
+/// Two explanations of the same logs.
+struct Question<'a> {
+    machine: &'a Machine,
+    pair: [ActiveEffect; 2],
+    states: [State; 2],
+    /// Whitened columns of the known parameters and of the other effects, on
+    /// the old logs, of the second explanation.
+    old: Vec<DVector<f64>>,
+    known: usize,
+}
+
+impl<'a> Question<'a> {
+    fn new(machine: &'a Machine, found: &Found, index: usize) -> Result<Self, ReplayError> {
+        let first = found.fit.state.clone();
+        let named = first.effects[index].clone();
+        let rival = found.named[index].alike[0].fitted.clone();
+        let mut second = first.clone();
+        second.effects[index] = rival.clone();
+        let fitter = Fitter {
+            machine,
+            set: &found.fit_logs,
+        };
+        let start = fitter.at(second)?;
+        let known = fitter.known_columns(&start);
+        let fit = fitter.refine(start, &known, 6);
+        let layout = &found.fit_logs.layout;
+        let whitener = layout.whitener(&layout.spectral_matrices(&found.fit.rest));
+        let columns: Columns = known
+            .into_iter()
+            .chain(fitter.effect_columns(&fit))
+            .collect();
+        let pair = [named, fit.state.effects[index].clone()];
+        Ok(Self {
+            machine,
+            pair,
+            known: fit.state.shares.len(),
+            states: [first, fit.state],
+            old: columns
+                .iter()
+                .map(|c| layout.whiten(&whitener, c))
+                .collect(),
+        })
+    }
+
+    fn separation(&self, program: &Program, noise: Noise) -> Result<f64, ReplayError> {
+        let set = self.record(program)?;
+        let fitter = Fitter {
+            machine: self.machine,
+            set: &set,
+        };
+        let first = set.simulate(self.machine, &self.states[0])?;
+        let second = fitter.at(self.states[1].clone())?;
+        let columns: Columns = fitter
+            .known_columns(&second)
+            .into_iter()
+            .chain(fitter.effect_columns(&second))
+            .collect();
+        let layout = &set.layout;
+        let of_noise = noise_on(self.machine, &self.states[0], &set, noise)?;
+        let whitener = layout.whitener(&layout.spectral_matrices(&of_noise));
+        let apart = set.difference(&first, &second.traces, 1.0);
+        let apart = layout.whiten(&whitener, &apart);
+        let new: Vec<DVector<f64>> = columns
+            .iter()
+            .map(|c| layout.whiten(&whitener, c))
+            .collect();
+        Ok(self.left_of(&apart, &new))
+    }
+
+    /// What is left of a difference on the new motion, the second explanation
+    /// fitted to both: on the old logs the two are alike.
+    fn left_of(&self, apart: &DVector<f64>, new: &[DVector<f64>]) -> f64 {
+        let n = new.len();
+        let weight = known_deviation(self.machine).powi(-2);
+        let normal = DMatrix::from_fn(n, n, |i, j| {
+            let prior = if i == j && i < self.known {
+                weight
+            } else {
+                0.0
+            };
+            new[i].dot(&new[j]) + self.old[i].dot(&self.old[j]) + prior
+        });
+        let scale = DVector::from_fn(n, |i, _| normal[(i, i)].max(f64::MIN_POSITIVE).sqrt());
+        let scaled = DMatrix::from_fn(n, n, |i, j| {
+            normal[(i, j)] / (scale[i] * scale[j]) + if i == j { 1e-10 } else { 0.0 }
+        });
+        let right = DVector::from_fn(n, |i, _| new[i].dot(apart) / scale[i]);
+        let solved = scaled.cholesky().map(|c| c.solve(&right));
+        let explained = solved.map_or(0.0, |s| s.dot(&right));
+        (apart.norm_squared() - explained).max(0.0)
+    }
+
+    /// A simulated log of the program, to replay.
+    fn record(&self, program: &Program) -> Result<LogSet, ReplayError> {
+        let Machine::BallScrew(axis) = with_known(self.machine, &self.states[0].shares) else {
+            return LogSet::prepared(Vec::new(), self.machine);
+        };
+        let mut axis = *axis;
+        axis.effects.extend_from_slice(&self.states[0].effects);
+        let mut recorder = Recorder::default();
+        ClosedLoop::new(&axis)?
+            .run(program, &mut NoCompensation, |cycle| recorder.push(cycle))
+            .completed()?;
+        let logs = vec![("proposed".to_owned(), recorder.log()?, axis.period)];
+        LogSet::prepared(logs, self.machine)
+    }
+}
+
+/// What sensors with this noise do to the logs of a set, as amplitudes.
+pub(crate) fn noise_on(
+    machine: &Machine,
+    state: &State,
+    set: &LogSet,
+    noise: Noise,
+) -> Result<Amplitudes, ReplayError> {
+    let Machine::BallScrew(axis) = with_known(machine, &state.shares) else {
+        return Ok(Amplitudes::new());
+    };
+    let mut axis = *axis;
+    axis.effects.extend_from_slice(&state.effects);
+    let closed_loop = ClosedLoop::new(&axis)?;
+    let run = |(seed, log): (usize, &crate::model::Prepared)| {
+        let noisy = log
+            .replay
+            .follow(&closed_loop, noise.sensors(seed as u64 + 1))?;
+        Ok((noisy, log.replay.follow(&closed_loop, |_| ())?))
+    };
+    let pairs: Vec<_> = set
+        .logs
+        .iter()
+        .enumerate()
+        .map(run)
+        .collect::<Result<_, ReplayError>>()?;
+    let (noisy, quiet): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
+    Ok(set.difference(&noisy, &quiet, 1.0))
+}

@@ -1,0 +1,209 @@
+//! Curves over variables of the motion.
+
+use std::sync::Arc;
+
+use axis_sim::effects::Machine;
+use axis_sim::{Probe, Trace};
+
+use crate::model::LogSet;
+
+/// Where a disturbance acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    Force,
+    Offset,
+}
+
+impl Place {
+    /// Size of a probe, small beside what the axis feels: N, m.
+    pub(super) fn size(self) -> f64 {
+        match self {
+            Self::Force => 10.0,
+            Self::Offset => 2e-7,
+        }
+    }
+
+    pub(super) fn unit(self) -> &'static str {
+        match self {
+            Self::Force => "N",
+            Self::Offset => "m",
+        }
+    }
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Force => "torque balance (as a force at the table, against positive motion)",
+            Self::Offset => "kinematics (as a displacement of the table on the screw)",
+        }
+    }
+
+    pub(super) fn probe(self, samples: Vec<f64>) -> Probe {
+        match self {
+            Self::Force => Probe::Load(samples.into()),
+            Self::Offset => Probe::Offset(Arc::from(samples)),
+        }
+    }
+}
+
+/// A variable of the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Variable {
+    Speed,
+    Position,
+    Time,
+    Angle,
+}
+
+pub(super) const VARIABLES: [Variable; 4] = [
+    Variable::Speed,
+    Variable::Position,
+    Variable::Time,
+    Variable::Angle,
+];
+
+impl Variable {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Speed => "speed",
+            Self::Position => "position",
+            Self::Time => "time",
+            Self::Angle => "motor angle in its turn",
+        }
+    }
+
+    pub(super) fn unit(self) -> &'static str {
+        match self {
+            Self::Speed => "m/s",
+            Self::Position => "m",
+            Self::Time => "s",
+            Self::Angle => "rad",
+        }
+    }
+}
+
+/// The motion of one log as simulated.
+pub(super) struct Course {
+    pub(super) time: Vec<f64>,
+    pub(super) position: Vec<f64>,
+    pub(super) speed: Vec<f64>,
+    /// In [0, 2π).
+    pub(super) angle: Vec<f64>,
+}
+
+/// Speed below which a direction is not one, m/s.
+pub(super) const STANDS: f64 = 1e-3;
+
+pub(super) fn course(machine: &Machine, set: &LogSet, traces: &[Trace], log: usize) -> Course {
+    let trace = &traces[log];
+    let position = trace.channel("position_m").unwrap_or_default().to_vec();
+    let radians = match machine {
+        Machine::BallScrew(axis) => 1.0 / axis.travel_per_radian(),
+        Machine::Rigid(axis) => 1.0 / axis.travel_per_radian(),
+    };
+    let first = position.first().copied().unwrap_or(0.0);
+    let turn = |x: &f64| ((x - first) * radians).rem_euclid(std::f64::consts::TAU);
+    Course {
+        time: (0..position.len())
+            .map(|k| k as f64 * set.logs[log].period)
+            .collect(),
+        angle: position.iter().map(turn).collect(),
+        speed: trace.speed.clone(),
+        position,
+    }
+}
+
+/// A curve: where it acts, on what it depends, and its hats' places.
+#[derive(Debug)]
+pub(super) struct Shape {
+    pub(super) place: Place,
+    pub(super) variable: Variable,
+    pub(super) knots: Vec<f64>,
+}
+
+/// Hats of a curve.
+pub(super) const KNOTS: usize = 10;
+
+impl Shape {
+    pub(super) fn new(place: Place, variable: Variable, courses: &[Course]) -> Self {
+        let of = |c: &Course| match variable {
+            Variable::Speed => c.speed.clone(),
+            Variable::Position => c.position.clone(),
+            Variable::Time => c.time.clone(),
+            Variable::Angle => c.angle.clone(),
+        };
+        let all = courses.iter().flat_map(of);
+        let (low, high) = all.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
+        let knots = match variable {
+            Variable::Angle => (0..KNOTS)
+                .map(|j| std::f64::consts::TAU * j as f64 / KNOTS as f64)
+                .collect(),
+            // Denser where machines are slow; none at rest, where the sign jumps.
+            Variable::Speed => {
+                let half = KNOTS / 2;
+                let up = |j: usize| ((j + 1) as f64 / half as f64).powi(2);
+                let down = (0..half).rev().map(|j| low.min(-STANDS) * up(j));
+                down.chain((0..half).map(|j| high.max(STANDS) * up(j)))
+                    .collect()
+            }
+            _ => (0..KNOTS)
+                .map(|j| low + (high - low) * j as f64 / (KNOTS - 1) as f64)
+                .collect(),
+        };
+        Self {
+            place,
+            variable,
+            knots,
+        }
+    }
+
+    /// The hat of knot j, in time.
+    pub(super) fn hat(&self, j: usize, c: &Course) -> Vec<f64> {
+        let samples = |k: usize| match self.variable {
+            Variable::Speed => {
+                let v = c.speed[k];
+                if (v > 0.0) != (self.knots[j] > 0.0) {
+                    return 0.0;
+                }
+                // Flat inward of the slowest knot, and nothing at rest.
+                let moving = (v / STANDS).tanh().abs();
+                moving
+                    * self.linear(j, v, |i| {
+                        self.knots
+                            .get(i)
+                            .copied()
+                            .filter(|x| (*x > 0.0) == (self.knots[j] > 0.0))
+                    })
+            }
+            Variable::Angle => {
+                let step = std::f64::consts::TAU / KNOTS as f64;
+                let away = (c.angle[k] - self.knots[j]).rem_euclid(std::f64::consts::TAU);
+                let away = away.min(std::f64::consts::TAU - away);
+                (1.0 - away / step).max(0.0)
+            }
+            Variable::Position => self.linear(j, c.position[k], |i| self.knots.get(i).copied()),
+            Variable::Time => self.linear(j, c.time[k], |i| self.knots.get(i).copied()),
+        };
+        (0..c.time.len()).map(samples).collect()
+    }
+
+    /// Hat j of piecewise linear interpolation, flat beyond the ends.
+    pub(super) fn linear(&self, j: usize, x: f64, knot: impl Fn(usize) -> Option<f64>) -> f64 {
+        let own = self.knots[j];
+        let next = if x < own {
+            j.checked_sub(1).and_then(knot)
+        } else {
+            knot(j + 1)
+        };
+        match next {
+            Some(next) => (1.0 - (x - own) / (next - own)).max(0.0),
+            None => 1.0,
+        }
+    }
+}
+
+/// The motions of all logs.
+pub(super) fn courses(machine: &Machine, set: &LogSet, traces: &[Trace]) -> Vec<Course> {
+    (0..set.logs.len())
+        .map(|log| course(machine, set, traces, log))
+        .collect()
+}

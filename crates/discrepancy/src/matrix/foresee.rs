@@ -1,0 +1,231 @@
+//! What can be seen and told apart in a case, from simulated fingerprints,
+//! before any search.
+
+use std::sync::Arc;
+
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Machine};
+use axis_sim::{Axis, ReplayError};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+use trajectories::TrajectoryError;
+
+use super::{Case, HiddenEffect};
+use crate::bounded::bounded;
+use crate::experiment::noise_on;
+use crate::fit::{Columns, Fit, Fitter, known_deviation, pinned};
+use crate::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
+use crate::known::tolerance;
+use crate::model::{LogSet, State};
+use crate::screen::{Projector, Response, responses_in, sine};
+use crate::search::{Library, ONE_CLASS, needed};
+use crate::spectrum::{Amplitudes, Whitener};
+
+/// Why a bench cannot be set up.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum BenchError {
+    /// The exercise does not fit the axis.
+    #[error(transparent)]
+    Motion(#[from] TrajectoryError),
+    /// The axis as its file says does not run it.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+}
+
+/// What can be known of a hidden effect beforehand.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Foreseen {
+    /// Expected fall of D on the fit log, known parameters and the case's other
+    /// effects fitted out.
+    pub gain: f64,
+    /// Whether that is at least twice what the search asks for.
+    pub detectable: bool,
+    /// Effects of the library that do nearly the same on this log: the sine of
+    /// their angle is below [`ONE_CLASS`], or too little is left beside them.
+    pub class: Vec<String>,
+}
+
+/// What is the same for all cases on one motion.
+pub struct Bench {
+    pub(super) axis: Axis,
+    pub(super) machine: Machine,
+    pub(super) exercise: Exercise,
+    /// Logs of the clean machine without noise, to fit to and to check on.
+    pub(super) templates: [LogSet; 2],
+    nominal: Fit,
+    known: Columns,
+    pub(super) library: Arc<Library>,
+    /// Of noise at [`Noise::GOOD`].
+    whitener: Whitener,
+}
+
+/// Left of an effect beside another, in D, below which the search may take the
+/// other: it takes the simpler of two within 25.
+const TELLS_APART: f64 = 40.0;
+
+impl Bench {
+    /// Simulates what a motion needs: defects, known parameters, the library.
+    ///
+    /// # Errors
+    /// [`BenchError`] where the axis does not run the exercise.
+    pub fn new(axis: &Axis, kind: Exercise) -> Result<Self, BenchError> {
+        let machine = Machine::BallScrew(Box::new(axis.clone()));
+        let quiet = Hidden {
+            effects: Vec::new(),
+            shares: Vec::new(),
+            noise: Noise::GOOD.scaled(0.0),
+            seed: 0,
+        };
+        let template = |check: bool| -> Result<LogSet, BenchError> {
+            let log = quiet.log(axis, &exercise(axis, kind, check)?, 1)?;
+            let name = if check { "check" } else { "fit" };
+            Ok(LogSet::new(
+                vec![(name.to_owned(), log, axis.period)],
+                &machine,
+            )?)
+        };
+        let templates = [template(false)?, template(true)?];
+        let fitter = Fitter {
+            machine: &machine,
+            set: &templates[0],
+        };
+        let nominal = fitter.at(State::initial(&machine))?;
+        let known = fitter.known_columns(&nominal);
+        let library = Arc::new(Library::new(&fitter, &nominal));
+        let noise = noise_on(&machine, &nominal.state, &templates[0], Noise::GOOD)?;
+        let layout = &templates[0].layout;
+        let whitener = layout.whitener(&layout.spectral_matrices(&noise));
+        Ok(Self {
+            axis: axis.clone(),
+            exercise: kind,
+            nominal,
+            known,
+            library,
+            whitener,
+            templates,
+            machine,
+        })
+    }
+
+    /// The motion of this bench.
+    pub fn exercise(&self) -> Exercise {
+        self.exercise
+    }
+
+    /// What can be known of a case's effects; `None` for one that does not run
+    /// on the nominal machine.
+    pub fn foresee(&self, case: &Case) -> Vec<Option<Foreseen>> {
+        let shares = self.hidden(case).shares;
+        let responses: Vec<Option<DVector<f64>>> = case
+            .hidden
+            .par_iter()
+            .map(|effect| self.response(effect, case.noise))
+            .collect();
+        let one = |i: usize| {
+            let own = responses[i].as_ref()?;
+            let others = (0..responses.len()).filter(|&j| j != i);
+            let others: Vec<&DVector<f64>> = others.filter_map(|j| responses[j].as_ref()).collect();
+            let name = &case.hidden[i].name;
+            Some(self.judge(name, own, &others, &shares, case.noise))
+        };
+        (0..case.hidden.len()).map(one).collect()
+    }
+
+    fn judge(
+        &self,
+        name: &str,
+        own: &DVector<f64>,
+        others: &[&DVector<f64>],
+        shares: &[f64],
+        noise: f64,
+    ) -> Foreseen {
+        let mut columns: Vec<DVector<f64>> =
+            self.known.iter().map(|c| self.white(c, noise)).collect();
+        let off = columns
+            .iter()
+            .zip(shares)
+            .fold(DVector::zeros(own.len()), |sum, (c, &s)| sum + c * s);
+        columns.extend(others.iter().map(|&v| v.clone()));
+        let (gain, fitted_shares) = self.gain(&columns, &(own + off), shares);
+        let pinned = pinned(&self.machine, &fitted_shares);
+        let fitted = Projector::new(&self.machine, &columns, &pinned);
+        let seen = fitted.reject(own);
+        let parameters = named(name).map_or(1, |e| e.parameters.len());
+        let layout = &self.templates[0].layout;
+        let needed = needed(layout, parameters, self.library.candidates.len(), 0.01);
+        let others = |e: &Effect| e.name != name;
+        let through = |column: &Amplitudes| fitted.reject(&self.white(column, noise));
+        let size = seen.norm_squared();
+        let near = |response: &Response| {
+            let basis = DMatrix::from_columns(&response.columns).svd(true, false).u;
+            let sine = basis.map_or(1.0, |u| sine(&seen, &u));
+            let alike = sine < ONE_CLASS || size * sine * sine < TELLS_APART;
+            alike.then(|| response.effect.name.to_owned())
+        };
+        let all = responses_in(&self.library.candidates, others, through, &seen);
+        let mut class: Vec<String> = all.par_iter().filter_map(near).collect();
+        class.dedup();
+        Foreseen {
+            gain,
+            detectable: gain >= 2.0 * needed,
+            class,
+        }
+    }
+
+    /// D of what the columns leave of a change, the first of them known
+    /// parameters' and kept inside their tolerance, less D of the truth, at whose
+    /// shares nothing is left; and the shares at which that is.
+    fn gain(
+        &self,
+        columns: &[DVector<f64>],
+        change: &DVector<f64>,
+        shares: &[f64],
+    ) -> (f64, Vec<f64>) {
+        let (n, known) = (columns.len(), shares.len());
+        let deviation = known_deviation(&self.machine);
+        let most = tolerance(&self.machine);
+        let normal = DMatrix::from_fn(n, n, |i, j| {
+            let own = if i != j {
+                0.0
+            } else if i < known {
+                deviation.powi(-2)
+            } else {
+                1e-9 * columns[i].norm_squared() + f64::MIN_POSITIVE
+            };
+            columns[i].dot(&columns[j]) + own
+        });
+        let right = DVector::from_fn(n, |i, _| columns[i].dot(change));
+        let x = bounded(&normal, &right, |i| (i < known).then_some([-most, most]));
+        let price: f64 = shares.iter().map(|s| (s / deviation).powi(2)).sum();
+        let left = change.norm_squared() - 2.0 * x.dot(&right) + x.dot(&(&normal * &x));
+        (left - price, x.rows(0, known).iter().copied().collect())
+    }
+
+    fn white(&self, amplitudes: &Amplitudes, noise: f64) -> DVector<f64> {
+        self.templates[0].layout.whiten(&self.whitener, amplitudes) / noise
+    }
+
+    fn response(&self, effect: &HiddenEffect, noise: f64) -> Option<DVector<f64>> {
+        let mut state = State::initial(&self.machine);
+        state.effects.push(active(effect)?);
+        let set = &self.templates[0];
+        let traces = set.simulate(&self.machine, &state).ok()?;
+        let change = set.difference(&traces, &self.nominal.traces, 1.0);
+        Some(self.white(&change, noise))
+    }
+}
+
+/// The effect of that name, in the library or outside of it.
+pub(super) fn named(name: &str) -> Option<&'static Effect> {
+    let mut all = EFFECTS.iter().chain(&OUTSIDE);
+    all.find(|e| e.name == name).copied()
+}
+
+pub(super) fn active(hidden: &HiddenEffect) -> Option<ActiveEffect> {
+    Some(ActiveEffect {
+        effect: named(&hidden.name)?,
+        values: hidden.values.clone(),
+    })
+}

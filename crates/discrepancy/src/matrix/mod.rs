@@ -1,0 +1,135 @@
+//! A matrix of machines with something hidden in them, and how the search
+//! does on it, blind.
+//!
+//! [`cases`] lays out the machines: Latin hypercubes over effect, size, noise
+//! and motion. A [`Bench`] holds what is the same for all cases on one motion;
+//! [`Bench::try_case`] makes a case's logs, says beforehand what can be seen in
+//! them ([`Foreseen`]), runs the search without that knowledge, and keeps
+//! both. [`Score`] counts.
+
+mod design;
+mod foresee;
+mod score;
+mod trial;
+
+pub use design::{Sizes, cases};
+pub use foresee::{Bench, BenchError, Foreseen};
+pub use score::{Rate, Score};
+
+use serde::{Deserialize, Serialize};
+
+use crate::hidden::Exercise;
+use crate::{Unknown, Verdict};
+
+/// What kind of question a case asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// Nothing hidden.
+    Clean,
+    /// One effect of the library.
+    Single,
+    /// Two.
+    Pair,
+    /// Three.
+    Triple,
+    /// One that is in no library.
+    Outside,
+    /// One of the library, taken out of it before the search.
+    LeftOut,
+}
+
+/// A hidden effect: name and values in the order of its parameters.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HiddenEffect {
+    /// Name, in the library or in [`crate::hidden::OUTSIDE`].
+    pub name: String,
+    /// SI.
+    pub values: Vec<f64>,
+}
+
+/// One machine with something hidden in it, and the motion that it is asked on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// Name of the case.
+    pub id: String,
+    /// What kind.
+    pub kind: Kind,
+    /// What is hidden.
+    pub hidden: Vec<HiddenEffect>,
+    /// Motion.
+    pub exercise: Exercise,
+    /// Noise, as a multiple of [`crate::hidden::Noise::GOOD`].
+    pub noise: f64,
+    /// Share by which known parameters may be off.
+    pub known_off: f64,
+    /// Effects that the search may not name.
+    pub rejected: Vec<String>,
+    /// Of noise and known parameters.
+    pub seed: u64,
+}
+
+/// An estimate beside the truth.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Effect.
+    pub effect: String,
+    /// Parameter.
+    pub parameter: String,
+    /// Whether it is a size.
+    pub size: bool,
+    /// Truth.
+    pub truth: f64,
+    /// Estimate.
+    pub value: f64,
+    /// 95 % interval.
+    pub ci95: [f64; 2],
+    /// What the estimate would be, had the known parameters been told: its
+    /// mean given their true values, in the estimate's own Gaussian. Where a
+    /// hidden effect and a known parameter are one and the same quantity (a
+    /// payload on a table whose mass is known to 1 %), no log tells more.
+    pub given_known: f64,
+}
+
+/// An effect as the search named it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NamedEffect {
+    /// Name.
+    pub name: String,
+    /// Effects that it said these logs cannot tell from it.
+    pub alike: Vec<String>,
+}
+
+/// What a proposed experiment did for a class.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Split {
+    /// The pair that it was to separate.
+    pub pair: [String; 2],
+    /// Foreseen fall of D between the two.
+    pub foreseen: f64,
+    /// Found, with the truth replayed on it: D of the wrong less D of the right.
+    pub found: f64,
+}
+
+/// What came out of a case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// The case.
+    pub case: Case,
+    /// What could be known beforehand, one entry a hidden effect.
+    pub foreseen: Vec<Foreseen>,
+    /// Why there is no verdict, where there is none.
+    pub failed: Option<String>,
+    /// Verdict.
+    pub verdict: Option<Verdict>,
+    /// Effects named, in the order in which they were found.
+    pub named: Vec<NamedEffect>,
+    /// Parameters of those that were hidden.
+    pub estimates: Vec<Estimate>,
+    /// Share of the gap on check motion that is gone.
+    pub reduction: f64,
+    /// What was found that is in no library.
+    pub unknown: Option<Unknown>,
+    /// The experiment that was proposed, run.
+    pub split: Option<Split>,
+}

@@ -1,0 +1,236 @@
+//! One case: logs made, search run blind, both kept.
+
+use axis_sim::ReplayError;
+use axis_sim::effects::ActiveEffect;
+
+use super::foresee::active;
+use super::{Bench, Case, Estimate, Foreseen, NamedEffect, Outcome, Split};
+use crate::experiment::Proposal;
+use crate::fit::{Fitter, free_parameters};
+use crate::hidden::{Hidden, Noise, exercise};
+use crate::model::LogSet;
+use crate::search::search_with;
+use crate::{Discovery, Found, Settings, discovery};
+
+impl Bench {
+    /// Runs a case of this bench's motion.
+    pub fn try_case(&self, case: &Case) -> Outcome {
+        let foreseen = self.foresee(case);
+        let runs = foreseen.iter().all(Option::is_some);
+        let nothing = Foreseen {
+            gain: 0.0,
+            detectable: false,
+            class: Vec::new(),
+        };
+        let mut outcome = Outcome {
+            case: case.clone(),
+            foreseen: foreseen
+                .into_iter()
+                .map(|f| f.unwrap_or_else(|| nothing.clone()))
+                .collect(),
+            failed: None,
+            verdict: None,
+            named: Vec::new(),
+            estimates: Vec::new(),
+            reduction: 0.0,
+            unknown: None,
+            split: None,
+        };
+        if !runs {
+            outcome.failed = Some("the axis does not run with the hidden effect".to_owned());
+            return outcome;
+        }
+        if let Err(error) = self.run(case, &mut outcome) {
+            outcome.failed = Some(error.to_string());
+        }
+        outcome
+    }
+
+    fn run(&self, case: &Case, outcome: &mut Outcome) -> Result<(), ReplayError> {
+        let hidden = self.hidden(case);
+        let [fit, check] = [self.logs(&hidden, false)?, self.logs(&hidden, true)?];
+        let settings = Settings {
+            rejected: case.rejected.clone(),
+            ..Settings::default()
+        };
+        let library = Some(self.library.clone());
+        let found = search_with(&self.machine, &fit, &check, &settings, library, |_| ())?;
+        let told = discovery(&self.machine, &fit, &check, &found)?;
+        if let Some(proposal) = &told.proposal {
+            outcome.split = self.split(&hidden, &fit, &found, proposal)?;
+        }
+        let told = told.discovery;
+        outcome.verdict = Some(told.verdict);
+        outcome.reduction = told.gap.check.reduction;
+        outcome.unknown = told.unknown.clone();
+        outcome.named = named(&found, &told);
+        outcome.estimates = estimates(&found, &hidden);
+        Ok(())
+    }
+
+    /// Runs the proposed motion on the hidden machine, and fits both
+    /// explanations to it and to the log that they were alike on. `None` where
+    /// neither is hidden.
+    fn split(
+        &self,
+        hidden: &Hidden,
+        fit: &LogSet,
+        found: &Found,
+        proposal: &Proposal,
+    ) -> Result<Option<Split>, ReplayError> {
+        let is_hidden = |a: &ActiveEffect| {
+            hidden
+                .effects
+                .iter()
+                .any(|h| h.effect.name == a.effect.name)
+        };
+        let [first, second] = &proposal.pair;
+        let (right, wrong) = match (is_hidden(first), is_hidden(second)) {
+            (true, false) => (first, second),
+            (false, true) => (second, first),
+            _ => return Ok(None),
+        };
+        let mut again = hidden.clone();
+        again.seed = again.seed.wrapping_mul(2) + 7;
+        let log = again.log(&self.axis, &proposal.program, 1)?;
+        let old = fit
+            .logs
+            .iter()
+            .map(|l| (l.name.clone(), l.log.clone(), l.period));
+        let new = ("proposed".to_owned(), log, self.axis.period);
+        let mut both = LogSet::new(old.chain([new]).collect(), &self.machine)?;
+        both.correct_defects(&self.machine, &found.fit.state)?;
+        let fitter = Fitter {
+            machine: &self.machine,
+            set: &both,
+        };
+        let deviance = |effect: &ActiveEffect| -> Result<f64, ReplayError> {
+            let mut state = found.fit.state.clone();
+            state.effects[proposal.index] = effect.clone();
+            let start = fitter.at(state)?;
+            let known = fitter.known_columns(&start);
+            Ok(fitter.refine(start, &known, 8).deviance)
+        };
+        Ok(Some(Split {
+            pair: [first, second].map(|a| a.effect.name.to_owned()),
+            foreseen: proposal.separation,
+            found: deviance(wrong)? - deviance(right)?,
+        }))
+    }
+
+    pub(super) fn hidden(&self, case: &Case) -> Hidden {
+        let effects = case.hidden.iter().filter_map(active).collect();
+        Hidden {
+            effects,
+            shares: Vec::new(),
+            noise: Noise::GOOD.scaled(case.noise),
+            seed: case.seed,
+        }
+        .with_known_off_by(&self.axis, case.known_off)
+    }
+
+    fn logs(&self, hidden: &Hidden, check: bool) -> Result<LogSet, ReplayError> {
+        let template = &self.templates[usize::from(check)];
+        // The exercise fitted the axis when the bench was made.
+        let Ok(motion) = exercise(&self.axis, self.exercise, check) else {
+            return Ok(template.clone());
+        };
+        let mut hidden = hidden.clone();
+        hidden.seed = hidden.seed.wrapping_mul(2) + u64::from(check);
+        let log = hidden.log(&self.axis, &motion, 1)?;
+        template.again(vec![log], &self.machine)
+    }
+}
+
+fn named(found: &Found, told: &Discovery) -> Vec<NamedEffect> {
+    let alike = |name: &str| {
+        let told = told.effects.iter().find(|e| e.name == name);
+        told.map(|e| e.indistinguishable_from.clone())
+            .unwrap_or_default()
+    };
+    let mut named: Vec<(f64, NamedEffect)> = found
+        .named
+        .iter()
+        .map(|n| {
+            let entry = NamedEffect {
+                name: n.name.to_owned(),
+                alike: alike(n.name),
+            };
+            (n.evidence, entry)
+        })
+        .collect();
+    named.sort_by(|a, b| b.0.total_cmp(&a.0));
+    named.into_iter().map(|(_, n)| n).collect()
+}
+
+/// Parameters of hidden effects that were named, beside their truth.
+fn estimates(found: &Found, hidden: &Hidden) -> Vec<Estimate> {
+    let free = free_parameters(&found.fit.state);
+    let known = found.fit.state.shares.len();
+    let mut all = Vec::new();
+    for (e, active) in found.fit.state.effects.iter().enumerate() {
+        let same = |h: &&ActiveEffect| h.effect.name == active.effect.name;
+        let Some(truth) = hidden.effects.iter().find(same) else {
+            continue;
+        };
+        for (p, spec) in active.effect.parameters.iter().enumerate() {
+            let Some(at) = free.iter().position(|&f| f == (e, p)) else {
+                continue;
+            };
+            let value = active.values[p];
+            let deviation = found.deviation(known + at, value);
+            let given = value + conditional(found, &hidden.shares, known + at);
+            let shift = same_phase(active, truth, p);
+            all.push(Estimate {
+                effect: active.effect.name.to_owned(),
+                parameter: spec.name.to_owned(),
+                size: spec.size,
+                truth: truth.values[p],
+                value: shift(value),
+                ci95: [
+                    shift(value) - 1.96 * deviation,
+                    shift(value) + 1.96 * deviation,
+                ],
+                given_known: shift(given),
+            });
+        }
+    }
+    all
+}
+
+/// By how much the mean of a parameter moves once the known ones are told.
+fn conditional(found: &Found, truth: &[f64], at: usize) -> f64 {
+    let known = known_of(found);
+    let own = found.covariance.view((0, 0), (known, known)).into_owned();
+    let shares = nalgebra::DVector::from_fn(known, |i, _| {
+        truth.get(i).copied().unwrap_or(0.0) - found.fit.state.shares[i]
+    });
+    let cross = found.covariance.view((0, at), (known, 1)).into_owned();
+    own.lu().solve(&shares).map_or(0.0, |s| cross.dot(&s))
+}
+
+fn known_of(found: &Found) -> usize {
+    found.fit.state.shares.len()
+}
+
+/// An amplitude of one sign with a phase is that of the other sign with the
+/// phase half a turn on: brings an estimate to the truth's way of saying it.
+fn same_phase(found: &ActiveEffect, truth: &ActiveEffect, p: usize) -> impl Fn(f64) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    let parameters = found.effect.parameters;
+    let phase = parameters.iter().position(|q| q.name == "phase");
+    let flipped = phase.is_some() && found.values[0] * truth.values[0] < 0.0;
+    let is_phase = phase == Some(p);
+    let target = truth.values[p];
+    let has_phase = phase.is_some();
+    move |value| {
+        if is_phase {
+            let turned = if flipped { value + PI } else { value };
+            turned - TAU * ((turned - target) / TAU).round()
+        } else if has_phase && flipped {
+            -value
+        } else {
+            value
+        }
+    }
+}

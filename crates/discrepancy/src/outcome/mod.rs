@@ -1,0 +1,327 @@
+//! What a discovery says: verdict, effects with intervals, gap before and after.
+
+mod noise;
+mod types;
+
+use axis_sim::ReplayError;
+use axis_sim::effects::Machine;
+
+use self::noise::{floors, sensor_noise};
+pub use self::types::{
+    AtScrew, ChannelGap, Discovery, EffectFound, Gap, Gaps, NextExperiment, ParameterFound,
+    Recalibrated, Verdict,
+};
+use crate::experiment::{Proposal, propose};
+use crate::fit::{Fitter, free_parameters};
+use crate::known::{known_parameters, tolerance};
+use crate::lack::{Unknown, lack};
+use crate::model::{LogSet, State};
+use crate::search::{Found, MATERIAL};
+
+/// A search's result in words, figures and pictures.
+#[derive(Clone, Debug)]
+pub struct Discovered {
+    /// Words and figures.
+    pub discovery: Discovery,
+    /// Pictures of the check logs.
+    pub overlays: Vec<Overlay>,
+    /// The next experiment, with the values of both rivals.
+    pub proposal: Option<Proposal>,
+}
+
+/// Measured, model before and after, for pictures: one channel of one log.
+#[derive(Clone, Debug)]
+pub struct Overlay {
+    /// Log and channel.
+    pub title: String,
+    /// Name with unit.
+    pub channel: String,
+    /// s.
+    pub time: Vec<f64>,
+    /// Measured minus model, before.
+    pub before: Vec<f64>,
+    /// Measured minus model, after.
+    pub after: Vec<f64>,
+}
+
+/// Puts a search's result into words and figures.
+///
+/// # Errors
+/// [`ReplayError`] where a simulation that ran before does not run again.
+pub fn discovery(
+    machine: &Machine,
+    fit_logs: &LogSet,
+    check_logs: &LogSet,
+    found: &Found,
+) -> Result<Discovered, ReplayError> {
+    let initial = State::initial(machine);
+    let full = &found.fit.state;
+    // Before: as the file says. After: with the defects of the fitted machine.
+    let before_of = |set: &LogSet| -> Result<Rest, ReplayError> {
+        Ok(set.rest(&set.simulate(machine, &initial)?))
+    };
+    let gap_of = |before: &Rest, set: &LogSet| -> Result<(Gap, Vec<f64>), ReplayError> {
+        let after = set.rest(&set.simulate(machine, full)?);
+        let floors = floors(machine, set, full, &after)?;
+        Ok((gap(set, before, &after, &floors), floors))
+    };
+    let (fit, _) = gap_of(&before_of(fit_logs)?, &found.fit_logs)?;
+    let before = before_of(check_logs)?;
+    let (check, check_floors) = gap_of(&before, &found.check_logs)?;
+
+    let mut effects = Vec::new();
+    for (index, named) in found.named.iter().enumerate() {
+        let mut without = full.clone();
+        without.effects.remove(index);
+        let set = &found.check_logs;
+        let after = set.rest(&set.simulate(machine, &without)?);
+        let lost = gap(set, &before, &after, &check_floors);
+        effects.push(effect_found(
+            machine,
+            found,
+            index,
+            named,
+            (check.reduction - lost.reduction).clamp(0.0, 1.0),
+        ));
+    }
+    effects.sort_by(|a, b| b.share_of_gap.total_cmp(&a.share_of_gap));
+
+    let checker = Fitter {
+        machine,
+        set: check_logs,
+    };
+    let base = checker.at(found.base.state.clone())?;
+    let at_floor = |gap: &Gap| gap.channels.iter().all(|c| c.after <= REST * c.floor);
+    let largest = found.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
+    let unknown = lack(machine, found, MATERIAL * largest)?;
+    let rest_significant = !at_floor(&check) || unknown.is_some();
+    let verdict = match (effects.is_empty(), rest_significant) {
+        (true, false) => Verdict::NothingMissing,
+        (true, true) => Verdict::Unknown,
+        (false, false) if check.reduction >= 0.9 => Verdict::Explained,
+        (false, _) => Verdict::PartlyExplained,
+    };
+    let proposal = match sensor_noise(machine, &found.fit_logs, full, &found.fit) {
+        Some(noise) => propose(machine, found, noise)?,
+        None => None,
+    };
+    let name = match machine {
+        Machine::BallScrew(axis) => axis.name.clone(),
+        Machine::Rigid(axis) => axis.name.clone(),
+    };
+    let recalibrated = known_parameters(machine)
+        .iter()
+        .zip(&full.shares)
+        .map(|(known, &share)| Recalibrated {
+            name: known.name.to_owned(),
+            share,
+            tolerance: tolerance(machine),
+        })
+        .collect();
+    let overlays = overlays(
+        check_logs,
+        &check_logs.rest(&base.traces),
+        &found
+            .check_logs
+            .rest(&found.check_logs.simulate(machine, full)?),
+    );
+    let discovery = Discovery {
+        schema: 1,
+        axis: name,
+        sentence: sentence(verdict, &effects, &check, unknown.as_ref()),
+        verdict,
+        effects,
+        not_added: found
+            .leftover
+            .iter()
+            .map(|r| (r.name.to_owned(), r.gain))
+            .collect(),
+        unknown,
+        gap: Gaps { fit, check },
+        recalibrated,
+        next_experiment: proposal.as_ref().map(next_experiment),
+    };
+    Ok(Discovered {
+        discovery,
+        overlays,
+        proposal,
+    })
+}
+
+fn next_experiment(proposal: &Proposal) -> NextExperiment {
+    NextExperiment {
+        what: proposal.what.to_owned(),
+        separates: proposal.pair.each_ref().map(|a| a.effect.name.to_owned()),
+        by: proposal.separation,
+        program: proposal.program.clone(),
+    }
+}
+
+/// A channel's rest is significant beyond this multiple of its floor.
+const REST: f64 = 1.2;
+
+fn effect_found(
+    machine: &Machine,
+    found: &Found,
+    index: usize,
+    named: &crate::search::Named,
+    share_of_gap: f64,
+) -> EffectFound {
+    let active = &found.fit.state.effects[index];
+    let free = free_parameters(&found.fit.state);
+    let known = found.fit.state.shares.len();
+    let parameter = |(p, (spec, &value)): (usize, (&axis_sim::effects::EffectParameter, &f64))| {
+        let column = free
+            .iter()
+            .position(|&at| at == (index, p))
+            .map(|i| known + i);
+        let deviation = column.map_or(0.0, |i| found.deviation(i, value));
+        ParameterFound {
+            name: spec.name.to_owned(),
+            value,
+            unit: spec.unit.to_owned(),
+            ci95: [value - 1.96 * deviation, value + 1.96 * deviation],
+            when_named: named.when_named.get(p).copied().unwrap_or(value),
+            at_screw: at_screw(machine, value, spec.unit),
+        }
+    };
+    EffectFound {
+        name: active.effect.name.to_owned(),
+        summary: active.effect.summary.to_owned(),
+        indistinguishable_from: named
+            .alike
+            .iter()
+            .map(|a| a.fitted.effect.name.to_owned())
+            .collect(),
+        parameters: (active.effect.parameters.iter().zip(&active.values))
+            .enumerate()
+            .map(parameter)
+            .collect(),
+        channel: active.effect.channel.name().to_owned(),
+        depends_on: active.effect.depends_on.to_owned(),
+        share_of_gap,
+        evidence: [named.evidence, named.held_out],
+        runners_up: named
+            .runners_up
+            .iter()
+            .map(|r| (r.name.to_owned(), r.gain))
+            .collect(),
+    }
+}
+
+/// Friction acts at the table; its torque at the screw is what catalogues give.
+fn at_screw(machine: &Machine, value: f64, unit: &str) -> Option<AtScrew> {
+    let r = match machine {
+        Machine::BallScrew(axis) => axis.travel_per_radian(),
+        Machine::Rigid(axis) => axis.travel_per_radian(),
+    };
+    let (factor, unit) = match unit {
+        "N" => (r, "N*m"),
+        "N*s/m" => (r * r, "N*m*s/rad"),
+        _ => return None,
+    };
+    Some(AtScrew {
+        value: value * factor,
+        unit: unit.to_owned(),
+    })
+}
+
+type Rest = Vec<Vec<Vec<f64>>>;
+
+fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[f64]) -> Gap {
+    let rms = |rest: &Rest, c: usize| {
+        let (sum, n) = rest.iter().fold((0.0, 0), |(sum, n), log| {
+            (
+                sum + log[c].iter().map(|r| r * r).sum::<f64>(),
+                n + log[c].len(),
+            )
+        });
+        (sum / n.max(1) as f64).sqrt()
+    };
+    let channels: Vec<ChannelGap> = set
+        .channels
+        .iter()
+        .enumerate()
+        .map(|(c, name)| ChannelGap {
+            channel: (*name).to_owned(),
+            before: rms(before, c),
+            after: rms(after, c),
+            floor: floors[c],
+        })
+        .collect();
+    let above = |rms: f64, floor: f64| (rms * rms - floor * floor).max(0.0);
+    let shares = channels.iter().filter(|c| c.before > REST * c.floor);
+    let ratios: Vec<f64> = shares
+        .map(|c| above(c.after, c.floor) / above(c.before, c.floor))
+        .collect();
+    let reduction = if ratios.is_empty() {
+        0.0
+    } else {
+        1.0 - (ratios.iter().sum::<f64>() / ratios.len() as f64).sqrt()
+    };
+    Gap {
+        channels,
+        reduction,
+    }
+}
+
+fn overlays(set: &LogSet, before: &Rest, after: &Rest) -> Vec<Overlay> {
+    let mut all = Vec::new();
+    for (l, log) in set.logs.iter().enumerate() {
+        for (c, name) in set.channels.iter().enumerate() {
+            all.push(Overlay {
+                title: format!("{}: {name}", log.name),
+                channel: (*name).to_owned(),
+                time: log.log.time().to_vec(),
+                before: before[l][c].clone(),
+                after: after[l][c].clone(),
+            });
+        }
+    }
+    all
+}
+
+fn sentence(
+    verdict: Verdict,
+    effects: &[EffectFound],
+    check: &Gap,
+    unknown: Option<&Unknown>,
+) -> String {
+    let names: Vec<String> = effects
+        .iter()
+        .map(|e| match e.indistinguishable_from.as_slice() {
+            [] => e.name.clone(),
+            others => format!(
+                "{} (or {}: these logs cannot tell)",
+                e.name,
+                others.join(", ")
+            ),
+        })
+        .collect();
+    let names = names.join("; ");
+    let gone = 100.0 * check.reduction;
+    let place = unknown.map_or(String::new(), |u| {
+        let formula = u
+            .formula
+            .as_ref()
+            .map_or(String::new(), |f| format!(": {f}"));
+        format!(
+            " It sits in the {} and depends on {}{formula}.",
+            u.channel, u.depends_on
+        )
+    });
+    match verdict {
+        Verdict::NothingMissing => {
+            "Nothing is missing: the model and the logs agree to the noise, with known parameters inside their tolerance.".to_owned()
+        }
+        Verdict::Explained => format!(
+            "The model lacks {names}. With it, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to."
+        ),
+        Verdict::PartlyExplained => format!(
+            "The model lacks {names}; {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to, and a rest remains that is not named.{place}"
+        ),
+        Verdict::Unknown => format!(
+            "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}"
+        ),
+    }
+}

@@ -1,0 +1,163 @@
+//! What `discovery.json` holds.
+
+use serde::{Deserialize, Serialize};
+use trajectories::Program;
+
+use crate::lack::Unknown;
+
+/// The verdict on a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Named effects remove at least 90 % of the gap above the floor on check
+    /// motion, and nothing significant is left.
+    Explained,
+    /// Named effects, and a significant rest that is not named.
+    PartlyExplained,
+    /// No gap beyond noise and the tolerance of known parameters.
+    NothingMissing,
+    /// A significant gap, and nothing in the library that explains it.
+    Unknown,
+}
+
+impl Verdict {
+    /// As in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Explained => "explained",
+            Self::PartlyExplained => "partly-explained",
+            Self::NothingMissing => "nothing-missing",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+/// A parameter of an effect with its 95 % interval.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ParameterFound {
+    /// Name.
+    pub name: String,
+    /// Estimate, SI.
+    pub value: f64,
+    /// SI unit.
+    pub unit: String,
+    /// 95 % interval.
+    pub ci95: [f64; 2],
+    /// The value before further effects were added.
+    pub when_named: f64,
+    /// A force or a coefficient at the table as a torque at the screw.
+    pub at_screw: Option<AtScrew>,
+}
+
+/// A number at the table as it is at the screw.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct AtScrew {
+    /// Estimate.
+    pub value: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+/// An effect that was named.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct EffectFound {
+    /// Name, as in the axis file.
+    pub name: String,
+    /// One line for people.
+    pub summary: String,
+    /// Effects that these logs cannot tell from it.
+    pub indistinguishable_from: Vec<String>,
+    /// Its numbers.
+    pub parameters: Vec<ParameterFound>,
+    /// Where it shows first.
+    pub channel: String,
+    /// On what it depends.
+    pub depends_on: String,
+    /// Share of the check logs' gap that comes back without it.
+    pub share_of_gap: f64,
+    /// Fall of minus twice the log-likelihood: on the fit logs, on the check logs.
+    pub evidence: [f64; 2],
+    /// What else was tried in its place, with the fall that it reached.
+    pub runners_up: Vec<(String, f64)>,
+}
+
+/// Root-mean-square gap of a channel, in its unit.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ChannelGap {
+    /// Name with unit.
+    pub channel: String,
+    /// Model as its file says.
+    pub before: f64,
+    /// With the effects.
+    pub after: f64,
+    /// Of noise alone: sensors as noisy as the rest's highest frequencies show.
+    pub floor: f64,
+}
+
+/// Gap on a set of logs.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Gap {
+    /// One entry a channel.
+    pub channels: Vec<ChannelGap>,
+    /// Share of the gap above the floor that is gone: of the mean square over
+    /// all channels, each against its own gap before.
+    pub reduction: f64,
+}
+
+/// Gap on both sets of logs.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Gaps {
+    /// On the logs that were fitted.
+    pub fit: Gap,
+    /// On the logs that were not.
+    pub check: Gap,
+}
+
+/// The motion that would tell apart what these logs cannot.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct NextExperiment {
+    /// What it is, in words.
+    pub what: String,
+    /// Effects that it separates.
+    pub separates: [String; 2],
+    /// Fall of −2 log L to be expected between the two; 25 and more decide.
+    pub by: f64,
+    /// The motion, as a program file has it (`simulate --program`).
+    pub program: Program,
+}
+
+/// A known parameter that was moved inside its tolerance.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Recalibrated {
+    /// Name.
+    pub name: String,
+    /// Share of its value by which it was moved.
+    pub share: f64,
+    /// Tolerance as a share.
+    pub tolerance: f64,
+}
+
+/// What `discovery.json` holds.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Discovery {
+    /// Layout of this file.
+    pub schema: u32,
+    /// Name of the axis.
+    pub axis: String,
+    /// Verdict.
+    pub verdict: Verdict,
+    /// The verdict in a sentence.
+    pub sentence: String,
+    /// Named effects, largest share first.
+    pub effects: Vec<EffectFound>,
+    /// Best candidates that were not added.
+    pub not_added: Vec<(String, f64)>,
+    /// What is left, is significant, and is nothing in the library.
+    pub unknown: Option<Unknown>,
+    /// Gap before and after.
+    pub gap: Gaps,
+    /// Known parameters.
+    pub recalibrated: Vec<Recalibrated>,
+    /// What to run next, where effects look alike.
+    pub next_experiment: Option<NextExperiment>,
+}

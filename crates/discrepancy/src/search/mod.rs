@@ -1,0 +1,244 @@
+//! Stepwise search: screen, refine the best few by simulation, add, drop.
+
+mod evidence;
+mod rounds;
+
+use std::sync::Arc;
+
+use axis_sim::ReplayError;
+use axis_sim::effects::{ActiveEffect, Machine};
+
+pub use self::evidence::{MATERIAL, needed};
+use self::rounds::Search;
+use crate::fit::{Columns, Fit, Fitter};
+use crate::lack::Curves;
+use crate::model::{LogSet, State};
+use crate::screen::{Candidate, candidates};
+
+/// How the search is made.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Most effects that are named.
+    pub most_effects: usize,
+    /// Candidates that are refined by simulation in each round.
+    pub refined: usize,
+    /// Effects that are not to be named.
+    pub rejected: Vec<String>,
+    /// Effects that are taken as there.
+    pub accepted: Vec<String>,
+    /// Probability that a clean axis is given an effect.
+    pub false_alarm: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            most_effects: 4,
+            refined: 5,
+            rejected: Vec::new(),
+            accepted: Vec::new(),
+            false_alarm: 0.01,
+        }
+    }
+}
+
+/// Sine of the angle below which two effects are one class.
+pub const ONE_CLASS: f64 = 0.15;
+
+/// A candidate of the last round, for the list of runners-up.
+#[derive(Clone, Debug)]
+pub struct RunnerUp {
+    /// Name of the effect.
+    pub name: &'static str,
+    /// By how much it lowers D on the fit logs, alone.
+    pub gain: f64,
+}
+
+/// An effect that does the same as another, on these logs.
+#[derive(Clone, Debug)]
+pub struct Alike {
+    /// With the values that come nearest.
+    pub fitted: ActiveEffect,
+    /// Sine of the angle between the two fingerprints.
+    pub sine: f64,
+}
+
+/// An effect that was added.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// Name of the effect.
+    pub name: &'static str,
+    /// By how much D rises on the fit logs without it.
+    pub evidence: f64,
+    /// By how much D falls on the check logs with it.
+    pub held_out: f64,
+    /// Effects that these logs cannot tell from it, the nearest first.
+    pub alike: Vec<Alike>,
+    /// Its values when it had just been added: as a model without the effects
+    /// that were added later has them.
+    pub when_named: Vec<f64>,
+    /// The others of the round in which it was added.
+    pub runners_up: Vec<RunnerUp>,
+}
+
+/// What a search found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Fit with known parameters alone.
+    pub base: Fit,
+    /// Fit with the effects.
+    pub fit: Fit,
+    /// The effects, in the order of the state's.
+    pub named: Vec<Named>,
+    /// Derivatives with respect to the parameters: known ones, then free ones of
+    /// the effects.
+    pub columns: Columns,
+    /// Parameters' covariance, in the same order.
+    pub covariance: nalgebra::DMatrix<f64>,
+    /// The best of what was left out for want of evidence.
+    pub leftover: Vec<RunnerUp>,
+    /// What the library does on the motions of the fitted logs.
+    pub library: Arc<Library>,
+    /// The logs that were fitted, with the defects of the fitted machine.
+    pub fit_logs: LogSet,
+    /// The logs that were not, likewise.
+    pub check_logs: LogSet,
+}
+
+/// Share of a parameter's value (of a radian, for a phase) by which two
+/// simulations of one machine, with other mesh and step, may differ.
+const SIMULATED: f64 = 1e-3;
+
+impl Found {
+    /// Standard deviation of a parameter of this value, by its place in the
+    /// covariance: of noise, and of the simulation.
+    pub fn deviation(&self, index: usize, value: f64) -> f64 {
+        let noise = self.covariance[(index, index)].max(0.0);
+        (noise + (SIMULATED * value).powi(2)).sqrt()
+    }
+}
+
+/// Searches for effects that explain the rest of `fit_logs`, and that prove
+/// themselves on `check_logs`. `progress` is told what is being done.
+///
+/// # Errors
+/// [`ReplayError`] where the machine as its file says does not run.
+pub fn search(
+    machine: &Machine,
+    fit_logs: &LogSet,
+    check_logs: &LogSet,
+    settings: &Settings,
+    progress: impl FnMut(&str),
+) -> Result<Found, ReplayError> {
+    search_with(machine, fit_logs, check_logs, settings, None, progress)
+}
+
+/// As [`search`], with the library's responses to these motions where they are
+/// there already.
+pub(crate) fn search_with(
+    machine: &Machine,
+    fit_logs: &LogSet,
+    check_logs: &LogSet,
+    settings: &Settings,
+    library: Option<Arc<Library>>,
+    mut progress: impl FnMut(&str),
+) -> Result<Found, ReplayError> {
+    progress("known parameters");
+    let fitter = Fitter {
+        machine,
+        set: fit_logs,
+    };
+    let start = fitter.at(State::initial(machine))?;
+    let (base, _) = calibrated(&fitter, start);
+    // Defects of the machine with its parameters as they were fitted.
+    let (fit_logs, check_logs) = match settled(machine, fit_logs, check_logs, &base) {
+        Some((fit, check)) => (fit, check),
+        None => (fit_logs.clone(), check_logs.clone()),
+    };
+    let fitter = Fitter {
+        machine,
+        set: &fit_logs,
+    };
+    let (base, known) = calibrated(&fitter, fitter.at(base.state)?);
+    let library = library.unwrap_or_else(|| {
+        progress("screening all effects");
+        Arc::new(Library::new(&fitter, &base))
+    });
+    let mut search = Search {
+        machine,
+        settings,
+        library,
+        check: Fitter {
+            machine,
+            set: &check_logs,
+        }
+        .at(base.state.clone())?,
+        fit: base.clone(),
+        known,
+        named: Vec::new(),
+        leftover: Vec::new(),
+        fit_logs,
+        check_logs,
+    };
+    while search.named.len() < settings.most_effects {
+        progress(&format!("effect {}", search.named.len() + 1));
+        if !search.add_one() {
+            break;
+        }
+    }
+    search.drop_needless();
+    progress("intervals");
+    Ok(search.finish(base))
+}
+
+/// The known parameters fitted, and their derivatives where that ends: these
+/// are made anew until it gets no further.
+fn calibrated(fitter: &Fitter<'_>, mut fit: Fit) -> (Fit, Columns) {
+    let mut known = fitter.known_columns(&fit);
+    for _ in 0..3 {
+        let before = fit.deviance;
+        fit = fitter.refine(fit, &known, 8);
+        if before - fit.deviance < 10.0 {
+            break;
+        }
+        known = fitter.known_columns(&fit);
+    }
+    (fit, known)
+}
+
+/// The logs with the defects of a fitted machine, where it is one that runs.
+fn settled(
+    machine: &Machine,
+    fit_logs: &LogSet,
+    check_logs: &LogSet,
+    fit: &Fit,
+) -> Option<(LogSet, LogSet)> {
+    let corrected = |set: &LogSet| {
+        let mut set = set.clone();
+        set.correct_defects(machine, &fit.state).ok()?;
+        Some(set)
+    };
+    let (fitted, checked) = (corrected(fit_logs)?, corrected(check_logs)?);
+    let with = Fitter {
+        machine,
+        set: &fitted,
+    };
+    let better = with.at(fit.state.clone()).ok()?;
+    (better.deviance <= fit.deviance + 1.0).then_some((fitted, checked))
+}
+
+/// What all effects, and curves for what is no effect, do on a set of logs.
+#[derive(Debug)]
+pub struct Library {
+    pub(crate) candidates: Vec<Candidate>,
+    pub(crate) curves: Curves,
+}
+
+impl Library {
+    pub(crate) fn new(fitter: &Fitter<'_>, fit: &Fit) -> Self {
+        Self {
+            candidates: candidates(fitter, fit),
+            curves: Curves::new(fitter.machine, fitter.set, fit),
+        }
+    }
+}

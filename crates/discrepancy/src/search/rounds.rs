@@ -1,0 +1,349 @@
+//! A search on its way: rounds of screening, refining and adding.
+
+use std::sync::Arc;
+
+use axis_sim::effects::{ActiveEffect, Machine};
+use rayon::prelude::*;
+
+use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, OF_NOISE, WORSE, needed};
+use super::{Alike, Found, Library, Named, ONE_CLASS, RunnerUp, Settings};
+use crate::fit::{Columns, Fit, Fitter, free_parameters};
+use crate::model::LogSet;
+use crate::screen::{Screened, screen, sine};
+
+/// A search on its way.
+pub(super) struct Search<'a> {
+    pub(super) machine: &'a Machine,
+    pub(super) settings: &'a Settings,
+    pub(super) library: Arc<Library>,
+    pub(super) fit_logs: LogSet,
+    pub(super) check_logs: LogSet,
+    pub(super) known: Columns,
+    pub(super) fit: Fit,
+    pub(super) check: Fit,
+    pub(super) named: Vec<Named>,
+    pub(super) leftover: Vec<RunnerUp>,
+}
+
+/// A candidate after refinement by simulation.
+struct Refined {
+    screened: Screened,
+    fit: Fit,
+    gain: f64,
+}
+
+impl Search<'_> {
+    fn fitter(&self) -> Fitter<'_> {
+        Fitter {
+            machine: self.machine,
+            set: &self.fit_logs,
+        }
+    }
+
+    fn checker(&self) -> Fitter<'_> {
+        Fitter {
+            machine: self.machine,
+            set: &self.check_logs,
+        }
+    }
+
+    /// Adds the effect that explains most of what is left; false where none
+    /// proves itself.
+    pub(super) fn add_one(&mut self) -> bool {
+        let awaited = self.awaited();
+        let screened = self.screen(&awaited);
+        let refined = self.refine(&screened);
+        let runners = |all: &[Refined]| -> Vec<RunnerUp> {
+            let one = |r: &Refined| RunnerUp {
+                name: r.screened.effect.name,
+                gain: r.gain,
+            };
+            all.iter().map(one).collect()
+        };
+        // Where the best does not hold on other motion, the next may.
+        let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
+            let check = self.checker().at(candidate.fit.state.clone()).ok()?;
+            let held_out = self.check.deviance - check.deviance;
+            let holds = !awaited.is_empty()
+                || self.proves_itself(candidate, held_out) && self.worsens_none(&check);
+            holds.then_some((place, check, held_out))
+        });
+        let Some((place, check, held_out)) = proven else {
+            self.leftover = runners(&refined);
+            return false;
+        };
+        let best = &refined[place];
+        let mut others = runners(&refined);
+        others.remove(place);
+        self.named.push(Named {
+            name: best.screened.effect.name,
+            evidence: best.gain,
+            held_out,
+            alike: alike(best, &refined, &screened),
+            when_named: Vec::new(),
+            runners_up: others,
+        });
+        self.fit = best.fit.clone();
+        self.check = check;
+        self.settle();
+        if let (Some(named), Some(active)) = (self.named.last_mut(), self.fit.state.effects.last())
+        {
+            named.when_named.clone_from(&active.values);
+        }
+        true
+    }
+
+    /// What the engineer takes as there and is not yet: it goes first, whatever
+    /// speaks for it.
+    fn awaited(&self) -> Vec<&str> {
+        let active = |name: &str| self.named.iter().any(|n| n.name == name);
+        let accepted = self.settings.accepted.iter().map(String::as_str);
+        accepted.filter(|name| !active(name)).collect()
+    }
+
+    fn screen(&self, awaited: &[&str]) -> Vec<Screened> {
+        let fitter = self.fitter();
+        let own: Columns = self
+            .known
+            .iter()
+            .cloned()
+            .chain(fitter.effect_columns(&self.fit))
+            .collect();
+        let rejected = |name: &str| self.settings.rejected.iter().any(|r| r == name);
+        let active = |name: &str| self.named.iter().any(|n| n.name == name);
+        screen(
+            &fitter,
+            &self.fit,
+            &own,
+            &self.library.candidates,
+            |effect| {
+                // A second harmonic of the same kind may be there.
+                let free = !active(effect.name) || effect.name == "cogging-torque";
+                free && !rejected(effect.name)
+                    && (awaited.is_empty() || awaited.contains(&effect.name))
+            },
+        )
+    }
+
+    /// The best few of the screened, by simulation; the simplest of the best first.
+    fn refine(&self, screened: &[Screened]) -> Vec<Refined> {
+        let fitter = self.fitter();
+        let begin = |s: &Screened| {
+            let mut state = self.fit.state.clone();
+            state.effects.push(ActiveEffect {
+                effect: s.effect,
+                values: s.values.clone(),
+            });
+            let start = fitter.at(state).ok()?;
+            Some(Refined {
+                screened: s.clone(),
+                fit: fitter.refine(start, &self.known, 2),
+                gain: 0.0,
+            })
+        };
+        let top: Vec<&Screened> = self.worth_refining(screened).collect();
+        let mut refined: Vec<Refined> = top.into_par_iter().filter_map(begin).collect();
+        let gain = |fit: &Fit| self.fit.deviance - fit.deviance;
+        // What is far behind after two rounds is not carried further.
+        let best = refined.iter().map(|r| gain(&r.fit)).fold(0.0, f64::max);
+        refined.par_iter_mut().for_each(|r| {
+            if gain(&r.fit) > 0.5 * best - 50.0 {
+                r.fit = fitter.refine(r.fit.clone(), &self.known, 4);
+            }
+            r.gain = gain(&r.fit);
+        });
+        refined.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        simplest_first(refined)
+    }
+
+    /// The first few, but none that the screening puts a tenth below the best or
+    /// below what is needed: linearised gains are off by less than that.
+    fn worth_refining<'s>(&self, screened: &'s [Screened]) -> impl Iterator<Item = &'s Screened> {
+        let best = screened.first().map_or(0.0, |s| s.gain);
+        let least = 0.1 * best.max(OF_NOISE * self.fit_logs.layout.size() as f64);
+        let worth = move |(i, s): &(usize, &Screened)| *i == 0 || s.gain >= least;
+        let few = screened.iter().take(self.settings.refined).enumerate();
+        few.filter(worth).map(|(_, s)| s)
+    }
+
+    fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {
+        let added = free_parameters(&best.fit.state).len() - free_parameters(&self.fit.state).len();
+        let tried = self.library.candidates.len();
+        let false_alarm = self.settings.false_alarm;
+        let needed = needed(&self.fit_logs.layout, added, tried, false_alarm);
+        // Beside what was found, a hundredth of its weight is what the model's
+        // own simplifications may bring.
+        let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
+        tracing::debug!(
+            effect = best.screened.effect.name,
+            gain = best.gain,
+            held_out,
+            needed,
+            "best candidate"
+        );
+        best.gain >= needed && held_out >= LEAST_HELD_OUT && best.gain >= MATERIAL * largest
+    }
+
+    /// Whether no channel of the check logs is further off than before: those
+    /// that are not fitted count as well.
+    fn worsens_none(&self, check: &Fit) -> bool {
+        let before = self.check_logs.rest(&self.check.traces);
+        let after = self.check_logs.rest(&check.traces);
+        let power = |rest: &[Vec<Vec<f64>>], c: usize| -> f64 {
+            rest.iter().flat_map(|log| &log[c]).map(|r| r * r).sum()
+        };
+        (0..self.check_logs.channels.len()).all(|c| power(&after, c) <= WORSE * power(&before, c))
+    }
+
+    /// Fits all parameters again, and the defects of the machine as it now is.
+    fn settle(&mut self) {
+        let known = self.fitter().known_columns(&self.fit);
+        let fit = self.fitter().refine(self.fit.clone(), &known, 8);
+        let mut corrected = self.fit_logs.clone();
+        if corrected.correct_defects(self.machine, &fit.state).is_ok() {
+            let with = Fitter {
+                machine: self.machine,
+                set: &corrected,
+            };
+            // An axis that vibrates by itself does so with another phase in
+            // every simulation, and the difference of two is no defect.
+            if let Ok(better) = with.at(fit.state.clone())
+                && better.deviance < fit.deviance
+            {
+                self.fit = with.refine(better, &known, 4);
+                self.fit_logs = corrected;
+            } else {
+                self.fit = fit;
+            }
+        } else {
+            self.fit = fit;
+        }
+        self.known = known;
+        self.settle_check();
+    }
+
+    fn settle_check(&mut self) {
+        let Ok(check) = self.checker().at(self.fit.state.clone()) else {
+            return;
+        };
+        self.check = check;
+        let mut corrected = self.check_logs.clone();
+        if corrected
+            .correct_defects(self.machine, &self.fit.state)
+            .is_ok()
+        {
+            let with = Fitter {
+                machine: self.machine,
+                set: &corrected,
+            };
+            if let Ok(better) = with.at(self.fit.state.clone())
+                && better.deviance < self.check.deviance
+            {
+                self.check = better;
+                self.check_logs = corrected;
+            }
+        }
+    }
+
+    /// Takes out effects that others added later have made needless.
+    pub(super) fn drop_needless(&mut self) {
+        let mut index = 0;
+        while self.named.len() > 1 && index < self.named.len() {
+            let mut state = self.fit.state.clone();
+            let dropped = state.effects.remove(index);
+            let Ok(start) = self.fitter().at(state) else {
+                index += 1;
+                continue;
+            };
+            let without = self.fitter().refine(start, &self.known, 4);
+            let loss = without.deviance - self.fit.deviance;
+            let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
+            let named = &mut self.named[index];
+            let accepted = self
+                .settings
+                .accepted
+                .iter()
+                .any(|name| *name == named.name);
+            let needed = needed(
+                &self.fit_logs.layout,
+                dropped.effect.parameters.len(),
+                self.library.candidates.len(),
+                self.settings.false_alarm,
+            );
+            if !accepted && loss < needed.max(MATERIAL * largest) {
+                self.named.remove(index);
+                self.fit = without;
+            } else {
+                named.evidence = loss;
+                index += 1;
+            }
+        }
+    }
+
+    pub(super) fn finish(self, base: Fit) -> Found {
+        let fitter = self.fitter();
+        let columns: Columns = self
+            .known
+            .iter()
+            .cloned()
+            .chain(fitter.effect_columns(&self.fit))
+            .collect();
+        let covariance = fitter.solve(&self.fit, &columns).covariance;
+        Found {
+            base,
+            columns,
+            covariance,
+            fit: self.fit,
+            named: self.named,
+            leftover: self.leftover,
+            library: self.library,
+            fit_logs: self.fit_logs,
+            check_logs: self.check_logs,
+        }
+    }
+}
+
+/// Effects that do nearly the same as the best, or explain as much: the logs
+/// cannot tell.
+fn alike(best: &Refined, refined: &[Refined], screened: &[Screened]) -> Vec<Alike> {
+    let own = &best.screened;
+    let others = screened
+        .iter()
+        .filter(|other| other.effect.name != own.effect.name)
+        .filter(|other| other.basis.ncols() <= own.basis.ncols());
+    let mut all: Vec<Alike> = others
+        .filter_map(|other| {
+            let same = |r: &&Refined| r.screened.effect.name == other.effect.name;
+            let fitted = refined.iter().find(same);
+            let equal = fitted.is_some_and(|r| (r.gain - best.gain).abs() < EQUAL);
+            let sine = sine(&own.fingerprint, &other.basis);
+            let as_screened = || ActiveEffect {
+                effect: other.effect,
+                values: other.values.clone(),
+            };
+            let last = fitted.and_then(|r| r.fit.state.effects.last().cloned());
+            (sine < ONE_CLASS || equal).then(|| Alike {
+                fitted: last.unwrap_or_else(as_screened),
+                sine,
+            })
+        })
+        .collect();
+    all.sort_by(|a, b| a.sine.total_cmp(&b.sine));
+    all
+}
+
+/// Moves the simplest of those that explain about as much as the best to the
+/// front: further parameters must bring a hundredth of the whole, and no less
+/// than chance could.
+fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
+    let Some(best) = refined.first().map(|r| r.gain) else {
+        return refined;
+    };
+    let enough = best - (0.01 * best).max(25.0);
+    let parameters = |r: &Refined| r.screened.effect.parameters.len();
+    let near = refined.iter().enumerate().filter(|(_, r)| r.gain >= enough);
+    if let Some((at, _)) = near.min_by_key(|(_, r)| parameters(r)) {
+        refined[..=at].rotate_right(1);
+    }
+    refined
+}
