@@ -12,8 +12,8 @@ mod store;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    bench, compensate, discover, identify, layers, pipeline, report, sample, simulate, study,
-    train, validate,
+    bench, compensate, discover, discover_matrix, identify, layers, pipeline, report, sample,
+    simulate, study, train, validate,
 };
 use context::Common;
 
@@ -52,6 +52,8 @@ enum Command {
     Simulate(simulate::Options),
     /// Name what a model lacks, from logs of the real axis
     Discover(discover::Options),
+    /// Hide effects in simulated machines, search for them blind, and score it
+    DiscoverMatrix(discover_matrix::Options),
     /// Measure the speed of every hot path (docs/performance.md)
     Bench(bench::Options),
     /// Check that every crate depends strictly downward
@@ -74,6 +76,7 @@ fn main() -> miette::Result<()> {
         Command::Report(common) => report::command(&common),
         Command::Simulate(options) => simulate::command(&options),
         Command::Discover(options) => discover::command(&options),
+        Command::DiscoverMatrix(options) => discover_matrix::command(&options),
         Command::Bench(options) => bench::command(&options),
         Command::Layers => layers::command(),
     }

@@ -8,7 +8,7 @@ use axis_sim::effects::{ActiveEffect, Effect, Machine};
 use clap::Args;
 use discrepancy::intake::{check_distinct, check_log};
 use discrepancy::summary::{MeasuredError, SummaryFound, rank, tried};
-use discrepancy::{Discovery, LogSet, Settings, Verdict, discovery, search};
+use discrepancy::{Discovered, Discovery, LogSet, Settings, Verdict, discovery, search};
 use indicatif::ProgressBar;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
@@ -110,7 +110,11 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
     })
     .into_diagnostic()
     .wrap_err("the axis as its file says does not run these logs")?;
-    let (discovery, overlays) = discovery(machine, &fit, &check, &found).into_diagnostic()?;
+    let Discovered {
+        discovery,
+        overlays,
+        ..
+    } = discovery(machine, &fit, &check, &found).into_diagnostic()?;
     progress.finish_and_clear();
 
     let added: String = found.fit.state.effects.iter().map(entry).collect();
@@ -118,10 +122,17 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
     let json = serde_json::to_vec_pretty(&discovery).into_diagnostic()?;
     write_whole(&out.join("discovery.json"), &json)?;
     write_whole(&out.join("axis.toml"), text.as_bytes())?;
+    if let Some(next) = &discovery.next_experiment {
+        let program = toml::to_string(&next.program).into_diagnostic()?;
+        write_whole(&out.join(NEXT), program.as_bytes())?;
+    }
     let html = page::discovery::page(&discovery, &overlays)?;
     write_whole(&out.join("report.html"), html.as_bytes())?;
     tell(&discovery, &added, out)
 }
+
+/// File of the proposed motion.
+const NEXT: &str = "next-experiment.toml";
 
 fn read_all(paths: &[PathBuf], machine: &Machine) -> Result<Vec<(String, Log, f64)>> {
     let mapping = match machine {
@@ -160,13 +171,21 @@ fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
         ))?;
         for p in &effect.parameters {
             say(format!(
-                "  {} = {:.5e} {}   95 %: {:.5e} to {:.5e}",
-                p.name, p.value, p.unit, p.ci95[0], p.ci95[1]
+                "  {} = {:.5e} {}   95 %: {:.5e} to {:.5e}{}",
+                p.name,
+                p.value,
+                p.unit,
+                p.ci95[0],
+                p.ci95[1],
+                p.at_screw.as_ref().map_or(String::new(), |s| format!(
+                    "   at the screw {:.4e} {}",
+                    s.value, s.unit
+                ))
             ))?;
         }
     }
     say("\nRMS gap on check motion        before        after        noise")?;
-    for c in &discovery.check.channels {
+    for c in &discovery.gap.check.channels {
         say(format!(
             "  {:<24} {:>12.4e} {:>12.4e} {:>12.4e}",
             c.channel, c.before, c.after, c.floor
@@ -177,6 +196,16 @@ fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
         for line in added.trim_start().lines() {
             say(format!("+ {line}"))?;
         }
+    }
+    if let Some(next) = &discovery.next_experiment {
+        say(format!(
+            "\nNext experiment: {}. It separates {} from {} (a fall of −2 log L by {:.0} is to be expected; 25 decide):\n  {}",
+            next.what,
+            next.separates[0],
+            next.separates[1],
+            next.by,
+            out.join(NEXT).display()
+        ))?;
     }
     if discovery.verdict == Verdict::PartlyExplained || discovery.verdict == Verdict::Unknown {
         say(

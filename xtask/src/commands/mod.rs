@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod compensate;
 pub mod discover;
+pub mod discover_matrix;
 pub mod identify;
 pub mod layers;
 pub mod pipeline;

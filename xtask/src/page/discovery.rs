@@ -2,7 +2,7 @@
 
 use axis_sim::Axis;
 use discrepancy::summary::SummaryFound;
-use discrepancy::{Discovery, Gap, Overlay, Verdict};
+use discrepancy::{Discovery, Gap, NextExperiment, Overlay, Unknown, Verdict};
 use miette::{IntoDiagnostic, Result};
 use report::{Cell, Figure, Notice, Page, Section, Series, Table, render};
 
@@ -13,13 +13,21 @@ pub fn page(discovery: &Discovery, overlays: &[Overlay]) -> Result<String> {
         Verdict::PartlyExplained | Verdict::Unknown => Notice::Warn,
     };
     let verdict = Section::new("Verdict").notice(kind, discovery.sentence.clone());
+    let further = [
+        discovery.unknown.as_ref().map(unknown),
+        discovery.next_experiment.as_ref().map(next),
+    ];
     let page = Page::new(format!("What the model of {} lacks", discovery.axis))
         .lead("Logs replayed through the simulated closed loop; what is left, and which effect explains it.")
         .section(verdict)
         .section(effects(discovery))
         .section(gaps(discovery))
-        .section(pictures(overlays))
-        .section(known(discovery));
+        .section(pictures(overlays));
+    let page = further
+        .into_iter()
+        .flatten()
+        .chain([known(discovery)])
+        .fold(page, Page::section);
     render(&page).into_diagnostic()
 }
 
@@ -96,8 +104,8 @@ fn gaps(discovery: &Discovery) -> Section {
         ))
     };
     Section::new("Gap, RMS in the unit of each channel")
-        .table(table("Check motion, never fitted to", &discovery.check))
-        .table(table("Fit motion", &discovery.fit))
+        .table(table("Check motion, never fitted to", &discovery.gap.check))
+        .table(table("Fit motion", &discovery.gap.fit))
 }
 
 fn pictures(overlays: &[Overlay]) -> Section {
@@ -113,6 +121,54 @@ fn pictures(overlays: &[Overlay]) -> Section {
     Section::new("Check motion, channel by channel")
         .paragraph("Before: known parameters moved inside their tolerance, no effect added.")
         .figure_grid(overlays.iter().map(figure).collect(), 2)
+}
+
+fn unknown(unknown: &Unknown) -> Section {
+    let curve = &unknown.curve;
+    let edge = |sign: f64| -> Vec<f64> {
+        let pairs = curve.value.iter().zip(&curve.within);
+        pairs.map(|(v, w)| v + sign * w).collect()
+    };
+    let figure = Figure::new(
+        format!("Against {}", unknown.depends_on),
+        curve.variable.clone(),
+        format!("missing, {}", curve.unit),
+    )
+    .series(Series::line(
+        "estimate",
+        curve.at.clone(),
+        curve.value.clone(),
+    ))
+    .series(Series::line("95 % from", curve.at.clone(), edge(-1.0)))
+    .series(Series::line("to", curve.at.clone(), edge(1.0)));
+    Section::new("What no effect of the library explains")
+        .paragraph(format!(
+            "It sits in the {} and depends on {}. {}",
+            unknown.channel,
+            unknown.depends_on,
+            unknown
+                .formula
+                .clone()
+                .unwrap_or_else(|| { "No short formula does as much as the curve.".to_owned() })
+        ))
+        .paragraph(format!(
+            "Fall of −2 log L: {:.0} on the fit logs, {:.0} on the check logs.",
+            unknown.evidence[0], unknown.evidence[1]
+        ))
+        .figure(figure)
+}
+
+fn next(next: &NextExperiment) -> Section {
+    Section::new("Next experiment").paragraph(format!(
+        "{}: it separates {} from {}. A fall of −2 log L by {:.0} between the two is to be expected; 25 decide. The motion is in next-experiment.toml, for cargo xtask simulate --program and for the machine.",
+        capital(&next.what), next.separates[0], next.separates[1], next.by
+    ))
+}
+
+fn capital(text: &str) -> String {
+    let mut chars = text.chars();
+    let first = chars.next().map(|c| c.to_uppercase().to_string());
+    first.unwrap_or_default() + chars.as_str()
 }
 
 fn known(discovery: &Discovery) -> Section {

@@ -2,6 +2,7 @@
 
 mod compensation;
 pub mod discovery;
+pub mod matrix;
 mod mechanics;
 mod network;
 mod tracking;

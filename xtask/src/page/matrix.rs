@@ -1,0 +1,169 @@
+//! The page on the matrix of hidden effects.
+
+use std::fmt::Write;
+
+use axis_sim::Axis;
+use discrepancy::matrix::{Outcome, Rate, Score};
+
+/// The figures, one a line, as a table in Markdown.
+pub fn figures(score: &Score) -> String {
+    let mut text = String::from("| figure | value | target |\n|---|---|---|\n");
+    let mut rate = |name: &str, rate: &Rate, target: &str| {
+        let value = if rate.of == 0 {
+            "none asked".to_owned()
+        } else {
+            format!(
+                "{} of {} ({:.1} %)",
+                rate.hits,
+                rate.of,
+                100.0 * rate.share()
+            )
+        };
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "| {name} | {value} | {target} |");
+    };
+    rate(
+        "clean machines given an effect",
+        &score.false_alarms,
+        "≤ 1 %",
+    );
+    rate("single effects that can be seen", &score.detectable, "");
+    rate(
+        "of these, that can be told from all others",
+        &score.separable,
+        "",
+    );
+    rate(
+        "seen and told apart: named first",
+        &score.right_first,
+        "≥ 95 %",
+    );
+    rate(
+        "seen: named first, or in the class of the first",
+        &score.in_class,
+        "≥ 99 %",
+    );
+    rate(
+        "one to three effects: a wrong first name without the right one in its class",
+        &score.confident_wrong,
+        "≤ 1 %",
+    );
+    rate("not to be seen: silence, or right", &score.silence, "");
+    rate(
+        "both of a pair named, where both are seen and told apart",
+        &score.both_of_pair,
+        "≥ 95 %",
+    );
+    rate("all three of a triple, likewise", &score.all_of_triple, "");
+    rate(
+        "outside the library, seen: unknown, partly explained, or by a foreseen look-alike",
+        &score.outside,
+        "≥ 95 %",
+    );
+    rate(
+        "taken out of the library, seen: likewise",
+        &score.left_out,
+        "≥ 95 %",
+    );
+    rate(
+        "95 % intervals that hold the truth",
+        &score.coverage,
+        "90 to 98 %",
+    );
+    rate(
+        "proposed experiments that split their class",
+        &score.splits,
+        "≥ 90 %",
+    );
+    let percent = |v: f64| format!("{:.2} %", 100.0 * v);
+    for (name, [median, most], target) in [
+        (
+            "error of sizes, known parameters told: median, 90 %",
+            score.error,
+            "≤ 2 %, ≤ 8 %",
+        ),
+        (
+            "error of sizes as estimated: median, 90 %",
+            score.raw_error,
+            "",
+        ),
+    ] {
+        let _ = writeln!(
+            text,
+            "| {name} | {}, {} | {target} |",
+            percent(median),
+            percent(most)
+        );
+    }
+    let _ = writeln!(
+        text,
+        "| gap gone on check motion, single effects: median | {} | ≥ 95 % |",
+        percent(score.reduction)
+    );
+    text
+}
+
+/// The whole page.
+pub fn page(axis: &Axis, seed: u64, all: usize, outcomes: &[Outcome], score: &Score) -> String {
+    let mut text = format!(
+        "# Hidden effects, searched blind\n\nMachine: {}. Seed {seed}. {} of {all} cases run.\n\
+        `cargo xtask discover-matrix` makes this page; docs/theory/discrepancy.md says how cases\n\
+        are made and counted. Everything here is simulated.\n\n{}",
+        axis.name,
+        outcomes.len(),
+        figures(score)
+    );
+    if !score.failed.is_empty() {
+        let _ = writeln!(text, "\nWithout a verdict:\n");
+        for failed in &score.failed {
+            let _ = writeln!(text, "- {failed}");
+        }
+    }
+    let _ = writeln!(
+        text,
+        "\n## Cases\n\nGain: expected fall of D, known beforehand. Class: effects foreseen to look alike.\n\n\
+        | case | motion | noise | hidden | gain | class | verdict | named (alike) | gap gone |\n|---|---|---|---|---|---|---|---|---|"
+    );
+    let mut sorted: Vec<&Outcome> = outcomes.iter().collect();
+    sorted.sort_by(|a, b| a.case.id.cmp(&b.case.id));
+    for outcome in sorted {
+        let _ = writeln!(text, "{}", row(outcome));
+    }
+    text
+}
+
+fn row(outcome: &Outcome) -> String {
+    let case = &outcome.case;
+    let join = |all: Vec<String>| {
+        if all.is_empty() {
+            "–".to_owned()
+        } else {
+            all.join("; ")
+        }
+    };
+    let hidden = case.hidden.iter().map(|h| {
+        let values: Vec<String> = h.values.iter().map(|v| format!("{v:.3e}")).collect();
+        format!("{} {}", h.name, values.join(" "))
+    });
+    let gains = outcome.foreseen.iter().map(|f| format!("{:.0}", f.gain));
+    let classes = outcome.foreseen.iter().flat_map(|f| f.class.clone());
+    let named = outcome.named.iter().map(|n| {
+        if n.alike.is_empty() {
+            n.name.clone()
+        } else {
+            format!("{} ({})", n.name, n.alike.join(", "))
+        }
+    });
+    let verdict = outcome.verdict.map_or("none", discrepancy::Verdict::name);
+    format!(
+        "| {} | {} | {:.2} | {} | {} | {} | {verdict} | {} | {:.1} % |",
+        case.id,
+        case.exercise.name(),
+        case.noise,
+        join(hidden.collect()),
+        join(gains.collect()),
+        join(classes.collect()),
+        join(named.collect()),
+        100.0 * outcome.reduction
+    )
+}
