@@ -1,6 +1,7 @@
 //! Parquet as a table.
 
 use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use parquet::basic::{ConvertedType, Repetition, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -23,7 +24,7 @@ pub(crate) struct ParquetTable {
 
 impl ParquetTable {
     pub(crate) fn open(file: File) -> Result<Self, ReadProblem> {
-        let reader = SerializedFileReader::new(file).map_err(refused)?;
+        let reader = guarded(|| SerializedFileReader::new(file).map_err(refused))?;
         let schema = reader.metadata().file_metadata().schema_descr_ptr();
         let head = |column: &ColumnDescriptor| Head {
             name: column.path().string(),
@@ -71,12 +72,23 @@ impl Table for ParquetTable {
     }
 
     fn read(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, ReadProblem> {
-        wanted.iter().map(|&index| self.column(index)).collect()
+        let all = wanted.iter();
+        all.map(|&index| guarded(|| self.column(index))).collect()
     }
 
     fn place(&self, row: usize, _: usize) -> Place {
         Place::Row { row: row + 1 }
     }
+}
+
+/// The decoder may panic on a damaged page (of values by a dictionary that the
+/// column does not have). Nothing that it was working on is used afterwards.
+fn guarded<T>(read: impl FnOnce() -> Result<T, ReadProblem>) -> Result<T, ReadProblem> {
+    catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| {
+        Err(ReadProblem::Parquet {
+            reason: "a page of it is damaged".to_owned(),
+        })
+    })
 }
 
 /// Appends what is left in the reader. Answers the row, from 0 over the whole

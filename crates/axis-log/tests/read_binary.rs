@@ -236,15 +236,26 @@ proptest! {
     fn no_damage_to_a_parquet_file_makes_the_reader_panic(
         flips in prop::collection::vec((0..10_000usize, any::<u8>()), 1..8),
     ) {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("x.parquet");
-        let columns = [
-            Column::new("t_s", Values::Double(vec![0.0, 1.0, 2.0])),
-            Column::new("x_m", Values::OptionalDouble(vec![Some(1.0), Some(2.0), Some(3.0)])),
-        ];
-        parquet_file::write(&path, &columns, 2);
-        damaged(fs::read(&path).unwrap(), &flips, "x.parquet");
+        damaged(small_parquet(), &flips, "x.parquet");
     }
+}
+
+#[test]
+fn a_page_that_asks_for_a_dictionary_it_has_not_is_refused() {
+    // Found by the property above: the decoder panics on it.
+    damaged(small_parquet(), &[(9980, 163)], "x.parquet");
+}
+
+fn small_parquet() -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.parquet");
+    let force = vec![Some(1.0), Some(2.0), Some(3.0)];
+    let columns = [
+        Column::new("t_s", Values::Double(vec![0.0, 1.0, 2.0])),
+        Column::new("x_m", Values::OptionalDouble(force)),
+    ];
+    parquet_file::write(&path, &columns, 2);
+    fs::read(&path).unwrap()
 }
 
 /// Whatever is read from a damaged file is either refused or a proper log.
