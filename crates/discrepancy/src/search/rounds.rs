@@ -152,6 +152,16 @@ impl Search<'_> {
             }
             r.gain = gain(&r.fit);
         });
+        // Those that are near one another are compared where they end, or a
+        // simple one that is not there yet loses to one that contains it.
+        let best = refined.iter().map(|r| r.gain).fold(0.0, f64::max);
+        let near = |r: &Refined| r.gain > 0.8 * best;
+        if refined.iter().filter(|r| near(r)).count() > 1 {
+            refined.par_iter_mut().filter(|r| near(r)).for_each(|r| {
+                r.fit = fitter.refine(r.fit.clone(), &self.known, 8);
+                r.gain = gain(&r.fit);
+            });
+        }
         refined.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         simplest_first(refined)
     }
