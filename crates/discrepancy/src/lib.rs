@@ -48,7 +48,7 @@ pub use known::{Known, known_parameters, tolerance, with_known};
 pub use lack::{Curve, Unknown};
 pub use model::{LogSet, Prepared, State};
 pub use outcome::{
-    AtScrew, ChannelGap, Discovered, Discovery, EffectFound, Gap, Gaps, NextExperiment, Overlay,
-    ParameterFound, Recalibrated, Verdict, discovery,
+    Against, AtScrew, ChannelGap, Discovered, Discovery, EffectFound, Gap, Gaps, Likeness,
+    NextExperiment, Overlay, ParameterFound, Recalibrated, Shown, Verdict, discovery,
 };
 pub use search::{Alike, Found, Library, Named, ONE_CLASS, RunnerUp, Settings, search};

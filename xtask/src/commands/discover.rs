@@ -8,7 +8,7 @@ use axis_sim::effects::{ActiveEffect, Effect, Machine};
 use clap::Args;
 use discrepancy::intake::{check_distinct, check_log};
 use discrepancy::summary::{MeasuredError, SummaryFound, rank, tried};
-use discrepancy::{Discovered, Discovery, LogSet, Settings, Verdict, discovery, search};
+use discrepancy::{Discovery, LogSet, Settings, Verdict, discovery, search};
 use indicatif::ProgressBar;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
@@ -110,25 +110,22 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
     })
     .into_diagnostic()
     .wrap_err("the axis as its file says does not run these logs")?;
-    let Discovered {
-        discovery,
-        overlays,
-        ..
-    } = discovery(machine, &fit, &check, &found).into_diagnostic()?;
+    let discovered = discovery(machine, &fit, &check, &found).into_diagnostic()?;
+    let discovery = &discovered.discovery;
     progress.finish_and_clear();
 
     let added: String = found.fit.state.effects.iter().map(entry).collect();
     let text = format!("{}{added}", read_text(&options.axis)?);
-    let json = serde_json::to_vec_pretty(&discovery).into_diagnostic()?;
+    let json = serde_json::to_vec_pretty(discovery).into_diagnostic()?;
     write_whole(&out.join("discovery.json"), &json)?;
     write_whole(&out.join("axis.toml"), text.as_bytes())?;
     if let Some(next) = &discovery.next_experiment {
         let program = toml::to_string(&next.program).into_diagnostic()?;
         write_whole(&out.join(NEXT), program.as_bytes())?;
     }
-    let html = page::discovery::page(&discovery, &overlays)?;
+    let html = page::discovery::page(&discovered)?;
     write_whole(&out.join("report.html"), html.as_bytes())?;
-    tell(&discovery, &added, out)
+    tell(discovery, &added, out)
 }
 
 /// File of the proposed motion.

@@ -2,12 +2,13 @@
 
 use axis_sim::Axis;
 use discrepancy::summary::SummaryFound;
-use discrepancy::{Discovery, Gap, NextExperiment, Overlay, Unknown, Verdict};
+use discrepancy::{Against, Discovered, Discovery, Gap, NextExperiment, Overlay, Unknown, Verdict};
 use miette::{IntoDiagnostic, Result};
 use report::{Cell, Figure, Notice, Page, Section, Series, Table, render};
 
 /// The page as HTML.
-pub fn page(discovery: &Discovery, overlays: &[Overlay]) -> Result<String> {
+pub fn page(discovered: &Discovered) -> Result<String> {
+    let discovery = &discovered.discovery;
     let kind = match discovery.verdict {
         Verdict::Explained | Verdict::NothingMissing => Notice::Good,
         Verdict::PartlyExplained | Verdict::Unknown => Notice::Warn,
@@ -22,11 +23,13 @@ pub fn page(discovery: &Discovery, overlays: &[Overlay]) -> Result<String> {
         .section(verdict)
         .section(effects(discovery))
         .section(gaps(discovery))
-        .section(pictures(overlays));
-    let page = further
+        .section(pictures(&discovered.overlays));
+    let against = Some(&discovered.against).filter(|all| !all.is_empty());
+    let page = [against.map(|all| dependences(all))]
         .into_iter()
+        .chain(further)
         .flatten()
-        .chain([known(discovery)])
+        .chain([likenesses(discovery), known(discovery)])
         .fold(page, Page::section);
     render(&page).into_diagnostic()
 }
@@ -121,6 +124,45 @@ fn pictures(overlays: &[Overlay]) -> Section {
     Section::new("Check motion, channel by channel")
         .paragraph("Before: known parameters moved inside their tolerance, no effect added.")
         .figure_grid(overlays.iter().map(figure).collect(), 2)
+}
+
+fn dependences(all: &[Against]) -> Section {
+    let figure = |a: &Against| {
+        Figure::new(
+            a.effect.clone(),
+            a.variable.clone(),
+            format!("mean of log − model: {}", a.channel),
+        )
+        .series(Series::line("without it", a.at.clone(), a.without.clone()))
+        .series(Series::line("with it", a.at.clone(), a.with.clone()))
+    };
+    Section::new("What is left, against what the effect depends on")
+        .paragraph("Check motion, in the channel whose rest the variable makes out best; all other named effects are in the model both times.")
+        .figure_grid(all.iter().map(figure).collect(), 2)
+}
+
+fn likenesses(discovery: &Discovery) -> Section {
+    let mut table = Table::new(
+        "Every effect of the library on the fit motion",
+        ["Effect", "shown from about", "all that it does is done by"],
+    )
+    .note("Shown from: what the search would name beside noise and known parameters, the response taken for linear; a dash where an effect has several sizes, or where ten times its typical size would not show. In brackets the sine of the largest angle between the two; below 0.15 they are one class.");
+    for l in &discovery.likenesses {
+        let shown = l
+            .shown_from
+            .as_ref()
+            .map_or("–".to_owned(), |s| format!("{:.2e} {}", s.value, s.unit));
+        let alike = l
+            .alike
+            .iter()
+            .map(|(name, sine)| format!("{name} ({sine:.2})"));
+        table = table.row([
+            Cell::text(l.name.clone()),
+            Cell::text(shown),
+            Cell::text(alike.collect::<Vec<_>>().join(", ")),
+        ]);
+    }
+    Section::new("What these logs can tell").table(table)
 }
 
 fn unknown(unknown: &Unknown) -> Section {

@@ -11,14 +11,15 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use trajectories::TrajectoryError;
 
-use super::{Case, HiddenEffect};
+use super::{Case, HiddenEffect, Kind};
+use crate::Settings;
 use crate::bounded::bounded;
 use crate::experiment::noise_on;
 use crate::fit::{Columns, Fit, Fitter, known_deviation, pinned};
 use crate::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
 use crate::known::tolerance;
 use crate::model::{LogSet, State};
-use crate::screen::{Projector, Response, responses_in, sine};
+use crate::screen::{Candidate, Projector, Response, responses_in, sine};
 use crate::search::{Library, ONE_CLASS, needed};
 use crate::spectrum::{Amplitudes, Whitener};
 
@@ -45,6 +46,20 @@ pub struct Foreseen {
     /// Effects of the library that do nearly the same on this log: the sine of
     /// their angle is below [`ONE_CLASS`], or too little is left beside them.
     pub class: Vec<String>,
+    /// Of an effect that the search does not have: what those it has make of it.
+    pub imitation: Option<Imitation>,
+}
+
+/// How far the library's effects together do what another effect does.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Imitation {
+    /// The effects, as many as a search may name at most.
+    pub by: Vec<String>,
+    /// Fall of D that is left beside them.
+    pub left: f64,
+    /// Whether that is less than twice what the search asks for: no search can
+    /// then say that something else is there.
+    pub complete: bool,
 }
 
 /// What is the same for all cases on one motion.
@@ -128,19 +143,20 @@ impl Bench {
             let others = (0..responses.len()).filter(|&j| j != i);
             let others: Vec<&DVector<f64>> = others.filter_map(|j| responses[j].as_ref()).collect();
             let name = &case.hidden[i].name;
-            Some(self.judge(name, own, &others, &shares, case.noise))
+            Some(self.judge(case, name, own, &others, &shares))
         };
         (0..case.hidden.len()).map(one).collect()
     }
 
     fn judge(
         &self,
+        case: &Case,
         name: &str,
         own: &DVector<f64>,
         others: &[&DVector<f64>],
         shares: &[f64],
-        noise: f64,
     ) -> Foreseen {
+        let noise = case.noise;
         let mut columns: Vec<DVector<f64>> =
             self.known.iter().map(|c| self.white(c, noise)).collect();
         let off = columns
@@ -167,10 +183,21 @@ impl Bench {
         let all = responses_in(&self.library.candidates, others, through, &seen);
         let mut class: Vec<String> = all.par_iter().filter_map(near).collect();
         class.dedup();
+        let absent = case.kind == Kind::Outside || case.rejected.iter().any(|r| r == name);
+        let imitation = absent.then(|| {
+            let has = |e: &Effect| !case.rejected.iter().any(|r| r == e.name);
+            let (by, left) = imitate(&self.library.candidates, has, through, &seen);
+            Imitation {
+                by,
+                left,
+                complete: left < 2.0 * needed,
+            }
+        });
         Foreseen {
             gain,
             detectable: gain >= 2.0 * needed,
             class,
+            imitation,
         }
     }
 
@@ -215,6 +242,61 @@ impl Bench {
         let change = set.difference(&traces, &self.nominal.traces, 1.0);
         Some(self.white(&change, noise))
     }
+}
+
+/// The effects that together come nearest to what is `seen`, chosen one after
+/// another, their sizes inside their bounds; and what they leave of it.
+fn imitate(
+    library: &[Candidate],
+    has: impl Fn(&Effect) -> bool + Sync,
+    through: impl Fn(&Amplitudes) -> DVector<f64> + Sync,
+    seen: &DVector<f64>,
+) -> (Vec<String>, f64) {
+    let mut chosen: Vec<Response> = Vec::new();
+    let mut rest = seen.clone();
+    for _ in 0..Settings::default().most_effects {
+        let free = |e: &Effect| has(e) && chosen.iter().all(|c| c.effect.name != e.name);
+        let with = |candidate: Response| {
+            let together: Vec<&Response> = chosen.iter().chain([&candidate]).collect();
+            let rest = left_by(&together, seen);
+            (rest.norm_squared(), rest, candidate)
+        };
+        let tried = responses_in(library, free, &through, &rest);
+        let tried: Vec<_> = tried.into_par_iter().map(with).collect();
+        let best = tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, left, candidate)) = best else {
+            break;
+        };
+        chosen.push(candidate);
+        rest = left;
+    }
+    let names = chosen.iter().map(|c| c.effect.name.to_owned());
+    (names.collect(), rest.norm_squared())
+}
+
+/// What sizes inside their bounds leave of what is seen.
+fn left_by(responses: &[&Response], seen: &DVector<f64>) -> DVector<f64> {
+    let columns: Vec<&DVector<f64>> = responses.iter().flat_map(|r| &r.columns).collect();
+    let rooms: Vec<Option<[f64; 2]>> = responses.iter().flat_map(|r| rooms(r)).collect();
+    let n = columns.len();
+    let normal = DMatrix::from_fn(n, n, |i, j| columns[i].dot(columns[j]));
+    let right = DVector::from_fn(n, |i, _| columns[i].dot(seen));
+    let x = bounded(&normal, &right, |i| rooms[i]);
+    let done = columns.iter().zip(x.iter());
+    done.fold(seen.clone(), |rest, (c, &x)| rest - *c * x)
+}
+
+/// Bounds of the columns of a response, which are those of typical sizes; one
+/// with a phase has two, free both.
+fn rooms(response: &Response) -> Vec<Option<[f64; 2]>> {
+    let parameters = response.effect.parameters;
+    if parameters.iter().any(|p| p.name == "phase") {
+        return vec![None; response.columns.len()];
+    }
+    let sizes = parameters.iter().filter(|p| p.size);
+    sizes
+        .map(|p| Some(p.bounds.map(|edge| edge / p.typical)))
+        .collect()
 }
 
 /// The effect of that name, in the library or outside of it.

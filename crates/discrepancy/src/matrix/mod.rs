@@ -13,13 +13,13 @@ mod score;
 mod trial;
 
 pub use design::{Sizes, cases};
-pub use foresee::{Bench, BenchError, Foreseen};
+pub use foresee::{Bench, BenchError, Foreseen, Imitation};
 pub use score::{Rate, Score};
 
 use serde::{Deserialize, Serialize};
 
 use crate::hidden::Exercise;
-use crate::{Unknown, Verdict};
+use crate::{ChannelGap, Unknown, Verdict};
 
 /// What kind of question a case asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -128,6 +128,8 @@ pub struct Outcome {
     pub estimates: Vec<Estimate>,
     /// Share of the gap on check motion that is gone.
     pub reduction: f64,
+    /// The gap on check motion, channel by channel.
+    pub check: Vec<ChannelGap>,
     /// What was found that is in no library.
     pub unknown: Option<Unknown>,
     /// The experiment that was proposed, run.

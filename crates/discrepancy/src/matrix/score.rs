@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Estimate, Kind, Outcome};
+use super::{Estimate, Foreseen, Kind, Outcome};
 use crate::Verdict;
 
 /// So many of so many.
@@ -52,8 +52,11 @@ pub struct Score {
     pub both_of_pair: Rate,
     /// All three of a triple, likewise.
     pub all_of_triple: Rate,
-    /// Outside the library, seen: not called explained.
+    /// Outside the library, seen, and not to be imitated by it: not called
+    /// explained.
     pub outside: Rate,
+    /// Outside the library and seen: what the library's effects imitate.
+    pub imitated: Rate,
     /// Taken out of the library, seen: not called explained, or by a foreseen
     /// look-alike.
     pub left_out: Rate,
@@ -117,7 +120,11 @@ impl Score {
             }),
             both_of_pair: both(Kind::Pair),
             all_of_triple: both(Kind::Triple),
-            outside: Rate::count(of(Kind::Outside).filter(|o| detectable(o)), |o| honest(o)),
+            outside: Rate::count(
+                of(Kind::Outside).filter(|o| detectable(o) && !imitated(o)),
+                |o| honest(o),
+            ),
+            imitated: Rate::count(of(Kind::Outside).filter(|o| detectable(o)), |o| imitated(o)),
             left_out: Rate::count(of(Kind::LeftOut).filter(|o| detectable(o)), |o| honest(o)),
             error: errors(|e| e.given_known),
             raw_error: errors(|e| e.value),
@@ -167,11 +174,20 @@ fn all_named(outcome: &Outcome) -> bool {
     hidden.all(|h| outcome.named.iter().any(|n| n.name == h.name))
 }
 
+fn imitated(outcome: &Outcome) -> bool {
+    let complete = |f: &Foreseen| f.imitation.as_ref().is_some_and(|i| i.complete);
+    outcome.foreseen.iter().any(complete)
+}
+
 /// Not called explained; or by an effect that was foreseen to look the same.
 fn honest(outcome: &Outcome) -> bool {
     let alike = || {
         let first = outcome.named.first();
-        first.is_some_and(|n| outcome.foreseen.iter().any(|f| f.class.contains(&n.name)))
+        let foretold = |f: &Foreseen, name: &String| {
+            let imitation = f.imitation.as_ref().filter(|i| i.complete);
+            f.class.contains(name) || imitation.is_some_and(|i| i.by.contains(name))
+        };
+        first.is_some_and(|n| outcome.foreseen.iter().any(|f| foretold(f, &n.name)))
     };
     match outcome.verdict {
         Some(Verdict::Unknown | Verdict::PartlyExplained) => true,

@@ -21,6 +21,7 @@ impl Bench {
             gain: 0.0,
             detectable: false,
             class: Vec::new(),
+            imitation: None,
         };
         let mut outcome = Outcome {
             case: case.clone(),
@@ -33,6 +34,7 @@ impl Bench {
             named: Vec::new(),
             estimates: Vec::new(),
             reduction: 0.0,
+            check: Vec::new(),
             unknown: None,
             split: None,
         };
@@ -62,6 +64,7 @@ impl Bench {
         let told = told.discovery;
         outcome.verdict = Some(told.verdict);
         outcome.reduction = told.gap.check.reduction;
+        outcome.check.clone_from(&told.gap.check.channels);
         outcome.unknown = told.unknown.clone();
         outcome.named = named(&found, &told);
         outcome.estimates = estimates(&found, &hidden);

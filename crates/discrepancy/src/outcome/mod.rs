@@ -1,11 +1,17 @@
 //! What a discovery says: verdict, effects with intervals, gap before and after.
 
+mod against;
+mod likeness;
 mod noise;
 mod types;
 
 use axis_sim::ReplayError;
 use axis_sim::effects::Machine;
 
+pub use self::against::Against;
+use self::against::against;
+use self::likeness::likenesses;
+pub use self::likeness::{Likeness, Shown};
 use self::noise::{floors, sensor_noise};
 pub use self::types::{
     AtScrew, ChannelGap, Discovery, EffectFound, Gap, Gaps, NextExperiment, ParameterFound,
@@ -25,6 +31,8 @@ pub struct Discovered {
     pub discovery: Discovery,
     /// Pictures of the check logs.
     pub overlays: Vec<Overlay>,
+    /// The check logs' rest against what each named effect depends on.
+    pub against: Vec<Against>,
     /// The next experiment, with the values of both rivals.
     pub proposal: Option<Proposal>,
 }
@@ -60,22 +68,34 @@ pub fn discovery(
     let before_of = |set: &LogSet| -> Result<Rest, ReplayError> {
         Ok(set.rest(&set.simulate(machine, &initial)?))
     };
-    let gap_of = |before: &Rest, set: &LogSet| -> Result<(Gap, Vec<f64>), ReplayError> {
+    let fit = {
+        let set = &found.fit_logs;
         let after = set.rest(&set.simulate(machine, full)?);
         let floors = floors(machine, set, full, &after)?;
-        Ok((gap(set, before, &after, &floors), floors))
+        gap(set, &before_of(fit_logs)?, &after, &floors)
     };
-    let (fit, _) = gap_of(&before_of(fit_logs)?, &found.fit_logs)?;
+    let set = &found.check_logs;
     let before = before_of(check_logs)?;
-    let (check, check_floors) = gap_of(&before, &found.check_logs)?;
+    let traces = set.simulate(machine, full)?;
+    let after = set.rest(&traces);
+    let check_floors = floors(machine, set, full, &after)?;
+    let check = gap(set, &before, &after, &check_floors);
 
     let mut effects = Vec::new();
+    let mut pictured = Vec::new();
     for (index, named) in found.named.iter().enumerate() {
-        let mut without = full.clone();
-        without.effects.remove(index);
-        let set = &found.check_logs;
-        let after = set.rest(&set.simulate(machine, &without)?);
-        let lost = gap(set, &before, &after, &check_floors);
+        let mut other = full.clone();
+        let taken = other.effects.remove(index).effect;
+        let without = set.rest(&set.simulate(machine, &other)?);
+        let lost = gap(set, &before, &without, &check_floors);
+        pictured.extend(against(
+            machine,
+            set,
+            &traces,
+            taken,
+            [&without, &after],
+            &check_floors,
+        ));
         effects.push(effect_found(
             machine,
             found,
@@ -118,13 +138,7 @@ pub fn discovery(
             tolerance: tolerance(machine),
         })
         .collect();
-    let overlays = overlays(
-        check_logs,
-        &check_logs.rest(&base.traces),
-        &found
-            .check_logs
-            .rest(&found.check_logs.simulate(machine, full)?),
-    );
+    let overlays = overlays(check_logs, &check_logs.rest(&base.traces), &after);
     let discovery = Discovery {
         schema: 1,
         axis: name,
@@ -139,11 +153,13 @@ pub fn discovery(
         unknown,
         gap: Gaps { fit, check },
         recalibrated,
+        likenesses: likenesses(machine, found),
         next_experiment: proposal.as_ref().map(next_experiment),
     };
     Ok(Discovered {
         discovery,
         overlays,
+        against: pictured,
         proposal,
     })
 }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use trajectories::Program;
 
+use super::likeness::Likeness;
 use crate::lack::Unknown;
 
 /// The verdict on a model.
@@ -82,7 +83,7 @@ pub struct EffectFound {
 }
 
 /// Root-mean-square gap of a channel, in its unit.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChannelGap {
     /// Name with unit.
     pub channel: String,
@@ -158,6 +159,8 @@ pub struct Discovery {
     pub gap: Gaps,
     /// Known parameters.
     pub recalibrated: Vec<Recalibrated>,
+    /// What these logs can tell of each effect of the library.
+    pub likenesses: Vec<Likeness>,
     /// What to run next, where effects look alike.
     pub next_experiment: Option<NextExperiment>,
 }
