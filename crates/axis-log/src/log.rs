@@ -99,6 +99,24 @@ impl Log {
         self.time().len()
     }
 
+    /// The log without its first `instants`; its times stay as they are.
+    ///
+    /// # Errors
+    /// [`LogError::Empty`] where nothing is left.
+    pub fn skip(&self, instants: usize) -> Result<Self, LogError> {
+        if instants >= self.len() {
+            return Err(LogError::Empty);
+        }
+        let rest = |c: &Channel| Channel {
+            name: c.name.clone(),
+            unit: c.unit.clone(),
+            samples: c.samples[instants..].to_vec(),
+        };
+        Ok(Self {
+            channels: self.channels.iter().map(rest).collect(),
+        })
+    }
+
     /// The log with every `every`th instant only, from the first one on.
     ///
     /// The samples in between are dropped, not averaged: what lies above half

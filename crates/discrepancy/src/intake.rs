@@ -84,6 +84,16 @@ pub enum IntakeError {
         /// What it lacks.
         missing: &'static str,
     },
+    /// It never stands still, so a simulation cannot begin like it.
+    #[error(
+        "{file}: starts in motion, at {speed:.4} m/s, and never rests for {REST_TIME} s: where the loop stands at its start is not in the log; record from rest"
+    )]
+    NeverRests {
+        /// The log.
+        file: String,
+        /// At its start, m/s.
+        speed: f64,
+    },
     /// The same samples to fit and to check.
     #[error(
         "{check} holds the same samples as {fit}: a check must be motion that was not fitted to; give another log"
@@ -158,6 +168,71 @@ pub fn check_log(file: &str, log: &Log, machine: &Machine) -> Result<f64, Intake
         missing,
     })
 }
+
+/// A log as a replay can begin it, and what was done for that, in words.
+///
+/// A ball-screw loop begins at rest: of a log that starts in motion, what lies
+/// before its first rest is left out. A rigid machine begins with the position
+/// and the speed of the log's first samples.
+///
+/// # Errors
+/// [`IntakeError::NeverRests`].
+pub fn from_rest(
+    file: &str,
+    log: Log,
+    period: f64,
+    machine: &Machine,
+) -> Result<(Log, Option<String>), IntakeError> {
+    let Ok(reference) = log.channel("position_ref_m") else {
+        return Ok((log, None));
+    };
+    let few = ((START_TIME / period).round() as usize).clamp(1, reference.len().max(2) - 1);
+    let speed = match reference.get(few) {
+        Some(later) => (later - reference[0]) / (few as f64 * period),
+        None => 0.0,
+    };
+    if speed.abs() <= AT_REST {
+        return Ok((log, None));
+    }
+    if let Machine::Rigid(_) = machine {
+        let words = format!(
+            "{file} starts in motion; position and speed at its start ({speed:.4} m/s) are taken from its first samples"
+        );
+        return Ok((log, Some(words)));
+    }
+    let rest = (REST_TIME / period).round() as usize;
+    let still = |window: &[f64]| {
+        let ends = window
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+        ends.1 - ends.0 <= AT_REST * REST_TIME
+    };
+    let first = reference.windows(rest + 1).position(still);
+    // So late that nothing follows is as good as never.
+    let left = first.and_then(|k| Some((k, log.skip(k + rest / 2).ok()?)));
+    match left {
+        Some((k, left)) => {
+            let from = log.time()[k + rest / 2];
+            let words = format!(
+                "{file} starts in motion ({speed:.4} m/s); what lies before its first rest, at t = {from:.3} s, is left out"
+            );
+            Ok((left, Some(words)))
+        }
+        None => Err(IntakeError::NeverRests {
+            file: file.to_owned(),
+            speed,
+        }),
+    }
+}
+
+/// Reference speed below which a log is at rest, m/s.
+const AT_REST: f64 = 1e-3;
+
+/// Over what time a log's first speed is taken, s.
+const START_TIME: f64 = 5e-3;
+
+/// How long a rest must be for the loop to have come to rest in its half, s.
+const REST_TIME: f64 = 0.2;
 
 fn on_stroke(file: &str, log: &Log, machine: &Machine) -> Result<(), IntakeError> {
     let stroke: &Stroke = match machine {

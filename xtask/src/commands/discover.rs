@@ -6,7 +6,7 @@ use axis_log::{Log, read_log};
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, Machine};
 use clap::Args;
-use discrepancy::intake::{check_distinct, check_log};
+use discrepancy::intake::{check_distinct, check_log, from_rest};
 use discrepancy::summary::{MeasuredError, SummaryFound, rank, tried};
 use discrepancy::{Discovery, LogSet, Settings, Verdict, discovery, search};
 use indicatif::ProgressBar;
@@ -91,11 +91,13 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
             "\"{both}\" is both accepted and rejected; give it once"
         ));
     }
-    let fit = read_all(&options.fit, machine)?;
-    let check = read_all(&options.check, machine)?;
+    let mut notes = Vec::new();
+    let fit = read_all(&options.fit, machine, &mut notes)?;
+    let check = read_all(&options.check, machine, &mut notes)?;
     check_distinct(&fit, &check).into_diagnostic()?;
     let fit = LogSet::new(fit, machine).into_diagnostic()?;
     let check = LogSet::new(check, machine).into_diagnostic()?;
+    notes.iter().try_for_each(say)?;
     say(format!("channels compared: {}", fit.channels.join(", ")))?;
 
     let settings = Settings {
@@ -110,7 +112,8 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
     })
     .into_diagnostic()
     .wrap_err("the axis as its file says does not run these logs")?;
-    let discovered = discovery(machine, &fit, &check, &found).into_diagnostic()?;
+    let mut discovered = discovery(machine, &fit, &check, &found).into_diagnostic()?;
+    discovered.discovery.notes = notes;
     let discovery = &discovered.discovery;
     progress.finish_and_clear();
 
@@ -131,7 +134,12 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
 /// File of the proposed motion.
 const NEXT: &str = "next-experiment.toml";
 
-fn read_all(paths: &[PathBuf], machine: &Machine) -> Result<Vec<(String, Log, f64)>> {
+/// Reads logs and looks at them; what was done to any goes to `notes`.
+fn read_all(
+    paths: &[PathBuf],
+    machine: &Machine,
+    notes: &mut Vec<String>,
+) -> Result<Vec<(String, Log, f64)>> {
     let mapping = match machine {
         Machine::BallScrew(axis) => &axis.log,
         Machine::Rigid(axis) => &axis.log,
@@ -140,6 +148,8 @@ fn read_all(paths: &[PathBuf], machine: &Machine) -> Result<Vec<(String, Log, f6
         let name = path.display().to_string();
         let log = read_log(path, mapping, &["position_ref_m", "position_m"]).into_diagnostic()?;
         let period = check_log(&name, &log, machine).into_diagnostic()?;
+        let (log, note) = from_rest(&name, log, period, machine).into_diagnostic()?;
+        notes.extend(note);
         Ok((name, log, period))
     };
     paths.iter().map(one).collect()

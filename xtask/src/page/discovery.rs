@@ -14,6 +14,10 @@ pub fn page(discovered: &Discovered) -> Result<String> {
         Verdict::PartlyExplained | Verdict::Unknown => Notice::Warn,
     };
     let verdict = Section::new("Verdict").notice(kind, discovery.sentence.clone());
+    let verdict = discovery
+        .notes
+        .iter()
+        .fold(verdict, |v, n| v.paragraph(format!("{n}.")));
     let further = [
         discovery.unknown.as_ref().map(unknown),
         discovery.next_experiment.as_ref().map(next),

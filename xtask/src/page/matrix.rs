@@ -39,6 +39,11 @@ pub fn figures(score: &Score) -> String {
         "≥ 95 %",
     );
     rate(
+        "seen: named first, with look-alikes or without",
+        &score.seen_first,
+        "",
+    );
+    rate(
         "seen: named first, or in the class of the first",
         &score.in_class,
         "≥ 99 %",

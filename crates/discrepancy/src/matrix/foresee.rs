@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Machine};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectParameter, Machine};
 use axis_sim::{Axis, ReplayError};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -108,7 +108,7 @@ impl Bench {
         };
         let nominal = fitter.at(State::initial(&machine))?;
         let known = fitter.known_columns(&nominal);
-        let library = Arc::new(Library::new(&fitter, &nominal));
+        let library = Arc::new(Library::new(&fitter, &nominal, known.clone()));
         let noise = noise_on(&machine, &nominal.state, &templates[0], Noise::GOOD)?;
         let layout = &templates[0].layout;
         let whitener = layout.whitener(&layout.spectral_matrices(&noise));
@@ -294,9 +294,12 @@ fn rooms(response: &Response) -> Vec<Option<[f64; 2]>> {
         return vec![None; response.columns.len()];
     }
     let sizes = parameters.iter().filter(|p| p.size);
-    sizes
-        .map(|p| Some(p.bounds.map(|edge| edge / p.typical)))
-        .collect()
+    let room = |p: &EffectParameter| {
+        let mut edges = p.bounds.map(|edge| edge / p.typical);
+        edges.sort_by(f64::total_cmp);
+        edges
+    };
+    sizes.map(|p| Some(room(p))).collect()
 }
 
 /// The effect of that name, in the library or outside of it.

@@ -41,6 +41,8 @@ pub struct Score {
     pub separable: Rate,
     /// Detectable and separable single effects named first.
     pub right_first: Rate,
+    /// Detectable single effects named first, told from all others or not.
+    pub seen_first: Rate,
     /// Detectable single effects named first, or in the class of the first.
     pub in_class: Rate,
     /// All machines with library effects whose first name is wrong, and the
@@ -113,6 +115,7 @@ impl Score {
             detectable: Rate::count(&singles, |o| detectable(o)),
             separable: Rate::count(&seen, told),
             right_first: Rate::count(seen.iter().filter(told), |o| first_is_right(o)),
+            seen_first: Rate::count(&seen, |o| first_is_right(o)),
             in_class: Rate::count(&seen, |o| in_class(o)),
             confident_wrong: Rate::count(library, |o| !o.named.is_empty() && !in_class(o)),
             silence: Rate::count(singles.iter().filter(|o| !detectable(o)), |o| {

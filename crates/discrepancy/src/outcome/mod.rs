@@ -142,6 +142,7 @@ pub fn discovery(
     let discovery = Discovery {
         schema: 1,
         axis: name,
+        notes: Vec::new(),
         sentence: sentence(verdict, &effects, &check, unknown.as_ref()),
         verdict,
         effects,

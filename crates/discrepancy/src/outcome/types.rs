@@ -145,6 +145,9 @@ pub struct Discovery {
     pub schema: u32,
     /// Name of the axis.
     pub axis: String,
+    /// What was done to logs before they were compared, for whoever reads them
+    /// to fill in.
+    pub notes: Vec<String>,
     /// Verdict.
     pub verdict: Verdict,
     /// The verdict in a sentence.

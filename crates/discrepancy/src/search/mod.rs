@@ -149,7 +149,9 @@ pub(crate) fn search_with(
         set: fit_logs,
     };
     let start = fitter.at(State::initial(machine))?;
-    let (base, _) = calibrated(&fitter, start);
+    let nominal = library.as_ref().map(|l| l.known.clone());
+    let nominal = nominal.unwrap_or_else(|| fitter.known_columns(&start));
+    let (base, known) = calibrated(&fitter, start, nominal);
     // Defects of the machine with its parameters as they were fitted.
     let (fit_logs, check_logs) = match settled(machine, fit_logs, check_logs, &base) {
         Some((fit, check)) => (fit, check),
@@ -159,10 +161,10 @@ pub(crate) fn search_with(
         machine,
         set: &fit_logs,
     };
-    let (base, known) = calibrated(&fitter, fitter.at(base.state)?);
+    let (base, known) = calibrated(&fitter, fitter.at(base.state)?, known);
     let library = library.unwrap_or_else(|| {
         progress("screening all effects");
-        Arc::new(Library::new(&fitter, &base))
+        Arc::new(Library::new(&fitter, &base, known.clone()))
     });
     let mut search = Search {
         machine,
@@ -193,8 +195,7 @@ pub(crate) fn search_with(
 
 /// The known parameters fitted, and their derivatives where that ends: these
 /// are made anew until it gets no further.
-fn calibrated(fitter: &Fitter<'_>, mut fit: Fit) -> (Fit, Columns) {
-    let mut known = fitter.known_columns(&fit);
+fn calibrated(fitter: &Fitter<'_>, mut fit: Fit, mut known: Columns) -> (Fit, Columns) {
     for _ in 0..3 {
         let before = fit.deviance;
         fit = fitter.refine(fit, &known, 8);
@@ -232,11 +233,14 @@ fn settled(
 pub struct Library {
     pub(crate) candidates: Vec<Candidate>,
     pub(crate) curves: Curves,
+    /// Of the known parameters, as derivatives.
+    pub(crate) known: Columns,
 }
 
 impl Library {
-    pub(crate) fn new(fitter: &Fitter<'_>, fit: &Fit) -> Self {
+    pub(crate) fn new(fitter: &Fitter<'_>, fit: &Fit, known: Columns) -> Self {
         Self {
+            known,
             candidates: candidates(fitter, fit),
             curves: Curves::new(fitter.machine, fitter.set, fit),
         }

@@ -1,0 +1,126 @@
+//! `discover` refuses logs from which nothing may be concluded, naming file,
+//! place and what would be valid, and leaves no result behind.
+
+use std::path::Path;
+use std::process::Command;
+
+/// A log of a rest, a move, a rest, the way back and a rest at 1 kHz.
+fn lines() -> Vec<String> {
+    let ramp = |share: f64| {
+        let s = share.clamp(0.0, 1.0);
+        s * s * (3.0 - 2.0 * s)
+    };
+    let reference = |t: f64| 0.7 + 0.05 * (ramp(2.0 * t - 1.0) - ramp(2.0 * t - 3.0));
+    let row = |k: u32| {
+        let t = f64::from(k) * 1e-3;
+        let position = reference(t - 2e-3) + 1e-7 * (300.0 * t).sin();
+        let iq = (40.0 * t).sin();
+        format!("{t},{},{position},{iq}", reference(t))
+    };
+    let head = "t_s,position_ref_m,position_m,iq_a".to_owned();
+    std::iter::once(head).chain((0..2500).map(row)).collect()
+}
+
+fn write(folder: &Path, name: &str, lines: &[String]) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, lines.join("\n") + "\n").unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+/// A line, one of its cells changed.
+fn with_cell(line: &str, cell: usize, change: impl Fn(&str) -> String) -> String {
+    let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+    cells[cell] = change(&cells[cell]);
+    cells.join(",")
+}
+
+fn message(folder: &Path, fit: &str, check: &str) -> String {
+    let out = folder.join("out");
+    let output = Command::new(env!("CARGO_BIN_EXE_xtask"))
+        .args(["discover", "--fit", fit, "--check", check, "--out"])
+        .arg(&out)
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
+        .output()
+        .unwrap();
+    let both = [&output.stdout[..], &output.stderr[..]].concat();
+    let said = String::from_utf8(both).unwrap();
+    assert!(!output.status.success(), "{fit} was accepted: {said}");
+    assert!(!said.contains("panicked"), "{said}");
+    assert!(!out.exists(), "a result was left behind: {said}");
+    let plain: String = said.chars().filter(|c| !"│╭╰─▶×├".contains(*c)).collect();
+    plain.split_whitespace().collect()
+}
+
+#[test]
+fn bad_logs_are_refused_with_file_and_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let sound = lines();
+    let check = write(folder.path(), "check.csv", &{
+        let mut other = sound.clone();
+        other[1200] = with_cell(&other[1200], 2, |x| {
+            format!("{}", x.parse::<f64>().unwrap() + 1e-9)
+        });
+        other
+    });
+    type Damage = fn(&mut Vec<String>);
+    // What is broken, how, and what the message must say (blanks left out, as
+    // the terminal breaks lines where it likes).
+    let cases: [(&str, Damage, &[&str]); 8] = [
+        (
+            "nan.csv",
+            |l| l[700] = with_cell(&l[700], 2, |_| "NaN".to_owned()),
+            &["line701", "position_m"],
+        ),
+        (
+            "blank.csv",
+            |l| l[700] = with_cell(&l[700], 3, |_| String::new()),
+            &["line701", "iq_a"],
+        ),
+        ("repeated.csv", |l| l[900] = l[899].clone(), &["line901"]),
+        ("unsorted.csv", |l| l.swap(400, 401), &["line402"]),
+        (
+            "gap.csv",
+            |l| {
+                l.drain(800..860);
+            },
+            &["0.79", "s"],
+        ),
+        (
+            "millimetres.csv",
+            |l| {
+                for line in l.iter_mut().skip(1) {
+                    *line = with_cell(line, 2, |x| format!("{}", 1e3 * x.parse::<f64>().unwrap()));
+                }
+            },
+            &["scale=0.001"],
+        ),
+        (
+            "no-position.csv",
+            |l| l[0] = "t_s,position_ref_m,weight_kg,iq_a".to_owned(),
+            &["position_m", "weight_kg"],
+        ),
+        ("one-way.csv", |l| l.truncate(1200), &["onedirectiononly"]),
+    ];
+    for (name, damage, says) in cases {
+        let mut broken = sound.clone();
+        damage(&mut broken);
+        let fit = write(folder.path(), name, &broken);
+        let said = message(folder.path(), &fit, &check);
+        assert!(said.contains(name), "{name}: {said}");
+        for what in says {
+            assert!(said.contains(what), "{name}: no {what} in {said}");
+        }
+    }
+}
+
+#[test]
+fn the_same_motion_to_fit_and_to_check_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let fit = write(folder.path(), "fit.csv", &lines());
+    let copy = write(folder.path(), "copy.csv", &lines());
+    let said = message(folder.path(), &fit, &copy);
+    assert!(
+        said.contains("copy.csv") && said.contains("samesamples"),
+        "{said}"
+    );
+}
