@@ -206,7 +206,7 @@ impl<'a> Question<'a> {
             .chain(fitter.effect_columns(&second))
             .collect();
         let layout = &set.layout;
-        let of_noise = noise_on(self.machine, &self.states[0], &set, noise)?;
+        let of_noise = noise_on(self.machine, &self.states[0], &set, noise, 0)?;
         let whitener = layout.whitener(&layout.spectral_matrices(&of_noise));
         let apart = set.difference(&first, &second.traces, 1.0);
         let apart = layout.whiten(&whitener, &apart);
@@ -262,6 +262,7 @@ pub(crate) fn noise_on(
     state: &State,
     set: &LogSet,
     noise: Noise,
+    seed: u64,
 ) -> Result<Amplitudes, ReplayError> {
     let Machine::BallScrew(axis) = with_known(machine, &state.shares) else {
         return Ok(Amplitudes::new());
@@ -269,10 +270,11 @@ pub(crate) fn noise_on(
     let mut axis = *axis;
     axis.effects.extend_from_slice(&state.effects);
     let closed_loop = ClosedLoop::new(&axis)?;
-    let run = |(seed, log): (usize, &crate::model::Prepared)| {
-        let noisy = log
-            .replay
-            .follow(&closed_loop, noise.sensors(seed as u64 + 1))?;
+    let run = |(log_seed, log): (usize, &crate::model::Prepared)| {
+        let noisy = log.replay.follow(
+            &closed_loop,
+            noise.sensors(1000 * seed + log_seed as u64 + 1),
+        )?;
         Ok((noisy, log.replay.follow(&closed_loop, |_| ())?))
     };
     let pairs: Vec<_> = set

@@ -36,6 +36,7 @@ mod known;
 mod lack;
 pub mod matrix;
 mod model;
+mod noise;
 mod outcome;
 mod screen;
 mod search;

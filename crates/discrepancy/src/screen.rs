@@ -76,7 +76,7 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
 const ORDERS: u8 = 24;
 
 /// Parts of a motion's time in which a force may begin and end.
-const SLOTS: usize = 24;
+pub const SLOTS: usize = 24;
 
 /// All candidates of the library, at the state of `fit`.
 pub fn candidates(fitter: &Fitter<'_>, fit: &Fit) -> Vec<Candidate> {

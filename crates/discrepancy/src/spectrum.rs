@@ -35,6 +35,8 @@ pub struct Layout {
     bands: Vec<Vec<usize>>,
     /// Number of bins in each band.
     counts: Vec<usize>,
+    /// Edges of the bands, Hz, one more than bands.
+    edges: Vec<f64>,
 }
 
 /// Frequency above which nothing mechanical is left to see, Hz.
@@ -104,7 +106,14 @@ impl Layout {
             periods: logs.iter().map(|log| log.1).collect(),
             bands,
             counts,
+            edges,
         }
+    }
+
+    /// Lower and upper edge of each band, Hz, and its number of bins.
+    pub fn bands(&self) -> impl Iterator<Item = ([f64; 2], usize)> + '_ {
+        let edges = self.edges.windows(2).map(|w| [w[0], w[1]]);
+        edges.zip(self.counts.iter().copied())
     }
 
     /// Number of real numbers in the amplitudes.

@@ -8,7 +8,7 @@ use axis_sim::Axis;
 use clap::Args;
 use discrepancy::hidden::Exercise;
 use discrepancy::matrix::{Bench, Case, Outcome, Score, Sizes, cases};
-use miette::{IntoDiagnostic, Result, WrapErr};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use rayon::prelude::*;
 
 use crate::output::{say, write_whole};
@@ -34,6 +34,9 @@ pub struct Options {
     /// Only the first N cases; every kind comes up early
     #[arg(long, value_name = "N")]
     first: Option<usize>,
+    /// Only these cases, by their names (may be repeated)
+    #[arg(long, value_name = "CASE", conflicts_with = "first")]
+    only: Vec<String>,
     /// Also write the page here once every case of the full matrix is there
     #[arg(long, value_name = "FILE", default_value = "docs/discovery-matrix.md")]
     page: PathBuf,
@@ -56,6 +59,17 @@ pub fn command(options: &Options) -> Result<()> {
     let mut cases = cases(&axis, &sizes, options.seed).into_diagnostic()?;
     let all = cases.len();
     cases.truncate(options.first.unwrap_or(all));
+    if let Some(name) = options
+        .only
+        .iter()
+        .find(|n| cases.iter().all(|c| c.id != **n))
+    {
+        return Err(miette!(
+            "there is no case \"{name}\"; cases are named like {}",
+            cases.first().map_or("", |c| &c.id)
+        ));
+    }
+    cases.retain(|c| options.only.is_empty() || options.only.contains(&c.id));
     let name = format!("seed-{}", options.seed);
     let default = || {
         Path::new("runs")

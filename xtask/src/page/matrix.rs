@@ -49,7 +49,7 @@ pub fn figures(score: &Score) -> String {
         "≥ 99 %",
     );
     rate(
-        "one to three effects: a wrong first name without the right one in its class",
+        "one to three effects: any name that is neither hidden nor alike",
         &score.confident_wrong,
         "≤ 1 %",
     );

@@ -109,7 +109,7 @@ impl Bench {
         let nominal = fitter.at(State::initial(&machine))?;
         let known = fitter.known_columns(&nominal);
         let library = Arc::new(Library::new(&fitter, &nominal, known.clone()));
-        let noise = noise_on(&machine, &nominal.state, &templates[0], Noise::GOOD)?;
+        let noise = noise_on(&machine, &nominal.state, &templates[0], Noise::GOOD, 0)?;
         let layout = &templates[0].layout;
         let whitener = layout.whitener(&layout.spectral_matrices(&noise));
         Ok(Self {

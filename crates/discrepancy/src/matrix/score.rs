@@ -45,8 +45,8 @@ pub struct Score {
     pub seen_first: Rate,
     /// Detectable single effects named first, or in the class of the first.
     pub in_class: Rate,
-    /// All machines with library effects whose first name is wrong, and the
-    /// right one not in its class.
+    /// Machines with library effects in which any name is given that is neither
+    /// hidden nor alike to what is, by the search's word or foreseen.
     pub confident_wrong: Rate,
     /// Undetectable single effects on which nothing wrong was said.
     pub silence: Rate,
@@ -117,7 +117,7 @@ impl Score {
             right_first: Rate::count(seen.iter().filter(told), |o| first_is_right(o)),
             seen_first: Rate::count(&seen, |o| first_is_right(o)),
             in_class: Rate::count(&seen, |o| in_class(o)),
-            confident_wrong: Rate::count(library, |o| !o.named.is_empty() && !in_class(o)),
+            confident_wrong: Rate::count(library, |o| wrongly_named(o)),
             silence: Rate::count(singles.iter().filter(|o| !detectable(o)), |o| {
                 o.named.is_empty() || in_class(o)
             }),
@@ -169,6 +169,14 @@ fn first_is_right(outcome: &Outcome) -> bool {
 fn in_class(outcome: &Outcome) -> bool {
     outcome.named.first().is_some_and(|n| {
         hidden(outcome, &n.name) || n.alike.iter().any(|name| hidden(outcome, name))
+    })
+}
+
+fn wrongly_named(outcome: &Outcome) -> bool {
+    outcome.named.iter().any(|n| {
+        let alike = n.alike.iter().any(|name| hidden(outcome, name));
+        let foretold = outcome.foreseen.iter().any(|f| f.class.contains(&n.name));
+        !hidden(outcome, &n.name) && !alike && !foretold
     })
 }
 

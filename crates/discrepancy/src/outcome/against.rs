@@ -4,8 +4,8 @@ use axis_sim::Trace;
 use axis_sim::effects::{Effect, Machine};
 use serde::{Deserialize, Serialize};
 
-use super::Rest;
 use crate::model::LogSet;
+use crate::noise::Rest;
 
 /// Mean rest of a channel over a variable of the motion, on the check logs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

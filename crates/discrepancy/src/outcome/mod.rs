@@ -2,7 +2,6 @@
 
 mod against;
 mod likeness;
-mod noise;
 mod types;
 
 use axis_sim::ReplayError;
@@ -12,7 +11,6 @@ pub use self::against::Against;
 use self::against::against;
 use self::likeness::likenesses;
 pub use self::likeness::{Likeness, Shown};
-use self::noise::{floors, sensor_noise};
 pub use self::types::{
     AtScrew, ChannelGap, Discovery, EffectFound, Gap, Gaps, NextExperiment, ParameterFound,
     Recalibrated, Verdict,
@@ -20,8 +18,9 @@ pub use self::types::{
 use crate::experiment::{Proposal, propose};
 use crate::fit::{Fitter, free_parameters};
 use crate::known::{known_parameters, tolerance};
-use crate::lack::{Unknown, lack};
+use crate::lack::{Curve, Unknown, lack};
 use crate::model::{LogSet, State};
+use crate::noise::{Excess, Rest, excess, floors, sensor_noise};
 use crate::search::{Found, MATERIAL};
 
 /// A search's result in words, figures and pictures.
@@ -113,7 +112,10 @@ pub fn discovery(
     let base = checker.at(found.base.state.clone())?;
     let at_floor = |gap: &Gap| gap.channels.iter().all(|c| c.after <= REST * c.floor);
     let largest = found.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
-    let unknown = lack(machine, found, MATERIAL * largest)?;
+    let unknown = match lack(machine, found, MATERIAL * largest)? {
+        Some(unknown) => Some(unknown),
+        None => excess(machine, set, full, &traces)?.map(in_frequency),
+    };
     let rest_significant = !at_floor(&check) || unknown.is_some();
     let verdict = match (effects.is_empty(), rest_significant) {
         (true, false) => Verdict::NothingMissing,
@@ -121,7 +123,7 @@ pub fn discovery(
         (false, false) if check.reduction >= 0.9 => Verdict::Explained,
         (false, _) => Verdict::PartlyExplained,
     };
-    let proposal = match sensor_noise(machine, &found.fit_logs, full, &found.fit) {
+    let proposal = match sensor_noise(machine, &found.fit_logs, full, &found.fit.traces) {
         Some(noise) => propose(machine, found, noise)?,
         None => None,
     };
@@ -174,8 +176,35 @@ fn next_experiment(proposal: &Proposal) -> NextExperiment {
     }
 }
 
+/// What is known of a rest that shows in no curve over the motion.
+fn in_frequency(excess: Excess) -> Unknown {
+    let ([low, high], times) = excess.bands[excess.worst];
+    let middles = excess
+        .bands
+        .iter()
+        .map(|([low, high], _)| 0.5 * (low + high));
+    let values: Vec<f64> = excess.bands.iter().map(|(_, v)| *v).collect();
+    Unknown {
+        channel: "rest of all channels together".to_owned(),
+        depends_on: format!("frequency, most from {low:.0} to {high:.0} Hz"),
+        formula: None,
+        curve: Curve {
+            variable: "frequency, Hz".to_owned(),
+            unit: "times the power of the noise".to_owned(),
+            at: middles.collect(),
+            within: vec![0.0; values.len()],
+            value: values,
+        },
+        evidence: [0.0, times],
+    }
+}
+
 /// A channel's rest is significant beyond this multiple of its floor.
 const REST: f64 = 1.2;
+
+/// A rest within this multiple of its floor is noise: where nothing was missing
+/// in simulated logs, it came out between 0.9 and 1.05 of it.
+const FLOOR: f64 = 1.05;
 
 fn effect_found(
     machine: &Machine,
@@ -243,8 +272,6 @@ fn at_screw(machine: &Machine, value: f64, unit: &str) -> Option<AtScrew> {
     })
 }
 
-type Rest = Vec<Vec<Vec<f64>>>;
-
 fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[f64]) -> Gap {
     let rms = |rest: &Rest, c: usize| {
         let (sum, n) = rest.iter().fold((0.0, 0), |(sum, n), log| {
@@ -266,7 +293,13 @@ fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[f64]) -> Gap {
             floor: floors[c],
         })
         .collect();
-    let above = |rms: f64, floor: f64| (rms * rms - floor * floor).max(0.0);
+    let above = |rms: f64, floor: f64| {
+        if rms <= FLOOR * floor {
+            0.0
+        } else {
+            rms * rms - floor * floor
+        }
+    };
     let shares = channels.iter().filter(|c| c.before > REST * c.floor);
     let ratios: Vec<f64> = shares
         .map(|c| above(c.after, c.floor) / above(c.before, c.floor))

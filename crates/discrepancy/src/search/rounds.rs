@@ -9,7 +9,8 @@ use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, OF_NOISE, WORSE, needed};
 use super::{Alike, Found, Library, Named, ONE_CLASS, RunnerUp, Settings};
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
 use crate::model::LogSet;
-use crate::screen::{Screened, screen, sine};
+use crate::noise::sensor_noise;
+use crate::screen::{SLOTS, Screened, screen, sine};
 
 /// A search on its way.
 pub(super) struct Search<'a> {
@@ -134,7 +135,11 @@ impl Search<'_> {
                 effect: s.effect,
                 values: s.values.clone(),
             });
-            let start = fitter.at(state).ok()?;
+            let start = fitter.best_size(fitter.at(state).ok()?);
+            let start = match s.effect.name {
+                "process-force" => walked(&fitter, start, self.longest() / SLOTS as f64),
+                _ => start,
+            };
             Some(Refined {
                 screened: s.clone(),
                 fit: fitter.refine(start, &self.known, 2),
@@ -164,6 +169,13 @@ impl Search<'_> {
         }
         refined.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         simplest_first(refined)
+    }
+
+    /// Duration of the longest log, s.
+    fn longest(&self) -> f64 {
+        let durations = self.fit_logs.logs.iter();
+        let durations = durations.map(|l| l.log.len() as f64 * l.period);
+        durations.fold(0.0, f64::max)
     }
 
     /// The first few, but none that the screening puts a tenth below the best or
@@ -210,7 +222,9 @@ impl Search<'_> {
         let known = self.fitter().known_columns(&self.fit);
         let fit = self.fitter().refine(self.fit.clone(), &known, 8);
         let mut corrected = self.fit_logs.clone();
-        if corrected.correct_defects(self.machine, &fit.state).is_ok() {
+        let noise = sensor_noise(self.machine, &corrected, &fit.state, &fit.traces);
+        let done = corrected.correct_defects_with(self.machine, &fit.state, noise);
+        if done.is_ok() {
             let with = Fitter {
                 machine: self.machine,
                 set: &corrected,
@@ -238,10 +252,10 @@ impl Search<'_> {
         };
         self.check = check;
         let mut corrected = self.check_logs.clone();
-        if corrected
-            .correct_defects(self.machine, &self.fit.state)
-            .is_ok()
-        {
+        let state = &self.fit.state;
+        let noise = sensor_noise(self.machine, &corrected, state, &self.check.traces);
+        let done = corrected.correct_defects_with(self.machine, state, noise);
+        if done.is_ok() {
             let with = Fitter {
                 machine: self.machine,
                 set: &corrected,
@@ -311,6 +325,22 @@ impl Search<'_> {
             check_logs: self.check_logs,
         }
     }
+}
+
+/// The best of three walks, from a stretch of time and from its halves: the
+/// walk may end in the rest before or after the stretch.
+fn walked(fitter: &Fitter<'_>, whole: Fit, by: f64) -> Fit {
+    // Start and end are the second and the third of its values.
+    let halves = [1, 2].map(|edge| {
+        let mut state = whole.state.clone();
+        let active = state.effects.last_mut()?;
+        active.values[edge] = 0.5 * (active.values[1] + active.values[2]);
+        fitter.at(state).ok()
+    });
+    let walk = |start: Fit| fitter.walk_edges(start, by);
+    let halves: Vec<Fit> = halves.into_iter().flatten().collect();
+    let ends: Vec<Fit> = halves.into_par_iter().map(walk).collect();
+    ends.into_iter().fold(walk(whole), Fit::better)
 }
 
 /// Effects that do nearly the same as the best, or explain as much: the logs
