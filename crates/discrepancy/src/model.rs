@@ -6,7 +6,6 @@ use axis_sim::{ClosedLoop, Probe, Replay, ReplayError, Trace};
 use feed_dynamics::NutCoupling;
 use rayon::prelude::*;
 
-use crate::hidden::Noise;
 use crate::known::{known_parameters, with_known};
 use crate::spectrum::{Amplitudes, Layout};
 
@@ -126,8 +125,12 @@ impl LogSet {
             (Machine::Rigid(_), Some(at)) => vec![at],
             _ => (0..channels.len()).collect(),
         };
+        let begins = match machine {
+            Machine::BallScrew(_) => logs.iter().map(first_move).collect(),
+            Machine::Rigid(_) => vec![0.0; logs.len()],
+        };
         Ok(Self {
-            layout: Layout::new(fitted.len(), &sizes),
+            layout: Layout::new(fitted.len(), &sizes).beginning(begins),
             logs,
             channels,
             fitted,
@@ -170,18 +173,6 @@ impl LogSet {
     /// # Errors
     /// [`ReplayError`] where the machine does not run at this state.
     pub fn correct_defects(&mut self, machine: &Machine, state: &State) -> Result<(), ReplayError> {
-        self.correct_defects_with(machine, state, None)
-    }
-
-    /// As [`LogSet::correct_defects`], and for what noise does to the loop
-    /// beyond adding to its channels: it shakes a slack screw out of the middle
-    /// of its gap, and dry friction a little loose.
-    pub(crate) fn correct_defects_with(
-        &mut self,
-        machine: &Machine,
-        state: &State,
-        noise: Option<Noise>,
-    ) -> Result<(), ReplayError> {
         let known = with_known(machine, &state.shares);
         let Machine::BallScrew(axis) = &known else {
             return Ok(());
@@ -191,25 +182,18 @@ impl LogSet {
         slow.coupling = NutCoupling::MovingNode;
         slow.simulation.step = slow.simulation.step.min(5e-5);
         let slow = ClosedLoop::implicit(&slow)?;
-        let mut noisy = (**axis).clone();
-        noisy.effects.extend_from_slice(&state.effects);
-        let noisy = ClosedLoop::new(&noisy)?;
         let defects: Vec<Vec<Vec<f64>>> = self
             .logs
             .par_iter()
             .map(|log| {
                 let exact = log.replay.follow(&slow, |_| ())?;
                 let fast = log.replay.run(&known, &state.effects, None)?;
-                let shaken = match noise {
-                    Some(noise) => self.shaken(log, &noisy, &fast, noise)?,
-                    None => vec![vec![0.0; log.log.len()]; self.channels.len()],
-                };
                 let channel = |c: usize| {
                     let pairs = self
                         .simulated(&exact, c)
                         .into_iter()
                         .zip(self.simulated(&fast, c));
-                    pairs.zip(&shaken[c]).map(|((a, b), s)| a - b + s).collect()
+                    pairs.map(|(a, b)| a - b).collect()
                 };
                 Ok((0..self.channels.len()).map(channel).collect())
             })
@@ -218,32 +202,6 @@ impl LogSet {
             log.defect = defect;
         }
         Ok(())
-    }
-
-    /// Mean of several noisy runs less the one without noise, smoothed, by
-    /// channel.
-    fn shaken(
-        &self,
-        log: &Prepared,
-        noisy: &ClosedLoop,
-        quiet: &Trace,
-        noise: Noise,
-    ) -> Result<Vec<Vec<f64>>, ReplayError> {
-        let mut sums = vec![vec![0.0; log.log.len()]; self.channels.len()];
-        for run in 0..SHAKES {
-            let trace = log.replay.follow(noisy, noise.sensors(0x5ba4e + run))?;
-            for (c, sum) in sums.iter_mut().enumerate() {
-                let series = self.simulated(&trace, c);
-                sum.iter_mut().zip(series).for_each(|(s, v)| *s += v);
-            }
-        }
-        let width = (SMOOTH / log.period).round() as usize;
-        let one = |(c, sum): (usize, Vec<f64>)| {
-            let pairs = sum.into_iter().zip(self.simulated(quiet, c));
-            let mean: Vec<f64> = pairs.map(|(s, q)| s / SHAKES as f64 - q).collect();
-            smoothed(&mean, width)
-        };
-        Ok(sums.into_iter().enumerate().map(one).collect())
     }
 
     /// Simulates every log.
@@ -327,25 +285,16 @@ impl LogSet {
     }
 }
 
-/// Noisy runs of which a mean is taken.
-const SHAKES: u64 = 8;
+/// Displacement that takes up any slack, m.
+const TAKEN_UP: f64 = 2e-5;
 
-/// Over what time it is smoothed, s: what is left of the noise after that is
-/// small and slow, and so is what is looked for.
-const SMOOTH: f64 = 0.05;
-
-/// Means over windows of `width` samples, shorter at the ends.
-fn smoothed(samples: &[f64], width: usize) -> Vec<f64> {
-    let mut sums = vec![0.0];
-    for v in samples {
-        sums.push(sums[sums.len() - 1] + v);
-    }
-    let n = samples.len();
-    let mean = |k: usize| {
-        let (from, to) = (k.saturating_sub(width / 2), (k + width / 2 + 1).min(n));
-        (sums[to] - sums[from]) / (to - from) as f64
-    };
-    (0..n).map(mean).collect()
+/// When the reference has first moved so far that slack is taken up, s: before
+/// that nobody knows where a screw lies in its gap, and noise shakes it about.
+fn first_move(log: &Prepared) -> f64 {
+    let reference = log.log.channel("position_ref_m").unwrap_or_default();
+    let moved = |x: &f64| (x - reference[0]).abs() > TAKEN_UP;
+    let first = reference.iter().position(moved).unwrap_or(0);
+    first as f64 * log.period
 }
 
 /// Angles count from their mean, whatever the encoder's zero; the first sample

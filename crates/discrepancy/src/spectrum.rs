@@ -37,6 +37,8 @@ pub struct Layout {
     counts: Vec<usize>,
     /// Edges of the bands, Hz, one more than bands.
     edges: Vec<f64>,
+    /// Per log: from when on it counts, s.
+    begins: Vec<f64>,
 }
 
 /// Frequency above which nothing mechanical is left to see, Hz.
@@ -107,7 +109,13 @@ impl Layout {
             bands,
             counts,
             edges,
+            begins: vec![0.0; logs.len()],
         }
+    }
+
+    /// The same, with logs that count from these times on, s.
+    pub fn beginning(self, begins: Vec<f64>) -> Self {
+        Self { begins, ..self }
     }
 
     /// Lower and upper edge of each band, Hz, and its number of bins.
@@ -163,12 +171,17 @@ impl Layout {
 
     /// Cosine ramps at both ends of a log. Noise that has gone round the loop
     /// wanders, and ends elsewhere than it began; a transform takes that for a
-    /// step, which something that happens at the start would explain.
+    /// step, which something that happens at the start would explain. Nothing
+    /// counts before the log's beginning.
     fn taper(&self, log: usize) -> Vec<f64> {
         let n = self.logs[log].1;
         let ramp = (RAMP / self.periods[log]).min(0.05 * n as f64).max(1.0);
+        let first = ((self.begins[log] / self.periods[log]) as usize).min(n / 2);
         let at = |k: usize| {
-            let edge = (k.min(n - 1 - k) as f64 + 0.5) / ramp;
+            let Some(after) = k.checked_sub(first) else {
+                return 0.0;
+            };
+            let edge = (after.min(n - 1 - k) as f64 + 0.5) / ramp;
             0.5 - 0.5 * (std::f64::consts::PI * edge.min(1.0)).cos()
         };
         (0..n).map(at).collect()

@@ -9,7 +9,6 @@ use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, OF_NOISE, WORSE, needed};
 use super::{Alike, Found, Library, Named, ONE_CLASS, RunnerUp, Settings};
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
 use crate::model::LogSet;
-use crate::noise::sensor_noise;
 use crate::screen::{SLOTS, Screened, screen, sine};
 
 /// A search on its way.
@@ -222,9 +221,7 @@ impl Search<'_> {
         let known = self.fitter().known_columns(&self.fit);
         let fit = self.fitter().refine(self.fit.clone(), &known, 8);
         let mut corrected = self.fit_logs.clone();
-        let noise = sensor_noise(self.machine, &corrected, &fit.state, &fit.traces);
-        let done = corrected.correct_defects_with(self.machine, &fit.state, noise);
-        if done.is_ok() {
+        if corrected.correct_defects(self.machine, &fit.state).is_ok() {
             let with = Fitter {
                 machine: self.machine,
                 set: &corrected,
@@ -252,9 +249,7 @@ impl Search<'_> {
         };
         self.check = check;
         let mut corrected = self.check_logs.clone();
-        let state = &self.fit.state;
-        let noise = sensor_noise(self.machine, &corrected, state, &self.check.traces);
-        let done = corrected.correct_defects_with(self.machine, state, noise);
+        let done = corrected.correct_defects(self.machine, &self.fit.state);
         if done.is_ok() {
             let with = Fitter {
                 machine: self.machine,
