@@ -106,6 +106,8 @@ pub struct Excess {
     pub bands: Vec<([f64; 2], f64)>,
     /// The worst of them.
     pub worst: usize,
+    /// Fall of D, were it given a spectrum of its own.
+    pub fall: f64,
 }
 
 /// Noise runs of which the spectrum is the mean.
@@ -156,7 +158,7 @@ pub(crate) fn excess(
     }
     let mut bands = Vec::new();
     let mut worst = (1.0, None);
-    for (i, (edges, _)) in layout.bands().enumerate() {
+    for (i, (edges, bins)) in layout.bands().enumerate() {
         let noise = &model[i] / Complex::new(RUNS as f64, 0.0);
         let ratios = relative_to(&seen[i], noise);
         let above = ratios.iter().filter(|r| **r > 1.0);
@@ -165,11 +167,14 @@ pub(crate) fn excess(
         let allowed = if i == 0 { UNLIKE_FIRST } else { UNLIKE };
         tracing::debug!(?edges, divergence, most, "rest beside noise");
         if divergence / allowed > worst.0 {
-            worst = (divergence / allowed, Some(i));
+            worst = (
+                divergence / allowed,
+                Some((i, 2.0 * bins as f64 * divergence)),
+            );
         }
         bands.push((edges, most));
     }
-    Ok(worst.1.map(|worst| Excess { bands, worst }))
+    Ok(worst.1.map(|(worst, fall)| Excess { bands, worst, fall }))
 }
 
 /// Eigenvalues of one spectral matrix relative to another.

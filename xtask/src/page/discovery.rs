@@ -184,9 +184,18 @@ fn unknown(unknown: &Unknown) -> Section {
         "estimate",
         curve.at.clone(),
         curve.value.clone(),
-    ))
-    .series(Series::line("95 % from", curve.at.clone(), edge(-1.0)))
-    .series(Series::line("to", curve.at.clone(), edge(1.0)));
+    ));
+    let figure = if curve.within.iter().any(|w| *w > 0.0) {
+        figure
+            .series(Series::line("95 % from", curve.at.clone(), edge(-1.0)))
+            .series(Series::line("to", curve.at.clone(), edge(1.0)))
+    } else {
+        figure
+    };
+    let fall = match unknown.evidence {
+        [0.0, check] => format!("{check:.0} on the check logs"),
+        [fit, check] => format!("{fit:.0} on the fit logs, {check:.0} on the check logs"),
+    };
     Section::new("What no effect of the library explains")
         .paragraph(format!(
             "It sits in the {} and depends on {}. {}",
@@ -197,10 +206,7 @@ fn unknown(unknown: &Unknown) -> Section {
                 .clone()
                 .unwrap_or_else(|| { "No short formula does as much as the curve.".to_owned() })
         ))
-        .paragraph(format!(
-            "Fall of −2 log L: {:.0} on the fit logs, {:.0} on the check logs.",
-            unknown.evidence[0], unknown.evidence[1]
-        ))
+        .paragraph(format!("Fall of −2 log L: {fall}."))
         .figure(figure)
 }
 

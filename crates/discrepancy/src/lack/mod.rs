@@ -36,7 +36,8 @@ pub struct Unknown {
     pub formula: Option<String>,
     /// The curve.
     pub curve: Curve,
-    /// Fall of D on the fit logs, and on the check logs.
+    /// Fall of D on the fit logs (0 of what was looked for on the check logs
+    /// alone), and on the check logs.
     pub evidence: [f64; 2],
 }
 
@@ -51,7 +52,7 @@ pub struct Curve {
     pub at: Vec<f64>,
     /// Value there.
     pub value: Vec<f64>,
-    /// Half-width of its 95 % interval.
+    /// Half-width of its 95 % interval; 0 where there is none.
     pub within: Vec<f64>,
 }
 

@@ -178,7 +178,7 @@ fn next_experiment(proposal: &Proposal) -> NextExperiment {
 
 /// What is known of a rest that shows in no curve over the motion.
 fn in_frequency(excess: Excess) -> Unknown {
-    let ([low, high], times) = excess.bands[excess.worst];
+    let ([low, high], _) = excess.bands[excess.worst];
     let middles = excess
         .bands
         .iter()
@@ -195,7 +195,7 @@ fn in_frequency(excess: Excess) -> Unknown {
             within: vec![0.0; values.len()],
             value: values,
         },
-        evidence: [0.0, times],
+        evidence: [0.0, excess.fall],
     }
 }
 
