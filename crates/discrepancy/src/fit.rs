@@ -230,7 +230,10 @@ impl Fitter<'_> {
             .map(|(i, _)| i)
             .collect();
         let mut share = 1.0;
-        while share * by > SHORTEST {
+        for _ in 0..MOST_PASSES {
+            if share * by <= SHORTEST {
+                break;
+            }
             let before = fit.deviance;
             for &i in &moved {
                 for sign in [1.0, -1.0] {
@@ -302,6 +305,10 @@ pub struct Solved {
 
 /// Fall of D that is not worth another round.
 const ENOUGH: f64 = 0.1;
+
+/// Passes after which a walk that still gains ends: it creeps along something
+/// that is no force in time.
+const MOST_PASSES: usize = 40;
 
 /// Least move of an edge in time, s.
 const SHORTEST: f64 = 0.01;
