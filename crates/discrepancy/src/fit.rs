@@ -252,7 +252,7 @@ impl Fitter<'_> {
                     }
                 }
             }
-            if before - fit.deviance < 0.01 * before.abs().min(100.0) {
+            if before - fit.deviance < CREEP {
                 share /= 2.0;
             }
         }
@@ -305,6 +305,9 @@ pub struct Solved {
 
 /// Fall of D that is not worth another round.
 const ENOUGH: f64 = 0.1;
+
+/// Fall of D in a pass below which the moves are halved.
+const CREEP: f64 = 1.0;
 
 /// Passes after which a walk that still gains ends: it creeps along something
 /// that is no force in time.

@@ -202,8 +202,9 @@ fn in_frequency(excess: Excess) -> Unknown {
 /// A channel's rest is significant beyond this multiple of its floor.
 const REST: f64 = 1.2;
 
-/// A rest within this multiple of its floor is noise: where nothing was missing
-/// in simulated logs, it came out between 0.9 and 1.05 of it.
+/// A rest within this multiple of its floor is noise: where nothing was left in
+/// simulated logs, it came out between 0.79 (a motor angle, else 0.90) and 1.05
+/// of it.
 const FLOOR: f64 = 1.05;
 
 fn effect_found(
