@@ -26,6 +26,9 @@ use context::Common;
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", version)]
 struct Cli {
+    /// Say on stderr what a search tries and what it takes; results are the same
+    #[arg(long, short, global = true)]
+    verbose: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -61,11 +64,17 @@ enum Command {
 }
 
 fn main() -> miette::Result<()> {
+    let cli = Cli::parse();
+    let level = if cli.verbose {
+        tracing::Level::DEBUG
+    } else {
+        tracing::Level::WARN
+    };
     tracing_subscriber::fmt()
         .with_writer(std::io::stderr)
-        .with_max_level(tracing::Level::WARN)
+        .with_max_level(level)
         .init();
-    match Cli::parse().command {
+    match cli.command {
         Command::Pipeline(common) => pipeline::run(&common),
         Command::Sample(options) => sample::command(&options),
         Command::Train(common) => train::command(&common),

@@ -193,16 +193,14 @@ impl Fitter<'_> {
         fit
     }
 
-    /// Begins with the sizes of the last effect, or with multiples of them:
-    /// a gap or a dry force does not grow as its response at one size says.
-    pub fn best_size(&self, fit: Fit) -> Fit {
-        let Some(last) = fit.state.effects.last() else {
-            return fit;
-        };
-        let parameters = last.effect.parameters;
+    /// Begins with the sizes of the last effects, `count` of them, or with
+    /// multiples of them: a gap or a dry force does not grow as its response at
+    /// one size says.
+    pub fn best_size(&self, fit: Fit, count: usize) -> Fit {
         let times = |by: f64| {
             let mut state = fit.state.clone();
-            if let Some(active) = state.effects.last_mut() {
+            for active in state.effects.iter_mut().rev().take(count) {
+                let parameters = active.effect.parameters;
                 for (value, p) in active.values.iter_mut().zip(parameters) {
                     if p.size {
                         *value = (*value * by).clamp(p.bounds[0], p.bounds[1]);
@@ -211,52 +209,8 @@ impl Fitter<'_> {
             }
             self.at(state).ok()
         };
-        let tried = [0.5, 2.0, 4.0].map(times).into_iter().flatten();
+        let tried = [0.5, 2.0, 4.0, 8.0, 16.0].map(times).into_iter().flatten();
         tried.fold(fit.clone(), Fit::better)
-    }
-
-    /// Moves the times at which the last effect begins and ends, and its size
-    /// with them, by less and less while D falls (Hooke and Jeeves, J. ACM 8
-    /// (1961) 212–229): a derivative with respect to an edge sees no further than
-    /// the loop's answer to a blow lasts. `by` is the first move, s.
-    pub fn walk_edges(&self, mut fit: Fit, by: f64) -> Fit {
-        let Some(effect) = fit.state.effects.last().map(|a| a.effect) else {
-            return fit;
-        };
-        let parameters = effect.parameters.iter().enumerate();
-        let edge = |name: &str| name == "start" || name == "end";
-        let moved: Vec<usize> = parameters
-            .filter(|(_, p)| p.size || edge(p.name))
-            .map(|(i, _)| i)
-            .collect();
-        let mut share = 1.0;
-        for _ in 0..MOST_PASSES {
-            if share * by <= SHORTEST {
-                break;
-            }
-            let before = fit.deviance;
-            for &i in &moved {
-                for sign in [1.0, -1.0] {
-                    let mut state = fit.state.clone();
-                    if let Some(active) = state.effects.last_mut() {
-                        let (p, value) = (&effect.parameters[i], &mut active.values[i]);
-                        *value = if p.size {
-                            *value * (sign * share.min(0.5)).exp()
-                        } else {
-                            *value + sign * share * by
-                        };
-                        *value = value.clamp(p.bounds[0], p.bounds[1]);
-                    }
-                    if let Ok(trial) = self.at(state) {
-                        fit = fit.better(trial);
-                    }
-                }
-            }
-            if before - fit.deviance < CREEP {
-                share /= 2.0;
-            }
-        }
-        fit
     }
 
     /// Step and covariance of all parameters from the linearised problem: the
@@ -305,16 +259,6 @@ pub struct Solved {
 
 /// Fall of D that is not worth another round.
 const ENOUGH: f64 = 0.1;
-
-/// Fall of D in a pass below which the moves are halved.
-const CREEP: f64 = 1.0;
-
-/// Passes after which a walk that still gains ends: it creeps along something
-/// that is no force in time.
-const MOST_PASSES: usize = 40;
-
-/// Least move of an edge in time, s.
-const SHORTEST: f64 = 0.01;
 
 /// Indices (effect, parameter) of what a fit moves.
 pub fn free_parameters(state: &State) -> Vec<(usize, usize)> {

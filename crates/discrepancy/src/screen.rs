@@ -1,6 +1,8 @@
 //! Screening: what each effect of the library would do to the logs, and how
 //! much of the rest that explains.
 
+use std::ops::Range;
+
 use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Machine};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -58,7 +60,7 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
                 .map(|i| vec![typical[0], along(i, 8), width])
                 .collect()
         }
-        "process-force" => (0..SLOTS)
+        FORCE => (0..SLOTS)
             .map(|i| {
                 let slot = end / SLOTS as f64;
                 vec![typical[0], slot * i as f64, slot * (i + 1) as f64]
@@ -75,8 +77,11 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
 /// Highest order of cogging that is looked for, per motor turn.
 const ORDERS: u8 = 24;
 
+/// Name of the force in time.
+pub const FORCE: &str = "process-force";
+
 /// Parts of a motion's time in which a force may begin and end.
-pub const SLOTS: usize = 24;
+const SLOTS: usize = 24;
 
 /// All candidates of the library, at the state of `fit`.
 pub fn candidates(fitter: &Fitter<'_>, fit: &Fit) -> Vec<Candidate> {
@@ -102,7 +107,12 @@ pub fn candidates(fitter: &Fitter<'_>, fit: &Fit) -> Vec<Candidate> {
 
 /// Secants at half of the typical size: derivatives would say nothing of
 /// gaps and dry friction.
-fn responses(fitter: &Fitter<'_>, fit: &Fit, effect: &'static Effect, values: &[f64]) -> Columns {
+pub fn responses(
+    fitter: &Fitter<'_>,
+    fit: &Fit,
+    effect: &'static Effect,
+    values: &[f64],
+) -> Columns {
     const SHARE: f64 = 0.5;
     let phase = effect.parameters.iter().position(|p| p.name == "phase");
     let sizes = effect.parameters.iter().enumerate().filter(|(_, p)| p.size);
@@ -132,63 +142,167 @@ fn responses(fitter: &Fitter<'_>, fit: &Fit, effect: &'static Effect, values: &[
     }
 }
 
-/// What each of the candidates that are `wanted` explains of the rest of `fit`
-/// beyond what the columns of its own parameters (`own`) can; best first, one
-/// entry an effect.
-pub fn screen(
-    fitter: &Fitter<'_>,
-    fit: &Fit,
-    own: &Columns,
-    library: &[Candidate],
-    wanted: impl Fn(&Effect) -> bool + Sync,
-) -> Vec<Screened> {
-    let layout = &fitter.set.layout;
-    let whitener = layout.whitener(&layout.spectral_matrices(&fit.rest));
-    let white = |a: &Amplitudes| layout.whiten(&whitener, a);
-    let own: Vec<DVector<f64>> = own.iter().map(white).collect();
-    let projector = Projector::new(
-        fitter.machine,
-        &own,
-        &pinned(fitter.machine, &fit.state.shares),
-    );
-    let rest = projector.reject_at(&white(&fit.rest), &fit.state.shares);
-    let total = rest.norm_squared();
-    let mut screened: Vec<Screened> = responses_in(
-        library,
-        wanted,
-        |column| projector.reject(&white(column)),
-        &rest,
-    )
-    .into_par_iter()
-    .map(|response| {
+/// A rest, and what the candidates can do about it, both without what the
+/// fit's own parameters can.
+pub struct Screening {
+    rest: DVector<f64>,
+    responses: Vec<Response>,
+}
+
+impl Screening {
+    /// Of the candidates that are `wanted`, beside the rest of `fit` and the
+    /// columns of its own parameters (`own`).
+    pub fn new(
+        fitter: &Fitter<'_>,
+        fit: &Fit,
+        own: &Columns,
+        library: &[Candidate],
+        wanted: impl Fn(&Effect) -> bool + Sync,
+    ) -> Self {
+        let layout = &fitter.set.layout;
+        let whitener = layout.whitener(&layout.spectral_matrices(&fit.rest));
+        let white = |a: &Amplitudes| layout.whiten(&whitener, a);
+        let own: Vec<DVector<f64>> = own.iter().map(white).collect();
+        let projector = Projector::new(
+            fitter.machine,
+            &own,
+            &pinned(fitter.machine, &fit.state.shares),
+        );
+        let rest = projector.reject_at(&white(&fit.rest), &fit.state.shares);
+        let seen = |column: &Amplitudes| projector.reject(&white(column));
+        let responses = responses_in(library, wanted, seen, &rest);
+        Self { rest, responses }
+    }
+
+    /// What each effect explains alone, best first, one entry an effect.
+    pub fn one_by_one(&self) -> Vec<Screened> {
+        let mut all: Vec<Screened> = self.responses.par_iter().map(|r| self.alone(r)).collect();
+        all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let mut seen: Vec<&str> = Vec::new();
+        all.retain(|s| {
+            let new = !seen.contains(&s.effect.name);
+            seen.push(s.effect.name);
+            new
+        });
+        all
+    }
+
+    /// Pairs that explain together at least `least`, best first, one entry a pair
+    /// of effects. What two do may nearly cancel in one channel, and neither is
+    /// worth anything alone then.
+    pub fn two_by_two(&self, least: f64) -> Vec<[Screened; 2]> {
+        let columns = self.responses.iter().flat_map(|r| &r.columns);
+        let columns: Vec<DVector<f64>> = columns.cloned().collect();
+        if columns.is_empty() {
+            return Vec::new();
+        }
+        let matrix = DMatrix::from_columns(&columns);
+        let (normal, right) = (matrix.tr_mul(&matrix), matrix.tr_mul(&self.rest));
+        let mut first = 0;
+        let places: Vec<Vec<usize>> = (self.responses.iter())
+            .map(|r| {
+                let own = first..first + r.columns.len();
+                first = own.end;
+                own.collect()
+            })
+            .collect();
+        let n = self.responses.len();
+        let together = |(i, j): (usize, usize)| {
+            let [a, b] = [&self.responses[i], &self.responses[j]];
+            let both = [places[i].as_slice(), &places[j]].concat();
+            let (solution, explained) = solved(&normal, &right, &both)?;
+            let gain = self.gain_of(explained);
+            let (of_a, of_b) = solution.split_at(places[i].len());
+            let worth = a.effect.name != b.effect.name
+                && gain >= least
+                && within_bounds(a, of_a)
+                && within_bounds(b, of_b);
+            worth.then(|| (gain, (i, of_a.to_vec()), (j, of_b.to_vec())))
+        };
+        let all: Vec<(usize, usize)> = (0..n)
+            .flat_map(|i| (i + 1..n).map(move |j| (i, j)))
+            .collect();
+        let mut found: Vec<_> = all.into_par_iter().filter_map(together).collect();
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut seen: Vec<[&str; 2]> = Vec::new();
+        found.retain(|(_, (i, _), (j, _))| {
+            let names = [i, j].map(|k| self.responses[*k].effect.name);
+            let new = !seen.contains(&names);
+            seen.push(names);
+            new
+        });
+        let part = |gain: f64, (i, solution): &(usize, Vec<f64>)| {
+            self.with(&self.responses[*i], solution, gain)
+        };
+        (found.iter().take(PAIRS))
+            .map(|(gain, a, b)| [part(*gain, a), part(*gain, b)])
+            .collect()
+    }
+
+    fn alone(&self, response: &Response) -> Screened {
         let matrix = DMatrix::from_columns(&response.columns);
-        let svd = matrix.clone().svd(true, true);
+        let svd = matrix.svd(true, true);
         let largest = svd.singular_values.max();
         let solution = svd
-            .solve(&rest, 1e-6 * largest.max(1e-300))
-            .unwrap_or_else(|_| DVector::zeros(matrix.ncols()));
-        let fingerprint = &matrix * &solution;
-        let explained = 2.0 * rest.dot(&fingerprint) - fingerprint.norm_squared();
-        let share = (explained / total).clamp(0.0, 0.999_999);
+            .solve(&self.rest, 1e-6 * largest.max(1e-300))
+            .unwrap_or_else(|_| DVector::zeros(response.columns.len()));
+        let mut screened = self.with(response, solution.as_slice(), 0.0);
+        let does = &screened.fingerprint;
+        screened.gain = self.gain_of(2.0 * self.rest.dot(does) - does.norm_squared());
+        screened
+    }
+
+    fn with(&self, response: &Response, solution: &[f64], gain: f64) -> Screened {
+        let rows = self.rest.len();
+        let matrix = DMatrix::from_columns(&response.columns);
         Screened {
-            gain: -(rest.len() as f64) * (1.0 - share).ln(),
-            values: starting_values(&response, solution.as_slice()),
-            basis: svd.u.unwrap_or_else(|| DMatrix::zeros(rest.len(), 1)),
-            fingerprint,
+            gain,
+            values: starting_values(response, solution),
+            fingerprint: &matrix * DVector::from_column_slice(solution),
+            basis: (matrix.svd(true, false).u).unwrap_or_else(|| DMatrix::zeros(rows, 1)),
             effect: response.effect,
         }
-    })
-    .collect();
-    screened.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let mut seen: Vec<&str> = Vec::new();
-    screened.retain(|s| {
-        let name = s.effect.name;
-        !seen.contains(&name) && {
-            seen.push(name);
-            true
-        }
+    }
+
+    /// Fall of D where this much of the rest's whitened power goes.
+    fn gain_of(&self, explained: f64) -> f64 {
+        let share = (explained / self.rest.norm_squared()).clamp(0.0, 0.999_999);
+        -(self.rest.len() as f64) * (1.0 - share).ln()
+    }
+}
+
+/// Most pairs of effects that a screening gives.
+const PAIRS: usize = 3;
+
+/// Sizes at which some columns explain most, and how much, from the normal
+/// equations of all; `None` where they are one and the same.
+fn solved(
+    normal: &DMatrix<f64>,
+    right: &DVector<f64>,
+    places: &[usize],
+) -> Option<(Vec<f64>, f64)> {
+    let n = places.len();
+    let scale = |i: usize| normal[(places[i], places[i])].max(f64::MIN_POSITIVE).sqrt();
+    let own = DMatrix::from_fn(n, n, |i, j| {
+        normal[(places[i], places[j])] / (scale(i) * scale(j))
     });
-    screened
+    let along = DVector::from_fn(n, |i, _| right[places[i]] / scale(i));
+    let factor = own.cholesky()?;
+    // Below this the sine of the angle between two is a hundredth.
+    if factor.l_dirty().diagonal().min() < 0.01 {
+        return None;
+    }
+    let x = factor.solve(&along);
+    let explained = x.dot(&along);
+    Some(((0..n).map(|i| x[i] / scale(i)).collect(), explained))
+}
+
+/// Whether sizes, as multiples of the typical, are such as the effect may have.
+fn within_bounds(response: &Response, solution: &[f64]) -> bool {
+    let values = starting_values(response, solution);
+    let sizes = response.effect.parameters.iter().zip(&values);
+    let mut sizes = sizes.filter(|(p, _)| p.size);
+    sizes.all(|(p, v)| p.bounds[0] < *v && *v < p.bounds[1])
 }
 
 /// What a candidate does, in a space where other parameters are fitted out.
@@ -202,7 +316,7 @@ pub struct Response {
 }
 
 /// Responses of those candidates that are `wanted`, `seen` through some
-/// projection; of a force in time, the stretch that explains most of `rest`.
+/// projection; of a force in time, the stretches that explain most of `rest`.
 pub fn responses_in(
     library: &[Candidate],
     wanted: impl Fn(&Effect) -> bool + Sync,
@@ -219,55 +333,68 @@ pub fn responses_in(
         .filter(|c| wanted(c.effect))
         .map(one)
         .collect();
-    let (slots, mut all): (Vec<_>, Vec<_>) = all
-        .into_iter()
-        .partition(|r| r.effect.name == "process-force");
-    all.extend(window(&slots, rest));
+    let (slots, mut all): (Vec<_>, Vec<_>) = all.into_iter().partition(|r| r.effect.name == FORCE);
+    all.extend(windows(&slots, rest));
     all
 }
 
-/// The stretch of neighbouring slots in which a force explains most: what a
-/// force does over several is the sum of what it does in each. None where that
-/// is the whole motion, as it is a constant load then.
-fn window(slots: &[Response], rest: &DVector<f64>) -> Option<Response> {
+/// The stretches of neighbouring slots in which a force explains most, the best
+/// first: what a force does over several is the sum of what it does in each. None
+/// of them is the whole motion, as it is a constant load then.
+fn windows(slots: &[Response], rest: &DVector<f64>) -> Vec<Response> {
     let columns: Vec<&DVector<f64>> = slots.iter().filter_map(|s| s.columns.first()).collect();
     let n = columns.len();
     let along: Vec<f64> = columns.iter().map(|c| c.dot(rest)).collect();
-    let mut best = (0.0, 0..n);
     let mut gram = DMatrix::zeros(n, n);
     for j in 0..n {
         for i in 0..=j {
             gram[(i, j)] = columns[i].dot(columns[j]);
         }
     }
+    let mut all = Vec::new();
     for first in 0..n {
         let (mut explained, mut size) = (0.0, 0.0);
         for last in first..n {
             explained += along[last];
             let cross: f64 = (first..last).map(|i| gram[(i, last)]).sum();
             size += gram[(last, last)] + 2.0 * cross;
-            let gain = explained * explained / size.max(f64::MIN_POSITIVE);
-            if gain > best.0 {
-                best = (gain, first..last + 1);
+            let gain: f64 = explained * explained / size.max(f64::MIN_POSITIVE);
+            if last + 1 - first < n {
+                all.push((gain, first..last + 1));
             }
         }
     }
-    if best.1.len() == n {
-        return None;
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut chosen: Vec<Range<usize>> = Vec::new();
+    for (_, window) in all {
+        if chosen.iter().all(|c| !mostly_same(c, &window)) {
+            chosen.push(window);
+        }
+        if chosen.len() == WINDOWS {
+            break;
+        }
     }
-    let chosen = slots.get(best.1.clone())?;
-    let (first, last) = (chosen.first()?, chosen.last()?);
-    let mut values = first.values.clone();
-    values[2] = last.values[2];
-    let sum = columns[best.1]
-        .iter()
-        .fold(DVector::zeros(rest.len()), |sum, c| sum + *c);
-    Some(Response {
-        effect: first.effect,
-        values,
-        columns: vec![sum],
-    })
+    let response = |window: Range<usize>| {
+        let mut values = slots[window.start].values.clone();
+        values[2] = slots[window.end - 1].values[2];
+        let zero = DVector::zeros(rest.len());
+        Response {
+            effect: slots[window.start].effect,
+            values,
+            columns: vec![columns[window].iter().fold(zero, |sum, c| sum + *c)],
+        }
+    };
+    chosen.into_iter().map(response).collect()
 }
+
+/// Whether two stretches have half of what they cover in common.
+pub fn mostly_same(a: &Range<usize>, b: &Range<usize>) -> bool {
+    let common = a.end.min(b.end).saturating_sub(a.start.max(b.start));
+    2 * common > a.len() + b.len() - common
+}
+
+/// Stretches of time that a screening of a force in time gives.
+const WINDOWS: usize = 4;
 
 /// Sine of the angle between what was found and the nearest thing that another
 /// effect can do.

@@ -1,6 +1,7 @@
 //! Stepwise search: screen, refine the best few by simulation, add, drop.
 
 mod evidence;
+mod force;
 mod rounds;
 
 use std::sync::Arc;
@@ -184,7 +185,7 @@ pub(crate) fn search_with(
     };
     while search.named.len() < settings.most_effects {
         progress(&format!("effect {}", search.named.len() + 1));
-        if !search.add_one() {
+        if !search.add_next() {
             break;
         }
     }

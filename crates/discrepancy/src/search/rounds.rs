@@ -9,7 +9,7 @@ use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, OF_NOISE, WORSE, needed};
 use super::{Alike, Found, Library, Named, ONE_CLASS, RunnerUp, Settings};
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
 use crate::model::LogSet;
-use crate::screen::{SLOTS, Screened, screen, sine};
+use crate::screen::{FORCE, Screened, Screening, sine};
 
 /// A search on its way.
 pub(super) struct Search<'a> {
@@ -25,15 +25,30 @@ pub(super) struct Search<'a> {
     pub(super) leftover: Vec<RunnerUp>,
 }
 
-/// A candidate after refinement by simulation.
+/// One effect, or two, after refinement by simulation.
 struct Refined {
-    screened: Screened,
+    parts: Vec<Screened>,
     fit: Fit,
     gain: f64,
 }
 
+impl Refined {
+    fn runner_up(&self) -> RunnerUp {
+        RunnerUp {
+            name: self.parts[0].effect.name,
+            gain: self.gain,
+        }
+    }
+}
+
+/// Share of the needed fall of D that a start must bring before more is spent on
+/// it, or that a pair must promise beyond twice what the best effect does alone:
+/// with a rest that it does not explain in the weights, the linearised problem
+/// promises too little.
+pub(super) const PROMISING: f64 = 0.3;
+
 impl Search<'_> {
-    fn fitter(&self) -> Fitter<'_> {
+    pub(super) fn fitter(&self) -> Fitter<'_> {
         Fitter {
             machine: self.machine,
             set: &self.fit_logs,
@@ -47,50 +62,76 @@ impl Search<'_> {
         }
     }
 
-    /// Adds the effect that explains most of what is left; false where none
-    /// proves itself.
-    pub(super) fn add_one(&mut self) -> bool {
+    /// Adds the effect that explains most of what is left, or two that explain
+    /// together what none does alone; false where none proves itself.
+    pub(super) fn add_next(&mut self) -> bool {
         let awaited = self.awaited();
-        let screened = self.screen(&awaited);
-        let refined = self.refine(&screened);
-        let runners = |all: &[Refined]| -> Vec<RunnerUp> {
-            let one = |r: &Refined| RunnerUp {
-                name: r.screened.effect.name,
-                gain: r.gain,
-            };
-            all.iter().map(one).collect()
-        };
+        let own = self.own_columns();
+        let screening = self.screening(&own, &awaited);
+        let screened = screening.one_by_one();
+        let worth = self.worth_refining(&screened).map(|s| vec![s.clone()]);
+        let mut candidates: Vec<Vec<Screened>> = worth.collect();
+        if awaited.is_empty() && self.named.len() + 2 <= self.settings.most_effects {
+            let best = screened.first().map_or(0.0, |s| s.gain);
+            let pairs = screening.two_by_two(2.0 * best + PROMISING * self.needed(2, 2));
+            candidates.extend(pairs.into_iter().map(Vec::from));
+        }
+        let refined = self.refine(candidates, &own);
         // Where the best does not hold on other motion, the next may.
         let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
             let check = self.checker().at(candidate.fit.state.clone()).ok()?;
             let held_out = self.check.deviance - check.deviance;
             let holds = !awaited.is_empty()
                 || self.proves_itself(candidate, held_out) && self.worsens_none(&check);
-            holds.then_some((place, check, held_out))
+            holds.then_some((place, check))
         });
-        let Some((place, check, held_out)) = proven else {
-            self.leftover = runners(&refined);
+        let Some((place, check)) = proven else {
+            let alone = refined.iter().filter(|r| r.parts.len() == 1);
+            self.leftover = alone.map(Refined::runner_up).collect();
             return false;
         };
+        self.add(&refined, place, check, &screened);
+        true
+    }
+
+    /// Fall of D that `effects` with so many parameters must bring at once.
+    pub(super) fn needed(&self, parameters: usize, effects: usize) -> f64 {
+        let tried = self.library.candidates.len();
+        let tried = match effects {
+            1 => tried,
+            _ => tried * tried.saturating_sub(1) / 2,
+        };
+        needed(
+            &self.fit_logs.layout,
+            parameters,
+            tried,
+            self.settings.false_alarm,
+        )
+    }
+
+    fn add(&mut self, refined: &[Refined], place: usize, check: Fit, screened: &[Screened]) {
         let best = &refined[place];
-        let mut others = runners(&refined);
-        others.remove(place);
-        self.named.push(Named {
-            name: best.screened.effect.name,
-            evidence: best.gain,
-            held_out,
-            alike: alike(best, &refined, &screened),
-            when_named: Vec::new(),
-            runners_up: others,
-        });
+        let others = refined.iter().enumerate();
+        let others = others.filter(|(i, r)| *i != place && r.parts.len() == 1);
+        let others: Vec<RunnerUp> = others.map(|(_, r)| r.runner_up()).collect();
+        for part in &best.parts {
+            self.named.push(Named {
+                name: part.effect.name,
+                evidence: best.gain,
+                held_out: self.check.deviance - check.deviance,
+                alike: alike(part, best, refined, screened),
+                when_named: Vec::new(),
+                runners_up: others.clone(),
+            });
+        }
         self.fit = best.fit.clone();
         self.check = check;
         self.settle();
-        if let (Some(named), Some(active)) = (self.named.last_mut(), self.fit.state.effects.last())
-        {
+        let new = self.named.len() - best.parts.len();
+        let effects = &self.fit.state.effects[new..];
+        for (named, active) in self.named[new..].iter_mut().zip(effects) {
             named.when_named.clone_from(&active.values);
         }
-        true
     }
 
     /// What the engineer takes as there and is not yet: it goes first, whatever
@@ -101,20 +142,19 @@ impl Search<'_> {
         accepted.filter(|name| !active(name)).collect()
     }
 
-    fn screen(&self, awaited: &[&str]) -> Vec<Screened> {
-        let fitter = self.fitter();
-        let own: Columns = self
-            .known
-            .iter()
-            .cloned()
-            .chain(fitter.effect_columns(&self.fit))
-            .collect();
+    /// Derivatives with respect to all parameters of the fit.
+    fn own_columns(&self) -> Columns {
+        let effects = self.fitter().effect_columns(&self.fit);
+        self.known.iter().cloned().chain(effects).collect()
+    }
+
+    fn screening(&self, own: &Columns, awaited: &[&str]) -> Screening {
         let rejected = |name: &str| self.settings.rejected.iter().any(|r| r == name);
         let active = |name: &str| self.named.iter().any(|n| n.name == name);
-        screen(
-            &fitter,
+        Screening::new(
+            &self.fitter(),
             &self.fit,
-            &own,
+            own,
             &self.library.candidates,
             |effect| {
                 // A second harmonic of the same kind may be there.
@@ -125,28 +165,27 @@ impl Search<'_> {
         )
     }
 
-    /// The best few of the screened, by simulation; the simplest of the best first.
-    fn refine(&self, screened: &[Screened]) -> Vec<Refined> {
+    /// Candidates of one effect or two, by simulation; the simplest of the best first.
+    fn refine(&self, candidates: Vec<Vec<Screened>>, own: &Columns) -> Vec<Refined> {
         let fitter = self.fitter();
-        let begin = |s: &Screened| {
-            let mut state = self.fit.state.clone();
-            state.effects.push(ActiveEffect {
-                effect: s.effect,
-                values: s.values.clone(),
-            });
-            let start = fitter.best_size(fitter.at(state).ok()?);
-            let start = match s.effect.name {
-                "process-force" => walked(&fitter, start, self.longest() / SLOTS as f64),
-                _ => start,
+        let begin = |parts: Vec<Screened>| {
+            let start = if parts.len() == 1 && parts[0].effect.name == FORCE {
+                self.force_in_time(own)?
+            } else {
+                let mut state = self.fit.state.clone();
+                state.effects.extend(parts.iter().map(|s| ActiveEffect {
+                    effect: s.effect,
+                    values: s.values.clone(),
+                }));
+                fitter.best_size(fitter.at(state).ok()?, parts.len())
             };
             Some(Refined {
-                screened: s.clone(),
+                parts,
                 fit: fitter.refine(start, &self.known, 2),
                 gain: 0.0,
             })
         };
-        let top: Vec<&Screened> = self.worth_refining(screened).collect();
-        let mut refined: Vec<Refined> = top.into_par_iter().filter_map(begin).collect();
+        let mut refined: Vec<Refined> = candidates.into_par_iter().filter_map(begin).collect();
         let gain = |fit: &Fit| self.fit.deviance - fit.deviance;
         // What is far behind after two rounds is not carried further.
         let best = refined.iter().map(|r| gain(&r.fit)).fold(0.0, f64::max);
@@ -167,14 +206,18 @@ impl Search<'_> {
             });
         }
         refined.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        for r in &refined {
+            let found = r.fit.state.effects.iter().rev().take(r.parts.len());
+            tracing::debug!(
+                name = r.parts.iter().map(|p| p.effect.name).collect::<Vec<_>>().join(" and "),
+                foreseen = r.parts[0].gain,
+                gain = r.gain,
+                screened = ?r.parts.iter().map(|p| &p.values).collect::<Vec<_>>(),
+                found = ?found.rev().map(|a| &a.values).collect::<Vec<_>>(),
+                "refined"
+            );
+        }
         simplest_first(refined)
-    }
-
-    /// Duration of the longest log, s.
-    fn longest(&self) -> f64 {
-        let durations = self.fit_logs.logs.iter();
-        let durations = durations.map(|l| l.log.len() as f64 * l.period);
-        durations.fold(0.0, f64::max)
     }
 
     /// The first few, but none that the screening puts a tenth below the best or
@@ -189,19 +232,11 @@ impl Search<'_> {
 
     fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {
         let added = free_parameters(&best.fit.state).len() - free_parameters(&self.fit.state).len();
-        let tried = self.library.candidates.len();
-        let false_alarm = self.settings.false_alarm;
-        let needed = needed(&self.fit_logs.layout, added, tried, false_alarm);
+        let needed = self.needed(added, best.parts.len());
         // Beside what was found, a hundredth of its weight is what the model's
         // own simplifications may bring.
         let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
-        tracing::debug!(
-            effect = best.screened.effect.name,
-            gain = best.gain,
-            held_out,
-            needed,
-            "best candidate"
-        );
+        tracing::debug!(gain = best.gain, held_out, needed, "on check logs");
         best.gain >= needed && held_out >= LEAST_HELD_OUT && best.gain >= MATERIAL * largest
     }
 
@@ -277,18 +312,13 @@ impl Search<'_> {
             let without = self.fitter().refine(start, &self.known, 4);
             let loss = without.deviance - self.fit.deviance;
             let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
+            let needed = self.needed(dropped.effect.parameters.len(), 1);
             let named = &mut self.named[index];
             let accepted = self
                 .settings
                 .accepted
                 .iter()
                 .any(|name| *name == named.name);
-            let needed = needed(
-                &self.fit_logs.layout,
-                dropped.effect.parameters.len(),
-                self.library.candidates.len(),
-                self.settings.false_alarm,
-            );
             if !accepted && loss < needed.max(MATERIAL * largest) {
                 self.named.remove(index);
                 self.fit = without;
@@ -300,14 +330,8 @@ impl Search<'_> {
     }
 
     pub(super) fn finish(self, base: Fit) -> Found {
-        let fitter = self.fitter();
-        let columns: Columns = self
-            .known
-            .iter()
-            .cloned()
-            .chain(fitter.effect_columns(&self.fit))
-            .collect();
-        let covariance = fitter.solve(&self.fit, &columns).covariance;
+        let columns = self.own_columns();
+        let covariance = self.fitter().solve(&self.fit, &columns).covariance;
         Found {
             base,
             columns,
@@ -322,33 +346,21 @@ impl Search<'_> {
     }
 }
 
-/// The best of three walks, from a stretch of time and from its halves: the
-/// walk may end in the rest before or after the stretch.
-fn walked(fitter: &Fitter<'_>, whole: Fit, by: f64) -> Fit {
-    // Start and end are the second and the third of its values.
-    let halves = [1, 2].map(|edge| {
-        let mut state = whole.state.clone();
-        let active = state.effects.last_mut()?;
-        active.values[edge] = 0.5 * (active.values[1] + active.values[2]);
-        fitter.at(state).ok()
-    });
-    let walk = |start: Fit| fitter.walk_edges(start, by);
-    let halves: Vec<Fit> = halves.into_iter().flatten().collect();
-    let ends: Vec<Fit> = halves.into_par_iter().map(walk).collect();
-    ends.into_iter().fold(walk(whole), Fit::better)
-}
-
 /// Effects that do nearly the same as the best, or explain as much: the logs
 /// cannot tell.
-fn alike(best: &Refined, refined: &[Refined], screened: &[Screened]) -> Vec<Alike> {
-    let own = &best.screened;
-    let others = screened
+fn alike(own: &Screened, best: &Refined, refined: &[Refined], all: &[Screened]) -> Vec<Alike> {
+    let pair = best.parts.iter().map(|p| p.effect.name);
+    let pair: Vec<&str> = pair.collect();
+    let others = all
         .iter()
-        .filter(|other| other.effect.name != own.effect.name)
+        .filter(|other| !pair.contains(&other.effect.name))
         .filter(|other| other.basis.ncols() <= own.basis.ncols());
     let mut all: Vec<Alike> = others
         .filter_map(|other| {
-            let same = |r: &&Refined| r.screened.effect.name == other.effect.name;
+            let same = |r: &&Refined| match r.parts.as_slice() {
+                [one] => one.effect.name == other.effect.name,
+                _ => false,
+            };
             let fitted = refined.iter().find(same);
             let equal = fitted.is_some_and(|r| (r.gain - best.gain).abs() < EQUAL);
             let sine = sine(&own.fingerprint, &other.basis);
@@ -375,7 +387,8 @@ fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
         return refined;
     };
     let enough = best - (0.01 * best).max(25.0);
-    let parameters = |r: &Refined| r.screened.effect.parameters.len();
+    let of = |r: &Refined| r.parts.iter().map(|p| p.effect.parameters.len()).sum();
+    let parameters = |r: &Refined| -> usize { of(r) };
     let near = refined.iter().enumerate().filter(|(_, r)| r.gain >= enough);
     if let Some((at, _)) = near.min_by_key(|(_, r)| parameters(r)) {
         refined[..=at].rotate_right(1);
