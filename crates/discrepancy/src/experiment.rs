@@ -177,7 +177,7 @@ impl<'a> Question<'a> {
         let whitener = layout.whitener(&layout.spectral_matrices(&found.fit.rest));
         let columns: Columns = known
             .into_iter()
-            .chain(fitter.effect_columns(&fit))
+            .chain(fitter.effect_columns(&fit, 0))
             .collect();
         let pair = [named, fit.state.effects[index].clone()];
         Ok(Self {
@@ -203,7 +203,7 @@ impl<'a> Question<'a> {
         let columns: Columns = fitter
             .known_columns(&second)
             .into_iter()
-            .chain(fitter.effect_columns(&second))
+            .chain(fitter.effect_columns(&second, 0))
             .collect();
         let layout = &set.layout;
         let of_noise = noise_on(self.machine, &self.states[0], &set, noise, 0)?;

@@ -116,8 +116,9 @@ impl Fitter<'_> {
             .collect()
     }
 
-    /// Derivatives with respect to the free parameters of the effects.
-    pub fn effect_columns(&self, fit: &Fit) -> Columns {
+    /// Derivatives with respect to the free parameters of the effects, but for the
+    /// first `given` of them.
+    pub fn effect_columns(&self, fit: &Fit, given: usize) -> Columns {
         let column = |(e, p): (usize, usize)| {
             let active = &fit.state.effects[e];
             let steps = steps_of(&active.effect.parameters[p], active.values[p]);
@@ -128,10 +129,9 @@ impl Fitter<'_> {
             };
             self.quotient(fit, steps.map(at), steps[0] - steps[1])
         };
-        free_parameters(&fit.state)
-            .into_par_iter()
-            .map(column)
-            .collect()
+        let free = free_parameters(&fit.state);
+        let new = free.into_par_iter().skip(given);
+        new.map(column).collect()
     }
 
     fn quotient(&self, fit: &Fit, states: [State; 2], width: f64) -> Amplitudes {
@@ -156,17 +156,19 @@ impl Fitter<'_> {
         }
     }
 
-    /// Gauss–Newton from `fit`, with re-simulation in every round. `known`
-    /// may be from a neighbouring state; effects' derivatives are made anew.
+    /// Gauss–Newton from `fit`, with re-simulation in every round. Derivatives
+    /// with respect to the first parameters, known ones and then those of effects,
+    /// are `given` and may be from a neighbouring state; the others are made anew.
     ///
     /// # Errors
     /// [`ReplayError`] never of trial steps, which are shortened instead.
-    pub fn refine(&self, mut fit: Fit, known: &Columns, rounds: usize) -> Fit {
+    pub fn refine(&self, mut fit: Fit, given: &Columns, rounds: usize) -> Fit {
+        let of_effects = given.len() - fit.state.shares.len();
         for _ in 0..rounds {
-            let columns: Vec<Amplitudes> = known
+            let columns: Vec<Amplitudes> = given
                 .iter()
                 .cloned()
-                .chain(self.effect_columns(&fit))
+                .chain(self.effect_columns(&fit, of_effects))
                 .collect();
             let Solved { step, promised, .. } = self.solve(&fit, &columns);
             if promised < ENOUGH {

@@ -17,7 +17,7 @@ pub(super) const LEAST_HELD_OUT: f64 = 10.0;
 /// have to be material: a fourteenth of the noise in amplitude. Sensor noise in
 /// the loop shakes dry friction and backlash a little loose, which a replay
 /// without noise knows nothing of, and simulations differ by their mesh.
-pub(super) const OF_NOISE: f64 = 0.005;
+const OF_NOISE: f64 = 0.005;
 
 /// Fall of D that an effect must bring on a set of logs with this layout.
 pub fn needed(layout: &Layout, parameters: usize, tried: usize, false_alarm: f64) -> f64 {

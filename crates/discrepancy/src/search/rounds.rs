@@ -5,7 +5,7 @@ use std::sync::Arc;
 use axis_sim::effects::{ActiveEffect, Machine};
 use rayon::prelude::*;
 
-use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, OF_NOISE, WORSE, needed};
+use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, WORSE, needed};
 use super::{Alike, Found, Library, Named, ONE_CLASS, RunnerUp, Settings};
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
 use crate::model::LogSet;
@@ -144,7 +144,7 @@ impl Search<'_> {
 
     /// Derivatives with respect to all parameters of the fit.
     fn own_columns(&self) -> Columns {
-        let effects = self.fitter().effect_columns(&self.fit);
+        let effects = self.fitter().effect_columns(&self.fit, 0);
         self.known.iter().cloned().chain(effects).collect()
     }
 
@@ -181,7 +181,7 @@ impl Search<'_> {
             };
             Some(Refined {
                 parts,
-                fit: fitter.refine(start, &self.known, 2),
+                fit: fitter.refine(start, own, 2),
                 gain: 0.0,
             })
         };
@@ -191,7 +191,7 @@ impl Search<'_> {
         let best = refined.iter().map(|r| gain(&r.fit)).fold(0.0, f64::max);
         refined.par_iter_mut().for_each(|r| {
             if gain(&r.fit) > 0.5 * best - 50.0 {
-                r.fit = fitter.refine(r.fit.clone(), &self.known, 4);
+                r.fit = fitter.refine(r.fit.clone(), own, 4);
             }
             r.gain = gain(&r.fit);
         });
@@ -201,7 +201,7 @@ impl Search<'_> {
         let near = |r: &Refined| r.gain > 0.8 * best;
         if refined.iter().filter(|r| near(r)).count() > 1 {
             refined.par_iter_mut().filter(|r| near(r)).for_each(|r| {
-                r.fit = fitter.refine(r.fit.clone(), &self.known, 8);
+                r.fit = fitter.refine(r.fit.clone(), own, 8);
                 r.gain = gain(&r.fit);
             });
         }
@@ -221,10 +221,10 @@ impl Search<'_> {
     }
 
     /// The first few, but none that the screening puts a tenth below the best or
-    /// below what is needed: linearised gains are off by less than that.
+    /// far below what is needed; the best in any case.
     fn worth_refining<'s>(&self, screened: &'s [Screened]) -> impl Iterator<Item = &'s Screened> {
         let best = screened.first().map_or(0.0, |s| s.gain);
-        let least = 0.1 * best.max(OF_NOISE * self.fit_logs.layout.size() as f64);
+        let least = (0.1 * best).max(PROMISING * self.needed(1, 1));
         let worth = move |(i, s): &(usize, &Screened)| *i == 0 || s.gain >= least;
         let few = screened.iter().take(self.settings.refined).enumerate();
         few.filter(worth).map(|(_, s)| s)
