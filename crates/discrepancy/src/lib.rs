@@ -34,6 +34,7 @@ pub mod hidden;
 pub mod intake;
 mod known;
 mod lack;
+mod linear;
 pub mod matrix;
 mod model;
 mod noise;

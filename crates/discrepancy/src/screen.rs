@@ -31,6 +31,8 @@ pub struct Screened {
     pub gain: f64,
     /// Starting values for a fit.
     pub values: Vec<f64>,
+    /// Its place in the library; `None` of a force over several slots of time.
+    pub candidate: Option<usize>,
     /// Response to these values, whitened, known parameters fitted out.
     pub fingerprint: DVector<f64>,
     /// Orthonormal basis of what the effect can do, in the same space.
@@ -258,6 +260,7 @@ impl Screening {
         Screened {
             gain,
             values: starting_values(response, solution),
+            candidate: response.candidate,
             fingerprint: &matrix * DVector::from_column_slice(solution),
             basis: (matrix.svd(true, false).u).unwrap_or_else(|| DMatrix::zeros(rows, 1)),
             effect: response.effect,
@@ -311,6 +314,8 @@ pub struct Response {
     pub effect: &'static Effect,
     /// As of its [`Candidate`].
     pub values: Vec<f64>,
+    /// Place of that in the library; `None` of a sum of several.
+    pub candidate: Option<usize>,
     /// One entry a size; two of an effect with a phase.
     pub columns: Vec<DVector<f64>>,
 }
@@ -323,14 +328,16 @@ pub fn responses_in(
     seen: impl Fn(&Amplitudes) -> DVector<f64> + Sync,
     rest: &DVector<f64>,
 ) -> Vec<Response> {
-    let one = |c: &Candidate| Response {
+    let one = |(place, c): (usize, &Candidate)| Response {
         effect: c.effect,
         values: c.values.clone(),
+        candidate: Some(place),
         columns: c.columns.iter().map(&seen).collect(),
     };
     let all: Vec<Response> = library
         .par_iter()
-        .filter(|c| wanted(c.effect))
+        .enumerate()
+        .filter(|(_, c)| wanted(c.effect))
         .map(one)
         .collect();
     let (slots, mut all): (Vec<_>, Vec<_>) = all.into_iter().partition(|r| r.effect.name == FORCE);
@@ -381,6 +388,7 @@ fn windows(slots: &[Response], rest: &DVector<f64>) -> Vec<Response> {
         Response {
             effect: slots[window.start].effect,
             values,
+            candidate: None,
             columns: vec![columns[window].iter().fold(zero, |sum, c| sum + *c)],
         }
     };

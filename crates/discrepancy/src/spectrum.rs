@@ -15,8 +15,6 @@
 //! from the rest itself, S_b = Σ r rᴴ / n_b; then D = 2 Σ_b n_b log det S_b
 //! but for a constant.
 
-use std::ops::Range;
-
 use nalgebra::{Complex, DMatrix, DVector};
 use realfft::RealFftPlanner;
 
@@ -124,6 +122,27 @@ impl Layout {
     pub fn bands(&self) -> impl Iterator<Item = ([f64; 2], usize)> + '_ {
         let edges = self.edges.windows(2).map(|w| [w[0], w[1]]);
         edges.zip(self.counts.iter().copied())
+    }
+
+    /// Number of channels.
+    pub fn channels(&self) -> usize {
+        self.channels
+    }
+
+    /// Number of bins in each band.
+    pub fn counts(&self) -> &[usize] {
+        &self.counts
+    }
+
+    /// The channels of each bin of a band, logs one after another.
+    pub fn bins_of<'a>(
+        &'a self,
+        band: usize,
+        amplitudes: &'a Amplitudes,
+    ) -> impl Iterator<Item = &'a [C64]> {
+        let logs = self.bands.iter().zip(amplitudes);
+        let bins = logs.flat_map(|(bands, a)| bands.iter().zip(a.chunks_exact(self.channels)));
+        bins.filter(move |(b, _)| **b == band).map(|(_, bin)| bin)
     }
 
     /// Number of real numbers in the amplitudes.
@@ -248,135 +267,8 @@ impl Layout {
     }
 }
 
-impl Layout {
-    /// All products of these columns, band by band.
-    pub fn products(&self, columns: &[&Amplitudes]) -> Products {
-        let m = self.channels;
-        let width = columns.len() * m;
-        let band = |b: usize| {
-            // One row a bin: the real parts, then the imaginary ones.
-            let mut re = DMatrix::<f64>::zeros(self.counts[b], width);
-            let mut im = re.clone();
-            for (c, column) in columns.iter().enumerate() {
-                let bins = self.bands.iter().zip(*column);
-                let bins = bins.flat_map(|(bands, a)| bands.iter().zip(a.chunks_exact(m)));
-                let own = bins.filter(|(band, _)| **band == b);
-                for (row, (_, values)) in own.enumerate() {
-                    for (i, value) in values.iter().enumerate() {
-                        re[(row, c * m + i)] = value.re;
-                        im[(row, c * m + i)] = value.im;
-                    }
-                }
-            }
-            let (ret, imt) = (re.transpose(), im.transpose());
-            let real = &ret * &re + &imt * &im;
-            let cross = &imt * &re;
-            let imaginary = &cross - cross.transpose();
-            real.zip_map(&imaginary, C64::new)
-        };
-        Products {
-            channels: m,
-            counts: self.counts.clone(),
-            bands: (0..self.counts.len()).map(band).collect(),
-        }
-    }
-}
-
-/// Products of columns between all channels, summed over the bins of each band:
-/// what D and its linearised problem are made of, without the bins.
-#[derive(Clone, Debug)]
-pub struct Products {
-    channels: usize,
-    counts: Vec<usize>,
-    /// Block (i, j) is Σ c_i c_jᴴ.
-    bands: Vec<DMatrix<C64>>,
-}
-
-impl Products {
-    fn columns(&self) -> usize {
-        self.bands.first().map_or(0, |b| b.nrows() / self.channels)
-    }
-
-    /// Those of the first columns, `kept` of them, and of the sum of some others.
-    pub fn merged(&self, kept: usize, summed: Range<usize>) -> Self {
-        let m = self.channels;
-        let band = |all: &DMatrix<C64>| {
-            let block = |i: usize, j: usize| all.view((i * m, j * m), (m, m));
-            let mut out = DMatrix::zeros((kept + 1) * m, (kept + 1) * m);
-            let own = (kept * m, kept * m);
-            out.view_mut((0, 0), own).copy_from(&all.view((0, 0), own));
-            for i in summed.clone() {
-                for j in 0..kept {
-                    let mut cross = out.view_mut((kept * m, j * m), (m, m));
-                    cross += block(i, j);
-                    let mut cross = out.view_mut((j * m, kept * m), (m, m));
-                    cross += block(j, i);
-                }
-                for j in summed.clone() {
-                    let mut sum = out.view_mut(own, (m, m));
-                    sum += block(i, j);
-                }
-            }
-            out
-        };
-        Self {
-            channels: m,
-            counts: self.counts.clone(),
-            bands: self.bands.iter().map(band).collect(),
-        }
-    }
-
-    /// The spectral matrix in each band of the first column less the others times x.
-    fn spectral_matrices(&self, x: &DVector<f64>) -> Vec<DMatrix<C64>> {
-        let m = self.channels;
-        let y = |i: usize| if i == 0 { 1.0 } else { -x[i - 1] };
-        let one = |(band, &count): (&DMatrix<C64>, &usize)| {
-            let mut sum = DMatrix::<C64>::zeros(m, m);
-            for i in 0..=x.len() {
-                for j in 0..=x.len() {
-                    let weight = C64::new(y(i) * y(j), 0.0);
-                    sum += band.view((i * m, j * m), (m, m)) * weight;
-                }
-            }
-            regular(sum / C64::new(count.max(1) as f64, 0.0))
-        };
-        self.bands.iter().zip(&self.counts).map(one).collect()
-    }
-
-    /// Products of all columns, whitened as the first less the others times x asks
-    /// for.
-    pub fn weighed(&self, x: &DVector<f64>) -> DMatrix<f64> {
-        let (m, n) = (self.channels, self.columns());
-        let mut all = DMatrix::zeros(n, n);
-        for (band, s) in self.bands.iter().zip(self.spectral_matrices(x)) {
-            let Some(inverse) = s.cholesky().map(|c| c.inverse()) else {
-                continue;
-            };
-            for i in 0..n {
-                for j in 0..n {
-                    let block = band.view((i * m, j * m), (m, m));
-                    // The inverse is Hermitian: tr(S⁻¹ B) = Σ conj(S⁻¹) ∘ B.
-                    let trace: C64 = block
-                        .iter()
-                        .zip(inverse.iter())
-                        .map(|(b, s)| b * s.conj())
-                        .sum();
-                    all[(i, j)] += 2.0 * trace.re;
-                }
-            }
-        }
-        all
-    }
-
-    /// D of the first column less the others times x.
-    pub fn deviance(&self, x: &DVector<f64>) -> f64 {
-        let matrices = self.spectral_matrices(x);
-        matrices.iter().zip(&self.counts).map(deviance_of).sum()
-    }
-}
-
 /// What a band with this spectral matrix adds to D.
-fn deviance_of((s, &count): (&DMatrix<C64>, &usize)) -> f64 {
+pub(crate) fn deviance_of((s, &count): (&DMatrix<C64>, &usize)) -> f64 {
     match s.clone().cholesky() {
         Some(c) => {
             let log_det: f64 = c.l_dirty().diagonal().iter().map(|d| 2.0 * d.re.ln()).sum();
@@ -387,7 +279,7 @@ fn deviance_of((s, &count): (&DMatrix<C64>, &usize)) -> f64 {
 }
 
 /// A spectral matrix with a share of each channel's own variance added to it.
-fn regular(mut s: DMatrix<C64>) -> DMatrix<C64> {
+pub(crate) fn regular(mut s: DMatrix<C64>) -> DMatrix<C64> {
     for i in 0..s.nrows() {
         let own = s[(i, i)].re;
         s[(i, i)] += C64::new(own * REGULAR + f64::MIN_POSITIVE, 0.0);
@@ -404,48 +296,4 @@ const REGULAR: f64 = 1e-4;
 #[derive(Clone, Debug)]
 pub struct Whitener {
     factors: Vec<DMatrix<C64>>,
-}
-
-#[cfg(test)]
-mod tests {
-    use rand::rngs::StdRng;
-    use rand::{RngExt, SeedableRng};
-
-    use super::*;
-
-    /// Amplitudes of noise in two channels of a log of 1 s at 1 kHz.
-    fn noise(layout: &Layout, rng: &mut StdRng) -> Amplitudes {
-        let mut samples = || (0..1000).map(|_| rng.random_range(-1.0..1.0)).collect();
-        let series: [Vec<f64>; 2] = [samples(), samples()];
-        vec![layout.transform(0, &series, &[false, false])]
-    }
-
-    #[test]
-    fn products_hold_what_the_bins_hold() {
-        let layout = Layout::new(2, &[(1000, 1e-3)]);
-        let mut rng = StdRng::seed_from_u64(5);
-        let all: Vec<Amplitudes> = (0..5).map(|_| noise(&layout, &mut rng)).collect();
-        let products = layout.products(&all.iter().collect::<Vec<_>>());
-        // The rest, one column, and the sum of two of three slots.
-        let merged = products.merged(2, 3..5);
-        let x = DVector::from_vec(vec![0.3, -0.7]);
-        let left = |bin: usize| {
-            all[0][0][bin] - all[1][0][bin] * 0.3 + (all[3][0][bin] + all[4][0][bin]) * 0.7
-        };
-        let rest: Amplitudes = vec![(0..all[0][0].len()).map(left).collect()];
-        let direct = layout.deviance(&rest);
-        assert!((merged.deviance(&x) - direct).abs() < 1e-9 * direct.abs());
-        let whitener = layout.whitener(&layout.spectral_matrices(&rest));
-        let white = |a: &Amplitudes| layout.whiten(&whitener, a);
-        let sum: Amplitudes = vec![
-            all[3][0]
-                .iter()
-                .zip(&all[4][0])
-                .map(|(a, b)| a + b)
-                .collect(),
-        ];
-        let columns = DMatrix::from_columns(&[white(&all[0]), white(&all[1]), white(&sum)]);
-        let gram = columns.tr_mul(&columns);
-        assert!((merged.weighed(&x) - &gram).norm() < 1e-9 * gram.norm());
-    }
 }

@@ -9,8 +9,9 @@ use crate::experiment::Proposal;
 use crate::fit::{Fitter, free_parameters};
 use crate::hidden::{Hidden, Noise, exercise};
 use crate::model::LogSet;
+use crate::outcome::judged;
 use crate::search::search_with;
-use crate::{Discovery, Found, Settings, discovery};
+use crate::{Discovery, Found, Settings};
 
 impl Bench {
     /// Runs a case of this bench's motion.
@@ -57,7 +58,7 @@ impl Bench {
         };
         let library = Some(self.library.clone());
         let found = search_with(&self.machine, &fit, &check, &settings, library, |_| ())?;
-        let told = discovery(&self.machine, &fit, &check, &found)?;
+        let told = judged(&self.machine, &fit, &check, &found)?;
         if let Some(proposal) = &told.proposal {
             outcome.split = self.split(&hidden, &fit, &found, proposal)?;
         }

@@ -61,6 +61,18 @@ pub fn discovery(
     check_logs: &LogSet,
     found: &Found,
 ) -> Result<Discovered, ReplayError> {
+    let mut told = judged(machine, fit_logs, check_logs, found)?;
+    told.discovery.likenesses = likenesses(machine, found);
+    Ok(told)
+}
+
+/// As [`discovery`], without what the logs can tell of effects that are not there.
+pub(crate) fn judged(
+    machine: &Machine,
+    fit_logs: &LogSet,
+    check_logs: &LogSet,
+    found: &Found,
+) -> Result<Discovered, ReplayError> {
     let initial = State::initial(machine);
     let full = &found.fit.state;
     // Before: as the file says. After: with the defects of the fitted machine.
@@ -156,7 +168,7 @@ pub fn discovery(
         unknown,
         gap: Gaps { fit, check },
         recalibrated,
-        likenesses: likenesses(machine, found),
+        likenesses: Vec::new(),
         next_experiment: proposal.as_ref().map(next_experiment),
     };
     Ok(Discovered {

@@ -14,20 +14,16 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::rounds::{PROMISING, Search};
-use crate::bounded::bounded;
-use crate::fit::{Columns, Fit, known_deviation};
-use crate::known::tolerance;
+use crate::fit::{Columns, Fit};
+use crate::linear::{Problem, Products};
 use crate::screen::{FORCE, mostly_same, responses};
-use crate::spectrum::{Amplitudes, Products};
+use crate::spectrum::Amplitudes;
 
 /// Stretches of which the edges are sought.
 const STRETCHES: usize = 2;
 
 /// Length of the slots at the edges at which Gauss and Newton take over, s.
 const FINEST: f64 = 0.01;
-
-/// Rounds in which the spectrum of a linearised rest is estimated anew.
-const REWEIGHED: usize = 6;
 
 /// A slot of time, and what a force of typical size does in it.
 #[derive(Clone)]
@@ -41,13 +37,20 @@ struct Stretch {
     slots: Range<usize>,
     /// D of the linearised model.
     deviance: f64,
-    /// As a multiple of the typical.
-    size: f64,
+    /// Of the fit's own columns, and its size as a multiple of the typical.
+    x: DVector<f64>,
+}
+
+impl Stretch {
+    fn size(&self) -> f64 {
+        self.x[self.x.len() - 1]
+    }
 }
 
 impl Search<'_> {
-    /// The best force in time beside the fit. `own` are the derivatives of the
-    /// fit's own parameters.
+    /// The best force in time beside the fit; `None` where the linearised model
+    /// promises too little of all. `own` are the derivatives of the fit's own
+    /// parameters.
     pub(super) fn force_in_time(&self, own: &Columns) -> Option<Fit> {
         let all = self.library.candidates.iter();
         let slots: Vec<Slot> = all
@@ -58,9 +61,12 @@ impl Search<'_> {
             })
             .collect();
         // A force over the whole motion is a constant load.
-        let mut stretches = self.compared(own, &slots, slots.len() - 1);
+        let n = slots.len();
+        let all = (0..n).flat_map(|i| (i + 1..=n).map(move |j| i..j));
+        let all = all.filter(|s| s.len() < n).collect();
+        let start = DVector::zeros(own.len() + 1);
         let mut chosen: Vec<Stretch> = Vec::new();
-        for stretch in stretches.drain(..) {
+        for stretch in self.compared(own, &slots, all, &start) {
             let new = chosen
                 .iter()
                 .all(|c| !mostly_same(&c.slots, &stretch.slots));
@@ -68,17 +74,13 @@ impl Search<'_> {
                 chosen.push(stretch);
             }
         }
-        let promising =
-            |s: &Stretch| self.fit.deviance - s.deviance >= PROMISING * self.needed(3, 1);
-        let refined = |(i, stretch): (usize, Stretch)| {
-            let (slots, stretch) = if i == 0 || promising(&stretch) {
-                self.cut_finer(own, &slots, stretch)
-            } else {
-                return None;
-            };
+        let least = PROMISING * self.needed(3, 1);
+        chosen.retain(|s| self.fit.deviance - s.deviance >= least);
+        let simulated = |stretch: Stretch| {
+            let (slots, stretch) = self.cut_finer(own, &slots, stretch);
             self.simulated(&slots, &stretch)
         };
-        let fits = chosen.into_par_iter().enumerate().filter_map(refined);
+        let fits = chosen.into_par_iter().filter_map(simulated);
         let fits: Vec<Fit> = fits.collect();
         fits.into_iter().reduce(Fit::better)
     }
@@ -111,8 +113,13 @@ impl Search<'_> {
                     }
                 }
             }
-            let most = finer.len();
-            let Some(next) = self.compared(own, &finer, most).into_iter().next() else {
+            let n = finer.len();
+            // Each edge lies in its own slots, before and after what is inside.
+            let holds = |s: &Range<usize>| inside.is_none_or(|i| s.contains(&i));
+            let all = (0..n).flat_map(|i| (i + 1..=n).map(move |j| i..j));
+            let all = all.filter(holds);
+            let compared = self.compared(own, &finer, all.collect(), &best.x);
+            let Some(next) = compared.into_iter().next() else {
                 return (slots, best);
             };
             (slots, best) = (finer, next);
@@ -148,24 +155,31 @@ impl Search<'_> {
         two.into_iter().chain([last]).collect()
     }
 
-    /// All stretches of neighbouring slots, at most so many, that with the lowest D
-    /// first.
-    fn compared(&self, own: &Columns, slots: &[Slot], most: usize) -> Vec<Stretch> {
+    /// Stretches of slots, that with the lowest D first.
+    fn compared(
+        &self,
+        own: &Columns,
+        slots: &[Slot],
+        stretches: Vec<Range<usize>>,
+        start: &DVector<f64>,
+    ) -> Vec<Stretch> {
         let rest = [&self.fit.rest].into_iter();
         let columns = slots.iter().map(|s| &s.column);
         let all: Vec<&Amplitudes> = rest.chain(own).chain(columns).collect();
-        let products = self.fit_logs.layout.products(&all);
-        let profile = Profile {
-            products: &products,
-            first_slot: 1 + own.len(),
-            shares: &self.fit.state.shares,
-            tolerance: tolerance(self.machine),
-            weight: known_deviation(self.machine).powi(-2),
+        let products = Products::new(&self.fit_logs.layout, &all);
+        let first = 1 + own.len();
+        let fitted = |slots: Range<usize>| {
+            let summed = first + slots.start..first + slots.end;
+            let shares = &self.fit.state.shares;
+            let problem = Problem::new(self.machine, &products, first, summed, shares);
+            let least = problem.minimum(start);
+            Stretch {
+                slots,
+                deviance: least.deviance,
+                x: least.x,
+            }
         };
-        let n = slots.len();
-        let all = (0..n).flat_map(|i| (i + 1..=n).map(move |j| i..j));
-        let all: Vec<Range<usize>> = all.filter(|s| s.len() <= most).collect();
-        let mut fitted: Vec<Stretch> = all.into_par_iter().map(|s| profile.fit(s)).collect();
+        let mut fitted: Vec<Stretch> = stretches.into_par_iter().map(fitted).collect();
         fitted.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
         fitted
     }
@@ -178,7 +192,7 @@ impl Search<'_> {
             .find(|c| c.effect.name == FORCE)?
             .effect;
         let force = effect.parameters[0];
-        let size = (stretch.size * force.typical).clamp(force.bounds[0], force.bounds[1]);
+        let size = (stretch.size() * force.typical).clamp(force.bounds[0], force.bounds[1]);
         let from = slots[stretch.slots.start].times[0];
         let to = slots[stretch.slots.end - 1].times[1];
         let values = vec![size, from, to];
@@ -202,50 +216,4 @@ fn joined(a: &Slot, b: &Slot) -> Slot {
 fn less(a: &Amplitudes, b: &Amplitudes) -> Amplitudes {
     let take = |(a, b): (&Vec<_>, &Vec<_>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
     a.iter().zip(b).map(take).collect()
-}
-
-/// D of the linearised model, minimised over all but the stretch of a force.
-struct Profile<'a> {
-    /// Of the rest, the fit's own columns, and the slots'.
-    products: &'a Products,
-    first_slot: usize,
-    /// Of the known parameters, whose columns are the first.
-    shares: &'a [f64],
-    tolerance: f64,
-    /// Of their departure.
-    weight: f64,
-}
-
-impl Profile<'_> {
-    /// The rest's spectrum is estimated anew in every round: with the rest as it
-    /// was without the force in the weights, where the force acts hardly counts.
-    fn fit(&self, slots: Range<usize>) -> Stretch {
-        let n = self.first_slot;
-        let products = self.products.merged(n, n + slots.start..n + slots.end);
-        let known = self.shares.len();
-        let room = |i: usize| {
-            (i < known).then(|| {
-                let share = self.shares[i];
-                [-self.tolerance - share, self.tolerance - share]
-            })
-        };
-        let mut x = DVector::zeros(n);
-        for _ in 0..REWEIGHED {
-            let gram = products.weighed(&x);
-            let mut normal = gram.view((1, 1), (n, n)).into_owned();
-            let mut right = gram.view((1, 0), (n, 1)).column(0).into_owned();
-            for i in 0..known {
-                normal[(i, i)] += self.weight;
-                right[i] -= self.weight * self.shares[i];
-            }
-            x = bounded(&normal, &right, room);
-        }
-        let departures = x.iter().zip(self.shares);
-        let departure: f64 = departures.map(|(x, s)| (x + s).powi(2)).sum();
-        Stretch {
-            deviance: products.deviance(&x) + self.weight * departure,
-            size: x[n - 1],
-            slots,
-        }
-    }
 }

@@ -3,13 +3,16 @@
 use std::sync::Arc;
 
 use axis_sim::effects::{ActiveEffect, Machine};
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, WORSE, needed};
 use super::{Alike, Found, Library, Named, ONE_CLASS, RunnerUp, Settings};
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
+use crate::linear::{Problem, Products};
 use crate::model::LogSet;
 use crate::screen::{FORCE, Screened, Screening, sine};
+use crate::spectrum::Amplitudes;
 
 /// A search on its way.
 pub(super) struct Search<'a> {
@@ -69,8 +72,11 @@ impl Search<'_> {
         let own = self.own_columns();
         let screening = self.screening(&own, &awaited);
         let screened = screening.one_by_one();
-        let worth = self.worth_refining(&screened).map(|s| vec![s.clone()]);
-        let mut candidates: Vec<Vec<Screened>> = worth.collect();
+        let worth = match awaited.is_empty() {
+            true => self.worth_refining(&screened, &own),
+            false => screened.clone(),
+        };
+        let mut candidates: Vec<Vec<Screened>> = worth.into_iter().map(|s| vec![s]).collect();
         if awaited.is_empty() && self.named.len() + 2 <= self.settings.most_effects {
             let best = screened.first().map_or(0.0, |s| s.gain);
             let pairs = screening.two_by_two(2.0 * best + PROMISING * self.needed(2, 2));
@@ -220,14 +226,30 @@ impl Search<'_> {
         simplest_first(refined)
     }
 
-    /// The first few, but none that the screening puts a tenth below the best or
-    /// far below what is needed; the best in any case.
-    fn worth_refining<'s>(&self, screened: &'s [Screened]) -> impl Iterator<Item = &'s Screened> {
+    /// The first few, but none that the screening puts a tenth below the best, or
+    /// of which the linearised model promises too little.
+    fn worth_refining(&self, screened: &[Screened], own: &Columns) -> Vec<Screened> {
         let best = screened.first().map_or(0.0, |s| s.gain);
-        let least = (0.1 * best).max(PROMISING * self.needed(1, 1));
-        let worth = move |(i, s): &(usize, &Screened)| *i == 0 || s.gain >= least;
-        let few = screened.iter().take(self.settings.refined).enumerate();
-        few.filter(worth).map(|(_, s)| s)
+        let few = screened.iter().take(self.settings.refined);
+        let few: Vec<&Screened> = few.filter(|s| s.gain >= 0.1 * best).collect();
+        let least = PROMISING * self.needed(1, 1);
+        let worth = |s: &&Screened| self.promised(s, own).is_none_or(|gain| gain >= least);
+        few.into_par_iter().filter(worth).cloned().collect()
+    }
+
+    /// Fall of D as the linearised model has it: with the rest as it is in the
+    /// weights, as the screening has it, gains are too small by up to a hundredfold.
+    /// `None` of a force in time, of which the times are to be found first.
+    fn promised(&self, screened: &Screened, own: &Columns) -> Option<f64> {
+        let place = screened.candidate?;
+        let rest = [&self.fit.rest].into_iter();
+        let candidate = &self.library.candidates[place].columns;
+        let all: Vec<&Amplitudes> = rest.chain(own).chain(candidate).collect();
+        let products = Products::new(&self.fit_logs.layout, &all);
+        let shares = &self.fit.state.shares;
+        let problem = Problem::new(self.machine, &products, all.len(), 0..0, shares);
+        let least = problem.minimum(&DVector::zeros(all.len() - 1));
+        Some(self.fit.deviance - least.deviance)
     }
 
     fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {

@@ -1,0 +1,292 @@
+//! The linearised model, and D at its minimum without the bins.
+//!
+//! With columns c_i the rest is r − Σ x_i c_i, and the spectral matrix of a band
+//! Σ y_i y_j P_ij / n with y = (1, −x) and P_ij = Σ c_i c_jᴴ summed over its bins
+//! once. D = 2 Σ n log det S is concave in S: least squares weighed by the last S
+//! lowers it in every round. The linear model foretells D of a simulation to a
+//! hundredth, where an effect is linear.
+
+use std::ops::Range;
+
+use axis_sim::effects::Machine;
+use nalgebra::{Complex, DMatrix, DVector};
+
+use crate::bounded::bounded;
+use crate::fit::known_deviation;
+use crate::known::tolerance;
+use crate::spectrum::{Amplitudes, Layout, deviance_of, regular};
+
+type C64 = Complex<f64>;
+
+/// Rounds of reweighing at most.
+const ROUNDS: usize = 8;
+
+/// Moves of all unknowns, in their standard deviations, below which it ends.
+const STILL: f64 = 0.1;
+
+/// Products between columns and channels, band by band.
+pub struct Products {
+    channels: usize,
+    columns: usize,
+    counts: Vec<usize>,
+    /// Block (i, j), by columns, at (i · columns + j) · channels².
+    bands: Vec<Vec<C64>>,
+}
+
+impl Products {
+    /// Of all these columns, the rest first.
+    pub fn new(layout: &Layout, columns: &[&Amplitudes]) -> Self {
+        let (m, n) = (layout.channels(), columns.len());
+        let band = |(b, &count): (usize, &usize)| {
+            let mut re = DMatrix::<f64>::zeros(count, n * m);
+            let mut im = re.clone();
+            for (c, column) in columns.iter().enumerate() {
+                for (row, bin) in layout.bins_of(b, column).enumerate() {
+                    for (i, value) in bin.iter().enumerate() {
+                        re[(row, c * m + i)] = value.re;
+                        im[(row, c * m + i)] = value.im;
+                    }
+                }
+            }
+            let real = re.transpose() * &re + im.transpose() * &im;
+            let cross = im.transpose() * &re;
+            let mut blocks = Vec::with_capacity(n * n * m * m);
+            for i in 0..n {
+                for j in 0..n {
+                    for q in 0..m {
+                        for p in 0..m {
+                            let (row, column) = (i * m + p, j * m + q);
+                            let imaginary = cross[(row, column)] - cross[(column, row)];
+                            blocks.push(C64::new(real[(row, column)], imaginary));
+                        }
+                    }
+                }
+            }
+            blocks
+        };
+        Self {
+            channels: m,
+            columns: n,
+            counts: layout.counts().to_vec(),
+            bands: layout.counts().iter().enumerate().map(band).collect(),
+        }
+    }
+
+    fn block(&self, band: usize, i: usize, j: usize) -> &[C64] {
+        let size = self.channels * self.channels;
+        let at = (i * self.columns + j) * size;
+        &self.bands[band][at..at + size]
+    }
+}
+
+/// A fit of the rest by some of the columns.
+pub struct Problem<'a> {
+    products: &'a Products,
+    /// The first columns: the rest, those of known parameters, others.
+    kept: usize,
+    /// Of the sum of some others, which is the last column: its blocks with all
+    /// before it and with itself.
+    sum: Vec<Vec<C64>>,
+    /// Of the known parameters.
+    shares: &'a [f64],
+    tolerance: f64,
+    /// Of a departure of theirs.
+    weight: f64,
+}
+
+/// Where D is least.
+pub struct Minimum {
+    /// D, with the departures of known parameters.
+    pub deviance: f64,
+    /// Of the columns.
+    pub x: DVector<f64>,
+}
+
+impl<'a> Problem<'a> {
+    /// Of the first columns, `kept` of them with the rest, and of the sum of some
+    /// others, if there are any. The first after the rest are those of the known
+    /// parameters, now at `shares`.
+    pub fn new(
+        machine: &Machine,
+        products: &'a Products,
+        kept: usize,
+        summed: Range<usize>,
+        shares: &'a [f64],
+    ) -> Self {
+        let size = products.channels * products.channels;
+        let blocks = |band: usize| {
+            let mut out = vec![C64::ZERO; (kept + 1) * size];
+            for i in summed.clone() {
+                for j in 0..kept {
+                    let block = products.block(band, i, j);
+                    let into = &mut out[j * size..(j + 1) * size];
+                    into.iter_mut().zip(block).for_each(|(a, b)| *a += b);
+                }
+                for j in summed.clone() {
+                    let block = products.block(band, i, j);
+                    let into = &mut out[kept * size..];
+                    into.iter_mut().zip(block).for_each(|(a, b)| *a += b);
+                }
+            }
+            out
+        };
+        let sum = match summed.is_empty() {
+            true => Vec::new(),
+            false => (0..products.bands.len()).map(blocks).collect(),
+        };
+        Self {
+            products,
+            kept,
+            sum,
+            shares,
+            tolerance: tolerance(machine),
+            weight: known_deviation(machine).powi(-2),
+        }
+    }
+
+    /// Number of columns beside the rest.
+    fn unknowns(&self) -> usize {
+        self.kept - usize::from(self.sum.is_empty())
+    }
+
+    /// Block (i, j), j ≤ i.
+    fn block(&self, band: usize, i: usize, j: usize) -> &[C64] {
+        if i < self.kept {
+            return self.products.block(band, i, j);
+        }
+        let size = self.products.channels * self.products.channels;
+        &self.sum[band][j * size..(j + 1) * size]
+    }
+
+    fn spectral_matrices(&self, x: &DVector<f64>) -> Vec<DMatrix<C64>> {
+        let m = self.products.channels;
+        let y = |i: usize| if i == 0 { 1.0 } else { -x[i - 1] };
+        let one = |(band, &count): (usize, &usize)| {
+            let mut half = vec![C64::ZERO; m * m];
+            for i in 0..=x.len() {
+                for j in 0..=i {
+                    let weight = y(i) * y(j) * if i == j { 0.5 } else { 1.0 };
+                    let block = self.block(band, i, j);
+                    half.iter_mut()
+                        .zip(block)
+                        .for_each(|(s, b)| *s += b * weight);
+                }
+            }
+            let half = DMatrix::from_vec(m, m, half) / C64::new(count.max(1) as f64, 0.0);
+            regular(&half + half.adjoint())
+        };
+        self.products.counts.iter().enumerate().map(one).collect()
+    }
+
+    /// Products of all columns, the rest's among them, whitened by these matrices.
+    fn weighed(&self, matrices: &[DMatrix<C64>]) -> DMatrix<f64> {
+        let n = self.unknowns() + 1;
+        let mut all = DMatrix::zeros(n, n);
+        for (band, s) in matrices.iter().enumerate() {
+            let Some(inverse) = s.clone().cholesky().map(|c| c.inverse()) else {
+                continue;
+            };
+            for i in 0..n {
+                for j in 0..=i {
+                    // The inverse is Hermitian: tr(S⁻¹ P) = Σ conj(S⁻¹) ∘ P.
+                    let pairs = self.block(band, i, j).iter().zip(inverse.iter());
+                    let trace: f64 = pairs.map(|(p, s)| p.re * s.re + p.im * s.im).sum();
+                    all[(i, j)] += 2.0 * trace;
+                }
+            }
+        }
+        all.fill_upper_triangle_with_lower_triangle();
+        all
+    }
+
+    /// The least D, sought from `start` on, the known parameters inside their
+    /// tolerance. The rest's spectrum is estimated anew in every round: with the
+    /// rest as it is at the start in the weights, where an effect acts hardly
+    /// counts.
+    pub fn minimum(&self, start: &DVector<f64>) -> Minimum {
+        let n = self.unknowns();
+        let known = self.shares.len();
+        let room = |i: usize| {
+            (i < known).then(|| {
+                let share = self.shares[i];
+                [-self.tolerance - share, self.tolerance - share]
+            })
+        };
+        let mut x = start.clone();
+        let mut matrices = self.spectral_matrices(&x);
+        for _ in 0..ROUNDS {
+            let gram = self.weighed(&matrices);
+            let mut normal = gram.view((1, 1), (n, n)).into_owned();
+            let mut right = gram.view((1, 0), (n, 1)).column(0).into_owned();
+            for i in 0..known {
+                normal[(i, i)] += self.weight;
+                right[i] -= self.weight * self.shares[i];
+            }
+            let before = std::mem::replace(&mut x, bounded(&normal, &right, room));
+            matrices = self.spectral_matrices(&x);
+            let moved = |i: usize| (x[i] - before[i]).abs() * normal[(i, i)].max(0.0).sqrt();
+            if (0..n).all(|i| moved(i) < STILL) {
+                break;
+            }
+        }
+        let departures = x.iter().zip(self.shares);
+        let departure: f64 = departures.map(|(x, s)| (x + s).powi(2)).sum();
+        let bands = matrices.iter().zip(&self.products.counts);
+        let deviance = bands.map(deviance_of).sum::<f64>() + self.weight * departure;
+        Minimum { deviance, x }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::rngs::StdRng;
+    use rand::{RngExt, SeedableRng};
+
+    use super::*;
+
+    /// Amplitudes of noise in two channels of a log of 1 s at 1 kHz.
+    fn noise(layout: &Layout, rng: &mut StdRng) -> Amplitudes {
+        let mut samples = || (0..1000).map(|_| rng.random_range(-1.0..1.0)).collect();
+        let series: [Vec<f64>; 2] = [samples(), samples()];
+        vec![layout.transform(0, &series, &[false, false])]
+    }
+
+    #[test]
+    fn products_hold_what_the_bins_hold_and_the_minimum_is_one() {
+        let layout = Layout::new(2, &[(1000, 1e-3)]);
+        let mut rng = StdRng::seed_from_u64(5);
+        let all: Vec<Amplitudes> = (0..5).map(|_| noise(&layout, &mut rng)).collect();
+        let products = Products::new(&layout, &all.iter().collect::<Vec<_>>());
+        // The rest, one column, and the sum of two of three slots.
+        let problem = Problem {
+            products: &products,
+            shares: &[],
+            tolerance: 0.0,
+            weight: 0.0,
+            kept: 2,
+            sum: Vec::new(),
+        };
+        let axis = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
+        let axis = axis_sim::Axis::read(axis.as_ref()).unwrap();
+        let machine = Machine::BallScrew(Box::new(axis));
+        let problem = Problem {
+            sum: Problem::new(&machine, &products, 2, 3..5, &[]).sum,
+            ..problem
+        };
+        let direct = |x: &DVector<f64>| {
+            let left = |bin: usize| {
+                all[0][0][bin] - all[1][0][bin] * x[0] - (all[3][0][bin] + all[4][0][bin]) * x[1]
+            };
+            let rest: Amplitudes = vec![(0..all[0][0].len()).map(left).collect()];
+            layout.deviance(&rest)
+        };
+        let least = problem.minimum(&DVector::zeros(2));
+        let at_least = direct(&least.x);
+        assert!((least.deviance - at_least).abs() < 1e-9 * at_least.abs());
+        for (i, by) in [(0, 0.01), (0, -0.01), (1, 0.01), (1, -0.01)] {
+            let mut x = least.x.clone();
+            x[i] += by;
+            assert!(direct(&x) > at_least);
+        }
+    }
+}
