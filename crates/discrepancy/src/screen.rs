@@ -189,10 +189,8 @@ impl Screening {
         all
     }
 
-    /// Pairs that explain together at least `least`, best first, one entry a pair
-    /// of effects. What two do may nearly cancel in one channel, and neither is
-    /// worth anything alone then.
-    pub fn two_by_two(&self, least: f64) -> Vec<[Screened; 2]> {
+    /// The pairs that explain most, best first, one entry a pair of effects.
+    pub fn two_by_two(&self) -> Vec<[Screened; 2]> {
         let columns = self.responses.iter().flat_map(|r| &r.columns);
         let columns: Vec<DVector<f64>> = columns.cloned().collect();
         if columns.is_empty() {
@@ -215,10 +213,8 @@ impl Screening {
             let (solution, explained) = solved(&normal, &right, &both)?;
             let gain = self.gain_of(explained);
             let (of_a, of_b) = solution.split_at(places[i].len());
-            let worth = a.effect.name != b.effect.name
-                && gain >= least
-                && within_bounds(a, of_a)
-                && within_bounds(b, of_b);
+            let worth =
+                a.effect.name != b.effect.name && within_bounds(a, of_a) && within_bounds(b, of_b);
             worth.then(|| (gain, (i, of_a.to_vec()), (j, of_b.to_vec())))
         };
         let all: Vec<(usize, usize)> = (0..n)
@@ -275,7 +271,7 @@ impl Screening {
 }
 
 /// Most pairs of effects that a screening gives.
-const PAIRS: usize = 3;
+const PAIRS: usize = 12;
 
 /// Sizes at which some columns explain most, and how much, from the normal
 /// equations of all; `None` where they are one and the same.

@@ -13,15 +13,17 @@ fn axis() -> Axis {
 }
 
 fn hide(name: Option<&str>, seed: u64) -> Hidden {
-    let active = |name| {
-        let effect = Effect::named(name).unwrap();
-        ActiveEffect {
-            effect,
-            values: effect.typical(),
-        }
+    let typical = |name| (name, Effect::named(name).unwrap().typical());
+    hide_all(name.map(typical).into_iter().collect(), seed)
+}
+
+fn hide_all(effects: Vec<(&str, Vec<f64>)>, seed: u64) -> Hidden {
+    let active = |(name, values)| ActiveEffect {
+        effect: Effect::named(name).unwrap(),
+        values,
     };
     Hidden {
-        effects: name.map(active).into_iter().collect(),
+        effects: effects.into_iter().map(active).collect(),
         shares: Vec::new(),
         noise: Noise::GOOD,
         seed,
@@ -65,6 +67,41 @@ fn backlash_is_named_and_measured() {
         (effect.parameters[0].value / 4e-6 - 1.0).abs() < 0.02,
         "{effect:?}"
     );
+}
+
+#[test]
+fn a_force_in_time_is_found_with_its_edges() {
+    let hidden = hide_all(vec![("process-force", vec![-25.0, 1.37, 2.03])], 14);
+    let found = find(&hidden, &Settings::default());
+    assert_eq!(found.effects.len(), 1, "{found:?}");
+    assert_eq!(found.effects[0].name, "process-force");
+    let values = found.effects[0].parameters.iter().map(|p| p.value);
+    let [force, start, end] = values.collect::<Vec<_>>().try_into().unwrap();
+    assert!((force / -25.0 - 1.0).abs() < 0.02, "{found:?}");
+    // To a fifth of the loop's answer to a blow, some 20 ms.
+    assert!(
+        (start - 1.37).abs() < 4e-3 && (end - 2.03).abs() < 4e-3,
+        "{found:?}"
+    );
+}
+
+/// The offset makes up in the motor for much of what friction differs between the
+/// directions: each of the two alone leaves nearly everything.
+#[test]
+fn two_effects_that_nearly_cancel_are_both_named() {
+    let both = vec![
+        ("asymmetric-friction", vec![56.8, 18.9]),
+        ("current-sensor-offset", vec![-0.0168]),
+    ];
+    let found = find(&hide_all(both, 15), &Settings::default());
+    let mut names: Vec<&str> = found.effects.iter().map(|e| e.name.as_str()).collect();
+    names.sort_unstable();
+    assert_eq!(
+        names,
+        ["asymmetric-friction", "current-sensor-offset"],
+        "{found:?}"
+    );
+    assert_eq!(found.verdict, Verdict::Explained, "{found:?}");
 }
 
 #[test]

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use super::rounds::{PROMISING, Search};
 use crate::fit::{Columns, Fit};
 use crate::linear::{Problem, Products};
-use crate::screen::{FORCE, mostly_same, responses};
+use crate::screen::{Candidate, FORCE, mostly_same, responses};
 use crate::spectrum::Amplitudes;
 
 /// Stretches of which the edges are sought.
@@ -114,7 +114,6 @@ impl Search<'_> {
                 }
             }
             let n = finer.len();
-            // Each edge lies in its own slots, before and after what is inside.
             let holds = |s: &Range<usize>| inside.is_none_or(|i| s.contains(&i));
             let all = (0..n).flat_map(|i| (i + 1..=n).map(move |j| i..j));
             let all = all.filter(holds);
@@ -129,22 +128,19 @@ impl Search<'_> {
     /// A slot in three parts, of which two are simulated.
     fn thirds(&self, slot: &Slot) -> Vec<Slot> {
         let [from, to] = slot.times;
-        let Some(effect) = self
-            .library
-            .candidates
-            .iter()
-            .find(|c| c.effect.name == FORCE)
-        else {
+        let Some(force) = self.force() else {
             return vec![slot.clone()];
         };
         let third = (to - from) / 3.0;
         let edges = [from, from + third, to - third, to];
         let simulated = |i: usize| {
             let times = [edges[i], edges[i + 1]];
-            let values = [effect.values[0], times[0], times[1]];
-            let column =
-                responses(&self.fitter(), &self.fit, effect.effect, &values).swap_remove(0);
-            Slot { times, column }
+            let values = [force.values[0], times[0], times[1]];
+            let mut columns = responses(&self.fitter(), &self.fit, force.effect, &values);
+            Slot {
+                times,
+                column: columns.swap_remove(0),
+            }
         };
         let two: Vec<Slot> = [0, 1].into_par_iter().map(simulated).collect();
         let last = less(&slot.column, &two[0].column);
@@ -184,13 +180,13 @@ impl Search<'_> {
         fitted
     }
 
+    fn force(&self) -> Option<&Candidate> {
+        let mut all = self.library.candidates.iter();
+        all.find(|c| c.effect.name == FORCE)
+    }
+
     fn simulated(&self, slots: &[Slot], stretch: &Stretch) -> Option<Fit> {
-        let effect = self
-            .library
-            .candidates
-            .iter()
-            .find(|c| c.effect.name == FORCE)?
-            .effect;
+        let effect = self.force()?.effect;
         let force = effect.parameters[0];
         let size = (stretch.size() * force.typical).clamp(force.bounds[0], force.bounds[1]);
         let from = slots[stretch.slots.start].times[0];

@@ -44,11 +44,12 @@ impl Refined {
     }
 }
 
-/// Share of the needed fall of D that a start must bring before more is spent on
-/// it, or that a pair must promise beyond twice what the best effect does alone:
-/// with a rest that it does not explain in the weights, the linearised problem
-/// promises too little.
+/// Share of the needed fall of D that an effect must promise, or a pair beyond
+/// twice what the best effect does alone, before it is simulated.
 pub(super) const PROMISING: f64 = 0.3;
+
+/// Most pairs that are simulated.
+const PAIRS: usize = 3;
 
 impl Search<'_> {
     pub(super) fn fitter(&self) -> Fitter<'_> {
@@ -72,16 +73,16 @@ impl Search<'_> {
         let own = self.own_columns();
         let screening = self.screening(&own, &awaited);
         let screened = screening.one_by_one();
-        let worth = match awaited.is_empty() {
-            true => self.worth_refining(&screened, &own),
-            false => screened.clone(),
+        let candidates = if awaited.is_empty() {
+            let mut worth = self.worth_refining(&screened, &own);
+            let most = worth.iter().map(|w| w.1).fold(0.0, f64::max);
+            if self.named.len() + 2 <= self.settings.most_effects {
+                worth.extend(self.pairs(&screening, &own, most));
+            }
+            worth.into_iter().map(|(parts, _)| parts).collect()
+        } else {
+            screened.iter().map(|s| vec![s.clone()]).collect()
         };
-        let mut candidates: Vec<Vec<Screened>> = worth.into_iter().map(|s| vec![s]).collect();
-        if awaited.is_empty() && self.named.len() + 2 <= self.settings.most_effects {
-            let best = screened.first().map_or(0.0, |s| s.gain);
-            let pairs = screening.two_by_two(2.0 * best + PROMISING * self.needed(2, 2));
-            candidates.extend(pairs.into_iter().map(Vec::from));
-        }
         let refined = self.refine(candidates, &own);
         // Where the best does not hold on other motion, the next may.
         let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
@@ -174,16 +175,22 @@ impl Search<'_> {
     /// Candidates of one effect or two, by simulation; the simplest of the best first.
     fn refine(&self, candidates: Vec<Vec<Screened>>, own: &Columns) -> Vec<Refined> {
         let fitter = self.fitter();
+        let awaited = self.awaited().contains(&FORCE);
         let begin = |parts: Vec<Screened>| {
-            let start = if parts.len() == 1 && parts[0].effect.name == FORCE {
-                self.force_in_time(own)?
-            } else {
+            let as_screened = || {
                 let mut state = self.fit.state.clone();
                 state.effects.extend(parts.iter().map(|s| ActiveEffect {
                     effect: s.effect,
                     values: s.values.clone(),
                 }));
-                fitter.best_size(fitter.at(state).ok()?, parts.len())
+                Some(fitter.best_size(fitter.at(state).ok()?, parts.len()))
+            };
+            let start = match parts.as_slice() {
+                [force] if force.effect.name == FORCE => {
+                    let found = self.force_in_time(own);
+                    found.or_else(|| as_screened().filter(|_| awaited))?
+                }
+                _ => as_screened()?,
             };
             Some(Refined {
                 parts,
@@ -227,29 +234,52 @@ impl Search<'_> {
     }
 
     /// The first few, but none that the screening puts a tenth below the best, or
-    /// of which the linearised model promises too little.
-    fn worth_refining(&self, screened: &[Screened], own: &Columns) -> Vec<Screened> {
+    /// of which the linearised model promises too little; with what it promises.
+    fn worth_refining(&self, screened: &[Screened], own: &Columns) -> Vec<(Vec<Screened>, f64)> {
         let best = screened.first().map_or(0.0, |s| s.gain);
         let few = screened.iter().take(self.settings.refined);
         let few: Vec<&Screened> = few.filter(|s| s.gain >= 0.1 * best).collect();
         let least = PROMISING * self.needed(1, 1);
-        let worth = |s: &&Screened| self.promised(s, own).is_none_or(|gain| gain >= least);
-        few.into_par_iter().filter(worth).cloned().collect()
+        let worth = |s: &Screened| {
+            // Of a force in time, the times are to be found first.
+            let promised = match s.candidate {
+                None => 0.0,
+                Some(_) => Some(self.promised(&[s], own)).filter(|p| *p >= least)?,
+            };
+            Some((vec![s.clone()], promised))
+        };
+        few.into_par_iter().filter_map(worth).collect()
     }
 
-    /// Fall of D as the linearised model has it: with the rest as it is in the
-    /// weights, as the screening has it, gains are too small by up to a hundredfold.
-    /// `None` of a force in time, of which the times are to be found first.
-    fn promised(&self, screened: &Screened, own: &Columns) -> Option<f64> {
-        let place = screened.candidate?;
+    /// Pairs of which the linearised model promises more than twice as much as the
+    /// `most` of single effects: what two do may nearly cancel, and neither is
+    /// worth anything alone then.
+    fn pairs(&self, screening: &Screening, own: &Columns, most: f64) -> Vec<(Vec<Screened>, f64)> {
+        let least = 2.0 * most + PROMISING * self.needed(2, 2);
+        let promised = |pair: [Screened; 2]| {
+            let promised = self.promised(&[&pair[0], &pair[1]], own);
+            (promised >= least).then(|| (Vec::from(pair), promised))
+        };
+        let all = screening.two_by_two().into_par_iter();
+        let mut all: Vec<_> = all.filter_map(promised).collect();
+        all.sort_by(|a, b| b.1.total_cmp(&a.1));
+        all.truncate(PAIRS);
+        all
+    }
+
+    /// Fall of D with these effects as the linearised model has it: with the rest
+    /// as it is in the weights, as the screening has it, gains are too small by up
+    /// to a hundredfold.
+    fn promised(&self, effects: &[&Screened], own: &Columns) -> f64 {
         let rest = [&self.fit.rest].into_iter();
-        let candidate = &self.library.candidates[place].columns;
-        let all: Vec<&Amplitudes> = rest.chain(own).chain(candidate).collect();
+        let places = effects.iter().filter_map(|s| s.candidate);
+        let columns = places.flat_map(|place| &self.library.candidates[place].columns);
+        let all: Vec<&Amplitudes> = rest.chain(own).chain(columns).collect();
         let products = Products::new(&self.fit_logs.layout, &all);
         let shares = &self.fit.state.shares;
         let problem = Problem::new(self.machine, &products, all.len(), 0..0, shares);
         let least = problem.minimum(&DVector::zeros(all.len() - 1));
-        Some(self.fit.deviance - least.deviance)
+        self.fit.deviance - least.deviance
     }
 
     fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {
@@ -409,8 +439,10 @@ fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
         return refined;
     };
     let enough = best - (0.01 * best).max(25.0);
-    let of = |r: &Refined| r.parts.iter().map(|p| p.effect.parameters.len()).sum();
-    let parameters = |r: &Refined| -> usize { of(r) };
+    let parameters = |r: &Refined| -> usize {
+        let each = r.parts.iter().map(|p| p.effect.parameters.len());
+        each.sum()
+    };
     let near = refined.iter().enumerate().filter(|(_, r)| r.gain >= enough);
     if let Some((at, _)) = near.min_by_key(|(_, r)| parameters(r)) {
         refined[..=at].rotate_right(1);
