@@ -34,11 +34,13 @@ pub mod hidden;
 pub mod intake;
 mod known;
 mod lack;
+mod library;
 mod linear;
 pub mod matrix;
 mod model;
 mod noise;
 mod outcome;
+mod projector;
 mod screen;
 mod search;
 mod spectrum;
@@ -48,9 +50,10 @@ pub use experiment::Proposal;
 pub use fit::{Fit, Fitter, free_parameters, known_deviation};
 pub use known::{Known, known_parameters, tolerance, with_known};
 pub use lack::{Curve, Unknown};
+pub use library::Library;
 pub use model::{LogSet, Prepared, State};
 pub use outcome::{
     Against, AtScrew, ChannelGap, Discovered, Discovery, EffectFound, Gap, Gaps, Likeness,
     NextExperiment, Overlay, ParameterFound, Recalibrated, Shown, Verdict, discovery,
 };
-pub use search::{Alike, Found, Library, Named, ONE_CLASS, RunnerUp, Settings, search};
+pub use search::{Alike, Found, Named, ONE_CLASS, RunnerUp, Settings, search};

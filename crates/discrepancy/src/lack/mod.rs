@@ -21,7 +21,7 @@ use self::motion::{Course, KNOTS, Place, Shape, VARIABLES, courses};
 use self::term::term;
 use crate::fit::{Columns, Fit, Fitter, pinned};
 use crate::model::LogSet;
-use crate::screen::Projector;
+use crate::projector::Projector;
 use crate::search::{Found, needed};
 
 /// Something that is in the logs, and neither in the model nor in the library.

@@ -18,9 +18,11 @@ use crate::experiment::noise_on;
 use crate::fit::{Columns, Fit, Fitter, known_deviation, pinned};
 use crate::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
 use crate::known::tolerance;
+use crate::library::{Candidate, Library};
 use crate::model::{LogSet, State};
-use crate::screen::{Candidate, Projector, Response, responses_in, sine};
-use crate::search::{Library, ONE_CLASS, needed};
+use crate::projector::{Projector, sine};
+use crate::screen::{Response, responses_in};
+use crate::search::{ONE_CLASS, needed};
 use crate::spectrum::{Amplitudes, Whitener};
 
 /// Why a bench cannot be set up.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::fit::{Fitter, pinned};
-use crate::screen::Projector;
+use crate::projector::Projector;
 use crate::search::{Found, ONE_CLASS, needed};
 
 /// What the logs can tell of an effect, whether it is there or not.

@@ -13,10 +13,12 @@ use axis_sim::effects::ActiveEffect;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::rounds::{PROMISING, Search};
+use super::promise::PROMISING;
+use super::rounds::Search;
 use crate::fit::{Columns, Fit};
+use crate::library::{Candidate, FORCE, responses};
 use crate::linear::{Problem, Products};
-use crate::screen::{Candidate, FORCE, mostly_same, responses};
+use crate::screen::mostly_same;
 use crate::spectrum::Amplitudes;
 
 /// Stretches of which the edges are sought.

@@ -2,6 +2,7 @@
 
 mod evidence;
 mod force;
+mod promise;
 mod rounds;
 
 use std::sync::Arc;
@@ -12,9 +13,8 @@ use axis_sim::effects::{ActiveEffect, Machine};
 pub use self::evidence::{MATERIAL, needed};
 use self::rounds::Search;
 use crate::fit::{Columns, Fit, Fitter};
-use crate::lack::Curves;
+use crate::library::Library;
 use crate::model::{LogSet, State};
-use crate::screen::{Candidate, candidates};
 
 /// How the search is made.
 #[derive(Clone, Debug)]
@@ -227,23 +227,4 @@ fn settled(
     };
     let better = with.at(fit.state.clone()).ok()?;
     (better.deviance <= fit.deviance + 1.0).then_some((fitted, checked))
-}
-
-/// What all effects, and curves for what is no effect, do on a set of logs.
-#[derive(Debug)]
-pub struct Library {
-    pub(crate) candidates: Vec<Candidate>,
-    pub(crate) curves: Curves,
-    /// Of the known parameters, as derivatives.
-    pub(crate) known: Columns,
-}
-
-impl Library {
-    pub(crate) fn new(fitter: &Fitter<'_>, fit: &Fit, known: Columns) -> Self {
-        Self {
-            known,
-            candidates: candidates(fitter, fit),
-            curves: Curves::new(fitter.machine, fitter.set, fit),
-        }
-    }
 }

@@ -3,16 +3,15 @@
 use std::sync::Arc;
 
 use axis_sim::effects::{ActiveEffect, Machine};
-use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, WORSE, needed};
-use super::{Alike, Found, Library, Named, ONE_CLASS, RunnerUp, Settings};
+use super::{Alike, Found, Named, ONE_CLASS, RunnerUp, Settings};
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
-use crate::linear::{Problem, Products};
+use crate::library::{FORCE, Library};
 use crate::model::LogSet;
-use crate::screen::{FORCE, Screened, Screening, sine};
-use crate::spectrum::Amplitudes;
+use crate::projector::sine;
+use crate::screen::{Screened, Screening};
 
 /// A search on its way.
 pub(super) struct Search<'a> {
@@ -43,13 +42,6 @@ impl Refined {
         }
     }
 }
-
-/// Share of the needed fall of D that an effect must promise, or a pair beyond
-/// twice what the best effect does alone, before it is simulated.
-pub(super) const PROMISING: f64 = 0.3;
-
-/// Most pairs that are simulated.
-const PAIRS: usize = 3;
 
 impl Search<'_> {
     pub(super) fn fitter(&self) -> Fitter<'_> {
@@ -231,55 +223,6 @@ impl Search<'_> {
             );
         }
         simplest_first(refined)
-    }
-
-    /// The first few, but none that the screening puts a tenth below the best, or
-    /// of which the linearised model promises too little; with what it promises.
-    fn worth_refining(&self, screened: &[Screened], own: &Columns) -> Vec<(Vec<Screened>, f64)> {
-        let best = screened.first().map_or(0.0, |s| s.gain);
-        let few = screened.iter().take(self.settings.refined);
-        let few: Vec<&Screened> = few.filter(|s| s.gain >= 0.1 * best).collect();
-        let least = PROMISING * self.needed(1, 1);
-        let worth = |s: &Screened| {
-            // Of a force in time, the times are to be found first.
-            let promised = match s.candidate {
-                None => 0.0,
-                Some(_) => Some(self.promised(&[s], own)).filter(|p| *p >= least)?,
-            };
-            Some((vec![s.clone()], promised))
-        };
-        few.into_par_iter().filter_map(worth).collect()
-    }
-
-    /// Pairs of which the linearised model promises more than twice as much as the
-    /// `most` of single effects: what two do may nearly cancel, and neither is
-    /// worth anything alone then.
-    fn pairs(&self, screening: &Screening, own: &Columns, most: f64) -> Vec<(Vec<Screened>, f64)> {
-        let least = 2.0 * most + PROMISING * self.needed(2, 2);
-        let promised = |pair: [Screened; 2]| {
-            let promised = self.promised(&[&pair[0], &pair[1]], own);
-            (promised >= least).then(|| (Vec::from(pair), promised))
-        };
-        let all = screening.two_by_two().into_par_iter();
-        let mut all: Vec<_> = all.filter_map(promised).collect();
-        all.sort_by(|a, b| b.1.total_cmp(&a.1));
-        all.truncate(PAIRS);
-        all
-    }
-
-    /// Fall of D with these effects as the linearised model has it: with the rest
-    /// as it is in the weights, as the screening has it, gains are too small by up
-    /// to a hundredfold.
-    fn promised(&self, effects: &[&Screened], own: &Columns) -> f64 {
-        let rest = [&self.fit.rest].into_iter();
-        let places = effects.iter().filter_map(|s| s.candidate);
-        let columns = places.flat_map(|place| &self.library.candidates[place].columns);
-        let all: Vec<&Amplitudes> = rest.chain(own).chain(columns).collect();
-        let products = Products::new(&self.fit_logs.layout, &all);
-        let shares = &self.fit.state.shares;
-        let problem = Problem::new(self.machine, &products, all.len(), 0..0, shares);
-        let least = problem.minimum(&DVector::zeros(all.len() - 1));
-        self.fit.deviance - least.deviance
     }
 
     fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {
