@@ -80,6 +80,7 @@
 mod axis;
 mod axis_file;
 mod closed_loop;
+mod cycle;
 pub mod effects;
 mod one_cycle;
 mod plant;
@@ -89,9 +90,8 @@ mod rigid;
 
 pub use axis::{Axis, Experiment, MoveSpec, Range, SampleRanges, Simulation, Stroke};
 pub use axis_file::AxisFileError;
-pub use closed_loop::{
-    ClosedLoop, Cycle, FOLLOWING_ERROR_LIMIT, Measured, Outcome, RunStopped, StopReason,
-};
+pub use closed_loop::ClosedLoop;
+pub use cycle::{Cycle, FOLLOWING_ERROR_LIMIT, Measured, Outcome, RunStopped, StopReason};
 pub use one_cycle::{CycleInput, OneCycle};
 pub use recorder::Recorder;
 pub use replay::{LoggedReference, Probe, Replay, ReplayError, Trace};

@@ -1,0 +1,145 @@
+//! What a control cycle leaves behind, and how a run ends.
+
+use compensator::Correction;
+use foc_pmsm::{Command, Dq};
+use thiserror::Error;
+use trajectories::Setpoint;
+
+/// What one control cycle leaves behind, at its start `t_k`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cycle {
+    /// Time since the motion began, s.
+    pub time: f64,
+    /// Reference.
+    pub reference: Setpoint,
+    /// Table position, m from the driven end.
+    pub position: f64,
+    /// Table speed, m/s. Not seen by the controller.
+    pub table_speed: f64,
+    /// Motor angle since the start, rad.
+    pub motor_angle: f64,
+    /// Motor speed, rad/s.
+    pub motor_speed: f64,
+    /// Currents, A.
+    pub current: Dq,
+    /// What the sensors show: the above where they are perfect.
+    pub measured: Measured,
+    /// What the controller commands for the cycle.
+    pub command: Command,
+    /// What the compensator added.
+    pub correction: Correction,
+}
+
+/// What the sensors show at a sampling instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measured {
+    /// Table position, m from the driven end.
+    pub position: f64,
+    /// Motor angle since the start, rad.
+    pub motor_angle: f64,
+    /// Motor speed, rad/s.
+    pub motor_speed: f64,
+    /// Currents, A.
+    pub current: Dq,
+}
+
+impl Cycle {
+    /// Tracking error S_ref − S, m.
+    pub fn error(&self) -> f64 {
+        self.reference.position - self.position
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// The motion was followed to its end.
+    Completed,
+    /// The run was given up.
+    Stopped {
+        /// When, s.
+        time: f64,
+        /// Why.
+        reason: StopReason,
+        /// Table position then, m.
+        position: f64,
+        /// Tracking error then, m.
+        error: f64,
+        /// Motor speed then, rad/s.
+        motor_speed: f64,
+        /// q current then, A.
+        iq: f64,
+    },
+}
+
+/// Why a run was given up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StopReason {
+    /// A state is no longer a finite number.
+    NotFinite,
+    /// The tracking error is beyond what any drive tolerates.
+    FollowingError,
+    /// The table has left its stroke.
+    LeftStroke,
+}
+
+/// Tracking error at which a run is given up, m.
+pub const FOLLOWING_ERROR_LIMIT: f64 = 0.02;
+
+/// A run that did not come to its end.
+#[derive(Clone, Copy, Debug, Error)]
+#[error(
+    "the simulation stopped at t = {time:.4} s because {}: table at {position:.6} m, tracking error {error:.3e} m, motor speed {motor_speed:.3} rad/s, q current {iq:.3} A",
+    describe(.reason)
+)]
+pub struct RunStopped {
+    /// When, s.
+    pub time: f64,
+    /// Why.
+    pub reason: StopReason,
+    /// Table position then, m.
+    pub position: f64,
+    /// Tracking error then, m.
+    pub error: f64,
+    /// Motor speed then, rad/s.
+    pub motor_speed: f64,
+    /// q current then, A.
+    pub iq: f64,
+}
+
+fn describe(reason: &StopReason) -> &'static str {
+    match reason {
+        StopReason::NotFinite => "a state is no longer a finite number",
+        StopReason::FollowingError => {
+            "the tracking error passed 20 mm (an unstable loop, or a motion too fast for the current limit)"
+        }
+        StopReason::LeftStroke => "the table left its stroke",
+    }
+}
+
+impl Outcome {
+    /// The run as a success or the error that tells why it is none.
+    ///
+    /// # Errors
+    /// [`RunStopped`] where the run was given up.
+    pub fn completed(self) -> Result<(), RunStopped> {
+        match self {
+            Self::Completed => Ok(()),
+            Self::Stopped {
+                time,
+                reason,
+                position,
+                error,
+                motor_speed,
+                iq,
+            } => Err(RunStopped {
+                time,
+                reason,
+                position,
+                error,
+                motor_speed,
+                iq,
+            }),
+        }
+    }
+}
