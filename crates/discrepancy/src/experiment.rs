@@ -18,8 +18,8 @@ use crate::fit::{Columns, Fitter, known_deviation};
 use crate::hidden::Noise;
 use crate::known::with_known;
 use crate::model::{LogSet, State};
+use crate::noise::noise_on;
 use crate::search::Found;
-use crate::spectrum::Amplitudes;
 
 /// A motion to run next.
 #[derive(Clone, Debug)]
@@ -206,7 +206,7 @@ impl<'a> Question<'a> {
             .chain(fitter.effect_columns(&second, 0))
             .collect();
         let layout = &set.layout;
-        let of_noise = noise_on(self.machine, &self.states[0], &set, noise, 0)?;
+        let of_noise = noise_on(self.machine, &self.states[0], &set, &first, noise, 0)?;
         let whitener = layout.whitener(&layout.spectral_matrices(&of_noise));
         let apart = set.difference(&first, &second.traces, 1.0);
         let apart = layout.whiten(&whitener, &apart);
@@ -254,35 +254,4 @@ impl<'a> Question<'a> {
         let logs = vec![("proposed".to_owned(), recorder.log()?, axis.period)];
         LogSet::prepared(logs, self.machine)
     }
-}
-
-/// What sensors with this noise do to the logs of a set, as amplitudes.
-pub(crate) fn noise_on(
-    machine: &Machine,
-    state: &State,
-    set: &LogSet,
-    noise: Noise,
-    seed: u64,
-) -> Result<Amplitudes, ReplayError> {
-    let Machine::BallScrew(axis) = with_known(machine, &state.shares) else {
-        return Ok(Amplitudes::new());
-    };
-    let mut axis = *axis;
-    axis.effects.extend_from_slice(&state.effects);
-    let closed_loop = ClosedLoop::new(&axis)?;
-    let run = |(log_seed, log): (usize, &crate::model::Prepared)| {
-        let noisy = log.replay.follow(
-            &closed_loop,
-            noise.sensors(1000 * seed + log_seed as u64 + 1),
-        )?;
-        Ok((noisy, log.replay.follow(&closed_loop, |_| ())?))
-    };
-    let pairs: Vec<_> = set
-        .logs
-        .iter()
-        .enumerate()
-        .map(run)
-        .collect::<Result<_, ReplayError>>()?;
-    let (noisy, quiet): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
-    Ok(set.difference(&noisy, &quiet, 1.0))
 }

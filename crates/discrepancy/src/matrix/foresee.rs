@@ -14,12 +14,12 @@ use trajectories::TrajectoryError;
 use super::{Case, HiddenEffect, Kind};
 use crate::Settings;
 use crate::bounded::bounded;
-use crate::experiment::noise_on;
 use crate::fit::{Columns, Fit, Fitter, known_deviation, pinned};
 use crate::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
 use crate::known::tolerance;
 use crate::library::{Candidate, Library};
 use crate::model::{LogSet, State};
+use crate::noise::noise_on;
 use crate::projector::{Projector, sine};
 use crate::screen::{Response, responses_in};
 use crate::search::{ONE_CLASS, needed};
@@ -111,7 +111,17 @@ impl Bench {
         let nominal = fitter.at(State::initial(&machine))?;
         let known = fitter.known_columns(&nominal);
         let library = Arc::new(Library::new(&fitter, &nominal, known.clone()));
-        let noise = noise_on(&machine, &nominal.state, &templates[0], Noise::GOOD, 0)?;
+        let noise = {
+            let quiet = &nominal.traces;
+            noise_on(
+                &machine,
+                &nominal.state,
+                &templates[0],
+                quiet,
+                Noise::GOOD,
+                0,
+            )?
+        };
         let layout = &templates[0].layout;
         let whitener = layout.whitener(&layout.spectral_matrices(&noise));
         Ok(Self {

@@ -94,8 +94,10 @@ pub struct Found {
     /// Derivatives with respect to the parameters: known ones, then free ones of
     /// the effects.
     pub columns: Columns,
-    /// Parameters' covariance, in the same order.
+    /// Parameters' covariance, in the same order, as the fit weighs noise.
     pub covariance: nalgebra::DMatrix<f64>,
+    /// Their standard deviations, in the same order, as noise in the loop has them.
+    pub deviations: Vec<f64>,
     /// The best of what was left out for want of evidence.
     pub leftover: Vec<RunnerUp>,
     /// What the library does on the motions of the fitted logs.
@@ -111,11 +113,10 @@ pub struct Found {
 const SIMULATED: f64 = 1e-3;
 
 impl Found {
-    /// Standard deviation of a parameter of this value, by its place in the
-    /// covariance: of noise, and of the simulation.
+    /// Standard deviation of a parameter of this value, by its place: of noise, and
+    /// of the simulation.
     pub fn deviation(&self, index: usize, value: f64) -> f64 {
-        let noise = self.covariance[(index, index)].max(0.0);
-        (noise + (SIMULATED * value).powi(2)).sqrt()
+        self.deviations[index].hypot(SIMULATED * value)
     }
 }
 
@@ -191,7 +192,7 @@ pub(crate) fn search_with(
     }
     search.drop_needless();
     progress("intervals");
-    Ok(search.finish(base))
+    search.finish(base)
 }
 
 /// The known parameters fitted, and their derivatives where that ends: these

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use axis_sim::ReplayError;
 use axis_sim::effects::{ActiveEffect, Machine};
 use rayon::prelude::*;
 
@@ -10,6 +11,7 @@ use super::{Alike, Found, Named, ONE_CLASS, RunnerUp, Settings};
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
 use crate::library::{FORCE, Library};
 use crate::model::LogSet;
+use crate::noise::deviations;
 use crate::projector::sine;
 use crate::screen::{Screened, Screening};
 
@@ -324,10 +326,15 @@ impl Search<'_> {
         }
     }
 
-    pub(super) fn finish(self, base: Fit) -> Found {
+    pub(super) fn finish(self, base: Fit) -> Result<Found, ReplayError> {
         let columns = self.own_columns();
-        let covariance = self.fitter().solve(&self.fit, &columns).covariance;
-        Found {
+        let fitter = self.fitter();
+        let covariance = fitter.solve(&self.fit, &columns).covariance;
+        let of_noise = deviations(&fitter, &self.fit, &columns, &covariance)?;
+        let as_weighed = || covariance.diagonal().map(|v| v.max(0.0).sqrt());
+        let deviations = of_noise.unwrap_or_else(|| as_weighed().as_slice().to_vec());
+        Ok(Found {
+            deviations,
             base,
             columns,
             covariance,
@@ -337,7 +344,7 @@ impl Search<'_> {
             library: self.library,
             fit_logs: self.fit_logs,
             check_logs: self.check_logs,
-        }
+        })
     }
 }
 
