@@ -26,7 +26,7 @@ use context::Common;
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", version)]
 struct Cli {
-    /// Say on stderr what a search tries and what it takes; results are the same
+    /// Say on stderr what a search or a training tries; results are the same
     #[arg(long, short, global = true)]
     verbose: bool,
     #[command(subcommand)]

@@ -3,8 +3,8 @@
 //! With columns c_i the rest is r − Σ x_i c_i, and the spectral matrix of a band
 //! Σ y_i y_j P_ij / n with y = (1, −x) and P_ij = Σ c_i c_jᴴ summed over its bins
 //! once. D = 2 Σ n log det S is concave in S: least squares weighed by the last S
-//! lowers it in every round. The linear model foretells D of a simulation to a
-//! hundredth, where an effect is linear.
+//! lowers it in every round. The fall of D of a force in time came out within a fifth
+//! of that of its simulation.
 
 use std::ops::Range;
 

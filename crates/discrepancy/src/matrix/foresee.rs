@@ -111,17 +111,8 @@ impl Bench {
         let nominal = fitter.at(State::initial(&machine))?;
         let known = fitter.known_columns(&nominal);
         let library = Arc::new(Library::new(&fitter, &nominal, known.clone()));
-        let noise = {
-            let quiet = &nominal.traces;
-            noise_on(
-                &machine,
-                &nominal.state,
-                &templates[0],
-                quiet,
-                Noise::GOOD,
-                0,
-            )?
-        };
+        let (state, quiet) = (&nominal.state, &nominal.traces);
+        let noise = noise_on(&machine, state, &templates[0], quiet, Noise::GOOD, 0)?;
         let layout = &templates[0].layout;
         let whitener = layout.whitener(&layout.spectral_matrices(&noise));
         Ok(Self {

@@ -61,8 +61,8 @@ impl Search<'_> {
     }
 
     /// Fall of D with these effects as the linearised model has it: with the rest
-    /// as it is in the weights, as the screening has it, gains are too small by up
-    /// to a hundredfold.
+    /// as it is in the weights, as the screening has it, gains are too small, of
+    /// a force in time by up to forty times.
     fn promised(&self, effects: &[&Screened], own: &Columns) -> f64 {
         let rest = [&self.fit.rest].into_iter();
         let places = effects.iter().filter_map(|s| s.candidate);
