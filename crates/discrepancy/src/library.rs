@@ -1,10 +1,11 @@
 //! What each effect of the library does on a set of logs.
 
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Machine};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectParameter, Machine};
 use rayon::prelude::*;
 
 use crate::fit::{Columns, Fit, Fitter};
 use crate::lack::Curves;
+use crate::linear::Room;
 use crate::model::Prepared;
 
 /// What all effects, and curves for what is no effect, do on a set of logs.
@@ -36,6 +37,40 @@ pub struct Candidate {
     /// Response to each size parameter at its typical value; for an effect
     /// with a phase, to phase 0 and to phase π/2.
     pub columns: Columns,
+}
+
+/// Bounds of an effect's columns, which are those of typical sizes; one with a
+/// phase has two, free both.
+pub fn rooms(effect: &Effect) -> Vec<Room> {
+    let phase = effect.parameters.iter().any(|p| p.name == "phase");
+    let room = |p: &EffectParameter| {
+        let mut edges = p.bounds.map(|edge| edge / p.typical);
+        edges.sort_by(f64::total_cmp);
+        Some(edges)
+    };
+    let sizes = effect.parameters.iter().filter(|p| p.size);
+    match phase {
+        true => sizes.flat_map(|_| [None, None]).collect(),
+        false => sizes.map(room).collect(),
+    }
+}
+
+/// Values of an effect whose columns count so often.
+pub fn values_at(effect: &Effect, values: &[f64], solution: &[f64]) -> Vec<f64> {
+    let parameters = effect.parameters;
+    let mut values = values.to_vec();
+    let phase = parameters.iter().position(|p| p.name == "phase");
+    let mut next = solution.iter();
+    for (i, p) in parameters.iter().enumerate().filter(|(_, p)| p.size) {
+        let mut size = next.next().copied().unwrap_or(0.0);
+        if let Some(at) = phase {
+            let quadrature = next.next().copied().unwrap_or(0.0);
+            values[at] = quadrature.atan2(size);
+            size = size.hypot(quadrature);
+        }
+        values[i] = (size * p.typical).clamp(p.bounds[0], p.bounds[1]);
+    }
+    values
 }
 
 /// Values of shape parameters to begin with.

@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use axis_sim::effects::Machine;
 use nalgebra::{Complex, DMatrix, DVector};
+use rayon::prelude::*;
 
 use crate::bounded::bounded;
 use crate::fit::known_deviation;
@@ -68,7 +69,7 @@ impl Products {
             channels: m,
             columns: n,
             counts: layout.counts().to_vec(),
-            bands: layout.counts().iter().enumerate().map(band).collect(),
+            bands: (layout.counts().par_iter().enumerate().map(band)).collect(),
         }
     }
 
@@ -79,14 +80,19 @@ impl Products {
     }
 }
 
+/// Least and most that a column may count, where it has bounds.
+pub type Room = Option<[f64; 2]>;
+
 /// A fit of the rest by some of the columns.
 pub struct Problem<'a> {
     products: &'a Products,
-    /// The first columns: the rest, those of known parameters, others.
-    kept: usize,
+    /// Columns: the rest, those of known parameters, others.
+    places: Vec<usize>,
     /// Of the sum of some others, which is the last column: its blocks with all
     /// before it and with itself.
     sum: Vec<Vec<C64>>,
+    /// Of the last columns.
+    rooms: Vec<Room>,
     /// Of the known parameters.
     shares: &'a [f64],
     tolerance: f64,
@@ -103,56 +109,59 @@ pub struct Minimum {
 }
 
 impl<'a> Problem<'a> {
-    /// Of the first columns, `kept` of them with the rest, and of the sum of some
-    /// others, if there are any. The first after the rest are those of the known
-    /// parameters, now at `shares`.
+    /// Of these columns: the rest, those of the known parameters, which are at
+    /// `shares` now, and others, of which the last have these bounds.
     pub fn new(
         machine: &Machine,
         products: &'a Products,
-        kept: usize,
-        summed: Range<usize>,
+        places: Vec<usize>,
+        rooms: Vec<Room>,
         shares: &'a [f64],
     ) -> Self {
-        let size = products.channels * products.channels;
-        let blocks = |band: usize| {
-            let mut out = vec![C64::ZERO; (kept + 1) * size];
-            for i in summed.clone() {
-                for j in 0..kept {
-                    let block = products.block(band, i, j);
-                    let into = &mut out[j * size..(j + 1) * size];
-                    into.iter_mut().zip(block).for_each(|(a, b)| *a += b);
-                }
-                for j in summed.clone() {
-                    let block = products.block(band, i, j);
-                    let into = &mut out[kept * size..];
-                    into.iter_mut().zip(block).for_each(|(a, b)| *a += b);
-                }
-            }
-            out
-        };
-        let sum = match summed.is_empty() {
-            true => Vec::new(),
-            false => (0..products.bands.len()).map(blocks).collect(),
-        };
         Self {
             products,
-            kept,
-            sum,
+            places,
+            sum: Vec::new(),
+            rooms,
             shares,
             tolerance: tolerance(machine),
             weight: known_deviation(machine).powi(-2),
         }
     }
 
+    /// With one column more, the sum of these.
+    pub fn with_sum(self, summed: Range<usize>) -> Self {
+        let size = self.products.channels * self.products.channels;
+        let kept = self.places.len();
+        let blocks = |band: usize| {
+            let mut out = vec![C64::ZERO; (kept + 1) * size];
+            let mut add = |j: usize, block: &[C64]| {
+                let into = &mut out[j * size..(j + 1) * size];
+                into.iter_mut().zip(block).for_each(|(a, b)| *a += b);
+            };
+            for i in summed.clone() {
+                for (j, &place) in self.places.iter().enumerate() {
+                    add(j, self.products.block(band, i, place));
+                }
+                for j in summed.clone() {
+                    add(kept, self.products.block(band, i, j));
+                }
+            }
+            out
+        };
+        let sum = (0..self.products.bands.len()).map(blocks).collect();
+        Self { sum, ..self }
+    }
+
     /// Number of columns beside the rest.
     fn unknowns(&self) -> usize {
-        self.kept - usize::from(self.sum.is_empty())
+        self.places.len() - usize::from(self.sum.is_empty())
     }
 
     /// Block (i, j), j ≤ i.
     fn block(&self, band: usize, i: usize, j: usize) -> &[C64] {
-        if i < self.kept {
-            return self.products.block(band, i, j);
+        if i < self.places.len() {
+            return self.products.block(band, self.places[i], self.places[j]);
         }
         let size = self.products.channels * self.products.channels;
         &self.sum[band][j * size..(j + 1) * size]
@@ -204,16 +213,27 @@ impl<'a> Problem<'a> {
     /// rest as it is at the start in the weights, where an effect acts hardly
     /// counts.
     pub fn minimum(&self, start: &DVector<f64>) -> Minimum {
+        self.descend(start.clone(), self.spectral_matrices(start))
+    }
+
+    /// The least D, sought from least squares on that are weighed by these spectral
+    /// matrices. D has two minima where what is left with half of an effect is not
+    /// less than with nothing, as of a gap: from a rest without it on, nothing goes
+    /// downhill.
+    pub fn minimum_weighed(&self, matrices: &[DMatrix<C64>]) -> Minimum {
+        self.descend(DVector::zeros(self.unknowns()), matrices.to_vec())
+    }
+
+    fn descend(&self, mut x: DVector<f64>, mut matrices: Vec<DMatrix<C64>>) -> Minimum {
         let n = self.unknowns();
         let known = self.shares.len();
-        let room = |i: usize| {
-            (i < known).then(|| {
+        let room = |i: usize| match i.checked_sub(n - self.rooms.len()) {
+            Some(last) => self.rooms[last],
+            None => (i < known).then(|| {
                 let share = self.shares[i];
                 [-self.tolerance - share, self.tolerance - share]
-            })
+            }),
         };
-        let mut x = start.clone();
-        let mut matrices = self.spectral_matrices(&x);
         for _ in 0..ROUNDS {
             let gram = self.weighed(&matrices);
             let mut normal = gram.view((1, 1), (n, n)).into_owned();
@@ -257,22 +277,12 @@ mod tests {
         let mut rng = StdRng::seed_from_u64(5);
         let all: Vec<Amplitudes> = (0..5).map(|_| noise(&layout, &mut rng)).collect();
         let products = Products::new(&layout, &all.iter().collect::<Vec<_>>());
-        // The rest, one column, and the sum of two of three slots.
-        let problem = Problem {
-            products: &products,
-            shares: &[],
-            tolerance: 0.0,
-            weight: 0.0,
-            kept: 2,
-            sum: Vec::new(),
-        };
         let axis = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
         let axis = axis_sim::Axis::read(axis.as_ref()).unwrap();
         let machine = Machine::BallScrew(Box::new(axis));
-        let problem = Problem {
-            sum: Problem::new(&machine, &products, 2, 3..5, &[]).sum,
-            ..problem
-        };
+        // The rest, one column, and the sum of two of three slots.
+        let problem = Problem::new(&machine, &products, vec![0, 1], Vec::new(), &[]);
+        let problem = problem.with_sum(3..5);
         let direct = |x: &DVector<f64>| {
             let left = |bin: usize| {
                 all[0][0][bin] - all[1][0][bin] * x[0] - (all[3][0][bin] + all[4][0][bin]) * x[1]

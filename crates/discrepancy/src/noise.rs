@@ -5,10 +5,11 @@ use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
 use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::fit::{Columns, Fit, Fitter, known_deviation};
+use crate::fit::{Columns, Fit, Fitter, free_parameters, known_deviation};
 use crate::hidden::Noise;
 use crate::known::with_known;
 use crate::model::{LogSet, Prepared, State};
+use crate::projector::Projector;
 use crate::spectrum::{Amplitudes, Layout};
 
 /// Measured minus simulated: per log, per channel.
@@ -221,51 +222,95 @@ const DRAWN: u64 = 16;
 /// the normal distribution.
 const OF_DRAWN: f64 = 2.120 / 1.960;
 
+/// Runs with simulated noise alone, of sensors as noisy as the logs show. None of a
+/// rigid machine, whose sensors are not in its logs.
+///
+/// # Errors
+/// [`ReplayError`] where the machine does not run with noise.
+pub(crate) fn drawn(fitter: &Fitter<'_>, fit: &Fit) -> Result<Vec<Amplitudes>, ReplayError> {
+    let (machine, set) = (fitter.machine, fitter.set);
+    let Some(noise) = sensor_noise(machine, set, &fit.state, &fit.traces) else {
+        return Ok(Vec::new());
+    };
+    let run = |seed| noise_on(machine, &fit.state, set, &fit.traces, noise, 100 + seed);
+    (0..DRAWN).into_par_iter().map(run).collect()
+}
+
 /// Standard deviations of parameters, of which the `columns` are the derivatives:
-/// the fit's answer to simulated noise, and the prior of the known ones.
+/// the fit's answer to runs with noise, and the prior of the known ones.
 ///
 /// Below 25 Hz the spectrum of noise is steep, sensors shake dry friction loose,
 /// and noise at a standstill is another than in motion: with one spectral matrix a
 /// band, the inverse of the normal matrix gave deviations of a steady load, a gap and
 /// dry friction that were 2 to 3.6 times too small. So what the estimate makes of
-/// noise is seen in runs with sensors as noisy as the logs show, mean and all (the
-/// sandwich of P. J. Huber, Proc. 5th Berkeley Symp. 1 (1967) 221–233). `None` of a
-/// rigid machine, whose sensors are not in its logs.
-///
-/// # Errors
-/// [`ReplayError`] where the machine does not run with noise.
+/// noise is seen in runs, mean and all (the sandwich of P. J. Huber, Proc. 5th
+/// Berkeley Symp. 1 (1967) 221–233). `None` without runs.
 pub(crate) fn deviations(
     fitter: &Fitter<'_>,
     fit: &Fit,
     columns: &Columns,
     covariance: &DMatrix<f64>,
-) -> Result<Option<Vec<f64>>, ReplayError> {
-    let (machine, set) = (fitter.machine, fitter.set);
-    let Some(noise) = sensor_noise(machine, set, &fit.state, &fit.traces) else {
-        return Ok(None);
-    };
-    let layout = &set.layout;
+    runs: &[Amplitudes],
+) -> Option<Vec<f64>> {
+    if runs.is_empty() {
+        return None;
+    }
+    let layout = &fitter.set.layout;
     let whitener = layout.whitener(&layout.spectral_matrices(&fit.rest));
     let jacobian: Vec<DVector<f64>> = columns
         .iter()
         .map(|c| layout.whiten(&whitener, c))
         .collect();
-    let answer = |seed: u64| -> Result<DVector<f64>, ReplayError> {
-        let drawn = noise_on(machine, &fit.state, set, &fit.traces, noise, 100 + seed)?;
-        let drawn = layout.whiten(&whitener, &drawn);
-        let along = DVector::from_iterator(jacobian.len(), jacobian.iter().map(|c| c.dot(&drawn)));
-        Ok(covariance * along)
+    let answer = |run: &Amplitudes| {
+        let run = layout.whiten(&whitener, run);
+        let along = DVector::from_iterator(jacobian.len(), jacobian.iter().map(|c| c.dot(&run)));
+        covariance * along
     };
-    let answers = (0..DRAWN).into_par_iter().map(answer);
-    let answers: Vec<DVector<f64>> = answers.collect::<Result<_, ReplayError>>()?;
-    let weight = known_deviation(machine).powi(-2);
+    let answers: Vec<DVector<f64>> = runs.par_iter().map(answer).collect();
+    let weight = known_deviation(fitter.machine).powi(-2);
     let known = fit.state.shares.len();
     let one = |i: usize| {
-        let of_noise: f64 = answers.iter().map(|a| a[i] * a[i]).sum::<f64>() / DRAWN as f64;
-        let of_prior: f64 = (0..known)
-            .map(|j| weight * covariance[(i, j)].powi(2))
-            .sum();
-        (OF_DRAWN * OF_DRAWN * of_noise + of_prior).sqrt()
+        let squares = answers.iter().map(|a| a[i] * a[i]);
+        let of_noise = OF_DRAWN * (squares.sum::<f64>() / answers.len() as f64).sqrt();
+        let of_known = (0..known).map(|j| weight * covariance[(i, j)].powi(2));
+        of_noise.hypot(of_known.sum::<f64>().sqrt())
     };
-    Ok(Some((0..columns.len()).map(one).collect()))
+    Some((0..columns.len()).map(one).collect())
+}
+
+/// Size of an effect of a fit in deviations, of what the fit of its size alone
+/// makes of runs with noise: shapes held, all else fitted out but known parameters that
+/// are `pinned`.
+pub(crate) fn over_noise(
+    fitter: &Fitter<'_>,
+    fit: &Fit,
+    columns: &Columns,
+    runs: &[Amplitudes],
+    effect: usize,
+    pinned: &[bool],
+) -> f64 {
+    let layout = &fitter.set.layout;
+    let whitener = layout.whitener(&layout.spectral_matrices(&fit.rest));
+    let white = |a: &Amplitudes| layout.whiten(&whitener, a);
+    let columns: Vec<DVector<f64>> = columns.par_iter().map(white).collect();
+    let runs: Vec<DVector<f64>> = runs.par_iter().map(white).collect();
+    let (known, effects) = columns.split_at(fit.state.shares.len());
+    let free = free_parameters(&fit.state);
+    let all = || free.iter().zip(effects);
+    let others = all().filter(|((e, _), _)| *e != effect).map(|(_, c)| c);
+    let others: Vec<DVector<f64>> = known.iter().chain(others).cloned().collect();
+    let active = &fit.state.effects[effect];
+    let sizes = all().filter(|((e, p), _)| *e == effect && active.effect.parameters[*p].size);
+    let nothing = DVector::zeros(layout.size());
+    let does = sizes.fold(nothing, |sum, ((_, p), c)| sum + c * active.values[*p]);
+    let projector = Projector::new(fitter.machine, &others, pinned);
+    size_over_noise(&projector.reject(&does), &runs)
+}
+
+/// Size of what is seen in deviations, of what a fit of it makes of runs with noise.
+pub(crate) fn size_over_noise(seen: &DVector<f64>, runs: &[DVector<f64>]) -> f64 {
+    let along =
+        |run: &DVector<f64>| -> f64 { seen.iter().zip(run.iter()).map(|(s, n)| s * n).sum() };
+    let squares: f64 = runs.iter().map(|run| along(run).powi(2)).sum();
+    seen.norm_squared() / (squares / runs.len() as f64).sqrt()
 }

@@ -118,6 +118,11 @@ impl Layout {
         Self { begins, ..self }
     }
 
+    /// Time from which on all logs count in full, s.
+    pub fn full_weight_from(&self) -> f64 {
+        self.begins.iter().copied().fold(0.0, f64::max) + RAMP
+    }
+
     /// Lower and upper edge of each band, Hz, and its number of bins.
     pub fn bands(&self) -> impl Iterator<Item = ([f64; 2], usize)> + '_ {
         let edges = self.edges.windows(2).map(|w| [w[0], w[1]]);

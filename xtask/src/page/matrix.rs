@@ -49,7 +49,7 @@ pub fn figures(score: &Score) -> String {
         "≥ 99 %",
     );
     rate(
-        "one to three effects: any name that is neither hidden nor alike",
+        "effects of the library: any name that is neither hidden nor alike",
         &score.confident_wrong,
         "≤ 1 %",
     );
@@ -81,7 +81,17 @@ pub fn figures(score: &Score) -> String {
         "90 to 98 %",
     );
     rate(
-        "proposed experiments that split their class",
+        "on poor motion, seen: named first, or in the class of the first",
+        &score.poor,
+        "",
+    );
+    rate(
+        "hidden effects in a class: an experiment was proposed",
+        &score.proposed,
+        "",
+    );
+    rate(
+        "proposed experiments, run, that split their class",
         &score.splits,
         "≥ 90 %",
     );

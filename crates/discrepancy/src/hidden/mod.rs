@@ -166,7 +166,7 @@ fn shifted(log: &Log, late: f64) -> Result<Log, ReplayError> {
 }
 
 /// Motions that a log may be taken on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Exercise {
     /// A move and the way back.
@@ -175,11 +175,13 @@ pub enum Exercise {
     SlowAndFast,
     /// That, and a small chirp.
     WithChirp,
+    /// A move, and no way back: too poor to tell many effects from one another.
+    OneWay,
 }
 
 impl Exercise {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::ThereAndBack, Self::SlowAndFast, Self::WithChirp];
+    /// Those that are rich enough for most questions.
+    pub const RICH: [Self; 3] = [Self::ThereAndBack, Self::SlowAndFast, Self::WithChirp];
 
     /// In tables.
     pub fn name(self) -> &'static str {
@@ -187,6 +189,7 @@ impl Exercise {
             Self::ThereAndBack => "there-and-back",
             Self::SlowAndFast => "slow-and-fast",
             Self::WithChirp => "with-chirp",
+            Self::OneWay => "one-way",
         }
     }
 }
@@ -206,8 +209,11 @@ pub fn exercise(axis: &Axis, kind: Exercise, check: bool) -> Result<Program, Tra
         })
     };
     let rest = Step::Dwell { duration: 0.2 };
-    let mut steps = vec![rest, to(start + length, 0.1)?, rest, to(start, 0.1)?, rest];
-    if kind != Exercise::ThereAndBack {
+    let mut steps = vec![rest, to(start + length, 0.1)?, rest];
+    if kind != Exercise::OneWay {
+        steps.extend([to(start, 0.1)?, rest]);
+    }
+    if matches!(kind, Exercise::SlowAndFast | Exercise::WithChirp) {
         steps.extend([
             to(start + 0.2 * length, 0.03)?,
             rest,

@@ -136,10 +136,10 @@ pub fn lack(
         .iter()
         .enumerate()
         .map(|(i, (_, columns))| (i, rest.solve(columns)))
-        .filter(|(_, s)| s.gain >= needed)
+        .filter(|(_, s)| s.gain >= needed.max(ABOVE * s.of_noise))
         .collect();
     solved.sort_by(|a, b| b.1.gain.total_cmp(&a.1.gain));
-    tracing::debug!(gains = ?solved.iter().map(|(i, s)| (curves.shapes[*i].0.place, curves.shapes[*i].0.variable, s.gain)).collect::<Vec<_>>(), needed, "curves");
+    tracing::debug!(gains = ?solved.iter().map(|(i, s)| (curves.shapes[*i].0.place, curves.shapes[*i].0.variable, s.gain, s.of_noise)).collect::<Vec<_>>(), needed, "curves");
     // Of those that are significant, the one that tells most of other motion.
     let courses_check = courses(machine, &found.check_logs, &check.traces);
     let held_out = |(i, s): &(usize, Solved)| -> f64 {
@@ -195,16 +195,23 @@ pub fn lack(
     }))
 }
 
+/// Fall of D that a curve must bring, over what noise alone brings in the mean:
+/// near zero frequency that is far above its average in a band.
+const ABOVE: f64 = 8.0;
+
 /// The fitted logs' rest, with known parameters and effects fitted out.
 struct Rest<'a> {
     fitter: &'a Fitter<'a>,
     whitener: crate::spectrum::Whitener,
     projector: Projector,
     rest: DVector<f64>,
+    noise: Vec<DVector<f64>>,
 }
 
 struct Solved {
     gain: f64,
+    /// Mean fall of D that noise alone would bring.
+    of_noise: f64,
     values: DVector<f64>,
     deviations: Vec<f64>,
 }
@@ -218,7 +225,10 @@ impl<'a> Rest<'a> {
         let shares = &found.fit.state.shares;
         let projector = Projector::new(fitter.machine, &own, &pinned(fitter.machine, shares));
         let rest = projector.reject_at(&layout.whiten(&whitener, &found.fit.rest), shares);
+        let white = |run| projector.reject(&layout.whiten(&whitener, run));
+        let noise = found.noise.iter().map(white).collect();
         Self {
+            noise,
             fitter,
             whitener,
             projector,
@@ -243,9 +253,15 @@ impl<'a> Rest<'a> {
             .map(|c| c.inverse());
         let inverse = inverse.unwrap_or_else(|| DMatrix::zeros(n, n));
         let values = &inverse * &right;
+        let gain_of_noise = |run: &DVector<f64>| {
+            let right = DVector::from_fn(n, |i, _| seen[i].dot(run));
+            right.dot(&(&inverse * &right))
+        };
+        let of_noise = self.noise.iter().map(gain_of_noise).sum::<f64>();
         let share = (values.dot(&right) / self.rest.norm_squared()).clamp(0.0, 0.999_999);
         Solved {
             gain: -(self.rest.len() as f64) * (1.0 - share).ln(),
+            of_noise: of_noise / self.noise.len().max(1) as f64,
             deviations: (0..n).map(|i| inverse[(i, i)].max(0.0).sqrt()).collect(),
             values,
         }

@@ -24,6 +24,8 @@ pub struct Sizes {
     pub outside: usize,
     /// Effects taken out of the library, once each.
     pub left_out: usize,
+    /// One effect on poor motion.
+    pub poor: usize,
 }
 
 impl Sizes {
@@ -35,6 +37,7 @@ impl Sizes {
         triples: 20,
         outside: 5 * OUTSIDE.len(),
         left_out: EFFECTS.len(),
+        poor: EFFECTS.len(),
     };
 
     /// A look at every kind.
@@ -45,6 +48,7 @@ impl Sizes {
         triples: 1,
         outside: 3,
         left_out: 2,
+        poor: 2,
     };
 }
 
@@ -61,6 +65,7 @@ pub fn cases(axis: &Axis, sizes: &Sizes, seed: u64) -> Result<Vec<Case>, LhsErro
         (Kind::Triple, sizes.triples),
         (Kind::Outside, sizes.outside),
         (Kind::LeftOut, sizes.left_out),
+        (Kind::Poor, sizes.poor),
     ];
     let mut placed: Vec<(f64, Case)> = Vec::new();
     for (k, (kind, n)) in kinds.into_iter().enumerate() {
@@ -90,11 +95,14 @@ const DIMENSIONS: usize = 6;
 fn case(axis: &Axis, kind: Kind, index: usize, row: &[f64; DIMENSIONS], seed: u64) -> Case {
     let mut random = ChaCha8Rng::seed_from_u64(seed ^ 0x6361_7365);
     let pick = |share: f64, n: usize| ((share * n as f64) as usize).min(n - 1);
-    let exercise = Exercise::ALL[pick(row[1], Exercise::ALL.len())];
+    let exercise = match kind {
+        Kind::Poor => Exercise::OneWay,
+        _ => Exercise::RICH[pick(row[1], Exercise::RICH.len())],
+    };
     let effects: Vec<&'static Effect> = match kind {
         Kind::Clean => Vec::new(),
         Kind::Single => vec![EFFECTS[pick(row[0], EFFECTS.len())]],
-        Kind::LeftOut => vec![EFFECTS[index % EFFECTS.len()]],
+        Kind::LeftOut | Kind::Poor => vec![EFFECTS[index % EFFECTS.len()]],
         Kind::Outside => vec![OUTSIDE[pick(row[0], OUTSIDE.len())]],
         Kind::Pair | Kind::Triple => {
             let mut chosen = vec![EFFECTS[pick(row[0], EFFECTS.len())]];
@@ -112,11 +120,11 @@ fn case(axis: &Axis, kind: Kind, index: usize, row: &[f64; DIMENSIONS], seed: u6
         .iter()
         .enumerate()
         .map(|(i, effect)| {
-            // An effect that is taken out should be one that would be seen.
-            let size = if kind == Kind::LeftOut {
-                1.0
-            } else {
-                0.25 * 8f64.powf(row[3 + i])
+            let size = match kind {
+                // An effect that is taken out should be one that would be seen;
+                // what is hard to tell is scaled to where it is.
+                Kind::LeftOut | Kind::Poor => 1.0,
+                _ => 0.25 * 8f64.powf(row[3 + i]),
             };
             HiddenEffect {
                 name: effect.name.to_owned(),
@@ -137,6 +145,7 @@ fn case(axis: &Axis, kind: Kind, index: usize, row: &[f64; DIMENSIONS], seed: u6
         known_off: 0.01,
         rejected,
         seed,
+        visible: (kind == Kind::Poor).then(|| 4.0 * 10f64.powf(row[3])),
     }
 }
 
@@ -150,6 +159,7 @@ impl Kind {
             Self::Triple => "triple",
             Self::Outside => "outside",
             Self::LeftOut => "left-out",
+            Self::Poor => "poor",
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectParameter, Machine};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Machine};
 use axis_sim::{Axis, ReplayError};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -17,12 +17,13 @@ use crate::bounded::bounded;
 use crate::fit::{Columns, Fit, Fitter, known_deviation, pinned};
 use crate::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
 use crate::known::tolerance;
-use crate::library::{Candidate, Library};
+use crate::library::{Candidate, Library, rooms};
+use crate::linear::Room;
 use crate::model::{LogSet, State};
-use crate::noise::noise_on;
+use crate::noise::{noise_on, size_over_noise};
 use crate::projector::{Projector, sine};
 use crate::screen::{Response, responses_in};
-use crate::search::{ONE_CLASS, needed};
+use crate::search::{ABOVE_NOISE, ONE_CLASS, needed};
 use crate::spectrum::{Amplitudes, Whitener};
 
 /// Why a bench cannot be set up.
@@ -43,7 +44,11 @@ pub struct Foreseen {
     /// Expected fall of D on the fit log, known parameters and the case's other
     /// effects fitted out.
     pub gain: f64,
-    /// Whether that is at least twice what the search asks for.
+    /// Its size in deviations, of what a fit makes of noise.
+    #[serde(default)]
+    pub above_noise: f64,
+    /// Whether the gain is at least twice what the search asks for, and the size by as
+    /// much more.
     pub detectable: bool,
     /// Effects of the library that do nearly the same on this log: the sine of
     /// their angle is below [`ONE_CLASS`], or too little is left beside them.
@@ -76,7 +81,17 @@ pub struct Bench {
     pub(super) library: Arc<Library>,
     /// Of noise at [`Noise::GOOD`].
     whitener: Whitener,
+    /// That noise, whitened: several runs.
+    noise: Vec<DVector<f64>>,
 }
+
+/// Runs of noise.
+const RUNS: u64 = 16;
+
+/// Sizes between which one is sought at which an effect is just so visible, as
+/// multiples of the typical, and how often they are halved.
+const SCALES: (f64, f64) = (1e-5, 4.0);
+const HALVINGS: usize = 12;
 
 /// Left of an effect beside another, in D, below which the search may take the
 /// other: it takes the simpler of two within 25.
@@ -112,9 +127,12 @@ impl Bench {
         let known = fitter.known_columns(&nominal);
         let library = Arc::new(Library::new(&fitter, &nominal, known.clone()));
         let (state, quiet) = (&nominal.state, &nominal.traces);
-        let noise = noise_on(&machine, state, &templates[0], quiet, Noise::GOOD, 0)?;
+        let run = |seed| noise_on(&machine, state, &templates[0], quiet, Noise::GOOD, seed);
         let layout = &templates[0].layout;
-        let whitener = layout.whitener(&layout.spectral_matrices(&noise));
+        let whitener = layout.whitener(&layout.spectral_matrices(&run(0)?));
+        let noise = (1..=RUNS).into_par_iter().map(run);
+        let noise: Vec<Amplitudes> = noise.collect::<Result<_, ReplayError>>()?;
+        let noise = noise.iter().map(|n| layout.whiten(&whitener, n)).collect();
         Ok(Self {
             axis: axis.clone(),
             exercise: kind,
@@ -122,6 +140,7 @@ impl Bench {
             known,
             library,
             whitener,
+            noise,
             templates,
             machine,
         })
@@ -151,6 +170,53 @@ impl Bench {
         (0..case.hidden.len()).map(one).collect()
     }
 
+    /// The case with its sizes where they are to be.
+    pub(super) fn scaled(&self, case: &Case) -> Case {
+        let Some(visible) = case.visible else {
+            return case.clone();
+        };
+        let times = |by: f64| {
+            let mut case = case.clone();
+            for hidden in &mut case.hidden {
+                let parameters = named(&hidden.name).map_or(&[][..], |e| e.parameters);
+                let sizes = hidden.values.iter_mut().zip(parameters);
+                for (value, p) in sizes.filter(|(_, p)| p.size) {
+                    *value = (*value * by).clamp(p.bounds[0], p.bounds[1]);
+                }
+            }
+            case
+        };
+        // The gain grows with the size, from nothing as long as known parameters make
+        // up for it: bisection of the size's logarithm.
+        let (mut low, mut high) = SCALES;
+        for _ in 0..HALVINGS {
+            let middle = f64::sqrt(low * high);
+            match self.seen_in(&times(middle)) < visible {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        times(high)
+    }
+
+    /// Expected fall of D of a case's only effect, over what naming takes.
+    fn seen_in(&self, case: &Case) -> f64 {
+        let only = case.hidden.first().and_then(|hidden| {
+            let response = self.response(hidden, case.noise)?;
+            let shares = self.hidden(case).shares;
+            let (gain, ..) = self.gain_of(case.noise, &response, &[], &shares);
+            Some(gain / self.needed(named(&hidden.name)?))
+        });
+        only.unwrap_or(f64::INFINITY)
+    }
+
+    /// Fall of D that naming an effect takes.
+    fn needed(&self, effect: &Effect) -> f64 {
+        let layout = &self.templates[0].layout;
+        let tried = self.library.candidates.len();
+        needed(layout, effect.parameters.len(), tried, 0.01)
+    }
+
     fn judge(
         &self,
         case: &Case,
@@ -160,20 +226,11 @@ impl Bench {
         shares: &[f64],
     ) -> Foreseen {
         let noise = case.noise;
-        let mut columns: Vec<DVector<f64>> =
-            self.known.iter().map(|c| self.white(c, noise)).collect();
-        let off = columns
-            .iter()
-            .zip(shares)
-            .fold(DVector::zeros(own.len()), |sum, (c, &s)| sum + c * s);
-        columns.extend(others.iter().map(|&v| v.clone()));
-        let (gain, fitted_shares) = self.gain(&columns, &(own + off), shares);
+        let (gain, fitted_shares, columns) = self.gain_of(noise, own, others, shares);
         let pinned = pinned(&self.machine, &fitted_shares);
         let fitted = Projector::new(&self.machine, &columns, &pinned);
         let seen = fitted.reject(own);
-        let parameters = named(name).map_or(1, |e| e.parameters.len());
-        let layout = &self.templates[0].layout;
-        let needed = needed(layout, parameters, self.library.candidates.len(), 0.01);
+        let needed = named(name).map_or(f64::INFINITY, |e| self.needed(e));
         let others = |e: &Effect| e.name != name;
         let through = |column: &Amplitudes| fitted.reject(&self.white(column, noise));
         let size = seen.norm_squared();
@@ -196,12 +253,35 @@ impl Bench {
                 complete: left < 2.0 * needed,
             }
         });
+        let above_noise = size_over_noise(&seen, &self.noise);
+        let seen_above = above_noise >= 2f64.sqrt() * ABOVE_NOISE;
         Foreseen {
             gain,
-            detectable: gain >= 2.0 * needed,
+            above_noise,
+            detectable: gain >= 2.0 * needed && seen_above,
             class,
             imitation,
         }
+    }
+
+    /// Expected fall of D of a response beside others; the shares at which known
+    /// parameters make up for most of it, and all columns beside it.
+    fn gain_of(
+        &self,
+        noise: f64,
+        own: &DVector<f64>,
+        others: &[&DVector<f64>],
+        shares: &[f64],
+    ) -> (f64, Vec<f64>, Vec<DVector<f64>>) {
+        let mut columns: Vec<DVector<f64>> =
+            self.known.iter().map(|c| self.white(c, noise)).collect();
+        let off = columns
+            .iter()
+            .zip(shares)
+            .fold(DVector::zeros(own.len()), |sum, (c, &s)| sum + c * s);
+        columns.extend(others.iter().map(|&v| v.clone()));
+        let (gain, fitted) = self.gain(&columns, &(own + off), shares);
+        (gain, fitted, columns)
     }
 
     /// D of what the columns leave of a change, the first of them known
@@ -280,29 +360,13 @@ fn imitate(
 /// What sizes inside their bounds leave of what is seen.
 fn left_by(responses: &[&Response], seen: &DVector<f64>) -> DVector<f64> {
     let columns: Vec<&DVector<f64>> = responses.iter().flat_map(|r| &r.columns).collect();
-    let rooms: Vec<Option<[f64; 2]>> = responses.iter().flat_map(|r| rooms(r)).collect();
+    let rooms: Vec<Room> = responses.iter().flat_map(|r| rooms(r.effect)).collect();
     let n = columns.len();
     let normal = DMatrix::from_fn(n, n, |i, j| columns[i].dot(columns[j]));
     let right = DVector::from_fn(n, |i, _| columns[i].dot(seen));
     let x = bounded(&normal, &right, |i| rooms[i]);
     let done = columns.iter().zip(x.iter());
     done.fold(seen.clone(), |rest, (c, &x)| rest - *c * x)
-}
-
-/// Bounds of the columns of a response, which are those of typical sizes; one
-/// with a phase has two, free both.
-fn rooms(response: &Response) -> Vec<Option<[f64; 2]>> {
-    let parameters = response.effect.parameters;
-    if parameters.iter().any(|p| p.name == "phase") {
-        return vec![None; response.columns.len()];
-    }
-    let sizes = parameters.iter().filter(|p| p.size);
-    let room = |p: &EffectParameter| {
-        let mut edges = p.bounds.map(|edge| edge / p.typical);
-        edges.sort_by(f64::total_cmp);
-        edges
-    };
-    sizes.map(|p| Some(room(p))).collect()
 }
 
 /// The effect of that name, in the library or outside of it.

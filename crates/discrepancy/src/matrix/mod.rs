@@ -37,6 +37,8 @@ pub enum Kind {
     Outside,
     /// One of the library, taken out of it before the search.
     LeftOut,
+    /// One of the library, on motion too poor to tell it from others.
+    Poor,
 }
 
 /// A hidden effect: name and values in the order of its parameters.
@@ -67,6 +69,24 @@ pub struct Case {
     pub rejected: Vec<String>,
     /// Of noise and known parameters.
     pub seed: u64,
+    /// Where there is one: sizes are scaled until the expected fall of D is so
+    /// many times what naming takes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visible: Option<f64>,
+}
+
+impl Case {
+    /// Whether both are one case, sizes scaled or not yet.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let unscaled = |case: &Self| {
+            let mut case = case.clone();
+            if case.visible.is_some() {
+                case.hidden.iter_mut().for_each(|h| h.values.clear());
+            }
+            case
+        };
+        unscaled(self) == unscaled(other)
+    }
 }
 
 /// An estimate beside the truth.

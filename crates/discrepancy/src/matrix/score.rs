@@ -62,6 +62,10 @@ pub struct Score {
     /// Taken out of the library, seen: not called explained, or by a foreseen
     /// look-alike.
     pub left_out: Rate,
+    /// One effect on poor motion, seen: named first, or in the class of the first.
+    pub poor: Rate,
+    /// Hidden effects in a class: that an experiment was proposed for.
+    pub proposed: Rate,
     /// Known parameters told: relative errors of sizes, median and 90 %.
     pub error: [f64; 2],
     /// The same of the estimates as they are.
@@ -70,7 +74,7 @@ pub struct Score {
     pub coverage: Rate,
     /// Median gap reduction on check motion over explained single effects.
     pub reduction: f64,
-    /// Proposed experiments that split their class.
+    /// Proposed experiments, run, that split their class.
     pub splits: Rate,
     /// Cases without a verdict.
     pub failed: Vec<String>,
@@ -106,7 +110,8 @@ impl Score {
             )
         };
         let library = outcomes.iter().filter(|o| {
-            o.failed.is_none() && matches!(o.case.kind, Kind::Single | Kind::Pair | Kind::Triple)
+            let absent = matches!(o.case.kind, Kind::Clean | Kind::Outside | Kind::LeftOut);
+            o.failed.is_none() && !absent
         });
         Self {
             false_alarms: Rate::count(of(Kind::Clean), |o| {
@@ -129,6 +134,10 @@ impl Score {
             ),
             imitated: Rate::count(of(Kind::Outside).filter(|o| detectable(o)), |o| imitated(o)),
             left_out: Rate::count(of(Kind::LeftOut).filter(|o| detectable(o)), |o| honest(o)),
+            poor: Rate::count(of(Kind::Poor).filter(|o| detectable(o)), |o| in_class(o)),
+            proposed: Rate::count(outcomes.iter().filter(|o| hidden_in_class(o)), |o| {
+                o.split.is_some()
+            }),
             error: errors(|e| e.given_known),
             raw_error: errors(|e| e.value),
             coverage: Rate::count(&estimates, |e| e.ci95[0] <= e.truth && e.truth <= e.ci95[1]),
@@ -169,6 +178,14 @@ fn first_is_right(outcome: &Outcome) -> bool {
 fn in_class(outcome: &Outcome) -> bool {
     outcome.named.first().is_some_and(|n| {
         hidden(outcome, &n.name) || n.alike.iter().any(|name| hidden(outcome, name))
+    })
+}
+
+/// Whether what is hidden was named with others that do the same, or as one.
+fn hidden_in_class(outcome: &Outcome) -> bool {
+    outcome.named.iter().any(|n| {
+        let is_hidden = |name: &String| hidden(outcome, name);
+        is_hidden(&n.name) && !n.alike.is_empty() || n.alike.iter().any(is_hidden)
     })
 }
 

@@ -16,10 +16,12 @@ use crate::{Discovery, Found, Settings};
 impl Bench {
     /// Runs a case of this bench's motion.
     pub fn try_case(&self, case: &Case) -> Outcome {
+        let case = &self.scaled(case);
         let foreseen = self.foresee(case);
         let runs = foreseen.iter().all(Option::is_some);
         let nothing = Foreseen {
             gain: 0.0,
+            above_noise: 0.0,
             detectable: false,
             class: Vec::new(),
             imitation: None,

@@ -51,9 +51,9 @@ impl Stretch {
 
 impl Search<'_> {
     /// The best force in time beside the fit; `None` where the linearised model
-    /// promises too little of all. `own` are the derivatives of the fit's own
-    /// parameters.
-    pub(super) fn force_in_time(&self, own: &Columns) -> Option<Fit> {
+    /// promises less than is worth a simulation, or than the `least`, of all. `own`
+    /// are the derivatives of the fit's own parameters.
+    pub(super) fn force_in_time(&self, own: &Columns, least: f64) -> Option<Fit> {
         let all = self.library.candidates.iter();
         let slots: Vec<Slot> = all
             .filter(|c| c.effect.name == FORCE)
@@ -65,7 +65,8 @@ impl Search<'_> {
         // A force over the whole motion is a constant load.
         let n = slots.len();
         let all = (0..n).flat_map(|i| (i + 1..=n).map(move |j| i..j));
-        let all = all.filter(|s| s.len() < n).collect();
+        let all = all.filter(|s| s.len() < n && self.acts(slots[s.end - 1].times[1]));
+        let all = all.collect();
         let start = DVector::zeros(own.len() + 1);
         let mut chosen: Vec<Stretch> = Vec::new();
         for stretch in self.compared(own, &slots, all, &start) {
@@ -76,7 +77,7 @@ impl Search<'_> {
                 chosen.push(stretch);
             }
         }
-        let least = PROMISING * self.needed(3, 1);
+        let least = least.max(PROMISING * self.needed(3, 1));
         chosen.retain(|s| self.fit.deviance - s.deviance >= least);
         let simulated = |stretch: Stretch| {
             let (slots, stretch) = self.cut_finer(own, &slots, stretch);
@@ -85,6 +86,13 @@ impl Search<'_> {
         let fits = chosen.into_par_iter().filter_map(simulated);
         let fits: Vec<Fit> = fits.collect();
         fits.into_iter().reduce(Fit::better)
+    }
+
+    /// Whether a force that ends then acts while the logs count. One before only
+    /// changes the state that they begin in, which is not known: noise shakes
+    /// dry friction loose at the first standstill.
+    pub(super) fn acts(&self, end: f64) -> bool {
+        end > self.fit_logs.layout.full_weight_from()
     }
 
     /// Cuts the slots on either side of both edges into three, as often as it takes.
@@ -116,7 +124,9 @@ impl Search<'_> {
                 }
             }
             let n = finer.len();
-            let holds = |s: &Range<usize>| inside.is_none_or(|i| s.contains(&i));
+            let holds = |s: &Range<usize>| {
+                inside.is_none_or(|i| s.contains(&i)) && self.acts(finer[s.end - 1].times[1])
+            };
             let all = (0..n).flat_map(|i| (i + 1..=n).map(move |j| i..j));
             let all = all.filter(holds);
             let compared = self.compared(own, &finer, all.collect(), &best.x);
@@ -169,8 +179,9 @@ impl Search<'_> {
         let fitted = |slots: Range<usize>| {
             let summed = first + slots.start..first + slots.end;
             let shares = &self.fit.state.shares;
-            let problem = Problem::new(self.machine, &products, first, summed, shares);
-            let least = problem.minimum(start);
+            let kept = (0..first).collect();
+            let problem = Problem::new(self.machine, &products, kept, Vec::new(), shares);
+            let least = problem.with_sum(summed).minimum(start);
             Stretch {
                 slots,
                 deviance: least.deviance,

@@ -3,6 +3,7 @@
 mod evidence;
 mod force;
 mod promise;
+mod revise;
 mod rounds;
 
 use std::sync::Arc;
@@ -11,10 +12,12 @@ use axis_sim::ReplayError;
 use axis_sim::effects::{ActiveEffect, Machine};
 
 pub use self::evidence::{MATERIAL, needed};
+pub(crate) use self::revise::ABOVE_NOISE;
 use self::rounds::Search;
 use crate::fit::{Columns, Fit, Fitter};
 use crate::library::Library;
 use crate::model::{LogSet, State};
+use crate::spectrum::Amplitudes;
 
 /// How the search is made.
 #[derive(Clone, Debug)]
@@ -98,6 +101,8 @@ pub struct Found {
     pub covariance: nalgebra::DMatrix<f64>,
     /// Their standard deviations, in the same order, as noise in the loop has them.
     pub deviations: Vec<f64>,
+    /// Noise alone on the fitted logs, as simulated: several runs, or none.
+    pub(crate) noise: Vec<Amplitudes>,
     /// The best of what was left out for want of evidence.
     pub leftover: Vec<RunnerUp>,
     /// What the library does on the motions of the fitted logs.
@@ -190,9 +195,13 @@ pub(crate) fn search_with(
             break;
         }
     }
-    search.drop_needless();
+    search.revise();
     progress("intervals");
-    search.finish(base)
+    let mut intervals = search.intervals()?;
+    while search.drop_noise(&intervals) {
+        intervals = search.intervals()?;
+    }
+    Ok(search.finish(base, intervals))
 }
 
 /// The known parameters fitted, and their derivatives where that ends: these

@@ -3,19 +3,23 @@
 use std::sync::Arc;
 
 use axis_sim::ReplayError;
-use axis_sim::effects::{ActiveEffect, Machine};
+use axis_sim::effects::{ActiveEffect, Effect, Machine};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, WORSE, needed};
+use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, WORSE, enough, needed};
+use super::promise::{Promises, WORTH};
 use super::{Alike, Found, Named, ONE_CLASS, RunnerUp, Settings};
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
 use crate::library::{FORCE, Library};
 use crate::model::LogSet;
-use crate::noise::deviations;
+use crate::noise::{deviations, drawn, noise_on, sensor_noise};
 use crate::projector::sine;
-use crate::screen::{Screened, Screening};
+use crate::screen::Screened;
+use crate::spectrum::Amplitudes;
 
 /// A search on its way.
+#[derive(Clone)]
 pub(super) struct Search<'a> {
     pub(super) machine: &'a Machine,
     pub(super) settings: &'a Settings,
@@ -28,6 +32,10 @@ pub(super) struct Search<'a> {
     pub(super) named: Vec<Named>,
     pub(super) leftover: Vec<RunnerUp>,
 }
+
+/// Share of the promised fall of D that a simulation must keep, or other sizes are
+/// tried.
+const KEPT: f64 = 0.8;
 
 /// One effect, or two, after refinement by simulation.
 struct Refined {
@@ -53,7 +61,7 @@ impl Search<'_> {
         }
     }
 
-    fn checker(&self) -> Fitter<'_> {
+    pub(super) fn checker(&self) -> Fitter<'_> {
         Fitter {
             machine: self.machine,
             set: &self.check_logs,
@@ -65,15 +73,16 @@ impl Search<'_> {
     pub(super) fn add_next(&mut self) -> bool {
         let awaited = self.awaited();
         let own = self.own_columns();
-        let screening = self.screening(&own, &awaited);
-        let screened = screening.one_by_one();
+        let promises = Promises::new(self, &own);
+        let screenings = promises.screenings(&own, |effect| self.wanted(effect, &awaited));
+        let screened = promises.one_by_one(&screenings[0]);
         let candidates = if awaited.is_empty() {
-            let mut worth = self.worth_refining(&screened, &own);
-            let most = worth.iter().map(|w| w.1).fold(0.0, f64::max);
+            let mut worth = promises.worth_refining(&screened);
             if self.named.len() + 2 <= self.settings.most_effects {
-                worth.extend(self.pairs(&screening, &own, most));
+                let most = screened.first().map_or(0.0, |s| s.gain);
+                worth.extend(promises.pairs(&screenings, most));
             }
-            worth.into_iter().map(|(parts, _)| parts).collect()
+            worth
         } else {
             screened.iter().map(|s| vec![s.clone()]).collect()
         };
@@ -144,31 +153,33 @@ impl Search<'_> {
     }
 
     /// Derivatives with respect to all parameters of the fit.
-    fn own_columns(&self) -> Columns {
+    pub(super) fn own_columns(&self) -> Columns {
         let effects = self.fitter().effect_columns(&self.fit, 0);
         self.known.iter().cloned().chain(effects).collect()
     }
 
-    fn screening(&self, own: &Columns, awaited: &[&str]) -> Screening {
-        let rejected = |name: &str| self.settings.rejected.iter().any(|r| r == name);
-        let active = |name: &str| self.named.iter().any(|n| n.name == name);
-        Screening::new(
-            &self.fitter(),
-            &self.fit,
-            own,
-            &self.library.candidates,
-            |effect| {
-                // A second harmonic of the same kind may be there.
-                let free = !active(effect.name) || effect.name == "cogging-torque";
-                free && !rejected(effect.name)
-                    && (awaited.is_empty() || awaited.contains(&effect.name))
-            },
-        )
+    /// Whether an effect may be named next.
+    pub(super) fn wanted(&self, effect: &Effect, awaited: &[&str]) -> bool {
+        let rejected = self.settings.rejected.iter().any(|r| r == effect.name);
+        // A second harmonic of the same kind may be there.
+        let active = self.named.iter().any(|n| n.name == effect.name);
+        let free = !active || effect.name == "cogging-torque";
+        free && !rejected && (awaited.is_empty() || awaited.contains(&effect.name))
+    }
+
+    /// Noise alone, as of sensors like those of the logs; `None` where these do
+    /// not show it.
+    pub(super) fn noise(&self) -> Option<Amplitudes> {
+        let (machine, set, fit) = (self.machine, &self.fit_logs, &self.fit);
+        let noise = sensor_noise(machine, set, &fit.state, &fit.traces)?;
+        noise_on(machine, &fit.state, set, &fit.traces, noise, 0).ok()
     }
 
     /// Candidates of one effect or two, by simulation; the simplest of the best first.
     fn refine(&self, candidates: Vec<Vec<Screened>>, own: &Columns) -> Vec<Refined> {
         let fitter = self.fitter();
+        let promised = candidates.iter().map(|parts| parts[0].gain);
+        let least = WORTH * promised.fold(0.0, f64::max);
         let awaited = self.awaited().contains(&FORCE);
         let begin = |parts: Vec<Screened>| {
             let as_screened = || {
@@ -177,11 +188,18 @@ impl Search<'_> {
                     effect: s.effect,
                     values: s.values.clone(),
                 }));
-                Some(fitter.best_size(fitter.at(state).ok()?, parts.len()))
+                let fit = fitter.at(state).ok()?;
+                // Sizes are promised to a few hundredths, where an answer grows
+                // with its size.
+                let kept = self.fit.deviance - fit.deviance >= KEPT * parts[0].gain;
+                Some(match kept {
+                    true => fit,
+                    false => fitter.best_size(fit, parts.len()),
+                })
             };
             let start = match parts.as_slice() {
                 [force] if force.effect.name == FORCE => {
-                    let found = self.force_in_time(own);
+                    let found = self.force_in_time(own, least);
                     found.or_else(|| as_screened().filter(|_| awaited))?
                 }
                 _ => as_screened()?,
@@ -193,6 +211,12 @@ impl Search<'_> {
             })
         };
         let mut refined: Vec<Refined> = candidates.into_par_iter().filter_map(begin).collect();
+        refined.retain(|r| match r.fit.state.effects.last() {
+            Some(last) if r.parts.len() == 1 && last.effect.name == FORCE => {
+                awaited || self.acts(last.values[2])
+            }
+            _ => true,
+        });
         let gain = |fit: &Fit| self.fit.deviance - fit.deviance;
         // What is far behind after two rounds is not carried further.
         let best = refined.iter().map(|r| gain(&r.fit)).fold(0.0, f64::max);
@@ -202,13 +226,14 @@ impl Search<'_> {
             }
             r.gain = gain(&r.fit);
         });
-        // Those that are near one another are compared where they end, or a
-        // simple one that is not there yet loses to one that contains it.
+        // Those that are near one another are compared where they end, with
+        // derivatives of all effects as they are there, or a simple one that is
+        // not there yet loses to one that contains it.
         let best = refined.iter().map(|r| r.gain).fold(0.0, f64::max);
         let near = |r: &Refined| r.gain > 0.8 * best;
         if refined.iter().filter(|r| near(r)).count() > 1 {
             refined.par_iter_mut().filter(|r| near(r)).for_each(|r| {
-                r.fit = fitter.refine(r.fit.clone(), own, 8);
+                r.fit = fitter.refine(r.fit.clone(), &self.known, 8);
                 r.gain = gain(&r.fit);
             });
         }
@@ -296,56 +321,50 @@ impl Search<'_> {
         }
     }
 
-    /// Takes out effects that others added later have made needless.
-    pub(super) fn drop_needless(&mut self) {
-        let mut index = 0;
-        while self.named.len() > 1 && index < self.named.len() {
-            let mut state = self.fit.state.clone();
-            let dropped = state.effects.remove(index);
-            let Ok(start) = self.fitter().at(state) else {
-                index += 1;
-                continue;
-            };
-            let without = self.fitter().refine(start, &self.known, 4);
-            let loss = without.deviance - self.fit.deviance;
-            let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
-            let needed = self.needed(dropped.effect.parameters.len(), 1);
-            let named = &mut self.named[index];
-            let accepted = self
-                .settings
-                .accepted
-                .iter()
-                .any(|name| *name == named.name);
-            if !accepted && loss < needed.max(MATERIAL * largest) {
-                self.named.remove(index);
-                self.fit = without;
-            } else {
-                named.evidence = loss;
-                index += 1;
-            }
-        }
-    }
-
-    pub(super) fn finish(self, base: Fit) -> Result<Found, ReplayError> {
+    /// Derivatives, covariance and deviations of all parameters at the end.
+    pub(super) fn intervals(&self) -> Result<Intervals, ReplayError> {
         let columns = self.own_columns();
         let fitter = self.fitter();
         let covariance = fitter.solve(&self.fit, &columns).covariance;
-        let of_noise = deviations(&fitter, &self.fit, &columns, &covariance)?;
-        let as_weighed = || covariance.diagonal().map(|v| v.max(0.0).sqrt());
-        let deviations = of_noise.unwrap_or_else(|| as_weighed().as_slice().to_vec());
-        Ok(Found {
+        let noise = drawn(&fitter, &self.fit)?;
+        Ok(Intervals {
+            deviations: deviations(&fitter, &self.fit, &columns, &covariance, &noise),
+            columns,
+            covariance,
+            noise,
+        })
+    }
+
+    pub(super) fn finish(self, base: Fit, intervals: Intervals) -> Found {
+        let Intervals {
+            columns,
+            covariance,
             deviations,
+            noise,
+        } = intervals;
+        let as_weighed = || covariance.diagonal().map(|v| v.max(0.0).sqrt());
+        Found {
+            deviations: deviations.unwrap_or_else(|| as_weighed().as_slice().to_vec()),
             base,
             columns,
             covariance,
+            noise,
             fit: self.fit,
             named: self.named,
             leftover: self.leftover,
             library: self.library,
             fit_logs: self.fit_logs,
             check_logs: self.check_logs,
-        })
+        }
     }
+}
+
+/// How well the parameters of a fit are known.
+pub(super) struct Intervals {
+    pub(super) columns: Columns,
+    covariance: DMatrix<f64>,
+    pub(super) noise: Vec<Amplitudes>,
+    deviations: Option<Vec<f64>>,
 }
 
 /// Effects that do nearly the same as the best, or explain as much: the logs
@@ -382,13 +401,12 @@ fn alike(own: &Screened, best: &Refined, refined: &[Refined], all: &[Screened]) 
 }
 
 /// Moves the simplest of those that explain about as much as the best to the
-/// front: further parameters must bring a hundredth of the whole, and no less
-/// than chance could.
+/// front.
 fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
     let Some(best) = refined.first().map(|r| r.gain) else {
         return refined;
     };
-    let enough = best - (0.01 * best).max(25.0);
+    let enough = enough(best);
     let parameters = |r: &Refined| -> usize {
         let each = r.parts.iter().map(|p| p.effect.parameters.len());
         each.sum()
