@@ -54,6 +54,7 @@ pub use library::Library;
 pub use model::{LogSet, Prepared, State};
 pub use outcome::{
     Against, AtScrew, ChannelGap, Discovered, Discovery, EffectFound, Gap, Gaps, Likeness,
-    NextExperiment, Overlay, ParameterFound, Recalibrated, Shown, Verdict, discovery,
+    NextExperiment, Overlay, ParameterFound, Recalibrated, ReplacedEffect, Shown, Verdict,
+    discovery,
 };
-pub use search::{Alike, Found, Named, ONE_CLASS, RunnerUp, Settings, search};
+pub use search::{Alike, Found, Named, ONE_CLASS, Replaced, RunnerUp, Settings, search};

@@ -191,6 +191,18 @@ fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
             ))?;
         }
     }
+    for effect in &discovery.replaced {
+        let values = effect.when_named.iter();
+        let values: Vec<String> = values
+            .map(|(name, value, unit)| format!("{name} = {value:.4e} {unit}"))
+            .collect();
+        say(format!(
+            "{} ({}) was named on the way; beside the others, {} explains as much with less",
+            effect.name,
+            values.join(", "),
+            effect.by
+        ))?;
+    }
     say("\nRMS gap on check motion        before        after        noise")?;
     for c in &discovery.gap.check.channels {
         say(format!(

@@ -91,7 +91,27 @@ fn effects(discovery: &Discovery) -> Section {
             Cell::number(*gain, 0),
         ]);
     }
-    Section::new("Effects").table(table).table(others)
+    let section = Section::new("Effects").table(table).table(others);
+    if discovery.replaced.is_empty() {
+        return section;
+    }
+    let mut replaced = Table::new(
+        "What was named on the way",
+        ["Effect", "parameter", "value then", "unit", "replaced by"],
+    )
+    .note("Beside the effects that were named later, the other explains as much with less.");
+    for effect in &discovery.replaced {
+        for (name, value, unit) in &effect.when_named {
+            replaced = replaced.row([
+                Cell::text(effect.name.clone()),
+                Cell::text(name.clone()),
+                Cell::scientific(*value, 4),
+                Cell::text(unit.clone()),
+                Cell::text(effect.by.clone()),
+            ]);
+        }
+    }
+    section.table(replaced)
 }
 
 fn gaps(discovery: &Discovery) -> Section {

@@ -5,7 +5,7 @@ mod likeness;
 mod types;
 
 use axis_sim::ReplayError;
-use axis_sim::effects::Machine;
+use axis_sim::effects::{ActiveEffect, EffectParameter, Machine};
 
 pub use self::against::Against;
 use self::against::against;
@@ -13,7 +13,7 @@ use self::likeness::likenesses;
 pub use self::likeness::{Likeness, Shown};
 pub use self::types::{
     AtScrew, ChannelGap, Discovery, EffectFound, Gap, Gaps, NextExperiment, ParameterFound,
-    Recalibrated, Verdict,
+    Recalibrated, ReplacedEffect, Verdict,
 };
 use crate::experiment::{Proposal, propose};
 use crate::fit::{Fitter, free_parameters};
@@ -21,7 +21,7 @@ use crate::known::{known_parameters, tolerance};
 use crate::lack::{Curve, Unknown, lack};
 use crate::model::{LogSet, State};
 use crate::noise::{Excess, Rest, excess, floors, sensor_noise};
-use crate::search::{Found, MATERIAL};
+use crate::search::{Found, MATERIAL, Replaced};
 
 /// A search's result in words, figures and pictures.
 #[derive(Clone, Debug)]
@@ -160,6 +160,7 @@ pub(crate) fn judged(
         sentence: sentence(verdict, &effects, &check, unknown.as_ref()),
         verdict,
         effects,
+        replaced: found.replaced.iter().map(replaced).collect(),
         not_added: found
             .leftover
             .iter()
@@ -229,7 +230,7 @@ fn effect_found(
     let active = &found.fit.state.effects[index];
     let free = free_parameters(&found.fit.state);
     let known = found.fit.state.shares.len();
-    let parameter = |(p, (spec, &value)): (usize, (&axis_sim::effects::EffectParameter, &f64))| {
+    let parameter = |(p, (spec, &value)): (usize, (&EffectParameter, &f64))| {
         let column = free
             .iter()
             .position(|&at| at == (index, p))
@@ -265,6 +266,16 @@ fn effect_found(
             .iter()
             .map(|r| (r.name.to_owned(), r.gain))
             .collect(),
+    }
+}
+
+fn replaced(replaced: &Replaced) -> ReplacedEffect {
+    let ActiveEffect { effect, values } = &replaced.when_named;
+    let one = |(p, &value): (&EffectParameter, &f64)| (p.name.to_owned(), value, p.unit.to_owned());
+    ReplacedEffect {
+        name: effect.name.to_owned(),
+        when_named: effect.parameters.iter().zip(values).map(one).collect(),
+        by: replaced.by.to_owned(),
     }
 }
 

@@ -82,6 +82,17 @@ pub struct EffectFound {
     pub runners_up: Vec<(String, f64)>,
 }
 
+/// An effect that was named on the way.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ReplacedEffect {
+    /// Name.
+    pub name: String,
+    /// Its numbers when it had just been named: name, value, unit.
+    pub when_named: Vec<(String, f64, String)>,
+    /// The effect that explains as much with less, now that the others are there.
+    pub by: String,
+}
+
 /// Root-mean-square gap of a channel, in its unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChannelGap {
@@ -154,6 +165,8 @@ pub struct Discovery {
     pub sentence: String,
     /// Named effects, largest share first.
     pub effects: Vec<EffectFound>,
+    /// Effects that were named on the way, until another took their place.
+    pub replaced: Vec<ReplacedEffect>,
     /// Best candidates that were not added.
     pub not_added: Vec<(String, f64)>,
     /// What is left, is significant, and is nothing in the library.

@@ -40,9 +40,12 @@ fn threshold(parameters: usize, tried: usize, false_alarm: f64) -> f64 {
 /// Difference of D below which two effects explain as much.
 pub(super) const EQUAL: f64 = 15.0;
 
+/// Fall of D that further parameters may bring by chance.
+pub(super) const BY_CHANCE: f64 = 25.0;
+
 /// Fall of D of something simpler from which on it is taken instead of what brings
 /// `best`: further parameters must bring a hundredth of the whole, and no less than
 /// chance could.
 pub(super) fn enough(best: f64) -> f64 {
-    best - (0.01 * best).max(25.0)
+    best - (0.01 * best).max(BY_CHANCE)
 }

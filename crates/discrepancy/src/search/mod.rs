@@ -85,6 +85,15 @@ pub struct Named {
     pub runners_up: Vec<RunnerUp>,
 }
 
+/// An effect that another took the place of, once more effects were there.
+#[derive(Clone, Debug)]
+pub struct Replaced {
+    /// With its values when it had just been added.
+    pub when_named: ActiveEffect,
+    /// Name of the other.
+    pub by: &'static str,
+}
+
 /// What a search found.
 #[derive(Clone, Debug)]
 pub struct Found {
@@ -94,6 +103,8 @@ pub struct Found {
     pub fit: Fit,
     /// The effects, in the order of the state's.
     pub named: Vec<Named>,
+    /// Effects that were named on the way and are no longer.
+    pub replaced: Vec<Replaced>,
     /// Derivatives with respect to the parameters: known ones, then free ones of
     /// the effects.
     pub columns: Columns,
@@ -185,6 +196,7 @@ pub(crate) fn search_with(
         fit: base.clone(),
         known,
         named: Vec::new(),
+        replaced: Vec::new(),
         leftover: Vec::new(),
         fit_logs,
         check_logs,

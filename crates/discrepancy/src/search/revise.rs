@@ -6,9 +6,10 @@
 //! search would now take another in its place, that comes (sequential
 //! replacement: A. Miller, Subset Selection in Regression, 2nd ed., 2002, §3.6).
 
-use axis_sim::effects::Effect;
+use axis_sim::effects::{ActiveEffect, Effect};
 
-use super::evidence::{MATERIAL, enough};
+use super::Replaced;
+use super::evidence::{BY_CHANCE, MATERIAL};
 use super::promise::Promises;
 use super::rounds::{Intervals, Search};
 use crate::fit::pinned;
@@ -42,11 +43,16 @@ impl Search<'_> {
                 continue;
             }
             self.named[index].evidence = loss;
+            let values = self.named[index].when_named.clone();
             let other = (!accepted).then(|| without.with_another(dropped.name, loss));
-            if let Some(other) = other.flatten() {
-                let by = other.named.last().map(|n| n.name);
+            if let Some((other, by)) = other.flatten() {
                 tracing::debug!(of = dropped.name, by, "exchange");
+                let when_named = ActiveEffect {
+                    effect: dropped,
+                    values,
+                };
                 *self = other;
+                self.replaced.push(Replaced { when_named, by });
             }
             index += 1;
         }
@@ -101,8 +107,8 @@ impl Search<'_> {
     }
 
     /// With what the search now takes next, if that is something else than what
-    /// was taken out, which had brought this `loss`.
-    fn with_another(mut self, taken_out: &str, loss: f64) -> Option<Self> {
+    /// was taken out, which had brought this `loss`; and its name.
+    fn with_another(mut self, taken_out: &str, loss: f64) -> Option<(Self, &'static str)> {
         let own = self.own_columns();
         let promises = Promises::new(&self, &own);
         let others = |effect: &Effect| effect.name != taken_out && self.wanted(effect, &[]);
@@ -114,10 +120,11 @@ impl Search<'_> {
         let before = self.fit.deviance;
         let known = self.named.len();
         let added = self.add_next();
+        let by = self.named.get(known)?.name;
         let another = added
             && self.named.len() == known + 1
-            && self.named[known].name != taken_out
-            && before - self.fit.deviance >= enough(loss);
-        another.then_some(self)
+            && by != taken_out
+            && before - self.fit.deviance >= loss - BY_CHANCE;
+        another.then_some((self, by))
     }
 }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, WORSE, enough, needed};
 use super::promise::{Promises, WORTH};
-use super::{Alike, Found, Named, ONE_CLASS, RunnerUp, Settings};
+use super::{Alike, Found, Named, ONE_CLASS, Replaced, RunnerUp, Settings};
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
 use crate::library::{FORCE, Library};
 use crate::model::LogSet;
@@ -30,6 +30,7 @@ pub(super) struct Search<'a> {
     pub(super) fit: Fit,
     pub(super) check: Fit,
     pub(super) named: Vec<Named>,
+    pub(super) replaced: Vec<Replaced>,
     pub(super) leftover: Vec<RunnerUp>,
 }
 
@@ -351,6 +352,7 @@ impl Search<'_> {
             noise,
             fit: self.fit,
             named: self.named,
+            replaced: self.replaced,
             leftover: self.leftover,
             library: self.library,
             fit_logs: self.fit_logs,
