@@ -108,6 +108,7 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
     let progress = ProgressBar::new_spinner();
     progress.enable_steady_tick(std::time::Duration::from_millis(120));
     let found = search(machine, &fit, &check, &settings, |what| {
+        tracing::debug!("{what}");
         progress.set_message(what.to_owned());
     })
     .into_diagnostic()
