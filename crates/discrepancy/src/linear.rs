@@ -4,7 +4,7 @@
 //! Σ y_i y_j P_ij / n with y = (1, −x) and P_ij = Σ c_i c_jᴴ summed over its bins
 //! once. D = 2 Σ n log det S is concave in S: least squares weighed by the last S
 //! lowers it in every round. The fall of D of effects whose answer grows with their
-//! size came out within a tenth of that of their simulation, of a force in time within
+//! size came out within a third of that of their simulation, of a force in time within
 //! a fifth.
 
 use std::ops::Range;

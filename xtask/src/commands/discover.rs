@@ -198,7 +198,7 @@ fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
             .map(|(name, value, unit)| format!("{name} = {value:.4e} {unit}"))
             .collect();
         say(format!(
-            "{} ({}) was named on the way; beside the others, {} explains as much with less",
+            "{} ({}) was named on the way; beside the others, {} explains as much in its place",
             effect.name,
             values.join(", "),
             effect.by

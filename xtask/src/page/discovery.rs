@@ -99,7 +99,7 @@ fn effects(discovery: &Discovery) -> Section {
         "What was named on the way",
         ["Effect", "parameter", "value then", "unit", "replaced by"],
     )
-    .note("Beside the effects that were named later, the other explains as much with less.");
+    .note("Beside the effects that were named later, the other explains as much in its place.");
     for effect in &discovery.replaced {
         for (name, value, unit) in &effect.when_named {
             replaced = replaced.row([

@@ -45,7 +45,6 @@ pub struct Foreseen {
     /// effects fitted out.
     pub gain: f64,
     /// Its size in deviations, of what a fit makes of noise.
-    #[serde(default)]
     pub above_noise: f64,
     /// Whether the gain is at least twice what the search asks for, and the size by as
     /// much more.

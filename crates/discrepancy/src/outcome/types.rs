@@ -89,7 +89,7 @@ pub struct ReplacedEffect {
     pub name: String,
     /// Its numbers when it had just been named: name, value, unit.
     pub when_named: Vec<(String, f64, String)>,
-    /// The effect that explains as much with less, now that the others are there.
+    /// The effect that explains as much in its place, now that the others are there.
     pub by: String,
 }
 

@@ -100,8 +100,8 @@ impl<'a> Promises<'a> {
         all
     }
 
-    /// Of these effects, the first few, but none that promises a tenth of the best
-    /// or too little. The times of a force in time are to be found first.
+    /// Of these effects, the first few, but none that promises less than a
+    /// tenth of the best or too little. The times of a force in time are to be found first.
     pub(super) fn worth_refining(&self, effects: &[Screened]) -> Vec<Vec<Screened>> {
         let (force, others): (Vec<_>, Vec<_>) =
             effects.iter().partition(|s| s.effect.name == FORCE);

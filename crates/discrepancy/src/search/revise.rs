@@ -25,7 +25,7 @@ pub(crate) const ABOVE_NOISE: f64 = 4.0;
 
 impl Search<'_> {
     /// Takes out effects that others added later have made needless, and puts
-    /// others in the place of those that they explain as well with less.
+    /// others in the place of those in whose place they explain as much.
     pub(super) fn revise(&mut self) {
         let mut index = 0;
         while self.named.len() > 1 && index < self.named.len() {
@@ -37,7 +37,7 @@ impl Search<'_> {
             let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
             let dropped = self.fit.state.effects[index].effect;
             let needed = self.needed(dropped.parameters.len(), 1);
-            let accepted = self.settings.accepted.iter().any(|n| n == dropped.name);
+            let accepted = self.is_accepted(dropped.name);
             if !accepted && loss < needed.max(MATERIAL * largest) {
                 *self = without;
                 continue;
@@ -70,9 +70,8 @@ impl Search<'_> {
             let pinned = pinned(self.machine, shares);
             over_noise(&self.fitter(), &self.fit, columns, noise, effect, &pinned)
         };
-        let accepted = |name: &str| self.settings.accepted.iter().any(|a| a == name);
         let all = self.fit.state.effects.iter().enumerate();
-        let free = all.filter(|(_, active)| !accepted(active.effect.name));
+        let free = all.filter(|(_, active)| !self.is_accepted(active.effect.name));
         let mut sizes: Vec<(usize, f64)> = free
             .map(|(e, _)| (e, over(e, &self.fit.state.shares)))
             .collect();
@@ -92,6 +91,11 @@ impl Search<'_> {
             }
         }
         false
+    }
+
+    /// Whether the engineer takes an effect as there.
+    fn is_accepted(&self, name: &str) -> bool {
+        self.settings.accepted.iter().any(|a| a == name)
     }
 
     /// Without one effect, the others and known parameters fitted again.

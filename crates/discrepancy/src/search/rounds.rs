@@ -190,8 +190,8 @@ impl Search<'_> {
                     values: s.values.clone(),
                 }));
                 let fit = fitter.at(state).ok()?;
-                // Sizes are promised to a few hundredths, where an answer grows
-                // with its size.
+                // Promised sizes are near enough where an answer grows with its
+                // size.
                 let kept = self.fit.deviance - fit.deviance >= KEPT * parts[0].gain;
                 Some(match kept {
                     true => fit,
