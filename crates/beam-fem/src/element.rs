@@ -60,9 +60,11 @@ pub(crate) struct Coefficients {
 
 /// A two-node rod with linear shape functions: stiffness k [1 −1; −1 1],
 /// mass m/6 [2 1; 1 2].
-#[derive(Clone, Copy)]
-pub(crate) struct Rod {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rod {
+    /// k, N/m or N·m/rad.
     pub stiffness: f64,
+    /// m, kg or kg·m².
     pub mass: f64,
 }
 
@@ -118,13 +120,14 @@ impl Coefficients {
     }
 }
 
-/// Torsion of one element. Inertia goes with the polar moment I_y + I_z,
-/// stiffness with the torsion constant J.
+/// Torsion of one element of `length` m above zero: stiffness G J / l
+/// (N·m/rad) and mass ρ (I_y + I_z) l (kg·m²). Inertia goes with the polar
+/// moment, stiffness with the torsion constant J.
 #[inline]
-pub(crate) fn torsion_rod(section: &Section, material: &Material, l: f64) -> Rod {
+pub fn torsion_rod(section: &Section, material: &Material, length: f64) -> Rod {
     Rod {
-        stiffness: material.shear_modulus() * section.torsion_constant / l,
-        mass: material.density * section.polar_moment() * l,
+        stiffness: material.shear_modulus() * section.torsion_constant / length,
+        mass: material.density * section.polar_moment() * length,
     }
 }
 

@@ -22,10 +22,8 @@ impl Mesh {
     pub fn uniform(length: f64, elements: usize) -> Result<Self, BeamError> {
         positive("length", length)?;
         check_elements(elements, 1)?;
-        let n = elements as f64;
-        let mut nodes: Vec<f64> = (0..elements).map(|i| length * (i as f64 / n)).collect();
-        nodes.push(length);
-        Self::from_nodes(nodes)
+        let node = |index| uniform_node(length, elements, index);
+        Self::from_nodes((0..=elements).map(node).collect())
     }
 
     /// A mesh of any lengths from its node coordinates in metres.
@@ -80,6 +78,14 @@ impl Mesh {
         let (a, b) = (self.nodes[element], self.nodes[element + 1]);
         (element, ((x - a) / (b - a)).clamp(0.0, 1.0))
     }
+}
+
+/// Where a node of a uniform mesh is, m.
+pub(crate) fn uniform_node(length: f64, elements: usize, index: usize) -> f64 {
+    if index == elements {
+        return length;
+    }
+    length * (index as f64 / elements as f64)
 }
 
 /// Refuses meshes with fewer than `minimum` or too many elements.

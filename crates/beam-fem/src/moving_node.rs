@@ -1,7 +1,7 @@
 //! The paper's mesh with one node on the nut (its Eqs. 1 and 2).
 
 use crate::error::positive;
-use crate::mesh::check_elements;
+use crate::mesh::{check_elements, uniform_node};
 use crate::{BeamError, Mesh};
 
 /// A uniform mesh of which one node was moved to the position x.
@@ -39,6 +39,24 @@ impl MovingNode {
     /// the beam, or `min_fraction` outside (0, 0.5];
     /// [`BeamError::Elements`] for fewer than two elements.
     pub fn at(length: f64, elements: usize, x: f64, min_fraction: f64) -> Result<Self, BeamError> {
+        let (node, position) = Self::place(length, elements, x, min_fraction)?;
+        let mut nodes = Mesh::uniform(length, elements)?.nodes().to_vec();
+        nodes[node] = position;
+        let mesh = Mesh::from_nodes(nodes)?;
+        Ok(Self { mesh, node })
+    }
+
+    /// Which node [`MovingNode::at`] moves and where to, m; all others stay
+    /// where they are in the uniform mesh. Allocates nothing.
+    ///
+    /// # Errors
+    /// As [`MovingNode::at`].
+    pub fn place(
+        length: f64,
+        elements: usize,
+        x: f64,
+        min_fraction: f64,
+    ) -> Result<(usize, f64), BeamError> {
         positive("length", length)?;
         check_elements(elements, 2)?;
         if !(0.0..=length).contains(&x) {
@@ -56,11 +74,13 @@ impl MovingNode {
             });
         }
         let node = segment(length, elements, x, min_fraction).min(elements - 1);
-        let mut nodes = Mesh::uniform(length, elements)?.nodes().to_vec();
         let shortest = min_fraction * length / elements as f64;
-        nodes[node] = x.clamp(nodes[node - 1] + shortest, nodes[node + 1] - shortest);
-        let mesh = Mesh::from_nodes(nodes)?;
-        Ok(Self { mesh, node })
+        let neighbour = |index| uniform_node(length, elements, index);
+        let position = x.clamp(
+            neighbour(node - 1) + shortest,
+            neighbour(node + 1) - shortest,
+        );
+        Ok((node, position))
     }
 
     /// Where the moved node is, m: x, but for the two ends of the screw.

@@ -1,10 +1,11 @@
 //! M(x), C(x) and K(x) of the whole drive: Section 3.1.3 of the paper, its
 //! lost minus signs restored.
 
+use beam_fem::element::torsion_rod;
 use beam_fem::{Beam, Mesh, MovingNode, Tridiagonal};
 use nalgebra::DMatrix;
 
-use crate::{DriveError, FeedDrive};
+use crate::{DriveError, DriveParameters, FeedDrive};
 
 /// How the nut meets the screw's mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -115,6 +116,27 @@ impl FeedDrive {
             damping,
             stiffness,
         })
+    }
+}
+
+impl Chain {
+    /// Renews the entries of both elements at the screw's `node`, one that is not
+    /// an end, as the nodes are now: as [`FeedDrive::chain`] has them, to the bit.
+    pub(crate) fn renew_at(&mut self, node: usize, nodes: &[f64], p: &DriveParameters) {
+        let elements = nodes.len() - 1;
+        let rod = |e: usize| torsion_rod(&p.section, &p.material, nodes[e + 1] - nodes[e]);
+        for e in [node - 1, node] {
+            self.mass.off_diagonal[2 + e] = rod(e).mass / 6.0;
+            self.stiffness.off_diagonal[2 + e] = -rod(e).stiffness;
+        }
+        for n in node - 1..=node + 1 {
+            let before = n.checked_sub(1).map(rod);
+            let after = (n < elements).then(|| rod(n));
+            let rods = || before.iter().chain(&after);
+            let coupled = if n == 0 { p.screw_coupling_stiffness } else { 0.0 };
+            self.mass.diagonal[2 + n] = rods().map(|r| r.mass / 3.0).sum();
+            self.stiffness.diagonal[2 + n] = rods().map(|r| r.stiffness).sum::<f64>() + coupled;
+        }
     }
 }
 

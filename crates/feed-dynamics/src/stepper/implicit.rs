@@ -5,7 +5,7 @@
 //! and v_p hold all that is known at the start. S is tridiagonal but for the
 //! table, which is eliminated first, so a step costs a few operations a node.
 
-use beam_fem::Tridiagonal;
+use beam_fem::{Mesh, MovingNode, Tridiagonal};
 
 use super::modal::check_step;
 use super::{NutErrors, Observation, Settled, TableMotion, TimeStepper, settle_load};
@@ -19,6 +19,8 @@ pub struct ImplicitStepper {
     coupling: NutCoupling,
     step: f64,
     fixed: Chain,
+    /// Nodes of the uniform mesh, m.
+    uniform: Vec<f64>,
 }
 
 /// State of an [`ImplicitStepper`]: displacement, velocity and acceleration of
@@ -31,9 +33,19 @@ pub struct ImplicitState {
     origin: f64,
     nut_force: f64,
     load: f64,
-    seat: NutSeat,
-    /// Where the screw's nodes are, m; only kept where one of them moves.
+    chain: Chain,
+    /// Where the screw's nodes are, m.
     nodes: Vec<f64>,
+    work: Work,
+}
+
+/// What a step needs room for; nothing in it outlives the step.
+#[derive(Clone, Debug)]
+struct Work {
+    known: Vec<f64>,
+    rhs: Vec<f64>,
+    unit: Vec<f64>,
+    lhs: Tridiagonal,
 }
 
 impl ImplicitStepper {
@@ -46,6 +58,9 @@ impl ImplicitStepper {
         let middle = 0.5 * drive.parameters().screw_length;
         Ok(Self {
             fixed: drive.chain(middle, coupling)?,
+            uniform: Mesh::uniform(drive.parameters().screw_length, drive.parameters().elements)?
+                .nodes()
+                .to_vec(),
             drive: drive.clone(),
             coupling,
             step,
@@ -61,38 +76,60 @@ impl ImplicitStepper {
             .unwrap_or_else(|_| self.fixed.clone())
     }
 
-    /// Positions of the screw's nodes with the table at `x`.
+    /// Positions of the screw's nodes with the table at `x`, m.
     fn nodes(&self, x: f64) -> Vec<f64> {
-        let p = self.drive.parameters();
-        let x = x.clamp(0.0, p.screw_length);
-        beam_fem::MovingNode::at(
-            p.screw_length,
-            p.elements,
-            x,
-            beam_fem::MovingNode::MIN_FRACTION,
-        )
-        .map(|moved| moved.mesh.nodes().to_vec())
-        .unwrap_or_default()
+        let mut nodes = self.uniform.clone();
+        if let (NutCoupling::MovingNode, Some((node, at))) = (self.coupling, self.place(x)) {
+            nodes[node] = at;
+        }
+        nodes
     }
 
-    /// The moving node follows the nut; where it jumps to the next place in
-    /// the mesh, the rotations are carried over by interpolation.
-    fn move_node(&self, state: &mut ImplicitState, x: f64, seat: NutSeat) {
-        if self.coupling == NutCoupling::MovingNode {
-            let nodes = self.nodes(x);
-            if seat.node != state.seat.node {
-                for values in [&mut state.q, &mut state.v, &mut state.a] {
-                    let screw = &mut values[2..2 + nodes.len()];
-                    let carried: Vec<f64> = nodes
-                        .iter()
-                        .map(|&at| interpolate(&state.nodes, screw, at))
-                        .collect();
-                    screw.copy_from_slice(&carried);
-                }
-            }
-            state.nodes = nodes;
+    /// The node that follows the nut with the table at `x`, kept on the screw, and
+    /// where it is, m.
+    fn place(&self, x: f64) -> Option<(usize, f64)> {
+        let p = self.drive.parameters();
+        let x = x.clamp(0.0, p.screw_length);
+        // Every x on the screw has a place: the parameters were checked.
+        MovingNode::place(p.screw_length, p.elements, x, MovingNode::MIN_FRACTION).ok()
+    }
+
+    /// The nut's seat follows the table at `x`, and with it the moving node: only
+    /// the two elements beside it change. Where it jumps to the next place in the
+    /// mesh, the rotations are carried over by interpolation.
+    fn move_seat(&self, state: &mut ImplicitState, x: f64) {
+        let p = self.drive.parameters();
+        if self.coupling == NutCoupling::ShapeFunctions {
+            let cells = p.elements as f64;
+            let along = (x / p.screw_length * cells).clamp(0.0, cells);
+            let node = (along as usize).min(p.elements - 1);
+            let weights = [1.0 - (along - node as f64), along - node as f64];
+            state.chain.seat = NutSeat { node, weights };
+            return;
         }
-        state.seat = seat;
+        let Some((node, position)) = self.place(x) else {
+            return;
+        };
+        let last = state.chain.seat.node + 1;
+        if node == last {
+            state.nodes[node] = position;
+        } else {
+            let before = state.nodes.clone();
+            state.nodes[last] = self.uniform[last];
+            state.nodes[node] = position;
+            state.chain.renew_at(last, &state.nodes, p);
+            state.chain.seat.node = node - 1;
+            let nodes = &state.nodes;
+            for values in [&mut state.q, &mut state.v, &mut state.a] {
+                let screw = &mut values[2..2 + nodes.len()];
+                let carried: Vec<f64> = nodes
+                    .iter()
+                    .map(|&at| interpolate(&before, screw, at))
+                    .collect();
+                screw.copy_from_slice(&carried);
+            }
+        }
+        state.chain.renew_at(node, &state.nodes, p);
     }
 
     /// `(rθ − y)` at the nut, from values laid out as the coordinates are.
@@ -147,8 +184,14 @@ impl TimeStepper for ImplicitStepper {
             origin: x,
             nut_force,
             load: motion.load,
-            seat: chain.seat,
             nodes: self.nodes(x),
+            work: Work {
+                known: vec![0.0; n],
+                rhs: vec![0.0; n - 1],
+                unit: vec![0.0; n - 1],
+                lhs: chain.mass.clone(),
+            },
+            chain,
         }
     }
 
@@ -169,23 +212,10 @@ impl TimeStepper for ImplicitStepper {
         let last = state.q.len() - 1;
         let s = 0.25 * h * h + 0.5 * beta * h;
 
-        // Matrices for the table at the end of the step.
+        // The seat with the table at the end of the step.
         let x = state.origin + state.q[last] + h * state.v[last];
-        let moved;
-        let (chain, seat) = match self.coupling {
-            NutCoupling::MovingNode => {
-                moved = self.chain(x);
-                (&moved, moved.seat)
-            }
-            NutCoupling::ShapeFunctions => {
-                let cells = p.elements as f64;
-                let along = (x / p.screw_length * cells).clamp(0.0, cells);
-                let node = (along as usize).min(p.elements - 1);
-                let weights = [1.0 - (along - node as f64), along - node as f64];
-                (&self.fixed, NutSeat { node, weights })
-            }
-        };
-        self.move_node(state, x, seat);
+        self.move_seat(state, x);
+        let seat = state.chain.seat;
 
         // Where in its gap the nut is going to be, from the motion so far.
         let half = 0.5 * errors.gap;
@@ -198,11 +228,19 @@ impl TimeStepper for ImplicitStepper {
             state.q[i] += h * state.v[i] + 0.25 * h * h * state.a[i];
             state.v[i] += 0.5 * h * state.a[i];
         }
-        let known: Vec<f64> = (0..=last).map(|i| state.q[i] + beta * state.v[i]).collect();
-        let mut rhs = multiply(&chain.stiffness, &known[..last]);
+        let Work {
+            known,
+            rhs,
+            unit,
+            lhs,
+        } = &mut state.work;
+        for (known, (q, v)) in known.iter_mut().zip(state.q.iter().zip(&state.v)) {
+            *known = q + beta * v;
+        }
+        multiply(&state.chain.stiffness, known, rhs);
         rhs.iter_mut().for_each(|f| *f = -*f);
         rhs[0] += torque;
-        let pull = k * (self.stretch(&known, &seat) + shift);
+        let pull = k * (self.stretch(known, &seat) + shift);
         let at = 2 + seat.node;
         for (i, n) in seat.weights.iter().enumerate() {
             rhs[at + i] -= r * n * pull;
@@ -211,22 +249,22 @@ impl TimeStepper for ImplicitStepper {
         // Eliminate the table, then solve the chain for the forces and for a
         // unit load on the table.
         let table = p.table_mass + s * k;
-        let mut lhs = chain.mass.clone();
-        add_scaled(&mut lhs, s, &chain.stiffness);
+        copy(&state.chain.mass, lhs);
+        add_scaled(lhs, s, &state.chain.stiffness);
         let nut = s * k * r * r * (1.0 - s * k / table);
         let [n1, n2] = seat.weights;
         lhs.diagonal[at] += nut * n1 * n1;
         lhs.diagonal[at + 1] += nut * n2 * n2;
         lhs.off_diagonal[at] += nut * n1 * n2;
-        let mut unit = vec![0.0; last];
+        unit.fill(0.0);
         for (i, n) in seat.weights.iter().enumerate() {
             rhs[at + i] += s * k * r * n * pull / table;
             unit[at + i] = -s * k * r * n / table;
         }
-        solve_tridiagonal(lhs, [&mut rhs, &mut unit]);
+        solve_tridiagonal(lhs, [rhs, unit]);
         let turn = |a: &[f64]| r * (n1 * a[at] + n2 * a[at + 1]);
-        let free = (pull + s * k * turn(&rhs)) / table;
-        let per_load = (s * k * turn(&unit) - 1.0) / table;
+        let free = (pull + s * k * turn(rhs)) / table;
+        let per_load = (s * k * turn(unit) - 1.0) / table;
 
         // The load that the table's own motion asks for.
         let motion = |load: f64| {
@@ -287,18 +325,25 @@ fn add_scaled(to: &mut Tridiagonal, factor: f64, from: &Tridiagonal) {
     }
 }
 
-fn multiply(t: &Tridiagonal, v: &[f64]) -> Vec<f64> {
-    let mut product: Vec<f64> = t.diagonal.iter().zip(v).map(|(d, x)| d * x).collect();
+fn copy(from: &Tridiagonal, to: &mut Tridiagonal) {
+    to.diagonal.copy_from_slice(&from.diagonal);
+    to.off_diagonal.copy_from_slice(&from.off_diagonal);
+}
+
+/// Product with the first entries of `v`, as many as there are rows.
+fn multiply(t: &Tridiagonal, v: &[f64], product: &mut [f64]) {
+    for (p, (d, x)) in product.iter_mut().zip(t.diagonal.iter().zip(v)) {
+        *p = d * x;
+    }
     for (i, o) in t.off_diagonal.iter().enumerate() {
         product[i] += o * v[i + 1];
         product[i + 1] += o * v[i];
     }
-    product
 }
 
 /// Thomas' elimination for two right-hand sides at once; the matrix is
 /// positive definite, so no pivoting is needed.
-fn solve_tridiagonal(mut t: Tridiagonal, mut sides: [&mut Vec<f64>; 2]) {
+fn solve_tridiagonal(t: &mut Tridiagonal, mut sides: [&mut [f64]; 2]) {
     let n = t.diagonal.len();
     for i in 1..n {
         let factor = t.off_diagonal[i - 1] / t.diagonal[i - 1];

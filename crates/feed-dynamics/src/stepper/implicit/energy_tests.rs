@@ -1,4 +1,4 @@
-//! The implicit stepper's energy, which only its inner state shows.
+//! The implicit stepper's energy and mesh, which only its inner state shows.
 
 use super::{ImplicitState, ImplicitStepper};
 use crate::drive::tests_support::drive_with_damping;
@@ -62,5 +62,23 @@ fn damping_only_takes_energy() {
             assert!(pair[1] <= pair[0] + 1e-12 * energies[0], "{pair:?}");
         }
         assert!(energies[energies.len() - 1] < 0.9 * energies[0]);
+    }
+}
+
+#[test]
+fn followed_matrices_are_those_of_the_mesh_made_anew() {
+    let drive = drive_with_damping(1e-5);
+    let p = drive.parameters();
+    let stepper = ImplicitStepper::new(&drive, NutCoupling::MovingNode, 1e-4).unwrap();
+    let mut state = stepper.settled(0.5 * p.screw_length, &Settled::default());
+    // To the ends and across many places, by less and by more than an element.
+    for i in 0..200 {
+        let x = p.screw_length * (0.5 + 0.5 * (0.37 * f64::from(i)).sin());
+        stepper.move_seat(&mut state, x);
+        let anew = stepper.chain(x);
+        assert_eq!(state.nodes, stepper.nodes(x));
+        assert_eq!(state.chain.mass, anew.mass);
+        assert_eq!(state.chain.stiffness, anew.stiffness);
+        assert_eq!(state.chain.seat, anew.seat);
     }
 }
