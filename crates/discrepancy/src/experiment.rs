@@ -3,7 +3,8 @@
 //! Two explanations A and B fit the logs alike. On a further motion, B is
 //! fitted again, to the old logs and to what A predicts for the new one; what
 //! is left of A's prediction then, whitened by the sensors' noise, is the fall
-//! of D to be expected from running it. The motion with the largest is
+//! of D to be expected from running it. A is what was named, unless its rival can do
+//! all of that and more, which nothing refutes. The motion with the largest is
 //! proposed (experiments that discriminate between models: Hunter and Reiner,
 //! Technometrics 7 (1965) 307–323, doi:10.1080/00401706.1965.10490265).
 
@@ -17,6 +18,7 @@ use trajectories::{Chirp, Limits, Program, Sine, Step, Sweep, TrajectoryError};
 use crate::fit::{Columns, Fitter, known_deviation};
 use crate::hidden::Noise;
 use crate::known::with_known;
+use crate::library::rooms;
 use crate::model::{LogSet, State};
 use crate::noise::noise_on;
 use crate::search::Found;
@@ -161,30 +163,38 @@ struct Question<'a> {
 
 impl<'a> Question<'a> {
     fn new(machine: &'a Machine, found: &Found, index: usize) -> Result<Self, ReplayError> {
-        let first = found.fit.state.clone();
-        let named = first.effects[index].clone();
-        let rival = found.named[index].alike[0].fitted.clone();
-        let mut second = first.clone();
-        second.effects[index] = rival.clone();
+        let named = found.fit.clone();
+        let mut state = named.state.clone();
+        state.effects[index] = found.named[index].alike[0].fitted.clone();
         let fitter = Fitter {
             machine,
             set: &found.fit_logs,
         };
-        let start = fitter.at(second)?;
-        let known = fitter.known_columns(&start);
-        let fit = fitter.refine(start, &known, 6);
+        let effect = |state: &State| state.effects[index].clone();
+        let sizes = |state: &State| rooms(effect(state).effect).len();
+        let own = effect(&named.state);
+        let (pair, first, second, known);
+        if sizes(&state) > sizes(&named.state) {
+            pair = [own, effect(&state)];
+            known = fitter.known_columns(&named);
+            (first, second) = (state, named);
+        } else {
+            let start = fitter.at(state)?;
+            known = fitter.known_columns(&start);
+            (first, second) = (named.state, fitter.refine(start, &known, 6));
+            pair = [own, effect(&second.state)];
+        }
         let layout = &found.fit_logs.layout;
         let whitener = layout.whitener(&layout.spectral_matrices(&found.fit.rest));
         let columns: Columns = known
             .into_iter()
-            .chain(fitter.effect_columns(&fit, 0))
+            .chain(fitter.effect_columns(&second, 0))
             .collect();
-        let pair = [named, fit.state.effects[index].clone()];
         Ok(Self {
             machine,
             pair,
-            known: fit.state.shares.len(),
-            states: [first, fit.state],
+            known: second.state.shares.len(),
+            states: [first, second.state],
             old: columns
                 .iter()
                 .map(|c| layout.whiten(&whitener, c))

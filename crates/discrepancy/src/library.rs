@@ -20,9 +20,22 @@ pub struct Library {
 impl Library {
     pub(crate) fn new(fitter: &Fitter<'_>, fit: &Fit, known: Columns) -> Self {
         Self {
-            known,
-            candidates: candidates(fitter, fit),
             curves: Curves::new(fitter.machine, fitter.set, fit),
+            ..Self::of_effects(fitter, fit, known, |_| true)
+        }
+    }
+
+    /// Of some effects, and no curves.
+    pub(crate) fn of_effects(
+        fitter: &Fitter<'_>,
+        fit: &Fit,
+        known: Columns,
+        wanted: impl Fn(&Effect) -> bool,
+    ) -> Self {
+        Self {
+            known,
+            candidates: candidates(fitter, fit, wanted),
+            curves: Curves::default(),
         }
     }
 }
@@ -119,12 +132,12 @@ pub const FORCE: &str = "process-force";
 /// Parts of a motion's time in which a force may begin and end.
 const SLOTS: usize = 24;
 
-/// All candidates of the library, at the state of `fit`.
-fn candidates(fitter: &Fitter<'_>, fit: &Fit) -> Vec<Candidate> {
+/// Candidates of the library that are `wanted`, at the state of `fit`.
+fn candidates(fitter: &Fitter<'_>, fit: &Fit, wanted: impl Fn(&Effect) -> bool) -> Vec<Candidate> {
     let rigid = matches!(fitter.machine, Machine::Rigid(_));
     let wanted: Vec<(&'static Effect, Vec<f64>)> = EFFECTS
         .iter()
-        .filter(|e| e.on_rigid || !rigid)
+        .filter(|e| (e.on_rigid || !rigid) && wanted(e))
         .flat_map(|e| {
             shapes(fitter, e)
                 .into_iter()

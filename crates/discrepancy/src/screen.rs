@@ -25,8 +25,35 @@ pub struct Screened {
     pub candidate: Option<usize>,
     /// Response to these values, whitened, known parameters fitted out.
     pub fingerprint: DVector<f64>,
-    /// Orthonormal basis of what the effect can do, in the same space.
+    /// Orthonormal basis of what the effect can do, in the same space, the
+    /// strongest first.
     pub basis: DMatrix<f64>,
+    /// How strongly it does each of them.
+    pub strengths: DVector<f64>,
+    /// With which sizes, as multiples of the typical: a row each.
+    pub sizes: DMatrix<f64>,
+}
+
+impl Screened {
+    /// How many of its basis the logs would show by a fall of D of `least` if each
+    /// were as large as the strongest, were that worth `most`: dry friction of the
+    /// way back cannot be seen in a log without one.
+    pub fn shown(&self, most: f64, least: f64) -> usize {
+        let strongest = self.strengths.max();
+        let shows = |s: &&f64| most * (**s / strongest).powi(2) >= least;
+        self.strengths.iter().filter(shows).count()
+    }
+
+    /// Values with which it comes nearest to what something `does` by the first so
+    /// many of its basis alone.
+    pub fn nearest(&self, does: &DVector<f64>, shown: usize) -> Vec<f64> {
+        let nothing = DVector::zeros(self.strengths.len());
+        let sizes = (0..shown).fold(nothing, |sum, i| {
+            let along = self.basis.column(i).dot(does) / self.strengths[i];
+            sum + self.sizes.row(i).transpose() * along
+        });
+        values_at(self.effect, &self.values, sizes.as_slice())
+    }
 }
 
 /// A rest, and what the candidates can do about it, both without what the
@@ -133,12 +160,17 @@ impl Screening {
     fn with(&self, response: &Response, solution: &[f64], gain: f64) -> Screened {
         let rows = self.rest.len();
         let matrix = DMatrix::from_columns(&response.columns);
+        let fingerprint = &matrix * DVector::from_column_slice(solution);
+        let svd = matrix.svd(true, true);
+        let columns = response.columns.len();
         Screened {
             gain,
             values: values_at(response.effect, &response.values, solution),
             candidate: response.candidate,
-            fingerprint: &matrix * DVector::from_column_slice(solution),
-            basis: (matrix.svd(true, false).u).unwrap_or_else(|| DMatrix::zeros(rows, 1)),
+            fingerprint,
+            basis: svd.u.unwrap_or_else(|| DMatrix::zeros(rows, 1)),
+            strengths: svd.singular_values,
+            sizes: svd.v_t.unwrap_or_else(|| DMatrix::zeros(columns, columns)),
             effect: response.effect,
         }
     }

@@ -77,3 +77,26 @@ fn cases_are_laid_out_alike_from_the_same_seed_and_not_from_another() {
     assert!(count(Kind::Single) >= 300 && count(Kind::Clean) >= 100);
     assert_eq!([count(Kind::Pair), count(Kind::Triple)], [60, 20]);
 }
+
+#[test]
+fn without_a_way_back_frictions_are_one_class_until_the_proposed_motion_is_run() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
+    let axis = Axis::read(file.as_ref()).unwrap();
+    let bench = Bench::new(&axis, Exercise::OneWay).unwrap();
+    let frictions = ["coulomb-friction", "asymmetric-friction"];
+    let all = cases(&axis, &Sizes::FULL, SEED).unwrap();
+    let poor = all.into_iter().filter(|c| c.kind == Kind::Poor);
+    let chosen: Vec<Case> = poor
+        .filter(|c| frictions.contains(&c.hidden[0].name.as_str()))
+        .collect();
+    assert_eq!(chosen.len(), 2);
+    for case in &chosen {
+        let outcome = bench.try_case(case);
+        println!("{outcome:#?}");
+        // The simpler is named, whichever it is: nothing in the log says more.
+        let named = &outcome.named[0];
+        assert_eq!(named.name, frictions[0]);
+        assert!(named.alike.iter().any(|name| name == frictions[1]));
+        assert!(outcome.split.is_some_and(|split| split.succeeded()));
+    }
+}

@@ -133,7 +133,11 @@ impl Chain {
             let before = n.checked_sub(1).map(rod);
             let after = (n < elements).then(|| rod(n));
             let rods = || before.iter().chain(&after);
-            let coupled = if n == 0 { p.screw_coupling_stiffness } else { 0.0 };
+            let coupled = if n == 0 {
+                p.screw_coupling_stiffness
+            } else {
+                0.0
+            };
             self.mass.diagonal[2 + n] = rods().map(|r| r.mass / 3.0).sum();
             self.stiffness.diagonal[2 + n] = rods().map(|r| r.stiffness).sum::<f64>() + coupled;
         }

@@ -57,7 +57,7 @@ pub struct Curve {
 }
 
 /// The loop's answers to all curves on a set of logs.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Curves {
     shapes: Vec<(Shape, Columns)>,
 }

@@ -120,15 +120,25 @@ pub struct NamedEffect {
     pub alike: Vec<String>,
 }
 
-/// What a proposed experiment did for a class.
+/// What a proposed experiment did for a class: the search once more, with its log
+/// beside the old one and, in the library, the two rivals and what else is hidden.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Split {
-    /// The pair that it was to separate.
+    /// The pair that it was to separate, the hidden one first.
     pub pair: [String; 2],
     /// Foreseen fall of D between the two.
     pub foreseen: f64,
-    /// Found, with the truth replayed on it: D of the wrong less D of the right.
-    pub found: f64,
+    /// What that search named, in the order of evidence.
+    pub named: Vec<NamedEffect>,
+}
+
+impl Split {
+    /// Whether the hidden one was named first, and no longer with the other.
+    pub fn succeeded(&self) -> bool {
+        let [hidden, other] = &self.pair;
+        let first = self.named.first();
+        first.is_some_and(|n| n.name == *hidden && !n.alike.contains(other))
+    }
 }
 
 /// What came out of a case.

@@ -148,7 +148,7 @@ impl Score {
                     .collect(),
             )[0],
             splits: Rate::count(outcomes.iter().filter_map(|o| o.split.as_ref()), |s| {
-                s.found > 25.0
+                s.succeeded()
             }),
             failed: outcomes
                 .iter()

@@ -1,5 +1,7 @@
 //! One case: logs made, search run blind, both kept.
 
+use std::sync::Arc;
+
 use axis_sim::ReplayError;
 use axis_sim::effects::ActiveEffect;
 
@@ -8,10 +10,11 @@ use super::{Bench, Case, Estimate, Foreseen, NamedEffect, Outcome, Split};
 use crate::experiment::Proposal;
 use crate::fit::{Fitter, free_parameters};
 use crate::hidden::{Hidden, Noise, exercise};
-use crate::model::LogSet;
+use crate::library::Library;
+use crate::model::{LogSet, State};
 use crate::outcome::judged;
-use crate::search::search_with;
-use crate::{Discovery, Found, Settings};
+use crate::search::{Named, search_with};
+use crate::{Found, Settings};
 
 impl Bench {
     /// Runs a case of this bench's motion.
@@ -53,74 +56,69 @@ impl Bench {
 
     fn run(&self, case: &Case, outcome: &mut Outcome) -> Result<(), ReplayError> {
         let hidden = self.hidden(case);
-        let [fit, check] = [self.logs(&hidden, false)?, self.logs(&hidden, true)?];
+        let logs = [self.logs(&hidden, false)?, self.logs(&hidden, true)?];
+        let [fit, check] = &logs;
         let settings = Settings {
             rejected: case.rejected.clone(),
             ..Settings::default()
         };
         let library = Some(self.library.clone());
-        let found = search_with(&self.machine, &fit, &check, &settings, library, |_| ())?;
-        let told = judged(&self.machine, &fit, &check, &found)?;
+        let found = search_with(&self.machine, fit, check, &settings, library, |_| ())?;
+        let told = judged(&self.machine, fit, check, &found)?;
         if let Some(proposal) = &told.proposal {
-            outcome.split = self.split(&hidden, &fit, &found, proposal)?;
+            outcome.split = self.split(&hidden, &logs, proposal)?;
         }
         let told = told.discovery;
         outcome.verdict = Some(told.verdict);
         outcome.reduction = told.gap.check.reduction;
         outcome.check.clone_from(&told.gap.check.channels);
         outcome.unknown = told.unknown.clone();
-        outcome.named = named(&found, &told);
+        outcome.named = named(&found);
         outcome.estimates = estimates(&found, &hidden);
         Ok(())
     }
 
-    /// Runs the proposed motion on the hidden machine, and fits both
-    /// explanations to it and to the log that they were alike on. `None` where
+    /// Runs the proposed motion on the hidden machine and searches again, its log
+    /// beside the old one, for the two rivals and what else is hidden. `None` where
     /// neither is hidden.
     fn split(
         &self,
         hidden: &Hidden,
-        fit: &LogSet,
-        found: &Found,
+        logs: &[LogSet; 2],
         proposal: &Proposal,
     ) -> Result<Option<Split>, ReplayError> {
-        let is_hidden = |a: &ActiveEffect| {
-            hidden
-                .effects
-                .iter()
-                .any(|h| h.effect.name == a.effect.name)
-        };
-        let [first, second] = &proposal.pair;
-        let (right, wrong) = match (is_hidden(first), is_hidden(second)) {
-            (true, false) => (first, second),
-            (false, true) => (second, first),
+        let is_hidden = |name: &&str| hidden.effects.iter().any(|h| h.effect.name == *name);
+        let [first, second] = proposal.pair.each_ref().map(|a| a.effect.name);
+        let pair = match (is_hidden(&first), is_hidden(&second)) {
+            (true, false) => [first, second],
+            (false, true) => [second, first],
             _ => return Ok(None),
         };
         let mut again = hidden.clone();
         again.seed = again.seed.wrapping_mul(2) + 7;
         let log = again.log(&self.axis, &proposal.program, 1)?;
+        let [fit, check] = logs;
         let old = fit
             .logs
             .iter()
             .map(|l| (l.name.clone(), l.log.clone(), l.period));
         let new = ("proposed".to_owned(), log, self.axis.period);
-        let mut both = LogSet::new(old.chain([new]).collect(), &self.machine)?;
-        both.correct_defects(&self.machine, &found.fit.state)?;
+        let both = LogSet::new(old.chain([new]).collect(), &self.machine)?;
         let fitter = Fitter {
             machine: &self.machine,
             set: &both,
         };
-        let deviance = |effect: &ActiveEffect| -> Result<f64, ReplayError> {
-            let mut state = found.fit.state.clone();
-            state.effects[proposal.index] = effect.clone();
-            let start = fitter.at(state)?;
-            let known = fitter.known_columns(&start);
-            Ok(fitter.refine(start, &known, 8).deviance)
-        };
+        let start = fitter.at(State::initial(&self.machine))?;
+        let known = fitter.known_columns(&start);
+        let library = Library::of_effects(&fitter, &start, known, |e| {
+            pair.contains(&e.name) || is_hidden(&e.name)
+        });
+        let (settings, library) = (Settings::default(), Some(Arc::new(library)));
+        let found = search_with(&self.machine, &both, check, &settings, library, |_| ())?;
         Ok(Some(Split {
-            pair: [first, second].map(|a| a.effect.name.to_owned()),
+            pair: pair.map(str::to_owned),
             foreseen: proposal.separation,
-            found: deviance(wrong)? - deviance(right)?,
+            named: named(&found),
         }))
     }
 
@@ -148,25 +146,17 @@ impl Bench {
     }
 }
 
-fn named(found: &Found, told: &Discovery) -> Vec<NamedEffect> {
-    let alike = |name: &str| {
-        let told = told.effects.iter().find(|e| e.name == name);
-        told.map(|e| e.indistinguishable_from.clone())
-            .unwrap_or_default()
+/// In the order of evidence.
+fn named(found: &Found) -> Vec<NamedEffect> {
+    let mut named: Vec<&Named> = found.named.iter().collect();
+    named.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    let entry = |n: &Named| NamedEffect {
+        name: n.name.to_owned(),
+        alike: (n.alike.iter())
+            .map(|a| a.fitted.effect.name.to_owned())
+            .collect(),
     };
-    let mut named: Vec<(f64, NamedEffect)> = found
-        .named
-        .iter()
-        .map(|n| {
-            let entry = NamedEffect {
-                name: n.name.to_owned(),
-                alike: alike(n.name),
-            };
-            (n.evidence, entry)
-        })
-        .collect();
-    named.sort_by(|a, b| b.0.total_cmp(&a.0));
-    named.into_iter().map(|(_, n)| n).collect()
+    named.into_iter().map(entry).collect()
 }
 
 /// Parameters of hidden effects that were named, beside their truth.

@@ -370,30 +370,39 @@ pub(super) struct Intervals {
 }
 
 /// Effects that do nearly the same as the best, or explain as much: the logs
-/// cannot tell.
+/// cannot tell. What can do more is not among them, unless these logs would not
+/// show the more.
 fn alike(own: &Screened, best: &Refined, refined: &[Refined], all: &[Screened]) -> Vec<Alike> {
     let pair = best.parts.iter().map(|p| p.effect.name);
     let pair: Vec<&str> = pair.collect();
     let others = all
         .iter()
         .filter(|other| !pair.contains(&other.effect.name))
-        .filter(|other| other.basis.ncols() <= own.basis.ncols());
+        .map(|other| (other, other.shown(best.gain, EQUAL)))
+        .filter(|(_, shown)| (1..=own.basis.ncols()).contains(shown));
     let mut all: Vec<Alike> = others
-        .filter_map(|other| {
+        .filter_map(|(other, shown)| {
             let same = |r: &&Refined| match r.parts.as_slice() {
                 [one] => one.effect.name == other.effect.name,
                 _ => false,
             };
             let fitted = refined.iter().find(same);
             let equal = fitted.is_some_and(|r| (r.gain - best.gain).abs() < EQUAL);
-            let sine = sine(&own.fingerprint, &other.basis);
-            let as_screened = || ActiveEffect {
+            let basis = other.basis.columns(0, shown).into_owned();
+            let sine = sine(&own.fingerprint, &basis);
+            let all_shown = shown == other.basis.ncols();
+            let nearest = || ActiveEffect {
                 effect: other.effect,
-                values: other.values.clone(),
+                // A fit drives what the logs do not show wherever noise points.
+                values: match all_shown {
+                    true => other.values.clone(),
+                    false => other.nearest(&own.fingerprint, shown),
+                },
             };
+            let fitted = fitted.filter(|_| all_shown);
             let last = fitted.and_then(|r| r.fit.state.effects.last().cloned());
             (sine < ONE_CLASS || equal).then(|| Alike {
-                fitted: last.unwrap_or_else(as_screened),
+                fitted: last.unwrap_or_else(nearest),
                 sine,
             })
         })
