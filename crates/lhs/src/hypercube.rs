@@ -171,38 +171,27 @@ impl LatinHypercube {
         Design::from_valid(dims, values)
     }
 
-    /// Fills whole rows, from row `first` on, a block of one column at a time.
+    /// Fills whole rows, from row `first` on, with the widest vectors that the
+    /// processor has: nothing is fused, so the bits are the same with any.
     fn fill(&self, first: usize, out: &mut [f64]) {
-        let dims = self.dims();
-        let mut cells = [0; BLOCK];
-        for (block, rows) in out.chunks_mut(BLOCK * dims).enumerate() {
-            let first = (first + block * BLOCK) as u64;
-            let cells = &mut cells[..rows.len() / dims];
-            for (dim, column) in self.columns.iter().enumerate() {
-                column.permutation.apply_block(first, cells);
-                let values = rows[dim..].iter_mut().step_by(dims);
-                self.place_block(column.jitter, first, values.zip(cells.iter().copied()));
-            }
-        }
+        pulp::Arch::new().dispatch(Fill {
+            hypercube: self,
+            first,
+            out,
+        });
     }
 
-    fn place_block<'a>(
-        &self,
-        jitter: u64,
-        first: u64,
-        values: impl Iterator<Item = (&'a mut f64, u64)>,
-    ) {
-        match self.placement {
-            Placement::Centred => {
-                for (value, cell) in values {
-                    *value = self.strata.middle(cell);
-                }
-            }
-            Placement::Random => {
-                for (row, (value, cell)) in (first..).zip(values) {
-                    *value = self.strata.point(cell, counter_hash(jitter, row));
-                }
-            }
+    /// Points of neighbouring rows of a column, from row `first` on, in these cells.
+    #[inline(always)]
+    fn place_block(&self, jitter: u64, first: u64, cells: &[u64], points: &mut [f64]) {
+        let strata = self.strata;
+        let bits = |i: usize| counter_hash(jitter, first + i as u64);
+        // Which of the four is told apart outside of the loop, or none used vectors.
+        match (self.placement, strata.is_fast()) {
+            (Placement::Centred, true) => each(points, cells, |_, c| strata.fast_middle(c)),
+            (Placement::Centred, false) => each(points, cells, |_, c| strata.middle(c)),
+            (Placement::Random, true) => each(points, cells, |i, c| strata.fast_point(c, bits(i))),
+            (Placement::Random, false) => each(points, cells, |i, c| strata.point(c, bits(i))),
         }
     }
 
@@ -223,10 +212,46 @@ impl LatinHypercube {
     }
 }
 
+#[inline(always)]
+fn each(points: &mut [f64], cells: &[u64], place: impl Fn(usize, u64) -> f64) {
+    for (i, (point, &cell)) in points.iter_mut().zip(cells).enumerate() {
+        *point = place(i, cell);
+    }
+}
+
+/// Whole rows to be filled, a block of one column at a time.
+struct Fill<'a> {
+    hypercube: &'a LatinHypercube,
+    first: usize,
+    out: &'a mut [f64],
+}
+
+impl pulp::WithSimd for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let dims = self.hypercube.dims();
+        let (mut cells, mut points) = ([0; BLOCK], [0.0; BLOCK]);
+        for (block, rows) in self.out.chunks_mut(BLOCK * dims).enumerate() {
+            let first = (self.first + block * BLOCK) as u64;
+            let count = rows.len() / dims;
+            let (cells, points) = (&mut cells[..count], &mut points[..count]);
+            for (dim, column) in self.hypercube.columns.iter().enumerate() {
+                column.permutation.apply_block(first, cells);
+                (self.hypercube).place_block(column.jitter, first, cells, points);
+                for (value, point) in rows[dim..].iter_mut().step_by(dims).zip(&*points) {
+                    *value = *point;
+                }
+            }
+        }
+    }
+}
+
 /// Output number `counter` of the SplitMix64 generator started at `key`
 /// (Steele, Lea and Flood 2014, doi 10.1145/2714064.2660195), which can be
 /// computed alone.
-#[inline]
+#[inline(always)]
 fn counter_hash(key: u64, counter: u64) -> u64 {
     let mut z = key.wrapping_add(counter.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

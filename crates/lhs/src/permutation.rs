@@ -85,6 +85,7 @@ impl Permutation {
 
     /// π(first), π(first + 1), … into `out`, which has at most [`BLOCK`]
     /// places and does not reach past π(n − 1).
+    #[inline(always)]
     pub(crate) fn apply_block(&self, first: u64, out: &mut [u64]) {
         match self {
             Self::Table(table) => {
@@ -129,7 +130,7 @@ impl Round {
     /// multiplicative hashing (Dietzfelbinger et al. 1997, doi
     /// 10.1006/jagm.1997.0873). A fixed shift, because one by a variable
     /// costs as much as the rest together.
-    #[inline]
+    #[inline(always)]
     fn hash(self, x: u64) -> u64 {
         (x ^ self.mask).wrapping_mul(self.multiplier) >> 32
     }
@@ -159,11 +160,15 @@ impl Feistel {
 
     /// As [`apply`](Self::apply) without a branch that depends on a value:
     /// those still outside [0, n) are gathered and walk on.
+    #[inline(always)]
     fn apply_block(&self, first: u64, out: &mut [u64]) {
+        // Nothing but passes, which vector units do side by side.
+        for (x, i) in out.iter_mut().zip(first..) {
+            *x = self.pass(i);
+        }
         let mut outside = [0_u16; BLOCK];
         let mut count = 0;
-        for (at, x) in out.iter_mut().enumerate() {
-            *x = self.pass(first + at as u64);
+        for (at, x) in out.iter().enumerate() {
             outside[count] = at as u16;
             count += usize::from(*x >= self.n);
         }
@@ -182,7 +187,7 @@ impl Feistel {
 
     /// One pass over the k bits: each half in turn is masked by a hash of the
     /// other, which can be undone whatever the hash.
-    #[inline]
+    #[inline(always)]
     fn pass(&self, x: u64) -> u64 {
         let mut low = x & self.low_mask;
         let mut high = x >> self.low_bits;

@@ -43,26 +43,42 @@ impl Strata {
         self.n as usize
     }
 
+    /// Whether all points of a partition are of the fast kind.
+    #[inline(always)]
+    pub(crate) fn is_fast(&self) -> bool {
+        self.n <= FAST_LIMIT
+    }
+
     /// The point of stratum `c` at the random place told by 64 random `bits`.
     #[inline]
     pub(crate) fn point(&self, c: u64, bits: u64) -> f64 {
-        if self.n <= FAST_LIMIT {
-            // Through i64, for which every processor has the conversion.
-            let u = self.edge + self.span * ((bits >> 11) as i64 as f64 * GRID);
-            (c as i64 as f64 + u) / self.n as f64
-        } else {
-            self.grid_point(c, bits)
+        match self.is_fast() {
+            true => self.fast_point(c, bits),
+            false => self.grid_point(c, bits),
         }
     }
 
     /// The middle of stratum `c`.
     #[inline]
     pub(crate) fn middle(&self, c: u64) -> f64 {
-        if self.n <= FAST_LIMIT {
-            (c as f64 + 0.5) / self.n as f64
-        } else {
-            self.grid_point(c, 1 << 63)
+        match self.is_fast() {
+            true => self.fast_middle(c),
+            false => self.grid_point(c, 1 << 63),
         }
+    }
+
+    /// As [`point`](Self::point), where all are fast.
+    #[inline(always)]
+    pub(crate) fn fast_point(&self, c: u64, bits: u64) -> f64 {
+        // Through i64, for which every processor has the conversion.
+        let u = self.edge + self.span * ((bits >> 11) as i64 as f64 * GRID);
+        (c as i64 as f64 + u) / self.n as f64
+    }
+
+    /// As [`middle`](Self::middle), where all are fast.
+    #[inline(always)]
+    pub(crate) fn fast_middle(&self, c: u64) -> f64 {
+        (c as i64 as f64 + 0.5) / self.n as f64
     }
 
     #[cold]
