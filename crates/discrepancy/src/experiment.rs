@@ -32,8 +32,6 @@ pub struct Proposal {
     pub program: Program,
     /// Effects that it separates: the one named, and its rival.
     pub pair: [ActiveEffect; 2],
-    /// Which of the named effects that is.
-    pub index: usize,
     /// Fall of D to be expected between the two.
     pub separation: f64,
 }
@@ -70,7 +68,6 @@ pub fn propose(
                 what,
                 program,
                 pair: question.pair.clone(),
-                index,
                 separation,
             })
         })

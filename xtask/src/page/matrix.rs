@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use axis_sim::Axis;
-use discrepancy::matrix::{Outcome, Rate, Score};
+use discrepancy::matrix::{NamedEffect, Outcome, Rate, Score};
 
 /// The figures, one a line, as a table in Markdown.
 pub fn figures(score: &Score) -> String {
@@ -152,15 +152,24 @@ pub fn page(axis: &Axis, seed: u64, all: usize, outcomes: &[Outcome], score: &Sc
     text
 }
 
+/// One after another, each with those that were said to be alike.
+fn names(named: &[NamedEffect]) -> String {
+    let name = |n: &NamedEffect| match n.alike.as_slice() {
+        [] => n.name.clone(),
+        alike => format!("{} ({})", n.name, alike.join(", ")),
+    };
+    join(named.iter().map(name).collect())
+}
+
+fn join(all: Vec<String>) -> String {
+    match all.is_empty() {
+        true => "–".to_owned(),
+        false => all.join("; "),
+    }
+}
+
 fn row(outcome: &Outcome) -> String {
     let case = &outcome.case;
-    let join = |all: Vec<String>| {
-        if all.is_empty() {
-            "–".to_owned()
-        } else {
-            all.join("; ")
-        }
-    };
     let hidden = case.hidden.iter().map(|h| {
         let values: Vec<String> = h.values.iter().map(|v| format!("{v:.3e}")).collect();
         format!("{} {}", h.name, values.join(" "))
@@ -172,13 +181,10 @@ fn row(outcome: &Outcome) -> String {
         Some(format!("imitated by {}", imitation.by.join(" + ")))
     });
     let classes = classes.chain(imitated);
-    let named = outcome.named.iter().map(|n| {
-        if n.alike.is_empty() {
-            n.name.clone()
-        } else {
-            format!("{} ({})", n.name, n.alike.join(", "))
-        }
-    });
+    let mut named = names(&outcome.named);
+    if let Some(split) = &outcome.split {
+        let _ = write!(named, "; proposed motion run: {}", names(&split.named));
+    }
     let verdict = outcome.verdict.map_or("none", discrepancy::Verdict::name);
     format!(
         "| {} | {} | {:.2} | {} | {} | {} | {verdict} | {} | {:.1} % |",
@@ -188,7 +194,7 @@ fn row(outcome: &Outcome) -> String {
         join(hidden.collect()),
         join(gains.collect()),
         join(classes.collect()),
-        join(named.collect()),
+        named,
         100.0 * outcome.reduction
     )
 }
