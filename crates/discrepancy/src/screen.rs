@@ -35,20 +35,30 @@ pub struct Screened {
 }
 
 impl Screened {
-    /// How many of its basis the logs would show by a fall of D of `least` if each
-    /// were as large as the strongest, were that worth `most`: dry friction of the
-    /// way back cannot be seen in a log without one.
-    pub fn shown(&self, most: f64, least: f64) -> usize {
-        let strongest = self.strengths.max();
-        let shows = |s: &&f64| most * (**s / strongest).powi(2) >= least;
-        self.strengths.iter().filter(shows).count()
+    /// Whether the logs would show all that this can do beyond what `own` does: by a
+    /// fall of D of `least`, were it as large, in typical sizes, as what was found and
+    /// brought `most`. Dry friction of the way back cannot be seen in a log without one.
+    pub fn more_is_shown(&self, own: &Self, most: f64, least: f64) -> bool {
+        // Products of its columns, less what lies along what was found.
+        let Some(along) = own.fingerprint.try_normalize(0.0) else {
+            return true;
+        };
+        let along = (self.basis.tr_mul(&along)).component_mul(&self.strengths);
+        let squares = DMatrix::from_diagonal(&self.strengths.map(|s| s * s));
+        let mut beyond = (squares - &along * along.transpose()).symmetric_eigenvalues();
+        beyond.as_mut_slice().sort_by(|a, b| b.total_cmp(a));
+        let more = self.basis.ncols().saturating_sub(own.basis.ncols());
+        let shows = |power: &f64| power * most >= least * own.strengths.max().powi(2);
+        beyond.iter().take(more).all(shows)
     }
 
-    /// Values with which it comes nearest to what something `does` by the first so
-    /// many of its basis alone.
-    pub fn nearest(&self, does: &DVector<f64>, shown: usize) -> Vec<f64> {
+    /// Values with which it comes nearest to what something else `does`, with nothing of
+    /// what it does less than a tenth as strongly as the most.
+    pub fn nearest(&self, does: &DVector<f64>) -> Vec<f64> {
         let nothing = DVector::zeros(self.strengths.len());
-        let sizes = (0..shown).fold(nothing, |sum, i| {
+        let strong = |i: &usize| self.strengths[*i] > 0.1 * self.strengths.max();
+        let parts = (0..self.strengths.len()).filter(strong);
+        let sizes = parts.fold(nothing, |sum, i| {
             let along = self.basis.column(i).dot(does) / self.strengths[i];
             sum + self.sizes.row(i).transpose() * along
         });

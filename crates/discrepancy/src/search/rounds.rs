@@ -378,28 +378,29 @@ fn alike(own: &Screened, best: &Refined, refined: &[Refined], all: &[Screened]) 
     let others = all
         .iter()
         .filter(|other| !pair.contains(&other.effect.name))
-        .map(|other| (other, other.shown(best.gain, EQUAL)))
-        .filter(|(_, shown)| (1..=own.basis.ncols()).contains(shown));
+        .filter(|other| {
+            let more = other.basis.ncols() > own.basis.ncols();
+            !(more && other.more_is_shown(own, best.gain, EQUAL))
+        });
     let mut all: Vec<Alike> = others
-        .filter_map(|(other, shown)| {
+        .filter_map(|other| {
             let same = |r: &&Refined| match r.parts.as_slice() {
                 [one] => one.effect.name == other.effect.name,
                 _ => false,
             };
             let fitted = refined.iter().find(same);
             let equal = fitted.is_some_and(|r| (r.gain - best.gain).abs() < EQUAL);
-            let basis = other.basis.columns(0, shown).into_owned();
-            let sine = sine(&own.fingerprint, &basis);
-            let all_shown = shown == other.basis.ncols();
+            let sine = sine(&own.fingerprint, &other.basis);
+            let more = other.basis.ncols() > own.basis.ncols();
             let nearest = || ActiveEffect {
                 effect: other.effect,
                 // A fit drives what the logs do not show wherever noise points.
-                values: match all_shown {
-                    true => other.values.clone(),
-                    false => other.nearest(&own.fingerprint, shown),
+                values: match more {
+                    true => other.nearest(&own.fingerprint),
+                    false => other.values.clone(),
                 },
             };
-            let fitted = fitted.filter(|_| all_shown);
+            let fitted = fitted.filter(|_| !more);
             let last = fitted.and_then(|r| r.fit.state.effects.last().cloned());
             (sine < ONE_CLASS || equal).then(|| Alike {
                 fitted: last.unwrap_or_else(nearest),
