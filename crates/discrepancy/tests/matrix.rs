@@ -1,4 +1,5 @@
-//! A part of the matrix: one motion, some cases of every kind, searched blind.
+//! A part of the matrix: one motion, some cases of every kind, searched blind, and one
+//! case on poor motion.
 
 use axis_sim::Axis;
 use discrepancy::Verdict;
