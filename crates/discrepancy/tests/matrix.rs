@@ -62,7 +62,7 @@ fn some_hidden_effects_of_every_kind_are_found_or_honestly_not() {
         score.right_first.of >= 5 && score.left_out.of >= 1,
         "{score:#?}"
     );
-    assert!(score.error[0] < 0.02, "{score:#?}");
+    assert!(score.error.unwrap()[0] < 0.02, "{score:#?}");
     let verdict = |v| outcomes.iter().any(|o| o.verdict == Some(v));
     assert!(verdict(Verdict::NothingMissing) && verdict(Verdict::Explained));
 }

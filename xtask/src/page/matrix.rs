@@ -7,23 +7,21 @@ use discrepancy::matrix::{NamedEffect, Outcome, Rate, Score};
 
 /// The figures, one a line, as a table in Markdown.
 pub fn figures(score: &Score) -> String {
-    let mut text = String::from("| figure | value | target |\n|---|---|---|\n");
+    let mut text = String::from("| figure | value | 95 % interval | target |\n|---|---|---|---|\n");
     let mut rate = |name: &str, rate: &Rate, target: &str| {
-        let value = if rate.of == 0 {
-            "none asked".to_owned()
-        } else {
-            format!(
-                "{} of {} ({:.1} %)",
-                rate.hits,
-                rate.of,
-                100.0 * rate.share()
-            )
+        let (value, interval) = match rate.of {
+            0 => ("none asked".to_owned(), String::new()),
+            _ => {
+                let [low, high] = rate.interval().map(|v| 100.0 * v);
+                let value = format!("{} ({:.1} %)", out_of(rate), 100.0 * rate.share());
+                (value, format!("{low:.1} to {high:.1} %"))
+            }
         };
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "| {name} | {value} | {target} |");
+        let _ = writeln!(text, "| {name} | {value} | {interval} | {target} |");
     };
     rate(
-        "clean machines given an effect",
+        "clean machines of which anything is said",
         &score.false_alarms,
         "≤ 1 %",
     );
@@ -47,6 +45,11 @@ pub fn figures(score: &Score) -> String {
         "seen: named first, or in the class of the first",
         &score.in_class,
         "≥ 99 %",
+    );
+    rate(
+        "seen, and named first: the verdict is explained",
+        &score.explained,
+        "",
     );
     rate(
         "effects of the library: any name that is neither hidden nor alike",
@@ -95,8 +98,7 @@ pub fn figures(score: &Score) -> String {
         &score.splits,
         "≥ 90 %",
     );
-    let percent = |v: f64| format!("{:.2} %", 100.0 * v);
-    for (name, [median, most], target) in [
+    for (name, errors, target) in [
         (
             "error of sizes, known parameters told: median, 90 %",
             score.error,
@@ -108,44 +110,74 @@ pub fn figures(score: &Score) -> String {
             "",
         ),
     ] {
-        let _ = writeln!(
-            text,
-            "| {name} | {}, {} | {target} |",
-            percent(median),
-            percent(most)
-        );
+        let _ = writeln!(text, "| {name} | {} | | {target} |", both(errors));
     }
+    let reduction = score.reduction.map_or("none".to_owned(), percent);
     let _ = writeln!(
         text,
-        "| gap gone on check motion, single effects: median | {} | ≥ 95 % |",
-        percent(score.reduction)
+        "| gap gone on check motion, single effects named first: median | {reduction} | | ≥ 95 % |"
     );
     text
+}
+
+fn out_of(rate: &Rate) -> String {
+    format!("{} of {}", rate.hits, rate.of)
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.2} %", 100.0 * share)
+}
+
+fn both(errors: Option<[f64; 2]>) -> String {
+    errors.map_or("none".to_owned(), |e| e.map(percent).join(", "))
 }
 
 /// The whole page.
 pub fn page(axis: &Axis, seed: u64, all: usize, outcomes: &[Outcome], score: &Score) -> String {
     let mut text = format!(
         "# Hidden effects, searched blind\n\nMachine: {}. Seed {seed}. {} of {all} cases run.\n\
-        `cargo xtask discover-matrix` makes this page; docs/theory/discrepancy.md says how cases\n\
-        are made and counted. Everything here is simulated.\n\n{}",
+        `cargo xtask discover-matrix --seed {seed}` makes this page; docs/theory/discrepancy.md says how cases\n\
+        are made and counted. Intervals are Wilson's. Everything here is simulated.\n\n{}\n\
+        ## Each effect, hidden alone\n\nErrors are those of sizes where it was named first, known parameters told.\n\n\
+        | effect | can be seen | named first | or in the class | error: median, largest | 95 % intervals |\n\
+        |---|---|---|---|---|---|\n",
         axis.name,
         outcomes.len(),
         figures(score)
     );
-    if !score.failed.is_empty() {
-        let _ = writeln!(text, "\nWithout a verdict:\n");
-        for failed in &score.failed {
-            let _ = writeln!(text, "- {failed}");
+    for of in &score.effects {
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {} |",
+            of.effect,
+            out_of(&of.detectable),
+            out_of(&of.first),
+            out_of(&of.in_class),
+            both(of.error),
+            out_of(&of.coverage)
+        );
+    }
+    let mut sorted: Vec<&Outcome> = outcomes.iter().collect();
+    sorted.sort_by(|a, b| a.case.id.cmp(&b.case.id));
+    let _ = writeln!(text, "\n## What counts against it\n");
+    let mut none = true;
+    for outcome in &sorted {
+        let mut faults = outcome.faults();
+        faults.extend(outcome.failed.as_deref());
+        none &= faults.is_empty();
+        if !faults.is_empty() {
+            let _ = writeln!(text, "- {}: {}", outcome.case.id, faults.join("; "));
         }
+    }
+    if none {
+        let _ = writeln!(text, "Nothing.");
     }
     let _ = writeln!(
         text,
-        "\n## Cases\n\nGain: expected fall of D, known beforehand. Class: effects foreseen to look alike.\n\n\
+        "\n## Cases\n\nGain: expected fall of D, known beforehand; in brackets where the effect cannot be seen.\n\
+        Class: effects foreseen to look alike.\n\n\
         | case | motion | noise | hidden | gain | class | verdict | named (alike) | gap gone |\n|---|---|---|---|---|---|---|---|---|"
     );
-    let mut sorted: Vec<&Outcome> = outcomes.iter().collect();
-    sorted.sort_by(|a, b| a.case.id.cmp(&b.case.id));
     for outcome in sorted {
         let _ = writeln!(text, "{}", row(outcome));
     }
@@ -174,7 +206,10 @@ fn row(outcome: &Outcome) -> String {
         let values: Vec<String> = h.values.iter().map(|v| format!("{v:.3e}")).collect();
         format!("{} {}", h.name, values.join(" "))
     });
-    let gains = outcome.foreseen.iter().map(|f| format!("{:.0}", f.gain));
+    let gains = outcome.foreseen.iter().map(|f| match f.detectable {
+        true => format!("{:.0}", f.gain),
+        false => format!("({:.0})", f.gain),
+    });
     let classes = outcome.foreseen.iter().flat_map(|f| f.class.clone());
     let imitated = outcome.foreseen.iter().filter_map(|f| {
         let imitation = f.imitation.as_ref().filter(|i| i.complete)?;

@@ -10,11 +10,12 @@
 mod design;
 mod foresee;
 mod score;
+mod told;
 mod trial;
 
 pub use design::{Sizes, cases};
 pub use foresee::{Bench, BenchError, Foreseen, Imitation};
-pub use score::{Rate, Score};
+pub use score::{OfEffect, Rate, Score};
 
 use serde::{Deserialize, Serialize};
 

@@ -1,8 +1,9 @@
 //! Counting.
 
+use axis_sim::effects::EFFECTS;
 use serde::{Deserialize, Serialize};
 
-use super::{Estimate, Foreseen, Kind, Outcome};
+use super::{Estimate, Kind, Outcome};
 use crate::Verdict;
 
 /// So many of so many.
@@ -28,6 +29,56 @@ impl Rate {
     pub fn share(&self) -> f64 {
         self.hits as f64 / self.of.max(1) as f64
     }
+
+    /// 95 % interval of the share (Wilson, J. Am. Stat. Assoc. 22 (1927) 209,
+    /// doi:10.1080/01621459.1927.10502953); 0 to 1 of nothing.
+    pub fn interval(&self) -> [f64; 2] {
+        if self.of == 0 {
+            return [0.0, 1.0];
+        }
+        let (n, share, z2) = (self.of as f64, self.share(), 1.96_f64.powi(2));
+        let centre = share + z2 / (2.0 * n);
+        let half = (z2 * (share * (1.0 - share) / n + z2 / (4.0 * n * n))).sqrt();
+        let at = |v: f64| (v / (1.0 + z2 / n)).clamp(0.0, 1.0);
+        [at(centre - half), at(centre + half)]
+    }
+}
+
+/// How one effect of the library did where it alone was hidden.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct OfEffect {
+    /// Its name.
+    pub effect: String,
+    /// That it can be seen, of all.
+    pub detectable: Rate,
+    /// Named first, of those.
+    pub first: Rate,
+    /// In the class of the first, of those.
+    pub in_class: Rate,
+    /// Known parameters told: relative error of sizes where it was named first, median
+    /// and largest; `None` where it never was.
+    pub error: Option<[f64; 2]>,
+    /// Its 95 % intervals that hold the truth.
+    pub coverage: Rate,
+}
+
+impl OfEffect {
+    fn new(effect: &str, all: &[&Outcome]) -> Self {
+        let hides = |o: &&&Outcome| o.case.hidden.iter().any(|h| h.name == effect);
+        let own: Vec<&Outcome> = all.iter().filter(hides).copied().collect();
+        let seen = || own.iter().filter(|o| o.is_detectable());
+        let right = own.iter().filter(|o| o.first_is_right());
+        let estimates: Vec<&Estimate> = right.flat_map(|o| &o.estimates).collect();
+        let errors = size_errors(&estimates, |e| e.given_known);
+        Self {
+            effect: effect.to_owned(),
+            detectable: Rate::count(&own, |o| o.is_detectable()),
+            first: Rate::count(seen(), |o| o.first_is_right()),
+            in_class: Rate::count(seen(), |o| o.is_in_class()),
+            error: quantiles(errors, [0.5, 1.0]),
+            coverage: covered(&estimates),
+        }
+    }
 }
 
 /// The figures of a matrix.
@@ -45,6 +96,8 @@ pub struct Score {
     pub seen_first: Rate,
     /// Detectable single effects named first, or in the class of the first.
     pub in_class: Rate,
+    /// Of the detectable single effects named first: that the verdict was explained.
+    pub explained: Rate,
     /// Machines with library effects in which any name is given that is neither
     /// hidden nor alike to what is, by the search's word or foreseen.
     pub confident_wrong: Rate,
@@ -66,16 +119,19 @@ pub struct Score {
     pub poor: Rate,
     /// Hidden effects in a class: that an experiment was proposed for.
     pub proposed: Rate,
-    /// Known parameters told: relative errors of sizes, median and 90 %.
-    pub error: [f64; 2],
+    /// Known parameters told: relative errors of sizes, median and 90 %; `None` where
+    /// none was named, here and below.
+    pub error: Option<[f64; 2]>,
     /// The same of the estimates as they are.
-    pub raw_error: [f64; 2],
+    pub raw_error: Option<[f64; 2]>,
     /// 95 % intervals that hold the truth.
     pub coverage: Rate,
-    /// Median gap reduction on check motion over explained single effects.
-    pub reduction: f64,
+    /// Median gap reduction on check motion over detectable single effects named first.
+    pub reduction: Option<f64>,
     /// Proposed experiments, run, that split their class.
     pub splits: Rate,
+    /// Each effect by itself, as the only one hidden, in the library's order.
+    pub effects: Vec<OfEffect>,
     /// Cases without a verdict.
     pub failed: Vec<String>,
 }
@@ -83,73 +139,63 @@ pub struct Score {
 impl Score {
     /// Of these outcomes.
     pub fn new(outcomes: &[Outcome]) -> Self {
-        let of = |kind: Kind| {
-            outcomes
-                .iter()
-                .filter(move |o| o.case.kind == kind && o.failed.is_none())
+        let ran: Vec<&Outcome> = outcomes.iter().filter(|o| o.failed.is_none()).collect();
+        let of = |kind: Kind| ran.iter().copied().filter(move |o| o.case.kind == kind);
+        let seen_of = |kind| of(kind).filter(|o| o.is_detectable());
+        let several = |kind| {
+            let told = seen_of(kind).filter(|o| o.is_separable());
+            Rate::count(told, |o| o.all_are_named())
         };
         let singles: Vec<&Outcome> = of(Kind::Single).collect();
-        let seen: Vec<&Outcome> = singles.iter().copied().filter(|o| detectable(o)).collect();
-        let told = |o: &&&Outcome| o.foreseen.iter().all(|f| f.class.is_empty());
-        let both = |kind| {
-            Rate::count(of(kind).filter(|o| detectable(o) && separable(o)), |o| {
-                all_named(o)
-            })
-        };
-        let estimates: Vec<&Estimate> = outcomes
+        let seen: Vec<&Outcome> = seen_of(Kind::Single).collect();
+        let right: Vec<&Outcome> = seen
             .iter()
-            .filter(|o| o.case.kind == Kind::Single && first_is_right(o))
-            .flat_map(|o| &o.estimates)
+            .copied()
+            .filter(|o| o.first_is_right())
             .collect();
-        let errors = |value: fn(&Estimate) -> f64| {
-            let sizes = estimates.iter().filter(|e| e.size);
-            quantiles(
-                sizes
-                    .map(|e| ((value(e) - e.truth) / e.truth).abs())
-                    .collect(),
-            )
+        let named = singles.iter().filter(|o| o.first_is_right());
+        let estimates: Vec<&Estimate> = named.flat_map(|o| &o.estimates).collect();
+        let errors = |value| quantiles(size_errors(&estimates, value), [0.5, 0.9]);
+        let reductions = quantiles(right.iter().map(|o| o.reduction).collect(), [0.5]);
+        let hides = |name: &str| {
+            let mut hidden = singles.iter().flat_map(|o| &o.case.hidden);
+            hidden.any(|h| h.name == name)
         };
-        let library = outcomes.iter().filter(|o| {
-            let absent = matches!(o.case.kind, Kind::Clean | Kind::Outside | Kind::LeftOut);
-            o.failed.is_none() && !absent
-        });
+        let effects = EFFECTS.iter().filter(|e| hides(e.name));
+        let library = ran.iter().filter(|o| o.is_of_library());
         Self {
-            false_alarms: Rate::count(of(Kind::Clean), |o| {
-                o.verdict != Some(Verdict::NothingMissing)
+            false_alarms: Rate::count(of(Kind::Clean), |o| o.is_false_alarm()),
+            detectable: Rate::count(&singles, |o| o.is_detectable()),
+            separable: Rate::count(&seen, |o| o.is_separable()),
+            right_first: Rate::count(seen.iter().filter(|o| o.is_separable()), |o| {
+                o.first_is_right()
             }),
-            detectable: Rate::count(&singles, |o| detectable(o)),
-            separable: Rate::count(&seen, told),
-            right_first: Rate::count(seen.iter().filter(told), |o| first_is_right(o)),
-            seen_first: Rate::count(&seen, |o| first_is_right(o)),
-            in_class: Rate::count(&seen, |o| in_class(o)),
-            confident_wrong: Rate::count(library, |o| wrongly_named(o)),
-            silence: Rate::count(singles.iter().filter(|o| !detectable(o)), |o| {
-                o.named.is_empty() || in_class(o)
+            seen_first: Rate::count(&seen, |o| o.first_is_right()),
+            in_class: Rate::count(&seen, |o| o.is_in_class()),
+            explained: Rate::count(&right, |o| o.verdict == Some(Verdict::Explained)),
+            confident_wrong: Rate::count(library, |o| o.has_wrong_name()),
+            silence: Rate::count(singles.iter().filter(|o| !o.is_detectable()), |o| {
+                o.named.is_empty() || o.is_in_class()
             }),
-            both_of_pair: both(Kind::Pair),
-            all_of_triple: both(Kind::Triple),
-            outside: Rate::count(
-                of(Kind::Outside).filter(|o| detectable(o) && !imitated(o)),
-                |o| honest(o),
-            ),
-            imitated: Rate::count(of(Kind::Outside).filter(|o| detectable(o)), |o| imitated(o)),
-            left_out: Rate::count(of(Kind::LeftOut).filter(|o| detectable(o)), |o| honest(o)),
-            poor: Rate::count(of(Kind::Poor).filter(|o| detectable(o)), |o| in_class(o)),
-            proposed: Rate::count(outcomes.iter().filter(|o| hidden_in_class(o)), |o| {
+            both_of_pair: several(Kind::Pair),
+            all_of_triple: several(Kind::Triple),
+            outside: Rate::count(seen_of(Kind::Outside).filter(|o| !o.is_imitated()), |o| {
+                o.is_honest()
+            }),
+            imitated: Rate::count(seen_of(Kind::Outside), |o| o.is_imitated()),
+            left_out: Rate::count(seen_of(Kind::LeftOut), |o| o.is_honest()),
+            poor: Rate::count(seen_of(Kind::Poor), |o| o.is_in_class()),
+            proposed: Rate::count(ran.iter().filter(|o| o.leaves_a_class()), |o| {
                 o.split.is_some()
             }),
             error: errors(|e| e.given_known),
             raw_error: errors(|e| e.value),
-            coverage: Rate::count(&estimates, |e| e.ci95[0] <= e.truth && e.truth <= e.ci95[1]),
-            reduction: quantiles(
-                seen.iter()
-                    .filter(|o| first_is_right(o))
-                    .map(|o| o.reduction)
-                    .collect(),
-            )[0],
-            splits: Rate::count(outcomes.iter().filter_map(|o| o.split.as_ref()), |s| {
+            coverage: covered(&estimates),
+            reduction: reductions.map(|[median]| median),
+            splits: Rate::count(ran.iter().filter_map(|o| o.split.as_ref()), |s| {
                 s.succeeded()
             }),
+            effects: effects.map(|e| OfEffect::new(e.name, &singles)).collect(),
             failed: outcomes
                 .iter()
                 .filter_map(|o| Some(format!("{}: {}", o.case.id, o.failed.as_ref()?)))
@@ -158,78 +204,20 @@ impl Score {
     }
 }
 
-fn detectable(outcome: &Outcome) -> bool {
-    outcome.foreseen.iter().all(|f| f.detectable)
+/// Relative errors of sizes.
+fn size_errors(estimates: &[&Estimate], value: fn(&Estimate) -> f64) -> Vec<f64> {
+    let sizes = estimates.iter().filter(|e| e.size);
+    let error = |e: &&Estimate| ((value(e) - e.truth) / e.truth).abs();
+    sizes.map(error).collect()
 }
 
-fn separable(outcome: &Outcome) -> bool {
-    outcome.foreseen.iter().all(|f| f.class.is_empty())
+fn covered(estimates: &[&Estimate]) -> Rate {
+    Rate::count(estimates, |e| e.ci95[0] <= e.truth && e.truth <= e.ci95[1])
 }
 
-fn hidden(outcome: &Outcome, name: &str) -> bool {
-    outcome.case.hidden.iter().any(|h| h.name == name)
-}
-
-fn first_is_right(outcome: &Outcome) -> bool {
-    let first = outcome.named.first();
-    first.is_some_and(|n| hidden(outcome, &n.name))
-}
-
-fn in_class(outcome: &Outcome) -> bool {
-    outcome.named.first().is_some_and(|n| {
-        hidden(outcome, &n.name) || n.alike.iter().any(|name| hidden(outcome, name))
-    })
-}
-
-/// Whether what is hidden was named with others that do the same, or as one.
-fn hidden_in_class(outcome: &Outcome) -> bool {
-    outcome.named.iter().any(|n| {
-        let is_hidden = |name: &String| hidden(outcome, name);
-        is_hidden(&n.name) && !n.alike.is_empty() || n.alike.iter().any(is_hidden)
-    })
-}
-
-fn wrongly_named(outcome: &Outcome) -> bool {
-    outcome.named.iter().any(|n| {
-        let alike = n.alike.iter().any(|name| hidden(outcome, name));
-        let foretold = outcome.foreseen.iter().any(|f| f.class.contains(&n.name));
-        !hidden(outcome, &n.name) && !alike && !foretold
-    })
-}
-
-fn all_named(outcome: &Outcome) -> bool {
-    let mut hidden = outcome.case.hidden.iter();
-    hidden.all(|h| outcome.named.iter().any(|n| n.name == h.name))
-}
-
-fn imitated(outcome: &Outcome) -> bool {
-    let complete = |f: &Foreseen| f.imitation.as_ref().is_some_and(|i| i.complete);
-    outcome.foreseen.iter().any(complete)
-}
-
-/// Not called explained; or by an effect that was foreseen to look the same.
-fn honest(outcome: &Outcome) -> bool {
-    let alike = || {
-        let first = outcome.named.first();
-        let foretold = |f: &Foreseen, name: &String| {
-            let imitation = f.imitation.as_ref().filter(|i| i.complete);
-            f.class.contains(name) || imitation.is_some_and(|i| i.by.contains(name))
-        };
-        first.is_some_and(|n| outcome.foreseen.iter().any(|f| foretold(f, &n.name)))
-    };
-    match outcome.verdict {
-        Some(Verdict::Unknown | Verdict::PartlyExplained) => true,
-        Some(Verdict::Explained) => alike(),
-        _ => false,
-    }
-}
-
-/// Median and 90 % quantile.
-fn quantiles(mut values: Vec<f64>) -> [f64; 2] {
+/// `None` of no values.
+fn quantiles<const N: usize>(mut values: Vec<f64>, shares: [f64; N]) -> Option<[f64; N]> {
     values.sort_by(f64::total_cmp);
-    let at = |q: f64| {
-        let last = values.len().saturating_sub(1) as f64;
-        values.get((q * last).round() as usize).copied()
-    };
-    [at(0.5).unwrap_or(0.0), at(0.9).unwrap_or(0.0)]
+    let last = values.len().checked_sub(1)?;
+    Some(shares.map(|share| values[(share * last as f64).round() as usize]))
 }
