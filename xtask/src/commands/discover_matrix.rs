@@ -97,10 +97,7 @@ fn run(axis: &Axis, cases: &[Case], out: &Path) -> Result<Vec<Outcome>> {
     let kept = |case: &Case| -> Option<Outcome> {
         let text = std::fs::read(file(case)).ok()?;
         let outcome: Outcome = serde_json::from_slice(&text).ok()?;
-        // What is read may be off by its last bit from what was written.
-        let written = serde_json::to_vec(case).ok()?;
-        let case: Case = serde_json::from_slice(&written).ok()?;
-        outcome.case.is_same(&case).then_some(outcome)
+        outcome.case.is_same(case).then_some(outcome)
     };
     let missing: Vec<&Case> = cases.iter().filter(|case| kept(case).is_none()).collect();
     let mut exercises: Vec<Exercise> = missing.iter().map(|case| case.exercise).collect();
@@ -138,4 +135,21 @@ fn run(axis: &Axis, cases: &[Case], out: &Path) -> Result<Vec<Outcome>> {
         })?;
     progress.finish_and_clear();
     Ok(cases.iter().filter_map(kept).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Or what is kept would be run again: without `float_roundtrip` of serde_json a
+    /// fifth of the cases came back with another last bit.
+    #[test]
+    fn every_case_comes_back_from_its_file() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/axes/liu2025.toml");
+        let axis = Axis::read(file.as_ref()).unwrap();
+        for case in cases(&axis, &Sizes::FULL, 6).unwrap() {
+            let text = serde_json::to_vec_pretty(&case).unwrap();
+            assert_eq!(serde_json::from_slice::<Case>(&text).unwrap(), case);
+        }
+    }
 }

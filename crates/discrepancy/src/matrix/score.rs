@@ -221,3 +221,19 @@ fn quantiles<const N: usize>(mut values: Vec<f64>, shares: [f64; N]) -> Option<[
     let last = values.len().checked_sub(1)?;
     Some(shares.map(|share| values[(share * last as f64).round() as usize]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Rate;
+
+    #[test]
+    fn the_interval_of_none_and_of_all_is_wilsons() {
+        // With no hits its upper end is z²/(n + z²); with hits only it is mirrored.
+        let most = 3.8416 / (120.0 + 3.8416);
+        let [low, high] = Rate { hits: 0, of: 120 }.interval();
+        assert!(low == 0.0 && (high - most).abs() < 1e-12, "{low} {high}");
+        let mirrored = Rate { hits: 120, of: 120 }.interval();
+        assert!((mirrored[0] - (1.0 - most)).abs() < 1e-12, "{mirrored:?}");
+        assert_eq!(Rate { hits: 0, of: 0 }.interval(), [0.0, 1.0]);
+    }
+}
