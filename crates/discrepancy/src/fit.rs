@@ -178,11 +178,10 @@ impl Fitter<'_> {
             let mut best = fit.clone();
             let mut length = 1.0;
             for _ in 0..4 {
-                let state = moved(&fit.state, &step, length);
-                if let Ok(trial) = self.at(state)
-                    && trial.deviance < best.deviance
+                if let Ok(trial) = self.at(moved(&fit.state, &step, length))
+                    && let Some(better) = self.below(&fit, trial, &columns)
                 {
-                    best = trial;
+                    best = better;
                     break;
                 }
                 length *= 0.35;
@@ -193,6 +192,20 @@ impl Fitter<'_> {
             }
         }
         fit
+    }
+
+    /// What a trial step reaches, where that has a lower D than `fit`: as it is, or after
+    /// a correction by what the step left, with the same derivatives and weights. Where
+    /// two parameters do nearly the same, as a torque constant does through the known one,
+    /// D is lowest along a narrow curve, and a step along its tangent leaves it
+    /// (second-order correction: Nocedal and Wright, Numerical Optimization, 2nd ed., §15.6).
+    fn below(&self, fit: &Fit, trial: Fit, columns: &Columns) -> Option<Fit> {
+        if trial.deviance < fit.deviance {
+            return Some(trial);
+        }
+        let correction = self.solve_beside(&fit.rest, &trial, columns).step;
+        let corrected = self.at(moved(&trial.state, &correction, 1.0)).ok()?;
+        (corrected.deviance < fit.deviance).then_some(corrected)
     }
 
     /// Begins with the sizes of the last effects, `count` of them, or with
@@ -218,8 +231,13 @@ impl Fitter<'_> {
     /// Step and covariance of all parameters from the linearised problem: the
     /// rest's own spectral matrices as weights, the tolerances as priors.
     pub fn solve(&self, fit: &Fit, columns: &Columns) -> Solved {
+        self.solve_beside(&fit.rest, fit, columns)
+    }
+
+    /// The same with the spectral matrices of another rest as weights.
+    fn solve_beside(&self, weighing: &Amplitudes, fit: &Fit, columns: &Columns) -> Solved {
         let layout = &self.set.layout;
-        let whitener = layout.whitener(&layout.spectral_matrices(&fit.rest));
+        let whitener = layout.whitener(&layout.spectral_matrices(weighing));
         let rest = layout.whiten(&whitener, &fit.rest);
         let known = fit.state.shares.len();
         let n = columns.len();

@@ -32,6 +32,7 @@ mod experiment;
 mod fit;
 pub mod hidden;
 pub mod intake;
+mod interval;
 mod known;
 mod lack;
 mod library;
@@ -48,6 +49,7 @@ pub mod summary;
 
 pub use experiment::Proposal;
 pub use fit::{Fit, Fitter, free_parameters, known_deviation};
+pub use interval::Spread;
 pub use known::{Known, known_parameters, tolerance, with_known};
 pub use lack::{Curve, Unknown};
 pub use library::Library;

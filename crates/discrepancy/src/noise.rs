@@ -7,7 +7,8 @@ use rayon::prelude::*;
 
 use crate::fit::{Columns, Fit, Fitter, free_parameters, known_deviation};
 use crate::hidden::Noise;
-use crate::known::with_known;
+use crate::interval::Spread;
+use crate::known::{tolerance, with_known};
 use crate::model::{LogSet, Prepared, State};
 use crate::projector::Projector;
 use crate::spectrum::{Amplitudes, Layout};
@@ -274,25 +275,22 @@ pub(crate) fn drawn(fitter: &Fitter<'_>, fit: &Fit) -> Result<Vec<Amplitudes>, R
     (0..DRAWN).into_par_iter().map(run).collect()
 }
 
-/// Standard deviations of parameters, of which the `columns` are the derivatives:
-/// the fit's answer to runs with noise, and the prior of the known ones.
+/// How far parameters, of which the `columns` are the derivatives, may be from the
+/// truth: by the fit's answer to runs with noise, and by the known ones' tolerance.
 ///
 /// Below 25 Hz the spectrum of noise is steep, sensors shake dry friction loose,
 /// and noise at a standstill is another than in motion: with one spectral matrix a
 /// band, the inverse of the normal matrix gave deviations of a steady load, a gap and
 /// dry friction that were 2 to 3.6 times too small. So what the estimate makes of
 /// noise is seen in runs, mean and all (the sandwich of P. J. Huber, Proc. 5th
-/// Berkeley Symp. 1 (1967) 221–233). `None` without runs.
-pub(crate) fn deviations(
+/// Berkeley Symp. 1 (1967) 221–233); without runs it is as the weights have it.
+pub(crate) fn spreads(
     fitter: &Fitter<'_>,
     fit: &Fit,
     columns: &Columns,
     covariance: &DMatrix<f64>,
     runs: &[Amplitudes],
-) -> Option<Vec<f64>> {
-    if runs.is_empty() {
-        return None;
-    }
+) -> Vec<Spread> {
     let layout = &fitter.set.layout;
     let whitener = layout.whitener(&layout.spectral_matrices(&fit.rest));
     let jacobian: Vec<DVector<f64>> = columns
@@ -305,15 +303,24 @@ pub(crate) fn deviations(
         covariance * along
     };
     let answers: Vec<DVector<f64>> = runs.par_iter().map(answer).collect();
-    let weight = known_deviation(fitter.machine).powi(-2);
-    let known = fit.state.shares.len();
+    let deviation = known_deviation(fitter.machine);
+    let most = tolerance(fitter.machine);
     let one = |i: usize| {
-        let squares = answers.iter().map(|a| a[i] * a[i]);
-        let of_noise = OF_DRAWN * (squares.sum::<f64>() / answers.len() as f64).sqrt();
-        let of_known = (0..known).map(|j| weight * covariance[(i, j)].powi(2));
-        of_noise.hypot(of_known.sum::<f64>().sqrt())
+        // An estimate leans on the prior's mean by so much of a known parameter.
+        let leans = (0..fit.state.shares.len()).map(|j| covariance[(i, j)] / deviation.powi(2));
+        let leans: Vec<f64> = leans.collect();
+        let squares = answers.iter().map(|a| a[i] * a[i]).sum::<f64>();
+        let of_known: f64 = leans.iter().map(|l| (l * deviation).powi(2)).sum();
+        let of_noise = match answers.len() {
+            0 => (covariance[(i, i)] - of_known).max(0.0).sqrt(),
+            n => OF_DRAWN * (squares / n as f64).sqrt(),
+        };
+        Spread {
+            of_noise,
+            of_known: leans.iter().map(|l| l * most).collect(),
+        }
     };
-    Some((0..columns.len()).map(one).collect())
+    (0..columns.len()).map(one).collect()
 }
 
 /// Size of an effect of a fit in deviations, of what the fit of its size alone

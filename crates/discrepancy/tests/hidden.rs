@@ -5,7 +5,9 @@
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, Machine};
 use discrepancy::hidden::{Exercise, Hidden, Noise, exercise};
-use discrepancy::{Discovery, LogSet, Settings, Verdict, discovery, search};
+use discrepancy::{
+    Discovery, Fitter, LogSet, Settings, State, Verdict, discovery, known_parameters, search,
+};
 
 fn axis() -> Axis {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
@@ -152,6 +154,46 @@ fn what_was_named_too_widely_is_named_again_beside_the_others() {
         "{found:?}"
     );
     assert_eq!(found.verdict, Verdict::Explained, "{found:?}");
+}
+
+/// What the motor makes of current and what the known torque constant makes of it do
+/// nearly the same: the least D lies along a curve, and a step along its tangent leaves it.
+#[test]
+fn a_fit_follows_a_narrow_curve() {
+    let machine = Machine::BallScrew(Box::new(axis()));
+    let known = known_parameters(&machine);
+    let at = known
+        .iter()
+        .position(|k| k.name == "torque-constant")
+        .unwrap();
+    let effect = Effect::named("torque-constant").unwrap();
+    let with = |change: f64, share: f64| {
+        let mut state = State::initial(&machine);
+        state.shares[at] = share;
+        let values = vec![change];
+        state.effects.push(ActiveEffect { effect, values });
+        state
+    };
+    let hidden = hide_all(vec![("torque-constant", vec![-0.03])], 16);
+    let hidden = Hidden {
+        shares: vec![0.0; known.len()],
+        noise: Noise::GOOD.scaled(0.3),
+        ..hidden
+    };
+    let set = logs(&hidden, Exercise::ThereAndBack, false);
+    let fitter = Fitter {
+        machine: &machine,
+        set: &set,
+    };
+    let truth = fitter.at(with(-0.03, 0.0)).unwrap();
+    // Nearly the same torque of a current, with the known one at its tolerance.
+    let start = with(0.97 / 0.99 - 1.0 + 1e-5, -0.01);
+    let start = fitter.at(start).unwrap();
+    let derivatives = fitter.known_columns(&start);
+    let far = start.deviance - truth.deviance;
+    let end = fitter.refine(start, &derivatives, 8);
+    let left = end.deviance - truth.deviance;
+    assert!(far > 50.0 && left < 1.0, "{far} {left} {:?}", end.state);
 }
 
 #[test]

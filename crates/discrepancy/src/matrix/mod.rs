@@ -134,11 +134,13 @@ pub struct Split {
 }
 
 impl Split {
-    /// Whether the hidden one was named first, and no longer with the other.
+    /// Whether the hidden one was named, and the other no longer: by itself or as one that
+    /// does the same. Where more is hidden, something else may have come first.
     pub fn succeeded(&self) -> bool {
         let [hidden, other] = &self.pair;
-        let first = self.named.first();
-        first.is_some_and(|n| n.name == *hidden && !n.alike.contains(other))
+        let mut named = self.named.iter();
+        let is_told = |n: &NamedEffect| n.name != *other && !n.alike.contains(other);
+        named.clone().any(|n| n.name == *hidden) && named.all(is_told)
     }
 }
 
@@ -165,4 +167,36 @@ pub struct Outcome {
     pub unknown: Option<Unknown>,
     /// The experiment that was proposed, run.
     pub split: Option<Split>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NamedEffect, Split};
+
+    #[test]
+    fn a_class_is_split_when_only_the_hidden_one_is_left_of_it() {
+        let named = |all: &[(&str, &[&str])]| Split {
+            pair: ["constant-load", "process-force"].map(str::to_owned),
+            foreseen: 40.0,
+            named: (all.iter())
+                .map(|(name, alike)| NamedEffect {
+                    name: (*name).to_owned(),
+                    alike: alike.iter().map(|a| (*a).to_owned()).collect(),
+                })
+                .collect(),
+        };
+        let [load, force] = ["constant-load", "process-force"];
+        // Whatever else is hidden may be larger.
+        let beside = named(&[("inverter-dead-time", &[]), (load, &[])]);
+        assert!(beside.succeeded() && named(&[(load, &[])]).succeeded());
+        for not in [
+            named(&[(load, &[force])]),
+            named(&[(load, &[]), (force, &[])]),
+            named(&[(force, &[load])]),
+            named(&[(load, &[]), ("coulomb-friction", &[force])]),
+            named(&[]),
+        ] {
+            assert!(!not.succeeded(), "{not:?}");
+        }
+    }
 }

@@ -174,7 +174,7 @@ fn estimates(found: &Found, hidden: &Hidden) -> Vec<Estimate> {
                 continue;
             };
             let value = active.values[p];
-            let deviation = found.deviation(known + at, value);
+            let half = found.half_width(known + at, value);
             let given = value + conditional(found, &hidden.shares, known + at);
             let shift = same_phase(active, truth, p);
             all.push(Estimate {
@@ -183,10 +183,7 @@ fn estimates(found: &Found, hidden: &Hidden) -> Vec<Estimate> {
                 size: spec.size,
                 truth: truth.values[p],
                 value: shift(value),
-                ci95: [
-                    shift(value) - 1.96 * deviation,
-                    shift(value) + 1.96 * deviation,
-                ],
+                ci95: [shift(value) - half, shift(value) + half],
                 given_known: shift(given),
             });
         }

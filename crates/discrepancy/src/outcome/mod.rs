@@ -235,12 +235,12 @@ fn effect_found(
             .iter()
             .position(|&at| at == (index, p))
             .map(|i| known + i);
-        let deviation = column.map_or(0.0, |i| found.deviation(i, value));
+        let half = column.map_or(0.0, |i| found.half_width(i, value));
         ParameterFound {
             name: spec.name.to_owned(),
             value,
             unit: spec.unit.to_owned(),
-            ci95: [value - 1.96 * deviation, value + 1.96 * deviation],
+            ci95: [value - half, value + half],
             when_named: named.when_named.get(p).copied().unwrap_or(value),
             at_screw: at_screw(machine, value, spec.unit),
         }

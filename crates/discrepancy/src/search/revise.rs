@@ -28,7 +28,7 @@ impl Search<'_> {
     /// others in the place of those in whose place they explain as much.
     pub(super) fn revise(&mut self) {
         let mut index = 0;
-        while self.named.len() > 1 && index < self.named.len() {
+        while index < self.named.len() {
             let Some(without) = self.without(index) else {
                 index += 1;
                 continue;

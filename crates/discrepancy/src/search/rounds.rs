@@ -9,11 +9,12 @@ use rayon::prelude::*;
 
 use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, WORSE, enough, needed};
 use super::promise::{Promises, WORTH};
-use super::{Alike, Found, Named, ONE_CLASS, Replaced, RunnerUp, Settings};
+use super::{Alike, Found, Named, ONE_CLASS, Replaced, RunnerUp, Settings, calibrated};
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
+use crate::interval::Spread;
 use crate::library::{FORCE, Library};
 use crate::model::LogSet;
-use crate::noise::{deviations, drawn, noise_on, sensor_noise};
+use crate::noise::{drawn, noise_on, sensor_noise, spreads};
 use crate::projector::sine;
 use crate::screen::Screened;
 use crate::spectrum::Amplitudes;
@@ -277,7 +278,7 @@ impl Search<'_> {
     /// Fits all parameters again, and the defects of the machine as it now is.
     fn settle(&mut self) {
         let known = self.fitter().known_columns(&self.fit);
-        let fit = self.fitter().refine(self.fit.clone(), &known, 8);
+        let (fit, known) = calibrated(&self.fitter(), self.fit.clone(), known);
         let mut corrected = self.fit_logs.clone();
         if corrected.correct_defects(self.machine, &fit.state).is_ok() {
             let with = Fitter {
@@ -322,14 +323,14 @@ impl Search<'_> {
         }
     }
 
-    /// Derivatives, covariance and deviations of all parameters at the end.
+    /// Derivatives, covariance and spread of all parameters at the end.
     pub(super) fn intervals(&self) -> Result<Intervals, ReplayError> {
         let columns = self.own_columns();
         let fitter = self.fitter();
         let covariance = fitter.solve(&self.fit, &columns).covariance;
         let noise = drawn(&fitter, &self.fit)?;
         Ok(Intervals {
-            deviations: deviations(&fitter, &self.fit, &columns, &covariance, &noise),
+            spreads: spreads(&fitter, &self.fit, &columns, &covariance, &noise),
             columns,
             covariance,
             noise,
@@ -340,12 +341,11 @@ impl Search<'_> {
         let Intervals {
             columns,
             covariance,
-            deviations,
+            spreads,
             noise,
         } = intervals;
-        let as_weighed = || covariance.diagonal().map(|v| v.max(0.0).sqrt());
         Found {
-            deviations: deviations.unwrap_or_else(|| as_weighed().as_slice().to_vec()),
+            spreads,
             base,
             columns,
             covariance,
@@ -366,7 +366,7 @@ pub(super) struct Intervals {
     pub(super) columns: Columns,
     covariance: DMatrix<f64>,
     pub(super) noise: Vec<Amplitudes>,
-    deviations: Option<Vec<f64>>,
+    spreads: Vec<Spread>,
 }
 
 /// Effects that do nearly the same as the best, or explain as much: the logs
