@@ -2,6 +2,11 @@
 
 use super::{Effect, EffectChannel, shape, size};
 
+/// Largest velocity that was found for it, m/s (Armstrong-Hélouvry, Dupont and
+/// Canudas de Wit 1994, doi:10.1016/0005-1098(94)90209-7). A larger one beside dry
+/// friction of the other sign would be a drag with the square of speed.
+const FASTEST: f64 = 0.1;
+
 pub(super) const EFFECT: Effect = Effect {
     name: "stribeck-friction",
     summary: "dry friction that falls with speed",
@@ -9,7 +14,7 @@ pub(super) const EFFECT: Effect = Effect {
     depends_on: "low speed",
     parameters: &[
         size("force", "N", 60.0, 5e3),
-        shape("velocity", "m/s", 0.02, [1e-3, 1.0]),
+        shape("velocity", "m/s", 0.02, [1e-3, FASTEST]),
     ],
     on_rigid: true,
     install,
