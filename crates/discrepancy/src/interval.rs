@@ -3,7 +3,7 @@
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// What an estimate owes to noise, and to known parameters that are known to a
-/// tolerance only.
+/// tolerance only. All in the unit of the parameter.
 #[derive(Clone, Debug)]
 pub struct Spread {
     /// Standard deviation of what noise makes of it.
@@ -19,7 +19,8 @@ const CELLS: usize = 4000;
 const REACH: f64 = 6.0;
 
 impl Spread {
-    /// Half width of the 95 % interval; `deviation` is added to that of noise.
+    /// Half width of the 95 % interval; `deviation` is added to that of noise, as of
+    /// one independent of it.
     ///
     /// Noise is Gaussian, each known parameter uniform over its tolerance. Where one
     /// of these is most of it, 95 % lie within 0.95 of what it does at its tolerance,
