@@ -2,9 +2,10 @@
 
 use super::{Effect, EffectChannel, shape, size};
 
-/// Largest velocity that was found for it, m/s (Armstrong-Hélouvry, Dupont and
-/// Canudas de Wit 1994, doi:10.1016/0005-1098(94)90209-7). A larger one beside dry
-/// friction of the other sign would be a drag with the square of speed.
+/// Upper end of the range that the survey of Armstrong-Hélouvry, Dupont and Canudas
+/// de Wit (1994, doi:10.1016/0005-1098(94)90209-7) gives for the velocity, m/s. With a
+/// larger one, beside dry friction of the other sign, it would be a drag with the square
+/// of speed.
 const FASTEST: f64 = 0.1;
 
 pub(super) const EFFECT: Effect = Effect {
