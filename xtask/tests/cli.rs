@@ -1,47 +1,13 @@
 //! The commands as a user runs them: the whole pipeline in its small version,
 //! its figures, what it refuses, and what it leaves alone.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+mod common;
+
+use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-fn xtask(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_xtask"))
-        .args(arguments)
-        .current_dir(root())
-        .output()
-        .unwrap()
-}
-
-fn text(output: &Output) -> String {
-    let both = [&output.stdout[..], &output.stderr[..]].concat();
-    String::from_utf8(both).unwrap()
-}
-
-fn succeed(arguments: &[&str]) -> String {
-    let output = xtask(arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", text(&output));
-    text(&output)
-}
-
-/// The message of a command that must fail without a panic. Its box drawing
-/// and line breaks are taken out.
-fn refuse(arguments: &[&str]) -> String {
-    let output = xtask(arguments);
-    assert!(!output.status.success(), "{arguments:?} was accepted");
-    let message = text(&output);
-    assert!(!message.contains("panicked"), "{message}");
-    let plain: String = message
-        .chars()
-        .filter(|c| !"│╭╰─▶×├".contains(*c))
-        .collect();
-    plain.split_whitespace().collect::<Vec<_>>().join(" ")
-}
+use common::{refuse, root, succeed, text};
 
 #[test]
 fn every_crate_depends_strictly_downward() {
@@ -61,6 +27,9 @@ fn help_names_every_command() {
         "study",
         "report",
         "simulate",
+        "discover",
+        "discover-matrix",
+        "bench",
         "layers",
     ] {
         assert!(help.contains(command), "{command}");

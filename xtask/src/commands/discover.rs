@@ -1,5 +1,6 @@
 //! `discover`: what a model lacks, from logs or from a table of errors.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use axis_log::{Log, read_log};
@@ -11,6 +12,7 @@ use discrepancy::summary::{MeasuredError, SummaryFound, rank, tried};
 use discrepancy::{Discovery, LogSet, Settings, Verdict, discovery, search};
 use indicatif::ProgressBar;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use toml_edit::{DocumentMut, Item, Value};
 
 use crate::context::read_text;
 use crate::output::{say, write_whole};
@@ -33,8 +35,8 @@ pub struct Options {
     /// experiment_mean_um (or max_um, mean_um), one row a trajectory of the axis file
     #[arg(long, value_name = "TABLE", conflicts_with_all = ["fit", "check", "accept", "reject"])]
     summary: Option<PathBuf>,
-    /// Folder for discovery.json, report.html and axis.toml [default:
-    /// runs/, the name of the axis, /discover]
+    /// Folder for discovery.json, report.html and axis.toml, or for summary.json and
+    /// summary.html [default: runs/, the name of the axis, /discover]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Take this effect as there, and go on from it (may be repeated)
@@ -91,6 +93,7 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
             "\"{both}\" is both accepted and rejected; give it once"
         ));
     }
+    let text = read_text(&options.axis)?;
     let mut notes = Vec::new();
     let fit = read_all(&options.fit, machine, &mut notes)?;
     let check = read_all(&options.check, machine, &mut notes)?;
@@ -119,21 +122,73 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
     progress.finish_and_clear();
 
     let added: String = found.fit.state.effects.iter().map(entry).collect();
-    let text = format!("{}{added}", read_text(&options.axis)?);
     let json = serde_json::to_vec_pretty(discovery).into_diagnostic()?;
     write_whole(&out.join("discovery.json"), &json)?;
+    let text = moved(&text, &options.axis, out)? + &added;
     write_whole(&out.join("axis.toml"), text.as_bytes())?;
-    if let Some(next) = &discovery.next_experiment {
-        let program = toml::to_string(&next.program).into_diagnostic()?;
-        write_whole(&out.join(NEXT), program.as_bytes())?;
+    match &discovery.next_experiment {
+        Some(next) => {
+            let program = toml::to_string(&next.program).into_diagnostic()?;
+            write_whole(&out.join(NEXT), program.as_bytes())?;
+        }
+        None => remove(&out.join(NEXT))?,
     }
     let html = page::discovery::page(&discovered)?;
-    write_whole(&out.join("report.html"), html.as_bytes())?;
+    write_whole(&out.join(REPORT), html.as_bytes())?;
     tell(discovery, &added, out)
 }
 
 /// File of the proposed motion.
 const NEXT: &str = "next-experiment.toml";
+/// Pages of what logs and of what a table of errors show: in one folder, neither
+/// takes the other's place.
+const REPORT: &str = "report.html";
+const SUMMARY_REPORT: &str = "summary.html";
+
+/// Removes what an earlier search left, where there is something.
+fn remove(path: &Path) -> Result<()> {
+    match std::fs::remove_file(path) {
+        Err(e) if e.kind() != ErrorKind::NotFound => Err(e)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot remove {}, of an earlier search", path.display())),
+        _ => Ok(()),
+    }
+}
+
+/// The text of the axis file `from` as it must be in `folder`, which is there: it names
+/// files relative to its own.
+fn moved(text: &str, from: &Path, folder: &Path) -> Result<String> {
+    let whole = |path: &Path| {
+        path.canonicalize()
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot find {}", path.display()))
+    };
+    let mut document: DocumentMut = text.parse().into_diagnostic()?;
+    let Some(experiment) = document
+        .get_mut("experiment")
+        .and_then(Item::as_table_like_mut)
+    else {
+        return Ok(text.to_owned());
+    };
+    let from = whole(&from.with_file_name("."))?;
+    let folder = whole(folder)?;
+    for key in ["machine", "paper_tables"] {
+        let Some(value) = experiment.get_mut(key).and_then(Item::as_value_mut) else {
+            continue;
+        };
+        let Some(named) = value.as_str().map(Path::new).filter(|p| p.is_relative()) else {
+            continue;
+        };
+        let file = from.join(named);
+        let file = file.canonicalize().unwrap_or(file);
+        if let Some(path) = pathdiff::diff_paths(file, &folder) {
+            let decor = value.decor().clone();
+            *value = Value::from(path.display().to_string());
+            *value.decor_mut() = decor;
+        }
+    }
+    Ok(document.to_string())
+}
 
 /// Reads logs and looks at them; what was done to any goes to `notes`.
 fn read_all(
@@ -232,7 +287,7 @@ fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
             "\nRejecting an effect (--reject NAME) or accepting another (--accept NAME) runs the search on from there.",
         )?;
     }
-    say(format!("\n{}", out.join("report.html").display()))
+    say(format!("\n{}", out.join(REPORT).display()))
 }
 
 fn from_summary(options: &Options, machine: &Machine, table: &Path, out: &Path) -> Result<()> {
@@ -249,9 +304,9 @@ fn from_summary(options: &Options, machine: &Machine, table: &Path, out: &Path) 
     let json = serde_json::to_vec_pretty(&found).into_diagnostic()?;
     write_whole(&out.join("summary.json"), &json)?;
     let html = page::discovery::summary_page(axis, &found)?;
-    write_whole(&out.join("report.html"), html.as_bytes())?;
+    write_whole(&out.join(SUMMARY_REPORT), html.as_bytes())?;
     tell_summary(axis, &found, measured.len())?;
-    say(format!("\n{}", out.join("report.html").display()))
+    say(format!("\n{}", out.join(SUMMARY_REPORT).display()))
 }
 
 fn tell_summary(axis: &Axis, found: &SummaryFound, trajectories: usize) -> Result<()> {
