@@ -372,6 +372,7 @@ fn sentence(
             ),
         })
         .collect();
+    let it = if names.len() == 1 { "it" } else { "them" };
     let names = names.join("; ");
     let gone = 100.0 * check.reduction;
     let place = unknown.map_or(String::new(), |u| {
@@ -389,10 +390,10 @@ fn sentence(
             "Nothing is missing: the model and the logs agree to the noise, with known parameters inside their tolerance.".to_owned()
         }
         Verdict::Explained => format!(
-            "The model lacks {names}. With it, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to."
+            "The model lacks {names}. With {it}, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to."
         ),
         Verdict::PartlyExplained => format!(
-            "The model lacks {names}; {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to, and a rest remains that is not named.{place}"
+            "Partly explained: with {names}, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to, and a rest remains that is not named.{place} What is named may stand for something that is not in the library."
         ),
         Verdict::Unknown => format!(
             "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}"
