@@ -36,6 +36,21 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     })
 }
 
+/// Makes the folder where it is not there, and asks whether results can be written to
+/// it: before the work that makes them, so that none is lost.
+pub fn ready(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder)
+        .and_then(|()| tempfile::NamedTempFile::new_in(folder))
+        .map(drop)
+        .into_diagnostic()
+        .wrap_err_with(|| {
+            format!(
+                "cannot write to the folder {}; give one that can be written to with --out",
+                folder.display()
+            )
+        })
+}
+
 /// Temporary files are private; results are for everyone to read.
 #[cfg(unix)]
 fn readable(file: &tempfile::NamedTempFile) -> std::io::Result<()> {

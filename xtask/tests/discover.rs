@@ -25,6 +25,15 @@ fn lines() -> Vec<String> {
     std::iter::once(head).chain((0..2500).map(row)).collect()
 }
 
+/// The same, one sample changed.
+fn other() -> Vec<String> {
+    let mut lines = lines();
+    lines[1200] = with_cell(&lines[1200], 2, |x| {
+        format!("{}", x.parse::<f64>().unwrap() + 1e-9)
+    });
+    lines
+}
+
 fn write(folder: &Path, name: &str, lines: &[String]) -> String {
     let path = folder.join(name);
     std::fs::write(&path, lines.join("\n") + "\n").unwrap();
@@ -110,13 +119,7 @@ fn the_new_axis_file_is_the_machine_for_every_other_command() {
 fn bad_logs_are_refused_with_file_and_place() {
     let folder = tempfile::tempdir().unwrap();
     let sound = lines();
-    let check = write(folder.path(), "check.csv", &{
-        let mut other = sound.clone();
-        other[1200] = with_cell(&other[1200], 2, |x| {
-            format!("{}", x.parse::<f64>().unwrap() + 1e-9)
-        });
-        other
-    });
+    let check = write(folder.path(), "check.csv", &other());
     type Damage = fn(&mut Vec<String>);
     // What is broken, how, and what the message must say (blanks left out, as
     // the terminal breaks lines where it likes).
@@ -178,4 +181,14 @@ fn the_same_motion_to_fit_and_to_check_is_refused() {
         said.contains("copy.csv") && said.contains("samesamples"),
         "{said}"
     );
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_told_before_the_search() {
+    let folder = tempfile::tempdir().unwrap();
+    let fit = write(folder.path(), "fit.csv", &lines());
+    let check = write(folder.path(), "check.csv", &other());
+    let out = "/dev/null/results";
+    let said = refuse(&["discover", "--fit", &fit, "--check", &check, "--out", out]);
+    assert!(said.contains(out) && said.contains("--out"), "{said}");
 }

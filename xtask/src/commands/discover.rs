@@ -15,7 +15,7 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use toml_edit::{DocumentMut, Item, Value};
 
 use crate::context::read_text;
-use crate::output::{say, write_whole};
+use crate::output::{ready, say, write_whole};
 use crate::page;
 use crate::progress::bar;
 
@@ -93,7 +93,6 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
             "\"{both}\" is both accepted and rejected; give it once"
         ));
     }
-    let text = read_text(&options.axis)?;
     let mut notes = Vec::new();
     let fit = read_all(&options.fit, machine, &mut notes)?;
     let check = read_all(&options.check, machine, &mut notes)?;
@@ -103,6 +102,8 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
     notes.iter().try_for_each(say)?;
     say(format!("channels compared: {}", fit.channels.join(", ")))?;
 
+    ready(out)?;
+    let text = moved(&read_text(&options.axis)?, &options.axis, out)?;
     let settings = Settings {
         accepted: options.accept.clone(),
         rejected: options.reject.clone(),
@@ -124,8 +125,7 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
     let added: String = found.fit.state.effects.iter().map(entry).collect();
     let json = serde_json::to_vec_pretty(discovery).into_diagnostic()?;
     write_whole(&out.join("discovery.json"), &json)?;
-    let text = moved(&text, &options.axis, out)? + &added;
-    write_whole(&out.join("axis.toml"), text.as_bytes())?;
+    write_whole(&out.join("axis.toml"), (text + &added).as_bytes())?;
     match &discovery.next_experiment {
         Some(next) => {
             let program = toml::to_string(&next.program).into_diagnostic()?;
@@ -155,8 +155,8 @@ fn remove(path: &Path) -> Result<()> {
     }
 }
 
-/// The text of the axis file `from` as it must be in `folder`, which is there: it names
-/// files relative to its own.
+/// The text of the axis file `from` as it must be in `folder`: it names files relative
+/// to its own.
 fn moved(text: &str, from: &Path, folder: &Path) -> Result<String> {
     let whole = |path: &Path| {
         path.canonicalize()
