@@ -1,6 +1,6 @@
 //! Writing to the terminal and to files so that failures are told, not thrown.
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
@@ -49,6 +49,16 @@ pub fn ready(folder: &Path) -> Result<()> {
                 folder.display()
             )
         })
+}
+
+/// Removes what an earlier run left, where there is something.
+pub fn remove(path: &Path) -> Result<()> {
+    match std::fs::remove_file(path) {
+        Err(e) if e.kind() != ErrorKind::NotFound => Err(e)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot remove {}, of an earlier run", path.display())),
+        _ => Ok(()),
+    }
 }
 
 /// Temporary files are private; results are for everyone to read.

@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::context::Context;
-use crate::output::write_whole;
+use crate::output::{ready, remove, write_whole};
 
 /// Layout of manifests and of the JSON files beside them.
 const SCHEMA: u32 = 1;
@@ -88,18 +88,9 @@ impl<'a> Stage<'a> {
 
     /// Makes the stage's folder.
     pub fn begin(&self) -> Result<()> {
-        let folder = self.path("");
-        std::fs::create_dir_all(&folder)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot make the folder {}", folder.display()))?;
+        ready(&self.path(""))?;
         // Results without manifest are unfinished; the old one must not vouch for them.
-        match std::fs::remove_file(self.path("manifest.json")) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(miette!(
-                "cannot replace {}: {e}",
-                self.path("manifest.json").display()
-            )),
-            _ => Ok(()),
-        }
+        remove(&self.path("manifest.json"))
     }
 
     /// Writes a result as JSON.

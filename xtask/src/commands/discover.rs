@@ -1,6 +1,5 @@
 //! `discover`: what a model lacks, from logs or from a table of errors.
 
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use axis_log::{Log, read_log};
@@ -15,7 +14,7 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use toml_edit::{DocumentMut, Item, Value};
 
 use crate::context::read_text;
-use crate::output::{ready, say, write_whole};
+use crate::output::{ready, remove, say, write_whole};
 use crate::page;
 use crate::progress::bar;
 
@@ -144,16 +143,6 @@ const NEXT: &str = "next-experiment.toml";
 /// takes the other's place.
 const REPORT: &str = "report.html";
 const SUMMARY_REPORT: &str = "summary.html";
-
-/// Removes what an earlier search left, where there is something.
-fn remove(path: &Path) -> Result<()> {
-    match std::fs::remove_file(path) {
-        Err(e) if e.kind() != ErrorKind::NotFound => Err(e)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot remove {}, of an earlier search", path.display())),
-        _ => Ok(()),
-    }
-}
 
 /// The text of the axis file `from` as it must be in `folder`: it names files relative
 /// to its own.
@@ -298,6 +287,7 @@ fn from_summary(options: &Options, machine: &Machine, table: &Path, out: &Path) 
         ));
     };
     let measured = read_summary(table, axis)?;
+    ready(out)?;
     let progress = bar("effects", tried() as u64);
     let found = rank(axis, &measured, || progress.inc(1)).into_diagnostic()?;
     progress.finish_and_clear();
