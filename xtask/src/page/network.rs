@@ -3,8 +3,8 @@
 use pipeline::Figures;
 use pipeline::study::StudyRow;
 use report::{Cell, Figure, Section, Series, Table};
+use crate::results::Results;
 
-use crate::commands::report::Results;
 
 /// Table 11 and the training history.
 pub fn network(results: &Results) -> Section {
