@@ -18,7 +18,10 @@ fn screw(elements: usize) -> Beam {
 /// Frequencies against the dense solver's; shapes by orthonormality and
 /// residual, since equal frequencies leave their shapes a choice.
 fn compare(matrices: &BandedMatrices, count: usize) -> Result<(), TestCaseError> {
-    let (mass, stiffness) = (matrices.mass.to_dense().unwrap(), matrices.stiffness.to_dense().unwrap());
+    let (mass, stiffness) = (
+        matrices.mass.to_dense().unwrap(),
+        matrices.stiffness.to_dense().unwrap(),
+    );
     let dense = natural_modes(&mass, &stiffness).unwrap();
     let banded = lowest_modes(matrices, count).unwrap();
     prop_assert_eq!(banded.frequencies_rad_s.len(), count);

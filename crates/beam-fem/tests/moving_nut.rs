@@ -158,7 +158,10 @@ fn frequency_jump(elements: usize, frequencies: Frequencies) -> f64 {
     let x = 0.6 + FRACTION * LENGTH / elements as f64;
     let [before, after] = [x - 1e-9, x + 1e-9].map(|x| moving(elements, x));
     assert_ne!(before.node(), after.node());
-    let (before, after) = (frequencies(before.mesh().clone()), frequencies(after.mesh().clone()));
+    let (before, after) = (
+        frequencies(before.mesh().clone()),
+        frequencies(after.mesh().clone()),
+    );
     let changes = before.iter().zip(&after).map(|(b, a)| (a / b - 1.0).abs());
     changes.fold(0.0, f64::max)
 }
@@ -214,7 +217,8 @@ fn with_shape_functions_frequencies_have_no_jump_at_all() {
 fn within_an_element_frequencies_move_smoothly_with_the_node() {
     // A change of 1 nm in x changes no frequency by more than some 1e-9 / h.
     let at = |x: f64| {
-        let modes = lowest_modes(&screw(moving(10, x).mesh().clone()).assemble_banded(), 12).unwrap();
+        let modes =
+            lowest_modes(&screw(moving(10, x).mesh().clone()).assemble_banded(), 12).unwrap();
         modes.frequencies_rad_s[6..].to_vec()
     };
     for x in [0.2, 0.6, 0.61, 0.74, 0.75, 1.35, 1.42] {

@@ -91,10 +91,7 @@ pub fn lowest_modes(matrices: &BandedMatrices, count: usize) -> Result<Modes, Be
 fn check(matrices: &BandedMatrices, count: usize) -> Result<(), BeamError> {
     matrices.check_orders()?;
     let order = matrices.mass.order();
-    for (field, matrix) in [
-        ("mass", &matrices.mass),
-        ("stiffness", &matrices.stiffness),
-    ] {
+    for (field, matrix) in [("mass", &matrices.mass), ("stiffness", &matrices.stiffness)] {
         if !matrix.is_finite() {
             return Err(BeamError::NotFinite { field });
         }
