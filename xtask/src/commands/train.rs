@@ -42,7 +42,9 @@ pub struct Training {
 
 /// Runs the command.
 pub fn command(common: &Common) -> Result<()> {
-    run(&common.open()?)
+    let context = common.open()?;
+    let _claim = context.claim()?;
+    run(&context)
 }
 
 /// The stage, for this context.
@@ -54,7 +56,8 @@ pub fn stage(context: &Context) -> Stage<'_> {
             ..plan(context)
         }
     );
-    Stage::new(context, "train", &settings, &[&sample::stage(context)])
+    let (files, after) = (&[NETWORK, TRAINING], [&sample::stage(context)]);
+    Stage::new(context, "train", files, &settings, &after).with_scratch(&[CHECKPOINT])
 }
 
 /// Runs the stage; goes on from a checkpoint where one is left.
@@ -71,7 +74,7 @@ pub fn run(context: &Context) -> Result<()> {
         .filter(|(_, made_for)| made_for == stage.key())
         .map(|(checkpoint, _)| checkpoint);
 
-    let mut unsaved = Ok(());
+    let mut unsaved = false;
     let trained = train(
         &context.axis.samples,
         &seen,
@@ -79,16 +82,20 @@ pub fn run(context: &Context) -> Result<()> {
         checkpoint,
         |report, trainer| {
             progress.set_position(report.epoch as u64);
-            if report.epoch % CHECKPOINT_EVERY == 0 && unsaved.is_ok() {
-                unsaved = checkpoint_to_bytes(&trainer.checkpoint(), stage.key())
+            if report.epoch % CHECKPOINT_EVERY == 0 && !unsaved {
+                let saved = checkpoint_to_bytes(&trainer.checkpoint(), stage.key())
                     .into_diagnostic()
                     .and_then(|bytes| write_whole(&checkpoint_path, &bytes));
+                // Only a help for a killed training: the training itself goes on.
+                if let Err(e) = saved {
+                    tracing::warn!("no more checkpoints: {e:#}");
+                    unsaved = true;
+                }
             }
         },
     )
     .into_diagnostic()?;
     progress.finish_and_clear();
-    unsaved?;
 
     let training = Training {
         hidden: plan.hidden.clone(),
@@ -108,9 +115,7 @@ pub fn run(context: &Context) -> Result<()> {
     let bytes = network_to_bytes(&trained.network, provenance).into_diagnostic()?;
     write_whole(&stage.path(NETWORK), &bytes)?;
     stage.write_json(TRAINING, &training)?;
-    stage.finish(&[NETWORK, TRAINING])?;
-    // Only a help for a killed training; what is left of it does no harm.
-    let _ = std::fs::remove_file(&checkpoint_path);
+    stage.finish()?;
     say(format!(
         "train: {} epochs in {:.1} s; unseen samples max {:.2e} µm, mean {:.2e} µm (linear map {:.2e}, {:.2e})",
         training.epochs,
