@@ -93,7 +93,10 @@ impl Table for MatTable<'_> {
                 .and_then(|length| element.array(length + TAG))
                 .and_then(|content| array.numbers(&content, self.big))
                 .ok_or_else(|| ReadProblem::Mat {
-                    reason: format!("the numbers of \"{}\" are damaged or cut off", array.name),
+                    reason: format!(
+                        "the numbers of \"{}\" are damaged or cut off; save it again with -v7",
+                        array.name
+                    ),
                 })
         };
         wanted.iter().map(numbers).collect()
@@ -153,7 +156,7 @@ fn split(bytes: &[u8]) -> Result<(bool, Vec<Element<'_>>), ReadProblem> {
         let (content, after) = after.split_at_checked(length).ok_or_else(|| {
             let (at, left) = (bytes.len() - rest.len(), after.len());
             refuse(&format!(
-                "it is cut off: the element at byte {at} should hold {length} bytes, {left} are left"
+                "it is cut off: the element at byte {at} should hold {length} bytes, {left} are left; save it again with -v7"
             ))
         })?;
         let kind = number([a, b, c, d]);
@@ -169,7 +172,9 @@ fn split(bytes: &[u8]) -> Result<(bool, Vec<Element<'_>>), ReadProblem> {
         rest = after.get(padding..).unwrap_or_default();
     }
     if !rest.is_empty() {
-        return Err(refuse("it is cut off inside the tag of its last element"));
+        return Err(refuse(
+            "it is cut off inside the tag of its last element: save it again with -v7",
+        ));
     }
     if elements.len() > MAX_COLUMNS {
         let found = elements.len();

@@ -132,8 +132,16 @@ impl Table for ParquetTable {
     fn read(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, ReadProblem> {
         let counts = self.claims(wanted)?;
         let all = wanted.iter().zip(counts);
-        all.map(|(&index, count)| guarded(|| self.column(index, count)))
-            .collect()
+        let named = |index: usize, problem| match problem {
+            ReadProblem::Parquet { reason } => ReadProblem::Parquet {
+                reason: format!("column \"{}\": {reason}", self.heads[index].name),
+            },
+            other => other,
+        };
+        all.map(|(&index, count)| {
+            guarded(|| self.column(index, count)).map_err(|problem| named(index, problem))
+        })
+        .collect()
     }
 
     fn place(&self, row: usize, _: usize) -> Place {
@@ -160,7 +168,7 @@ fn guarded<T>(read: impl FnOnce() -> Result<T, ReadProblem>) -> Result<T, ReadPr
     QUIET.set(false);
     result.unwrap_or_else(|_| {
         Err(ReadProblem::Parquet {
-            reason: "a page of it is damaged".to_owned(),
+            reason: "it is damaged".to_owned(),
         })
     })
 }

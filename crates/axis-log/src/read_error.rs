@@ -93,7 +93,9 @@ pub enum ReadProblem {
     #[error(transparent)]
     Csv(#[from] CsvProblem),
     /// Not Parquet, or Parquet of a kind that is not read.
-    #[error("not readable as Parquet (flat, uncompressed or Snappy): {reason}")]
+    #[error(
+        "not readable as Parquet (flat, uncompressed or Snappy): {reason}; save it again, or as CSV"
+    )]
     Parquet {
         /// What the parser says.
         reason: String,

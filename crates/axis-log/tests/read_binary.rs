@@ -335,3 +335,36 @@ fn damaged(mut bytes: Vec<u8>, flips: &[(usize, u8)], name: &str) {
         assert!(log.time().windows(2).all(|w| w[0] < w[1]));
     }
 }
+
+/// Two row groups, plain and by dictionary, with and without nulls allowed.
+#[test]
+#[ignore = "writes tests/fixtures/log.parquet, on which `cargo xtask torture` works"]
+fn make_the_parquet_fixture() {
+    let rows = 0..120;
+    // At rest, there and back in steps of 1 mm.
+    let place = |k: i32| f64::from((k - 20).max(0).min(120 - k)) * 1e-3 + 0.6;
+    let columns = [
+        Column::new(
+            "t_s",
+            Values::Double(rows.clone().map(|k| f64::from(k) * 1e-3).collect()),
+        ),
+        Column::new(
+            "position_ref_m",
+            Values::Double(rows.clone().map(place).collect()),
+        ),
+        Column::new(
+            "position_m",
+            Values::OptionalDouble(rows.clone().map(|k| Some(place(k) + 1e-6)).collect()),
+        ),
+        Column::new(
+            "iq_a",
+            Values::Float(rows.clone().map(|k| (k % 3) as f32).collect()),
+        ),
+        Column::new(
+            "ticks_1",
+            Values::Int64(rows.clone().map(i64::from).collect()),
+        ),
+        Column::new("state_1", Values::Int32(rows.map(|k| k / 60).collect())),
+    ];
+    parquet_file::write(&fixture("log.parquet"), &columns, 2);
+}

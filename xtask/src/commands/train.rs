@@ -1,5 +1,7 @@
 //! `train`: the one-cycle network.
 
+use std::path::Path;
+
 use cfnn::Network;
 use cfnn::artifact::{
     checkpoint_from_bytes, checkpoint_to_bytes, network_from_bytes, network_to_bytes,
@@ -131,9 +133,7 @@ pub fn run(context: &Context) -> Result<()> {
 pub fn load_network(context: &Context) -> Result<Network> {
     let stage = stage(context);
     let path = stage.path(NETWORK);
-    let (network, made_from) = network_from_bytes(&stage.read(NETWORK)?)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("{} is refused", path.display()))?;
+    let (network, made_from) = network(&stage.read(NETWORK)?, &path)?;
     if made_from == context.axis.fingerprint {
         return Ok(network);
     }
@@ -141,6 +141,18 @@ pub fn load_network(context: &Context) -> Result<Network> {
         "{} was made from another axis file",
         path.display()
     ))
+}
+
+/// The network in the bytes of the file `path`, and what it was made from.
+pub fn network(bytes: &[u8], path: &Path) -> Result<(Network, String)> {
+    let refused = || {
+        format!(
+            "{} is not a network that this version reads; run `cargo xtask train` again",
+            path.display()
+        )
+    };
+    let read = network_from_bytes(bytes).into_diagnostic();
+    read.wrap_err_with(refused)
 }
 
 /// What a finished stage showed.
