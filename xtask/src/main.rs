@@ -3,11 +3,16 @@
 
 mod commands;
 mod context;
+mod diagnostic;
 mod output;
 mod page;
 mod paper;
 mod progress;
+mod results;
 mod store;
+
+use std::io::Write;
+use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
@@ -16,6 +21,7 @@ use commands::{
     simulate, study, torture, train, validate,
 };
 use context::Common;
+use diagnostic::Compiler;
 
 /// Dynamic error of ball-screw axes: simulate, predict, compensate.
 ///
@@ -65,8 +71,10 @@ enum Command {
     Layers,
 }
 
-fn main() -> miette::Result<()> {
+fn main() -> ExitCode {
     let cli = Cli::parse();
+    // Fails only where a handler was set before.
+    let _ = miette::set_hook(Box::new(|_| Box::new(Compiler::for_terminal())));
     let level = if cli.verbose {
         tracing::Level::DEBUG
     } else {
@@ -76,7 +84,18 @@ fn main() -> miette::Result<()> {
         .with_writer(std::io::stderr)
         .with_max_level(level)
         .init();
-    match cli.command {
+    match run(cli.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Where standard error is closed, the exit code still tells.
+            let _ = writeln!(std::io::stderr(), "{error:?}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(command: Command) -> miette::Result<()> {
+    match command {
         Command::Pipeline(common) => pipeline::run(&common),
         Command::Sample(options) => sample::command(&options),
         Command::Train(common) => train::command(&common),

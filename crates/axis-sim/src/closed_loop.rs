@@ -128,7 +128,17 @@ impl ClosedLoop {
 
         let mut reference = motion.at(0.0);
         let origin = reference.position;
-        let mut state = plant.at_rest(origin);
+        let mut state = match plant.at_rest(origin) {
+            Ok(state) => state,
+            Err(error) => {
+                let at = Cycle {
+                    position: origin,
+                    reference,
+                    ..Cycle::default()
+                };
+                return stopped(reason_of(&error, &at), &at);
+            }
+        };
         let mut servo = ServoState::default();
         let mut last_command = Command::default();
         let mut delay = DelayLine::new(self.hooks.delay / period);
@@ -139,7 +149,7 @@ impl ClosedLoop {
             let time = k as f64 * period;
             let next_reference = motion.at((k + 1) as f64 * period);
             let seen = state.seen;
-            let position = origin + seen.displacement;
+            let position = state.position();
             let mut measured = self.hooks.sensors.show(Measured {
                 position,
                 motor_angle: seen.motor_angle,
@@ -189,19 +199,22 @@ impl ClosedLoop {
                 correction,
             };
             if let Some(reason) = self.stop_reason(&cycle) {
-                return Outcome::Stopped {
-                    time,
-                    reason,
-                    position,
-                    error: cycle.error(),
-                    motor_speed: seen.motor_speed,
-                    iq: state.current.q,
-                };
+                return stopped(reason, &cycle);
             }
             observe(&cycle);
 
             // Let the machine run on, the voltage held (averaged SVPWM).
-            plant.advance(&mut state, command.voltage);
+            if let Err(error) = plant.advance(&mut state, command.voltage) {
+                let at = Cycle {
+                    time: state.time(),
+                    reference: motion.at(state.time()),
+                    position: state.position(),
+                    motor_speed: state.seen.motor_speed,
+                    current: state.current,
+                    ..Cycle::default()
+                };
+                return stopped(reason_of(&error, &at), &at);
+            }
             reference = next_reference;
             last_command = command;
         }
@@ -216,11 +229,37 @@ impl ClosedLoop {
             Some(StopReason::NotFinite)
         } else if cycle.error().abs() > FOLLOWING_ERROR_LIMIT {
             Some(StopReason::FollowingError)
-        } else if !(stroke.minimum..=stroke.maximum).contains(&cycle.position) {
+        } else if !(stroke.minimum..=stroke.maximum).contains(&cycle.position)
+            || self.axis.drive.check_position(cycle.position).is_err()
+        {
             Some(StopReason::LeftStroke)
         } else {
             None
         }
+    }
+}
+
+/// A run that is given up in the state that `at` shows.
+fn stopped(reason: StopReason, at: &Cycle) -> Outcome {
+    Outcome::Stopped {
+        time: at.time,
+        reason,
+        position: at.position,
+        error: at.error(),
+        motor_speed: at.motor_speed,
+        iq: at.current.q,
+    }
+}
+
+/// Why a run cannot go on after `error`, which has left it in the state `at`.
+fn reason_of(error: &DriveError, at: &Cycle) -> StopReason {
+    let state = at.position + at.motor_speed + at.current.d + at.current.q;
+    match error {
+        DriveError::LoadNotFound { residual, .. } if (state + residual).is_finite() => {
+            StopReason::LoadNotFound
+        }
+        DriveError::OffScrew { .. } if state.is_finite() => StopReason::LeftStroke,
+        _ => StopReason::NotFinite,
     }
 }
 

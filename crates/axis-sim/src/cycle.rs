@@ -79,8 +79,11 @@ pub enum StopReason {
     NotFinite,
     /// The tracking error is beyond what any drive tolerates.
     FollowingError,
-    /// The table has left its stroke.
+    /// The table has left its stroke, or the screw.
     LeftStroke,
+    /// No friction was found that goes with the table's motion at the end of a
+    /// step.
+    LoadNotFound,
 }
 
 /// Tracking error at which a run is given up, m.
@@ -114,6 +117,9 @@ fn describe(reason: &StopReason) -> &'static str {
             "the tracking error passed 20 mm (an unstable loop, or a motion too fast for the current limit)"
         }
         StopReason::LeftStroke => "the table left its stroke",
+        StopReason::LoadNotFound => {
+            "no friction goes with the table's motion at the end of a step (a load that jumps or falls with the speed, or a step too long for the table's mass)"
+        }
     }
 }
 

@@ -61,14 +61,20 @@ impl OneCycle {
     ///
     /// The increment, not the position: a position of 1.5 m resolves only
     /// 2.2e-16 m, which is what the smallest effects amount to.
-    pub fn increment(&self, input: &CycleInput) -> f64 {
+    ///
+    /// # Errors
+    /// [`DriveError::OffScrew`] for a position off the screw (where the cycle
+    /// carries the table over its end, the nut stays there);
+    /// [`DriveError::Parameter`] for a motion that is not finite;
+    /// [`DriveError::LoadNotFound`] where no friction goes with the motion.
+    pub fn increment(&self, input: &CycleInput) -> Result<f64, DriveError> {
         let drive = &self.axis.drive;
         let mut state = self.plant.in_motion(
             input.position,
             input.speed,
             input.acceleration,
             |motion: &Settled| motion.motor_torque(drive),
-        );
+        )?;
         let held = state.current;
         let motor_speed = input.speed / self.axis.travel_per_radian();
         let steady = self.axis.motor.steady_voltage(held, motor_speed);
@@ -81,7 +87,7 @@ impl OneCycle {
             .axis
             .servo
             .current_loop(&mut servo, command - held, Dq::ZERO);
-        self.plant.advance(&mut state, voltage);
-        state.seen.displacement
+        self.plant.advance(&mut state, voltage)?;
+        Ok(state.seen.displacement)
     }
 }

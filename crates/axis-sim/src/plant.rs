@@ -1,6 +1,6 @@
 //! The machine between two samples: motor, drive and friction under a held voltage.
 
-use feed_dynamics::{NutErrors, Observation, Settled, TimeStepper};
+use feed_dynamics::{DriveError, NutErrors, Observation, Settled, TimeStepper};
 use foc_pmsm::{Dq, Pmsm};
 use lugre::LuGre;
 
@@ -40,6 +40,18 @@ pub struct PlantState<D> {
     motor_acceleration: f64,
 }
 
+impl<D> PlantState<D> {
+    /// Table position, m from the driven end.
+    pub(crate) fn position(&self) -> f64 {
+        self.origin + self.seen.displacement
+    }
+
+    /// Since the motion began, s.
+    pub(crate) fn time(&self) -> f64 {
+        self.time
+    }
+}
+
 /// Number of equal steps, none longer than asked, that make up a control period.
 pub(crate) fn substeps(axis: &Axis) -> u32 {
     // A step that fits to rounding must not be halved.
@@ -67,9 +79,12 @@ impl<S: TimeStepper> Plant<S> {
     }
 
     /// Everything at rest and relaxed, the table at `x` (m).
-    pub(crate) fn at_rest(&self, x: f64) -> PlantState<S::State> {
-        let drive = self.stepper.settled(x, &Settled::default());
-        PlantState {
+    ///
+    /// # Errors
+    /// [`DriveError::OffScrew`].
+    pub(crate) fn at_rest(&self, x: f64) -> Result<PlantState<S::State>, DriveError> {
+        let drive = self.stepper.settled(x, &Settled::default())?;
+        Ok(PlantState {
             seen: self.stepper.observe(&drive),
             drive,
             time: 0.0,
@@ -78,19 +93,23 @@ impl<S: TimeStepper> Plant<S> {
             unit_bristle: 0.0,
             current: Dq::ZERO,
             motor_acceleration: 0.0,
-        }
+        })
     }
 
     /// Uniformly accelerated motion at the table speed `speed` (m/s) and
     /// `acceleration` (m/s²): deflections settled, bristles at their steady
     /// deflection, current as the torque balance asks.
+    ///
+    /// # Errors
+    /// [`DriveError::OffScrew`]; [`DriveError::Parameter`] for a motion that is
+    /// not finite.
     pub(crate) fn in_motion(
         &self,
         x: f64,
         speed: f64,
         acceleration: f64,
         torque: impl FnOnce(&Settled) -> f64,
-    ) -> PlantState<S::State> {
+    ) -> Result<PlantState<S::State>, DriveError> {
         let r = self.travel_per_radian;
         let bristle = self.friction.steady_bristle(speed / r);
         let own = self.friction.torque(bristle, speed / r) / r;
@@ -107,8 +126,8 @@ impl<S: TimeStepper> Plant<S> {
             acceleration,
             load,
         };
-        let drive = self.stepper.settled(x, &motion);
-        PlantState {
+        let drive = self.stepper.settled(x, &motion)?;
+        Ok(PlantState {
             seen: self.stepper.observe(&drive),
             drive,
             time: SETTLED,
@@ -120,11 +139,22 @@ impl<S: TimeStepper> Plant<S> {
                 q: self.motor.q_current(torque(&motion)),
             },
             motor_acceleration: acceleration / r,
-        }
+        })
     }
 
-    /// One control cycle with the voltage held.
-    pub(crate) fn advance(&self, state: &mut PlantState<S::State>, voltage: Dq) {
+    /// One control cycle with the voltage held. Where it carries the table over
+    /// the screw's end, the nut stays at that end: a cycle is too short for more
+    /// than some 10 µm, and the loop looks at the next sample where the table is.
+    ///
+    /// # Errors
+    /// [`DriveError::LoadNotFound`] where no friction goes with the table's motion
+    /// at the end of a step; [`DriveError::Parameter`] where an effect shifts the
+    /// nut by no number. Time and what is seen are then those at its start.
+    pub(crate) fn advance(
+        &self,
+        state: &mut PlantState<S::State>,
+        voltage: Dq,
+    ) -> Result<(), DriveError> {
         let h = self.stepper.step_length();
         let r = self.travel_per_radian;
         for _ in 0..self.substeps {
@@ -133,19 +163,19 @@ impl<S: TimeStepper> Plant<S> {
             let mean_speed = start.motor_speed + 0.5 * h * state.motor_acceleration;
             let voltage = voltage + self.lost_voltage(state);
             state.current = self.motor.step(state.current, voltage, mean_speed, h);
-            state.time += h;
+            let time = state.time + h;
             let angle = start.motor_angle + h * mean_speed;
             let torque = self
                 .hooks
                 .torque_at(angle, self.motor.torque(state.current));
 
             // Mechanics; the friction follows the table's speed at the end of the step.
-            let errors = self.nut_errors(state, angle);
+            let errors = self.nut_errors(state, time, angle)?;
             let (z0, w0) = (state.bristle, start.speed / r);
-            let (u0, time, origin) = (state.unit_bristle, state.time, state.origin);
+            let (u0, origin) = (state.unit_bristle, state.origin);
             let (mut z1, mut u1) = (z0, u0);
             let moving = &mut state.drive;
-            self.stepper.step_through(moving, torque, &errors, |table| {
+            let report = self.stepper.step_through(moving, torque, &errors, |table| {
                 let w1 = table.speed / r;
                 let (z, friction) = self.friction.step_torque(z0, w0, w1, h);
                 z1 = z;
@@ -162,27 +192,36 @@ impl<S: TimeStepper> Plant<S> {
                 }
                 load
             });
+            if !report.load.converged {
+                return Err(DriveError::LoadNotFound {
+                    rounds: report.load.rounds,
+                    residual: report.load.residual,
+                });
+            }
+            state.time = time;
             state.bristle = z1;
             state.unit_bristle = u1;
             state.seen = self.stepper.observe(&state.drive);
             state.motor_acceleration = (state.seen.motor_speed - start.motor_speed) / h;
         }
+        Ok(())
     }
 
     /// Errors of the nut's kinematics at the end of a step.
-    fn nut_errors(&self, state: &PlantState<S::State>, angle: f64) -> NutErrors {
+    fn nut_errors(
+        &self,
+        state: &PlantState<S::State>,
+        time: f64,
+        angle: f64,
+    ) -> Result<NutErrors, DriveError> {
         let [offset, offset_rate] = self.hooks.offset_at(&ScrewState {
-            time: state.time,
+            time,
             angle,
             rate: state.seen.motor_speed,
-            position: state.origin + state.seen.displacement,
+            position: state.position(),
             speed: state.seen.speed,
         });
-        NutErrors {
-            offset,
-            offset_rate,
-            gap: self.hooks.gap,
-        }
+        NutErrors::new(offset, offset_rate, self.hooks.gap)
     }
 
     /// What dead time takes from the voltage, in the rotor's frame: in each

@@ -30,6 +30,18 @@ pub enum ReplayError {
     /// The closed loop was given up.
     #[error(transparent)]
     Stopped(#[from] RunStopped),
+    /// No load goes with a rigid machine's motion at the end of a step.
+    #[error(
+        "the replay stopped at t = {time:.4} s because no friction goes with the motion at the end of a step: table at {position:.6} m, {speed:.6} m/s"
+    )]
+    LoadNotFound {
+        /// When, s.
+        time: f64,
+        /// Table position then, m.
+        position: f64,
+        /// Table speed then, m/s.
+        speed: f64,
+    },
     /// A state is no longer a number.
     #[error("the replay diverged at t = {time:.4} s")]
     Diverged {
@@ -232,7 +244,16 @@ impl Replay {
                         .copied()
                         .unwrap_or(0.0)
                 };
-                let log = axis.follow(&hooks, &self.reference, self.start, cycles, added);
+                let log = axis
+                    .follow(&hooks, &self.reference, self.start, cycles, added)
+                    .map_err(|halt| match halt.position + halt.speed + halt.residual {
+                        state if state.is_finite() => ReplayError::LoadNotFound {
+                            time: halt.time,
+                            position: halt.position,
+                            speed: halt.speed,
+                        },
+                        _ => ReplayError::Diverged { time: halt.time },
+                    })?;
                 if let Some(k) = log
                     .iter()
                     .position(|c| !(c.position + c.command).is_finite())

@@ -11,7 +11,7 @@
 //! ```
 
 use axis_log::Mapping;
-use feed_dynamics::DriveError;
+use feed_dynamics::{DriveError, TableMotion, find_load};
 use lugre::LuGre;
 use trajectories::Motion;
 
@@ -73,6 +73,20 @@ pub(crate) struct RigidCycle {
     pub(crate) command: f64,
 }
 
+/// The start of the step at which a run had to be given up, since no load goes
+/// with the motion at its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Halt {
+    /// s.
+    pub(crate) time: f64,
+    /// m.
+    pub(crate) position: f64,
+    /// m/s.
+    pub(crate) speed: f64,
+    /// What was left of the last load tried, N.
+    pub(crate) residual: f64,
+}
+
 impl RigidAxis {
     /// Table travel per radian of the screw, lead / 2π, m/rad.
     pub fn travel_per_radian(&self) -> f64 {
@@ -94,6 +108,9 @@ impl RigidAxis {
 
     /// Follows `motion` for `cycles` periods; `added` is put on top of the
     /// controller's command.
+    ///
+    /// # Errors
+    /// [`Halt`] where no load goes with the motion at the end of a step.
     pub(crate) fn follow(
         &self,
         hooks: &Hooks,
@@ -101,7 +118,7 @@ impl RigidAxis {
         start: Start,
         cycles: usize,
         added: impl Fn(usize) -> f64,
-    ) -> Vec<RigidCycle> {
+    ) -> Result<Vec<RigidCycle>, Halt> {
         let unit = self.unit_friction();
         let steps = (self.period / self.step * (1.0 - 1e-9)).ceil().max(1.0);
         let h = self.period / steps;
@@ -129,30 +146,44 @@ impl RigidAxis {
                 let angle = x / per_radian;
                 let torque = hooks.torque_at(angle, self.force_gain * command * per_radian);
                 let force = torque / per_radian;
-                let (v0, z0, u0) = (v, z, u);
-                // The mass makes this contract by hundredths a round.
-                for _ in 0..6 {
-                    let last = load;
-                    v = v0 + h * (force - load) / self.mass;
-                    (z, load) = self.friction.step_torque(z0, v0, v, h);
-                    if hooks.has_loads() {
-                        u = unit.step(u0, v0, v, h);
-                        load += hooks.loads_at(&TableState {
+                let (x0, v0, z0, u0) = (x, v, z, u);
+                let moved = |load: f64| {
+                    let speed = v0 + h * (force - load) / self.mass;
+                    TableMotion {
+                        displacement: 0.5 * h * (v0 + speed),
+                        speed,
+                    }
+                };
+                let (end_load, found) = find_load(load, h / self.mass, moved, |table| {
+                    let speed = table.speed;
+                    let (z1, friction) = self.friction.step_torque(z0, v0, speed, h);
+                    z = z1;
+                    if !hooks.has_loads() {
+                        return friction;
+                    }
+                    u = unit.step(u0, v0, speed, h);
+                    friction
+                        + hooks.loads_at(&TableState {
                             time: now,
-                            position: x + 0.5 * h * (v0 + v),
-                            speed: v,
-                            bristle: unit.torque(u, v),
+                            position: x0 + table.displacement,
+                            speed,
+                            bristle: unit.torque(u, speed),
                             pressed: 1.0,
-                        });
-                    }
-                    if (load - last).abs() < 1e-6 {
-                        break;
-                    }
+                        })
+                });
+                if !found.converged {
+                    return Err(Halt {
+                        time: now - h,
+                        position: x0,
+                        speed: v0,
+                        residual: found.residual,
+                    });
                 }
-                x += 0.5 * h * (v0 + v);
+                let end = moved(end_load);
+                (load, x, v) = (end_load, x0 + end.displacement, end.speed);
             }
         }
-        log
+        Ok(log)
     }
 
     fn unit_friction(&self) -> LuGre {

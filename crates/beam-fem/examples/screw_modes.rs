@@ -14,7 +14,7 @@ fn screw(mesh: Mesh) -> Result<Beam, BeamError> {
 /// The direction that holds most of a shape's energy of motion.
 fn direction(beam: &Beam, shape: nalgebra::DVectorView<f64>) -> Dof {
     let polar = beam.section.polar_moment();
-    let area = beam.section.area;
+    let area = beam.section.area();
     let shares = [
         (Dof::U, area),
         (Dof::V, area),
@@ -55,7 +55,7 @@ fn main() -> Result<(), BeamError> {
     for step in 1..=10 {
         let x = 0.14 * f64::from(step);
         let nut = MovingNode::at(1.5, 10, x, MovingNode::MIN_FRACTION)?;
-        let on_node = screw(nut.mesh)?.torsional_compliance_at_node(nut.node)?;
+        let on_node = screw(nut.mesh().clone())?.torsional_compliance_at_node(nut.node())?;
         let on_shape = coarse.torsional_compliance_at(x);
         println!("{x:>8.2} {:>12.4} {:>16.4}", 1e6 * on_node, 1e6 * on_shape);
     }

@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use crate::BeamError;
 use crate::beam::free_dofs;
 use crate::element::Entry;
+use crate::error::check_size;
 
 /// A symmetric matrix of which only entries near the diagonal are stored:
 /// |row − column| ≤ half bandwidth. Column j of the lower triangle lies
@@ -18,7 +19,17 @@ pub struct SymmetricBanded {
 
 impl SymmetricBanded {
     /// Zeros, `order` × `order`.
-    pub fn zeros(order: usize, half_bandwidth: usize) -> Self {
+    ///
+    /// # Errors
+    /// [`BeamError::TooLarge`] for more entries, `order` × (`half_bandwidth` + 1),
+    /// than are sensible to store.
+    pub fn zeros(order: usize, half_bandwidth: usize) -> Result<Self, BeamError> {
+        check_size("a band", order.max(1), half_bandwidth.saturating_add(1))?;
+        Ok(Self::sized(order, half_bandwidth))
+    }
+
+    /// Zeros of a size that was checked.
+    fn sized(order: usize, half_bandwidth: usize) -> Self {
         Self {
             order,
             half_bandwidth,
@@ -36,18 +47,12 @@ impl SymmetricBanded {
         self.half_bandwidth
     }
 
-    /// The entry at (row, column); 0 outside the band.
-    ///
-    /// # Panics
-    /// If the row or column does not exist, as indexing does.
-    pub fn get(&self, row: usize, column: usize) -> f64 {
-        assert!(row < self.order && column < self.order);
+    /// The entry at (row, column), 0 outside the band; none where the row or
+    /// column does not exist.
+    pub fn get(&self, row: usize, column: usize) -> Option<f64> {
         let (low, high) = (row.min(column), row.max(column));
-        if high - low > self.half_bandwidth {
-            0.0
-        } else {
-            self.column(low)[high - low]
-        }
+        let stored = || self.column(low).get(high - low).copied();
+        (high < self.order).then(|| stored().unwrap_or(0.0))
     }
 
     /// Adds `value` to the entry at (row, column) and its mirror image: a
@@ -81,8 +86,14 @@ impl SymmetricBanded {
     }
 
     /// The whole matrix, dense.
-    pub fn to_dense(&self) -> DMatrix<f64> {
-        DMatrix::from_fn(self.order, self.order, |i, j| self.get(i, j))
+    ///
+    /// # Errors
+    /// [`BeamError::TooLarge`] for more entries, order squared, than are
+    /// sensible to store.
+    pub fn to_dense(&self) -> Result<DMatrix<f64>, BeamError> {
+        check_size("a dense matrix", self.order, self.order)?;
+        let entry = |i, j| self.get(i, j).unwrap_or(0.0);
+        Ok(DMatrix::from_fn(self.order, self.order, entry))
     }
 
     /// Rows and columns `kept` (ascending) of this matrix, in a band no wider
@@ -100,7 +111,7 @@ impl SymmetricBanded {
             .flat_map(|j| stored(j).map(move |(_, row)| row - j))
             .max()
             .unwrap_or(0);
-        let mut out = Self::zeros(kept.len(), width);
+        let mut out = Self::sized(kept.len(), width);
         for j in 0..kept.len() {
             for (value, row) in stored(j) {
                 out.data[j * (width + 1) + row - j] = *value;
@@ -128,10 +139,19 @@ impl BandedMatrices {
     pub const HALF_BANDWIDTH: usize = 11;
 
     /// Zeros, to assemble a beam into.
-    pub fn zeros(order: usize) -> Self {
+    ///
+    /// # Errors
+    /// As [`SymmetricBanded::zeros`].
+    pub fn zeros(order: usize) -> Result<Self, BeamError> {
+        check_size("a band", order, Self::HALF_BANDWIDTH + 1)?;
+        Ok(Self::sized(order))
+    }
+
+    /// Zeros of a size that was checked.
+    pub(crate) fn sized(order: usize) -> Self {
         Self {
-            mass: SymmetricBanded::zeros(order, Self::HALF_BANDWIDTH),
-            stiffness: SymmetricBanded::zeros(order, Self::HALF_BANDWIDTH),
+            mass: SymmetricBanded::sized(order, Self::HALF_BANDWIDTH),
+            stiffness: SymmetricBanded::sized(order, Self::HALF_BANDWIDTH),
         }
     }
 
@@ -139,12 +159,28 @@ impl BandedMatrices {
     /// rows and columns are left out. The others keep their order.
     ///
     /// # Errors
-    /// [`BeamError::Index`] for a degree of freedom that does not exist.
+    /// [`BeamError::Index`] for a degree of freedom that does not exist,
+    /// [`BeamError::Shape`] where M and K are not of one order.
     pub fn fixed(&self, fixed: &[usize]) -> Result<Self, BeamError> {
+        self.check_orders()?;
         let free = free_dofs(self.mass.order(), fixed)?;
         Ok(Self {
             mass: self.mass.select(&free),
             stiffness: self.stiffness.select(&free),
+        })
+    }
+
+    /// Refuses a K that is not of the order of M.
+    pub(crate) fn check_orders(&self) -> Result<(), BeamError> {
+        let (order, rows) = (self.mass.order, self.stiffness.order);
+        if rows == order {
+            return Ok(());
+        }
+        Err(BeamError::Shape {
+            field: "stiffness",
+            rows,
+            columns: rows,
+            order,
         })
     }
 

@@ -3,6 +3,8 @@
 use nalgebra::DMatrix;
 
 use crate::element::Coefficients;
+use crate::error::check_size;
+use crate::modes::check_square;
 use crate::{BandedMatrices, BeamError, Material, Mesh, Section};
 
 /// The six degrees of freedom of a node, in the paper's order.
@@ -33,9 +35,10 @@ impl Dof {
         Dof::ThetaZ,
     ];
 
-    /// Row of this degree of freedom of `node` in the assembled matrices.
+    /// Row of this degree of freedom of `node` in the assembled matrices; a
+    /// row that no matrix has for a node that no mesh has.
     pub fn at(self, node: usize) -> usize {
-        6 * node + self as usize
+        node.saturating_mul(6).saturating_add(self as usize)
     }
 }
 
@@ -77,8 +80,13 @@ impl Beam {
 
     /// Dense M and K of the free beam (paper, Eqs. A52 and A53). Memory
     /// grows with N²: for many elements use [`Beam::assemble_banded`].
-    pub fn assemble(&self) -> Matrices {
+    ///
+    /// # Errors
+    /// [`BeamError::TooLarge`] for more entries than are sensible to store, from
+    /// some 1900 elements on.
+    pub fn assemble(&self) -> Result<Matrices, BeamError> {
         let order = self.order();
+        check_size("a dense matrix", order, order)?;
         let mut mass = DMatrix::zeros(order, order);
         let mut stiffness = DMatrix::zeros(order, order);
         for (element, length) in self.mesh.lengths().enumerate() {
@@ -91,13 +99,13 @@ impl Beam {
         }
         mass.fill_upper_triangle_with_lower_triangle();
         stiffness.fill_upper_triangle_with_lower_triangle();
-        Matrices { mass, stiffness }
+        Ok(Matrices { mass, stiffness })
     }
 
     /// M and K of the free beam in banded storage: memory and time
     /// proportional to N.
     pub fn assemble_banded(&self) -> BandedMatrices {
-        let mut matrices = BandedMatrices::zeros(self.order());
+        let mut matrices = BandedMatrices::sized(self.order());
         self.add_to(&mut matrices);
         matrices
     }
@@ -134,9 +142,13 @@ impl Matrices {
     /// rows and columns are left out. The others keep their order.
     ///
     /// # Errors
-    /// [`BeamError::Index`] for a degree of freedom that does not exist.
+    /// [`BeamError::Index`] for a degree of freedom that does not exist,
+    /// [`BeamError::Shape`] where M and K are not square and of one order.
     pub fn fixed(&self, fixed: &[usize]) -> Result<Self, BeamError> {
-        let free = free_dofs(self.mass.nrows(), fixed)?;
+        let order = self.mass.nrows();
+        check_square("mass", &self.mass, order)?;
+        check_square("stiffness", &self.stiffness, order)?;
+        let free = free_dofs(order, fixed)?;
         let pick = |m: &DMatrix<f64>| {
             DMatrix::from_fn(free.len(), free.len(), |i, j| m[(free[i], free[j])])
         };

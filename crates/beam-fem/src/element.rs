@@ -36,8 +36,8 @@ pub fn shear_parameter(
     second_moment: f64,
     length: f64,
 ) -> f64 {
-    let shear = section.shear_coefficient * material.shear_modulus() * section.area;
-    12.0 * material.youngs_modulus * second_moment / (shear * length * length)
+    let shear = section.shear_coefficient() * material.shear_modulus() * section.area();
+    12.0 * material.youngs_modulus() * second_moment / (shear * length * length)
 }
 
 /// One entry of the lower triangle, of both matrices.
@@ -86,16 +86,16 @@ struct Bending {
 impl Coefficients {
     #[inline]
     pub fn new(section: &Section, material: &Material, l: f64) -> Self {
-        let plane_z = Bending::new(section, material, section.second_moment_z, l);
-        let plane_y = if section.second_moment_y == section.second_moment_z {
+        let plane_z = Bending::new(section, material, section.second_moment_z(), l);
+        let plane_y = if section.second_moment_y() == section.second_moment_z() {
             plane_z
         } else {
-            Bending::new(section, material, section.second_moment_y, l)
+            Bending::new(section, material, section.second_moment_y(), l)
         };
         Self {
             axial: Rod {
-                stiffness: material.youngs_modulus * section.area / l,
-                mass: material.density * section.area * l,
+                stiffness: material.youngs_modulus() * section.area() / l,
+                mass: material.density() * section.area() * l,
             },
             torsion: torsion_rod(section, material, l),
             plane_z,
@@ -126,8 +126,8 @@ impl Coefficients {
 #[inline]
 pub fn torsion_rod(section: &Section, material: &Material, length: f64) -> Rod {
     Rod {
-        stiffness: material.shear_modulus() * section.torsion_constant / length,
-        mass: material.density * section.polar_moment() * length,
+        stiffness: material.shear_modulus() * section.torsion_constant() / length,
+        mass: material.density() * section.polar_moment() * length,
     }
 }
 
@@ -147,10 +147,10 @@ impl Bending {
     #[inline]
     fn new(section: &Section, material: &Material, i: f64, l: f64) -> Self {
         let b = shear_parameter(section, material, i, l);
-        let ei = material.youngs_modulus * i / ((1.0 + b) * l);
-        let m = material.density * section.area * l / ((1.0 + b) * (1.0 + b));
+        let ei = material.youngs_modulus() * i / ((1.0 + b) * l);
+        let m = material.density() * section.area() * l / ((1.0 + b) * (1.0 + b));
         // (r/l)² with the radius of gyration r = √(I/A).
-        let r2 = i / (section.area * l * l);
+        let r2 = i / (section.area() * l * l);
         let b2 = b * b;
         let (ml, ml2) = (m * l, m * l * l);
         let lever = (0.1 - 0.5 * b) * r2;

@@ -68,6 +68,20 @@ pub enum BeamError {
         /// The one that it must have.
         needed: usize,
     },
+    /// A matrix with more entries than is sensible to store.
+    #[error(
+        "{field} of {rows} x {columns} entries is not valid: a matrix may have at most {maximum}"
+    )]
+    TooLarge {
+        /// Name of the matrix.
+        field: &'static str,
+        /// Its rows.
+        rows: usize,
+        /// Its columns; for a banded matrix those that are stored.
+        columns: usize,
+        /// The most entries that are valid.
+        maximum: usize,
+    },
     /// A matrix with an infinite entry or a NaN.
     #[error("the {field} matrix holds an entry that is not finite")]
     NotFinite {
@@ -91,6 +105,27 @@ pub enum BeamError {
     /// The eigenvalue iteration stopped at its limit.
     #[error("the eigenvalue iteration did not converge")]
     NotConverged,
+}
+
+/// The most entries of a stored matrix, 1 GiB of them: a bound on memory, not
+/// on theory. It lets through the band of a beam of [`crate::Mesh::MAX_ELEMENTS`].
+pub(crate) const MAX_ENTRIES: usize = 1 << 27;
+
+/// Refuses a matrix with more than [`MAX_ENTRIES`] entries.
+pub(crate) fn check_size(
+    field: &'static str,
+    rows: usize,
+    columns: usize,
+) -> Result<(), BeamError> {
+    match rows.checked_mul(columns) {
+        Some(entries) if entries <= MAX_ENTRIES => Ok(()),
+        _ => Err(BeamError::TooLarge {
+            field,
+            rows,
+            columns,
+            maximum: MAX_ENTRIES,
+        }),
+    }
 }
 
 /// Refuses what is not finite and above zero.

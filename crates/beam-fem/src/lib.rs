@@ -46,7 +46,7 @@
 //! let round = Section::solid_circle(0.040, &steel)?;
 //! let screw = Beam::new(round, steel, Mesh::uniform(1.5, 10)?);
 //!
-//! let matrices = screw.assemble();
+//! let matrices = screw.assemble()?;
 //! let all = natural_modes(&matrices.mass, &matrices.stiffness)?;
 //! assert_eq!(all.frequencies_rad_s.len(), 66);
 //! assert!(all.frequencies_rad_s[..6].iter().all(|&w| w == 0.0)); // rigid motions
@@ -54,6 +54,14 @@
 //! let some = lowest_modes(&screw.assemble_banded(), 8)?;
 //! let first = some.frequencies_hz()[6]; // bending, in pairs
 //! assert!((first - 80.7).abs() < 0.5);
+//! # Ok::<(), beam_fem::BeamError>(())
+//! ```
+//!
+//! Parts are checked where they are made and cannot be changed after that:
+//!
+//! ```compile_fail,E0616
+//! let mut steel = beam_fem::Material::new(206e9, 0.3, 7850.0)?;
+//! steel.density = -1.0;
 //! # Ok::<(), beam_fem::BeamError>(())
 //! ```
 //!

@@ -4,16 +4,12 @@ use crate::BeamError;
 use crate::error::positive;
 
 /// A linear elastic, isotropic material. Made by [`Material::new`], which
-/// checks it; fields are public to be read.
+/// checks it, and immutable after that.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Material {
-    /// Young's modulus E, Pa.
-    pub youngs_modulus: f64,
-    /// Poisson's ratio ν, dimensionless (the paper's u).
-    pub poisson_ratio: f64,
-    /// Density ρ, kg/m³.
-    pub density: f64,
+    youngs_modulus: f64,
+    poisson_ratio: f64,
+    density: f64,
 }
 
 impl Material {
@@ -37,6 +33,21 @@ impl Material {
             poisson_ratio,
             density,
         })
+    }
+
+    /// Young's modulus E, Pa.
+    pub fn youngs_modulus(&self) -> f64 {
+        self.youngs_modulus
+    }
+
+    /// Poisson's ratio ν, dimensionless (the paper's u).
+    pub fn poisson_ratio(&self) -> f64 {
+        self.poisson_ratio
+    }
+
+    /// Density ρ, kg/m³.
+    pub fn density(&self) -> f64 {
+        self.density
     }
 
     /// Shear modulus G = E / (2 (1 + ν)), Pa.

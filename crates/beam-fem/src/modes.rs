@@ -57,6 +57,10 @@ pub fn natural_modes(mass: &DMatrix<f64>, stiffness: &DMatrix<f64>) -> Result<Mo
         .ok_or(BeamError::NotConverged)?;
     let mut shapes = eigen.eigenvectors;
     factor.tr_solve_lower_triangular_mut(&mut shapes);
+    let numbers = eigen.eigenvalues.iter().chain(&shapes);
+    if !numbers.into_iter().all(|v| v.is_finite()) {
+        return Err(BeamError::NotConverged);
+    }
     sorted(eigen.eigenvalues.as_slice(), &shapes)
 }
 
@@ -86,16 +90,26 @@ pub(crate) fn frequency(eigenvalue: f64, rounding: f64) -> f64 {
     }
 }
 
-fn check_dense(field: &'static str, matrix: &DMatrix<f64>, order: usize) -> Result<(), BeamError> {
+/// Refuses what is not `order` × `order`.
+pub(crate) fn check_square(
+    field: &'static str,
+    matrix: &DMatrix<f64>,
+    order: usize,
+) -> Result<(), BeamError> {
     let (rows, columns) = matrix.shape();
-    if rows != order || columns != order {
-        return Err(BeamError::Shape {
-            field,
-            rows,
-            columns,
-            order,
-        });
+    if rows == order && columns == order {
+        return Ok(());
     }
+    Err(BeamError::Shape {
+        field,
+        rows,
+        columns,
+        order,
+    })
+}
+
+fn check_dense(field: &'static str, matrix: &DMatrix<f64>, order: usize) -> Result<(), BeamError> {
+    check_square(field, matrix, order)?;
     if !matrix.iter().all(|v| v.is_finite()) {
         return Err(BeamError::NotFinite { field });
     }

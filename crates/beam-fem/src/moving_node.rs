@@ -21,10 +21,8 @@ use crate::{BeamError, Mesh};
 /// - Within `min_fraction` × L/N of either end of the screw the node stops.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingNode {
-    /// The mesh with the moved node.
-    pub mesh: Mesh,
-    /// Index of the moved node, 1 to N − 1; node 0 is the driven end.
-    pub node: usize,
+    mesh: Mesh,
+    node: usize,
 }
 
 impl MovingNode {
@@ -76,11 +74,22 @@ impl MovingNode {
         let node = segment(length, elements, x, min_fraction).min(elements - 1);
         let shortest = min_fraction * length / elements as f64;
         let neighbour = |index| uniform_node(length, elements, index);
-        let position = x.clamp(
-            neighbour(node - 1) + shortest,
-            neighbour(node + 1) - shortest,
-        );
+        // Not `clamp`: on a beam of a few of the smallest numbers of f64 rounding
+        // may put the two bounds in the wrong order.
+        let position = x
+            .max(neighbour(node - 1) + shortest)
+            .min(neighbour(node + 1) - shortest);
         Ok((node, position))
+    }
+
+    /// The mesh with the moved node.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Index of the moved node, 1 to N − 1; node 0 is the driven end.
+    pub fn node(&self) -> usize {
+        self.node
     }
 
     /// Where the moved node is, m: x, but for the two ends of the screw.

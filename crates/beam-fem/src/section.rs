@@ -7,21 +7,14 @@ use crate::{BeamError, Material};
 
 /// A cross-section whose y and z axes are principal and pass through both the
 /// centroid and the shear centre. Made by [`Section::new`] or
-/// [`Section::solid_circle`], which check it; fields are public to be read.
+/// [`Section::solid_circle`], which check it, and immutable after that.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Section {
-    /// Area A, m².
-    pub area: f64,
-    /// Second moment of area I_y about the y axis (bending in x–z), m⁴.
-    pub second_moment_y: f64,
-    /// Second moment of area I_z about the z axis (bending in x–y), m⁴.
-    pub second_moment_z: f64,
-    /// Torsion constant J, m⁴: torque = G J × twist per length.
-    pub torsion_constant: f64,
-    /// Shear coefficient κ (the paper's v), dimensionless: shear force =
-    /// κ G A × shear angle.
-    pub shear_coefficient: f64,
+    area: f64,
+    second_moment_y: f64,
+    second_moment_z: f64,
+    torsion_constant: f64,
+    shear_coefficient: f64,
 }
 
 impl Section {
@@ -54,9 +47,35 @@ impl Section {
     pub fn solid_circle(diameter: f64, material: &Material) -> Result<Self, BeamError> {
         let d = positive("diameter", diameter)?;
         let i = PI * d.powi(4) / 64.0;
-        let nu = material.poisson_ratio;
+        let nu = material.poisson_ratio();
         let kappa = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu);
         Self::new(0.25 * PI * d * d, i, i, 2.0 * i, kappa)
+    }
+
+    /// Area A, m².
+    pub fn area(&self) -> f64 {
+        self.area
+    }
+
+    /// Second moment of area I_y about the y axis (bending in x–z), m⁴.
+    pub fn second_moment_y(&self) -> f64 {
+        self.second_moment_y
+    }
+
+    /// Second moment of area I_z about the z axis (bending in x–y), m⁴.
+    pub fn second_moment_z(&self) -> f64 {
+        self.second_moment_z
+    }
+
+    /// Torsion constant J, m⁴: torque = G J × twist per length.
+    pub fn torsion_constant(&self) -> f64 {
+        self.torsion_constant
+    }
+
+    /// Shear coefficient κ (the paper's v), dimensionless: shear force =
+    /// κ G A × shear angle.
+    pub fn shear_coefficient(&self) -> f64 {
+        self.shear_coefficient
     }
 
     /// Polar second moment of area I_y + I_z, m⁴: what carries the rotary

@@ -48,15 +48,15 @@ fn rigid_body(mesh: &Mesh) -> [DVector<f64>; 6] {
 /// The rigid body's own 6 × 6 mass matrix about the driven end.
 fn rigid_mass(beam: &Beam) -> [f64; 6] {
     let (s, l) = (&beam.section, beam.mesh.length());
-    let line = beam.material.density * s.area * l;
-    let about = |i: f64| line * l * l / 3.0 + beam.material.density * i * l;
-    let polar = beam.material.density * (s.second_moment_y + s.second_moment_z) * l;
-    let (y, z) = (about(s.second_moment_y), about(s.second_moment_z));
+    let line = beam.material.density() * s.area() * l;
+    let about = |i: f64| line * l * l / 3.0 + beam.material.density() * i * l;
+    let polar = beam.material.density() * (s.second_moment_y() + s.second_moment_z()) * l;
+    let (y, z) = (about(s.second_moment_y()), about(s.second_moment_z()));
     [line, line, line, polar, y, z]
 }
 
 fn check_rigid_body(beam: &Beam) -> Result<(), TestCaseError> {
-    let m = beam.assemble();
+    let m = beam.assemble().unwrap();
     let (size, expected) = (m.stiffness.map(f64::abs), rigid_mass(beam));
     let motions = rigid_body(&beam.mesh);
     for (motion, exact) in motions.iter().zip(expected) {
@@ -89,7 +89,7 @@ proptest! {
 
     #[test]
     fn symmetric_with_definite_mass_and_six_rigid_motions(beam in beam()) {
-        let m = beam.assemble();
+        let m = beam.assemble().unwrap();
         prop_assert_eq!(&m.mass, &m.mass.transpose());
         prop_assert_eq!(&m.stiffness, &m.stiffness.transpose());
         prop_assert!(scaled(&m.mass).symmetric_eigenvalues().min() > 1e-6);
@@ -113,13 +113,13 @@ proptest! {
     fn nor_on_where_the_nut_is(
         s in section(), mat in material(), elements in 2..9usize, at in 0.0..=1.0f64,
     ) {
-        let mesh = MovingNode::at(1.5, elements, 1.5 * at, MovingNode::MIN_FRACTION).unwrap().mesh;
+        let mesh = MovingNode::at(1.5, elements, 1.5 * at, MovingNode::MIN_FRACTION).unwrap().mesh().clone();
         check_rigid_body(&Beam::new(s, mat, mesh))?;
     }
 
     #[test]
     fn torsion_and_banded_equal_the_full_matrices(beam in beam()) {
-        let full = beam.assemble();
+        let full = beam.assemble().unwrap();
         let (mass, stiffness) = beam.torsion();
         for (t, m) in [(&mass, &full.mass), (&stiffness, &full.stiffness)] {
             for i in 0..beam.mesh.nodes().len() {
@@ -131,8 +131,8 @@ proptest! {
             }
         }
         let mut banded = beam.assemble_banded();
-        prop_assert_eq!(&banded.mass.to_dense(), &full.mass);
-        prop_assert_eq!(&banded.stiffness.to_dense(), &full.stiffness);
+        prop_assert_eq!(&banded.mass.to_dense().unwrap(), &full.mass);
+        prop_assert_eq!(&banded.stiffness.to_dense().unwrap(), &full.stiffness);
         let before = banded.clone();
         beam.assemble_banded_into(&mut banded).unwrap();
         prop_assert_eq!(before, banded);
@@ -140,7 +140,7 @@ proptest! {
 
     #[test]
     fn shapes_are_mass_normalised_and_solve_the_problem(beam in beam()) {
-        let m = beam.assemble();
+        let m = beam.assemble().unwrap();
         let modes = natural_modes(&m.mass, &m.stiffness).unwrap();
         let identity = modes.shapes.transpose() * &m.mass * &modes.shapes;
         let order = beam.order();

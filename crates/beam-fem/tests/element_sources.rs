@@ -53,11 +53,11 @@ type Twelve = SMatrix<f64, 12, 12>;
 fn by_quadrature(s: &Section, mat: &Material, l: f64) -> (Twelve, Twelve) {
     let (mut k, mut m) = (Twelve::zeros(), Twelve::zeros());
     let rods = [
-        (0, mat.youngs_modulus * s.area, mat.density * s.area),
+        (0, mat.youngs_modulus() * s.area(), mat.density() * s.area()),
         (
             3,
-            mat.shear_modulus() * s.torsion_constant,
-            mat.density * (s.second_moment_y + s.second_moment_z),
+            mat.shear_modulus() * s.torsion_constant(),
+            mat.density() * (s.second_moment_y() + s.second_moment_z()),
         ),
     ];
     for (dof, stiffness, mass) in rods {
@@ -70,15 +70,15 @@ fn by_quadrature(s: &Section, mat: &Material, l: f64) -> (Twelve, Twelve) {
         }
     }
     let planes = [
-        ([1, 5, 7, 11], 1.0, s.second_moment_z),
-        ([2, 4, 8, 10], -1.0, s.second_moment_y),
+        ([1, 5, 7, 11], 1.0, s.second_moment_z()),
+        ([2, 4, 8, 10], -1.0, s.second_moment_y()),
     ];
     for (dofs, sign, i) in planes {
         let plane = Plane {
-            ei: mat.youngs_modulus * i,
-            shear: s.shear_coefficient * mat.shear_modulus() * s.area,
-            mass: mat.density * s.area,
-            rotary: mat.density * i,
+            ei: mat.youngs_modulus() * i,
+            shear: s.shear_coefficient() * mat.shear_modulus() * s.area(),
+            mass: mat.density() * s.area(),
+            rotary: mat.density() * i,
         };
         let (kp, mp) = bending(&plane, l);
         let signs = [1.0, sign, 1.0, sign];
@@ -128,7 +128,7 @@ fn friedman_and_kosmatka_shape_functions_give_the_same_mass() {
     let mat = steel();
     let s = Section::solid_circle(0.04, &mat).unwrap();
     let l = 0.15;
-    let phi = element::shear_parameter(&s, &mat, s.second_moment_z, l);
+    let phi = element::shear_parameter(&s, &mat, s.second_moment_z(), l);
     let mut m = Matrix4::zeros();
     for (x, weight) in GAUSS {
         let (x2, x3) = (x * x, x * x * x);
@@ -144,8 +144,8 @@ fn friedman_and_kosmatka_shape_functions_give_the_same_mass() {
             -6.0 / l * (x2 - x),
             3.0 * x2 - (2.0 - phi) * x,
         ) / (1.0 + phi);
-        let w = weight * l * mat.density;
-        m += n * n.transpose() * (w * s.area) + t * t.transpose() * (w * s.second_moment_z);
+        let w = weight * l * mat.density();
+        m += n * n.transpose() * (w * s.area()) + t * t.transpose() * (w * s.second_moment_z());
     }
     let ours = element::mass(&s, &mat, l);
     for (i, &a) in [1, 5, 7, 11].iter().enumerate() {
@@ -157,35 +157,60 @@ fn friedman_and_kosmatka_shape_functions_give_the_same_mass() {
     }
 }
 
-#[test]
-fn the_coefficients_as_printed_would_break_rigid_rotation() {
-    // Rotary inertia about the first node: v = x, θ = 1. With the readings
-    // used it is ρA l³/3 + ρI l; with E's printed 1/150, or F's printed b²/3,
-    // it is not. So these two are misprints, not another formulation.
+/// m(6,6) and m(12,6) of a steel bar, 40 mm across and `l` long: by the crate, by
+/// quadrature, and from the paper's E and F with the first coefficient of E and
+/// the last of F given.
+fn rotary(l: f64, first: f64, last: f64) -> [[f64; 3]; 2] {
     let mat = steel();
     let s = Section::solid_circle(0.04, &mat).unwrap();
-    let (l, i) = (0.15, s.second_moment_z);
+    let i = s.second_moment_z();
+    let b = element::shear_parameter(&s, &mat, i, l);
+    let r2 = i / (s.area() * l * l);
+    let unit = mat.density() * s.area() * l.powi(3) / (1.0 + b).powi(2);
+    let shear = b / 60.0 + b * b / 120.0;
+    let e = unit * (first + shear + (2.0 / 15.0 + b / 6.0 + b * b / 3.0) * r2);
+    let f = -unit * (1.0 / 140.0 + shear + (1.0 / 30.0 + b / 6.0 + last * b * b) * r2);
+    let (_, truth) = by_quadrature(&s, &mat, l);
+    let ours = element::mass(&s, &mat, l);
+    [
+        [ours[(5, 5)], truth[(5, 5)], e],
+        [ours[(5, 11)], truth[(5, 11)], f],
+    ]
+}
+
+#[test]
+fn two_coefficients_as_printed_are_misprints() {
+    // E's 1/150 where bending rules, F's b²/3 (of either sign) where shear does:
+    // against the quadrature of the field between the nodes, which is the same
+    // in all formulations.
+    let off = |found: f64, truth: f64| (found / truth - 1.0).abs();
+    for l in [0.15, 0.0233] {
+        for [ours, truth, formula] in rotary(l, 1.0 / 105.0, -1.0 / 6.0) {
+            // 3e-15 as measured.
+            assert!(off(ours, truth) < 2e-14, "{ours} {truth}");
+            assert!(off(formula, truth) < 2e-14, "{formula} {truth}");
+        }
+    }
+    let [[ours, _, printed], _] = rotary(0.15, 1.0 / 150.0, -1.0 / 6.0);
+    println!("E off by {:.2e}", off(printed, ours));
+    assert!(off(printed, ours) > 0.2);
+    for last in [1.0 / 3.0, -1.0 / 3.0] {
+        let [_, [ours, _, printed]] = rotary(0.0233, 1.0 / 105.0, last);
+        println!("F off by {:.2e}", off(printed, ours));
+        assert!(off(printed, ours) > 2.0);
+    }
+}
+
+#[test]
+fn turning_about_an_end_has_the_rigid_inertia() {
+    // v = x, θ = 1: ρA l³/3 + ρI l.
+    let mat = steel();
+    let s = Section::solid_circle(0.04, &mat).unwrap();
+    let l = 0.15;
     let m = element::mass(&s, &mat, l);
     let dofs = [(1, 0.0), (5, 1.0), (7, l), (11, 1.0)];
-    let energy = |m: &Twelve| -> f64 {
-        let pairs = dofs.iter().flat_map(|a| dofs.iter().map(move |b| (a, b)));
-        pairs.map(|(a, b)| a.1 * b.1 * m[(a.0, b.0)]).sum()
-    };
-    let exact = mat.density * (s.area * l.powi(3) / 3.0 + i * l);
-    assert!((energy(&m) / exact - 1.0).abs() < 1e-14);
-
-    let b = element::shear_parameter(&s, &mat, i, l);
-    let unit = mat.density * s.area * l.powi(3) / (1.0 + b).powi(2);
-    let mut printed_e = m;
-    for d in [5, 11] {
-        printed_e[(d, d)] += unit * (1.0 / 150.0 - 1.0 / 105.0);
-    }
-    assert!((energy(&printed_e) / exact - 1.0).abs() > 1e-3);
-
-    let r2 = i / (s.area * l * l);
-    let mut printed_f = m;
-    for (a, c) in [(5, 11), (11, 5)] {
-        printed_f[(a, c)] -= unit * (b * b / 6.0 - b * b / 3.0) * r2;
-    }
-    assert!((energy(&printed_f) / exact - 1.0).abs() > 1e-6);
+    let pairs = dofs.iter().flat_map(|a| dofs.iter().map(move |b| (a, b)));
+    let energy: f64 = pairs.map(|(a, b)| a.1 * b.1 * m[(a.0, b.0)]).sum();
+    let exact = mat.density() * (s.area() * l.powi(3) / 3.0 + s.second_moment_z() * l);
+    assert!((energy / exact - 1.0).abs() < 1e-14);
 }

@@ -57,6 +57,16 @@ pub enum DriveError {
     /// The beam model refused its input or did not solve.
     #[error(transparent)]
     Beam(#[from] BeamError),
+    /// No load on the table was found that goes with the motion it leads to.
+    #[error(
+        "no load was found that goes with the table's motion after {rounds} tries, the last off by {residual} N: the load's law must be finite, and bounded or growing with the speed"
+    )]
+    LoadNotFound {
+        /// Loads that were tried.
+        rounds: u32,
+        /// What was left of the last one, N.
+        residual: f64,
+    },
     /// The dynamic stiffness is singular (a resonance without damping, or zero frequency).
     #[error(
         "the dynamic stiffness at {angular_frequency} rad/s is singular: ask off the resonance, above zero"
@@ -131,8 +141,8 @@ impl FeedDrive {
     /// Inertia of everything that rotates, kg·m².
     pub fn rotating_inertia(&self) -> f64 {
         let p = &self.parameters;
-        let polar = p.section.second_moment_y + p.section.second_moment_z;
-        p.motor_inertia + p.sensor_inertia + p.material.density * polar * p.screw_length
+        let screw = p.material.density() * p.section.polar_moment() * p.screw_length;
+        p.motor_inertia + p.sensor_inertia + screw
     }
 
     /// Inertia of the whole axis seen at the motor, table included, kg·m².
@@ -140,17 +150,23 @@ impl FeedDrive {
         self.rotating_inertia() + self.parameters.table_mass * self.travel_per_radian().powi(2)
     }
 
+    /// Whether the position `x` (m from the driven end) is on the screw.
+    pub(crate) fn has(&self, x: f64) -> bool {
+        (0.0..=self.parameters.screw_length).contains(&x)
+    }
+
     /// Refuses positions off the screw.
-    pub(crate) fn check_position(&self, x: f64) -> Result<(), DriveError> {
-        let length = self.parameters.screw_length;
-        if (0.0..=length).contains(&x) {
-            Ok(())
-        } else {
-            Err(DriveError::OffScrew {
-                position: x,
-                length,
-            })
+    ///
+    /// # Errors
+    /// [`DriveError::OffScrew`], for one that is no number too.
+    pub fn check_position(&self, x: f64) -> Result<(), DriveError> {
+        if self.has(x) {
+            return Ok(());
         }
+        Err(DriveError::OffScrew {
+            position: x,
+            length: self.parameters.screw_length,
+        })
     }
 }
 

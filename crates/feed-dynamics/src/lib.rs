@@ -66,6 +66,6 @@ pub use matrices::{Matrices, NutCoupling};
 pub use modes::DriveModes;
 pub use response::Coordinate;
 pub use stepper::{
-    ImplicitState, ImplicitStepper, ModalState, ModalStepper, NutErrors, Observation, Settled,
-    TableMotion, TimeStepper,
+    ImplicitState, ImplicitStepper, LoadSearch, ModalState, ModalStepper, NutErrors, Observation,
+    Settled, StepReport, TableMotion, TimeStepper, find_load,
 };

@@ -64,9 +64,9 @@ impl FeedDrive {
                 let moved =
                     MovingNode::at(p.screw_length, p.elements, x, MovingNode::MIN_FRACTION)?;
                 // A node that is the nut's own: all weight on it.
-                let node = moved.node - 1;
+                let node = moved.node() - 1;
                 let weights = [0.0, 1.0];
-                (moved.mesh, NutSeat { node, weights })
+                (moved.mesh().clone(), NutSeat { node, weights })
             }
         };
         let (screw_mass, screw_stiffness) = Beam {

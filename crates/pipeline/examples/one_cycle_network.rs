@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             seed,
             density,
         };
-        Sampler::new(&axis, &plan).map(|sampler| sampler.all())
+        Sampler::new(&axis, &plan)?.all()
     };
     let seen = draw(2000, 1, SpeedDensity::NearZero { scale: 3e-3 })?;
     let even = draw(2000, 2, SpeedDensity::Uniform)?;

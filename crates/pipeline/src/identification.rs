@@ -224,7 +224,7 @@ impl Inertia {
         // Compliances from the motor on, rad/(N·m).
         let sensor = 1.0 / p.motor_coupling_stiffness;
         let driven_end = sensor + 1.0 / p.screw_coupling_stiffness;
-        let twist = x / (p.material.shear_modulus() * p.section.torsion_constant);
+        let twist = x / (p.material.shear_modulus() * p.section.torsion_constant());
         // Linear up to the nut, constant beyond it: the mean over the screw.
         let screw = driven_end + twist * (1.0 - 0.5 * x / p.screw_length);
         let table = driven_end + twist + 1.0 / (p.nut_stiffness * r * r);

@@ -39,6 +39,14 @@ pub enum SampleFileError {
         /// The system's reason.
         reason: std::io::Error,
     },
+    /// A sample could not be simulated.
+    #[error("the samples of {path} cannot be simulated: {reason}")]
+    Simulation {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: Box<crate::PipelineError>,
+    },
     /// The content is not what a whole sample file holds.
     #[error("the sample file {path} is refused: {what}; make it anew with `cargo xtask sample`")]
     Refused {
@@ -54,7 +62,8 @@ pub enum SampleFileError {
 /// process that is killed may leave what it wrote aside, `.<name>.<six letters or digits>`.
 ///
 /// # Errors
-/// [`SampleFileError::Io`] where the folder is not writable or the disk full.
+/// [`SampleFileError::Io`] where the folder is not writable or the disk full;
+/// [`SampleFileError::Simulation`] where a sample cannot be simulated.
 pub fn write(
     path: &Path,
     sampler: &Sampler,
@@ -78,7 +87,13 @@ pub fn write(
     out.put(&fixed(fingerprint)).map_err(failed)?;
     for start in (0..sampler.count()).step_by(CHUNK) {
         let end = (start + CHUNK).min(sampler.count());
-        let samples = sampler.rows(start..end);
+        let samples = sampler.rows(start..end).map_err(|reason| {
+            let path = path.to_owned();
+            SampleFileError::Simulation {
+                path,
+                reason: Box::new(reason),
+            }
+        })?;
         let mut bytes = Vec::with_capacity((end - start) * ROW);
         for (input, increment) in samples.inputs.iter().zip(&samples.increments) {
             for value in input_row(input).iter().chain([increment]) {

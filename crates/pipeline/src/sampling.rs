@@ -91,7 +91,10 @@ impl Sampler {
     }
 
     /// Sample `row`, from 0.
-    pub fn sample(&self, row: usize) -> (CycleInput, f64) {
+    ///
+    /// # Errors
+    /// [`PipelineError::Drive`] where the cycle cannot be simulated.
+    pub fn sample(&self, row: usize) -> Result<(CycleInput, f64), PipelineError> {
         let mut cell = [0.0; 4];
         self.design.row(row, &mut cell);
         let value = |i: usize| self.marginals[i].inverse_cdf(cell[i]);
@@ -105,21 +108,29 @@ impl Sampler {
         if self.keep_direction && input.speed * (input.speed + change) < 0.0 {
             input.speed -= change;
         }
-        (input, self.cycle.increment(&input))
+        Ok((input, self.cycle.increment(&input)?))
     }
 
     /// A range of rows, in order, on all threads.
-    pub fn rows(&self, rows: std::ops::Range<usize>) -> SampleSet {
-        let (inputs, increments) = rows
+    ///
+    /// # Errors
+    /// That of the first row that cannot be simulated.
+    pub fn rows(&self, rows: std::ops::Range<usize>) -> Result<SampleSet, PipelineError> {
+        let simulated: Vec<_> = rows
             .into_par_iter()
             .with_min_len(64)
             .map(|row| self.sample(row))
-            .unzip();
-        SampleSet { inputs, increments }
+            .collect();
+        let samples = simulated.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let (inputs, increments) = samples.into_iter().unzip();
+        Ok(SampleSet { inputs, increments })
     }
 
     /// All samples.
-    pub fn all(&self) -> SampleSet {
+    ///
+    /// # Errors
+    /// As [`Sampler::rows`].
+    pub fn all(&self) -> Result<SampleSet, PipelineError> {
         self.rows(0..self.count())
     }
 }

@@ -41,6 +41,19 @@ impl Strategy {
         Self::Lugre,
         Self::NetworkLugrePrinted,
     ];
+
+    /// What tables and messages call it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Network => "network",
+            Self::NetworkLugre => "network + LuGre",
+            Self::TransferFunction => "transfer function",
+            Self::TransferFunctionLugre => "transfer function + LuGre",
+            Self::Lugre => "LuGre",
+            Self::NetworkLugrePrinted => "network + LuGre as in the axis file",
+        }
+    }
 }
 
 /// What the strategies are made of.

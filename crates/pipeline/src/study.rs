@@ -100,7 +100,7 @@ pub fn study(
             seed,
             density: SpeedDensity::Uniform,
         };
-        Ok(Sampler::new(axis, &plan)?.all())
+        Sampler::new(axis, &plan)?.all()
     };
     let mut sets = Vec::new();
     for seed in (0..seeds).map(|i| first_seed.wrapping_add(i)) {

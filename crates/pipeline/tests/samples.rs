@@ -23,8 +23,8 @@ fn sampler(count: usize, density: SpeedDensity) -> Sampler {
 #[test]
 fn any_rows_are_those_of_the_whole() {
     let sampler = sampler(500, SpeedDensity::Uniform);
-    let whole = sampler.all();
-    let part = sampler.rows(123..321);
+    let whole = sampler.all().unwrap();
+    let part = sampler.rows(123..321).unwrap();
     assert_eq!(part.inputs, whole.inputs[123..321]);
     assert_eq!(part.increments, whole.increments[123..321]);
 }
@@ -32,7 +32,9 @@ fn any_rows_are_those_of_the_whole() {
 #[test]
 fn the_dense_speeds_stay_in_range_and_do_not_reverse() {
     let axis = axis();
-    let set = sampler(4000, SpeedDensity::NearZero { scale: 3e-3 }).all();
+    let set = sampler(4000, SpeedDensity::NearZero { scale: 3e-3 })
+        .all()
+        .unwrap();
     let range = axis.samples.speed;
     // What a moved sample may gain: one cycle's change of speed.
     let change = axis.samples.acceleration.most * axis.period;
@@ -58,7 +60,10 @@ fn a_file_comes_back_bit_for_bit_and_damage_is_refused() {
     let mut rows = 0;
     write(&path, &sampler, &axis.fingerprint, |n| rows += n).unwrap();
     assert_eq!(rows, 50);
-    assert_eq!(read(&path, &axis.fingerprint).unwrap(), sampler.all());
+    assert_eq!(
+        read(&path, &axis.fingerprint).unwrap(),
+        sampler.all().unwrap()
+    );
 
     let whole = std::fs::read(&path).unwrap();
     let refused = |bytes: &[u8], fingerprint: &str| {
@@ -84,7 +89,9 @@ fn a_file_comes_back_bit_for_bit_and_damage_is_refused() {
 #[test]
 fn a_folded_network_is_map_plus_residual() {
     let axis = axis();
-    let set = sampler(300, SpeedDensity::NearZero { scale: 3e-3 }).all();
+    let set = sampler(300, SpeedDensity::NearZero { scale: 3e-3 })
+        .all()
+        .unwrap();
     let plan = NetworkPlan {
         hidden: vec![5, 3],
         epochs: 30,
@@ -105,7 +112,7 @@ fn a_folded_network_is_map_plus_residual() {
 
 #[test]
 fn a_linear_map_is_found_exactly() {
-    let mut set = sampler(40, SpeedDensity::Uniform).all();
+    let mut set = sampler(40, SpeedDensity::Uniform).all().unwrap();
     set.increments = (set.inputs.iter())
         .map(|i| 2.0 + 3.0 * i.position - i.speed + 0.5 * i.acceleration + 0.25 * i.iq_command)
         .collect();

@@ -2,6 +2,7 @@
 
 use miette::{IntoDiagnostic, Result};
 use pipeline::compensation::{self, CompensatedRun};
+use pipeline::strategies::Strategy;
 
 use super::{identify, train, validate};
 use crate::context::{Common, Context};
@@ -44,13 +45,12 @@ pub fn run(context: &Context) -> Result<()> {
     stage.write_json(COMPENSATION, &runs)?;
     stage.finish()?;
     say("compensate: tracking error of the machine (simulated), max / mean in µm")?;
-    for run in &runs {
-        let f = run.run.figures;
-        let strategy = format!("{:?}", run.strategy);
-        say(format!(
-            "  {} {strategy:<22} {:>7.2} / {:.3}",
-            run.id, f.max, f.mean
-        ))?;
+    for strategy in Strategy::COMPENSATED {
+        say(format!("  {}", strategy.label()))?;
+        for run in runs.iter().filter(|run| run.strategy == strategy) {
+            let f = run.run.figures;
+            say(format!("  {:>10} {:>8.3} / {:.4}", run.id, f.max, f.mean))?;
+        }
     }
     Ok(())
 }

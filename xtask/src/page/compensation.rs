@@ -4,8 +4,8 @@ use pipeline::strategies::Strategy;
 use report::{Cell, Section, Series, Table};
 
 use super::{best_if, pair, printed, times, tracking};
-use crate::commands::report::Results;
 use crate::paper::{Pair, Row};
+use crate::results::Results;
 
 type PaperColumn = fn(&Row) -> Pair;
 

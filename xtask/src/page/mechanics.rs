@@ -4,8 +4,8 @@ use lugre::LuGre;
 use pipeline::vibration::Vibration;
 use report::{Cell, Figure, Section, Series, Table};
 
-use crate::commands::report::Results;
 use crate::context::Context;
+use crate::results::Results;
 
 /// Identification: parameters and curve.
 pub fn friction(context: &Context, results: &Results) -> Section {

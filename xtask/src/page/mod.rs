@@ -7,11 +7,12 @@ mod mechanics;
 mod network;
 mod tracking;
 
+use feed_dynamics::NutCoupling;
 use report::{Cell, KeyValues, Mark, Notice, Page, Section, Table};
 
-use crate::commands::report::Results;
 use crate::context::Context;
 use crate::paper::Pair;
+use crate::results::Results;
 
 /// The whole page.
 pub fn page(context: &Context, results: &Results) -> Page {
@@ -101,7 +102,7 @@ fn settings(context: &Context, results: &Results) -> Section {
             "Internal step",
             format!("{} µs", 1e6 * context.axis.simulation.step),
         )
-        .entry("Nut coupling", format!("{:?}", context.axis.coupling))
+        .entry("Nut coupling", nut_coupling(context.axis.coupling))
         .entry(
             "Halving the step moves the figures by at most",
             format!(
@@ -117,6 +118,13 @@ fn settings(context: &Context, results: &Results) -> Section {
             ),
         );
     Section::new("Settings").key_values(list)
+}
+
+fn nut_coupling(coupling: NutCoupling) -> &'static str {
+    match coupling {
+        NutCoupling::ShapeFunctions => "shape functions of the element that the nut is in",
+        NutCoupling::MovingNode => "a node that moves with the nut",
+    }
 }
 
 /// Maximum and mean as two cells.

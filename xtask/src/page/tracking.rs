@@ -5,8 +5,8 @@ use pipeline::validation::ValidatedTrajectory;
 use report::{Cell, Figure, Section, Series, Table};
 
 use super::{pair, printed, times};
-use crate::commands::report::Results;
 use crate::context::Context;
+use crate::results::Results;
 
 /// Figure 10: velocity, acceleration, jerk.
 pub fn profiles(results: &Results) -> Section {

@@ -11,6 +11,7 @@ mod one_cycle;
 mod outcome;
 mod published;
 mod recorder;
+mod rigid;
 mod vibration;
 
 use std::path::PathBuf;

@@ -1,7 +1,9 @@
 //! How runs end that do not come to their end.
 
+use axis_sim::effects::{ActiveEffect, Changes, Effect, EffectChannel};
 use axis_sim::{Axis, ClosedLoop, Cycle, FOLLOWING_ERROR_LIMIT, Outcome, StopReason};
 use compensator::{Compensator, Correction, NoCompensation, Sample};
+use feed_dynamics::DriveError;
 use foc_pmsm::{Servo, ServoGains, ServoLimits};
 use trajectories::{Limits, SCurve};
 
@@ -186,4 +188,104 @@ fn a_motion_beyond_the_stroke() {
         assert!((0.0..=1.5).contains(&last));
         assert!((last - to.clamp(0.0, 1.5)).abs() < 0.3 * 2e-4, "{last}");
     }
+}
+
+/// After 0.1 s, a load that falls with the speed faster than any table of
+/// 515 kg can follow in a step of 100 µs: 2 m/h is 1e7 N·s/m.
+fn runaway(_: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError> {
+    to.load(|table| {
+        let acts = if table.time > 0.10005 { 1.0 } else { 0.0 };
+        -1e9 * acts * table.speed
+    });
+    Ok(())
+}
+
+/// After 0.1 s, a load that is no number.
+fn nothing(_: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError> {
+    to.load(|table| if table.time > 0.10005 { f64::NAN } else { 0.0 });
+    Ok(())
+}
+
+/// After 0.1 s, a nut that is shifted by no number.
+fn nowhere(_: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError> {
+    to.offset(|screw| {
+        if screw.time > 0.10005 {
+            [f64::INFINITY, 0.0]
+        } else {
+            [0.0; 2]
+        }
+    });
+    Ok(())
+}
+
+const fn outside(install: fn(&[f64], &mut Changes<'_>) -> Result<(), DriveError>) -> Effect {
+    Effect {
+        name: "outside",
+        summary: "",
+        channel: EffectChannel::Torque,
+        depends_on: "",
+        parameters: &[],
+        on_rigid: true,
+        install,
+    }
+}
+
+static RUNAWAY: Effect = outside(runaway);
+static NOTHING: Effect = outside(nothing);
+static NOWHERE: Effect = outside(nowhere);
+
+#[test]
+fn a_load_that_no_motion_goes_with() {
+    for (effect, expected) in [
+        (&RUNAWAY, StopReason::LoadNotFound),
+        (&NOTHING, StopReason::NotFinite),
+        (&NOWHERE, StopReason::NotFinite),
+    ] {
+        let mut axis = axis(PRINTED);
+        axis.effects.push(ActiveEffect {
+            effect,
+            values: Vec::new(),
+        });
+        let (outcome, seen) = run(&axis, &mut NoCompensation);
+        let (time, reason) = stopped(outcome);
+        assert_eq!(reason, expected);
+        // The state is that of the last step that was made.
+        assert!((time - 0.1).abs() < 1e-9 && seen == 1001, "{time} {seen}");
+        let motion = axis.plan(&axis.trajectories[0]).unwrap();
+        let Outcome::Stopped {
+            position, error, ..
+        } = outcome
+        else {
+            unreachable!()
+        };
+        let wanted = trajectories::Motion::at(&motion, time).position;
+        assert!(error.abs() < 1e-4 && (wanted - position - error).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_motion_that_begins_off_the_screw() {
+    let axis = axis(PRINTED);
+    let limits = Limits::new(0.3, 2.0, 20.0).unwrap();
+    for (from, to) in [(-0.1, 0.6), (1.6, 0.6)] {
+        let motion = SCurve::plan(from, to, &limits).unwrap();
+        let outcome = ClosedLoop::new(&axis)
+            .unwrap()
+            .run(&motion, &mut NoCompensation, |_| panic!("no cycle"));
+        assert_eq!(stopped(outcome), (0.0, StopReason::LeftStroke));
+    }
+}
+
+#[test]
+fn a_stroke_beyond_the_screw_ends_with_the_screw() {
+    let mut axis = axis(PRINTED);
+    axis.stroke.maximum = 3.0;
+    let limits = Limits::new(0.3, 2.0, 20.0).unwrap();
+    let motion = SCurve::plan(1.4, 1.6, &limits).unwrap();
+    let mut last = 0.0;
+    let outcome = ClosedLoop::new(&axis)
+        .unwrap()
+        .run(&motion, &mut NoCompensation, |c| last = c.position);
+    assert_eq!(stopped(outcome).1, StopReason::LeftStroke);
+    assert!((1.5 - last).abs() < 0.3 * 2e-4, "{last}");
 }

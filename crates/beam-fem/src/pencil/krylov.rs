@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use crate::BeamError;
+use crate::error::check_size;
 use crate::pencil::block::{dot, inner, multiply, subtract};
 use crate::pencil::components::Component;
 use crate::pencil::ldlt::Ldlt;
@@ -42,6 +43,7 @@ pub(crate) fn lowest(
     // eigenspace that the start has missed shows itself as one too few.
     let least = (1.0 - 1e-9) / (limit + s);
     let largest = (8 * wanted + 60).min(order);
+    check_size("the projected matrix", largest + 4, largest + 4)?;
     let mut basis = Basis::new(&component.mass, factor, largest + 4);
     basis.start();
     while basis.columns() <= largest {

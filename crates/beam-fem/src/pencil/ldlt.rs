@@ -8,12 +8,30 @@ use crate::pencil::Block;
 /// For μ below the spectrum the matrix is positive definite, and no pivoting
 /// is needed. Above, the signs of D count the eigenvalues below μ (Sylvester's
 /// law of inertia), and only they are used.
+///
+/// What is counted is a matrix that differs from A = K − μM by E with
+/// |E| ≤ γ |L| |D| |Lᵀ|, γ ≈ (p + 2) 2⁻⁵³ for the half bandwidth p (Higham,
+/// *Accuracy and Stability of Numerical Algorithms*, 2002, Theorem 9.3). With
+/// p = 1 that E never matters, however small a pivot is: the count is that of a
+/// matrix whose entries are changed by a few units in their last places (Kahan
+/// 1966; Demmel, *Applied Numerical Linear Algebra*, 1997, Lemma 5.4). With
+/// p > 1 a small pivot, where μ meets an eigenvalue of a leading part of the
+/// matrix, makes E as large as it likes. So a count stands only if every
+/// g_i = Σ_k l_ik² |d_k| stays within [`GROWTH`] times |K_ii| + |μ| M_ii: then
+/// |E_ij| ≤ γ √(g_i g_j), the rounding of the entries themselves times that.
 pub(crate) struct Ldlt {
     order: usize,
     half_bandwidth: usize,
     /// Columns of L below its unit diagonal; the diagonal's place holds D.
     data: Vec<f64>,
+    /// g_i, while they are summed.
+    growth: Vec<f64>,
 }
+
+/// Most that the terms of a row of L D Lᵀ may outgrow the row's own entries.
+/// Of the counts that beams of 1 to 1000 elements ask for, one in twenty does not
+/// stand.
+const GROWTH: f64 = 1024.0;
 
 impl Ldlt {
     pub fn new(mass: &SymmetricBanded, stiffness: &SymmetricBanded) -> Self {
@@ -23,29 +41,58 @@ impl Ldlt {
             order,
             half_bandwidth,
             data: vec![0.0; order * (half_bandwidth + 1)],
+            growth: vec![0.0; if half_bandwidth > 1 { order } else { 0 }],
         }
     }
 
     /// Factorises K − μ M; returns the number of negative pivots, which is
-    /// that of eigenvalues below μ.
+    /// that of eigenvalues below μ. None where small pivots have made it
+    /// unreliable: another μ beside this one will do.
     pub fn factorise(
         &mut self,
         mass: &SymmetricBanded,
         stiffness: &SymmetricBanded,
         mu: f64,
-    ) -> usize {
+    ) -> Option<usize> {
         self.load(mass, stiffness, mu);
-        match self.half_bandwidth {
+        let negative = match self.half_bandwidth {
             0 => self.data.iter().filter(|d| **d < 0.0).count(),
             1 => self.eliminate::<2>(),
             3 => self.eliminate::<4>(),
             _ => self.eliminate_any(),
-        }
+        };
+        let own = |i: usize| stiffness.column(i)[0].abs() + mu.abs() * mass.column(i)[0];
+        let reliable = match self.half_bandwidth {
+            0 | 1 => true,
+            3 => self.grew_little::<4>(own),
+            _ => self.any_grew_little(own),
+        };
+        reliable.then_some(negative)
+    }
+
+    /// Whether every g_i is within [`GROWTH`] times `own(i)`; not, if it is no number.
+    fn grew_little<const WIDTH: usize>(&mut self, own: impl Fn(usize) -> f64) -> bool {
+        self.growth.fill(0.0);
+        let (columns, _) = self.data.as_chunks::<WIDTH>();
+        let columns = columns.iter().enumerate();
+        columns.fold(true, |all, (j, l)| {
+            all & add_growth(l, &mut self.growth[j..], own(j))
+        })
+    }
+
+    /// The same for any band.
+    fn any_grew_little(&mut self, own: impl Fn(usize) -> f64) -> bool {
+        self.growth.fill(0.0);
+        let columns = self.data.chunks_exact(self.half_bandwidth + 1).enumerate();
+        columns.fold(true, |all, (j, l)| {
+            all & add_growth(l, &mut self.growth[j..], own(j))
+        })
     }
 
     /// Writes K − μ M into the band.
     fn load(&mut self, mass: &SymmetricBanded, stiffness: &SymmetricBanded, mu: f64) {
-        if mass.half_bandwidth() == stiffness.half_bandwidth() {
+        let widths = [mass.half_bandwidth(), stiffness.half_bandwidth()];
+        if widths == [self.half_bandwidth; 2] {
             let entries = stiffness.data().iter().zip(mass.data());
             for (target, (k, m)) in self.data.iter_mut().zip(entries) {
                 *target = k - mu * m;
@@ -153,6 +200,18 @@ fn pivot(d: &mut f64) -> usize {
     usize::from(*d < 0.0)
 }
 
+/// Adds a column's part to the g_i from its own row on, and tells whether that
+/// row's, now whole, is within [`GROWTH`] times `own`.
+#[inline(always)]
+fn add_growth(l: &[f64], growth: &mut [f64], own: f64) -> bool {
+    let size = l[0].abs();
+    growth[0] += size;
+    for (factor, g) in l[1..].iter().zip(&mut growth[1..]) {
+        *g += factor * factor * size;
+    }
+    growth[0] <= GROWTH * own
+}
+
 #[inline(always)]
 fn forward(l: &[f64], j: usize, x: &mut Block) {
     let (done, rest) = x.split_at_mut(j + 1);
@@ -174,3 +233,6 @@ fn backward(l: &[f64], j: usize, x: &mut Block) {
     }
     head[j] = own;
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,7 +3,8 @@
 //! 1. Split the pencil into independent parts ([`components`]).
 //! 2. Bisect, by counting negative pivots of K − μM, for a limit μ below which
 //!    there are at least as many eigenvalues as wanted, and not many more.
-//!    Each part then knows how many of them it must find.
+//!    Each part then knows how many of them it must find. Where a count is not
+//!    reliable ([`ldlt`]), one a little above takes its place.
 //! 3. Find them: block Lanczos on (K + sM)⁻¹ M with s = μ/64 ([`krylov`]).
 //!    s > 0 keeps the matrix positive definite though a free beam's K is
 //!    singular.
@@ -16,6 +17,7 @@ mod ldlt;
 use nalgebra::DMatrix;
 
 use crate::banded::{BandedMatrices, SymmetricBanded};
+use crate::error::check_size;
 use crate::modes::frequency;
 use crate::{BeamError, Modes, natural_modes};
 pub(crate) use block::Block;
@@ -33,6 +35,10 @@ const SHIFT: f64 = 2e-13;
 /// Rounding of an eigenvalue, in units of 2⁻⁵² max K_ii / M_ii.
 const ROUNDING: f64 = 32.0;
 
+/// How often a limit is moved to where the count is reliable: each move finds
+/// such a place far more often than not.
+const MOST_MOVES: usize = 32;
+
 /// The `count` lowest modes of a banded pencil. Time and memory grow
 /// linearly with the order; the result does not depend on threads or runs.
 ///
@@ -43,11 +49,11 @@ const ROUNDING: f64 = 32.0;
 ///
 /// # Errors
 /// [`BeamError::Shape`], [`BeamError::NotFinite`], [`BeamError::ModeCount`],
-/// [`BeamError::MassNotPositiveDefinite`], [`BeamError::StiffnessNegative`],
+/// [`BeamError::TooLarge`], [`BeamError::MassNotPositiveDefinite`], [`BeamError::StiffnessNegative`],
 /// [`BeamError::NotConverged`].
 pub fn lowest_modes(matrices: &BandedMatrices, count: usize) -> Result<Modes, BeamError> {
     let (mass, stiffness) = (&matrices.mass, &matrices.stiffness);
-    check(mass, stiffness, count)?;
+    check(matrices, count)?;
     let mut parts = split(mass, stiffness)
         .into_iter()
         .map(Part::new)
@@ -57,9 +63,15 @@ pub fn lowest_modes(matrices: &BandedMatrices, count: usize) -> Result<Modes, Be
     for (index, part) in parts.iter_mut().enumerate() {
         let shapes = part.modes_below(limit)?;
         for (column, eigenvalue) in part.quotients(&shapes).into_iter().enumerate() {
+            if !eigenvalue.is_finite() {
+                return Err(BeamError::NotConverged);
+            }
             let frequency = frequency(eigenvalue, part.rounding());
             found.push((frequency, index, shapes.column(column).into_owned()));
         }
+    }
+    if found.len() < count {
+        return Err(BeamError::NotConverged);
     }
     // Stable: equal frequencies stay in the order of their parts.
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -76,21 +88,10 @@ pub fn lowest_modes(matrices: &BandedMatrices, count: usize) -> Result<Modes, Be
     })
 }
 
-fn check(
-    mass: &SymmetricBanded,
-    stiffness: &SymmetricBanded,
-    count: usize,
-) -> Result<(), BeamError> {
-    let order = mass.order();
-    if stiffness.order() != order {
-        return Err(BeamError::Shape {
-            field: "stiffness",
-            rows: stiffness.order(),
-            columns: stiffness.order(),
-            order,
-        });
-    }
-    for (field, matrix) in [("mass", mass), ("stiffness", stiffness)] {
+fn check(matrices: &BandedMatrices, count: usize) -> Result<(), BeamError> {
+    matrices.check_orders()?;
+    let order = matrices.mass.order();
+    for (field, matrix) in [("mass", &matrices.mass), ("stiffness", &matrices.stiffness)] {
         if !matrix.is_finite() {
             return Err(BeamError::NotFinite { field });
         }
@@ -98,7 +99,7 @@ fn check(
     if !(1..=order).contains(&count) {
         return Err(BeamError::ModeCount { count, order });
     }
-    Ok(())
+    check_size("shapes", order, count)
 }
 
 /// A limit with at least `count` eigenvalues below it: down in steps of 256
@@ -107,16 +108,20 @@ fn check(
 fn limit(parts: &mut [Part], count: usize) -> Result<f64, BeamError> {
     let mut high = above(parts, count)?;
     let (mut low, floor) = (high / 256.0, high * 1e-12);
-    while low > floor && below(parts, low) >= count {
-        high = low;
+    while low > floor {
+        let (mu, found) = below(parts, low)?;
+        if found < count {
+            break;
+        }
+        high = mu;
         low /= 256.0;
     }
     for _ in 0..4 {
-        let middle = (high * low).sqrt();
-        if below(parts, middle) >= count {
-            high = middle;
+        let (mu, found) = below(parts, (high * low).sqrt())?;
+        if found >= count {
+            high = mu;
         } else {
-            low = middle;
+            low = mu;
         }
     }
     Ok(high)
@@ -128,18 +133,28 @@ fn limit(parts: &mut [Part], count: usize) -> Result<f64, BeamError> {
 fn above(parts: &mut [Part], count: usize) -> Result<f64, BeamError> {
     let scale = parts.iter().fold(0.0_f64, |m, part| m.max(part.scale));
     let mut top = if scale > 0.0 { scale } else { 1.0 };
-    while below(parts, top) < count {
-        top *= 2.0;
-        if !top.is_finite() {
-            return Err(BeamError::NotConverged);
+    while top.is_finite() {
+        let (mu, found) = below(parts, top)?;
+        if found >= count {
+            return Ok(mu);
         }
+        top *= 2.0;
     }
-    Ok(top)
+    Err(BeamError::NotConverged)
 }
 
-/// Number of eigenvalues of all parts below `mu`.
-fn below(parts: &mut [Part], mu: f64) -> usize {
-    parts.iter_mut().map(|part| part.count(mu)).sum()
+/// `mu`, or the first value above it in steps of a 64th at which every part can
+/// be counted reliably, and the number of eigenvalues of all parts below it.
+fn below(parts: &mut [Part], mu: f64) -> Result<(f64, usize), BeamError> {
+    let mut at = mu;
+    for _ in 0..MOST_MOVES {
+        let counts = parts.iter_mut().map(|part| part.count(at));
+        if let Some(sum) = counts.sum() {
+            return Ok((at, sum));
+        }
+        at *= 1.0 + 1.0 / 64.0;
+    }
+    Err(BeamError::NotConverged)
 }
 
 /// An independent part with its working memory.
@@ -155,14 +170,18 @@ impl Part {
         let (mass, stiffness) = (&component.mass, &component.stiffness);
         let mut scale = 0.0_f64;
         for j in 0..mass.order() {
-            let (m, k) = (mass.get(j, j), stiffness.get(j, j));
+            let (m, k) = (mass.column(j)[0], stiffness.column(j)[0]);
             if m <= 0.0 {
                 return Err(BeamError::MassNotPositiveDefinite);
             }
             scale = scale.max(k.abs() / m);
         }
+        if !scale.is_finite() {
+            return Err(BeamError::NotFinite { field: "reduced" });
+        }
         let mut factor = Ldlt::new(mass, stiffness);
-        if factor.factorise(mass, mass, 0.0) > 0 {
+        // No pivot of a positive definite matrix is small beside its row.
+        if factor.factorise(mass, mass, 0.0) != Some(0) {
             return Err(BeamError::MassNotPositiveDefinite);
         }
         Ok(Self {
@@ -172,8 +191,8 @@ impl Part {
         })
     }
 
-    /// Number of eigenvalues below `mu`.
-    fn count(&mut self, mu: f64) -> usize {
+    /// Number of eigenvalues below `mu`; none where it is not reliable.
+    fn count(&mut self, mu: f64) -> Option<usize> {
         let (mass, stiffness) = (&self.component.mass, &self.component.stiffness);
         self.factor.factorise(mass, stiffness, mu)
     }
@@ -184,17 +203,19 @@ impl Part {
 
     /// Shapes of all modes with eigenvalues below `limit`, one a column.
     fn modes_below(&mut self, limit: f64) -> Result<DMatrix<f64>, BeamError> {
-        let (order, wanted) = (self.component.dofs.len(), self.count(limit));
+        let order = self.component.dofs.len();
+        let wanted = self.count(limit).ok_or(BeamError::NotConverged)?;
         if wanted == 0 {
             return Ok(DMatrix::zeros(order, 0));
         }
         if order < 4 * wanted + SMALL {
             let (mass, stiffness) = (&self.component.mass, &self.component.stiffness);
-            let modes = natural_modes(&mass.to_dense(), &stiffness.to_dense())?;
+            let modes = natural_modes(&mass.to_dense()?, &stiffness.to_dense()?)?;
             return Ok(modes.shapes.columns(0, wanted).into_owned());
         }
         let s = (limit / 64.0).max(SHIFT * self.scale);
-        if self.count(-s) > 0 {
+        // Where it is positive definite, the count is reliable too.
+        if self.count(-s) != Some(0) {
             return Err(BeamError::StiffnessNegative);
         }
         krylov::lowest(&self.component, &self.factor, s, limit, wanted)

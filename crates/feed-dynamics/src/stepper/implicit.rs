@@ -2,13 +2,16 @@
 //! drive's own M(x), C(x) and K(x), with either nut coupling.
 //!
 //! `S a₁ = F₁ − K (q_p + β v_p)` with `S = M + (h²/4 + βh/2) K`, where q_p
-//! and v_p hold all that is known at the start. S is tridiagonal but for the
-//! table, which is eliminated first, so a step costs a few operations a node.
+//! and v_p hold all that is known at the start. Solved for the rotating chain
+//! alone, whose S is tridiagonal, and for a unit force of the nut on it, so a
+//! step costs a few operations a node; the nut's force then follows from its law
+//! on the end values, and the table's acceleration from that.
 
 use beam_fem::{Mesh, MovingNode, Tridiagonal};
 
 use super::modal::check_step;
-use super::{NutErrors, Observation, Settled, TableMotion, TimeStepper, settle_load};
+use super::nut::Contact;
+use super::{NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper, find_load};
 use crate::matrices::{Chain, NutCoupling, NutSeat};
 use crate::{DriveError, FeedDrive};
 
@@ -18,7 +21,6 @@ pub struct ImplicitStepper {
     drive: FeedDrive,
     coupling: NutCoupling,
     step: f64,
-    fixed: Chain,
     /// Nodes of the uniform mesh, m.
     uniform: Vec<f64>,
 }
@@ -55,9 +57,7 @@ impl ImplicitStepper {
     /// [`DriveError::Parameter`] where the step is not positive and finite.
     pub fn new(drive: &FeedDrive, coupling: NutCoupling, step: f64) -> Result<Self, DriveError> {
         check_step(step)?;
-        let middle = 0.5 * drive.parameters().screw_length;
         Ok(Self {
-            fixed: drive.chain(middle, coupling)?,
             uniform: Mesh::uniform(drive.parameters().screw_length, drive.parameters().elements)?
                 .nodes()
                 .to_vec(),
@@ -65,15 +65,6 @@ impl ImplicitStepper {
             coupling,
             step,
         })
-    }
-
-    /// The chain with the table at `x`, kept on the screw.
-    fn chain(&self, x: f64) -> Chain {
-        let x = x.clamp(0.0, self.drive.parameters().screw_length);
-        // Every x on the screw gives a mesh: the parameters were checked.
-        self.drive
-            .chain(x, self.coupling)
-            .unwrap_or_else(|_| self.fixed.clone())
     }
 
     /// Positions of the screw's nodes with the table at `x`, m.
@@ -90,7 +81,8 @@ impl ImplicitStepper {
     fn place(&self, x: f64) -> Option<(usize, f64)> {
         let p = self.drive.parameters();
         let x = x.clamp(0.0, p.screw_length);
-        // Every x on the screw has a place: the parameters were checked.
+        // Every x on the screw has a place, since the parameters were checked;
+        // only one that is no number has none.
         MovingNode::place(p.screw_length, p.elements, x, MovingNode::MIN_FRACTION).ok()
     }
 
@@ -147,10 +139,12 @@ impl TimeStepper for ImplicitStepper {
         self.step
     }
 
-    fn settled(&self, x: f64, motion: &Settled) -> ImplicitState {
+    fn settled(&self, x: f64, motion: &Settled) -> Result<ImplicitState, DriveError> {
+        self.drive.check_position(x)?;
+        motion.check()?;
         let p = self.drive.parameters();
         let r = self.drive.travel_per_radian();
-        let chain = self.chain(x);
+        let chain = self.drive.chain(x, self.coupling)?;
         let n = self.drive.coordinates();
         let alpha = motion.acceleration / r;
         let torque = motion.motor_torque(&self.drive);
@@ -177,7 +171,7 @@ impl TimeStepper for ImplicitStepper {
             values[n - 1] = rate;
             values
         };
-        ImplicitState {
+        Ok(ImplicitState {
             q,
             v: rigid(motion.speed),
             a: rigid(motion.acceleration),
@@ -192,7 +186,7 @@ impl TimeStepper for ImplicitStepper {
                 lhs: chain.mass.clone(),
             },
             chain,
-        }
+        })
     }
 
     fn step_through(
@@ -201,33 +195,27 @@ impl TimeStepper for ImplicitStepper {
         torque: f64,
         errors: &NutErrors,
         load: impl FnMut(TableMotion) -> f64,
-    ) {
+    ) -> StepReport {
         let h = self.step;
         let p = self.drive.parameters();
-        let (r, k, beta) = (
-            self.drive.travel_per_radian(),
-            p.nut_stiffness,
-            p.stiffness_damping,
-        );
+        let (r, beta) = (self.drive.travel_per_radian(), p.stiffness_damping);
         let last = state.q.len() - 1;
-        let s = 0.25 * h * h + 0.5 * beta * h;
 
         // The seat with the table at the end of the step.
         let x = state.origin + state.q[last] + h * state.v[last];
         self.move_seat(state, x);
         let seat = state.chain.seat;
+        let [n1, n2] = seat.weights;
+        let at = 2 + seat.node;
 
-        // Where in its gap the nut is going to be, from the motion so far.
-        let half = 0.5 * errors.gap;
-        let going = self.stretch(&state.q, &seat) + h * self.stretch(&state.v, &seat);
-        let slack = (going + errors.offset).clamp(-half, half);
-        let shift = errors.offset + beta * errors.offset_rate - slack;
-
-        // q_p + β v_p, and with it the right-hand side.
+        // q_p and v_p.
         for i in 0..=last {
             state.q[i] += h * state.v[i] + 0.25 * h * h * state.a[i];
             state.v[i] += 0.5 * h * state.a[i];
         }
+
+        // Accelerations of the chain without the nut, and those that a newton of
+        // it adds: it pushes the table on and turns the screw back.
         let Work {
             known,
             rhs,
@@ -240,53 +228,57 @@ impl TimeStepper for ImplicitStepper {
         multiply(&state.chain.stiffness, known, rhs);
         rhs.iter_mut().for_each(|f| *f = -*f);
         rhs[0] += torque;
-        let pull = k * (self.stretch(known, &seat) + shift);
-        let at = 2 + seat.node;
-        for (i, n) in seat.weights.iter().enumerate() {
-            rhs[at + i] -= r * n * pull;
-        }
-
-        // Eliminate the table, then solve the chain for the forces and for a
-        // unit load on the table.
-        let table = p.table_mass + s * k;
-        copy(&state.chain.mass, lhs);
-        add_scaled(lhs, s, &state.chain.stiffness);
-        let nut = s * k * r * r * (1.0 - s * k / table);
-        let [n1, n2] = seat.weights;
-        lhs.diagonal[at] += nut * n1 * n1;
-        lhs.diagonal[at + 1] += nut * n2 * n2;
-        lhs.off_diagonal[at] += nut * n1 * n2;
         unit.fill(0.0);
-        for (i, n) in seat.weights.iter().enumerate() {
-            rhs[at + i] += s * k * r * n * pull / table;
-            unit[at + i] = -s * k * r * n / table;
-        }
+        unit[at] = -r * n1;
+        unit[at + 1] = -r * n2;
+        copy(&state.chain.mass, lhs);
+        add_scaled(lhs, 0.25 * h * h + 0.5 * beta * h, &state.chain.stiffness);
         solve_tridiagonal(lhs, [rhs, unit]);
         let turn = |a: &[f64]| r * (n1 * a[at] + n2 * a[at + 1]);
-        let free = (pull + s * k * turn(rhs)) / table;
-        let per_load = (s * k * turn(unit) - 1.0) / table;
 
-        // The load that the table's own motion asks for.
+        // The nut's law on the end values, which are linear in its force and in
+        // the load.
+        let (per_newton, free) = (1.0 / p.table_mass - turn(unit), turn(rhs));
+        let contact = Contact {
+            stiffness: p.nut_stiffness,
+            damping: p.nut_stiffness * beta,
+            travel: 0.25 * h * h * per_newton,
+            speed: 0.5 * h * per_newton,
+            half_gap: 0.5 * errors.gap(),
+        };
+        let compression = self.stretch(&state.q, &seat) + errors.offset();
+        let closing = self.stretch(&state.v, &seat) + errors.offset_rate();
+        let nut = |load: f64| {
+            let parting = free + load / p.table_mass;
+            contact.force(
+                compression + 0.25 * h * h * parting,
+                closing + 0.5 * h * parting,
+            )
+        };
         let motion = |load: f64| {
-            let a = free + per_load * load;
+            let a = (nut(load) - load) / p.table_mass;
             TableMotion {
                 displacement: state.q[last] + 0.25 * h * h * a,
                 speed: state.v[last] + 0.5 * h * a,
             }
         };
-        let end_load = settle_load(state.load, 0.5 * h * per_load.abs(), motion, load);
+        let (end_load, found) = find_load(state.load, 0.5 * h / p.table_mass, motion, load);
+        let nut_force = nut(end_load);
 
-        for i in 0..last {
-            state.a[i] = rhs[i] + end_load * unit[i];
+        for (a, (free, per_newton)) in state.a.iter_mut().zip(rhs.iter().zip(&*unit)) {
+            *a = free + nut_force * per_newton;
         }
-        state.a[last] = free + per_load * end_load;
+        state.a[last] = (nut_force - end_load) / p.table_mass;
         for i in 0..=last {
             state.q[i] += 0.25 * h * h * state.a[i];
             state.v[i] += 0.5 * h * state.a[i];
         }
-        let (stretch, rate) = (self.stretch(&state.q, &seat), self.stretch(&state.v, &seat));
-        state.nut_force = k * (stretch + shift) + k * beta * rate;
+        state.nut_force = nut_force;
         state.load = end_load;
+        StepReport {
+            load: found,
+            on_screw: self.drive.has(state.origin + state.q[last]),
+        }
     }
 
     fn observe(&self, state: &ImplicitState) -> Observation {

@@ -7,12 +7,16 @@
 //! M(x), C(x), K(x); it also takes the paper's moving node.
 
 mod implicit;
+mod load;
 mod modal;
+mod nut;
 
 pub use implicit::{ImplicitState, ImplicitStepper};
+pub use load::{LoadSearch, find_load};
 pub use modal::{ModalState, ModalStepper};
+pub use nut::NutErrors;
 
-use crate::FeedDrive;
+use crate::{DriveError, FeedDrive};
 
 /// The table's motion at the end of a step, as far as it is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,29 +66,23 @@ impl Settled {
     }
 }
 
-/// What the nut's kinematics have beyond `table = r · rotation`, at the end of
-/// a step. The default is none.
-///
-/// The nut is compressed by `δ = r θ + offset − y`; within ± half the gap it
-/// carries nothing, beyond it `k (δ ∓ gap/2) + βk δ̇`, and it never pulls. The
-/// reaction on the screw keeps the lever r: a lead error of 1e-4 changes it by
-/// as little.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct NutErrors {
-    /// Displacement that is added to what the rotation commands, m.
-    pub offset: f64,
-    /// Its rate, m/s.
-    pub offset_rate: f64,
-    /// Free travel between the flanks, m, zero or more.
-    pub gap: f64,
+/// How a step went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use = "a step that did not converge, or left the screw, is not to be gone on from"]
+pub struct StepReport {
+    /// How the load at the step's end was found.
+    pub load: LoadSearch,
+    /// Whether the table is on the screw at the step's end. Where not, the step
+    /// was made as if the nut stood at that end of the screw.
+    pub on_screw: bool,
 }
 
 /// Advances the drive by steps of a fixed length.
 ///
 /// The motor torque goes linearly from its last value to the one given. The
 /// load on the table may depend on the table's motion at the end of the step;
-/// it is found by iteration, so `load` is called a few times with better and
-/// better motions, the last of which counts.
+/// it is searched for ([`find_load`]), so `load` is called a few times with
+/// better and better motions, the last of which counts.
 pub trait TimeStepper {
     /// The state that a step changes.
     type State: Clone;
@@ -94,12 +92,24 @@ pub trait TimeStepper {
 
     /// A state at table position `x` (m from the driven end) in settled motion;
     /// the default of [`Settled`] is rest.
-    fn settled(&self, x: f64, motion: &Settled) -> Self::State;
+    ///
+    /// # Errors
+    /// [`DriveError::OffScrew`] where `x` is not on the screw;
+    /// [`DriveError::Parameter`] for a motion that is not finite.
+    fn settled(&self, x: f64, motion: &Settled) -> Result<Self::State, DriveError>;
 
     /// One step, to the motor torque `torque` (N·m) and the table load `load`
     /// (N, positive against positive motion) at its end.
-    fn step(&self, state: &mut Self::State, torque: f64, load: impl FnMut(TableMotion) -> f64) {
-        self.step_through(state, torque, &NutErrors::default(), load);
+    ///
+    /// A torque or load that is not finite gives a state that is not, and a report
+    /// that says so: it has not converged.
+    fn step(
+        &self,
+        state: &mut Self::State,
+        torque: f64,
+        load: impl FnMut(TableMotion) -> f64,
+    ) -> StepReport {
+        self.step_through(state, torque, &NutErrors::default(), load)
     }
 
     /// As [`TimeStepper::step`], with errors of the nut's kinematics. Without
@@ -110,34 +120,27 @@ pub trait TimeStepper {
         torque: f64,
         nut: &NutErrors,
         load: impl FnMut(TableMotion) -> f64,
-    );
+    ) -> StepReport;
 
     /// What can be seen of a state.
     fn observe(&self, state: &Self::State) -> Observation;
 }
 
-/// Solves `load = law(motion(load))` for the load at the end of a step, where
-/// the speed falls by `compliance` (m/s per N, small) with each newton.
-///
-/// A fixed-point iteration that starts from `guess`: the table's mass makes it
-/// contract by a few hundredths a round, and it ends when a further round
-/// could not move the speed by a part in 10¹² of a millimetre a second.
-fn settle_load(
-    guess: f64,
-    compliance: f64,
-    motion: impl Fn(f64) -> TableMotion,
-    mut law: impl FnMut(TableMotion) -> f64,
-) -> f64 {
-    const MOST_ROUNDS: usize = 12;
-    const SPEED_TOLERANCE: f64 = 1e-11;
-    let mut load = guess;
-    for _ in 0..MOST_ROUNDS {
-        let next = law(motion(load));
-        let change = (next - load).abs() * compliance;
-        load = next;
-        if change <= SPEED_TOLERANCE || !change.is_finite() {
-            break;
+impl Settled {
+    /// Refuses what is not finite.
+    fn check(&self) -> Result<(), DriveError> {
+        let fields = [
+            ("speed", self.speed),
+            ("acceleration", self.acceleration),
+            ("load", self.load),
+        ];
+        match fields.into_iter().find(|(_, value)| !value.is_finite()) {
+            None => Ok(()),
+            Some((name, value)) => Err(DriveError::Parameter {
+                name,
+                value,
+                valid: "finite",
+            }),
         }
     }
-    load
 }

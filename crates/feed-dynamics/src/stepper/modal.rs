@@ -15,7 +15,8 @@
 
 use nalgebra::Matrix4;
 
-use super::{NutErrors, Observation, Settled, TableMotion, TimeStepper, settle_load};
+use super::nut::Contact;
+use super::{NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper, find_load};
 use crate::matrices::{NutCoupling, NutSeat, dense};
 use crate::{DriveError, FeedDrive};
 
@@ -163,7 +164,9 @@ impl TimeStepper for ModalStepper {
         self.step
     }
 
-    fn settled(&self, x: f64, motion: &Settled) -> ModalState {
+    fn settled(&self, x: f64, motion: &Settled) -> Result<ModalState, DriveError> {
+        self.drive.check_position(x)?;
+        motion.check()?;
         let seat = self.seat(x);
         let nut_force = motion.nut_force(&self.drive);
         let torque = motion.motor_torque(&self.drive);
@@ -183,7 +186,7 @@ impl TimeStepper for ModalStepper {
         let wanted = nut_force / self.drive.parameters().nut_stiffness / self.r;
         let elastic = nut_rotation(&modes)[0];
         modes[0].coordinate[0] = (wanted - elastic) / rigid;
-        ModalState {
+        Ok(ModalState {
             motor: self.motor_rotation(&modes),
             modes,
             origin: x,
@@ -192,7 +195,7 @@ impl TimeStepper for ModalStepper {
             nut_force,
             load: motion.load,
             load_before: motion.load,
-        }
+        })
     }
 
     fn step_through(
@@ -201,14 +204,9 @@ impl TimeStepper for ModalStepper {
         torque: f64,
         errors: &NutErrors,
         load: impl FnMut(TableMotion) -> f64,
-    ) {
+    ) -> StepReport {
         let (h, r) = (self.step, self.r);
         let p = self.drive.parameters();
-        let (k, c, mass) = (
-            p.nut_stiffness,
-            p.nut_stiffness * p.stiffness_damping,
-            p.table_mass,
-        );
 
         // Chain, without the nut force at the step's end.
         let seat = self.seat(state.origin + state.displacement + h * state.speed);
@@ -218,24 +216,25 @@ impl TimeStepper for ModalStepper {
         let [soft, soft_rate] = self.nut_flexibility(&seat);
 
         // Table, without the forces at the step's end: linear acceleration.
-        let start = (state.nut_force - state.load) / mass;
+        let start = (state.nut_force - state.load) / p.table_mass;
         let free = TableMotion {
             displacement: state.displacement + h * (state.speed + h * start / 3.0),
             speed: state.speed + 0.5 * h * start,
         };
         let (give, give_speed) = (self.table.travel, self.table.speed);
 
-        // F = k (rθ − y) + βk (rθ̇ − v), all at the end, is linear in F and the
-        // load; with a gap, F times its stiffness falls short by that of half
-        // the gap, and is nothing where it does not reach so far.
-        let stiff = 1.0 + k * (r * r * soft + give) + c * (r * r * soft_rate + give_speed);
-        let turned = [r * rotation + errors.offset, r * rate + errors.offset_rate];
-        let unloaded = k * (turned[0] - free.displacement) + c * (turned[1] - free.speed);
-        let slack = 0.5 * k * errors.gap;
-        let nut = |load: f64| {
-            let pressed = unloaded + (k * give + c * give_speed) * load;
-            (pressed - pressed.clamp(-slack, slack)) / stiff
+        // The nut's law on the end values, which are linear in its force and in
+        // the load.
+        let contact = Contact {
+            stiffness: p.nut_stiffness,
+            damping: p.nut_stiffness * p.stiffness_damping,
+            travel: r * r * soft + give,
+            speed: r * r * soft_rate + give_speed,
+            half_gap: 0.5 * errors.gap(),
         };
+        let compression = r * rotation + errors.offset() - free.displacement;
+        let closing = r * rate + errors.offset_rate() - free.speed;
+        let nut = |load: f64| contact.force(compression + give * load, closing + give_speed * load);
         let motion = |load: f64| {
             let force = nut(load) - load;
             TableMotion {
@@ -244,7 +243,7 @@ impl TimeStepper for ModalStepper {
             }
         };
         let guess = 2.0 * state.load - state.load_before;
-        let end_load = settle_load(guess, give_speed, motion, load);
+        let (end_load, found) = find_load(guess, give_speed, motion, load);
         let end = motion(end_load);
         let nut_force = nut(end_load);
 
@@ -254,6 +253,10 @@ impl TimeStepper for ModalStepper {
         state.nut_force = nut_force;
         state.load_before = state.load;
         state.load = end_load;
+        StepReport {
+            load: found,
+            on_screw: self.drive.has(state.origin + state.displacement),
+        }
     }
 
     fn observe(&self, state: &ModalState) -> Observation {

@@ -16,10 +16,11 @@ fn pass(coupling: NutCoupling, sign: f64) -> Vec<Observation> {
     };
     let torque = motion.motor_torque(&drive);
     let start = if sign > 0.0 { 0.595 } else { 0.455 };
-    let mut state = stepper.settled(start, &motion);
+    let mut state = stepper.settled(start, &motion).unwrap();
     (0..10_000)
         .map(|_| {
-            stepper.step(&mut state, torque, |_| motion.load);
+            let report = stepper.step(&mut state, torque, |_| motion.load);
+            assert!(report.load.converged && report.on_screw);
             stepper.observe(&state)
         })
         .collect()

@@ -7,7 +7,8 @@ use crate::{COUPLINGS, drive, paper, relative};
 #[test]
 fn low_frequency_moves_the_total_inertia() {
     let drive = drive();
-    // The first elastic terms come in as ω²/ω₁², 1e-5 here.
+    // The first elastic terms come in as ω²/ω₁²: 2.4e-6 at the motor and 1.1e-5
+    // at the table as measured.
     let w = 1.0;
     for coupling in COUPLINGS {
         for x in [0.0, 0.6, 1.234] {
@@ -15,11 +16,11 @@ fn low_frequency_moves_the_total_inertia() {
                 .receptance(x, coupling, Coordinate::Motor, Coordinate::Motor, &[w])
                 .unwrap()[0];
             let rigid = -1.0 / (drive.total_inertia() * w * w);
-            assert!(relative(h.re, rigid) < 1e-4, "{h} {rigid}");
+            assert!(relative(h.re, rigid) < 1e-5, "{h} {rigid}");
             let table = drive
                 .receptance(x, coupling, Coordinate::Motor, Coordinate::Table, &[w])
                 .unwrap()[0];
-            assert!(relative(table.re, rigid * drive.travel_per_radian()) < 1e-4);
+            assert!(relative(table.re, rigid * drive.travel_per_radian()) < 5e-5);
         }
     }
 }
@@ -36,7 +37,8 @@ fn reciprocal_and_built_from_the_modes() {
     let modes = drive.modes(x, coupling).unwrap();
     let (a, b) = (0, drive.row(Coordinate::Screw(7)).unwrap());
     for ((&w, f), g) in ws.iter().zip(&forth).zip(&back) {
-        assert!((f - g).norm() < 1e-11 * f.norm().max(1e-9));
+        // 9.2e-14 as measured.
+        assert!((f - g).norm() < 5e-13 * f.norm().max(1e-9));
         let sum: nalgebra::Complex<f64> = (0..drive.coordinates())
             .map(|i| {
                 let square = modes.frequencies[i].powi(2);
@@ -44,7 +46,8 @@ fn reciprocal_and_built_from_the_modes() {
                 modes.shapes[(a, i)] * modes.shapes[(b, i)] / below
             })
             .sum();
-        assert!((f - sum).norm() < 1e-7 * f.norm(), "{f} {sum} at {w}");
+        // 1.2e-11 as measured.
+        assert!((f - sum).norm() < 1e-10 * f.norm(), "{f} {sum} at {w}");
     }
 }
 
@@ -58,7 +61,7 @@ fn peaks_stand_at_the_modes() {
     for coupling in COUPLINGS {
         let modes = drive.modes(0.6, coupling).unwrap();
         for &w in &modes.frequencies[1..4] {
-            // ζ is below 1e-3 there: the peak lies within 1e-3 of ω.
+            // ζ is below 1e-3 there: the peak lies within 1e-6 of ω.
             let grid: Vec<f64> = (-40..=40)
                 .map(|i| w * (1.0 + 5e-4 * f64::from(i)))
                 .collect();
@@ -66,7 +69,7 @@ fn peaks_stand_at_the_modes() {
                 .receptance(0.6, coupling, Coordinate::Motor, Coordinate::Motor, &grid)
                 .unwrap();
             let best = (0..grid.len()).max_by(|&i, &j| h[i].norm().total_cmp(&h[j].norm()));
-            assert!(relative(grid[best.unwrap()], w) <= 1.1e-3, "{w}");
+            assert!(relative(grid[best.unwrap()], w) < 5e-4, "{w}");
         }
     }
 }

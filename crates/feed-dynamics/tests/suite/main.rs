@@ -3,8 +3,10 @@
 
 mod boundary;
 mod frequency_response;
+mod friction;
 mod matrices;
 mod modes;
+mod nut_errors;
 mod parameters;
 mod reference;
 mod settled;

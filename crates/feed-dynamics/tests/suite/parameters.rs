@@ -1,7 +1,8 @@
 //! Bad parameters are refused by name.
 
 use feed_dynamics::{
-    DriveError, DriveParameters, FeedDrive, ImplicitStepper, ModalStepper, NutCoupling,
+    Coordinate, DriveError, DriveParameters, FeedDrive, ImplicitStepper, ModalStepper, NutCoupling,
+    NutErrors, Settled, TimeStepper,
 };
 
 use crate::{COUPLINGS, drive, paper};
@@ -73,7 +74,100 @@ fn positions_off_the_screw_are_refused() {
                 Err(DriveError::OffScrew { .. })
             ));
             assert!(drive().modes(x, coupling).is_err());
+            let at = [Coordinate::Motor, Coordinate::Table];
+            assert!(
+                drive()
+                    .receptance(x, coupling, at[0], at[1], &[1.0])
+                    .is_err()
+            );
+            let stepper = ImplicitStepper::new(&drive(), coupling, 1e-4).unwrap();
+            let error = stepper.settled(x, &Settled::default()).unwrap_err();
+            assert!(matches!(error, DriveError::OffScrew { .. }), "{error}");
         }
+        let modal = ModalStepper::new(&drive(), 1e-4).unwrap();
+        let error = modal.settled(x, &Settled::default()).unwrap_err();
+        assert!(matches!(error, DriveError::OffScrew { .. }), "{error}");
+        assert!(drive().check_position(x).is_err());
+    }
+    for x in [0.0, 0.75, 1.5] {
+        assert!(drive().check_position(x).is_ok());
+    }
+}
+
+#[test]
+fn settled_motion_must_be_finite() {
+    type Set = fn(&mut Settled, f64);
+    let fields: [(&str, Set); 3] = [
+        ("speed", |m, v| m.speed = v),
+        ("acceleration", |m, v| m.acceleration = v),
+        ("load", |m, v| m.load = v),
+    ];
+    let modal = ModalStepper::new(&drive(), 1e-4).unwrap();
+    let implicit = ImplicitStepper::new(&drive(), NutCoupling::MovingNode, 1e-4).unwrap();
+    for (field, set) in fields {
+        for bad in [f64::NAN, f64::INFINITY] {
+            let mut motion = Settled::default();
+            set(&mut motion, bad);
+            for text in [
+                modal.settled(0.6, &motion).unwrap_err().to_string(),
+                implicit.settled(0.6, &motion).unwrap_err().to_string(),
+            ] {
+                assert!(text.starts_with(&format!("{field} = ")), "{text}");
+            }
+        }
+    }
+}
+
+/// Runs off the end and back, and says of each step whether it is on the screw.
+fn over_the_end<S: TimeStepper>(stepper: &S, end: f64) {
+    let out = if end > 0.0 { 1.0 } else { -1.0 };
+    let motion = Settled {
+        speed: 0.1 * out,
+        ..Settled::default()
+    };
+    let mut state = stepper.settled(end - 1e-3 * out, &motion).unwrap();
+    let mut off = 0;
+    for _ in 0..400 {
+        // From 1 mm before the end: beyond it after 10 ms, back before 40 ms.
+        let report = stepper.step(&mut state, -3.0 * out, |_| 0.0);
+        let at = end - 1e-3 * out + stepper.observe(&state).displacement;
+        assert!(report.load.converged && stepper.observe(&state).nut_force.is_finite());
+        assert_eq!(report.on_screw, (0.0..=1.5).contains(&at), "{at}");
+        off += usize::from(!report.on_screw);
+    }
+    assert!((100..390).contains(&off), "{off}");
+}
+
+#[test]
+fn steps_beyond_the_screw_say_so() {
+    for end in [0.0, 1.5] {
+        over_the_end(&ModalStepper::new(&drive(), 1e-4).unwrap(), end);
+        for coupling in COUPLINGS {
+            let implicit = ImplicitStepper::new(&drive(), coupling, 1e-4).unwrap();
+            over_the_end(&implicit, end);
+        }
+    }
+}
+
+#[test]
+fn what_is_no_number_is_reported_and_does_not_panic() {
+    fn check<S: TimeStepper>(stepper: &S) {
+        let start = stepper.settled(0.6, &Settled::default()).unwrap();
+        for bad in [f64::NAN, f64::INFINITY] {
+            let mut state = start.clone();
+            assert!(!stepper.step(&mut state, 0.0, |_| bad).load.converged);
+            let gap = NutErrors::new(0.0, 0.0, 1e-6).unwrap();
+            for errors in [NutErrors::default(), gap] {
+                let mut state = start.clone();
+                let _ = stepper.step_through(&mut state, bad, &errors, |m| m.speed);
+                let report = stepper.step_through(&mut state, 0.0, &errors, |m| m.speed);
+                assert!(!report.load.converged && !report.on_screw, "{report:?}");
+            }
+        }
+    }
+    check(&ModalStepper::new(&drive(), 1e-4).unwrap());
+    for coupling in COUPLINGS {
+        check(&ImplicitStepper::new(&drive(), coupling, 1e-4).unwrap());
     }
 }
 

@@ -77,12 +77,14 @@ fn samples(axis: &Axis, plan: &Plan) -> Result<Vec<Row>> {
     };
     let few = sampler(5000)?;
     let real_time = 5000.0 * axis.period;
+    let mut simulated = true;
     let [time] = least(
         plan.repetitions,
         [&mut || {
-            plan.pool.install(|| black_box(few.all()));
+            simulated &= plan.pool.install(|| black_box(few.all())).is_ok();
         }],
     );
+    miette::ensure!(simulated, "the one-cycle samples cannot be simulated");
     let mut rows = vec![Row {
         name: "5000 one-cycle samples".into(),
         value: time,
@@ -98,7 +100,7 @@ fn samples(axis: &Axis, plan: &Plan) -> Result<Vec<Row>> {
 fn streamed(sampler: &Sampler, plan: &Plan) -> Result<Row> {
     let folder = tempfile::tempdir().into_diagnostic()?;
     let file = folder.path().join("samples.bin");
-    let mut written = Ok(());
+    let (mut written, mut simulated) = (Ok(()), true);
     let count = sampler.count();
     let [write, simulate] = plan.pool.install(|| {
         least(
@@ -112,13 +114,15 @@ fn streamed(sampler: &Sampler, plan: &Plan) -> Result<Row> {
                 },
                 &mut || {
                     for start in (0..count).step_by(1 << 16) {
-                        black_box(sampler.rows(start..(start + (1 << 16)).min(count)));
+                        let rows = start..(start + (1 << 16)).min(count);
+                        simulated &= black_box(sampler.rows(rows)).is_ok();
                     }
                 },
             ],
         )
     });
     written.into_diagnostic()?;
+    miette::ensure!(simulated, "the one-cycle samples cannot be simulated");
     Ok(Row {
         name: format!("{count} samples streamed to disk"),
         value: write,

@@ -8,7 +8,6 @@ use std::path::Path;
 use std::process::Command;
 
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use serde::{Deserialize, Serialize};
 
 use super::Options;
 use super::kinds::{Input, Kind, Verdict, all, schedule};
@@ -21,7 +20,7 @@ pub const PROGRESS: &str = "progress";
 pub const MEMORY: u64 = 100_000_000;
 
 /// What a worker has judged: of each kind, accepted, refused, faults.
-#[derive(Default, Serialize, Deserialize)]
+#[derive(Debug, Default, PartialEq)]
 pub struct Progress {
     /// The input that is being judged.
     pub index: u64,
@@ -155,4 +154,55 @@ pub fn again(options: &Options, kinds: &[Box<dyn Kind>], index: u64) -> Result<(
         .ok_or_else(|| miette!("there are no kinds of input"))?;
     let input = kinds[kind].input(&mut Source::new(options.seed, kinds[kind].name(), index));
     Ok((kind, input))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Bad;
+
+    impl Kind for Bad {
+        fn name(&self) -> &'static str {
+            "bad"
+        }
+        fn share(&self) -> usize {
+            1
+        }
+        fn input(&self, _: &mut Source) -> Input {
+            Input {
+                file: "bad".to_owned(),
+                bytes: vec![1, 2],
+                damaged: false,
+            }
+        }
+        fn judge(&self, input: &Input, desk: &Path) -> Verdict {
+            assert_eq!(std::fs::read(desk.join(&input.file)).unwrap(), [1, 3]);
+            Verdict::Accepted
+        }
+    }
+
+    #[test]
+    fn a_panic_is_a_fault_and_says_its_words() {
+        let desk = tempfile::tempdir().unwrap();
+        let input = Bad.input(&mut Source::new(1, "bad", 1));
+        match one(&Bad, &input, desk.path()).unwrap() {
+            Verdict::Fault(what) => assert!(what.contains("panics: assertion"), "{what}"),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_record_of_a_worker_is_read_as_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(PROGRESS);
+        let written = Progress {
+            index: 7,
+            counts: vec![[1, 2, 3], [4, 5, u64::MAX]],
+            peak: 9,
+            limited: true,
+        };
+        note(&mut File::create(&path).unwrap(), &written).unwrap();
+        assert_eq!(noted(&path), Some(written));
+    }
 }

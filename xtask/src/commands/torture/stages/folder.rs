@@ -142,3 +142,31 @@ pub fn copy(from: &Path, to: &Path) -> Result<()> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn snapshot(files: &[(&str, &str)]) -> Snapshot {
+        let bytes = |&(name, text): &(&str, &str)| (name.to_owned(), text.as_bytes().to_vec());
+        Snapshot(timeless(files.iter().map(bytes).collect()))
+    }
+
+    #[test]
+    fn folders_differ_in_anything_but_times() {
+        let run = |seconds: &str, rms: &str| {
+            let record = format!("{{\"seconds\": {seconds}, \"rms_um\": [{rms}]}}");
+            let page = format!("<p>Trained in {seconds} s. RMS {rms}</p>");
+            snapshot(&[("train/training.json", &record), ("report.html", &page)])
+        };
+        assert_eq!(run("1.5", "2.0").same_as(&run("3.5", "2.0")), Ok(()));
+        assert!(run("1.5", "2.0").same_as(&run("1.5", "2.5")).is_err());
+        let more = snapshot(&[("a", "1"), (".a.x1y2z3", "")]);
+        let less = snapshot(&[("a", "1")]);
+        assert_eq!(
+            more.same_as(&less),
+            Err(".a.x1y2z3 is left over".to_owned())
+        );
+        assert_eq!(less.same_as(&more), Err(".a.x1y2z3 is missing".to_owned()));
+    }
+}

@@ -1,0 +1,154 @@
+//! The rigid machine against a slow, obvious integration of the same equations.
+
+use axis_log::{Channel, Log};
+use axis_sim::effects::{ActiveEffect, Changes, Effect, EffectChannel, Machine};
+use axis_sim::{Replay, ReplayError, RigidAxis};
+use feed_dynamics::DriveError;
+use lugre::{LuGre, Parameters};
+use trajectories::{Limits, Motion, SCurve};
+
+use crate::data;
+
+/// Friction in N, m/s and m: 20 N on a bristle of 10 µm, damped.
+const FRICTION: Parameters = Parameters {
+    coulomb: 20.0,
+    stiction: 25.0,
+    stribeck_speed: 5e-3,
+    stiffness: 2e6,
+    damping: 2e4,
+    viscous: 10.0,
+};
+
+/// The benchmark's machine with another mass and the same loop gain, so that a
+/// friction of 2e4 N·s/m over 50 µs asks for 1 N back per newton at 1 kg.
+fn machine(mass: f64) -> RigidAxis {
+    let Machine::Rigid(mut axis) = Machine::read(&data("emps.toml")).unwrap() else {
+        panic!("a rigid mass");
+    };
+    axis.speed_gain *= mass / axis.mass;
+    axis.mass = mass;
+    axis.friction = LuGre::new(FRICTION).unwrap();
+    *axis
+}
+
+/// To and fro over 20 mm: the way there, and back.
+fn reference(t: f64) -> f64 {
+    let limits = Limits::new(0.1, 1.0, 20.0).unwrap();
+    let there = SCurve::plan(0.0, 0.02, &limits).unwrap();
+    let back = SCurve::plan(0.02, 0.0, &limits).unwrap();
+    let turn = there.duration();
+    let motion = if t < turn { &there } else { &back };
+    motion.at(if t < turn { t } else { t - turn }).position
+}
+
+const PERIOD: f64 = 1e-3;
+const CYCLES: usize = 900;
+
+fn replay() -> Replay {
+    let channel = |name: &str, f: &dyn Fn(f64) -> f64| {
+        let samples = (0..CYCLES).map(|k| f(k as f64 * PERIOD)).collect();
+        Channel::new(name, samples).unwrap()
+    };
+    // Velocities are not used by this controller.
+    let log = Log::new(vec![
+        channel("t_s", &|t| t),
+        channel("position_ref_m", &reference),
+        channel("velocity_ref_m_s", &|_| 0.0),
+        channel("position_m", &|_| 0.0),
+    ])
+    .unwrap();
+    Replay::new(&log, PERIOD).unwrap()
+}
+
+/// Positions at the samples: P-P control, and between them Runge-Kutta of
+/// fourth order with steps of `h` on mass and LuGre friction.
+fn by_runge_kutta(axis: &RigidAxis, h: f64) -> Vec<f64> {
+    let p = FRICTION;
+    let rate = |[_, v, z]: [f64; 3], force: f64| {
+        let level = p.coulomb + (p.stiction - p.coulomb) * (-(v / p.stribeck_speed).powi(2)).exp();
+        let slip = v - p.stiffness * v.abs() * z / level;
+        let rub = p.stiffness * z + p.damping * slip + p.viscous * v;
+        [v, (force - rub) / axis.mass, slip]
+    };
+    let moved = |s: [f64; 3], r: [f64; 3], h: f64| [0, 1, 2].map(|i| s[i] + h * r[i]);
+    let (mut s, mut before, mut seen) = ([0.0; 3], [0.0; 2], Vec::new());
+    for k in 0..CYCLES {
+        let filtered = [0.5 * (s[0] + before[0]), 0.5 * (before[0] + before[1])];
+        let speed = (filtered[0] - filtered[1]) / PERIOD;
+        let wanted = axis.position_gain * (reference(k as f64 * PERIOD) - s[0]);
+        let limit = axis.command_limit;
+        let command = (axis.speed_gain * (wanted - speed)).clamp(-limit, limit);
+        before = [s[0], before[0]];
+        seen.push(s[0]);
+        let force = axis.force_gain * command;
+        for _ in 0..(PERIOD / h).round() as usize {
+            let a = rate(s, force);
+            let b = rate(moved(s, a, 0.5 * h), force);
+            let c = rate(moved(s, b, 0.5 * h), force);
+            let d = rate(moved(s, c, h), force);
+            for (r, part) in [(a, 1.0), (b, 2.0), (c, 2.0), (d, 1.0)] {
+                s = moved(s, r, h * part / 6.0);
+            }
+        }
+    }
+    seen
+}
+
+#[test]
+fn heavy_and_light_masses_move_as_in_the_obvious_integration() {
+    // First order: 2.9e-8, 3.9e-7 and 3.6e-6 m of 20 mm with steps of 50 µs, a tenth
+    // of that with 5 µs.
+    for (mass, tolerance) in [(95.0, 1.5e-7), (2.0, 2e-6), (0.5, 2e-5)] {
+        for step in [5e-5, 5e-6] {
+            let mut axis = machine(mass);
+            axis.step = step;
+            let truth = by_runge_kutta(&axis, 1e-6);
+            let machine = Machine::Rigid(Box::new(axis));
+            let trace = replay().run(&machine, &[], None).unwrap();
+            let seen = trace.channel("position_m").unwrap();
+            let apart = seen.iter().zip(&truth).map(|(a, b)| (a - b).abs());
+            let apart = apart.fold(0.0, f64::max);
+            println!("{mass} kg: {apart:.2e} m");
+            assert!(truth.iter().copied().fold(0.0, f64::max) > 0.01);
+            assert!(apart < tolerance * step / 5e-5, "{mass} kg: {apart:e}");
+        }
+    }
+}
+
+/// From 0.1 s on, a load that falls with the speed for ever.
+fn runaway(_: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError> {
+    to.load(|table| {
+        let acts = if table.time > 0.1 { 1.0 } else { 0.0 };
+        -1e9 * acts * table.speed
+    });
+    Ok(())
+}
+
+static RUNAWAY: Effect = Effect {
+    name: "outside",
+    summary: "",
+    channel: EffectChannel::Torque,
+    depends_on: "",
+    parameters: &[],
+    on_rigid: true,
+    install: runaway,
+};
+
+#[test]
+fn a_load_that_no_motion_goes_with_is_told() {
+    let machine = Machine::Rigid(Box::new(machine(95.0)));
+    let effect = ActiveEffect {
+        effect: &RUNAWAY,
+        values: Vec::new(),
+    };
+    let error = replay().run(&machine, &[effect], None).unwrap_err();
+    match error {
+        ReplayError::LoadNotFound { time, position, .. } => {
+            assert!(
+                (time - 0.1).abs() < 1e-9 && position.abs() < 0.02,
+                "{time} {position}"
+            );
+        }
+        other => panic!("{other}"),
+    }
+}
