@@ -1,10 +1,13 @@
 //! What every stage is told: axis, machine, folder, seed.
 
+use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 
 use axis_sim::Axis;
 use clap::Args;
-use miette::{IntoDiagnostic, Result, WrapErr};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+
+use crate::output::ready;
 
 /// Options of every stage.
 #[derive(Args, Clone)]
@@ -71,6 +74,36 @@ impl Common {
             threads: self.threads,
             quick: self.quick,
         })
+    }
+}
+
+/// The right to write results to a run's folder: one process has it at a time, until it
+/// drops this or ends, however it ends.
+#[must_use]
+pub struct Claim {
+    _lock: File,
+}
+
+impl Context {
+    /// Makes the run's folder and claims it for this process.
+    pub fn claim(&self) -> Result<Claim> {
+        ready(&self.out)?;
+        let path = self.out.join("run.lock");
+        let failed = || format!("cannot lock {}", path.display());
+        let options = File::options().create(true).append(true).open(&path);
+        let lock = options.into_diagnostic().wrap_err_with(failed)?;
+        match lock.try_lock() {
+            Ok(()) => Ok(Claim { _lock: lock }),
+            Err(TryLockError::WouldBlock) => Err(miette!(
+                "another run is at work in {}; wait for its end, or give another folder with --out",
+                self.out.display()
+            )),
+            // A file system without locks: whoever uses one sees to it.
+            Err(TryLockError::Error(e)) if e.kind() == std::io::ErrorKind::Unsupported => {
+                Ok(Claim { _lock: lock })
+            }
+            Err(TryLockError::Error(e)) => Err(e).into_diagnostic().wrap_err_with(failed),
+        }
     }
 }
 

@@ -18,7 +18,7 @@ use clap::{Parser, Subcommand};
 
 use commands::{
     bench, compensate, discover, discover_matrix, identify, layers, pipeline, report, sample,
-    simulate, study, train, validate,
+    simulate, study, torture, train, validate,
 };
 use context::Common;
 use diagnostic::Compiler;
@@ -65,6 +65,8 @@ enum Command {
     DiscoverMatrix(discover_matrix::Options),
     /// Measure the speed of every hot path (docs/performance.md)
     Bench(bench::Options),
+    /// Try damaged inputs and disturbed runs, and judge what comes of them
+    Torture(torture::Options),
     /// Check that every crate depends strictly downward
     Layers,
 }
@@ -106,6 +108,7 @@ fn run(command: Command) -> miette::Result<()> {
         Command::Discover(options) => discover::command(&options),
         Command::DiscoverMatrix(options) => discover_matrix::command(&options),
         Command::Bench(options) => bench::command(&options),
+        Command::Torture(options) => torture::command(&options),
         Command::Layers => layers::command(),
     }
 }

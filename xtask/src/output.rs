@@ -3,6 +3,7 @@
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
+use atomic_write_file::AtomicWriteFile;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 /// A line on standard output; an error where nobody reads it any more.
@@ -15,18 +16,13 @@ pub fn say(line: impl AsRef<str>) -> Result<()> {
 
 /// Writes a file whole: aside first, then renamed.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
     let attempt = || -> std::io::Result<()> {
-        std::fs::create_dir_all(folder)?;
-        let mut aside = tempfile::NamedTempFile::new_in(folder)?;
-        aside.write_all(bytes)?;
-        readable(&aside)?;
-        aside.as_file().sync_all()?;
-        aside.persist(path).map_err(|e| e.error)?;
-        Ok(())
+        std::fs::create_dir_all(path.parent().unwrap_or(path))?;
+        let mut file = AtomicWriteFile::open(path)?;
+        file.write_all(bytes)?;
+        // Before the commit, which leaves the file aside behind where flushing fails.
+        file.sync_all()?;
+        file.commit()
     };
     attempt().into_diagnostic().wrap_err_with(|| {
         format!(
@@ -36,11 +32,33 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     })
 }
 
+/// Removes what killed runs left of the files of these names: what was written aside,
+/// `.<name>.<six letters or digits>`.
+pub fn sweep(folder: &Path, names: &[&str]) -> Result<()> {
+    let aside = |file: &str| {
+        let middle = file
+            .strip_prefix('.')
+            .and_then(|rest| rest.rsplit_once('.'));
+        middle.is_some_and(|(name, end)| {
+            names.contains(&name)
+                && end.len() == 6
+                && end.bytes().all(|b| b.is_ascii_alphanumeric())
+        })
+    };
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        if entry.file_name().to_str().is_some_and(aside) {
+            remove(&entry.path())?;
+        }
+    }
+    Ok(())
+}
+
 /// Makes the folder where it is not there, and asks whether results can be written to
 /// it: before the work that makes them, so that none is lost.
 pub fn ready(folder: &Path) -> Result<()> {
+    const PROBE: &str = "writable";
     std::fs::create_dir_all(folder)
-        .and_then(|()| tempfile::NamedTempFile::new_in(folder))
+        .and_then(|()| AtomicWriteFile::open(folder.join(PROBE)))
         .map(drop)
         .into_diagnostic()
         .wrap_err_with(|| {
@@ -48,7 +66,8 @@ pub fn ready(folder: &Path) -> Result<()> {
                 "cannot write to the folder {}; give one that can be written to with --out",
                 folder.display()
             )
-        })
+        })?;
+    sweep(folder, &[PROBE])
 }
 
 /// Removes what an earlier run left, where there is something.
@@ -61,15 +80,31 @@ pub fn remove(path: &Path) -> Result<()> {
     }
 }
 
-/// Temporary files are private; results are for everyone to read.
-#[cfg(unix)]
-fn readable(file: &tempfile::NamedTempFile) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    let mode = std::fs::Permissions::from_mode(0o644);
-    file.as_file().set_permissions(mode)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-#[cfg(not(unix))]
-fn readable(_: &tempfile::NamedTempFile) -> std::io::Result<()> {
-    Ok(())
+    #[test]
+    fn only_what_was_written_aside_is_swept() {
+        let folder = tempfile::tempdir().unwrap();
+        let kept = [
+            "a.json",
+            ".a.json",
+            ".a.json.1234567",
+            ".b.json.123456",
+            ".a.json.12-456",
+        ];
+        for name in kept.iter().chain(&[".a.json.1aB456"]) {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        sweep(folder.path(), &["a.json", "c.json"]).unwrap();
+        let mut left: Vec<String> = std::fs::read_dir(folder.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        left.sort();
+        let mut kept = kept.map(str::to_owned);
+        kept.sort();
+        assert_eq!(left, kept);
+    }
 }

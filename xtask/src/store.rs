@@ -1,8 +1,8 @@
 //! Results on disk: one folder a stage, with a manifest written last.
 //!
 //! The manifest holds the key of the stage's inputs and the hash of each
-//! file. A stage is up to date when its key is the same and its files are
-//! whole; a file that does not match its manifest is refused.
+//! file. A stage is up to date when the manifest is, byte for byte, the one that
+//! its inputs and its files make; a file that does not match it is refused.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,10 +12,11 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::context::Context;
-use crate::output::{ready, remove, write_whole};
+use crate::output::{ready, remove, sweep, write_whole};
 
 /// Layout of manifests and of the JSON files beside them.
 const SCHEMA: u32 = 1;
+const MANIFEST: &str = "manifest.json";
 
 /// What a stage was made from, and what it made.
 #[derive(Clone, Serialize, Deserialize)]
@@ -37,15 +38,18 @@ pub struct Manifest {
 pub struct Stage<'a> {
     context: &'a Context,
     name: &'static str,
+    files: &'static [&'static str],
+    scratch: &'static [&'static str],
     key: String,
 }
 
 impl<'a> Stage<'a> {
-    /// The stage `name`, whose results depend on the axis, the seed, the
-    /// program's version, `settings` and the files of the stages `after`.
+    /// The stage `name` with the results `files`, which depend on the axis, the seed,
+    /// the program's version, `settings` and the files of the stages `after`.
     pub fn new(
         context: &'a Context,
         name: &'static str,
+        files: &'static [&'static str],
         settings: &str,
         after: &[&Stage<'_>],
     ) -> Self {
@@ -63,7 +67,18 @@ impl<'a> Stage<'a> {
             put(&stage.key);
         }
         let key = hasher.finalize().to_hex().to_string();
-        Self { context, name, key }
+        Self {
+            context,
+            name,
+            files,
+            scratch: &[],
+            key,
+        }
+    }
+
+    /// Names files that a run leaves only where it is killed.
+    pub fn with_scratch(self, scratch: &'static [&'static str]) -> Self {
+        Self { scratch, ..self }
     }
 
     /// Hash of all inputs.
@@ -78,19 +93,28 @@ impl<'a> Stage<'a> {
 
     /// Whether the results are there, whole, and made from these inputs.
     pub fn is_current(&self) -> bool {
-        self.manifest().is_ok_and(|manifest| {
-            manifest.key == self.key
-                && manifest.files.iter().all(|(file, hash)| {
-                    std::fs::read(self.path(file)).is_ok_and(|bytes| hash_of(&bytes) == *hash)
-                })
-        })
+        let found = std::fs::read(self.path(MANIFEST));
+        found.is_ok_and(|found| self.expected().is_ok_and(|whole| whole == found))
     }
 
     /// Makes the stage's folder.
     pub fn begin(&self) -> Result<()> {
         ready(&self.path(""))?;
+        self.sweep()?;
         // Results without manifest are unfinished; the old one must not vouch for them.
-        remove(&self.path("manifest.json"))
+        remove(&self.path(MANIFEST))
+    }
+
+    /// Removes from a finished stage's folder what killed runs left.
+    pub fn tidy(&self) -> Result<()> {
+        let mut scratch = self.scratch.iter();
+        scratch.try_for_each(|file| remove(&self.path(file)))?;
+        self.sweep()
+    }
+
+    fn sweep(&self) -> Result<()> {
+        let names = [self.files, self.scratch, &[MANIFEST]].concat();
+        sweep(&self.path(""), &names)
     }
 
     /// Writes a result as JSON.
@@ -99,11 +123,21 @@ impl<'a> Stage<'a> {
         write_whole(&self.path(file), &bytes)
     }
 
-    /// Declares the stage done, with these files.
-    pub fn finish(&self, files: &[&str]) -> Result<()> {
+    /// Declares the stage done.
+    pub fn finish(&self) -> Result<()> {
+        write_whole(&self.path(MANIFEST), &self.expected()?)?;
+        self.tidy()
+    }
+
+    /// The manifest that the inputs and the files make.
+    fn expected(&self) -> Result<Vec<u8>> {
         let hash = |file: &&str| -> Result<(String, String)> {
             Ok(((*file).to_owned(), hash_of(&read(&self.path(file))?)))
         };
+        self.manifest_of(self.files.iter().map(hash).collect::<Result<_>>()?)
+    }
+
+    fn manifest_of(&self, files: BTreeMap<String, String>) -> Result<Vec<u8>> {
         let manifest = Manifest {
             schema: SCHEMA,
             stage: self.name.to_owned(),
@@ -113,14 +147,14 @@ impl<'a> Stage<'a> {
             seed: self.context.seed,
             quick: self.context.quick,
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            files: files.iter().map(hash).collect::<Result<_>>()?,
+            files,
         };
-        self.write_json("manifest.json", &manifest)
+        serde_json::to_vec_pretty(&manifest).into_diagnostic()
     }
 
     /// A result of this stage, for a later one: checked against the manifest.
     pub fn read(&self, file: &str) -> Result<Vec<u8>> {
-        let manifest = self.manifest()?;
+        let (manifest, found) = self.manifest()?;
         let path = self.path(file);
         let again = || {
             format!(
@@ -140,6 +174,13 @@ impl<'a> Stage<'a> {
             return Err(miette!(
                 "{} was made with other settings (seed, --quick, machine, version) or from other results; {}",
                 path.display(),
+                again()
+            ));
+        }
+        if self.manifest_of(manifest.files.clone())? != found {
+            return Err(miette!(
+                "{} is damaged (truncated or changed); {}",
+                self.path(MANIFEST).display(),
                 again()
             ));
         }
@@ -166,8 +207,9 @@ impl<'a> Stage<'a> {
             })
     }
 
-    fn manifest(&self) -> Result<Manifest> {
-        let path = self.path("manifest.json");
+    /// The manifest as it stands, and its bytes.
+    fn manifest(&self) -> Result<(Manifest, Vec<u8>)> {
+        let path = self.path(MANIFEST);
         let bytes = std::fs::read(&path).map_err(|e| {
             miette!(
                 "no finished results in {} ({e}); run `cargo xtask {}` first",
@@ -190,7 +232,7 @@ impl<'a> Stage<'a> {
                 self.name
             ));
         }
-        Ok(manifest)
+        Ok((manifest, bytes))
     }
 }
 

@@ -30,6 +30,7 @@ fn help_names_every_command() {
         "discover",
         "discover-matrix",
         "bench",
+        "torture",
         "layers",
     ] {
         assert!(help.contains(command), "{command}");

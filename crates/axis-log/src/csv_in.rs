@@ -24,8 +24,9 @@ use crate::unit::unit_of;
 ///
 /// # Errors
 /// A [`CsvError`] with file, line and column: file not readable, empty, a
-/// missing or doubled column, an unknown unit, a ragged row, a field that is
-/// not a finite number, a time that does not increase.
+/// missing or doubled column, more than 4096 columns, an unknown unit, a ragged row,
+/// a field that is not a finite number, a time that does not increase, a last row
+/// without a line end (the file may have been cut inside a number).
 pub fn read_csv(path: impl AsRef<Path>, required: &[&str]) -> Result<Log, CsvError> {
     let path = path.as_ref();
     let file = path.display().to_string();
@@ -69,13 +70,17 @@ fn read(mut reader: impl Read, required: &[&str]) -> Result<Log, CsvProblem> {
         return Err(CsvProblem::NoHeader);
     }
     let header = Header::parse(text, &record, required)?;
-    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); header.names.len()];
+    let most = text.most_rows(header.names.len());
+    let mut columns: Vec<Vec<f64>> = (header.names.iter())
+        .map(|_| Vec::with_capacity(most))
+        .collect();
     while rows.read_record(&mut record)? {
         header.append(&record, &mut columns)?;
     }
     if columns[0].is_empty() {
         return Err(CsvProblem::NoRows { line: header.line });
     }
+    text.check_end()?;
     Ok(header.into_log(columns))
 }
 
@@ -89,6 +94,7 @@ struct Header<'a> {
 
 impl<'a> Header<'a> {
     fn parse(text: Text<'a>, record: &StringRecord, required: &[&str]) -> Result<Self, CsvProblem> {
+        text.check_width(record)?;
         let line = text.line_of(record);
         let names: Vec<String> = record.iter().map(str::to_owned).collect();
         let mut seen = HashMap::new();

@@ -1,10 +1,9 @@
 //! Log to CSV.
 
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use tempfile::NamedTempFile;
+use atomic_write_file::AtomicWriteFile;
 
 use crate::error::{CsvError, CsvProblem};
 use crate::log::Log;
@@ -13,8 +12,10 @@ use crate::log::Log;
 /// the same bits.
 ///
 /// The file appears whole or not at all: the text is written to a temporary
-/// file in the same folder, flushed to the disk and renamed; a file of that
-/// name is replaced. Its mode is 0644 on Unix.
+/// file in the same folder, flushed to the disk and renamed, and the folder is
+/// flushed; a file of that name is replaced, and its mode kept. A process that is
+/// killed may leave the temporary file, `.<name>.<six letters or digits>`, and so
+/// does a rename that fails, on a folder of that name.
 ///
 /// # Errors
 /// A [`CsvError`] with the path: folder missing or not writable, disk full. A
@@ -65,30 +66,9 @@ fn write_number(out: &mut impl Write, value: f64) -> io::Result<()> {
 
 fn write_whole(path: &Path, log: &Log) -> Result<(), CsvProblem> {
     let io = |action| move |source| CsvProblem::Io { action, source };
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let file = NamedTempFile::new_in(folder).map_err(io("create a file in its folder"))?;
+    let file = AtomicWriteFile::open(path).map_err(io("create a file in its folder"))?;
     write_csv_to(file.as_file(), log).map_err(io("write it"))?;
-    make_readable(file.as_file()).map_err(io("set its mode"))?;
-    file.as_file()
-        .sync_all()
-        .map_err(io("flush it to the disk"))?;
-    match file.persist(path) {
-        Ok(_) => Ok(()),
-        Err(failed) => Err(io("put it in place")(failed.error)),
-    }
-}
-
-/// Temporary files are created with mode 0600; a result is for all to read.
-#[cfg(unix)]
-fn make_readable(file: &File) -> io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    file.set_permissions(std::fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn make_readable(_: &File) -> io::Result<()> {
-    Ok(())
+    // Before the commit, which leaves the file aside behind where flushing fails.
+    file.sync_all().map_err(io("flush it to the disk"))?;
+    file.commit().map_err(io("put it in place"))
 }

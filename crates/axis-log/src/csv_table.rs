@@ -10,9 +10,6 @@ use crate::table::{Head, Table};
 pub(crate) struct CsvTable<'a> {
     text: Text<'a>,
     heads: Vec<Head>,
-    /// Byte from which the parser looked for each row, to find its line in case
-    /// of an error.
-    offsets: Vec<u64>,
 }
 
 impl<'a> CsvTable<'a> {
@@ -22,6 +19,7 @@ impl<'a> CsvTable<'a> {
         if !read_record(&mut text.parser(), &mut record)? {
             return Err(CsvProblem::NoHeader.into());
         }
+        text.check_width(&record)?;
         let head = |name: &str| Head {
             name: name.to_owned(),
             fault: None,
@@ -29,7 +27,6 @@ impl<'a> CsvTable<'a> {
         Ok(Self {
             text,
             heads: record.iter().map(head).collect(),
-            offsets: Vec::new(),
         })
     }
 
@@ -53,13 +50,12 @@ impl Table for CsvTable<'_> {
     }
 
     fn read(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, ReadProblem> {
-        let mut columns = vec![Vec::new(); wanted.len()];
+        let most = self.text.most_rows(self.heads.len());
+        let mut columns: Vec<Vec<f64>> = wanted.iter().map(|_| Vec::with_capacity(most)).collect();
         let (mut rows, mut record) = (self.text.parser(), StringRecord::new());
         read_record(&mut rows, &mut record)?; // the header
+        let mut row = 0;
         while read_record(&mut rows, &mut record)? {
-            let row = self.offsets.len();
-            self.offsets
-                .push(record.position().map_or(0, Position::byte));
             if record.len() != self.heads.len() {
                 return Err(ReadProblem::Csv(CsvProblem::Ragged {
                     line: self.text.line_of(&record),
@@ -70,13 +66,19 @@ impl Table for CsvTable<'_> {
             for (column, &index) in columns.iter_mut().zip(wanted) {
                 column.push(self.number(row, index, &record[index])?);
             }
+            row += 1;
         }
+        self.text.check_end()?;
         Ok(columns)
     }
 
+    /// Only errors ask for it, so it looks for the row anew.
     fn place(&self, row: usize, column: usize) -> Place {
+        let mut rows = self.text.parser().into_records();
+        let found = rows.nth(row + 1).and_then(Result::ok); // behind the header
+        let offset = found.and_then(|r| r.position().map(Position::byte));
         Place::Line {
-            line: self.text.line_at(self.offsets.get(row).map_or(0, |&o| o)),
+            line: self.text.line_at(offset.unwrap_or(0)),
             column: column + 1,
         }
     }

@@ -5,6 +5,8 @@ use csv::{Position, Reader, StringRecord};
 use crate::error::CsvProblem;
 
 const COMMENT: u8 = b'#';
+/// Most columns of a file of any format: a header that names more is damaged, or no log.
+pub(crate) const MAX_COLUMNS: usize = 4096;
 
 /// The whole text, without byte-order mark.
 #[derive(Clone, Copy)]
@@ -29,6 +31,41 @@ impl<'a> Text<'a> {
             .comment(Some(COMMENT))
             .trim(csv::Trim::All)
             .from_reader(self.0.as_bytes())
+    }
+
+    /// Most rows that a file with that many columns can hold: a row has a byte for each
+    /// column at least, its comma or line end.
+    pub(crate) fn most_rows(self, columns: usize) -> usize {
+        let lines = 1 + self
+            .0
+            .bytes()
+            .filter(|b| matches!(b, b'\n' | b'\r'))
+            .count();
+        lines.min(1 + self.0.len() / columns.max(1))
+    }
+
+    /// Refuses a last row without a line end: where a file was cut inside a number, what
+    /// is left may still read as one.
+    pub(crate) fn check_end(self) -> Result<(), CsvProblem> {
+        let last = self.0.rsplit(['\n', '\r']).next().unwrap_or_default();
+        if last.is_empty() {
+            return Ok(());
+        }
+        Err(CsvProblem::NoLineEnd {
+            line: 1 + newlines(self.0.as_bytes()),
+        })
+    }
+
+    /// Refuses more than [`MAX_COLUMNS`] columns.
+    pub(crate) fn check_width(self, header: &StringRecord) -> Result<(), CsvProblem> {
+        if header.len() <= MAX_COLUMNS {
+            return Ok(());
+        }
+        Err(CsvProblem::TooManyColumns {
+            line: self.line_of(header),
+            found: header.len(),
+            most: MAX_COLUMNS,
+        })
     }
 
     /// Line of a record, from 1.

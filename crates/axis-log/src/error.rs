@@ -128,7 +128,10 @@ pub enum CsvProblem {
         available: Vec<String>,
     },
     /// The header names a column twice.
-    #[error("line {line}, column {first} and column {second}: \"{name}\" occurs twice")]
+    #[error(
+        "line {line}, column {first} and column {second}: \"{}\" occurs twice",
+        clip(name)
+    )]
     DuplicateColumn {
         /// Line of the header.
         line: u64,
@@ -141,8 +144,9 @@ pub enum CsvProblem {
     },
     /// A column name without a known unit.
     #[error(
-        "line {line}, column {column}: \"{name}\" has no known unit suffix: end the name in \
+        "line {line}, column {column}: \"{}\" has no known unit suffix: end the name in \
          one of {}",
+        clip(name),
         suffix_list()
     )]
     UnitSuffix {
@@ -152,6 +156,25 @@ pub enum CsvProblem {
         column: usize,
         /// The name.
         name: String,
+    },
+    /// More columns than a log has.
+    #[error("line {line}: {found} columns: at most {most} are read")]
+    TooManyColumns {
+        /// Line of the header.
+        line: u64,
+        /// Its columns.
+        found: usize,
+        /// How many are read.
+        most: usize,
+    },
+    /// A last row without a line end.
+    #[error(
+        "line {line}: the last row has no line end, so the file may have been cut inside a \
+         number: end the row with a line break if it is whole"
+    )]
+    NoLineEnd {
+        /// Line of the row.
+        line: u64,
     },
     /// A row with more or fewer fields than the header.
     #[error("line {line}: {found} fields: the header has {expected}")]
@@ -164,7 +187,11 @@ pub enum CsvProblem {
         expected: usize,
     },
     /// A field that does not hold a number.
-    #[error("line {line}, column {column} (\"{name}\"): \"{text}\" is not a number")]
+    #[error(
+        "line {line}, column {column} (\"{}\"): \"{}\" is not a number",
+        clip(name),
+        clip(text)
+    )]
     NotANumber {
         /// Line of the row.
         line: u64,
@@ -176,7 +203,11 @@ pub enum CsvProblem {
         text: String,
     },
     /// A field that holds NaN, an infinity, or a number too large for `f64`.
-    #[error("line {line}, column {column} (\"{name}\"): \"{text}\" is not a finite number")]
+    #[error(
+        "line {line}, column {column} (\"{}\"): \"{}\" is not a finite number",
+        clip(name),
+        clip(text)
+    )]
     NotFinite {
         /// Line of the row.
         line: u64,
@@ -221,10 +252,30 @@ pub enum CsvProblem {
     },
 }
 
+/// How many names a message lists.
+const LISTED: usize = 30;
+/// How many characters of a name or field a message shows.
+const SHOWN: usize = 60;
+
 pub(crate) fn quoted(names: &[String]) -> String {
     if names.is_empty() {
         return "none".to_owned();
     }
-    let quoted: Vec<String> = names.iter().map(|n| format!("\"{n}\"")).collect();
-    quoted.join(", ")
+    let quoted = names.iter().take(LISTED);
+    let quoted: Vec<String> = quoted.map(|n| format!("\"{}\"", clip(n))).collect();
+    match names.len().saturating_sub(LISTED) {
+        0 => quoted.join(", "),
+        more => format!("{} and {more} more", quoted.join(", ")),
+    }
+}
+
+/// What a message shows of a text from a file: its beginning, without control characters.
+pub(crate) fn clip(text: &str) -> String {
+    let mut shown: String = (text.chars().take(SHOWN))
+        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
+        .collect();
+    if text.chars().nth(SHOWN).is_some() {
+        shown.push('…');
+    }
+    shown
 }

@@ -80,6 +80,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Features
+//!
+//! `parquet` and `mat` make [`read_log`] read those formats; without them it reads
+//! CSV, and says of the others which feature is missing.
+//!
 //! # What it knows nothing of
 //!
 //! Machines, controllers and models. It does not resample or filter, and
@@ -95,14 +100,22 @@ mod csv_text;
 mod error;
 mod log;
 mod mapping;
+#[cfg(feature = "mat")]
+mod mat_element;
+#[cfg(feature = "mat")]
 mod mat_table;
 pub mod metrics;
+#[cfg(feature = "parquet")]
+mod parquet_pages;
+#[cfg(feature = "parquet")]
 mod parquet_table;
 pub mod quality;
 mod read;
 mod read_error;
 mod select;
 mod table;
+#[cfg(feature = "parquet")]
+mod thrift;
 mod unit;
 
 pub use channel::Channel;

@@ -1,62 +1,74 @@
 //! MAT version 5 as a table.
 
-use std::panic::catch_unwind;
+use std::borrow::Cow;
 
-use matfile::{Array, MatFile, NumericData};
+use miniz_oxide::inflate::{TINFLStatus, decompress_to_vec_zlib_with_limit};
 
+use crate::csv_text::MAX_COLUMNS;
+use crate::mat_element::{ArrayHead, MATRIX, TAG, head};
 use crate::read_error::{Place, ReadProblem};
-use crate::table::{Fault, Head, Table};
+use crate::table::{Budget, Fault, Head, Table};
 
-/// Length of the file header, of an element's tag.
+/// Length of the file header.
 const HEADER: usize = 128;
-const TAG: usize = 8;
-/// Types of the elements that hold an array: plain and deflated.
-const MATRIX: u32 = 14;
+/// Type of an element that holds another one deflated.
 const COMPRESSED: u32 = 15;
+/// What is inflated of an array to see what it is: more than any head takes.
+const HEAD: usize = 4096;
 
-pub(crate) struct MatTable {
+pub(crate) struct MatTable<'a> {
+    big: bool,
     heads: Vec<Head>,
-    arrays: Vec<Vec<f64>>,
+    arrays: Vec<(Element<'a>, ArrayHead)>,
+    file: usize,
     unreadable: usize,
 }
 
-impl MatTable {
-    pub(crate) fn open(bytes: &[u8]) -> Result<Self, ReadProblem> {
-        let (header, elements) = split(bytes)?;
+/// A top-level element: its type and what stands behind its tag.
+struct Element<'a> {
+    kind: u32,
+    content: &'a [u8],
+}
+
+impl<'a> MatTable<'a> {
+    pub(crate) fn open(bytes: &'a [u8]) -> Result<Self, ReadProblem> {
+        let (big, elements) = split(bytes)?;
         let mut table = Self {
+            big,
             heads: Vec::new(),
             arrays: Vec::new(),
+            file: bytes.len(),
             unreadable: 0,
         };
         for element in elements {
-            match parse(header, element) {
-                Some(array) => table.push(&array),
+            let found = element.array(HEAD).and_then(|content| head(&content, big));
+            match found {
+                Some(array) => table.push(element, array),
                 None => table.unreadable += 1,
             }
         }
         Ok(table)
     }
 
-    fn push(&mut self, array: &Array) {
-        let complex = is_complex(array.data());
-        let vector = array.size().iter().filter(|&&n| n != 1).count() <= 1;
-        let found = match (vector, complex) {
-            (false, _) => Some(format!("an array of {}", size(array))),
+    fn push(&mut self, element: Element<'a>, array: ArrayHead) {
+        let vector = array.size.iter().filter(|&&n| n != 1).count() <= 1;
+        let found = match (vector, array.complex) {
+            (false, _) => Some(format!("an array of {}", size(&array))),
             (_, true) => Some("complex".to_owned()),
             _ => None,
         };
         self.heads.push(Head {
-            name: array.name().to_owned(),
+            name: array.name.clone(),
             fault: found.map(|found| Fault {
                 found,
                 valid: "a real vector, n × 1 or 1 × n,",
             }),
         });
-        self.arrays.push(numbers(array.data()));
+        self.arrays.push((element, array));
     }
 }
 
-impl Table for MatTable {
+impl Table for MatTable<'_> {
     fn heads(&self) -> &[Head] {
         &self.heads
     }
@@ -66,9 +78,28 @@ impl Table for MatTable {
     }
 
     fn read(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, ReadProblem> {
-        // Each column is wanted once.
-        let take = |&index: &usize| std::mem::take(&mut self.arrays[index]);
-        Ok(wanted.iter().map(take).collect())
+        let mut budget = Budget::of(self.file);
+        for (element, array) in wanted.iter().map(|&index| &self.arrays[index]) {
+            budget.keep(array.count);
+            if element.kind == COMPRESSED {
+                budget.aside(array.end());
+            }
+        }
+        budget.check()?;
+        let numbers = |&index: &usize| {
+            let (element, array) = &self.arrays[index];
+            let length = usize::try_from(array.end()).ok();
+            length
+                .and_then(|length| element.array(length + TAG))
+                .and_then(|content| array.numbers(&content, self.big))
+                .ok_or_else(|| ReadProblem::Mat {
+                    reason: format!(
+                        "the numbers of \"{}\" are damaged or cut off; save it again with -v7",
+                        array.name
+                    ),
+                })
+        };
+        wanted.iter().map(numbers).collect()
     }
 
     fn place(&self, row: usize, _: usize) -> Place {
@@ -76,8 +107,30 @@ impl Table for MatTable {
     }
 }
 
-/// The header and the top-level elements, tags included.
-fn split(bytes: &[u8]) -> Result<(&[u8], Vec<&[u8]>), ReadProblem> {
+impl<'a> Element<'a> {
+    /// What stands behind the tag of the array in it, to `most` bytes at least where
+    /// there are as many; `None` where it is no array or damaged.
+    fn array(&self, most: usize) -> Option<Cow<'a, [u8]>> {
+        if self.kind == MATRIX {
+            return Some(self.content.into());
+        }
+        let mut whole = match decompress_to_vec_zlib_with_limit(self.content, most) {
+            Ok(whole) => whole,
+            Err(e) if e.status == TINFLStatus::HasMoreOutput => e.output,
+            Err(_) => return None,
+        };
+        // The type is 14 in the first or the fourth byte, by the file's byte order.
+        let tag = whole.get(..4)?;
+        if tag != MATRIX.to_le_bytes() && tag != MATRIX.to_be_bytes() {
+            return None;
+        }
+        whole.drain(..TAG.min(whole.len()));
+        Some(whole.into())
+    }
+}
+
+/// Whether the numbers are big-endian, and the top-level elements that hold arrays.
+fn split(bytes: &[u8]) -> Result<(bool, Vec<Element<'_>>), ReadProblem> {
     let refuse = |reason: &str| ReadProblem::Mat {
         reason: reason.to_owned(),
     };
@@ -87,23 +140,28 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Vec<&[u8]>), ReadProblem> {
     let (header, mut rest) = bytes
         .split_at_checked(HEADER)
         .ok_or_else(|| refuse("it is shorter than the header, 128 bytes"))?;
-    let number = match &header[124..] {
-        [0, 1, b'I', b'M'] => u32::from_le_bytes,
-        [1, 0, b'M', b'I'] => u32::from_be_bytes,
+    let big = match &header[124..] {
+        [0, 1, b'I', b'M'] => false,
+        [1, 0, b'M', b'I'] => true,
         _ => return Err(refuse("the header has no version 5 mark: save it with -v7")),
     };
+    let number = if big {
+        u32::from_be_bytes
+    } else {
+        u32::from_le_bytes
+    };
     let mut elements = Vec::new();
-    while let Some(&[a, b, c, d, e, f, g, h]) = rest.first_chunk::<TAG>() {
+    while let Some((&[a, b, c, d, e, f, g, h], after)) = rest.split_first_chunk::<TAG>() {
         let length = number([e, f, g, h]) as usize;
-        let (element, after) = rest.split_at_checked(TAG + length).ok_or_else(|| {
-            let (at, left) = (bytes.len() - rest.len(), rest.len() - TAG);
+        let (content, after) = after.split_at_checked(length).ok_or_else(|| {
+            let (at, left) = (bytes.len() - rest.len(), after.len());
             refuse(&format!(
-                "it is cut off: the element at byte {at} should hold {length} bytes, {left} are left"
+                "it is cut off: the element at byte {at} should hold {length} bytes, {left} are left; save it again with -v7"
             ))
         })?;
         let kind = number([a, b, c, d]);
         if matches!(kind, MATRIX | COMPRESSED) {
-            elements.push(element);
+            elements.push(Element { kind, content });
         }
         // Plain elements are padded to 8 bytes.
         let padding = if kind == COMPRESSED {
@@ -113,60 +171,21 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Vec<&[u8]>), ReadProblem> {
         };
         rest = after.get(padding..).unwrap_or_default();
     }
-    if rest.is_empty() {
-        return Ok((header, elements));
+    if !rest.is_empty() {
+        return Err(refuse(
+            "it is cut off inside the tag of its last element: save it again with -v7",
+        ));
     }
-    Err(refuse("it is cut off inside the tag of its last element"))
+    if elements.len() > MAX_COLUMNS {
+        let found = elements.len();
+        return Err(refuse(&format!(
+            "it has {found} arrays, at most {MAX_COLUMNS} are read"
+        )));
+    }
+    Ok((big, elements))
 }
 
-/// The array of one element, `None` where it is of another kind or damaged.
-///
-/// Elements are parsed one at a time because the parser gives up on the whole
-/// file at the first kind of array that it does not know; and it may panic on a
-/// damaged one (the product of the dimensions overflows).
-fn parse(header: &[u8], element: &[u8]) -> Option<Array> {
-    let alone = [header, element].concat();
-    let parsed = catch_unwind(|| MatFile::parse(alone.as_slice()));
-    let file = parsed.ok()?.ok()?;
-    file.arrays().first().cloned()
-}
-
-fn size(array: &Array) -> String {
-    let all: Vec<String> = array.size().iter().map(usize::to_string).collect();
+fn size(array: &ArrayHead) -> String {
+    let all: Vec<String> = array.size.iter().map(u64::to_string).collect();
     all.join(" × ")
-}
-
-fn is_complex(data: &NumericData) -> bool {
-    use NumericData as N;
-    match data {
-        N::Int8 { imag, .. } => imag.is_some(),
-        N::UInt8 { imag, .. } => imag.is_some(),
-        N::Int16 { imag, .. } => imag.is_some(),
-        N::UInt16 { imag, .. } => imag.is_some(),
-        N::Int32 { imag, .. } => imag.is_some(),
-        N::UInt32 { imag, .. } => imag.is_some(),
-        N::Int64 { imag, .. } => imag.is_some(),
-        N::UInt64 { imag, .. } => imag.is_some(),
-        N::Single { imag, .. } => imag.is_some(),
-        N::Double { imag, .. } => imag.is_some(),
-    }
-}
-
-fn numbers(data: &NumericData) -> Vec<f64> {
-    use NumericData as N;
-    fn widen<T: Copy + Into<f64>>(values: &[T]) -> Vec<f64> {
-        values.iter().map(|&v| v.into()).collect()
-    }
-    match data {
-        N::Int8 { real, .. } => widen(real),
-        N::UInt8 { real, .. } => widen(real),
-        N::Int16 { real, .. } => widen(real),
-        N::UInt16 { real, .. } => widen(real),
-        N::Int32 { real, .. } => widen(real),
-        N::UInt32 { real, .. } => widen(real),
-        N::Int64 { real, .. } => real.iter().map(|&v| v as f64).collect(),
-        N::UInt64 { real, .. } => real.iter().map(|&v| v as f64).collect(),
-        N::Single { real, .. } => widen(real),
-        N::Double { real, .. } => real.clone(),
-    }
 }

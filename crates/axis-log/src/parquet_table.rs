@@ -1,41 +1,99 @@
 //! Parquet as a table.
 
-use std::fs::File;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
+use std::sync::Once;
 
+use bytes::Bytes;
 use parquet::basic::{ConvertedType, Repetition, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
+use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
+use crate::csv_text::MAX_COLUMNS;
+use crate::parquet_pages::pages;
 use crate::read_error::{Place, ReadProblem};
-use crate::table::{Fault, Head, Table};
+use crate::table::{Budget, Fault, Head, Table};
 
 const VALID: &str = "a flat column of float, double, int32 or int64";
-/// Rows asked for at a time, so that a false row count allocates nothing large.
+/// Rows asked for at a time.
 const BATCH: usize = 1 << 16;
 
 pub(crate) struct ParquetTable {
-    reader: SerializedFileReader<File>,
+    bytes: Bytes,
+    reader: SerializedFileReader<Bytes>,
     heads: Vec<Head>,
 }
 
 impl ParquetTable {
-    pub(crate) fn open(file: File) -> Result<Self, ReadProblem> {
-        let reader = guarded(|| SerializedFileReader::new(file).map_err(refused))?;
+    pub(crate) fn open(bytes: Vec<u8>) -> Result<Self, ReadProblem> {
+        let bytes = Bytes::from(bytes);
+        let reader = guarded(|| SerializedFileReader::new(bytes.clone()).map_err(refused))?;
         let schema = reader.metadata().file_metadata().schema_descr_ptr();
+        if schema.num_columns() > MAX_COLUMNS {
+            let found = schema.num_columns();
+            let reason = format!("it has {found} columns, at most {MAX_COLUMNS} are read");
+            return Err(ReadProblem::Parquet { reason });
+        }
         let head = |column: &ColumnDescriptor| Head {
             name: column.path().string(),
             fault: fault(column),
         };
         let heads = schema.columns().iter().map(|c| head(c)).collect();
-        Ok(Self { reader, heads })
+        Ok(Self {
+            bytes,
+            reader,
+            heads,
+        })
     }
 
-    fn column(&self, index: usize) -> Result<Vec<f64>, ReadProblem> {
-        let mut values = Vec::new();
+    /// Checks what the wanted columns claim to hold; their numbers of values.
+    fn claims(&self, wanted: &[usize]) -> Result<Vec<usize>, ReadProblem> {
+        let mut budget = Budget::of(self.bytes.len());
+        let mut counts = Vec::with_capacity(wanted.len());
+        for &index in wanted {
+            let mut count = 0;
+            for group in self.reader.metadata().row_groups() {
+                let found = self.claim(group.columns().get(index));
+                let found = found.map_err(|what| ReadProblem::Parquet {
+                    reason: format!("column \"{}\": {what}", self.heads[index].name),
+                })?;
+                count += found.values;
+                budget.aside(found.largest);
+            }
+            budget.keep(count);
+            budget.check()?;
+            // Within the budget, so it fits.
+            counts.push(count as usize);
+        }
+        Ok(counts)
+    }
+
+    fn claim(
+        &self,
+        chunk: Option<&ColumnChunkMetaData>,
+    ) -> Result<crate::parquet_pages::Pages, String> {
+        let chunk = chunk.ok_or("it is missing in a row group")?;
+        let start = chunk.dictionary_page_offset();
+        let start = start.unwrap_or(chunk.data_page_offset());
+        let at = |n: i64| usize::try_from(n).ok();
+        let range = at(start)
+            .zip(at(chunk.compressed_size()))
+            .and_then(|(start, length)| Some(start..start.checked_add(length)?));
+        let bytes = range.and_then(|range| self.bytes.get(range));
+        let bytes = bytes.ok_or("its place is not in the file")?;
+        let width = match chunk.column_type() {
+            Type::FLOAT | Type::INT32 => 4,
+            _ => 8,
+        };
+        pages(bytes, width)
+    }
+
+    fn column(&self, index: usize, count: usize) -> Result<Vec<f64>, ReadProblem> {
+        let mut values = Vec::with_capacity(count);
         for group in 0..self.reader.num_row_groups() {
             let group = self.reader.get_row_group(group).map_err(refused)?;
             let column = group.get_column_reader(index).map_err(refused)?;
@@ -72,8 +130,18 @@ impl Table for ParquetTable {
     }
 
     fn read(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, ReadProblem> {
-        let all = wanted.iter();
-        all.map(|&index| guarded(|| self.column(index))).collect()
+        let counts = self.claims(wanted)?;
+        let all = wanted.iter().zip(counts);
+        let named = |index: usize, problem| match problem {
+            ReadProblem::Parquet { reason } => ReadProblem::Parquet {
+                reason: format!("column \"{}\": {reason}", self.heads[index].name),
+            },
+            other => other,
+        };
+        all.map(|(&index, count)| {
+            guarded(|| self.column(index, count)).map_err(|problem| named(index, problem))
+        })
+        .collect()
     }
 
     fn place(&self, row: usize, _: usize) -> Place {
@@ -81,12 +149,26 @@ impl Table for ParquetTable {
     }
 }
 
-/// The decoder may panic on a damaged page (of values by a dictionary that the
-/// column does not have). Nothing that it was working on is used afterwards.
+/// The decoder may panic on a damaged page (an index beyond the dictionary), which
+/// cannot be seen without decoding it. Nothing that it was working on is used
+/// afterwards, and what the process does with its other panics stays as it is.
 fn guarded<T>(read: impl FnOnce() -> Result<T, ReadProblem>) -> Result<T, ReadProblem> {
-    catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| {
+    thread_local!(static QUIET: Cell<bool> = const { Cell::new(false) });
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        let others = take_hook();
+        set_hook(Box::new(move |panic| {
+            if !QUIET.get() {
+                others(panic);
+            }
+        }));
+    });
+    QUIET.set(true);
+    let result = catch_unwind(AssertUnwindSafe(read));
+    QUIET.set(false);
+    result.unwrap_or_else(|_| {
         Err(ReadProblem::Parquet {
-            reason: "a page of it is damaged".to_owned(),
+            reason: "it is damaged".to_owned(),
         })
     })
 }

@@ -1,13 +1,14 @@
 //! A file of any known format to a log.
 
-use std::fs::File;
 use std::path::Path;
 
 use crate::channel::Channel;
 use crate::csv_table::CsvTable;
 use crate::log::{Log, TIME_CHANNEL};
 use crate::mapping::Mapping;
+#[cfg(feature = "mat")]
 use crate::mat_table::MatTable;
+#[cfg(feature = "parquet")]
 use crate::parquet_table::ParquetTable;
 use crate::read_error::{ReadError, ReadProblem};
 use crate::select::{Pick, select};
@@ -28,14 +29,18 @@ use crate::table::Table;
 ///
 /// - **CSV** as for [`read_csv`](crate::read_csv), except that columns without a
 ///   known unit are skipped, whatever they hold.
-/// - **Parquet**, uncompressed or Snappy: flat columns of float, double, int32
+/// - **Parquet** (feature `parquet`), uncompressed or Snappy: flat columns of float, double, int32
 ///   and int64; other columns are skipped. Time stamps are read as the integers
 ///   that they are stored as: map them with their unit as scale.
-/// - **MAT version 5** (`-v6`, `-v7`), compressed or not: each real numeric
-///   vector, n × 1 or 1 × n, is a column under its variable's name. Skipped are
-///   matrices, scalars and vectors of another length than the time, complex and
-///   sparse arrays, text, cells, structs, and arrays of class int32, which the
-///   parser does not know. Version 7.3 is HDF5 and refused with that hint.
+/// - **MAT version 5** (feature `mat`; `-v6`, `-v7`), compressed or not: each real
+///   numeric vector, n × 1 or 1 × n, is a column under its variable's name. Skipped
+///   are matrices, scalars and vectors of another length than the time, complex and
+///   sparse arrays, text, cells and structs. Version 7.3 is HDF5 and refused with that
+///   hint.
+///
+/// A file is read whole, and numbers take 8 bytes each beside it. What a binary file
+/// claims beyond nine times its own size and 64 MB is refused before memory is asked
+/// for, as are more than 4096 columns.
 ///
 /// # Errors
 /// A [`ReadError`] with file, line (CSV) or row, and what would be valid: file
@@ -60,19 +65,24 @@ fn read(path: &Path, mapping: &Mapping, required: &[&str]) -> Result<Log, ReadPr
     let found = path.extension().unwrap_or_default().to_string_lossy();
     match found.to_ascii_lowercase().as_str() {
         "csv" => to_log(CsvTable::open(&whole(path)?)?, mapping, required),
-        "parquet" => to_log(ParquetTable::open(open(path)?)?, mapping, required),
+        #[cfg(feature = "parquet")]
+        "parquet" => to_log(ParquetTable::open(whole(path)?)?, mapping, required),
+        #[cfg(not(feature = "parquet"))]
+        "parquet" => Err(ReadProblem::LeftOut {
+            format: "Parquet",
+            feature: "parquet",
+        }),
+        #[cfg(feature = "mat")]
         "mat" => to_log(MatTable::open(&whole(path)?)?, mapping, required),
+        #[cfg(not(feature = "mat"))]
+        "mat" => Err(ReadProblem::LeftOut {
+            format: "MAT",
+            feature: "mat",
+        }),
         _ => Err(ReadProblem::Extension {
             found: found.into_owned(),
         }),
     }
-}
-
-fn open(path: &Path) -> Result<File, ReadProblem> {
-    File::open(path).map_err(|source| ReadProblem::Io {
-        action: "open it",
-        source,
-    })
 }
 
 fn whole(path: &Path) -> Result<Vec<u8>, ReadProblem> {
@@ -89,12 +99,9 @@ fn to_log(mut table: impl Table, mapping: &Mapping, required: &[&str]) -> Result
     let mut wanted: Vec<usize> = picks.iter().map(|p| p.column).collect();
     wanted.sort_unstable();
     wanted.dedup();
-    let columns = table.read(&wanted)?;
-    let values = |pick: &Pick| {
-        let at = wanted.iter().position(|&c| c == pick.column);
-        at.map_or(&[][..], |at| columns[at].as_slice())
-    };
-    let samples = length(&mut picks, values)?;
+    let mut columns = table.read(&wanted)?;
+    let at = |pick: &Pick| wanted.partition_point(|&c| c < pick.column);
+    let samples = length(&mut picks, |pick| &columns[at(pick)])?;
     let mut channels = Vec::with_capacity(picks.len() + 1);
     if picks.first().is_none_or(|p| p.map.channel != TIME_CHANNEL)
         && let Some(rate) = mapping.sample_rate_hz
@@ -102,8 +109,16 @@ fn to_log(mut table: impl Table, mapping: &Mapping, required: &[&str]) -> Result
         let time = (0..samples).map(|k| k as f64 / rate).collect();
         channels.push(Channel::new(TIME_CHANNEL, time)?);
     }
-    for pick in &picks {
-        channels.push(channel(&table, pick, values(pick))?);
+    for (k, pick) in picks.iter().enumerate() {
+        let again = picks[k + 1..].iter().any(|p| p.column == pick.column);
+        let values = &mut columns[at(pick)];
+        // The last channel of a column takes its numbers, so that they are there once.
+        let values = if again {
+            values.clone()
+        } else {
+            std::mem::take(values)
+        };
+        channels.push(channel(&table, pick, values)?);
     }
     Ok(Log::new(channels)?)
 }
@@ -139,8 +154,10 @@ fn length<'a>(
 }
 
 /// Scales and checks one column.
-fn channel(table: &impl Table, pick: &Pick, values: &[f64]) -> Result<Channel, ReadProblem> {
-    let samples: Vec<f64> = values.iter().map(|&v| pick.map.apply(v)).collect();
+fn channel(table: &impl Table, pick: &Pick, mut samples: Vec<f64>) -> Result<Channel, ReadProblem> {
+    for value in &mut samples {
+        *value = pick.map.apply(*value);
+    }
     let at = |row| (table.place(row, pick.column), pick.map.source.clone());
     if let Some(row) = samples.iter().position(|v| !v.is_finite()) {
         let ((place, name), value) = (at(row), samples[row]);

@@ -4,7 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-use crate::error::{CsvProblem, LogError, quoted};
+use crate::error::{CsvProblem, LogError, clip, quoted};
 use crate::mapping::MappingError;
 
 /// A log file that cannot be read: which one, and why.
@@ -53,6 +53,31 @@ pub enum ReadProblem {
         /// The extension, without the point.
         found: String,
     },
+    /// A format that this build of the crate leaves out.
+    #[error(
+        "this program was built without {format}: save the log as CSV, or build axis-log \
+         with its feature \"{feature}\""
+    )]
+    LeftOut {
+        /// Name of the format.
+        format: &'static str,
+        /// Feature of the crate that reads it.
+        feature: &'static str,
+    },
+    /// A file that would take more memory than one of its size should.
+    #[error(
+        "the columns that are read claim {needed} bytes of memory, at most {most} \
+         are taken for a file of {file} bytes: it is damaged; if it is not, split it or save \
+         it as CSV"
+    )]
+    TooLarge {
+        /// Bytes that the columns take in memory.
+        needed: u64,
+        /// Bytes that are taken for a file of that size.
+        most: u64,
+        /// Size of the file, bytes.
+        file: usize,
+    },
     /// The file cannot be opened or read.
     #[error("cannot {action}: {source}")]
     Io {
@@ -68,7 +93,9 @@ pub enum ReadProblem {
     #[error(transparent)]
     Csv(#[from] CsvProblem),
     /// Not Parquet, or Parquet of a kind that is not read.
-    #[error("not readable as Parquet (flat, uncompressed or Snappy): {reason}")]
+    #[error(
+        "not readable as Parquet (flat, uncompressed or Snappy): {reason}; save it again, or as CSV"
+    )]
     Parquet {
         /// What the parser says.
         reason: String,
@@ -106,7 +133,10 @@ pub enum ReadProblem {
         unreadable: usize,
     },
     /// Two columns of one name, and the name is wanted.
-    #[error("column {first} and column {second} are both named \"{name}\": one must go")]
+    #[error(
+        "column {first} and column {second} are both named \"{}\": one must go",
+        clip(name)
+    )]
     DuplicateColumn {
         /// The name.
         name: String,
@@ -116,7 +146,7 @@ pub enum ReadProblem {
         second: usize,
     },
     /// A wanted column that does not hold real numbers, one for each instant.
-    #[error("column \"{name}\" is {found}: {valid} is needed")]
+    #[error("column \"{}\" is {found}: {valid} is needed", clip(name))]
     Unreadable {
         /// Name of the column.
         name: String,
@@ -126,7 +156,11 @@ pub enum ReadProblem {
         valid: &'static str,
     },
     /// Columns of different lengths (MAT).
-    #[error("\"{name}\" has {found} samples: \"{other}\" has {expected}, and they must agree")]
+    #[error(
+        "\"{}\" has {found} samples: \"{}\" has {expected}, and they must agree",
+        clip(name),
+        clip(other)
+    )]
     Length {
         /// Name of the column.
         name: String,
@@ -141,7 +175,10 @@ pub enum ReadProblem {
     #[error("no samples: at least one row is needed")]
     NoRows,
     /// A field or value that is not there.
-    #[error("{place} (\"{name}\"): the value is missing: every row needs one")]
+    #[error(
+        "{place} (\"{}\"): the value is missing: every row needs one",
+        clip(name)
+    )]
     MissingValue {
         /// Where.
         place: Place,
@@ -149,7 +186,7 @@ pub enum ReadProblem {
         name: String,
     },
     /// A field that does not hold a number.
-    #[error("{place} (\"{name}\"): \"{text}\" is not a number")]
+    #[error("{place} (\"{}\"): \"{}\" is not a number", clip(name), clip(text))]
     NotANumber {
         /// Where.
         place: Place,
@@ -159,7 +196,7 @@ pub enum ReadProblem {
         text: String,
     },
     /// NaN or an infinity, in the file or after scaling.
-    #[error("{place} (\"{name}\"): {value} is not a finite number")]
+    #[error("{place} (\"{}\"): {value} is not a finite number", clip(name))]
     NotFinite {
         /// Where.
         place: Place,
@@ -169,7 +206,10 @@ pub enum ReadProblem {
         value: f64,
     },
     /// Time that stands still.
-    #[error("{place} (\"{name}\"): the time {value} s is repeated: time must increase strictly")]
+    #[error(
+        "{place} (\"{}\"): the time {value} s is repeated: time must increase strictly",
+        clip(name)
+    )]
     TimeRepeated {
         /// Where, the later of the two.
         place: Place,
@@ -180,8 +220,9 @@ pub enum ReadProblem {
     },
     /// Time that runs backwards.
     #[error(
-        "{place} (\"{name}\"): the time falls from {previous} s to {value} s: rows must be \
-         sorted by time"
+        "{place} (\"{}\"): the time falls from {previous} s to {value} s: rows must be \
+         sorted by time",
+        clip(name)
     )]
     TimeUnsorted {
         /// Where, the later of the two.
@@ -202,7 +243,7 @@ fn mapped(channel: &str, column: &str) -> String {
     if channel == column {
         String::new()
     } else {
-        format!(" (mapped from \"{column}\")")
+        format!(" (mapped from \"{}\")", clip(column))
     }
 }
 

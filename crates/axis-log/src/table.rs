@@ -36,3 +36,45 @@ pub(crate) struct Fault {
     pub found: String,
     pub valid: &'static str,
 }
+
+/// The memory that reading a binary file may take. Compressed or run-length coded, a few
+/// bytes can stand for any number of rows.
+#[cfg(any(feature = "mat", feature = "parquet"))]
+pub(crate) struct Budget {
+    file: usize,
+    kept: u64,
+    aside: u64,
+}
+
+#[cfg(any(feature = "mat", feature = "parquet"))]
+impl Budget {
+    pub(crate) fn of(file: usize) -> Self {
+        let (kept, aside) = (0, 0);
+        Self { file, kept, aside }
+    }
+
+    /// Numbers that are kept.
+    pub(crate) fn keep(&mut self, numbers: u64) {
+        self.kept = self.kept.saturating_add(numbers.saturating_mul(8));
+    }
+
+    /// Bytes that are needed for a while; only the most at once count.
+    pub(crate) fn aside(&mut self, bytes: u64) {
+        self.aside = self.aside.max(bytes);
+    }
+
+    /// Refuses more than nine times the file and 64 MB: what numbers of one byte each
+    /// take when read, and what a silent log may that compresses well.
+    pub(crate) fn check(&self) -> Result<(), ReadProblem> {
+        let needed = self.kept.saturating_add(self.aside);
+        let most = 9 * self.file as u64 + (64 << 20);
+        if needed <= most {
+            return Ok(());
+        }
+        Err(ReadProblem::TooLarge {
+            needed,
+            most,
+            file: self.file,
+        })
+    }
+}

@@ -94,10 +94,36 @@ fn refusals_name_file_line_and_column() {
             "t_s,position_m\n0,1\n2,1\n1,1\n",
             "log.csv: line 4, column 1 (\"t_s\"): 1 s does not come after 2 s",
         ),
+        (
+            "t_s,position_m\n0,1\n2,1.25",
+            "log.csv: line 3: the last row has no line end",
+        ),
     ] {
         let found = message(text);
         assert!(found.starts_with(expected), "{text:?} gave {found:?}");
     }
+}
+
+#[test]
+fn carriage_returns_end_lines_too() {
+    assert!(read("t_s,position_m\r0,1\r").is_ok());
+    assert!(read("t_s,position_m\r0,1").is_err());
+}
+
+#[test]
+fn a_header_of_a_million_columns_is_refused_in_few_words() {
+    let text = format!("t_s{}\n", ",x_m".repeat(999_999));
+    let found = message(&text);
+    assert!(
+        found.starts_with("log.csv: line 1: 1000000 columns: at most 4096"),
+        "{found}"
+    );
+    let name = "x".repeat(100_000);
+    let found = message(&format!("t_s,{name}\n0,1\n"));
+    assert!(found.len() < 500, "{} bytes", found.len());
+    let field = "9.".repeat(100_000);
+    let found = message(&format!("t_s,position_m\n0,{field}\n"));
+    assert!(found.len() < 500, "{} bytes", found.len());
 }
 
 #[test]
@@ -166,6 +192,16 @@ fn a_missing_folder_or_file_is_named() {
         let text = error.to_string();
         assert!(text.starts_with(&path.display().to_string()), "{text}");
     }
+}
+
+#[test]
+fn a_folder_in_the_files_place_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.csv");
+    fs::create_dir(&path).unwrap();
+    let error = write_csv(&path, &sample_log()).unwrap_err().to_string();
+    assert!(error.starts_with(&path.display().to_string()), "{error}");
+    assert!(error.contains("cannot put it in place"), "{error}");
 }
 
 /// The published trajectory 1 lies outside the repository; where it is not, the

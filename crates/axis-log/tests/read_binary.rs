@@ -101,8 +101,7 @@ fn parquet_refusals_name_the_row() {
 fn mat_files_plain_and_compressed_read_alike() {
     for name in ["plain.mat", "compressed.mat"] {
         let log = read_log(fixture(name), &emps(), REQUIRED).unwrap();
-        // Not the scalar, the short, the complex, the matrix, the int32 array,
-        // the text and the struct.
+        // Not the scalar, the short, the complex, the matrix, the text and the struct.
         assert_eq!(
             names(&log),
             [
@@ -110,7 +109,8 @@ fn mat_files_plain_and_compressed_read_alike() {
                 "position_ref_m",
                 "position_m",
                 "drive_command_v",
-                "duty_1"
+                "duty_1",
+                "counts_1"
             ]
         );
         // As numpy computes k * 1e-3 and 0.1 + 0.25 k: the same operations.
@@ -125,6 +125,7 @@ fn mat_files_plain_and_compressed_read_alike() {
             log.channel("drive_command_v").unwrap(),
             k.map(|k| 2.0 * (k - 2.0))
         );
+        assert_eq!(log.channel("counts_1").unwrap(), k);
     }
 }
 
@@ -144,9 +145,10 @@ fn mat_refusals_say_what_the_file_has() {
             "\"short_m\" has 4 samples: \"t\" has 6, and they must agree",
         ),
         (
-            "counts_1",
-            "no column for \"x_m\" (mapped from \"counts_1\"): the file has \"t\", \"qm\", \"qg\", \
-             \"vir\", \"duty_1\", \"Fs_hz\", \"short_m\", \"phase_rad\", \"jacobian_m\", and 3 parts",
+            "note",
+            "no column for \"x_m\" (mapped from \"note\"): the file has \"t\", \"qm\", \"qg\", \
+             \"vir\", \"duty_1\", \"Fs_hz\", \"short_m\", \"counts_1\", \"phase_rad\", \
+             \"jacobian_m\", and 2 parts",
         ),
     ] {
         let mapping = mapping(&[("t", "t_s", 1.0), (source, "x_m", 1.0)], None);
@@ -240,6 +242,68 @@ proptest! {
     }
 }
 
+/// A MAT file whose one array claims more numbers than memory has, deflated or not.
+#[test]
+fn a_mat_file_that_claims_more_than_it_may_is_refused_before_it_is_read() {
+    let array = |rows: u32, stored: u32| {
+        let mut bytes = Vec::new();
+        let mut word = |n: u32| bytes.extend_from_slice(&n.to_le_bytes());
+        // Flags (class double), dimensions, the name "x_m", the tag of the numbers.
+        for n in [6, 8, 6, 0, 5, 8, rows, 1, 1, 3] {
+            word(n);
+        }
+        bytes.extend_from_slice(b"x_m\0\0\0\0\0");
+        bytes.extend([9_u32.to_le_bytes(), stored.to_le_bytes()].concat());
+        bytes
+    };
+    let element = |kind: u32, content: &[u8]| {
+        let tag = [kind.to_le_bytes(), (content.len() as u32).to_le_bytes()].concat();
+        [&tag, content].concat()
+    };
+    let header = [&[b' '; 124][..], &[0, 1, b'I', b'M']].concat();
+    let rate = mapping(&[], Some(1e3));
+    let message = |element: Vec<u8>| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.mat");
+        fs::write(&path, [&header[..], &element].concat()).unwrap();
+        read_log(&path, &rate, &["x_m"]).unwrap_err().to_string()
+    };
+    // 100 MB of zeros take 450 kB.
+    let zeros = [
+        element(14, &array(12_500_000, 100_000_000)),
+        vec![0; 100_000_000],
+    ]
+    .concat();
+    let bomb = miniz_oxide::deflate::compress_to_vec_zlib(&zeros, 1);
+    drop(zeros);
+    let found = message(element(15, &bomb));
+    assert!(found.contains("claim 200000056 bytes"), "{found}");
+    // The numbers that the tag announces are not there.
+    let found = message(element(14, &array(1000, 8000)));
+    assert!(found.contains("\"x_m\" are damaged or cut off"), "{found}");
+    // The product of the dimensions is not the number of values.
+    let found = message(element(14, &array(u32::MAX, 8)));
+    assert!(found.contains("one part that is damaged"), "{found}");
+}
+
+/// The numbers of a damaged page header are all small integers in the bytes of the
+/// file, so every one of them is tried at every place.
+#[test]
+fn no_byte_of_a_parquet_file_makes_it_ask_for_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.parquet");
+    let whole = small_parquet();
+    for at in 0..whole.len() {
+        let mut damaged = whole.clone();
+        // A varint that goes on: the length or count takes in the bytes that follow.
+        damaged[at] |= 0x80;
+        fs::write(&path, &damaged).unwrap();
+        if let Err(e) = read_log(&path, &Mapping::default(), &[]) {
+            assert!(e.to_string().len() < 500, "{e}");
+        }
+    }
+}
+
 #[test]
 fn a_page_that_asks_for_a_dictionary_it_has_not_is_refused() {
     // Found by the property above: the decoder panics on it.
@@ -270,4 +334,37 @@ fn damaged(mut bytes: Vec<u8>, flips: &[(usize, u8)], name: &str) {
     if let Ok(log) = read_log(&path, &emps(), &[]) {
         assert!(log.time().windows(2).all(|w| w[0] < w[1]));
     }
+}
+
+/// Two row groups, plain and by dictionary, with and without nulls allowed.
+#[test]
+#[ignore = "writes tests/fixtures/log.parquet, on which `cargo xtask torture` works"]
+fn make_the_parquet_fixture() {
+    let rows = 0..120;
+    // At rest, there and back in steps of 1 mm.
+    let place = |k: i32| f64::from((k - 20).max(0).min(120 - k)) * 1e-3 + 0.6;
+    let columns = [
+        Column::new(
+            "t_s",
+            Values::Double(rows.clone().map(|k| f64::from(k) * 1e-3).collect()),
+        ),
+        Column::new(
+            "position_ref_m",
+            Values::Double(rows.clone().map(place).collect()),
+        ),
+        Column::new(
+            "position_m",
+            Values::OptionalDouble(rows.clone().map(|k| Some(place(k) + 1e-6)).collect()),
+        ),
+        Column::new(
+            "iq_a",
+            Values::Float(rows.clone().map(|k| (k % 3) as f32).collect()),
+        ),
+        Column::new(
+            "ticks_1",
+            Values::Int64(rows.clone().map(i64::from).collect()),
+        ),
+        Column::new("state_1", Values::Int32(rows.map(|k| k / 60).collect())),
+    ];
+    parquet_file::write(&fixture("log.parquet"), &columns, 2);
 }

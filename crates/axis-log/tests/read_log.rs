@@ -121,6 +121,10 @@ fn csv_refusals_name_line_and_column() {
             "t,qg,qm\n0,1,2\n2,2,3\n\n1,2,3\n",
             "log.csv: line 5, column 1 (\"t\"): the time falls from 2 s to 1 s",
         ),
+        (
+            "t,qg,qm\n0,1,2\n\n1,2,3",
+            "log.csv: line 4: the last row has no line end",
+        ),
     ] {
         let found = csv(text, &emps(), REQUIRED).unwrap_err();
         assert!(found.starts_with(expected), "{text:?} gave {found:?}");
@@ -160,8 +164,20 @@ fn unknown_extensions_and_absent_files_are_named() {
         ("absent.txt", "absent.txt: the extension is \"txt\""),
         ("absent", "absent: the extension is \"\""),
         ("absent.csv", "absent.csv: cannot read it"),
-        ("absent.PARQUET", "absent.PARQUET: cannot open it"),
+        #[cfg(feature = "parquet")]
+        ("absent.PARQUET", "absent.PARQUET: cannot read it"),
+        #[cfg(feature = "mat")]
         ("absent.mat", "absent.mat: cannot read it"),
+        #[cfg(not(feature = "parquet"))]
+        (
+            "absent.parquet",
+            "absent.parquet: this program was built without Parquet: save the log as CSV",
+        ),
+        #[cfg(not(feature = "mat"))]
+        (
+            "absent.mat",
+            "absent.mat: this program was built without MAT: save the log as CSV",
+        ),
     ] {
         let found = read_log(path, &Mapping::default(), &[])
             .unwrap_err()

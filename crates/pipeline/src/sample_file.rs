@@ -12,6 +12,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
+use atomic_write_file::AtomicWriteFile;
 use axis_sim::CycleInput;
 use thiserror::Error;
 
@@ -57,7 +58,8 @@ pub enum SampleFileError {
 }
 
 /// Simulates all samples of a plan and writes them, a chunk at a time.
-/// `each` is told how many rows a chunk had. The file appears whole or not at all.
+/// `each` is told how many rows a chunk had. The file appears whole or not at all; a
+/// process that is killed may leave what it wrote aside, `.<name>.<six letters or digits>`.
 ///
 /// # Errors
 /// [`SampleFileError::Io`] where the folder is not writable or the disk full;
@@ -73,12 +75,7 @@ pub fn write(
         path: path.to_owned(),
         reason,
     };
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let aside = tempfile::NamedTempFile::new_in(folder).map_err(failed)?;
-    readable(aside.as_file()).map_err(failed)?;
+    let aside = AtomicWriteFile::open(path).map_err(failed)?;
     let mut out = Hashing {
         file: BufWriter::new(aside.as_file()),
         hasher: blake3::Hasher::new(),
@@ -110,9 +107,9 @@ pub fn write(
     out.file.write_all(hash.as_bytes()).map_err(failed)?;
     out.file.flush().map_err(failed)?;
     drop(out);
-    aside.as_file().sync_all().map_err(failed)?;
-    aside.persist(path).map_err(|e| failed(e.error))?;
-    Ok(())
+    // Before the commit, which leaves the file aside behind where flushing fails.
+    aside.sync_all().map_err(failed)?;
+    aside.commit().map_err(failed)
 }
 
 /// Reads a sample file that was made from the axis with this fingerprint.
@@ -183,18 +180,6 @@ fn fixed(fingerprint: &str) -> [u8; 64] {
     let length = given.len().min(64);
     bytes[..length].copy_from_slice(&given[..length]);
     bytes
-}
-
-/// Temporary files are private; samples are for everyone to read.
-#[cfg(unix)]
-fn readable(file: &File) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    file.set_permissions(std::fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn readable(_: &File) -> std::io::Result<()> {
-    Ok(())
 }
 
 struct Hashing<W> {

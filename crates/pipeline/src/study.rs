@@ -103,7 +103,7 @@ pub fn study(
         Sampler::new(axis, &plan)?.all()
     };
     let mut sets = Vec::new();
-    for seed in (0..seeds).map(|i| first_seed + i) {
+    for seed in (0..seeds).map(|i| first_seed.wrapping_add(i)) {
         sets.push((seed, draw(seed)?, draw(seed ^ UNSEEN)?));
     }
     let run = |setting: &Setting| {

@@ -14,13 +14,21 @@ const COMPENSATION: &str = "compensation.json";
 
 /// Runs the command.
 pub fn command(common: &Common) -> Result<()> {
-    run(&common.open()?)
+    let context = common.open()?;
+    let _claim = context.claim()?;
+    run(&context)
 }
 
 /// The stage, for this context.
 pub fn stage(context: &Context) -> Stage<'_> {
     let after = [&train::stage(context), &identify::stage(context)];
-    Stage::new(context, "compensate", &context.machine.fingerprint, &after)
+    Stage::new(
+        context,
+        "compensate",
+        &[COMPENSATION],
+        &context.machine.fingerprint,
+        &after,
+    )
 }
 
 /// Runs the stage.
@@ -35,7 +43,7 @@ pub fn run(context: &Context) -> Result<()> {
     .into_diagnostic()?;
     progress.finish_and_clear();
     stage.write_json(COMPENSATION, &runs)?;
-    stage.finish(&[COMPENSATION])?;
+    stage.finish()?;
     say("compensate: tracking error of the machine (simulated), max / mean in µm")?;
     for strategy in Strategy::COMPENSATED {
         say(format!("  {}", strategy.label()))?;

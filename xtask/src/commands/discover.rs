@@ -333,7 +333,7 @@ fn tell_summary(axis: &Axis, found: &SummaryFound, trajectories: usize) -> Resul
     )
 }
 
-fn read_summary(path: &Path, axis: &Axis) -> Result<Vec<MeasuredError>> {
+pub(super) fn read_summary(path: &Path, axis: &Axis) -> Result<Vec<MeasuredError>> {
     let text = read_text(path)?;
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers().into_diagnostic()?.clone();
@@ -364,7 +364,8 @@ fn read_summary(path: &Path, axis: &Axis) -> Result<Vec<MeasuredError>> {
             let number = text
                 .parse::<f64>()
                 .ok()
-                .filter(|v| v.is_finite() && *v > 0.0);
+                // Above zero in metres too.
+                .filter(|v| v.is_finite() && 1e-6 * v > 0.0);
             number.ok_or_else(|| {
                 miette!(
                     "{}, line {}: \"{text}\" is not a number above zero",

@@ -63,7 +63,9 @@ pub struct Transfer {
 
 /// Runs the command.
 pub fn command(common: &Common) -> Result<()> {
-    run(&common.open()?)
+    let context = common.open()?;
+    let _claim = context.claim()?;
+    run(&context)
 }
 
 /// The stage, for this context.
@@ -71,7 +73,7 @@ pub fn stage(context: &Context) -> Stage<'_> {
     let (friction, transfer) = plans(context);
     let machine = &context.machine.fingerprint;
     let settings = format!("{friction:?} {transfer:?} {machine}");
-    Stage::new(context, "identify", &settings, &[])
+    Stage::new(context, "identify", &[FRICTION, TRANSFER], &settings, &[])
 }
 
 /// Runs the stage.
@@ -105,7 +107,7 @@ pub fn run(context: &Context) -> Result<()> {
     let fits = [fit(false)?, fit(true)?];
     progress.finish_and_clear();
     stage.write_json(TRANSFER, &fits)?;
-    stage.finish(&[FRICTION, TRANSFER])?;
+    stage.finish()?;
     let p = &identified.parameters;
     say(format!(
         "identify: T_C {:.4} N·m, T_S {:.4} N·m, Ω_S {:.4} rad/s, σ2 {:.5} N·m·s/rad, σ0 {:.3} N·m/rad, σ1 {:.3} N·m·s/rad; transfer functions of order {} and {}",

@@ -11,5 +11,6 @@ pub mod report;
 pub mod sample;
 pub mod simulate;
 pub mod study;
+pub mod torture;
 pub mod train;
 pub mod validate;

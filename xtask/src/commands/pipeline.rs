@@ -12,6 +12,7 @@ type Run = fn(&Context) -> Result<()>;
 /// Runs the command.
 pub fn run(common: &Common) -> Result<()> {
     let context = common.open()?;
+    let _claim = context.claim()?;
     let stages: [(Stage<'_>, &str, Run); 6] = [
         (sample::stage(&context), "sample", sample::run),
         (train::stage(&context), "train", train::run),
@@ -22,6 +23,7 @@ pub fn run(common: &Common) -> Result<()> {
     ];
     for (stage, name, run) in &stages {
         if stage.is_current() {
+            stage.tidy()?;
             say(format!("{name}: up to date"))?;
         } else {
             run(&context)?;

@@ -3,21 +3,27 @@
 use miette::{IntoDiagnostic, Result, WrapErr};
 
 use crate::context::{Common, Context};
-use crate::output::{say, write_whole};
+use crate::output::{say, sweep, write_whole};
 use crate::{page, results};
+
+const SUMMARY: &str = "summary.json";
+const REPORT: &str = "report.html";
 
 /// Runs the command.
 pub fn command(common: &Common) -> Result<()> {
-    run(&common.open()?)
+    let context = common.open()?;
+    let _claim = context.claim()?;
+    run(&context)
 }
 
 /// Writes both files.
 pub fn run(context: &Context) -> Result<()> {
     let results = results::gather(context)?;
+    sweep(&context.out, &[SUMMARY, REPORT])?;
     let json = serde_json::to_vec_pretty(&results.summary).into_diagnostic()?;
-    let summary_path = context.out.join("summary.json");
+    let summary_path = context.out.join(SUMMARY);
     write_whole(&summary_path, &json)?;
-    let report_path = context.out.join("report.html");
+    let report_path = context.out.join(REPORT);
     let html = ::report::render(&page::page(context, &results))
         .into_diagnostic()
         .wrap_err("the report cannot be made")?;

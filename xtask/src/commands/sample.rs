@@ -45,12 +45,20 @@ pub fn command(options: &Options) -> Result<()> {
         write(&context, &plan, file)?;
         return say(format!("{count} samples in {}", file.display()));
     }
+    let _claim = context.claim()?;
     run(&context)
 }
 
 /// The stage, for this context.
 pub fn stage(context: &Context) -> Stage<'_> {
-    Stage::new(context, "sample", &format!("{:?}", plans(context)), &[])
+    let files = &[TRAINING, EVEN, UNSEEN];
+    Stage::new(
+        context,
+        "sample",
+        files,
+        &format!("{:?}", plans(context)),
+        &[],
+    )
 }
 
 /// Runs the stage.
@@ -61,7 +69,7 @@ pub fn run(context: &Context) -> Result<()> {
     write(context, &training, &stage.path(TRAINING))?;
     write(context, &even, &stage.path(EVEN))?;
     write(context, &unseen, &stage.path(UNSEEN))?;
-    stage.finish(&[TRAINING, EVEN, UNSEEN])?;
+    stage.finish()?;
     say(format!(
         "sample: {} samples to train on, {} unseen",
         training.count, unseen.count

@@ -1,6 +1,6 @@
 //! `simulate`: one motion, its error and its log.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use axis_log::write_csv;
 use axis_sim::{ClosedLoop, Recorder};
@@ -126,10 +126,7 @@ pub fn command(options: &Options) -> Result<()> {
 
 fn motion(options: &Options, context: &Context) -> Result<Box<dyn Motion>> {
     if let Some(file) = &options.program {
-        let program: Program = toml::from_str(&read_text(file)?)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("{} is not a motion program", file.display()))?;
-        return Ok(Box::new(program));
+        return Ok(Box::new(program(file)?));
     }
     let number = options.trajectory.unwrap_or(0);
     let count = context.axis.trajectories.len();
@@ -140,4 +137,11 @@ fn motion(options: &Options, context: &Context) -> Result<Box<dyn Motion>> {
             miette!("--trajectory {number}: the axis file has trajectories 1 to {count}")
         })?;
     Ok(Box::new(context.axis.plan(spec).into_diagnostic()?))
+}
+
+/// Reads a motion program.
+pub(super) fn program(file: &Path) -> Result<Program> {
+    toml::from_str(&read_text(file)?)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{} is not a motion program", file.display()))
 }

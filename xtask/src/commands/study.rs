@@ -12,12 +12,20 @@ const STUDY: &str = "study.json";
 
 /// Runs the command.
 pub fn command(common: &Common) -> Result<()> {
-    run(&common.open()?)
+    let context = common.open()?;
+    let _claim = context.claim()?;
+    run(&context)
 }
 
 /// The stage, for this context.
 pub fn stage(context: &Context) -> Stage<'_> {
-    Stage::new(context, "study", &format!("{:?}", size(context)), &[])
+    Stage::new(
+        context,
+        "study",
+        &[STUDY],
+        &format!("{:?}", size(context)),
+        &[],
+    )
 }
 
 /// Runs the stage.
@@ -40,7 +48,7 @@ pub fn run(context: &Context) -> Result<()> {
     .into_diagnostic()?;
     progress.finish_and_clear();
     stage.write_json(STUDY, &rows)?;
-    stage.finish(&[STUDY])?;
+    stage.finish()?;
     say(format!(
         "study: {} settings over {seeds} seeds",
         settings.len()

@@ -1,5 +1,7 @@
 //! `train`: the one-cycle network.
 
+use std::path::Path;
+
 use cfnn::Network;
 use cfnn::artifact::{
     checkpoint_from_bytes, checkpoint_to_bytes, network_from_bytes, network_to_bytes,
@@ -42,7 +44,9 @@ pub struct Training {
 
 /// Runs the command.
 pub fn command(common: &Common) -> Result<()> {
-    run(&common.open()?)
+    let context = common.open()?;
+    let _claim = context.claim()?;
+    run(&context)
 }
 
 /// The stage, for this context.
@@ -54,7 +58,8 @@ pub fn stage(context: &Context) -> Stage<'_> {
             ..plan(context)
         }
     );
-    Stage::new(context, "train", &settings, &[&sample::stage(context)])
+    let (files, after) = (&[NETWORK, TRAINING], [&sample::stage(context)]);
+    Stage::new(context, "train", files, &settings, &after).with_scratch(&[CHECKPOINT])
 }
 
 /// Runs the stage; goes on from a checkpoint where one is left.
@@ -71,7 +76,7 @@ pub fn run(context: &Context) -> Result<()> {
         .filter(|(_, made_for)| made_for == stage.key())
         .map(|(checkpoint, _)| checkpoint);
 
-    let mut unsaved = Ok(());
+    let mut unsaved = false;
     let trained = train(
         &context.axis.samples,
         &seen,
@@ -79,16 +84,20 @@ pub fn run(context: &Context) -> Result<()> {
         checkpoint,
         |report, trainer| {
             progress.set_position(report.epoch as u64);
-            if report.epoch % CHECKPOINT_EVERY == 0 && unsaved.is_ok() {
-                unsaved = checkpoint_to_bytes(&trainer.checkpoint(), stage.key())
+            if report.epoch % CHECKPOINT_EVERY == 0 && !unsaved {
+                let saved = checkpoint_to_bytes(&trainer.checkpoint(), stage.key())
                     .into_diagnostic()
                     .and_then(|bytes| write_whole(&checkpoint_path, &bytes));
+                // Only a help for a killed training: the training itself goes on.
+                if let Err(e) = saved {
+                    tracing::warn!("no more checkpoints: {e:#}");
+                    unsaved = true;
+                }
             }
         },
     )
     .into_diagnostic()?;
     progress.finish_and_clear();
-    unsaved?;
 
     let training = Training {
         hidden: plan.hidden.clone(),
@@ -108,9 +117,7 @@ pub fn run(context: &Context) -> Result<()> {
     let bytes = network_to_bytes(&trained.network, provenance).into_diagnostic()?;
     write_whole(&stage.path(NETWORK), &bytes)?;
     stage.write_json(TRAINING, &training)?;
-    stage.finish(&[NETWORK, TRAINING])?;
-    // Only a help for a killed training; what is left of it does no harm.
-    let _ = std::fs::remove_file(&checkpoint_path);
+    stage.finish()?;
     say(format!(
         "train: {} epochs in {:.1} s; unseen samples max {:.2e} µm, mean {:.2e} µm (linear map {:.2e}, {:.2e})",
         training.epochs,
@@ -126,9 +133,7 @@ pub fn run(context: &Context) -> Result<()> {
 pub fn load_network(context: &Context) -> Result<Network> {
     let stage = stage(context);
     let path = stage.path(NETWORK);
-    let (network, made_from) = network_from_bytes(&stage.read(NETWORK)?)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("{} is refused", path.display()))?;
+    let (network, made_from) = network(&stage.read(NETWORK)?, &path)?;
     if made_from == context.axis.fingerprint {
         return Ok(network);
     }
@@ -136,6 +141,18 @@ pub fn load_network(context: &Context) -> Result<Network> {
         "{} was made from another axis file",
         path.display()
     ))
+}
+
+/// The network in the bytes of the file `path`, and what it was made from.
+pub fn network(bytes: &[u8], path: &Path) -> Result<(Network, String)> {
+    let refused = || {
+        format!(
+            "{} is not a network that this version reads; run `cargo xtask train` again",
+            path.display()
+        )
+    };
+    let read = network_from_bytes(bytes).into_diagnostic();
+    read.wrap_err_with(refused)
 }
 
 /// What a finished stage showed.

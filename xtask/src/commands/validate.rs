@@ -14,13 +14,21 @@ const VALIDATION: &str = "validation.json";
 
 /// Runs the command.
 pub fn command(common: &Common) -> Result<()> {
-    run(&common.open()?)
+    let context = common.open()?;
+    let _claim = context.claim()?;
+    run(&context)
 }
 
 /// The stage, for this context.
 pub fn stage(context: &Context) -> Stage<'_> {
     let after = [&train::stage(context), &identify::stage(context)];
-    Stage::new(context, "validate", &context.machine.fingerprint, &after)
+    Stage::new(
+        context,
+        "validate",
+        &[VALIDATION],
+        &context.machine.fingerprint,
+        &after,
+    )
 }
 
 /// Runs the stage.
@@ -35,7 +43,7 @@ pub fn run(context: &Context) -> Result<()> {
     .into_diagnostic()?;
     progress.finish_and_clear();
     stage.write_json(VALIDATION, &found)?;
-    stage.finish(&[VALIDATION])?;
+    stage.finish()?;
     say("validate: tracking error, max / mean in µm")?;
     say("  trajectory      model          machine (simulated)")?;
     for t in &found.trajectories {

@@ -1,10 +1,9 @@
 //! Tables 7 to 11.
 
+use crate::results::Results;
 use pipeline::Figures;
 use pipeline::study::StudyRow;
 use report::{Cell, Figure, Section, Series, Table};
-use crate::results::Results;
-
 
 /// Table 11 and the training history.
 pub fn network(results: &Results) -> Section {

@@ -1,0 +1,39 @@
+//! A short torture: no damaged or made-up input, and no disturbed run, shows a fault.
+//! The long one is `cargo xtask torture` (docs/reliability.md).
+
+mod common;
+
+use common::succeed;
+
+#[test]
+fn inputs_are_read_or_refused_the_same_way_each_time() {
+    let run = || {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().to_str().unwrap();
+        let said = succeed(&["torture", "--inputs", "4000", "--kills", "0", "--out", out]);
+        assert!(said.contains("no faults"), "{said}");
+        let counts = said
+            .lines()
+            .take_while(|line| !line.contains("memory of a worker"));
+        counts.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let counts = run();
+    assert!(counts.last().unwrap().contains("4000"), "{counts:?}");
+    assert_eq!(run(), counts);
+}
+
+#[test]
+fn disturbed_runs_are_mended_by_the_next() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let said = succeed(&["torture", "--inputs", "0", "--kills", "3", "--out", out]);
+    assert!(said.contains("no faults"), "{said}");
+    for way in [
+        "twice at once",
+        "limited in size",
+        "read-only",
+        "killed in a stage",
+    ] {
+        assert!(said.contains(way), "{said}");
+    }
+}
