@@ -8,9 +8,18 @@ use foc_pmsm::{Command, Dq, Measurement, Saturated, Servo, ServoState};
 use trajectories::{Motion, Setpoint};
 
 use crate::Axis;
-use crate::cycle::{Cycle, FOLLOWING_ERROR_LIMIT, Measured, Outcome, StopReason};
+use crate::cycle::{Cycle, Measured, Outcome, StopReason};
 use crate::effects::Hooks;
 use crate::plant::{Plant, substeps};
+use crate::work::{MOST_STEPS, cycles_of};
+
+/// Longest internal step with a nut coupling, s, where `asked` is asked for.
+pub(crate) fn longest_step(coupling: NutCoupling, asked: f64) -> f64 {
+    match coupling {
+        NutCoupling::ShapeFunctions => asked,
+        NutCoupling::MovingNode => asked.min(1e-5),
+    }
+}
 
 /// The closed loop of an axis, prepared once for any number of runs.
 #[derive(Clone, Debug)]
@@ -46,7 +55,7 @@ impl ClosedLoop {
             }
             NutCoupling::MovingNode => {
                 let mut axis = axis.clone();
-                axis.simulation.step = axis.simulation.step.min(1e-5);
+                axis.simulation.step = longest_step(axis.coupling, axis.simulation.step);
                 Self::implicit(&axis)
             }
         }
@@ -71,6 +80,20 @@ impl ClosedLoop {
     /// The axis, its effects' changes of parameters made.
     pub fn axis(&self) -> &Axis {
         &self.axis
+    }
+
+    /// Sampling instants of a run along `motion`, those at its start and its
+    /// end included: as many cycles as [`ClosedLoop::run`] shows where it comes
+    /// to its end.
+    pub fn cycles(&self, motion: &(impl Motion + ?Sized)) -> u64 {
+        cycles_of(motion.duration(), self.axis.period) as u64
+    }
+
+    /// Internal steps of such a run: what its computing time is proportional
+    /// to. Above [`MOST_STEPS`] it is refused ([`StopReason::TooLong`]).
+    pub fn steps(&self, motion: &(impl Motion + ?Sized)) -> f64 {
+        let cycles = cycles_of(motion.duration(), self.axis.period);
+        cycles * f64::from(substeps(&self.axis))
     }
 
     /// Adds hooks to the plant.
@@ -123,18 +146,28 @@ impl ClosedLoop {
     ) -> Outcome {
         let axis = &self.axis;
         let period = axis.period;
-        let cycles = (motion.duration() / period * (1.0 + 1e-12)).floor() as u64;
         let speed_feedforward = axis.velocity_feedforward / axis.travel_per_radian();
 
         let mut reference = motion.at(0.0);
         let origin = reference.position;
+        let steps = self.steps(motion);
+        if steps > MOST_STEPS {
+            return Outcome::Stopped {
+                time: 0.0,
+                reason: StopReason::TooLong(steps),
+                position: origin,
+                error: 0.0,
+                motor_speed: 0.0,
+                iq: 0.0,
+            };
+        }
         let mut state = plant.at_rest(origin);
         let mut servo = ServoState::default();
         let mut last_command = Command::default();
         let mut delay = DelayLine::new(self.hooks.delay / period);
         compensator.reset();
 
-        for k in 0..=cycles {
+        for k in 0..self.cycles(motion) {
             // Sample.
             let time = k as f64 * period;
             let next_reference = motion.at((k + 1) as f64 * period);
@@ -214,8 +247,8 @@ impl ClosedLoop {
         let state = cycle.position + cycle.motor_speed + current;
         if !state.is_finite() {
             Some(StopReason::NotFinite)
-        } else if cycle.error().abs() > FOLLOWING_ERROR_LIMIT {
-            Some(StopReason::FollowingError)
+        } else if cycle.error().abs() > self.axis.following_error_limit {
+            Some(StopReason::FollowingError(self.axis.following_error_limit))
         } else if !(stroke.minimum..=stroke.maximum).contains(&cycle.position) {
             Some(StopReason::LeftStroke)
         } else {
@@ -273,7 +306,8 @@ struct DelayLine {
 
 impl DelayLine {
     fn new(cycles: f64) -> Self {
-        let length = cycles.ceil() as usize + 2;
+        // Effects keep it within some thousand cycles.
+        let length = (cycles.ceil() as usize).saturating_add(2);
         Self {
             cycles,
             past: VecDeque::from(vec![0.0; length]),

@@ -14,8 +14,12 @@ use thiserror::Error;
 use trajectories::{Motion, Setpoint};
 
 use crate::effects::{ActiveEffect, Hooks, Machine};
-use crate::rigid::Start;
-use crate::{ClosedLoop, Cycle, Measured, RunStopped};
+use crate::rigid::{RigidCycle, Start};
+use crate::work::{MOST_STEPS, cycles_of, substeps_of};
+use crate::{ClosedLoop, Cycle, Measured, RigidAxis, RunStopped, SixDigits};
+
+/// Most control cycles of a replay, which holds their samples in memory.
+const MOST_CYCLES: f64 = 1e8;
 
 /// Why a replay failed.
 #[derive(Debug, Error)]
@@ -31,11 +35,49 @@ pub enum ReplayError {
     #[error(transparent)]
     Stopped(#[from] RunStopped),
     /// A state is no longer a number.
-    #[error("the replay diverged at t = {time:.4} s")]
+    #[error("the replay diverged at t = {} s", SixDigits(*.time))]
     Diverged {
         /// When, s.
         time: f64,
     },
+    /// The tracking error passed the limit of the axis file.
+    #[error(
+        "the replay was given up at t = {} s: the tracking error of {} mm is beyond {} mm, the following_error_limit_mm of the axis file's [control]",
+        SixDigits(*.time), SixDigits(1e3 * .error), SixDigits(1e3 * .limit)
+    )]
+    FollowingError {
+        /// When, s.
+        time: f64,
+        /// Tracking error then, m.
+        error: f64,
+        /// Its limit, m.
+        limit: f64,
+    },
+    /// A sampling period that is none.
+    #[error("the sampling period of {period} s is not valid: it must be a finite number above zero")]
+    Period {
+        /// As given, s.
+        period: f64,
+    },
+    /// More than a replay can hold or step through.
+    #[error(
+        "the log's reference takes {} control cycles of {} internal steps, more than {} cycles or {} steps; give a part of it, or a longer control period or step",
+        SixDigits(*.cycles), SixDigits(*.steps), SixDigits(MOST_CYCLES), SixDigits(MOST_STEPS)
+    )]
+    TooLong {
+        /// Control cycles.
+        cycles: f64,
+        /// Internal steps of each.
+        steps: f64,
+    },
+}
+
+/// Refuses a replay without end before it begins.
+fn check_length(cycles: f64, steps: f64) -> Result<(), ReplayError> {
+    if cycles <= MOST_CYCLES && cycles * steps <= MOST_STEPS {
+        return Ok(());
+    }
+    Err(ReplayError::TooLong { cycles, steps })
 }
 
 /// A logged reference as a motion: cubic between samples, through positions
@@ -53,8 +95,11 @@ impl LoggedReference {
     /// difference of the position.
     ///
     /// # Errors
-    /// [`LogError::MissingChannel`] without `position_ref_m`.
-    pub fn new(log: &Log, period: f64) -> Result<Self, LogError> {
+    /// [`ReplayError::Log`] without `position_ref_m`; [`ReplayError::Period`].
+    pub fn new(log: &Log, period: f64) -> Result<Self, ReplayError> {
+        if !(period.is_finite() && period > 0.0) {
+            return Err(ReplayError::Period { period });
+        }
         let position = log.channel("position_ref_m")?.to_vec();
         let last = position.len() - 1;
         let difference = |k: usize| {
@@ -79,6 +124,9 @@ impl Motion for LoggedReference {
     }
 
     fn at(&self, t: f64) -> Setpoint {
+        if t.is_nan() {
+            return Setpoint::at_rest(self.position[0]);
+        }
         let last = self.position.len() - 1;
         let along = (t / self.period).clamp(0.0, last as f64);
         let near = along.round();
@@ -167,8 +215,8 @@ impl Replay {
     /// there are the start of a rigid machine.
     ///
     /// # Errors
-    /// [`LogError::MissingChannel`].
-    pub fn new(log: &Log, period: f64) -> Result<Self, LogError> {
+    /// [`ReplayError::Log`] where a channel is missing; [`ReplayError::Period`].
+    pub fn new(log: &Log, period: f64) -> Result<Self, ReplayError> {
         let position = log.channel("position_m")?;
         let few = position.len().min(6) - 1;
         let start = Start {
@@ -217,55 +265,81 @@ impl Replay {
                 self.follow(&closed_loop, |_| ())
             }
             Machine::Rigid(axis) => {
-                let mut axis = axis.clone();
+                let mut axis = (**axis).clone();
                 axis.effects.extend_from_slice(effects);
                 let (axis, mut hooks) = axis.with_effects()?;
                 if let Some(probe) = probe {
                     self.attach(&mut hooks, probe);
                 }
-                let cycles = (self.reference.duration() / axis.period * (1.0 + 1e-12)) as usize + 1;
-                let added = |k: usize| {
-                    let at = k as f64 * axis.period / self.reference.period;
-                    let added = self.added.as_ref();
-                    added
-                        .and_then(|a| a.get(at.round() as usize))
-                        .copied()
-                        .unwrap_or(0.0)
-                };
-                let log = axis.follow(&hooks, &self.reference, self.start, cycles, added);
-                if let Some(k) = log
-                    .iter()
-                    .position(|c| !(c.position + c.command).is_finite())
-                {
-                    let time = k as f64 * axis.period;
-                    return Err(ReplayError::Diverged { time });
-                }
-                let position: Vec<f64> = log.iter().map(|c| c.position).collect();
-                let command: Vec<f64> = log.iter().map(|c| c.command).collect();
-                let position = self.resample(position, axis.period, 0.0);
-                Ok(Trace {
-                    speed: self.differences(&position),
-                    channels: vec![
-                        ("position_m", position),
-                        ("drive_command_v", self.resample(command, axis.period, 0.0)),
-                    ],
-                })
+                self.follow_rigid(&axis, &hooks)
             }
         }
+    }
+
+    fn follow_rigid(&self, axis: &RigidAxis, hooks: &Hooks) -> Result<Trace, ReplayError> {
+        for (name, value) in [("period", axis.period), ("step", axis.step)] {
+            if !(value.is_finite() && value > 0.0) {
+                let valid = "a finite number above zero";
+                return Err(DriveError::Parameter { name, value, valid }.into());
+            }
+        }
+        let cycles = cycles_of(self.reference.duration(), axis.period);
+        check_length(cycles, substeps_of(axis.period, axis.step))?;
+        let added = |k: usize| {
+            let at = k as f64 * axis.period / self.reference.period;
+            let added = self.added.as_ref();
+            added
+                .and_then(|a| a.get(at.round() as usize))
+                .copied()
+                .unwrap_or(0.0)
+        };
+        let log = axis.follow(hooks, &self.reference, self.start, cycles as usize, added);
+        self.check_held(axis, &log)?;
+        let position: Vec<f64> = log.iter().map(|c| c.position).collect();
+        let command: Vec<f64> = log.iter().map(|c| c.command).collect();
+        let position = self.resample(position, axis.period, 0.0);
+        Ok(Trace {
+            speed: self.differences(&position),
+            channels: vec![
+                ("position_m", position),
+                ("drive_command_v", self.resample(command, axis.period, 0.0)),
+            ],
+        })
+    }
+
+    /// Whether the loop held the reference: in numbers, and within its limit.
+    fn check_held(&self, axis: &RigidAxis, log: &[RigidCycle]) -> Result<(), ReplayError> {
+        for (k, cycle) in log.iter().enumerate() {
+            let time = k as f64 * axis.period;
+            if !(cycle.position + cycle.command).is_finite() {
+                return Err(ReplayError::Diverged { time });
+            }
+            let Some(limit) = axis.following_error_limit else {
+                continue;
+            };
+            let error = self.reference.at(time).position - cycle.position;
+            if error.abs() > limit {
+                return Err(ReplayError::FollowingError { time, error, limit });
+            }
+        }
+        Ok(())
     }
 
     /// Runs the reference through a prepared closed loop; `sense` as in
     /// [`ClosedLoop::run_sensed`].
     ///
     /// # Errors
-    /// [`ReplayError::Stopped`] where the loop does not hold.
+    /// [`ReplayError::Stopped`] where the loop does not hold;
+    /// [`ReplayError::TooLong`] where the log is longer than can be held.
     pub fn follow(
         &self,
         closed_loop: &ClosedLoop,
         sense: impl FnMut(&mut Measured),
     ) -> Result<Trace, ReplayError> {
         let period = closed_loop.axis().period;
-        let cycles = (self.reference.duration() / period) as usize + 2;
+        let cycles = cycles_of(self.reference.duration(), period);
+        check_length(cycles, closed_loop.steps(&self.reference) / cycles)?;
+        let cycles = cycles as usize;
         let mut columns: [Vec<f64>; COLUMNS.len()] =
             std::array::from_fn(|_| Vec::with_capacity(cycles));
         let mut speed: Vec<f64> = Vec::with_capacity(cycles);
@@ -303,7 +377,8 @@ impl Replay {
             }
             let i = along as usize;
             let part = along - i as f64;
-            (1.0 - part) * samples[i] + part * samples[i + 1]
+            let next = samples[(i + 1).min(samples.len() - 1)];
+            (1.0 - part) * samples[i] + part * next
         };
         (0..self.samples).map(at).collect()
     }
@@ -320,7 +395,9 @@ impl Replay {
     fn attach(&self, hooks: &mut Hooks, probe: &Probe) {
         let h = self.reference.period;
         let value = move |samples: &[f64], t: f64| {
-            let last = samples.len() - 1;
+            let Some(last) = samples.len().checked_sub(1) else {
+                return [0.0; 2];
+            };
             let along = (t / h).clamp(0.0, last as f64);
             let i = (along as usize).min(last.saturating_sub(1));
             let next = samples[(i + 1).min(last)];

@@ -3,10 +3,13 @@
 mod error;
 mod extras;
 mod fields;
+mod keys;
 mod rigid;
+mod slips;
 mod units;
 
 use std::cell::RefCell;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -15,17 +18,39 @@ use feed_dynamics::{DriveParameters, FeedDrive, NutCoupling};
 use foc_pmsm::{MotorParameters, Pmsm, Servo, ServoGains, ServoLimits};
 use lugre::LuGre;
 use toml::de::DeTable;
-use trajectories::Limits;
+use trajectories::{Limits, Motion, SCurve};
 
-use crate::axis::{Axis, Experiment, MoveSpec, Range, SampleRanges, Simulation, Stroke};
+use crate::SixDigits;
+use crate::axis::{
+    Axis, Experiment, FOLLOWING_ERROR_LIMIT, MoveSpec, Range, SampleRanges, Simulation, Stroke,
+};
+use crate::closed_loop::longest_step;
 use crate::effects::Machine;
+use crate::work::{MOST_STEPS, MOST_SUBSTEPS, cycles_of, substeps_of};
 pub use error::AxisFileError;
 use error::Source;
 use fields::{Fields, Record};
-use units::*;
+use keys::{BALL_SCREW, KINDS, RIGID_MASS};
 
-/// The version of the axis file's layout that this program reads.
-const SCHEMA: u32 = 1;
+/// Size beyond which a file is no axis file, bytes.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// The text of the file, or why it cannot be had.
+fn content(path: &Path) -> Result<String, AxisFileError> {
+    let read = || {
+        let mut content = String::new();
+        let file = std::fs::File::open(path)?;
+        file.take(MOST_BYTES + 1).read_to_string(&mut content)?;
+        if content.len() as u64 > MOST_BYTES {
+            return Err(std::io::Error::other("it is larger than 1 MiB"));
+        }
+        Ok(content)
+    };
+    read().map_err(|reason| AxisFileError::Read {
+        path: path.to_owned(),
+        reason,
+    })
+}
 
 impl Axis {
     /// Reads an axis file.
@@ -33,17 +58,17 @@ impl Axis {
     /// # Errors
     /// [`AxisFileError`] names file, line and field, and what would be valid.
     pub fn read(path: &Path) -> Result<Self, AxisFileError> {
-        let content = std::fs::read_to_string(path).map_err(|reason| AxisFileError::Read {
-            path: path.to_owned(),
-            reason,
-        })?;
-        let mut axis = Self::parse(&path.display().to_string(), &content)?;
-        // Files that an axis file names lie relative to it.
-        if let (Some(experiment), Some(folder)) = (&mut axis.experiment, path.parent()) {
+        let mut axis = Self::parse(&path.display().to_string(), &content(path)?)?;
+        axis.lies_in(path.parent());
+        Ok(axis)
+    }
+
+    /// Files that an axis file names lie relative to its folder.
+    fn lies_in(&mut self, folder: Option<&Path>) {
+        if let (Some(experiment), Some(folder)) = (&mut self.experiment, folder) {
             experiment.machine = folder.join(&experiment.machine);
             experiment.paper_tables = experiment.paper_tables.take().map(|p| folder.join(p));
         }
-        Ok(axis)
     }
 
     /// Reads the text of an axis file; `name` stands for it in messages.
@@ -51,7 +76,14 @@ impl Axis {
     /// # Errors
     /// As [`Axis::read`].
     pub fn parse(name: &str, content: &str) -> Result<Self, AxisFileError> {
-        let (mut axis, fingerprint) = parse(name, content, axis)?;
+        let (mut axis, fingerprint) = parse(name, content, |root| {
+            if is_rigid(&root)? {
+                let what = "is \"rigid-mass\": this command needs a ball screw".to_owned();
+                let valid = format!("\"{}\", or no kind", KINDS[0]);
+                return Err(root.refuse_value("kind", what, valid));
+            }
+            axis(&root.with_keys(BALL_SCREW)?)
+        })?;
         axis.fingerprint = fingerprint;
         Ok(axis)
     }
@@ -64,14 +96,11 @@ impl Machine {
     /// # Errors
     /// As [`Axis::read`].
     pub fn read(path: &Path) -> Result<Self, AxisFileError> {
-        let content = std::fs::read_to_string(path).map_err(|reason| AxisFileError::Read {
-            path: path.to_owned(),
-            reason,
-        })?;
-        match Self::parse(&path.display().to_string(), &content)? {
-            Self::BallScrew(_) => Ok(Self::BallScrew(Box::new(Axis::read(path)?))),
-            rigid => Ok(rigid),
+        let mut machine = Self::parse(&path.display().to_string(), &content(path)?)?;
+        if let Self::BallScrew(axis) = &mut machine {
+            axis.lies_in(path.parent());
         }
+        Ok(machine)
     }
 
     /// Reads the text of an axis file; `name` stands for it in messages.
@@ -80,13 +109,11 @@ impl Machine {
     /// As [`Axis::read`].
     pub fn parse(name: &str, content: &str) -> Result<Self, AxisFileError> {
         let (mut machine, fingerprint) = parse(name, content, |root| {
-            if kind(&root)? {
-                root.count("schema", SCHEMA, SCHEMA)?;
-                let rigid = rigid::rigid(&root)?;
-                root.finish()?;
+            if is_rigid(&root)? {
+                let rigid = rigid::rigid(&root.with_keys(RIGID_MASS)?)?;
                 return Ok(Self::Rigid(Box::new(rigid)));
             }
-            Ok(Self::BallScrew(Box::new(axis(root)?)))
+            Ok(Self::BallScrew(Box::new(axis(&root.with_keys(BALL_SCREW)?)?)))
         })?;
         match &mut machine {
             Self::BallScrew(axis) => axis.fingerprint = fingerprint,
@@ -97,11 +124,8 @@ impl Machine {
 }
 
 /// Whether the file is of a rigid mass.
-fn kind(root: &Fields<'_>) -> Result<bool, AxisFileError> {
-    match root.optional_text("kind")? {
-        None => Ok(false),
-        Some(_) => root.word("kind", &[("ball-screw", false), ("rigid-mass", true)]),
-    }
+fn is_rigid(root: &Fields<'_>) -> Result<bool, AxisFileError> {
+    Ok(root.has("kind") && root.word("kind")? == KINDS[1])
 }
 
 /// What `read` makes of the file, and the hash of its values.
@@ -123,195 +147,209 @@ fn parse<T>(
     Ok((read, hash.to_hex().to_string()))
 }
 
-fn axis(root: Fields<'_>) -> Result<Axis, AxisFileError> {
-    root.count("schema", SCHEMA, SCHEMA)?;
-    if kind(&root)? {
-        let what = "is \"rigid-mass\": this command needs a ball screw".to_owned();
-        return Err(root.refuse_table(what, "\"ball-screw\", or no kind"));
-    }
-    let (simulation, coupling) = simulation(root.table("simulation")?)?;
-    let (servo, period) = servo(root.table("control")?, root.table("inverter")?)?;
-    let (motor, torque_constant) = motor(root.table("motor")?)?;
-    let (samples, screw_length) = (root.table("samples")?, root.table("screw")?);
-    let drive = drive(screw_length, root.table("drive")?)?;
+fn axis(root: &Fields<'_>) -> Result<Axis, AxisFileError> {
+    root.count("schema")?;
+    let (simulation, coupling) = simulation(&root.table("simulation")?)?;
+    let control = control(&root.table("control")?, &root.table("inverter")?)?;
+    check_step(&root.table("simulation")?, control.period, simulation.step)?;
+    let pace = Pace {
+        period: control.period,
+        steps: substeps_of(control.period, longest_step(coupling, simulation.step)),
+    };
+    let (motor, torque_constant) = motor(&root.table("motor")?)?;
+    let drive = drive(&root.table("screw")?, &root.table("drive")?)?;
     let length = drive.parameters().screw_length;
-    let stroke = stroke(root.table("stroke")?, length)?;
-    let axis = Axis {
+    let stroke = stroke(&root.table("stroke")?, Some(length))?;
+    Ok(Axis {
         name: root.text("name")?.to_owned(),
         description: root.optional_text("description")?.unwrap_or("").to_owned(),
-        friction: friction(root.table("friction")?)?,
-        samples: sample_ranges(samples, length)?,
-        trajectories: trajectories(&root, &stroke)?,
+        friction: friction(&root.table("friction")?)?,
+        samples: sample_ranges(&root.table("samples")?, length)?,
+        trajectories: trajectories(root, &stroke, &pace)?,
         experiment: experiment(root.optional_table("experiment")?)?,
         stroke,
         drive,
         motor,
         torque_constant,
-        servo: servo.0,
-        velocity_feedforward: servo.1,
-        period,
+        servo: control.servo,
+        velocity_feedforward: control.feedforward,
+        period: control.period,
+        following_error_limit: control.following_error,
         coupling,
         simulation,
-        effects: extras::effects(&root, false)?,
-        tolerance: extras::tolerance(&root)?,
-        log: extras::log(&root)?,
+        effects: extras::effects(root, false)?,
+        tolerance: extras::tolerance(root)?,
+        log: extras::log(root)?,
         fingerprint: String::new(),
-    };
-    root.finish()?;
-    Ok(axis)
+    })
 }
 
-fn drive(screw: Fields<'_>, lumped: Fields<'_>) -> Result<FeedDrive, AxisFileError> {
-    use Valid::{NotNegative, PoissonRatio, Positive};
+fn drive(screw: &Fields<'_>, lumped: &Fields<'_>) -> Result<FeedDrive, AxisFileError> {
     let material = Material::new(
-        screw.quantity("youngs_modulus", &PRESSURE, Positive)?,
-        screw.number("poisson_ratio", PoissonRatio)?,
-        screw.quantity("density", &DENSITY, Positive)?,
+        screw.number("youngs_modulus")?,
+        screw.number("poisson_ratio")?,
+        screw.number("density")?,
     )
     .map_err(|e| screw.refuse_table(e.to_string(), "another material"))?;
-    let diameter = screw.quantity("diameter", &LENGTH, Positive)?;
-    let section = Section::solid_circle(diameter, &material)
+    let section = Section::solid_circle(screw.number("diameter")?, &material)
         .map_err(|e| screw.refuse_table(e.to_string(), "another section"))?;
     let parameters = DriveParameters {
         section,
         material,
-        screw_length: screw.quantity("length", &LENGTH, Positive)?,
-        elements: screw.count("elements", 2, 1000)? as usize,
-        lead: screw.quantity("lead", &LENGTH, Positive)?,
-        motor_inertia: lumped.quantity("motor_inertia", &INERTIA, Positive)?,
-        sensor_inertia: lumped.quantity("torque_sensor_inertia", &INERTIA, Positive)?,
-        motor_coupling_stiffness: lumped.quantity("motor_coupling", &TORSION, Positive)?,
-        screw_coupling_stiffness: lumped.quantity("screw_coupling", &TORSION, Positive)?,
-        table_mass: lumped.quantity("table_mass", &MASS, Positive)?,
-        nut_stiffness: lumped.quantity("nut_stiffness", &STIFFNESS, Positive)?,
-        stiffness_damping: lumped.quantity("stiffness_damping", &TIME, NotNegative)?,
+        screw_length: screw.number("length")?,
+        elements: screw.count("elements")? as usize,
+        lead: screw.number("lead")?,
+        motor_inertia: lumped.number("motor_inertia")?,
+        sensor_inertia: lumped.number("torque_sensor_inertia")?,
+        motor_coupling_stiffness: lumped.number("motor_coupling")?,
+        screw_coupling_stiffness: lumped.number("screw_coupling")?,
+        table_mass: lumped.number("table_mass")?,
+        nut_stiffness: lumped.number("nut_stiffness")?,
+        stiffness_damping: lumped.number("stiffness_damping")?,
     };
-    let drive = FeedDrive::new(parameters)
-        .map_err(|e| lumped.refuse_table(e.to_string(), "other parameters"))?;
-    screw.finish()?;
-    lumped.finish()?;
-    Ok(drive)
+    FeedDrive::new(parameters)
+        .map_err(|e| lumped.refuse_table(e.to_string(), "other parameters"))
 }
 
-fn friction(f: Fields<'_>) -> Result<LuGre, AxisFileError> {
-    use Valid::{NotNegative, Positive};
+fn friction(f: &Fields<'_>) -> Result<LuGre, AxisFileError> {
     let parameters = lugre::Parameters {
-        coulomb: f.quantity("coulomb", &TORQUE, Positive)?,
-        stiction: f.quantity("stiction", &TORQUE, Positive)?,
-        stribeck_speed: f.quantity("stribeck_speed", &ROTATION, Positive)?,
-        stiffness: f.quantity("bristle_stiffness", &BRISTLE_STIFFNESS, Positive)?,
-        damping: f.quantity("bristle_damping", &ROTARY_DAMPING, NotNegative)?,
-        viscous: f.quantity("viscous", &ROTARY_DAMPING, NotNegative)?,
+        coulomb: f.number("coulomb")?,
+        stiction: f.number("stiction")?,
+        stribeck_speed: f.number("stribeck_speed")?,
+        stiffness: f.number("bristle_stiffness")?,
+        damping: f.number("bristle_damping")?,
+        viscous: f.number("viscous")?,
     };
-    let law = LuGre::new(parameters)
-        .map_err(|e| f.refuse_table(e.to_string(), "stiction at least as great as coulomb"))?;
-    f.finish()?;
-    Ok(law)
+    LuGre::new(parameters)
+        .map_err(|e| f.refuse_table(e.to_string(), "stiction at least as great as coulomb"))
 }
 
-fn motor(f: Fields<'_>) -> Result<(Pmsm, f64), AxisFileError> {
-    use Valid::{NotNegative, Positive};
-    let torque_constant = f.quantity("torque_constant", &TORQUE_CONSTANT, Positive)?;
-    let pole_pairs = f.count("pole_pairs", 1, 100)?;
+fn motor(f: &Fields<'_>) -> Result<(Pmsm, f64), AxisFileError> {
+    let torque_constant = f.number("torque_constant")?;
+    let pole_pairs = f.count("pole_pairs")?;
     let parameters = MotorParameters {
         pole_pairs,
-        resistance: f.quantity("resistance", &RESISTANCE, NotNegative)?,
-        inductance_d: f.quantity("inductance_d", &INDUCTANCE, Positive)?,
-        inductance_q: f.quantity("inductance_q", &INDUCTANCE, Positive)?,
+        resistance: f.number("resistance")?,
+        inductance_d: f.number("inductance_d")?,
+        inductance_q: f.number("inductance_q")?,
         // K_t = 1.5 p ψ at i_d = 0.
         flux_linkage: torque_constant / (1.5 * f64::from(pole_pairs)),
     };
     let motor = Pmsm::new(parameters)
         .map_err(|e| f.refuse_table(e.to_string(), "other motor parameters"))?;
-    f.finish()?;
     Ok((motor, torque_constant))
 }
 
-/// The cascade with its velocity feed-forward, and the control period.
-fn servo(f: Fields<'_>, inverter: Fields<'_>) -> Result<((Servo, f64), f64), AxisFileError> {
-    use Valid::{Finite, NotNegative, Positive};
-    let gains = ServoGains {
-        position: f.quantity("position_gain", &POSITION_GAIN, NotNegative)?,
-        speed_p: f.quantity("speed_proportional", &SPEED_PROPORTIONAL, NotNegative)?,
-        speed_i: f.quantity("speed_integral", &SPEED_INTEGRAL, NotNegative)?,
-        d_p: f.quantity("current_d_proportional", &CURRENT_PROPORTIONAL, NotNegative)?,
-        d_i: f.quantity("current_d_integral", &CURRENT_INTEGRAL, NotNegative)?,
-        q_p: f.quantity("current_q_proportional", &CURRENT_PROPORTIONAL, NotNegative)?,
-        q_i: f.quantity("current_q_integral", &CURRENT_INTEGRAL, NotNegative)?,
-    };
-    let dc_link = inverter.quantity("dc_link", &VOLTAGE, Positive)?;
-    inverter.finish()?;
-    let limits = ServoLimits {
-        current: f.quantity("current_limit", &CURRENT, Positive)?,
-        // The largest circle that SVPWM reaches linearly.
-        voltage: dc_link / 3f64.sqrt(),
-    };
-    let feedforward = f.number("velocity_feedforward", Finite)?;
-    let period = 1.0 / f.quantity("frequency", &FREQUENCY, Positive)?;
-    let servo = Servo::new(gains, limits, period)
-        .map_err(|e| f.refuse_table(e.to_string(), "other control parameters"))?;
-    f.finish()?;
-    Ok(((servo, feedforward), period))
+/// What `[control]` and `[inverter]` say.
+struct Control {
+    servo: Servo,
+    feedforward: f64,
+    period: f64,
+    following_error: f64,
 }
 
-fn stroke(f: Fields<'_>, screw_length: f64) -> Result<Stroke, AxisFileError> {
-    let stroke = Stroke {
-        minimum: f.quantity("minimum", &LENGTH, Valid::NotNegative)?,
-        maximum: f.quantity("maximum", &LENGTH, Valid::Positive)?,
-        start: f.quantity("start", &LENGTH, Valid::NotNegative)?,
+fn control(f: &Fields<'_>, inverter: &Fields<'_>) -> Result<Control, AxisFileError> {
+    let gains = ServoGains {
+        position: f.number("position_gain")?,
+        speed_p: f.number("speed_proportional")?,
+        speed_i: f.number("speed_integral")?,
+        d_p: f.number("current_d_proportional")?,
+        d_i: f.number("current_d_integral")?,
+        q_p: f.number("current_q_proportional")?,
+        q_i: f.number("current_q_integral")?,
     };
-    if !(stroke.minimum < stroke.maximum && stroke.maximum <= screw_length) {
-        let what = format!(
-            "reaches from {} m to {} m on a screw of {screw_length} m",
-            stroke.minimum, stroke.maximum
-        );
-        return Err(f.refuse_table(what, "minimum < maximum <= the screw's length"));
+    let limits = ServoLimits {
+        current: f.number("current_limit")?,
+        // The largest circle that SVPWM reaches linearly.
+        voltage: inverter.number("dc_link")? / 3f64.sqrt(),
+    };
+    let period = 1.0 / f.number("frequency")?;
+    let servo = Servo::new(gains, limits, period)
+        .map_err(|e| f.refuse_table(e.to_string(), "other control parameters"))?;
+    let following_error = f.optional_number("following_error_limit")?;
+    Ok(Control {
+        servo,
+        feedforward: f.number("velocity_feedforward")?,
+        period,
+        following_error: following_error.unwrap_or(FOLLOWING_ERROR_LIMIT),
+    })
+}
+
+/// A control period has only so many internal steps.
+fn check_step(f: &Fields<'_>, period: f64, step: f64) -> Result<(), AxisFileError> {
+    if substeps_of(period, step) <= f64::from(MOST_SUBSTEPS) {
+        return Ok(());
+    }
+    let what = format!(
+        "has a step of {} s, of which the control period of {} s has more than {}",
+        SixDigits(step),
+        SixDigits(period),
+        MOST_SUBSTEPS
+    );
+    let least = period / f64::from(MOST_SUBSTEPS);
+    Err(f.refuse_table(what, &format!("a step of {} s or longer", SixDigits(least))))
+}
+
+/// `[stroke]`, on a screw of a length (m) where there is one.
+fn stroke(f: &Fields<'_>, screw_length: Option<f64>) -> Result<Stroke, AxisFileError> {
+    let stroke = Stroke {
+        minimum: f.number("minimum")?,
+        maximum: f.number("maximum")?,
+        start: f.number("start")?,
+    };
+    let reach = format!(
+        "{} m to {} m",
+        SixDigits(stroke.minimum),
+        SixDigits(stroke.maximum)
+    );
+    let on_screw = screw_length.is_none_or(|l| stroke.minimum >= 0.0 && stroke.maximum <= l);
+    if !(stroke.minimum < stroke.maximum && on_screw) {
+        let screw = screw_length.map_or(String::new(), |l| {
+            format!(" on a screw of {} m", SixDigits(l))
+        });
+        let valid = match screw_length {
+            Some(_) => "0 <= minimum < maximum <= the screw's length",
+            None => "minimum < maximum",
+        };
+        return Err(f.refuse_table(format!("reaches from {reach}{screw}"), valid));
     }
     if !(stroke.minimum..=stroke.maximum).contains(&stroke.start) {
-        let what = format!(
-            "starts at {} m, outside {} m to {} m",
-            stroke.start, stroke.minimum, stroke.maximum
-        );
+        let what = format!("starts at {} m, outside {reach}", SixDigits(stroke.start));
         return Err(f.refuse_table(what, "a start inside the stroke"));
     }
-    f.finish()?;
     Ok(stroke)
 }
 
-fn sample_ranges(f: Fields<'_>, screw_length: f64) -> Result<SampleRanges, AxisFileError> {
-    let range = |name: &str, dimension: &Dimension| {
-        let least = f.quantity(&format!("{name}_min"), dimension, Valid::Finite)?;
-        let most = f.quantity(&format!("{name}_max"), dimension, Valid::Finite)?;
+fn sample_ranges(f: &Fields<'_>, screw_length: f64) -> Result<SampleRanges, AxisFileError> {
+    let range = |name: &str| {
+        let least = f.number(&format!("{name}_min"))?;
+        let most = f.number(&format!("{name}_max"))?;
         if least < most {
             return Ok(Range { least, most });
         }
-        let what = format!("has {name}_min = {least}, not below {name}_max = {most} (SI)");
+        let (a, b) = (SixDigits(least), SixDigits(most));
+        let what = format!("has {name}_min = {a}, not below {name}_max = {b} (SI)");
         Err(f.refuse_table(what, "a minimum below the maximum"))
     };
     let ranges = SampleRanges {
-        position: range("position", &LENGTH)?,
-        speed: range("speed", &SPEED)?,
-        acceleration: range("acceleration", &ACCELERATION)?,
-        current: range("current", &CURRENT)?,
+        position: range("position")?,
+        speed: range("speed")?,
+        acceleration: range("acceleration")?,
+        current: range("current")?,
     };
     if ranges.position.least < 0.0 || ranges.position.most > screw_length {
         let what = "asks for positions off the screw".to_owned();
         return Err(f.refuse_table(what, "positions from 0 to the screw's length"));
     }
-    f.finish()?;
     Ok(ranges)
 }
 
-fn simulation(f: Fields<'_>) -> Result<(Simulation, NutCoupling), AxisFileError> {
-    let coupling = f.word(
-        "nut_coupling",
-        &[
-            ("shape-functions", NutCoupling::ShapeFunctions),
-            ("moving-node", NutCoupling::MovingNode),
-        ],
-    )?;
-    let step = f.quantity("step", &TIME, Valid::Positive)?;
-    f.finish()?;
+fn simulation(f: &Fields<'_>) -> Result<(Simulation, NutCoupling), AxisFileError> {
+    let coupling = match f.word("nut_coupling")? {
+        "moving-node" => NutCoupling::MovingNode,
+        _ => NutCoupling::ShapeFunctions,
+    };
+    let step = f.number("step")?;
     Ok((Simulation { step }, coupling))
 }
 
@@ -319,32 +357,48 @@ fn experiment(f: Option<Fields<'_>>) -> Result<Option<Experiment>, AxisFileError
     let Some(f) = f else {
         return Ok(None);
     };
-    let experiment = Experiment {
+    Ok(Some(Experiment {
         machine: PathBuf::from(f.text("machine")?),
         paper_tables: f.optional_text("paper_tables")?.map(PathBuf::from),
-    };
-    f.finish()?;
-    Ok(Some(experiment))
+    }))
 }
 
-fn trajectories(root: &Fields<'_>, stroke: &Stroke) -> Result<Vec<MoveSpec>, AxisFileError> {
+/// Control period, s, and internal steps in it.
+struct Pace {
+    period: f64,
+    steps: f64,
+}
+
+fn trajectories(
+    root: &Fields<'_>,
+    stroke: &Stroke,
+    pace: &Pace,
+) -> Result<Vec<MoveSpec>, AxisFileError> {
     // A move to the very end of the stroke may pass it by a rounding error.
     let slack = 1e-12 * stroke.maximum;
     let one = |f: Fields<'_>| {
-        let displacement = f.quantity("displacement", &LENGTH, Valid::Finite)?;
+        let displacement = f.number("displacement")?;
         let end = stroke.start + displacement;
         if !(stroke.minimum - slack..=stroke.maximum + slack).contains(&end) {
-            let what = format!("ends at {end} m, outside the stroke");
-            let valid = format!("an end from {} m to {} m", stroke.minimum, stroke.maximum);
+            let what = format!("ends at {} m, outside the stroke", SixDigits(end));
+            let (least, most) = (SixDigits(stroke.minimum), SixDigits(stroke.maximum));
+            let valid = format!("an end from {least} m to {most} m");
             return Err(f.refuse_table(what, &valid));
         }
-        let limits = Limits::new(
-            f.quantity("speed", &SPEED, Valid::Positive)?,
-            f.quantity("acceleration", &ACCELERATION, Valid::Positive)?,
-            f.quantity("jerk", &JERK, Valid::Positive)?,
-        )
-        .map_err(|e| f.refuse_table(e.to_string(), "other limits"))?;
-        f.finish()?;
+        let (speed, acceleration) = (f.number("speed")?, f.number("acceleration")?);
+        let refuse = |e: trajectories::TrajectoryError| f.refuse_table(e.to_string(), "other limits");
+        let limits = Limits::new(speed, acceleration, f.number("jerk")?).map_err(refuse)?;
+        let motion = SCurve::plan(stroke.start, end, &limits).map_err(refuse)?;
+        let steps = cycles_of(motion.duration(), pace.period) * pace.steps;
+        if steps > MOST_STEPS {
+            let what = format!(
+                "takes {} s, {} internal steps",
+                SixDigits(motion.duration()),
+                SixDigits(steps)
+            );
+            let valid = format!("a move of at most {} internal steps", SixDigits(MOST_STEPS));
+            return Err(f.refuse_table(what, &valid));
+        }
         Ok(MoveSpec {
             displacement,
             limits,
