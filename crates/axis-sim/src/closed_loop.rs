@@ -1,17 +1,16 @@
 //! The electromechanical coupling model of Section 3.3 as one loop.
 
-use std::collections::VecDeque;
-
-use compensator::{Compensator, Correction, Reference, Sample};
+use compensator::{Compensator, Reference, Sample};
 use feed_dynamics::{DriveError, ImplicitStepper, ModalStepper, NutCoupling, TimeStepper};
-use foc_pmsm::{Command, Dq, Measurement, Saturated, Servo, ServoState};
+use foc_pmsm::{Command, ServoState};
 use trajectories::{Motion, Setpoint};
 
 use crate::Axis;
 use crate::cycle::{Cycle, Measured, Outcome, StopReason};
 use crate::effects::Hooks;
+use crate::late_control::{DelayLine, control};
 use crate::plant::{Plant, substeps};
-use crate::work::{MOST_STEPS, cycles_of};
+use crate::work::{MOST_STEPS, check_period, cycles_of};
 
 /// Longest internal step with a nut coupling, s, where `asked` is asked for.
 pub(crate) fn longest_step(coupling: NutCoupling, asked: f64) -> f64 {
@@ -40,8 +39,10 @@ impl ClosedLoop {
     /// stepper, the moving node on the implicit one with steps of at most 10 µs.
     ///
     /// # Errors
-    /// [`DriveError`] where the mechanics cannot be set up.
+    /// [`DriveError`] where the mechanics cannot be set up, an effect carries a
+    /// parameter out of its range, or the control period is outside 1 µs to 10 ms.
     pub fn new(axis: &Axis) -> Result<Self, DriveError> {
+        check_period(axis.period)?;
         match axis.coupling {
             NutCoupling::ShapeFunctions => {
                 let (axis, hooks) = axis.with_effects()?;
@@ -67,6 +68,7 @@ impl ClosedLoop {
     /// # Errors
     /// As [`ClosedLoop::new`].
     pub fn implicit(axis: &Axis) -> Result<Self, DriveError> {
+        check_period(axis.period)?;
         let (axis, hooks) = axis.with_effects()?;
         let step = axis.period / f64::from(substeps(&axis));
         let stepper = ImplicitStepper::new(&axis.drive, axis.coupling, step)?;
@@ -254,79 +256,6 @@ impl ClosedLoop {
         } else {
             None
         }
-    }
-}
-
-/// One cycle of the cascade; a late current reference is logged as it was
-/// asked for, and reaches the current controllers late.
-fn control(
-    servo: &Servo,
-    state: &mut ServoState,
-    delay: &mut DelayLine,
-    measured: &Measurement,
-    reference: &foc_pmsm::Reference,
-    correction: &Correction,
-) -> Command {
-    let correction = foc_pmsm::Correction {
-        position_offset: correction.position,
-        speed: 0.0,
-        iq: correction.iq,
-    };
-    if delay.is_none() {
-        return servo.cycle(state, measured, reference, &correction);
-    }
-    let error = reference.position - measured.position + correction.position_offset;
-    let speed_ref = servo.position_loop(error, reference.motor_speed + correction.speed);
-    let speed_error = speed_ref - measured.motor_speed;
-    let (iq_ref, current) = servo.speed_loop(state, speed_error, correction.iq);
-    let late = Dq {
-        d: 0.0,
-        q: delay.push(iq_ref),
-    };
-    let (voltage, d, q) = servo.current_loop(state, late - measured.current, Dq::ZERO);
-    Command {
-        speed_ref,
-        iq_ref,
-        voltage,
-        saturated: Saturated {
-            current,
-            voltage_d: d,
-            voltage_q: q,
-        },
-    }
-}
-
-/// The last few current references, and the one that is a delay old.
-#[derive(Clone, Debug)]
-struct DelayLine {
-    /// In control cycles, whole and part.
-    cycles: f64,
-    past: VecDeque<f64>,
-}
-
-impl DelayLine {
-    fn new(cycles: f64) -> Self {
-        // Effects keep it within some thousand cycles.
-        let length = (cycles.ceil() as usize).saturating_add(2);
-        Self {
-            cycles,
-            past: VecDeque::from(vec![0.0; length]),
-        }
-    }
-
-    fn is_none(&self) -> bool {
-        self.cycles <= 0.0
-    }
-
-    /// Takes the newest value and gives the late one, linear between cycles.
-    fn push(&mut self, newest: f64) -> f64 {
-        self.past.pop_back();
-        self.past.push_front(newest);
-        let whole = self.cycles.floor();
-        let part = self.cycles - whole;
-        let at = |i: usize| self.past.get(i).copied().unwrap_or(newest);
-        let after = whole as usize;
-        (1.0 - part) * at(after) + part * at(after + 1)
     }
 }
 

@@ -95,6 +95,7 @@ mod axis_file;
 mod closed_loop;
 mod cycle;
 pub mod effects;
+mod late_control;
 mod one_cycle;
 mod plant;
 mod recorder;

@@ -1,11 +1,14 @@
-//! What both kinds of machine have: effects, tolerance, columns of logs.
+//! What both kinds of machine have: stroke, step, effects, tolerance, columns of logs.
 
 use axis_log::{ColumnMap, Mapping};
 
 use super::error::AxisFileError;
 use super::fields::Fields;
-use super::keys::Key;
+use super::key::Key;
+use crate::SixDigits;
+use crate::axis::Stroke;
 use crate::effects::{ActiveEffect, EFFECTS, Effect, EffectParameter};
+use crate::work::{MOST_SUBSTEPS, substeps_of};
 
 /// The entries of `[[effects]]`: `name`, and each parameter in SI units.
 pub(super) fn effects(root: &Fields<'_>, rigid: bool) -> Result<Vec<ActiveEffect>, AxisFileError> {
@@ -73,4 +76,49 @@ pub(super) fn log(root: &Fields<'_>) -> Result<Mapping, AxisFileError> {
         columns: columns.into_iter().map(one).collect::<Result<_, _>>()?,
         sample_rate_hz: f.optional_number("sample_rate")?,
     })
+}
+
+/// A control period has only so many internal steps.
+pub(super) fn check_step(f: &Fields<'_>, period: f64, step: f64) -> Result<(), AxisFileError> {
+    if substeps_of(period, step) <= f64::from(MOST_SUBSTEPS) {
+        return Ok(());
+    }
+    let what = format!(
+        "has a step of {} s, of which the control period of {} s has more than {}",
+        SixDigits(step),
+        SixDigits(period),
+        MOST_SUBSTEPS
+    );
+    let least = period / f64::from(MOST_SUBSTEPS);
+    Err(f.refuse_table(what, &format!("a step of {} s or longer", SixDigits(least))))
+}
+
+/// `[stroke]`, on a screw of a length (m) where there is one.
+pub(super) fn stroke(f: &Fields<'_>, screw_length: Option<f64>) -> Result<Stroke, AxisFileError> {
+    let stroke = Stroke {
+        minimum: f.number("minimum")?,
+        maximum: f.number("maximum")?,
+        start: f.number("start")?,
+    };
+    let reach = format!(
+        "{} m to {} m",
+        SixDigits(stroke.minimum),
+        SixDigits(stroke.maximum)
+    );
+    let on_screw = screw_length.is_none_or(|l| stroke.minimum >= 0.0 && stroke.maximum <= l);
+    if !(stroke.minimum < stroke.maximum && on_screw) {
+        let screw = screw_length.map_or(String::new(), |l| {
+            format!(" on a screw of {} m", SixDigits(l))
+        });
+        let valid = match screw_length {
+            Some(_) => "0 <= minimum < maximum <= the screw's length",
+            None => "minimum < maximum",
+        };
+        return Err(f.refuse_table(format!("reaches from {reach}{screw}"), valid));
+    }
+    if !(stroke.minimum..=stroke.maximum).contains(&stroke.start) {
+        let what = format!("starts at {} m, outside {reach}", SixDigits(stroke.start));
+        return Err(f.refuse_table(what, "a start inside the stroke"));
+    }
+    Ok(stroke)
 }

@@ -10,7 +10,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{AxisFileError, Source};
-use super::keys::{KIND, Key, Kind};
+use super::key::{Key, Kind};
+use super::keys::KIND;
 use super::slips::{list, unknown_key, unknown_word};
 
 /// Canonical record of what was read: `path = value in SI`, for the fingerprint.
@@ -61,7 +62,11 @@ impl<'a> Fields<'a> {
         let Some(key) = unknown else {
             return Ok(Self { keys, ..self });
         };
-        let place = if self.path.is_empty() { "this file" } else { "this table" };
+        let place = if self.path.is_empty() {
+            "this file"
+        } else {
+            "this table"
+        };
         let what = unknown_key(key.get_ref(), place, &keys);
         Err(self.refuse(key.span(), key.get_ref(), what, list(&keys)))
     }
@@ -87,10 +92,13 @@ impl<'a> Fields<'a> {
 
     /// What the table of keys says about `name`.
     fn key(&self, name: &str) -> Result<&Key, AxisFileError> {
-        self.keys.iter().find(|key| key.name == name).ok_or_else(|| {
-            let what = "is not among the keys that are read here".to_owned();
-            self.refuse(self.span.clone(), name, what, list(&self.keys))
-        })
+        self.keys
+            .iter()
+            .find(|key| key.name == name)
+            .ok_or_else(|| {
+                let what = "is not among the keys that are read here".to_owned();
+                self.refuse(self.span.clone(), name, what, list(&self.keys))
+            })
     }
 
     fn refuse(&self, span: Range<usize>, key: &str, what: String, valid: String) -> AxisFileError {
@@ -171,7 +179,10 @@ impl<'a> Fields<'a> {
             DeValue::Table(table) => {
                 let path = format!("{}[{}]", self.name_of(name), i + 1);
                 let keys = keys.clone();
-                Ok(Fields { keys, ..self.inside(path, item, table) })
+                Ok(Fields {
+                    keys,
+                    ..self.inside(path, item, table)
+                })
             }
             _ => Err(self.wrong_type(item, name, "a table".to_owned())),
         };

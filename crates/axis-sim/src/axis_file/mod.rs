@@ -1,8 +1,12 @@
 //! The axis file: TOML to a checked [`Axis`].
 
+mod ball_screw;
+#[cfg(test)]
+mod doc_table;
 mod error;
 mod extras;
 mod fields;
+mod key;
 mod keys;
 mod rigid;
 mod slips;
@@ -10,23 +14,14 @@ mod units;
 
 use std::cell::RefCell;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::rc::Rc;
 
-use beam_fem::{Material, Section};
-use feed_dynamics::{DriveParameters, FeedDrive, NutCoupling};
-use foc_pmsm::{MotorParameters, Pmsm, Servo, ServoGains, ServoLimits};
-use lugre::LuGre;
 use toml::de::DeTable;
-use trajectories::{Limits, Motion, SCurve};
 
-use crate::SixDigits;
-use crate::axis::{
-    Axis, Experiment, FOLLOWING_ERROR_LIMIT, MoveSpec, Range, SampleRanges, Simulation, Stroke,
-};
-use crate::closed_loop::longest_step;
+use crate::axis::Axis;
 use crate::effects::Machine;
-use crate::work::{MOST_STEPS, MOST_SUBSTEPS, cycles_of, substeps_of};
+use ball_screw::axis;
 pub use error::AxisFileError;
 use error::Source;
 use fields::{Fields, Record};
@@ -113,7 +108,9 @@ impl Machine {
                 let rigid = rigid::rigid(&root.with_keys(RIGID_MASS)?)?;
                 return Ok(Self::Rigid(Box::new(rigid)));
             }
-            Ok(Self::BallScrew(Box::new(axis(&root.with_keys(BALL_SCREW)?)?)))
+            Ok(Self::BallScrew(Box::new(axis(
+                &root.with_keys(BALL_SCREW)?,
+            )?)))
         })?;
         match &mut machine {
             Self::BallScrew(axis) => axis.fingerprint = fingerprint,
@@ -145,264 +142,4 @@ fn parse<T>(
     lines.sort();
     let hash = blake3::hash(lines.join("\n").as_bytes());
     Ok((read, hash.to_hex().to_string()))
-}
-
-fn axis(root: &Fields<'_>) -> Result<Axis, AxisFileError> {
-    root.count("schema")?;
-    let (simulation, coupling) = simulation(&root.table("simulation")?)?;
-    let control = control(&root.table("control")?, &root.table("inverter")?)?;
-    check_step(&root.table("simulation")?, control.period, simulation.step)?;
-    let pace = Pace {
-        period: control.period,
-        steps: substeps_of(control.period, longest_step(coupling, simulation.step)),
-    };
-    let (motor, torque_constant) = motor(&root.table("motor")?)?;
-    let drive = drive(&root.table("screw")?, &root.table("drive")?)?;
-    let length = drive.parameters().screw_length;
-    let stroke = stroke(&root.table("stroke")?, Some(length))?;
-    Ok(Axis {
-        name: root.text("name")?.to_owned(),
-        description: root.optional_text("description")?.unwrap_or("").to_owned(),
-        friction: friction(&root.table("friction")?)?,
-        samples: sample_ranges(&root.table("samples")?, length)?,
-        trajectories: trajectories(root, &stroke, &pace)?,
-        experiment: experiment(root.optional_table("experiment")?)?,
-        stroke,
-        drive,
-        motor,
-        torque_constant,
-        servo: control.servo,
-        velocity_feedforward: control.feedforward,
-        period: control.period,
-        following_error_limit: control.following_error,
-        coupling,
-        simulation,
-        effects: extras::effects(root, false)?,
-        tolerance: extras::tolerance(root)?,
-        log: extras::log(root)?,
-        fingerprint: String::new(),
-    })
-}
-
-fn drive(screw: &Fields<'_>, lumped: &Fields<'_>) -> Result<FeedDrive, AxisFileError> {
-    let material = Material::new(
-        screw.number("youngs_modulus")?,
-        screw.number("poisson_ratio")?,
-        screw.number("density")?,
-    )
-    .map_err(|e| screw.refuse_table(e.to_string(), "another material"))?;
-    let section = Section::solid_circle(screw.number("diameter")?, &material)
-        .map_err(|e| screw.refuse_table(e.to_string(), "another section"))?;
-    let parameters = DriveParameters {
-        section,
-        material,
-        screw_length: screw.number("length")?,
-        elements: screw.count("elements")? as usize,
-        lead: screw.number("lead")?,
-        motor_inertia: lumped.number("motor_inertia")?,
-        sensor_inertia: lumped.number("torque_sensor_inertia")?,
-        motor_coupling_stiffness: lumped.number("motor_coupling")?,
-        screw_coupling_stiffness: lumped.number("screw_coupling")?,
-        table_mass: lumped.number("table_mass")?,
-        nut_stiffness: lumped.number("nut_stiffness")?,
-        stiffness_damping: lumped.number("stiffness_damping")?,
-    };
-    FeedDrive::new(parameters)
-        .map_err(|e| lumped.refuse_table(e.to_string(), "other parameters"))
-}
-
-fn friction(f: &Fields<'_>) -> Result<LuGre, AxisFileError> {
-    let parameters = lugre::Parameters {
-        coulomb: f.number("coulomb")?,
-        stiction: f.number("stiction")?,
-        stribeck_speed: f.number("stribeck_speed")?,
-        stiffness: f.number("bristle_stiffness")?,
-        damping: f.number("bristle_damping")?,
-        viscous: f.number("viscous")?,
-    };
-    LuGre::new(parameters)
-        .map_err(|e| f.refuse_table(e.to_string(), "stiction at least as great as coulomb"))
-}
-
-fn motor(f: &Fields<'_>) -> Result<(Pmsm, f64), AxisFileError> {
-    let torque_constant = f.number("torque_constant")?;
-    let pole_pairs = f.count("pole_pairs")?;
-    let parameters = MotorParameters {
-        pole_pairs,
-        resistance: f.number("resistance")?,
-        inductance_d: f.number("inductance_d")?,
-        inductance_q: f.number("inductance_q")?,
-        // K_t = 1.5 p ψ at i_d = 0.
-        flux_linkage: torque_constant / (1.5 * f64::from(pole_pairs)),
-    };
-    let motor = Pmsm::new(parameters)
-        .map_err(|e| f.refuse_table(e.to_string(), "other motor parameters"))?;
-    Ok((motor, torque_constant))
-}
-
-/// What `[control]` and `[inverter]` say.
-struct Control {
-    servo: Servo,
-    feedforward: f64,
-    period: f64,
-    following_error: f64,
-}
-
-fn control(f: &Fields<'_>, inverter: &Fields<'_>) -> Result<Control, AxisFileError> {
-    let gains = ServoGains {
-        position: f.number("position_gain")?,
-        speed_p: f.number("speed_proportional")?,
-        speed_i: f.number("speed_integral")?,
-        d_p: f.number("current_d_proportional")?,
-        d_i: f.number("current_d_integral")?,
-        q_p: f.number("current_q_proportional")?,
-        q_i: f.number("current_q_integral")?,
-    };
-    let limits = ServoLimits {
-        current: f.number("current_limit")?,
-        // The largest circle that SVPWM reaches linearly.
-        voltage: inverter.number("dc_link")? / 3f64.sqrt(),
-    };
-    let period = 1.0 / f.number("frequency")?;
-    let servo = Servo::new(gains, limits, period)
-        .map_err(|e| f.refuse_table(e.to_string(), "other control parameters"))?;
-    let following_error = f.optional_number("following_error_limit")?;
-    Ok(Control {
-        servo,
-        feedforward: f.number("velocity_feedforward")?,
-        period,
-        following_error: following_error.unwrap_or(FOLLOWING_ERROR_LIMIT),
-    })
-}
-
-/// A control period has only so many internal steps.
-fn check_step(f: &Fields<'_>, period: f64, step: f64) -> Result<(), AxisFileError> {
-    if substeps_of(period, step) <= f64::from(MOST_SUBSTEPS) {
-        return Ok(());
-    }
-    let what = format!(
-        "has a step of {} s, of which the control period of {} s has more than {}",
-        SixDigits(step),
-        SixDigits(period),
-        MOST_SUBSTEPS
-    );
-    let least = period / f64::from(MOST_SUBSTEPS);
-    Err(f.refuse_table(what, &format!("a step of {} s or longer", SixDigits(least))))
-}
-
-/// `[stroke]`, on a screw of a length (m) where there is one.
-fn stroke(f: &Fields<'_>, screw_length: Option<f64>) -> Result<Stroke, AxisFileError> {
-    let stroke = Stroke {
-        minimum: f.number("minimum")?,
-        maximum: f.number("maximum")?,
-        start: f.number("start")?,
-    };
-    let reach = format!(
-        "{} m to {} m",
-        SixDigits(stroke.minimum),
-        SixDigits(stroke.maximum)
-    );
-    let on_screw = screw_length.is_none_or(|l| stroke.minimum >= 0.0 && stroke.maximum <= l);
-    if !(stroke.minimum < stroke.maximum && on_screw) {
-        let screw = screw_length.map_or(String::new(), |l| {
-            format!(" on a screw of {} m", SixDigits(l))
-        });
-        let valid = match screw_length {
-            Some(_) => "0 <= minimum < maximum <= the screw's length",
-            None => "minimum < maximum",
-        };
-        return Err(f.refuse_table(format!("reaches from {reach}{screw}"), valid));
-    }
-    if !(stroke.minimum..=stroke.maximum).contains(&stroke.start) {
-        let what = format!("starts at {} m, outside {reach}", SixDigits(stroke.start));
-        return Err(f.refuse_table(what, "a start inside the stroke"));
-    }
-    Ok(stroke)
-}
-
-fn sample_ranges(f: &Fields<'_>, screw_length: f64) -> Result<SampleRanges, AxisFileError> {
-    let range = |name: &str| {
-        let least = f.number(&format!("{name}_min"))?;
-        let most = f.number(&format!("{name}_max"))?;
-        if least < most {
-            return Ok(Range { least, most });
-        }
-        let (a, b) = (SixDigits(least), SixDigits(most));
-        let what = format!("has {name}_min = {a}, not below {name}_max = {b} (SI)");
-        Err(f.refuse_table(what, "a minimum below the maximum"))
-    };
-    let ranges = SampleRanges {
-        position: range("position")?,
-        speed: range("speed")?,
-        acceleration: range("acceleration")?,
-        current: range("current")?,
-    };
-    if ranges.position.least < 0.0 || ranges.position.most > screw_length {
-        let what = "asks for positions off the screw".to_owned();
-        return Err(f.refuse_table(what, "positions from 0 to the screw's length"));
-    }
-    Ok(ranges)
-}
-
-fn simulation(f: &Fields<'_>) -> Result<(Simulation, NutCoupling), AxisFileError> {
-    let coupling = match f.word("nut_coupling")? {
-        "moving-node" => NutCoupling::MovingNode,
-        _ => NutCoupling::ShapeFunctions,
-    };
-    let step = f.number("step")?;
-    Ok((Simulation { step }, coupling))
-}
-
-fn experiment(f: Option<Fields<'_>>) -> Result<Option<Experiment>, AxisFileError> {
-    let Some(f) = f else {
-        return Ok(None);
-    };
-    Ok(Some(Experiment {
-        machine: PathBuf::from(f.text("machine")?),
-        paper_tables: f.optional_text("paper_tables")?.map(PathBuf::from),
-    }))
-}
-
-/// Control period, s, and internal steps in it.
-struct Pace {
-    period: f64,
-    steps: f64,
-}
-
-fn trajectories(
-    root: &Fields<'_>,
-    stroke: &Stroke,
-    pace: &Pace,
-) -> Result<Vec<MoveSpec>, AxisFileError> {
-    // A move to the very end of the stroke may pass it by a rounding error.
-    let slack = 1e-12 * stroke.maximum;
-    let one = |f: Fields<'_>| {
-        let displacement = f.number("displacement")?;
-        let end = stroke.start + displacement;
-        if !(stroke.minimum - slack..=stroke.maximum + slack).contains(&end) {
-            let what = format!("ends at {} m, outside the stroke", SixDigits(end));
-            let (least, most) = (SixDigits(stroke.minimum), SixDigits(stroke.maximum));
-            let valid = format!("an end from {least} m to {most} m");
-            return Err(f.refuse_table(what, &valid));
-        }
-        let (speed, acceleration) = (f.number("speed")?, f.number("acceleration")?);
-        let refuse = |e: trajectories::TrajectoryError| f.refuse_table(e.to_string(), "other limits");
-        let limits = Limits::new(speed, acceleration, f.number("jerk")?).map_err(refuse)?;
-        let motion = SCurve::plan(stroke.start, end, &limits).map_err(refuse)?;
-        let steps = cycles_of(motion.duration(), pace.period) * pace.steps;
-        if steps > MOST_STEPS {
-            let what = format!(
-                "takes {} s, {} internal steps",
-                SixDigits(motion.duration()),
-                SixDigits(steps)
-            );
-            let valid = format!("a move of at most {} internal steps", SixDigits(MOST_STEPS));
-            return Err(f.refuse_table(what, &valid));
-        }
-        Ok(MoveSpec {
-            displacement,
-            limits,
-        })
-    };
-    root.tables("trajectory")?.into_iter().map(one).collect()
 }

@@ -3,8 +3,8 @@
 use lugre::LuGre;
 
 use super::error::AxisFileError;
+use super::extras::{self, check_step, stroke};
 use super::fields::Fields;
-use super::{check_step, extras, stroke};
 use crate::rigid::RigidAxis;
 
 pub(super) fn rigid(root: &Fields<'_>) -> Result<RigidAxis, AxisFileError> {

@@ -298,5 +298,10 @@ fn every_slip_of_the_pen_is_named_with_what_was_meant() {
         }
     }
     assert!(tried > 2000, "{tried}");
-    assert!(wrong.is_empty(), "{} of {tried}: {}", wrong.len(), wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "{} of {tried}: {}",
+        wrong.len(),
+        wrong.join("\n")
+    );
 }

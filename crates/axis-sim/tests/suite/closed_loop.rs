@@ -63,10 +63,10 @@ fn the_two_nut_couplings_agree() {
     // The paper's: one node of the mesh on the nut, 10 µs steps.
     let b = errors_um(&follow(&ClosedLoop::new(&moving).unwrap(), 1));
     println!("moving node: {:+.1e} {:+.1e} µm", b[0] - a[0], b[1] - a[1]);
-    // Measured 1.3e-4 and 1e-4 µm at most over all trajectories of both files
-    // (examples/nut_couplings.rs).
+    // Measured 1.2e-4 and 1.9e-5 µm; all six trajectories of both files are in
+    // examples/nut_couplings.rs.
     assert!(
-        (a[0] - b[0]).abs() < 1e-3 && (a[1] - b[1]).abs() < 1e-3,
+        (a[0] - b[0]).abs() < 1e-3 && (a[1] - b[1]).abs() < 1.5e-4,
         "{a:?} {b:?}"
     );
 }

@@ -130,9 +130,18 @@ fn the_order_of_trajectories_counts() {
 #[test]
 fn fingerprints_of_the_files_as_they_are() {
     for (file, expected) in [
-        (PRINTED, "c70286c0772ff5dcf73c4cf3e298e6f4b53f3cae362b8501488e73bcd482cacb"),
-        (MACHINE, "5c8b30de93bb300d6a7bc21883aea7c0c6aac38becd9a653ebe58a67820ac419"),
-        (RIGID, "1efbba9e499005c0b170a820feee70573a8c2035c7f3bfb1d783f1ae7ae2c166"),
+        (
+            PRINTED,
+            "c70286c0772ff5dcf73c4cf3e298e6f4b53f3cae362b8501488e73bcd482cacb",
+        ),
+        (
+            MACHINE,
+            "5c8b30de93bb300d6a7bc21883aea7c0c6aac38becd9a653ebe58a67820ac419",
+        ),
+        (
+            RIGID,
+            "1efbba9e499005c0b170a820feee70573a8c2035c7f3bfb1d783f1ae7ae2c166",
+        ),
     ] {
         let found = match Machine::parse(file, &text(file)).unwrap() {
             Machine::BallScrew(axis) => axis.fingerprint,

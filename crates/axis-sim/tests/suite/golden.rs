@@ -69,7 +69,8 @@ fn trajectory_1_of_the_obvious_program() {
     let cycles = cycles();
     let most = deviations(&cycles, &rows(COMMITTED), EVERY);
     println!("obvious program: reference, position, angle, speed, iq within {most:?}");
-    // Measured 6e-14 (the file's last digit), 0, 0, 0, 0.
+    // Measured 4.9e-14 m (the file has 13 decimals), 2.5e-10 m, 1.7e-7 rad,
+    // 3.2e-6 rad/s, 1.1e-5 A.
     assert!(most[0] < 2e-13, "{most:?}");
     assert!(most[1] < 1e-9, "{most:?}");
     assert!(most[2] < 1e-6, "{most:?}");
@@ -83,6 +84,7 @@ fn trajectory_1_of_the_obvious_program() {
     let expected = [figure("# error_max_m,"), figure("# error_mean_m,")];
     let ours = errors_um(&cycles);
     println!("error {ours:?}, obvious program {expected:?} µm");
+    // Measured 1.3e-4 and 4.6e-5 µm.
     assert!((ours[0] - expected[0]).abs() < 1e-3, "{ours:?}");
     assert!((ours[1] - expected[1]).abs() < 3e-4, "{ours:?}");
 }

@@ -136,23 +136,15 @@ impl Chain {
 
     /// M⁻¹ (F − K (q + β v)).
     fn acceleration(&self, state: &State, torque: f64, load: f64) -> Vector {
-        let mut p = [0.0; COORDINATES];
-        for i in 0..COORDINATES {
-            p[i] = state.q[i] + STIFFNESS_DAMPING * state.v[i];
-        }
+        let p: Vector = std::array::from_fn(|i| state.q[i] + STIFFNESS_DAMPING * state.v[i]);
         let nut = Self::nut(START + state.q[TABLE]);
         let stretch = dot(&nut, &p);
-        let mut force = [0.0; COORDINATES];
-        for i in 0..COORDINATES {
-            force[i] = -dot(&self.stiffness[i], &p) - NUT_STIFFNESS * nut[i] * stretch;
-        }
+        let mut force: Vector = std::array::from_fn(|i| {
+            -dot(&self.stiffness[i], &p) - NUT_STIFFNESS * nut[i] * stretch
+        });
         force[0] += torque;
         force[TABLE] -= load;
-        let mut acceleration = [0.0; COORDINATES];
-        for i in 0..COORDINATES {
-            acceleration[i] = dot(&self.inverse_mass[i], &force);
-        }
-        acceleration
+        self.inverse_mass.map(|row| dot(&row, &force))
     }
 }
 
@@ -318,8 +310,7 @@ pub const STEPS: usize = 100;
 /// Cycles between the file's rows: 5 ms.
 pub const EVERY: usize = 50;
 /// First line of the file.
-pub const HEADER: &str =
-    "t_s,position_ref_m,position_m,motor_angle_rad,motor_speed_rad_s,iq_a";
+pub const HEADER: &str = "t_s,position_ref_m,position_m,motor_angle_rad,motor_speed_rad_s,iq_a";
 
 /// A line of the file.
 pub fn line(row: &Row) -> String {

@@ -69,7 +69,11 @@ fn stopped(outcome: Outcome) -> (f64, StopReason) {
         // The reason may speak of the tracking error too: the last one counts.
         let from = text.rfind(before).unwrap() + before.len();
         let said = text[from..].split(unit).next().unwrap();
-        let digits = said.split('e').next().unwrap().trim_start_matches(['-', '0', '.']);
+        let digits = said
+            .split('e')
+            .next()
+            .unwrap()
+            .trim_start_matches(['-', '0', '.']);
         let digits = digits.chars().filter(char::is_ascii_digit).count();
         assert!(digits <= 6, "{said}");
         let said: f64 = said.parse().unwrap();
@@ -98,7 +102,8 @@ fn a_current_limit_that_cannot_move_it() {
     // It stands still: given up when the reference has moved 20 mm.
     let motion = axis.plan(&axis.trajectories[0]).unwrap();
     let moved = trajectories::Motion::at(&motion, time).position - 0.6;
-    assert!((moved - FOLLOWING_ERROR_LIMIT).abs() < 1e-4, "{moved}");
+    println!("{:e} m past it", moved - FOLLOWING_ERROR_LIMIT);
+    assert!((moved - FOLLOWING_ERROR_LIMIT).abs() < 3e-5, "{moved}");
     assert_eq!(seen, (time / axis.period).round() as usize);
 }
 
@@ -156,8 +161,9 @@ fn an_unstable_loop_hunts_within_its_limits() {
         .completed()
         .unwrap();
     println!("hunts between {at_the_end:?} m");
-    // The stable loop stays within 55 µm.
-    assert!(at_the_end[0] < -1e-4 && at_the_end[1] > 1e-4, "{at_the_end:?}");
+    // Measured −0.73 and 0.70 mm; the stable loop stays within 55 µm.
+    assert!((-1e-3..-5e-4).contains(&at_the_end[0]), "{at_the_end:?}");
+    assert!((5e-4..1e-3).contains(&at_the_end[1]), "{at_the_end:?}");
 }
 
 #[test]
@@ -169,7 +175,10 @@ fn the_following_error_limit_is_the_axis_files() {
         1,
     );
     // The reference lags by 54 µm at most; a limit of 50 µm stops it.
-    let (outcome, _) = run(&Axis::parse("axis.toml", &limited).unwrap(), &mut NoCompensation);
+    let (outcome, _) = run(
+        &Axis::parse("axis.toml", &limited).unwrap(),
+        &mut NoCompensation,
+    );
     let text = outcome.completed().unwrap_err().to_string();
     assert!(
         text.contains("passed 0.05 mm") && text.contains("following_error_limit_mm"),
@@ -178,7 +187,10 @@ fn the_following_error_limit_is_the_axis_files() {
     let (_, reason) = stopped(outcome);
     assert_eq!(reason, StopReason::FollowingError(50.0 * 1e-6));
     let enough = limited.replace("_um = 50", "_um = 55");
-    let (outcome, _) = run(&Axis::parse("axis.toml", &enough).unwrap(), &mut NoCompensation);
+    let (outcome, _) = run(
+        &Axis::parse("axis.toml", &enough).unwrap(),
+        &mut NoCompensation,
+    );
     assert_eq!(outcome, Outcome::Completed);
     // Where the file does not say, it is the constant.
     assert_eq!(axis(PRINTED).following_error_limit, FOLLOWING_ERROR_LIMIT);

@@ -29,8 +29,14 @@ fn a_rigid_mass_has_its_own_following_error_limit() {
     assert!(with("").is_ok());
     assert!(with("following_error_limit_mm = 1").is_ok());
     let error = with("following_error_limit_mm = 0.5").unwrap_err();
-    assert!(matches!(error, ReplayError::FollowingError { limit: 5e-4, .. }));
-    assert!(error.to_string().contains("following_error_limit_mm"), "{error}");
+    assert!(matches!(
+        error,
+        ReplayError::FollowingError { limit: 5e-4, .. }
+    ));
+    assert!(
+        error.to_string().contains("following_error_limit_mm"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -50,7 +56,10 @@ fn a_log_too_long_to_be_held_is_refused() {
             .run(&machine, &[], None)
             .unwrap_err();
         assert!(matches!(error, ReplayError::TooLong { .. }), "{error}");
-        assert!(error.to_string().contains("more than 1e8 cycles"), "{error}");
+        assert!(
+            error.to_string().contains("more than 1e8 cycles"),
+            "{error}"
+        );
     }
 }
 

@@ -5,160 +5,22 @@
 //! output error: Gautier, Janot, Vandanjon, IEEE Trans. Control Syst. Technol.
 //! 21 (2013) 428–444, doi:10.1109/TCST.2012.2185697).
 
+mod error;
+mod reference;
+
 use std::sync::Arc;
 
-use axis_log::{Log, LogError};
+use axis_log::Log;
 use compensator::NoCompensation;
-use feed_dynamics::DriveError;
-use thiserror::Error;
-use trajectories::{Motion, Setpoint};
+use trajectories::Motion;
 
 use crate::effects::{ActiveEffect, Hooks, Machine};
 use crate::rigid::{RigidCycle, Start};
-use crate::work::{MOST_STEPS, cycles_of, substeps_of};
-use crate::{ClosedLoop, Cycle, Measured, RigidAxis, RunStopped, SixDigits};
-
-/// Most control cycles of a replay, which holds their samples in memory.
-const MOST_CYCLES: f64 = 1e8;
-
-/// Why a replay failed.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum ReplayError {
-    /// A channel that a replay needs is not in the log.
-    #[error(transparent)]
-    Log(#[from] LogError),
-    /// The mechanics cannot be set up.
-    #[error(transparent)]
-    Drive(#[from] DriveError),
-    /// The closed loop was given up.
-    #[error(transparent)]
-    Stopped(#[from] RunStopped),
-    /// A state is no longer a number.
-    #[error("the replay diverged at t = {} s", SixDigits(*.time))]
-    Diverged {
-        /// When, s.
-        time: f64,
-    },
-    /// The tracking error passed the limit of the axis file.
-    #[error(
-        "the replay was given up at t = {} s: the tracking error of {} mm is beyond {} mm, the following_error_limit_mm of the axis file's [control]",
-        SixDigits(*.time), SixDigits(1e3 * .error), SixDigits(1e3 * .limit)
-    )]
-    FollowingError {
-        /// When, s.
-        time: f64,
-        /// Tracking error then, m.
-        error: f64,
-        /// Its limit, m.
-        limit: f64,
-    },
-    /// A sampling period that is none.
-    #[error("the sampling period of {period} s is not valid: it must be a finite number above zero")]
-    Period {
-        /// As given, s.
-        period: f64,
-    },
-    /// More than a replay can hold or step through.
-    #[error(
-        "the log's reference takes {} control cycles of {} internal steps, more than {} cycles or {} steps; give a part of it, or a longer control period or step",
-        SixDigits(*.cycles), SixDigits(*.steps), SixDigits(MOST_CYCLES), SixDigits(MOST_STEPS)
-    )]
-    TooLong {
-        /// Control cycles.
-        cycles: f64,
-        /// Internal steps of each.
-        steps: f64,
-    },
-}
-
-/// Refuses a replay without end before it begins.
-fn check_length(cycles: f64, steps: f64) -> Result<(), ReplayError> {
-    if cycles <= MOST_CYCLES && cycles * steps <= MOST_STEPS {
-        return Ok(());
-    }
-    Err(ReplayError::TooLong { cycles, steps })
-}
-
-/// A logged reference as a motion: cubic between samples, through positions
-/// and velocities.
-#[derive(Clone, Debug)]
-pub struct LoggedReference {
-    period: f64,
-    position: Vec<f64>,
-    velocity: Vec<f64>,
-}
-
-impl LoggedReference {
-    /// The reference of a uniformly sampled log with the sampling period
-    /// `period` (s). Without `velocity_ref_m_s` the velocity is the central
-    /// difference of the position.
-    ///
-    /// # Errors
-    /// [`ReplayError::Log`] without `position_ref_m`; [`ReplayError::Period`].
-    pub fn new(log: &Log, period: f64) -> Result<Self, ReplayError> {
-        if !(period.is_finite() && period > 0.0) {
-            return Err(ReplayError::Period { period });
-        }
-        let position = log.channel("position_ref_m")?.to_vec();
-        let last = position.len() - 1;
-        let difference = |k: usize| {
-            let (a, b) = (k.saturating_sub(1), (k + 1).min(last));
-            (position[b] - position[a]) / (period * (b - a).max(1) as f64)
-        };
-        let velocity = match log.channel("velocity_ref_m_s") {
-            Ok(samples) => samples.to_vec(),
-            Err(_) => (0..=last).map(difference).collect(),
-        };
-        Ok(Self {
-            period,
-            position,
-            velocity,
-        })
-    }
-}
-
-impl Motion for LoggedReference {
-    fn duration(&self) -> f64 {
-        (self.position.len() - 1) as f64 * self.period
-    }
-
-    fn at(&self, t: f64) -> Setpoint {
-        if t.is_nan() {
-            return Setpoint::at_rest(self.position[0]);
-        }
-        let last = self.position.len() - 1;
-        let along = (t / self.period).clamp(0.0, last as f64);
-        let near = along.round();
-        if (along - near).abs() < 1e-6 {
-            let k = near as usize;
-            let inside = t > -self.period && t < self.duration() + self.period;
-            return Setpoint {
-                position: self.position[k],
-                velocity: if inside { self.velocity[k] } else { 0.0 },
-                ..Setpoint::default()
-            };
-        }
-        let k = (along as usize).min(last.saturating_sub(1));
-        let (s, h) = (along - k as f64, self.period);
-        let (p0, p1) = (self.position[k], self.position[k + 1]);
-        let (m0, m1) = (h * self.velocity[k], h * self.velocity[k + 1]);
-        let (s2, s3) = (s * s, s * s * s);
-        let position = (2.0 * s3 - 3.0 * s2 + 1.0) * p0
-            + (s3 - 2.0 * s2 + s) * m0
-            + (3.0 * s2 - 2.0 * s3) * p1
-            + (s3 - s2) * m1;
-        let velocity = (6.0 * (s2 - s) * (p0 - p1)
-            + (3.0 * s2 - 4.0 * s + 1.0) * m0
-            + (3.0 * s2 - 2.0 * s) * m1)
-            / h;
-        Setpoint {
-            position,
-            velocity,
-            ..Setpoint::default()
-        }
-    }
-}
+use crate::work::{check_period, cycles_of, substeps_of};
+use crate::{ClosedLoop, Cycle, Measured, RigidAxis};
+pub use error::ReplayError;
+use error::check_length;
+pub use reference::LoggedReference;
 
 /// Simulated channels at the instants of a log, named as in logs.
 #[derive(Clone, Debug, Default)]
@@ -277,12 +139,7 @@ impl Replay {
     }
 
     fn follow_rigid(&self, axis: &RigidAxis, hooks: &Hooks) -> Result<Trace, ReplayError> {
-        for (name, value) in [("period", axis.period), ("step", axis.step)] {
-            if !(value.is_finite() && value > 0.0) {
-                let valid = "a finite number above zero";
-                return Err(DriveError::Parameter { name, value, valid }.into());
-            }
-        }
+        check_period(axis.period)?;
         let cycles = cycles_of(self.reference.duration(), axis.period);
         check_length(cycles, substeps_of(axis.period, axis.step))?;
         let added = |k: usize| {
