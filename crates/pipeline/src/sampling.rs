@@ -90,10 +90,10 @@ impl Sampler {
         self.design.len()
     }
 
-    /// Sample `row`, from 0.
-    pub fn sample(&self, row: usize) -> (CycleInput, f64) {
+    /// Sample `row`, from 0; none where there are not as many.
+    pub fn sample(&self, row: usize) -> Option<(CycleInput, f64)> {
         let mut cell = [0.0; 4];
-        self.design.row(row, &mut cell);
+        self.design.row(row, &mut cell).ok()?;
         let value = |i: usize| self.marginals[i].inverse_cdf(cell[i]);
         let mut input = CycleInput {
             position: value(0),
@@ -105,15 +105,16 @@ impl Sampler {
         if self.keep_direction && input.speed * (input.speed + change) < 0.0 {
             input.speed -= change;
         }
-        (input, self.cycle.increment(&input))
+        Some((input, self.cycle.increment(&input)))
     }
 
-    /// A range of rows, in order, on all threads.
+    /// A range of rows, in order, on all threads; rows beyond the last sample
+    /// are left out.
     pub fn rows(&self, rows: std::ops::Range<usize>) -> SampleSet {
         let (inputs, increments) = rows
             .into_par_iter()
             .with_min_len(64)
-            .map(|row| self.sample(row))
+            .filter_map(|row| self.sample(row))
             .unzip();
         SampleSet { inputs, increments }
     }
