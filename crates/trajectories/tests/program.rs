@@ -287,7 +287,7 @@ fn refusals_name_step_and_field() {
     };
     assert_eq!(
         message(Step::Dwell { duration: -1.0 }),
-        "step 2 (dwell): duration is -1 s, but must be finite and zero or more"
+        "step 2 (dwell): duration is -1 s, but must be from 0 to 1e7"
     );
     assert_eq!(
         message(Step::Sine(Sine {
@@ -295,7 +295,7 @@ fn refusals_name_step_and_field() {
             frequency: 0.0,
             cycles: 1
         })),
-        "step 2 (sine): frequency is 0 Hz, but must be finite and greater than zero"
+        "step 2 (sine): frequency is 0 Hz, but must be from 1e-9 to 1e6"
     );
     let chirp = Chirp {
         amplitude: 1.0,
