@@ -224,7 +224,7 @@ fn unusable_motions_are_refused() {
     let nan = identify(&[motion(&a, &[0.0, f64::NAN, 0.0])], &[good]);
     assert!(matches!(
         nan,
-        IdentifyError::NotFinite {
+        IdentifyError::Value {
             sample: 1,
             what: "error",
             ..
