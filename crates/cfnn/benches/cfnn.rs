@@ -7,8 +7,15 @@ use std::hint::black_box;
 use cfnn::train::{Dataset, Settings, Trainer, nguyen_widrow};
 use cfnn::{FixedNetwork, Network, Predictor, Range, Scaling, Shape};
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, Par};
+
+/// The library's own factorisation, which is not public.
+#[allow(dead_code, reason = "what the library's tests look at")]
+#[path = "../src/train/cholesky.rs"]
+mod cholesky;
 
 const SAMPLES: usize = 5000;
 const THREADS: usize = 2;
@@ -73,9 +80,66 @@ fn product(c: &mut Criterion) {
     });
 }
 
+/// Solving the normal equations of the network: tiles against one square.
+fn factorisation(c: &mut Criterion) {
+    let n = shape().parameters();
+    let entry = |i: usize, j: usize| {
+        let (i, j) = (i.min(j), i.max(j));
+        ((i * 31 + j * 17) % 101) as f64 / 101.0 + if i == j { n as f64 } else { 0.0 }
+    };
+    let right: Vec<f64> = (0..n).map(|i| (i % 7) as f64 - 3.0).collect();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(THREADS);
+    let pool = pool.build().expect("two threads");
+    let mut group = c.benchmark_group("Cholesky 1441");
+    let mut tiles = cholesky::Symmetric::new(n);
+    group.bench_function("tiles", |b| {
+        b.iter(|| {
+            pool.install(|| {
+                tiles.fill(|c, column| {
+                    for r in c..n {
+                        column[r] = entry(r, c);
+                    }
+                });
+                let mut x = right.clone();
+                assert!(tiles.solve(&mut x));
+                x
+            })
+        });
+    });
+    let mut square = Mat::<f64>::zeros(n, n);
+    for (name, par) in [
+        ("faer, 2 threads", Par::rayon(THREADS)),
+        ("faer, 1 thread", Par::Seq),
+    ] {
+        let request = cholesky_in_place_scratch::<f64>(n, par, Default::default());
+        let mut memory = MemBuffer::new(request);
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                pool.install(|| {
+                    for c in 0..n {
+                        for r in c..n {
+                            square[(r, c)] = entry(r, c);
+                        }
+                    }
+                    let stack = MemStack::new(&mut memory);
+                    cholesky_in_place(
+                        square.as_mut(),
+                        Default::default(),
+                        par,
+                        stack,
+                        Default::default(),
+                    )
+                    .expect("positive definite");
+                })
+            });
+        });
+    }
+    group.finish();
+}
+
 fn prediction(c: &mut Criterion) {
     let scaling = Scaling::from_ranges(&[(-1.0, 1.0); 4], &[(-1.0, 1.0)]).expect("valid ranges");
-    let weights = nguyen_widrow(&shape(), 1);
+    let weights = nguyen_widrow(&shape(), 1).expect("a valid shape");
     let network = Network::new(shape(), scaling, weights).expect("a valid network");
     let packed = network.packed_weights().to_vec();
     let mut predictor = Predictor::<4, 1>::new(network).expect("four inputs, one output");
@@ -117,6 +181,6 @@ fn setup(c: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20);
-    targets = product, epoch, prediction, setup
+    targets = factorisation, product, epoch, prediction, setup
 }
 criterion_main!(benches);

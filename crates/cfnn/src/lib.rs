@@ -108,17 +108,3 @@ pub use real::Real;
 pub use scaling::Scaling;
 #[cfg(feature = "alloc")]
 pub use shape::{Layer, MAX_PARAMETERS, Shape};
-
-/// Numbers of activations and of parameters of a network.
-pub(crate) fn count(inputs: usize, hidden: &[usize], outputs: usize) -> (usize, usize) {
-    let mut seen = inputs.saturating_add(1);
-    let mut parameters = 0usize;
-    for &neurons in hidden {
-        parameters = parameters.saturating_add(seen.saturating_mul(neurons));
-        seen = seen.saturating_add(neurons);
-    }
-    (
-        seen,
-        parameters.saturating_add(seen.saturating_mul(outputs)),
-    )
-}

@@ -36,7 +36,7 @@ proptest! {
         seed in 0..10_000u64,
     ) {
         let shape = Shape { inputs, hidden, outputs };
-        let weights = nguyen_widrow(&shape, seed);
+        let weights = nguyen_widrow(&shape, seed).unwrap();
         let scaling = Scaling::from_ranges(
             &vec![(-2.0, 6.0); inputs],
             &vec![(10.0, 12.0); outputs],
@@ -61,7 +61,7 @@ fn borrowed_network_gives_the_same_bits_and_single_precision_is_near() {
         hidden: vec![34, 19, 8],
         outputs: 1,
     };
-    let weights = nguyen_widrow(&shape, 5);
+    let weights = nguyen_widrow(&shape, 5).unwrap();
     let ranges = [(0.0, 1.5), (-0.33, 0.33), (-1.0, 1.0), (-15.0, 15.0)];
     let scaling = Scaling::from_ranges(&ranges, &[(0.0, 1.5)]).unwrap();
     let network = Network::new(shape, scaling, weights).unwrap();

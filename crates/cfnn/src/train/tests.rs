@@ -72,7 +72,7 @@ proptest! {
         let block = &blocks(&data, &chosen, &scaling)[0];
         let engine = Engine::new(&shape, 1);
         let mut work = BlockWork::new(&engine.layout);
-        let weights = nguyen_widrow(&shape, seed);
+        let weights = nguyen_widrow(&shape, seed).unwrap();
         work.forward_hidden(&engine.layout, &weights, block);
         work.residuals(&engine.layout, &weights, block);
         work.backward(&engine.layout, &weights);
@@ -106,7 +106,7 @@ proptest! {
         let chosen: Vec<usize> = (0..data.len()).collect();
         let blocks = blocks(&data, &chosen, &scaling);
         prop_assert_eq!(blocks.len(), 3);
-        let weights = nguyen_widrow(&shape, seed);
+        let weights = nguyen_widrow(&shape, seed).unwrap();
         // Room for two blocks only, so that they come in two groups.
         let mut engine = Engine::new(&shape, 2);
         engine.normal_equations(&blocks, &weights);
@@ -148,7 +148,7 @@ fn tiled_normal_equations_equal_dense_ones() {
     let (data, scaling) = samples(&shape, 261);
     let chosen: Vec<usize> = (0..data.len()).collect();
     let blocks = blocks(&data, &chosen, &scaling);
-    let weights = nguyen_widrow(&shape, 1);
+    let weights = nguyen_widrow(&shape, 1).unwrap();
     let on_threads = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         let mut engine = Engine::new(&shape, 1);
