@@ -60,8 +60,8 @@ fn purelin_network_recovers_a_linear_map_to_rounding() {
         for s in 0..data.len() {
             let input = data.input(s).unwrap();
             let y = network.predict_one(input, &mut scratch).unwrap();
-            // Values up to 10, a handful of roundings each way.
-            assert!((y - data.target(s).unwrap()[0]).abs() < 1e-13);
+            // Values up to 10, a handful of roundings each way: 3.6e-15 measured.
+            assert!((y - data.target(s).unwrap()[0]).abs() < 2e-14);
         }
     }
 }
@@ -75,7 +75,8 @@ fn linear_start_begins_at_the_linear_map() {
     };
     let start = trainer(&[6, 3], &data, settings.clone()).loss();
     let linear = trainer(&[], &data, settings).loss();
-    assert!((start / linear - 1.0).abs() < 1e-9, "{start} {linear}");
+    // The same sums: equal measured, a few roundings where kernels differ.
+    assert!((start / linear - 1.0).abs() < 2e-15, "{start} {linear}");
 }
 
 #[test]

@@ -48,7 +48,7 @@ proptest! {
         if history.best < history.initial {
             // Rounding of some thousand changes, added to a sum that starts
             // up to 10^4 times larger than it ends before it is taken afresh.
-            let tolerance = 1e-9 * history.best + 1e-13;
+            let tolerance = 1e-12 * history.best + 1e-14;
             prop_assert!((updated - history.best).abs() < tolerance,
                 "{criterion:?}: {updated} against {}", history.best);
         }
@@ -92,7 +92,7 @@ fn small_designs_reach_the_global_optimum() {
             1,
         );
         assert!(
-            (centred_discrepancy(&found) - least).abs() < 1e-14,
+            (centred_discrepancy(&found) - least).abs() < 1e-15,
             "n = {n}"
         );
     }
@@ -105,12 +105,14 @@ fn small_designs_reach_the_greatest_least_distance() {
     for n in 2..=8 {
         let best = -exhaustive(n, |d| -minimum_distance(d));
         if n == 4 || n == 5 {
-            assert!(((best * n as f64).powi(2) - 5.0).abs() < 1e-9, "n = {n}");
+            // 8.9e-16 measured.
+            assert!(((best * n as f64).powi(2) - 5.0).abs() < 5e-15, "n = {n}");
         }
         let hypercube = LatinHypercube::new(n, 2, 3).unwrap().centred();
         let budget = Budget { iterations: 20_000 };
         let (found, _) = optimise(hypercube.design().unwrap(), Criterion::Maximin, budget, 2);
-        assert!((minimum_distance(&found) - best).abs() < 1e-12, "n = {n}");
+        // 5.6e-17 measured: a distance of the same points, moved.
+        assert!((minimum_distance(&found) - best).abs() < 5e-16, "n = {n}");
     }
 }
 
