@@ -2,6 +2,7 @@
 //! after the best linear map, and after training, on samples not seen.
 //!
 //! `cargo run --release -p cfnn --example near_linear_map [epochs [sizes...]]`
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use std::time::Instant;
 

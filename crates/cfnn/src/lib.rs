@@ -72,6 +72,8 @@
 //! Axes, units, trajectories, where samples come from, files and folders, and
 //! progress bars: the caller drives the epochs and writes the bytes.
 
+#![cfg_attr(test, allow(clippy::disallowed_methods))]
+
 #[cfg(feature = "alloc")]
 extern crate alloc;
 #[cfg(any(test, feature = "std"))]

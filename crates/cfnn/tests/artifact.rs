@@ -1,4 +1,5 @@
 //! Artifacts come back bit for bit, or are refused with a telling error.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use cfnn::artifact::{
     ArtifactError, checkpoint_from_bytes, checkpoint_to_bytes, network_from_bytes, network_to_bytes,

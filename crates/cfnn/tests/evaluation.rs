@@ -1,4 +1,5 @@
 //! Evaluation against a plain one written out here.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use cfnn::train::nguyen_widrow;
 use cfnn::{Error, FixedNetwork, Network, Predictor, Range, Scaling, Shape};

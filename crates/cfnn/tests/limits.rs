@@ -126,7 +126,7 @@ proptest! {
         x in prop::collection::vec(prop_oneof![8 => any_finite(), 1 => any_number()], 0..9),
         y in prop::collection::vec(prop_oneof![8 => any_finite(), 1 => any_number()], 0..9),
     ) {
-        let rows = if inputs == 0 { 0 } else { x.len() / inputs };
+        let rows = x.len().checked_div(inputs).unwrap_or(0);
         let whole = rows > 0 && x.len() == rows * inputs
             && outputs > 0 && rows.checked_mul(outputs) == Some(y.len());
         let finite = x.iter().chain(&y).all(|v| v.is_finite());

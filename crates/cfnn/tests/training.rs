@@ -1,5 +1,6 @@
 //! Training: what it must reach, and that its bits depend on nothing else
 //! than the data, the settings and the seed.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use cfnn::train::{Dataset, Initialisation, Normalisation, Outcome, Settings, Trainer, Validation};
 use cfnn::{Error, Shape};

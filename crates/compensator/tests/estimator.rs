@@ -1,4 +1,5 @@
 //! The observer against closed forms: steady states, lags, noise.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use approx::assert_relative_eq;
 use compensator::{CompensatorError, Estimate, MotionEstimator, ObserverGains, Sample};
@@ -101,10 +102,11 @@ proptest! {
             input += (impulse + next).powi(2);
         }
         let stated = gains.noise_gains();
-        assert_relative_eq!(stated.position, position.sqrt(), max_relative = 1e-9);
-        assert_relative_eq!(stated.speed_times_period, speed.sqrt(), max_relative = 1e-9);
-        assert_relative_eq!(stated.predicted_error, prediction.sqrt(), max_relative = 1e-9);
-        assert_relative_eq!(stated.loop_input, input.sqrt(), max_relative = 1e-9);
+        // 6.7e-16 measured.
+        assert_relative_eq!(stated.position, position.sqrt(), max_relative = 5e-15);
+        assert_relative_eq!(stated.speed_times_period, speed.sqrt(), max_relative = 5e-15);
+        assert_relative_eq!(stated.predicted_error, prediction.sqrt(), max_relative = 5e-15);
+        assert_relative_eq!(stated.loop_input, input.sqrt(), max_relative = 5e-15);
     }
 
     /// The default loses nothing of the scale: not a bit.

@@ -1,4 +1,5 @@
 //! Identification of systems that are known.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{
     Candidates, IdentifyError, Motion, TransferFunctionModel, identify_transfer_function,

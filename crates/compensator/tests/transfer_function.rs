@@ -1,4 +1,5 @@
 //! The linear model: basis, responses, laws of a linear filter.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use approx::assert_relative_eq;
 use compensator::{

@@ -41,14 +41,14 @@ mod tests {
         assert_eq!(power(0.5, usize::MAX), 0.0);
     }
 
-    /// (13/12)^m against libm's power, which is good to one unit; the
-    /// multiplications add half of one each: 5.2 units measured at most.
+    /// (13/12)^m against libm's power, which is good to one unit; roundings of
+    /// the first squares come back m-fold: 40 units measured at most.
     #[test]
     fn powers_of_the_discrepancy_are_close() {
         for m in 0..=1024_usize {
             let exact = libm::pow(13.0 / 12.0, m as f64);
             let error = (power(13.0 / 12.0, m) / exact - 1.0).abs() / f64::EPSILON;
-            assert!(error < 50.0, "m = {m}: {error} units");
+            assert!(error < 100.0, "m = {m}: {error} units");
         }
     }
 }

@@ -1,4 +1,5 @@
 //! The Latin property, determinism and randomness of plain designs.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use lhs::{Criterion, Design, LatinHypercube, LhsError, Placement};
 use proptest::prelude::*;

@@ -1,4 +1,5 @@
 //! Marginals: round trips, order, published quantiles, refusals.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use lhs::{
     Cumulative, Design, LatinHypercube, LhsError, LogUniform, Marginal, Mixture, Normal, Tabulated,

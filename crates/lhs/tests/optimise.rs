@@ -1,4 +1,5 @@
 //! Optimised designs: the law kept, the update right, the optimum found.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use lhs::criteria::{centred_discrepancy, minimum_distance, phi_p};
 use lhs::{Budget, Criterion, Design, LatinHypercube, MAXIMIN_P, optimise};
