@@ -75,7 +75,7 @@ pub fn cases(axis: &Axis, sizes: &Sizes, seed: u64) -> Result<Vec<Case>, LhsErro
         let hypercube = LatinHypercube::new(n, DIMENSIONS, seed.wrapping_mul(7) + k as u64)?;
         let mut row = [0.0; DIMENSIONS];
         for i in 0..n {
-            hypercube.row(i, &mut row);
+            hypercube.row(i, &mut row)?;
             let case_seed = seed
                 .wrapping_mul(1_000_003)
                 .wrapping_add((k * 10_000 + i) as u64);
