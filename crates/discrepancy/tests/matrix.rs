@@ -24,15 +24,22 @@ fn outcomes() -> Vec<Outcome> {
             .filter(|c| c.kind == kind && c.exercise == Exercise::ThereAndBack);
         own.take(most).collect()
     };
-    let chosen = [
-        of(Kind::Clean, 4),
-        of(Kind::Single, 7),
-        of(Kind::Pair, 2),
+    let mut chosen = [
+        of(Kind::Clean, 1),
+        of(Kind::Single, 4),
+        of(Kind::Pair, 1),
         of(Kind::Triple, 1),
-        of(Kind::Outside, 3),
-        of(Kind::LeftOut, 2),
+        of(Kind::Outside, 1),
+        of(Kind::LeftOut, 1),
     ]
     .concat();
+    // Stribeck friction of −4431 N and 0.67 m/s, on motion of 0.1 m/s, beside dry friction
+    // of 4432 N would explain drag with the square of speed, were such velocities allowed.
+    let mut all = cases(&axis, &Sizes::FULL, 7).unwrap().into_iter();
+    let drag = all.find(|c| c.id == "outside-027").unwrap();
+    assert_eq!(drag.hidden[0].name, "quadratic-drag");
+    assert_eq!(drag.exercise, Exercise::ThereAndBack);
+    chosen.push(drag);
     let bench = Bench::new(&axis, Exercise::ThereAndBack).unwrap();
     chosen.par_iter().map(|c| bench.try_case(c)).collect()
 }
@@ -40,7 +47,7 @@ fn outcomes() -> Vec<Outcome> {
 #[test]
 fn some_hidden_effects_of_every_kind_are_found_or_honestly_not() {
     let outcomes = outcomes();
-    assert_eq!(outcomes.len(), 19);
+    assert_eq!(outcomes.len(), 10);
     for o in &outcomes {
         println!(
             "{} {:?} -> {:?} {:?}",
@@ -54,40 +61,25 @@ fn some_hidden_effects_of_every_kind_are_found_or_honestly_not() {
     assert_eq!(score.confident_wrong.hits, 0, "{score:#?}");
     assert_eq!(score.right_first.hits, score.right_first.of, "{score:#?}");
     // Friction with the root of speed is imitated by effects of the library, as
-    // far as one speed there and back shows; the other two are told.
+    // far as one speed there and back shows; drag is told.
     assert_eq!(
         (score.imitated.hits, score.imitated.of),
-        (1, 3),
+        (1, 2),
         "{score:#?}"
     );
+    let drag = outcomes.iter().find(|o| o.case.id == "outside-027");
+    let drag = drag.and_then(|o| o.verdict);
+    let told = [Verdict::PartlyExplained, Verdict::Unknown];
+    assert!(drag.is_some_and(|v| told.contains(&v)), "{drag:?}");
     assert_eq!(score.outside.hits, score.outside.of, "{score:#?}");
     assert_eq!(score.left_out.hits, score.left_out.of, "{score:#?}");
     assert!(
-        score.right_first.of >= 5 && score.left_out.of >= 1,
+        score.right_first.of >= 3 && score.left_out.of >= 1,
         "{score:#?}"
     );
     assert!(score.error.unwrap()[0] < 0.02, "{score:#?}");
     let verdict = |v| outcomes.iter().any(|o| o.verdict == Some(v));
     assert!(verdict(Verdict::NothingMissing) && verdict(Verdict::Explained));
-}
-
-/// Stribeck friction of −4431 N and 0.67 m/s, on motion of 0.1 m/s, beside dry friction
-/// of 4432 N would explain it, were such velocities allowed.
-#[test]
-fn drag_with_the_square_of_speed_is_not_explained() {
-    let axis = axis();
-    let mut all = cases(&axis, &Sizes::FULL, 7).unwrap().into_iter();
-    let case = all.find(|c| c.id == "outside-027").unwrap();
-    assert_eq!(case.hidden[0].name, "quadratic-drag");
-    let bench = Bench::new(&axis, case.exercise).unwrap();
-    let outcome = bench.try_case(&case);
-    assert!(
-        matches!(
-            outcome.verdict,
-            Some(Verdict::PartlyExplained | Verdict::Unknown)
-        ),
-        "{outcome:?}"
-    );
 }
 
 #[test]

@@ -1,70 +1,16 @@
-//! Screening: how much of a rest each effect of the library explains, and each
-//! pair.
-
-use std::ops::Range;
+//! What candidates explain of a rest, alone and in pairs.
 
 use axis_sim::effects::Effect;
 use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::fit::{Columns, Fit, Fitter, pinned};
-use crate::library::{Candidate, FORCE, values_at};
+use super::response::{Response, responses_in};
+use super::screened::Screened;
+use crate::fit::{Columns, Fit, Fitter};
+use crate::known::pinned;
+use crate::library::{Candidate, values_at};
 use crate::projector::Projector;
 use crate::spectrum::Amplitudes;
-
-/// A candidate with what it explains, if it is added alone.
-#[derive(Clone, Debug)]
-pub struct Screened {
-    /// Which.
-    pub effect: &'static Effect,
-    /// By how much D falls in the linearised problem.
-    pub gain: f64,
-    /// Starting values for a fit.
-    pub values: Vec<f64>,
-    /// Its place in the library; `None` of a force over several slots of time.
-    pub candidate: Option<usize>,
-    /// Response to these values, whitened, known parameters fitted out.
-    pub fingerprint: DVector<f64>,
-    /// Orthonormal basis of what the effect can do, in the same space, the
-    /// strongest first.
-    pub basis: DMatrix<f64>,
-    /// How strongly it does each of them.
-    pub strengths: DVector<f64>,
-    /// With which sizes, as multiples of the typical: a row each.
-    pub sizes: DMatrix<f64>,
-}
-
-impl Screened {
-    /// Whether the logs would show all that this can do beyond what `own` does: by a
-    /// fall of D of `least`, were it as large, in typical sizes, as what was found and
-    /// brought `most`. Dry friction of the way back cannot be seen in a log without one.
-    pub fn more_is_shown(&self, own: &Self, most: f64, least: f64) -> bool {
-        // Products of its columns, less what lies along what was found.
-        let Some(along) = own.fingerprint.try_normalize(0.0) else {
-            return true;
-        };
-        let along = (self.basis.tr_mul(&along)).component_mul(&self.strengths);
-        let squares = DMatrix::from_diagonal(&self.strengths.map(|s| s * s));
-        let mut beyond = (squares - &along * along.transpose()).symmetric_eigenvalues();
-        beyond.as_mut_slice().sort_by(|a, b| b.total_cmp(a));
-        let more = self.basis.ncols().saturating_sub(own.basis.ncols());
-        let shows = |power: &f64| power * most >= least * own.strengths.max().powi(2);
-        beyond.iter().take(more).all(shows)
-    }
-
-    /// Values with which it comes nearest to what something else `does`, with nothing of
-    /// what it does less than a tenth as strongly as the most.
-    pub fn nearest(&self, does: &DVector<f64>) -> Vec<f64> {
-        let nothing = DVector::zeros(self.strengths.len());
-        let strong = |i: &usize| self.strengths[*i] > 0.1 * self.strengths.max();
-        let parts = (0..self.strengths.len()).filter(strong);
-        let sizes = parts.fold(nothing, |sum, i| {
-            let along = self.basis.column(i).dot(does) / self.strengths[i];
-            sum + self.sizes.row(i).transpose() * along
-        });
-        values_at(self.effect, &self.values, sizes.as_slice())
-    }
-}
 
 /// A rest, and what the candidates can do about it, both without what the
 /// fit's own parameters can.
@@ -95,6 +41,17 @@ impl Screening {
         );
         let rest = projector.reject_at(&white(&fit.rest), &fit.state.shares);
         let seen = |column: &Amplitudes| projector.reject(&white(column));
+        Self::of(library, wanted, seen, rest)
+    }
+
+    /// Of the candidates that are `wanted`, `seen` through some projection, beside a rest
+    /// that was seen so.
+    pub fn of(
+        library: &[Candidate],
+        wanted: impl Fn(&Effect) -> bool + Sync,
+        seen: impl Fn(&Amplitudes) -> DVector<f64> + Sync,
+        rest: DVector<f64>,
+    ) -> Self {
         let responses = responses_in(library, wanted, seen, &rest);
         Self { rest, responses }
     }
@@ -225,99 +182,3 @@ fn within_bounds(response: &Response, solution: &[f64]) -> bool {
     let mut sizes = sizes.filter(|(p, _)| p.size);
     sizes.all(|(p, v)| p.bounds[0] < *v && *v < p.bounds[1])
 }
-
-/// What a candidate does, in a space where other parameters are fitted out.
-pub struct Response {
-    /// Which.
-    pub effect: &'static Effect,
-    /// As of its [`Candidate`].
-    pub values: Vec<f64>,
-    /// Place of that in the library; `None` of a sum of several.
-    pub candidate: Option<usize>,
-    /// One entry a size; two of an effect with a phase.
-    pub columns: Vec<DVector<f64>>,
-}
-
-/// Responses of those candidates that are `wanted`, `seen` through some
-/// projection; of a force in time, the stretches that explain most of `rest`.
-pub fn responses_in(
-    library: &[Candidate],
-    wanted: impl Fn(&Effect) -> bool + Sync,
-    seen: impl Fn(&Amplitudes) -> DVector<f64> + Sync,
-    rest: &DVector<f64>,
-) -> Vec<Response> {
-    let one = |(place, c): (usize, &Candidate)| Response {
-        effect: c.effect,
-        values: c.values.clone(),
-        candidate: Some(place),
-        columns: c.columns.iter().map(&seen).collect(),
-    };
-    let all: Vec<Response> = library
-        .par_iter()
-        .enumerate()
-        .filter(|(_, c)| wanted(c.effect))
-        .map(one)
-        .collect();
-    let (slots, mut all): (Vec<_>, Vec<_>) = all.into_iter().partition(|r| r.effect.name == FORCE);
-    all.extend(windows(&slots, rest));
-    all
-}
-
-/// The stretches of neighbouring slots in which a force explains most, the best
-/// first: what a force does over several is the sum of what it does in each. None
-/// of them is the whole motion, as it is a constant load then.
-fn windows(slots: &[Response], rest: &DVector<f64>) -> Vec<Response> {
-    let columns: Vec<&DVector<f64>> = slots.iter().filter_map(|s| s.columns.first()).collect();
-    let n = columns.len();
-    let along: Vec<f64> = columns.iter().map(|c| c.dot(rest)).collect();
-    let mut gram = DMatrix::zeros(n, n);
-    for j in 0..n {
-        for i in 0..=j {
-            gram[(i, j)] = columns[i].dot(columns[j]);
-        }
-    }
-    let mut all = Vec::new();
-    for first in 0..n {
-        let (mut explained, mut size) = (0.0, 0.0);
-        for last in first..n {
-            explained += along[last];
-            let cross: f64 = (first..last).map(|i| gram[(i, last)]).sum();
-            size += gram[(last, last)] + 2.0 * cross;
-            let gain: f64 = explained * explained / size.max(f64::MIN_POSITIVE);
-            if last + 1 - first < n {
-                all.push((gain, first..last + 1));
-            }
-        }
-    }
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut chosen: Vec<Range<usize>> = Vec::new();
-    for (_, window) in all {
-        if chosen.iter().all(|c| !mostly_same(c, &window)) {
-            chosen.push(window);
-        }
-        if chosen.len() == WINDOWS {
-            break;
-        }
-    }
-    let response = |window: Range<usize>| {
-        let mut values = slots[window.start].values.clone();
-        values[2] = slots[window.end - 1].values[2];
-        let zero = DVector::zeros(rest.len());
-        Response {
-            effect: slots[window.start].effect,
-            values,
-            candidate: None,
-            columns: vec![columns[window].iter().fold(zero, |sum, c| sum + *c)],
-        }
-    };
-    chosen.into_iter().map(response).collect()
-}
-
-/// Whether two stretches have half of what they cover in common.
-pub fn mostly_same(a: &Range<usize>, b: &Range<usize>) -> bool {
-    let common = a.end.min(b.end).saturating_sub(a.start.max(b.start));
-    2 * common > a.len() + b.len() - common
-}
-
-/// Stretches of time that a screening of a force in time gives.
-const WINDOWS: usize = 4;
