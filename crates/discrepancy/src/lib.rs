@@ -17,7 +17,7 @@
 //! than a hundredth of what was found before.
 //!
 //! # Steps
-//! [`intake`] looks at the logs; [`LogSet`] prepares them; [`search`] moves the
+//! [`intake`] looks at the logs; [`LogSet`] prepares them; [`search()`] moves the
 //! known parameters, screens all effects by what they would do to these logs,
 //! refines the best few by simulation, adds the best, and begins again;
 //! [`discovery`] puts what was found into a [`Verdict`], intervals and gaps.

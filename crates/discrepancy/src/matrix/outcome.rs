@@ -19,7 +19,7 @@ pub struct Foreseen {
     /// much more.
     pub detectable: bool,
     /// Effects of the library that do nearly the same on this log: the sine of
-    /// their angle is below [`ONE_CLASS`], or too little is left beside them.
+    /// their angle is below [`crate::ONE_CLASS`], or too little is left beside them.
     pub class: Vec<String>,
     /// Of an effect that the search does not have: what those it has make of it.
     pub imitation: Option<Imitation>,

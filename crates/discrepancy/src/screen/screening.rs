@@ -1,7 +1,7 @@
 //! What candidates explain of a rest, alone and in pairs.
 
 use axis_sim::effects::Effect;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector, Dyn, SVD};
 use rayon::prelude::*;
 
 use super::response::{Response, responses_in};
@@ -104,7 +104,8 @@ impl Screening {
             new
         });
         let part = |gain: f64, (i, solution): &(usize, Vec<f64>)| {
-            self.with(&self.responses[*i], solution, gain)
+            let response = &self.responses[*i];
+            self.with(response, decomposed(response), solution, gain)
         };
         (found.iter().take(PAIRS))
             .map(|(gain, a, b)| [part(*gain, a), part(*gain, b)])
@@ -112,23 +113,21 @@ impl Screening {
     }
 
     fn alone(&self, response: &Response) -> Screened {
-        let matrix = DMatrix::from_columns(&response.columns);
-        let svd = matrix.svd(true, true);
+        let svd = decomposed(response);
         let largest = svd.singular_values.max();
         let solution = svd
             .solve(&self.rest, 1e-6 * largest.max(1e-300))
             .unwrap_or_else(|_| DVector::zeros(response.columns.len()));
-        let mut screened = self.with(response, solution.as_slice(), 0.0);
+        let mut screened = self.with(response, svd, solution.as_slice(), 0.0);
         let does = &screened.fingerprint;
         screened.gain = self.gain_of(2.0 * self.rest.dot(does) - does.norm_squared());
         screened
     }
 
-    fn with(&self, response: &Response, solution: &[f64], gain: f64) -> Screened {
+    fn with(&self, response: &Response, svd: Decomposed, solution: &[f64], gain: f64) -> Screened {
         let rows = self.rest.len();
         let matrix = DMatrix::from_columns(&response.columns);
-        let fingerprint = &matrix * DVector::from_column_slice(solution);
-        let svd = matrix.svd(true, true);
+        let fingerprint = matrix * DVector::from_column_slice(solution);
         let columns = response.columns.len();
         Screened {
             gain,
@@ -147,6 +146,12 @@ impl Screening {
         let share = (explained / self.rest.norm_squared()).clamp(0.0, 0.999_999);
         -(self.rest.len() as f64) * (1.0 - share).ln()
     }
+}
+
+type Decomposed = SVD<f64, Dyn, Dyn>;
+
+fn decomposed(response: &Response) -> Decomposed {
+    DMatrix::from_columns(&response.columns).svd(true, true)
 }
 
 /// Most pairs of effects that a screening gives.
