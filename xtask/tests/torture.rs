@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::succeed;
+use common::{refuse, succeed};
 
 #[test]
 fn inputs_are_read_or_refused_the_same_way_each_time() {
@@ -35,5 +35,13 @@ fn disturbed_runs_are_mended_by_the_next() {
         "killed in a stage",
     ] {
         assert!(said.contains(way), "{said}");
+    }
+}
+
+#[test]
+fn a_time_that_is_none_is_refused() {
+    for minutes in ["nan", "-1", "1e9"] {
+        let message = refuse(&["torture", &format!("--minutes={minutes}")]);
+        assert!(message.contains("give 0 to 100000"), "{message}");
     }
 }
