@@ -34,8 +34,9 @@ impl ConstantSpeedRun {
     /// `n` of them is as good as that of `n / τ` independent ones, with
     /// `τ = 1 + 2 Σ ρ_k` summed up to the first lag beyond `5 τ` (A. Sokal's
     /// window); `τ ≥ 1` for the torque, `τ ≥ 5/√n` for the speed, which may be
-    /// a position's differences and its noise then cancel. Samples that are all equal show no scatter, which
-    /// may be the sensor's resolution: their standard error is not known.
+    /// a position's differences and its noise then cancel. Samples that are
+    /// all equal show no scatter, which may be the sensor's resolution: their
+    /// standard error is not known.
     ///
     /// *Vibration.* Noise forgets, an oscillation does not: at lags of 32 to
     /// 128 ms the autocovariance of noise that is white, differenced or
@@ -53,8 +54,8 @@ impl ConstantSpeedRun {
     ///
     /// # Errors
     /// [`IdentifyError`] when the channels differ in length, are shorter than
-    /// 64 samples, hold a number that is not finite or beyond 1e100, or when `sample_rate` is
-    /// not positive.
+    /// 64 samples, hold a number that is not finite or beyond 1e100, or when
+    /// `sample_rate` is not positive.
     pub fn from_record(
         speeds: &[f64],
         torques: &[f64],
