@@ -3,14 +3,14 @@
 
 mod common;
 
-use common::succeed;
+use common::{refuse, succeed};
 
 #[test]
 fn inputs_are_read_or_refused_the_same_way_each_time() {
     let run = || {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().to_str().unwrap();
-        let said = succeed(&["torture", "--inputs", "4000", "--kills", "0", "--out", out]);
+        let said = succeed(&["torture", "--inputs", "1500", "--kills", "0", "--out", out]);
         assert!(said.contains("no faults"), "{said}");
         let counts = said
             .lines()
@@ -18,7 +18,7 @@ fn inputs_are_read_or_refused_the_same_way_each_time() {
         counts.map(str::to_owned).collect::<Vec<_>>()
     };
     let counts = run();
-    assert!(counts.last().unwrap().contains("4000"), "{counts:?}");
+    assert!(counts.last().unwrap().contains("1500"), "{counts:?}");
     assert_eq!(run(), counts);
 }
 
@@ -35,5 +35,13 @@ fn disturbed_runs_are_mended_by_the_next() {
         "killed in a stage",
     ] {
         assert!(said.contains(way), "{said}");
+    }
+}
+
+#[test]
+fn a_time_that_is_none_is_refused() {
+    for minutes in ["-1", "nan", "inf"] {
+        let message = refuse(&["torture", &format!("--minutes={minutes}")]);
+        assert!(message.contains("give 0 to 100000"), "{message}");
     }
 }
