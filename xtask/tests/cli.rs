@@ -121,6 +121,43 @@ fn simulate_writes_a_log() {
     assert!(message.contains("1 to 6"), "{message}");
 }
 
+/// Figures for people have six digits at most; a run of years is refused with
+/// the limit, at once, and leaves no log behind.
+#[test]
+fn simulate_rounds_its_figures_and_refuses_a_run_without_end() {
+    let said = succeed(&["simulate", "--trajectory", "1"]);
+    assert!(said.contains("3.63194 s, 36320 cycles"), "{said}");
+    assert!(said.contains("max 54.453 µm, mean 5.34919 µm"), "{said}");
+
+    let folder = tempfile::tempdir().unwrap();
+    let (log, program) = (
+        folder.path().join("log.csv"),
+        folder.path().join("program.toml"),
+    );
+    std::fs::write(
+        &program,
+        "start_mm = 600.0\n[[steps]]\ndwell = { duration_s = 1e8 }\n",
+    )
+    .unwrap();
+    let arguments = [
+        "--program",
+        program.to_str().unwrap(),
+        "--log",
+        log.to_str().unwrap(),
+    ];
+    let message = refuse(&[&["simulate"], &arguments[..]].concat());
+    assert!(
+        message.contains("1e12 internal steps, more than 1e10"),
+        "{message}"
+    );
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+
+    // Told before anything is computed.
+    let nowhere = ["--trajectory", "1", "--log", "/dev/null/log.csv"];
+    let message = refuse(&[&["simulate"], &nowhere[..]].concat());
+    assert!(message.contains("/dev/null/log.csv"), "{message}");
+}
+
 /// The whole pipeline, small: its figures against the project's targets, a
 /// second run that does nothing, another number of threads with the same
 /// figures, and damaged or foreign results refused.

@@ -7,7 +7,7 @@ mod common;
 use std::path::Path;
 
 use axis_sim::Axis;
-use common::{refuse, succeed};
+use common::{refuse, root, succeed};
 
 /// A log of a rest, a move, a rest, the way back and a rest at 1 kHz.
 fn lines() -> Vec<String> {
@@ -57,6 +57,13 @@ fn message(folder: &Path, fit: &str, check: &str) -> String {
     said.replace(' ', "")
 }
 
+/// Significant digits of a number.
+fn digits(number: &str) -> usize {
+    let mantissa = number.split('e').next().unwrap();
+    let digits = mantissa.chars().filter(char::is_ascii_digit);
+    digits.skip_while(|d| *d == '0').count()
+}
+
 /// The README's example: the machine has ten times the viscous friction of the axis file.
 #[test]
 fn the_new_axis_file_is_the_machine_for_every_other_command() {
@@ -84,9 +91,20 @@ fn the_new_axis_file_is_the_machine_for_every_other_command() {
     std::fs::write(&stale, "").unwrap();
     let said = succeed(&["discover", "--fit", &fit, "--check", &check, "--out", &out]);
     assert!(said.contains("The model lacks viscous-friction."), "{said}");
+    for number in said.split_whitespace().filter(|w| w.parse::<f64>().is_ok()) {
+        assert!(digits(number) <= 6, "{number} in {said}");
+    }
     assert!(!Path::new(&stale).exists(), "of an earlier search");
 
     let axis = format!("{out}/axis.toml");
+    let text = std::fs::read_to_string(&axis).unwrap();
+    let added = text.split("[[effects]]").nth(1).unwrap();
+    let coefficient = added.split("coefficient = ").nth(1).unwrap();
+    let coefficient = coefficient.split_whitespace().next().unwrap();
+    assert!(
+        digits(coefficient) > 12,
+        "the file keeps all digits: {added}"
+    );
     let run = |axis: &str| {
         let said = succeed(&[
             "simulate",
@@ -170,6 +188,52 @@ fn bad_logs_are_refused_with_file_and_place() {
             assert!(said.contains(what), "{name}: no {what} in {said}");
         }
     }
+}
+
+#[test]
+fn an_effect_that_the_machine_cannot_have_is_not_accepted() {
+    let emps = "data/axes/emps.toml";
+    #[rustfmt::skip]
+    let said = refuse(&[
+        "discover", "--axis", emps, "--fit", "a.csv", "--check", "b.csv", "--accept", "backlash",
+    ]);
+    assert!(
+        said.contains("backlash") && said.contains("a rigid mass"),
+        "{said}"
+    );
+    assert!(
+        said.contains("coulomb-friction") && !said.contains("lead-error"),
+        "{said}"
+    );
+}
+
+/// Neither option takes anything from what an earlier search left in the folder.
+#[test]
+fn accepting_and_rejecting_say_that_the_search_is_made_anew() {
+    let help = succeed(&["discover", "--help"]);
+    assert_eq!(help.matches("Search anew").count(), 2, "{help}");
+}
+
+#[test]
+fn the_scored_page_is_not_taken_by_another_seed() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("page.md");
+    std::fs::copy(root().join("docs/discovery-matrix.md"), &page).unwrap();
+    let before = std::fs::read(&page).unwrap();
+    let to = page.to_str().unwrap();
+    let said = refuse(&["discover-matrix", "--seed", "1", "--page", to]);
+    assert!(said.contains("page of seed 8, not 1"), "{said}");
+    let said = refuse(&[
+        "discover-matrix",
+        "--seed",
+        "8",
+        "--first",
+        "3",
+        "--page",
+        to,
+    ]);
+    assert!(said.contains("cannot be used with"), "{said}");
+    assert_eq!(std::fs::read(&page).unwrap(), before);
 }
 
 #[test]

@@ -10,7 +10,7 @@ fn inputs_are_read_or_refused_the_same_way_each_time() {
     let run = || {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().to_str().unwrap();
-        let said = succeed(&["torture", "--inputs", "1500", "--kills", "0", "--out", out]);
+        let said = succeed(&["torture", "--inputs", "4000", "--kills", "0", "--out", out]);
         assert!(said.contains("no faults"), "{said}");
         let counts = said
             .lines()
@@ -18,7 +18,7 @@ fn inputs_are_read_or_refused_the_same_way_each_time() {
         counts.map(str::to_owned).collect::<Vec<_>>()
     };
     let counts = run();
-    assert!(counts.last().unwrap().contains("1500"), "{counts:?}");
+    assert!(counts.last().unwrap().contains("4000"), "{counts:?}");
     assert_eq!(run(), counts);
 }
 
@@ -40,7 +40,7 @@ fn disturbed_runs_are_mended_by_the_next() {
 
 #[test]
 fn a_time_that_is_none_is_refused() {
-    for minutes in ["-1", "nan", "inf"] {
+    for minutes in ["nan", "-1", "1e9"] {
         let message = refuse(&["torture", &format!("--minutes={minutes}")]);
         assert!(message.contains("give 0 to 100000"), "{message}");
     }

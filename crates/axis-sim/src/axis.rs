@@ -8,7 +8,10 @@ use foc_pmsm::{Pmsm, Servo};
 use lugre::LuGre;
 use trajectories::{Limits, SCurve, TrajectoryError};
 
-use crate::effects::{ActiveEffect, Changes, Hooks, MachineMut};
+use crate::effects::{self, ActiveEffect, Hooks, MachineMut};
+
+/// Tracking error at which a run is given up where the axis file does not say, m.
+pub const FOLLOWING_ERROR_LIMIT: f64 = 0.02;
 
 /// A ball-screw axis with its motor, drive controller and friction. SI units.
 ///
@@ -37,6 +40,8 @@ pub struct Axis {
     pub velocity_feedforward: f64,
     /// Control period, s.
     pub period: f64,
+    /// Tracking error at which a run is given up, m.
+    pub following_error_limit: f64,
     /// How the nut meets the screw's mesh.
     pub coupling: NutCoupling,
     /// Settings of the simulation.
@@ -125,14 +130,8 @@ impl Axis {
     /// # Errors
     /// [`DriveError`] where an effect carries a parameter out of its range.
     pub(crate) fn with_effects(&self) -> Result<(Self, Hooks), DriveError> {
-        let (mut axis, mut hooks) = (self.clone(), Hooks::default());
-        for active in &self.effects {
-            let mut changes = Changes {
-                machine: MachineMut::BallScrew(&mut axis),
-                hooks: &mut hooks,
-            };
-            (active.effect.install)(&active.values, &mut changes)?;
-        }
+        let mut axis = self.clone();
+        let hooks = effects::install(&self.effects, MachineMut::BallScrew(&mut axis))?;
         Ok((axis, hooks))
     }
 

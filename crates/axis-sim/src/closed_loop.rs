@@ -1,16 +1,24 @@
 //! The electromechanical coupling model of Section 3.3 as one loop.
 
-use std::collections::VecDeque;
-
-use compensator::{Compensator, Correction, Reference, Sample};
+use compensator::{Compensator, Reference, Sample};
 use feed_dynamics::{DriveError, ImplicitStepper, ModalStepper, NutCoupling, TimeStepper};
-use foc_pmsm::{Command, Dq, Measurement, Saturated, Servo, ServoState};
+use foc_pmsm::{Command, ServoState};
 use trajectories::{Motion, Setpoint};
 
 use crate::Axis;
-use crate::cycle::{Cycle, FOLLOWING_ERROR_LIMIT, Measured, Outcome, StopReason};
+use crate::cycle::{Cycle, Measured, Outcome, StopReason};
 use crate::effects::Hooks;
+use crate::late_control::{DelayLine, control};
 use crate::plant::{Plant, substeps};
+use crate::work::{MOST_STEPS, check_period, cycles_of};
+
+/// Longest internal step with a nut coupling, s, where `asked` is asked for.
+pub(crate) fn longest_step(coupling: NutCoupling, asked: f64) -> f64 {
+    match coupling {
+        NutCoupling::ShapeFunctions => asked,
+        NutCoupling::MovingNode => asked.min(1e-5),
+    }
+}
 
 /// The closed loop of an axis, prepared once for any number of runs.
 #[derive(Clone, Debug)]
@@ -31,8 +39,10 @@ impl ClosedLoop {
     /// stepper, the moving node on the implicit one with steps of at most 10 µs.
     ///
     /// # Errors
-    /// [`DriveError`] where the mechanics cannot be set up.
+    /// [`DriveError`] where the mechanics cannot be set up, an effect carries a
+    /// parameter out of its range, or the control period is outside 1 µs to 10 ms.
     pub fn new(axis: &Axis) -> Result<Self, DriveError> {
+        check_period(axis.period)?;
         match axis.coupling {
             NutCoupling::ShapeFunctions => {
                 let (axis, hooks) = axis.with_effects()?;
@@ -46,7 +56,7 @@ impl ClosedLoop {
             }
             NutCoupling::MovingNode => {
                 let mut axis = axis.clone();
-                axis.simulation.step = axis.simulation.step.min(1e-5);
+                axis.simulation.step = longest_step(axis.coupling, axis.simulation.step);
                 Self::implicit(&axis)
             }
         }
@@ -58,6 +68,7 @@ impl ClosedLoop {
     /// # Errors
     /// As [`ClosedLoop::new`].
     pub fn implicit(axis: &Axis) -> Result<Self, DriveError> {
+        check_period(axis.period)?;
         let (axis, hooks) = axis.with_effects()?;
         let step = axis.period / f64::from(substeps(&axis));
         let stepper = ImplicitStepper::new(&axis.drive, axis.coupling, step)?;
@@ -71,6 +82,20 @@ impl ClosedLoop {
     /// The axis, its effects' changes of parameters made.
     pub fn axis(&self) -> &Axis {
         &self.axis
+    }
+
+    /// Sampling instants of a run along `motion`, those at its start and its
+    /// end included: as many cycles as [`ClosedLoop::run`] shows where it comes
+    /// to its end.
+    pub fn cycles(&self, motion: &(impl Motion + ?Sized)) -> u64 {
+        cycles_of(motion.duration(), self.axis.period) as u64
+    }
+
+    /// Internal steps of such a run: what its computing time is proportional
+    /// to. Above [`MOST_STEPS`] it is refused ([`StopReason::TooLong`]).
+    pub fn steps(&self, motion: &(impl Motion + ?Sized)) -> f64 {
+        let cycles = cycles_of(motion.duration(), self.axis.period);
+        cycles * f64::from(substeps(&self.axis))
     }
 
     /// Adds hooks to the plant.
@@ -123,11 +148,19 @@ impl ClosedLoop {
     ) -> Outcome {
         let axis = &self.axis;
         let period = axis.period;
-        let cycles = (motion.duration() / period * (1.0 + 1e-12)).floor() as u64;
         let speed_feedforward = axis.velocity_feedforward / axis.travel_per_radian();
 
         let mut reference = motion.at(0.0);
         let origin = reference.position;
+        let steps = self.steps(motion);
+        if steps > MOST_STEPS {
+            let at = Cycle {
+                position: origin,
+                reference,
+                ..Cycle::default()
+            };
+            return stopped(StopReason::TooLong(steps), &at);
+        }
         let mut state = match plant.at_rest(origin) {
             Ok(state) => state,
             Err(error) => {
@@ -144,7 +177,7 @@ impl ClosedLoop {
         let mut delay = DelayLine::new(self.hooks.delay / period);
         compensator.reset();
 
-        for k in 0..=cycles {
+        for k in 0..self.cycles(motion) {
             // Sample.
             let time = k as f64 * period;
             let next_reference = motion.at((k + 1) as f64 * period);
@@ -227,8 +260,8 @@ impl ClosedLoop {
         let state = cycle.position + cycle.motor_speed + current;
         if !state.is_finite() {
             Some(StopReason::NotFinite)
-        } else if cycle.error().abs() > FOLLOWING_ERROR_LIMIT {
-            Some(StopReason::FollowingError)
+        } else if cycle.error().abs() > self.axis.following_error_limit {
+            Some(StopReason::FollowingError(self.axis.following_error_limit))
         } else if !(stroke.minimum..=stroke.maximum).contains(&cycle.position)
             || self.axis.drive.check_position(cycle.position).is_err()
         {
@@ -260,78 +293,6 @@ fn reason_of(error: &DriveError, at: &Cycle) -> StopReason {
         }
         DriveError::OffScrew { .. } if state.is_finite() => StopReason::LeftStroke,
         _ => StopReason::NotFinite,
-    }
-}
-
-/// One cycle of the cascade; a late current reference is logged as it was
-/// asked for, and reaches the current controllers late.
-fn control(
-    servo: &Servo,
-    state: &mut ServoState,
-    delay: &mut DelayLine,
-    measured: &Measurement,
-    reference: &foc_pmsm::Reference,
-    correction: &Correction,
-) -> Command {
-    let correction = foc_pmsm::Correction {
-        position_offset: correction.position,
-        speed: 0.0,
-        iq: correction.iq,
-    };
-    if delay.is_none() {
-        return servo.cycle(state, measured, reference, &correction);
-    }
-    let error = reference.position - measured.position + correction.position_offset;
-    let speed_ref = servo.position_loop(error, reference.motor_speed + correction.speed);
-    let speed_error = speed_ref - measured.motor_speed;
-    let (iq_ref, current) = servo.speed_loop(state, speed_error, correction.iq);
-    let late = Dq {
-        d: 0.0,
-        q: delay.push(iq_ref),
-    };
-    let (voltage, d, q) = servo.current_loop(state, late - measured.current, Dq::ZERO);
-    Command {
-        speed_ref,
-        iq_ref,
-        voltage,
-        saturated: Saturated {
-            current,
-            voltage_d: d,
-            voltage_q: q,
-        },
-    }
-}
-
-/// The last few current references, and the one that is a delay old.
-#[derive(Clone, Debug)]
-struct DelayLine {
-    /// In control cycles, whole and part.
-    cycles: f64,
-    past: VecDeque<f64>,
-}
-
-impl DelayLine {
-    fn new(cycles: f64) -> Self {
-        let length = cycles.ceil() as usize + 2;
-        Self {
-            cycles,
-            past: VecDeque::from(vec![0.0; length]),
-        }
-    }
-
-    fn is_none(&self) -> bool {
-        self.cycles <= 0.0
-    }
-
-    /// Takes the newest value and gives the late one, linear between cycles.
-    fn push(&mut self, newest: f64) -> f64 {
-        self.past.pop_back();
-        self.past.push_front(newest);
-        let whole = self.cycles.floor();
-        let part = self.cycles - whole;
-        let at = |i: usize| self.past.get(i).copied().unwrap_or(newest);
-        let after = whole as usize;
-        (1.0 - part) * at(after) + part * at(after + 1)
     }
 }
 

@@ -5,6 +5,8 @@ use foc_pmsm::{Command, Dq};
 use thiserror::Error;
 use trajectories::Setpoint;
 
+use crate::{MOST_STEPS, SixDigits};
+
 /// What one control cycle leaves behind, at its start `t_k`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cycle {
@@ -73,27 +75,27 @@ pub enum Outcome {
 }
 
 /// Why a run was given up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StopReason {
     /// A state is no longer a finite number.
     NotFinite,
-    /// The tracking error is beyond what any drive tolerates.
-    FollowingError,
+    /// The tracking error is beyond the axis' limit, m.
+    FollowingError(f64),
     /// The table has left its stroke, or the screw.
     LeftStroke,
     /// No friction was found that goes with the table's motion at the end of a
     /// step.
     LoadNotFound,
+    /// The motion takes so many internal steps, more than [`MOST_STEPS`]: it
+    /// was not begun.
+    TooLong(f64),
 }
-
-/// Tracking error at which a run is given up, m.
-pub const FOLLOWING_ERROR_LIMIT: f64 = 0.02;
 
 /// A run that did not come to its end.
 #[derive(Clone, Copy, Debug, Error)]
 #[error(
-    "the simulation stopped at t = {time:.4} s because {}: table at {position:.6} m, tracking error {error:.3e} m, motor speed {motor_speed:.3} rad/s, q current {iq:.3} A",
-    describe(.reason)
+    "the simulation stopped at t = {} s because {reason}: table at {} m, tracking error {} m, motor speed {} rad/s, q current {} A",
+    SixDigits(*.time), SixDigits(*.position), SixDigits(*.error), SixDigits(*.motor_speed), SixDigits(*.iq)
 )]
 pub struct RunStopped {
     /// When, s.
@@ -110,15 +112,25 @@ pub struct RunStopped {
     pub iq: f64,
 }
 
-fn describe(reason: &StopReason) -> &'static str {
-    match reason {
-        StopReason::NotFinite => "a state is no longer a finite number",
-        StopReason::FollowingError => {
-            "the tracking error passed 20 mm (an unstable loop, or a motion too fast for the current limit)"
-        }
-        StopReason::LeftStroke => "the table left its stroke",
-        StopReason::LoadNotFound => {
-            "no friction goes with the table's motion at the end of a step (a load that jumps or falls with the speed, or a step too long for the table's mass)"
+impl std::fmt::Display for StopReason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NotFinite => f.write_str("a state is no longer a finite number"),
+            Self::FollowingError(limit) => write!(
+                f,
+                "the tracking error passed {} mm, the following_error_limit_mm of the axis file's [control] (an unstable loop, or a motion too fast for the motor)",
+                SixDigits(1e3 * limit)
+            ),
+            Self::LeftStroke => f.write_str("the table left its stroke"),
+            Self::LoadNotFound => f.write_str(
+                "no friction goes with the table's motion at the end of a step (a load that jumps or falls with the speed, or a step too long for the table's mass)",
+            ),
+            Self::TooLong(steps) => write!(
+                f,
+                "the motion takes {} internal steps, more than {} (a shorter motion, a lower control frequency or a longer step would be valid)",
+                SixDigits(*steps),
+                SixDigits(MOST_STEPS)
+            ),
         }
     }
 }

@@ -35,13 +35,23 @@
 //!   name file, line, field and what would be valid.
 //! - [`ClosedLoop`]: the loop above for any motion and any compensator.
 //!   How a run ended is its [`Outcome`].
-//! - [`Recorder`]: cycles to an [`axis_log::Log`] with named channels.
+//! - [`Recorder`]: cycles to an [`axis_log::Log`] with named channels;
+//!   [`CsvRecorder`]: straight to CSV, in bounded memory.
 //! - [`OneCycle`]: a single cycle from a given motion, S(k+1) − S(k): the
 //!   samples that a network learns from.
+//! - [`effects`]: what a model may lack, as components of the loop.
+//! - [`RigidAxis`]: the other kind of machine, a rigid mass under a P–P
+//!   controller; [`effects::Machine`] is either.
+//! - [`Replay`]: a log's reference through a machine with effects.
 //!
 //! # Units
 //! SI inside: m, rad, s, N, N·m, A, V. In the file the last part of each key
 //! is its unit (`lead_mm = 10`, `lead_m = 0.010`).
+//!
+//! # Bounded work
+//! Every value of an axis file lies within stated limits, and a run of more
+//! than [`MOST_STEPS`] internal steps is refused before it begins;
+//! [`ClosedLoop::cycles`] and [`ClosedLoop::steps`] tell what a run takes.
 //!
 //! # Example
 //! Trajectory 1 of the paper's axis, without compensation:
@@ -68,6 +78,9 @@
 //! let bad = text.replace("lead_mm", "lead_inch");
 //! let error = Axis::parse("bad.toml", &bad).unwrap_err().to_string();
 //! assert!(error.contains("screw.lead_inch") && error.contains("lead_mm, lead_m, lead_um"));
+//! let bad = text.replace("lead_mm", "laed_mm");
+//! let error = Axis::parse("bad.toml", &bad).unwrap_err().to_string();
+//! assert!(error.contains("did you mean `lead_mm`?"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -82,17 +95,24 @@ mod axis_file;
 mod closed_loop;
 mod cycle;
 pub mod effects;
+mod late_control;
 mod one_cycle;
 mod plant;
 mod recorder;
 mod replay;
 mod rigid;
+mod six_digits;
+mod work;
 
-pub use axis::{Axis, Experiment, MoveSpec, Range, SampleRanges, Simulation, Stroke};
+pub use axis::{
+    Axis, Experiment, FOLLOWING_ERROR_LIMIT, MoveSpec, Range, SampleRanges, Simulation, Stroke,
+};
 pub use axis_file::AxisFileError;
 pub use closed_loop::ClosedLoop;
-pub use cycle::{Cycle, FOLLOWING_ERROR_LIMIT, Measured, Outcome, RunStopped, StopReason};
+pub use cycle::{Cycle, Measured, Outcome, RunStopped, StopReason};
 pub use one_cycle::{CycleInput, OneCycle};
-pub use recorder::Recorder;
+pub use recorder::{CsvRecorder, Recorder};
 pub use replay::{LoggedReference, Probe, Replay, ReplayError, Trace};
 pub use rigid::{RigidAxis, Start};
+pub use six_digits::SixDigits;
+pub use work::MOST_STEPS;

@@ -5,6 +5,7 @@ use foc_pmsm::{Dq, ServoState};
 
 use crate::Axis;
 use crate::plant::{Plant, substeps};
+use crate::work::check_period;
 
 /// State at `t_k` and the command that acts until `t_{k+1}`: the inputs of
 /// the prediction, in the order of the paper's Table 5. SI units.
@@ -41,8 +42,9 @@ impl OneCycle {
     /// Prepares the axis; the nut is coupled through shape functions.
     ///
     /// # Errors
-    /// [`DriveError`] where the mechanics cannot be set up.
+    /// As [`crate::ClosedLoop::new`].
     pub fn new(axis: &Axis) -> Result<Self, DriveError> {
+        check_period(axis.period)?;
         let (mut axis, hooks) = axis.with_effects()?;
         axis.simulation.step = axis.simulation.step.min(LONGEST_STEP);
         let step = axis.period / f64::from(substeps(&axis));

@@ -16,7 +16,7 @@ use lugre::LuGre;
 use trajectories::Motion;
 
 use crate::axis::Stroke;
-use crate::effects::{ActiveEffect, Changes, Hooks, MachineMut, TableState};
+use crate::effects::{self, ActiveEffect, Hooks, MachineMut, TableState};
 
 /// A rigid mass with a force gain and a P–P controller. SI units.
 #[derive(Clone, Debug)]
@@ -41,6 +41,8 @@ pub struct RigidAxis {
     pub speed_gain: f64,
     /// Greatest drive command, V.
     pub command_limit: f64,
+    /// Tracking error at which a replay is given up, m; none where it is `None`.
+    pub following_error_limit: Option<f64>,
     /// Control period T, s.
     pub period: f64,
     /// Longest internal step, s.
@@ -95,14 +97,8 @@ impl RigidAxis {
 
     /// The axis with its effects' changes made, and their hooks.
     pub(crate) fn with_effects(&self) -> Result<(Self, Hooks), DriveError> {
-        let (mut axis, mut hooks) = (self.clone(), Hooks::default());
-        for active in &self.effects {
-            let mut changes = Changes {
-                machine: MachineMut::Rigid(&mut axis),
-                hooks: &mut hooks,
-            };
-            (active.effect.install)(&active.values, &mut changes)?;
-        }
+        let mut axis = self.clone();
+        let hooks = effects::install(&self.effects, MachineMut::Rigid(&mut axis))?;
         Ok((axis, hooks))
     }
 

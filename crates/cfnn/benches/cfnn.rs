@@ -1,14 +1,23 @@
 //! One Levenberg–Marquardt epoch of the 4-34-19-8-1 cascade on 5000 samples,
-//! beside faer's own triangular product on the whole 5000 x 1441 Jacobian;
-//! and one prediction of that network.
+//! beside faer's own triangular product on the whole 5000 x 1441 Jacobian; its
+//! two large parts, each beside faer's own; and one prediction of that network.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use std::hint::black_box;
 
 use cfnn::train::{Dataset, Settings, Trainer, nguyen_widrow};
 use cfnn::{FixedNetwork, Network, Predictor, Range, Scaling, Shape};
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, Par};
+
+/// The library's own factorisation, which is not public.
+#[allow(dead_code, reason = "what the library's tests look at")]
+#[path = "../src/train/cholesky.rs"]
+mod cholesky;
 
 const SAMPLES: usize = 5000;
 const THREADS: usize = 2;
@@ -73,9 +82,102 @@ fn product(c: &mut Criterion) {
     });
 }
 
+/// `JᵀJ` and `Jᵀr` alone, with all that leads to them: an epoch without trial
+/// steps. Beside it, faer's product on the same rectangles of distinct entries,
+/// block by block, with the tables of products given.
+fn normal_equations(c: &mut Criterion) {
+    let data = data();
+    let settings = Settings {
+        threads: THREADS,
+        max_damping: 1e-6,
+        ..Settings::default()
+    };
+    let scaling = data.scaling().expect("the columns vary");
+    let trainer = || Trainer::new(shape(), scaling.clone(), &data, settings.clone());
+    let mut group = c.benchmark_group("normal equations, 5000 samples");
+    group.bench_function("tiles", |b| {
+        b.iter_batched_ref(
+            || trainer().expect("valid settings"),
+            |trainer| black_box(trainer.epoch()),
+            BatchSize::PerIteration,
+        );
+    });
+    let sizes = [(1358, 185), (216, 1336), (190, 595)];
+    let table =
+        |rows, columns| Mat::from_fn(rows, columns, |i, j| ((i * 31 + j * 17) % 101) as f64);
+    let tables = sizes.map(|(rows, columns)| (table(rows, 256), table(256, columns)));
+    let mut sums = sizes.map(|(rows, columns)| Mat::<f64>::zeros(rows, columns));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(THREADS);
+    let pool = pool.build().expect("two threads");
+    group.bench_function("faer, rectangles of given tables", |b| {
+        b.iter(|| {
+            pool.install(|| {
+                for _ in 0..SAMPLES.div_ceil(256) {
+                    for (sum, (left, right)) in sums.iter_mut().zip(&tables) {
+                        let par = Par::rayon(THREADS);
+                        matmul(sum.as_mut(), Accum::Add, left, right, 1.0, par);
+                    }
+                }
+            });
+        });
+    });
+    group.finish();
+}
+
+/// Factorisation of the network's normal equations, with the filling of the
+/// triangle: tiles against faer's own on one square.
+fn factorisation(c: &mut Criterion) {
+    let n = shape().parameters();
+    let entry = |r: usize, c: usize| {
+        let diagonal = if r == c { n as f64 } else { 0.0 };
+        ((r * 31 + c * 17) % 101) as f64 / 101.0 + diagonal
+    };
+    let right: Vec<f64> = (0..n).map(|i| (i % 7) as f64 - 3.0).collect();
+    let mut group = c.benchmark_group("Cholesky 1441");
+    for threads in [1, THREADS] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let pool = pool.build().expect("two threads at most");
+        let mut tiles = cholesky::Symmetric::new(n);
+        group.bench_function(format!("tiles, {threads} threads"), |b| {
+            b.iter(|| {
+                pool.install(|| {
+                    tiles.fill(|c, column| {
+                        let below = column.iter_mut().enumerate().skip(c);
+                        below.for_each(|(r, value)| *value = entry(r, c));
+                    });
+                    let mut x = right.clone();
+                    assert!(tiles.solve(&mut x));
+                    x
+                })
+            });
+        });
+        let par = if threads == 1 {
+            Par::Seq
+        } else {
+            Par::rayon(threads)
+        };
+        let mut square = Mat::<f64>::zeros(n, n);
+        let request = cholesky_in_place_scratch::<f64>(n, par, Default::default());
+        let mut memory = MemBuffer::new(request);
+        group.bench_function(format!("faer, {threads} threads"), |b| {
+            b.iter(|| {
+                pool.install(|| {
+                    for c in 0..n {
+                        (c..n).for_each(|r| square[(r, c)] = entry(r, c));
+                    }
+                    let (usual, stack) = (Default::default(), MemStack::new(&mut memory));
+                    cholesky_in_place(square.as_mut(), usual, par, stack, Default::default())
+                        .expect("positive definite");
+                });
+            });
+        });
+    }
+    group.finish();
+}
+
 fn prediction(c: &mut Criterion) {
     let scaling = Scaling::from_ranges(&[(-1.0, 1.0); 4], &[(-1.0, 1.0)]).expect("valid ranges");
-    let weights = nguyen_widrow(&shape(), 1);
+    let weights = nguyen_widrow(&shape(), 1).expect("a valid shape");
     let network = Network::new(shape(), scaling, weights).expect("a valid network");
     let packed = network.packed_weights().to_vec();
     let mut predictor = Predictor::<4, 1>::new(network).expect("four inputs, one output");
@@ -117,6 +219,6 @@ fn setup(c: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20);
-    targets = product, epoch, prediction, setup
+    targets = factorisation, normal_equations, product, epoch, prediction, setup
 }
 criterion_main!(benches);

@@ -18,7 +18,8 @@ pub enum Error {
         /// The size that would be valid.
         expected: usize,
     },
-    /// A layer without neurons, or a network without inputs or outputs.
+    /// A layer without neurons, a network without inputs or outputs, or a
+    /// table without a whole row of samples.
     #[error("{what}[{index}] is 0: must be at least 1")]
     EmptyLayer {
         /// Which list of sizes.
@@ -26,11 +27,23 @@ pub enum Error {
         /// Position in that list.
         index: usize,
     },
-    /// The network would have more parameters than can be addressed sensibly.
-    #[error("shape has more than {limit} parameters")]
+    /// The network would have too many parameters.
+    #[error("shape has {found} parameters: must be at most {limit}")]
     TooLarge {
+        /// Parameters of the shape; `usize::MAX` stands for that many or more.
+        found: usize,
         /// The largest number of parameters accepted.
         limit: usize,
+    },
+    /// Training a network of this shape would need too much memory.
+    #[error(
+        "training this shape takes {bytes} bytes beside the samples: must be at most {limit}, so fewer neurons, inputs or outputs"
+    )]
+    TrainingMemory {
+        /// Bytes that the training would need beside the samples.
+        bytes: u64,
+        /// Most bytes accepted.
+        limit: u64,
     },
     /// A number that is NaN or infinite.
     #[error("{what}[{index}] is {value}: must be finite")]
@@ -93,6 +106,21 @@ pub(crate) fn all_finite(what: &'static str, values: &[f64]) -> Result<(), Error
         }),
         None => Ok(()),
     }
+}
+
+/// Number of rows of a row-major table, which must be whole rows.
+#[cfg(feature = "alloc")]
+pub(crate) fn rows_of(what: &'static str, values: &[f64], width: usize) -> Result<usize, Error> {
+    let rows = values.len().checked_div(width).unwrap_or(0);
+    if rows == 0 {
+        return Err(Error::EmptyLayer {
+            what: "samples",
+            index: 0,
+        });
+    }
+    // rows * width is at most the length: no overflow.
+    same_length(what, values.len(), rows * width)?;
+    Ok(rows)
 }
 
 /// Refuses a size other than the one expected.

@@ -1,5 +1,7 @@
 use crate::error::same_length;
-use crate::{Error, Range, Real, forward::forward};
+use crate::forward::forward;
+use crate::pack::count;
+use crate::{Error, Range, Real};
 
 /// A network that borrows its weights, for use without an allocator.
 ///
@@ -52,7 +54,7 @@ impl<'a, T: Real, const I: usize, const O: usize, const A: usize> FixedNetwork<'
                 index,
             });
         }
-        let activations = crate::count(I, hidden, O).0;
+        let activations = count(I, hidden, O).0;
         same_length("activations A", A, activations)?;
         let length = crate::packed_len(I, hidden, O);
         same_length("packed weights", weights.len(), length)?;

@@ -72,6 +72,8 @@
 //! Axes, units, trajectories, where samples come from, files and folders, and
 //! progress bars: the caller drives the epochs and writes the bytes.
 
+#![cfg_attr(test, allow(clippy::disallowed_methods))]
+
 #[cfg(feature = "alloc")]
 extern crate alloc;
 #[cfg(any(test, feature = "std"))]
@@ -108,17 +110,3 @@ pub use real::Real;
 pub use scaling::Scaling;
 #[cfg(feature = "alloc")]
 pub use shape::{Layer, MAX_PARAMETERS, Shape};
-
-/// Numbers of activations and of parameters of a network.
-pub(crate) fn count(inputs: usize, hidden: &[usize], outputs: usize) -> (usize, usize) {
-    let mut seen = inputs.saturating_add(1);
-    let mut parameters = 0usize;
-    for &neurons in hidden {
-        parameters = parameters.saturating_add(seen.saturating_mul(neurons));
-        seen = seen.saturating_add(neurons);
-    }
-    (
-        seen,
-        parameters.saturating_add(seen.saturating_mul(outputs)),
-    )
-}

@@ -3,8 +3,9 @@ use alloc::vec::Vec;
 
 use crate::error::{all_finite, same_length};
 use crate::forward::forward;
+use crate::pack::pack_layers;
 use crate::simd::{Kernel, Vectors};
-use crate::{Error, Scaling, Shape, pack, packed_len};
+use crate::{Error, Scaling, Shape, packed_len};
 
 /// A cascade-forward network with its scaling: immutable once made.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,19 +37,25 @@ impl Network {
         same_length("output ranges", scaling.output().len(), shape.outputs)?;
         same_length("weights", weights.len(), shape.parameters())?;
         all_finite("weights", &weights)?;
+        Ok(Self::from_valid(shape, scaling, weights))
+    }
+
+    /// [`Network::new`] for parts that are known to fit each other and to be
+    /// finite.
+    pub(crate) fn from_valid(shape: Shape, scaling: Scaling, weights: Vec<f64>) -> Self {
         let mut packed = vec![0.0; packed_len(shape.inputs, &shape.hidden, shape.outputs)];
         let Shape {
             inputs,
             hidden,
             outputs,
         } = &shape;
-        pack(*inputs, hidden, *outputs, &weights, &mut packed)?;
-        Ok(Self {
+        pack_layers(*inputs, hidden, *outputs, &weights, &mut packed);
+        Self {
             shape,
             scaling,
             weights,
             packed,
-        })
+        }
     }
 
     /// Layer sizes.

@@ -28,26 +28,40 @@ pub(crate) const fn padded(neurons: usize) -> usize {
     if neurons == 1 {
         1
     } else {
-        neurons.div_ceil(4) * 4
+        neurons.div_ceil(4).saturating_mul(4)
     }
 }
 
-/// Length of the packed weights of a network.
+/// Numbers of activations and of parameters of a network; both saturate
+/// instead of overflowing.
+pub(crate) fn count(inputs: usize, hidden: &[usize], outputs: usize) -> (usize, usize) {
+    let mut seen = inputs.saturating_add(1);
+    let mut parameters = 0usize;
+    for &neurons in hidden {
+        parameters = parameters.saturating_add(seen.saturating_mul(neurons));
+        seen = seen.saturating_add(neurons);
+    }
+    let last = seen.saturating_mul(outputs);
+    (seen, parameters.saturating_add(last))
+}
+
+/// Length of the packed weights of a network; `usize::MAX` where it would be
+/// more than that.
 ///
 /// ```
 /// assert_eq!(cfnn::packed_len(4, &[34, 19, 8], 1), 5 * 36 + 39 * 20 + 58 * 8 + 66);
 /// ```
 #[must_use]
 pub const fn packed_len(inputs: usize, hidden: &[usize], outputs: usize) -> usize {
-    let mut seen = 1 + inputs;
-    let mut length = 0;
+    let mut seen = inputs.saturating_add(1);
+    let mut length = 0usize;
     let mut layer = 0;
     while layer < hidden.len() {
-        length += seen * padded(hidden[layer]);
-        seen += hidden[layer];
+        length = length.saturating_add(seen.saturating_mul(padded(hidden[layer])));
+        seen = seen.saturating_add(hidden[layer]);
         layer += 1;
     }
-    length + seen * padded(outputs)
+    length.saturating_add(seen.saturating_mul(padded(outputs)))
 }
 
 /// Puts weights in the order that [`crate::FixedNetwork`] reads.
@@ -64,10 +78,22 @@ pub fn pack<T: Real>(
     weights: &[T],
     packed: &mut [T],
 ) -> Result<(), Error> {
-    let parameters = crate::count(inputs, hidden, outputs).1;
+    let parameters = count(inputs, hidden, outputs).1;
     same_length("weights", weights.len(), parameters)?;
     let length = packed_len(inputs, hidden, outputs);
     same_length("packed weights", packed.len(), length)?;
+    pack_layers(inputs, hidden, outputs, weights, packed);
+    Ok(())
+}
+
+/// [`pack`] for slices known to have the right lengths.
+pub(crate) fn pack_layers<T: Real>(
+    inputs: usize,
+    hidden: &[usize],
+    outputs: usize,
+    weights: &[T],
+    packed: &mut [T],
+) {
     let (mut weights, mut packed) = (weights, packed);
     let mut seen = 1 + inputs;
     for &neurons in hidden.iter().chain([&outputs]) {
@@ -77,7 +103,6 @@ pub fn pack<T: Real>(
         (weights, packed) = (later, free);
         seen += neurons;
     }
-    Ok(())
 }
 
 fn pack_layer<T: Real>(seen: usize, neurons: usize, layer: &[T], into: &mut [T]) {

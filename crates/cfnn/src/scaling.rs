@@ -1,6 +1,6 @@
 use alloc::vec::Vec;
 
-use crate::error::same_length;
+use crate::error::{rows_of, same_length};
 use crate::{Error, Range};
 
 /// Min-max scaling of all inputs and outputs to `[-1, 1]`, stored with the
@@ -33,6 +33,7 @@ impl Scaling {
     /// after the other (row-major), `inputs` and `outputs` numbers each.
     ///
     /// # Errors
+    /// [`Error::EmptyLayer`] for zero inputs, outputs or samples,
     /// [`Error::Length`] when a slice does not divide into rows or the row
     /// counts differ, [`Error::Range`] for a column that is constant or not
     /// finite (a constant input carries nothing: leave it out).
@@ -47,9 +48,9 @@ impl Scaling {
                 return Err(Error::EmptyLayer { what, index: 0 });
             }
         }
-        let rows = input_rows.len() / inputs;
-        same_length("input values", input_rows.len(), rows * inputs)?;
-        same_length("output values", output_rows.len(), rows * outputs)?;
+        let rows = rows_of("input values", input_rows, inputs)?;
+        let expected = rows.saturating_mul(outputs);
+        same_length("output values", output_rows.len(), expected)?;
         Self::from_ranges(
             &extremes(inputs, input_rows),
             &extremes(outputs, output_rows),

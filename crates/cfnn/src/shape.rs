@@ -1,9 +1,11 @@
 use alloc::vec::Vec;
 
 use crate::Error;
+use crate::pack::count;
 
-/// The largest number of parameters accepted: beyond it the normal equations
-/// of the training would need more than 2 TB.
+/// The largest number of parameters of a network: 4 MB of weights, some
+/// hundred times what a feed axis asks for. Training has its own limit, see
+/// `train::MAX_TRAINING_BYTES`.
 pub const MAX_PARAMETERS: usize = 1 << 19;
 
 /// Layer sizes of a cascade-forward network.
@@ -40,10 +42,10 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// Number of parameters of the layer.
+    /// Number of parameters of the layer; saturates instead of overflowing.
     #[must_use]
     pub fn parameters(&self) -> usize {
-        self.seen * self.neurons
+        self.seen.saturating_mul(self.neurons)
     }
 }
 
@@ -63,8 +65,10 @@ impl Shape {
         if let Some(index) = self.hidden.iter().position(|&n| n == 0) {
             return empty("hidden", index);
         }
-        if self.parameters() > MAX_PARAMETERS {
+        let found = self.parameters();
+        if found > MAX_PARAMETERS {
             return Err(Error::TooLarge {
+                found,
                 limit: MAX_PARAMETERS,
             });
         }
@@ -74,38 +78,43 @@ impl Shape {
     /// Number of weights and biases together; saturates instead of overflowing.
     #[must_use]
     pub fn parameters(&self) -> usize {
-        crate::count(self.inputs, &self.hidden, self.outputs).1
+        count(self.inputs, &self.hidden, self.outputs).1
     }
 
-    /// Length of the activation vector: 1 (bias), inputs and hidden neurons.
+    /// Length of the activation vector: 1 (bias), inputs and hidden neurons;
+    /// saturates instead of overflowing.
     #[must_use]
     pub fn activations(&self) -> usize {
-        crate::count(self.inputs, &self.hidden, self.outputs).0
+        count(self.inputs, &self.hidden, self.outputs).0
     }
 
-    /// Neurons of the hidden and output layers together.
+    /// Neurons of the hidden and output layers together; saturates instead of
+    /// overflowing.
     #[must_use]
     pub fn neurons(&self) -> usize {
-        self.hidden.iter().sum::<usize>() + self.outputs
+        let hidden = self.hidden.iter();
+        hidden.fold(self.outputs, |sum, &n| sum.saturating_add(n))
     }
 
-    /// The layers from the first hidden one to the output layer.
+    /// The layers from the first hidden one to the output layer. Their numbers
+    /// saturate, which a shape that [`Shape::validate`] accepts cannot reach.
     #[must_use]
     pub fn layers(&self) -> Vec<Layer> {
-        let mut seen = 1 + self.inputs;
-        let mut first_parameter = 0;
-        let mut first_neuron = 0;
+        let mut seen = self.inputs.saturating_add(1);
+        let mut first_parameter = 0usize;
+        let mut first_neuron = 0usize;
         let mut layers = Vec::with_capacity(self.hidden.len() + 1);
         for &neurons in self.hidden.iter().chain([&self.outputs]) {
-            layers.push(Layer {
+            let layer = Layer {
                 seen,
                 neurons,
                 first_parameter,
                 first_neuron,
-            });
-            first_parameter += seen * neurons;
-            first_neuron += neurons;
-            seen += neurons;
+            };
+            layers.push(layer);
+            first_parameter = first_parameter.saturating_add(layer.parameters());
+            first_neuron = first_neuron.saturating_add(neurons);
+            seen = seen.saturating_add(neurons);
         }
         layers
     }

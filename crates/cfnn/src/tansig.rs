@@ -16,13 +16,15 @@
 //! more slowly than its argument. One division, about thirty operations.
 //!
 //! The coefficients are minimax ones for the relative error on `f² <= 1/4`
-//! (Remez's exchange in 50 digits), scaled so that the first of `P` is 1.
+//! (Remez's exchange in 50 digits), scaled so that the first of `P` is 1:
+//! `python3 crates/cfnn/tests/golden/tansig_minimax.py` finds them and judges
+//! those used here. Before rounding they are good to `4.8e-18` relative, as
+//! doubles to `1.1e-16`, about half a unit in the last place.
 
 use core::array::from_fn;
 
-/// `tanh` of each element in double precision; the approximation itself is
-/// good to `5e-18` relative, what remains is rounding. Step by step over all
-/// elements, so that each step becomes whole vectors.
+/// `tanh` of each element in double precision. Step by step over all elements,
+/// so that each step becomes whole vectors.
 #[inline(always)]
 pub(crate) fn tansig_f64<const C: usize>(x: [f64; C]) -> [f64; C] {
     // 1.5 * 2^52: adding it leaves the rounded integer in the lowest bits.
@@ -63,7 +65,8 @@ pub(crate) fn tansig_f64<const C: usize>(x: [f64; C]) -> [f64; C] {
 }
 
 /// `tanh` of each element in single precision: the same with an approximation
-/// good to `6e-10` relative.
+/// good to `5.3e-10` relative before its coefficients are rounded, to `4.7e-9`
+/// after.
 #[inline(always)]
 pub(crate) fn tansig_f32<const C: usize>(x: [f32; C]) -> [f32; C] {
     // 1.5 * 2^23: adding it leaves the rounded integer in the lowest bits.

@@ -1,10 +1,12 @@
 //! Artifacts come back bit for bit, or are refused with a telling error.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use cfnn::artifact::{
     ArtifactError, checkpoint_from_bytes, checkpoint_to_bytes, network_from_bytes, network_to_bytes,
 };
 use cfnn::train::{Dataset, Settings, Trainer, Validation, nguyen_widrow};
 use cfnn::{Network, Scaling, Shape};
+use proptest::prelude::*;
 
 fn network() -> Network {
     let shape = Shape {
@@ -14,7 +16,7 @@ fn network() -> Network {
     };
     let scaling =
         Scaling::from_ranges(&[(0.0, 1.5), (-0.1, 0.7)], &[(-1e-9, 3e-9), (0.0, 1.0)]).unwrap();
-    let weights = nguyen_widrow(&shape, 9);
+    let weights = nguyen_widrow(&shape, 9).unwrap();
     Network::new(shape, scaling, weights).unwrap()
 }
 
@@ -126,4 +128,70 @@ fn each_fault_has_its_own_error() {
         network_from_bytes(&flipped).unwrap_err(),
         ArtifactError::Damaged
     );
+}
+
+/// Length and hash that fit a changed payload: what only a hostile hand makes.
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let length = bytes.len() as u64 - 24;
+    bytes[16..24].copy_from_slice(&length.to_le_bytes());
+    let hash = blake3::hash(&bytes);
+    bytes.extend_from_slice(hash.as_bytes());
+    bytes
+}
+
+/// A damping below zero would keep the trial steps of an epoch from ending.
+#[test]
+fn a_checkpoint_with_a_damping_below_zero_is_refused() {
+    let (_, checkpoint) = checkpoint();
+    let mut bytes = checkpoint_to_bytes(&checkpoint, "p").unwrap();
+    bytes.truncate(bytes.len() - 32);
+    let damping = checkpoint.history().last().unwrap().damping.to_le_bytes();
+    let place = bytes.windows(8).position(|w| w == damping).unwrap();
+    bytes[place..place + 8].copy_from_slice(&(-1.0f64).to_le_bytes());
+    let refused = checkpoint_from_bytes(&sealed(bytes)).unwrap_err();
+    assert!(refused.to_string().contains("damping is -1"), "{refused}");
+}
+
+proptest! {
+    /// Payloads with any bytes changed, under a hash that fits: refused, or a
+    /// training that goes on and ends.
+    #[test]
+    fn changed_payloads_are_refused_or_sound(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        cut in prop::option::of(any::<prop::sample::Index>()),
+    ) {
+        let (data, checkpoint) = checkpoint();
+        let network = network_to_bytes(&network(), "provenance").unwrap();
+        let state = checkpoint_to_bytes(&checkpoint, "provenance").unwrap();
+        let changed = |mut bytes: Vec<u8>| {
+            bytes.truncate(bytes.len() - 32);
+            let payload = bytes.len() - 24;
+            for (place, byte) in &changes {
+                bytes[24 + place.index(payload)] = *byte;
+            }
+            if let Some(cut) = &cut {
+                bytes.truncate(24 + cut.index(payload));
+            }
+            sealed(bytes)
+        };
+        if let Ok((network, _)) = network_from_bytes(&changed(network)) {
+            prop_assert!(network.weights().iter().all(|w| w.is_finite()));
+        }
+        if let Ok((mut checkpoint, _)) = checkpoint_from_bytes(&changed(state)) {
+            checkpoint.settings.threads = 1;
+            if let Ok(mut trainer) = Trainer::resume(&data, checkpoint) {
+                trainer.epoch();
+                prop_assert!(trainer.network().weights().iter().all(|w| w.is_finite()));
+            }
+        }
+    }
+
+    /// Any bytes at all.
+    #[test]
+    fn any_bytes_are_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        prop_assert!(network_from_bytes(&bytes).is_err());
+        let mut framed = network_to_bytes(&network(), "p").unwrap()[..24].to_vec();
+        framed.extend(&bytes);
+        prop_assert!(network_from_bytes(&sealed(framed)).is_err());
+    }
 }

@@ -1,5 +1,6 @@
 //! Training: what it must reach, and that its bits depend on nothing else
 //! than the data, the settings and the seed.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use cfnn::train::{Dataset, Initialisation, Normalisation, Outcome, Settings, Trainer, Validation};
 use cfnn::{Error, Shape};
@@ -56,10 +57,12 @@ fn purelin_network_recovers_a_linear_map_to_rounding() {
         trainer.run(|_| ());
         let network = trainer.network();
         let mut scratch = network.scratch();
+        assert_eq!((data.input(500), data.target(500)), (None, None));
         for s in 0..data.len() {
-            let y = network.predict_one(data.input(s), &mut scratch).unwrap();
-            // Values up to 10, a handful of roundings each way.
-            assert!((y - data.target(s)[0]).abs() < 1e-13);
+            let input = data.input(s).unwrap();
+            let y = network.predict_one(input, &mut scratch).unwrap();
+            // Values up to 10, a handful of roundings each way: 3.6e-15 measured.
+            assert!((y - data.target(s).unwrap()[0]).abs() < 2e-14);
         }
     }
 }
@@ -73,7 +76,8 @@ fn linear_start_begins_at_the_linear_map() {
     };
     let start = trainer(&[6, 3], &data, settings.clone()).loss();
     let linear = trainer(&[], &data, settings).loss();
-    assert!((start / linear - 1.0).abs() < 1e-9, "{start} {linear}");
+    // The same sums: equal measured, a few roundings where kernels differ.
+    assert!((start / linear - 1.0).abs() < 2e-15, "{start} {linear}");
 }
 
 #[test]

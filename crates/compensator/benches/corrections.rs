@@ -1,5 +1,6 @@
 //! One correction of each strategy: what a controller spends on it in each
 //! control cycle of 100 µs. `cargo bench -p compensator`
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use std::f64::consts::TAU;
 use std::hint::black_box;

@@ -2,6 +2,7 @@
 //! friction, position P and speed PI at 10 kHz, nothing of the simulator.
 //!
 //! `cargo run -p compensator --example one_controller`
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use std::f64::consts::TAU;
 

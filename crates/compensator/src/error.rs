@@ -41,8 +41,14 @@ pub(crate) fn require(
     Err(CompensatorError::Setting { name, value, valid })
 }
 
-/// Refuses what is not finite and above zero.
-pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, CompensatorError> {
-    let inside = value.is_finite() && value > 0.0;
-    require(inside, name, value, "finite and above zero")
+/// Refuses a transmission ratio (m/rad) that no axis has.
+pub(crate) fn travel_per_radian(value: f64) -> Result<f64, CompensatorError> {
+    let inside = (1e-9..=1e3).contains(&value);
+    require(inside, "travel_per_radian", value, "from 1e-9 to 1e3 m/rad")
+}
+
+/// Refuses a control period (s) that no controller has.
+pub(crate) fn period(value: f64) -> Result<f64, CompensatorError> {
+    let inside = (1e-9..=1e3).contains(&value);
+    require(inside, "period", value, "from 1e-9 to 1e3 s")
 }

@@ -16,7 +16,7 @@
 //!
 //! The poles of the observer are the roots of z² − (2 − α − β) z + (1 − α).
 
-use crate::error::{positive, require};
+use crate::error::{self, require};
 use crate::{CompensatorError, Sample};
 
 /// Gains of the [`MotionEstimator`].
@@ -49,9 +49,12 @@ impl ObserverGains {
     /// exp(−1/cycles), α = 1 − q² and β = (1 − q)² (critically damped).
     ///
     /// # Errors
-    /// [`CompensatorError::Setting`] unless `cycles` is finite and above zero.
+    /// [`CompensatorError::Setting`] unless `cycles` is above zero and at most
+    /// 1e6: with more, rounding would leave nothing of the gains.
     pub fn critically_damped(cycles: f64) -> Result<Self, CompensatorError> {
-        let q = libm::exp(-1.0 / positive("cycles", cycles)?);
+        let inside = cycles > 0.0 && cycles <= 1e6;
+        let cycles = require(inside, "cycles", cycles, "above 0 and at most 1e6")?;
+        let q = libm::exp(-1.0 / cycles);
         let gains = Self {
             position: 1.0 - q * q,
             drift: (1.0 - q) * (1.0 - q),
@@ -62,7 +65,7 @@ impl ObserverGains {
 
     /// Standard deviations that white scale noise of unit standard deviation
     /// causes. Exact for the linear observer: second-order filters in white
-    /// noise, solved in closed form.
+    /// noise, solved in closed form; NaN for gains that are not valid.
     pub fn noise_gains(&self) -> NoiseGains {
         let (a, b) = (self.position, self.drift);
         let d = a * (4.0 - 2.0 * a - b);
@@ -138,7 +141,8 @@ struct State {
 }
 
 impl MotionEstimator {
-    /// `travel_per_radian` r = lead/2π (m/rad), control `period` (s), `gains`.
+    /// `travel_per_radian` r = lead/2π (from 1e-9 to 1e3 m/rad), control
+    /// `period` (from 1e-9 to 1e3 s), `gains`.
     ///
     /// # Errors
     /// [`CompensatorError::Setting`] for a value outside its range.
@@ -148,8 +152,8 @@ impl MotionEstimator {
         gains: ObserverGains,
     ) -> Result<Self, CompensatorError> {
         Ok(Self {
-            travel_per_radian: positive("travel_per_radian", travel_per_radian)?,
-            period: positive("period", period)?,
+            travel_per_radian: error::travel_per_radian(travel_per_radian)?,
+            period: error::period(period)?,
             gains: gains.checked()?,
             state: None,
         })
@@ -161,7 +165,8 @@ impl MotionEstimator {
         self.state = None;
     }
 
-    /// Takes in one cycle's sample (position and motor speed only).
+    /// Takes in one cycle's sample (position and motor speed only). One that
+    /// is not finite leaves estimates that are not, until the next reset.
     pub fn update(&mut self, sample: &Sample) -> Estimate {
         let motor_side_speed = self.travel_per_radian * sample.motor_speed;
         let state = match &self.state {

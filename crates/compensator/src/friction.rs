@@ -2,7 +2,7 @@
 
 use lugre::LuGre;
 
-use crate::error::positive;
+use crate::error::{self, require};
 use crate::{Compensator, CompensatorError, Correction, Sample};
 
 /// LuGre friction along the reference velocity, divided by the torque constant.
@@ -22,21 +22,25 @@ pub struct FrictionFeedforward {
 
 impl FrictionFeedforward {
     /// Friction `law` at the screw (N·m over rad/s); `travel_per_radian`
-    /// r = lead/2π (m/rad); `torque_constant` K_t (N·m/A); control `period` (s).
+    /// r = lead/2π (from 1e-9 to 1e3 m/rad); `torque_constant` K_t (from 1e-9
+    /// to 1e9 N·m/A); control `period` (from 1e-9 to 1e3 s).
     ///
     /// # Errors
-    /// [`CompensatorError::Setting`] for a value that is not finite and above zero.
+    /// [`CompensatorError::Setting`] for a value outside its range.
     pub fn new(
         law: LuGre,
         travel_per_radian: f64,
         torque_constant: f64,
         period: f64,
     ) -> Result<Self, CompensatorError> {
+        let inside = (1e-9..=1e9).contains(&torque_constant);
+        let valid = "from 1e-9 to 1e9 N·m/A";
+        let torque_constant = require(inside, "torque_constant", torque_constant, valid)?;
         Ok(Self {
             law,
-            per_travel: 1.0 / positive("travel_per_radian", travel_per_radian)?,
-            per_torque: 1.0 / positive("torque_constant", torque_constant)?,
-            period: positive("period", period)?,
+            per_travel: 1.0 / error::travel_per_radian(travel_per_radian)?,
+            per_torque: 1.0 / torque_constant,
+            period: error::period(period)?,
             bristle: 0.0,
             speed: 0.0,
         })

@@ -49,9 +49,12 @@ pub struct Candidates {
 impl Candidates {
     /// The usual choice for a feed axis: time constants from 1 to 100 ms in
     /// 13 steps, each alone and in pairs at least two steps apart; order up to 12.
+    ///
+    /// `period` in s; for one that no model may have the poles are refused when
+    /// they are used.
     pub fn for_period(period: f64) -> Self {
-        let times = (0..13).map(|i| 1e-3 * 10f64.powf(f64::from(i) / 6.0));
-        let poles: Vec<f64> = times.map(|time| (-period / time).exp()).collect();
+        let times = (0..13).map(|i| 1e-3 * libm::pow(10.0, f64::from(i) / 6.0));
+        let poles: Vec<f64> = times.map(|time| libm::exp(-period / time)).collect();
         let mut pole_cycles: Vec<Vec<f64>> = poles.iter().map(|&p| Vec::from([p])).collect();
         for (i, &fast) in poles.iter().enumerate() {
             pole_cycles.extend(poles[i + 1..].iter().skip(1).map(|&p| Vec::from([fast, p])));
@@ -104,7 +107,7 @@ pub struct TransferFunctionFit {
 /// on `validation`: of all within 1 % of the best, the one with the fewest
 /// coefficients, of these the best, of these the first tried.
 ///
-/// Deterministic. Cost: one filter pass and one triangularisation of the
+/// The bits depend on the arguments alone. Cost: one filter pass and one triangularisation of the
 /// training and of the validation motions for each cycle of poles.
 ///
 /// # Errors

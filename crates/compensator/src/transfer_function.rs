@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use crate::error::{positive, require};
+use crate::error::{self, require};
 use crate::{Compensator, CompensatorError, Correction, Sample};
 
 /// Largest number of poles of a [`TransferFunctionModel`].
@@ -30,11 +30,12 @@ pub struct TransferFunctionModel {
 }
 
 impl TransferFunctionModel {
-    /// Control `period` (s), `direct` feed-through d (s²), real `poles` pᵢ (of
+    /// Control `period` (from 1e-9 to 1e3 s), `direct` feed-through d (s²), real `poles` pᵢ (of
     /// z, one for each term) and `coefficients` cᵢ (s²).
     ///
     /// # Errors
-    /// [`CompensatorError::Setting`] for a number that is not finite, a pole
+    /// [`CompensatorError::Setting`] for a period outside its range, another
+    /// number that is not finite, a pole
     /// outside −1 < p < 1, more than [`MAX_ORDER`] poles, or as many
     /// coefficients as there are not poles.
     pub fn new(
@@ -50,7 +51,7 @@ impl TransferFunctionModel {
         let valid = "as many coefficients as poles";
         require(count == order, "coefficients", count as f64, valid)?;
         let mut model = Self {
-            period: positive("period", period)?,
+            period: error::period(period)?,
             direct: require(direct.is_finite(), "direct", direct, "finite")?,
             order,
             poles: [0.0; MAX_ORDER],
@@ -99,7 +100,8 @@ impl TransferFunctionModel {
         self.response(0.0).0
     }
 
-    /// Real and imaginary part (s²) of H at `frequency` (Hz).
+    /// Real and imaginary part (s²) of H at `frequency` (Hz); NaN where that
+    /// is not finite.
     pub fn response(&self, frequency: f64) -> (f64, f64) {
         let (sin, cos) = libm::sincos(TAU * frequency * self.period);
         let delay = (cos, -sin); // z⁻¹
@@ -192,13 +194,13 @@ impl TransferFunction {
     /// in rad/s per m and r = lead/2π, undoes that. 0 is [`TransferFunction::new`].
     ///
     /// # Errors
-    /// [`CompensatorError::Setting`] unless `lead_time` is finite and not negative.
+    /// [`CompensatorError::Setting`] unless `lead_time` lies from 0 to 1e3 s.
     pub fn with_lead(
         model: TransferFunctionModel,
         lead_time: f64,
     ) -> Result<Self, CompensatorError> {
-        let inside = lead_time.is_finite() && lead_time >= 0.0;
-        let lead = require(inside, "lead_time", lead_time, "finite and not negative")?;
+        let inside = (0.0..=1e3).contains(&lead_time);
+        let lead = require(inside, "lead_time", lead_time, "from 0 to 1e3 s")?;
         Ok(Self {
             lead,
             ..Self::new(model)

@@ -63,7 +63,7 @@ proptest! {
     /// At steady speed the current drives along the motion and is the
     /// steady-state curve's over K_t.
     #[test]
-    fn steady_speed(speed in 1e-3..0.2f64, backwards: bool) {
+    fn steady_speed(speed in 5e-3..0.2f64, backwards: bool) {
         let v = if backwards { -speed } else { speed };
         let mut feedforward = friction();
         let mut iq = 0.0;
@@ -71,8 +71,9 @@ proptest! {
             iq = feedforward.correct(&moving(v)).iq;
         }
         prop_assert!(iq * v > 0.0);
-        // 2 s settle the bristles (σ0 ω/G ≥ 12 /s) to e⁻²⁴.
-        prop_assert!((iq - law().steady_state(v / R) / KT).abs() < 1e-8);
+        // 2 s settle the bristles (σ0 ω/G ≥ 60 /s) to e⁻¹²⁰; rounding is left, 3.6e-14
+        // measured.
+        prop_assert!((iq - law().steady_state(v / R) / KT).abs() < 3e-13);
     }
 
     #[test]

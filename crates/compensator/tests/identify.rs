@@ -1,4 +1,5 @@
 //! Identification of systems that are known.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{
     Candidates, IdentifyError, Motion, TransferFunctionModel, identify_transfer_function,
@@ -95,10 +96,11 @@ proptest! {
         ).unwrap();
         prop_assert_eq!(fit.model.poles(), truth.poles());
         prop_assert_eq!(fit.chosen.direct, with_direct);
-        // Rounding of 1e-16 times the condition of the motions (below 1e4).
-        prop_assert!((fit.model.direct() - direct).abs() < 2e-5 * 1e-12);
+        // Rounding of 1e-16 times the condition of the motions, on 2e-5: 6e-19 measured
+        // for the feed-through, 1.0e-19 for the others.
+        prop_assert!((fit.model.direct() - direct).abs() < 4e-18);
         for (found, true_value) in fit.model.coefficients().iter().zip(&coefficients) {
-            prop_assert!((found - true_value).abs() < 2e-5 * 1e-12);
+            prop_assert!((found - true_value).abs() < 8e-19);
         }
     }
 
@@ -123,7 +125,8 @@ proptest! {
         for (i, found) in fit.model.coefficients().iter().enumerate() {
             let error = fit.standard_errors[i + 1];
             prop_assert!((found - coefficients[i]).abs() < 5.0 * error);
-            prop_assert!(error < 1e-7, "a standard error that says nothing: {error}");
+            // 6.6e-11 measured.
+            prop_assert!(error < 5e-10, "a standard error that says nothing: {error}");
         }
         // The RMS of 8000 normal numbers scatters by 0.8 %.
         prop_assert!((fit.chosen.training_rms / sigma - 1.0).abs() < 0.04);
@@ -150,7 +153,8 @@ fn reported_rms_is_the_models() {
         .zip(&valid_error)
         .map(|(p, e)| (p - e).powi(2));
     let rms = (squares.sum::<f64>() / valid.len() as f64).sqrt();
-    assert!((rms / fit.chosen.validation_rms - 1.0).abs() < 1e-9);
+    // 3.6e-15 measured.
+    assert!((rms / fit.chosen.validation_rms - 1.0).abs() < 3e-14);
     assert_eq!(fit.trials.len(), 4 * 8 * 2);
     let best = fit
         .trials
@@ -224,7 +228,7 @@ fn unusable_motions_are_refused() {
     let nan = identify(&[motion(&a, &[0.0, f64::NAN, 0.0])], &[good]);
     assert!(matches!(
         nan,
-        IdentifyError::NotFinite {
+        IdentifyError::Value {
             sample: 1,
             what: "error",
             ..

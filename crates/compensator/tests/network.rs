@@ -1,4 +1,5 @@
 //! The network strategy: Eq. (36), shapes, the kinds of models.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use cfnn::{FixedNetwork, Network, Range, Scaling, Shape};
 use compensator::{

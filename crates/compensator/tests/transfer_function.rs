@@ -1,4 +1,5 @@
 //! The linear model: basis, responses, laws of a linear filter.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use approx::assert_relative_eq;
 use compensator::{
@@ -47,8 +48,8 @@ fn basis_is_orthonormal() {
         for (j, b) in responses.iter().enumerate() {
             let product: f64 = a.iter().zip(b).map(|(x, y)| x * y).sum();
             let expected = f64::from(u8::from(i == j));
-            // 2000 terms of rounding; 0.95^2000 is nothing.
-            assert!((product - expected).abs() < 1e-13, "{i} {j}: {product}");
+            // 2000 terms of rounding; 0.95^2000 is nothing. 1.1e-15 measured.
+            assert!((product - expected).abs() < 1e-14, "{i} {j}: {product}");
         }
     }
 }
@@ -80,8 +81,8 @@ proptest! {
         let mix: Vec<f64> = a.iter().zip(&b).map(|(a, b)| x * a + y * b).collect();
         let (ea, eb) = (model.simulate(&a), model.simulate(&b));
         for (k, e) in model.simulate(&mix).iter().enumerate() {
-            // Outputs are of order 1e-4.
-            prop_assert!((e - (x * ea[k] + y * eb[k])).abs() < 1e-16);
+            // Outputs are of order 1e-4: 8e-20 measured.
+            prop_assert!((e - (x * ea[k] + y * eb[k])).abs() < 8e-19);
         }
     }
 
@@ -104,7 +105,8 @@ proptest! {
             im -= h * angle.sin();
         }
         let (x, y) = model.response(frequency);
-        prop_assert!((x - re).abs() < 1e-15 && (y - im).abs() < 1e-15);
+        // 2.5e-20 measured, mostly the angles' rounding.
+        prop_assert!((x - re).abs() < 2e-19 && (y - im).abs() < 2e-19);
         prop_assert_eq!(model.dc_gain(), model.response(0.0).0);
     }
 
@@ -128,7 +130,9 @@ proptest! {
                 let derivative = (expected[k + 1] - expected[k]) / T;
                 let correction = leading.correct(&sample).position;
                 let wanted = expected[k + 1] + lead * derivative;
-                prop_assert!((correction - wanted).abs() < 1e-13 * (1.0 + lead / T) * 1e-3);
+                // A few roundings on the way to each: half of this measured.
+                let size = (lead / T).max(1.0) * (expected[k].abs() + expected[k + 1].abs());
+                prop_assert!((correction - wanted).abs() <= 4.0 * f64::EPSILON * size);
             }
         }
     }

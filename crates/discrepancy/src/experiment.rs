@@ -15,9 +15,9 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use trajectories::{Chirp, Limits, Program, Sine, Step, Sweep, TrajectoryError};
 
-use crate::fit::{Columns, Fitter, known_deviation};
+use crate::fit::{Columns, Fitter};
 use crate::hidden::Noise;
-use crate::known::with_known;
+use crate::known::{known_deviation, with_known};
 use crate::library::rooms;
 use crate::model::{LogSet, State};
 use crate::noise::noise_on;

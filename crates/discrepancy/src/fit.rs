@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::bounded::{bounded, inverse_of};
-use crate::known::tolerance;
+use crate::gauss_newton::Descent;
+use crate::known::{known_deviation, tolerance};
 use crate::model::{LogSet, State};
 use crate::spectrum::Amplitudes;
 
@@ -42,12 +43,6 @@ pub fn is_free(parameter: &EffectParameter) -> bool {
     parameter.name != "order"
 }
 
-/// Standard deviation of a known parameter's departure: that of a uniform
-/// distribution over its tolerance.
-pub fn known_deviation(machine: &Machine) -> f64 {
-    tolerance(machine) / 3f64.sqrt()
-}
-
 /// Steps up and down for a difference quotient of an effect's parameter, inside
 /// its bounds. A hidden effect and a known parameter may be one quantity: their
 /// columns must agree to far better than a hundredth, or the data seem to tell
@@ -60,13 +55,6 @@ fn steps_of(parameter: &EffectParameter, value: f64) -> [f64; 2] {
     };
     let [low, high] = parameter.bounds;
     [(high - value).min(scale), (low - value).max(-scale)]
-}
-
-/// Which known parameters are at the edge of their tolerance: they cannot move
-/// on, whatever a linearised problem would like.
-pub fn pinned(machine: &Machine, shares: &[f64]) -> Vec<bool> {
-    let most = 0.999 * tolerance(machine);
-    shares.iter().map(|s| s.abs() >= most).collect()
 }
 
 /// The fit of a set of logs by a machine.
@@ -162,36 +150,40 @@ impl Fitter<'_> {
     ///
     /// # Errors
     /// [`ReplayError`] never of trial steps, which are shortened instead.
-    pub fn refine(&self, mut fit: Fit, given: &Columns, rounds: usize) -> Fit {
+    pub fn refine(&self, fit: Fit, given: &Columns, rounds: usize) -> Fit {
         let of_effects = given.len() - fit.state.shares.len();
-        for _ in 0..rounds {
-            let columns: Vec<Amplitudes> = given
-                .iter()
-                .cloned()
-                .chain(self.effect_columns(&fit, of_effects))
-                .collect();
-            let Solved { step, promised, .. } = self.solve(&fit, &columns);
-            if promised < ENOUGH {
-                break;
-            }
+        let step = |fit: &Fit| {
+            let new = self.effect_columns(fit, of_effects);
+            let columns: Columns = given.iter().cloned().chain(new).collect();
+            let Solved { step, promised, .. } = self.solve(fit, &columns);
+            (promised >= ENOUGH).then_some((step, columns))
+        };
+        let better = |fit: &Fit, (step, columns): &(DVector<f64>, Columns), length: f64| {
+            let trial = self.at(moved(&fit.state, step, length)).ok()?;
+            self.below(fit, trial, columns)
+        };
+        let descent = Descent {
+            rounds,
+            lengths: 4,
+            shorter: 0.35,
+        };
+        descent.from(fit, step, better, |before, after| {
+            before.deviance - after.deviance >= ENOUGH
+        })
+    }
+
+    /// The known parameters fitted, and their derivatives where that ends: these
+    /// are made anew until it gets no further.
+    pub fn calibrated(&self, mut fit: Fit, mut known: Columns) -> (Fit, Columns) {
+        for _ in 0..3 {
             let before = fit.deviance;
-            let mut best = fit.clone();
-            let mut length = 1.0;
-            for _ in 0..4 {
-                if let Ok(trial) = self.at(moved(&fit.state, &step, length))
-                    && let Some(better) = self.below(&fit, trial, &columns)
-                {
-                    best = better;
-                    break;
-                }
-                length *= 0.35;
-            }
-            fit = best;
-            if before - fit.deviance < ENOUGH {
+            fit = self.refine(fit, &known, 8);
+            if before - fit.deviance < 10.0 {
                 break;
             }
+            known = self.known_columns(&fit);
         }
-        fit
+        (fit, known)
     }
 
     /// What a trial step reaches, where that has a lower D than `fit`: as it is, or after

@@ -30,7 +30,7 @@ pub enum IntakeError {
     },
     /// Position and reference differ by the factor between two units.
     #[error(
-        "{file}: \"position_m\" is {factor} times \"position_ref_m\" ({guess}): give the column a scale in the axis file, [[log.column]] source = …, channel = \"position_m\", scale = {scale}"
+        "{file}: \"position_m\" is {factor:.4e} times \"position_ref_m\" ({guess}): give the column a scale in the axis file, [[log.column]] source = …, channel = \"position_m\", scale = {scale}"
     )]
     Unit {
         /// The log.
@@ -44,7 +44,7 @@ pub enum IntakeError {
     },
     /// Positions that the axis cannot take.
     #[error(
-        "{file}: \"{channel}\" is {position} m at t = {time:.4} s, outside the axis' stroke of {minimum} to {maximum} m: the log belongs to another axis, is in another unit, or counts from another zero (offset in [log])"
+        "{file}: \"{channel}\" is {position:.6} m at t = {time:.4} s, outside the axis' stroke of {minimum} to {maximum} m: the log belongs to another axis, is in another unit, or counts from another zero (offset in [log])"
     )]
     OffStroke {
         /// The log.
@@ -62,7 +62,7 @@ pub enum IntakeError {
     },
     /// The table does not follow the reference at all.
     #[error(
-        "{file}: at t = {time:.4} s the table is {error} m from its reference, more than a tenth of the motion's {travel} m: the two columns are not of one axis and one time"
+        "{file}: at t = {time:.4} s the table is {error:.6} m from its reference, more than a tenth of the motion's {travel:.6} m: the two columns are not of one axis and one time"
     )]
     NotFollowing {
         /// The log.

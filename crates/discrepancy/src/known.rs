@@ -92,6 +92,19 @@ pub fn tolerance(machine: &Machine) -> f64 {
     }
 }
 
+/// Standard deviation of a known parameter's departure: that of a uniform
+/// distribution over its tolerance.
+pub fn known_deviation(machine: &Machine) -> f64 {
+    tolerance(machine) / 3f64.sqrt()
+}
+
+/// Which known parameters are at the edge of their tolerance: they cannot move
+/// on, whatever a linearised problem would like.
+pub fn pinned(machine: &Machine, shares: &[f64]) -> Vec<bool> {
+    let most = 0.999 * tolerance(machine);
+    shares.iter().map(|s| s.abs() >= most).collect()
+}
+
 /// The machine with its known parameters off by `shares` of their values, in
 /// the order of [`known_parameters`]. A share that would make no machine is
 /// passed over.

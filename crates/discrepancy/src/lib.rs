@@ -17,7 +17,7 @@
 //! than a hundredth of what was found before.
 //!
 //! # Steps
-//! [`intake`] looks at the logs; [`LogSet`] prepares them; [`search`] moves the
+//! [`intake`] looks at the logs; [`LogSet`] prepares them; [`search()`] moves the
 //! known parameters, screens all effects by what they would do to these logs,
 //! refines the best few by simulation, adds the best, and begins again;
 //! [`discovery`] puts what was found into a [`Verdict`], intervals and gaps.
@@ -28,8 +28,11 @@
 //! Files, terminals and pictures. It simulates nothing itself.
 
 mod bounded;
+mod curves;
 mod experiment;
 mod fit;
+mod gap;
+mod gauss_newton;
 pub mod hidden;
 pub mod intake;
 mod interval;
@@ -48,15 +51,18 @@ mod spectrum;
 pub mod summary;
 
 pub use experiment::Proposal;
-pub use fit::{Fit, Fitter, free_parameters, known_deviation};
+pub use fit::{Fit, Fitter, free_parameters};
+pub use gap::{ChannelGap, Gap};
 pub use interval::Spread;
-pub use known::{Known, known_parameters, tolerance, with_known};
+pub use known::{Known, known_deviation, known_parameters, tolerance, with_known};
 pub use lack::{Curve, Unknown};
-pub use library::Library;
+pub use library::{Library, applicable};
 pub use model::{LogSet, Prepared, State};
 pub use outcome::{
-    Against, AtScrew, ChannelGap, Discovered, Discovery, EffectFound, Gap, Gaps, Likeness,
-    NextExperiment, Overlay, ParameterFound, Recalibrated, ReplacedEffect, Shown, Verdict,
-    discovery,
+    Against, AtScrew, Discovered, Discovery, EffectFound, Gaps, Likeness, NextExperiment, Overlay,
+    ParameterFound, Recalibrated, RefusedEffects, ReplacedEffect, Shown, Verdict, discovery,
 };
-pub use search::{Alike, Found, Named, ONE_CLASS, Replaced, RunnerUp, Settings, search};
+pub use search::{
+    Alike, Found, Named, ONE_CLASS, Refused, Replaced, RunnerUp, SearchError, Settings,
+    SettingsError, search,
+};

@@ -3,8 +3,8 @@
 use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectParameter, Machine};
 use rayon::prelude::*;
 
+use crate::curves::Curves;
 use crate::fit::{Columns, Fit, Fitter};
-use crate::lack::Curves;
 use crate::linear::Room;
 use crate::model::Prepared;
 
@@ -132,17 +132,18 @@ pub const FORCE: &str = "process-force";
 /// Parts of a motion's time in which a force may begin and end.
 const SLOTS: usize = 24;
 
+/// Effects of the library that a machine of this kind can have.
+pub fn applicable(machine: &Machine) -> impl Iterator<Item = &'static Effect> {
+    let rigid = matches!(machine, Machine::Rigid(_));
+    let all = EFFECTS.iter().copied();
+    all.filter(move |e| e.on_rigid || !rigid)
+}
+
 /// Candidates of the library that are `wanted`, at the state of `fit`.
 fn candidates(fitter: &Fitter<'_>, fit: &Fit, wanted: impl Fn(&Effect) -> bool) -> Vec<Candidate> {
-    let rigid = matches!(fitter.machine, Machine::Rigid(_));
-    let wanted: Vec<(&'static Effect, Vec<f64>)> = EFFECTS
-        .iter()
-        .filter(|e| (e.on_rigid || !rigid) && wanted(e))
-        .flat_map(|e| {
-            shapes(fitter, e)
-                .into_iter()
-                .map(move |values| (*e, values))
-        })
+    let wanted: Vec<(&'static Effect, Vec<f64>)> = applicable(fitter.machine)
+        .filter(|e| wanted(e))
+        .flat_map(|e| shapes(fitter, e).into_iter().map(move |values| (e, values)))
         .collect();
     wanted
         .into_par_iter()

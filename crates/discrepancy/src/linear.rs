@@ -14,8 +14,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::bounded::bounded;
-use crate::fit::known_deviation;
-use crate::known::tolerance;
+use crate::known::{known_deviation, tolerance};
 use crate::spectrum::{Amplitudes, Layout, deviance_of, regular};
 
 type C64 = Complex<f64>;
@@ -30,7 +29,7 @@ const STILL: f64 = 0.1;
 pub struct Products {
     channels: usize,
     columns: usize,
-    counts: Vec<usize>,
+    values: Vec<f64>,
     /// Block (i, j), by columns, at (i · columns + j) · channels².
     bands: Vec<Vec<C64>>,
 }
@@ -69,7 +68,7 @@ impl Products {
         Self {
             channels: m,
             columns: n,
-            counts: layout.counts().to_vec(),
+            values: layout.values().to_vec(),
             bands: (layout.counts().par_iter().enumerate().map(band)).collect(),
         }
     }
@@ -171,7 +170,7 @@ impl<'a> Problem<'a> {
     fn spectral_matrices(&self, x: &DVector<f64>) -> Vec<DMatrix<C64>> {
         let m = self.products.channels;
         let y = |i: usize| if i == 0 { 1.0 } else { -x[i - 1] };
-        let one = |(band, &count): (usize, &usize)| {
+        let one = |(band, &values): (usize, &f64)| {
             let mut half = vec![C64::ZERO; m * m];
             for i in 0..=x.len() {
                 for j in 0..=i {
@@ -182,10 +181,10 @@ impl<'a> Problem<'a> {
                         .for_each(|(s, b)| *s += b * weight);
                 }
             }
-            let half = DMatrix::from_vec(m, m, half) / C64::new(count.max(1) as f64, 0.0);
+            let half = DMatrix::from_vec(m, m, half) / C64::new(values.max(1.0), 0.0);
             regular(&half + half.adjoint())
         };
-        self.products.counts.iter().enumerate().map(one).collect()
+        self.products.values.iter().enumerate().map(one).collect()
     }
 
     /// Products of all columns, the rest's among them, whitened by these matrices.
@@ -252,7 +251,7 @@ impl<'a> Problem<'a> {
         }
         let departures = x.iter().zip(self.shares);
         let departure: f64 = departures.map(|(x, s)| (x + s).powi(2)).sum();
-        let bands = matrices.iter().zip(&self.products.counts);
+        let bands = matrices.iter().zip(&self.products.values);
         let deviance = bands.map(deviance_of).sum::<f64>() + self.weight * departure;
         Minimum { deviance, x }
     }

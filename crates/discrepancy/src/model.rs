@@ -1,7 +1,7 @@
 //! The simulated side: a machine with known parameters and effects, replayed.
 
 use axis_log::Log;
-use axis_sim::effects::{ActiveEffect, Machine};
+use axis_sim::effects::{ActiveEffect, Effect, Machine};
 use axis_sim::{ClosedLoop, Probe, Replay, ReplayError, Trace};
 use feed_dynamics::NutCoupling;
 use rayon::prelude::*;
@@ -22,6 +22,8 @@ pub struct Prepared {
     pub measured: Vec<Vec<f64>>,
     /// The log itself.
     pub log: Log,
+    /// Largest gap between screw and nut that is taken up before the log counts, m.
+    pub taken_up: f64,
     /// What the fast simulation is short of beside the slow one, by channel.
     pub defect: Vec<Vec<f64>>,
 }
@@ -104,6 +106,7 @@ impl LogSet {
         let prepare = |(name, log, period): (String, Log, f64)| {
             let channel = |name: &&str| Ok(relative(name, log.channel(name)?));
             Ok(Prepared {
+                taken_up: taken_up(&log),
                 replay: Replay::new(&log, period)?,
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 measured: channels
@@ -279,20 +282,37 @@ impl LogSet {
         fitted.map(|&c| self.channels[c] == ANGLE).collect()
     }
 
+    /// Of these effects: a gap that is larger than what is taken up before a log counts,
+    /// and that log.
+    pub(crate) fn slack_left(&self, effects: &[ActiveEffect]) -> Option<(f64, &Prepared)> {
+        let gaps = effects.iter().filter(|a| a.effect.name == "backlash");
+        let gap: f64 = gaps.map(|a| a.values[0]).sum();
+        let least = |a: &&Prepared, b: &&Prepared| a.taken_up.total_cmp(&b.taken_up);
+        let least = self.logs.iter().min_by(least)?;
+        (gap > least.taken_up).then_some((gap, least))
+    }
+
     fn simulated(&self, trace: &Trace, channel: usize) -> Vec<f64> {
         let name = self.channels[channel];
         relative(name, trace.channel(name).unwrap_or_default())
     }
 }
 
-/// Displacement that takes up any slack, m.
-const TAKEN_UP: f64 = 2e-5;
+/// Largest gap that is taken up before a log counts, m: the largest that an axis file may
+/// have; of a motion that never goes so far, half of its farthest.
+fn taken_up(log: &Log) -> f64 {
+    let backlash = Effect::named("backlash");
+    let largest = backlash.map_or(0.0, |e| e.parameters[0].bounds[1]);
+    let reference = log.channel("position_ref_m").unwrap_or_default();
+    let moved = |x: &f64| (x - reference[0]).abs();
+    largest.min(0.5 * reference.iter().map(moved).fold(0.0, f64::max))
+}
 
 /// When the reference has first moved so far that slack is taken up, s: before
 /// that nobody knows where a screw lies in its gap, and noise shakes it about.
 fn first_move(log: &Prepared) -> f64 {
     let reference = log.log.channel("position_ref_m").unwrap_or_default();
-    let moved = |x: &f64| (x - reference[0]).abs() > TAKEN_UP;
+    let moved = |x: &f64| (x - reference[0]).abs() >= log.taken_up;
     let first = reference.iter().position(moved).unwrap_or(0);
     first as f64 * log.period
 }

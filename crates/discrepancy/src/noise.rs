@@ -5,10 +5,10 @@ use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
 use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::fit::{Columns, Fit, Fitter, free_parameters, known_deviation};
+use crate::fit::{Columns, Fit, Fitter, free_parameters};
 use crate::hidden::Noise;
 use crate::interval::Spread;
-use crate::known::{tolerance, with_known};
+use crate::known::{known_deviation, tolerance, with_known};
 use crate::model::{LogSet, Prepared, State};
 use crate::projector::Projector;
 use crate::spectrum::{Amplitudes, Layout};
@@ -49,7 +49,44 @@ fn noise_at(axis: &Axis, set: &LogSet, rest: &Rest) -> Noise {
     }
 }
 
-/// RMS of noise alone in each channel: a ball-screw loop is simulated with
+/// Noise alone in a channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Floor {
+    /// Root mean square.
+    pub rms: f64,
+    /// Independent values that its samples are worth, where what is slow is averaged:
+    /// their number times the variance over the spectral density at zero frequency.
+    pub independent: f64,
+}
+
+/// Parts of a log of which the sums show how noise adds up.
+const BATCHES: usize = 32;
+
+impl Floor {
+    /// Of noise as it was simulated, one series a log. Sums over a part of a log have its
+    /// length times the density near zero frequency as their variance (batch means).
+    pub(crate) fn of(series: &[Vec<f64>]) -> Self {
+        let (mut squares, mut of_sums, mut samples) = (0.0, 0.0, 0usize);
+        for log in series {
+            squares += log.iter().map(|v| v * v).sum::<f64>();
+            let batches = log.chunks(log.len().div_ceil(BATCHES).max(1));
+            of_sums += batches.map(|b| b.iter().sum::<f64>().powi(2)).sum::<f64>();
+            samples += log.len();
+        }
+        let samples = samples.max(1) as f64;
+        let worth = if of_sums > 0.0 {
+            squares / of_sums
+        } else {
+            1.0
+        };
+        Self {
+            rms: (squares / samples).sqrt(),
+            independent: samples * worth.min(1.0),
+        }
+    }
+}
+
+/// Noise alone in each channel: a ball-screw loop is simulated with
 /// sensors as noisy as its logs show, since most of what they do lies where the
 /// loop answers. For a rigid machine the upper spectrum is taken for white.
 pub(crate) fn floors(
@@ -57,33 +94,32 @@ pub(crate) fn floors(
     set: &LogSet,
     state: &State,
     best: &Rest,
-) -> Result<Vec<f64>, ReplayError> {
+) -> Result<Vec<Floor>, ReplayError> {
     let Machine::BallScrew(axis) = with_known(machine, &state.shares) else {
-        let levels = (0..set.channels.len()).map(|c| upper_level(set, best, c));
-        return Ok(levels.collect());
+        let samples: usize = set.logs.iter().map(|l| l.log.len()).sum();
+        let white = |c: usize| Floor {
+            rms: upper_level(set, best, c),
+            independent: samples as f64,
+        };
+        return Ok((0..set.channels.len()).map(white).collect());
     };
     let noise = noise_at(&axis, set, best);
     let mut axis = *axis;
     axis.effects.extend_from_slice(&state.effects);
     let closed_loop = ClosedLoop::new(&axis)?;
-    let mut squares = vec![0.0; set.channels.len()];
-    let mut samples = 0;
+    let mut alone: Vec<Vec<Vec<f64>>> = vec![Vec::new(); set.channels.len()];
     for (seed, log) in set.logs.iter().enumerate() {
         let with = log
             .replay
             .follow(&closed_loop, noise.sensors(seed as u64))?;
         let without = log.replay.follow(&closed_loop, |_| ())?;
-        for (square, name) in squares.iter_mut().zip(&set.channels) {
+        for (series, name) in alone.iter_mut().zip(&set.channels) {
             let pair = with.channel(name).zip(without.channel(name));
             let Some((a, b)) = pair else { continue };
-            *square += a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+            series.push(a.iter().zip(b).map(|(a, b)| a - b).collect());
         }
-        samples += log.log.len();
     }
-    Ok(squares
-        .iter()
-        .map(|s| (s / f64::from(samples.max(1) as u32)).sqrt())
-        .collect())
+    Ok(alone.iter().map(|series| Floor::of(series)).collect())
 }
 
 /// RMS of white noise with the level of the upper half of the bins.
@@ -187,7 +223,7 @@ fn beside(
     };
     let mut bands = Vec::new();
     let mut worst = (1.0, None);
-    for (i, (edges, bins)) in layout.bands().enumerate() {
+    for (i, (edges, values)) in layout.bands().enumerate() {
         let ratios = relative_to(&seen[i], mean_but(i, None));
         let own = divergence(&ratios);
         let most = ratios.iter().copied().fold(0.0, f64::max);
@@ -205,7 +241,7 @@ fn beside(
             "rest beside noise"
         );
         if own / allowed > worst.0 {
-            worst = (own / allowed, Some((i, 2.0 * bins as f64 * own)));
+            worst = (own / allowed, Some((i, 2.0 * values * own)));
         }
         bands.push((edges, most));
     }

@@ -3,7 +3,7 @@
 use axis_sim::effects::Machine;
 use nalgebra::{DMatrix, DVector};
 
-use crate::fit::known_deviation;
+use crate::known::known_deviation;
 
 /// Takes out what the fit's own parameters can do.
 ///

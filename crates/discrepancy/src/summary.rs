@@ -17,6 +17,8 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::gauss_newton::Descent;
+
 /// Measured figures of one trajectory of the axis file, m.
 #[derive(Clone, Copy, Debug)]
 pub struct MeasuredError {
@@ -115,7 +117,7 @@ fn gaps(
     Ok(DVector::from_vec(all))
 }
 
-/// Gauss–Newton on the sizes of one effect, steps halved until they help.
+/// Gauss–Newton on the sizes of one effect.
 fn close(
     axis: &Axis,
     measured: &[MeasuredError],
@@ -132,40 +134,37 @@ fn close(
         };
         gaps(axis, measured, &[active]).ok()
     };
-    let mut values = effect.null();
-    let mut left = base.clone();
-    for _ in 0..12 {
-        let columns: Vec<DVector<f64>> = sizes
-            .iter()
-            .map(|&i| {
-                let step = 0.1 * effect.parameters[i].typical.abs().max(values[i].abs());
-                let mut moved = values.clone();
-                moved[i] += step;
-                run(&moved).map_or_else(|| DVector::zeros(left.len()), |g| (g - &left) / step)
-            })
-            .collect();
-        let matrix = DMatrix::from_columns(&columns);
-        let Ok(step) = matrix.svd(true, true).solve(&left, 1e-12) else {
-            break;
-        };
-        let mut length = 1.0;
-        let before = left.norm();
-        for _ in 0..8 {
+    type Point = (Vec<f64>, DVector<f64>);
+    let step = |(values, left): &Point| {
+        let column = |&i: &usize| {
+            let step = 0.1 * effect.parameters[i].typical.abs().max(values[i].abs());
             let mut moved = values.clone();
-            for (s, &i) in sizes.iter().enumerate() {
-                let [low, high] = effect.parameters[i].bounds;
-                moved[i] = (values[i] - length * step[s]).clamp(low, high);
-            }
-            if let Some(better) = run(&moved).filter(|g| g.norm() < left.norm()) {
-                (values, left) = (moved, better);
-                break;
-            }
-            length *= 0.5;
+            moved[i] += step;
+            run(&moved).map_or_else(|| DVector::zeros(left.len()), |g| (g - left) / step)
+        };
+        let columns: Vec<DVector<f64>> = sizes.iter().map(column).collect();
+        let matrix = DMatrix::from_columns(&columns);
+        matrix.svd(true, true).solve(left, 1e-12).ok()
+    };
+    let better = |(values, left): &Point, step: &DVector<f64>, length: f64| {
+        let mut moved = values.clone();
+        for (s, &i) in sizes.iter().enumerate() {
+            let [low, high] = effect.parameters[i].bounds;
+            moved[i] = (values[i] - length * step[s]).clamp(low, high);
         }
-        if before - left.norm() < 1e-5 * before {
-            break;
-        }
-    }
+        let better = run(&moved).filter(|g| g.norm() < left.norm())?;
+        Some((moved, better))
+    };
+    let descent = Descent {
+        rounds: 12,
+        lengths: 8,
+        shorter: 0.5,
+    };
+    let start = (effect.null(), base.clone());
+    let (values, left) = descent.from(start, step, better, |(_, before), (_, after)| {
+        let before = before.norm();
+        before - after.norm() >= 1e-5 * before
+    });
     let named = effect.parameters.iter().zip(&values);
     Closing {
         name: effect.name.to_owned(),

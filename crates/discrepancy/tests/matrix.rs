@@ -4,7 +4,7 @@
 use axis_sim::Axis;
 use discrepancy::Verdict;
 use discrepancy::hidden::Exercise;
-use discrepancy::matrix::{Bench, Case, Kind, Outcome, Score, Sizes, cases};
+use discrepancy::matrix::{Bench, Case, Foreseen, Kind, Outcome, Score, Sizes, cases};
 use rayon::prelude::*;
 
 /// A seed of its own: neither one that was tuned on nor the one that is scored.
@@ -15,7 +15,8 @@ fn axis() -> Axis {
     Axis::read(file.as_ref()).unwrap()
 }
 
-fn outcomes() -> Vec<Outcome> {
+/// Outcomes of some cases, and what is foreseen of friction with the root of speed.
+fn outcomes() -> (Vec<Outcome>, Foreseen) {
     let axis = axis();
     let of = |kind: Kind, most: usize| -> Vec<Case> {
         let all = cases(&axis, &Sizes::FULL, SEED).unwrap();
@@ -24,23 +25,31 @@ fn outcomes() -> Vec<Outcome> {
             .filter(|c| c.kind == kind && c.exercise == Exercise::ThereAndBack);
         own.take(most).collect()
     };
-    let chosen = [
-        of(Kind::Clean, 4),
-        of(Kind::Single, 7),
-        of(Kind::Pair, 2),
-        of(Kind::Triple, 1),
-        of(Kind::Outside, 3),
-        of(Kind::LeftOut, 2),
+    let mut chosen = [
+        of(Kind::Clean, 1),
+        of(Kind::Single, 3),
+        of(Kind::Pair, 1),
+        of(Kind::LeftOut, 1),
     ]
     .concat();
+    // Stribeck friction of −4431 N and 0.67 m/s, on motion of 0.1 m/s, beside dry friction
+    // of 4432 N would explain drag with the square of speed, were such velocities allowed.
+    let mut all = cases(&axis, &Sizes::FULL, 7).unwrap().into_iter();
+    let drag = all.find(|c| c.id == "outside-027").unwrap();
+    assert_eq!(drag.hidden[0].name, "quadratic-drag");
+    assert_eq!(drag.exercise, Exercise::ThereAndBack);
+    chosen.push(drag);
+    let root = of(Kind::Outside, 1).remove(0);
+    assert_eq!(root.hidden[0].name, "root-friction");
     let bench = Bench::new(&axis, Exercise::ThereAndBack).unwrap();
-    chosen.par_iter().map(|c| bench.try_case(c)).collect()
+    let outcomes = chosen.par_iter().map(|c| bench.try_case(c)).collect();
+    (outcomes, bench.foresee(&root).remove(0).unwrap())
 }
 
 #[test]
 fn some_hidden_effects_of_every_kind_are_found_or_honestly_not() {
-    let outcomes = outcomes();
-    assert_eq!(outcomes.len(), 19);
+    let (outcomes, root) = outcomes();
+    assert_eq!(outcomes.len(), 7);
     for o in &outcomes {
         println!(
             "{} {:?} -> {:?} {:?}",
@@ -53,41 +62,23 @@ fn some_hidden_effects_of_every_kind_are_found_or_honestly_not() {
     assert_eq!(score.false_alarms.hits, 0, "{score:#?}");
     assert_eq!(score.confident_wrong.hits, 0, "{score:#?}");
     assert_eq!(score.right_first.hits, score.right_first.of, "{score:#?}");
-    // Friction with the root of speed is imitated by effects of the library, as
-    // far as one speed there and back shows; the other two are told.
-    assert_eq!(
-        (score.imitated.hits, score.imitated.of),
-        (1, 3),
-        "{score:#?}"
-    );
+    // Friction with the root of speed is imitated by effects of the library, as far as one
+    // speed there and back shows; drag is told.
+    assert!(root.imitation.unwrap().complete);
+    assert_eq!((score.imitated.hits, score.imitated.of), (0, 1));
+    let drag = outcomes.last().and_then(|o| o.verdict);
+    let told = [Verdict::PartlyExplained, Verdict::Unknown];
+    assert!(drag.is_some_and(|v| told.contains(&v)), "{drag:?}");
+    assert_eq!(score.outside.of, 1, "{score:#?}");
     assert_eq!(score.outside.hits, score.outside.of, "{score:#?}");
     assert_eq!(score.left_out.hits, score.left_out.of, "{score:#?}");
     assert!(
-        score.right_first.of >= 5 && score.left_out.of >= 1,
+        score.right_first.of >= 3 && score.left_out.of >= 1,
         "{score:#?}"
     );
     assert!(score.error.unwrap()[0] < 0.02, "{score:#?}");
     let verdict = |v| outcomes.iter().any(|o| o.verdict == Some(v));
     assert!(verdict(Verdict::NothingMissing) && verdict(Verdict::Explained));
-}
-
-/// Stribeck friction of −4431 N and 0.67 m/s, on motion of 0.1 m/s, beside dry friction
-/// of 4432 N would explain it, were such velocities allowed.
-#[test]
-fn drag_with_the_square_of_speed_is_not_explained() {
-    let axis = axis();
-    let mut all = cases(&axis, &Sizes::FULL, 7).unwrap().into_iter();
-    let case = all.find(|c| c.id == "outside-027").unwrap();
-    assert_eq!(case.hidden[0].name, "quadratic-drag");
-    let bench = Bench::new(&axis, case.exercise).unwrap();
-    let outcome = bench.try_case(&case);
-    assert!(
-        matches!(
-            outcome.verdict,
-            Some(Verdict::PartlyExplained | Verdict::Unknown)
-        ),
-        "{outcome:?}"
-    );
 }
 
 #[test]

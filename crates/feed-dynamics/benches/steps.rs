@@ -42,7 +42,7 @@ fn step<S: TimeStepper>(c: &mut Criterion, name: &str, stepper: &S) {
             let report = stepper.step(&mut state, black_box(0.668), |table| {
                 420.0 + 300.0 * (table.speed - 0.1)
             });
-            black_box(report);
+            assert!(black_box(report).load.converged);
             steps += 1;
             if steps.is_multiple_of(10_000) {
                 state = start.clone();

@@ -19,9 +19,10 @@ pub enum FocError {
     NoPolePairs,
 }
 
+/// Subnormal numbers are refused too: their reciprocals overflow.
 pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64, FocError> {
-    let valid = "finite and greater than 0";
-    check(value.is_finite() && value > 0.0, field, value, valid)
+    let valid = "finite, greater than 0 and not subnormal";
+    check(value.is_normal() && value > 0.0, field, value, valid)
 }
 
 pub(crate) fn not_negative(field: &'static str, value: f64) -> Result<f64, FocError> {

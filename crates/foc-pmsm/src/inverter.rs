@@ -6,10 +6,9 @@ use crate::frames::{AlphaBeta, Dq, Phases};
 use crate::motor::Pmsm;
 use crate::svpwm::Duties;
 
-/// The longest integration step, as a fraction of a period. The rotor turns
-/// through a sixteenth of the period's angle in it: at 840 rad/s electrical
-/// and 100 µs, 0.3°.
-const LONGEST_PIECE: f64 = 1.0 / 16.0;
+/// Integration steps of a whole period. The rotor turns through a sixteenth
+/// of the period's angle in one: at 840 rad/s electrical and 100 µs, 0.3°.
+const PIECES: u32 = 16;
 
 /// A validated inverter. Immutable, without memory.
 ///
@@ -207,16 +206,14 @@ impl Inverter {
         duration: f64,
     ) -> Dq {
         // At least one, so that a NaN duration is seen in the currents.
-        let pieces = libm::ceil(duration / (LONGEST_PIECE * self.period)).max(1.0);
-        let h = duration / pieces;
-        let mut i = i0;
-        let mut k = 0.5;
-        while k < pieces {
-            let u = voltage.park(rotor.angle_after(motor, t + k * h));
-            i = motor.step(i, u, rotor.speed, h);
-            k += 1.0;
-        }
-        i
+        let share = libm::ceil(f64::from(PIECES) * (duration / self.period));
+        let pieces = (share as u32).clamp(1, PIECES);
+        let h = duration / f64::from(pieces);
+        (0..pieces).fold(i0, |i, k| {
+            let middle = t + (f64::from(k) + 0.5) * h;
+            let u = voltage.park(rotor.angle_after(motor, middle));
+            motor.step(i, u, rotor.speed, h)
+        })
     }
 }
 

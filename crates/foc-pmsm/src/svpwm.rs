@@ -6,19 +6,18 @@
 //! voltages (a, b, c); its inscribed circle, radius U_dc/√3, is the linear
 //! range, its corners are 2 U_dc/3 long.
 
-use crate::error::{FocError, positive};
+use crate::error::{FocError, check, positive};
 use crate::frames::{AlphaBeta, FRAC_1_SQRT_3, Phases};
 use core::f64::consts::FRAC_2_PI;
 
-/// The mean fraction of a period that each leg is on the upper rail.
+/// The mean fraction of a period that each leg is on the upper rail: always
+/// within \[0, 1\], or NaN where [`Svpwm`] was asked for a vector that is not
+/// a number, so that a loop that has diverged shows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Duties {
-    /// Leg a, in \[0, 1\].
-    pub a: f64,
-    /// Leg b, in \[0, 1\].
-    pub b: f64,
-    /// Leg c, in \[0, 1\].
-    pub c: f64,
+    pub(crate) a: f64,
+    pub(crate) b: f64,
+    pub(crate) c: f64,
 }
 
 /// What is made of a vector outside the hexagon. The two names are those of
@@ -75,17 +74,22 @@ impl Svpwm {
     /// rails and splits the zero-vector time evenly, as space-vector
     /// modulation does (van der Broeck, Skudelny and Stanke, IEEE Trans. Ind.
     /// Appl. 24 (1988) 142–150). Outside the hexagon [`Overmodulation`]
-    /// decides.
+    /// decides. NaN where the phase voltages are not finite.
     #[inline]
     pub fn duties(&self, u: AlphaBeta) -> Duties {
         let phases = u.inverse_clarke();
         let max = phases.a.max(phases.b).max(phases.c);
         let min = phases.a.min(phases.b).min(phases.c);
-        let range = max - min;
-        let shorten =
-            range > self.dc_voltage && self.overmodulation == Overmodulation::MinimumPhaseError;
+        // Half of max − min, which does not overflow where the phases do not.
+        let half_range = 0.5 * max - 0.5 * min;
+        let shorten = half_range > 0.5 * self.dc_voltage
+            && self.overmodulation == Overmodulation::MinimumPhaseError;
         // A ray meets the hexagon where its range is U_dc.
-        let scale = if shorten { 1.0 / range } else { self.inverse };
+        let scale = if shorten {
+            0.5 / half_range
+        } else {
+            self.inverse
+        };
         let centre = 0.5 * (max + min);
         // The clamp clips outside the hexagon, and takes off rounding inside.
         let duty = |x: f64| (0.5 + (x - centre) * scale).clamp(0.0, 1.0);
@@ -120,6 +124,40 @@ impl Svpwm {
 }
 
 impl Duties {
+    /// The duties of the legs a, b and c.
+    ///
+    /// # Errors
+    /// [`FocError`] naming the first that is not within \[0, 1\].
+    pub fn new(a: f64, b: f64, c: f64) -> Result<Self, FocError> {
+        let leg = |field, duty: f64| {
+            let valid = "0 or greater and at most 1";
+            check((0.0..=1.0).contains(&duty), field, duty, valid)
+        };
+        Ok(Self {
+            a: leg("duty a", a)?,
+            b: leg("duty b", b)?,
+            c: leg("duty c", c)?,
+        })
+    }
+
+    /// Leg a.
+    #[inline]
+    pub fn a(&self) -> f64 {
+        self.a
+    }
+
+    /// Leg b.
+    #[inline]
+    pub fn b(&self) -> f64 {
+        self.b
+    }
+
+    /// Leg c.
+    #[inline]
+    pub fn c(&self) -> f64 {
+        self.c
+    }
+
     /// The mean voltage vector (V) at the DC-link voltage `dc_voltage` (V).
     #[inline]
     pub fn voltage(self, dc_voltage: f64) -> AlphaBeta {
@@ -133,7 +171,8 @@ impl Duties {
 }
 
 /// The hexagon's sector of a vector, 1 to 6: sector n holds the angles from
-/// (n − 1)·60° up to, not including, n·60°. The zero vector is in sector 1.
+/// (n − 1)·60° up to, not including, n·60°. The zero vector is in sector 1,
+/// as is one that is not a number.
 pub fn sector(u: AlphaBeta) -> u8 {
     let Phases { a, b, c } = u.inverse_clarke();
     if b >= a && a > c {

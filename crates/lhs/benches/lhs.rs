@@ -24,7 +24,7 @@ fn designs(c: &mut Criterion) {
     group.bench_function("one row of 2^50 x 4", |b| {
         b.iter(|| {
             i = (i + 1_000_003) % hypercube.len();
-            hypercube.row(i, &mut row);
+            hypercube.row(i, &mut row).expect("a row of the design");
             black_box(&row);
         });
     });
@@ -33,7 +33,7 @@ fn designs(c: &mut Criterion) {
 
 fn optimised(c: &mut Criterion) {
     let hypercube = hypercube(5000);
-    let plain = hypercube.design();
+    let plain = hypercube.design().expect("some kB");
     let mut group = c.benchmark_group("5000 x 4");
     group.sample_size(10);
     group.bench_function("centred discrepancy, all pairs", |b| {

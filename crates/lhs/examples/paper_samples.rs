@@ -10,12 +10,12 @@ use std::io::Write;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let hypercube = LatinHypercube::new(5000, 4, 2025)?;
     let budget = Budget { iterations: 2000 };
-    let (even, _) = hypercube.optimised(Criterion::CentredDiscrepancy, budget);
-    let (spread, _) = hypercube.optimised(Criterion::Maximin, budget);
+    let (even, _) = hypercube.optimised(Criterion::CentredDiscrepancy, budget)?;
+    let (spread, _) = hypercube.optimised(Criterion::Maximin, budget)?;
     let mut out = std::io::stdout().lock();
     writeln!(out, "5000 x 4            CD^2      least distance")?;
     for (name, design) in [
-        ("plain", &hypercube.design()),
+        ("plain", &hypercube.design()?),
         ("centred discrepancy", &even),
         ("maximin", &spread),
     ] {

@@ -2,6 +2,7 @@
 
 use crate::Design;
 use crate::kernel::Kernel;
+use crate::power::power;
 use rayon::prelude::*;
 
 /// The squared centred L2 discrepancy CD² of a design in the unit cube (lower
@@ -27,7 +28,7 @@ pub fn centred_discrepancy(design: &Design) -> f64 {
     let pairs: f64 = rows.iter().sum();
     let means: f64 = (0..n).map(|i| kernel.mean(i, i, 0)).sum();
     let n = n as f64;
-    (13.0_f64 / 12.0).powi(kernel.dims() as i32) - 2.0 * means / n + pairs / (n * n)
+    power(13.0 / 12.0, kernel.dims()) - 2.0 * means / n + pairs / (n * n)
 }
 
 /// The least Euclidean distance between two points of the design (higher is
@@ -70,9 +71,10 @@ pub fn phi_p(design: &Design, p: f64) -> f64 {
     }
     // In units of the least distance each term is at most 1: no overflow.
     let row_sum = |i: usize| -> f64 {
-        let a = design.row(i);
-        let others = design.rows().take(i);
-        let share = |b| power(least * least / squared_distance(a, b), 0.5 * p);
+        let mut rows = design.rows();
+        let others = rows.clone().take(i);
+        let Some(a) = rows.nth(i) else { return 0.0 };
+        let share = |b| any_power(least * least / squared_distance(a, b), 0.5 * p);
         others.map(share).sum()
     };
     let rows: Vec<f64> = (0..design.len()).into_par_iter().map(row_sum).collect();
@@ -81,9 +83,9 @@ pub fn phi_p(design: &Design, p: f64) -> f64 {
 
 /// x^e. By multiplications where `e` is a small whole number, because they
 /// are many times faster; else by libm, which gives the same bits anywhere.
-fn power(x: f64, e: f64) -> f64 {
+fn any_power(x: f64, e: f64) -> f64 {
     if e.fract() == 0.0 && e <= 64.0 {
-        x.powi(e as i32)
+        power(x, e as usize)
     } else {
         libm::pow(x, e)
     }

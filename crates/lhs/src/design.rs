@@ -2,6 +2,11 @@
 
 use crate::LhsError;
 
+/// Most variables of a design. No factor of the discrepancy's products passes
+/// 1.5, and 1.5^1024 is far below what f64 holds; a stored permutation takes
+/// up to 16 kB for each.
+pub const MAX_DIMS: usize = 1024;
+
 /// An n × m table of coordinates, stored row after row (one row, one point).
 ///
 /// Every constructor of this crate that returns a sample fills it with
@@ -18,12 +23,10 @@ impl Design {
     /// Takes `values`, row after row, as points of `dims` coordinates.
     ///
     /// # Errors
-    /// `dims` is zero, `values` is empty or not a whole number of rows, or a
-    /// value is not finite.
+    /// `dims` is zero or above [`MAX_DIMS`], `values` is empty or not a whole
+    /// number of rows, or a value is not finite.
     pub fn from_rows(dims: usize, values: Vec<f64>) -> Result<Self, LhsError> {
-        if dims == 0 {
-            return Err(LhsError::Dims { dims });
-        }
+        check_dims(dims)?;
         let len = values.len();
         if len == 0 || !len.is_multiple_of(dims) {
             return Err(LhsError::Shape { len, dims });
@@ -65,12 +68,9 @@ impl Design {
         self.values.chunks_exact(self.dims)
     }
 
-    /// Point `i`.
-    ///
-    /// # Panics
-    /// As a slice does, when `i` is not below [`len`](Self::len).
-    pub fn row(&self, i: usize) -> &[f64] {
-        &self.values[i * self.dims..(i + 1) * self.dims]
+    /// Point `i`; none when `i` is not below [`len`](Self::len).
+    pub fn row(&self, i: usize) -> Option<&[f64]> {
+        self.rows().nth(i)
     }
 
     /// Coordinate `dim` of every point, in order. A `dim` that does not exist
@@ -93,4 +93,25 @@ impl Design {
     pub fn into_values(self) -> Vec<f64> {
         self.values
     }
+}
+
+/// Refuses a number of variables outside 1 to [`MAX_DIMS`].
+pub(crate) fn check_dims(dims: usize) -> Result<(), LhsError> {
+    if (1..=MAX_DIMS).contains(&dims) {
+        Ok(())
+    } else {
+        Err(LhsError::Dims { dims })
+    }
+}
+
+/// Room for `rows` rows, set to zero.
+pub(crate) fn zeros(rows: usize, dims: usize) -> Result<Vec<f64>, LhsError> {
+    let refused = LhsError::Memory { rows, dims };
+    let len = rows.checked_mul(dims).ok_or(refused.clone())?;
+    // Asked for first, because `vec!` ends the program where there is no room;
+    // then by `vec!`, which leaves the zeros to the system.
+    let mut room = Vec::<f64>::new();
+    room.try_reserve_exact(len).map_err(|_| refused)?;
+    drop(room);
+    Ok(vec![0.0; len])
 }

@@ -13,8 +13,8 @@ pub enum LhsError {
         /// The number of points asked for.
         n: usize,
     },
-    /// The number of variables is zero.
-    #[error("dims = {dims} variables: dims must be at least 1")]
+    /// The number of variables is zero, or too large.
+    #[error("dims = {dims} variables: dims must be between 1 and 1024")]
     Dims {
         /// The number of variables asked for.
         dims: usize,
@@ -28,6 +28,19 @@ pub enum LhsError {
         end: usize,
         /// Rows that the design has.
         n: usize,
+    },
+    /// A row or a variable that the design has not, or a buffer of another
+    /// length than a row.
+    #[error("{what} {found}: must be {valid} {limit}")]
+    Index {
+        /// What was asked for.
+        what: &'static str,
+        /// The number found.
+        found: usize,
+        /// How it must lie to the limit.
+        valid: &'static str,
+        /// The limit.
+        limit: usize,
     },
     /// The values would not fit in memory.
     #[error(

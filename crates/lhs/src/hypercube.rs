@@ -1,5 +1,6 @@
 //! The random Latin hypercube: Steps 1, 2 and 4 of the paper.
 
+use crate::design::{check_dims, zeros};
 use crate::permutation::{BLOCK, Permutation, Purpose, stream};
 use crate::stratum::Strata;
 use crate::{Design, LhsError};
@@ -46,12 +47,10 @@ impl LatinHypercube {
     ///
     /// # Errors
     /// `n` is zero or above 2^53 (strata narrower than f64 resolves), or
-    /// `dims` is zero.
+    /// `dims` is zero or above [`MAX_DIMS`](crate::MAX_DIMS).
     pub fn new(n: usize, dims: usize, seed: u64) -> Result<Self, LhsError> {
         let strata = Strata::new(n)?;
-        if dims == 0 {
-            return Err(LhsError::Dims { dims });
-        }
+        check_dims(dims)?;
         let column = |dim: usize| {
             let mut rng = stream(seed, Purpose::Column, dim as u64);
             Column {
@@ -106,35 +105,45 @@ impl LatinHypercube {
     /// The stratum, 0 to n − 1, of variable `dim` in row `row`: k − 1 of
     /// Eq. (23) after the random combination of Eq. (26).
     ///
-    /// # Panics
-    /// As a slice does, when `row` ≥ n or `dim` ≥ m.
-    pub fn cell(&self, row: usize, dim: usize) -> usize {
-        self.check_row(row);
-        self.columns[dim].permutation.apply(row as u64) as usize
+    /// # Errors
+    /// [`LhsError::Index`] when `row` ≥ n or `dim` ≥ m.
+    pub fn cell(&self, row: usize, dim: usize) -> Result<usize, LhsError> {
+        self.check_row(row)?;
+        below("dim", dim, self.dims())?;
+        Ok(self.columns[dim].permutation.apply(row as u64) as usize)
     }
 
     /// Writes the m coordinates of row `i`, each in (0, 1), to `out`: the
     /// same bits as row `i` of [`design`](Self::design).
     ///
-    /// # Panics
-    /// As a slice does, when `i` ≥ n or `out` has not m elements.
-    pub fn row(&self, i: usize, out: &mut [f64]) {
-        self.check_row(i);
-        assert_eq!(out.len(), self.dims(), "out must hold one row");
+    /// # Errors
+    /// [`LhsError::Index`] when `i` ≥ n or `out` has not m elements; `out` is
+    /// left as it is.
+    pub fn row(&self, i: usize, out: &mut [f64]) -> Result<(), LhsError> {
+        self.check_row(i)?;
+        if out.len() != self.dims() {
+            return Err(LhsError::Index {
+                what: "length of out",
+                found: out.len(),
+                valid: "the number of variables,",
+                limit: self.dims(),
+            });
+        }
         for (dim, value) in out.iter_mut().enumerate() {
             let cell = self.columns[dim].permutation.apply(i as u64);
             *value = self.place(i, dim, cell as usize);
         }
+        Ok(())
     }
 
     /// The whole design, made by the current rayon pool when it is large.
     /// The bits do not depend on the number of threads.
     ///
-    /// Allocates n·m values as a `Vec` does, and so ends the program when
-    /// there is no such memory; [`shard`](Self::shard) reports it instead.
-    pub fn design(&self) -> Design {
-        let values = vec![0.0; self.len() * self.dims()];
-        self.filled(0, values)
+    /// # Errors
+    /// [`LhsError::Memory`] when n·m values do not fit in memory.
+    pub fn design(&self) -> Result<Design, LhsError> {
+        let values = zeros(self.len(), self.dims())?;
+        Ok(self.filled(0, values))
     }
 
     /// Rows `rows` of the design, without making the others.
@@ -143,18 +152,11 @@ impl LatinHypercube {
     /// The range is empty, leaves 0..n, or does not fit in memory.
     pub fn shard(&self, rows: Range<usize>) -> Result<Design, LhsError> {
         let Range { start, end } = rows;
-        let (n, dims) = (self.len(), self.dims());
+        let n = self.len();
         if start >= end || end > n {
             return Err(LhsError::Rows { start, end, n });
         }
-        let refused = LhsError::Memory {
-            rows: end - start,
-            dims,
-        };
-        let len = (end - start).checked_mul(dims).ok_or(refused.clone())?;
-        let mut values = Vec::new();
-        values.try_reserve_exact(len).map_err(|_| refused)?;
-        values.resize(len, 0.0);
+        let values = zeros(end - start, self.dims())?;
         Ok(self.filled(start, values))
     }
 
@@ -206,10 +208,22 @@ impl LatinHypercube {
         }
     }
 
-    fn check_row(&self, row: usize) {
-        let n = self.len();
-        assert!(row < n, "row {row} of a design of {n} rows");
+    fn check_row(&self, row: usize) -> Result<(), LhsError> {
+        below("row", row, self.len())
     }
+}
+
+/// Refuses an index that is not below `limit`.
+fn below(what: &'static str, found: usize, limit: usize) -> Result<(), LhsError> {
+    if found < limit {
+        return Ok(());
+    }
+    Err(LhsError::Index {
+        what,
+        found,
+        valid: "below",
+        limit,
+    })
 }
 
 #[inline(always)]

@@ -9,8 +9,10 @@
 //! down, which often has better a (Fang and Wang, "Number-Theoretic Methods
 //! in Statistics", 1994).
 
+use crate::design::zeros;
 use crate::permutation::{Permutation, Purpose, below, stream};
-use crate::{Criterion, Design, LatinHypercube};
+use crate::power::power;
+use crate::{Criterion, Design, LatinHypercube, LhsError};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
@@ -36,14 +38,16 @@ impl LatinHypercube {
     ///
     /// For [`Criterion::CentredDiscrepancy`] the best a is that of the least
     /// CD² averaged over such moves, for [`Criterion::Maximin`] that of the
-    /// greatest distance on the torus. Memory as for
-    /// [`design`](Self::design).
-    pub fn lattice(&self, criterion: Criterion) -> Design {
+    /// greatest distance on the torus.
+    ///
+    /// # Errors
+    /// As for [`design`](Self::design).
+    pub fn lattice(&self, criterion: Criterion) -> Result<Design, LhsError> {
         let (n, dims) = (self.len(), self.dims());
+        let mut values = zeros(n, dims)?;
         let mut rng = stream(self.seed(), Purpose::Lattice, 0);
         let best = best_generator(n, dims, criterion, &mut rng);
         let order = Permutation::draw(n, &mut rng);
-        let mut values = vec![0.0; n * dims];
         let mut step = 1;
         for dim in 0..dims {
             let shift = below(&mut rng, best.size as u64) as usize;
@@ -57,7 +61,7 @@ impl LatinHypercube {
             }
             step = multiply(step, best.a, best.size, 0);
         }
-        Design::from_valid(dims, values)
+        Ok(Design::from_valid(dims, values))
     }
 }
 
@@ -150,14 +154,17 @@ fn mean_discrepancy(g: Generator, dims: usize) -> f64 {
     if g.size.is_multiple_of(2) {
         sum -= last;
     }
-    (sum + product(&vec![0; dims])) * width - (13.0_f64 / 12.0).powi(dims as i32)
+    (sum + product(&vec![0; dims])) * width - power(13.0 / 12.0, dims)
 }
 
 /// The least squared distance between two points on the torus, in strata².
 fn torus_distance(g: Generator, dims: usize) -> f64 {
     let mut least = f64::INFINITY;
     for_each_point(g, dims, |residues| {
-        let near = |&r: &usize| (r.min(g.size - r) as f64).powi(2);
+        let near = |&r: &usize| {
+            let gap = r.min(g.size - r) as f64;
+            gap * gap
+        };
         least = least.min(residues.iter().map(near).sum());
     });
     least

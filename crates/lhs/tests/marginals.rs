@@ -1,4 +1,5 @@
 //! Marginals: round trips, order, published quantiles, refusals.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use lhs::{
     Cumulative, Design, LatinHypercube, LhsError, LogUniform, Marginal, Mixture, Normal, Tabulated,
@@ -71,7 +72,9 @@ proptest! {
             let error = (marginal.survival(x) - (1.0 - p)).abs();
             prop_assert!(error < 5e-14, "{name}: 1 - p, error {error:e}");
             let back = marginal.inverse_survival(marginal.survival(x));
-            prop_assert!((back - x).abs() < 1e-9 * (1.0 + x.abs()) || p > 1.0 - 1e-6,
+            // Out in the tails a rounding of the survival is a step of x.
+            let inner = (0.01..0.99).contains(&p);
+            prop_assert!((back - x).abs() < 2e-14 * (1.0 + x.abs()) || !inner,
                 "{name}: {back} for {x}");
         }
     }
@@ -83,7 +86,7 @@ proptest! {
             prop_assert!(marginal.inverse_cdf(low) <= marginal.inverse_cdf(high), "{name}");
             // Neighbouring probabilities may swap by rounding, not by more.
             let (x, y) = (marginal.inverse_cdf(p), marginal.inverse_cdf((p + tiny).min(1.0)));
-            prop_assert!(y >= x - 1e-14 * (1.0 + x.abs()), "{name}: {x} then {y}");
+            prop_assert!(y >= x - 2.0 * f64::EPSILON * (1.0 + x.abs()), "{name}: {x} then {y}");
         }
     }
 
@@ -100,8 +103,8 @@ proptest! {
     }
 }
 
-/// Quantiles of the standard normal from tables of many digits (for instance
-/// NIST/SEMATECH e-Handbook 1.3.6.7.1 and the R manual's `qnorm`).
+/// Quantiles of the standard normal in 40 digits, rounded, made by
+/// `python3 crates/lhs/tests/golden/reference_numbers.py`.
 #[test]
 fn normal_quantiles() {
     let normal = Normal::new(0.0, 1.0).unwrap();
@@ -151,12 +154,14 @@ fn hand_calculated_medians() {
     let median = |m: &dyn Marginal| m.inverse_cdf(0.5);
     assert_eq!(median(&Uniform::new(-2.0, 6.0).unwrap()), 2.0);
     // √(1e-4 · 1e4) = 1.
-    assert!((median(&LogUniform::new(1e-4, 1e4).unwrap()) - 1.0).abs() < 1e-14);
+    // 8.9e-16 measured: the logarithms' rounding.
+    assert!((median(&LogUniform::new(1e-4, 1e4).unwrap()) - 1.0).abs() < 5e-15);
     // Mode at lo: (1 − x)² = 1/2.
     let left = Triangular::new(0.0, 0.0, 1.0).unwrap();
-    assert!((median(&left) - (1.0 - 0.5_f64.sqrt())).abs() < 1e-15);
+    assert_eq!(median(&left), 1.0 - 0.5_f64.sqrt());
     // 0.2 + (x/0.5)·0.5 = 0.5.
-    assert!((median(&Tabulated::new(&TABLE).unwrap()) - 0.3).abs() < 1e-15);
+    // 5.6e-17 measured: one rounding.
+    assert!((median(&Tabulated::new(&TABLE).unwrap()) - 0.3).abs() < 3e-16);
 }
 
 /// Flat parts are skipped, jumps are hit with their probability.
@@ -190,13 +195,14 @@ fn tables_with_gaps_and_jumps() {
 #[test]
 fn a_mapped_design_follows_its_marginals() {
     let n = 2000;
-    let design = LatinHypercube::new(n, 3, 8).unwrap().design();
+    let design = LatinHypercube::new(n, 3, 8).unwrap().design().unwrap();
     let normal = Normal::new(10.0, 2.0).unwrap();
     let square = |p: f64| p * p;
     let mapped = map(&design, &[&normal, &square, &|_: f64| 7.0]).unwrap();
     let mean = mapped.column(0).sum::<f64>() / n as f64;
-    // A stratified mean: its error is far below the 0.045 of random sampling.
-    assert!((mean - 10.0).abs() < 0.005, "{mean}");
+    // A stratified mean: its error, 1.8e-4 measured, is far below the 0.045 of
+    // random sampling.
+    assert!((mean - 10.0).abs() < 1e-3, "{mean}");
     for (row, p) in mapped.rows().zip(design.rows()) {
         assert_eq!(row, [normal.inverse_cdf(p[0]), p[1] * p[1], 7.0]);
     }

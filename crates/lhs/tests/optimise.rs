@@ -1,4 +1,5 @@
 //! Optimised designs: the law kept, the update right, the optimum found.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use lhs::criteria::{centred_discrepancy, minimum_distance, phi_p};
 use lhs::{Budget, Criterion, Design, LatinHypercube, MAXIMIN_P, optimise};
@@ -34,7 +35,7 @@ proptest! {
         which in 0..2_usize,
     ) {
         let criterion = BOTH[which];
-        let start = LatinHypercube::new(n, dims, seed).unwrap().design();
+        let start = LatinHypercube::new(n, dims, seed).unwrap().design().unwrap();
         let (end, history) = optimise(start.clone(), criterion, Budget { iterations }, seed);
         for dim in 0..dims {
             prop_assert_eq!(sorted_column(&start, dim), sorted_column(&end, dim));
@@ -48,7 +49,7 @@ proptest! {
         if history.best < history.initial {
             // Rounding of some thousand changes, added to a sum that starts
             // up to 10^4 times larger than it ends before it is taken afresh.
-            let tolerance = 1e-9 * history.best + 1e-13;
+            let tolerance = 1e-12 * history.best + 1e-14;
             prop_assert!((updated - history.best).abs() < tolerance,
                 "{criterion:?}: {updated} against {}", history.best);
         }
@@ -85,9 +86,14 @@ fn small_designs_reach_the_global_optimum() {
         let least = exhaustive(n, centred_discrepancy);
         let hypercube = LatinHypercube::new(n, 2, n as u64).unwrap().centred();
         let budget = Budget { iterations: 20_000 };
-        let (found, _) = optimise(hypercube.design(), Criterion::CentredDiscrepancy, budget, 1);
+        let (found, _) = optimise(
+            hypercube.design().unwrap(),
+            Criterion::CentredDiscrepancy,
+            budget,
+            1,
+        );
         assert!(
-            (centred_discrepancy(&found) - least).abs() < 1e-14,
+            (centred_discrepancy(&found) - least).abs() < 1e-15,
             "n = {n}"
         );
     }
@@ -100,12 +106,14 @@ fn small_designs_reach_the_greatest_least_distance() {
     for n in 2..=8 {
         let best = -exhaustive(n, |d| -minimum_distance(d));
         if n == 4 || n == 5 {
-            assert!(((best * n as f64).powi(2) - 5.0).abs() < 1e-9, "n = {n}");
+            // 8.9e-16 measured.
+            assert!(((best * n as f64).powi(2) - 5.0).abs() < 5e-15, "n = {n}");
         }
         let hypercube = LatinHypercube::new(n, 2, 3).unwrap().centred();
         let budget = Budget { iterations: 20_000 };
-        let (found, _) = optimise(hypercube.design(), Criterion::Maximin, budget, 2);
-        assert!((minimum_distance(&found) - best).abs() < 1e-12, "n = {n}");
+        let (found, _) = optimise(hypercube.design().unwrap(), Criterion::Maximin, budget, 2);
+        // 5.6e-17 measured: a distance of the same points, moved.
+        assert!((minimum_distance(&found) - best).abs() < 5e-16, "n = {n}");
     }
 }
 
@@ -114,22 +122,29 @@ fn small_designs_reach_the_greatest_least_distance() {
 #[test]
 fn the_papers_size_is_evened_out() {
     let hypercube = LatinHypercube::new(5000, 4, 1).unwrap();
-    let plain = centred_discrepancy(&hypercube.design());
+    let plain = centred_discrepancy(&hypercube.design().unwrap());
     assert!((2e-5..6e-5).contains(&plain), "plain: {plain:e}");
     let budget = Budget { iterations: 5000 };
-    let (_, history) = optimise(hypercube.design(), Criterion::CentredDiscrepancy, budget, 1);
+    let (_, history) = optimise(
+        hypercube.design().unwrap(),
+        Criterion::CentredDiscrepancy,
+        budget,
+        1,
+    );
     assert!(history.best < 4.4e-6, "by exchanges alone: {history:?}");
     for seed in 0..3 {
         let hypercube = LatinHypercube::new(5000, 4, seed).unwrap();
-        let lattice = hypercube.lattice(Criterion::CentredDiscrepancy);
+        let lattice = hypercube.lattice(Criterion::CentredDiscrepancy).unwrap();
         assert!(centred_discrepancy(&lattice) < 4.4e-6 / 4.0);
     }
     let budget = Budget { iterations: 500 };
-    let (_, history) = hypercube.optimised(Criterion::CentredDiscrepancy, budget);
+    let (_, history) = hypercube
+        .optimised(Criterion::CentredDiscrepancy, budget)
+        .unwrap();
     assert!(history.best < 4.4e-6 / 4.0 && history.best <= history.initial);
-    let spread = hypercube.lattice(Criterion::Maximin);
+    let spread = hypercube.lattice(Criterion::Maximin).unwrap();
     // Random points leave about 1/30 of a grid's spacing between the closest.
-    assert!(minimum_distance(&spread) > 5.0 * minimum_distance(&hypercube.design()));
+    assert!(minimum_distance(&spread) > 5.0 * minimum_distance(&hypercube.design().unwrap()));
 }
 
 #[test]
@@ -139,7 +154,11 @@ fn threads_do_not_change_a_bit() {
         let made = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             let pool = pool.build().unwrap();
-            pool.install(|| hypercube.optimised(criterion, Budget { iterations: 400 }))
+            pool.install(|| {
+                hypercube
+                    .optimised(criterion, Budget { iterations: 400 })
+                    .unwrap()
+            })
         };
         let one = made(1);
         assert_eq!(one, made(2));

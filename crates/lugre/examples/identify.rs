@@ -16,15 +16,7 @@ use lugre::{LuGre, Parameters};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-/// Liu et al. 2025, Table 1, in SI units.
-const TRUTH: Parameters = Parameters {
-    coulomb: 0.6757,
-    stiction: 0.7653,
-    stribeck_speed: 2.713781,
-    stiffness: 15.159508,
-    damping: 1.521203,
-    viscous: 0.002865,
-};
+const TRUTH: Parameters = Parameters::LIU_2025;
 
 const RAD_PER_MM: f64 = 2.0 * PI / 10.0;
 const SAMPLE_RATE: f64 = 1000.0;
@@ -112,11 +104,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     line("T_S", fit.stiction, TRUTH.stiction);
     line("Ω_S", fit.stribeck_speed, TRUTH.stribeck_speed);
     line("σ2", fit.viscous, TRUTH.viscous);
-    // 0: no standard error known, so that all runs count alike.
+    // No standard error known, so that all runs count alike.
     let means: Vec<ConstantSpeedRun> = runs
         .iter()
         .map(|r| ConstantSpeedRun {
-            torque_standard_error: 0.0,
+            torque_standard_error: None,
             ..*r
         })
         .collect();

@@ -8,6 +8,12 @@
 //! `e^{−u} = 2^{−k/64} e^{−r}` with `|r| ≤ ln 2 / 128`: a table of the 64
 //! fractions and a polynomial of degree 5, relative error 4.4e-18.
 //!
+//! They are here because they pay: with `libm`'s `exp` and `expm1` instead a
+//! step takes 1.2 to 1.8 times as long and axis-sim's closed loop 7 to 15 %
+//! longer; the standard library's cost the loop 2 to 10 %, need `std` and are
+//! not the same on every platform (`benches/step.rs` sets the three side by
+//! side).
+//!
 //! All are forced inline, as are their callers inside the crate: left to itself
 //! the compiler calls them, which made a step 10 to 25 % slower.
 

@@ -36,15 +36,7 @@
 //! ```
 //! use lugre::{LuGre, Parameters};
 //!
-//! // Liu et al., Machines 13(5), 433, 2025, Table 1, in SI units.
-//! let law = LuGre::new(Parameters {
-//!     coulomb: 0.6757,
-//!     stiction: 0.7653,
-//!     stribeck_speed: 2.713781,
-//!     stiffness: 15.159508,
-//!     damping: 1.521203,
-//!     viscous: 0.002865,
-//! })?;
+//! let law = LuGre::new(Parameters::LIU_2025)?;
 //!
 //! let speed = 10.0;
 //! let mut z = 0.0; // the law is immutable: the state is the caller's

@@ -50,13 +50,35 @@ pub enum LugreError {
     },
 }
 
+/// 1 rpm in rad/s.
+const RPM: f64 = core::f64::consts::PI / 30.0;
+
 impl Parameters {
+    /// A ball-screw axis with a table of 515 kg, referred to its screw: Liu,
+    /// Guo, Liu and Niu, Machines 13(5), 433, 2025, Table 1
+    /// (doi 10.3390/machines13050433).
+    ///
+    /// The table prints 0.6757, 0.7653, 25.9147 rpm, 1.5875, 0.1593 and
+    /// 0.0003. Its N·mm are read as N·m (in N·mm friction would vanish beside
+    /// the motor's 24 N·m), the unit of `σ0` as N·m/(rpm·s), one integration
+    /// from that of `σ1`, and everything per rpm is divided by π/30.
+    pub const LIU_2025: Self = Self {
+        coulomb: 0.6757,
+        stiction: 0.7653,
+        stribeck_speed: 25.9147 * RPM,
+        stiffness: 1.5875 / RPM,
+        damping: 0.1593 / RPM,
+        viscous: 0.0003 / RPM,
+    };
+
     /// Checks every field.
     ///
     /// # Errors
     /// [`LugreError`] names the first field that is not acceptable. `coulomb`
     /// may be zero only together with `stiction`: a level that vanishes at
     /// high speed alone makes the relaxation of equation (1) infinitely fast.
+    /// The deflections `coulomb / stiffness` and `stiction / stiffness` must
+    /// lie between 1e-150 and 1e150 rad, so that no step overflows.
     pub fn validate(&self) -> Result<(), LugreError> {
         const NOT_NEGATIVE: &str = "finite and at least 0";
         const POSITIVE: &str = "finite and greater than 0";
@@ -77,6 +99,15 @@ impl Parameters {
             return Err(LugreError::StictionBelowCoulomb {
                 stiction: self.stiction,
                 coulomb: self.coulomb,
+            });
+        }
+        let deflections = [self.coulomb, self.stiction].map(|level| level / self.stiffness);
+        if !null && !deflections.iter().all(|z| (1e-150..=1e150).contains(z)) {
+            return Err(LugreError::Invalid {
+                field: "stiffness",
+                value: self.stiffness,
+                valid: "such that `coulomb` and `stiction` divided by it are between 1e-150 and \
+                        1e150 rad",
             });
         }
         Ok(())

@@ -13,24 +13,36 @@ impl LuGre {
     /// δT_f/δω = σ2 + g (σ0 + i Ω σ1) / (1/τ + i Ω),   g = |ω| G'(|ω|)/G,   1/τ = σ0 |ω| / G
     /// ```
     ///
-    /// For `frequency = 0` it is the slope of the steady-state curve,
-    /// `G' + σ2`; for fast oscillations `σ2 + σ1 g`, which on the falling side
-    /// of the curve is more negative by `σ1 / (σ0 τ)`.
+    /// with the real part
+    ///
+    /// ```text
+    /// σ2 + G'(|ω|) [ 1 + κ (Ω τ)² ] / [ 1 + (Ω τ)² ],   κ = σ1 / (σ0 τ) = σ1 |ω| / G
+    /// ```
+    ///
+    /// So slow oscillations meet the slope of the steady-state curve,
+    /// `σ2 + G'`, and fast ones `σ2 + κ G'`: the falling of the curve counts
+    /// κ times. That is more than once where `σ1 |ω| > G`, and less below.
+    ///
+    /// At rest there is no steady sliding: the bristles are a spring beside
+    /// their damping, and the result is `σ1 + σ2`.
     #[must_use]
     pub fn vibration_damping(&self, speed: f64, frequency: f64) -> f64 {
         let p = self.parameters();
         let speed = speed.abs();
-        let x = speed / p.stribeck_speed;
         let level = self.level(speed);
         if level == 0.0 || speed == 0.0 {
-            // No bristles; or at rest, where they are a spring σ0 beside σ1.
             let bristle_damping = if level == 0.0 { 0.0 } else { p.damping };
             return p.viscous + bristle_damping;
         }
-        // |ω| G'(|ω|) = −2 x² (G − T_C)
-        let g = -2.0 * x * x * (level - p.coulomb) / level;
-        let relaxation = p.stiffness * speed / level;
-        let squares = relaxation * relaxation + frequency * frequency;
-        p.viscous + g * (p.stiffness * relaxation + p.damping * frequency * frequency) / squares
+        // G'(|ω|) = −2 |ω| (G − T_C) / Ω_S²
+        let slope = -2.0 * (speed / p.stribeck_speed) * ((level - p.coulomb) / p.stribeck_speed);
+        if slope == 0.0 {
+            return p.viscous;
+        }
+        // The share 1/(1 + (Ω τ)²) of the slow limit, without overflow.
+        let turns = frequency * (level / p.stiffness) / speed;
+        let slow = 1.0 / (1.0 + turns * turns);
+        let kappa = p.damping * speed / level;
+        p.viscous + slope * (slow + kappa * (1.0 - slow))
     }
 }

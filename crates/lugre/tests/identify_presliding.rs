@@ -5,10 +5,12 @@ mod rig;
 
 use std::f64::consts::PI;
 
+use lugre::Parameters;
 use lugre::identify::{
     Estimate, IdentifyError, Motion, PreslidingRecord, StaticKnowledge, StaticParameters,
     identify_presliding,
 };
+use proptest::prelude::*;
 use rig::{Noise, PAPER};
 
 const STATICS: StaticParameters = StaticParameters {
@@ -204,6 +206,145 @@ fn a_record_far_below_break_away_is_enough() {
     );
     assert!(fit.initial_bristle_torque.covers(0.0, 4.5));
     assert!(fit.torque_offset.covers(0.0, 4.5));
+}
+
+/// Equations (1) to (3) as printed, by classical Runge–Kutta in steps of 1/50
+/// of a sample: shares nothing with the crate's step.
+fn simulate(p: &Parameters, z0: f64, speed: impl Fn(f64) -> f64, samples: usize) -> Vec<f64> {
+    let level =
+        |w: f64| p.coulomb + (p.stiction - p.coulomb) * (-(w / p.stribeck_speed).powi(2)).exp();
+    let rate = |t: f64, z: f64| {
+        let w = speed(t);
+        w - p.stiffness * w.abs() * z / level(w)
+    };
+    let h = STEP / 50.0;
+    let mut z = z0;
+    let mut torque = Vec::new();
+    for i in 0..samples * 50 {
+        let t = i as f64 * h;
+        if i % 50 == 0 {
+            let w = speed(t);
+            torque.push(p.stiffness * z + p.damping * rate(t, z) + p.viscous * w);
+        }
+        let k1 = rate(t, z);
+        let k2 = rate(t + h / 2.0, z + h / 2.0 * k1);
+        let k3 = rate(t + h / 2.0, z + h / 2.0 * k2);
+        let k4 = rate(t + h, z + h * k3);
+        z += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    }
+    torque
+}
+
+prop_compose! {
+    /// Laws from a small stage to a mill: levels over three decades, stiffness
+    /// from a hundredth to a hundred times the paper's, break-away deflections
+    /// between. σ1/σ0 is between 5 and 200 ms, the time over which the test's
+    /// motions change.
+    fn drawn_law()(
+        coulomb in (0.03f64.ln()..30f64.ln()).prop_map(f64::exp),
+        rise in 0.0f64..0.6,
+        stiffness in (0.01f64.ln()..100f64.ln()).prop_map(|x| PAPER.stiffness * x.exp()),
+        stribeck in (0.3f64.ln()..100f64.ln()).prop_map(f64::exp),
+        lag in (5e-3f64.ln()..0.2f64.ln()).prop_map(f64::exp),
+        drag in 0.0f64..0.1,
+    ) -> Parameters {
+        let deflection = coulomb / stiffness;
+        // rad/s: the speed that crosses the break-away deflection in 50 ms.
+        let fast = 20.0 * deflection;
+        Parameters {
+            coulomb,
+            stiction: coulomb * (1.0 + rise),
+            stribeck_speed: stribeck * fast,
+            stiffness,
+            damping: lag * stiffness,
+            viscous: drag * coulomb / fast,
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    /// Motions of a third to three times the break-away deflection, from any
+    /// bristle torque, under 1 % noise.
+    #[test]
+    fn any_law_is_found(
+        truth in drawn_law(), size in (0.3f64.ln()..3f64.ln()).prop_map(f64::exp),
+        start in -0.8f64..0.8, offset in -0.2f64..0.2, seed in 0u64..1000,
+    ) {
+        let deflection = truth.coulomb / truth.stiffness;
+        let amplitude = size * deflection;
+        let speed = |t: f64| {
+            let (slow, fast) = (2.0 * PI * 2.0, 2.0 * PI * 7.0);
+            amplitude * (0.7 * slow * (slow * t).cos() + 0.3 * fast * (fast * t).cos())
+        };
+        let mut noise = Noise::new(seed);
+        let speeds: Vec<f64> = (0..2000).map(|i| speed(f64::from(i) * STEP)).collect();
+        let torque: Vec<f64> = simulate(&truth, start * deflection, speed, 2000)
+            .iter()
+            .map(|t| t + (offset + 0.01 * noise.normal()) * truth.coulomb)
+            .collect();
+        let statics = StaticParameters {
+            coulomb: truth.coulomb,
+            stiction: truth.stiction,
+            stribeck_speed: truth.stribeck_speed,
+            viscous: truth.viscous,
+        };
+        let record = PreslidingRecord {
+            time_step: STEP,
+            motion: Motion::Speed(&speeds),
+            torque: &torque,
+        };
+        let fit = identify_presliding(statics, &record).unwrap_or_else(|e| panic!("{e}"));
+        // 5.5 standard errors: 40 laws leave a chance of 1 in 10^5.
+        for (estimate, truth) in [
+            (fit.stiffness, truth.stiffness),
+            (fit.damping, truth.damping),
+            (fit.initial_bristle_torque, start * truth.coulomb),
+            (fit.torque_offset, offset * truth.coulomb),
+        ] {
+            prop_assert!(estimate.covers(truth, 5.5), "{:?} {}", estimate, truth);
+        }
+        // Standard errors of at most 0.22 % and 0.5 % measured.
+        prop_assert!(within(fit.stiffness, truth.stiffness, 0.015), "{:?}", fit.stiffness);
+        prop_assert!(within(fit.damping, truth.damping, 0.03), "{:?}", fit.damping);
+    }
+}
+
+/// An axis that stands still shows nothing of its bristles, whatever its
+/// sensor makes of that.
+#[test]
+fn a_standstill_is_no_presliding_test() {
+    for seed in 0..12 {
+        let mut noise = Noise::new(seed);
+        let n = 2000;
+        let white: Vec<f64> = (0..n).map(|_| 0.01 * noise.normal()).collect();
+        let position: Vec<f64> = (0..=n).map(|_| 1e-5 * noise.normal()).collect();
+        let differenced: Vec<f64> = position.windows(2).map(|p| (p[1] - p[0]) / STEP).collect();
+        let quantised: Vec<f64> = white.iter().map(|w| 0.02 * (w / 0.02).round()).collect();
+        let mut state = 0.0;
+        let filtered: Vec<f64> = white
+            .iter()
+            .map(|w| {
+                state = 0.9 * state + 0.3 * w;
+                state
+            })
+            .collect();
+        let torque: Vec<f64> = (0..n).map(|_| 0.3 + 0.007 * noise.normal()).collect();
+        for (kind, speeds) in [white, differenced, quantised, filtered].iter().enumerate() {
+            let record = PreslidingRecord {
+                time_step: STEP,
+                motion: Motion::Speed(speeds),
+                torque: &torque,
+            };
+            let error = identify_presliding(STATICS, &record).expect_err("nothing moves");
+            let open = matches!(
+                error,
+                IdentifyError::NotIdentifiable { .. } | IdentifyError::NoPreslidingMotion { .. }
+            );
+            assert!(open, "noise {kind}, seed {seed}: {error}");
+        }
+    }
 }
 
 #[test]

@@ -3,15 +3,7 @@
 use lugre::{LuGre, LugreError, Parameters};
 use proptest::prelude::*;
 
-/// Liu et al. 2025, Table 1, in SI units.
-const PAPER: Parameters = Parameters {
-    coulomb: 0.6757,
-    stiction: 0.7653,
-    stribeck_speed: 2.713781,
-    stiffness: 15.159508,
-    damping: 1.521203,
-    viscous: 0.002865,
-};
+const PAPER: Parameters = Parameters::LIU_2025;
 
 fn paper() -> LuGre {
     LuGre::new(PAPER).expect("valid")
@@ -29,6 +21,26 @@ prop_compose! {
     }
 }
 
+/// Table 1 of the paper as printed, speeds in rpm; 1 rpm is 2π/60 rad/s.
+#[test]
+fn the_papers_numbers() {
+    let per_rpm = 60.0 / (2.0 * std::f64::consts::PI);
+    let p = Parameters::LIU_2025;
+    let pairs = [
+        (p.coulomb, 0.6757, 0.6757),
+        (p.stiction, 0.7653, 0.7653),
+        (p.stribeck_speed, 25.9147 / per_rpm, 2.713781),
+        (p.stiffness, 1.5875 * per_rpm, 15.159508),
+        (p.damping, 0.1593 * per_rpm, 1.521203),
+        (p.viscous, 0.0003 * per_rpm, 0.002865),
+    ];
+    for (value, converted, by_hand) in pairs {
+        assert!((value / converted - 1.0).abs() < 1e-15, "{value}");
+        // By hand to six decimals.
+        assert!((value - by_hand).abs() <= 5e-7, "{value}");
+    }
+}
+
 #[test]
 fn the_papers_curve() {
     let law = paper();
@@ -37,8 +49,9 @@ fn the_papers_curve() {
     let at_stribeck = 0.6757 + 0.0896 * (-1.0f64).exp();
     assert!((law.level(PAPER.stribeck_speed) - at_stribeck).abs() < 1e-15);
     assert_eq!(law.level(100.0), 0.6757);
-    let traverse = law.steady_state(62.83185);
-    assert!((traverse - (0.6757 + 0.002865 * 62.83185)).abs() < 1e-15);
+    // 600 rpm.
+    let traverse = law.steady_state(20.0 * std::f64::consts::PI);
+    assert!((traverse - (0.6757 + 0.0003 * 600.0)).abs() < 1e-14);
     // Break-away deflection of the paper's bristles: 0.05 rad of screw.
     assert!((law.bristle_limit() - 0.050483).abs() < 1e-6);
 }
@@ -107,8 +120,9 @@ fn viscous_friction_alone() {
         ..PAPER
     })
     .expect("valid");
-    assert_eq!(law.step_torque(0.0, 5.0, 7.0, 1e-3), (0.0, 0.002865 * 7.0));
-    assert_eq!(law.steady_state(-7.0), -0.002865 * 7.0);
+    let torque = PAPER.viscous * 7.0;
+    assert_eq!(law.step_torque(0.0, 5.0, 7.0, 1e-3), (0.0, torque));
+    assert_eq!(law.steady_state(-7.0), -torque);
 }
 
 #[test]
@@ -177,6 +191,15 @@ fn bad_parameters_are_named() {
             other => panic!("{expected}: {other:?}"),
         }
     }
+    // A deflection that is no number would make every step NaN.
+    let soft = Parameters {
+        coulomb: 1e-200,
+        stiction: 1e-200,
+        stiffness: 1e200,
+        ..PAPER
+    };
+    let error = LuGre::new(soft).expect_err("T_C/σ0 underflows");
+    assert!(error.to_string().contains("`stiffness` is 1"), "{error}");
     let swapped = Parameters {
         stiction: 0.5,
         ..PAPER
@@ -250,12 +273,12 @@ fn serde_validates() {
     use serde::de::value::{Error, MapDeserializer};
     let fields = |stiction: f64| {
         [
-            ("coulomb", 0.6757),
+            ("coulomb", PAPER.coulomb),
             ("stiction", stiction),
-            ("stribeck_speed", 2.713781),
-            ("stiffness", 15.159508),
-            ("damping", 1.521203),
-            ("viscous", 0.002865),
+            ("stribeck_speed", PAPER.stribeck_speed),
+            ("stiffness", PAPER.stiffness),
+            ("damping", PAPER.damping),
+            ("viscous", PAPER.viscous),
         ]
     };
     let read = |stiction| {
@@ -299,16 +322,32 @@ fn vibration_damping_is_the_in_phase_torque_of_a_small_oscillation() {
         let measured = 2.0 * in_phase / (f64::from(n) * amplitude * amplitude);
         let expected = law.vibration_damping(speed, TAU * hertz);
         // Transients of e^−20, terms of the order of the amplitude squared and
-        // h² remain.
+        // h² remain: 3.7e-8 measured.
         assert!(
-            (measured - expected).abs() < 1e-5,
+            (measured - expected).abs() < 3e-7,
             "{speed} {hertz}: {measured} {expected}"
         );
+    }
+    // The falling of the curve counts σ1 |ω|/G times in fast oscillations:
+    // less than once for slow sliding, more than once for fast.
+    for (speed, more) in [(0.2, false), (2.7, true)] {
+        let slow = law.vibration_damping(speed, 0.0) - PAPER.viscous;
+        let fast = law.vibration_damping(speed, 1e9) - PAPER.viscous;
+        let factor = PAPER.damping * speed / law.level(speed);
+        assert!((fast / slow / factor - 1.0).abs() < 2e-14); // 2.8e-15 measured
+        assert_eq!(fast < slow, more, "{speed}: {fast} {slow}");
+        assert_eq!(
+            law.vibration_damping(speed, f64::MAX),
+            law.vibration_damping(speed, 1e200)
+        );
+        let gap = law.vibration_damping(speed, f64::MAX) - PAPER.viscous - fast;
+        assert!(gap.abs() < 1e-15, "{gap}");
     }
     // At zero frequency: the slope of the curve, by a central difference.
     for speed in [0.5, 2.0, 3.0, 50.0] {
         let d = 1e-5;
         let slope = (law.steady_state(speed + d) - law.steady_state(speed - d)) / (2.0 * d);
-        assert!((law.vibration_damping(speed, 0.0) - slope).abs() < 1e-9);
+        // 2.6e-12 measured.
+        assert!((law.vibration_damping(speed, 0.0) - slope).abs() < 2e-11);
     }
 }

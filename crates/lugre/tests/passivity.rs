@@ -57,15 +57,7 @@ proptest! {
 
 #[test]
 fn the_papers_law_is_not_passive() {
-    let law = LuGre::new(Parameters {
-        coulomb: 0.6757,
-        stiction: 0.7653,
-        stribeck_speed: 2.713781,
-        stiffness: 15.159508,
-        damping: 1.521203,
-        viscous: 0.002865,
-    })
-    .expect("valid");
+    let law = LuGre::new(Parameters::LIU_2025).expect("valid");
     // 0.002865 − 1.521203 · 0.0896/0.6757
     assert!((law.passivity_margin() + 0.198853).abs() < 1e-5);
     assert!(!law.is_passive());

@@ -8,8 +8,9 @@ use lugre::identify::{
     ConstantSpeedRun, Motion as Measured, PreslidingFit, PreslidingRecord, StaticFit,
     identify_presliding, identify_static,
 };
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use trajectories::{Limits, Motion, Program, SCurve, Sine, Step};
 
@@ -279,9 +280,7 @@ fn add_noise(torques: &mut [f64], plan: &IdentificationPlan, stream: u64) {
     let mut rng = ChaCha8Rng::seed_from_u64(plan.seed);
     rng.set_stream(stream);
     for torque in torques {
-        // Box and Muller; 1 − u keeps the logarithm finite.
-        let (u, angle) = (1.0 - rng.random::<f64>(), rng.random::<f64>());
-        let normal = (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * angle).cos();
+        let normal: f64 = StandardNormal.sample(&mut rng);
         *torque *= 1.0 + plan.torque_noise * normal;
     }
 }

@@ -93,10 +93,11 @@ impl Sampler {
     /// Sample `row`, from 0.
     ///
     /// # Errors
+    /// [`PipelineError::Design`] where there are not as many rows,
     /// [`PipelineError::Drive`] where the cycle cannot be simulated.
     pub fn sample(&self, row: usize) -> Result<(CycleInput, f64), PipelineError> {
         let mut cell = [0.0; 4];
-        self.design.row(row, &mut cell);
+        self.design.row(row, &mut cell)?;
         let value = |i: usize| self.marginals[i].inverse_cdf(cell[i]);
         let mut input = CycleInput {
             position: value(0),

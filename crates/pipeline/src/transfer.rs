@@ -57,7 +57,7 @@ pub fn identify_transfer(
     let spans = spans(axis)?;
     let record = |row: usize| {
         let mut cell = [0.0; 5];
-        design.row(row, &mut cell);
+        design.row(row, &mut cell)?;
         let mut law: Box<dyn Compensator> = if feedforward {
             let (r, k_t) = (axis.travel_per_radian(), axis.torque_constant);
             Box::new(FrictionFeedforward::new(

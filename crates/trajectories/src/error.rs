@@ -1,5 +1,7 @@
 //! Why a motion was refused.
 
+use crate::maximum;
+
 /// Why limits, a step or a program were refused. All checks are made at construction: evaluation
 /// cannot fail.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -36,23 +38,23 @@ pub enum TrajectoryError {
     },
 }
 
-/// `value` if it is finite.
-pub(crate) fn finite(
-    field: &'static str,
-    value: f64,
-    unit: &'static str,
-) -> Result<f64, TrajectoryError> {
-    check(value.is_finite(), field, value, unit, "finite")
+/// `value` (m) if it lies within [`maximum::POSITION`] of zero.
+pub(crate) fn position(field: &'static str, value: f64) -> Result<f64, TrajectoryError> {
+    let inside = value.abs() <= maximum::POSITION;
+    check(inside, field, value, "m", "from -1e6 to 1e6")
 }
 
-/// `value` if it is finite and greater than zero.
-pub(crate) fn positive(
-    field: &'static str,
-    value: f64,
-    unit: &'static str,
-) -> Result<f64, TrajectoryError> {
-    let valid = value.is_finite() && value > 0.0;
-    check(valid, field, value, unit, "finite and greater than zero")
+/// `value` (Hz) if it is a frequency of an oscillation.
+pub(crate) fn frequency(field: &'static str, value: f64) -> Result<f64, TrajectoryError> {
+    let inside = (1e-9..=maximum::FREQUENCY).contains(&value);
+    check(inside, field, value, "Hz", "from 1e-9 to 1e6")
+}
+
+/// `value` (s) if it is greater than zero and at most [`maximum::DURATION`].
+pub(crate) fn duration(value: f64) -> Result<f64, TrajectoryError> {
+    let inside = value > 0.0 && value <= maximum::DURATION;
+    let valid = "greater than zero and at most 1e7";
+    check(inside, "duration", value, "s", valid)
 }
 
 /// `value` if `holds`, else an error that says what would be valid.

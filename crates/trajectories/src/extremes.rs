@@ -3,8 +3,8 @@
 /// Bounds on a motion over its whole time.
 ///
 /// For S-curves and dwells they are the values reached. For sines and chirps they are safe: never
-/// passed, but not all reached; for a sine at most 2 % above what is reached in velocity, 10 % in
-/// acceleration and 25 % in jerk.
+/// passed, but not all reached; for a sine at most 2 % above what is reached in acceleration and
+/// 10 % in jerk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
     /// Least position, m.

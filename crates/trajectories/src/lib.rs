@@ -60,6 +60,7 @@ mod extremes;
 #[cfg(feature = "serde")]
 mod file;
 mod limits;
+pub mod maximum;
 mod motion;
 mod oscillation;
 mod phases;

@@ -1,7 +1,7 @@
 //! The three bounds a move must obey.
 
-use crate::TrajectoryError;
-use crate::error::positive;
+use crate::error::check;
+use crate::{TrajectoryError, maximum};
 
 /// Symmetric limits of a move: each holds for both signs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,12 +15,33 @@ impl Limits {
     /// Limits on |velocity| (m/s), |acceleration| (m/s²) and |jerk| (m/s³).
     ///
     /// # Errors
-    /// [`TrajectoryError::Invalid`] for a value that is not finite and greater than zero.
+    /// [`TrajectoryError::Invalid`] for a value that is not greater than zero, or lies above that
+    /// of [`maximum`].
     pub fn new(velocity: f64, acceleration: f64, jerk: f64) -> Result<Self, TrajectoryError> {
+        let (v, a, j) = (velocity, acceleration, jerk);
+        let inside = |value: f64, most: f64| value > 0.0 && value <= most;
         Ok(Self {
-            velocity: positive("velocity", velocity, "m/s")?,
-            acceleration: positive("acceleration", acceleration, "m/s²")?,
-            jerk: positive("jerk", jerk, "m/s³")?,
+            velocity: check(
+                inside(v, maximum::VELOCITY),
+                "velocity",
+                v,
+                "m/s",
+                "greater than zero and at most 1e6",
+            )?,
+            acceleration: check(
+                inside(a, maximum::ACCELERATION),
+                "acceleration",
+                a,
+                "m/s²",
+                "greater than zero and at most 1e9",
+            )?,
+            jerk: check(
+                inside(j, maximum::JERK),
+                "jerk",
+                j,
+                "m/s³",
+                "greater than zero and at most 1e15",
+            )?,
         })
     }
 

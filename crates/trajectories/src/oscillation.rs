@@ -1,9 +1,9 @@
 //! Sines and chirps about a position, from rest to rest.
 
 use crate::envelope::{Envelope, RISE_DERIVATIVE_BOUNDS, rise};
-use crate::error::{check, finite, positive};
+use crate::error::{check, duration, frequency, position};
 use crate::sweep::Phase;
-use crate::{Extremes, Motion, Setpoint, Sweep, TrajectoryError};
+use crate::{Extremes, Motion, Setpoint, Sweep, TrajectoryError, maximum};
 
 /// A sine of constant frequency.
 ///
@@ -13,7 +13,7 @@ use crate::{Extremes, Motion, Setpoint, Sweep, TrajectoryError};
 pub struct Sine {
     /// Amplitude, m; negative to set out in the negative direction.
     pub amplitude: f64,
-    /// Frequency, Hz, greater than zero.
+    /// Frequency, Hz, from 1e-9 to [`maximum::FREQUENCY`].
     pub frequency: f64,
     /// Cycles at full amplitude, at least one.
     pub cycles: u32,
@@ -24,11 +24,11 @@ pub struct Sine {
 pub struct Chirp {
     /// Amplitude, m; negative to set out in the negative direction.
     pub amplitude: f64,
-    /// Frequency at the start, Hz, greater than zero.
+    /// Frequency at the start, Hz, from 1e-9 to [`maximum::FREQUENCY`].
     pub from_frequency: f64,
-    /// Frequency at the end, Hz, greater than zero; may be the lower one.
+    /// Frequency at the end, Hz, within the same; may be the lower one.
     pub to_frequency: f64,
-    /// Whole length, both ramps included, s.
+    /// Whole length, both ramps included, s; at most [`maximum::DURATION`].
     pub duration: f64,
     /// Length of the rise of the amplitude at the start and of its fall at the end, s: greater
     /// than zero, at most half the duration. The frequency runs during the ramps too.
@@ -55,16 +55,13 @@ pub struct Oscillation {
 /// Costs some microseconds, once.
 const RAMP_PIECES: u32 = 128;
 
-/// Phases above this many cycles have lost a millionth of a cycle to rounding.
-const CYCLES_MAX: f64 = 1e9;
-
 impl Oscillation {
     /// A sine about the position `about` (m).
     ///
     /// # Errors
     /// [`TrajectoryError::Invalid`] naming the field that is out of its range.
     pub fn sine(about: f64, sine: &Sine) -> Result<Self, TrajectoryError> {
-        let frequency = positive("frequency", sine.frequency, "Hz")?;
+        let frequency = frequency("frequency", sine.frequency)?;
         let cycles = f64::from(sine.cycles);
         check(sine.cycles > 0, "cycles", cycles, "", "1 or more")?;
         let phase = Phase::Linear {
@@ -72,7 +69,7 @@ impl Oscillation {
             slope: 0.0,
         };
         let envelope = Envelope {
-            duration: (cycles + 2.0) / frequency,
+            duration: duration((cycles + 2.0) / frequency)?,
             ramp: 1.0 / frequency,
         };
         Self::new(about, sine.amplitude, phase, envelope)
@@ -83,9 +80,9 @@ impl Oscillation {
     /// # Errors
     /// [`TrajectoryError::Invalid`] naming the field that is out of its range.
     pub fn chirp(about: f64, chirp: &Chirp) -> Result<Self, TrajectoryError> {
-        let f0 = positive("from_frequency", chirp.from_frequency, "Hz")?;
-        let f1 = positive("to_frequency", chirp.to_frequency, "Hz")?;
-        let duration = positive("duration", chirp.duration, "s")?;
+        let f0 = frequency("from_frequency", chirp.from_frequency)?;
+        let f1 = frequency("to_frequency", chirp.to_frequency)?;
+        let duration = duration(chirp.duration)?;
         check(
             chirp.ramp > 0.0 && chirp.ramp <= 0.5 * duration,
             "ramp",
@@ -107,10 +104,10 @@ impl Oscillation {
         phase: Phase,
         envelope: Envelope,
     ) -> Result<Self, TrajectoryError> {
-        finite("about", about, "m")?;
-        finite("amplitude", amplitude, "m")?;
+        position("about", about)?;
+        position("amplitude", amplitude)?;
         check(
-            phase.cycles(envelope.duration) <= CYCLES_MAX,
+            phase.cycles(envelope.duration) <= maximum::CYCLES,
             "total cycles",
             phase.cycles(envelope.duration),
             "",
@@ -119,11 +116,9 @@ impl Oscillation {
         let extremes = bounds(about, amplitude.abs(), &phase, &envelope);
         let ends = [extremes.position_min, extremes.position_max];
         let rates = [extremes.velocity, extremes.acceleration, extremes.jerk];
-        let representable =
-            ends.iter().chain(&rates).all(|x| x.is_finite()) && envelope.duration.is_finite();
-        if !representable {
+        if !ends.iter().chain(&rates).all(|x| x.is_finite()) {
             return Err(TrajectoryError::Unrepresentable {
-                what: "the oscillation's range, velocity, acceleration, jerk or duration",
+                what: "the oscillation's velocity, acceleration or jerk",
             });
         }
         Ok(Self {

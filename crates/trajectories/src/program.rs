@@ -3,8 +3,8 @@
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-use crate::error::{check, finite};
-use crate::{Extremes, Motion, Oscillation, SCurve, Setpoint, Step, TrajectoryError};
+use crate::error::{check, position};
+use crate::{Extremes, Motion, Oscillation, SCurve, Setpoint, Step, TrajectoryError, maximum};
 
 /// A motion made of [`Step`]s, planned once; evaluation finds the step by binary search.
 ///
@@ -56,10 +56,14 @@ impl Program {
     /// Plans `steps` from rest at `start` (m). No steps at all is a program of no duration.
     ///
     /// # Errors
-    /// [`TrajectoryError::Invalid`] for a start that is not finite; [`TrajectoryError::Step`] with
-    /// the number of the step and what is wrong with it.
+    /// [`TrajectoryError::Invalid`] for a start beyond [`maximum::POSITION`] or more steps than
+    /// [`maximum::STEPS`]; [`TrajectoryError::Step`] with the number of the step and what is wrong
+    /// with it, such as a program that lasts longer than [`maximum::DURATION`] by its end.
     pub fn new(start: f64, steps: Vec<Step>) -> Result<Self, TrajectoryError> {
-        let mut present = finite("start", start, "m")?;
+        let mut present = position("start", start)?;
+        let count = steps.len() as f64;
+        let few = steps.len() <= maximum::STEPS;
+        check(few, "number of steps", count, "", "at most 100000")?;
         let mut pieces = Vec::with_capacity(steps.len());
         let mut times = Vec::with_capacity(steps.len());
         let mut clock = Clock::default();
@@ -140,12 +144,13 @@ impl Piece {
         Ok(match step {
             Step::Move { to, limits } => Self::Curve(Box::new(SCurve::plan(present, *to, limits)?)),
             Step::MoveBy { by, limits } => {
-                finite("by", *by, "m")?;
-                Self::Curve(Box::new(SCurve::plan(present, present + by, limits)?))
+                position("by", *by)?;
+                let to = position("end of the step", present + by)?;
+                Self::Curve(Box::new(SCurve::plan(present, to, limits)?))
             }
             Step::Dwell { duration } => {
-                let valid = duration.is_finite() && *duration >= 0.0;
-                check(valid, "duration", *duration, "s", "finite and zero or more")?;
+                let inside = (0.0..=maximum::DURATION).contains(duration);
+                check(inside, "duration", *duration, "s", "from 0 to 1e7")?;
                 Self::Rest {
                     position: present,
                     duration: *duration,
@@ -214,12 +219,9 @@ impl Clock {
         };
         self.lost += (large - sum) + small;
         self.sum = sum;
-        if self.now().is_finite() {
-            Ok(begin)
-        } else {
-            Err(TrajectoryError::Unrepresentable {
-                what: "the duration of the program",
-            })
-        }
+        let short = self.now() <= maximum::DURATION;
+        let valid = "at most 1e7";
+        check(short, "time at the end of the step", self.now(), "s", valid)?;
+        Ok(begin)
     }
 }

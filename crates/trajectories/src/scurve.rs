@@ -1,6 +1,6 @@
 //! One rest-to-rest move: planned in closed form, evaluated by one cubic.
 
-use crate::error::finite;
+use crate::error::{duration, position};
 use crate::phases::Phases;
 use crate::{Extremes, Limits, Motion, Setpoint, TrajectoryError};
 
@@ -61,18 +61,14 @@ impl SCurve {
     /// The move in least time from rest at `from` (m) to rest at `to` (m) within `limits`.
     ///
     /// # Errors
-    /// [`TrajectoryError::Invalid`] if an end is not finite, [`TrajectoryError::Unrepresentable`]
-    /// if the distance or the duration overflows, or the duration of a true move underflows.
+    /// [`TrajectoryError::Invalid`] if an end or the duration lies beyond its
+    /// [`maximum`](crate::maximum), [`TrajectoryError::Unrepresentable`] if the duration overflows,
+    /// or that of a true move underflows.
     #[inline]
     pub fn plan(from: f64, to: f64, limits: &Limits) -> Result<Self, TrajectoryError> {
-        finite("from", from, "m")?;
-        finite("to", to, "m")?;
+        position("from", from)?;
+        position("to", to)?;
         let distance = (to - from).abs();
-        if !distance.is_finite() {
-            return Err(TrajectoryError::Unrepresentable {
-                what: "the distance of the move",
-            });
-        }
         if distance == 0.0 {
             return Ok(Self::standing(to));
         }
@@ -83,6 +79,7 @@ impl SCurve {
                 what: "the duration of the move",
             });
         }
+        duration(switches[7])?;
         Ok(Self::assemble(from, to, limits.jerk(), &phases, switches))
     }
 

@@ -45,7 +45,7 @@ pub enum Step {
     },
     /// Standing still.
     Dwell {
-        /// How long, s; zero or more.
+        /// How long, s; from zero to [`maximum::DURATION`](crate::maximum::DURATION).
         duration: f64,
     },
     /// Sine about the present position.

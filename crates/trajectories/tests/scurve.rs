@@ -1,7 +1,7 @@
 //! S-curves: limits, ends, continuity, time optimality, and published values.
 
 use proptest::prelude::*;
-use trajectories::{Limits, Motion, SCurve, Setpoint, TrajectoryError};
+use trajectories::{Limits, Motion, SCurve, Setpoint, TrajectoryError, maximum};
 
 /// A number between `10^low` and `10^high`, all magnitudes alike.
 fn magnitude(low: f64, high: f64) -> impl Strategy<Value = f64> {
@@ -24,21 +24,19 @@ fn any_distance() -> impl Strategy<Value = f64> {
 
 /// Moves on the border between two of the planner's ways, give or take a few roundings.
 fn border() -> impl Strategy<Value = (f64, Limits)> {
-    (any_limits(), 0..4, -4..=4).prop_map(|(limits, which, ulps)| {
+    (any_limits(), 0..4, -4..=4).prop_filter_map("a speed too high", |(limits, which, ulps)| {
         let (v, a, j) = (limits.velocity(), limits.acceleration(), limits.jerk());
         let nudge = 1.0 + f64::from(ulps) * f64::EPSILON;
-        match which {
+        let fast = Limits::new(a * a / j * nudge, a, j).ok()?;
+        Some(match which {
             // The acceleration limit is only just reached.
             0 => (2.0 * a * a * a / (j * j) * nudge, limits),
             // The speed limit is only just reached.
             1 => (v * ramp_time(v, &limits) * nudge, limits),
             // Both limits are reached at the same instant: long moves, then the shortest such.
-            2 => (v, Limits::new(a * a / j * nudge, a, j).unwrap()),
-            _ => (
-                2.0 * a * a * a / (j * j),
-                Limits::new(a * a / j * nudge, a, j).unwrap(),
-            ),
-        }
+            2 => (v, fast),
+            _ => (2.0 * a * a * a / (j * j), fast),
+        })
     })
 }
 
@@ -48,9 +46,12 @@ fn any_curve() -> impl Strategy<Value = (f64, f64, Limits, SCurve)> {
         1 => border(),
     ];
     (prop_oneof![Just(0.0), -10.0..10.0], move_and_limits).prop_filter_map(
-        "no move",
+        "no move, or too far or long",
         |(from, (distance, limits))| {
             let to = from + distance;
+            if distance.abs() > 100.0 || searched_duration(distance.abs(), &limits) > 9.9e6 {
+                return None;
+            }
             let curve = SCurve::plan(from, to, &limits).unwrap();
             (to != from).then_some((from, to, limits, curve))
         },
@@ -115,7 +116,8 @@ proptest! {
         // The last instant before the end is nearly rest: the end is reached, not jumped to.
         let last = curve.at(duration.next_down());
         let left = duration - duration.next_down();
-        prop_assert!((last.position - to).abs() <= position_rounding(from, to, &limits, &curve));
+        // Equal measured.
+        prop_assert!((last.position - to).abs() <= f64::EPSILON * to.abs());
         prop_assert!(last.velocity.abs() <= limits.jerk() * left * left);
         prop_assert!(last.acceleration.abs() <= limits.jerk() * left);
     }
@@ -156,12 +158,13 @@ proptest! {
                 + h * (s0.velocity + h * (s0.acceleration / 2.0 + h * s0.jerk / 6.0));
             let velocity = s0.velocity + h * (s0.acceleration + h * s0.jerk / 2.0);
             let acceleration = s0.acceleration + h * s0.jerk;
-            let time_rounding = 4.0 * f64::EPSILON * curve.duration();
+            // 0.13, 0.22 and 0.25 of these measured.
+            let time_rounding = f64::EPSILON * curve.duration();
             prop_assert!((s1.position - position).abs() <= position_rounding(from, to, &limits, &curve));
             prop_assert!((s1.velocity - velocity).abs()
-                <= 16.0 * f64::EPSILON * curve.peak_velocity() + curve.peak_acceleration() * time_rounding);
+                <= 4.0 * f64::EPSILON * curve.peak_velocity() + curve.peak_acceleration() * time_rounding);
             prop_assert!((s1.acceleration - acceleration).abs()
-                <= 16.0 * f64::EPSILON * curve.peak_acceleration() + limits.jerk() * time_rounding);
+                <= 2.0 * f64::EPSILON * curve.peak_acceleration() + 0.5 * limits.jerk() * time_rounding);
         }
     }
 
@@ -196,8 +199,9 @@ proptest! {
     #[test]
     fn duration_matches_a_search_over_peak_speeds((from, to, limits, curve) in any_curve()) {
         let expected = searched_duration((to - from).abs(), &limits);
-        // Bisection runs to the last bit; the formulas then round some ten times.
-        let tolerance = 32.0 * f64::EPSILON * expected;
+        // Bisection runs to the last bit; the formulas then round some ten times: 2 units
+        // measured.
+        let tolerance = 8.0 * f64::EPSILON * expected;
         prop_assert!((curve.duration() - expected).abs() <= tolerance, "{} {expected}", curve.duration());
     }
 
@@ -207,7 +211,8 @@ proptest! {
         (from, to, limits, curve) in any_curve(),
         (v, a, j) in (1.0..10.0f64, 1.0..10.0f64, 1.0..10.0f64)
     ) {
-        let looser = Limits::new(limits.velocity() * v, limits.acceleration() * a, limits.jerk() * j).unwrap();
+        let fast = (limits.velocity() * v).min(maximum::VELOCITY);
+        let looser = Limits::new(fast, limits.acceleration() * a, limits.jerk() * j).unwrap();
         let faster = SCurve::plan(from, to, &looser).unwrap();
         prop_assert!(faster.duration() <= curve.duration() * (1.0 + 8.0 * f64::EPSILON));
     }
@@ -284,12 +289,13 @@ fn published_trajectories_reach_every_limit() {
     }
 }
 
-/// Positions of trajectory 1 of Table 12 from an independent program, to 12 decimals.
+/// Positions of trajectory 1 of Table 12 in exact fractions, to 12 decimals, made by
+/// `python3 crates/trajectories/tests/golden/trajectory_1.py`.
 #[test]
 fn trajectory_1_matches_an_independent_program() {
     let curve = SCurve::plan(0.6, 0.9, &Limits::new(0.1, 0.225, 1.2).unwrap()).unwrap();
-    // 3 + 4/9 + 3/16 s.
-    assert!((curve.duration() - (3.0 + 4.0 / 9.0 + 3.0 / 16.0)).abs() < 2e-15);
+    // 3 + 4/9 + 3/16 s; equal measured.
+    assert!((curve.duration() - (3.0 + 4.0 / 9.0 + 3.0 / 16.0)).abs() <= 2.0 * f64::EPSILON);
     let expected = [
         (0.050, 0.600_025_000_000),
         (0.187, 0.601_307_840_600),
@@ -385,13 +391,23 @@ fn misuse_is_named() {
     }
     let limits = Limits::new(1.0, 1.0, 1.0).unwrap();
     let error = SCurve::plan(0.0, f64::NAN, &limits).unwrap_err();
-    assert_eq!(error.to_string(), "to is NaN m, but must be finite");
-    for (from, to) in [(f64::MIN, f64::MAX), (0.0, f64::MAX)] {
-        let slow = Limits::new(1e-3, 1.0, 1.0).unwrap();
-        let error = SCurve::plan(from, to, &slow).unwrap_err();
-        assert!(
-            matches!(error, TrajectoryError::Unrepresentable { .. }),
-            "{error}"
-        );
-    }
+    assert_eq!(
+        error.to_string(),
+        "to is NaN m, but must be from -1e6 to 1e6"
+    );
+    let slow = Limits::new(1e-3, 1.0, 1.0).unwrap();
+    let error = SCurve::plan(0.0, 1e5, &slow).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("greater than zero and at most 1e7"),
+        "{error}"
+    );
+    // τ = ∛(d/2J) is below the least f64.
+    let stiff = Limits::new(1.0, 1.0, 1e15).unwrap();
+    let error = SCurve::plan(0.0, 5e-324, &stiff).unwrap_err();
+    assert!(
+        matches!(error, TrajectoryError::Unrepresentable { .. }),
+        "{error}"
+    );
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use axis_log::{Log, read_log};
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, Effect, Machine};
+use axis_sim::effects::{ActiveEffect, Machine};
 use clap::Args;
 use discrepancy::intake::{check_distinct, check_log, from_rest};
 use discrepancy::summary::{MeasuredError, SummaryFound, rank, tried};
@@ -38,10 +38,10 @@ pub struct Options {
     /// summary.html [default: runs/, the name of the axis, /discover]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Take this effect as there, and go on from it (may be repeated)
+    /// Search anew with this effect taken as there from the start (may be repeated)
     #[arg(long, value_name = "NAME")]
     accept: Vec<String>,
-    /// Never name this effect (may be repeated)
+    /// Search anew, and never name this effect (may be repeated)
     #[arg(long, value_name = "NAME")]
     reject: Vec<String>,
     /// Threads, 0 for all cores; results do not depend on it
@@ -68,30 +68,12 @@ pub fn command(options: &Options) -> Result<()> {
 }
 
 fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
-    let known = |name: &String| {
-        if Effect::named(name).is_some() {
-            return Ok(());
-        }
-        let all: Vec<&str> = axis_sim::effects::EFFECTS.iter().map(|e| e.name).collect();
-        Err(miette!(
-            "no effect is called \"{name}\"; there are: {}",
-            all.join(", ")
-        ))
+    let settings = Settings {
+        accepted: options.accept.clone(),
+        rejected: options.reject.clone(),
+        ..Settings::default()
     };
-    options
-        .accept
-        .iter()
-        .chain(&options.reject)
-        .try_for_each(known)?;
-    if let Some(both) = options
-        .accept
-        .iter()
-        .find(|name| options.reject.contains(name))
-    {
-        return Err(miette!(
-            "\"{both}\" is both accepted and rejected; give it once"
-        ));
-    }
+    settings.check(machine).into_diagnostic()?;
     let mut notes = Vec::new();
     let fit = read_all(&options.fit, machine, &mut notes)?;
     let check = read_all(&options.check, machine, &mut notes)?;
@@ -103,11 +85,6 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
 
     ready(out)?;
     let text = moved(&read_text(&options.axis)?, &options.axis, out)?;
-    let settings = Settings {
-        accepted: options.accept.clone(),
-        rejected: options.reject.clone(),
-        ..Settings::default()
-    };
     let progress = ProgressBar::new_spinner();
     progress.enable_steady_tick(std::time::Duration::from_millis(120));
     let found = search(machine, &fit, &check, &settings, |what| {
@@ -117,14 +94,19 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
     .into_diagnostic()
     .wrap_err("the axis as its file says does not run these logs")?;
     let mut discovered = discovery(machine, &fit, &check, &found).into_diagnostic()?;
+    discovered.discovery.notes.iter().try_for_each(say)?;
+    notes.append(&mut discovered.discovery.notes);
     discovered.discovery.notes = notes;
     let discovery = &discovered.discovery;
     progress.finish_and_clear();
 
-    let added: String = found.fit.state.effects.iter().map(entry).collect();
+    let entries = |number: fn(f64) -> String| -> String {
+        let all = found.fit.state.effects.iter();
+        all.map(|active| entry(active, number)).collect()
+    };
     let json = serde_json::to_vec_pretty(discovery).into_diagnostic()?;
     write_whole(&out.join("discovery.json"), &json)?;
-    write_whole(&out.join("axis.toml"), (text + &added).as_bytes())?;
+    write_whole(&out.join("axis.toml"), (text + &entries(whole)).as_bytes())?;
     match &discovery.next_experiment {
         Some(next) => {
             let program = toml::to_string(&next.program).into_diagnostic()?;
@@ -134,7 +116,7 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
     }
     let html = page::discovery::page(&discovered)?;
     write_whole(&out.join(REPORT), html.as_bytes())?;
-    tell(discovery, &added, out)
+    tell(discovery, &entries(read), out)
 }
 
 /// File of the proposed motion.
@@ -200,8 +182,18 @@ fn read_all(
     paths.iter().map(one).collect()
 }
 
+/// A number for a file: all of it.
+fn whole(value: f64) -> String {
+    format!("{value:e}")
+}
+
+/// A number for people: six digits of it.
+fn read(value: f64) -> String {
+    format!("{value:.5e}")
+}
+
 /// An effect as an axis file has it.
-fn entry(active: &ActiveEffect) -> String {
+fn entry(active: &ActiveEffect, number: fn(f64) -> String) -> String {
     let mut text = format!("\n[[effects]]\nname = \"{}\"\n", active.effect.name);
     for (p, value) in active.effect.parameters.iter().zip(&active.values) {
         let unit = if p.unit.is_empty() {
@@ -209,7 +201,7 @@ fn entry(active: &ActiveEffect) -> String {
         } else {
             format!("    # {}", p.unit)
         };
-        text += &format!("{} = {value:e}{unit}\n", p.name);
+        text += &format!("{} = {}{unit}\n", p.name, number(*value));
     }
     text
 }
@@ -256,7 +248,7 @@ fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
         ))?;
     }
     if !added.is_empty() {
-        say("\naxis file:")?;
+        say("\nadded to the axis file, there with all digits:")?;
         for line in added.trim_start().lines() {
             say(format!("+ {line}"))?;
         }
@@ -273,7 +265,7 @@ fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
     }
     if discovery.verdict == Verdict::PartlyExplained || discovery.verdict == Verdict::Unknown {
         say(
-            "\nRejecting an effect (--reject NAME) or accepting another (--accept NAME) runs the search on from there.",
+            "\nWith an effect rejected (--reject NAME) or another accepted (--accept NAME) the search is made anew, with that.",
         )?;
     }
     say(format!("\n{}", out.join(REPORT).display()))

@@ -10,8 +10,9 @@ use discrepancy::hidden::Exercise;
 use discrepancy::matrix::{Bench, Case, Outcome, Score, Sizes, cases};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
-use crate::output::{say, write_whole};
+use crate::output::{ready, say, write_whole};
 use crate::page::matrix;
 use crate::progress::bar;
 
@@ -21,11 +22,12 @@ pub struct Options {
     /// Axis file: the machine in which effects are hidden
     #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
     axis: PathBuf,
-    /// Folder for one file a case, matrix.json and matrix.md [default: runs/,
-    /// the name of the axis, /discover-matrix]; cases found there are not run again
+    /// Folder for one file a case, matrix.json and matrix.md [default: runs/, the name of
+    /// the axis, /discover-matrix/seed-N]; cases found there are not run again, if this
+    /// program ran them on this axis file
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Layout of the cases, noise and known parameters
+    /// Layout of the cases, noise and known parameters; 1 to 7 served development
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Some twenty cases, of every kind
@@ -37,9 +39,9 @@ pub struct Options {
     /// Only these cases, by their names (may be repeated)
     #[arg(long, value_name = "CASE", conflicts_with = "first")]
     only: Vec<String>,
-    /// Also write the page here once every case of the full matrix is there
-    #[arg(long, value_name = "FILE", default_value = "docs/discovery-matrix.md")]
-    page: PathBuf,
+    /// Also write the page of the full matrix here, where no page of another seed is
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["quick", "first", "only"])]
+    page: Option<PathBuf>,
     /// Threads, 0 for all cores; results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
@@ -51,6 +53,9 @@ pub fn command(options: &Options) -> Result<()> {
         .num_threads(options.threads)
         .build_global();
     let axis = Axis::read(&options.axis).into_diagnostic()?;
+    if let Some(page) = &options.page {
+        replaceable(page, options.seed)?;
+    }
     let sizes = if options.quick {
         Sizes::SMALL
     } else {
@@ -78,28 +83,108 @@ pub fn command(options: &Options) -> Result<()> {
             .join(name)
     };
     let out = options.out.clone().unwrap_or_else(default);
-    let outcomes = run(&axis, &cases, &out)?;
+    ready(&out.join("cases"))?;
+    let outcomes = run(&axis, &cases, &Kept::new(&axis, &out)?)?;
     let score = Score::new(&outcomes);
     let page = matrix::page(&axis, options.seed, all, &outcomes, &score);
     let json = serde_json::to_vec_pretty(&score).into_diagnostic()?;
     write_whole(&out.join("matrix.json"), &json)?;
     write_whole(&out.join("matrix.md"), page.as_bytes())?;
-    if !options.quick && outcomes.len() == all {
-        write_whole(&options.page, page.as_bytes())?;
+    if let Some(file) = &options.page {
+        write_whole(file, page.as_bytes())?;
     }
     say(matrix::figures(&score))?;
     say(format!("{}", out.join("matrix.md").display()))
 }
 
-/// Outcomes of all cases, in their order; those in `out` are read.
-fn run(axis: &Axis, cases: &[Case], out: &Path) -> Result<Vec<Outcome>> {
-    let file = |case: &Case| out.join("cases").join(format!("{}.json", case.id));
-    let kept = |case: &Case| -> Option<Outcome> {
-        let text = std::fs::read(file(case)).ok()?;
-        let outcome: Outcome = serde_json::from_slice(&text).ok()?;
-        outcome.case.is_same(case).then_some(outcome)
+/// Refuses to write a page over anything but a page of the same seed.
+fn replaceable(page: &Path, seed: u64) -> Result<()> {
+    let there = match std::fs::read_to_string(page) {
+        Ok(text) => text,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(()),
+        Err(e) => {
+            return Err(e)
+                .into_diagnostic()
+                .wrap_err_with(|| page.display().to_string());
+        }
     };
-    let missing: Vec<&Case> = cases.iter().filter(|case| kept(case).is_none()).collect();
+    match matrix::seed_of(&there) {
+        Some(other) if other == seed => Ok(()),
+        Some(other) => Err(miette!(
+            "{} is the page of seed {other}, not {seed}; give another file with --page, or remove it",
+            page.display()
+        )),
+        None => Err(miette!(
+            "{} is no page of this command; give another file with --page",
+            page.display()
+        )),
+    }
+}
+
+/// Outcomes on disk: one file a case, with what they were made by.
+struct Kept {
+    folder: PathBuf,
+    made_by: String,
+}
+
+/// What a file of a case holds.
+#[derive(Serialize, Deserialize)]
+struct File<O> {
+    /// Hash of the program and of the axis file that made it.
+    made_by: String,
+    outcome: O,
+}
+
+impl Kept {
+    /// Outcomes of this program on this axis, in a folder.
+    fn new(axis: &Axis, out: &Path) -> Result<Self> {
+        let program = std::env::current_exe()
+            .and_then(std::fs::read)
+            .into_diagnostic()
+            .wrap_err("cannot read this program, to say which one made the outcomes")?;
+        let mut hash = blake3::Hasher::new();
+        hash.update(blake3::hash(&program).as_bytes());
+        hash.update(axis.fingerprint.as_bytes());
+        Ok(Self {
+            folder: out.join("cases"),
+            made_by: hash.finalize().to_hex().to_string(),
+        })
+    }
+
+    fn file(&self, case: &Case) -> PathBuf {
+        self.folder.join(format!("{}.json", case.id))
+    }
+
+    /// The outcome of a case; `None` where there is none of this program.
+    fn outcome(&self, case: &Case) -> Option<Outcome> {
+        let text = std::fs::read(self.file(case)).ok()?;
+        let file: File<Outcome> = serde_json::from_slice(&text).ok()?;
+        let current = file.made_by == self.made_by && file.outcome.case.is_same(case);
+        current.then_some(file.outcome)
+    }
+
+    fn write(&self, case: &Case, outcome: &Outcome) -> Result<()> {
+        let file = File {
+            made_by: self.made_by.clone(),
+            outcome,
+        };
+        let json = serde_json::to_vec_pretty(&file).into_diagnostic()?;
+        write_whole(&self.file(case), &json)
+    }
+}
+
+/// Outcomes of all cases, in their order; those that are `kept` are read.
+fn run(axis: &Axis, cases: &[Case], kept: &Kept) -> Result<Vec<Outcome>> {
+    let is_missing = |case: &&Case| kept.outcome(case).is_none();
+    let missing: Vec<&Case> = cases.iter().filter(is_missing).collect();
+    let stale = missing.iter().filter(|case| kept.file(case).exists());
+    let stale = stale.count();
+    if stale > 0 {
+        say(format!(
+            "{stale} cases in {} are of another program or axis file, and are run again",
+            kept.folder.display()
+        ))?;
+    }
     let mut exercises: Vec<Exercise> = missing.iter().map(|case| case.exercise).collect();
     exercises.sort();
     exercises.dedup();
@@ -126,28 +211,82 @@ fn run(axis: &Axis, cases: &[Case], out: &Path) -> Result<Vec<Outcome>> {
                 let bench = benches.iter().find(|b| b.exercise() == case.exercise);
                 if let Some(bench) = bench {
                     let outcome = bench.try_case(case);
-                    let json = serde_json::to_vec_pretty(&outcome).into_diagnostic()?;
-                    write_whole(&file(case), &json)?;
+                    kept.write(case, &outcome)?;
                 }
                 progress.inc(1);
             }
             Ok(())
         })?;
     progress.finish_and_clear();
-    Ok(cases.iter().filter_map(kept).collect())
+    Ok(cases.iter().filter_map(|case| kept.outcome(case)).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn axis() -> Axis {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/axes/liu2025.toml");
+        Axis::read(file.as_ref()).unwrap()
+    }
+
+    fn outcome_of(case: &Case) -> Outcome {
+        Outcome {
+            case: case.clone(),
+            foreseen: Vec::new(),
+            failed: None,
+            verdict: None,
+            named: Vec::new(),
+            estimates: Vec::new(),
+            reduction: 0.5,
+            check: Vec::new(),
+            unknown: None,
+            split: None,
+        }
+    }
+
+    #[test]
+    fn outcomes_of_another_program_or_axis_are_not_taken_for_this_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let axis = axis();
+        let case = &cases(&axis, &Sizes::SMALL, 1).unwrap()[0];
+        let own = Kept::new(&axis, folder.path()).unwrap();
+        own.write(case, &outcome_of(case)).unwrap();
+        assert_eq!(own.outcome(case), Some(outcome_of(case)));
+        let other = Kept {
+            made_by: "another".to_owned(),
+            folder: own.folder.clone(),
+        };
+        assert_eq!(other.outcome(case), None);
+        let mut changed = axis.clone();
+        changed.fingerprint += "x";
+        let changed = Kept::new(&changed, folder.path()).unwrap();
+        assert_eq!(changed.outcome(case), None);
+        // What does not say who made it is of no known program.
+        let bare = serde_json::to_vec(&outcome_of(case)).unwrap();
+        std::fs::write(own.file(case), bare).unwrap();
+        assert_eq!(own.outcome(case), None);
+    }
+
+    #[test]
+    fn a_page_takes_the_place_of_none_but_its_own() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("page.md");
+        replaceable(&file, 8).unwrap();
+        let page = matrix::page(&axis(), 8, 0, &[], &Score::new(&[]));
+        std::fs::write(&file, page).unwrap();
+        replaceable(&file, 8).unwrap();
+        let refused = |seed| replaceable(&file, seed).unwrap_err().to_string();
+        assert!(refused(1).contains("seed 8, not 1"), "{}", refused(1));
+        std::fs::write(&file, "# Notes\n").unwrap();
+        assert!(refused(8).contains("no page"), "{}", refused(8));
+    }
+
     /// Or what is kept would be run again: without `float_roundtrip` of serde_json a
     /// fifth of the cases came back with another last bit.
     #[test]
     fn every_case_comes_back_from_its_file() {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/axes/liu2025.toml");
-        let axis = Axis::read(file.as_ref()).unwrap();
-        for case in cases(&axis, &Sizes::FULL, 6).unwrap() {
+        for case in cases(&axis(), &Sizes::FULL, 6).unwrap() {
             let text = serde_json::to_vec_pretty(&case).unwrap();
             assert_eq!(serde_json::from_slice::<Case>(&text).unwrap(), case);
         }

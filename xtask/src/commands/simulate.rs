@@ -2,19 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use axis_log::write_csv;
-use axis_sim::{ClosedLoop, Recorder};
+use axis_sim::{ClosedLoop, CsvRecorder, Cycle, Measured, SixDigits};
 use clap::{Args, ValueEnum};
 use discrepancy::hidden::Noise;
 use feed_dynamics::NutCoupling;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use pipeline::Figures;
 use pipeline::strategies::Strategy;
+use tempfile::NamedTempFile;
 use trajectories::{Motion, Program};
 
 use super::validate;
 use crate::context::{Common, Context, read_text};
 use crate::output::say;
+use crate::progress::bar;
 
 /// Options of `simulate`.
 #[derive(Args)]
@@ -72,27 +72,29 @@ impl Compensation {
 
 /// Runs the command: the axis file itself is simulated, not its machine.
 pub fn command(options: &Options) -> Result<()> {
-    let context = options.common.open()?;
-    let motion = motion(options, &context)?;
-    let closed_loop = if options.noise > 0.0 {
-        let mut exact = context.axis.clone();
-        exact.coupling = NutCoupling::MovingNode;
-        exact.simulation.step = exact.simulation.step.min(2e-5);
-        ClosedLoop::implicit(&exact)
-    } else {
-        ClosedLoop::new(&context.axis)
-    }
-    .into_diagnostic()?;
-    let mut recorder = Recorder::default();
-    let observe = |cycle: &axis_sim::Cycle| recorder.push(cycle);
     if !(options.noise.is_finite() && options.noise >= 0.0) {
         return Err(miette!(
             "--noise {}: give 0 or a factor above it",
             options.noise
         ));
     }
+    let context = options.common.open()?;
+    let motion = motion(options, &context)?;
+    let closed_loop = closed_loop(options, &context)?;
+    let mut log = options.log.as_deref().map(LogFile::new).transpose()?;
+    let bar = bar("simulate", closed_loop.cycles(&*motion));
+    let mut tracking = Tracking::default();
+    let observe = |cycle: &Cycle| {
+        tracking.push(cycle.error());
+        if let Some(log) = &mut log {
+            log.rows.push(cycle);
+        }
+        if tracking.cycles % 4096 == 0 {
+            bar.set_position(tracking.cycles);
+        }
+    };
     let mut sensors = Noise::GOOD.scaled(options.noise).sensors(context.seed);
-    let sense = |seen: &mut axis_sim::Measured| {
+    let sense = |seen: &mut Measured| {
         if options.noise > 0.0 {
             sensors(seen);
         }
@@ -106,22 +108,92 @@ pub fn command(options: &Options) -> Result<()> {
             .into_diagnostic()?;
         closed_loop.run_sensed(&*motion, &mut *law, sense, observe)
     };
+    bar.finish_and_clear();
     // What was computed before the run stopped is kept.
-    if let Some(file) = &options.log {
-        write_csv(file, &recorder.log().into_diagnostic()?)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot write the log {}", file.display()))?;
+    if let Some(log) = log.filter(|_| tracking.cycles > 0) {
+        log.finish()?;
     }
     outcome.completed().into_diagnostic()?;
-    let errors: Vec<f64> = recorder.cycles().iter().map(|c| c.error()).collect();
-    let figures = Figures::of_metres(&errors).into_diagnostic()?;
     say(format!(
-        "{} s, {} cycles: tracking error max {:.3} µm, mean {:.4} µm (simulated)",
-        motion.duration(),
-        errors.len(),
-        figures.max,
-        figures.mean
+        "{} s, {} cycles: tracking error max {} µm, mean {} µm (simulated)",
+        SixDigits(motion.duration()),
+        tracking.cycles,
+        SixDigits(1e6 * tracking.most),
+        SixDigits(1e6 * tracking.sum / tracking.cycles as f64)
     ))
+}
+
+fn closed_loop(options: &Options, context: &Context) -> Result<ClosedLoop> {
+    if options.noise > 0.0 {
+        let mut exact = context.axis.clone();
+        exact.coupling = NutCoupling::MovingNode;
+        exact.simulation.step = exact.simulation.step.min(2e-5);
+        return ClosedLoop::implicit(&exact).into_diagnostic();
+    }
+    ClosedLoop::new(&context.axis).into_diagnostic()
+}
+
+/// The tracking error so far, m.
+#[derive(Default)]
+struct Tracking {
+    cycles: u64,
+    most: f64,
+    sum: f64,
+}
+
+impl Tracking {
+    fn push(&mut self, error: f64) {
+        self.cycles += 1;
+        self.most = self.most.max(error.abs());
+        self.sum += error.abs();
+    }
+}
+
+/// A log that is written aside while the run goes on, and put in place whole.
+struct LogFile {
+    path: PathBuf,
+    rows: CsvRecorder<NamedTempFile>,
+}
+
+impl LogFile {
+    fn new(path: &Path) -> Result<Self> {
+        let folder = match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let aside = for_all_to_read()
+            .tempfile_in(folder)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot write the log {}", path.display()))?;
+        Ok(Self {
+            path: path.to_owned(),
+            rows: CsvRecorder::new(aside),
+        })
+    }
+
+    fn finish(self) -> Result<()> {
+        let path = self.path;
+        let place = |aside: NamedTempFile| {
+            aside.as_file().sync_all()?;
+            aside.persist(&path).map_err(|e| e.error)
+        };
+        let placed = self.rows.finish().and_then(place);
+        placed
+            .map(drop)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot write the log {}", path.display()))
+    }
+}
+
+/// Temporary files are private; a log is for everyone to read.
+fn for_all_to_read() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o644));
+    }
+    builder
 }
 
 fn motion(options: &Options, context: &Context) -> Result<Box<dyn Motion>> {

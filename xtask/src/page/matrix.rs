@@ -132,11 +132,14 @@ fn both(errors: Option<[f64; 2]>) -> String {
     errors.map_or("none".to_owned(), |e| e.map(percent).join(", "))
 }
 
+/// First line of a page.
+const TITLE: &str = "# Hidden effects, searched blind";
+
 /// The whole page.
 pub fn page(axis: &Axis, seed: u64, all: usize, outcomes: &[Outcome], score: &Score) -> String {
     let mut text = format!(
-        "# Hidden effects, searched blind\n\nMachine: {}. Seed {seed}. {} of {all} cases run.\n\
-        `cargo xtask discover-matrix --seed {seed}` makes this page; docs/theory/discrepancy.md says how cases\n\
+        "{TITLE}\n\nMachine: {}. Seed {seed}. {} of {all} cases run.\n\
+        `cargo xtask discover-matrix --seed {seed} --page FILE` makes this page; docs/theory/discrepancy.md says how cases\n\
         are made and counted. Intervals are Wilson's. Everything here is simulated.\n\n{}\n\
         ## Each effect, hidden alone\n\nErrors are those of sizes where it was named first, known parameters told.\n\n\
         | effect | can be seen | named first | or in the class | error: median, largest | 95 % intervals |\n\
@@ -182,6 +185,12 @@ pub fn page(axis: &Axis, seed: u64, all: usize, outcomes: &[Outcome], score: &Sc
         let _ = writeln!(text, "{}", row(outcome));
     }
     text
+}
+
+/// The seed that a page says it was made with; `None` of what is no such page.
+pub fn seed_of(page: &str) -> Option<u64> {
+    let after = page.strip_prefix(TITLE)?.split(" Seed ").nth(1)?;
+    after.split('.').next()?.parse().ok()
 }
 
 /// One after another, each with those that were said to be alike.

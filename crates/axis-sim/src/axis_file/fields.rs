@@ -1,6 +1,7 @@
 //! Walks a TOML table field by field, so that every refusal can point at its
 //! line and say what would be valid.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::ops::Range;
 use std::rc::Rc;
@@ -9,10 +10,14 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{AxisFileError, Source};
-use super::units::{Dimension, Valid};
+use super::key::{Key, Kind};
+use super::keys::KIND;
+use super::slips::{list, unknown_key, unknown_word};
 
 /// Canonical record of what was read: `path = value in SI`, for the fingerprint.
 pub(super) type Record = Rc<RefCell<Vec<String>>>;
+
+type Value<'a> = &'a Spanned<DeValue<'a>>;
 
 /// One TOML table being read.
 pub(super) struct Fields<'a> {
@@ -20,35 +25,60 @@ pub(super) struct Fields<'a> {
     path: String,
     span: Range<usize>,
     table: &'a DeTable<'a>,
-    seen: RefCell<Vec<String>>,
-    valid_keys: RefCell<Vec<String>>,
+    keys: Cow<'static, [Key]>,
     record: Record,
 }
 
 impl<'a> Fields<'a> {
+    /// The file itself, of which only the kind can be read as yet.
     pub(super) fn root(
         source: &'a Source,
         table: &'a Spanned<DeTable<'a>>,
         record: Record,
     ) -> Self {
-        Self::at(source, String::new(), table.span(), table.get_ref(), record)
-    }
-
-    fn at(
-        source: &'a Source,
-        path: String,
-        span: Range<usize>,
-        table: &'a DeTable<'a>,
-        record: Record,
-    ) -> Self {
         Self {
             source,
-            path,
-            span,
-            table,
-            seen: RefCell::default(),
-            valid_keys: RefCell::default(),
+            path: String::new(),
+            span: table.span(),
+            table: table.get_ref(),
+            keys: Cow::Borrowed(KIND),
             record,
+        }
+    }
+
+    /// The table, read with these keys; one that has others is refused: an
+    /// unknown key is often a slip of one that would else be missing.
+    pub(super) fn with_keys(
+        self,
+        keys: impl Into<Cow<'static, [Key]>>,
+    ) -> Result<Self, AxisFileError> {
+        let keys = keys.into();
+        let known: Vec<String> = keys.iter().flat_map(Key::spellings).collect();
+        let unknown = self
+            .table
+            .keys()
+            .filter(|key| !known.iter().any(|k| k == key.get_ref().as_ref()))
+            .min_by_key(|key| key.span().start);
+        let Some(key) = unknown else {
+            return Ok(Self { keys, ..self });
+        };
+        let place = if self.path.is_empty() {
+            "this file"
+        } else {
+            "this table"
+        };
+        let what = unknown_key(key.get_ref(), place, &keys);
+        Err(self.refuse(key.span(), key.get_ref(), what, list(&keys)))
+    }
+
+    fn inside(&self, path: String, value: Value<'a>, table: &'a DeTable<'a>) -> Self {
+        Self {
+            source: self.source,
+            path,
+            span: value.span(),
+            table,
+            keys: Cow::Borrowed(&[]),
+            record: self.record.clone(),
         }
     }
 
@@ -60,10 +90,15 @@ impl<'a> Fields<'a> {
         }
     }
 
-    fn get(&self, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
-        let value = self.table.get(key)?;
-        self.seen.borrow_mut().push(key.to_owned());
-        Some(value)
+    /// What the table of keys says about `name`.
+    fn key(&self, name: &str) -> Result<&Key, AxisFileError> {
+        self.keys
+            .iter()
+            .find(|key| key.name == name)
+            .ok_or_else(|| {
+                let what = "is not among the keys that are read here".to_owned();
+                self.refuse(self.span.clone(), name, what, list(&self.keys))
+            })
     }
 
     fn refuse(&self, span: Range<usize>, key: &str, what: String, valid: String) -> AxisFileError {
@@ -81,136 +116,137 @@ impl<'a> Fields<'a> {
         AxisFileError::field(self.source, self.span.clone(), path, what, valid.to_owned())
     }
 
+    /// An error about the value of `key`, for checks that take more than the value.
+    pub(super) fn refuse_value(&self, key: &str, what: String, valid: String) -> AxisFileError {
+        let span = self.table.get(key).map_or(self.span.clone(), Spanned::span);
+        self.refuse(span, key, what, valid)
+    }
+
+    /// Whether the table has a key of that name.
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
     /// A sub-table that must be there.
-    pub(super) fn table(&self, key: &str) -> Result<Fields<'a>, AxisFileError> {
-        self.valid_keys.borrow_mut().push(format!("[{key}]"));
-        self.optional_table(key)?.ok_or_else(|| {
-            let what = "is missing".to_owned();
-            let valid = format!("a table [{}]", self.name_of(key));
-            self.refuse(self.span.start..self.span.start, key, what, valid)
-        })
+    pub(super) fn table(&self, name: &str) -> Result<Fields<'a>, AxisFileError> {
+        self.optional_table(name)?
+            .ok_or_else(|| self.missing(name, format!("a table [{}]", self.name_of(name))))
     }
 
     /// A sub-table that may be left out.
-    pub(super) fn optional_table(&self, key: &str) -> Result<Option<Fields<'a>>, AxisFileError> {
-        self.valid_keys.borrow_mut().push(format!("[{key}]"));
-        let Some(value) = self.get(key) else {
+    pub(super) fn optional_table(&self, name: &str) -> Result<Option<Fields<'a>>, AxisFileError> {
+        let keys = match &self.key(name)?.kind {
+            Kind::Table(keys) => *keys,
+            _ => &[],
+        };
+        let Some(value) = self.table.get(name) else {
             return Ok(None);
         };
         match value.get_ref() {
-            DeValue::Table(table) => Ok(Some(Self::at(
-                self.source,
-                self.name_of(key),
-                value.span(),
-                table,
-                self.record.clone(),
-            ))),
-            other => Err(self.wrong_type(value, key, other, "a table")),
+            DeValue::Table(table) => {
+                let inside = self.inside(self.name_of(name), value, table);
+                inside.with_keys(keys).map(Some)
+            }
+            _ => Err(self.wrong_type(value, name, "a table".to_owned())),
         }
     }
 
-    /// The tables of `[[key]]`, none if there is no such key.
-    pub(super) fn tables(&self, key: &str) -> Result<Vec<Fields<'a>>, AxisFileError> {
-        self.valid_keys.borrow_mut().push(format!("[[{key}]]"));
-        let Some(value) = self.get(key) else {
+    /// The tables of `[[name]]`, none if there is no such key.
+    pub(super) fn tables(&self, name: &str) -> Result<Vec<Fields<'a>>, AxisFileError> {
+        let keys = match &self.key(name)?.kind {
+            Kind::Tables(keys) => *keys,
+            _ => &[],
+        };
+        let checked = |fields: Fields<'a>| fields.with_keys(keys);
+        let tables = self.unchecked(name, Cow::Borrowed(keys))?;
+        tables.into_iter().map(checked).collect()
+    }
+
+    /// As [`Fields::tables`], with keys of which a table has some; no other is refused yet.
+    pub(super) fn unchecked(
+        &self,
+        name: &str,
+        keys: impl Into<Cow<'static, [Key]>>,
+    ) -> Result<Vec<Fields<'a>>, AxisFileError> {
+        let keys = keys.into();
+        let Some(value) = self.table.get(name) else {
             return Ok(Vec::new());
         };
         let DeValue::Array(items) = value.get_ref() else {
-            return Err(self.wrong_type(value, key, value.get_ref(), "an array of tables"));
+            return Err(self.wrong_type(value, name, format!("tables [[{name}]]")));
         };
-        let table = |(i, item): (usize, &'a Spanned<DeValue<'a>>)| match item.get_ref() {
-            DeValue::Table(table) => Ok(Self::at(
-                self.source,
-                format!("{}[{}]", self.name_of(key), i + 1),
-                item.span(),
-                table,
-                self.record.clone(),
-            )),
-            other => Err(self.wrong_type(item, key, other, "a table")),
+        let table = |(i, item): (usize, Value<'a>)| match item.get_ref() {
+            DeValue::Table(table) => {
+                let path = format!("{}[{}]", self.name_of(name), i + 1);
+                let keys = keys.clone();
+                Ok(Fields {
+                    keys,
+                    ..self.inside(path, item, table)
+                })
+            }
+            _ => Err(self.wrong_type(item, name, "a table".to_owned())),
         };
         items.iter().enumerate().map(table).collect()
     }
 
-    /// A quantity: the key is `name_unit`, the result is SI.
-    pub(super) fn quantity(
-        &self,
-        name: &str,
-        dimension: &Dimension,
-        valid: Valid,
-    ) -> Result<f64, AxisFileError> {
-        let keys: Vec<String> = dimension.keys(name).collect();
-        self.valid_keys.borrow_mut().push(keys.join(" | "));
-        let given: Vec<(&String, f64)> = keys
-            .iter()
-            .zip(dimension.factors())
-            .filter(|(key, _)| self.table.contains_key(key.as_str()))
+    /// A number in SI units: of a quantity, whose key is `name_unit`, or plain.
+    pub(super) fn number(&self, name: &str) -> Result<f64, AxisFileError> {
+        match self.optional_number(name)? {
+            Some(number) => Ok(number),
+            None => {
+                let key = self.key(name)?;
+                let spellings = key.spellings();
+                let valid = match spellings.as_slice() {
+                    [_, _, ..] => format!("one of {}: {}", spellings.join(", "), key.valid(None)),
+                    _ => key.valid(None),
+                };
+                Err(self.missing(spellings.first().map_or(name, |s| s), valid))
+            }
+        }
+    }
+
+    /// As [`Fields::number`], of one that may be left out.
+    pub(super) fn optional_number(&self, name: &str) -> Result<Option<f64>, AxisFileError> {
+        let key = self.key(name)?;
+        let (units, limits) = match &key.kind {
+            Kind::Quantity(dimension, limits) => (dimension.units(), limits),
+            Kind::Number(_, limits) => (&[("", 1.0)][..], limits),
+            _ => return Err(self.wrong_kind(name)),
+        };
+        let given: Vec<(String, (&str, f64))> = key
+            .spellings()
+            .into_iter()
+            .zip(units.iter().copied())
+            .filter(|(spelling, _)| self.has(spelling))
             .collect();
         match given.as_slice() {
-            [] => Err(self.no_such_unit(name, dimension, &keys)),
-            [(key, factor)] => {
-                let number = self.plain(key, valid)? * factor;
-                // The factor may carry it beyond what f64 holds, or to zero.
-                if !valid.accepts(number) {
-                    let span = self
-                        .table
-                        .get(key.as_str())
-                        .map_or(self.span.clone(), Spanned::span);
-                    let what = format!("is {number} in SI units");
-                    return Err(self.refuse(span, key, what, valid.text().to_owned()));
+            [] => Ok(None),
+            [(spelling, unit)] => {
+                let valid = key.valid(Some(*unit));
+                let number = self.plain(spelling, &valid)? * unit.1;
+                if !limits.takes(number) {
+                    let what = format!("is {}", self.typed(spelling));
+                    return Err(self.refuse_value(spelling, what, valid));
                 }
                 self.keep(name, number);
-                Ok(number)
+                Ok(Some(number))
             }
             [_, (second, _), ..] => {
-                let value = self.table.get(second.as_str());
-                let span = value.map_or(self.span.clone(), Spanned::span);
                 let what = "gives the same quantity a second time".to_owned();
-                Err(self.refuse(span, second, what, format!("one of {}", keys.join(", "))))
+                let valid = format!("one of {}", key.spellings().join(", "));
+                Err(self.refuse_value(second, what, valid))
             }
         }
     }
 
-    /// A number without a unit.
-    pub(super) fn number(&self, key: &str, valid: Valid) -> Result<f64, AxisFileError> {
-        self.valid_keys.borrow_mut().push(key.to_owned());
-        if !self.table.contains_key(key) {
-            return Err(self.missing(key, "a number"));
-        }
-        let number = self.plain(key, valid)?;
-        self.keep(key, number);
-        Ok(number)
-    }
-
-    /// A quantity that may be left out.
-    pub(super) fn optional_quantity(
-        &self,
-        name: &str,
-        dimension: &Dimension,
-        valid: Valid,
-    ) -> Result<Option<f64>, AxisFileError> {
-        let mut keys = dimension.keys(name);
-        if keys.any(|key| self.table.contains_key(key.as_str())) {
-            return self.quantity(name, dimension, valid).map(Some);
-        }
-        self.valid_keys.borrow_mut().extend(dimension.keys(name));
-        Ok(None)
-    }
-
-    /// A number that is `default` where it is left out.
-    pub(super) fn optional_number(&self, key: &str, default: f64) -> Result<f64, AxisFileError> {
-        if self.table.contains_key(key) {
-            return self.number(key, Valid::Finite);
-        }
-        self.valid_keys.borrow_mut().push(key.to_owned());
-        Ok(default)
-    }
-
-    /// A whole number between `least` and `most`.
-    pub(super) fn count(&self, key: &str, least: u32, most: u32) -> Result<u32, AxisFileError> {
-        self.valid_keys.borrow_mut().push(key.to_owned());
-        let valid = format!("a whole number from {least} to {most}");
-        let Some(value) = self.get(key) else {
-            return Err(self.missing(key, &valid));
+    /// A whole number.
+    pub(super) fn count(&self, name: &str) -> Result<u32, AxisFileError> {
+        let key = self.key(name)?;
+        let Kind::Count(least, most) = key.kind else {
+            return Err(self.wrong_kind(name));
+        };
+        let Some(value) = self.table.get(name) else {
+            return Err(self.missing(name, key.valid(None)));
         };
         let number = match value.get_ref() {
             DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok(),
@@ -218,124 +254,80 @@ impl<'a> Fields<'a> {
         };
         match number.and_then(|n| u32::try_from(n).ok()) {
             Some(n) if (least..=most).contains(&n) => {
-                self.keep(key, n);
+                self.keep(name, n);
                 Ok(n)
             }
             _ => {
-                let what = format!("is {}", self.source.text(value.span()));
-                Err(self.refuse(value.span(), key, what, valid))
+                let what = format!("is {}", self.typed(name));
+                Err(self.refuse(value.span(), name, what, key.valid(None)))
             }
         }
     }
 
     /// A text that must be there.
-    pub(super) fn text(&self, key: &str) -> Result<&'a str, AxisFileError> {
-        self.optional_text(key)?
-            .ok_or_else(|| self.missing(key, "a text in quotes"))
+    pub(super) fn text(&self, name: &str) -> Result<&'a str, AxisFileError> {
+        let valid = self.key(name)?.valid(None);
+        self.optional_text(name)?
+            .ok_or_else(|| self.missing(name, valid))
     }
 
     /// A text that may be left out. Texts do not count for the fingerprint.
-    pub(super) fn optional_text(&self, key: &str) -> Result<Option<&'a str>, AxisFileError> {
-        self.valid_keys.borrow_mut().push(key.to_owned());
-        let Some(value) = self.get(key) else {
+    pub(super) fn optional_text(&self, name: &str) -> Result<Option<&'a str>, AxisFileError> {
+        let valid = self.key(name)?.valid(None);
+        let Some(value) = self.table.get(name) else {
             return Ok(None);
         };
         match value.get_ref() {
             DeValue::String(text) => Ok(Some(text.as_ref())),
-            other => Err(self.wrong_type(value, key, other, "a text in quotes")),
+            _ => Err(self.wrong_type(value, name, valid)),
         }
     }
 
     /// One of a few words.
-    pub(super) fn word<T: Copy>(&self, key: &str, words: &[(&str, T)]) -> Result<T, AxisFileError> {
-        let text = self.text(key)?;
-        let found = words.iter().find(|(word, _)| *word == text);
-        let Some((word, meaning)) = found else {
-            let span = self.table.get(key).map_or(self.span.clone(), Spanned::span);
-            let known: Vec<String> = words.iter().map(|(w, _)| format!("\"{w}\"")).collect();
-            let what = format!("is \"{text}\"");
-            return Err(self.refuse(span, key, what, known.join(" or ")));
+    pub(super) fn word(&self, name: &str) -> Result<&'static str, AxisFileError> {
+        let text = self.text(name)?;
+        let key = self.key(name)?;
+        let Kind::Word(words) = &key.kind else {
+            return Err(self.wrong_kind(name));
         };
-        self.keep(key, word);
-        Ok(*meaning)
+        let Some(word) = words.iter().find(|word| **word == text) else {
+            let what = format!("is \"{text}\"{}", unknown_word(text, words));
+            return Err(self.refuse_value(name, what, key.valid(None)));
+        };
+        self.keep(name, word);
+        Ok(word)
     }
 
-    /// Refuses keys that nothing asked for.
-    pub(super) fn finish(self) -> Result<(), AxisFileError> {
-        let seen = self.seen.borrow();
-        let unknown = self
-            .table
-            .iter()
-            .find(|(key, _)| !seen.iter().any(|s| s == key.get_ref().as_ref()));
-        match unknown {
-            None => Ok(()),
-            Some((key, _)) => {
-                let mut valid = self.valid_keys.borrow().clone();
-                valid.sort();
-                valid.dedup();
-                let what = "is not a key of this table".to_owned();
-                let valid = format!("one of: {}", valid.join(", "));
-                Err(self.refuse(key.span(), key.get_ref(), what, valid))
-            }
-        }
-    }
-
-    fn plain(&self, key: &str, valid: Valid) -> Result<f64, AxisFileError> {
-        let Some(value) = self.get(key) else {
-            return Err(self.missing(key, valid.text()));
+    fn plain(&self, key: &str, valid: &str) -> Result<f64, AxisFileError> {
+        let Some(value) = self.table.get(key) else {
+            return Err(self.missing(key, valid.to_owned()));
         };
         let number = match value.get_ref() {
             DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse::<f64>().ok(),
             DeValue::Float(f) => f.as_str().parse::<f64>().ok(),
             _ => None,
         };
-        match number {
-            Some(number) if valid.accepts(number) => Ok(number),
-            Some(_) => {
-                let what = format!("is {}", self.source.text(value.span()));
-                Err(self.refuse(value.span(), key, what, valid.text().to_owned()))
-            }
-            None => Err(self.wrong_type(value, key, value.get_ref(), valid.text())),
-        }
+        number.ok_or_else(|| self.wrong_type(value, key, valid.to_owned()))
     }
 
-    fn missing(&self, key: &str, valid: &str) -> AxisFileError {
+    /// The value of `key` as it stands in the file.
+    fn typed(&self, key: &str) -> &str {
+        let span = self.table.get(key).map(Spanned::span);
+        span.map_or("", |span| self.source.text(span))
+    }
+
+    fn missing(&self, key: &str, valid: String) -> AxisFileError {
         let span = self.span.start..self.span.start;
-        self.refuse(span, key, "is missing".to_owned(), valid.to_owned())
+        self.refuse(span, key, "is missing".to_owned(), valid)
     }
 
-    fn no_such_unit(&self, name: &str, dimension: &Dimension, keys: &[String]) -> AxisFileError {
-        let prefix = format!("{name}_");
-        let near = self.table.iter().find(|(key, _)| {
-            let key = key.get_ref().as_ref();
-            let elsewhere = self.seen.borrow().iter().any(|s| s == key);
-            !elsewhere && key.starts_with(&prefix)
-        });
-        let valid = format!("one of {}", keys.join(", "));
-        match near {
-            Some((key, _)) => {
-                let unit = &key.get_ref()[prefix.len()..];
-                let what = format!(
-                    "has the unit suffix `{unit}`, which is no {}",
-                    dimension.name
-                );
-                self.refuse(key.span(), key.get_ref(), what, valid)
-            }
-            None => {
-                let span = self.span.start..self.span.start;
-                self.refuse(span, name, "is missing".to_owned(), valid)
-            }
-        }
+    fn wrong_kind(&self, name: &str) -> AxisFileError {
+        let what = "is read as what it is not".to_owned();
+        self.refuse(self.span.clone(), name, what, list(&self.keys))
     }
 
-    fn wrong_type(
-        &self,
-        value: &Spanned<DeValue<'_>>,
-        key: &str,
-        is: &DeValue<'_>,
-        valid: &str,
-    ) -> AxisFileError {
-        let kind = match is {
+    fn wrong_type(&self, value: Value<'_>, key: &str, valid: String) -> AxisFileError {
+        let kind = match value.get_ref() {
             DeValue::String(_) => "a text",
             DeValue::Integer(_) => "a whole number",
             DeValue::Float(_) => "a number",
@@ -344,6 +336,6 @@ impl<'a> Fields<'a> {
             DeValue::Array(_) => "a list",
             DeValue::Table(_) => "a table",
         };
-        self.refuse(value.span(), key, format!("is {kind}"), valid.to_owned())
+        self.refuse(value.span(), key, format!("is {kind}"), valid)
     }
 }

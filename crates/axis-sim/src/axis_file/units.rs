@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 /// A physical dimension with the units that a key may end in.
+#[derive(Debug)]
 pub(super) struct Dimension {
     /// What it is called in a message.
     pub(super) name: &'static str,
@@ -17,9 +18,9 @@ impl Dimension {
             .map(move |(unit, _)| format!("{name}_{unit}"))
     }
 
-    /// Factors to SI, in the order of [`Self::keys`].
-    pub(super) fn factors(&self) -> impl Iterator<Item = f64> {
-        self.units.iter().map(|(_, factor)| *factor)
+    /// Each unit with its factor to SI, the usual one first.
+    pub(super) fn units(&self) -> &'static [(&'static str, f64)] {
+        self.units
     }
 }
 
@@ -71,38 +72,4 @@ dimensions! {
     SPEED_GAIN "unit of a speed gain": "v_s_per_m" 1.0;
     CURRENT_PROPORTIONAL "unit of a current controller's proportional gain": "v_per_a" 1.0;
     CURRENT_INTEGRAL "unit of a current controller's integral gain": "v_per_a_s" 1.0;
-}
-
-/// What a number must satisfy besides being finite.
-#[derive(Clone, Copy)]
-pub(super) enum Valid {
-    /// Any finite number.
-    Finite,
-    /// Above zero.
-    Positive,
-    /// Zero or above.
-    NotNegative,
-    /// Above −1 and below ½: Poisson's ratio of a stable material.
-    PoissonRatio,
-}
-
-impl Valid {
-    pub(super) fn accepts(self, number: f64) -> bool {
-        number.is_finite()
-            && match self {
-                Valid::Finite => true,
-                Valid::Positive => number > 0.0,
-                Valid::NotNegative => number >= 0.0,
-                Valid::PoissonRatio => number > -1.0 && number < 0.5,
-            }
-    }
-
-    pub(super) fn text(self) -> &'static str {
-        match self {
-            Valid::Finite => "a finite number",
-            Valid::Positive => "a finite number above zero",
-            Valid::NotNegative => "a finite number, zero or above",
-            Valid::PoissonRatio => "a number above -1 and below 0.5",
-        }
-    }
 }

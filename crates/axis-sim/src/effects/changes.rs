@@ -49,24 +49,26 @@ pub struct ScrewState {
 }
 
 /// What the sensors get wrong.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sensors {
     /// Added to the q current, A.
     pub current_offset: f64,
-    /// Amplitude and phase of the motor encoder's error, rad.
-    pub eccentricity: [f64; 2],
+    /// Amplitude and phase of each of the motor encoder's errors, rad.
+    pub eccentricities: Vec<[f64; 2]>,
 }
 
 impl Sensors {
     /// What these sensors make of what perfect ones would show.
     pub(crate) fn show(&self, mut m: Measured) -> Measured {
         m.current.q += self.current_offset;
-        let [amplitude, phase] = self.eccentricity;
-        if amplitude != 0.0 {
-            let at = m.motor_angle + phase;
+        let true_angle = m.motor_angle;
+        let mut speed_ratio = 1.0;
+        for [amplitude, phase] in &self.eccentricities {
+            let at = true_angle + phase;
             m.motor_angle += amplitude * (at.sin() - phase.sin());
-            m.motor_speed *= 1.0 + amplitude * at.cos();
+            speed_ratio += amplitude * at.cos();
         }
+        m.motor_speed *= speed_ratio;
         m
     }
 }
@@ -144,6 +146,16 @@ pub struct Changes<'a> {
 pub(crate) enum MachineMut<'a> {
     BallScrew(&'a mut Axis),
     Rigid(&'a mut RigidAxis),
+}
+
+impl MachineMut<'_> {
+    /// Control period, s.
+    pub(crate) fn period(&self) -> f64 {
+        match self {
+            Self::BallScrew(axis) => axis.period,
+            Self::Rigid(axis) => axis.period,
+        }
+    }
 }
 
 /// The values of an effect with K parameters; missing ones are 0.

@@ -17,6 +17,6 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
     let v: [f64; 2] = super::changes::array(values);
-    to.hooks.sensors.eccentricity = [v[0], v[1]];
+    to.hooks.sensors.eccentricities.push(v);
     Ok(())
 }

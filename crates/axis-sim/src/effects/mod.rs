@@ -5,6 +5,11 @@
 //! it (a load on the table, a torque at the motor, the nut's kinematics, what
 //! the sensors show). At its null value it changes nothing, to the bit.
 //!
+//! Effects add, whatever their order. Two entries of the same effect that agree
+//! in all that shapes them (a phase, a width) are one with the sum of their
+//! sizes, so that relative changes add too: twice 5 % is 10 %. Two that differ
+//! in shape act side by side.
+//!
 //! Friction effects act through the unit bristle `u ∈ [−1, 1]` of a LuGre
 //! element with the Coulomb level 1 and the axis' own pre-sliding distance, so
 //! that none of them jumps at zero speed (Canudas de Wit et al., IEEE Trans.
@@ -22,6 +27,7 @@ mod controller_gain;
 mod coulomb_friction;
 mod current_sensor_offset;
 mod encoder_eccentricity;
+mod install;
 mod inverter_dead_time;
 mod lead_error;
 mod motor_inertia;
@@ -42,6 +48,7 @@ mod viscous_friction;
 
 pub use changes::{Changes, Machine, ScrewState, TableState};
 pub(crate) use changes::{Hooks, MachineMut};
+pub(crate) use install::install;
 
 use feed_dynamics::DriveError;
 
@@ -121,6 +128,31 @@ impl Effect {
     /// Typical values.
     pub fn typical(&self) -> Vec<f64> {
         self.parameters.iter().map(|p| p.typical).collect()
+    }
+
+    /// Whether it exists on that kind of machine, or else why not.
+    ///
+    /// # Errors
+    /// The reason, as the end of a sentence about the effect.
+    pub fn applies_to(&self, machine: &Machine) -> Result<(), &'static str> {
+        self.fits(matches!(machine, Machine::Rigid(_)))
+    }
+
+    pub(crate) fn fits(&self, rigid: bool) -> Result<(), &'static str> {
+        if self.on_rigid || !rigid {
+            return Ok(());
+        }
+        Err(match self.channel {
+            EffectChannel::Torque => {
+                "it acts on parts of motor, current loop or contact that a rigid mass does not have"
+            }
+            EffectChannel::Kinematics => "a rigid mass has no screw and no motor encoder",
+            EffectChannel::Voltage => "a rigid mass has no motor voltages",
+            EffectChannel::Controller => {
+                "the controller of a rigid mass has no current loop and no feed-forward"
+            }
+            EffectChannel::Clock => "a rigid mass has one position channel only",
+        })
     }
 
     /// The effect of that name.

@@ -1,6 +1,6 @@
 //! Effects vanish at their null value, to the bit, and do something elsewhere.
 
-use axis_sim::effects::{ActiveEffect, EFFECTS, Machine};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Machine};
 use axis_sim::{Axis, LoggedReference, Replay, Trace};
 use trajectories::Motion;
 
@@ -45,14 +45,150 @@ fn each_effect_vanishes_at_its_null_value_and_not_at_a_typical_one() {
             replay.run(&machine, &[active], None).unwrap()
         };
         assert!(same(&without, &with(effect.null())), "{}", effect.name);
-        let mut typical = effect.typical();
-        // Where and when the test's short motion is.
-        match effect.name {
-            "position-dependent-friction" => typical[1] = 0.604,
-            "process-force" => (typical[1], typical[2]) = (0.05, 0.1),
-            _ => {}
+        assert!(
+            !same(&without, &with(values(effect, 1.0))),
+            "{}",
+            effect.name
+        );
+    }
+}
+
+/// Values of an effect with its sizes scaled, so that the loop holds with two
+/// of them, and its shape where and when the test's short motion is.
+fn values(effect: &Effect, share: f64) -> Vec<f64> {
+    let mut values = effect.typical();
+    for (value, p) in values.iter_mut().zip(effect.parameters) {
+        if p.size {
+            *value *= share;
         }
-        assert!(!same(&without, &with(typical)), "{}", effect.name);
+    }
+    match effect.name {
+        "position-dependent-friction" => values[1] = 0.604,
+        "process-force" => (values[1], values[2]) = (0.05, 0.1),
+        _ => {}
+    }
+    values
+}
+
+/// The rule of the module's page, for every effect of the registry: two of the
+/// same shape are one with the sum of their sizes, and one without size
+/// changes nothing beside another of any shape, wherever it stands.
+#[test]
+fn two_of_an_effect_add() {
+    let axis = axis();
+    let replay = replay(&axis);
+    let machine = Machine::BallScrew(Box::new(axis));
+    for effect in EFFECTS.iter().copied() {
+        let run = |all: &[&Vec<f64>]| {
+            let active = |values: &&Vec<f64>| ActiveEffect {
+                effect,
+                values: (*values).clone(),
+            };
+            let active: Vec<ActiveEffect> = all.iter().map(active).collect();
+            replay.run(&machine, &active, None).unwrap()
+        };
+        // 0.5 + 0.25 = 0.75 without rounding.
+        let (a, b, sum) = (
+            values(effect, 0.5),
+            values(effect, 0.25),
+            values(effect, 0.75),
+        );
+        let expected: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a + b).collect();
+        for (p, (sum, expected)) in effect.parameters.iter().zip(sum.iter().zip(&expected)) {
+            assert!(!p.size || sum == expected, "{}: a rounded sum", effect.name);
+        }
+        let both = run(&[&a, &b]);
+        assert!(same(&both, &run(&[&sum])), "{}: no sum", effect.name);
+        assert!(same(&both, &run(&[&b, &a])), "{}: order", effect.name);
+        assert!(
+            !same(&both, &run(&[&a])),
+            "{}: the first alone",
+            effect.name
+        );
+        assert!(!same(&both, &run(&[&b])), "{}: the last alone", effect.name);
+
+        // Of another shape, and without size.
+        let mut nothing = values(effect, 0.0);
+        for (value, p) in nothing.iter_mut().zip(effect.parameters) {
+            if !p.size {
+                *value = 0.5 * (*value + p.bounds[1]);
+            }
+        }
+        let alone = run(&[&a]);
+        assert!(
+            same(&alone, &run(&[&a, &nothing])),
+            "{}: last wins",
+            effect.name
+        );
+        assert!(
+            same(&alone, &run(&[&nothing, &a])),
+            "{}: first wins",
+            effect.name
+        );
+    }
+}
+
+/// Two eccentricities in quadrature are one of √2 the size between them:
+/// a sin θ + a sin(θ + π/2) = √2 a sin(θ + π/4).
+#[test]
+fn eccentricities_of_different_phase_superpose() {
+    let axis = axis();
+    let replay = replay(&axis);
+    let machine = Machine::BallScrew(Box::new(axis));
+    let effect = Effect::named("encoder-eccentricity").unwrap();
+    let run = |all: &[[f64; 2]]| {
+        let active = |values: &[f64; 2]| ActiveEffect {
+            effect,
+            values: values.to_vec(),
+        };
+        let active: Vec<ActiveEffect> = all.iter().map(active).collect();
+        let trace = replay.run(&machine, &active, None).unwrap();
+        trace.channel("motor_angle_rad").unwrap().to_vec()
+    };
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let two = run(&[[1e-3, 0.0], [1e-3, quarter]]);
+    let one = run(&[[1e-3 * 2f64.sqrt(), 0.5 * quarter]]);
+    let without = run(&[]);
+    let apart = |a: &[f64], b: &[f64]| {
+        let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        apart.fold(0.0, f64::max)
+    };
+    println!("{:e} of {:e} rad", apart(&two, &one), apart(&two, &without));
+    // Rounding, carried through the loop: measured 4e-15 of 2e-3 rad.
+    assert!(apart(&two, &one) < 3e-14, "{:e}", apart(&two, &one));
+    assert!(apart(&two, &without) > 1e-4);
+}
+
+#[test]
+fn an_effect_tells_whether_it_applies() {
+    let rigid = Machine::read(&crate::data(crate::RIGID)).unwrap();
+    let ball_screw = Machine::BallScrew(Box::new(axis()));
+    let log = axis_log::Log::new(
+        ["t_s", "position_ref_m", "position_m"]
+            .map(|name| axis_log::Channel::new(name, vec![0.0, 1e-3, 2e-3]).unwrap())
+            .to_vec(),
+    )
+    .unwrap();
+    let replay = Replay::new(&log, 1e-3).unwrap();
+    for effect in EFFECTS.iter().copied() {
+        assert_eq!(effect.applies_to(&ball_screw), Ok(()));
+        assert_eq!(effect.applies_to(&rigid).is_ok(), effect.on_rigid);
+        // What it tells is what a replay does, and what a file may say.
+        let values = values(effect, 0.1);
+        let mut entry = format!("\n[[effects]]\nname = \"{}\"\n", effect.name);
+        for (p, value) in effect.parameters.iter().zip(&values) {
+            entry += &format!("{} = {value}\n", p.name);
+        }
+        let ran = replay.run(&rigid, &[ActiveEffect { effect, values }], None);
+        assert_eq!(ran.is_ok(), effect.on_rigid, "{}", effect.name);
+        let read = Machine::parse("rigid.toml", &(crate::text(crate::RIGID) + &entry));
+        match (effect.applies_to(&rigid), read) {
+            (Ok(()), read) => assert!(read.is_ok(), "{}", effect.name),
+            (Err(reason), read) => {
+                let message = read.err().unwrap().to_string();
+                assert!(message.contains(reason), "{message}");
+            }
+        }
     }
 }
 
@@ -99,12 +235,31 @@ fn effects_stand_in_the_axis_file() {
     let bad = with.replace("backlash", "backslash");
     let error = Axis::parse("bad.toml", &bad).unwrap_err().to_string();
     assert!(
-        error.contains("backslash") && error.contains("viscous-friction"),
+        error.contains("backslash") && error.contains("did you mean \"backlash\"?"),
         "{error}"
     );
-    let bad = with.replace("4e-6", "4");
+    // Errors stand at the line of what is wrong.
+    let line = 1 + with.lines().position(|l| l.starts_with("gap")).unwrap();
+    for (from, to, says) in [
+        (
+            "gap = 4e-6",
+            "gap = 4",
+            "effects[1].gap` is 4; valid: a number from 0 to 0.001 m",
+        ),
+        (
+            "gap = 4e-6",
+            "gpa = 4e-6",
+            "effects[1].gpa` is not a key of this table; did you mean `gap`?",
+        ),
+    ] {
+        let bad = with.replace(from, to);
+        let error = Axis::parse("bad.toml", &bad).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("bad.toml:{line}: `")), "{error}");
+        assert!(error.contains(says), "{error}");
+    }
+    let bad = with.replace("name = \"backlash\"", "nmae = \"backlash\"");
     let error = Axis::parse("bad.toml", &bad).unwrap_err().to_string();
-    assert!(error.contains("gap from"), "{error}");
+    assert!(error.contains("did you mean `name`?"), "{error}");
 }
 
 #[test]

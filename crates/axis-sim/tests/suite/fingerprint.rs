@@ -1,8 +1,9 @@
 //! The fingerprint follows the values, and nothing else.
 
 use axis_sim::Axis;
+use axis_sim::effects::Machine;
 
-use crate::{PRINTED, text};
+use crate::{MACHINE, PRINTED, RIGID, text};
 
 fn fingerprint(content: &str) -> String {
     Axis::parse("axis.toml", content).unwrap().fingerprint
@@ -122,4 +123,44 @@ fn the_order_of_trajectories_counts() {
         .replace("jerk_mm_per_s3 = 1400", "jerk_mm_per_s3 = 1200")
         .replace("jerk_mm_per_s3 = 0.5", "jerk_mm_per_s3 = 1400");
     assert_ne!(fingerprint(&swapped), fingerprint(&original));
+}
+
+/// Fingerprints tell which results belong to which values, so they outlive the
+/// program's versions. `[control] following_error_limit` is not in these files.
+#[test]
+fn fingerprints_of_the_files_as_they_are() {
+    for (file, expected) in [
+        (
+            PRINTED,
+            "c70286c0772ff5dcf73c4cf3e298e6f4b53f3cae362b8501488e73bcd482cacb",
+        ),
+        (
+            MACHINE,
+            "5c8b30de93bb300d6a7bc21883aea7c0c6aac38becd9a653ebe58a67820ac419",
+        ),
+        (
+            RIGID,
+            "1efbba9e499005c0b170a820feee70573a8c2035c7f3bfb1d783f1ae7ae2c166",
+        ),
+    ] {
+        let found = match Machine::parse(file, &text(file)).unwrap() {
+            Machine::BallScrew(axis) => axis.fingerprint,
+            Machine::Rigid(axis) => axis.fingerprint,
+        };
+        assert_eq!(found, expected, "{file}");
+    }
+    let more = text(PRINTED)
+        + "\n[tolerances]\nknown_parameters_percent = 3\n[[log.column]]\nsource = \"a\"\nchannel = \"t_s\"\nscale = 1e-3\n[[effects]]\nname = \"backlash\"\ngap = 4e-6\n[[effects]]\nname = \"periodic-lead-error\"\namplitude = 1e-6\nphase = 1\n";
+    assert_eq!(
+        fingerprint(&more),
+        "878ff92d7232572f720a02298a25bd384bae9bddeb2d8ad5bde908dbbf260dac"
+    );
+}
+
+#[test]
+fn a_limit_that_is_given_counts() {
+    let original = text(PRINTED);
+    let limited = original.replace("[stroke]", "following_error_limit_mm = 20\n[stroke]");
+    assert_ne!(limited, original);
+    assert_ne!(fingerprint(&limited), fingerprint(&original));
 }

@@ -1,5 +1,6 @@
 //! One test binary: the axis file, the closed loop against the numbers of an
-//! independent program, the axis's own vibration, and single cycles.
+//! independent program, the axis's own vibration, single cycles, replays, and
+//! values that nobody should give.
 
 mod bad_files;
 mod closed_loop;
@@ -7,10 +8,13 @@ mod effects;
 mod files;
 mod fingerprint;
 mod golden;
+mod hostile;
+mod obvious;
 mod one_cycle;
 mod outcome;
 mod published;
 mod recorder;
+mod replay;
 mod rigid;
 mod vibration;
 
@@ -23,6 +27,9 @@ use compensator::NoCompensation;
 const PRINTED: &str = "liu2025.toml";
 /// The stand-in for the machine: ten times the viscous friction.
 const MACHINE: &str = "liu2025-machine.toml";
+
+/// The other kind of machine.
+const RIGID: &str = "emps.toml";
 
 fn data(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))

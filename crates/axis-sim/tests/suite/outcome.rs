@@ -5,7 +5,7 @@ use axis_sim::{Axis, ClosedLoop, Cycle, FOLLOWING_ERROR_LIMIT, Outcome, StopReas
 use compensator::{Compensator, Correction, NoCompensation, Sample};
 use feed_dynamics::DriveError;
 use foc_pmsm::{Servo, ServoGains, ServoLimits};
-use trajectories::{Limits, SCurve};
+use trajectories::{Limits, Motion, SCurve, Setpoint};
 
 use crate::{PRINTED, axis};
 
@@ -59,16 +59,30 @@ fn stopped(outcome: Outcome) -> (f64, StopReason) {
     else {
         panic!("it came to its end");
     };
-    // The message says when and in which state.
+    // The message says when and in which state, with six digits at most.
     let text = outcome.completed().unwrap_err().to_string();
-    for part in [
-        format!("t = {time:.4} s"),
-        format!("table at {position:.6} m"),
-        format!("error {error:.3e} m"),
-        format!("motor speed {motor_speed:.3} rad/s"),
-        format!("q current {iq:.3} A"),
+    for (before, value, unit) in [
+        ("t = ", time, " s"),
+        ("table at ", position, " m"),
+        ("tracking error ", error, " m"),
+        ("motor speed ", motor_speed, " rad/s"),
+        ("q current ", iq, " A"),
     ] {
-        assert!(text.contains(&part), "{text}: {part}");
+        // The reason may speak of the tracking error too: the last one counts.
+        let from = text.rfind(before).unwrap() + before.len();
+        let said = text[from..].split(unit).next().unwrap();
+        let digits = said
+            .split('e')
+            .next()
+            .unwrap()
+            .trim_start_matches(['-', '0', '.']);
+        let digits = digits.chars().filter(char::is_ascii_digit).count();
+        assert!(digits <= 6, "{said}");
+        let said: f64 = said.parse().unwrap();
+        assert!(
+            (said - value).abs() <= 5e-6 * value.abs() || !value.is_finite(),
+            "{text}: {value}"
+        );
     }
     (time, reason)
 }
@@ -86,64 +100,136 @@ fn a_current_limit_that_cannot_move_it() {
         &mut NoCompensation,
     );
     let (time, reason) = stopped(outcome);
-    assert_eq!(reason, StopReason::FollowingError);
+    assert_eq!(reason, StopReason::FollowingError(FOLLOWING_ERROR_LIMIT));
     // It stands still: given up when the reference has moved 20 mm.
     let motion = axis.plan(&axis.trajectories[0]).unwrap();
     let moved = trajectories::Motion::at(&motion, time).position - 0.6;
-    assert!((moved - FOLLOWING_ERROR_LIMIT).abs() < 1e-4, "{moved}");
+    println!("{:e} m past it", moved - FOLLOWING_ERROR_LIMIT);
+    assert!((moved - FOLLOWING_ERROR_LIMIT).abs() < 3e-5, "{moved}");
     assert_eq!(seen, (time / axis.period).round() as usize);
 }
 
 #[test]
 fn gains_that_no_loop_survives() {
     let axis = axis(PRINTED);
-    let (gains, limits) = (*axis.servo.gains(), *axis.servo.limits());
+    let gains = *axis.servo.gains();
     let unlimited = ServoLimits {
         current: f64::INFINITY,
         voltage: f64::INFINITY,
     };
-    for (name, gains, limits) in [
-        (
-            "position × 100, no limits",
-            ServoGains {
-                position: 100.0 * gains.position,
-                ..gains
-            },
-            unlimited,
-        ),
-        (
-            "speed × 1e4, no limits",
-            ServoGains {
-                speed_p: 1e4 * gains.speed_p,
-                ..gains
-            },
-            unlimited,
-        ),
-        (
-            "current × 1e6, no limits",
-            ServoGains {
-                q_p: 1e6 * gains.q_p,
-                ..gains
-            },
-            unlimited,
-        ),
-        (
-            "position × 100",
-            ServoGains {
-                position: 100.0 * gains.position,
-                ..gains
-            },
-            limits,
-        ),
-    ] {
-        let (outcome, seen) = run(&with(&axis, gains, limits), &mut NoCompensation);
-        println!("{name}: {outcome:?} after {seen} cycles");
-        if limits.current.is_infinite() {
-            let (time, _) = stopped(outcome);
-            assert!(time > 0.0 && seen as f64 * axis.period <= time + axis.period);
-        }
-        // With its limits on, the last one may only hunt within ±20 mm: then
-        // `run` has seen that it did so in finite numbers.
+    let position = ServoGains {
+        position: 100.0 * gains.position,
+        ..gains
+    };
+    let speed = ServoGains {
+        speed_p: 1e4 * gains.speed_p,
+        ..gains
+    };
+    let current = ServoGains {
+        q_p: 1e6 * gains.q_p,
+        ..gains
+    };
+    for gains in [position, speed, current] {
+        let (outcome, seen) = run(&with(&axis, gains, unlimited), &mut NoCompensation);
+        println!("{outcome:?} after {seen} cycles");
+        let (time, _) = stopped(outcome);
+        assert!(time > 0.0 && seen as f64 * axis.period <= time + axis.period);
+    }
+}
+
+/// A run that comes to its end is no proof of a stable loop: within its
+/// limits of current and voltage this one hunts for ever.
+#[test]
+fn an_unstable_loop_hunts_within_its_limits() {
+    let axis = axis(PRINTED);
+    let (gains, limits) = (*axis.servo.gains(), *axis.servo.limits());
+    let hundredfold = ServoGains {
+        position: 100.0 * gains.position,
+        ..gains
+    };
+    let unstable = with(&axis, hundredfold, limits);
+    let motion = axis.plan(&axis.trajectories[0]).unwrap();
+    let mut at_the_end = [f64::MAX, f64::MIN];
+    ClosedLoop::new(&unstable)
+        .unwrap()
+        .run(&motion, &mut NoCompensation, |c| {
+            if c.time > 3.0 {
+                let [least, most] = at_the_end;
+                at_the_end = [least.min(c.error()), most.max(c.error())];
+            }
+            // The limits hold.
+            assert!(c.command.iq_ref.abs() <= limits.current);
+        })
+        .completed()
+        .unwrap();
+    println!("hunts between {at_the_end:?} m");
+    // Measured −0.73 and 0.70 mm; the stable loop stays within 55 µm.
+    assert!((-1e-3..-5e-4).contains(&at_the_end[0]), "{at_the_end:?}");
+    assert!((5e-4..1e-3).contains(&at_the_end[1]), "{at_the_end:?}");
+}
+
+#[test]
+fn the_following_error_limit_is_the_axis_files() {
+    let content = crate::text(PRINTED);
+    let limited = content.replacen(
+        "current_limit_a = 15 ",
+        "following_error_limit_um = 50\ncurrent_limit_a = 15 ",
+        1,
+    );
+    // The reference lags by 54 µm at most; a limit of 50 µm stops it.
+    let (outcome, _) = run(
+        &Axis::parse("axis.toml", &limited).unwrap(),
+        &mut NoCompensation,
+    );
+    let text = outcome.completed().unwrap_err().to_string();
+    assert!(
+        text.contains("passed 0.05 mm") && text.contains("following_error_limit_mm"),
+        "{text}"
+    );
+    let (_, reason) = stopped(outcome);
+    assert_eq!(reason, StopReason::FollowingError(50.0 * 1e-6));
+    let enough = limited.replace("_um = 50", "_um = 55");
+    let (outcome, _) = run(
+        &Axis::parse("axis.toml", &enough).unwrap(),
+        &mut NoCompensation,
+    );
+    assert_eq!(outcome, Outcome::Completed);
+    // Where the file does not say, it is the constant.
+    assert_eq!(axis(PRINTED).following_error_limit, FOLLOWING_ERROR_LIMIT);
+}
+
+/// Stands still for so long.
+struct Dwell(f64);
+
+impl Motion for Dwell {
+    fn duration(&self) -> f64 {
+        self.0
+    }
+    fn at(&self, _: f64) -> Setpoint {
+        Setpoint::at_rest(0.6)
+    }
+}
+
+#[test]
+fn a_run_without_end_is_not_begun() {
+    let closed_loop = ClosedLoop::new(&axis(PRINTED)).unwrap();
+    for duration in [1.1e6, 1e300, f64::INFINITY] {
+        let motion = Dwell(duration);
+        let outcome = closed_loop.run(&motion, &mut NoCompensation, |_| panic!("it ran"));
+        let (time, reason) = stopped(outcome);
+        assert_eq!(time, 0.0);
+        assert_eq!(reason, StopReason::TooLong(closed_loop.steps(&motion)));
+        let text = outcome.completed().unwrap_err().to_string();
+        assert!(text.contains("more than 1e10"), "{text}");
+    }
+    // What is no duration is none.
+    for duration in [0.0, -1.0, f64::NAN] {
+        let mut seen = 0;
+        closed_loop
+            .run(&Dwell(duration), &mut NoCompensation, |_| seen += 1)
+            .completed()
+            .unwrap();
+        assert_eq!(seen, 1);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The log of a run.
 
-use axis_sim::{ClosedLoop, Recorder};
+use axis_sim::{ClosedLoop, CsvRecorder, Cycle, Recorder};
 use compensator::NoCompensation;
 
 use crate::{PRINTED, axis};
@@ -43,4 +43,61 @@ fn channels_are_named_and_complete() {
             "{name}"
         );
     }
+}
+
+/// The text of a run that is written while it goes on is that of its log.
+#[test]
+fn the_log_can_be_written_while_the_run_goes_on() {
+    let axis = axis(PRINTED);
+    let closed_loop = ClosedLoop::new(&axis).unwrap();
+    let motion = axis.plan(&axis.trajectories[1]).unwrap();
+    // Whole blocks of rows, one more and one less, and none.
+    for rows in [1, 4095, 4096, 4097, 8192, 10_000] {
+        let mut whole = Recorder::default();
+        let mut flow = CsvRecorder::new(Vec::new());
+        closed_loop.run(&motion, &mut NoCompensation, |cycle| {
+            if whole.cycles().len() < rows {
+                whole.push(cycle);
+                flow.push(cycle);
+            }
+        });
+        let mut expected = Vec::new();
+        axis_log::write_csv_to(&mut expected, &whole.log().unwrap()).unwrap();
+        assert!(flow.finish().unwrap() == expected, "{rows} rows");
+    }
+    assert!(CsvRecorder::new(Vec::new()).finish().is_err(), "no rows");
+}
+
+/// Takes some bytes, then no more.
+struct Full(usize);
+
+impl std::io::Write for Full {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        if bytes.len() > self.0 {
+            return Err(std::io::ErrorKind::StorageFull.into());
+        }
+        self.0 -= bytes.len();
+        Ok(bytes.len())
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_disk_that_fills_up_is_told() {
+    // Times of a log increase, and these do not.
+    let mut flow = CsvRecorder::new(Vec::new());
+    (0..2).for_each(|_| flow.push(&Cycle::default()));
+    let error = flow.finish().err().unwrap();
+    assert_eq!(error.kind(), std::io::ErrorKind::InvalidData);
+    let mut flow = CsvRecorder::new(Full(100));
+    for k in 0..5000 {
+        flow.push(&Cycle {
+            time: f64::from(k),
+            ..Cycle::default()
+        });
+    }
+    let error = flow.finish().err().unwrap();
+    assert_eq!(error.kind(), std::io::ErrorKind::StorageFull);
 }

@@ -93,7 +93,13 @@ impl TryFrom<CheckpointV1> for Checkpoint {
             same_length("best weights", weights.len(), current.weights().len())?;
             all_finite("best weights", weights)?;
         }
-        all_finite("damping", &[stored.damping])?;
+        if !(stored.damping > 0.0 && stored.damping.is_finite()) {
+            return Err(Error::Setting {
+                name: "damping",
+                value: stored.damping,
+                valid: "positive and finite",
+            });
+        }
         Ok(Self {
             settings,
             current,

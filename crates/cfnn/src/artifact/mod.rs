@@ -88,7 +88,9 @@ const NETWORK: Format = Format {
     schema: 1,
 };
 
-/// At most 1 GB of decoded data: a hostile length cannot exhaust the memory.
+/// At most 1 GB of decoded data. Memory is bounded by the bytes given: every
+/// string is borrowed from them, and a list reserves at most 1 MiB (serde's
+/// bound) before its elements are read.
 type Config = Configuration<LittleEndian, Fixint, Limit<{ 1 << 30 }>>;
 
 fn config() -> Config {
@@ -109,8 +111,8 @@ struct NetworkV1 {
 }
 
 #[derive(Debug, Serialize, Deserialize)]
-struct WithProvenance<T> {
-    provenance: String,
+struct WithProvenance<'a, T> {
+    provenance: &'a str,
     content: T,
 }
 
@@ -183,7 +185,7 @@ fn encode<T: Serialize>(
     provenance: &str,
 ) -> Result<Vec<u8>, ArtifactError> {
     let whole = WithProvenance {
-        provenance: provenance.into(),
+        provenance,
         content,
     };
     let payload = bincode::serde::encode_to_vec(&whole, config()).map_err(payload_error)?;
@@ -192,14 +194,14 @@ fn encode<T: Serialize>(
 
 fn decode<T: DeserializeOwned>(format: Format, bytes: &[u8]) -> Result<(T, String), ArtifactError> {
     let payload = frame::unwrap(format, bytes)?;
-    let (whole, used): (WithProvenance<T>, usize) =
-        bincode::serde::decode_from_slice(payload, config()).map_err(payload_error)?;
+    let (whole, used): (WithProvenance<'_, T>, usize) =
+        bincode::serde::borrow_decode_from_slice(payload, config()).map_err(payload_error)?;
     if used != payload.len() {
         return Err(ArtifactError::Payload {
             reason: std::format!("{used} of {} bytes used", payload.len()),
         });
     }
-    Ok((whole.content, whole.provenance))
+    Ok((whole.content, whole.provenance.into()))
 }
 
 fn payload_error(error: impl std::fmt::Display) -> ArtifactError {

@@ -7,14 +7,18 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 
 use super::dataset::{BLOCK, SampleBlock};
-use super::gram::LANES;
 use crate::simd::{Kernel, Vectors};
 use crate::{Layer, Real, Shape};
+
+/// Rows of delta products that are formed together.
+pub(super) const LANES: usize = 8;
 
 /// Sizes and places that every block shares.
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
+    /// All layers, the output layer last.
     pub layers: Vec<Layer>,
+    pub output: Layer,
     pub inputs: usize,
     pub outputs: usize,
     pub activations: usize,
@@ -24,23 +28,26 @@ pub(super) struct Layout {
 
 impl Layout {
     pub fn new(shape: &Shape) -> Self {
+        let neurons = shape.neurons();
         Self {
             layers: shape.layers(),
+            output: Layer {
+                seen: shape.activations(),
+                neurons: shape.outputs,
+                first_parameter: shape.parameters() - shape.activations() * shape.outputs,
+                first_neuron: neurons - shape.outputs,
+            },
             inputs: shape.inputs,
             outputs: shape.outputs,
             activations: shape.activations(),
-            neurons: shape.neurons(),
+            neurons,
             parameters: shape.parameters(),
         }
     }
 
-    /// The hidden layers and, apart, the output layer.
-    pub fn split(&self) -> (&[Layer], Layer) {
-        let (last, hidden) = self
-            .layers
-            .split_last()
-            .expect("a shape has an output layer");
-        (hidden, *last)
+    /// The layers before the output layer.
+    pub fn hidden(&self) -> &[Layer] {
+        &self.layers[..self.layers.len() - 1]
     }
 }
 
@@ -103,7 +110,7 @@ impl BlockWork {
         self.rows = rows;
         self.activations[..rows].fill(1.0);
         self.activations[rows..rows * (1 + layout.inputs)].copy_from_slice(&samples.inputs);
-        for layer in layout.split().0 {
+        for layer in layout.hidden() {
             let (input, free) = self.activations.split_at_mut(rows * layer.seen);
             let out = &mut free[..rows * layer.neurons];
             affine(layer, weights, rows, input, out);
@@ -116,7 +123,7 @@ impl BlockWork {
         let rows = self.rows;
         let input = &self.activations[..rows * layout.activations];
         let out = &mut self.residuals[..rows * layout.outputs];
-        affine(&layout.split().1, weights, rows, input, out);
+        affine(&layout.output, weights, rows, input, out);
         let mut sum = 0.0;
         for (r, t) in out.iter_mut().zip(&samples.targets) {
             *r -= t;
@@ -150,7 +157,7 @@ impl BlockWork {
 
     fn deltas_of_output(&mut self, layout: &Layout, weights: &[f64], k: usize) {
         let rows = self.rows;
-        let (hidden, output) = layout.split();
+        let (hidden, output) = (layout.hidden(), layout.output);
         let table = &mut self.deltas[k * rows * layout.neurons..][..rows * layout.neurons];
         let own = &mut table[rows * output.first_neuron..];
         own.fill(0.0);

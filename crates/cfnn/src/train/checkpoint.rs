@@ -1,6 +1,7 @@
 use std::vec::Vec;
 
-use super::{History, Settings};
+use super::report::{EpochReport, History};
+use super::settings::Settings;
 use crate::{Network, Scaling, Shape};
 
 /// Everything from which a training goes on bit for bit, the data apart.
@@ -39,7 +40,7 @@ impl Checkpoint {
 
     /// Reports of the epochs done.
     #[must_use]
-    pub fn history(&self) -> &[super::EpochReport] {
+    pub fn history(&self) -> &[EpochReport] {
         &self.history
     }
 

@@ -1,6 +1,6 @@
 use std::vec::Vec;
 
-use crate::error::{all_finite, same_length};
+use crate::error::{all_finite, rows_of, same_length};
 use crate::{Error, Scaling};
 
 /// Samples to train on, in the caller's units.
@@ -26,19 +26,14 @@ impl Dataset {
         input_rows: Vec<f64>,
         target_rows: Vec<f64>,
     ) -> Result<Self, Error> {
-        let sizes = [
-            ("inputs", inputs),
-            ("outputs", outputs),
-            ("samples", input_rows.len()),
-        ];
-        for (what, size) in sizes {
+        for (what, size) in [("inputs", inputs), ("outputs", outputs)] {
             if size == 0 {
                 return Err(Error::EmptyLayer { what, index: 0 });
             }
         }
-        let samples = input_rows.len() / inputs;
-        same_length("input values", input_rows.len(), samples * inputs)?;
-        same_length("target values", target_rows.len(), samples * outputs)?;
+        let samples = rows_of("input values", &input_rows, inputs)?;
+        let expected = samples.saturating_mul(outputs);
+        same_length("target values", target_rows.len(), expected)?;
         all_finite("input values", &input_rows)?;
         all_finite("target values", &target_rows)?;
         Ok(Self {
@@ -73,16 +68,26 @@ impl Dataset {
         self.outputs
     }
 
-    /// The inputs of one sample.
+    /// The inputs of one sample; none where there is no such sample.
     #[must_use]
-    pub fn input(&self, sample: usize) -> &[f64] {
-        &self.input_rows[sample * self.inputs..][..self.inputs]
+    pub fn input(&self, sample: usize) -> Option<&[f64]> {
+        self.input_rows.chunks_exact(self.inputs).nth(sample)
     }
 
-    /// The targets of one sample.
+    /// The targets of one sample; none where there is no such sample.
     #[must_use]
-    pub fn target(&self, sample: usize) -> &[f64] {
-        &self.target_rows[sample * self.outputs..][..self.outputs]
+    pub fn target(&self, sample: usize) -> Option<&[f64]> {
+        self.target_rows.chunks_exact(self.outputs).nth(sample)
+    }
+
+    /// Input `i` of a sample that exists, scaled.
+    pub(super) fn scaled_input(&self, scaling: &Scaling, sample: usize, i: usize) -> f64 {
+        scaling.input()[i].to_unit(self.input_rows[sample * self.inputs + i])
+    }
+
+    /// Target `o` of a sample that exists, scaled.
+    fn scaled_target(&self, scaling: &Scaling, sample: usize, o: usize) -> f64 {
+        scaling.output()[o].to_unit(self.target_rows[sample * self.outputs + o])
     }
 
     /// Min-max scaling fitted to these samples.
@@ -139,10 +144,10 @@ pub(super) fn blocks(data: &Dataset, chosen: &[usize], scaling: &Scaling) -> Vec
         .map(|chosen| SampleBlock {
             rows: chosen.len(),
             inputs: column_major(chosen, data.inputs, &|s, c| {
-                scaling.input()[c].to_unit(data.input(s)[c])
+                data.scaled_input(scaling, s, c)
             }),
             targets: column_major(chosen, data.outputs, &|s, c| {
-                scaling.output()[c].to_unit(data.target(s)[c])
+                data.scaled_target(scaling, s, c)
             }),
         })
         .collect()

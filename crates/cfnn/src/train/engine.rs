@@ -7,10 +7,16 @@ use rayon::prelude::*;
 
 use super::block::{BlockWork, Layout};
 use super::cholesky::Symmetric;
-use super::dataset::SampleBlock;
+use super::dataset::{BLOCK, SampleBlock};
 use super::gram::Gram;
 use super::output_fit::{Triangles, block_triangle};
-use crate::Shape;
+use crate::{Error, Shape};
+
+/// Most bytes that a training may take beside its samples. The largest tables
+/// are the triangle and the distinct entries of `JᵀJ`, about `4 n²` bytes each
+/// for `n` parameters: some 16 000 parameters are trained within the limit,
+/// and a trial step of that size takes minutes.
+pub const MAX_TRAINING_BYTES: u64 = 4 << 30;
 
 /// Blocks worked on at a time: bounds the memory whatever the sample count.
 const GROUP: usize = 32;
@@ -28,6 +34,20 @@ pub(super) struct Engine {
 }
 
 impl Engine {
+    /// Refuses a shape, itself valid, whose tables would pass
+    /// [`MAX_TRAINING_BYTES`].
+    pub fn check_memory(shape: &Shape, blocks: usize) -> Result<(), Error> {
+        let bytes = bytes(&Layout::new(shape), blocks);
+        if bytes <= MAX_TRAINING_BYTES {
+            return Ok(());
+        }
+        Err(Error::TrainingMemory {
+            bytes,
+            limit: MAX_TRAINING_BYTES,
+        })
+    }
+
+    /// For a shape that [`Engine::check_memory`] accepts.
     pub fn new(shape: &Shape, blocks: usize) -> Self {
         let layout = Layout::new(shape);
         Self {
@@ -108,7 +128,7 @@ impl Engine {
             triangles.reduce();
         }
         let fitted = triangles.solve(unknowns, ridge);
-        let own = &mut weights[layout.split().1.first_parameter..];
+        let own = &mut weights[layout.output.first_parameter..];
         own.fill(0.0);
         own[..fitted.len()].copy_from_slice(&fitted);
     }
@@ -124,4 +144,21 @@ impl Engine {
             .map(|(r, c)| self.matrix.at(r, c))
             .collect()
     }
+}
+
+/// Bytes of the tables for a shape, from above. A valid shape has at most 2^19
+/// parameters, so no product of two sizes overflows; sums of three saturate.
+fn bytes(layout: &Layout, blocks: usize) -> u64 {
+    let size = |n: usize| n as u64;
+    let [n, a] = [layout.parameters, layout.activations].map(size);
+    let [neurons, outputs] = [layout.neurons, layout.outputs].map(size);
+    // Triangle, distinct entries, and the places of the latter.
+    let square = n * (n + 256) / 2 * 8 + n * (n + 1) / 2 * 8 + n * n * 8;
+    let pairs = (a * (a + 1) + neurons * outputs) * 16;
+    let deltas = 2 * neurons * outputs;
+    let row = a + deltas + neurons + outputs;
+    let triangle = size(BLOCK) * (a + outputs);
+    let block = (size(BLOCK).saturating_mul(row) + n + triangle).saturating_mul(8);
+    let blocks = block.saturating_mul(size(blocks.clamp(1, GROUP)));
+    square.saturating_add(pairs).saturating_add(blocks)
 }

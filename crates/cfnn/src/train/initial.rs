@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::dataset::Dataset;
-use crate::{Layer, Scaling, Shape};
+use crate::{Error, Layer, Scaling, Shape};
 
 /// Random numbers for one purpose, independent of the other purposes.
 pub(super) fn generator(seed: u64, purpose: u64) -> ChaCha8Rng {
@@ -26,8 +26,11 @@ pub(super) fn generator(seed: u64, purpose: u64) -> ChaCha8Rng {
 ///
 /// Earlier layers count as inputs of the later ones, since tansig's range is
 /// `[-1, 1]` too.
-#[must_use]
-pub fn nguyen_widrow(shape: &Shape, seed: u64) -> Vec<f64> {
+///
+/// # Errors
+/// What [`Shape::validate`] refuses.
+pub fn nguyen_widrow(shape: &Shape, seed: u64) -> Result<Vec<f64>, Error> {
+    shape.validate()?;
     let mut rng = generator(seed, 0);
     let layers = shape.layers();
     let mut weights = vec![0.0; shape.parameters()];
@@ -39,7 +42,7 @@ pub fn nguyen_widrow(shape: &Shape, seed: u64) -> Vec<f64> {
             nguyen_widrow_layer(layer, own, &mut rng);
         }
     }
-    weights
+    Ok(weights)
 }
 
 fn symmetric(rng: &mut ChaCha8Rng) -> f64 {
@@ -64,7 +67,7 @@ fn nguyen_widrow_layer(layer: &Layer, own: &mut [f64], rng: &mut ChaCha8Rng) {
     }
 }
 
-/// A vector uniform in the cube, scaled to length 1.
+/// A vector uniform in the cube, scaled to length 1; at least one dimension.
 fn direction(dimensions: usize, rng: &mut ChaCha8Rng) -> Vec<f64> {
     loop {
         let v: Vec<f64> = (0..dimensions).map(|_| symmetric(rng)).collect();
@@ -88,7 +91,7 @@ pub(super) fn adapt_first_layer(
 ) {
     let mut rng = generator(seed, 2);
     let inputs = layer.seen - 1;
-    let scaled = |s: usize, i: usize| scaling.input()[i].to_unit(data.input(s)[i]);
+    let scaled = |s: usize, i: usize| data.scaled_input(scaling, s, i);
     let sorted: Vec<Vec<f64>> = (0..inputs)
         .map(|i| {
             let mut column: Vec<f64> = chosen.iter().map(|&s| scaled(s, i)).collect();

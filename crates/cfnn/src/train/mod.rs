@@ -57,6 +57,7 @@ mod initial;
 mod output_fit;
 mod report;
 mod settings;
+mod split;
 #[cfg(test)]
 mod tests;
 mod trainer;
@@ -65,6 +66,7 @@ mod trainer;
 pub(crate) use checkpoint::Best;
 pub use checkpoint::Checkpoint;
 pub use dataset::Dataset;
+pub use engine::MAX_TRAINING_BYTES;
 pub use initial::nguyen_widrow;
 pub use report::{EpochReport, History, Outcome};
 pub use settings::{Initialisation, Normalisation, Settings, Validation};

@@ -12,6 +12,9 @@ pub enum Outcome {
     GradientSmall,
     /// The damping passed its limit: no step lowers the loss any more.
     DampingLimit,
+    /// The loss or the gradient is no finite number, so there is no step to
+    /// take: data lie too far outside the scaling's ranges for `f64`.
+    NotFinite,
     /// The validation loss has not improved for as long as the patience.
     ValidationStopped,
 }

@@ -1,5 +1,11 @@
 use crate::Error;
 
+/// Below this the damping no longer changes `JᵀJ` and is not lowered further.
+pub(super) const MIN_DAMPING: f64 = 1e-20;
+/// So large that neither the damping nor its product with a factor overflows.
+pub(super) const MAX_DAMPING: f64 = 1e100;
+const MAX_THREADS: usize = 1024;
+
 /// Starting weights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -54,13 +60,15 @@ pub struct Settings {
     /// Number of epochs after which to stop.
     pub epochs: usize,
     /// Initial damping μ (the paper's u, there called learning rate), in the
-    /// units of `JᵀJ` on scaled data; above 0.
+    /// units of `JᵀJ` on scaled data; from 1e-20, below which it would not
+    /// change `JᵀJ`, to 1e100.
     pub initial_damping: f64,
-    /// Factor on μ after a trial step that does not lower the loss; above 1.
+    /// Factor on μ after a trial step that does not lower the loss; from 1.1,
+    /// so that an epoch has few thousand trial steps at most, to 1e100.
     pub damping_increase: f64,
     /// Factor on μ after a step taken; above 0, at most 1.
     pub damping_decrease: f64,
-    /// μ above which training stops.
+    /// μ above which training stops; above 0, at most 1e100.
     pub max_damping: f64,
     /// Training stops at or below this mean square of the scaled residuals.
     pub goal: f64,
@@ -78,7 +86,8 @@ pub struct Settings {
     pub resolve_output: bool,
     /// Seed of the starting weights and of the validation split.
     pub seed: u64,
-    /// Worker threads; 0 takes all cores. No influence on the result's bits.
+    /// Worker threads, at most 1024; 0 takes all cores. No influence on the
+    /// result's bits.
     pub threads: usize,
 }
 
@@ -115,16 +124,18 @@ impl Settings {
                 Err(Error::Setting { name, value, valid })
             }
         };
-        let positive = |v: f64| v > 0.0 && v.is_finite();
         let v = self.initial_damping;
-        check("initial_damping", v, positive(v), "positive and finite")?;
+        let good = (MIN_DAMPING..=MAX_DAMPING).contains(&v);
+        check("initial_damping", v, good, "from 1e-20 to 1e100")?;
         let v = self.damping_increase;
-        check("damping_increase", v, positive(v) && v > 1.0, "above 1")?;
+        let good = (1.1..=MAX_DAMPING).contains(&v);
+        check("damping_increase", v, good, "from 1.1 to 1e100")?;
         let v = self.damping_decrease;
-        let good = positive(v) && v <= 1.0;
+        let good = v > 0.0 && v <= 1.0;
         check("damping_decrease", v, good, "above 0 and at most 1")?;
         let v = self.max_damping;
-        check("max_damping", v, positive(v), "positive and finite")?;
+        let good = v > 0.0 && v <= MAX_DAMPING;
+        check("max_damping", v, good, "above 0 and at most 1e100")?;
         check("goal", self.goal, self.goal >= 0.0, "0 or above")?;
         let v = self.min_gradient;
         check("min_gradient", v, v >= 0.0, "0 or above")?;
@@ -139,6 +150,8 @@ impl Settings {
             let good = (0.0..=1.0).contains(&v);
             check("initialisation.axis_aligned", v, good, "from 0 to 1")?;
         }
+        let v = self.threads;
+        check("threads", v as f64, v <= MAX_THREADS, "at most 1024")?;
         Ok(())
     }
 }

@@ -1,20 +1,14 @@
 use std::vec::Vec;
 
-use rand::RngExt;
-
-use super::checkpoint::Best;
-use super::dataset::{SampleBlock, blocks};
+use super::checkpoint::{Best, Checkpoint};
+use super::dataset::{Dataset, SampleBlock, blocks};
 use super::engine::Engine;
-use super::initial::{adapt_first_layer, generator};
-use super::{
-    Checkpoint, Dataset, EpochReport, History, Initialisation, Normalisation, Outcome, Settings,
-    nguyen_widrow,
-};
-use crate::error::same_length;
+use super::initial::{adapt_first_layer, nguyen_widrow};
+use super::report::{EpochReport, History, Outcome};
+use super::settings::{Initialisation, MIN_DAMPING, Normalisation, Settings};
+use super::split::split;
+use crate::error::{all_finite, same_length};
 use crate::{Error, Network, Scaling, Shape};
-
-/// Below this the damping no longer changes `JᵀJ` and is not lowered further.
-const MIN_DAMPING: f64 = 1e-20;
 
 /// Ridge of the output layer's exact solution: as small as rounding allows.
 const EXACT: f64 = 1e-13;
@@ -31,6 +25,7 @@ pub struct Trainer {
     validation: Vec<SampleBlock>,
     engine: Engine,
     pool: rayon::ThreadPool,
+    /// All finite, at every moment.
     weights: Vec<f64>,
     sum_of_squares: f64,
     damping: f64,
@@ -45,19 +40,21 @@ impl Trainer {
     ///
     /// # Errors
     /// What [`Settings::validate`] and [`Shape::validate`] refuse,
-    /// [`Error::Length`] where shape, scaling and data do not fit, or where
-    /// the validation split leaves one side empty; [`Error::Threads`].
+    /// [`Error::TrainingMemory`], [`Error::Length`] where shape, scaling and
+    /// data do not fit, or where the validation split leaves one side empty,
+    /// [`Error::NotFinite`] where starting weights fitted to the data overflow;
+    /// [`Error::Threads`].
     pub fn new(
         shape: Shape,
         scaling: Scaling,
         data: &Dataset,
         settings: Settings,
     ) -> Result<Self, Error> {
-        shape.validate()?;
-        let weights = nguyen_widrow(&shape, settings.seed);
+        let weights = nguyen_widrow(&shape, settings.seed)?;
         let network = Network::new(shape, scaling, weights)?;
         let mut trainer = Self::prepare(network, data, settings, data.fingerprint())?;
         trainer.initialise(data);
+        all_finite("starting weights", &trainer.weights)?;
         trainer.enter();
         Ok(trainer)
     }
@@ -97,6 +94,7 @@ impl Trainer {
         let (training, validation) = split(data.len(), &settings)?;
         let scaling = network.scaling().clone();
         let training = blocks(data, &training, &scaling);
+        Engine::check_memory(&shape, training.len())?;
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(settings.threads)
             .build()
@@ -231,8 +229,11 @@ impl Trainer {
             Some((trial, sum))
         });
         match trial {
-            // A NaN is not smaller than anything.
-            Some((trial, sum)) if sum < self.sum_of_squares => {
+            // A NaN is not smaller than anything; an infinite weight can give
+            // a finite loss, since tansig saturates.
+            Some((trial, sum))
+                if sum < self.sum_of_squares && trial.iter().all(|w| w.is_finite()) =>
+            {
                 self.weights = trial;
                 self.sum_of_squares = sum;
                 true
@@ -249,7 +250,7 @@ impl Trainer {
         let sum = self.pool.install(|| engine.sum_of_squares(blocks, weights));
         let loss = sum / self.residuals(&self.validation);
         match &mut self.best {
-            Some(best) if loss >= best.loss => best.age += 1,
+            Some(best) if !improves(loss, best.loss) => best.age = best.age.saturating_add(1),
             best => {
                 *best = Some(Best {
                     weights: self.weights.clone(),
@@ -266,7 +267,11 @@ impl Trainer {
         let settings = &self.settings;
         let last = self.history.last()?;
         let patience = settings.validation.map_or(usize::MAX, |v| v.patience);
-        if last.gradient <= settings.min_gradient {
+        let validation_loss = last.validation_loss.unwrap_or(0.0);
+        let numbers = [last.gradient, last.loss, validation_loss];
+        if !numbers.iter().all(|v| v.is_finite()) {
+            Some(Outcome::NotFinite)
+        } else if last.gradient <= settings.min_gradient {
             Some(Outcome::GradientSmall)
         } else if last.damping > settings.max_damping {
             Some(Outcome::DampingLimit)
@@ -327,11 +332,7 @@ impl Trainer {
     }
 
     fn network_of(&self, weights: &[f64]) -> Network {
-        let parts = (self.shape.clone(), self.scaling.clone(), weights.to_vec());
-        Network::new(parts.0, parts.1, parts.2).expect(
-            "shape, scaling and lengths were checked at construction, and a \
-             step with a weight that is not finite has no finite loss",
-        )
+        Network::from_valid(self.shape.clone(), self.scaling.clone(), weights.to_vec())
     }
 
     fn residuals(&self, blocks: &[SampleBlock]) -> f64 {
@@ -346,28 +347,9 @@ impl Trainer {
     }
 }
 
-/// Training and validation samples, each in rising order.
-fn split(samples: usize, settings: &Settings) -> Result<(Vec<usize>, Vec<usize>), Error> {
-    let mut order: Vec<usize> = (0..samples).collect();
-    let Some(validation) = settings.validation else {
-        return Ok((order, Vec::new()));
-    };
-    let apart = libm::round(validation.fraction * samples as f64) as usize;
-    if apart == 0 || apart == samples {
-        return Err(Error::Length {
-            what: "validation samples (neither none nor all)",
-            found: apart,
-            expected: (samples / 5).max(1),
-        });
-    }
-    let mut rng = generator(settings.seed, 1);
-    for i in (1..samples).rev() {
-        order.swap(i, rng.random_range(0..=i));
-    }
-    let mut training = order.split_off(apart);
-    training.sort_unstable();
-    order.sort_unstable();
-    Ok((training, order))
+/// Whether a loss is lower than the best so far, be that NaN.
+fn improves(loss: f64, best: f64) -> bool {
+    loss < best || best.is_nan()
 }
 
 fn norm(v: &[f64]) -> f64 {

@@ -6,6 +6,9 @@ use super::{Candidates, IdentifyError, Motion};
 use crate::error::require;
 use crate::{MAX_ORDER, TransferFunctionModel};
 
+/// Largest magnitude of a sample: sums of squares stay far below what f64 holds.
+const LARGEST: f64 = 1e100;
+
 /// Returns the period that all motions share.
 pub(super) fn check(
     training: &[Motion],
@@ -32,6 +35,9 @@ pub(super) fn check(
         for (index, motion) in motions.iter().enumerate() {
             check_motion(set, index, motion, first)?;
         }
+    }
+    if validation.iter().all(|motion| motion.error.is_empty()) {
+        return Err(IdentifyError::Empty("validation sample"));
     }
     Ok(first)
 }
@@ -65,8 +71,10 @@ fn check_motion(
         ("error", motion.error),
     ];
     for (what, values) in series {
-        if let Some(sample) = values.iter().position(|value| !value.is_finite()) {
-            return Err(IdentifyError::NotFinite {
+        // Written so that NaN is caught too.
+        let inside = |value: &f64| value.abs() <= LARGEST;
+        if let Some(sample) = values.iter().position(|value| !inside(value)) {
+            return Err(IdentifyError::Value {
                 set,
                 index,
                 sample,

@@ -42,9 +42,11 @@ pub enum IdentifyError {
         /// The first training motion's, s.
         first: f64,
     },
-    /// A sample is not a finite number.
-    #[error("{set} motion {index}, sample {sample}: {what} = {value} is not finite")]
-    NotFinite {
+    /// A sample is no number whose square could be summed.
+    #[error(
+        "{set} motion {index}, sample {sample}: {what} = {value} is not valid: it must be from -1e100 to 1e100"
+    )]
+    Value {
         /// "training" or "validation".
         set: &'static str,
         /// Which motion, from 0.

@@ -15,6 +15,7 @@ use compensator::NoCompensation;
 use feed_dynamics::{FeedDrive, NutCoupling};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 use trajectories::{Limits, Motion, Program, Step, TrajectoryError};
 
@@ -57,11 +58,9 @@ impl Noise {
     /// gives the same noise.
     pub fn sensors(self, seed: u64) -> impl FnMut(&mut Measured) {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        // Box and Muller, Ann. Math. Statist. 29 (1958) 610–611.
         let mut normal = move |deviation: f64| {
-            let (u, v): (f64, f64) = (random.random(), random.random());
-            let radius = (-2.0 * (1.0 - u).ln()).sqrt();
-            deviation * radius * (std::f64::consts::TAU * v).cos()
+            let unit: f64 = StandardNormal.sample(&mut random);
+            deviation * unit
         };
         move |seen: &mut Measured| {
             seen.position += normal(self.position);

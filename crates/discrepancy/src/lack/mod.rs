@@ -8,20 +8,17 @@
 //! fitted as well, is not in the model. The curve with the most is reported,
 //! and a short term that does as much, where there is one. Terms are empirical.
 
-mod motion;
+mod rest;
 mod term;
 
 use axis_sim::effects::Machine;
 use axis_sim::{Probe, ReplayError};
-use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use self::motion::{Course, KNOTS, Place, Shape, VARIABLES, courses};
+use self::rest::{Rest, Solved};
 use self::term::term;
-use crate::fit::{Columns, Fit, Fitter, pinned};
-use crate::model::LogSet;
-use crate::projector::Projector;
+use crate::curves::{Course, KNOTS, courses};
+use crate::fit::Fitter;
 use crate::search::{Found, needed};
 
 /// Something that is in the logs, and neither in the model nor in the library.
@@ -54,58 +51,6 @@ pub struct Curve {
     pub value: Vec<f64>,
     /// Half-width of its 95 % interval; 0 where there is none.
     pub within: Vec<f64>,
-}
-
-/// The loop's answers to all curves on a set of logs.
-#[derive(Debug, Default)]
-pub struct Curves {
-    shapes: Vec<(Shape, Columns)>,
-}
-
-impl Curves {
-    /// Simulates them at a fit; what they are on the motion hardly depends on
-    /// the fit, so they may be kept.
-    pub fn new(machine: &Machine, set: &LogSet, fit: &Fit) -> Self {
-        let courses = courses(machine, set, &fit.traces);
-        let shapes = [Place::Force, Place::Offset]
-            .into_iter()
-            .flat_map(|place| VARIABLES.map(|v| Shape::new(place, v, &courses)));
-        let shapes: Vec<Shape> = shapes.collect();
-        let fitter = Fitter { machine, set };
-        let answers = |shape: Shape| {
-            let column = |j: usize| {
-                let series = courses.iter().map(|c| shape.hat(j, c)).collect();
-                answer(&fitter, fit, shape.place, series)
-            };
-            let columns = (0..shape.knots.len()).into_par_iter().map(column).collect();
-            (shape, columns)
-        };
-        Self {
-            shapes: shapes.into_par_iter().map(answers).collect(),
-        }
-    }
-}
-
-/// What the loop makes of a disturbance of unit size with this course, one
-/// series a log.
-fn answer(
-    fitter: &Fitter<'_>,
-    fit: &Fit,
-    place: Place,
-    series: Vec<Vec<f64>>,
-) -> crate::spectrum::Amplitudes {
-    let size = place.size();
-    let probes: Vec<Probe> = series
-        .into_iter()
-        .map(|s| place.probe(s.into_iter().map(|v| size * v).collect()))
-        .collect();
-    let run = fitter
-        .set
-        .simulate_with(fitter.machine, &fit.state, Some(&probes));
-    match run {
-        Ok(traces) => fitter.set.difference(&traces, &fit.traces, size),
-        Err(_) => fitter.nothing(fit),
-    }
 }
 
 /// What no effect explains, if there is any: significant on both sets of logs,
@@ -198,72 +143,3 @@ pub fn lack(
 /// Fall of D that a curve must bring, over what noise alone brings in the mean:
 /// near zero frequency that is far above its average in a band.
 const ABOVE: f64 = 8.0;
-
-/// The fitted logs' rest, with known parameters and effects fitted out.
-struct Rest<'a> {
-    fitter: &'a Fitter<'a>,
-    whitener: crate::spectrum::Whitener,
-    projector: Projector,
-    rest: DVector<f64>,
-    noise: Vec<DVector<f64>>,
-}
-
-struct Solved {
-    gain: f64,
-    /// Mean fall of D that noise alone would bring.
-    of_noise: f64,
-    values: DVector<f64>,
-    deviations: Vec<f64>,
-}
-
-impl<'a> Rest<'a> {
-    fn new(fitter: &'a Fitter<'a>, found: &Found) -> Self {
-        let layout = &fitter.set.layout;
-        let whitener = layout.whitener(&layout.spectral_matrices(&found.fit.rest));
-        let own = found.columns.iter();
-        let own: Vec<DVector<f64>> = own.map(|c| layout.whiten(&whitener, c)).collect();
-        let shares = &found.fit.state.shares;
-        let projector = Projector::new(fitter.machine, &own, &pinned(fitter.machine, shares));
-        let rest = projector.reject_at(&layout.whiten(&whitener, &found.fit.rest), shares);
-        let white = |run| projector.reject(&layout.whiten(&whitener, run));
-        let noise = found.noise.iter().map(white).collect();
-        Self {
-            noise,
-            fitter,
-            whitener,
-            projector,
-            rest,
-        }
-    }
-
-    fn solve(&self, columns: &Columns) -> Solved {
-        let layout = &self.fitter.set.layout;
-        let seen: Vec<DVector<f64>> = columns
-            .iter()
-            .map(|c| self.projector.reject(&layout.whiten(&self.whitener, c)))
-            .collect();
-        let n = seen.len();
-        let normal = DMatrix::from_fn(n, n, |i, j| seen[i].dot(&seen[j]));
-        let right = DVector::from_fn(n, |i, _| seen[i].dot(&self.rest));
-        // A hat that the motion hardly visits, or that the model's own
-        // parameters can do, stays near 0.
-        let ridge = 1e-6 * normal.diagonal().max();
-        let inverse = (normal + DMatrix::identity(n, n) * ridge)
-            .cholesky()
-            .map(|c| c.inverse());
-        let inverse = inverse.unwrap_or_else(|| DMatrix::zeros(n, n));
-        let values = &inverse * &right;
-        let gain_of_noise = |run: &DVector<f64>| {
-            let right = DVector::from_fn(n, |i, _| seen[i].dot(run));
-            right.dot(&(&inverse * &right))
-        };
-        let of_noise = self.noise.iter().map(gain_of_noise).sum::<f64>();
-        let share = (values.dot(&right) / self.rest.norm_squared()).clamp(0.0, 0.999_999);
-        Solved {
-            gain: -(self.rest.len() as f64) * (1.0 - share).ln(),
-            of_noise: of_noise / self.noise.len().max(1) as f64,
-            deviations: (0..n).map(|i| inverse[(i, i)].max(0.0).sqrt()).collect(),
-            values,
-        }
-    }
-}

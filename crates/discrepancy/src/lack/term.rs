@@ -3,8 +3,8 @@
 use axis_sim::effects::Machine;
 use rayon::prelude::*;
 
-use super::motion::{Course, Place, STANDS, courses};
-use super::{Rest, Solved, answer};
+use super::rest::{Rest, Solved};
+use crate::curves::{Course, Place, STANDS, answer, courses};
 use crate::fit::{Columns, Fitter};
 use crate::search::Found;
 

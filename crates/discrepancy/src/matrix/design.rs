@@ -6,7 +6,7 @@ use lhs::{LatinHypercube, LhsError};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::{Case, HiddenEffect, Kind};
+use super::case::{Case, HiddenEffect, Kind};
 use crate::hidden::{Exercise, OUTSIDE};
 
 /// How many cases of each kind.
@@ -75,7 +75,7 @@ pub fn cases(axis: &Axis, sizes: &Sizes, seed: u64) -> Result<Vec<Case>, LhsErro
         let hypercube = LatinHypercube::new(n, DIMENSIONS, seed.wrapping_mul(7) + k as u64)?;
         let mut row = [0.0; DIMENSIONS];
         for i in 0..n {
-            hypercube.row(i, &mut row);
+            hypercube.row(i, &mut row)?;
             let case_seed = seed
                 .wrapping_mul(1_000_003)
                 .wrapping_add((k * 10_000 + i) as u64);
@@ -146,21 +146,6 @@ fn case(axis: &Axis, kind: Kind, index: usize, row: &[f64; DIMENSIONS], seed: u6
         rejected,
         seed,
         visible: (kind == Kind::Poor).then(|| 4.0 * 10f64.powf(row[3])),
-    }
-}
-
-impl Kind {
-    /// In file names and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Clean => "clean",
-            Self::Single => "single",
-            Self::Pair => "pair",
-            Self::Triple => "triple",
-            Self::Outside => "outside",
-            Self::LeftOut => "left-out",
-            Self::Poor => "poor",
-        }
     }
 }
 

@@ -7,23 +7,21 @@ use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Machine};
 use axis_sim::{Axis, ReplayError};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use trajectories::TrajectoryError;
 
-use super::{Case, HiddenEffect, Kind};
-use crate::Settings;
+use super::case::{Case, HiddenEffect, Kind};
+use super::outcome::{Foreseen, Imitation};
 use crate::bounded::bounded;
-use crate::fit::{Columns, Fit, Fitter, known_deviation, pinned};
+use crate::fit::{Columns, Fit, Fitter};
 use crate::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
-use crate::known::tolerance;
-use crate::library::{Candidate, Library, rooms};
-use crate::linear::Room;
+use crate::known::{known_deviation, pinned, tolerance};
+use crate::library::Library;
 use crate::model::{LogSet, State};
 use crate::noise::{noise_on, size_over_noise};
 use crate::projector::{Projector, sine};
-use crate::screen::{Response, responses_in};
-use crate::search::{ABOVE_NOISE, ONE_CLASS, needed};
+use crate::screen::{Screened, Screening, imitate};
+use crate::search::{ABOVE_NOISE, ONE_CLASS, Settings, needed};
 use crate::spectrum::{Amplitudes, Whitener};
 
 /// Why a bench cannot be set up.
@@ -36,36 +34,6 @@ pub enum BenchError {
     /// The axis as its file says does not run it.
     #[error(transparent)]
     Replay(#[from] ReplayError),
-}
-
-/// What can be known of a hidden effect beforehand.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Foreseen {
-    /// Expected fall of D on the fit log, known parameters and the case's other
-    /// effects fitted out.
-    pub gain: f64,
-    /// Its size in deviations, of what a fit makes of noise.
-    pub above_noise: f64,
-    /// Whether the gain is at least twice what the search asks for, and the size by as
-    /// much more.
-    pub detectable: bool,
-    /// Effects of the library that do nearly the same on this log: the sine of
-    /// their angle is below [`ONE_CLASS`], or too little is left beside them.
-    pub class: Vec<String>,
-    /// Of an effect that the search does not have: what those it has make of it.
-    pub imitation: Option<Imitation>,
-}
-
-/// How far the library's effects together do what another effect does.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Imitation {
-    /// The effects, as many as a search may name at most.
-    pub by: Vec<String>,
-    /// Fall of D that is left beside them.
-    pub left: f64,
-    /// Whether that is less than twice what the search asks for: no search can
-    /// then say that something else is there.
-    pub complete: bool,
 }
 
 /// What is the same for all cases on one motion.
@@ -233,19 +201,20 @@ impl Bench {
         let others = |e: &Effect| e.name != name;
         let through = |column: &Amplitudes| fitted.reject(&self.white(column, noise));
         let size = seen.norm_squared();
-        let near = |response: &Response| {
-            let basis = DMatrix::from_columns(&response.columns).svd(true, false).u;
-            let sine = basis.map_or(1.0, |u| sine(&seen, &u));
+        let near = |screened: &Screened| {
+            let sine = sine(&seen, &screened.basis);
             let alike = sine < ONE_CLASS || size * sine * sine < TELLS_APART;
-            alike.then(|| response.effect.name.to_owned())
+            alike.then(|| screened.effect.name.to_owned())
         };
-        let all = responses_in(&self.library.candidates, others, through, &seen);
-        let mut class: Vec<String> = all.par_iter().filter_map(near).collect();
+        let candidates = &self.library.candidates;
+        let all = Screening::of(candidates, others, through, seen.clone()).one_by_one();
+        let mut class: Vec<String> = all.iter().filter_map(near).collect();
         class.dedup();
         let absent = case.kind == Kind::Outside || case.rejected.iter().any(|r| r == name);
         let imitation = absent.then(|| {
             let has = |e: &Effect| !case.rejected.iter().any(|r| r == e.name);
-            let (by, left) = imitate(&self.library.candidates, has, through, &seen);
+            let most = Settings::default().most_effects;
+            let (by, left) = imitate(candidates, has, through, &seen, most);
             Imitation {
                 by,
                 left,
@@ -324,48 +293,6 @@ impl Bench {
         let change = set.difference(&traces, &self.nominal.traces, 1.0);
         Some(self.white(&change, noise))
     }
-}
-
-/// The effects that together come nearest to what is `seen`, chosen one after
-/// another, their sizes inside their bounds; and what they leave of it.
-fn imitate(
-    library: &[Candidate],
-    has: impl Fn(&Effect) -> bool + Sync,
-    through: impl Fn(&Amplitudes) -> DVector<f64> + Sync,
-    seen: &DVector<f64>,
-) -> (Vec<String>, f64) {
-    let mut chosen: Vec<Response> = Vec::new();
-    let mut rest = seen.clone();
-    for _ in 0..Settings::default().most_effects {
-        let free = |e: &Effect| has(e) && chosen.iter().all(|c| c.effect.name != e.name);
-        let with = |candidate: Response| {
-            let together: Vec<&Response> = chosen.iter().chain([&candidate]).collect();
-            let rest = left_by(&together, seen);
-            (rest.norm_squared(), rest, candidate)
-        };
-        let tried = responses_in(library, free, &through, &rest);
-        let tried: Vec<_> = tried.into_par_iter().map(with).collect();
-        let best = tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, left, candidate)) = best else {
-            break;
-        };
-        chosen.push(candidate);
-        rest = left;
-    }
-    let names = chosen.iter().map(|c| c.effect.name.to_owned());
-    (names.collect(), rest.norm_squared())
-}
-
-/// What sizes inside their bounds leave of what is seen.
-fn left_by(responses: &[&Response], seen: &DVector<f64>) -> DVector<f64> {
-    let columns: Vec<&DVector<f64>> = responses.iter().flat_map(|r| &r.columns).collect();
-    let rooms: Vec<Room> = responses.iter().flat_map(|r| rooms(r.effect)).collect();
-    let n = columns.len();
-    let normal = DMatrix::from_fn(n, n, |i, j| columns[i].dot(columns[j]));
-    let right = DVector::from_fn(n, |i, _| columns[i].dot(seen));
-    let x = bounded(&normal, &right, |i| rooms[i]);
-    let done = columns.iter().zip(x.iter());
-    done.fold(seen.clone(), |rest, (c, &x)| rest - *c * x)
 }
 
 /// The effect of that name, in the library or outside of it.

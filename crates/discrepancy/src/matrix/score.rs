@@ -3,8 +3,9 @@
 use axis_sim::effects::EFFECTS;
 use serde::{Deserialize, Serialize};
 
-use super::{Estimate, Kind, Outcome};
-use crate::Verdict;
+use super::case::Kind;
+use super::outcome::{Estimate, Outcome};
+use crate::outcome::Verdict;
 
 /// So many of so many.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

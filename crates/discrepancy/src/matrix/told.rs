@@ -1,7 +1,8 @@
 //! What was said in a case, beside what was hidden.
 
-use super::{Foreseen, Kind, Outcome};
-use crate::Verdict;
+use super::case::Kind;
+use super::outcome::{Foreseen, Outcome};
+use crate::outcome::Verdict;
 
 impl Outcome {
     /// Whether all that is hidden can be seen, by what was known beforehand.

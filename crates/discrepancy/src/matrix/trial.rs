@@ -5,16 +5,16 @@ use std::sync::Arc;
 use axis_sim::ReplayError;
 use axis_sim::effects::ActiveEffect;
 
-use super::foresee::active;
-use super::{Bench, Case, Estimate, Foreseen, NamedEffect, Outcome, Split};
+use super::case::Case;
+use super::foresee::{Bench, active};
+use super::outcome::{Estimate, Foreseen, NamedEffect, Outcome, Split};
 use crate::experiment::Proposal;
 use crate::fit::{Fitter, free_parameters};
 use crate::hidden::{Hidden, Noise, exercise};
 use crate::library::Library;
 use crate::model::{LogSet, State};
 use crate::outcome::judged;
-use crate::search::{Named, search_with};
-use crate::{Found, Settings};
+use crate::search::{Found, Named, Settings, search_with};
 
 impl Bench {
     /// Runs a case of this bench's motion.

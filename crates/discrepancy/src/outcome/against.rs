@@ -5,7 +5,7 @@ use axis_sim::effects::{Effect, Machine};
 use serde::{Deserialize, Serialize};
 
 use crate::model::LogSet;
-use crate::noise::Rest;
+use crate::noise::{Floor, Rest};
 
 /// Mean rest of a channel over a variable of the motion, on the check logs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,7 +38,7 @@ pub(super) fn against(
     traces: &[Trace],
     effect: &Effect,
     [without, with]: [&Rest; 2],
-    floors: &[f64],
+    floors: &[Floor],
 ) -> Option<Against> {
     let (variable, values) = variable(machine, set, traces, effect.depends_on);
     let all = || values.iter().flatten().copied();
@@ -69,7 +69,7 @@ pub(super) fn against(
     };
     let samples: usize = counts.iter().sum();
     let made_out = |channel: usize| -> f64 {
-        let noise = samples as f64 * floors[channel].powi(2);
+        let noise = samples as f64 * floors[channel].rms.powi(2);
         let means = means(without, channel);
         let squares = kept.iter().map(|&b| counts[b] as f64 * means[b].powi(2));
         squares.sum::<f64>() / (power(channel) + 10.0 * noise).max(f64::MIN_POSITIVE)

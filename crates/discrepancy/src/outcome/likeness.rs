@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::fit::{Fitter, pinned};
+use crate::fit::Fitter;
+use crate::known::pinned;
 use crate::projector::Projector;
 use crate::search::{Found, ONE_CLASS, needed};
 

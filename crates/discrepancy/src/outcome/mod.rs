@@ -12,16 +12,17 @@ use self::against::against;
 use self::likeness::likenesses;
 pub use self::likeness::{Likeness, Shown};
 pub use self::types::{
-    AtScrew, ChannelGap, Discovery, EffectFound, Gap, Gaps, NextExperiment, ParameterFound,
-    Recalibrated, ReplacedEffect, Verdict,
+    AtScrew, Discovery, EffectFound, Gaps, NextExperiment, ParameterFound, Recalibrated,
+    RefusedEffects, ReplacedEffect, Verdict,
 };
 use crate::experiment::{Proposal, propose};
 use crate::fit::{Fitter, free_parameters};
+use crate::gap::{Gap, REST, gap};
 use crate::known::{known_parameters, tolerance};
 use crate::lack::{Curve, Unknown, lack};
-use crate::model::{LogSet, State};
+use crate::model::{LogSet, Prepared, State};
 use crate::noise::{Excess, Rest, excess, floors, sensor_noise};
-use crate::search::{Found, MATERIAL, Replaced};
+use crate::search::{Found, MATERIAL, Refused, Replaced};
 
 /// A search's result in words, figures and pictures.
 #[derive(Clone, Debug)]
@@ -130,6 +131,7 @@ pub(crate) fn judged(
     };
     let rest_significant = !at_floor(&check) || unknown.is_some();
     let verdict = match (effects.is_empty(), rest_significant) {
+        _ if found.refused.is_some() => Verdict::Unknown,
         (true, false) => Verdict::NothingMissing,
         (true, true) => Verdict::Unknown,
         (false, false) if check.reduction >= 0.9 => Verdict::Explained,
@@ -152,15 +154,23 @@ pub(crate) fn judged(
             tolerance: tolerance(machine),
         })
         .collect();
+    let refused = found.refused.as_ref().map(refused_effects);
     let overlays = overlays(check_logs, &check_logs.rest(&base.traces), &after);
     let discovery = Discovery {
         schema: 1,
         axis: name,
-        notes: Vec::new(),
-        sentence: sentence(verdict, &effects, &check, unknown.as_ref()),
+        notes: slack_notes(machine, found),
+        sentence: sentence(
+            verdict,
+            &effects,
+            &check,
+            unknown.as_ref(),
+            refused.as_ref(),
+        ),
         verdict,
         effects,
         replaced: found.replaced.iter().map(replaced).collect(),
+        refused,
         not_added: found
             .leftover
             .iter()
@@ -212,14 +222,6 @@ fn in_frequency(excess: Excess) -> Unknown {
     }
 }
 
-/// A channel's rest is significant beyond this multiple of its floor.
-const REST: f64 = 1.2;
-
-/// A rest within this multiple of its floor is noise: where nothing was left in
-/// simulated logs, it came out between 0.79 (a motor angle, else 0.90) and 1.05
-/// of it.
-const FLOOR: f64 = 1.05;
-
 fn effect_found(
     machine: &Machine,
     found: &Found,
@@ -269,6 +271,30 @@ fn effect_found(
     }
 }
 
+/// Where a gap is so large that the logs do not say where the screw lay in it at their
+/// start.
+fn slack_notes(machine: &Machine, found: &Found) -> Vec<String> {
+    let Machine::BallScrew(axis) = machine else {
+        return Vec::new();
+    };
+    let effects = [&axis.effects[..], &found.fit.state.effects].concat();
+    let left = [&found.fit_logs, &found.check_logs].map(|set| set.slack_left(&effects));
+    let note = |(gap, log): (f64, &Prepared)| {
+        format!(
+            "{} counts from where its reference has moved by {:.3e} m; of a gap of {gap:.3e} m that takes up a part, and the screw\u{2019}s place in the rest is not known: record a longer first move",
+            log.name, log.taken_up
+        )
+    };
+    left.into_iter().flatten().map(note).collect()
+}
+
+fn refused_effects(refused: &Refused) -> RefusedEffects {
+    RefusedEffects {
+        effects: refused.effects.iter().map(|n| n.name.to_owned()).collect(),
+        channels: refused.channels.iter().map(|&c| c.to_owned()).collect(),
+    }
+}
+
 fn replaced(replaced: &Replaced) -> ReplacedEffect {
     let ActiveEffect { effect, values } = &replaced.when_named;
     let one = |(p, &value): (&EffectParameter, &f64)| (p.name.to_owned(), value, p.unit.to_owned());
@@ -296,49 +322,6 @@ fn at_screw(machine: &Machine, value: f64, unit: &str) -> Option<AtScrew> {
     })
 }
 
-fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[f64]) -> Gap {
-    let rms = |rest: &Rest, c: usize| {
-        let (sum, n) = rest.iter().fold((0.0, 0), |(sum, n), log| {
-            (
-                sum + log[c].iter().map(|r| r * r).sum::<f64>(),
-                n + log[c].len(),
-            )
-        });
-        (sum / n.max(1) as f64).sqrt()
-    };
-    let channels: Vec<ChannelGap> = set
-        .channels
-        .iter()
-        .enumerate()
-        .map(|(c, name)| ChannelGap {
-            channel: (*name).to_owned(),
-            before: rms(before, c),
-            after: rms(after, c),
-            floor: floors[c],
-        })
-        .collect();
-    let above = |rms: f64, floor: f64| {
-        if rms <= FLOOR * floor {
-            0.0
-        } else {
-            rms * rms - floor * floor
-        }
-    };
-    let shares = channels.iter().filter(|c| c.before > REST * c.floor);
-    let ratios: Vec<f64> = shares
-        .map(|c| above(c.after, c.floor) / above(c.before, c.floor))
-        .collect();
-    let reduction = if ratios.is_empty() {
-        0.0
-    } else {
-        1.0 - (ratios.iter().sum::<f64>() / ratios.len() as f64).sqrt()
-    };
-    Gap {
-        channels,
-        reduction,
-    }
-}
-
 fn overlays(set: &LogSet, before: &Rest, after: &Rest) -> Vec<Overlay> {
     let mut all = Vec::new();
     for (l, log) in set.logs.iter().enumerate() {
@@ -360,6 +343,7 @@ fn sentence(
     effects: &[EffectFound],
     check: &Gap,
     unknown: Option<&Unknown>,
+    refused: Option<&RefusedEffects>,
 ) -> String {
     let names: Vec<String> = effects
         .iter()
@@ -395,8 +379,11 @@ fn sentence(
         Verdict::PartlyExplained => format!(
             "Partly explained: with {names}, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to, and a rest remains that is not named.{place} What is named may stand for something that is not in the library."
         ),
-        Verdict::Unknown => format!(
-            "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}"
-        ),
+        Verdict::Unknown => {
+            let refused = refused.map_or(String::new(), RefusedEffects::sentence);
+            format!(
+                "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}{refused}"
+            )
+        }
     }
 }

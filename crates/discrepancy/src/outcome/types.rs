@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use trajectories::Program;
 
 use super::likeness::Likeness;
+use crate::gap::Gap;
 use crate::lack::Unknown;
 
 /// The verdict on a model.
@@ -93,27 +94,28 @@ pub struct ReplacedEffect {
     pub by: String,
 }
 
-/// Root-mean-square gap of a channel, in its unit.
+/// Effects that explain the fitted logs, and with which check motion is further off than
+/// without them. None of them is given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ChannelGap {
-    /// Name with unit.
-    pub channel: String,
-    /// Model as its file says.
-    pub before: f64,
-    /// With the effects.
-    pub after: f64,
-    /// Of noise alone: sensors as noisy as the rest's highest frequencies show.
-    pub floor: f64,
+pub struct RefusedEffects {
+    /// Names.
+    pub effects: Vec<String>,
+    /// Channels that are further off; none where they are so in total only.
+    pub channels: Vec<String>,
 }
 
-/// Gap on a set of logs.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Gap {
-    /// One entry a channel.
-    pub channels: Vec<ChannelGap>,
-    /// Share of the gap above the floor that is gone: of the mean square over
-    /// all channels, each against its own gap before.
-    pub reduction: f64,
+impl RefusedEffects {
+    /// In a sentence that follows another.
+    pub(super) fn sentence(&self) -> String {
+        let where_ = match self.channels.as_slice() {
+            [] => "in total".to_owned(),
+            channels => format!("in {}", channels.join(", ")),
+        };
+        format!(
+            " Of the fitted logs {} would explain most; with it, motion that was not fitted to is further off {where_} than without, so it is not given.",
+            self.effects.join(" with ")
+        )
+    }
 }
 
 /// Gap on both sets of logs.
@@ -156,8 +158,8 @@ pub struct Discovery {
     pub schema: u32,
     /// Name of the axis.
     pub axis: String,
-    /// What was done to logs before they were compared, for whoever reads them
-    /// to fill in.
+    /// What must be known of the logs beside the verdict; whoever reads them adds what
+    /// was done to them.
     pub notes: Vec<String>,
     /// Verdict.
     pub verdict: Verdict,
@@ -167,6 +169,8 @@ pub struct Discovery {
     pub effects: Vec<EffectFound>,
     /// Effects that were named on the way, until another took their place.
     pub replaced: Vec<ReplacedEffect>,
+    /// What was named in the end and is not given, as it makes check motion worse.
+    pub refused: Option<RefusedEffects>,
     /// Best candidates that were not added.
     pub not_added: Vec<(String, f64)>,
     /// What is left, is significant, and is nothing in the library.

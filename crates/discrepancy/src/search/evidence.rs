@@ -7,10 +7,10 @@ use crate::spectrum::Layout;
 /// Least evidence of a further effect, as a share of the largest so far.
 pub const MATERIAL: f64 = 0.01;
 
-/// Most by which the power of a channel's rest on the check logs may rise: what is
-/// not named yet may have made up for some of it there. What is fitted to one channel
-/// at the cost of another raises it more: a controller's gain, on the real
-/// stage's logs, 139-fold.
+/// Most by which the power of a channel's rest on the check logs may rise when an effect
+/// is added: what is not named yet may have made up for some of it there. What is fitted
+/// to one channel at the cost of another raises it more: a controller's gain, on the real
+/// stage's logs, 139-fold. In the end nothing may have risen ([`crate::gap::worsened`]).
 pub(super) const WORSE: f64 = 2.0;
 
 /// Least fall of D on logs that were not fitted.

@@ -14,7 +14,7 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::promise::PROMISING;
-use super::rounds::Search;
+use super::state::Search;
 use crate::fit::{Columns, Fit};
 use crate::library::{Candidate, FORCE, responses};
 use crate::linear::{Problem, Products};

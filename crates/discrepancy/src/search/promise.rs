@@ -4,7 +4,7 @@ use axis_sim::effects::Effect;
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 
-use super::rounds::Search;
+use super::state::Search;
 use crate::fit::Columns;
 use crate::library::{Candidate, FORCE, rooms, values_at};
 use crate::linear::{Problem, Products, Room};

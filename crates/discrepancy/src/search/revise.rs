@@ -8,11 +8,12 @@
 
 use axis_sim::effects::{ActiveEffect, Effect};
 
-use super::Replaced;
 use super::evidence::{BY_CHANCE, MATERIAL};
+use super::intervals::Intervals;
 use super::promise::Promises;
-use super::rounds::{Intervals, Search};
-use crate::fit::pinned;
+use super::state::Search;
+use super::types::Replaced;
+use crate::known::pinned;
 use crate::noise::over_noise;
 
 /// Share of what an effect brings that another must promise in its place before

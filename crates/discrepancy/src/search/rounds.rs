@@ -1,75 +1,22 @@
-//! A search on its way: rounds of screening, refining and adding.
+//! Rounds of screening, refining and adding.
 
-use std::sync::Arc;
-
-use axis_sim::ReplayError;
-use axis_sim::effects::{ActiveEffect, Effect, Machine};
-use nalgebra::DMatrix;
+use axis_sim::effects::ActiveEffect;
 use rayon::prelude::*;
 
-use super::evidence::{EQUAL, LEAST_HELD_OUT, MATERIAL, WORSE, enough, needed};
+use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
 use super::promise::{Promises, WORTH};
-use super::{Alike, Found, Named, ONE_CLASS, Replaced, RunnerUp, Settings, calibrated};
-use crate::fit::{Columns, Fit, Fitter, free_parameters};
-use crate::interval::Spread;
-use crate::library::{FORCE, Library};
-use crate::model::LogSet;
-use crate::noise::{drawn, noise_on, sensor_noise, spreads};
-use crate::projector::sine;
+use super::refined::{Refined, alike, simplest_first};
+use super::state::Search;
+use super::types::{Named, RunnerUp};
+use crate::fit::{Columns, Fit, free_parameters};
+use crate::library::FORCE;
 use crate::screen::Screened;
-use crate::spectrum::Amplitudes;
-
-/// A search on its way.
-#[derive(Clone)]
-pub(super) struct Search<'a> {
-    pub(super) machine: &'a Machine,
-    pub(super) settings: &'a Settings,
-    pub(super) library: Arc<Library>,
-    pub(super) fit_logs: LogSet,
-    pub(super) check_logs: LogSet,
-    pub(super) known: Columns,
-    pub(super) fit: Fit,
-    pub(super) check: Fit,
-    pub(super) named: Vec<Named>,
-    pub(super) replaced: Vec<Replaced>,
-    pub(super) leftover: Vec<RunnerUp>,
-}
 
 /// Share of the promised fall of D that a simulation must keep, or other sizes are
 /// tried.
 const KEPT: f64 = 0.8;
 
-/// One effect, or two, after refinement by simulation.
-struct Refined {
-    parts: Vec<Screened>,
-    fit: Fit,
-    gain: f64,
-}
-
-impl Refined {
-    fn runner_up(&self) -> RunnerUp {
-        RunnerUp {
-            name: self.parts[0].effect.name,
-            gain: self.gain,
-        }
-    }
-}
-
 impl Search<'_> {
-    pub(super) fn fitter(&self) -> Fitter<'_> {
-        Fitter {
-            machine: self.machine,
-            set: &self.fit_logs,
-        }
-    }
-
-    pub(super) fn checker(&self) -> Fitter<'_> {
-        Fitter {
-            machine: self.machine,
-            set: &self.check_logs,
-        }
-    }
-
     /// Adds the effect that explains most of what is left, or two that explain
     /// together what none does alone; false where none proves itself.
     pub(super) fn add_next(&mut self) -> bool {
@@ -106,21 +53,6 @@ impl Search<'_> {
         true
     }
 
-    /// Fall of D that `effects` with so many parameters must bring at once.
-    pub(super) fn needed(&self, parameters: usize, effects: usize) -> f64 {
-        let tried = self.library.candidates.len();
-        let tried = match effects {
-            1 => tried,
-            _ => tried * tried.saturating_sub(1) / 2,
-        };
-        needed(
-            &self.fit_logs.layout,
-            parameters,
-            tried,
-            self.settings.false_alarm,
-        )
-    }
-
     fn add(&mut self, refined: &[Refined], place: usize, check: Fit, screened: &[Screened]) {
         let best = &refined[place];
         let others = refined.iter().enumerate();
@@ -144,37 +76,6 @@ impl Search<'_> {
         for (named, active) in self.named[new..].iter_mut().zip(effects) {
             named.when_named.clone_from(&active.values);
         }
-    }
-
-    /// What the engineer takes as there and is not yet: it goes first, whatever
-    /// speaks for it.
-    fn awaited(&self) -> Vec<&str> {
-        let active = |name: &str| self.named.iter().any(|n| n.name == name);
-        let accepted = self.settings.accepted.iter().map(String::as_str);
-        accepted.filter(|name| !active(name)).collect()
-    }
-
-    /// Derivatives with respect to all parameters of the fit.
-    pub(super) fn own_columns(&self) -> Columns {
-        let effects = self.fitter().effect_columns(&self.fit, 0);
-        self.known.iter().cloned().chain(effects).collect()
-    }
-
-    /// Whether an effect may be named next.
-    pub(super) fn wanted(&self, effect: &Effect, awaited: &[&str]) -> bool {
-        let rejected = self.settings.rejected.iter().any(|r| r == effect.name);
-        // A second harmonic of the same kind may be there.
-        let active = self.named.iter().any(|n| n.name == effect.name);
-        let free = !active || effect.name == "cogging-torque";
-        free && !rejected && (awaited.is_empty() || awaited.contains(&effect.name))
-    }
-
-    /// Noise alone, as of sensors like those of the logs; `None` where these do
-    /// not show it.
-    pub(super) fn noise(&self) -> Option<Amplitudes> {
-        let (machine, set, fit) = (self.machine, &self.fit_logs, &self.fit);
-        let noise = sensor_noise(machine, set, &fit.state, &fit.traces)?;
-        noise_on(machine, &fit.state, set, &fit.traces, noise, 0).ok()
     }
 
     /// Candidates of one effect or two, by simulation; the simplest of the best first.
@@ -264,8 +165,8 @@ impl Search<'_> {
         best.gain >= needed && held_out >= LEAST_HELD_OUT && best.gain >= MATERIAL * largest
     }
 
-    /// Whether no channel of the check logs is further off than before: those
-    /// that are not fitted count as well.
+    /// Whether no channel of the check logs, fitted or not, is so much further off than
+    /// before that no effect named later could make up for it.
     fn worsens_none(&self, check: &Fit) -> bool {
         let before = self.check_logs.rest(&self.check.traces);
         let after = self.check_logs.rest(&check.traces);
@@ -274,158 +175,4 @@ impl Search<'_> {
         };
         (0..self.check_logs.channels.len()).all(|c| power(&after, c) <= WORSE * power(&before, c))
     }
-
-    /// Fits all parameters again, and the defects of the machine as it now is.
-    fn settle(&mut self) {
-        let known = self.fitter().known_columns(&self.fit);
-        let (fit, known) = calibrated(&self.fitter(), self.fit.clone(), known);
-        let mut corrected = self.fit_logs.clone();
-        if corrected.correct_defects(self.machine, &fit.state).is_ok() {
-            let with = Fitter {
-                machine: self.machine,
-                set: &corrected,
-            };
-            // An axis that vibrates by itself does so with another phase in
-            // every simulation, and the difference of two is no defect.
-            if let Ok(better) = with.at(fit.state.clone())
-                && better.deviance < fit.deviance
-            {
-                self.fit = with.refine(better, &known, 4);
-                self.fit_logs = corrected;
-            } else {
-                self.fit = fit;
-            }
-        } else {
-            self.fit = fit;
-        }
-        self.known = known;
-        self.settle_check();
-    }
-
-    fn settle_check(&mut self) {
-        let Ok(check) = self.checker().at(self.fit.state.clone()) else {
-            return;
-        };
-        self.check = check;
-        let mut corrected = self.check_logs.clone();
-        let done = corrected.correct_defects(self.machine, &self.fit.state);
-        if done.is_ok() {
-            let with = Fitter {
-                machine: self.machine,
-                set: &corrected,
-            };
-            if let Ok(better) = with.at(self.fit.state.clone())
-                && better.deviance < self.check.deviance
-            {
-                self.check = better;
-                self.check_logs = corrected;
-            }
-        }
-    }
-
-    /// Derivatives, covariance and spread of all parameters at the end.
-    pub(super) fn intervals(&self) -> Result<Intervals, ReplayError> {
-        let columns = self.own_columns();
-        let fitter = self.fitter();
-        let covariance = fitter.solve(&self.fit, &columns).covariance;
-        let noise = drawn(&fitter, &self.fit)?;
-        Ok(Intervals {
-            spreads: spreads(&fitter, &self.fit, &columns, &covariance, &noise),
-            columns,
-            covariance,
-            noise,
-        })
-    }
-
-    pub(super) fn finish(self, base: Fit, intervals: Intervals) -> Found {
-        let Intervals {
-            columns,
-            covariance,
-            spreads,
-            noise,
-        } = intervals;
-        Found {
-            spreads,
-            base,
-            columns,
-            covariance,
-            noise,
-            fit: self.fit,
-            named: self.named,
-            replaced: self.replaced,
-            leftover: self.leftover,
-            library: self.library,
-            fit_logs: self.fit_logs,
-            check_logs: self.check_logs,
-        }
-    }
-}
-
-/// How well the parameters of a fit are known.
-pub(super) struct Intervals {
-    pub(super) columns: Columns,
-    covariance: DMatrix<f64>,
-    pub(super) noise: Vec<Amplitudes>,
-    spreads: Vec<Spread>,
-}
-
-/// Effects that do nearly the same as the best, or explain as much: the logs
-/// cannot tell. What can do more is not among them, unless these logs would not
-/// show the more.
-fn alike(own: &Screened, best: &Refined, refined: &[Refined], all: &[Screened]) -> Vec<Alike> {
-    let pair = best.parts.iter().map(|p| p.effect.name);
-    let pair: Vec<&str> = pair.collect();
-    let others = all
-        .iter()
-        .filter(|other| !pair.contains(&other.effect.name))
-        .filter(|other| {
-            let more = other.basis.ncols() > own.basis.ncols();
-            !(more && other.more_is_shown(own, best.gain, EQUAL))
-        });
-    let mut all: Vec<Alike> = others
-        .filter_map(|other| {
-            let same = |r: &&Refined| match r.parts.as_slice() {
-                [one] => one.effect.name == other.effect.name,
-                _ => false,
-            };
-            let fitted = refined.iter().find(same);
-            let equal = fitted.is_some_and(|r| (r.gain - best.gain).abs() < EQUAL);
-            let sine = sine(&own.fingerprint, &other.basis);
-            let more = other.basis.ncols() > own.basis.ncols();
-            let nearest = || ActiveEffect {
-                effect: other.effect,
-                // A fit drives what the logs do not show wherever noise points.
-                values: match more {
-                    true => other.nearest(&own.fingerprint),
-                    false => other.values.clone(),
-                },
-            };
-            let fitted = fitted.filter(|_| !more);
-            let last = fitted.and_then(|r| r.fit.state.effects.last().cloned());
-            (sine < ONE_CLASS || equal).then(|| Alike {
-                fitted: last.unwrap_or_else(nearest),
-                sine,
-            })
-        })
-        .collect();
-    all.sort_by(|a, b| a.sine.total_cmp(&b.sine));
-    all
-}
-
-/// Moves the simplest of those that explain about as much as the best to the
-/// front.
-fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
-    let Some(best) = refined.first().map(|r| r.gain) else {
-        return refined;
-    };
-    let enough = enough(best);
-    let parameters = |r: &Refined| -> usize {
-        let each = r.parts.iter().map(|p| p.effect.parameters.len());
-        each.sum()
-    };
-    let near = refined.iter().enumerate().filter(|(_, r)| r.gain >= enough);
-    if let Some((at, _)) = near.min_by_key(|(_, r)| parameters(r)) {
-        refined[..=at].rotate_right(1);
-    }
-    refined
 }

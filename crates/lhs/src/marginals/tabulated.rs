@@ -18,7 +18,8 @@ impl Tabulated {
     ///
     /// # Errors
     /// Fewer than two pairs, an x that is not finite, x or G falling from one
-    /// pair to the next, or G not running from 0 to 1.
+    /// pair to the next, x rising by more than f64 holds, or G not running from
+    /// 0 to 1.
     pub fn new(points: &[(f64, f64)]) -> Result<Self, LhsError> {
         let len = points.len();
         if len < 2 {
@@ -55,6 +56,7 @@ fn fault(before: Option<(f64, f64)>, (x, p): (f64, f64), last: bool) -> Option<&
         _ if !x.is_finite() => Some("x must be finite"),
         None if p != 0.0 => Some("the first cumulative probability must be 0"),
         Some((x0, _)) if x < x0 => Some("x must not fall"),
+        Some((x0, _)) if (x - x0).is_infinite() => Some("x must rise by less than 1.8e308"),
         // Written so that NaN is caught as well.
         Some((_, p0)) if !(p0..=1.0).contains(&p) => {
             Some("the cumulative probability must not fall, nor pass 1")

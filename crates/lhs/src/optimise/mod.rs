@@ -14,7 +14,7 @@ mod distance;
 
 use crate::criteria::{centred_discrepancy, minimum_distance, phi_p};
 use crate::permutation::{Purpose, below, stream};
-use crate::{Design, LatinHypercube};
+use crate::{Design, LatinHypercube, LhsError};
 use discrepancy::Discrepancy;
 use distance::Repulsion;
 use rand_chacha::ChaCha8Rng;
@@ -136,19 +136,26 @@ impl LatinHypercube {
     /// A Latin hypercube of this n, m, seed and placement that is good at
     /// `criterion`: the better of [`design`](Self::design) and
     /// [`lattice`](Self::lattice), then [`optimise`]d.
-    pub fn optimised(&self, criterion: Criterion, budget: Budget) -> (Design, History) {
+    ///
+    /// # Errors
+    /// As for [`design`](Self::design).
+    pub fn optimised(
+        &self,
+        criterion: Criterion,
+        budget: Budget,
+    ) -> Result<(Design, History), LhsError> {
         let valued = |design| {
             let value = evaluate(&design, criterion);
             (design, value)
         };
-        let random = valued(self.design());
-        let lattice = valued(self.lattice(criterion));
+        let random = valued(self.design()?);
+        let lattice = valued(self.lattice(criterion)?);
         let (start, initial) = if lattice.1 < random.1 {
             lattice
         } else {
             random
         };
-        improve(start, initial, criterion, budget, self.seed())
+        Ok(improve(start, initial, criterion, budget, self.seed()))
     }
 }
 

@@ -1,21 +1,20 @@
 //! The weighted fit of the steady-state curve behind `identify_static`.
 
-use nalgebra::{DMatrix, DVector, SMatrix};
+use nalgebra::{DMatrix, DVector};
 
-use super::Estimate;
-use super::error::IdentifyError;
 use super::least_squares::{Minimum, Problem, square};
 use super::record::ConstantSpeedRun;
-use super::statics::{LeftOut, StaticFit};
 
 /// (`T_C`, `T_S − T_C`, `Ω_S`, `σ2`, offset): in these the bounds are simple.
 type Unknowns = [f64; 5];
 
 /// The runs of a fit, with their weights.
 pub(super) struct Curve<'a> {
-    runs: &'a [ConstantSpeedRun],
+    pub runs: &'a [ConstantSpeedRun],
     /// Standard errors with the floor, N·m.
-    errors: Vec<f64>,
+    pub errors: Vec<f64>,
+    /// The least that an unknown standard error counts as, N·m.
+    unknown: f64,
     /// Whether both directions allow an offset to be told from `T_C`.
     offset: bool,
 }
@@ -25,15 +24,59 @@ impl<'a> Curve<'a> {
         let largest = runs.iter().map(|r| r.torque.abs()).fold(0.0, f64::max);
         // The floor keeps a noise-free run from having infinite weight.
         let floor = (1e-6 * largest).max(f64::MIN_POSITIVE);
+        let known = runs.iter().filter_map(|r| r.torque_standard_error);
+        let unknown = known.fold(floor, f64::max);
+        let error = |r: &ConstantSpeedRun| r.torque_standard_error.unwrap_or(unknown).max(floor);
         let forward = runs.iter().filter(|r| r.speed > 0.0).count();
         Self {
             runs,
-            errors: runs
-                .iter()
-                .map(|r| r.torque_standard_error.max(floor))
-                .collect(),
+            errors: runs.iter().map(error).collect(),
+            unknown,
             offset: forward >= 2 && runs.len() - forward >= 2,
         }
+    }
+
+    /// The minimum, with the runs of unknown standard error weighted by what
+    /// they scatter about it; `None` where no falling curve fits.
+    pub fn fit(&mut self) -> Option<Minimum<5>> {
+        const ROUNDS: usize = 10;
+        let mut minimum = self.refine(self.search()?);
+        for _ in 0..ROUNDS {
+            let scatter = self.scatter_of_unknown(&minimum);
+            let before = self.errors.clone();
+            for (error, run) in self.errors.iter_mut().zip(self.runs) {
+                if run.torque_standard_error.is_none() {
+                    *error = scatter.max(self.unknown);
+                }
+            }
+            let settled = |(new, old): (&f64, &f64)| (new / old - 1.0).abs() < 1e-3;
+            if self.errors.iter().zip(&before).all(settled) {
+                self.errors = before;
+                break;
+            }
+            minimum = self.refine(minimum.x);
+        }
+        Some(minimum)
+    }
+
+    /// RMS departure from the curve, N·m, of the runs whose standard error is
+    /// not known; each run has its share of the degrees of freedom.
+    fn scatter_of_unknown(&self, minimum: &Minimum<5>) -> f64 {
+        let (mut squares, mut count) = (0.0, 0.0);
+        let residuals = minimum.residuals.iter().zip(&self.errors).zip(self.runs);
+        for ((residual, error), run) in residuals {
+            if run.torque_standard_error.is_none() {
+                squares += (residual * error).powi(2);
+                count += 1.0;
+            }
+        }
+        let share = self.degrees_of_freedom() as f64 / self.runs.len() as f64;
+        (squares / (f64::max(count, 1.0) * share)).sqrt()
+    }
+
+    pub fn degrees_of_freedom(&self) -> usize {
+        let fitted = self.free().iter().filter(|&&f| f).count();
+        self.runs.len() - fitted
     }
 
     fn free(&self) -> [bool; 5] {
@@ -52,7 +95,7 @@ impl<'a> Curve<'a> {
 
     /// The best start among 200 Stribeck speeds, spaced by equal ratios over
     /// the range of speeds and a factor of 2 beyond.
-    pub fn search(&self) -> Option<Unknowns> {
+    fn search(&self) -> Option<Unknowns> {
         const STEPS: i32 = 200;
         let speeds = self.runs.iter().map(|r| r.speed.abs());
         let low = 0.5 * speeds.clone().fold(f64::INFINITY, f64::min);
@@ -62,7 +105,7 @@ impl<'a> Curve<'a> {
                 let stribeck = low * ratio.powf(f64::from(i) / f64::from(STEPS));
                 self.linear(stribeck)
             })
-            .filter(|(x, _)| x[0] > 0.0 && x[1] > 0.0)
+            .filter(|(x, cost)| x[0] > 0.0 && x[1] > 0.0 && cost.is_finite())
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(x, _)| x)
     }
@@ -97,7 +140,7 @@ impl<'a> Curve<'a> {
     }
 
     /// Levenberg–Marquardt on all unknowns, with `T_C, T_S − T_C, σ2 ≥ 0`.
-    pub fn refine(&self, start: Unknowns) -> Minimum<5> {
+    fn refine(&self, start: Unknowns) -> Minimum<5> {
         let fastest = self.runs.iter().map(|r| r.speed.abs()).fold(0.0, f64::max);
         let residuals = |x: &Unknowns, out: &mut [f64]| self.residuals(x, out);
         let problem = Problem {
@@ -109,68 +152,9 @@ impl<'a> Curve<'a> {
         };
         problem.minimise(start)
     }
-
-    /// The estimates; the covariance of (`T_C`, `T_S`, …) from that of
-    /// (`T_C`, `T_S − T_C`, …).
-    pub fn report(
-        &self,
-        minimum: Minimum<5>,
-        used: Vec<usize>,
-        left_out: Vec<LeftOut>,
-    ) -> Result<StaticFit, IdentifyError> {
-        let [coulomb, rise, stribeck, viscous, offset] = minimum.x;
-        let chi_squared = square(&minimum.residuals);
-        let fitted = self.free().iter().filter(|&&f| f).count();
-        let degrees_of_freedom = self.runs.len() - fitted;
-        let error_scale = error_scale(chi_squared, degrees_of_freedom);
-        let inverse = minimum.inverse.ok_or(IdentifyError::NoStribeckEffect {
-            rise,
-            standard_error: f64::INFINITY,
-        })?;
-        let mut to_stiction = SMatrix::<f64, 5, 5>::identity();
-        to_stiction[(1, 0)] = 1.0;
-        let c = to_stiction * inverse * to_stiction.transpose() * (error_scale * error_scale);
-        let estimate = |i: usize, value: f64| Estimate {
-            value,
-            standard_error: c[(i, i)].max(0.0).sqrt(),
-        };
-        let torque_squares: f64 = minimum
-            .residuals
-            .iter()
-            .zip(&self.errors)
-            .map(|(r, e)| (r * e) * (r * e))
-            .sum();
-        Ok(StaticFit {
-            coulomb: estimate(0, coulomb),
-            stiction: estimate(1, coulomb + rise),
-            stribeck_speed: estimate(2, stribeck),
-            viscous: estimate(3, viscous),
-            torque_offset: estimate(4, offset),
-            covariance: core::array::from_fn(|i| core::array::from_fn(|j| c[(i, j)])),
-            residual_rms: (torque_squares / self.runs.len() as f64).sqrt(),
-            chi_squared,
-            degrees_of_freedom,
-            error_scale,
-            used,
-            left_out,
-            outcome: minimum.outcome,
-        })
-    }
 }
 
 /// `exp(−(ω/Ω_S)²)`.
 fn falling(speed: f64, stribeck: f64) -> f64 {
     (-(speed / stribeck).powi(2)).exp()
-}
-
-/// 1, or the Birge ratio where the misfit cannot be the runs' own noise: χ²/ν
-/// has the standard deviation √(2/ν).
-fn error_scale(chi_squared: f64, degrees_of_freedom: usize) -> f64 {
-    let nu = degrees_of_freedom as f64;
-    let ratio = chi_squared / nu;
-    if ratio > 1.0 + 3.0 * (2.0 / nu).sqrt() {
-        ratio.sqrt()
-    } else {
-        1.0
-    }
 }

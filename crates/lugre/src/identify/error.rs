@@ -8,7 +8,8 @@ use crate::parameters::LugreError;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum IdentifyError {
-    /// A number is NaN or infinite, or negative where that has no meaning.
+    /// A number is NaN, infinite or beyond 1e100, or negative where that has no
+    /// meaning.
     #[error("`{quantity}` of entry {index} is {value}, but must be {valid}")]
     BadNumber {
         /// Which input.
@@ -105,15 +106,25 @@ pub enum IdentifyError {
     Law(#[from] LugreError),
 }
 
-/// Refuses NaN and infinities.
+/// The largest magnitude of a measured number: sums of squares of such do not
+/// overflow.
+pub(super) const LARGEST: f64 = 1e100;
+pub(super) const MAGNITUDE: &str = "finite, with a magnitude of at most 1e100";
+
+/// Neither NaN nor beyond [`LARGEST`].
+pub(super) fn is_measurable(value: f64) -> bool {
+    (-LARGEST..=LARGEST).contains(&value)
+}
+
+/// Refuses NaN, infinities and what squares beyond all numbers.
 pub(super) fn check_finite(quantity: &'static str, values: &[f64]) -> Result<(), IdentifyError> {
-    match values.iter().position(|v| !v.is_finite()) {
+    match values.iter().position(|&v| !is_measurable(v)) {
         None => Ok(()),
         Some(index) => Err(IdentifyError::BadNumber {
             quantity,
             index,
             value: values[index],
-            valid: "finite",
+            valid: MAGNITUDE,
         }),
     }
 }

@@ -96,7 +96,7 @@ impl<const N: usize> Problem<'_, N> {
     }
 
     /// Central differences: error of about 1e-10 of each column.
-    pub fn jacobian(&self, x: &[f64; N]) -> Vec<Vec<f64>> {
+    fn jacobian(&self, x: &[f64; N]) -> Vec<Vec<f64>> {
         (0..N)
             .map(|i| {
                 if !self.free[i] {

@@ -13,35 +13,20 @@
 
 mod curve;
 mod error;
+mod estimate;
 mod least_squares;
 mod presliding;
 mod record;
+mod report;
+mod series;
+mod static_fit;
 mod statics;
 mod trial;
 
 pub use error::IdentifyError;
+pub use estimate::Estimate;
 pub use least_squares::Outcome;
 pub use presliding::{Motion, PreslidingFit, PreslidingRecord, identify_presliding};
 pub use record::ConstantSpeedRun;
-pub use statics::{
-    LeftOut, Reason, StaticFit, StaticKnowledge, StaticParameters, VIBRATION_LIMIT,
-    identify_static, identify_static_within,
-};
-
-/// A value with its standard error, both in the unit of the quantity.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
-    /// The estimate.
-    pub value: f64,
-    /// Its standard error: one standard deviation of the estimate over
-    /// repeated noise.
-    pub standard_error: f64,
-}
-
-impl Estimate {
-    /// Whether `truth` lies within `value ± sigmas · standard_error`.
-    #[must_use]
-    pub fn covers(&self, truth: f64, sigmas: f64) -> bool {
-        (truth - self.value).abs() <= sigmas * self.standard_error
-    }
-}
+pub use static_fit::{LeftOut, Reason, StaticFit, StaticKnowledge, StaticParameters};
+pub use statics::{VIBRATION_LIMIT, identify_static, identify_static_within};

@@ -2,10 +2,10 @@
 
 use nalgebra::{Matrix4, SMatrix};
 
-use super::Estimate;
 use super::error::{IdentifyError, check_finite, check_positive};
+use super::estimate::Estimate;
 use super::least_squares::{Minimum, Outcome, Problem, dot, square};
-use super::statics::StaticKnowledge;
+use super::static_fit::StaticKnowledge;
 use super::trial::{Trial, Unknowns};
 use crate::law::LuGre;
 use crate::parameters::LugreError;
@@ -102,6 +102,7 @@ pub fn identify_presliding(
         Motion::Speed(speeds) => speeds.to_vec(),
         Motion::Displacement(x) => central_speeds(x, record.time_step),
     };
+    check_finite("speed", &speeds)?;
     let trial = Trial {
         time_step: record.time_step,
         speeds: &speeds,

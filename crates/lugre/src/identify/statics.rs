@@ -1,11 +1,10 @@
 //! `T_C`, `T_S`, `Ω_S` and `σ2` from constant-speed runs.
 
-use super::Estimate;
 use super::curve::Curve;
-use super::error::IdentifyError;
-use super::least_squares::Outcome;
+use super::error::{IdentifyError, LARGEST, MAGNITUDE, is_measurable};
 use super::record::ConstantSpeedRun;
-use crate::parameters::Parameters;
+use super::report::report;
+use super::static_fit::{LeftOut, Reason, StaticFit};
 
 /// Relative vibration above which a run is left out, unless told otherwise.
 ///
@@ -14,151 +13,6 @@ use crate::parameters::Parameters;
 /// speeds: 0.4 % of `T_S − T_C` at 0.1, where self-excited vibrations reach
 /// 0.5 to 1.
 pub const VIBRATION_LIMIT: f64 = 0.1;
-
-/// The four parameters that constant speeds show, units as in [`Parameters`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StaticParameters {
-    /// `T_C`, N·m.
-    pub coulomb: f64,
-    /// `T_S`, N·m.
-    pub stiction: f64,
-    /// `Ω_S`, rad/s.
-    pub stribeck_speed: f64,
-    /// `σ2`, N·m·s/rad.
-    pub viscous: f64,
-}
-
-impl StaticParameters {
-    /// All six, with the bristles' `σ0` (N·m/rad) and `σ1` (N·m·s/rad).
-    #[must_use]
-    pub fn with_bristles(self, stiffness: f64, damping: f64) -> Parameters {
-        Parameters {
-            coulomb: self.coulomb,
-            stiction: self.stiction,
-            stribeck_speed: self.stribeck_speed,
-            stiffness,
-            damping,
-            viscous: self.viscous,
-        }
-    }
-}
-
-/// The static parameters and how well they are known, as the pre-sliding
-/// fit takes them. From [`StaticParameters`]: known exactly; from
-/// `&`[`StaticFit`]: with its covariance.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StaticKnowledge {
-    /// The values.
-    pub parameters: StaticParameters,
-    /// Covariance of (`T_C`, `T_S`, `Ω_S`, `σ2`), in products of their units.
-    pub covariance: [[f64; 4]; 4],
-}
-
-impl From<StaticParameters> for StaticKnowledge {
-    fn from(parameters: StaticParameters) -> Self {
-        Self {
-            parameters,
-            covariance: [[0.0; 4]; 4],
-        }
-    }
-}
-
-impl From<&StaticFit> for StaticKnowledge {
-    fn from(fit: &StaticFit) -> Self {
-        Self {
-            parameters: fit.parameters(),
-            covariance: core::array::from_fn(|i| core::array::from_fn(|j| fit.covariance[i][j])),
-        }
-    }
-}
-
-/// Why a run was not used.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Reason {
-    /// The speed oscillated: the mean torque is that of a vibration, not a
-    /// point of the steady-state curve.
-    Vibrates {
-        /// Relative amplitude, as in [`ConstantSpeedRun::vibration`].
-        amplitude: f64,
-        /// Hz, 0 where it is not known.
-        frequency: f64,
-    },
-    /// The mean speed is zero: friction at rest is not a point of the curve.
-    AtRest,
-}
-
-impl core::fmt::Display for Reason {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Vibrates {
-                amplitude,
-                frequency,
-            } => write!(
-                f,
-                "vibrates by {:.0} % of its speed at {frequency:.1} Hz",
-                100.0 * amplitude
-            ),
-            Self::AtRest => write!(f, "at rest"),
-        }
-    }
-}
-
-/// A run that was not used.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LeftOut {
-    /// Index into the runs given.
-    pub run: usize,
-    /// Why.
-    pub reason: Reason,
-}
-
-/// Result of [`identify_static`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct StaticFit {
-    /// `T_C`, N·m.
-    pub coulomb: Estimate,
-    /// `T_S`, N·m.
-    pub stiction: Estimate,
-    /// `Ω_S`, rad/s.
-    pub stribeck_speed: Estimate,
-    /// `σ2`, N·m·s/rad; not negative.
-    pub viscous: Estimate,
-    /// A torque that does not change with the direction (sensor offset,
-    /// gravity), N·m; fixed at 0 unless at least two runs go either way.
-    pub torque_offset: Estimate,
-    /// Covariance of (`T_C`, `T_S`, `Ω_S`, `σ2`, offset).
-    pub covariance: [[f64; 5]; 5],
-    /// RMS of the torque residuals, N·m.
-    pub residual_rms: f64,
-    /// Sum of squares of residuals over their standard errors.
-    pub chi_squared: f64,
-    /// Runs used less parameters fitted.
-    pub degrees_of_freedom: usize,
-    /// The factor on all standard errors: 1 where `chi_squared` agrees with
-    /// the runs' own standard errors, `√(chi_squared / degrees_of_freedom)`
-    /// where it lies more than three standard deviations above.
-    pub error_scale: f64,
-    /// Indices of the runs used.
-    pub used: Vec<usize>,
-    /// The other runs.
-    pub left_out: Vec<LeftOut>,
-    /// How the fit ended.
-    pub outcome: Outcome,
-}
-
-impl StaticFit {
-    /// The four values.
-    #[must_use]
-    pub fn parameters(&self) -> StaticParameters {
-        StaticParameters {
-            coulomb: self.coulomb.value,
-            stiction: self.stiction.value,
-            stribeck_speed: self.stribeck_speed.value,
-            viscous: self.viscous.value,
-        }
-    }
-}
 
 /// Fits the steady-state curve, equation (4), to constant-speed runs; those
 /// that vibrate by more than [`VIBRATION_LIMIT`] are left out and listed.
@@ -174,12 +28,16 @@ pub fn identify_static(runs: &[ConstantSpeedRun]) -> Result<StaticFit, IdentifyE
 ///
 /// Given `Ω_S` the curve is linear in the rest, so a search over `Ω_S` with
 /// linear least squares inside finds the start, and Levenberg–Marquardt on
-/// all parameters the minimum and the covariance. Runs are weighted by their
-/// standard errors (with a floor of 1e-6 of the largest torque).
+/// all parameters the minimum and the covariance.
+///
+/// Runs are weighted by their standard errors (with a floor of 1e-6 of the
+/// largest torque). Those that know none share one: what they scatter about
+/// the curve, but not less than the largest known, so that no run gains weight
+/// by saying nothing.
 ///
 /// # Errors
-/// [`IdentifyError`]: a number is not finite, or a standard error or vibration
-/// negative; fewer than 6 different speeds are left; fewer than 2 on either
+/// [`IdentifyError`]: a number is not finite or beyond 1e100, a standard error
+/// not positive, a vibration or `vibration_limit` negative or NaN; fewer than 6 different speeds are left; fewer than 2 on either
 /// side of `Ω_S`; friction does not fall with speed significantly (3 standard
 /// errors).
 pub fn identify_static_within(
@@ -187,15 +45,23 @@ pub fn identify_static_within(
     vibration_limit: f64,
 ) -> Result<StaticFit, IdentifyError> {
     check_runs(runs)?;
+    if vibration_limit.is_nan() || vibration_limit < 0.0 {
+        return Err(IdentifyError::BadNumber {
+            quantity: "vibration_limit",
+            index: 0,
+            value: vibration_limit,
+            valid: "at least 0",
+        });
+    }
     let (used, left_out) = select(runs, vibration_limit);
     let kept: Vec<ConstantSpeedRun> = used.iter().map(|&i| runs[i]).collect();
     require_speeds(&kept, left_out.len())?;
-    let curve = Curve::new(&kept);
-    let start = curve.search().ok_or(IdentifyError::NoStribeckEffect {
+    let mut curve = Curve::new(&kept);
+    let minimum = curve.fit().ok_or(IdentifyError::NoStribeckEffect {
         rise: 0.0,
         standard_error: f64::INFINITY,
     })?;
-    let fit = curve.report(curve.refine(start), used, left_out)?;
+    let fit = report(&curve, minimum, used, left_out)?;
     require_both_sides(&kept, fit.stribeck_speed.value)?;
     let c = &fit.covariance;
     let rise = fit.stiction.value - fit.coulomb.value;
@@ -211,34 +77,31 @@ pub fn identify_static_within(
 }
 
 fn check_runs(runs: &[ConstantSpeedRun]) -> Result<(), IdentifyError> {
+    const POSITIVE: &str = "greater than 0 and at most 1e100 (none where it is not known)";
+    let bad = |index, quantity, value, valid| IdentifyError::BadNumber {
+        quantity,
+        index,
+        value,
+        valid,
+    };
     for (index, run) in runs.iter().enumerate() {
-        let numbers = [
-            ("speed", run.speed, true),
-            ("torque", run.torque, true),
-            ("torque_standard_error", run.torque_standard_error, false),
+        for (quantity, value) in [("speed", run.speed), ("torque", run.torque)] {
+            if !is_measurable(value) {
+                return Err(bad(index, quantity, value, MAGNITUDE));
+            }
+        }
+        let errors = [
+            ("speed_standard_error", run.speed_standard_error),
+            ("torque_standard_error", run.torque_standard_error),
         ];
-        for (quantity, value, signed) in numbers {
-            if !value.is_finite() || (!signed && value < 0.0) {
-                return Err(IdentifyError::BadNumber {
-                    quantity,
-                    index,
-                    value,
-                    valid: if signed {
-                        "finite"
-                    } else {
-                        "finite and at least 0"
-                    },
-                });
+        for (quantity, value) in errors {
+            if let Some(value) = value.filter(|&e| !(e > 0.0 && e <= LARGEST)) {
+                return Err(bad(index, quantity, value, POSITIVE));
             }
         }
         // Infinite is what a vibration about a standstill gives.
         if run.vibration.is_nan() || run.vibration < 0.0 {
-            return Err(IdentifyError::BadNumber {
-                quantity: "vibration",
-                index,
-                value: run.vibration,
-                valid: "at least 0",
-            });
+            return Err(bad(index, "vibration", run.vibration, "at least 0"));
         }
     }
     Ok(())
@@ -247,7 +110,7 @@ fn check_runs(runs: &[ConstantSpeedRun]) -> Result<(), IdentifyError> {
 fn select(runs: &[ConstantSpeedRun], limit: f64) -> (Vec<usize>, Vec<LeftOut>) {
     let (mut used, mut left_out) = (Vec::new(), Vec::new());
     for (run, r) in runs.iter().enumerate() {
-        if r.speed == 0.0 {
+        if r.is_at_rest() {
             let reason = Reason::AtRest;
             left_out.push(LeftOut { run, reason });
         } else if r.vibration > limit {

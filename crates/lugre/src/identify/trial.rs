@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::least_squares::central_difference;
-use super::statics::StaticParameters;
+use super::static_fit::StaticParameters;
 use crate::law::LuGre;
 
 /// (`ln σ0`, `σ1`, `σ0 z` at the start, torque offset). The logarithm keeps
@@ -82,7 +82,7 @@ impl Trial<'_> {
             high = high.max(position);
         }
         let range = high - low;
-        if range <= 0.0 {
+        if range <= 0.0 || !range.is_finite() {
             return None;
         }
         // A break-away deflection from 10 ranges down to a 3000th of one.
@@ -95,6 +95,7 @@ impl Trial<'_> {
                 [-0.8, 0.0, 0.8].map(|share| [log_stiffness, 0.0, share * level, 0.0])
             })
             .filter_map(|x| self.linear(x))
+            .filter(|(_, cost)| cost.is_finite())
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(x, _)| x)
     }

@@ -6,15 +6,7 @@ use lugre::{LuGre, Parameters};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-/// Liu et al. 2025, Table 1, in SI units.
-pub const PAPER: Parameters = Parameters {
-    coulomb: 0.6757,
-    stiction: 0.7653,
-    stribeck_speed: 2.713781,
-    stiffness: 15.159508,
-    damping: 1.521203,
-    viscous: 0.002865,
-};
+pub const PAPER: Parameters = Parameters::LIU_2025;
 
 /// rad of screw per m of table, lead 10 mm.
 pub const RAD_PER_M: f64 = 2.0 * std::f64::consts::PI / 0.010;

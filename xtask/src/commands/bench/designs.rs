@@ -24,7 +24,7 @@ fn large(plan: &Plan) -> Result<Row> {
         plan.repetitions,
         [
             &mut || {
-                plan.pool.install(|| black_box(hypercube.design()));
+                plan.pool.install(|| drop(black_box(hypercube.design())));
             },
             &mut || {
                 black_box(shuffle_design(n));
@@ -73,7 +73,7 @@ impl SplitMix {
 fn optimised(plan: &Plan) -> Result<Vec<Row>> {
     let n = plan.size(5000, 300);
     let hypercube = LatinHypercube::new(n, DIMS, 1).into_diagnostic()?;
-    let plain = hypercube.design();
+    let plain = hypercube.design().into_diagnostic()?;
     let budget = Budget {
         iterations: plan.size(1000, 50),
     };
@@ -83,7 +83,7 @@ fn optimised(plan: &Plan) -> Result<Vec<Row>> {
             plan.repetitions.div_ceil(2),
             [
                 &mut || {
-                    black_box(optimise());
+                    drop(black_box(optimise()));
                 },
                 &mut || {
                     black_box(centred_discrepancy(black_box(&plain)));
@@ -91,7 +91,7 @@ fn optimised(plan: &Plan) -> Result<Vec<Row>> {
             ],
         )
     });
-    let (design, _) = optimise();
+    let (design, _) = optimise().into_diagnostic()?;
     let (before, after) = (centred_discrepancy(&plain), centred_discrepancy(&design));
     Ok(vec![
         Row {

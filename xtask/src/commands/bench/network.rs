@@ -97,7 +97,7 @@ fn epoch(plan: &Plan) -> Result<Row> {
 fn predictions(plan: &Plan) -> Result<Vec<Row>> {
     let ranges = [(-1.0, 1.0); 4];
     let scaling = Scaling::from_ranges(&ranges, &ranges[..1]).into_diagnostic()?;
-    let weights = nguyen_widrow(&shape(), 1);
+    let weights = nguyen_widrow(&shape(), 1).into_diagnostic()?;
     let network = Network::new(shape(), scaling, weights).into_diagnostic()?;
     let single: Vec<f32> = network.packed_weights().iter().map(|&w| w as f32).collect();
     let unit = Range::new("bench", -1.0f32, 1.0).into_diagnostic()?;

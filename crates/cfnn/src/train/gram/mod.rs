@@ -22,7 +22,6 @@ use std::vec::Vec;
 use rayon::prelude::*;
 
 use self::plan::{Plan, Rectangle, triangle_index};
-pub(super) use self::tile::LANES;
 use self::tile::{Panels, Tile, cut};
 use super::block::{BlockWork, Layout};
 use super::cholesky::Symmetric;
@@ -140,18 +139,30 @@ fn places(
 ) -> Vec<usize> {
     let (seen_l, seen_m) = (layout.layers[l].seen, layout.layers[m].seen);
     let row = plan.first_row(l, m);
+    let across = across(rectangles, row);
     let place = |i: usize, j: usize| {
         let column = plan.column(i.min(j), i.max(j));
-        let mut before = 0;
-        for rectangle in rectangles {
-            if let Some(place) = rectangle.place(row, column) {
-                return before + place;
-            }
-            before += rectangle.len();
-        }
-        unreachable!("the rectangles cover all entries")
+        // Together the rectangles cover the row: the last that has begun.
+        let begun = across.partition_point(|(r, _)| r.first_column <= column);
+        let (rectangle, before) = across[begun - 1];
+        before + rectangle.place(row, column)
     };
     (0..seen_l * seen_m)
         .map(|e| place(e / seen_m, e % seen_m))
         .collect()
+}
+
+/// The rectangles that hold a row, from left to right, with the number of
+/// values before each.
+fn across(rectangles: &[Rectangle], row: usize) -> Vec<(&Rectangle, usize)> {
+    let mut before = 0;
+    let mut across = Vec::new();
+    for rectangle in rectangles {
+        if rectangle.holds_row(row) {
+            across.push((rectangle, before));
+        }
+        before += rectangle.len();
+    }
+    across.sort_by_key(|(rectangle, _)| rectangle.first_column);
+    across
 }

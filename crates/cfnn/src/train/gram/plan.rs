@@ -51,11 +51,13 @@ impl Rectangle {
         self.rows * self.columns
     }
 
-    /// Place of an entry in the column-major values, if it lies within.
-    pub fn place(&self, row: usize, column: usize) -> Option<usize> {
-        let row = row.checked_sub(self.first_row)?;
-        let column = column.checked_sub(self.first_column)?;
-        (row < self.rows && column < self.columns).then(|| row + column * self.rows)
+    pub fn holds_row(&self, row: usize) -> bool {
+        (self.first_row..self.first_row + self.rows).contains(&row)
+    }
+
+    /// Place, in the column-major values, of an entry that lies within.
+    pub fn place(&self, row: usize, column: usize) -> usize {
+        row - self.first_row + (column - self.first_column) * self.rows
     }
 }
 

@@ -5,7 +5,7 @@ use std::vec::Vec;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 
-use super::super::block::{BlockWork, Layout};
+use super::super::block::{BlockWork, LANES, Layout};
 use super::super::dataset::BLOCK;
 use super::plan::{Plan, Rectangle, Run};
 use crate::simd::{Kernel, Vectors};
@@ -17,8 +17,6 @@ const ROWS: usize = 288;
 const COLUMNS: usize = 384;
 /// Columns whose products are formed together.
 const STRIP: usize = 96;
-/// Rows formed together; what overshoots is overwritten by the next.
-pub(in super::super) const LANES: usize = 8;
 
 pub(super) struct Tile<'a> {
     first_row: usize,
@@ -38,7 +36,8 @@ pub(super) struct Panels {
     chunks: Vec<Chunk>,
 }
 
-/// Up to [`LANES`] neighbouring rows.
+/// Up to [`LANES`] neighbouring rows; what overshoots is overwritten by the
+/// next.
 struct Chunk {
     row: usize,
     neuron: usize,

@@ -125,7 +125,8 @@ fn a_law_that_jumps_holds_the_speed_where_it_does() {
 
 #[test]
 fn what_has_no_solution_says_so() {
-    let laws: [(&str, fn(f64) -> f64); 4] = [
+    type Law = fn(f64) -> f64;
+    let laws: [(&str, Law); 4] = [
         ("not a number", |_| f64::NAN),
         ("without bound", |_| f64::INFINITY),
         ("not a number beyond a speed", |v| {

@@ -166,11 +166,12 @@ fn rigid(axis: &RigidAxis) -> Verdict {
         ("position_m", &place),
     ];
     let channels: Result<Vec<Channel>, _> = log.iter().map(|(n, s)| channel(n, s)).collect();
-    let replay = channels
-        .and_then(Log::new)
-        .and_then(|log| Replay::new(&log, 1e-3));
-    let Ok(replay) = replay else {
+    let Ok(log) = channels.and_then(Log::new) else {
         return fault("six samples make no log");
+    };
+    let replay = match Replay::new(&log, 1e-3) {
+        Ok(replay) => replay,
+        Err(e) => return told(e),
     };
     match replay.run(&Machine::Rigid(Box::new(axis.clone())), &[], None) {
         Err(e) => told(e),

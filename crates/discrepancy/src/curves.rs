@@ -1,43 +1,46 @@
-//! Curves over variables of the motion.
+//! Curves over variables of the motion, and the loop's answers to them.
 
 use std::sync::Arc;
 
 use axis_sim::effects::Machine;
 use axis_sim::{Probe, Trace};
+use rayon::prelude::*;
 
+use crate::fit::{Columns, Fit, Fitter};
 use crate::model::LogSet;
+use crate::spectrum::Amplitudes;
 
 /// Where a disturbance acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub enum Place {
     Force,
     Offset,
 }
 
 impl Place {
     /// Size of a probe, small beside what the axis feels: N, m.
-    pub(super) fn size(self) -> f64 {
+    pub fn size(self) -> f64 {
         match self {
             Self::Force => 10.0,
             Self::Offset => 2e-7,
         }
     }
 
-    pub(super) fn unit(self) -> &'static str {
+    pub fn unit(self) -> &'static str {
         match self {
             Self::Force => "N",
             Self::Offset => "m",
         }
     }
 
-    pub(super) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Force => "torque balance (as a force at the table, against positive motion)",
             Self::Offset => "kinematics (as a displacement of the table on the screw)",
         }
     }
 
-    pub(super) fn probe(self, samples: Vec<f64>) -> Probe {
+    pub fn probe(self, samples: Vec<f64>) -> Probe {
         match self {
             Self::Force => Probe::Load(samples.into()),
             Self::Offset => Probe::Offset(Arc::from(samples)),
@@ -47,14 +50,14 @@ impl Place {
 
 /// A variable of the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Variable {
+pub enum Variable {
     Speed,
     Position,
     Time,
     Angle,
 }
 
-pub(super) const VARIABLES: [Variable; 4] = [
+pub const VARIABLES: [Variable; 4] = [
     Variable::Speed,
     Variable::Position,
     Variable::Time,
@@ -62,7 +65,7 @@ pub(super) const VARIABLES: [Variable; 4] = [
 ];
 
 impl Variable {
-    pub(super) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Speed => "speed",
             Self::Position => "position",
@@ -71,7 +74,7 @@ impl Variable {
         }
     }
 
-    pub(super) fn unit(self) -> &'static str {
+    pub fn unit(self) -> &'static str {
         match self {
             Self::Speed => "m/s",
             Self::Position => "m",
@@ -82,18 +85,18 @@ impl Variable {
 }
 
 /// The motion of one log as simulated.
-pub(super) struct Course {
-    pub(super) time: Vec<f64>,
-    pub(super) position: Vec<f64>,
-    pub(super) speed: Vec<f64>,
+pub struct Course {
+    pub time: Vec<f64>,
+    pub position: Vec<f64>,
+    pub speed: Vec<f64>,
     /// In [0, 2π).
-    pub(super) angle: Vec<f64>,
+    pub angle: Vec<f64>,
 }
 
 /// Speed below which a direction is not one, m/s.
-pub(super) const STANDS: f64 = 1e-3;
+pub const STANDS: f64 = 1e-3;
 
-pub(super) fn course(machine: &Machine, set: &LogSet, traces: &[Trace], log: usize) -> Course {
+pub fn course(machine: &Machine, set: &LogSet, traces: &[Trace], log: usize) -> Course {
     let trace = &traces[log];
     let position = trace.channel("position_m").unwrap_or_default().to_vec();
     let radians = match machine {
@@ -114,17 +117,17 @@ pub(super) fn course(machine: &Machine, set: &LogSet, traces: &[Trace], log: usi
 
 /// A curve: where it acts, on what it depends, and its hats' places.
 #[derive(Debug)]
-pub(super) struct Shape {
-    pub(super) place: Place,
-    pub(super) variable: Variable,
-    pub(super) knots: Vec<f64>,
+pub struct Shape {
+    pub place: Place,
+    pub variable: Variable,
+    pub knots: Vec<f64>,
 }
 
 /// Hats of a curve.
-pub(super) const KNOTS: usize = 10;
+pub const KNOTS: usize = 10;
 
 impl Shape {
-    pub(super) fn new(place: Place, variable: Variable, courses: &[Course]) -> Self {
+    pub fn new(place: Place, variable: Variable, courses: &[Course]) -> Self {
         let of = |c: &Course| match variable {
             Variable::Speed => c.speed.clone(),
             Variable::Position => c.position.clone(),
@@ -157,7 +160,7 @@ impl Shape {
     }
 
     /// The hat of knot j, in time.
-    pub(super) fn hat(&self, j: usize, c: &Course) -> Vec<f64> {
+    pub fn hat(&self, j: usize, c: &Course) -> Vec<f64> {
         let samples = |k: usize| match self.variable {
             Variable::Speed => {
                 let v = c.speed[k];
@@ -187,7 +190,7 @@ impl Shape {
     }
 
     /// Hat j of piecewise linear interpolation, flat beyond the ends.
-    pub(super) fn linear(&self, j: usize, x: f64, knot: impl Fn(usize) -> Option<f64>) -> f64 {
+    pub fn linear(&self, j: usize, x: f64, knot: impl Fn(usize) -> Option<f64>) -> f64 {
         let own = self.knots[j];
         let next = if x < own {
             j.checked_sub(1).and_then(knot)
@@ -202,8 +205,55 @@ impl Shape {
 }
 
 /// The motions of all logs.
-pub(super) fn courses(machine: &Machine, set: &LogSet, traces: &[Trace]) -> Vec<Course> {
+pub fn courses(machine: &Machine, set: &LogSet, traces: &[Trace]) -> Vec<Course> {
     (0..set.logs.len())
         .map(|log| course(machine, set, traces, log))
         .collect()
+}
+
+/// The loop's answers to all curves on a set of logs.
+#[derive(Debug, Default)]
+pub struct Curves {
+    pub shapes: Vec<(Shape, Columns)>,
+}
+
+impl Curves {
+    /// Simulates them at a fit; what they are on the motion hardly depends on
+    /// the fit, so they may be kept.
+    pub fn new(machine: &Machine, set: &LogSet, fit: &Fit) -> Self {
+        let courses = courses(machine, set, &fit.traces);
+        let shapes = [Place::Force, Place::Offset]
+            .into_iter()
+            .flat_map(|place| VARIABLES.map(|v| Shape::new(place, v, &courses)));
+        let shapes: Vec<Shape> = shapes.collect();
+        let fitter = Fitter { machine, set };
+        let answers = |shape: Shape| {
+            let column = |j: usize| {
+                let series = courses.iter().map(|c| shape.hat(j, c)).collect();
+                answer(&fitter, fit, shape.place, series)
+            };
+            let columns = (0..shape.knots.len()).into_par_iter().map(column).collect();
+            (shape, columns)
+        };
+        Self {
+            shapes: shapes.into_par_iter().map(answers).collect(),
+        }
+    }
+}
+
+/// What the loop makes of a disturbance of unit size with this course, one
+/// series a log.
+pub fn answer(fitter: &Fitter<'_>, fit: &Fit, place: Place, series: Vec<Vec<f64>>) -> Amplitudes {
+    let size = place.size();
+    let probes: Vec<Probe> = series
+        .into_iter()
+        .map(|s| place.probe(s.into_iter().map(|v| size * v).collect()))
+        .collect();
+    let run = fitter
+        .set
+        .simulate_with(fitter.machine, &fit.state, Some(&probes));
+    match run {
+        Ok(traces) => fitter.set.difference(&traces, &fit.traces, size),
+        Err(_) => fitter.nothing(fit),
+    }
 }

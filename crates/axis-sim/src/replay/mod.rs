@@ -5,124 +5,22 @@
 //! output error: Gautier, Janot, Vandanjon, IEEE Trans. Control Syst. Technol.
 //! 21 (2013) 428–444, doi:10.1109/TCST.2012.2185697).
 
+mod error;
+mod reference;
+
 use std::sync::Arc;
 
-use axis_log::{Log, LogError};
+use axis_log::Log;
 use compensator::NoCompensation;
-use feed_dynamics::DriveError;
-use thiserror::Error;
-use trajectories::{Motion, Setpoint};
+use trajectories::Motion;
 
 use crate::effects::{ActiveEffect, Hooks, Machine};
-use crate::rigid::Start;
-use crate::{ClosedLoop, Cycle, Measured, RunStopped};
-
-/// Why a replay failed.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum ReplayError {
-    /// A channel that a replay needs is not in the log.
-    #[error(transparent)]
-    Log(#[from] LogError),
-    /// The mechanics cannot be set up.
-    #[error(transparent)]
-    Drive(#[from] DriveError),
-    /// The closed loop was given up.
-    #[error(transparent)]
-    Stopped(#[from] RunStopped),
-    /// No load goes with a rigid machine's motion at the end of a step.
-    #[error(
-        "the replay stopped at t = {time:.4} s because no friction goes with the motion at the end of a step: table at {position:.6} m, {speed:.6} m/s"
-    )]
-    LoadNotFound {
-        /// When, s.
-        time: f64,
-        /// Table position then, m.
-        position: f64,
-        /// Table speed then, m/s.
-        speed: f64,
-    },
-    /// A state is no longer a number.
-    #[error("the replay diverged at t = {time:.4} s")]
-    Diverged {
-        /// When, s.
-        time: f64,
-    },
-}
-
-/// A logged reference as a motion: cubic between samples, through positions
-/// and velocities.
-#[derive(Clone, Debug)]
-pub struct LoggedReference {
-    period: f64,
-    position: Vec<f64>,
-    velocity: Vec<f64>,
-}
-
-impl LoggedReference {
-    /// The reference of a uniformly sampled log with the sampling period
-    /// `period` (s). Without `velocity_ref_m_s` the velocity is the central
-    /// difference of the position.
-    ///
-    /// # Errors
-    /// [`LogError::MissingChannel`] without `position_ref_m`.
-    pub fn new(log: &Log, period: f64) -> Result<Self, LogError> {
-        let position = log.channel("position_ref_m")?.to_vec();
-        let last = position.len() - 1;
-        let difference = |k: usize| {
-            let (a, b) = (k.saturating_sub(1), (k + 1).min(last));
-            (position[b] - position[a]) / (period * (b - a).max(1) as f64)
-        };
-        let velocity = match log.channel("velocity_ref_m_s") {
-            Ok(samples) => samples.to_vec(),
-            Err(_) => (0..=last).map(difference).collect(),
-        };
-        Ok(Self {
-            period,
-            position,
-            velocity,
-        })
-    }
-}
-
-impl Motion for LoggedReference {
-    fn duration(&self) -> f64 {
-        (self.position.len() - 1) as f64 * self.period
-    }
-
-    fn at(&self, t: f64) -> Setpoint {
-        let last = self.position.len() - 1;
-        let along = (t / self.period).clamp(0.0, last as f64);
-        let near = along.round();
-        if (along - near).abs() < 1e-6 {
-            let k = near as usize;
-            let inside = t > -self.period && t < self.duration() + self.period;
-            return Setpoint {
-                position: self.position[k],
-                velocity: if inside { self.velocity[k] } else { 0.0 },
-                ..Setpoint::default()
-            };
-        }
-        let k = (along as usize).min(last.saturating_sub(1));
-        let (s, h) = (along - k as f64, self.period);
-        let (p0, p1) = (self.position[k], self.position[k + 1]);
-        let (m0, m1) = (h * self.velocity[k], h * self.velocity[k + 1]);
-        let (s2, s3) = (s * s, s * s * s);
-        let position = (2.0 * s3 - 3.0 * s2 + 1.0) * p0
-            + (s3 - 2.0 * s2 + s) * m0
-            + (3.0 * s2 - 2.0 * s3) * p1
-            + (s3 - s2) * m1;
-        let velocity = (6.0 * (s2 - s) * (p0 - p1)
-            + (3.0 * s2 - 4.0 * s + 1.0) * m0
-            + (3.0 * s2 - 2.0 * s) * m1)
-            / h;
-        Setpoint {
-            position,
-            velocity,
-            ..Setpoint::default()
-        }
-    }
-}
+use crate::rigid::{RigidCycle, Start};
+use crate::work::{check_period, cycles_of, substeps_of};
+use crate::{ClosedLoop, Cycle, Measured, RigidAxis};
+pub use error::ReplayError;
+use error::check_length;
+pub use reference::LoggedReference;
 
 /// Simulated channels at the instants of a log, named as in logs.
 #[derive(Clone, Debug, Default)]
@@ -179,8 +77,8 @@ impl Replay {
     /// there are the start of a rigid machine.
     ///
     /// # Errors
-    /// [`LogError::MissingChannel`].
-    pub fn new(log: &Log, period: f64) -> Result<Self, LogError> {
+    /// [`ReplayError::Log`] where a channel is missing; [`ReplayError::Period`].
+    pub fn new(log: &Log, period: f64) -> Result<Self, ReplayError> {
         let position = log.channel("position_m")?;
         let few = position.len().min(6) - 1;
         let start = Start {
@@ -229,64 +127,85 @@ impl Replay {
                 self.follow(&closed_loop, |_| ())
             }
             Machine::Rigid(axis) => {
-                let mut axis = axis.clone();
+                let mut axis = (**axis).clone();
                 axis.effects.extend_from_slice(effects);
                 let (axis, mut hooks) = axis.with_effects()?;
                 if let Some(probe) = probe {
                     self.attach(&mut hooks, probe);
                 }
-                let cycles = (self.reference.duration() / axis.period * (1.0 + 1e-12)) as usize + 1;
-                let added = |k: usize| {
-                    let at = k as f64 * axis.period / self.reference.period;
-                    let added = self.added.as_ref();
-                    added
-                        .and_then(|a| a.get(at.round() as usize))
-                        .copied()
-                        .unwrap_or(0.0)
-                };
-                let log = axis
-                    .follow(&hooks, &self.reference, self.start, cycles, added)
-                    .map_err(|halt| match halt.position + halt.speed + halt.residual {
-                        state if state.is_finite() => ReplayError::LoadNotFound {
-                            time: halt.time,
-                            position: halt.position,
-                            speed: halt.speed,
-                        },
-                        _ => ReplayError::Diverged { time: halt.time },
-                    })?;
-                if let Some(k) = log
-                    .iter()
-                    .position(|c| !(c.position + c.command).is_finite())
-                {
-                    let time = k as f64 * axis.period;
-                    return Err(ReplayError::Diverged { time });
-                }
-                let position: Vec<f64> = log.iter().map(|c| c.position).collect();
-                let command: Vec<f64> = log.iter().map(|c| c.command).collect();
-                let position = self.resample(position, axis.period, 0.0);
-                Ok(Trace {
-                    speed: self.differences(&position),
-                    channels: vec![
-                        ("position_m", position),
-                        ("drive_command_v", self.resample(command, axis.period, 0.0)),
-                    ],
-                })
+                self.follow_rigid(&axis, &hooks)
             }
         }
+    }
+
+    fn follow_rigid(&self, axis: &RigidAxis, hooks: &Hooks) -> Result<Trace, ReplayError> {
+        check_period(axis.period)?;
+        let cycles = cycles_of(self.reference.duration(), axis.period);
+        check_length(cycles, substeps_of(axis.period, axis.step))?;
+        let added = |k: usize| {
+            let at = k as f64 * axis.period / self.reference.period;
+            let added = self.added.as_ref();
+            added
+                .and_then(|a| a.get(at.round() as usize))
+                .copied()
+                .unwrap_or(0.0)
+        };
+        let log = axis
+            .follow(hooks, &self.reference, self.start, cycles as usize, added)
+            .map_err(|halt| match halt.position + halt.speed + halt.residual {
+                state if state.is_finite() => ReplayError::LoadNotFound {
+                    time: halt.time,
+                    position: halt.position,
+                    speed: halt.speed,
+                },
+                _ => ReplayError::Diverged { time: halt.time },
+            })?;
+        self.check_held(axis, &log)?;
+        let position: Vec<f64> = log.iter().map(|c| c.position).collect();
+        let command: Vec<f64> = log.iter().map(|c| c.command).collect();
+        let position = self.resample(position, axis.period, 0.0);
+        Ok(Trace {
+            speed: self.differences(&position),
+            channels: vec![
+                ("position_m", position),
+                ("drive_command_v", self.resample(command, axis.period, 0.0)),
+            ],
+        })
+    }
+
+    /// Whether the loop held the reference: in numbers, and within its limit.
+    fn check_held(&self, axis: &RigidAxis, log: &[RigidCycle]) -> Result<(), ReplayError> {
+        for (k, cycle) in log.iter().enumerate() {
+            let time = k as f64 * axis.period;
+            if !(cycle.position + cycle.command).is_finite() {
+                return Err(ReplayError::Diverged { time });
+            }
+            let Some(limit) = axis.following_error_limit else {
+                continue;
+            };
+            let error = self.reference.at(time).position - cycle.position;
+            if error.abs() > limit {
+                return Err(ReplayError::FollowingError { time, error, limit });
+            }
+        }
+        Ok(())
     }
 
     /// Runs the reference through a prepared closed loop; `sense` as in
     /// [`ClosedLoop::run_sensed`].
     ///
     /// # Errors
-    /// [`ReplayError::Stopped`] where the loop does not hold.
+    /// [`ReplayError::Stopped`] where the loop does not hold;
+    /// [`ReplayError::TooLong`] where the log is longer than can be held.
     pub fn follow(
         &self,
         closed_loop: &ClosedLoop,
         sense: impl FnMut(&mut Measured),
     ) -> Result<Trace, ReplayError> {
         let period = closed_loop.axis().period;
-        let cycles = (self.reference.duration() / period) as usize + 2;
+        let cycles = cycles_of(self.reference.duration(), period);
+        check_length(cycles, closed_loop.steps(&self.reference) / cycles)?;
+        let cycles = cycles as usize;
         let mut columns: [Vec<f64>; COLUMNS.len()] =
             std::array::from_fn(|_| Vec::with_capacity(cycles));
         let mut speed: Vec<f64> = Vec::with_capacity(cycles);
@@ -324,7 +243,8 @@ impl Replay {
             }
             let i = along as usize;
             let part = along - i as f64;
-            (1.0 - part) * samples[i] + part * samples[i + 1]
+            let next = samples[(i + 1).min(samples.len() - 1)];
+            (1.0 - part) * samples[i] + part * next
         };
         (0..self.samples).map(at).collect()
     }
@@ -341,7 +261,9 @@ impl Replay {
     fn attach(&self, hooks: &mut Hooks, probe: &Probe) {
         let h = self.reference.period;
         let value = move |samples: &[f64], t: f64| {
-            let last = samples.len() - 1;
+            let Some(last) = samples.len().checked_sub(1) else {
+                return [0.0; 2];
+            };
             let along = (t / h).clamp(0.0, last as f64);
             let i = (along as usize).min(last.saturating_sub(1));
             let next = samples[(i + 1).min(last)];

@@ -1,0 +1,78 @@
+//! What to say about a key or a word that does not exist.
+
+use super::key::{Key, Kind};
+
+/// What is wrong with the key `given` in a table of `keys`.
+pub(super) fn unknown_key(given: &str, place: &str, keys: &[Key]) -> String {
+    if let Some(wrong) = keys.iter().find_map(|key| wrong_unit(given, key)) {
+        return wrong;
+    }
+    let spellings = keys
+        .iter()
+        .flat_map(|key| key.spellings().into_iter().map(|s| (key.shown(&s), s)));
+    let near = nearest(given, spellings, |(_, spelling)| spelling);
+    let near: Vec<String> = near.iter().map(|(shown, _)| format!("`{shown}`")).collect();
+    format!("is not a key of {place}{}", hint(&near))
+}
+
+/// The keys that a table may have, as a list.
+pub(super) fn list(keys: &[Key]) -> String {
+    let mut all: Vec<String> = keys
+        .iter()
+        .map(|key| key.shown(&key.spellings().join(" | ")))
+        .collect();
+    all.sort();
+    format!("one of: {}", all.join(", "))
+}
+
+/// What is said about a word that is none of `words`, as the end of a sentence.
+pub(super) fn unknown_word(given: &str, words: &[&str]) -> String {
+    let near = nearest(given, words.iter().copied(), |word| word);
+    let near: Vec<String> = near.iter().map(|word| format!("\"{word}\"")).collect();
+    hint(&near)
+}
+
+/// A quantity without a unit, or with one that does not exist.
+fn wrong_unit(given: &str, key: &Key) -> Option<String> {
+    let Kind::Quantity(dimension, _) = key.kind else {
+        return None;
+    };
+    let rest = given.strip_prefix(key.name)?;
+    let (units, unit_of) = (key.spellings().join(", "), dimension.name);
+    if rest.is_empty() {
+        return Some(format!("has no {unit_of}; there are {units}"));
+    }
+    let unit = rest.strip_prefix('_')?;
+    Some(format!(
+        "has the unit suffix `{unit}`, which is no {unit_of}; there are {units}"
+    ))
+}
+
+fn hint(near: &[String]) -> String {
+    if near.is_empty() {
+        return String::new();
+    }
+    format!("; did you mean {}?", near.join(" or "))
+}
+
+/// The nearest candidates, where they are near enough: a third of the letters
+/// away at most, a swap of neighbours counting as one.
+fn nearest<T>(
+    given: &str,
+    candidates: impl IntoIterator<Item = T>,
+    text: impl Fn(&T) -> &str,
+) -> Vec<T> {
+    let mut least = (given.chars().count() / 3).max(1);
+    let mut near = Vec::new();
+    for candidate in candidates {
+        let distance = strsim::osa_distance(given, text(&candidate));
+        if distance < least {
+            near.clear();
+            least = distance;
+        }
+        if distance == least {
+            near.push(candidate);
+        }
+    }
+    near
+}

@@ -1,0 +1,149 @@
+//! What could be known of a case, and what came out of it.
+
+use serde::{Deserialize, Serialize};
+
+use super::case::Case;
+use crate::gap::ChannelGap;
+use crate::lack::Unknown;
+use crate::outcome::Verdict;
+
+/// What can be known of a hidden effect beforehand.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Foreseen {
+    /// Expected fall of D on the fit log, known parameters and the case's other
+    /// effects fitted out.
+    pub gain: f64,
+    /// Its size in deviations, of what a fit makes of noise.
+    pub above_noise: f64,
+    /// Whether the gain is at least twice what the search asks for, and the size by as
+    /// much more.
+    pub detectable: bool,
+    /// Effects of the library that do nearly the same on this log: the sine of
+    /// their angle is below [`crate::ONE_CLASS`], or too little is left beside them.
+    pub class: Vec<String>,
+    /// Of an effect that the search does not have: what those it has make of it.
+    pub imitation: Option<Imitation>,
+}
+
+/// How far the library's effects together do what another effect does.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Imitation {
+    /// The effects, as many as a search may name at most.
+    pub by: Vec<String>,
+    /// Fall of D that is left beside them.
+    pub left: f64,
+    /// Whether that is less than twice what the search asks for: no search can
+    /// then say that something else is there.
+    pub complete: bool,
+}
+
+/// An estimate beside the truth.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Effect.
+    pub effect: String,
+    /// Parameter.
+    pub parameter: String,
+    /// Whether it is a size.
+    pub size: bool,
+    /// Truth.
+    pub truth: f64,
+    /// Estimate.
+    pub value: f64,
+    /// 95 % interval.
+    pub ci95: [f64; 2],
+    /// What the estimate would be, had the known parameters been told: its
+    /// mean given their true values, in the estimate's own Gaussian. Where a
+    /// hidden effect and a known parameter are one and the same quantity (a
+    /// payload on a table whose mass is known to 1 %), no log tells more.
+    pub given_known: f64,
+}
+
+/// An effect as the search named it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NamedEffect {
+    /// Name.
+    pub name: String,
+    /// Effects that it said these logs cannot tell from it.
+    pub alike: Vec<String>,
+}
+
+/// What a proposed experiment did for a class: the search once more, with its log
+/// beside the old one and, in the library, the two rivals and what else is hidden.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Split {
+    /// The pair that it was to separate, the hidden one first.
+    pub pair: [String; 2],
+    /// Foreseen fall of D between the two.
+    pub foreseen: f64,
+    /// What that search named, in the order of evidence.
+    pub named: Vec<NamedEffect>,
+}
+
+impl Split {
+    /// Whether the hidden one was named, and the other no longer: by itself or as one that
+    /// does the same. Where more is hidden, something else may have come first.
+    pub fn succeeded(&self) -> bool {
+        let [hidden, other] = &self.pair;
+        let mut named = self.named.iter();
+        let is_told = |n: &NamedEffect| n.name != *other && !n.alike.contains(other);
+        named.clone().any(|n| n.name == *hidden) && named.all(is_told)
+    }
+}
+
+/// What came out of a case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// The case.
+    pub case: Case,
+    /// What could be known beforehand, one entry a hidden effect.
+    pub foreseen: Vec<Foreseen>,
+    /// Why there is no verdict, where there is none.
+    pub failed: Option<String>,
+    /// Verdict.
+    pub verdict: Option<Verdict>,
+    /// Effects named, in the order in which they were found.
+    pub named: Vec<NamedEffect>,
+    /// Parameters of those that were hidden.
+    pub estimates: Vec<Estimate>,
+    /// Share of the gap on check motion that is gone.
+    pub reduction: f64,
+    /// The gap on check motion, channel by channel.
+    pub check: Vec<ChannelGap>,
+    /// What was found that is in no library.
+    pub unknown: Option<Unknown>,
+    /// The experiment that was proposed, run.
+    pub split: Option<Split>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NamedEffect, Split};
+
+    #[test]
+    fn a_class_is_split_when_only_the_hidden_one_is_left_of_it() {
+        let named = |all: &[(&str, &[&str])]| Split {
+            pair: ["constant-load", "process-force"].map(str::to_owned),
+            foreseen: 40.0,
+            named: (all.iter())
+                .map(|(name, alike)| NamedEffect {
+                    name: (*name).to_owned(),
+                    alike: alike.iter().map(|a| (*a).to_owned()).collect(),
+                })
+                .collect(),
+        };
+        let [load, force] = ["constant-load", "process-force"];
+        // Whatever else is hidden may be larger.
+        let beside = named(&[("inverter-dead-time", &[]), (load, &[])]);
+        assert!(beside.succeeded() && named(&[(load, &[])]).succeeded());
+        for not in [
+            named(&[(load, &[force])]),
+            named(&[(load, &[]), (force, &[])]),
+            named(&[(force, &[load])]),
+            named(&[(load, &[]), ("coulomb-friction", &[force])]),
+            named(&[]),
+        ] {
+            assert!(!not.succeeded(), "{not:?}");
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! The largest values that a motion may have.
+//!
+//! They lie far beyond any machine, so that no true motion is refused, and are there so that
+//! whoever steps through a motion, or counts its cycles, comes to an end: a frequency mistaken by
+//! its unit is told at once. The fastest linear-motor axes reach about 10 m/s, 10³ m/s² and
+//! 10⁶ m/s³, over tens of metres; tests of their dynamics end at some kHz.
+
+/// Greatest distance of a position from zero, and greatest amplitude, m: 1000 km.
+pub const POSITION: f64 = 1e6;
+/// Greatest velocity limit, m/s.
+pub const VELOCITY: f64 = 1e6;
+/// Greatest acceleration limit, m/s².
+pub const ACCELERATION: f64 = 1e9;
+/// Greatest jerk limit, m/s³; as good as none.
+pub const JERK: f64 = 1e15;
+/// Greatest frequency, Hz: a hundred times a usual control rate. The least is 1e-9 Hz, one cycle
+/// in thirty years.
+pub const FREQUENCY: f64 = 1e6;
+/// Greatest duration of a step and of a whole program, s: 116 days.
+pub const DURATION: f64 = 1e7;
+/// Most cycles of one sine or chirp: above, the phase has lost a millionth of a cycle to rounding.
+pub const CYCLES: f64 = 1e9;
+/// Most steps of a program: some 60 MB of planned moves.
+pub const STEPS: usize = 100_000;
