@@ -85,7 +85,7 @@ pub fn judge(report: &Report, file: &str, place: bool) -> Result<(), String> {
 fn says_where(words: &str) -> bool {
     let numbered = |sign: &str| {
         words.match_indices(sign).any(|(at, _)| {
-            let rest = words[at + sign.len()..].as_bytes();
+            let rest = &words.as_bytes()[at + sign.len()..];
             rest.first().is_some_and(u8::is_ascii_digit)
         })
     };
