@@ -106,7 +106,7 @@ mod tests {
             &format!("axis.toml:{line}:"),
             &format!("{line} | table_mass_kg = -515"),
             "^^^^ here",
-            "valid: a finite number above zero",
+            "valid: a number from 0.001 to 1000000, in kg",
         ];
         for part in expected {
             assert!(shown.contains(part), "no \"{part}\" in:\n{shown}");

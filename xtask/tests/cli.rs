@@ -136,7 +136,7 @@ fn simulate_rounds_its_figures_and_refuses_a_run_without_end() {
     );
     std::fs::write(
         &program,
-        "start_mm = 600.0\n[[steps]]\ndwell = { duration_s = 1e8 }\n",
+        "start_mm = 600.0\n[[steps]]\ndwell = { duration_s = 1e7 }\n",
     )
     .unwrap();
     let arguments = [
@@ -147,7 +147,7 @@ fn simulate_rounds_its_figures_and_refuses_a_run_without_end() {
     ];
     let message = refuse(&[&["simulate"], &arguments[..]].concat());
     assert!(
-        message.contains("1e12 internal steps, more than 1e10"),
+        message.contains("1e11 internal steps, more than 1e10"),
         "{message}"
     );
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);

@@ -323,6 +323,9 @@ proptest! {
         let mut farthest = 0.0_f64;
         // 100 time constants of the position loop.
         let cycles = (100.0 * 80.0 / (inner.bandwidth * inner.period)) as u32;
+        // What a cycle's travel, added and taken away again, leaves of itself in all of
+        // them: more than the control does where the inertia is huge.
+        let rounding = f64::from(cycles) * f64::EPSILON * (speed * inner.period).abs();
         for _ in 0..cycles {
             let command = servo.cycle(&mut state, &drive.measure(), &r, &Correction::default());
             drive.advance(command.voltage, load, inner.period);
@@ -331,7 +334,7 @@ proptest! {
             farthest = farthest.max(drive.angle.abs());
         }
         // Measured: 1.7e-8, 2.3e-7 and 1.9e-10.
-        prop_assert!(drive.angle.abs() < 1e-7 * farthest);
+        prop_assert!(drive.angle.abs() < 1e-7 * farthest + rounding);
         let torque = inner.motor.torque(drive.current);
         prop_assert!((torque - load).abs() < 1e-6 * load.abs());
         prop_assert!(drive.current.d.abs() < 1e-9 * cascade.load.abs());

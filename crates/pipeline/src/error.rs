@@ -6,8 +6,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PipelineError {
-    /// The mechanics cannot be set up.
-    #[error("the axis' mechanics cannot be set up: {0}")]
+    /// The mechanics cannot be set up, or a step of theirs does not come out.
+    #[error("the axis' mechanics cannot be simulated: {0}")]
     Drive(#[from] feed_dynamics::DriveError),
     /// The sample design is not valid.
     #[error("the sample design is not valid: {0}")]

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use atomic_write_file::AtomicWriteFile;
 use axis_sim::{ClosedLoop, CsvRecorder, Cycle, Measured, SixDigits};
 use clap::{Args, ValueEnum};
 use discrepancy::hidden::Noise;
 use feed_dynamics::NutCoupling;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use pipeline::strategies::Strategy;
-use tempfile::NamedTempFile;
 use trajectories::{Motion, Program};
 
 use super::validate;
@@ -152,19 +152,13 @@ impl Tracking {
 /// A log that is written aside while the run goes on, and put in place whole.
 struct LogFile {
     path: PathBuf,
-    rows: CsvRecorder<NamedTempFile>,
+    rows: CsvRecorder<AtomicWriteFile>,
 }
 
 impl LogFile {
     fn new(path: &Path) -> Result<Self> {
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
-        let aside = for_all_to_read()
-            .tempfile_in(folder)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot write the log {}", path.display()))?;
+        let aside = AtomicWriteFile::open(path);
+        let aside = aside.into_diagnostic().wrap_err_with(|| unwritten(path))?;
         Ok(Self {
             path: path.to_owned(),
             rows: CsvRecorder::new(aside),
@@ -172,28 +166,20 @@ impl LogFile {
     }
 
     fn finish(self) -> Result<()> {
-        let path = self.path;
-        let place = |aside: NamedTempFile| {
-            aside.as_file().sync_all()?;
-            aside.persist(&path).map_err(|e| e.error)
+        let place = |file: AtomicWriteFile| {
+            // Before the commit, which leaves the file aside behind where flushing fails.
+            file.sync_all()?;
+            file.commit()
         };
         let placed = self.rows.finish().and_then(place);
         placed
-            .map(drop)
             .into_diagnostic()
-            .wrap_err_with(|| format!("cannot write the log {}", path.display()))
+            .wrap_err_with(|| unwritten(&self.path))
     }
 }
 
-/// Temporary files are private; a log is for everyone to read.
-fn for_all_to_read() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o644));
-    }
-    builder
+fn unwritten(path: &Path) -> String {
+    format!("cannot write the log {}", path.display())
 }
 
 fn motion(options: &Options, context: &Context) -> Result<Box<dyn Motion>> {

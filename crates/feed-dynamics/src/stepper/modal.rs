@@ -338,13 +338,14 @@ fn rotation<'a>(modes: impl Iterator<Item = (&'a Modes, &'a Lane)>) -> [f64; 2] 
 }
 
 pub(super) fn check_step(step: f64) -> Result<(), DriveError> {
-    if step.is_finite() && step > 0.0 {
+    // Beyond a second no number of an axis' stiffest mode would be left.
+    if step > 0.0 && step <= 1.0 {
         return Ok(());
     }
     Err(DriveError::Parameter {
         name: "step",
         value: step,
-        valid: "finite and above zero",
+        valid: "above zero and at most 1 s",
     })
 }
 

@@ -184,3 +184,21 @@ fn steps_are_checked() {
         }
     }
 }
+
+#[test]
+fn steps_of_no_sensible_length_are_refused() {
+    let (drive, coupling) = (drive(), NutCoupling::ShapeFunctions);
+    for step in [0.0, -1e-4, 1.0 + 1e-12, 1e200, f64::INFINITY, f64::NAN] {
+        let both = [
+            ModalStepper::new(&drive, step).err(),
+            ImplicitStepper::new(&drive, coupling, step).err(),
+        ];
+        for error in both {
+            let message = error.unwrap().to_string();
+            assert!(message.contains("at most 1 s"), "{step}: {message}");
+        }
+    }
+    for step in [5e-324, 1.0] {
+        assert!(ModalStepper::new(&drive, step).is_ok(), "{step}");
+    }
+}
