@@ -14,7 +14,8 @@
 //! is minus twice the log-likelihood of a stationary rest with any spectrum
 //! (Whittle 1953). An effect is named when it lowers D by more than chance
 //! could in any candidate, on logs that were not fitted as well, and by more
-//! than a hundredth of what was found before.
+//! than a hundredth of what was found before. Where the effects named in the end make any
+//! channel of these logs worse than it was without them, none is given.
 //!
 //! # Steps
 //! [`intake`] looks at the logs; [`LogSet`] prepares them; [`search()`] moves the

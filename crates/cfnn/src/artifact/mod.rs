@@ -188,7 +188,10 @@ fn encode<T: Serialize>(
         provenance,
         content,
     };
-    let payload = bincode::serde::encode_to_vec(&whole, config()).map_err(payload_error)?;
+    let payload =
+        bincode::serde::encode_to_vec(&whole, config()).map_err(|e| ArtifactError::Payload {
+            reason: std::format!("it cannot be written: {e}"),
+        })?;
     Ok(frame::wrap(format, &payload))
 }
 
@@ -204,8 +207,15 @@ fn decode<T: DeserializeOwned>(format: Format, bytes: &[u8]) -> Result<(T, Strin
     Ok((whole.content, whole.provenance.into()))
 }
 
-fn payload_error(error: impl std::fmt::Display) -> ArtifactError {
-    ArtifactError::Payload {
-        reason: std::format!("{error}"),
-    }
+/// bincode's own words are those of its types.
+fn payload_error(error: bincode::error::DecodeError) -> ArtifactError {
+    use bincode::error::DecodeError;
+    let reason = match error {
+        DecodeError::UnexpectedEnd { .. } => "it ends too early".into(),
+        DecodeError::LimitExceeded => "it claims more than 1 GiB".into(),
+        DecodeError::Utf8 { inner } => std::format!("a text in it is not UTF-8: {inner}"),
+        DecodeError::OtherString(reason) => reason,
+        _ => "a value in it is none of its kind".into(),
+    };
+    ArtifactError::Payload { reason }
 }
