@@ -245,3 +245,82 @@ fn read(path: &Path) -> Result<Vec<u8>> {
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", path.display()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use axis_sim::Axis;
+
+    fn context(out: &Path) -> Context {
+        let text = include_str!("../../data/axes/liu2025.toml");
+        let axis = Axis::parse("liu2025.toml", text).unwrap();
+        Context {
+            machine: axis.clone(),
+            axis,
+            has_machine: false,
+            out: out.to_owned(),
+            seed: 1,
+            threads: 1,
+            quick: true,
+        }
+    }
+
+    fn finished(context: &Context) -> Stage<'_> {
+        let stage = Stage::new(context, "some", &["a.json", "b.json"], "settings", &[]);
+        let stage = stage.with_scratch(&["checkpoint"]);
+        stage.begin().unwrap();
+        stage.write_json("a.json", &[1, 2]).unwrap();
+        stage.write_json("b.json", &[3]).unwrap();
+        stage.finish().unwrap();
+        stage
+    }
+
+    #[test]
+    fn what_killed_runs_left_goes_with_the_next() {
+        let folder = tempfile::tempdir().unwrap();
+        let context = context(folder.path());
+        let stage = finished(&context);
+        let left = [".a.json.x1Y2z3", ".manifest.json.123456", "checkpoint"];
+        let leave = || {
+            for name in left {
+                std::fs::write(stage.path(name), "half").unwrap();
+            }
+        };
+        let count = || std::fs::read_dir(stage.path("")).unwrap().count();
+        leave();
+        stage.tidy().unwrap();
+        assert!(stage.is_current());
+        assert_eq!(count(), 3);
+        leave();
+        stage.begin().unwrap();
+        // The results, without the manifest, and the checkpoint to go on from.
+        assert_eq!(count(), 3);
+        assert!(stage.path("checkpoint").exists() && !stage.is_current());
+    }
+
+    #[test]
+    fn a_manifest_vouches_for_nothing_but_as_it_was_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let context = context(folder.path());
+        let stage = finished(&context);
+        let whole = std::fs::read_to_string(stage.path(MANIFEST)).unwrap();
+        let shorter: Vec<&str> = whole.lines().filter(|l| !l.contains("a.json")).collect();
+        for changed in [
+            whole.replace("\"seed\": 1", "\"seed\": 2"),
+            whole.replace("\"quick\": true", "\"quick\": false"),
+            whole.replace(": ", ":"),
+            whole.clone() + "\n",
+            shorter.join("\n"),
+        ] {
+            assert_ne!(changed, whole);
+            std::fs::write(stage.path(MANIFEST), &changed).unwrap();
+            assert!(!stage.is_current(), "{changed}");
+            let read = stage.read_json::<Vec<i32>>("a.json");
+            let message = format!("{:?}", read.unwrap_err());
+            assert!(message.contains("cargo xtask some"), "{message}");
+        }
+        std::fs::write(stage.path(MANIFEST), &whole).unwrap();
+        assert!(stage.is_current());
+        assert_eq!(stage.read_json::<Vec<i32>>("a.json").unwrap(), [1, 2]);
+    }
+}

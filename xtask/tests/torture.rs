@@ -39,6 +39,21 @@ fn disturbed_runs_are_mended_by_the_next() {
 }
 
 #[test]
+fn a_folder_in_which_a_run_is_at_work_is_left_to_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let lock = std::fs::File::create(folder.path().join("run.lock")).unwrap();
+    lock.lock().unwrap();
+    for command in ["pipeline", "sample", "study", "report"] {
+        let message = refuse(&[command, "--quick", "--out", out]);
+        assert!(message.contains("another run is at work in"), "{message}");
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    drop(lock);
+    succeed(&["sample", "--quick", "--out", out]);
+}
+
+#[test]
 fn a_time_that_is_none_is_refused() {
     for minutes in ["nan", "-1", "1e9"] {
         let message = refuse(&["torture", &format!("--minutes={minutes}")]);
