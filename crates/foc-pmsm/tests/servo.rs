@@ -336,7 +336,10 @@ proptest! {
         // Measured: 1.7e-8, 2.3e-7 and 1.9e-10.
         prop_assert!(drive.angle.abs() < 1e-7 * farthest + rounding);
         let torque = inner.motor.torque(drive.current);
-        prop_assert!((torque - load).abs() < 1e-6 * load.abs());
+        // The last bit of the speed, seen through the speed controller's gain, and the
+        // hunting about it: 14 measured.
+        let quantum = inner.motor.torque(Dq { d: 0.0, q: gains.speed_p * f64::EPSILON * speed });
+        prop_assert!((torque - load).abs() < 1e-6 * load.abs() + 100.0 * quantum.abs());
         prop_assert!(drive.current.d.abs() < 1e-9 * cascade.load.abs());
     }
 
