@@ -3,7 +3,6 @@
 //! library: dry friction is set-valued (it holds or it slides), the step is 2 µs, the encoder is perfect.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use axis_log::read_log;
 use axis_sim::Replay;
