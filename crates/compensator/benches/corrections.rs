@@ -46,12 +46,8 @@ fn cycles() -> Vec<Sample> {
 
 fn friction() -> FrictionFeedforward {
     let law = LuGre::new(Parameters {
-        coulomb: 0.6757,
-        stiction: 0.7653,
-        stribeck_speed: 2.714,
-        stiffness: 15.16,
-        damping: 1.521,
         viscous: 0.0298,
+        ..Parameters::LIU_2025
     })
     .expect("valid parameters");
     FrictionFeedforward::new(law, R, 1.641, T).expect("valid parameters")

@@ -80,12 +80,8 @@ fn identify(
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let friction = LuGre::new(Parameters {
-        coulomb: 0.6757,
-        stiction: 0.7653,
-        stribeck_speed: 2.714,
-        stiffness: 15.16,
-        damping: 1.521,
         viscous: 0.0298,
+        ..Parameters::LIU_2025
     })?;
     let feedforward = FrictionFeedforward::new(friction, R, KT, T)?;
     let fit = identify(&friction, NoCompensation)?;

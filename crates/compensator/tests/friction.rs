@@ -12,12 +12,8 @@ const KT: f64 = 1.641;
 
 fn law() -> LuGre {
     LuGre::new(Parameters {
-        coulomb: 0.6757,
-        stiction: 0.7653,
-        stribeck_speed: 2.714,
-        stiffness: 15.16,
-        damping: 1.521,
         viscous: 0.0298,
+        ..Parameters::LIU_2025
     })
     .unwrap()
 }

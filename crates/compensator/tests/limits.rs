@@ -57,12 +57,8 @@ fn any_sample() -> impl Strategy<Value = Sample> {
 
 fn law() -> LuGre {
     LuGre::new(Parameters {
-        coulomb: 0.6757,
-        stiction: 0.7653,
-        stribeck_speed: 2.714,
-        stiffness: 15.16,
-        damping: 1.521,
         viscous: 0.0298,
+        ..Parameters::LIU_2025
     })
     .unwrap()
 }

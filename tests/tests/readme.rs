@@ -1,0 +1,52 @@
+//! Figures that the README quotes, against the program as it is.
+
+use std::path::PathBuf;
+
+use axis_sim::{Axis, ClosedLoop};
+use compensator::NoCompensation;
+
+fn root(file: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("..")
+        .join(file)
+}
+
+/// Largest and mean tracking error of a trajectory, as the README prints them.
+fn printed(axis: &str, trajectory: usize) -> String {
+    let axis = Axis::read(&root("data/axes").join(axis)).unwrap();
+    let motion = axis.plan(&axis.trajectories[trajectory]).unwrap();
+    let (mut most, mut sum, mut cycles) = (0.0_f64, 0.0, 0);
+    ClosedLoop::new(&axis)
+        .unwrap()
+        .run(&motion, &mut NoCompensation, |cycle| {
+            most = most.max(cycle.error().abs());
+            sum += cycle.error().abs();
+            cycles += 1;
+        })
+        .completed()
+        .unwrap();
+    format!("{:.2} / {:.3}", 1e6 * most, 1e6 * sum / f64::from(cycles))
+}
+
+#[test]
+fn tracking_errors_of_model_and_machine() {
+    let readme = std::fs::read_to_string(root("README.md")).unwrap();
+    let heading = readme
+        .lines()
+        .position(|l| l.starts_with("| trajectory | model |"));
+    let rows = readme.lines().skip(heading.unwrap() + 2);
+    let rows: Vec<Vec<&str>> = rows
+        .take_while(|line| line.starts_with('|'))
+        .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+        .collect();
+    assert_eq!(rows.len(), 6);
+    for (trajectory, row) in rows.iter().enumerate() {
+        assert_eq!(row[0], (trajectory + 1).to_string());
+        assert_eq!(row[1], printed("liu2025.toml", trajectory), "{row:?}");
+        assert_eq!(
+            row[2],
+            printed("liu2025-machine.toml", trajectory),
+            "{row:?}"
+        );
+    }
+}
