@@ -6,6 +6,7 @@ use lugre::LuGre;
 
 use crate::Axis;
 use crate::effects::{Hooks, ScrewState, TableState};
+use crate::work::{MOST_SUBSTEPS, substeps_of};
 
 /// The machine, for control cycles of one length.
 #[derive(Clone, Debug)]
@@ -54,9 +55,8 @@ impl<D> PlantState<D> {
 
 /// Number of equal steps, none longer than asked, that make up a control period.
 pub(crate) fn substeps(axis: &Axis) -> u32 {
-    // A step that fits to rounding must not be halved.
-    let steps = (axis.period / axis.simulation.step * (1.0 - 1e-9)).ceil();
-    steps.clamp(1.0, 10_000.0) as u32
+    let steps = substeps_of(axis.period, axis.simulation.step);
+    steps.min(f64::from(MOST_SUBSTEPS)) as u32
 }
 
 impl<S: TimeStepper> Plant<S> {
