@@ -1,0 +1,298 @@
+//! `f32` and `f64` behind one trait, for laws that run on a controller.
+//!
+//! A Cortex-M4F computes `f32` in hardware and `f64` in software, so control
+//! laws are generic over their scalar. [`Scalar`] has the arithmetic that they
+//! need and the elementary functions of [`libm`], which are the same to the bit
+//! on every platform and need no `std`; the square root, which IEEE 754 rounds
+//! correctly, is that of `libm` as well.
+//!
+//! ```
+//! use scalar::Scalar;
+//!
+//! fn stopping_distance<T: Scalar>(speed: T, deceleration: T) -> T {
+//!     T::HALF * speed * speed / deceleration
+//! }
+//!
+//! assert_eq!(stopping_distance(2.0_f32, 4.0), 0.5);
+//! assert_eq!(stopping_distance(2.0_f64, 4.0), 0.5);
+//! ```
+//!
+//! This crate knows nothing of vectors, units or control.
+#![no_std]
+#![cfg_attr(test, allow(clippy::disallowed_methods))]
+
+use core::fmt::{Debug, Display, LowerExp};
+use core::iter::Sum;
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// A binary floating-point number: `f32` or `f64`.
+pub trait Scalar:
+    sealed::Sealed
+    + Copy
+    + Debug
+    + Default
+    + Display
+    + LowerExp
+    + PartialEq
+    + PartialOrd
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + AddAssign
+    + Sub<Output = Self>
+    + SubAssign
+    + Mul<Output = Self>
+    + MulAssign
+    + Div<Output = Self>
+    + DivAssign
+    + Neg<Output = Self>
+    + Sum
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// 2.
+    const TWO: Self;
+    /// 1/2.
+    const HALF: Self;
+    /// π, rounded.
+    const PI: Self;
+    /// Infinity.
+    const INFINITY: Self;
+    /// Not a number.
+    const NAN: Self;
+    /// Distance from 1 to the next larger number.
+    const EPSILON: Self;
+    /// The least positive normal number.
+    const MIN_POSITIVE: Self;
+    /// The greatest finite number.
+    const MAX: Self;
+
+    /// The nearest number to `value`; beyond the range, infinity.
+    #[must_use]
+    fn of(value: f64) -> Self;
+
+    /// The same number as `f64`, exactly.
+    #[must_use]
+    fn to_f64(self) -> f64;
+
+    /// Magnitude.
+    #[must_use]
+    fn abs(self) -> Self;
+
+    /// The magnitude of this number with the sign of another.
+    #[must_use]
+    fn copysign(self, sign: Self) -> Self;
+
+    /// The lesser of two; the other one where one is not a number.
+    #[must_use]
+    fn min(self, other: Self) -> Self;
+
+    /// The greater of two; the other one where one is not a number.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+
+    /// Square root, correctly rounded.
+    #[must_use]
+    fn sqrt(self) -> Self;
+
+    /// Sine and cosine of an angle in rad.
+    #[must_use]
+    fn sin_cos(self) -> (Self, Self);
+
+    /// eˣ.
+    #[must_use]
+    fn exp(self) -> Self;
+
+    /// eˣ − 1, without cancellation near 0.
+    #[must_use]
+    fn exp_m1(self) -> Self;
+
+    /// Natural logarithm.
+    #[must_use]
+    fn ln(self) -> Self;
+
+    /// Hyperbolic tangent.
+    #[must_use]
+    fn tanh(self) -> Self;
+
+    /// Cube root.
+    #[must_use]
+    fn cbrt(self) -> Self;
+
+    /// The greatest whole number that is not above.
+    #[must_use]
+    fn floor(self) -> Self;
+
+    /// The least whole number that is not below.
+    #[must_use]
+    fn ceil(self) -> Self;
+
+    /// Whether it is neither infinite nor NaN.
+    #[must_use]
+    fn is_finite(self) -> bool;
+
+    /// Whether it is not a number.
+    #[must_use]
+    fn is_nan(self) -> bool;
+}
+
+macro_rules! scalar {
+    ($t:ident, $sqrt:ident, $sincos:ident, $exp:ident, $expm1:ident, $log:ident, $tanh:ident, $cbrt:ident, $floor:ident, $ceil:ident) => {
+        impl Scalar for $t {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const TWO: Self = 2.0;
+            const HALF: Self = 0.5;
+            const PI: Self = core::$t::consts::PI;
+            const INFINITY: Self = $t::INFINITY;
+            const NAN: Self = $t::NAN;
+            const EPSILON: Self = $t::EPSILON;
+            const MIN_POSITIVE: Self = $t::MIN_POSITIVE;
+            const MAX: Self = $t::MAX;
+
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                value as $t
+            }
+
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $t::abs(self)
+            }
+
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                $t::copysign(self, sign)
+            }
+
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                $t::min(self, other)
+            }
+
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                $t::max(self, other)
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                libm::$sqrt(self)
+            }
+
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                libm::$sincos(self)
+            }
+
+            #[inline]
+            fn exp(self) -> Self {
+                libm::$exp(self)
+            }
+
+            #[inline]
+            fn exp_m1(self) -> Self {
+                libm::$expm1(self)
+            }
+
+            #[inline]
+            fn ln(self) -> Self {
+                libm::$log(self)
+            }
+
+            #[inline]
+            fn tanh(self) -> Self {
+                libm::$tanh(self)
+            }
+
+            #[inline]
+            fn cbrt(self) -> Self {
+                libm::$cbrt(self)
+            }
+
+            #[inline]
+            fn floor(self) -> Self {
+                libm::$floor(self)
+            }
+
+            #[inline]
+            fn ceil(self) -> Self {
+                libm::$ceil(self)
+            }
+
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                $t::is_finite(self)
+            }
+
+            #[inline(always)]
+            fn is_nan(self) -> bool {
+                $t::is_nan(self)
+            }
+        }
+    };
+}
+
+scalar!(
+    f32, sqrtf, sincosf, expf, expm1f, logf, tanhf, cbrtf, floorf, ceilf
+);
+scalar!(f64, sqrt, sincos, exp, expm1, log, tanh, cbrt, floor, ceil);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn near(single: f32, double: f64, units: f64) -> bool {
+        let scale = double.abs().max(f64::from(f32::MIN_POSITIVE));
+        (f64::from(single) - double).abs() <= units * f64::from(f32::EPSILON) * scale
+    }
+
+    proptest! {
+        /// Every function of an `f32` is that of the same `f64`, to its rounding.
+        #[test]
+        fn single_precision_follows_double(x in -20.0_f32..20.0) {
+            let wide = f64::from(x);
+            prop_assert!(near(Scalar::exp(x), Scalar::exp(wide), 1.0));
+            prop_assert!(near(Scalar::exp_m1(x), Scalar::exp_m1(wide), 1.0));
+            prop_assert!(near(Scalar::tanh(x), Scalar::tanh(wide), 2.0));
+            prop_assert!(near(Scalar::cbrt(x), Scalar::cbrt(wide), 1.0));
+            prop_assert!(near(Scalar::sqrt(x.abs()), Scalar::sqrt(wide.abs()), 0.5));
+            prop_assert!(near(Scalar::ln(x.abs()), Scalar::ln(wide.abs()), 1.0));
+            let ((s, c), (sin, cos)) = (Scalar::sin_cos(x), Scalar::sin_cos(wide));
+            prop_assert!(near(s, sin, 1.0) && near(c, cos, 1.0));
+            prop_assert_eq!(f64::from(Scalar::floor(x)), Scalar::floor(wide));
+            prop_assert_eq!(f64::from(Scalar::ceil(x)), Scalar::ceil(wide));
+            prop_assert_eq!(f32::of(wide), x);
+            prop_assert_eq!(x.to_f64(), wide);
+        }
+
+        /// Double precision against the standard library's functions.
+        #[test]
+        fn double_precision_is_that_of_the_standard_library(x in -20.0_f64..20.0) {
+            let close = |a: f64, b: f64| (a - b).abs() <= 2.0 * f64::EPSILON * b.abs();
+            prop_assert!(close(Scalar::exp(x), f64::exp(x)));
+            prop_assert!(close(Scalar::exp_m1(x), f64::exp_m1(x)));
+            prop_assert!(close(Scalar::tanh(x), f64::tanh(x)));
+            prop_assert!(close(Scalar::ln(x.abs()), f64::ln(x.abs())));
+            prop_assert_eq!(Scalar::sqrt(x.abs()), f64::sqrt(x.abs()));
+            prop_assert_eq!(Scalar::floor(x), f64::floor(x));
+            let (s, c) = Scalar::sin_cos(x);
+            prop_assert!(close(s, f64::sin(x)) && close(c, f64::cos(x)));
+        }
+    }
+}
