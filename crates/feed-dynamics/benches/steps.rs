@@ -22,6 +22,7 @@ fn drive(elements: usize) -> FeedDrive {
         screw_coupling_stiffness: 2800.0,
         table_mass: 515.0,
         nut_stiffness: 7.45e7,
+        axial: None,
         stiffness_damping: 1e-5,
     })
     .expect("valid")

@@ -23,6 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         screw_coupling_stiffness: 2800.0,
         table_mass: 515.0,
         nut_stiffness: 7.45e7,
+        axial: None,
         stiffness_damping: 1e-5,
     })?;
     println!(

@@ -1,7 +1,9 @@
 //! The drive's parameters, checked once.
 
-use beam_fem::{BeamError, Material, Section};
-use thiserror::Error;
+use beam_fem::{Material, Section};
+
+use crate::error::{not_negative, positive};
+use crate::{AxialSupport, DriveError, ScrewShaft};
 
 /// Everything that makes a drive. SI units.
 #[derive(Clone, Debug)]
@@ -28,59 +30,19 @@ pub struct DriveParameters {
     pub table_mass: f64,
     /// Axial stiffness k_scn of the screw–nut pair, N/m.
     pub nut_stiffness: f64,
+    /// What holds the screw along its axis, where it and the screw give way along
+    /// it: in series with the nut, massless. `None` for a shaft that is rigid there.
+    pub axial: Option<AxialSupport>,
     /// Stiffness-proportional damping β in C = βK, s.
     pub stiffness_damping: f64,
-}
-
-/// What can be wrong with a drive or with a question about it.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum DriveError {
-    /// A parameter lies outside its range.
-    #[error("{name} = {value} is not valid: it must be {valid}")]
-    Parameter {
-        /// Name of the field.
-        name: &'static str,
-        /// The value given.
-        value: f64,
-        /// What would be valid.
-        valid: &'static str,
-    },
-    /// A table position beyond the screw's ends.
-    #[error("table position {position} m is off the screw: it must lie between 0 and {length} m")]
-    OffScrew {
-        /// The position asked for, m.
-        position: f64,
-        /// Length of the screw, m.
-        length: f64,
-    },
-    /// The beam model refused its input or did not solve.
-    #[error(transparent)]
-    Beam(#[from] BeamError),
-    /// No load on the table was found that goes with the motion it leads to.
-    #[error(
-        "no load was found that goes with the table's motion after {rounds} tries, the last off by {residual} N: the load's law must be finite, and bounded or growing with the speed"
-    )]
-    LoadNotFound {
-        /// Loads that were tried.
-        rounds: u32,
-        /// What was left of the last one, N.
-        residual: f64,
-    },
-    /// The dynamic stiffness is singular (a resonance without damping, or zero frequency).
-    #[error(
-        "the dynamic stiffness at {angular_frequency} rad/s is singular: ask off the resonance, above zero"
-    )]
-    Singular {
-        /// The frequency asked for, rad/s.
-        angular_frequency: f64,
-    },
 }
 
 /// A ball-screw feed drive: immutable, shared by any number of simulations.
 #[derive(Clone, Debug)]
 pub struct FeedDrive {
     parameters: DriveParameters,
+    /// The shaft along its axis, on its bearings.
+    shaft: Option<ScrewShaft>,
 }
 
 impl FeedDrive {
@@ -90,7 +52,7 @@ impl FeedDrive {
     /// [`DriveError::Parameter`] names the first field that is out of range.
     pub fn new(parameters: DriveParameters) -> Result<Self, DriveError> {
         let p = &parameters;
-        let positive = [
+        positive([
             ("screw_length", p.screw_length),
             ("lead", p.lead),
             ("motor_inertia", p.motor_inertia),
@@ -99,20 +61,8 @@ impl FeedDrive {
             ("screw_coupling_stiffness", p.screw_coupling_stiffness),
             ("table_mass", p.table_mass),
             ("nut_stiffness", p.nut_stiffness),
-        ];
-        for (name, value) in positive {
-            if !(value.is_finite() && value > 0.0) {
-                let valid = "finite and above zero";
-                return Err(DriveError::Parameter { name, value, valid });
-            }
-        }
-        if !(p.stiffness_damping.is_finite() && p.stiffness_damping >= 0.0) {
-            return Err(DriveError::Parameter {
-                name: "stiffness_damping",
-                value: p.stiffness_damping,
-                valid: "finite and not negative",
-            });
-        }
+        ])?;
+        not_negative([("stiffness_damping", p.stiffness_damping)])?;
         if !(2..=1000).contains(&p.elements) {
             return Err(DriveError::Parameter {
                 name: "elements",
@@ -120,7 +70,8 @@ impl FeedDrive {
                 valid: "between 2 and 1000",
             });
         }
-        Ok(Self { parameters })
+        let shaft = p.axial.map(|support| shaft(p, &support)).transpose()?;
+        Ok(Self { parameters, shaft })
     }
 
     /// The parameters it was made from.
@@ -131,6 +82,17 @@ impl FeedDrive {
     /// Travel per radian of the screw, r = lead / 2π, m/rad.
     pub fn travel_per_radian(&self) -> f64 {
         self.parameters.lead / std::f64::consts::TAU
+    }
+
+    /// Axial stiffness between screw and table k(x), N/m: of the nut, in series with
+    /// the shaft on its bearings where [`DriveParameters::axial`] has them. Beyond an
+    /// end of the screw it is that of the end.
+    pub fn contact_stiffness(&self, x: f64) -> f64 {
+        let nut = self.parameters.nut_stiffness;
+        match &self.shaft {
+            None => nut,
+            Some(shaft) => 1.0 / (1.0 / nut + shaft.compliance(x)),
+        }
     }
 
     /// Number of generalised coordinates, N + 4.
@@ -170,6 +132,13 @@ impl FeedDrive {
     }
 }
 
+/// The screw along its axis.
+fn shaft(p: &DriveParameters, support: &AxialSupport) -> Result<ScrewShaft, DriveError> {
+    let rigidity = p.material.youngs_modulus() * p.section.area();
+    ScrewShaft::new(rigidity, p.screw_length, support.mounting)?
+        .on_bearings(support.bearing_stiffness)
+}
+
 #[cfg(test)]
 pub(crate) mod tests_support {
     use super::*;
@@ -189,6 +158,7 @@ pub(crate) mod tests_support {
             screw_coupling_stiffness: 2800.0,
             table_mass: 515.0,
             nut_stiffness: 7.45e7,
+            axial: None,
             stiffness_damping,
         })
         .unwrap()

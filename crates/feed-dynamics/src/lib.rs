@@ -46,6 +46,7 @@
 //!     screw_coupling_stiffness: 2800.0,
 //!     table_mass: 515.0,
 //!     nut_stiffness: 7.45e7,
+//!     axial: None,
 //!     stiffness_damping: 1e-5,
 //! })?;
 //! let modes = drive.modes(0.6, NutCoupling::ShapeFunctions)?;
@@ -55,16 +56,27 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod axial;
 mod drive;
+mod elastic;
+mod error;
 mod matrices;
 mod modes;
 mod response;
+mod rigid;
 mod stepper;
 
-pub use drive::{DriveError, DriveParameters, FeedDrive};
+pub use axial::{AxialSupport, Mounting, ScrewShaft};
+pub use drive::{DriveParameters, FeedDrive};
+pub use elastic::{
+    BeltStrands, ElasticDrive, ElasticDriveParameters, ElasticState, ElasticStepper, InSeries,
+    Side, Stiffness,
+};
+pub use error::DriveError;
 pub use matrices::{Matrices, NutCoupling};
 pub use modes::DriveModes;
 pub use response::Coordinate;
+pub use rigid::{RigidDrive, RigidState, RigidStepper};
 pub use stepper::{
     ImplicitState, ImplicitStepper, LoadSearch, ModalState, ModalStepper, NutErrors, Observation,
     Settled, StepReport, TableMotion, TimeStepper, find_load,

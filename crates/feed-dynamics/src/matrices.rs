@@ -102,14 +102,15 @@ impl FeedDrive {
         let mut mass = dense(&chain.mass, n);
         mass[(n - 1, n - 1)] = p.table_mass;
 
-        // K_scn = k b bᵀ: rank one, so rigid motion costs no energy (Eq. 4).
+        // K_scn = k(x) b bᵀ: rank one, so rigid motion costs no energy (Eq. 4).
         // The dyad first: its entries, and so K, are symmetric to the last bit.
         let mut b = nalgebra::DVector::zeros(n);
         let first = 2 + chain.seat.node;
         b[first] = self.travel_per_radian() * chain.seat.weights[0];
         b[first + 1] = self.travel_per_radian() * chain.seat.weights[1];
         b[n - 1] = -1.0;
-        let stiffness = dense(&chain.stiffness, n) + (&b * b.transpose()) * p.nut_stiffness;
+        let stiffness =
+            dense(&chain.stiffness, n) + (&b * b.transpose()) * self.contact_stiffness(x);
         let damping = &stiffness * p.stiffness_damping;
         Ok(Matrices {
             mass,

@@ -9,9 +9,10 @@
 
 use beam_fem::{Mesh, MovingNode, Tridiagonal};
 
-use super::modal::check_step;
 use super::nut::Contact;
-use super::{NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper, find_load};
+use super::{
+    NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper, check_step, find_load,
+};
 use crate::matrices::{Chain, NutCoupling, NutSeat};
 use crate::{DriveError, FeedDrive};
 
@@ -35,6 +36,8 @@ pub struct ImplicitState {
     origin: f64,
     nut_force: f64,
     load: f64,
+    /// Of the nut, at the end of the last step.
+    errors: NutErrors,
     chain: Chain,
     /// Where the screw's nodes are, m.
     nodes: Vec<f64>,
@@ -139,10 +142,17 @@ impl TimeStepper for ImplicitStepper {
         self.step
     }
 
+    fn travel_per_radian(&self) -> f64 {
+        self.drive.travel_per_radian()
+    }
+
+    fn settled_torque(&self, _: f64, motion: &Settled) -> f64 {
+        motion.motor_torque(&self.drive)
+    }
+
     fn settled(&self, x: f64, motion: &Settled) -> Result<ImplicitState, DriveError> {
         self.drive.check_position(x)?;
         motion.check()?;
-        let p = self.drive.parameters();
         let r = self.drive.travel_per_radian();
         let chain = self.drive.chain(x, self.coupling)?;
         let n = self.drive.coordinates();
@@ -164,7 +174,8 @@ impl TimeStepper for ImplicitStepper {
             }
             q[i + 1] = q[i] + carried / chain.stiffness.off_diagonal[i];
         }
-        let turn = (nut_force / p.nut_stiffness - self.stretch(&q, &chain.seat)) / r;
+        let turn =
+            (nut_force / self.drive.contact_stiffness(x) - self.stretch(&q, &chain.seat)) / r;
         q[..n - 1].iter_mut().for_each(|angle| *angle += turn);
         let rigid = |rate: f64| {
             let mut values = vec![rate / r; n];
@@ -178,6 +189,7 @@ impl TimeStepper for ImplicitStepper {
             origin: x,
             nut_force,
             load: motion.load,
+            errors: NutErrors::default(),
             nodes: self.nodes(x),
             work: Work {
                 known: vec![0.0; n],
@@ -239,9 +251,10 @@ impl TimeStepper for ImplicitStepper {
         // The nut's law on the end values, which are linear in its force and in
         // the load.
         let (per_newton, free) = (1.0 / p.table_mass - turn(unit), turn(rhs));
+        let stiffness = self.drive.contact_stiffness(x);
         let contact = Contact {
-            stiffness: p.nut_stiffness,
-            damping: p.nut_stiffness * beta,
+            stiffness,
+            damping: stiffness * beta,
             travel: 0.25 * h * h * per_newton,
             speed: 0.5 * h * per_newton,
             half_gap: 0.5 * errors.gap(),
@@ -275,6 +288,7 @@ impl TimeStepper for ImplicitStepper {
         }
         state.nut_force = nut_force;
         state.load = end_load;
+        state.errors = *errors;
         StepReport {
             load: found,
             on_screw: self.drive.has(state.origin + state.q[last]),
@@ -290,6 +304,20 @@ impl TimeStepper for ImplicitStepper {
             speed: state.v[last],
             nut_force: state.nut_force,
         }
+    }
+
+    fn energy(&self, state: &ImplicitState) -> f64 {
+        let last = state.q.len() - 1;
+        let speed = state.v[last];
+        let chain = quadratic_form(&state.chain.mass, &state.v)
+            + quadratic_form(&state.chain.stiffness, &state.q);
+        let strain = state
+            .errors
+            .strain(self.stretch(&state.q, &state.chain.seat));
+        let stiffness = self.drive.contact_stiffness(state.origin + state.q[last]);
+        0.5 * (chain
+            + self.drive.parameters().table_mass * speed * speed
+            + stiffness * strain * strain)
     }
 }
 
@@ -320,6 +348,18 @@ fn add_scaled(to: &mut Tridiagonal, factor: f64, from: &Tridiagonal) {
 fn copy(from: &Tridiagonal, to: &mut Tridiagonal) {
     to.diagonal.copy_from_slice(&from.diagonal);
     to.off_diagonal.copy_from_slice(&from.off_diagonal);
+}
+
+/// `vᵀ t v` with the first entries of `v`, as many as there are rows.
+fn quadratic_form(t: &Tridiagonal, v: &[f64]) -> f64 {
+    let own: f64 = t.diagonal.iter().zip(v).map(|(d, v)| d * v * v).sum();
+    let beside: f64 = t
+        .off_diagonal
+        .iter()
+        .zip(v.windows(2))
+        .map(|(o, v)| o * v[0] * v[1])
+        .sum();
+    own + 2.0 * beside
 }
 
 /// Product with the first entries of `v`, as many as there are rows.

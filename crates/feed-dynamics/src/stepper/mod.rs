@@ -1,4 +1,4 @@
-//! Time stepping: one interface, two steppers.
+//! Time stepping: one interface, and the two steppers of the ball screw.
 //!
 //! [`ModalStepper`] is the fast one: the rotating chain does not depend on
 //! the table's position, so its modes are propagated exactly and only the
@@ -14,11 +14,13 @@ mod nut;
 pub use implicit::{ImplicitState, ImplicitStepper};
 pub use load::{LoadSearch, find_load};
 pub use modal::{ModalState, ModalStepper};
+pub(crate) use nut::Contact;
 pub use nut::NutErrors;
 
+use crate::error::finite;
 use crate::{DriveError, FeedDrive};
 
-/// The table's motion at the end of a step, as far as it is known.
+/// The motion of the load (the table of a ball screw) at the end of a step, as far as it is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TableMotion {
     /// Displacement from where the simulation began, m.
@@ -34,32 +36,33 @@ pub struct Observation {
     pub motor_angle: f64,
     /// Motor speed, rad/s.
     pub motor_speed: f64,
-    /// Table displacement, m, from where the simulation began.
+    /// Displacement of the load, m, from where the simulation began.
     pub displacement: f64,
-    /// Table speed, m/s.
+    /// Its speed, m/s.
     pub speed: f64,
-    /// Force of the nut on the table, N.
+    /// Force of the nut, or of another transmission, on the load, N.
     pub nut_force: f64,
 }
 
 /// Uniformly accelerated motion in which every deflection has settled.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settled {
-    /// Table speed, m/s.
+    /// Speed of the load (the table of a ball screw), m/s.
     pub speed: f64,
-    /// Table acceleration, m/s².
+    /// Its acceleration, m/s².
     pub acceleration: f64,
-    /// Load on the table, N, positive against positive motion.
+    /// What acts on it, N, positive against positive motion.
     pub load: f64,
 }
 
 impl Settled {
-    /// Force that the nut must put on the table, N.
+    /// Force that the nut of a ball screw must put on the table, N.
     pub fn nut_force(&self, drive: &FeedDrive) -> f64 {
         drive.parameters().table_mass * self.acceleration + self.load
     }
 
-    /// Motor torque that keeps this motion up, N·m.
+    /// Motor torque that keeps this motion of a ball screw's table up, N·m; of any drive
+    /// it is [`TimeStepper::settled_torque`].
     pub fn motor_torque(&self, drive: &FeedDrive) -> f64 {
         let r = drive.travel_per_radian();
         drive.rotating_inertia() * self.acceleration / r + r * self.nut_force(drive)
@@ -73,14 +76,16 @@ pub struct StepReport {
     /// How the load at the step's end was found.
     pub load: LoadSearch,
     /// Whether the table is on the screw at the step's end. Where not, the step
-    /// was made as if the nut stood at that end of the screw.
+    /// was made as if the nut stood at that end of the screw. A drive without a
+    /// screw has no such end: always true.
     pub on_screw: bool,
 }
 
-/// Advances the drive by steps of a fixed length.
+/// Advances a drive by steps of a fixed length.
 ///
-/// The motor torque goes linearly from its last value to the one given. The
-/// load on the table may depend on the table's motion at the end of the step;
+/// The motor torque goes linearly from its last value to the one given (but see
+/// [`RigidStepper`](crate::RigidStepper)). What acts on the load, the table of a
+/// ball screw, may depend on its motion at the end of the step;
 /// it is searched for ([`find_load`]), so `load` is called a few times with
 /// better and better motions, the last of which counts.
 pub trait TimeStepper {
@@ -90,15 +95,22 @@ pub trait TimeStepper {
     /// Length of a step, s.
     fn step_length(&self) -> f64;
 
-    /// A state at table position `x` (m from the driven end) in settled motion;
-    /// the default of [`Settled`] is rest.
+    /// Load travel per radian of the motor r, m/rad, or rad/rad where the load turns.
+    fn travel_per_radian(&self) -> f64;
+
+    /// Motor torque that keeps a settled motion up at the load's position `x` (m), N·m.
+    fn settled_torque(&self, x: f64, motion: &Settled) -> f64;
+
+    /// A state with the load at `x` (m; of a ball screw, from the driven end) in
+    /// settled motion; the default of [`Settled`] is rest.
     ///
     /// # Errors
     /// [`DriveError::OffScrew`] where `x` is not on the screw;
-    /// [`DriveError::Parameter`] for a motion that is not finite.
+    /// [`DriveError::Parameter`] for a motion or, without a screw, a position that is
+    /// not finite.
     fn settled(&self, x: f64, motion: &Settled) -> Result<Self::State, DriveError>;
 
-    /// One step, to the motor torque `torque` (N·m) and the table load `load`
+    /// One step, to the motor torque `torque` (N·m) and the load's `load`
     /// (N, positive against positive motion) at its end.
     ///
     /// A torque or load that is not finite gives a state that is not, and a report
@@ -112,7 +124,7 @@ pub trait TimeStepper {
         self.step_through(state, torque, &NutErrors::default(), load)
     }
 
-    /// As [`TimeStepper::step`], with errors of the nut's kinematics. Without
+    /// As [`TimeStepper::step`], with errors of the transmission's kinematics. Without
     /// any the result is the same to the bit.
     fn step_through(
         &self,
@@ -124,23 +136,30 @@ pub trait TimeStepper {
 
     /// What can be seen of a state.
     fn observe(&self, state: &Self::State) -> Observation;
+
+    /// Kinetic energy of all that moves and strain energy of all that gives way, J.
+    fn energy(&self, state: &Self::State) -> f64;
 }
 
 impl Settled {
     /// Refuses what is not finite.
-    fn check(&self) -> Result<(), DriveError> {
-        let fields = [
+    pub(crate) fn check(&self) -> Result<(), DriveError> {
+        finite([
             ("speed", self.speed),
             ("acceleration", self.acceleration),
             ("load", self.load),
-        ];
-        match fields.into_iter().find(|(_, value)| !value.is_finite()) {
-            None => Ok(()),
-            Some((name, value)) => Err(DriveError::Parameter {
-                name,
-                value,
-                valid: "finite",
-            }),
-        }
+        ])
     }
+}
+
+pub(crate) fn check_step(step: f64) -> Result<(), DriveError> {
+    // Beyond a second no number of an axis' stiffest mode would be left.
+    if step > 0.0 && step <= 1.0 {
+        return Ok(());
+    }
+    Err(DriveError::Parameter {
+        name: "step",
+        value: step,
+        valid: "above zero and at most 1 s",
+    })
 }

@@ -16,7 +16,9 @@
 use nalgebra::Matrix4;
 
 use super::nut::Contact;
-use super::{NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper, find_load};
+use super::{
+    NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper, check_step, find_load,
+};
 use crate::matrices::{NutCoupling, NutSeat, dense};
 use crate::{DriveError, FeedDrive};
 
@@ -88,6 +90,8 @@ pub struct ModalState {
     nut_force: f64,
     load: f64,
     load_before: f64,
+    /// Of the nut, at the end of the last step.
+    errors: NutErrors,
 }
 
 impl ModalStepper {
@@ -164,6 +168,14 @@ impl TimeStepper for ModalStepper {
         self.step
     }
 
+    fn travel_per_radian(&self) -> f64 {
+        self.r
+    }
+
+    fn settled_torque(&self, _: f64, motion: &Settled) -> f64 {
+        motion.motor_torque(&self.drive)
+    }
+
     fn settled(&self, x: f64, motion: &Settled) -> Result<ModalState, DriveError> {
         self.drive.check_position(x)?;
         motion.check()?;
@@ -183,7 +195,7 @@ impl TimeStepper for ModalStepper {
         modes[0].coordinate[0] = 0.0;
         let rigid = modes[0].nut[0];
         modes[0].rate[0] = motion.speed / self.r / rigid;
-        let wanted = nut_force / self.drive.parameters().nut_stiffness / self.r;
+        let wanted = nut_force / self.drive.contact_stiffness(x) / self.r;
         let elastic = nut_rotation(&modes)[0];
         modes[0].coordinate[0] = (wanted - elastic) / rigid;
         Ok(ModalState {
@@ -195,6 +207,7 @@ impl TimeStepper for ModalStepper {
             nut_force,
             load: motion.load,
             load_before: motion.load,
+            errors: NutErrors::default(),
         })
     }
 
@@ -209,7 +222,8 @@ impl TimeStepper for ModalStepper {
         let p = self.drive.parameters();
 
         // Chain, without the nut force at the step's end.
-        let seat = self.seat(state.origin + state.displacement + h * state.speed);
+        let x = state.origin + state.displacement + h * state.speed;
+        let seat = self.seat(x);
         self.propagate_free(&mut state.modes, torque);
         self.place_nut(&mut state.modes, &seat);
         let [rotation, rate] = nut_rotation(&state.modes);
@@ -225,9 +239,10 @@ impl TimeStepper for ModalStepper {
 
         // The nut's law on the end values, which are linear in its force and in
         // the load.
+        let stiffness = self.drive.contact_stiffness(x);
         let contact = Contact {
-            stiffness: p.nut_stiffness,
-            damping: p.nut_stiffness * p.stiffness_damping,
+            stiffness,
+            damping: stiffness * p.stiffness_damping,
             travel: r * r * soft + give,
             speed: r * r * soft_rate + give_speed,
             half_gap: 0.5 * errors.gap(),
@@ -253,6 +268,7 @@ impl TimeStepper for ModalStepper {
         state.nut_force = nut_force;
         state.load_before = state.load;
         state.load = end_load;
+        state.errors = *errors;
         StepReport {
             load: found,
             on_screw: self.drive.has(state.origin + state.displacement),
@@ -267,6 +283,21 @@ impl TimeStepper for ModalStepper {
             speed: state.speed,
             nut_force: state.nut_force,
         }
+    }
+
+    fn energy(&self, state: &ModalState) -> f64 {
+        let mut sum = 0.5 * self.drive.parameters().table_mass * state.speed * state.speed;
+        for (m, k) in state.modes.iter().zip(&self.stiffness) {
+            for (i, k) in k.iter().enumerate() {
+                sum += 0.5 * (m.rate[i] * m.rate[i] + k * m.coordinate[i] * m.coordinate[i]);
+            }
+        }
+        let stretch = self.r * nut_rotation(&state.modes)[0] - state.displacement;
+        let strain = state.errors.strain(stretch);
+        let stiffness = self
+            .drive
+            .contact_stiffness(state.origin + state.displacement);
+        sum + 0.5 * stiffness * strain * strain
     }
 }
 
@@ -335,18 +366,6 @@ fn rotation<'a>(modes: impl Iterator<Item = (&'a Modes, &'a Lane)>) -> [f64; 2] 
         }
     }
     sums.map(add_lanes)
-}
-
-pub(super) fn check_step(step: f64) -> Result<(), DriveError> {
-    // Beyond a second no number of an axis' stiffest mode would be left.
-    if step > 0.0 && step <= 1.0 {
-        return Ok(());
-    }
-    Err(DriveError::Parameter {
-        name: "step",
-        value: step,
-        valid: "above zero and at most 1 s",
-    })
 }
 
 /// Both rows of the propagator of `η̈ + c η̇ + k η = f₀ + (f₁ − f₀) t/h`.

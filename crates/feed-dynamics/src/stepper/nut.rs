@@ -1,13 +1,13 @@
-//! The nut's contact law, and the errors of its kinematics.
+//! The contact law of a nut or another transmission, and the errors of its kinematics.
 
 use crate::DriveError;
 
-/// What the nut's kinematics have beyond `table = r · rotation`, at the end of
-/// a step. The default is none.
+/// What the kinematics of a screw and its nut, or of another transmission, have
+/// beyond `load travel = r · rotation`, at the end of a step. The default is none.
 ///
-/// The nut is compressed by `δ = r θ + offset − y`, at the rate
+/// The nut (or the transmission, as seen at its load) is compressed by `δ = r θ + offset − y`, at the rate
 /// `δ̇ = r θ̇ + offset_rate − ẏ`. Without a gap it is preloaded, both flanks
-/// touch, and its force on the table is `k δ + βk δ̇`, of either sign. With a
+/// touch, and its force on the load is `k δ + βk δ̇`, of either sign. With a
 /// gap one flank at most touches, and it never pulls:
 ///
 /// ```text
@@ -17,7 +17,7 @@ use crate::DriveError;
 /// ```
 ///
 /// Where a flank arrives at the speed δ̇ this jumps by βk δ̇; just there the
-/// force may have any value between. The reaction on the screw keeps the
+/// force may have any value between. The reaction on the rotation keeps the
 /// lever r: a lead error of 1e-4 changes it by as little.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NutErrors {
@@ -65,11 +65,22 @@ impl NutErrors {
     pub fn gap(&self) -> f64 {
         self.gap
     }
+
+    /// How far the nut is strained where `r θ − y` is `compression` (m): δ as far as
+    /// it is beyond half the gap.
+    pub(crate) fn strain(&self, compression: f64) -> f64 {
+        let delta = compression + self.offset;
+        let beyond = delta.abs() - 0.5 * self.gap;
+        if beyond <= 0.0 {
+            return 0.0;
+        }
+        beyond.copysign(delta)
+    }
 }
 
 /// The contact at the end of a step, with what a newton of it gives way there.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Contact {
+pub(crate) struct Contact {
     /// k, N/m.
     pub stiffness: f64,
     /// βk, N·s/m.
@@ -83,7 +94,7 @@ pub(super) struct Contact {
 }
 
 impl Contact {
-    /// The force on the table, N, where the nut would be compressed by
+    /// The force on the load, N, where the nut would be compressed by
     /// `compression` (m) at `rate` (m/s) if there were none: [`NutErrors`]' law on
     /// what is left of the two.
     #[inline]

@@ -1,6 +1,7 @@
 //! One test binary: matrices and modes against laws and closed forms, the two
 //! steppers against each other and against an independent integration.
 
+mod bits;
 mod boundary;
 mod frequency_response;
 mod friction;
@@ -32,6 +33,7 @@ fn paper() -> DriveParameters {
         screw_coupling_stiffness: 2800.0,
         table_mass: 515.0,
         nut_stiffness: 7.45e7,
+        axial: None,
         stiffness_damping: 1e-5,
     }
 }

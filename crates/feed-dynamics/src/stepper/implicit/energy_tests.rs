@@ -4,20 +4,6 @@ use super::{ImplicitState, ImplicitStepper};
 use crate::drive::tests_support::drive_with_damping;
 use crate::stepper::nut::tests::{obeys_its_law, torques};
 use crate::{NutCoupling, Settled, TimeStepper};
-use nalgebra::DVector;
-
-/// ½ q̇ᵀ M q̇ + ½ qᵀ K q, J, with the nut on the screw's last node.
-fn energy(s: &ImplicitStepper, state: &ImplicitState) -> f64 {
-    let m = s
-        .drive
-        .matrices(s.drive.parameters().screw_length, s.coupling)
-        .unwrap();
-    let (q, v) = (
-        DVector::from_column_slice(&state.q),
-        DVector::from_column_slice(&state.v),
-    );
-    0.5 * v.dot(&(&m.mass * &v)) + 0.5 * q.dot(&(&m.stiffness * &q))
-}
 
 /// Energies after a load of 1 kN is let go; as in the modal stepper's test.
 fn ringing(damping: f64, coupling: NutCoupling) -> Vec<f64> {
@@ -32,7 +18,7 @@ fn ringing(damping: f64, coupling: NutCoupling) -> Vec<f64> {
     (0..3000)
         .map(|_| {
             assert!(stepper.step(&mut state, 0.0, |_| 0.0).load.converged);
-            energy(&stepper, &state)
+            stepper.energy(&state)
         })
         .collect()
 }

@@ -5,19 +5,6 @@ use crate::drive::tests_support::drive_with_damping;
 use crate::stepper::nut::tests::{obeys_its_law, torques};
 use crate::{Settled, TimeStepper};
 
-/// Kinetic and elastic energy, J: of the modes, the table and the nut.
-fn energy(s: &ModalStepper, state: &ModalState) -> f64 {
-    let p = s.drive.parameters();
-    let mut sum = 0.5 * p.table_mass * state.speed * state.speed;
-    for (m, k) in state.modes.iter().zip(&s.stiffness) {
-        for (i, k) in k.iter().enumerate() {
-            sum += 0.5 * (m.rate[i] * m.rate[i] + k * m.coordinate[i] * m.coordinate[i]);
-        }
-    }
-    let stretch = s.r * nut_rotation(&state.modes)[0] - state.displacement;
-    sum + 0.5 * p.nut_stiffness * stretch * stretch
-}
-
 /// Energies after a load of 1 kN is let go, the nut held on the screw's last
 /// node (a start beyond the end), as a nut that moves changes K.
 fn ringing(damping: f64, step: f64, duration: f64) -> Vec<f64> {
@@ -33,7 +20,7 @@ fn ringing(damping: f64, step: f64, duration: f64) -> Vec<f64> {
     (0..(duration / step).round() as usize)
         .map(|_| {
             assert!(stepper.step(&mut state, 0.0, |_| 0.0).load.converged);
-            energy(&stepper, &state)
+            stepper.energy(&state)
         })
         .collect()
 }

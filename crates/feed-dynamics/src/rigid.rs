@@ -1,0 +1,161 @@
+//! A drive without elasticity: one inertia.
+
+use crate::error::{finite, positive};
+use crate::stepper::check_step;
+use crate::{
+    DriveError, NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper, find_load,
+};
+
+/// A drive whose motor and load move as one. Immutable.
+///
+/// ```text
+/// m ÿ = T / r − load,   θ = y / r
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidDrive {
+    inertia: f64,
+    travel_per_radian: f64,
+}
+
+impl RigidDrive {
+    /// A drive of `inertia` m (kg, or kg·m² where the load turns), that of everything
+    /// as seen at the load, and `travel_per_radian` r (m/rad or rad/rad).
+    ///
+    /// # Errors
+    /// [`DriveError::Parameter`] unless both are finite and above zero.
+    pub fn new(inertia: f64, travel_per_radian: f64) -> Result<Self, DriveError> {
+        positive([
+            ("inertia", inertia),
+            ("travel_per_radian", travel_per_radian),
+        ])?;
+        Ok(Self {
+            inertia,
+            travel_per_radian,
+        })
+    }
+
+    /// Inertia of everything as seen at the load, kg or kg·m².
+    pub fn inertia(&self) -> f64 {
+        self.inertia
+    }
+
+    /// Load travel per radian of the motor, m/rad or rad/rad.
+    pub fn travel_per_radian(&self) -> f64 {
+        self.travel_per_radian
+    }
+}
+
+/// A rigid drive for steps of one length h.
+///
+/// Torque T₁ and load of the step's end act over the whole step:
+///
+/// ```text
+/// v₁ = v₀ + h (T₁/r − load₁) / m,   y₁ = y₀ + h (v₀ + v₁) / 2
+/// ```
+///
+/// Exact for a torque and a load held over the step, as of a sampled controller; of
+/// first order where they change within it, and stable for every step. Errors of the
+/// kinematics have no elastic transmission to act through and are ignored. The force
+/// on the load that is observed is T₁/r, as nothing tells which part of the inertia
+/// is the load's. [`StepReport::on_screw`] is always true.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidStepper {
+    drive: RigidDrive,
+    step: f64,
+}
+
+/// State of a [`RigidStepper`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidState {
+    displacement: f64,
+    speed: f64,
+    force: f64,
+    load: f64,
+}
+
+impl RigidStepper {
+    /// Prepares steps of `step` seconds.
+    ///
+    /// # Errors
+    /// [`DriveError::Parameter`] where the step is not above zero and at most 1 s.
+    pub fn new(drive: &RigidDrive, step: f64) -> Result<Self, DriveError> {
+        check_step(step)?;
+        Ok(Self {
+            drive: *drive,
+            step,
+        })
+    }
+}
+
+impl TimeStepper for RigidStepper {
+    type State = RigidState;
+
+    fn step_length(&self) -> f64 {
+        self.step
+    }
+
+    fn travel_per_radian(&self) -> f64 {
+        self.drive.travel_per_radian
+    }
+
+    fn settled_torque(&self, _: f64, motion: &Settled) -> f64 {
+        self.drive.travel_per_radian * (self.drive.inertia * motion.acceleration + motion.load)
+    }
+
+    fn settled(&self, x: f64, motion: &Settled) -> Result<RigidState, DriveError> {
+        finite([("position", x)])?;
+        motion.check()?;
+        Ok(RigidState {
+            displacement: 0.0,
+            speed: motion.speed,
+            force: self.drive.inertia * motion.acceleration + motion.load,
+            load: motion.load,
+        })
+    }
+
+    fn step_through(
+        &self,
+        state: &mut RigidState,
+        torque: f64,
+        _: &NutErrors,
+        load: impl FnMut(TableMotion) -> f64,
+    ) -> StepReport {
+        let (h, mass, start) = (self.step, self.drive.inertia, *state);
+        let force = torque / self.drive.travel_per_radian;
+        let motion = |load: f64| {
+            let speed = start.speed + h * (force - load) / mass;
+            TableMotion {
+                displacement: start.displacement + 0.5 * h * (start.speed + speed),
+                speed,
+            }
+        };
+        let (end_load, mut found) = find_load(start.load, h / mass, motion, load);
+        let end = motion(end_load);
+        found.converged &= end.speed.is_finite();
+        *state = RigidState {
+            displacement: end.displacement,
+            speed: end.speed,
+            force,
+            load: end_load,
+        };
+        StepReport {
+            load: found,
+            on_screw: true,
+        }
+    }
+
+    fn observe(&self, state: &RigidState) -> Observation {
+        let r = self.drive.travel_per_radian;
+        Observation {
+            motor_angle: state.displacement / r,
+            motor_speed: state.speed / r,
+            displacement: state.displacement,
+            speed: state.speed,
+            nut_force: state.force,
+        }
+    }
+
+    fn energy(&self, state: &RigidState) -> f64 {
+        0.5 * self.drive.inertia * state.speed * state.speed
+    }
+}
