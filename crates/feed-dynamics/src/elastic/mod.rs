@@ -1,5 +1,7 @@
 //! A drive of two inertias, motor and load, on an elastic transmission.
 
+mod ahead;
+mod course;
 mod response;
 mod stepper;
 mod stiffness;

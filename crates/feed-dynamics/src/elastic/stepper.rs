@@ -7,13 +7,22 @@
 //! holds for one stiffness and a closed contact only; here k(x) changes with every
 //! step, and the flanks of a gap part and meet.
 //!
+//! Where they do, half of a force that was not there at the start, or is gone at the
+//! end, would throw the flanks apart faster than they met. Over such a step the
+//! end's force acts alone, as in Euler's implicit method, which only takes energy
+//! (Kane, Repetto, Ortiz, Marsden, Comput. Methods Appl. Mech. Eng. 180 (1999) 1–26).
+//! It is one step for each time they meet or part, so the order stays.
+//!
 //! The coordinates are the load's displacement y and the compression δ = rθ − y,
 //! not θ: the force k δ then keeps its digits however far the axis travels.
 
 use super::ElasticDrive;
-use crate::stepper::{Contact, check_step};
+use super::ahead::{Ahead, Share};
+use super::course::Course;
+use crate::stepper::check_step;
 use crate::{
-    DriveError, NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper, find_load,
+    DriveError, LoadSearch, NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper,
+    find_load,
 };
 
 /// An elastic drive for steps of one length.
@@ -23,37 +32,34 @@ use crate::{
 /// always true.
 #[derive(Clone, Debug)]
 pub struct ElasticStepper {
-    drive: ElasticDrive,
-    step: f64,
+    pub(super) drive: ElasticDrive,
+    pub(super) step: f64,
     /// 1/m, 1/kg.
-    load_mobility: f64,
+    pub(super) load_mobility: f64,
     /// 1/m + r²/J, 1/kg.
-    mobility: f64,
+    pub(super) mobility: f64,
+    /// 1/r.
+    radians_per_travel: f64,
     /// r/J: what a newton metre of the motor adds to δ̈.
-    per_torque: f64,
-}
-
-/// Value, rate and acceleration of a coordinate.
-#[derive(Clone, Copy, Debug, Default)]
-struct Course {
-    value: f64,
-    rate: f64,
-    acceleration: f64,
+    pub(super) per_torque: f64,
 }
 
 /// State of an [`ElasticStepper`].
 #[derive(Clone, Debug)]
 pub struct ElasticState {
-    origin: f64,
-    /// y, m.
-    load_course: Course,
+    pub(super) origin: f64,
+    /// The load's displacement, m.
+    pub(super) y: Course,
     /// δ = rθ − y, without errors of the kinematics, m.
-    compression: Course,
+    pub(super) compression: Course,
     /// Errors at the end of the last step.
-    errors: NutErrors,
-    force: f64,
-    load: f64,
-    load_before: f64,
+    pub(super) errors: NutErrors,
+    /// On the load, N.
+    pub(super) force: f64,
+    /// −1 or 1 where spring and damper press the flank on that side, otherwise 0.
+    pub(super) flank: f64,
+    pub(super) load: f64,
+    pub(super) load_before: f64,
 }
 
 impl ElasticStepper {
@@ -68,46 +74,60 @@ impl ElasticStepper {
             step,
             load_mobility: 1.0 / p.load_inertia,
             mobility: drive.mobility(),
+            radians_per_travel: 1.0 / p.travel_per_radian,
             per_torque: p.travel_per_radian / p.motor_inertia,
             drive: drive.clone(),
         })
     }
 
-    /// The contact at the end of a step that leads to `x`.
-    fn contact(&self, x: f64, errors: &NutErrors) -> Contact {
-        let p = self.drive.parameters();
-        let stiffness = p.stiffness.at(x);
-        Contact {
-            stiffness,
-            damping: stiffness * p.stiffness_damping,
-            travel: 0.25 * self.step * self.step * self.mobility,
-            speed: 0.5 * self.step * self.mobility,
-            half_gap: 0.5 * errors.gap(),
-        }
-    }
-}
-
-impl Course {
-    /// All that the start tells of the end of a step of `h`.
-    fn predicted(self, h: f64) -> Self {
-        let known = Self {
-            acceleration: 0.0,
-            ..self
+    /// A step in which the force has the given share.
+    #[inline]
+    fn advance(
+        &self,
+        state: &mut ElasticState,
+        torque: f64,
+        errors: &NutErrors,
+        share: Share,
+        load: impl FnMut(TableMotion) -> f64,
+    ) -> LoadSearch {
+        let ahead = Ahead::new(self, state, torque, errors, share);
+        let motion = |load: f64| {
+            let y = ahead.load_course(load, ahead.force(load));
+            TableMotion {
+                displacement: y.value,
+                speed: y.rate,
+            }
         };
-        let moved = Self {
-            value: known.value + h * known.rate,
-            ..known
-        };
-        moved.accelerated(h, self.acceleration)
+        let guess = 2.0 * state.load - state.load_before;
+        let give = 0.5 * self.step * self.load_mobility;
+        let (load, mut found) = find_load(guess, give, motion, load);
+        ahead.finish(state, load);
+        found.converged &= state.compression.value.is_finite();
+        found
     }
 
-    /// With what an acceleration at one end of a step of `h` adds.
-    fn accelerated(self, h: f64, acceleration: f64) -> Self {
-        Self {
-            value: self.value + 0.25 * h * h * acceleration,
-            rate: self.rate + 0.5 * h * acceleration,
-            acceleration,
+    /// A step through a gap: see the module's notes on flanks that meet and part.
+    #[inline]
+    fn through_gap(
+        &self,
+        state: &mut ElasticState,
+        torque: f64,
+        errors: &NutErrors,
+        mut load: impl FnMut(TableMotion) -> f64,
+    ) -> LoadSearch {
+        let mut rounds = 0;
+        if state.flank != 0.0 {
+            let start = state.clone();
+            let found = self.advance(state, torque, errors, Share::average(self.step), &mut load);
+            if state.flank == start.flank {
+                return found;
+            }
+            *state = start;
+            rounds = found.rounds;
         }
+        let mut found = self.advance(state, torque, errors, Share::implicit(self.step), load);
+        found.rounds += rounds;
+        found
     }
 }
 
@@ -135,7 +155,7 @@ impl TimeStepper for ElasticStepper {
         let force = p.load_inertia * motion.acceleration + motion.load;
         Ok(ElasticState {
             origin: x,
-            load_course: Course {
+            y: Course {
                 value: 0.0,
                 rate: motion.speed,
                 acceleration: motion.acceleration,
@@ -146,6 +166,7 @@ impl TimeStepper for ElasticStepper {
             },
             errors: NutErrors::default(),
             force,
+            flank: 0.0,
             load: motion.load,
             load_before: motion.load,
         })
@@ -158,49 +179,22 @@ impl TimeStepper for ElasticStepper {
         errors: &NutErrors,
         load: impl FnMut(TableMotion) -> f64,
     ) -> StepReport {
-        let h = self.step;
-        let y = state.load_course.predicted(h);
-        let compression = state.compression.predicted(h);
-        let contact = self.contact(state.origin + y.value, errors);
-
-        // The contact's law on the end values, which are linear in its force and in
-        // the load.
-        let driven = self.per_torque * torque;
-        let force = |load: f64| {
-            let free = compression.accelerated(h, driven + self.load_mobility * load);
-            contact.force(
-                free.value + errors.offset(),
-                free.rate + errors.offset_rate(),
-            )
+        let load = if errors.gap() == 0.0 {
+            self.advance(state, torque, errors, Share::average(self.step), load)
+        } else {
+            self.through_gap(state, torque, errors, load)
         };
-        let end = |load: f64| y.accelerated(h, self.load_mobility * (force(load) - load));
-        let motion = |load: f64| TableMotion {
-            displacement: end(load).value,
-            speed: end(load).rate,
-        };
-        let guess = 2.0 * state.load - state.load_before;
-        let (end_load, mut found) = find_load(guess, 0.5 * h * self.load_mobility, motion, load);
-
-        state.load_course = end(end_load);
-        state.force = force(end_load);
-        let free = driven + self.load_mobility * end_load;
-        state.compression = compression.accelerated(h, free - self.mobility * state.force);
-        state.errors = *errors;
-        state.load_before = state.load;
-        state.load = end_load;
-        found.converged &= state.compression.value.is_finite();
         StepReport {
-            load: found,
+            load,
             on_screw: true,
         }
     }
 
     fn observe(&self, state: &ElasticState) -> Observation {
-        let r = self.travel_per_radian();
-        let (y, compression) = (&state.load_course, &state.compression);
+        let (y, compression) = (&state.y, &state.compression);
         Observation {
-            motor_angle: (y.value + compression.value) / r,
-            motor_speed: (y.rate + compression.rate) / r,
+            motor_angle: (y.value + compression.value) * self.radians_per_travel,
+            motor_speed: (y.rate + compression.rate) * self.radians_per_travel,
             displacement: y.value,
             speed: y.rate,
             nut_force: state.force,

@@ -28,7 +28,8 @@ pub struct InSeries(pub Vec<Arc<dyn Stiffness>>);
 
 impl Stiffness for InSeries {
     fn at(&self, x: f64) -> f64 {
-        let compliance: f64 = self.0.iter().map(|spring| 1.0 / spring.at(x)).sum();
+        let soft = |sum, spring: &Arc<dyn Stiffness>| sum + 1.0 / spring.at(x);
+        let compliance = self.0.iter().fold(0.0, soft);
         1.0 / compliance
     }
 }

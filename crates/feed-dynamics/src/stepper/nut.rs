@@ -114,6 +114,22 @@ impl Contact {
         let force = if most < pressed { most } else { pressed };
         if force < 0.0 { 0.0 } else { side * force }
     }
+
+    /// The side, −1 or 1, of the flank that spring and damper press at the same
+    /// compression and rate; 0 in the gap, and where [`Contact::force`] is one that
+    /// only keeps the flank at its edge, or from pulling.
+    #[inline]
+    pub fn flank(&self, compression: f64, rate: f64) -> f64 {
+        let stiff = 1.0 + self.stiffness * self.travel + self.damping * self.speed;
+        let side = compression.signum();
+        let beyond = side * compression - self.half_gap;
+        let pressed = (self.stiffness * beyond + self.damping * side * rate) / stiff;
+        if beyond > 0.0 && pressed > 0.0 && pressed < beyond / self.travel {
+            side
+        } else {
+            0.0
+        }
+    }
 }
 
 #[cfg(test)]

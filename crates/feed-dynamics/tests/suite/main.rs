@@ -1,8 +1,13 @@
-//! One test binary: matrices and modes against laws and closed forms, the two
-//! steppers against each other and against an independent integration.
+//! One test binary: matrices, modes and stiffnesses against laws and closed forms,
+//! the steppers against each other and against independent integrations.
 
+mod axial;
 mod bits;
 mod boundary;
+mod elastic_energy;
+mod elastic_reference;
+mod elastic_response;
+mod elastic_stepping;
 mod frequency_response;
 mod friction;
 mod matrices;
@@ -10,8 +15,10 @@ mod modes;
 mod nut_errors;
 mod parameters;
 mod reference;
+mod rigid;
 mod settled;
 mod stepping;
+mod stiffness;
 
 use beam_fem::{Material, Section};
 use feed_dynamics::{DriveParameters, FeedDrive, NutCoupling};

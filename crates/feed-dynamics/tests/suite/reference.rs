@@ -39,6 +39,8 @@ pub struct Reference {
     pub mass: f64,
     pub beta: f64,
     pub coupling: NutCoupling,
+    /// Axial stiffness between screw and table with the table at x, N/m.
+    pub nut: fn(f64) -> f64,
     /// T_C, T_S (N·m), Ω_S (rad/s), σ0, σ1, σ2 at the screw; none for no friction.
     pub friction: Option<[f64; 6]>,
     pub origin: f64,
@@ -68,6 +70,7 @@ impl Reference {
             mass: 515.0,
             beta: 1e-5,
             coupling,
+            nut: |_| NUT,
             friction: None,
             origin,
             state: State {
@@ -133,7 +136,10 @@ impl Reference {
         b[node] = R * weight;
         b[node + 1] += R * (1.0 - weight);
         b[CHAIN] = -1.0;
-        [full(m, self.mass), full(k, 0.0) + &b * b.transpose() * NUT]
+        [
+            full(m, self.mass),
+            full(k, 0.0) + &b * b.transpose() * (self.nut)(self.origin),
+        ]
     }
 
     /// Rates of all of the state, and the nut force.
@@ -143,7 +149,8 @@ impl Reference {
         let [offset, offset_rate] = (acts.offset)(t);
         let delta = R * at(&s.q) + offset - s.q[CHAIN];
         let closing = R * at(&s.v) + offset_rate - s.v[CHAIN];
-        let nut = nut_force(delta, closing, self.beta, acts.gap);
+        let stiffness = (self.nut)(self.origin + s.q[CHAIN]);
+        let nut = nut_force(stiffness, delta, closing, self.beta, acts.gap);
 
         let mut force = [0.0; CHAIN];
         for i in 0..CHAIN {
@@ -226,14 +233,14 @@ impl State {
 }
 
 /// A preloaded nut without a gap; with one, one flank at most, which never pulls.
-fn nut_force(delta: f64, closing: f64, beta: f64, gap: f64) -> f64 {
-    let damping = beta * NUT;
+pub fn nut_force(k: f64, delta: f64, closing: f64, beta: f64, gap: f64) -> f64 {
+    let damping = beta * k;
     if gap == 0.0 {
-        NUT * delta + damping * closing
+        k * delta + damping * closing
     } else if delta > 0.5 * gap {
-        f64::max(0.0, NUT * (delta - 0.5 * gap) + damping * closing)
+        f64::max(0.0, k * (delta - 0.5 * gap) + damping * closing)
     } else if delta < -0.5 * gap {
-        f64::min(0.0, NUT * (delta + 0.5 * gap) + damping * closing)
+        f64::min(0.0, k * (delta + 0.5 * gap) + damping * closing)
     } else {
         0.0
     }

@@ -82,7 +82,7 @@ pub fn implicit(h: f64, coupling: NutCoupling) -> ImplicitStepper {
 
 /// Asserts that the deviations at 100, 50 and 25 µs are of second order, and
 /// the first of them below `most`: some four times what was measured.
-fn second_order(name: &str, [coarse, half, fine]: [Seen; 3], most: Seen) {
+pub fn second_order(name: &str, [coarse, half, fine]: [Seen; 3], most: Seen) {
     println!("{name}: {coarse:?} {half:?} {fine:?}");
     for (signal, (a, b)) in coarse.iter().zip(fine).enumerate() {
         // From 100 to 25 µs the error falls 16-fold.

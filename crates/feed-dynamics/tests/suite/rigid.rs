@@ -1,0 +1,109 @@
+//! The rigid drive against closed forms.
+
+use feed_dynamics::{NutErrors, RigidDrive, RigidStepper, Settled, TimeStepper};
+
+fn stepper(step: f64) -> RigidStepper {
+    RigidStepper::new(&RigidDrive::new(95.0, 0.002).unwrap(), step).unwrap()
+}
+
+#[test]
+fn a_constant_force_accelerates_evenly() {
+    let s = stepper(1e-3);
+    let mut state = s.settled(0.7, &Settled::default()).unwrap();
+    for i in 1..=3000 {
+        let report = s.step(&mut state, 0.3, |_| 55.0);
+        assert!(report.load.converged && report.on_screw);
+        let (o, t) = (s.observe(&state), 1e-3 * f64::from(i));
+        // 150 N of the motor less 55 N on 95 kg.
+        assert!((o.speed / t - 1.0).abs() < 1e-13, "{t}: {o:?}");
+        assert!(
+            (o.displacement / (0.5 * t * t) - 1.0).abs() < 1e-12,
+            "{t}: {o:?}"
+        );
+        assert!((o.motor_speed * 0.002 / o.speed - 1.0).abs() < 1e-15);
+        assert!((o.motor_angle * 0.002 / o.displacement - 1.0).abs() < 1e-15);
+        assert!((o.nut_force - 150.0).abs() < 1e-12);
+        assert!((s.energy(&state) / (47.5 * t * t) - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_viscous_load_takes_its_part_of_the_speed_in_each_step() {
+    // Backward: v₁ = (v₀ + h F/m) / (1 + h d/m), towards F/d; and so of first order
+    // to F/d (1 − exp(−t d/m)).
+    let drag = 190.0;
+    let off = [1e-3, 5e-4].map(|h| {
+        let s = stepper(h);
+        let mut state = s.settled(0.0, &Settled::default()).unwrap();
+        let (mut speed, mut way) = (0.0, 0.0);
+        let mut off = 0.0_f64;
+        for i in 1..=(2.0 / h) as u32 {
+            assert!(
+                s.step(&mut state, 0.3, |table| drag * table.speed)
+                    .load
+                    .converged
+            );
+            let after = (speed + h * 150.0 / 95.0) / (1.0 + h * drag / 95.0);
+            way += 0.5 * h * (speed + after);
+            speed = after;
+            let o = s.observe(&state);
+            // The speed of each step is found to 1e-11 m/s.
+            assert!((o.speed - speed).abs() < 5e-11, "{o:?} {speed}");
+            assert!((o.displacement - way).abs() < 1e-10, "{o:?} {way}");
+            let exact = 150.0 / drag * (1.0 - (-2.0 * h * f64::from(i)).exp());
+            off = off.max((o.speed - exact).abs());
+        }
+        off
+    });
+    println!("viscous load: {off:?}");
+    assert!(off[0] < 1e-3, "{off:?}");
+    assert!((off[0] / off[1] - 2.0).abs() < 0.01, "{off:?}");
+}
+
+#[test]
+fn settled_motion_goes_on_and_errors_of_a_transmission_do_nothing() {
+    let s = stepper(1e-3);
+    let motion = Settled {
+        speed: 0.2,
+        acceleration: -0.1,
+        load: 40.0,
+    };
+    let torque = s.settled_torque(0.0, &motion);
+    assert!((torque - 0.002 * (40.0 - 9.5)).abs() < 1e-16);
+    assert_eq!([s.travel_per_radian(), s.step_length()], [0.002, 1e-3]);
+    let start = s.settled(-4.0, &motion).unwrap();
+    assert!((s.observe(&start).nut_force - 30.5).abs() < 1e-13);
+    let (mut plain, mut erring) = (start, start);
+    let errors = NutErrors::new(1e-3, 0.2, 1e-3).unwrap();
+    for i in 1..=1000 {
+        let _ = s.step(&mut plain, torque, |_| 40.0);
+        let _ = s.step_through(&mut erring, torque, &errors, |_| 40.0);
+        let speed = 0.2 - 1e-4 * f64::from(i);
+        assert!((s.observe(&plain).speed - speed).abs() < 1e-14);
+        assert_eq!(s.observe(&plain), s.observe(&erring));
+    }
+}
+
+#[test]
+fn bad_numbers_are_refused_or_reported() {
+    for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
+        for (made, field) in [
+            (RigidDrive::new(bad, 1.0), "inertia"),
+            (RigidDrive::new(1.0, bad), "travel_per_radian"),
+        ] {
+            let text = made.unwrap_err().to_string();
+            assert!(text.starts_with(&format!("{field} = {bad}")), "{text}");
+        }
+        let drive = RigidDrive::new(1.0, 1.0).unwrap();
+        assert_eq!([drive.inertia(), drive.travel_per_radian()], [1.0, 1.0]);
+        assert!(RigidStepper::new(&drive, bad).is_err());
+    }
+    let s = stepper(1e-3);
+    for bad in [f64::NAN, f64::INFINITY] {
+        assert!(s.settled(bad, &Settled::default()).is_err());
+        let mut state = s.settled(0.0, &Settled::default()).unwrap();
+        assert!(!s.step(&mut state, 0.0, |_| bad).load.converged);
+        let mut state = s.settled(0.0, &Settled::default()).unwrap();
+        assert!(!s.step(&mut state, bad, |_| 0.0).load.converged);
+    }
+}
