@@ -1,4 +1,26 @@
-//! Dynamics of a ball-screw feed drive whose table moves along the screw.
+//! Dynamics of feed drives: what a motor torque makes of the load's motion.
+//!
+//! A feed axis is a motor, a transmission that gives way, and a load (table,
+//! carriage, joint) whose position may change the transmission's stiffness:
+//!
+//! ```text
+//! motor torque T ──► motor, θ ──[ k(x), βk(x); offset, gap ]──► load, y ◄── load force
+//! ```
+//!
+//! The motor torque and the force on the load come from the caller, who gets the
+//! motion at the end of each step. Three drives, from the most detailed on:
+//!
+//! | drive | what gives way | steppers |
+//! |---|---|---|
+//! | [`FeedDrive`], a ball screw | couplings, the screw's torsion, the nut; with [`AxialSupport`] the screw's length and its bearings | [`ModalStepper`], [`ImplicitStepper`] |
+//! | [`ElasticDrive`], two inertias | one [`Stiffness`]: a constant, [`BeltStrands`], [`ScrewShaft`], or several [`InSeries`] | [`ElasticStepper`] |
+//! | [`RigidDrive`], one inertia | nothing | [`RigidStepper`] |
+//!
+//! All step through the trait [`TimeStepper`]; the force on the load may depend on
+//! the load's motion at the end of the step (friction), for which [`find_load`]
+//! searches. [`NutErrors`] adds an error of the kinematics and a gap.
+//!
+//! # The ball screw
 //!
 //! The drive of Liu et al. (Machines 2025, 13(5), 433,
 //! doi:10.3390/machines13050433, Section 3.1) is a torsional chain with a
@@ -26,8 +48,18 @@
 //!
 //! Units are SI: rad, m, N·m, N, kg·m², kg, s.
 //!
-//! This crate knows nothing of friction laws, motors, controllers or files:
-//! the motor torque and the load on the table come from the caller.
+//! # Two inertias
+//!
+//! `J θ̈ = T − r F`, `m ÿ = F − load`, with the force `F = k(x) δ + βk(x) δ̇` of the
+//! compression `δ = r θ − y`: the resonance `√(k (1/m + r²/J))`, the antiresonance
+//! seen from the motor `√(k/m)`.
+//!
+//! # Units
+//!
+//! SI: rad, m, N·m, N, kg·m², kg, s. Where the load turns, read rad for m, N·m for N
+//! and kg·m² for kg of the load.
+//!
+//! This crate knows nothing of friction laws, motors, controllers or files.
 //!
 //! ```
 //! use beam_fem::{Material, Section};
@@ -54,6 +86,33 @@
 //! assert!(modes.frequencies[0] < 1e-3); // the axis is free to move
 //! println!("first elastic mode: {:.1} Hz", modes.frequencies[1] / std::f64::consts::TAU);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A carriage on a toothed belt, whose strands change with its position:
+//!
+//! ```
+//! use std::sync::Arc;
+//! use feed_dynamics::{
+//!     BeltStrands, ElasticDrive, ElasticDriveParameters, ElasticStepper, Settled, TimeStepper,
+//! };
+//!
+//! let drive = ElasticDrive::new(ElasticDriveParameters {
+//!     motor_inertia: 2e-4,
+//!     load_inertia: 12.0,
+//!     travel_per_radian: 0.02,
+//!     stiffness: Arc::new(BeltStrands::new(3e5, 0.15, 1.2)?),
+//!     stiffness_damping: 2e-5,
+//! })?;
+//! assert!(drive.resonance(0.0) > drive.resonance(0.45)); // both strands are equal there
+//!
+//! let stepper = ElasticStepper::new(&drive, 1e-4)?;
+//! let mut state = stepper.settled(0.1, &Settled::default())?;
+//! for _ in 0..100 {
+//!     let report = stepper.step(&mut state, 2.0, |carriage| 60.0 * carriage.speed);
+//!     assert!(report.load.converged);
+//! }
+//! assert!(stepper.observe(&state).speed > 0.0);
+//! # Ok::<(), feed_dynamics::DriveError>(())
 //! ```
 
 mod axial;

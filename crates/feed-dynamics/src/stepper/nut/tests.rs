@@ -75,6 +75,19 @@ proptest! {
 }
 
 #[test]
+fn the_nut_is_strained_by_what_is_beyond_half_the_gap() {
+    let errors = NutErrors::new(1.0, 7.0, 4.0).unwrap();
+    let strains = [5.0, 1.5, 1.0, -1.0, -3.0, -5.0].map(|stretch| errors.strain(stretch));
+    assert_eq!(strains, [4.0, 0.5, 0.0, 0.0, 0.0, -2.0]);
+    assert!(errors.strain(f64::NAN).is_nan());
+    // Without any it is the stretch, to the bit.
+    assert_eq!(
+        [0.3, -0.0].map(|d| NutErrors::default().strain(d)),
+        [0.3, 0.0]
+    );
+}
+
+#[test]
 fn numbers_that_are_none_are_refused_or_handed_on() {
     let cases = [
         (f64::NAN, 0.0, 0.0, "offset"),
