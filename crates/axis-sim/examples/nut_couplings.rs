@@ -7,19 +7,15 @@ use std::path::Path;
 
 use axis_sim::{Axis, ClosedLoop};
 use compensator::NoCompensation;
-use feed_dynamics::NutCoupling;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/axes");
     println!("                        shape functions, µm      moving node, µm       apart, µm");
     println!("file, trajectory          max      mean         max      mean       max     mean");
     for file in ["liu2025.toml", "liu2025-machine.toml"] {
-        let mut axis = Axis::read(&folder.join(file))?;
-        let mut figures = Vec::new();
-        for coupling in [NutCoupling::ShapeFunctions, NutCoupling::MovingNode] {
-            axis.coupling = coupling;
-            figures.push(errors_um(&axis)?);
-        }
+        let axis = Axis::read(&folder.join(file))?;
+        let loops = [ClosedLoop::new(&axis)?, ClosedLoop::exact(&axis, 1e-5)?];
+        let figures = [errors_um(&loops[0])?, errors_um(&loops[1])?];
         for (i, (a, b)) in figures[0].iter().zip(&figures[1]).enumerate() {
             println!(
                 "{:20} {}  {:8.4} {:8.5}   {:8.4} {:8.5}   {:+7.4} {:+8.5}",
@@ -38,8 +34,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Maximum and mean of |S_ref − S|, µm, of each trajectory.
-fn errors_um(axis: &Axis) -> Result<Vec<[f64; 2]>, Box<dyn std::error::Error>> {
-    let closed_loop = ClosedLoop::new(axis)?;
+fn errors_um(closed_loop: &ClosedLoop) -> Result<Vec<[f64; 2]>, Box<dyn std::error::Error>> {
+    let axis = closed_loop.axis();
     let mut all = Vec::new();
     for spec in &axis.trajectories {
         let (mut most, mut sum, mut cycles) = (0.0_f64, 0.0, 0.0);

@@ -1,68 +1,91 @@
-//! An axis: everything that the simulation of a machine needs, checked.
+//! An axis: the parts of a machine and how it is run, checked.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use axis_log::Mapping;
-use feed_dynamics::{DriveError, FeedDrive, NutCoupling};
-use foc_pmsm::{Pmsm, Servo};
-use lugre::LuGre;
 use trajectories::{Limits, SCurve, TrajectoryError};
 
-use crate::effects::{self, ActiveEffect, Hooks, MachineMut};
+use crate::actuator::{Actuator, Surroundings};
+use crate::control::Control;
+use crate::effects::{self, ActiveEffect, Hooks};
+use crate::error::SetupError;
+use crate::friction::Friction;
+use crate::load::Load;
+use crate::mechanism::{Freedom, Mechanism, Way};
+use crate::part::{Known, Part, Role};
+use crate::sensor::Sensor;
 
 /// Tracking error at which a run is given up where the axis file does not say, m.
 pub const FOLLOWING_ERROR_LIMIT: f64 = 0.02;
 
-/// A ball-screw axis with its motor, drive controller and friction. SI units.
+/// A feed axis: a composition of parts. SI units; positions, speeds and forces are
+/// those of the load, in m and N or in rad and N·m ([`Freedom`]).
 ///
-/// Made from an axis file by [`Axis::read`]. Immutable while it is simulated;
-/// a variant is a clone with other fields.
+/// Made from an axis file by [`Axis::read`]. Immutable while it is simulated; a
+/// variant is a clone with other parts.
 #[derive(Clone, Debug)]
 pub struct Axis {
     /// Short name, also of the folder of its results.
     pub name: String,
     /// One line for people.
     pub description: String,
-    /// Mechanics.
-    pub drive: FeedDrive,
-    /// Friction between table and guides, on the equivalent screw speed
-    /// `table speed / r` (rad/s), as torque at the screw (N·m): the force on
-    /// the table is that torque divided by r.
-    pub friction: LuGre,
-    /// Motor.
-    pub motor: Pmsm,
-    /// Torque constant K_t at i_d = 0, N·m/A.
-    pub torque_constant: f64,
-    /// Position, speed and current controllers.
-    pub servo: Servo,
-    /// Share of the reference velocity that is added to the position
-    /// controller's output; 1 is all of it.
-    pub velocity_feedforward: f64,
+    /// What carries the motor's rotation to the load.
+    pub mechanism: Part<dyn Mechanism>,
+    /// What makes a torque of the controller's command.
+    pub actuator: Part<dyn Actuator>,
+    /// Position and speed control.
+    pub control: Part<dyn Control>,
+    /// Friction between load and guides.
+    pub friction: Part<Friction>,
+    /// Loads besides it.
+    pub loads: Vec<Part<dyn Load>>,
+    /// Position sensors.
+    pub sensors: Sensors,
     /// Control period, s.
     pub period: f64,
-    /// Tracking error at which a run is given up, m.
+    /// Tracking error at which a run is given up, m or rad; infinite for none.
     pub following_error_limit: f64,
-    /// How the nut meets the screw's mesh.
-    pub coupling: NutCoupling,
     /// Settings of the simulation.
     pub simulation: Simulation,
-    /// Where the table may be.
+    /// Where the load may be.
     pub stroke: Stroke,
-    /// Ranges of the one-cycle samples.
-    pub samples: SampleRanges,
+    /// Ranges of the one-cycle samples, where there are some.
+    pub samples: Option<SampleRanges>,
     /// The motions on which the axis is judged, in their order from 1.
     pub trajectories: Vec<MoveSpec>,
     /// What its results are compared with, if anything.
     pub experiment: Option<Experiment>,
     /// Effects beyond the model above: the file's `[[effects]]`.
     pub effects: Vec<ActiveEffect>,
-    /// How far a known parameter may be off, as a share of its value.
-    pub tolerance: f64,
+    /// How far known parameters may be off.
+    pub tolerances: Tolerances,
     /// How the columns of logs of this axis are called.
     pub log: Mapping,
     /// Hash of every value in SI units: the same for files that differ only
     /// in comments, units or order.
     pub fingerprint: String,
+}
+
+/// The position sensors of an axis.
+#[derive(Clone, Debug, Default)]
+pub struct Sensors {
+    /// At the load.
+    pub load: LoadSensor,
+    /// At the motor; a perfect one where there is none in the file.
+    pub motor: Option<Part<dyn Sensor>>,
+}
+
+/// The sensor at the load.
+#[derive(Clone, Debug, Default)]
+pub enum LoadSensor {
+    /// Without any error.
+    #[default]
+    Perfect,
+    /// None: the load's position is the motor's, times the travel per radian.
+    Missing,
+    /// One with errors.
+    Fitted(Part<dyn Sensor>),
 }
 
 /// Settings of the simulation.
@@ -71,9 +94,11 @@ pub struct Simulation {
     /// Longest internal step of the plant, s; the control period is divided
     /// into the fewest equal steps that are no longer.
     pub step: f64,
+    /// How the mechanism's equations are solved.
+    pub way: Way,
 }
 
-/// Table positions, m from the driven end of the screw.
+/// Positions of the load, m or rad.
 #[derive(Clone, Copy, Debug)]
 pub struct Stroke {
     /// Least position.
@@ -93,23 +118,30 @@ pub struct Range {
     pub most: f64,
 }
 
+impl Range {
+    /// Whether `value` lies inside.
+    pub fn contains(&self, value: f64) -> bool {
+        (self.least..=self.most).contains(&value)
+    }
+}
+
 /// The design space of the one-cycle samples: Table 5 of the paper.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleRanges {
-    /// S(k), m from the driven end.
+    /// S(k), m or rad.
     pub position: Range,
-    /// Ṡ(k), m/s.
+    /// Ṡ(k), per second.
     pub speed: Range,
-    /// S̈(k), m/s².
+    /// S̈(k), per second squared.
     pub acceleration: Range,
-    /// I_qr(k), A.
-    pub current: Range,
+    /// The actuator's command: I_qr(k), A, in the paper.
+    pub effort: Range,
 }
 
 /// One rest-to-rest move.
 #[derive(Clone, Copy, Debug)]
 pub struct MoveSpec {
-    /// From the stroke's start, m.
+    /// From the stroke's start, m or rad.
     pub displacement: f64,
     /// Greatest speed, acceleration and jerk.
     pub limits: Limits,
@@ -124,20 +156,63 @@ pub struct Experiment {
     pub paper_tables: Option<PathBuf>,
 }
 
+/// How far known parameters may be off, as shares of their values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tolerances {
+    /// Of all that are not named.
+    pub default: f64,
+    /// By the name of the parameter ([`Axis::known`]).
+    pub by_name: BTreeMap<&'static str, f64>,
+}
+
+impl Tolerances {
+    /// Of a parameter of which nothing is known but what it is.
+    pub const UNKNOWN: f64 = 0.9;
+
+    /// All the same.
+    pub fn all(share: f64) -> Self {
+        Self {
+            default: share,
+            by_name: BTreeMap::new(),
+        }
+    }
+
+    /// Of one parameter.
+    pub fn of(&self, name: &str) -> f64 {
+        self.by_name.get(name).copied().unwrap_or(self.default)
+    }
+}
+
 impl Axis {
     /// The axis with its effects' changes made, and their hooks.
-    ///
-    /// # Errors
-    /// [`DriveError`] where an effect carries a parameter out of its range.
-    pub(crate) fn with_effects(&self) -> Result<(Self, Hooks), DriveError> {
+    pub(crate) fn with_effects(&self) -> Result<(Self, Hooks), SetupError> {
         let mut axis = self.clone();
-        let hooks = effects::install(&self.effects, MachineMut::BallScrew(&mut axis))?;
+        let hooks = effects::install(&self.effects, &mut axis)?;
         Ok((axis, hooks))
     }
 
-    /// Table travel per radian of the screw, r = lead / 2π, m/rad.
+    /// How the load moves.
+    pub fn freedom(&self) -> Freedom {
+        self.mechanism.freedom()
+    }
+
+    /// Travel of the load per radian of the motor, r, m/rad or rad/rad.
     pub fn travel_per_radian(&self) -> f64 {
-        self.drive.travel_per_radian()
+        self.mechanism.travel_per_radian()
+    }
+
+    /// Motor torque per unit of the actuator's command, N·m per A, V or N·m.
+    pub fn torque_constant(&self) -> f64 {
+        self.actuator.torque_constant(self.travel_per_radian())
+    }
+
+    /// What actuator and control are told of this axis.
+    pub(crate) fn surroundings(&self) -> Surroundings {
+        Surroundings {
+            period: self.period,
+            travel_per_radian: self.travel_per_radian(),
+            effort_limit: self.actuator.limit(),
+        }
     }
 
     /// The S-curve of a move that begins at the stroke's start.
@@ -147,5 +222,70 @@ impl Axis {
     pub fn plan(&self, spec: &MoveSpec) -> Result<SCurve, TrajectoryError> {
         let start = self.stroke.start;
         SCurve::plan(start, start + spec.displacement, &spec.limits)
+    }
+
+    /// The parameters that the file gives and that may be off by its tolerances:
+    /// those of mechanism, actuator, control, friction and loads, in that order.
+    pub fn known(&self) -> Vec<&'static str> {
+        let lists = [
+            self.mechanism.kind().known,
+            self.actuator.kind().known,
+            self.control.kind().known,
+            self.friction.kind().known,
+        ];
+        let loads = self.loads.iter().map(|load| load.kind().known);
+        let lists = lists.into_iter().chain(loads);
+        lists.flatten().map(|known| known.name).collect()
+    }
+
+    /// The axis with its known parameters off by `shares` of their values, in the
+    /// order of [`Axis::known`]. A share that would make no axis is passed over.
+    #[must_use]
+    pub fn with_known(&self, shares: &[f64]) -> Self {
+        let mut axis = self.clone();
+        let mut shares = shares.iter();
+        off(&mut axis.mechanism, &mut shares);
+        off(&mut axis.actuator, &mut shares);
+        off(&mut axis.control, &mut shares);
+        off(&mut axis.friction, &mut shares);
+        for load in &mut axis.loads {
+            off(load, &mut shares);
+        }
+        axis
+    }
+
+    /// Whether a part of this axis has a parameter of that role.
+    pub fn has(&self, role: Role) -> bool {
+        self.mechanism.has(role)
+            || self.actuator.has(role)
+            || self.control.has(role)
+            || self.friction.has(role)
+    }
+
+    /// Applies `to` to every parameter of that role.
+    ///
+    /// # Errors
+    /// [`SetupError::Part`] where a part refuses the new value.
+    pub(crate) fn change(
+        &mut self,
+        role: Role,
+        to: impl Fn(f64) -> f64,
+    ) -> Result<(), SetupError> {
+        self.mechanism.change_role(role, &to)?;
+        self.actuator.change_role(role, &to)?;
+        self.control.change_role(role, &to)?;
+        self.friction.change_role(role, &to)?;
+        Ok(())
+    }
+}
+
+/// Changes the known parameters of a part by the next shares.
+fn off<'a, P: ?Sized>(part: &mut Part<P>, shares: &mut impl Iterator<Item = &'a f64>) {
+    let known: &'static [Known] = part.kind().known;
+    for (known, share) in known.iter().zip(shares) {
+        if *share != 0.0 {
+            // What would make no part is passed over: the part stays as it was.
+            let _ = part.change(|values| (known.scale)(values, 1.0 + share));
+        }
     }
 }

@@ -1,81 +1,137 @@
-//! The electromechanical coupling model of Section 3.3 as one loop.
+//! The closed loop of an axis: one page for every kind of part.
+
+use std::sync::Arc;
 
 use compensator::{Compensator, Reference, Sample};
-use feed_dynamics::{DriveError, ImplicitStepper, ModalStepper, NutCoupling, TimeStepper};
-use foc_pmsm::{Command, ServoState};
+use feed_dynamics::DriveError;
 use trajectories::{Motion, Setpoint};
 
-use crate::Axis;
-use crate::cycle::{Cycle, Measured, Outcome, StopReason};
+use crate::actuator::Actuating;
+use crate::axis::{Axis, LoadSensor};
+use crate::control::{Controller, Situation};
+use crate::cycle::{Command, Cycle, Measured, Outcome, Stop, StopReason};
 use crate::effects::Hooks;
-use crate::late_control::{DelayLine, control};
-use crate::plant::{Plant, substeps};
-use crate::work::{MOST_STEPS, check_period, cycles_of};
-
-/// Longest internal step with a nut coupling, s, where `asked` is asked for.
-pub(crate) fn longest_step(coupling: NutCoupling, asked: f64) -> f64 {
-    match coupling {
-        NutCoupling::ShapeFunctions => asked,
-        NutCoupling::MovingNode => asked.min(1e-5),
-    }
-}
+use crate::error::SetupError;
+use crate::mechanism::Way;
+use crate::plant::{Assembly, Plant, Running, Start};
+use crate::sensor::Sensing;
+use crate::work::{MOST_STEPS, check_period, cycles_of, substeps};
 
 /// The closed loop of an axis, prepared once for any number of runs.
 #[derive(Clone, Debug)]
 pub struct ClosedLoop {
     axis: Axis,
     hooks: Hooks,
-    plant: AnyPlant,
+    plant: Arc<dyn Plant>,
+    seed: u64,
 }
 
-#[derive(Clone, Debug)]
-enum AnyPlant {
-    Modal(Plant<ModalStepper>),
-    Implicit(Plant<ImplicitStepper>),
+/// A run between two cycles: everything that the next one depends on.
+///
+/// A copy is a snapshot. What a run has left (bristles, integrators, currents)
+/// is what the next motion of the same axis begins with.
+#[derive(Debug)]
+pub struct LoopState {
+    plant: Box<dyn Running>,
+    actuator: Box<dyn Actuating>,
+    controller: Box<dyn Controller>,
+    load_sensor: Option<Box<dyn Sensing>>,
+    motor_sensor: Option<Box<dyn Sensing>>,
+    /// Motor angle that its sensor showed last.
+    last_angle: f64,
+    last_effort: f64,
+    cycles: u64,
+}
+
+impl Clone for LoopState {
+    fn clone(&self) -> Self {
+        let copy = |sensor: &Option<Box<dyn Sensing>>| sensor.as_ref().map(|s| s.copy());
+        Self {
+            plant: self.plant.copy(),
+            actuator: self.actuator.copy(),
+            controller: self.controller.copy(),
+            load_sensor: copy(&self.load_sensor),
+            motor_sensor: copy(&self.motor_sensor),
+            ..*self
+        }
+    }
+}
+
+impl LoopState {
+    /// Machine, as it is now.
+    pub fn plant(&self) -> &dyn Running {
+        &*self.plant
+    }
+
+    /// Actuator, as it is now.
+    pub fn actuator(&self) -> &dyn Actuating {
+        &*self.actuator
+    }
+
+    /// The same state at time 0, for the next motion.
+    #[must_use]
+    pub fn at_rest(mut self) -> Self {
+        self.cycles = 0;
+        self
+    }
 }
 
 impl ClosedLoop {
-    /// Prepares the axis as its file says: shape functions run on the modal
-    /// stepper, the moving node on the implicit one with steps of at most 10 µs.
+    /// Prepares the axis as its file says.
     ///
     /// # Errors
-    /// [`DriveError`] where the mechanics cannot be set up, an effect carries a
+    /// [`SetupError`] where parts do not fit together, an effect carries a
     /// parameter out of its range, or the control period is outside 1 µs to 10 ms.
-    pub fn new(axis: &Axis) -> Result<Self, DriveError> {
-        check_period(axis.period)?;
-        match axis.coupling {
-            NutCoupling::ShapeFunctions => {
-                let (axis, hooks) = axis.with_effects()?;
-                let step = axis.period / f64::from(substeps(&axis));
-                let stepper = ModalStepper::new(&axis.drive, step)?;
-                Ok(Self {
-                    plant: AnyPlant::Modal(Plant::new(&axis, hooks.clone(), stepper)),
-                    axis,
-                    hooks,
-                })
-            }
-            NutCoupling::MovingNode => {
-                let mut axis = axis.clone();
-                axis.simulation.step = longest_step(axis.coupling, axis.simulation.step);
-                Self::implicit(&axis)
-            }
-        }
+    pub fn new(axis: &Axis) -> Result<Self, SetupError> {
+        Self::disturbed(axis, |_| ())
     }
 
-    /// Prepares the axis on the implicit stepper, whatever the coupling: the
-    /// obvious way, to check the fast one against.
+    /// Prepares the axis in its mechanism's exact way, whatever the file says, in
+    /// steps of at most `step` seconds.
     ///
     /// # Errors
     /// As [`ClosedLoop::new`].
-    pub fn implicit(axis: &Axis) -> Result<Self, DriveError> {
+    pub fn exact(axis: &Axis, step: f64) -> Result<Self, SetupError> {
+        let mut axis = axis.clone();
+        axis.simulation.way = Way::Exact;
+        axis.simulation.step = axis.simulation.step.min(step);
+        Self::new(&axis)
+    }
+
+    /// The loop with another seed of the sensors' noise; it is 0 otherwise.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// As [`ClosedLoop::new`], with hooks beside those of the effects.
+    pub(crate) fn disturbed(
+        axis: &Axis,
+        disturb: impl FnOnce(&mut Hooks),
+    ) -> Result<Self, SetupError> {
         check_period(axis.period)?;
-        let (axis, hooks) = axis.with_effects()?;
-        let step = axis.period / f64::from(substeps(&axis));
-        let stepper = ImplicitStepper::new(&axis.drive, axis.coupling, step)?;
+        let (axis, mut hooks) = axis.with_effects()?;
+        disturb(&mut hooks);
+        let substeps = substeps(&axis);
+        let assembly = Assembly {
+            friction: *axis.friction.share(),
+            loads: axis.loads.iter().map(|load| load.share()).collect(),
+            hooks: hooks.clone(),
+            backlash: axis.mechanism.backlash(),
+            substeps,
+        };
+        let step = axis.period / f64::from(substeps);
+        let way = axis.simulation.way;
+        let plant = axis.mechanism.plant(way, step, assembly)?;
+        // Refused here, so that no run can be.
+        axis.actuator.start(&axis.surroundings())?;
+        axis.control.start(&axis.surroundings())?;
         Ok(Self {
-            plant: AnyPlant::Implicit(Plant::new(&axis, hooks.clone(), stepper)),
+            plant,
             axis,
             hooks,
+            seed: 0,
         })
     }
 
@@ -98,17 +154,183 @@ impl ClosedLoop {
         cycles * f64::from(substeps(&self.axis))
     }
 
-    /// Adds hooks to the plant.
-    pub(crate) fn add(&mut self, change: impl FnOnce(&mut Hooks)) {
-        match &mut self.plant {
-            AnyPlant::Modal(plant) => change(plant.hooks()),
-            AnyPlant::Implicit(plant) => change(plant.hooks()),
+    /// Time by which the load's channel is late in logs, s.
+    pub(crate) fn clock_offset(&self) -> f64 {
+        self.hooks.clock_offset
+    }
+
+    /// The axis settled: at rest under its loads, or in even motion where `start` has
+    /// a speed. Integrators and currents hold what that takes.
+    ///
+    /// # Errors
+    /// [`SetupError`] where the load cannot be there.
+    pub fn start(&self, start: &Start) -> Result<LoopState, SetupError> {
+        let (axis, on) = (&self.axis, self.axis.surroundings());
+        let plant = self.plant.clone().start(start)?;
+        let mut actuator = axis.actuator.start(&on)?;
+        let seen = *plant.seen();
+        let effort = actuator.settle(self.plant.torque(start), seen.motor_speed);
+
+        let sensing = |sensor: &crate::part::Part<dyn crate::sensor::Sensor>, stream, at, speed| {
+            let mut sensing = sensor.start(axis.period, self.seed.wrapping_mul(2) + stream);
+            sensing.settle(at, speed);
+            sensing
+        };
+        let motor_sensor = axis.sensors.motor.as_ref();
+        let mut state = LoopState {
+            load_sensor: match &axis.sensors.load {
+                LoadSensor::Fitted(s) => Some(sensing(s, 0, seen.position, seen.speed)),
+                _ => None,
+            },
+            motor_sensor: motor_sensor
+                .map(|s| sensing(s, 1, seen.motor_angle, seen.motor_speed)),
+            last_angle: seen.motor_angle - seen.motor_speed * axis.period,
+            last_effort: effort,
+            cycles: 0,
+            plant,
+            actuator,
+            controller: axis.control.start(&on)?,
+        };
+        let measured = self.measure(&mut state.clone());
+        state.controller.settle(effort, &measured, seen.speed);
+        Ok(state)
+    }
+
+    /// The load's way in one cycle from settled motion with a command of the actuator
+    /// (its own controllers see its true state), m or rad.
+    pub(crate) fn one_cycle(&self, start: &Start, effort: f64) -> Result<f64, SetupError> {
+        let mut plant = self.plant.clone().start(start)?;
+        let mut actuator = self.axis.actuator.start(&self.axis.surroundings())?;
+        let seen = *plant.seen();
+        actuator.settle(self.plant.torque(start), seen.motor_speed);
+        let measured = Measured {
+            position: seen.position,
+            motor_angle: seen.motor_angle,
+            motor_speed: seen.motor_speed,
+            current: actuator.electrical().current,
+        };
+        actuator.command(effort, &measured);
+        plant.advance(&mut *actuator)?;
+        Ok(plant.seen().displacement)
+    }
+
+    /// What the sensors show now.
+    fn measure(&self, state: &mut LoopState) -> Measured {
+        let seen = state.plant.seen();
+        let (mut angle, mut speed) = (seen.motor_angle, seen.motor_speed);
+        if let Some(sensor) = &mut state.motor_sensor {
+            // A drive knows the motor's speed from its angle.
+            angle = sensor.read(angle);
+            speed = (angle - state.last_angle) / self.axis.period;
+            state.last_angle = angle;
+        }
+        let position = match (&mut state.load_sensor, &self.axis.sensors.load) {
+            (Some(sensor), _) => sensor.read(seen.position),
+            (None, LoadSensor::Missing) => angle * self.axis.travel_per_radian(),
+            (None, _) => seen.position,
+        };
+        self.hooks.sensors.show(Measured {
+            position,
+            motor_angle: angle,
+            motor_speed: speed,
+            current: state.actuator.electrical().current,
+        })
+    }
+
+    /// One control cycle: sample, correct, control, and let the machine run on until the
+    /// next sample. `reference` is the set point now, `next` the one a cycle ahead.
+    ///
+    /// The caller owns time: a co-simulation, a second axis or a real-time loop calls
+    /// this once a control period.
+    ///
+    /// # Errors
+    /// [`crate::RunStopped`] where the run must be given up; `state` is then of no use.
+    pub fn step(
+        &self,
+        state: &mut LoopState,
+        [reference, next]: [&Setpoint; 2],
+        compensator: &mut (impl Compensator + ?Sized),
+        sense: impl FnMut(&mut Measured),
+    ) -> Result<Cycle, crate::RunStopped> {
+        let cycle = self.decide(state, [reference, next], compensator, sense)?;
+        self.advance(state, &cycle)?;
+        Ok(cycle)
+    }
+
+    /// Sample, correct and control.
+    fn decide(
+        &self,
+        state: &mut LoopState,
+        [reference, next]: [&Setpoint; 2],
+        compensator: &mut (impl Compensator + ?Sized),
+        mut sense: impl FnMut(&mut Measured),
+    ) -> Result<Cycle, crate::RunStopped> {
+        // Sample.
+        let mut measured = self.measure(state);
+        sense(&mut measured);
+        let seen = *state.plant.seen();
+        let current = state.actuator.electrical().current;
+
+        // Correct.
+        let correction = compensator.correct(&Sample {
+            reference: reference_of(reference),
+            next_reference: reference_of(next),
+            position: measured.position,
+            motor_speed: measured.motor_speed,
+            iq: measured.current.q,
+            iq_command: state.last_effort,
+        });
+
+        // Control: position and speed, then the actuator's own.
+        let demand = state.controller.cycle(&Situation {
+            reference,
+            measured: &measured,
+            correction: &correction,
+        });
+        state.actuator.command(demand.effort, &measured);
+        let electrical = state.actuator.electrical();
+
+        let cycle = Cycle {
+            time: state.cycles as f64 * self.axis.period,
+            reference: *reference,
+            position: seen.position,
+            load_speed: seen.speed,
+            motor_angle: seen.motor_angle,
+            motor_speed: seen.motor_speed,
+            current,
+            torque: seen.torque,
+            measured,
+            command: Command {
+                speed_ref: demand.speed_ref,
+                effort: demand.effort,
+                voltage: electrical.voltage,
+                saturated: demand.saturated || electrical.saturated,
+            },
+            correction,
+        };
+        match self.stop_reason(&cycle) {
+            Some(reason) => Err(self.stopped(reason, &cycle)),
+            None => Ok(cycle),
         }
     }
 
-    /// Time by which the table's channel is late in logs, s.
-    pub(crate) fn clock_offset(&self) -> f64 {
-        self.hooks.clock_offset
+    /// Lets the machine run on, the actuator's command held.
+    fn advance(&self, state: &mut LoopState, cycle: &Cycle) -> Result<(), crate::RunStopped> {
+        if let Err(error) = state.plant.advance(&mut *state.actuator) {
+            let seen = state.plant.seen();
+            let at = Cycle {
+                time: seen.time,
+                position: seen.position,
+                motor_speed: seen.motor_speed,
+                torque: seen.torque,
+                current: state.actuator.electrical().current,
+                ..*cycle
+            };
+            return Err(self.stopped(reason_of(&error, &at), &at));
+        }
+        state.cycles += 1;
+        state.last_effort = cycle.command.effort;
+        Ok(())
     }
 
     /// Follows `motion` from rest at its start, and shows every cycle at a
@@ -122,8 +344,8 @@ impl ClosedLoop {
         self.run_sensed(motion, compensator, |_| (), observe)
     }
 
-    /// As [`ClosedLoop::run`], with sensors: `sense` is shown what perfect ones
-    /// would read in each cycle, and makes of it what the controller and the
+    /// As [`ClosedLoop::run`], with sensors: `sense` is shown what those of the axis
+    /// read in each cycle, and makes of it what the controller and the
     /// log get to see (noise, quantisation).
     pub fn run_sensed(
         &self,
@@ -132,155 +354,99 @@ impl ClosedLoop {
         sense: impl FnMut(&mut Measured),
         observe: impl FnMut(&Cycle),
     ) -> Outcome {
-        match &self.plant {
-            AnyPlant::Modal(plant) => self.run_on(plant, motion, compensator, sense, observe),
-            AnyPlant::Implicit(plant) => self.run_on(plant, motion, compensator, sense, observe),
+        let reference = motion.at(0.0);
+        match self.start(&Start::at(reference.position)) {
+            Ok(mut state) => self.run_from(&mut state, motion, compensator, sense, observe),
+            Err(error) => {
+                let at = Cycle {
+                    position: reference.position,
+                    reference,
+                    ..Cycle::default()
+                };
+                let reason = match &error {
+                    SetupError::Drive(error) => reason_of(error, &at),
+                    _ => StopReason::NotFinite,
+                };
+                self.given_up(reason, &at)
+            }
         }
     }
 
-    fn run_on<S: TimeStepper>(
+    /// As [`ClosedLoop::run_sensed`], from the state that the axis was left in, and
+    /// leaves it in the state at the motion's end.
+    pub fn run_from(
         &self,
-        plant: &Plant<S>,
+        state: &mut LoopState,
         motion: &(impl Motion + ?Sized),
         compensator: &mut (impl Compensator + ?Sized),
         mut sense: impl FnMut(&mut Measured),
         mut observe: impl FnMut(&Cycle),
     ) -> Outcome {
-        let axis = &self.axis;
-        let period = axis.period;
-        let speed_feedforward = axis.velocity_feedforward / axis.travel_per_radian();
-
+        let period = self.axis.period;
         let mut reference = motion.at(0.0);
-        let origin = reference.position;
         let steps = self.steps(motion);
         if steps > MOST_STEPS {
             let at = Cycle {
-                position: origin,
+                position: state.plant.seen().position,
                 reference,
                 ..Cycle::default()
             };
-            return stopped(StopReason::TooLong(steps), &at);
+            return self.given_up(StopReason::TooLong(steps), &at);
         }
-        let mut state = match plant.at_rest(origin) {
-            Ok(state) => state,
-            Err(error) => {
-                let at = Cycle {
-                    position: origin,
-                    reference,
-                    ..Cycle::default()
-                };
-                return stopped(reason_of(&error, &at), &at);
-            }
-        };
-        let mut servo = ServoState::default();
-        let mut last_command = Command::default();
-        let mut delay = DelayLine::new(self.hooks.delay / period);
         compensator.reset();
-
         for k in 0..self.cycles(motion) {
-            // Sample.
-            let time = k as f64 * period;
-            let next_reference = motion.at((k + 1) as f64 * period);
-            let seen = state.seen;
-            let position = state.position();
-            let mut measured = self.hooks.sensors.show(Measured {
-                position,
-                motor_angle: seen.motor_angle,
-                motor_speed: seen.motor_speed,
-                current: state.current,
+            let next = motion.at((k + 1) as f64 * period);
+            let decided = self.decide(state, [&reference, &next], compensator, &mut sense);
+            let advanced = decided.and_then(|cycle| {
+                observe(&cycle);
+                self.advance(state, &cycle)
             });
-            sense(&mut measured);
-
-            // Correct.
-            let correction = compensator.correct(&Sample {
-                reference: reference_of(&reference),
-                next_reference: reference_of(&next_reference),
-                position: measured.position,
-                motor_speed: measured.motor_speed,
-                iq: measured.current.q,
-                iq_command: last_command.iq_ref,
-            });
-
-            // Control: position, speed and current loops (Fig. 5).
-            let command = control(
-                &axis.servo,
-                &mut servo,
-                &mut delay,
-                &foc_pmsm::Measurement {
-                    position: measured.position,
-                    motor_speed: measured.motor_speed,
-                    current: measured.current,
-                },
-                &foc_pmsm::Reference {
-                    position: reference.position,
-                    motor_speed: speed_feedforward * reference.velocity,
-                },
-                &correction,
-            );
-
-            // Record.
-            let cycle = Cycle {
-                time,
-                reference,
-                position,
-                table_speed: seen.speed,
-                motor_angle: seen.motor_angle,
-                motor_speed: seen.motor_speed,
-                current: state.current,
-                measured,
-                command,
-                correction,
-            };
-            if let Some(reason) = self.stop_reason(&cycle) {
-                return stopped(reason, &cycle);
-            }
-            observe(&cycle);
-
-            // Let the machine run on, the voltage held (averaged SVPWM).
-            if let Err(error) = plant.advance(&mut state, command.voltage) {
-                let at = Cycle {
-                    time: state.time(),
-                    reference: motion.at(state.time()),
-                    position: state.position(),
-                    motor_speed: state.seen.motor_speed,
-                    current: state.current,
-                    ..Cycle::default()
+            if let Err(stopped) = advanced {
+                return Outcome::Stopped {
+                    time: stopped.time,
+                    reason: stopped.reason,
+                    at: stopped.at,
                 };
-                return stopped(reason_of(&error, &at), &at);
             }
-            reference = next_reference;
-            last_command = command;
+            reference = next;
         }
         Outcome::Completed
     }
 
     fn stop_reason(&self, cycle: &Cycle) -> Option<StopReason> {
-        let stroke = &self.axis.stroke;
-        let current = cycle.current.d + cycle.current.q + cycle.command.iq_ref;
+        let (stroke, axis) = (&self.axis.stroke, &self.axis);
+        let current = cycle.current.d + cycle.current.q + cycle.command.effort;
         let state = cycle.position + cycle.motor_speed + current;
         if !state.is_finite() {
             Some(StopReason::NotFinite)
-        } else if cycle.error().abs() > self.axis.following_error_limit {
-            Some(StopReason::FollowingError(self.axis.following_error_limit))
+        } else if cycle.error().abs() > axis.following_error_limit {
+            Some(StopReason::FollowingError(axis.following_error_limit))
         } else if !(stroke.minimum..=stroke.maximum).contains(&cycle.position)
-            || self.axis.drive.check_position(cycle.position).is_err()
+            || (axis.mechanism.reach()).is_some_and(|reach| !reach.contains(cycle.position))
         {
             Some(StopReason::LeftStroke)
         } else {
             None
         }
     }
-}
 
-/// A run that is given up in the state that `at` shows.
-fn stopped(reason: StopReason, at: &Cycle) -> Outcome {
-    Outcome::Stopped {
-        time: at.time,
-        reason,
-        position: at.position,
-        error: at.error(),
-        motor_speed: at.motor_speed,
-        iq: at.current.q,
+    fn stopped(&self, reason: StopReason, at: &Cycle) -> crate::RunStopped {
+        crate::RunStopped {
+            time: at.time,
+            reason,
+            at: Stop {
+                position: at.position,
+                error: at.error(),
+                motor_speed: at.motor_speed,
+                torque: at.torque,
+                freedom: self.axis.freedom(),
+            },
+        }
+    }
+
+    fn given_up(&self, reason: StopReason, at: &Cycle) -> Outcome {
+        let crate::RunStopped { time, reason, at } = self.stopped(reason, at);
+        Outcome::Stopped { time, reason, at }
     }
 }
 

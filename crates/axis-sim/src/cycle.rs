@@ -1,10 +1,11 @@
 //! What a control cycle leaves behind, and how a run ends.
 
 use compensator::Correction;
-use foc_pmsm::{Command, Dq};
+use foc_pmsm::Dq;
 use thiserror::Error;
 use trajectories::Setpoint;
 
+use crate::mechanism::Freedom;
 use crate::{MOST_STEPS, SixDigits};
 
 /// What one control cycle leaves behind, at its start `t_k`.
@@ -14,16 +15,18 @@ pub struct Cycle {
     pub time: f64,
     /// Reference.
     pub reference: Setpoint,
-    /// Table position, m from the driven end.
+    /// Position of the load, m or rad.
     pub position: f64,
-    /// Table speed, m/s. Not seen by the controller.
-    pub table_speed: f64,
-    /// Motor angle since the start, rad.
+    /// Its speed, m/s or rad/s. Not seen by the controller.
+    pub load_speed: f64,
+    /// Motor angle, rad.
     pub motor_angle: f64,
     /// Motor speed, rad/s.
     pub motor_speed: f64,
-    /// Currents, A.
+    /// Currents, A; 0 where the actuator has none.
     pub current: Dq,
+    /// Torque of the motor, N·m.
+    pub torque: f64,
     /// What the sensors show: the above where they are perfect.
     pub measured: Measured,
     /// What the controller commands for the cycle.
@@ -32,12 +35,25 @@ pub struct Cycle {
     pub correction: Correction,
 }
 
+/// What controller and actuator ask for in a cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Command {
+    /// Speed reference of the motor, rad/s; 0 where there is no speed loop.
+    pub speed_ref: f64,
+    /// Command of the actuator, in its unit: q current reference, torque, force, voltage.
+    pub effort: f64,
+    /// Voltage that the actuator holds over the cycle, V; 0 where it has none.
+    pub voltage: Dq,
+    /// Whether a limit was active.
+    pub saturated: bool,
+}
+
 /// What the sensors show at a sampling instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
-    /// Table position, m from the driven end.
+    /// Position of the load, m or rad.
     pub position: f64,
-    /// Motor angle since the start, rad.
+    /// Motor angle, rad.
     pub motor_angle: f64,
     /// Motor speed, rad/s.
     pub motor_speed: f64,
@@ -46,7 +62,7 @@ pub struct Measured {
 }
 
 impl Cycle {
-    /// Tracking error S_ref − S, m.
+    /// Tracking error S_ref − S, m or rad.
     pub fn error(&self) -> f64 {
         self.reference.position - self.position
     }
@@ -63,14 +79,8 @@ pub enum Outcome {
         time: f64,
         /// Why.
         reason: StopReason,
-        /// Table position then, m.
-        position: f64,
-        /// Tracking error then, m.
-        error: f64,
-        /// Motor speed then, rad/s.
-        motor_speed: f64,
-        /// q current then, A.
-        iq: f64,
+        /// What the load was doing then.
+        at: Stop,
     },
 }
 
@@ -79,11 +89,11 @@ pub enum Outcome {
 pub enum StopReason {
     /// A state is no longer a finite number.
     NotFinite,
-    /// The tracking error is beyond the axis' limit, m.
+    /// The tracking error is beyond the axis' limit, m or rad.
     FollowingError(f64),
-    /// The table has left its stroke, or the screw.
+    /// The load has left its stroke, or the mechanism's reach.
     LeftStroke,
-    /// No friction was found that goes with the table's motion at the end of a
+    /// No friction was found that goes with the load's motion at the end of a
     /// step.
     LoadNotFound,
     /// The motion takes so many internal steps, more than [`MOST_STEPS`]: it
@@ -91,25 +101,35 @@ pub enum StopReason {
     TooLong(f64),
 }
 
+/// The state in which a run was given up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stop {
+    /// Position of the load, m or rad.
+    pub position: f64,
+    /// Tracking error, m or rad.
+    pub error: f64,
+    /// Motor speed, rad/s.
+    pub motor_speed: f64,
+    /// Motor torque, N·m.
+    pub torque: f64,
+    /// How the load moves.
+    pub freedom: Freedom,
+}
+
 /// A run that did not come to its end.
 #[derive(Clone, Copy, Debug, Error)]
 #[error(
-    "the simulation stopped at t = {} s because {reason}: table at {} m, tracking error {} m, motor speed {} rad/s, q current {} A",
-    SixDigits(*.time), SixDigits(*.position), SixDigits(*.error), SixDigits(*.motor_speed), SixDigits(*.iq)
+    "the simulation stopped at t = {} s because {reason}: load at {} {unit}, tracking error {} {unit}, motor speed {} rad/s, motor torque {} N·m",
+    SixDigits(*.time), SixDigits(.at.position), SixDigits(.at.error), SixDigits(.at.motor_speed), SixDigits(.at.torque),
+    unit = .at.freedom.unit()
 )]
 pub struct RunStopped {
     /// When, s.
     pub time: f64,
     /// Why.
     pub reason: StopReason,
-    /// Table position then, m.
-    pub position: f64,
-    /// Tracking error then, m.
-    pub error: f64,
-    /// Motor speed then, rad/s.
-    pub motor_speed: f64,
-    /// q current then, A.
-    pub iq: f64,
+    /// What the load was doing then.
+    pub at: Stop,
 }
 
 impl std::fmt::Display for StopReason {
@@ -118,12 +138,12 @@ impl std::fmt::Display for StopReason {
             Self::NotFinite => f.write_str("a state is no longer a finite number"),
             Self::FollowingError(limit) => write!(
                 f,
-                "the tracking error passed {} mm, the following_error_limit_mm of the axis file's [control] (an unstable loop, or a motion too fast for the motor)",
-                SixDigits(1e3 * limit)
+                "the tracking error passed {} (SI), the following_error_limit of the axis file's [control] (an unstable loop, or a motion too fast for the motor)",
+                SixDigits(*limit)
             ),
-            Self::LeftStroke => f.write_str("the table left its stroke"),
+            Self::LeftStroke => f.write_str("the load left its stroke"),
             Self::LoadNotFound => f.write_str(
-                "no friction goes with the table's motion at the end of a step (a load that jumps or falls with the speed, or a step too long for the table's mass)",
+                "no friction goes with the load's motion at the end of a step (a load that jumps or falls with the speed, or a step too long for the load's mass)",
             ),
             Self::TooLong(steps) => write!(
                 f,
@@ -143,21 +163,7 @@ impl Outcome {
     pub fn completed(self) -> Result<(), RunStopped> {
         match self {
             Self::Completed => Ok(()),
-            Self::Stopped {
-                time,
-                reason,
-                position,
-                error,
-                motor_speed,
-                iq,
-            } => Err(RunStopped {
-                time,
-                reason,
-                position,
-                error,
-                motor_speed,
-                iq,
-            }),
+            Self::Stopped { time, reason, at } => Err(RunStopped { time, reason, at }),
         }
     }
 }

@@ -90,29 +90,39 @@
 //! the compensator see only what a real one samples, never the machine's
 //! inner state (bristles, deflections, table speed).
 
+pub mod actuator;
 mod axis;
 mod axis_file;
+mod channels;
 mod closed_loop;
+pub mod control;
 mod cycle;
 pub mod effects;
-mod late_control;
+mod error;
+pub mod friction;
+pub mod load;
+pub mod mechanism;
 mod one_cycle;
-mod plant;
+pub mod part;
+pub mod plant;
 mod recorder;
 mod replay;
-mod rigid;
+pub mod sensor;
 mod six_digits;
 mod work;
 
 pub use axis::{
-    Axis, Experiment, FOLLOWING_ERROR_LIMIT, MoveSpec, Range, SampleRanges, Simulation, Stroke,
+    Axis, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, Range, SampleRanges, Sensors,
+    Simulation, Stroke, Tolerances,
 };
-pub use axis_file::AxisFileError;
-pub use closed_loop::ClosedLoop;
-pub use cycle::{Cycle, Measured, Outcome, RunStopped, StopReason};
+pub use axis_file::{AxisFileError, Registry};
+pub use channels::{CHANNELS, ChannelPart, LogChannel, channels};
+pub use closed_loop::{ClosedLoop, LoopState};
+pub use cycle::{Command, Cycle, Measured, Outcome, RunStopped, Stop, StopReason};
+pub use error::SetupError;
 pub use one_cycle::{CycleInput, OneCycle};
+pub use plant::Start;
 pub use recorder::{CsvRecorder, Recorder};
 pub use replay::{LoggedReference, Probe, Replay, ReplayError, Trace};
-pub use rigid::{RigidAxis, Start};
 pub use six_digits::SixDigits;
 pub use work::MOST_STEPS;

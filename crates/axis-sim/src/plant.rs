@@ -1,195 +1,372 @@
-//! The machine between two samples: motor, drive and friction under a held voltage.
+//! The machine between two samples: actuator, mechanism, friction and loads.
+
+use std::fmt;
+use std::sync::Arc;
 
 use feed_dynamics::{DriveError, NutErrors, Observation, Settled, TimeStepper};
-use foc_pmsm::{Dq, Pmsm};
 use lugre::LuGre;
 
-use crate::Axis;
+use crate::actuator::{Actuating, MotorMotion};
 use crate::effects::{Hooks, ScrewState, TableState};
-use crate::work::{MOST_SUBSTEPS, substeps_of};
+use crate::friction::Friction;
+use crate::load::Load;
 
-/// The machine, for control cycles of one length.
-#[derive(Clone, Debug)]
-pub struct Plant<S> {
-    stepper: S,
-    motor: Pmsm,
-    friction: LuGre,
-    /// Unit element that friction effects act through.
-    unit_friction: LuGre,
-    hooks: Hooks,
-    travel_per_radian: f64,
-    substeps: u32,
-}
-
-/// The machine's inner state, which no controller sees.
-#[derive(Clone, Debug)]
-pub struct PlantState<D> {
-    drive: D,
-    /// Since the motion began, s.
-    time: f64,
-    /// Table position there, m.
-    origin: f64,
-    /// Bristle deflection z at the screw, rad.
-    bristle: f64,
-    /// Bristle deflection of the unit element, rad.
-    unit_bristle: f64,
-    /// Currents, A.
-    pub(crate) current: Dq,
-    /// What the drive shows.
-    pub(crate) seen: Observation,
-    /// Motor acceleration over the last step, rad/s².
-    motor_acceleration: f64,
-}
-
-impl<D> PlantState<D> {
-    /// Table position, m from the driven end.
-    pub(crate) fn position(&self) -> f64 {
-        self.origin + self.seen.displacement
-    }
-
-    /// Since the motion began, s.
-    pub(crate) fn time(&self) -> f64 {
-        self.time
-    }
-}
-
-/// Number of equal steps, none longer than asked, that make up a control period.
-pub(crate) fn substeps(axis: &Axis) -> u32 {
-    let steps = substeps_of(axis.period, axis.simulation.step);
-    steps.min(f64::from(MOST_SUBSTEPS)) as u32
-}
-
-impl<S: TimeStepper> Plant<S> {
-    /// The plant of `axis` on a stepper whose step is the control period
-    /// divided by [`substeps`].
-    pub(crate) fn new(axis: &Axis, hooks: Hooks, stepper: S) -> Self {
-        Self {
-            unit_friction: unit_friction(&axis.friction),
-            hooks,
-            stepper,
-            motor: axis.motor,
-            friction: axis.friction,
-            travel_per_radian: axis.travel_per_radian(),
-            substeps: substeps(axis),
-        }
-    }
-
-    pub(crate) fn hooks(&mut self) -> &mut Hooks {
-        &mut self.hooks
-    }
-
-    /// Everything at rest and relaxed, the table at `x` (m).
-    ///
-    /// # Errors
-    /// [`DriveError::OffScrew`].
-    pub(crate) fn at_rest(&self, x: f64) -> Result<PlantState<S::State>, DriveError> {
-        let drive = self.stepper.settled(x, &Settled::default())?;
-        Ok(PlantState {
-            seen: self.stepper.observe(&drive),
-            drive,
-            time: 0.0,
-            origin: x,
-            bristle: 0.0,
-            unit_bristle: 0.0,
-            current: Dq::ZERO,
-            motor_acceleration: 0.0,
-        })
-    }
-
-    /// Uniformly accelerated motion at the table speed `speed` (m/s) and
-    /// `acceleration` (m/s²): deflections settled, bristles at their steady
-    /// deflection, current as the torque balance asks.
+/// A machine that motions can be started on.
+pub trait Plant: fmt::Debug + Send + Sync {
+    /// The machine at rest or in even motion, everything settled.
     ///
     /// # Errors
     /// [`DriveError::OffScrew`]; [`DriveError::Parameter`] for a motion that is
     /// not finite.
-    pub(crate) fn in_motion(
-        &self,
-        x: f64,
-        speed: f64,
-        acceleration: f64,
-        torque: impl FnOnce(&Settled) -> f64,
-    ) -> Result<PlantState<S::State>, DriveError> {
-        let r = self.travel_per_radian;
-        let bristle = self.friction.steady_bristle(speed / r);
-        let own = self.friction.torque(bristle, speed / r) / r;
-        let load = own
-            + self.hooks.loads_at(&TableState {
-                time: SETTLED,
-                position: x,
-                speed,
-                bristle: if speed == 0.0 { 0.0 } else { speed.signum() },
-                pressed: 1.0,
-            });
-        let motion = Settled {
-            speed,
-            acceleration,
-            load,
-        };
-        let drive = self.stepper.settled(x, &motion)?;
-        Ok(PlantState {
-            seen: self.stepper.observe(&drive),
-            drive,
-            time: SETTLED,
-            origin: x,
-            bristle,
-            unit_bristle: self.unit_friction.steady_bristle(speed / r),
-            current: Dq {
-                d: 0.0,
-                q: self.motor.q_current(torque(&motion)),
-            },
-            motor_acceleration: acceleration / r,
-        })
-    }
+    fn start(self: Arc<Self>, start: &Start) -> Result<Box<dyn Running>, DriveError>;
 
-    /// One control cycle with the voltage held. Where it carries the table over
-    /// the screw's end, the nut stays at that end: a cycle is too short for more
-    /// than some 10 µm, and the loop looks at the next sample where the table is.
+    /// Motor torque that keeps the settled motion of `start` up, N·m, by all
+    /// forces that act in it.
+    fn torque(&self, start: &Start) -> f64;
+}
+
+/// A machine in motion.
+pub trait Running: fmt::Debug + Send + Sync {
+    /// One control cycle. Where it carries the load over the end of the mechanism's
+    /// reach, the transmission stays at that end: a cycle is too short for more than
+    /// some 10 µm, and the loop looks at the next sample where the load is.
     ///
     /// # Errors
-    /// [`DriveError::LoadNotFound`] where no friction goes with the table's motion
+    /// [`DriveError::LoadNotFound`] where no friction goes with the load's motion
     /// at the end of a step; [`DriveError::Parameter`] where an effect shifts the
-    /// nut by no number. Time and what is seen are then those at its start.
-    pub(crate) fn advance(
-        &self,
-        state: &mut PlantState<S::State>,
-        voltage: Dq,
-    ) -> Result<(), DriveError> {
-        let h = self.stepper.step_length();
-        let r = self.travel_per_radian;
-        for _ in 0..self.substeps {
-            // Currents, over the mean motor speed of the step.
-            let start = state.seen;
-            let mean_speed = start.motor_speed + 0.5 * h * state.motor_acceleration;
-            let voltage = voltage + self.lost_voltage(state);
-            state.current = self.motor.step(state.current, voltage, mean_speed, h);
-            let time = state.time + h;
-            let angle = start.motor_angle + h * mean_speed;
-            let torque = self
-                .hooks
-                .torque_at(angle, self.motor.torque(state.current));
+    /// transmission by no number. Time and what is seen are then those at its start.
+    fn advance(&mut self, actuator: &mut dyn Actuating) -> Result<(), DriveError>;
 
-            // Mechanics; the friction follows the table's speed at the end of the step.
-            let errors = self.nut_errors(state, time, angle)?;
-            let (z0, w0) = (state.bristle, start.speed / r);
-            let (u0, origin) = (state.unit_bristle, state.origin);
-            let (mut z1, mut u1) = (z0, u0);
-            let moving = &mut state.drive;
-            let report = self.stepper.step_through(moving, torque, &errors, |table| {
-                let w1 = table.speed / r;
-                let (z, friction) = self.friction.step_torque(z0, w0, w1, h);
+    /// What can be seen of it.
+    fn seen(&self) -> &Seen;
+
+    /// A copy.
+    fn copy(&self) -> Box<dyn Running>;
+
+    /// Kinetic and strain energy of the mechanism, J.
+    fn energy(&self) -> f64;
+
+    /// Friction at the load as it acts now, N or N·m, and the share of its
+    /// Coulomb deflection that the bristles have.
+    fn friction(&self) -> [f64; 2];
+}
+
+/// Position and speed that a machine starts with, and what it was left with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Start {
+    /// Position of the load, m or rad.
+    pub position: f64,
+    /// Its speed, m/s or rad/s.
+    pub speed: f64,
+    /// Its acceleration, m/s² or rad/s².
+    pub acceleration: f64,
+    /// Time since the motion began, s.
+    pub time: f64,
+    /// At rest, share of the Coulomb deflection that the bristles were left with,
+    /// −1 to 1: an axis that came forward and stopped is held back by up to 1.
+    pub friction: f64,
+}
+
+impl Start {
+    /// At rest and relaxed.
+    pub fn at(position: f64) -> Self {
+        Self {
+            position,
+            ..Self::default()
+        }
+    }
+}
+
+/// What can be seen of a machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seen {
+    /// Since the motion began, s.
+    pub time: f64,
+    /// Position of the load, m or rad.
+    pub position: f64,
+    /// Its way since the motion began, m or rad.
+    pub displacement: f64,
+    /// Its speed, m/s or rad/s.
+    pub speed: f64,
+    /// Angle of the motor, rad: absolute, so that what repeats with the turn has
+    /// one phase on one machine.
+    pub motor_angle: f64,
+    /// Speed of the motor, rad/s.
+    pub motor_speed: f64,
+    /// Force of the transmission on the load, N or N·m.
+    pub transmission_force: f64,
+    /// Torque of the motor at the end of the last step, N·m.
+    pub torque: f64,
+    /// Force on the load, friction and loads, N or N·m, against positive motion.
+    pub load: f64,
+}
+
+/// What is put around a mechanism to make a machine of it.
+#[derive(Debug)]
+pub struct Assembly {
+    pub(crate) friction: Friction,
+    pub(crate) loads: Vec<Arc<dyn Load>>,
+    pub(crate) hooks: Hooks,
+    pub(crate) backlash: f64,
+    pub(crate) substeps: u32,
+}
+
+impl Assembly {
+    /// The machine whose mechanism is solved by `stepper`.
+    pub fn on<S>(self, stepper: S) -> Arc<dyn Plant>
+    where
+        S: TimeStepper + fmt::Debug + Send + Sync + 'static,
+        S::State: fmt::Debug + Send + Sync + 'static,
+    {
+        let travel = stepper.travel_per_radian();
+        Arc::new(Law {
+            lever: self.friction.lever(travel),
+            assembly: self,
+            stepper,
+            travel,
+        })
+    }
+}
+
+/// The machine on one stepper.
+#[derive(Debug)]
+struct Law<S> {
+    assembly: Assembly,
+    stepper: S,
+    /// r, m/rad or rad/rad.
+    travel: f64,
+    /// Load travel per unit of the friction's coordinate.
+    lever: f64,
+}
+
+/// The machine's inner state, which no controller sees.
+struct State<S: TimeStepper> {
+    law: Arc<Law<S>>,
+    drive: S::State,
+    /// Where the load and the motor were when the motion began.
+    origin: f64,
+    motor_origin: f64,
+    /// Displacement of the transmission's kinematic errors there.
+    offset_origin: f64,
+    /// Bristle deflection z, in the friction's coordinate.
+    bristle: f64,
+    /// That of the unit element.
+    unit_bristle: f64,
+    /// Motor acceleration over the last step, rad/s².
+    motor_acceleration: f64,
+    /// Whether standing loads act from the start on.
+    pressed: bool,
+    seen: Seen,
+}
+
+impl<S: TimeStepper> Clone for State<S> {
+    fn clone(&self) -> Self {
+        Self {
+            law: self.law.clone(),
+            drive: self.drive.clone(),
+            ..*self
+        }
+    }
+}
+
+impl<S: TimeStepper> fmt::Debug for State<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.seen.fmt(f)
+    }
+}
+
+/// Deflection of the bristles at the Coulomb level, in the law's coordinate.
+fn coulomb_bristle(law: &LuGre) -> f64 {
+    let p = law.parameters();
+    if p.coulomb > 0.0 {
+        p.coulomb / p.stiffness
+    } else {
+        0.0
+    }
+}
+
+/// Time over which a standing load comes up, s.
+const STANDING_LOAD_RISE: f64 = 0.02;
+
+impl<S: TimeStepper> Law<S> {
+    /// Whether a motion is one that goes on: rest is where what comes up has not.
+    fn in_motion(start: &Start) -> bool {
+        start.speed != 0.0 || start.acceleration != 0.0
+    }
+
+    /// Bristle deflections, in the friction's coordinate: the law's and the unit
+    /// element's.
+    fn bristles(&self, start: &Start) -> [f64; 2] {
+        let (law, unit) = (&self.assembly.friction.law, &self.assembly.friction.unit);
+        let speed = start.speed / self.lever;
+        if speed != 0.0 {
+            return [law.steady_bristle(speed), unit.steady_bristle(speed)];
+        }
+        let share = start.friction.clamp(-1.0, 1.0);
+        [law, unit].map(|law| share * coulomb_bristle(law))
+    }
+
+    /// The table as loads see it at the start.
+    fn table(start: &Start) -> TableState {
+        TableState {
+            time: start.time,
+            position: start.position,
+            speed: start.speed,
+            bristle: match start.speed {
+                0.0 => start.friction.clamp(-1.0, 1.0),
+                speed => speed.signum(),
+            },
+            pressed: if Self::in_motion(start) { 1.0 } else { 0.0 },
+        }
+    }
+
+    fn settled(&self, start: &Start) -> Settled {
+        let friction = &self.assembly.friction.law;
+        let [bristle, _] = self.bristles(start);
+        let own = friction.torque(bristle, start.speed / self.lever) / self.lever;
+        let table = Self::table(start);
+        let mut load = own + self.loads_at(&table);
+        if Self::in_motion(start) {
+            load += self.assembly.hooks.loads_at(&table);
+        }
+        Settled {
+            speed: start.speed,
+            acceleration: start.acceleration,
+            load,
+        }
+    }
+
+    /// The axis' own loads.
+    fn loads_at(&self, table: &TableState) -> f64 {
+        let loads = &self.assembly.loads;
+        loads.iter().map(|load| load.force(table)).sum()
+    }
+
+    fn has_loads(&self) -> bool {
+        self.assembly.hooks.has_loads() || !self.assembly.loads.is_empty()
+    }
+}
+
+impl<S> Plant for Law<S>
+where
+    S: TimeStepper + fmt::Debug + Send + Sync + 'static,
+    S::State: fmt::Debug + Send + Sync + 'static,
+{
+    fn start(self: Arc<Self>, start: &Start) -> Result<Box<dyn Running>, DriveError> {
+        let motion = self.settled(start);
+        let drive = self.stepper.settled(start.position, &motion)?;
+        let at = self.stepper.observe(&drive);
+        let [bristle, unit_bristle] = self.bristles(start);
+        let mut state = State {
+            origin: start.position,
+            motor_origin: start.position / self.travel,
+            offset_origin: 0.0,
+            bristle,
+            unit_bristle,
+            motor_acceleration: start.acceleration / self.travel,
+            pressed: Self::in_motion(start),
+            seen: Seen::default(),
+            law: self,
+            drive,
+        };
+        state.look(start.time, at, 0.0, motion.load);
+        let [offset, _] = state.law.assembly.hooks.offset_at(&state.screw(start.time));
+        state.offset_origin = offset;
+        Ok(Box::new(state))
+    }
+
+    fn torque(&self, start: &Start) -> f64 {
+        let motion = self.settled(start);
+        self.stepper.settled_torque(start.position, &motion)
+    }
+}
+
+impl<S: TimeStepper> State<S> {
+    fn look(&mut self, time: f64, at: Observation, torque: f64, load: f64) {
+        self.seen = Seen {
+            time,
+            position: self.origin + at.displacement,
+            displacement: at.displacement,
+            speed: at.speed,
+            motor_angle: self.motor_origin + at.motor_angle,
+            motor_speed: at.motor_speed,
+            transmission_force: at.nut_force,
+            torque,
+            load,
+        };
+    }
+
+    fn screw(&self, time: f64) -> ScrewState {
+        ScrewState {
+            time,
+            angle: self.seen.motor_angle,
+            rate: self.seen.motor_speed,
+            position: self.seen.position,
+            speed: self.seen.speed,
+        }
+    }
+
+    /// Errors of the transmission's kinematics at the end of a step, where the
+    /// motor will be at `angle`.
+    fn errors(&self, time: f64, angle: f64) -> Result<NutErrors, DriveError> {
+        let assembly = &self.law.assembly;
+        let at = ScrewState {
+            angle,
+            ..self.screw(time)
+        };
+        let [offset, rate] = assembly.hooks.offset_at(&at);
+        NutErrors::new(offset - self.offset_origin, rate, assembly.backlash)
+    }
+}
+
+impl<S> Running for State<S>
+where
+    S: TimeStepper + fmt::Debug + Send + Sync + 'static,
+    S::State: fmt::Debug + Send + Sync + 'static,
+{
+    fn advance(&mut self, actuator: &mut dyn Actuating) -> Result<(), DriveError> {
+        let law = self.law.clone();
+        let (stepper, assembly, lever) = (&law.stepper, &law.assembly, law.lever);
+        let h = stepper.step_length();
+        let has_loads = law.has_loads();
+        let rise = if self.pressed { 0.0 } else { STANDING_LOAD_RISE };
+        for _ in 0..assembly.substeps {
+            // The actuator, over the mean motor speed of the step.
+            let start = self.seen;
+            let mean_speed = start.motor_speed + 0.5 * h * self.motor_acceleration;
+            let own = actuator.torque(
+                &MotorMotion {
+                    angle: start.motor_angle,
+                    speed: mean_speed,
+                },
+                h,
+            );
+            let time = start.time + h;
+            let angle = start.motor_angle + h * mean_speed;
+            let torque = assembly.hooks.torque_at(angle, own);
+
+            // Mechanics; the friction follows the load's speed at the end of the step.
+            let errors = self.errors(time, angle)?;
+            let (z0, u0, w0) = (self.bristle, self.unit_bristle, start.speed / lever);
+            let origin = self.origin;
+            let (mut z1, mut u1, mut end_load) = (z0, u0, 0.0);
+            let report = stepper.step_through(&mut self.drive, torque, &errors, |table| {
+                let w1 = table.speed / lever;
+                let (z, friction) = assembly.friction.law.step_torque(z0, w0, w1, h);
                 z1 = z;
-                let mut load = friction / r;
-                if self.hooks.has_loads() {
-                    u1 = self.unit_friction.step(u0, w0, w1, h);
-                    load += self.hooks.loads_at(&TableState {
+                let mut load = friction / lever;
+                if has_loads {
+                    u1 = assembly.friction.unit.step(u0, w0, w1, h);
+                    let at = TableState {
                         time,
                         position: origin + table.displacement,
                         speed: table.speed,
-                        bristle: self.unit_friction.torque(u1, w1),
-                        pressed: (time / STANDING_LOAD_RISE).min(1.0),
-                    });
+                        bristle: assembly.friction.unit.torque(u1, w1),
+                        pressed: (time / rise).min(1.0),
+                    };
+                    load += assembly.hooks.loads_at(&at) + law.loads_at(&at);
                 }
+                end_load = load;
                 load
             });
             if !report.load.converged {
@@ -198,77 +375,29 @@ impl<S: TimeStepper> Plant<S> {
                     residual: report.load.residual,
                 });
             }
-            state.time = time;
-            state.bristle = z1;
-            state.unit_bristle = u1;
-            state.seen = self.stepper.observe(&state.drive);
-            state.motor_acceleration = (state.seen.motor_speed - start.motor_speed) / h;
+            self.bristle = z1;
+            self.unit_bristle = u1;
+            self.look(time, stepper.observe(&self.drive), torque, end_load);
+            self.motor_acceleration = (self.seen.motor_speed - start.motor_speed) / h;
         }
         Ok(())
     }
 
-    /// Errors of the nut's kinematics at the end of a step.
-    fn nut_errors(
-        &self,
-        state: &PlantState<S::State>,
-        time: f64,
-        angle: f64,
-    ) -> Result<NutErrors, DriveError> {
-        let [offset, offset_rate] = self.hooks.offset_at(&ScrewState {
-            time,
-            angle,
-            rate: state.seen.motor_speed,
-            position: state.position(),
-            speed: state.seen.speed,
-        });
-        NutErrors::new(offset, offset_rate, self.hooks.gap)
+    fn seen(&self) -> &Seen {
+        &self.seen
     }
 
-    /// What dead time takes from the voltage, in the rotor's frame: in each
-    /// phase against its current, softened below [`DEAD_TIME_CURRENT`], where
-    /// the current's ripple makes it cross zero in every period.
-    fn lost_voltage(&self, state: &PlantState<S::State>) -> Dq {
-        let lost = self.hooks.dead_time_voltage;
-        if lost == 0.0 {
-            return Dq::ZERO;
-        }
-        let at = self.motor.electrical_speed(state.seen.motor_angle);
-        let phases = state.current.inverse_park(at).inverse_clarke();
-        let soft = |i: f64| -lost * (i / DEAD_TIME_CURRENT).tanh();
-        foc_pmsm::Phases {
-            a: soft(phases.a),
-            b: soft(phases.b),
-            c: soft(phases.c),
-        }
-        .clarke()
-        .park(at)
+    fn copy(&self) -> Box<dyn Running> {
+        Box::new(self.clone())
     }
-}
 
-/// Time over which a standing load comes up, s.
-const STANDING_LOAD_RISE: f64 = 0.02;
+    fn energy(&self) -> f64 {
+        self.law.stepper.energy(&self.drive)
+    }
 
-/// A time at which everything that comes up has come up, s.
-const SETTLED: f64 = 1.0;
-
-/// Half the current ripple below which dead time counts less, A.
-const DEAD_TIME_CURRENT: f64 = 0.05;
-
-/// The law with its Coulomb level scaled to 1 N·m, without break-away,
-/// bristle damping and viscous part: the same pre-sliding distance.
-fn unit_friction(law: &LuGre) -> LuGre {
-    let p = law.parameters();
-    let unit = lugre::Parameters {
-        coulomb: 1.0,
-        stiction: 1.0,
-        stribeck_speed: p.stribeck_speed,
-        stiffness: if p.coulomb > 0.0 {
-            p.stiffness / p.coulomb
-        } else {
-            p.stiffness
-        },
-        damping: 0.0,
-        viscous: 0.0,
-    };
-    LuGre::new(unit).unwrap_or(*law)
+    fn friction(&self) -> [f64; 2] {
+        let law = &self.law.assembly.friction.law;
+        let force = law.torque(self.bristle, self.seen.speed / self.law.lever) / self.law.lever;
+        [force, self.bristle / coulomb_bristle(law)]
+    }
 }

@@ -4,38 +4,36 @@ use std::io::{self, Write};
 
 use axis_log::{Channel, Log, LogError, write_csv_to};
 
-use crate::Cycle;
+use crate::axis::Axis;
+use crate::channels::{LogChannel, channels};
+use crate::cycle::Cycle;
+use crate::mechanism::Freedom;
 
 /// Collects the cycles of a run, in memory.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Recorder {
+    channels: Vec<LogChannel>,
+    freedom: Freedom,
     cycles: Vec<Cycle>,
 }
 
-type Column = (&'static str, &'static str, fn(&Cycle) -> f64);
-
-/// Name, unit and meaning of each channel. Names end in their unit.
-const COLUMNS: [Column; 15] = [
-    ("t_s", "s", |c| c.time),
-    ("position_ref_m", "m", |c| c.reference.position),
-    ("velocity_ref_m_s", "m/s", |c| c.reference.velocity),
-    ("acceleration_ref_m_s2", "m/s²", |c| {
-        c.reference.acceleration
-    }),
-    ("position_m", "m", |c| c.measured.position),
-    ("motor_angle_rad", "rad", |c| c.measured.motor_angle),
-    ("motor_speed_rad_s", "rad/s", |c| c.measured.motor_speed),
-    ("speed_ref_rad_s", "rad/s", |c| c.command.speed_ref),
-    ("iq_ref_a", "A", |c| c.command.iq_ref),
-    ("iq_a", "A", |c| c.measured.current.q),
-    ("id_a", "A", |c| c.measured.current.d),
-    ("ud_v", "V", |c| c.command.voltage.d),
-    ("uq_v", "V", |c| c.command.voltage.q),
-    ("correction_m", "m", |c| c.correction.position),
-    ("iq_feedforward_a", "A", |c| c.correction.iq),
-];
-
 impl Recorder {
+    /// For runs of this axis: the channels of [`CHANNELS`](crate::CHANNELS) that it has.
+    pub fn new(axis: &Axis) -> Self {
+        Self {
+            channels: channels(axis),
+            freedom: axis.freedom(),
+            cycles: Vec::new(),
+        }
+    }
+
+    /// With a channel more.
+    #[must_use]
+    pub fn with(mut self, channel: LogChannel) -> Self {
+        self.channels.push(channel);
+        self
+    }
+
     /// Adds a cycle; pass this to [`crate::ClosedLoop::run`].
     pub fn push(&mut self, cycle: &Cycle) {
         self.cycles.push(*cycle);
@@ -51,12 +49,15 @@ impl Recorder {
     /// # Errors
     /// [`LogError`] where there is no cycle, or one that is not finite.
     pub fn log(&self) -> Result<Log, LogError> {
-        let channel = |(name, unit, value): &Column| Channel {
-            name: (*name).to_owned(),
-            unit: (*unit).to_owned(),
-            samples: self.cycles.iter().map(value).collect(),
+        let one = |channel: &LogChannel| {
+            let [name, unit] = channel.of_freedom(self.freedom);
+            Channel {
+                name: name.to_owned(),
+                unit: unit.to_owned(),
+                samples: self.cycles.iter().map(channel.read).collect(),
+            }
         };
-        Log::new(COLUMNS.iter().map(channel).collect())
+        Log::new(self.channels.iter().map(one).collect())
     }
 }
 
@@ -76,11 +77,11 @@ pub struct CsvRecorder<W> {
 }
 
 impl<W: Write> CsvRecorder<W> {
-    /// Writes to `writer`, in large pieces.
-    pub fn new(writer: W) -> Self {
+    /// Writes what `recorder` would collect to `writer`, in large pieces.
+    pub fn new(writer: W, recorder: Recorder) -> Self {
         Self {
             writer,
-            block: Recorder::default(),
+            block: recorder,
             rows: 0,
             failed: None,
         }

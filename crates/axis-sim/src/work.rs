@@ -2,6 +2,8 @@
 
 use feed_dynamics::DriveError;
 
+use crate::axis::Axis;
+
 /// Least and greatest control frequency, Hz.
 pub(crate) const FREQUENCIES: [f64; 2] = [100.0, 1e6];
 
@@ -31,6 +33,12 @@ pub(crate) fn check_period(period: f64) -> Result<(), DriveError> {
         value: period,
         valid: "from 1e-6 s to 0.01 s",
     })
+}
+
+/// Number of equal steps, none longer than asked, that make up a control period.
+pub(crate) fn substeps(axis: &Axis) -> u32 {
+    let steps = substeps_of(axis.period, axis.simulation.step);
+    steps.min(f64::from(MOST_SUBSTEPS)) as u32
 }
 
 /// Number of equal steps, none longer than asked, that make up a period.

@@ -1,10 +1,14 @@
-//! The tables in docs/theory/axis-sim.md, made from the keys and the effects.
+//! The tables in docs/theory/axis-sim.md, made from the kinds, their keys and the effects.
 
-use super::key::{Key, Kind};
-use super::keys::{BALL_SCREW, RIGID_MASS};
+use super::keys::keys;
+use super::layout::Layout;
+use super::registry::Registry;
 use crate::SixDigits;
+use crate::actuator::Effort;
 use crate::axis::Range;
-use crate::effects::EFFECTS;
+use crate::effects::{EFFECTS, EffectParameter};
+use crate::mechanism::Freedom;
+use crate::part::{Key, Kind, PartKind, named};
 
 const PAGE: &str = include_str!("../../../../docs/theory/axis-sim.md");
 
@@ -18,10 +22,12 @@ fn rows(path: &str, keys: &[Key], rows: &mut Vec<String>) {
         let name = format!("{path}{}", key.name);
         let (units, valid) = match &key.kind {
             Kind::Quantity(dimension, limits) => {
-                let units = dimension.units();
-                let names: Vec<&str> = units.iter().map(|(unit, _)| *unit).collect();
-                let si = units.iter().find(|(_, factor)| *factor == 1.0).unwrap().0;
-                (names.join(", "), format!("{} {si}", interval(limits)))
+                let names: Vec<&str> = dimension.units.iter().map(|(unit, _)| *unit).collect();
+                let si = dimension.units.iter().find(|(_, factor)| *factor == 1.0);
+                (
+                    names.join(", "),
+                    format!("{} {}", interval(limits), si.unwrap().0),
+                )
             }
             Kind::Number(_, limits) => (String::new(), interval(limits)),
             Kind::Count(least, most) => (String::new(), format!("whole, {least} to {most}")),
@@ -36,45 +42,93 @@ fn rows(path: &str, keys: &[Key], rows: &mut Vec<String>) {
                 continue;
             }
         };
-        rows.push(format!("| `{name}` | {units} | {valid} |"));
+        let left_out = match (key.optional, key.default) {
+            (true, Some(default)) => format!("; {} where left out", SixDigits(default)),
+            (true, None) => "; may be left out".to_owned(),
+            _ => String::new(),
+        };
+        rows.push(format!("| `{name}` | {units} | {valid}{left_out} |"));
     }
 }
 
-fn keys() -> String {
-    let (mut ball_screw, mut rigid) = (Vec::new(), Vec::new());
-    rows("", BALL_SCREW, &mut ball_screw);
-    rows("", RIGID_MASS, &mut rigid);
-    let only = |row: &&String| !ball_screw.contains(row);
-    let own: Vec<&String> = rigid.iter().filter(only).collect();
-    let head = "| key | units | valid |\n|---|---|---|\n";
-    let join = |rows: Vec<&String>| {
-        let lines: Vec<&str> = rows.iter().map(|row| row.as_str()).collect();
-        lines.join("\n")
-    };
-    format!(
-        "{head}{}\n\nOnly of a rigid mass:\n\n{head}{}\n",
-        join(ball_screw.iter().collect()),
-        join(own)
-    )
+const HEAD: &str = "| key | units | valid |\n|---|---|---|\n";
+
+fn kinds<P: ?Sized>(section: &str, kinds: &[&'static PartKind<P>], text: &mut String) {
+    for kind in kinds {
+        let mut lines = Vec::new();
+        rows("", kind.keys, &mut lines);
+        *text += &format!(
+            "#### [{section}] kind = \"{}\"\n{}.\n\n{HEAD}{}\n\n",
+            kind.name,
+            kind.summary,
+            lines.join("\n")
+        );
+    }
+}
+
+/// What belongs to no part, of the kinds that a file's sections may name first.
+fn own() -> String {
+    let registry = Registry::default();
+    let layout = Layout::sections(
+        named(&registry.mechanisms, "rack").unwrap(),
+        named(&registry.actuators, "pmsm-foc").unwrap(),
+        named(&registry.controls, "p-pi").unwrap(),
+        named(&registry.frictions, "lugre").unwrap(),
+    );
+    let mut lines = Vec::new();
+    let parts = ["mechanism", "actuator", "friction", "tolerances"];
+    for key in keys(&layout, Freedom::Linear, Effort::Current) {
+        if parts.contains(&key.name) {
+            continue;
+        }
+        let key = match key.kind {
+            // The controller's own are in its kind's table.
+            Kind::Table(keys) if key.name == "control" => {
+                let own = |k: &Key| ["frequency", "following_error_limit"].contains(&k.name);
+                Key::of_table("control", keys.iter().filter(|k| own(k)).cloned().collect())
+            }
+            _ => key,
+        };
+        rows("", &[key], &mut lines);
+    }
+    format!("{HEAD}{}\n\n", lines.join("\n"))
+}
+
+fn all_keys() -> String {
+    let registry = Registry::default();
+    let mut text = own();
+    kinds("mechanism", &registry.mechanisms, &mut text);
+    kinds("actuator", &registry.actuators, &mut text);
+    kinds("control", &registry.controls, &mut text);
+    kinds("friction", &registry.frictions, &mut text);
+    kinds("[load]", &registry.loads, &mut text);
+    kinds("sensors.load", &registry.sensors, &mut text);
+    text.truncate(text.trim_end().len());
+    text + "\n"
 }
 
 fn effects() -> String {
-    let mut text = "| effect | what | shows in | numbers, SI (size or shape) | rigid mass |\n|---|---|---|---|---|\n".to_owned();
+    let mut text = "| effect | what | shows in | numbers, SI (size or shape) | needs |\n|---|---|---|---|---|\n".to_owned();
     for effect in EFFECTS {
-        let number = |p: &crate::effects::EffectParameter| {
+        let number = |p: &EffectParameter| {
             let [least, most] = p.bounds;
-            let (kind, range) = (if p.size { "size" } else { "shape" }, Range { least, most });
-            let text = format!("`{}` {} {}", p.name, interval(&range), p.unit);
+            let (kind, range) = (
+                if p.is_size() { "size" } else { "shape" },
+                Range { least, most },
+            );
+            let unit = p.measure.unit(Freedom::Linear);
+            let text = format!("`{}` {} {unit}", p.name, interval(&range));
             format!("{} ({kind})", text.trim_end())
         };
         let numbers: Vec<String> = effect.parameters.iter().map(number).collect();
+        let needs: Vec<&str> = effect.needs.iter().map(|need| need.name()).collect();
         text += &format!(
             "| `{}` | {} | {} | {} | {} |\n",
             effect.name,
             effect.summary,
             effect.channel.name(),
             numbers.join("; "),
-            if effect.on_rigid { "yes" } else { "" }
+            needs.join("; ")
         );
     }
     text
@@ -93,7 +147,7 @@ fn check(mark: &str, expected: &str) {
 
 #[test]
 fn the_page_has_the_keys_of_the_code() {
-    check("keys", &keys());
+    check("keys", &all_keys());
 }
 
 #[test]
@@ -110,7 +164,7 @@ fn limits_hold_in_every_unit() {
             match &key.kind {
                 Kind::Table(keys) | Kind::Tables(keys) => check(keys),
                 Kind::Quantity(dimension, limits) => {
-                    for unit in dimension.units() {
+                    for unit in dimension.units {
                         let valid = key.valid(Some(*unit));
                         let mut words = valid.split([' ', ',']);
                         let mut next = |after: &str| -> f64 {
@@ -135,6 +189,14 @@ fn limits_hold_in_every_unit() {
             }
         }
     }
-    check(BALL_SCREW);
-    check(RIGID_MASS);
+    fn of<P: ?Sized>(kinds: &[&'static PartKind<P>]) {
+        kinds.iter().for_each(|kind| check(kind.keys));
+    }
+    let registry = Registry::default();
+    of(&registry.mechanisms);
+    of(&registry.actuators);
+    of(&registry.controls);
+    of(&registry.frictions);
+    of(&registry.loads);
+    of(&registry.sensors);
 }

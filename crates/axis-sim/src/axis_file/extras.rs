@@ -1,18 +1,34 @@
-//! What both kinds of machine have: stroke, step, effects, tolerance, columns of logs.
+//! What belongs to no part: stroke, step, effects, tolerances, columns of logs.
+
+use std::collections::BTreeMap;
 
 use axis_log::{ColumnMap, Mapping};
 
 use super::error::AxisFileError;
 use super::fields::Fields;
-use super::key::Key;
 use crate::SixDigits;
-use crate::axis::Stroke;
-use crate::effects::{ActiveEffect, EFFECTS, Effect, EffectParameter};
+use crate::axis::{Axis, Range, Stroke, Tolerances};
+use crate::effects::{ActiveEffect, Effect, EffectParameter, Scales};
+use crate::mechanism::Freedom;
+use crate::part::Key;
 use crate::work::{MOST_SUBSTEPS, substeps_of};
 
 /// The entries of `[[effects]]`: `name`, and each parameter in SI units.
-pub(super) fn effects(root: &Fields<'_>, rigid: bool) -> Result<Vec<ActiveEffect>, AxisFileError> {
-    let all = || keys(EFFECTS.iter().flat_map(|effect| effect.parameters));
+pub(super) fn effects(
+    root: &Fields<'_>,
+    axis: &Axis,
+    effects: &[&'static Effect],
+) -> Result<Vec<ActiveEffect>, AxisFileError> {
+    let scales = Scales::of(axis);
+    let names = || effects.iter().map(|effect| effect.name);
+    let keys = |parameters: &mut dyn Iterator<Item = &EffectParameter>| -> Vec<Key> {
+        let parameter =
+            |p: &EffectParameter| Key::of_effect(p.name, p.unit(&scales), p.bounds(&scales));
+        std::iter::once(Key::of_words("name", names().collect()))
+            .chain(parameters.map(parameter))
+            .collect()
+    };
+    let all = || keys(&mut effects.iter().flat_map(|effect| effect.parameters));
     let one = |entry: Fields<'_>| {
         // Without a name, it may stand there misspelt beside the parameters of any effect.
         let entry = if entry.has("name") {
@@ -21,15 +37,16 @@ pub(super) fn effects(root: &Fields<'_>, rigid: bool) -> Result<Vec<ActiveEffect
             entry.with_keys(all())?
         };
         let name = entry.word("name")?;
-        let fits = |effect: &&&Effect| effect.fits(rigid).is_ok();
+        let fits = |effect: &&&Effect| effect.applies_to(axis).is_ok();
         let refuse = |what: &str| {
-            let names: Vec<&str> = EFFECTS.iter().filter(fits).map(|e| e.name).collect();
+            let names: Vec<&str> = effects.iter().filter(fits).map(|e| e.name).collect();
             let what = format!("is \"{name}\": {what}");
             entry.refuse_value("name", what, names.join(", "))
         };
-        let effect = Effect::named(name).ok_or_else(|| refuse("there is no such effect"))?;
-        effect.fits(rigid).map_err(refuse)?;
-        let entry = entry.with_keys(keys(effect.parameters.iter()))?;
+        let effect = effects.iter().copied().find(|effect| effect.name == name);
+        let effect = effect.ok_or_else(|| refuse("there is no such effect"))?;
+        effect.applies_to(axis).map_err(|why| refuse(&why))?;
+        let entry = entry.with_keys(keys(&mut effect.parameters.iter()))?;
         let value = |p: &EffectParameter| entry.number(p.name);
         let values = effect.parameters.iter().map(value);
         Ok(ActiveEffect {
@@ -41,21 +58,44 @@ pub(super) fn effects(root: &Fields<'_>, rigid: bool) -> Result<Vec<ActiveEffect
     entries.into_iter().map(one).collect()
 }
 
-/// The keys of an entry with these parameters.
-fn keys<'a>(parameters: impl Iterator<Item = &'a EffectParameter>) -> Vec<Key> {
-    let parameter = |p: &EffectParameter| Key::of_effect(p.name, p.unit, p.bounds);
-    let names = EFFECTS.iter().map(|effect| effect.name).collect();
-    std::iter::once(Key::of_words("name", names))
-        .chain(parameters.map(parameter))
-        .collect()
+/// `[tolerances]`: how far known parameters may be off; 1 % unless it says more.
+pub(super) fn tolerances(
+    root: &Fields<'_>,
+    known: &[&'static str],
+) -> Result<Tolerances, AxisFileError> {
+    let Some(f) = root.optional_table("tolerances")? else {
+        return Ok(Tolerances::all(0.01));
+    };
+    let default = f.optional_number("known_parameters_percent")?;
+    let mut by_name = BTreeMap::new();
+    for name in known {
+        if f.has(name) {
+            let share = share(&f, name)?;
+            f.keep(name, share);
+            by_name.insert(*name, share);
+        }
+    }
+    Ok(Tolerances {
+        default: default.map_or(0.01, |percent| percent / 100.0),
+        by_name,
+    })
 }
 
-/// `[tolerances]`: how far known parameters may be off; 1 % unless it says more.
-pub(super) fn tolerance(root: &Fields<'_>) -> Result<f64, AxisFileError> {
-    match root.optional_table("tolerances")? {
-        Some(f) => Ok(f.number("known_parameters_percent")? / 100.0),
-        None => Ok(0.01),
+/// `"20 %"`, or `"unknown"`.
+fn share(f: &Fields<'_>, name: &str) -> Result<f64, AxisFileError> {
+    let text = f.text(name)?;
+    if text.trim() == "unknown" {
+        return Ok(Tolerances::UNKNOWN);
     }
+    let percent = text.trim().strip_suffix('%').map(str::trim);
+    let percent = percent.and_then(|p| p.strip_prefix('±').unwrap_or(p).trim().parse::<f64>().ok());
+    let share = percent.map(|percent| percent / 100.0);
+    let valid = |share: &f64| (1e-5..=Tolerances::UNKNOWN).contains(share);
+    share.filter(valid).ok_or_else(|| {
+        let what = format!("is \"{text}\"");
+        let valid = "a share such as \"20 %\", from 0.001 % to 90 %, or \"unknown\"";
+        f.refuse_value(name, what, valid.to_owned())
+    })
 }
 
 /// `[log]`: columns of the drive's own logs to channels.
@@ -93,31 +133,44 @@ pub(super) fn check_step(f: &Fields<'_>, period: f64, step: f64) -> Result<(), A
     Err(f.refuse_table(what, &format!("a step of {} s or longer", SixDigits(least))))
 }
 
-/// `[stroke]`, on a screw of a length (m) where there is one.
-pub(super) fn stroke(f: &Fields<'_>, screw_length: Option<f64>) -> Result<Stroke, AxisFileError> {
+/// `[stroke]`, inside a mechanism's reach where it has one.
+pub(super) fn stroke(
+    f: &Fields<'_>,
+    reach: Option<Range>,
+    freedom: Freedom,
+) -> Result<Stroke, AxisFileError> {
+    let unit = freedom.unit();
     let stroke = Stroke {
         minimum: f.number("minimum")?,
         maximum: f.number("maximum")?,
         start: f.number("start")?,
     };
-    let reach = format!(
-        "{} m to {} m",
-        SixDigits(stroke.minimum),
-        SixDigits(stroke.maximum)
-    );
-    let on_screw = screw_length.is_none_or(|l| stroke.minimum >= 0.0 && stroke.maximum <= l);
-    if !(stroke.minimum < stroke.maximum && on_screw) {
-        let screw = screw_length.map_or(String::new(), |l| {
-            format!(" on a screw of {} m", SixDigits(l))
-        });
-        let valid = match screw_length {
-            Some(_) => "0 <= minimum < maximum <= the screw's length",
-            None => "minimum < maximum",
+    let between =
+        |least, most| format!("{} {unit} to {} {unit}", SixDigits(least), SixDigits(most));
+    let own = between(stroke.minimum, stroke.maximum);
+    let inside = |r: &Range| {
+        let slack = 1e-12 * (r.most - r.least);
+        stroke.minimum >= r.least - slack && stroke.maximum <= r.most + slack
+    };
+    if stroke.minimum >= stroke.maximum || !reach.as_ref().is_none_or(inside) {
+        let (beside, valid) = match &reach {
+            None => (String::new(), "minimum < maximum".to_owned()),
+            Some(r) => (
+                format!(", on a mechanism that reaches from {}", between(r.least, r.most)),
+                format!(
+                    "{} {unit} <= minimum < maximum <= {} {unit}",
+                    SixDigits(r.least),
+                    SixDigits(r.most)
+                ),
+            ),
         };
-        return Err(f.refuse_table(format!("reaches from {reach}{screw}"), valid));
+        return Err(f.refuse_table(format!("reaches from {own}{beside}"), &valid));
     }
     if !(stroke.minimum..=stroke.maximum).contains(&stroke.start) {
-        let what = format!("starts at {} m, outside {reach}", SixDigits(stroke.start));
+        let what = format!(
+            "starts at {} {unit}, outside {own}",
+            SixDigits(stroke.start)
+        );
         return Err(f.refuse_table(what, "a start inside the stroke"));
     }
     Ok(stroke)

@@ -10,14 +10,17 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{AxisFileError, Source};
-use super::key::{Key, Kind};
-use super::keys::KIND;
+use crate::part::{Key, Kind, PartError, Values};
+use super::layout::first_keys;
 use super::slips::{list, unknown_key, unknown_word};
 
 /// Canonical record of what was read: `path = value in SI`, for the fingerprint.
 pub(super) type Record = Rc<RefCell<Vec<String>>>;
 
 type Value<'a> = &'a Spanned<DeValue<'a>>;
+
+/// The unit of a number that has none.
+const PLAIN: &[(&str, f64)] = &[("", 1.0)];
 
 /// One TOML table being read.
 pub(super) struct Fields<'a> {
@@ -41,7 +44,7 @@ impl<'a> Fields<'a> {
             path: String::new(),
             span: table.span(),
             table: table.get_ref(),
-            keys: Cow::Borrowed(KIND),
+            keys: Cow::Owned(first_keys()),
             record,
         }
     }
@@ -105,7 +108,8 @@ impl<'a> Fields<'a> {
         AxisFileError::field(self.source, span, self.name_of(key), what, valid)
     }
 
-    fn keep(&self, key: &str, value: impl std::fmt::Debug) {
+    /// Notes a value for the fingerprint.
+    pub(super) fn keep(&self, key: &str, value: impl std::fmt::Debug) {
         let line = format!("{} = {value:?}", self.name_of(key));
         self.record.borrow_mut().push(line);
     }
@@ -136,8 +140,8 @@ impl<'a> Fields<'a> {
     /// A sub-table that may be left out.
     pub(super) fn optional_table(&self, name: &str) -> Result<Option<Fields<'a>>, AxisFileError> {
         let keys = match &self.key(name)?.kind {
-            Kind::Table(keys) => *keys,
-            _ => &[],
+            Kind::Table(keys) => keys.clone(),
+            _ => Cow::Borrowed(&[][..]),
         };
         let Some(value) = self.table.get(name) else {
             return Ok(None);
@@ -151,14 +155,81 @@ impl<'a> Fields<'a> {
         }
     }
 
+    /// A sub-table that must be there, read with keys of which it has some; no other is
+    /// refused yet.
+    pub(super) fn peek(&self, name: &str, keys: Vec<Key>) -> Result<Fields<'a>, AxisFileError> {
+        let value = self.table.get(name);
+        let value =
+            value.ok_or_else(|| self.missing(name, format!("a table [{}]", self.name_of(name))))?;
+        match value.get_ref() {
+            DeValue::Table(table) => Ok(Fields {
+                keys: Cow::Owned(keys),
+                ..self.inside(self.name_of(name), value, table)
+            }),
+            _ => Err(self.wrong_type(value, name, "a table".to_owned())),
+        }
+    }
+
+    /// The table, read with the key that names its kind; no other is refused yet.
+    pub(super) fn with_kind(&self, kind: Key) -> Fields<'a> {
+        Fields {
+            source: self.source,
+            path: self.path.clone(),
+            span: self.span.clone(),
+            table: self.table,
+            keys: Cow::Owned(vec![kind]),
+            record: self.record.clone(),
+        }
+    }
+
+    /// The values of a part's keys in this table, added to `values`.
+    pub(super) fn part(&self, keys: &[Key], values: &mut Values) -> Result<(), AxisFileError> {
+        for key in keys {
+            let name = key.name;
+            match &key.kind {
+                Kind::Count(..) if key.optional && !self.has(name) => {}
+                Kind::Count(..) => values.set_count(name, self.count(name)?),
+                Kind::Word(_) if key.optional && !self.has(name) => {}
+                Kind::Word(_) => values.set_word(name, self.word(name)?),
+                _ => {
+                    let given = if key.optional {
+                        self.optional_number_in(name)?
+                    } else {
+                        Some(self.number_in(name)?)
+                    };
+                    match (given, key.default) {
+                        (Some((number, unit)), _) => values.set_in(name, number, unit),
+                        (None, Some(default)) => values.set(name, default),
+                        (None, None) => {}
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What a part refuses, at the key at fault.
+    pub(super) fn refuse_part(&self, error: &PartError) -> AxisFileError {
+        let Some(name) = error.key else {
+            return self.refuse_table(error.what.clone(), &error.valid);
+        };
+        let key = self.keys.iter().find(|key| key.name == name);
+        let spellings = key.map_or_else(|| vec![name.to_owned()], Key::spellings);
+        let given = spellings.iter().find(|spelling| self.has(spelling));
+        match given.or(spellings.first()) {
+            Some(spelling) => self.refuse_value(spelling, error.what.clone(), error.valid.clone()),
+            None => self.refuse_table(error.what.clone(), &error.valid),
+        }
+    }
+
     /// The tables of `[[name]]`, none if there is no such key.
     pub(super) fn tables(&self, name: &str) -> Result<Vec<Fields<'a>>, AxisFileError> {
         let keys = match &self.key(name)?.kind {
-            Kind::Tables(keys) => *keys,
-            _ => &[],
+            Kind::Tables(keys) => keys.clone(),
+            _ => Cow::Borrowed(&[][..]),
         };
-        let checked = |fields: Fields<'a>| fields.with_keys(keys);
-        let tables = self.unchecked(name, Cow::Borrowed(keys))?;
+        let checked = |fields: Fields<'a>| fields.with_keys(keys.clone());
+        let tables = self.unchecked(name, keys.clone())?;
         tables.into_iter().map(checked).collect()
     }
 
@@ -191,7 +262,12 @@ impl<'a> Fields<'a> {
 
     /// A number in SI units: of a quantity, whose key is `name_unit`, or plain.
     pub(super) fn number(&self, name: &str) -> Result<f64, AxisFileError> {
-        match self.optional_number(name)? {
+        Ok(self.number_in(name)?.0)
+    }
+
+    /// As [`Fields::number`], with the unit it was given in.
+    fn number_in(&self, name: &str) -> Result<(f64, &'static str), AxisFileError> {
+        match self.optional_number_in(name)? {
             Some(number) => Ok(number),
             None => {
                 let key = self.key(name)?;
@@ -207,13 +283,20 @@ impl<'a> Fields<'a> {
 
     /// As [`Fields::number`], of one that may be left out.
     pub(super) fn optional_number(&self, name: &str) -> Result<Option<f64>, AxisFileError> {
+        Ok(self.optional_number_in(name)?.map(|(number, _)| number))
+    }
+
+    fn optional_number_in(
+        &self,
+        name: &str,
+    ) -> Result<Option<(f64, &'static str)>, AxisFileError> {
         let key = self.key(name)?;
         let (units, limits) = match &key.kind {
-            Kind::Quantity(dimension, limits) => (dimension.units(), limits),
-            Kind::Number(_, limits) => (&[("", 1.0)][..], limits),
+            Kind::Quantity(dimension, limits) => (dimension.units, limits),
+            Kind::Number(_, limits) => (PLAIN, limits),
             _ => return Err(self.wrong_kind(name)),
         };
-        let given: Vec<(String, (&str, f64))> = key
+        let given: Vec<(String, (&'static str, f64))> = key
             .spellings()
             .into_iter()
             .zip(units.iter().copied())
@@ -229,7 +312,7 @@ impl<'a> Fields<'a> {
                     return Err(self.refuse_value(spelling, what, valid));
                 }
                 self.keep(name, number);
-                Ok(Some(number))
+                Ok(Some((number, unit.0)))
             }
             [_, (second, _), ..] => {
                 let what = "gives the same quantity a second time".to_owned();

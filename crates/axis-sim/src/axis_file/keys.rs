@@ -1,149 +1,145 @@
-//! Every key of the axis file, with the least and the greatest value that is
-//! accepted: what messages and the table in docs/theory/axis-sim.md are made
-//! of.
+//! The keys of an axis file that belong to no part, with the least and the
+//! greatest value that is accepted.
 //!
-//! The limits are far beyond any axis that is built. They keep a slip of the
-//! pen (a wrong unit, an exponent too many) from turning into a run without an
-//! end or into numbers that no longer resolve.
+//! The limits, like those of the parts' keys, are far beyond any axis that is built. They
+//! keep a slip of the pen (a wrong unit, an exponent too many) from turning into a run
+//! without an end or into numbers that no longer resolve.
 
-use super::key::{Key, count, number, quantity, table, tables, text, word};
-use super::units::*;
+use super::layout::{Layout, SHORT_KINDS};
+use crate::actuator::Effort;
+use crate::mechanism::Freedom;
+use crate::part::units::*;
+use crate::part::{Key, count, number, quantity, table, tables, text, word};
 use crate::work::FREQUENCIES;
 
-/// The version of the axis file's layout that this program reads.
-const SCHEMA: u32 = 1;
+/// The versions of the axis file's layout that this program reads: 2 has a section for each part.
+const SCHEMAS: [u32; 2] = [1, 2];
 
-/// The word for a ball-screw axis, which a file without a kind is, and the one
-/// for a rigid mass.
-pub(super) const KINDS: [&str; 2] = ["ball-screw", "rigid-mass"];
+/// Keys of the table [control] that are not the controller's.
+fn loop_keys(freedom: Freedom) -> Vec<Key> {
+    let limit = match freedom {
+        Freedom::Linear => quantity("following_error_limit", &LENGTH, 1e-6, 10.0),
+        Freedom::Rotary => quantity("following_error_limit", &ANGLE, 1e-9, 100.0),
+    };
+    vec![
+        quantity("frequency", &FREQUENCY, FREQUENCIES[0], FREQUENCIES[1]),
+        limit.optional(),
+    ]
+}
 
-/// What tells which keys a file may have.
-pub(super) const KIND: &[Key] = &[word("kind", &KINDS)];
+/// All keys of a file whose parts are of these kinds.
+pub(super) fn keys(layout: &Layout, freedom: Freedom, effort: Effort) -> Vec<Key> {
+    let mut keys = vec![
+        count("schema", SCHEMAS[0], SCHEMAS[1]),
+        text("name"),
+        text("description"),
+    ];
+    if !layout.has_sections() {
+        keys.push(word("kind", &SHORT_KINDS));
+    }
+    keys.extend(layout.tables(&[("control", loop_keys(freedom))]));
+    let simulation = match layout.has_sections() {
+        true => WAYS,
+        false => COUPLINGS,
+    };
+    keys.extend([
+        Key::of_table("stroke", stroke(freedom)),
+        Key::of_table("samples", samples(freedom, effort)),
+        table("simulation", simulation),
+        table("sensors", SENSORS),
+        table("experiment", EXPERIMENT),
+        Key::of_table("tolerances", tolerances(layout)),
+        table("log", LOG),
+        Key::of_tables("trajectory", trajectory(freedom)),
+        tables("load", KIND),
+        tables("effects", ENTRY),
+    ]);
+    keys
+}
 
-/// A file of a ball-screw axis.
-pub(super) const BALL_SCREW: &[Key] = &[
-    count("schema", SCHEMA, SCHEMA),
-    word("kind", &KINDS),
-    text("name"),
-    text("description"),
-    table("screw", SCREW),
-    table("drive", DRIVE),
-    table("friction", FRICTION),
-    table("motor", MOTOR),
-    table("inverter", INVERTER),
-    table("control", CONTROL),
-    table("stroke", STROKE),
-    table("samples", SAMPLES),
-    table("simulation", SIMULATION),
-    table("experiment", EXPERIMENT),
-    table("tolerances", TOLERANCES),
-    table("log", LOG),
-    tables("trajectory", TRAJECTORY),
-    tables("effects", ENTRY),
-];
+fn position(name: &'static str, freedom: Freedom) -> Key {
+    match freedom {
+        Freedom::Linear => quantity(name, &LENGTH, -1e3, 1e3),
+        Freedom::Rotary => quantity(name, &ANGLE, -1e4, 1e4),
+    }
+}
 
-/// A file of a rigid mass.
-pub(super) const RIGID_MASS: &[Key] = &[
-    count("schema", SCHEMA, SCHEMA),
-    word("kind", &KINDS),
-    text("name"),
-    text("description"),
-    table("body", BODY),
-    table("control", RIGID_CONTROL),
-    table("stroke", STROKE),
-    table("simulation", RIGID_SIMULATION),
-    table("tolerances", TOLERANCES),
-    table("log", LOG),
-    tables("effects", ENTRY),
-];
+fn stroke(freedom: Freedom) -> Vec<Key> {
+    ["minimum", "maximum", "start"]
+        .map(|name| position(name, freedom))
+        .to_vec()
+}
 
-const SCREW: &[Key] = &[
-    quantity("length", &LENGTH, 0.01, 100.0),
-    quantity("diameter", &LENGTH, 1e-3, 1.0),
-    quantity("lead", &LENGTH, 1e-4, 1.0),
-    count("elements", 2, 1000),
-    quantity("youngs_modulus", &PRESSURE, 1e8, 1e13),
-    number("poisson_ratio", -0.99, 0.49),
-    quantity("density", &DENSITY, 100.0, 1e5),
-];
+fn samples(freedom: Freedom, effort: Effort) -> Vec<Key> {
+    let linear = freedom == Freedom::Linear;
+    let position = |name| match linear {
+        true => quantity(name, &LENGTH, -1e3, 1e3),
+        false => quantity(name, &ANGLE, -1e4, 1e4),
+    };
+    let speed = |name| match linear {
+        true => quantity(name, &SPEED, -1e3, 1e3),
+        false => quantity(name, &ANGULAR_SPEED, -1e4, 1e4),
+    };
+    let acceleration = |name| match linear {
+        true => quantity(name, &ACCELERATION, -1e6, 1e6),
+        false => quantity(name, &ANGULAR_ACCELERATION, -1e7, 1e7),
+    };
+    let (dimension, most) = match effort {
+        Effort::Current => (&CURRENT, 1e5),
+        Effort::Torque => (&TORQUE, 1e7),
+        Effort::Force => (&FORCE, 1e8),
+        Effort::Voltage => (&VOLTAGE, 1e6),
+    };
+    let [least_effort, most_effort] = effort_names(effort);
+    vec![
+        position("position_min"),
+        position("position_max"),
+        speed("speed_min"),
+        speed("speed_max"),
+        acceleration("acceleration_min"),
+        acceleration("acceleration_max"),
+        quantity(least_effort, dimension, -most, most),
+        quantity(most_effort, dimension, -most, most),
+    ]
+}
 
-const DRIVE: &[Key] = &[
-    quantity("motor_inertia", &INERTIA, 1e-9, 1e3),
-    quantity("torque_sensor_inertia", &INERTIA, 1e-9, 1e3),
-    quantity("motor_coupling", &TORSION, 0.1, 1e9),
-    quantity("screw_coupling", &TORSION, 0.1, 1e9),
-    quantity("nut_stiffness", &STIFFNESS, 1e3, 1e12),
-    quantity("table_mass", &MASS, 1e-3, 1e6),
-    quantity("stiffness_damping", &TIME, 0.0, 0.1),
-];
-
-const FRICTION: &[Key] = &[
-    quantity("coulomb", &TORQUE, 1e-9, 1e5),
-    quantity("stiction", &TORQUE, 1e-9, 1e5),
-    quantity("stribeck_speed", &ROTATION, 1e-6, 1e5),
-    quantity("bristle_stiffness", &BRISTLE_STIFFNESS, 1e-6, 1e9),
-    quantity("bristle_damping", &ROTARY_DAMPING, 0.0, 1e5),
-    quantity("viscous", &ROTARY_DAMPING, 0.0, 1e5),
-];
-
-const MOTOR: &[Key] = &[
-    count("pole_pairs", 1, 100),
-    quantity("torque_constant", &TORQUE_CONSTANT, 1e-5, 1e4),
-    quantity("resistance", &RESISTANCE, 0.0, 1e4),
-    quantity("inductance_d", &INDUCTANCE, 1e-8, 100.0),
-    quantity("inductance_q", &INDUCTANCE, 1e-8, 100.0),
-];
-
-const INVERTER: &[Key] = &[quantity("dc_link", &VOLTAGE, 1.0, 1e5)];
-
-/// Control frequency, Hz.
-const CONTROL_FREQUENCY: Key = quantity("frequency", &FREQUENCY, FREQUENCIES[0], FREQUENCIES[1]);
-/// Tracking error at which a run is given up, m.
-const FOLLOWING_ERROR: Key = quantity("following_error_limit", &LENGTH, 1e-6, 10.0);
-
-const CONTROL: &[Key] = &[
-    CONTROL_FREQUENCY,
-    quantity("position_gain", &POSITION_GAIN, 0.0, 1e9),
-    number("velocity_feedforward", -10.0, 10.0),
-    quantity("speed_proportional", &SPEED_PROPORTIONAL, 0.0, 1e6),
-    quantity("speed_integral", &SPEED_INTEGRAL, 0.0, 1e9),
-    quantity("current_d_proportional", &CURRENT_PROPORTIONAL, 0.0, 1e6),
-    quantity("current_d_integral", &CURRENT_INTEGRAL, 0.0, 1e9),
-    quantity("current_q_proportional", &CURRENT_PROPORTIONAL, 0.0, 1e6),
-    quantity("current_q_integral", &CURRENT_INTEGRAL, 0.0, 1e9),
-    quantity("current_limit", &CURRENT, 1e-3, 1e5),
-    FOLLOWING_ERROR,
-];
-
-const STROKE: &[Key] = &[
-    quantity("minimum", &LENGTH, -1e3, 1e3),
-    quantity("maximum", &LENGTH, -1e3, 1e3),
-    quantity("start", &LENGTH, -1e3, 1e3),
-];
-
-const SAMPLES: &[Key] = &[
-    quantity("position_min", &LENGTH, 0.0, 100.0),
-    quantity("position_max", &LENGTH, 0.0, 100.0),
-    quantity("speed_min", &SPEED, -1e3, 1e3),
-    quantity("speed_max", &SPEED, -1e3, 1e3),
-    quantity("acceleration_min", &ACCELERATION, -1e6, 1e6),
-    quantity("acceleration_max", &ACCELERATION, -1e6, 1e6),
-    quantity("current_min", &CURRENT, -1e5, 1e5),
-    quantity("current_max", &CURRENT, -1e5, 1e5),
-];
+/// What the range of the actuator's command is called in [samples].
+pub(super) fn effort_names(effort: Effort) -> [&'static str; 2] {
+    match effort {
+        Effort::Current => ["current_min", "current_max"],
+        Effort::Torque => ["torque_min", "torque_max"],
+        Effort::Force => ["force_min", "force_max"],
+        Effort::Voltage => ["command_min", "command_max"],
+    }
+}
 
 const STEP: Key = quantity("step", &TIME, 1e-8, 0.01);
 
-const SIMULATION: &[Key] = &[
+const COUPLINGS: &[Key] = &[
     word("nut_coupling", &["shape-functions", "moving-node"]),
     STEP,
 ];
 
-const RIGID_SIMULATION: &[Key] = &[STEP];
+const WAYS: &[Key] = &[word("way", &["fast", "exact"]), STEP];
+
+const KIND: &[Key] = &[text("kind")];
+
+const SENSORS: &[Key] = &[table("load", KIND), table("motor", KIND)];
 
 const EXPERIMENT: &[Key] = &[text("machine"), text("paper_tables")];
 
-const TOLERANCES: &[Key] = &[number("known_parameters_percent", 1e-3, 100.0)];
+/// `known_parameters_percent`, and each known parameter of the file's kinds.
+fn tolerances(layout: &Layout) -> Vec<Key> {
+    let lists = [
+        layout.mechanism.known,
+        layout.actuator.known,
+        layout.control.known,
+        layout.friction.known,
+    ];
+    let known = lists.into_iter().flatten().map(|known| text(known.name));
+    let default = number("known_parameters_percent", 1e-3, 100.0);
+    std::iter::once(default).chain(known).collect()
+}
 
 const LOG: &[Key] = &[
     quantity("sample_rate", &FREQUENCY, 1e-3, 1e8),
@@ -157,29 +153,22 @@ const COLUMN: &[Key] = &[
     number("offset", -1e12, 1e12),
 ];
 
-const TRAJECTORY: &[Key] = &[
-    quantity("displacement", &LENGTH, -100.0, 100.0),
-    quantity("speed", &SPEED, 1e-6, 1e3),
-    quantity("acceleration", &ACCELERATION, 1e-6, 1e6),
-    quantity("jerk", &JERK, 1e-6, 1e9),
-];
+fn trajectory(freedom: Freedom) -> Vec<Key> {
+    match freedom {
+        Freedom::Linear => vec![
+            quantity("displacement", &LENGTH, -100.0, 100.0),
+            quantity("speed", &SPEED, 1e-6, 1e3),
+            quantity("acceleration", &ACCELERATION, 1e-6, 1e6),
+            quantity("jerk", &JERK, 1e-6, 1e9),
+        ],
+        Freedom::Rotary => vec![
+            quantity("displacement", &ANGLE, -1e4, 1e4),
+            quantity("speed", &ANGULAR_SPEED, 1e-6, 1e5),
+            quantity("acceleration", &ANGULAR_ACCELERATION, 1e-6, 1e8),
+            quantity("jerk", &ANGULAR_JERK, 1e-6, 1e12),
+        ],
+    }
+}
 
 /// An effect; its other keys are its parameters.
 const ENTRY: &[Key] = &[text("name")];
-
-const BODY: &[Key] = &[
-    quantity("mass", &MASS, 1e-3, 1e6),
-    quantity("force_gain", &FORCE_GAIN, 1e-6, 1e9),
-    quantity("viscous", &LINEAR_DAMPING, 0.0, 1e9),
-    quantity("coulomb", &FORCE, 0.0, 1e7),
-    quantity("presliding", &LENGTH, 1e-9, 0.1),
-    quantity("lead", &LENGTH, 1e-4, 10.0),
-];
-
-const RIGID_CONTROL: &[Key] = &[
-    CONTROL_FREQUENCY,
-    quantity("position_gain", &RATE, 1e-3, 1e6),
-    quantity("speed_gain", &SPEED_GAIN, 1e-6, 1e9),
-    quantity("command_limit", &VOLTAGE, 1e-3, 1e6),
-    FOLLOWING_ERROR,
-];

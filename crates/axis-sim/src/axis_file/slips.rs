@@ -1,6 +1,6 @@
 //! What to say about a key or a word that does not exist.
 
-use super::key::{Key, Kind};
+use crate::part::{Key, Kind};
 
 /// What is wrong with the key `given` in a table of `keys`.
 pub(super) fn unknown_key(given: &str, place: &str, keys: &[Key]) -> String {

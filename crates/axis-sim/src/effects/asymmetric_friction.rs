@@ -1,21 +1,19 @@
 //! `asymmetric-friction`: dry friction that differs between the directions.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, size};
+use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "asymmetric-friction",
     summary: "dry friction that differs between the directions",
     channel: EffectChannel::Torque,
     depends_on: "sign of speed",
-    parameters: &[
-        size("forward", "N", 60.0, 5e3),
-        size("backward", "N", 20.0, 5e3),
-    ],
-    on_rigid: true,
+    parameters: &[size("forward", Measure::Force, 60.0, 5e3), size("backward", Measure::Force, 20.0, 5e3)],
+    needs: &[],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 2] = super::changes::array(values);
     to.load(move |t| {
         let level = if t.bristle > 0.0 { v[0] } else { v[1] };

@@ -1,21 +1,19 @@
 //! `asymmetric-viscous-friction`: viscous friction that differs between the directions.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, size};
+use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "asymmetric-viscous-friction",
     summary: "viscous friction that differs between the directions",
     channel: EffectChannel::Torque,
     depends_on: "speed and its sign",
-    parameters: &[
-        size("forward", "N*s/m", 4000.0, 1e5),
-        size("backward", "N*s/m", 2000.0, 1e5),
-    ],
-    on_rigid: true,
+    parameters: &[size("forward", Measure::Damping, 4000.0, 1e5), size("backward", Measure::Damping, 2000.0, 1e5)],
+    needs: &[],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 2] = super::changes::array(values);
     to.load(move |t| {
         let coefficient = if t.speed > 0.0 { v[0] } else { v[1] };

@@ -1,19 +1,21 @@
 //! `backlash`: free travel between screw and nut.
 
-use super::{Effect, EffectChannel, positive};
+use super::{Effect, EffectChannel, Measure, Need, positive};
+use crate::error::SetupError;
+use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "backlash",
     summary: "free travel between screw and nut",
     channel: EffectChannel::Kinematics,
     depends_on: "sign of nut force",
-    parameters: &[positive("gap", "m", 4e-6, 1e-3)],
-    on_rigid: false,
+    parameters: &[positive("gap", Measure::Way, 4e-6, 1e-3)],
+    needs: &[Need::Role(Role::Backlash)],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
-    to.hooks.gap += v[0].max(0.0);
+    to.add(Role::Backlash, v[0].max(0.0))?;
     Ok(())
 }

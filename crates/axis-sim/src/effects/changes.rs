@@ -1,30 +1,21 @@
-//! What an effect may change: parameters of a machine, and hooks in its loop.
+//! What an effect may change: parameters of an axis, and hooks in its loop.
 
 use std::fmt;
 use std::sync::Arc;
 
-use feed_dynamics::{DriveError, DriveParameters, FeedDrive};
-use foc_pmsm::{MotorParameters, Pmsm, Servo, ServoGains};
+use crate::axis::Axis;
+use crate::cycle::Measured;
+use crate::error::SetupError;
+use crate::part::Role;
 
-use crate::{Axis, Measured, RigidAxis};
-
-/// Either kind of machine.
-#[derive(Clone, Debug)]
-pub enum Machine {
-    /// Ball screw, permanent-magnet motor, field-oriented control.
-    BallScrew(Box<Axis>),
-    /// A rigid mass with a force gain.
-    Rigid(Box<RigidAxis>),
-}
-
-/// The table as a load sees it.
+/// The load as a force on it sees it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TableState {
     /// Since the motion began, s.
     pub time: f64,
-    /// m, absolute.
+    /// m or rad, absolute.
     pub position: f64,
-    /// m/s.
+    /// m/s or rad/s.
     pub speed: f64,
     /// Unit bristle, −1 to 1: the direction of sliding, without a jump.
     pub bristle: f64,
@@ -33,31 +24,31 @@ pub struct TableState {
     pub pressed: f64,
 }
 
-/// The screw at the nut as an error of its kinematics sees it.
+/// The transmission as an error of its kinematics sees it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ScrewState {
     /// Since the motion began, s.
     pub time: f64,
-    /// Motor angle since then, rad.
+    /// Motor angle, rad, absolute.
     pub angle: f64,
     /// Motor speed, rad/s.
     pub rate: f64,
-    /// Table position, m.
+    /// Position of the load, m or rad.
     pub position: f64,
-    /// Table speed, m/s.
+    /// Its speed, m/s or rad/s.
     pub speed: f64,
 }
 
 /// What the sensors get wrong.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Sensors {
+pub struct SensorErrors {
     /// Added to the q current, A.
     pub current_offset: f64,
     /// Amplitude and phase of each of the motor encoder's errors, rad.
     pub eccentricities: Vec<[f64; 2]>,
 }
 
-impl Sensors {
+impl SensorErrors {
     /// What these sensors make of what perfect ones would show.
     pub(crate) fn show(&self, mut m: Measured) -> Measured {
         m.current.q += self.current_offset;
@@ -65,7 +56,7 @@ impl Sensors {
         let mut speed_ratio = 1.0;
         for [amplitude, phase] in &self.eccentricities {
             let at = true_angle + phase;
-            m.motor_angle += amplitude * (at.sin() - phase.sin());
+            m.motor_angle += amplitude * at.sin();
             speed_ratio += amplitude * at.cos();
         }
         m.motor_speed *= speed_ratio;
@@ -83,10 +74,7 @@ pub(crate) struct Hooks {
     loads: Vec<Load>,
     torques: Vec<Torque>,
     offsets: Vec<Offset>,
-    pub(crate) gap: f64,
-    pub(crate) sensors: Sensors,
-    pub(crate) dead_time_voltage: f64,
-    pub(crate) delay: f64,
+    pub(crate) sensors: SensorErrors,
     pub(crate) clock_offset: f64,
 }
 
@@ -137,25 +125,10 @@ impl Hooks {
     }
 }
 
-/// A machine that effects are being put into.
+/// An axis that effects are being put into.
 pub struct Changes<'a> {
-    pub(crate) machine: MachineMut<'a>,
+    pub(crate) axis: &'a mut Axis,
     pub(crate) hooks: &'a mut Hooks,
-}
-
-pub(crate) enum MachineMut<'a> {
-    BallScrew(&'a mut Axis),
-    Rigid(&'a mut RigidAxis),
-}
-
-impl MachineMut<'_> {
-    /// Control period, s.
-    pub(crate) fn period(&self) -> f64 {
-        match self {
-            Self::BallScrew(axis) => axis.period,
-            Self::Rigid(axis) => axis.period,
-        }
-    }
 }
 
 /// The values of an effect with K parameters; missing ones are 0.
@@ -163,115 +136,61 @@ pub(super) fn array<const K: usize>(values: &[f64]) -> [f64; K] {
     std::array::from_fn(|i| values.get(i).copied().unwrap_or(0.0))
 }
 
-pub(super) fn out_of_range(name: &'static str, value: f64) -> DriveError {
-    DriveError::Parameter {
-        name,
-        value,
-        valid: "such that the machine's own value stays in its range",
-    }
-}
-
 impl Changes<'_> {
-    /// Adds a load on the table, N, positive against positive motion.
+    /// Adds a load, N or N·m, positive against positive motion.
     pub fn load(&mut self, load: impl Fn(&TableState) -> f64 + Send + Sync + 'static) {
         self.hooks.load(load);
     }
 
-    /// Adds a motor torque, N·m, from motor angle (rad) and air-gap torque (N·m).
+    /// Adds a motor torque, N·m, from motor angle (rad) and the actuator's torque (N·m).
     pub fn torque(&mut self, torque: impl Fn(f64, f64) -> f64 + Send + Sync + 'static) {
         self.hooks.torque(torque);
     }
 
-    /// Adds a displacement of the nut on the screw, and its rate: m, m/s.
+    /// Adds a displacement of the load on its transmission, and its rate: m, m/s or rad,
+    /// rad/s. Only how it changes from the start on counts.
     pub fn offset(&mut self, offset: impl Fn(&ScrewState) -> [f64; 2] + Send + Sync + 'static) {
         self.hooks.offset(offset);
     }
 
-    /// The ball-screw axis. Effects that ask for it are never installed on
-    /// another machine ([`super::Effect::on_rigid`]).
-    pub(super) fn ball_screw(&mut self) -> Result<&mut Axis, DriveError> {
-        match &mut self.machine {
-            MachineMut::BallScrew(axis) => Ok(axis),
-            MachineMut::Rigid(_) => Err(out_of_range("ball screw", 0.0)),
-        }
+    /// What the sensors get wrong.
+    pub fn sensors(&mut self) -> &mut SensorErrors {
+        &mut self.hooks.sensors
     }
 
-    pub(super) fn drive(
-        &mut self,
-        change: impl Fn(&mut DriveParameters),
-    ) -> Result<(), DriveError> {
-        let axis = self.ball_screw()?;
-        let mut parameters = axis.drive.parameters().clone();
-        change(&mut parameters);
-        axis.drive = FeedDrive::new(parameters)?;
-        Ok(())
+    /// Makes the load's channel of a log late by `time` seconds.
+    pub fn clock_offset(&mut self, time: f64) {
+        self.hooks.clock_offset += time;
     }
 
-    pub(super) fn motor(
-        &mut self,
-        change: impl Fn(&mut MotorParameters),
-    ) -> Result<(), DriveError> {
-        let axis = self.ball_screw()?;
-        let mut parameters = *axis.motor.parameters();
-        change(&mut parameters);
-        axis.motor = Pmsm::new(parameters).map_err(|_| out_of_range("motor", 0.0))?;
-        Ok(())
+    /// Adds to the parameter of a role, in its SI unit.
+    ///
+    /// # Errors
+    /// [`SetupError::Part`] where the part refuses the new value.
+    pub fn add(&mut self, role: Role, value: f64) -> Result<(), SetupError> {
+        self.axis.change(role, |before| before + value)
     }
 
-    fn gains(&mut self, change: impl Fn(&mut ServoGains)) -> Result<(), DriveError> {
-        let axis = self.ball_screw()?;
-        let mut gains = *axis.servo.gains();
-        change(&mut gains);
-        axis.servo = Servo::new(gains, *axis.servo.limits(), axis.period)
-            .map_err(|_| out_of_range("gain", 0.0))?;
-        Ok(())
+    /// Changes the parameters of a role by a share of their values.
+    ///
+    /// # Errors
+    /// [`SetupError::Part`] where the part refuses the new value.
+    pub fn scale(&mut self, role: Role, share: f64) -> Result<(), SetupError> {
+        self.axis.change(role, |before| before * (1.0 + share))
     }
 
-    pub(super) fn mass(&mut self, added: f64) -> Result<(), DriveError> {
-        match &mut self.machine {
-            MachineMut::BallScrew(_) => self.drive(|p| p.table_mass += added),
-            MachineMut::Rigid(axis) => {
-                axis.mass += added;
-                if axis.mass > 0.0 {
-                    Ok(())
-                } else {
-                    Err(out_of_range("mass", added))
-                }
-            }
-        }
+    /// Travel of the load per radian of the motor, m/rad or rad/rad.
+    pub fn travel_per_radian(&self) -> f64 {
+        self.axis.travel_per_radian()
     }
 
-    pub(super) fn torque_constant(&mut self, relative: f64) -> Result<(), DriveError> {
-        match &mut self.machine {
-            MachineMut::BallScrew(_) => self.motor(|p| p.flux_linkage *= 1.0 + relative),
-            MachineMut::Rigid(axis) => {
-                axis.force_gain *= 1.0 + relative;
-                Ok(())
-            }
-        }
+    /// Travel of the load per unit of the friction law's coordinate.
+    pub fn friction_lever(&self) -> f64 {
+        self.axis.friction.lever(self.travel_per_radian())
     }
 
-    pub(super) fn position_gain(&mut self, relative: f64) -> Result<(), DriveError> {
-        match &mut self.machine {
-            MachineMut::BallScrew(_) => self.gains(|g| g.position *= 1.0 + relative),
-            MachineMut::Rigid(axis) => {
-                axis.position_gain *= 1.0 + relative;
-                Ok(())
-            }
-        }
-    }
-
-    /// Proportional and integral gain alike.
-    pub(super) fn speed_gain(&mut self, relative: f64) -> Result<(), DriveError> {
-        match &mut self.machine {
-            MachineMut::BallScrew(_) => self.gains(|g| {
-                g.speed_p *= 1.0 + relative;
-                g.speed_i *= 1.0 + relative;
-            }),
-            MachineMut::Rigid(axis) => {
-                axis.speed_gain *= 1.0 + relative;
-                Ok(())
-            }
-        }
+    /// Electrical periods per radian of the motor; 1 where it has none.
+    pub fn pole_pairs(&self) -> f64 {
+        self.axis.actuator.pole_pairs().unwrap_or(1.0)
     }
 }

@@ -1,19 +1,20 @@
 //! `clock-offset`: time by which the table's channel is late against the motor's.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, Need, signed};
+use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "clock-offset",
     summary: "time by which the table's channel is late against the motor's",
     channel: EffectChannel::Clock,
     depends_on: "speed",
-    parameters: &[size("time", "s", 2e-5, 5e-3)],
-    on_rigid: false,
+    parameters: &[signed("time", Measure::Time, 2e-5, 5e-3)],
+    needs: &[Need::MotorEncoder],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
-    to.hooks.clock_offset += v[0];
+    to.clock_offset(v[0]);
     Ok(())
 }

@@ -1,18 +1,19 @@
 //! `constant-load`: a force of constant size and direction, as of gravity.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, signed};
+use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "constant-load",
     summary: "a force of constant size and direction, as of gravity",
     channel: EffectChannel::Torque,
     depends_on: "nothing",
-    parameters: &[size("force", "N", 40.0, 1e4)],
-    on_rigid: true,
+    parameters: &[signed("force", Measure::Force, 40.0, 1e4)],
+    needs: &[],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
     to.load(move |t| v[0] * t.pressed);
     Ok(())

@@ -1,19 +1,21 @@
 //! `control-delay`: time by which the current reference comes late.
 
-use super::{Effect, EffectChannel, positive};
+use super::{Effect, EffectChannel, Measure, Need, positive};
+use crate::error::SetupError;
+use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "control-delay",
     summary: "time by which the current reference comes late",
     channel: EffectChannel::Controller,
     depends_on: "change of the current reference",
-    parameters: &[positive("time", "s", 1e-4, 5e-3)],
-    on_rigid: false,
+    parameters: &[positive("time", Measure::Time, 1e-4, 5e-3)],
+    needs: &[Need::Role(Role::CommandDelay)],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
-    to.hooks.delay += v[0].max(0.0);
+    to.add(Role::CommandDelay, v[0].max(0.0))?;
     Ok(())
 }

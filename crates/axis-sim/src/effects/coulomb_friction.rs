@@ -1,18 +1,19 @@
 //! `coulomb-friction`: dry friction of one size in both directions.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, size};
+use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "coulomb-friction",
     summary: "dry friction of one size in both directions",
     channel: EffectChannel::Torque,
     depends_on: "sign of speed",
-    parameters: &[size("force", "N", 60.0, 5e3)],
-    on_rigid: true,
+    parameters: &[size("force", Measure::Force, 60.0, 5e3)],
+    needs: &[],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
     to.load(move |t| v[0] * t.bristle);
     Ok(())

@@ -1,45 +1,33 @@
-//! Puts effects into a machine.
+//! Puts effects into an axis.
 
-use feed_dynamics::DriveError;
-
-use super::changes::{Changes, Hooks, MachineMut};
+use super::changes::{Changes, Hooks};
 use super::{ActiveEffect, EffectParameter};
+use crate::axis::Axis;
+use crate::error::SetupError;
+use crate::part::PartError;
 
-/// Most control periods by which the current reference may come late.
-const MOST_DELAY: f64 = 1e5;
-
-/// Makes the effects' changes to the machine, and gives their hooks.
+/// Makes the effects' changes to the axis, and gives their hooks.
 ///
 /// # Errors
-/// [`DriveError`] where a value is not a number, an effect does not exist on
-/// that kind of machine, or a parameter leaves its range.
-pub(crate) fn install(
-    effects: &[ActiveEffect],
-    machine: MachineMut<'_>,
-) -> Result<Hooks, DriveError> {
-    let rigid = matches!(machine, MachineMut::Rigid(_));
-    let period = machine.period();
+/// [`SetupError`] where a value is not a number, the axis has no part for an effect to
+/// act on, or a parameter leaves its range.
+pub(crate) fn install(effects: &[ActiveEffect], axis: &mut Axis) -> Result<Hooks, SetupError> {
     let mut hooks = Hooks::default();
-    let mut changes = Changes {
-        machine,
-        hooks: &mut hooks,
-    };
+    if let Some(error) = axis.mechanism.kinematic_error() {
+        hooks.offset(move |screw| error(screw));
+    }
     for active in summed(effects) {
         let effect = active.effect;
-        effect.fits(rigid).map_err(|_| DriveError::Parameter {
-            name: effect.name,
-            value: active.values.first().copied().unwrap_or(0.0),
-            valid: "left out on a rigid mass, which has no part for it to act on",
+        effect.applies_to(axis).map_err(|why| SetupError::Effect {
+            effect: effect.name,
+            why,
         })?;
         check(&active)?;
+        let mut changes = Changes {
+            axis,
+            hooks: &mut hooks,
+        };
         (effect.install)(&active.values, &mut changes)?;
-    }
-    if hooks.delay > MOST_DELAY * period {
-        return Err(DriveError::Parameter {
-            name: "control-delay",
-            value: hooks.delay,
-            valid: "at most 100000 control periods",
-        });
     }
     Ok(hooks)
 }
@@ -51,7 +39,7 @@ fn summed(effects: &[ActiveEffect]) -> Vec<ActiveEffect> {
         match sums.iter_mut().find(|sum| alike(sum, active)) {
             Some(sum) => {
                 for ((p, a), b) in numbers(active.effect.parameters, &mut sum.values, active) {
-                    if p.size {
+                    if p.is_size() {
                         *a += b;
                     }
                 }
@@ -74,19 +62,20 @@ fn numbers<'a>(
 fn alike(a: &ActiveEffect, b: &ActiveEffect) -> bool {
     let shapes = |active: &ActiveEffect| -> Vec<f64> {
         let numbers = active.effect.parameters.iter().zip(&active.values);
-        numbers.filter(|(p, _)| !p.size).map(|(_, v)| *v).collect()
+        numbers.filter(|(p, _)| !p.is_size()).map(|(_, v)| *v).collect()
     };
     a.effect.name == b.effect.name && a.values.len() == b.values.len() && shapes(a) == shapes(b)
 }
 
-fn check(active: &ActiveEffect) -> Result<(), DriveError> {
+fn check(active: &ActiveEffect) -> Result<(), SetupError> {
     let numbers = active.effect.parameters.iter().zip(&active.values);
     match numbers.into_iter().find(|(_, v)| !v.is_finite()) {
         None => Ok(()),
-        Some((p, value)) => Err(DriveError::Parameter {
-            name: p.name,
-            value: *value,
-            valid: "a finite number",
-        }),
+        Some((p, value)) => Err(PartError::of(
+            p.name,
+            format!("of the effect \"{}\" is {value}", active.effect.name),
+            "a finite number",
+        )
+        .into()),
     }
 }

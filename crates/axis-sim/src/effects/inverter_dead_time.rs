@@ -1,19 +1,21 @@
 //! `inverter-dead-time`: voltage that each phase loses against its current.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, Need, size};
+use crate::error::SetupError;
+use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "inverter-dead-time",
     summary: "voltage that each phase loses against its current",
     channel: EffectChannel::Voltage,
     depends_on: "sign of phase currents",
-    parameters: &[size("phase_voltage", "V", 2.0, 50.0)],
-    on_rigid: false,
+    parameters: &[size("phase_voltage", Measure::Voltage, 2.0, 50.0)],
+    needs: &[Need::Role(Role::DeadTimeVoltage)],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
-    to.hooks.dead_time_voltage += v[0];
+    to.add(Role::DeadTimeVoltage, v[0])?;
     Ok(())
 }

@@ -1,20 +1,21 @@
 //! `lead-error`: travel per turn.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, Need, signed};
+use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "lead-error",
     summary: "travel per turn",
     channel: EffectChannel::Kinematics,
     depends_on: "position",
-    parameters: &[size("slope", "", 1e-4, 5e-3)],
-    on_rigid: false,
+    parameters: &[signed("slope", Measure::Ratio, 1e-4, 5e-3)],
+    needs: &[Need::Transmission],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
-    let r = to.ball_screw()?.travel_per_radian();
+    let r = to.travel_per_radian();
     to.offset(move |s| [v[0] * r * s.angle, v[0] * r * s.rate]);
     Ok(())
 }

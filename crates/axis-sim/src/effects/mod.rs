@@ -1,9 +1,9 @@
 //! Effects that a model may lack: a registry of components of the closed loop.
 //!
-//! An [`Effect`] is one file and one line of [`EFFECTS`]. It changes a machine
-//! by [`Changes`]: parameters of the machine, and hooks where the loop calls
-//! it (a load on the table, a torque at the motor, the nut's kinematics, what
-//! the sensors show). At its null value it changes nothing, to the bit.
+//! An [`Effect`] is one file and one line of [`EFFECTS`]. It changes an axis
+//! by [`Changes`]: parameters by their [`Role`](crate::part::Role), whatever the kind of part, and
+//! hooks where the loop calls it (a load, a torque at the motor, the transmission's
+//! kinematics, what the sensors show). At its null value it changes nothing, to the bit.
 //!
 //! Effects add, whatever their order. Two entries of the same effect that agree
 //! in all that shapes them (a phase, a width) are one with the sum of their
@@ -31,6 +31,7 @@ mod install;
 mod inverter_dead_time;
 mod lead_error;
 mod motor_inertia;
+mod parameter;
 mod payload_mass;
 mod periodic_lead_error;
 mod position_dependent_friction;
@@ -46,11 +47,14 @@ mod transmission_stiffness;
 mod velocity_feedforward;
 mod viscous_friction;
 
-pub use changes::{Changes, Machine, ScrewState, TableState};
-pub(crate) use changes::{Hooks, MachineMut};
+pub(crate) use changes::Hooks;
+pub use changes::{Changes, ScrewState, SensorErrors, TableState};
 pub(crate) use install::install;
+pub use parameter::{EffectParameter, Measure, Nature, Need, Scales};
+use parameter::{PHASE, positive, shape, signed, size};
 
-use feed_dynamics::DriveError;
+use crate::axis::Axis;
+use crate::error::SetupError;
 
 /// Where in the machine an effect shows itself first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,22 +84,6 @@ impl EffectChannel {
     }
 }
 
-/// One number of an effect. All values in SI units.
-#[derive(Clone, Copy, Debug)]
-pub struct EffectParameter {
-    /// Its name in files.
-    pub name: &'static str,
-    /// Its SI unit; empty for a ratio.
-    pub unit: &'static str,
-    /// Where the search starts for it while the effect is small; for a size,
-    /// this is a typical one, whose null value is 0.
-    pub typical: f64,
-    /// Whether the effect vanishes where this is 0.
-    pub size: bool,
-    /// Least and greatest value.
-    pub bounds: [f64; 2],
-}
-
 /// An effect of the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct Effect {
@@ -109,50 +97,38 @@ pub struct Effect {
     pub depends_on: &'static str,
     /// Its numbers.
     pub parameters: &'static [EffectParameter],
-    /// Whether it exists on a rigid mass with a force gain too.
-    pub on_rigid: bool,
-    /// Changes a machine; `values` are in the order of `parameters`.
+    /// What an axis must have for it.
+    pub needs: &'static [Need],
+    /// Changes an axis; `values` are in the order of `parameters`.
     ///
     /// An effect made elsewhere, outside of [`EFFECTS`], can be put into
     /// [`crate::Axis::effects`] all the same; no search will name it.
-    pub install: fn(values: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError>,
+    pub install: fn(values: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError>,
 }
 
 impl Effect {
-    /// The values at which it changes nothing.
-    pub fn null(&self) -> Vec<f64> {
-        let null = |p: &EffectParameter| if p.size { 0.0 } else { p.typical };
+    /// The values at which it changes nothing, on an axis of those scales.
+    pub fn null(&self, on: &Scales) -> Vec<f64> {
+        let null = |p: &EffectParameter| if p.is_size() { 0.0 } else { p.typical(on) };
         self.parameters.iter().map(null).collect()
     }
 
-    /// Typical values.
-    pub fn typical(&self) -> Vec<f64> {
-        self.parameters.iter().map(|p| p.typical).collect()
+    /// Typical values there.
+    pub fn typical(&self, on: &Scales) -> Vec<f64> {
+        self.parameters.iter().map(|p| p.typical(on)).collect()
     }
 
-    /// Whether it exists on that kind of machine, or else why not.
+    /// Whether an axis can have it, or else why not.
     ///
     /// # Errors
-    /// The reason, as the end of a sentence about the effect.
-    pub fn applies_to(&self, machine: &Machine) -> Result<(), &'static str> {
-        self.fits(matches!(machine, Machine::Rigid(_)))
+    /// The reason, as a sentence without its stop.
+    pub fn applies_to(&self, axis: &Axis) -> Result<(), String> {
+        self.needs.iter().try_for_each(|need| need.met(axis))
     }
 
-    pub(crate) fn fits(&self, rigid: bool) -> Result<(), &'static str> {
-        if self.on_rigid || !rigid {
-            return Ok(());
-        }
-        Err(match self.channel {
-            EffectChannel::Torque => {
-                "it acts on parts of motor, current loop or contact that a rigid mass does not have"
-            }
-            EffectChannel::Kinematics => "a rigid mass has no screw and no motor encoder",
-            EffectChannel::Voltage => "a rigid mass has no motor voltages",
-            EffectChannel::Controller => {
-                "the controller of a rigid mass has no current loop and no feed-forward"
-            }
-            EffectChannel::Clock => "a rigid mass has one position channel only",
-        })
+    /// Its parameter of a nature.
+    pub fn place_of(&self, nature: impl Fn(&Nature) -> bool) -> Option<usize> {
+        self.parameters.iter().position(|p| nature(&p.nature))
     }
 
     /// The effect of that name.
@@ -173,46 +149,6 @@ pub struct ActiveEffect {
 impl PartialEq for ActiveEffect {
     fn eq(&self, other: &Self) -> bool {
         self.effect.name == other.effect.name && self.values == other.values
-    }
-}
-
-/// A number that is a size: the effect vanishes at 0.
-const fn size(name: &'static str, unit: &'static str, typical: f64, most: f64) -> EffectParameter {
-    EffectParameter {
-        name,
-        unit,
-        typical,
-        size: true,
-        bounds: [-most, most],
-    }
-}
-
-/// A size that cannot be negative.
-const fn positive(
-    name: &'static str,
-    unit: &'static str,
-    typical: f64,
-    most: f64,
-) -> EffectParameter {
-    EffectParameter {
-        bounds: [0.0, most],
-        ..size(name, unit, typical, most)
-    }
-}
-
-/// A number that shapes the effect.
-const fn shape(
-    name: &'static str,
-    unit: &'static str,
-    typical: f64,
-    bounds: [f64; 2],
-) -> EffectParameter {
-    EffectParameter {
-        name,
-        unit,
-        typical,
-        size: false,
-        bounds,
     }
 }
 

@@ -1,19 +1,21 @@
 //! `payload-mass`: mass on the table.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, Need, size};
+use crate::error::SetupError;
+use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "payload-mass",
     summary: "mass on the table",
     channel: EffectChannel::Torque,
     depends_on: "acceleration",
-    parameters: &[size("mass", "kg", 30.0, 1e3)],
-    on_rigid: true,
+    parameters: &[size("mass", Measure::Inertia, 30.0, 1e3)],
+    needs: &[Need::Role(Role::LoadInertia)],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
-    to.mass(v[0])?;
+    to.add(Role::LoadInertia, v[0])?;
     Ok(())
 }

@@ -1,22 +1,19 @@
 //! `process-force`: a force during a part of the time.
 
-use super::{Effect, EffectChannel, shape, size};
+use super::{Effect, EffectChannel, Measure, Nature, shape, signed};
+use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "process-force",
     summary: "a force during a part of the time",
     channel: EffectChannel::Torque,
     depends_on: "time",
-    parameters: &[
-        size("force", "N", 60.0, 1e4),
-        shape("start", "s", 1.0, [0.0, 1e3]),
-        shape("end", "s", 1.6, [0.0, 1e3]),
-    ],
-    on_rigid: true,
+    parameters: &[signed("force", Measure::Force, 60.0, 1e4), shape("start", Measure::Time, Nature::Begin([0.4, 3.0]), 1.0, [0.0, 1e3]), shape("end", Measure::Time, Nature::End([0.3, 1.5]), 1.6, [0.0, 1e3])],
+    needs: &[],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 3] = super::changes::array(values);
     // Rises and falls over 10 ms, so that the times can be estimated.
     let ramp = |t: f64| (t / 0.01).clamp(0.0, 1.0);

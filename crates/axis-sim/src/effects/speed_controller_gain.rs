@@ -1,19 +1,21 @@
 //! `speed-controller-gain`: gain of the speed controller.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, Need, signed};
+use crate::error::SetupError;
+use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "speed-controller-gain",
     summary: "gain of the speed controller",
     channel: EffectChannel::Controller,
     depends_on: "speed error",
-    parameters: &[size("relative_change", "", 0.05, 0.8)],
-    on_rigid: true,
+    parameters: &[signed("relative_change", Measure::Ratio, 0.05, 0.8)],
+    needs: &[Need::Role(Role::SpeedGain)],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
-    to.speed_gain(v[0])?;
+    to.scale(Role::SpeedGain, v[0])?;
     Ok(())
 }

@@ -1,19 +1,21 @@
 //! `stator-resistance`: resistance of the winding.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, Need, signed};
+use crate::error::SetupError;
+use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "stator-resistance",
     summary: "resistance of the winding",
     channel: EffectChannel::Voltage,
     depends_on: "current",
-    parameters: &[size("relative_change", "", 0.15, 0.8)],
-    on_rigid: false,
+    parameters: &[signed("relative_change", Measure::Ratio, 0.15, 0.8)],
+    needs: &[Need::Role(Role::Resistance)],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
-    to.motor(|p| p.resistance *= 1.0 + v[0])?;
+    to.scale(Role::Resistance, v[0])?;
     Ok(())
 }

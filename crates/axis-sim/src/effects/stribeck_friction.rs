@@ -1,6 +1,7 @@
 //! `stribeck-friction`: dry friction that falls with speed.
 
-use super::{Effect, EffectChannel, shape, size};
+use super::{Effect, EffectChannel, Measure, Nature, shape, size};
+use crate::error::SetupError;
 
 /// Upper end of the range that the survey of Armstrong-Hélouvry, Dupont and Canudas
 /// de Wit (1994, doi:10.1016/0005-1098(94)90209-7) gives for the velocity, m/s. With a
@@ -13,15 +14,12 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction that falls with speed",
     channel: EffectChannel::Torque,
     depends_on: "low speed",
-    parameters: &[
-        size("force", "N", 60.0, 5e3),
-        shape("velocity", "m/s", 0.02, [1e-3, FASTEST]),
-    ],
-    on_rigid: true,
+    parameters: &[size("force", Measure::Force, 60.0, 5e3), shape("velocity", Measure::Speed, Nature::Speed([0.004, 0.015, 0.05], [0.005, 0.05]), 0.02, [1e-3, FASTEST])],
+    needs: &[],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 2] = super::changes::array(values);
     to.load(move |t| {
         let ratio = t.speed / v[1];

@@ -1,21 +1,19 @@
 //! `thermal-expansion`: growth of the screw with time.
 
-use super::{Effect, EffectChannel, shape, size};
+use super::{Effect, EffectChannel, Measure, Nature, Need, shape, signed};
+use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "thermal-expansion",
     summary: "growth of the screw with time",
     channel: EffectChannel::Kinematics,
     depends_on: "time and position",
-    parameters: &[
-        size("strain", "", 4e-5, 2e-3),
-        shape("time_constant", "s", 5.0, [0.2, 1e3]),
-    ],
-    on_rigid: false,
+    parameters: &[signed("strain", Measure::Ratio, 4e-5, 2e-3), shape("time_constant", Measure::Time, Nature::Time([1.0, 5.0], [1.0, 10.0]), 5.0, [0.2, 1e3])],
+    needs: &[Need::Transmission],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 2] = super::changes::array(values);
     to.offset(move |s| {
         let left = (-s.time / v[1]).exp();

@@ -1,19 +1,21 @@
 //! `torque-constant`: torque per current.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, Need, signed};
+use crate::error::SetupError;
+use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "torque-constant",
     summary: "torque per current",
     channel: EffectChannel::Torque,
     depends_on: "current",
-    parameters: &[size("relative_change", "", 0.05, 0.5)],
-    on_rigid: true,
+    parameters: &[signed("relative_change", Measure::Ratio, 0.05, 0.5)],
+    needs: &[Need::Role(Role::TorqueConstant)],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
-    to.torque_constant(v[0])?;
+    to.scale(Role::TorqueConstant, v[0])?;
     Ok(())
 }

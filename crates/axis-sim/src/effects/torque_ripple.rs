@@ -1,23 +1,21 @@
 //! `torque-ripple`: torque that repeats at six times the electrical turn, in proportion to it.
 
-use super::{Effect, EffectChannel, shape, size};
+use super::{Effect, EffectChannel, Measure, Need, PHASE, size};
+use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "torque-ripple",
     summary: "torque that repeats at six times the electrical turn, in proportion to it",
     channel: EffectChannel::Torque,
     depends_on: "motor angle and current",
-    parameters: &[
-        size("relative_amplitude", "", 0.03, 0.5),
-        shape("phase", "rad", 0.0, [-7.0, 7.0]),
-    ],
-    on_rigid: false,
+    parameters: &[size("relative_amplitude", Measure::Ratio, 0.03, 0.5), PHASE],
+    needs: &[Need::Poles],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 2] = super::changes::array(values);
-    let order = 6.0 * f64::from(to.ball_screw()?.motor.parameters().pole_pairs);
+    let order = 6.0 * to.pole_pairs();
     to.torque(move |angle, torque| v[0] * torque * (order * angle + v[1]).sin());
     Ok(())
 }

@@ -1,19 +1,21 @@
 //! `transmission-stiffness`: stiffness of screw and nut.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, Need, signed};
+use crate::error::SetupError;
+use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "transmission-stiffness",
     summary: "stiffness of screw and nut",
     channel: EffectChannel::Kinematics,
     depends_on: "nut force",
-    parameters: &[size("relative_change", "", -0.2, 0.8)],
-    on_rigid: false,
+    parameters: &[signed("relative_change", Measure::Ratio, -0.2, 0.8)],
+    needs: &[Need::Role(Role::TransmissionStiffness)],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
-    to.drive(|p| p.nut_stiffness *= 1.0 + v[0])?;
+    to.scale(Role::TransmissionStiffness, v[0])?;
     Ok(())
 }

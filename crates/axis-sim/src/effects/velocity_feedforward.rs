@@ -1,19 +1,21 @@
 //! `velocity-feedforward`: share of the reference velocity that is fed forward.
 
-use super::{Effect, EffectChannel, size};
+use super::{Effect, EffectChannel, Measure, Need, signed};
+use crate::error::SetupError;
+use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "velocity-feedforward",
     summary: "share of the reference velocity that is fed forward",
     channel: EffectChannel::Controller,
     depends_on: "reference velocity",
-    parameters: &[size("relative_change", "", 0.002, 0.5)],
-    on_rigid: false,
+    parameters: &[signed("relative_change", Measure::Ratio, 0.002, 0.5)],
+    needs: &[Need::Role(Role::VelocityFeedforward)],
     install,
 };
 
-fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), feed_dynamics::DriveError> {
+fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
-    to.ball_screw()?.velocity_feedforward *= 1.0 + v[0];
+    to.scale(Role::VelocityFeedforward, v[0])?;
     Ok(())
 }

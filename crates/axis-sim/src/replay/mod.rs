@@ -11,13 +11,15 @@ mod reference;
 use std::sync::Arc;
 
 use axis_log::Log;
-use compensator::NoCompensation;
+use compensator::{Compensator, Correction, Sample};
 use trajectories::Motion;
 
-use crate::effects::{ActiveEffect, Hooks, Machine};
-use crate::rigid::{RigidCycle, Start};
-use crate::work::{check_period, cycles_of, substeps_of};
-use crate::{ClosedLoop, Cycle, Measured, RigidAxis};
+use crate::axis::Axis;
+use crate::channels::{ChannelPart, LogChannel, channels};
+use crate::effects::{ActiveEffect, Hooks};
+use crate::plant::Start;
+use crate::work::cycles_of;
+use crate::{ClosedLoop, Measured};
 pub use error::ReplayError;
 use error::check_length;
 pub use reference::LoggedReference;
@@ -27,7 +29,7 @@ pub use reference::LoggedReference;
 pub struct Trace {
     /// Name with unit, samples.
     pub channels: Vec<(&'static str, Vec<f64>)>,
-    /// Table speed, m/s, for looking at residuals.
+    /// Speed of the load, for looking at residuals.
     pub speed: Vec<f64>,
 }
 
@@ -43,56 +45,50 @@ impl Trace {
 /// sample per sampling period of the log, linear between.
 #[derive(Clone, Debug)]
 pub enum Probe {
-    /// Force on the table, N, against positive motion.
+    /// Force on the load, N or N·m, against positive motion.
     Load(Arc<[f64]>),
-    /// Displacement between screw and table, m.
+    /// Displacement between motor and load, m or rad.
     Offset(Arc<[f64]>),
 }
 
-/// One log's reference, ready to be run through any machine.
+/// One log's reference, ready to be run through any axis.
 #[derive(Clone, Debug)]
 pub struct Replay {
     reference: LoggedReference,
     samples: usize,
-    start: Start,
+    /// Position and speed at the log's first samples.
+    start: [f64; 2],
     added: Option<Vec<f64>>,
 }
 
-/// Column of a log: a reading of the sensors, or of the command.
-type Column = (&'static str, fn(&Cycle) -> f64);
+/// Name of the load's position in logs, m or rad.
+fn position_of(log: &Log) -> Result<&[f64], ReplayError> {
+    let rotary = "position_rad";
+    let name = if log.has(rotary) { rotary } else { "position_m" };
+    Ok(log.channel(name)?)
+}
 
-const COLUMNS: [Column; 6] = [
-    ("position_m", |c| c.measured.position),
-    ("motor_angle_rad", |c| c.measured.motor_angle),
-    ("iq_ref_a", |c| c.command.iq_ref),
-    ("iq_a", |c| c.measured.current.q),
-    ("ud_v", |c| c.command.voltage.d),
-    ("uq_v", |c| c.command.voltage.q),
-];
+/// What a log shows of a command that was added to the controller's.
+const ADDED: &str = "drive_command_added_v";
 
 impl Replay {
     /// The reference of a uniformly sampled log.
     ///
-    /// Where the table moves at the log's first samples, its position and speed
-    /// there are the start of a rigid machine.
+    /// Where the load moves at the log's first samples, its position and speed
+    /// there are the start of an axis that can begin in motion
+    /// ([`Control::starts_in_motion`](crate::control::Control::starts_in_motion)).
     ///
     /// # Errors
     /// [`ReplayError::Log`] where a channel is missing; [`ReplayError::Period`].
     pub fn new(log: &Log, period: f64) -> Result<Self, ReplayError> {
-        let position = log.channel("position_m")?;
+        let position = position_of(log)?;
         let few = position.len().min(6) - 1;
-        let start = Start {
-            position: position[0],
-            speed: (position[few] - position[0]) / (few.max(1) as f64 * period),
-        };
+        let speed = (position[few] - position[0]) / (few.max(1) as f64 * period);
         Ok(Self {
             reference: LoggedReference::new(log, period)?,
             samples: log.len(),
-            start,
-            added: log
-                .channel("drive_command_added_v")
-                .ok()
-                .map(<[f64]>::to_vec),
+            start: [position[0], speed],
+            added: log.channel(ADDED).ok().map(<[f64]>::to_vec),
         })
     }
 
@@ -101,94 +97,29 @@ impl Replay {
         &self.reference
     }
 
-    /// Where a rigid machine starts.
-    pub fn start(&self) -> Start {
+    /// Position and speed at the log's first samples.
+    pub fn start(&self) -> [f64; 2] {
         self.start
     }
 
-    /// Runs the reference through the machine, with `effects` beside its own.
+    /// Runs the reference through the axis, with `effects` beside its own.
     ///
     /// # Errors
-    /// [`ReplayError`]: the machine cannot be set up, or its loop does not hold.
+    /// [`ReplayError`]: the axis cannot be set up, or its loop does not hold.
     pub fn run(
         &self,
-        machine: &Machine,
+        axis: &Axis,
         effects: &[ActiveEffect],
         probe: Option<&Probe>,
     ) -> Result<Trace, ReplayError> {
-        match machine {
-            Machine::BallScrew(axis) => {
-                let mut axis = (**axis).clone();
-                axis.effects.extend_from_slice(effects);
-                let mut closed_loop = ClosedLoop::new(&axis)?;
-                if let Some(probe) = probe {
-                    closed_loop.add(|hooks| self.attach(hooks, probe));
-                }
-                self.follow(&closed_loop, |_| ())
+        let mut axis = axis.clone();
+        axis.effects.extend_from_slice(effects);
+        let closed_loop = ClosedLoop::disturbed(&axis, |hooks| {
+            if let Some(probe) = probe {
+                self.attach(hooks, probe);
             }
-            Machine::Rigid(axis) => {
-                let mut axis = (**axis).clone();
-                axis.effects.extend_from_slice(effects);
-                let (axis, mut hooks) = axis.with_effects()?;
-                if let Some(probe) = probe {
-                    self.attach(&mut hooks, probe);
-                }
-                self.follow_rigid(&axis, &hooks)
-            }
-        }
-    }
-
-    fn follow_rigid(&self, axis: &RigidAxis, hooks: &Hooks) -> Result<Trace, ReplayError> {
-        check_period(axis.period)?;
-        let cycles = cycles_of(self.reference.duration(), axis.period);
-        check_length(cycles, substeps_of(axis.period, axis.step))?;
-        let added = |k: usize| {
-            let at = k as f64 * axis.period / self.reference.period;
-            let added = self.added.as_ref();
-            added
-                .and_then(|a| a.get(at.round() as usize))
-                .copied()
-                .unwrap_or(0.0)
-        };
-        let log = axis
-            .follow(hooks, &self.reference, self.start, cycles as usize, added)
-            .map_err(|halt| match halt.position + halt.speed + halt.residual {
-                state if state.is_finite() => ReplayError::LoadNotFound {
-                    time: halt.time,
-                    position: halt.position,
-                    speed: halt.speed,
-                },
-                _ => ReplayError::Diverged { time: halt.time },
-            })?;
-        self.check_held(axis, &log)?;
-        let position: Vec<f64> = log.iter().map(|c| c.position).collect();
-        let command: Vec<f64> = log.iter().map(|c| c.command).collect();
-        let position = self.resample(position, axis.period, 0.0);
-        Ok(Trace {
-            speed: self.differences(&position),
-            channels: vec![
-                ("position_m", position),
-                ("drive_command_v", self.resample(command, axis.period, 0.0)),
-            ],
-        })
-    }
-
-    /// Whether the loop held the reference: in numbers, and within its limit.
-    fn check_held(&self, axis: &RigidAxis, log: &[RigidCycle]) -> Result<(), ReplayError> {
-        for (k, cycle) in log.iter().enumerate() {
-            let time = k as f64 * axis.period;
-            if !(cycle.position + cycle.command).is_finite() {
-                return Err(ReplayError::Diverged { time });
-            }
-            let Some(limit) = axis.following_error_limit else {
-                continue;
-            };
-            let error = self.reference.at(time).position - cycle.position;
-            if error.abs() > limit {
-                return Err(ReplayError::FollowingError { time, error, limit });
-            }
-        }
-        Ok(())
+        })?;
+        self.follow(&closed_loop, |_| ())
     }
 
     /// Runs the reference through a prepared closed loop; `sense` as in
@@ -202,30 +133,55 @@ impl Replay {
         closed_loop: &ClosedLoop,
         sense: impl FnMut(&mut Measured),
     ) -> Result<Trace, ReplayError> {
-        let period = closed_loop.axis().period;
+        let axis = closed_loop.axis();
+        let period = axis.period;
         let cycles = cycles_of(self.reference.duration(), period);
         check_length(cycles, closed_loop.steps(&self.reference) / cycles)?;
-        let cycles = cycles as usize;
-        let mut columns: [Vec<f64>; COLUMNS.len()] =
-            std::array::from_fn(|_| Vec::with_capacity(cycles));
-        let mut speed: Vec<f64> = Vec::with_capacity(cycles);
+        let compared = |c: &LogChannel| matches!(c.part, ChannelPart::Sensed | ChannelPart::Made);
+        let channels: Vec<LogChannel> = channels(axis).into_iter().filter(compared).collect();
+        let mut columns: Vec<Vec<f64>> = vec![Vec::with_capacity(cycles as usize); channels.len()];
+        let mut speed: Vec<f64> = Vec::with_capacity(cycles as usize);
+        let mut state = closed_loop.start(&self.begin(axis))?;
+        let mut added = Added {
+            replay: self,
+            period,
+            cycle: 0,
+        };
         closed_loop
-            .run_sensed(&self.reference, &mut NoCompensation, sense, |c| {
-                for (column, (_, read)) in columns.iter_mut().zip(&COLUMNS) {
-                    column.push(read(c));
+            .run_from(&mut state, &self.reference, &mut added, sense, |c| {
+                for (column, channel) in columns.iter_mut().zip(&channels) {
+                    column.push((channel.read)(c));
                 }
-                speed.push(c.table_speed);
+                speed.push(c.load_speed);
             })
             .completed()?;
         let late = closed_loop.clock_offset();
-        let channel = |((name, _), samples): (&Column, Vec<f64>)| {
-            let by = if *name == "position_m" { late } else { 0.0 };
-            (*name, self.resample(samples, period, by))
+        let channel = |(channel, samples): (&LogChannel, Vec<f64>)| {
+            let name = channel.name(axis);
+            let by = if name.starts_with("position_") {
+                late
+            } else {
+                0.0
+            };
+            (name, self.resample(samples, period, by))
         };
         Ok(Trace {
-            channels: COLUMNS.iter().zip(columns).map(channel).collect(),
+            channels: channels.iter().zip(columns).map(channel).collect(),
             speed: self.resample(speed, period, 0.0),
         })
+    }
+
+    /// Where an axis begins: at rest at the reference's start, or, where nothing that a
+    /// log does not show decides on how it goes on, in the motion that the log begins with.
+    fn begin(&self, axis: &Axis) -> Start {
+        let [position, speed] = self.start;
+        if axis.control.starts_in_motion() {
+            return Start {
+                speed,
+                ..Start::at(position)
+            };
+        }
+        Start::at(self.reference.at(0.0).position)
     }
 
     /// Samples at the log's instants of what was recorded every `period`, late by `by`.
@@ -249,15 +205,6 @@ impl Replay {
         (0..self.samples).map(at).collect()
     }
 
-    fn differences(&self, position: &[f64]) -> Vec<f64> {
-        let last = position.len() - 1;
-        let at = |k: usize| {
-            let (a, b) = (k.saturating_sub(1), (k + 1).min(last));
-            (position[b] - position[a]) / (self.reference.period * (b - a).max(1) as f64)
-        };
-        (0..=last).map(at).collect()
-    }
-
     fn attach(&self, hooks: &mut Hooks, probe: &Probe) {
         let h = self.reference.period;
         let value = move |samples: &[f64], t: f64| {
@@ -275,6 +222,32 @@ impl Replay {
         match probe.clone() {
             Probe::Load(samples) => hooks.load(move |t| value(&samples, t.time)[0]),
             Probe::Offset(samples) => hooks.offset(move |s| value(&samples, s.time)),
+        }
+    }
+}
+
+/// What the log shows was added to the controller's command.
+struct Added<'a> {
+    replay: &'a Replay,
+    period: f64,
+    cycle: usize,
+}
+
+impl Compensator for Added<'_> {
+    fn reset(&mut self) {
+        self.cycle = 0;
+    }
+
+    fn correct(&mut self, _: &Sample) -> Correction {
+        let at = self.cycle as f64 * self.period / self.replay.reference.period;
+        self.cycle += 1;
+        let added = self.replay.added.as_ref();
+        Correction {
+            position: 0.0,
+            iq: added
+                .and_then(|added| added.get(at.round() as usize))
+                .copied()
+                .unwrap_or(0.0),
         }
     }
 }

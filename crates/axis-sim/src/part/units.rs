@@ -4,32 +4,32 @@ use std::f64::consts::TAU;
 
 /// A physical dimension with the units that a key may end in.
 #[derive(Debug)]
-pub(super) struct Dimension {
+pub struct Dimension {
     /// What it is called in a message.
-    pub(super) name: &'static str,
-    units: &'static [(&'static str, f64)],
+    pub name: &'static str,
+    /// Each unit with its factor to SI, the usual one first.
+    pub units: &'static [(&'static str, f64)],
 }
 
 impl Dimension {
     /// The keys that give the quantity `name`.
-    pub(super) fn keys(&self, name: &str) -> impl Iterator<Item = String> {
+    pub(crate) fn keys(&self, name: &str) -> impl Iterator<Item = String> {
         self.units
             .iter()
             .map(move |(unit, _)| format!("{name}_{unit}"))
-    }
-
-    /// Each unit with its factor to SI, the usual one first.
-    pub(super) fn units(&self) -> &'static [(&'static str, f64)] {
-        self.units
     }
 }
 
 /// rad/s in one rpm.
 const RPM: f64 = TAU / 60.0;
+/// rad in one degree.
+const DEGREE: f64 = TAU / 360.0;
 
 macro_rules! dimensions {
     ($($constant:ident $name:literal: $($unit:literal $factor:expr),+;)+) => {
-        $(pub(super) const $constant: Dimension = Dimension {
+        $(
+            #[doc = concat!("The ", $name, ".")]
+            pub static $constant: Dimension = Dimension {
             name: $name,
             units: &[$(($unit, $factor)),+],
         };)+
@@ -62,14 +62,29 @@ dimensions! {
     POSITION_GAIN "unit of a position gain":
         "rpm_per_mm" RPM * 1e3, "rad_per_s_per_m" 1.0;
     SPEED_PROPORTIONAL "unit of a speed controller's proportional gain":
-        "a_per_rpm" 1.0 / RPM, "a_s_per_rad" 1.0;
+        "a_per_rpm" 1.0 / RPM, "a_s_per_rad" 1.0, "a_s_per_m" 1.0,
+        "n_m_s_per_rad" 1.0, "n_m_per_rpm" 1.0 / RPM, "n_s_per_m" 1.0;
     SPEED_INTEGRAL "unit of a speed controller's integral gain":
-        "a_per_rpm_s" 1.0 / RPM, "a_per_rad" 1.0;
+        "a_per_rpm_s" 1.0 / RPM, "a_per_rad" 1.0, "a_per_m" 1.0,
+        "n_m_per_rad" 1.0, "n_per_m" 1.0;
+    ACCELERATION_FEEDFORWARD "unit of an acceleration feed-forward":
+        "a_s2_per_m" 1.0, "a_s2_per_rad" 1.0, "n_m_s2_per_m" 1.0, "n_m_s2_per_rad" 1.0, "n_s2_per_m" 1.0;
+    VELOCITY_GAIN "unit of a velocity gain (Kv)": "per_s" 1.0, "m_per_min_per_mm" 1e3 / 60.0;
+    ANGLE "unit of angle": "deg" DEGREE, "rad" 1.0, "arcmin" DEGREE / 60.0, "arcsec" DEGREE / 3600.0;
+    ANGULAR_SPEED "unit of angular speed": "deg_per_s" DEGREE, "rad_per_s" 1.0, "rpm" RPM;
+    ANGULAR_ACCELERATION "unit of angular acceleration": "deg_per_s2" DEGREE, "rad_per_s2" 1.0;
+    ANGULAR_JERK "unit of angular jerk": "deg_per_s3" DEGREE, "rad_per_s3" 1.0;
+    FORCE_CONSTANT "unit of a force constant": "n_per_a" 1.0;
     FORCE "unit of force": "n" 1.0, "kn" 1e3;
     LINEAR_DAMPING "unit of damping": "n_s_per_m" 1.0;
     FORCE_GAIN "unit of a force gain": "n_per_v" 1.0;
-    RATE "unit of a position gain": "per_s" 1.0;
-    SPEED_GAIN "unit of a speed gain": "v_s_per_m" 1.0;
+    SPEED_GAIN "unit of a speed gain": "v_s_per_m" 1.0, "n_s_per_m" 1.0, "n_m_s_per_m" 1.0, "n_m_s_per_rad" 1.0, "a_s_per_m" 1.0;
+    PID_PROPORTIONAL "unit of a PID controller's proportional gain":
+        "v_per_m" 1.0, "n_per_m" 1.0, "n_m_per_rad" 1.0, "a_per_m" 1.0, "a_per_rad" 1.0;
+    PID_INTEGRAL "unit of a PID controller's integral gain":
+        "v_per_m_s" 1.0, "n_per_m_s" 1.0, "n_m_per_rad_s" 1.0, "a_per_m_s" 1.0, "a_per_rad_s" 1.0;
+    PID_DERIVATIVE "unit of a PID controller's derivative gain":
+        "v_s_per_m" 1.0, "n_s_per_m" 1.0, "n_m_s_per_rad" 1.0, "a_s_per_m" 1.0, "a_s_per_rad" 1.0;
     CURRENT_PROPORTIONAL "unit of a current controller's proportional gain": "v_per_a" 1.0;
     CURRENT_INTEGRAL "unit of a current controller's integral gain": "v_per_a_s" 1.0;
 }

@@ -1,0 +1,265 @@
+//! `pmsm-foc` and `linear-pmsm-foc`: a permanent-magnet synchronous motor whose
+//! current is controlled in the rotor's frame.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use foc_pmsm::{Dq, MotorParameters, Phases, Pmsm, Servo, ServoGains, ServoLimits, ServoState};
+
+use super::delay::DelayLine;
+use super::{Actuating, Actuator, Effort, Electrical, MotorMotion, Surroundings};
+use crate::cycle::Measured;
+use crate::part::units::*;
+use crate::part::{Key, Known, PartError, PartKind, Role, Values, count, quantity};
+
+pub(super) static ROTARY: PartKind<dyn Actuator> = PartKind {
+    name: "pmsm-foc",
+    summary: "permanent-magnet motor under field-oriented current control",
+    keys: &[
+        count("pole_pairs", 1, 100),
+        quantity("torque_constant", &TORQUE_CONSTANT, 1e-5, 1e4).role(Role::TorqueConstant),
+        RESISTANCE_KEY,
+        INDUCTANCE_D,
+        INDUCTANCE_Q,
+        DC_LINK,
+        D_PROPORTIONAL,
+        D_INTEGRAL,
+        Q_PROPORTIONAL,
+        Q_INTEGRAL,
+        CURRENT_LIMIT,
+        DEAD_TIME,
+        DELAY,
+    ],
+    known: KNOWN,
+    build: |v| {
+        let pole_pairs = v.count("pole_pairs")?;
+        build(v, pole_pairs, v.number("torque_constant")?, 1.0)
+    },
+};
+
+pub(super) static LINEAR: PartKind<dyn Actuator> = PartKind {
+    name: "linear-pmsm-foc",
+    summary: "linear permanent-magnet motor under field-oriented current control",
+    keys: &[
+        quantity("pole_pitch", &LENGTH, 1e-4, 1.0),
+        quantity("force_constant", &FORCE_CONSTANT, 1e-5, 1e6).role(Role::TorqueConstant),
+        RESISTANCE_KEY,
+        INDUCTANCE_D,
+        INDUCTANCE_Q,
+        DC_LINK,
+        D_PROPORTIONAL,
+        D_INTEGRAL,
+        Q_PROPORTIONAL,
+        Q_INTEGRAL,
+        CURRENT_LIMIT,
+        DEAD_TIME,
+        DELAY,
+    ],
+    known: KNOWN,
+    // One pole pair in π of the electrical angle, x π / pitch.
+    build: |v| {
+        let gear = PI / v.number("pole_pitch")?;
+        build(v, 1, v.number("force_constant")? / gear, gear)
+    },
+};
+
+const RESISTANCE_KEY: Key = quantity("resistance", &RESISTANCE, 0.0, 1e4).role(Role::Resistance);
+const INDUCTANCE_D: Key = quantity("inductance_d", &INDUCTANCE, 1e-8, 100.0);
+const INDUCTANCE_Q: Key = quantity("inductance_q", &INDUCTANCE, 1e-8, 100.0);
+const DC_LINK: Key = quantity("dc_link", &VOLTAGE, 1.0, 1e5);
+const D_PROPORTIONAL: Key = quantity("current_d_proportional", &CURRENT_PROPORTIONAL, 0.0, 1e6);
+const D_INTEGRAL: Key = quantity("current_d_integral", &CURRENT_INTEGRAL, 0.0, 1e9);
+const Q_PROPORTIONAL: Key = quantity("current_q_proportional", &CURRENT_PROPORTIONAL, 0.0, 1e6);
+const Q_INTEGRAL: Key = quantity("current_q_integral", &CURRENT_INTEGRAL, 0.0, 1e9);
+const CURRENT_LIMIT: Key = quantity("current_limit", &CURRENT, 1e-3, 1e5);
+const DEAD_TIME: Key = quantity("dead_time_voltage", &VOLTAGE, -1e3, 1e3).or(0.0).role(Role::DeadTimeVoltage);
+const DELAY: Key = quantity("command_delay", &TIME, 0.0, 0.1).or(0.0).role(Role::CommandDelay);
+
+const KNOWN: &[Known] = &[
+    Known {
+        name: "torque_constant",
+        scale: |v, by| {
+            v.scale("torque_constant", by);
+            v.scale("force_constant", by);
+        },
+    },
+    Known {
+        name: "resistance",
+        scale: |v, by| v.scale("resistance", by),
+    },
+    Known {
+        name: "inductance",
+        scale: |v, by| {
+            v.scale("inductance_d", by);
+            v.scale("inductance_q", by);
+        },
+    },
+];
+
+#[derive(Clone, Copy, Debug)]
+struct FieldOriented {
+    motor: Pmsm,
+    gains: ServoGains,
+    limits: ServoLimits,
+    /// K_t at i_d = 0, N·m/A (N/A).
+    constant: f64,
+    /// Radians of the electrical machine per radian (m) of the motor.
+    gear: f64,
+    dead_time_voltage: f64,
+    delay: f64,
+}
+
+fn build(
+    v: &Values,
+    pole_pairs: u32,
+    torque_constant: f64,
+    gear: f64,
+) -> Result<Arc<dyn Actuator>, PartError> {
+    let motor = Pmsm::new(MotorParameters {
+        pole_pairs,
+        resistance: v.number("resistance")?,
+        inductance_d: v.number("inductance_d")?,
+        inductance_q: v.number("inductance_q")?,
+        // K_t = 1.5 p ψ at i_d = 0.
+        flux_linkage: torque_constant / (1.5 * f64::from(pole_pairs)),
+    })
+    .map_err(|e| PartError::together(e, "other motor parameters"))?;
+    let gains = ServoGains {
+        position: 0.0,
+        speed_p: 0.0,
+        speed_i: 0.0,
+        d_p: v.number("current_d_proportional")?,
+        d_i: v.number("current_d_integral")?,
+        q_p: v.number("current_q_proportional")?,
+        q_i: v.number("current_q_integral")?,
+    };
+    let limits = ServoLimits {
+        current: v.number("current_limit")?,
+        // The largest circle that SVPWM reaches linearly.
+        voltage: v.number("dc_link")? / 3f64.sqrt(),
+    };
+    Ok(Arc::new(FieldOriented {
+        motor,
+        gains,
+        limits,
+        constant: gear * torque_constant,
+        gear,
+        dead_time_voltage: v.or("dead_time_voltage", 0.0),
+        delay: v.or("command_delay", 0.0),
+    }))
+}
+
+impl Actuator for FieldOriented {
+    fn effort(&self) -> Effort {
+        Effort::Current
+    }
+
+    fn limit(&self) -> f64 {
+        self.limits.current
+    }
+
+    fn torque_constant(&self, _: f64) -> f64 {
+        self.constant
+    }
+
+    fn has_currents(&self) -> bool {
+        true
+    }
+
+    fn pole_pairs(&self) -> Option<f64> {
+        Some(self.gear * f64::from(self.motor.parameters().pole_pairs))
+    }
+
+    fn start(&self, on: &Surroundings) -> Result<Box<dyn Actuating>, PartError> {
+        let servo = Servo::new(self.gains, self.limits, on.period)
+            .map_err(|e| PartError::together(e, "other current controllers"))?;
+        Ok(Box::new(State {
+            law: *self,
+            servo,
+            state: ServoState::default(),
+            delay: DelayLine::new(self.delay / on.period),
+            current: Dq::ZERO,
+            voltage: Dq::ZERO,
+            saturated: false,
+        }))
+    }
+}
+
+#[derive(Clone, Debug)]
+struct State {
+    law: FieldOriented,
+    servo: Servo,
+    state: ServoState,
+    delay: DelayLine,
+    current: Dq,
+    voltage: Dq,
+    saturated: bool,
+}
+
+impl Actuating for State {
+    fn settle(&mut self, torque: f64, speed: f64) -> f64 {
+        let motor = &self.law.motor;
+        let q = motor.q_current(torque / self.law.gear);
+        self.current = Dq { d: 0.0, q };
+        self.voltage = motor.steady_voltage(self.current, self.law.gear * speed);
+        self.state = ServoState::settled(q, self.voltage);
+        self.delay.settle(q);
+        q
+    }
+
+    fn command(&mut self, effort: f64, measured: &Measured) {
+        let reference = Dq {
+            d: 0.0,
+            q: self.delay.push(effort),
+        };
+        let error = reference - measured.current;
+        let (voltage, d, q) = self.servo.current_loop(&mut self.state, error, Dq::ZERO);
+        self.voltage = voltage;
+        self.saturated = d || q;
+    }
+
+    fn torque(&mut self, motor: &MotorMotion, h: f64) -> f64 {
+        let law = &self.law;
+        let voltage = self.voltage + self.lost_voltage(motor.angle);
+        let speed = law.gear * motor.speed;
+        self.current = law.motor.step(self.current, voltage, speed, h);
+        law.gear * law.motor.torque(self.current)
+    }
+
+    fn electrical(&self) -> Electrical {
+        Electrical {
+            current: self.current,
+            voltage: self.voltage,
+            saturated: self.saturated,
+        }
+    }
+
+    fn copy(&self) -> Box<dyn Actuating> {
+        Box::new(self.clone())
+    }
+}
+
+/// Half the current ripple below which dead time counts less, A.
+const DEAD_TIME_CURRENT: f64 = 0.05;
+
+impl State {
+    /// What dead time takes from the voltage, in the rotor's frame: in each
+    /// phase against its current, softened below [`DEAD_TIME_CURRENT`], where
+    /// the current's ripple makes it cross zero in every period.
+    fn lost_voltage(&self, motor_angle: f64) -> Dq {
+        let lost = self.law.dead_time_voltage;
+        if lost == 0.0 {
+            return Dq::ZERO;
+        }
+        let at = self.law.motor.electrical_speed(self.law.gear * motor_angle);
+        let phases = self.current.inverse_park(at).inverse_clarke();
+        let soft = |i: f64| -lost * (i / DEAD_TIME_CURRENT).tanh();
+        Phases {
+            a: soft(phases.a),
+            b: soft(phases.b),
+            c: soft(phases.c),
+        }
+        .clarke()
+        .park(at)
+    }
+}

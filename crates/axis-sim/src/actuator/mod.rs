@@ -1,0 +1,129 @@
+//! Actuators: what makes a torque of the controller's command.
+
+mod delay;
+mod field_oriented;
+mod force_gain;
+mod torque_source;
+
+use std::fmt;
+
+use foc_pmsm::Dq;
+
+use crate::cycle::Measured;
+use crate::part::{PartError, PartKind};
+
+/// All kinds of actuator, one line each.
+pub const ACTUATORS: &[&PartKind<dyn Actuator>] = &[
+    &field_oriented::ROTARY,
+    &field_oriented::LINEAR,
+    &torque_source::ROTARY,
+    &torque_source::LINEAR,
+    &force_gain::KIND,
+];
+
+/// In what an actuator takes its command: the unit that the gains of a speed
+/// controller end in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// Current, A.
+    Current,
+    /// Torque, N·m.
+    Torque,
+    /// Force, N.
+    Force,
+    /// Voltage of a drive command, V.
+    Voltage,
+}
+
+impl Effort {
+    /// Its SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Current => "A",
+            Self::Torque => "N·m",
+            Self::Force => "N",
+            Self::Voltage => "V",
+        }
+    }
+}
+
+/// What an actuator and a control are told of the axis that they are on.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings {
+    /// Control period, s.
+    pub period: f64,
+    /// Travel of the load per radian of the motor, m/rad or rad/rad.
+    pub travel_per_radian: f64,
+    /// Greatest command that the actuator takes.
+    pub effort_limit: f64,
+}
+
+/// The motor's motion in a step.
+#[derive(Clone, Copy, Debug)]
+pub struct MotorMotion {
+    /// Angle at its start, rad.
+    pub angle: f64,
+    /// Mean speed, rad/s.
+    pub speed: f64,
+}
+
+/// Currents and voltages of an actuator that has some.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Electrical {
+    /// Currents, A.
+    pub current: Dq,
+    /// Voltages held over the cycle, V.
+    pub voltage: Dq,
+    /// Whether the voltage is at its limit.
+    pub saturated: bool,
+}
+
+/// An actuator, immutable.
+pub trait Actuator: fmt::Debug + Send + Sync {
+    /// In what it takes its command.
+    fn effort(&self) -> Effort;
+
+    /// Greatest command that it takes.
+    fn limit(&self) -> f64;
+
+    /// Torque per command at rest, where the load moves by `travel` a radian:
+    /// N·m per unit of effort.
+    fn torque_constant(&self, travel: f64) -> f64;
+
+    /// Whether it has currents and voltages to log.
+    fn has_currents(&self) -> bool {
+        false
+    }
+
+    /// Electrical periods per radian of the motor, where its torque ripples with them.
+    fn pole_pairs(&self) -> Option<f64> {
+        None
+    }
+
+    /// An actuator at rest, without a command.
+    ///
+    /// # Errors
+    /// [`PartError`] where it does not fit its surroundings.
+    fn start(&self, on: &Surroundings) -> Result<Box<dyn Actuating>, PartError>;
+}
+
+/// An actuator at work.
+pub trait Actuating: fmt::Debug + Send + Sync {
+    /// Brings it into the state in which it gives `torque` (N·m) at the motor speed
+    /// `speed` (rad/s); the command that holds it there.
+    fn settle(&mut self, torque: f64, speed: f64) -> f64;
+
+    /// Takes the command of a cycle, with what the sensors show at its start.
+    fn command(&mut self, effort: f64, measured: &Measured);
+
+    /// Torque at the end of a step of `h` seconds, N·m.
+    fn torque(&mut self, motor: &MotorMotion, h: f64) -> f64;
+
+    /// Its currents and voltages now; zero where it has none.
+    fn electrical(&self) -> Electrical {
+        Electrical::default()
+    }
+
+    /// A copy.
+    fn copy(&self) -> Box<dyn Actuating>;
+}

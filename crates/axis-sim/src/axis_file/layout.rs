@@ -1,0 +1,262 @@
+//! Which table of a file holds the keys of which part.
+//!
+//! A file has a section for each part, which names the part's kind. Files of the first
+//! schema have none: their `kind` stands for the kinds of all parts, and the keys stand in
+//! tables of their own.
+
+use super::error::AxisFileError;
+use super::fields::Fields;
+use super::registry::Registry;
+use crate::actuator::Actuator;
+use crate::control::Control;
+use crate::friction::Friction;
+use crate::mechanism::Mechanism;
+use crate::part::{Key, PartKind, count, named, word};
+
+/// Kinds of the first schema.
+pub(super) const SHORT_KINDS: [&str; 2] = ["ball-screw", "rigid-mass"];
+
+/// The four parts that every axis has once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Section {
+    Mechanism,
+    Actuator,
+    Control,
+    Friction,
+}
+
+/// Some keys of a part, or all, and the table that they stand in.
+type Place = (&'static str, Section, &'static [&'static str]);
+
+/// All keys of a part.
+const ALL: &[&str] = &[];
+
+/// A file with a section for each part.
+const SECTIONS: &[Place] = &[
+    ("mechanism", Section::Mechanism, ALL),
+    ("actuator", Section::Actuator, ALL),
+    ("control", Section::Control, ALL),
+    ("friction", Section::Friction, ALL),
+];
+
+/// `kind = "ball-screw"`, or none, in the first schema.
+const BALL_SCREW: &[Place] = &[
+    (
+        "screw",
+        Section::Mechanism,
+        &[
+            "length",
+            "diameter",
+            "lead",
+            "elements",
+            "youngs_modulus",
+            "poisson_ratio",
+            "density",
+        ],
+    ),
+    (
+        "drive",
+        Section::Mechanism,
+        &[
+            "motor_inertia",
+            "torque_sensor_inertia",
+            "motor_coupling",
+            "screw_coupling",
+            "nut_stiffness",
+            "table_mass",
+            "stiffness_damping",
+            "bearing_stiffness",
+            "mounting",
+            "backlash",
+        ],
+    ),
+    ("friction", Section::Friction, ALL),
+    (
+        "motor",
+        Section::Actuator,
+        &[
+            "pole_pairs",
+            "torque_constant",
+            "resistance",
+            "inductance_d",
+            "inductance_q",
+        ],
+    ),
+    (
+        "inverter",
+        Section::Actuator,
+        &["dc_link", "dead_time_voltage"],
+    ),
+    (
+        "control",
+        Section::Actuator,
+        &[
+            "current_d_proportional",
+            "current_d_integral",
+            "current_q_proportional",
+            "current_q_integral",
+            "current_limit",
+            "command_delay",
+        ],
+    ),
+    ("control", Section::Control, ALL),
+];
+
+/// `kind = "rigid-mass"` in the first schema.
+const RIGID_MASS: &[Place] = &[
+    ("body", Section::Mechanism, ALL),
+    ("body", Section::Actuator, &["force_gain"]),
+    ("body", Section::Friction, ALL),
+    ("control", Section::Control, ALL),
+    ("control", Section::Actuator, &["command_limit"]),
+];
+
+/// The kinds of a file's parts, and where their keys stand.
+pub(super) struct Layout {
+    pub mechanism: &'static PartKind<dyn Mechanism>,
+    pub actuator: &'static PartKind<dyn Actuator>,
+    pub control: &'static PartKind<dyn Control>,
+    pub friction: &'static PartKind<Friction>,
+    places: &'static [Place],
+}
+
+impl Layout {
+    /// A file with a section for each part.
+    #[cfg(test)]
+    pub fn sections(
+        mechanism: &'static PartKind<dyn Mechanism>,
+        actuator: &'static PartKind<dyn Actuator>,
+        control: &'static PartKind<dyn Control>,
+        friction: &'static PartKind<Friction>,
+    ) -> Self {
+        Self {
+            mechanism,
+            actuator,
+            control,
+            friction,
+            places: SECTIONS,
+        }
+    }
+
+    /// Whether each part has a section, which names its kind.
+    pub fn has_sections(&self) -> bool {
+        std::ptr::eq(self.places, SECTIONS)
+    }
+
+    /// What a file has, by its sections or its kind.
+    pub fn of(root: &Fields<'_>, registry: &Registry) -> Result<Self, AxisFileError> {
+        if !SECTIONS.iter().any(|(table, ..)| *table != "control" && *table != "friction" && root.has(table)) {
+            let rigid = root.has("kind") && root.word("kind")? == SHORT_KINDS[1];
+            let (kinds, places) = match rigid {
+                true => (["rigid-mass", "force-gain", "p-p", "coulomb"], RIGID_MASS),
+                false => (
+                    ["ball-screw", "pmsm-foc", "p-pi", "lugre-at-motor"],
+                    BALL_SCREW,
+                ),
+            };
+            let [mechanism, actuator, control, friction] = kinds;
+            let found = || {
+                Some(Self {
+                    mechanism: named(&registry.mechanisms, mechanism)?,
+                    actuator: named(&registry.actuators, actuator)?,
+                    control: named(&registry.controls, control)?,
+                    friction: named(&registry.frictions, friction)?,
+                    places,
+                })
+            };
+            return found().ok_or_else(|| {
+                let what = "has kinds that are not registered".to_owned();
+                root.refuse_table(what, "a file with a section for each part")
+            });
+        }
+        Ok(Self {
+            mechanism: kind_in(root, "mechanism", &registry.mechanisms)?,
+            actuator: kind_in(root, "actuator", &registry.actuators)?,
+            control: kind_in(root, "control", &registry.controls)?,
+            friction: kind_in(root, "friction", &registry.frictions)?,
+            places: SECTIONS,
+        })
+    }
+
+    fn part_keys(&self, section: Section) -> &'static [Key] {
+        match section {
+            Section::Mechanism => self.mechanism.keys,
+            Section::Actuator => self.actuator.keys,
+            Section::Control => self.control.keys,
+            Section::Friction => self.friction.keys,
+        }
+    }
+
+    /// Keys of a part that stand in a table: its name, and the keys.
+    fn keys_of(&self, place: &Place) -> impl Iterator<Item = Key> {
+        let (_, section, names) = *place;
+        let wanted = move |key: &&Key| names.is_empty() || names.contains(&key.name);
+        self.part_keys(section).iter().filter(wanted).cloned()
+    }
+
+    /// The tables of the parts: name, and keys beside `own` ones of that table.
+    pub fn tables(&self, own: &[(&'static str, Vec<Key>)]) -> Vec<Key> {
+        let mut names: Vec<&'static str> = Vec::new();
+        for (table, ..) in self.places {
+            if !names.contains(table) {
+                names.push(table);
+            }
+        }
+        let table = |name: &'static str| {
+            let places = self.places.iter().filter(|(table, ..)| *table == name);
+            let parts = places.flat_map(|place| self.keys_of(place));
+            let own = own.iter().filter(|(table, _)| *table == name);
+            let own = own.flat_map(|(_, keys)| keys.iter().cloned());
+            let mut keys: Vec<Key> = own.chain(parts).collect();
+            if self.has_sections() {
+                keys.insert(0, kind());
+            }
+            Key::of_table(name, keys)
+        };
+        names.into_iter().map(table).collect()
+    }
+
+    /// The tables and keys of one part.
+    pub fn places(&self, section: Section) -> Vec<(&'static str, Vec<Key>)> {
+        let own = self.places.iter().filter(|(_, of, _)| *of == section);
+        own.map(|place| (place.0, self.keys_of(place).collect()))
+            .collect()
+    }
+}
+
+/// `kind`, which has been read when the rest of its table is.
+fn kind() -> Key {
+    crate::part::text("kind")
+}
+
+/// The kind that the section `table` names.
+pub(super) fn kind_in<P: ?Sized>(
+    root: &Fields<'_>,
+    table: &'static str,
+    kinds: &[&'static PartKind<P>],
+) -> Result<&'static PartKind<P>, AxisFileError> {
+    let section = root.peek(table, vec![kinds_key(kinds)])?;
+    kind_of(&section, kinds)
+}
+
+/// The kind that a table names.
+pub(super) fn kind_of<P: ?Sized>(
+    section: &Fields<'_>,
+    kinds: &[&'static PartKind<P>],
+) -> Result<&'static PartKind<P>, AxisFileError> {
+    let name = section.word("kind")?;
+    named(kinds, name).ok_or_else(|| {
+        let valid = kinds.iter().map(|kind| kind.name).collect::<Vec<_>>();
+        section.refuse_value("kind", format!("is \"{name}\""), valid.join(", "))
+    })
+}
+
+/// `kind`, one of the names of `kinds`.
+pub(super) fn kinds_key<P: ?Sized>(kinds: &[&'static PartKind<P>]) -> Key {
+    Key::of_words("kind", kinds.iter().map(|kind| kind.name).collect())
+}
+
+/// What tells which keys a file may have.
+pub(super) fn first_keys() -> Vec<Key> {
+    vec![word("kind", &SHORT_KINDS), count("schema", 1, 2)]
+}

@@ -1,0 +1,349 @@
+//! An axis from the tables of its file.
+
+use std::path::PathBuf;
+
+use trajectories::{Limits, Motion, SCurve};
+
+use super::error::AxisFileError;
+use super::extras::{self, check_step};
+use super::fields::Fields;
+use super::keys::{effort_names, keys};
+use super::layout::{Layout, Section, kind_of, kinds_key};
+use super::registry::Registry;
+use crate::SixDigits;
+use crate::actuator::Effort;
+use crate::axis::{
+    Axis, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, Range, SampleRanges, Sensors,
+    Simulation, Stroke, Tolerances,
+};
+use crate::closed_loop::ClosedLoop;
+use crate::friction::Place;
+use crate::load::Load;
+use crate::mechanism::{Freedom, Way};
+use crate::part::{Key, Part, PartKind, Values};
+use crate::sensor::Sensor;
+use crate::work::{MOST_STEPS, cycles_of, substeps_of};
+
+/// Tracking error at which a run is given up where a file of an axis that turns does
+/// not say, rad.
+const FOLLOWING_ANGLE_LIMIT: f64 = 0.1;
+
+/// Step of an exact way at which a whole file runs, s.
+const EXACT_STEP: f64 = 1e-5;
+
+pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFileError> {
+    let layout = Layout::of(&root, registry)?;
+    // A mistyped table is named before what it would have held is missed; what is in the
+    // tables depends on how the load moves and on what the actuator takes.
+    let root = root.with_keys(keys(&layout, Freedom::Linear, Effort::Current))?;
+    let mechanism = part(&root, &layout, Section::Mechanism, layout.mechanism)?;
+    let freedom = mechanism.freedom();
+    let actuator = part(&root, &layout, Section::Actuator, layout.actuator)?;
+    let root = root.with_keys(keys(&layout, freedom, actuator.effort()))?;
+    root.count("schema")?;
+    let friction = part(&root, &layout, Section::Friction, layout.friction)?;
+    if let Place::Load(of) = friction.at
+        && of != freedom
+    {
+        let what = format!(
+            "is of kind \"{}\", per {}, and the load of the mechanism \"{}\" moves in {}",
+            friction.kind().name,
+            of.unit(),
+            mechanism.kind().name,
+            freedom.unit()
+        );
+        let fits = registry.frictions.iter().map(|kind| kind.name);
+        let fits: Vec<&str> = fits
+            .filter(|name| name.ends_with("-rotary") == (freedom == Freedom::Rotary))
+            .collect();
+        return Err(root.table("friction")?.refuse_table(what, &fits.join(", ")));
+    }
+    let control_table = root.table("control")?;
+    let control = part(&root, &layout, Section::Control, layout.control)?;
+    if let Some(effort) = control.effort()
+        && effort != actuator.effort()
+    {
+        let what = format!(
+            "has gains that end in a command in {}, but the actuator \"{}\" takes one in {}",
+            effort.unit(),
+            actuator.kind().name,
+            actuator.effort().unit()
+        );
+        let valid = format!("gains in units of {}", actuator.effort().unit());
+        return Err(control_table.refuse_table(what, &valid));
+    }
+    let period = 1.0 / control_table.number("frequency")?;
+    let simulation = simulation(&root, &layout, mechanism.exact_step().is_some())?;
+    check_step(&root.table("simulation")?, period, simulation.step)?;
+    let stroke = extras::stroke(&root.table("stroke")?, mechanism.reach(), freedom)?;
+    let limit = control_table.optional_number("following_error_limit")?;
+    let following_error_limit = limit.unwrap_or(match (layout.has_sections(), freedom) {
+        (_, Freedom::Rotary) => FOLLOWING_ANGLE_LIMIT,
+        (false, _) if control.starts_in_motion() => f64::INFINITY,
+        _ => FOLLOWING_ERROR_LIMIT,
+    });
+    let pace = Pace {
+        period,
+        steps: substeps_of(period, simulation.step),
+    };
+    let mut axis = Axis {
+        name: root.text("name")?.to_owned(),
+        description: root.optional_text("description")?.unwrap_or("").to_owned(),
+        loads: loads(&root, registry)?,
+        sensors: sensors(&root, registry, freedom)?,
+        samples: None,
+        trajectories: trajectories(&root, &stroke, &pace, freedom)?,
+        experiment: experiment(root.optional_table("experiment")?)?,
+        effects: Vec::new(),
+        tolerances: Tolerances::all(0.01),
+        log: extras::log(&root)?,
+        fingerprint: String::new(),
+        mechanism,
+        actuator,
+        control,
+        friction,
+        period,
+        following_error_limit,
+        simulation,
+        stroke,
+    };
+    axis.samples = match root.optional_table("samples")? {
+        Some(f) => Some(sample_ranges(&f, &axis)?),
+        None => implied_ranges(&axis),
+    };
+    axis.tolerances = extras::tolerances(&root, &axis.known())?;
+    fits(&root, &control_table, &axis)?;
+    axis.effects = extras::effects(&root, &axis, &registry.effects)?;
+    Ok(axis)
+}
+
+/// A part from the tables that its keys stand in.
+fn part<P: ?Sized>(
+    root: &Fields<'_>,
+    layout: &Layout,
+    section: Section,
+    kind: &'static PartKind<P>,
+) -> Result<Part<P>, AxisFileError> {
+    let mut values = Values::default();
+    let mut tables = Vec::new();
+    for (table, keys) in layout.places(section) {
+        // A table of optional keys may be left out with them.
+        let table = match keys.iter().all(|key| key.optional) {
+            true => root.optional_table(table)?,
+            false => Some(root.table(table)?),
+        };
+        if let Some(table) = table {
+            table.part(&keys, &mut values)?;
+            tables.push((table, keys));
+        }
+    }
+    Part::new(kind, values).map_err(|error| {
+        let holds = |(_, keys): &&(Fields<'_>, Vec<Key>)| {
+            keys.iter().any(|key| Some(key.name) == error.key)
+        };
+        let last = tables.iter().find(holds).or(tables.last());
+        match last {
+            Some((table, _)) => table.refuse_part(&error),
+            None => root.refuse_part(&error),
+        }
+    })
+}
+
+/// A part in a table of its own, which names its kind.
+fn own_part<P: ?Sized>(
+    table: Fields<'_>,
+    kinds: &[&'static PartKind<P>],
+) -> Result<Part<P>, AxisFileError> {
+    let mut values = Values::default();
+    let kind = kind_of(&table.with_kind(kinds_key(kinds)), kinds)?;
+    let mut keys = kind.keys.to_vec();
+    keys.push(kinds_key(kinds));
+    let table = table.with_keys(keys)?;
+    table.part(kind.keys, &mut values)?;
+    Part::new(kind, values).map_err(|error| table.refuse_part(&error))
+}
+
+fn loads(root: &Fields<'_>, registry: &Registry) -> Result<Vec<Part<dyn Load>>, AxisFileError> {
+    let tables = root.unchecked("load", vec![kinds_key(&registry.loads)])?;
+    let one = |table: Fields<'_>| own_part(table, &registry.loads);
+    tables.into_iter().map(one).collect()
+}
+
+/// `[sensors]`; without it they are perfect.
+fn sensors(
+    root: &Fields<'_>,
+    registry: &Registry,
+    freedom: Freedom,
+) -> Result<Sensors, AxisFileError> {
+    let Some(table) = root.optional_table("sensors")? else {
+        return Ok(Sensors::default());
+    };
+    let sensor = |name: &str, of: Freedom| -> Result<Option<Part<dyn Sensor>>, AxisFileError> {
+        if !table.has(name) {
+            return Ok(None);
+        }
+        let section = || table.peek(name, vec![kinds_key(&registry.sensors)]);
+        let part = own_part(section()?, &registry.sensors)?;
+        if part.freedom() == of {
+            return Ok(Some(part));
+        }
+        let what = format!(
+            "is \"{}\", a sensor in {}, where the position is in {}",
+            part.kind().name,
+            part.freedom().unit(),
+            of.unit()
+        );
+        let fits: Vec<&str> = match of {
+            Freedom::Linear => vec!["scale"],
+            Freedom::Rotary => vec!["encoder", "resolver"],
+        };
+        Err(section()?.refuse_value("kind", what, fits.join(", ")))
+    };
+    Ok(Sensors {
+        load: sensor("load", freedom)?.map_or(LoadSensor::Missing, LoadSensor::Fitted),
+        motor: sensor("motor", Freedom::Rotary)?,
+    })
+}
+
+/// Whether the parts make a loop at all, and the sensors are where they can be.
+fn fits(root: &Fields<'_>, control: &Fields<'_>, axis: &Axis) -> Result<(), AxisFileError> {
+    if axis.sensors.motor.is_some() && !axis.mechanism.has_motor_encoder() {
+        let what = format!(
+            "has a motor of its own, but the mechanism \"{}\" moves as one with it",
+            axis.mechanism.kind().name
+        );
+        let valid = "[sensors.load] alone";
+        return Err(root.table("sensors")?.refuse_table(what, valid));
+    }
+    ClosedLoop::new(axis).map_err(|error| match error {
+        crate::SetupError::Part(error) => control.refuse_part(&error),
+        error => control.refuse_table(error.to_string(), "other parameters"),
+    })?;
+    Ok(())
+}
+
+fn sample_ranges(f: &Fields<'_>, axis: &Axis) -> Result<SampleRanges, AxisFileError> {
+    let range = |[low, high]: [&str; 2]| {
+        let (least, most) = (f.number(low)?, f.number(high)?);
+        if least < most {
+            return Ok(Range { least, most });
+        }
+        let (a, b) = (SixDigits(least), SixDigits(most));
+        let what = format!("has {low} = {a}, not below {high} = {b} (SI)");
+        Err(f.refuse_table(what, "a minimum below the maximum"))
+    };
+    let ranges = SampleRanges {
+        position: range(["position_min", "position_max"])?,
+        speed: range(["speed_min", "speed_max"])?,
+        acceleration: range(["acceleration_min", "acceleration_max"])?,
+        effort: range(effort_names(axis.actuator.effort()))?,
+    };
+    let inside = |reach: Range| {
+        reach.contains(ranges.position.least) && reach.contains(ranges.position.most)
+    };
+    if !axis.mechanism.reach().is_none_or(inside) {
+        let what = "asks for positions off the screw".to_owned();
+        return Err(f.refuse_table(what, "positions from 0 to the screw's length"));
+    }
+    Ok(ranges)
+}
+
+/// Sample ranges of a file that has none: the stroke, and what the trajectories and the
+/// actuator reach. None where there are no trajectories.
+fn implied_ranges(axis: &Axis) -> Option<SampleRanges> {
+    let most = |of: fn(&Limits) -> f64| {
+        let all = axis.trajectories.iter().map(|t| of(&t.limits));
+        all.fold(0.0, f64::max)
+    };
+    let both_ways = |most: f64| Range {
+        least: -most,
+        most,
+    };
+    let (speed, acceleration) = (most(Limits::velocity), most(Limits::acceleration));
+    (speed > 0.0).then(|| SampleRanges {
+        position: Range {
+            least: axis.stroke.minimum,
+            most: axis.stroke.maximum,
+        },
+        speed: both_ways(1.5 * speed),
+        acceleration: both_ways(2.0 * acceleration),
+        effort: both_ways(axis.actuator.limit()),
+    })
+}
+
+fn simulation(
+    root: &Fields<'_>,
+    layout: &Layout,
+    has_exact_way: bool,
+) -> Result<Simulation, AxisFileError> {
+    let f = root.table("simulation")?;
+    let way = match layout.has_sections() {
+        true if !f.has("way") => Way::Fast,
+        true if f.word("way")? == "exact" => Way::Exact,
+        false if has_exact_way && f.word("nut_coupling")? == "moving-node" => Way::Exact,
+        _ => Way::Fast,
+    };
+    let asked = f.number("step")?;
+    let step = match (way, has_exact_way) {
+        (Way::Exact, true) => asked.min(EXACT_STEP),
+        _ => asked,
+    };
+    Ok(Simulation { step, way })
+}
+
+fn experiment(f: Option<Fields<'_>>) -> Result<Option<Experiment>, AxisFileError> {
+    let Some(f) = f else {
+        return Ok(None);
+    };
+    Ok(Some(Experiment {
+        machine: PathBuf::from(f.text("machine")?),
+        paper_tables: f.optional_text("paper_tables")?.map(PathBuf::from),
+    }))
+}
+
+/// Control period, s, and internal steps in it.
+struct Pace {
+    period: f64,
+    steps: f64,
+}
+
+fn trajectories(
+    root: &Fields<'_>,
+    stroke: &Stroke,
+    pace: &Pace,
+    freedom: Freedom,
+) -> Result<Vec<MoveSpec>, AxisFileError> {
+    let unit = freedom.unit();
+    // A move to the very end of the stroke may pass it by a rounding error.
+    let slack = 1e-12 * stroke.maximum.abs().max(stroke.minimum.abs());
+    let one = |f: Fields<'_>| {
+        let displacement = f.number("displacement")?;
+        let end = stroke.start + displacement;
+        if !(stroke.minimum - slack..=stroke.maximum + slack).contains(&end) {
+            let what = format!("ends at {} {unit}, outside the stroke", SixDigits(end));
+            let (least, most) = (SixDigits(stroke.minimum), SixDigits(stroke.maximum));
+            let valid = format!("an end from {least} {unit} to {most} {unit}");
+            return Err(f.refuse_table(what, &valid));
+        }
+        let (speed, acceleration) = (f.number("speed")?, f.number("acceleration")?);
+        let refuse =
+            |e: trajectories::TrajectoryError| f.refuse_table(e.to_string(), "other limits");
+        let limits = Limits::new(speed, acceleration, f.number("jerk")?).map_err(refuse)?;
+        let motion = SCurve::plan(stroke.start, end, &limits).map_err(refuse)?;
+        let steps = cycles_of(motion.duration(), pace.period) * pace.steps;
+        if steps > MOST_STEPS {
+            let what = format!(
+                "takes {} s, {} internal steps",
+                SixDigits(motion.duration()),
+                SixDigits(steps)
+            );
+            let valid = format!("a move of at most {} internal steps", SixDigits(MOST_STEPS));
+            return Err(f.refuse_table(what, &valid));
+        }
+        Ok(MoveSpec {
+            displacement,
+            limits,
+        })
+    };
+    root.tables("trajectory")?.into_iter().map(one).collect()
+}

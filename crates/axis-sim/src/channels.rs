@@ -1,0 +1,119 @@
+//! The channels of logs: one table.
+
+use ChannelPart::{Given, Made, Sensed, Shown};
+
+use crate::actuator::Effort;
+use crate::axis::Axis;
+use crate::cycle::Cycle;
+use crate::mechanism::Freedom;
+
+/// A channel of a log.
+#[derive(Clone, Copy, Debug)]
+pub struct LogChannel {
+    /// Name with unit, and unit, where the load moves along a line.
+    pub linear: [&'static str; 2],
+    /// The same where it turns.
+    pub rotary: [&'static str; 2],
+    /// How it is read from a cycle.
+    pub read: fn(&Cycle) -> f64,
+    /// Whether an axis has it.
+    pub of: fn(&Axis) -> bool,
+    /// What it is to a comparison of a log with a simulation.
+    pub part: ChannelPart,
+}
+
+/// What a channel is to a comparison of a log with a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChannelPart {
+    /// Given: time, reference, what was added.
+    Given,
+    /// Compared; with noise of its own from a sensor.
+    Sensed,
+    /// Compared; made by the controller from what it was shown.
+    Made,
+    /// Neither.
+    Shown,
+}
+
+impl LogChannel {
+    /// Its name on an axis.
+    pub fn name(&self, axis: &Axis) -> &'static str {
+        self.of_freedom(axis.freedom())[0]
+    }
+
+    /// Its name and unit where the load moves like this.
+    pub fn of_freedom(&self, freedom: Freedom) -> [&'static str; 2] {
+        match freedom {
+            Freedom::Linear => self.linear,
+            Freedom::Rotary => self.rotary,
+        }
+    }
+}
+
+/// A channel that is called the same whether the load moves along a line or turns.
+const fn same(
+    name: [&'static str; 2],
+    of: fn(&Axis) -> bool,
+    part: ChannelPart,
+    read: fn(&Cycle) -> f64,
+) -> LogChannel {
+    LogChannel {
+        linear: name,
+        rotary: name,
+        read,
+        of,
+        part,
+    }
+}
+
+/// A channel at the load, in its unit.
+const fn load(
+    linear: [&'static str; 2],
+    rotary: [&'static str; 2],
+    part: ChannelPart,
+    read: fn(&Cycle) -> f64,
+) -> LogChannel {
+    LogChannel {
+        linear,
+        rotary,
+        read,
+        of: |_| true,
+        part,
+    }
+}
+
+/// All channels, one line each.
+#[rustfmt::skip]
+pub const CHANNELS: &[LogChannel] = &[
+    same(["t_s", "s"], |_| true, Given, |c| c.time),
+    load(["position_ref_m", "m"], ["position_ref_rad", "rad"], Given, |c| c.reference.position),
+    load(["velocity_ref_m_s", "m/s"], ["velocity_ref_rad_s", "rad/s"], Given, |c| c.reference.velocity),
+    load(["acceleration_ref_m_s2", "m/s²"], ["acceleration_ref_rad_s2", "rad/s²"], Given, |c| c.reference.acceleration),
+    load(["position_m", "m"], ["position_rad", "rad"], Sensed, |c| c.measured.position),
+    same(["motor_angle_rad", "rad"], has_motor_encoder, Sensed, |c| c.measured.motor_angle),
+    same(["motor_speed_rad_s", "rad/s"], has_motor_encoder, Shown, |c| c.measured.motor_speed),
+    same(["speed_ref_rad_s", "rad/s"], has_motor_encoder, Shown, |c| c.command.speed_ref),
+    same(["iq_ref_a", "A"], has_currents, Made, |c| c.command.effort),
+    same(["iq_a", "A"], has_currents, Sensed, |c| c.measured.current.q),
+    same(["id_a", "A"], has_currents, Shown, |c| c.measured.current.d),
+    same(["ud_v", "V"], has_currents, Made, |c| c.command.voltage.d),
+    same(["uq_v", "V"], has_currents, Made, |c| c.command.voltage.q),
+    same(["torque_ref_n_m", "N·m"], |a| a.actuator.effort() == Effort::Torque, Made, |c| c.command.effort),
+    same(["force_ref_n", "N"], |a| a.actuator.effort() == Effort::Force, Made, |c| c.command.effort),
+    same(["drive_command_v", "V"], |a| a.actuator.effort() == Effort::Voltage, Made, |c| c.command.effort),
+    load(["correction_m", "m"], ["correction_rad", "rad"], Shown, |c| c.correction.position),
+    same(["iq_feedforward_a", "A"], has_currents, Shown, |c| c.correction.iq),
+];
+
+fn has_motor_encoder(axis: &Axis) -> bool {
+    axis.mechanism.has_motor_encoder()
+}
+
+fn has_currents(axis: &Axis) -> bool {
+    axis.actuator.has_currents()
+}
+
+/// The channels that logs of this axis have.
+pub fn channels(axis: &Axis) -> Vec<LogChannel> {
+    CHANNELS.iter().filter(|c| (c.of)(axis)).copied().collect()
+}

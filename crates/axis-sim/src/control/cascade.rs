@@ -1,0 +1,319 @@
+//! `p-pi`: the cascade of drives, a proportional position controller over a
+//! proportional-integral speed controller, each at its own rate.
+//!
+//! ```text
+//! ω_ref  = P (S_ref − S + Δ) + f_v v_ref / r                 P = Kv / r
+//! u      = PI(ω_ref − ω_m) + f_a a_ref + u_added             limited, anti-windup
+//! ```
+//!
+//! S is the load's position, the motor's, or both blended: slow from the load, fast from
+//! the motor. The speed passes a low pass on its way in, the command a low pass and a notch
+//! on its way out, where the file has them.
+
+use std::sync::Arc;
+
+use foc_pmsm::{Pi, PiParameters, PiState};
+
+use super::filter::Filter;
+use super::{Control, Controller, Demand, Situation, effort_of};
+use crate::SixDigits;
+use crate::actuator::{Effort, Surroundings};
+use crate::cycle::Measured;
+use crate::part::units::{
+    ACCELERATION_FEEDFORWARD, FREQUENCY, POSITION_GAIN, SPEED_INTEGRAL, SPEED_PROPORTIONAL, TIME,
+    VELOCITY_GAIN,
+};
+use crate::part::{PartError, PartKind, Role, Values, number, quantity, word};
+
+pub(super) static KIND: PartKind<dyn Control> = PartKind {
+    name: "p-pi",
+    summary: "cascade of a P position and a PI speed controller, feed-forward, filters",
+    keys: &[
+        quantity("position_gain", &POSITION_GAIN, 0.0, 1e9)
+            .optional()
+            .role(Role::PositionGain),
+        quantity("kv", &VELOCITY_GAIN, 0.0, 1e6)
+            .optional()
+            .role(Role::PositionGain),
+        number("velocity_feedforward", -10.0, 10.0).role(Role::VelocityFeedforward),
+        quantity("acceleration_feedforward", &ACCELERATION_FEEDFORWARD, 0.0, 1e9).optional(),
+        quantity("speed_proportional", &SPEED_PROPORTIONAL, 0.0, 1e9).role(Role::SpeedGain),
+        quantity("speed_integral", &SPEED_INTEGRAL, 0.0, 1e12)
+            .optional()
+            .role(Role::SpeedGain),
+        quantity("speed_integral_time", &TIME, 1e-6, 1e3).optional(),
+        word("feedback", &["load", "motor", "blend"]).optional(),
+        quantity("blend", &FREQUENCY, 1e-3, 1e5).optional(),
+        quantity("speed_rate", &FREQUENCY, 1.0, 1e6).optional(),
+        quantity("position_rate", &FREQUENCY, 1.0, 1e6).optional(),
+        quantity("speed_lowpass", &FREQUENCY, 1e-3, 1e6).optional(),
+        quantity("command_lowpass", &FREQUENCY, 1e-3, 1e6).optional(),
+        quantity("notch", &FREQUENCY, 1e-3, 1e6).optional(),
+        number("notch_damping", 1e-3, 10.0).optional(),
+        number("notch_depth", 0.0, 1.0).optional(),
+    ],
+    known: &[],
+    build,
+};
+
+#[derive(Clone, Copy, Debug)]
+enum PositionGain {
+    /// Motor speed per position error, (rad/s)/m.
+    AtMotor(f64),
+    /// Kv, 1/s.
+    AtLoad(f64),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Feedback {
+    Load,
+    Motor,
+    /// Load below this frequency (Hz), motor above.
+    Blend(f64),
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Cascade {
+    position: PositionGain,
+    velocity_feedforward: f64,
+    /// Effort per acceleration of the load.
+    acceleration_feedforward: f64,
+    speed: [f64; 2],
+    feedback: Feedback,
+    /// Hz; the control's own where there is none.
+    speed_rate: Option<f64>,
+    position_rate: Option<f64>,
+    speed_lowpass: Option<f64>,
+    command_lowpass: Option<f64>,
+    /// Frequency (Hz), damping, depth.
+    notch: Option<[f64; 3]>,
+    effort: Option<Effort>,
+}
+
+fn build(v: &Values) -> Result<Arc<dyn Control>, PartError> {
+    let position = match (v.optional("position_gain"), v.optional("kv")) {
+        (Some(gain), None) => PositionGain::AtMotor(gain),
+        (None, Some(kv)) => PositionGain::AtLoad(kv),
+        (None, None) => {
+            return Err(PartError::of(
+                "position_gain",
+                "is missing",
+                "one of position_gain_rpm_per_mm, position_gain_rad_per_s_per_m, kv_per_s, kv_m_per_min_per_mm",
+            ));
+        }
+        (Some(_), Some(_)) => {
+            return Err(PartError::of(
+                "kv",
+                "gives the position controller's gain a second time",
+                "one of position_gain and kv",
+            ));
+        }
+    };
+    let proportional = v.number("speed_proportional")?;
+    let integral = match (
+        v.optional("speed_integral"),
+        v.optional("speed_integral_time"),
+    ) {
+        (Some(_), Some(_)) => {
+            return Err(PartError::of(
+                "speed_integral_time",
+                "gives the integral's share a second time",
+                "one of speed_integral and speed_integral_time",
+            ));
+        }
+        (Some(integral), None) => integral,
+        (None, Some(time)) => proportional / time,
+        (None, None) => 0.0,
+    };
+    let feedback = match v.word("feedback") {
+        Some("motor") => Feedback::Motor,
+        Some("blend") => Feedback::Blend(v.number("blend")?),
+        _ => Feedback::Load,
+    };
+    let notch = v.optional("notch");
+    Ok(Arc::new(Cascade {
+        position,
+        velocity_feedforward: v.number("velocity_feedforward")?,
+        acceleration_feedforward: v.or("acceleration_feedforward", 0.0),
+        speed: [proportional, integral],
+        feedback,
+        speed_rate: v.optional("speed_rate"),
+        position_rate: v.optional("position_rate"),
+        speed_lowpass: v.optional("speed_lowpass"),
+        command_lowpass: v.optional("command_lowpass"),
+        notch: notch.map(|f| [f, v.or("notch_damping", 0.3), v.or("notch_depth", 0.1)]),
+        effort: effort_of(v.unit("speed_proportional")),
+    }))
+}
+
+impl Control for Cascade {
+    fn velocity_gain(&self, travel: f64) -> Option<f64> {
+        Some(match self.position {
+            PositionGain::AtMotor(gain) => gain * travel,
+            PositionGain::AtLoad(kv) => kv,
+        })
+    }
+
+    fn effort(&self) -> Option<Effort> {
+        self.effort
+    }
+
+    fn start(&self, on: &Surroundings) -> Result<Box<dyn Controller>, PartError> {
+        let speed_every = every("speed_rate", self.speed_rate, on.period)?;
+        let position_every = every("position_rate", self.position_rate, on.period)?;
+        let speed_period = on.period * f64::from(speed_every);
+        let pi = Pi::new(PiParameters {
+            kp: self.speed[0],
+            ki: self.speed[1],
+            limit: on.effort_limit,
+            period: speed_period,
+        })
+        .map_err(|e| PartError::together(e, "other control parameters"))?;
+        let low_pass = |at: Option<f64>| {
+            let filter = |f| Filter::low_pass(f, speed_period);
+            at.map(filter).transpose()
+        };
+        let notch = |[f, damping, depth]: [f64; 3]| Filter::notch(f, damping, depth, speed_period);
+        let blend = match self.feedback {
+            Feedback::Blend(frequency) => Some(Filter::low_pass(
+                frequency,
+                on.period * f64::from(position_every),
+            )?),
+            _ => None,
+        };
+        Ok(Box::new(State {
+            position_gain: match self.position {
+                PositionGain::AtMotor(gain) => gain,
+                PositionGain::AtLoad(kv) => kv / on.travel_per_radian,
+            },
+            speed_feedforward: self.velocity_feedforward / on.travel_per_radian,
+            acceleration_feedforward: self.acceleration_feedforward,
+            travel: on.travel_per_radian,
+            from_motor: matches!(self.feedback, Feedback::Motor),
+            blend,
+            speed_every,
+            position_every,
+            pi,
+            speed_filter: low_pass(self.speed_lowpass)?,
+            command_filter: low_pass(self.command_lowpass)?,
+            notch: self.notch.map(notch).transpose()?,
+            integral: PiState::default(),
+            cycle: 0,
+            demand: Demand::default(),
+        }))
+    }
+}
+
+/// Control cycles from one execution of a loop to the next.
+fn every(key: &'static str, rate: Option<f64>, period: f64) -> Result<u32, PartError> {
+    let Some(rate) = rate else {
+        return Ok(1);
+    };
+    let cycles = 1.0 / (rate * period);
+    let whole = cycles.round();
+    if (1.0..=1e6).contains(&whole) && (cycles - whole).abs() <= 1e-6 * whole {
+        return Ok(whole as u32);
+    }
+    let own = SixDigits(1.0 / period);
+    Err(PartError::of(
+        key,
+        format!("is {} Hz", SixDigits(rate)),
+        format!("the control frequency of {own} Hz, or that divided by a whole number"),
+    ))
+}
+
+#[derive(Clone, Debug)]
+struct State {
+    /// (rad/s)/m.
+    position_gain: f64,
+    /// (rad/s)/(m/s).
+    speed_feedforward: f64,
+    acceleration_feedforward: f64,
+    travel: f64,
+    from_motor: bool,
+    blend: Option<Filter>,
+    speed_every: u32,
+    position_every: u32,
+    pi: Pi,
+    speed_filter: Option<Filter>,
+    command_filter: Option<Filter>,
+    notch: Option<Filter>,
+    integral: PiState,
+    /// Control cycles so far, up to the least common multiple of the two rates.
+    cycle: u64,
+    demand: Demand,
+}
+
+impl State {
+    /// The position that the position controller goes by.
+    fn position(&mut self, measured: &Measured) -> f64 {
+        let motor = self.travel * measured.motor_angle;
+        if self.from_motor {
+            return motor;
+        }
+        match &mut self.blend {
+            None => measured.position,
+            Some(filter) => motor + filter.pass(measured.position - motor),
+        }
+    }
+}
+
+impl Controller for State {
+    fn settle(&mut self, effort: f64, measured: &Measured, speed: f64) {
+        self.integral = PiState { integral: effort };
+        let motor = self.travel * measured.motor_angle;
+        let speed = speed / self.travel;
+        let filters = [
+            (&mut self.blend, measured.position - motor),
+            (&mut self.speed_filter, speed),
+            (&mut self.command_filter, effort),
+            (&mut self.notch, effort),
+        ];
+        for (filter, value) in filters {
+            if let Some(filter) = filter {
+                filter.settle(value);
+            }
+        }
+        self.demand = Demand {
+            effort,
+            ..Demand::default()
+        };
+    }
+
+    fn cycle(&mut self, s: &Situation<'_>) -> Demand {
+        let cycle = self.cycle;
+        self.cycle += 1;
+        if cycle.is_multiple_of(u64::from(self.position_every)) {
+            let error = s.reference.position - self.position(s.measured) + s.correction.position;
+            let fed = self.speed_feedforward * s.reference.velocity;
+            self.demand.speed_ref = self.position_gain * error + fed;
+        }
+        if cycle.is_multiple_of(u64::from(self.speed_every)) {
+            let mut speed = s.measured.motor_speed;
+            if let Some(filter) = &mut self.speed_filter {
+                speed = filter.pass(speed);
+            }
+            let mut fed = s.correction.iq;
+            if self.acceleration_feedforward != 0.0 {
+                fed += self.acceleration_feedforward * s.reference.acceleration;
+            }
+            let error = self.demand.speed_ref - speed;
+            let integral = &mut self.integral;
+            let out = self
+                .pi
+                .update_with_feed_forward(integral, error, fed, f64::INFINITY);
+            let mut effort = out.value;
+            let filters = [&mut self.command_filter, &mut self.notch];
+            for filter in filters.into_iter().flatten() {
+                effort = filter.pass(effort);
+            }
+            self.demand.effort = effort;
+            self.demand.saturated = out.saturated;
+        }
+        self.demand
+    }
+
+    fn copy(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
+    }
+}

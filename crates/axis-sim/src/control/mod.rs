@@ -1,0 +1,92 @@
+//! Controls: from what the sensors show and the reference asks to the actuator's command.
+
+mod cascade;
+mod filter;
+mod p_p;
+mod pid;
+
+use std::fmt;
+
+use compensator::Correction;
+use trajectories::Setpoint;
+
+use crate::actuator::{Effort, Surroundings};
+use crate::cycle::Measured;
+use crate::part::{PartError, PartKind};
+
+/// All kinds of control, one line each.
+pub const CONTROLS: &[&PartKind<dyn Control>] = &[&cascade::KIND, &p_p::KIND, &pid::KIND];
+
+/// What a controller knows in a cycle.
+#[derive(Clone, Copy, Debug)]
+pub struct Situation<'a> {
+    /// What the load should do, at the load.
+    pub reference: &'a Setpoint,
+    /// What the sensors show.
+    pub measured: &'a Measured,
+    /// What the compensator adds: to the position error, and to the actuator's command.
+    pub correction: &'a Correction,
+}
+
+/// What a controller asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Demand {
+    /// Speed reference of the motor, rad/s; 0 where there is no speed loop.
+    pub speed_ref: f64,
+    /// Command of the actuator, in its unit.
+    pub effort: f64,
+    /// Whether the command is at its limit.
+    pub saturated: bool,
+}
+
+/// A control, immutable.
+pub trait Control: fmt::Debug + Send + Sync {
+    /// Kv of the position loop on a load that moves by `travel` a radian: speed per
+    /// position error, 1/s. None where there is no such loop.
+    fn velocity_gain(&self, travel: f64) -> Option<f64>;
+
+    /// Whether a run can begin in motion from position and speed alone: there are no
+    /// integrators whose state a log does not show.
+    fn starts_in_motion(&self) -> bool {
+        false
+    }
+
+    /// The unit in which its gains give the actuator's command, where they are tied to one.
+    fn effort(&self) -> Option<Effort> {
+        None
+    }
+
+    /// A controller at rest.
+    ///
+    /// # Errors
+    /// [`PartError`] where it does not fit its surroundings.
+    fn start(&self, on: &Surroundings) -> Result<Box<dyn Controller>, PartError>;
+}
+
+/// A controller at work.
+pub trait Controller: fmt::Debug + Send + Sync {
+    /// Brings it into the state that it has when it holds `effort` with all errors at
+    /// zero, the sensors showing `measured`, the load moving at `speed`.
+    fn settle(&mut self, effort: f64, measured: &Measured, speed: f64);
+
+    /// One control cycle.
+    fn cycle(&mut self, situation: &Situation<'_>) -> Demand;
+
+    /// A copy.
+    fn copy(&self) -> Box<dyn Controller>;
+}
+
+/// The effort that a unit of a gain begins with (`a_per_rpm`, `n_m_s_per_rad`).
+fn effort_of(unit: &str) -> Option<Effort> {
+    if unit.starts_with("a_") {
+        Some(Effort::Current)
+    } else if unit.starts_with("n_m_") {
+        Some(Effort::Torque)
+    } else if unit.starts_with("n_") {
+        Some(Effort::Force)
+    } else if unit.starts_with("v_") {
+        Some(Effort::Voltage)
+    } else {
+        None
+    }
+}

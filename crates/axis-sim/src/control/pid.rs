@@ -1,0 +1,107 @@
+//! `pid`: one controller from the position error to the command.
+//!
+//! ```text
+//! u = sat( K_P e + K_I ∫e + K_D ė ),   the derivative of the error through a low pass
+//! ```
+
+use std::sync::Arc;
+
+use super::filter::Filter;
+use super::{Control, Controller, Demand, Situation};
+use crate::actuator::{Effort, Surroundings};
+use crate::cycle::Measured;
+use crate::part::units::{FREQUENCY, PID_DERIVATIVE, PID_INTEGRAL, PID_PROPORTIONAL};
+use crate::part::{PartError, PartKind, Role, quantity};
+
+pub(super) static KIND: PartKind<dyn Control> = PartKind {
+    name: "pid",
+    summary: "PID controller from the position error to the command",
+    keys: &[
+        quantity("proportional", &PID_PROPORTIONAL, 0.0, 1e12).role(Role::PositionGain),
+        quantity("integral", &PID_INTEGRAL, 0.0, 1e15),
+        quantity("derivative", &PID_DERIVATIVE, 0.0, 1e12).role(Role::SpeedGain),
+        quantity("derivative_lowpass", &FREQUENCY, 1.0, 1e6),
+    ],
+    known: &[],
+    build: |v| {
+        Ok(Arc::new(Pid {
+            proportional: v.number("proportional")?,
+            integral: v.number("integral")?,
+            derivative: v.number("derivative")?,
+            lowpass: v.number("derivative_lowpass")?,
+            effort: super::effort_of(v.unit("proportional")),
+        }))
+    },
+};
+
+#[derive(Clone, Copy, Debug)]
+struct Pid {
+    proportional: f64,
+    integral: f64,
+    derivative: f64,
+    lowpass: f64,
+    effort: Option<Effort>,
+}
+
+impl Control for Pid {
+    fn velocity_gain(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn effort(&self) -> Option<Effort> {
+        self.effort
+    }
+
+    fn start(&self, on: &Surroundings) -> Result<Box<dyn Controller>, PartError> {
+        Ok(Box::new(State {
+            law: *self,
+            on: *on,
+            slope: Filter::low_pass(self.lowpass, on.period)?,
+            before: None,
+            sum: 0.0,
+        }))
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct State {
+    law: Pid,
+    on: Surroundings,
+    slope: Filter,
+    /// Error of the cycle before.
+    before: Option<f64>,
+    /// K_I ∫e.
+    sum: f64,
+}
+
+impl Controller for State {
+    fn settle(&mut self, effort: f64, _: &Measured, _: f64) {
+        self.before = None;
+        self.slope.settle(0.0);
+        self.sum = effort;
+    }
+
+    fn cycle(&mut self, s: &Situation<'_>) -> Demand {
+        let (law, period, limit) = (&self.law, self.on.period, self.on.effort_limit);
+        let error = s.reference.position - s.measured.position + s.correction.position;
+        let slope = (error - self.before.unwrap_or(error)) / period;
+        let damping = law.derivative * self.slope.pass(slope);
+        self.before = Some(error);
+        let sum = self.sum + law.integral * period * error;
+        let asked = law.proportional * error + sum + damping + s.correction.iq;
+        let effort = asked.clamp(-limit, limit);
+        // The integral grows only where that does not press on against the limit.
+        if asked == effort || (asked > 0.0) != (error > 0.0) {
+            self.sum = sum;
+        }
+        Demand {
+            speed_ref: 0.0,
+            effort,
+            saturated: asked != effort,
+        }
+    }
+
+    fn copy(&self) -> Box<dyn Controller> {
+        Box::new(*self)
+    }
+}

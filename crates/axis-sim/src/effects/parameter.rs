@@ -1,0 +1,351 @@
+//! The numbers of an effect, and what they are on a given axis.
+
+use crate::axis::Axis;
+use crate::mechanism::Freedom;
+use crate::part::Role;
+
+/// One number of an effect. Values are in SI units.
+#[derive(Clone, Copy, Debug)]
+pub struct EffectParameter {
+    /// Its name in files.
+    pub name: &'static str,
+    /// What it measures, which gives its unit and its typical size on an axis.
+    pub measure: Measure,
+    /// What it is to the effect.
+    pub nature: Nature,
+    /// Where the search starts for it on the paper's axis while the effect is small;
+    /// for a size, this is a typical one, whose null value is 0.
+    pub typical: f64,
+    /// Least and greatest value on the paper's axis.
+    pub bounds: [f64; 2],
+}
+
+/// What a number is to its effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Nature {
+    /// The effect vanishes where it is 0; of either sign, or of one only.
+    Size {
+        /// Whether a test draws it with either sign.
+        either_sign: bool,
+    },
+    /// Angle at which something that repeats begins, rad.
+    Phase,
+    /// How often something repeats in a turn: a whole number, up to this one where
+    /// it is searched for.
+    Order(u8),
+    /// A place along the stroke; a test draws it between these shares of a motion.
+    Place([f64; 2]),
+    /// A width along the stroke; a test draws it between these shares of a motion.
+    Width([f64; 2]),
+    /// A speed: where the search starts (on the paper's axis), and between which a test
+    /// draws it, in logarithm.
+    Speed([f64; 3], [f64; 2]),
+    /// A time constant, s: where the search starts, and between which a test draws it.
+    Time([f64; 2], [f64; 2]),
+    /// When something begins, s, drawn between these.
+    Begin([f64; 2]),
+    /// When it ends, s; drawn between these after its beginning.
+    End([f64; 2]),
+}
+
+/// What a number measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// A share.
+    Ratio,
+    /// Force on the load.
+    Force,
+    /// Way of the load.
+    Way,
+    /// Speed of the load.
+    Speed,
+    /// Force per speed of the load.
+    Damping,
+    /// Force per way of the load.
+    Stiffness,
+    /// Inertia of the load.
+    Inertia,
+    /// Inertia of the motor.
+    MotorInertia,
+    /// Torque of the motor.
+    MotorTorque,
+    /// Angle of the motor.
+    MotorAngle,
+    /// Current.
+    Current,
+    /// Voltage.
+    Voltage,
+    /// Time.
+    Time,
+    /// Anything else, with its unit.
+    Other(&'static str),
+}
+
+impl Measure {
+    /// Its SI unit on a load that moves like this.
+    pub fn unit(self, freedom: Freedom) -> &'static str {
+        let linear = freedom == Freedom::Linear;
+        let of = |along: &'static str, about: &'static str| if linear { along } else { about };
+        match self {
+            Self::Ratio => "",
+            Self::Force => of("N", "N*m"),
+            Self::Way => of("m", "rad"),
+            Self::Speed => of("m/s", "rad/s"),
+            Self::Damping => of("N*s/m", "N*m*s/rad"),
+            Self::Stiffness => of("N/m", "N*m/rad"),
+            Self::Inertia => of("kg", "kg*m^2"),
+            Self::MotorInertia => "kg*m^2",
+            Self::MotorTorque => "N*m",
+            Self::MotorAngle => "rad",
+            Self::Current => "A",
+            Self::Voltage => "V",
+            Self::Time => "s",
+            Self::Other(unit) => unit,
+        }
+    }
+}
+
+/// How large things are on an axis, beside the paper's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// How the load moves.
+    pub freedom: Freedom,
+    /// Greatest force of the actuator at the load.
+    force: f64,
+    /// Way by which that force winds the transmission up.
+    way: f64,
+    /// Speed of its fastest trajectory, or a fifteenth of the stroke a second.
+    speed: f64,
+    /// Load inertia that the force moves as fast.
+    inertia: f64,
+    /// Inertia of all that moves, at the motor.
+    motor_inertia: f64,
+    /// Greatest torque of the motor.
+    motor_torque: f64,
+    /// Greatest command.
+    effort: f64,
+    /// Length of a motion on which effects are looked for.
+    pub motion: f64,
+    /// Least and greatest position.
+    pub stroke: [f64; 2],
+    /// Where motions start.
+    pub start: f64,
+}
+
+/// The paper's axis (data/axes/liu2025.toml), of which effects give typical sizes.
+const PAPER_LEVER: f64 = 0.010 / std::f64::consts::TAU;
+const PAPER_TORQUE: f64 = 1.641 * 15.0;
+const PAPER_STIFFNESS: f64 = 7.45e7;
+const PAPER_SPEED: f64 = 0.12;
+const PAPER_MASS: f64 = 515.0;
+const PAPER_INERTIA: f64 = 0.0096;
+/// Length of the motions on which effects are looked for there, m.
+const PAPER_MOTION: f64 = 0.2;
+
+impl Scales {
+    /// Those of an axis.
+    pub fn of(axis: &Axis) -> Self {
+        let travel = axis.travel_per_radian();
+        let torque = axis.torque_constant() * axis.actuator.limit();
+        let force = torque / travel;
+        let stroke = axis.stroke.maximum - axis.stroke.minimum;
+        let fastest = axis.trajectories.iter().map(|t| t.limits.velocity());
+        let fastest = fastest.fold(0.0, f64::max);
+        let stiffness = axis.mechanism.stiffness();
+        let load = axis.mechanism.value(Role::LoadInertia).unwrap_or(0.0);
+        let speed = if fastest > 0.0 {
+            fastest
+        } else {
+            stroke * PAPER_SPEED / 1.5
+        };
+        let paper_force = PAPER_TORQUE / PAPER_LEVER;
+        Self {
+            freedom: axis.freedom(),
+            force: force / paper_force,
+            way: stiffness.map_or(1.0, |k| (force / k) / (paper_force / PAPER_STIFFNESS)),
+            speed: speed / PAPER_SPEED,
+            inertia: load / PAPER_MASS,
+            motor_inertia: axis.mechanism.total_inertia() / PAPER_INERTIA,
+            motor_torque: torque / PAPER_TORQUE,
+            effort: axis.actuator.limit() / 15.0,
+            motion: (stroke * PAPER_MOTION / 1.5).max(f64::MIN_POSITIVE),
+            stroke: [axis.stroke.minimum, axis.stroke.maximum],
+            start: axis.stroke.start,
+        }
+    }
+
+    /// By how much a measure is larger here than on the paper's axis.
+    fn ratio(&self, measure: Measure) -> f64 {
+        let ratio = match measure {
+            Measure::Force => self.force,
+            Measure::Way => self.way,
+            Measure::Speed => self.speed,
+            Measure::Damping => self.force / self.speed,
+            Measure::Stiffness => self.force / self.way,
+            Measure::Inertia => self.inertia,
+            Measure::MotorInertia => self.motor_inertia,
+            Measure::MotorTorque => self.motor_torque,
+            Measure::Current => self.effort,
+            Measure::Ratio
+            | Measure::MotorAngle
+            | Measure::Voltage
+            | Measure::Time
+            | Measure::Other(_) => 1.0,
+        };
+        // To the digit, or nothing of the paper's axis would be as it is said to be.
+        let near = (ratio - 1.0).abs() < 0.01;
+        if near || !(ratio.is_finite() && ratio > 0.0) {
+            1.0
+        } else {
+            ratio
+        }
+    }
+}
+
+impl EffectParameter {
+    /// Whether the effect vanishes where this is 0.
+    pub fn is_size(&self) -> bool {
+        matches!(self.nature, Nature::Size { .. })
+    }
+
+    /// Its SI unit; empty for a ratio.
+    pub fn unit(&self, on: &Scales) -> &'static str {
+        self.measure.unit(on.freedom)
+    }
+
+    /// Its typical value on an axis of those scales.
+    pub fn typical(&self, on: &Scales) -> f64 {
+        match self.nature {
+            Nature::Place(_) | Nature::Width(_) => self.typical / PAPER_MOTION * on.motion,
+            _ => self.typical * on.ratio(self.measure),
+        }
+    }
+
+    /// Least and greatest value there: never less than on the paper's axis.
+    pub fn bounds(&self, on: &Scales) -> [f64; 2] {
+        let by = match self.nature {
+            Nature::Place(_) => {
+                let [low, high] = on.stroke;
+                let beyond = 0.5 * (high - low);
+                return [low - beyond, high + beyond];
+            }
+            Nature::Width(_) => on.motion / PAPER_MOTION,
+            _ => on.ratio(self.measure),
+        };
+        match self.nature {
+            Nature::Size { .. } => self.bounds.map(|edge| edge * by.max(1.0)),
+            _ => self.bounds.map(|edge| edge * by),
+        }
+    }
+}
+
+/// A number that is a size: the effect vanishes at 0.
+pub(super) const fn size(
+    name: &'static str,
+    measure: Measure,
+    typical: f64,
+    most: f64,
+) -> EffectParameter {
+    EffectParameter {
+        name,
+        measure,
+        nature: Nature::Size { either_sign: false },
+        typical,
+        bounds: [-most, most],
+    }
+}
+
+/// A size that may as well be negative.
+pub(super) const fn signed(
+    name: &'static str,
+    measure: Measure,
+    typical: f64,
+    most: f64,
+) -> EffectParameter {
+    EffectParameter {
+        nature: Nature::Size { either_sign: true },
+        ..size(name, measure, typical, most)
+    }
+}
+
+/// A size that cannot be negative.
+pub(super) const fn positive(
+    name: &'static str,
+    measure: Measure,
+    typical: f64,
+    most: f64,
+) -> EffectParameter {
+    EffectParameter {
+        bounds: [0.0, most],
+        ..size(name, measure, typical, most)
+    }
+}
+
+/// A number that shapes the effect.
+pub(super) const fn shape(
+    name: &'static str,
+    measure: Measure,
+    nature: Nature,
+    typical: f64,
+    bounds: [f64; 2],
+) -> EffectParameter {
+    EffectParameter {
+        name,
+        measure,
+        nature,
+        typical,
+        bounds,
+    }
+}
+
+/// The angle at which something that repeats begins.
+pub(super) const PHASE: EffectParameter = shape(
+    "phase",
+    Measure::MotorAngle,
+    Nature::Phase,
+    0.0,
+    [-7.0, 7.0],
+);
+
+/// What an axis must have for an effect to act on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// A parameter of that role.
+    Role(Role),
+    /// A transmission between motor and load.
+    Transmission,
+    /// A motor encoder, apart from the load's position.
+    MotorEncoder,
+    /// Currents that are measured.
+    Currents,
+    /// Poles.
+    Poles,
+}
+
+impl Need {
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Role(role) => role.name(),
+            Self::Transmission => "transmission between motor and load",
+            Self::MotorEncoder => "motor encoder apart from the load's position",
+            Self::Currents => "currents that are measured",
+            Self::Poles => "motor poles",
+        }
+    }
+
+    /// Whether the axis has it, or else what it lacks.
+    pub(super) fn met(self, axis: &Axis) -> Result<(), String> {
+        let has = match self {
+            Self::Role(role) => axis.has(role),
+            Self::Transmission => axis.mechanism.stiffness().is_some(),
+            Self::MotorEncoder => axis.mechanism.has_motor_encoder(),
+            Self::Currents => axis.actuator.has_currents(),
+            Self::Poles => axis.actuator.pole_pairs().is_some(),
+        };
+        if has {
+            return Ok(());
+        }
+        Err(format!("this axis has no {}", self.name()))
+    }
+}

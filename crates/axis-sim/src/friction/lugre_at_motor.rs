@@ -1,0 +1,70 @@
+//! `lugre-at-motor`: LuGre friction as torque at the motor's shaft (a screw's, for
+//! instance), on its speed.
+
+use std::sync::Arc;
+
+use lugre::Parameters;
+
+use super::{Friction, Place};
+use crate::part::units::{BRISTLE_STIFFNESS, ROTARY_DAMPING, ROTATION, TORQUE};
+use crate::part::{Known, PartError, PartKind, Role, Values, quantity};
+
+pub(super) static KIND: PartKind<Friction> = PartKind {
+    name: "lugre-at-motor",
+    summary: "LuGre friction of the load, as torque over speed at the motor's shaft",
+    keys: &[
+        quantity("coulomb", &TORQUE, 1e-9, 1e5),
+        quantity("stiction", &TORQUE, 1e-9, 1e5),
+        quantity("stribeck_speed", &ROTATION, 1e-6, 1e5),
+        quantity("bristle_stiffness", &BRISTLE_STIFFNESS, 1e-6, 1e9).role(Role::BristleStiffness),
+        quantity("bristle_damping", &ROTARY_DAMPING, 0.0, 1e5),
+        quantity("viscous", &ROTARY_DAMPING, 0.0, 1e5),
+    ],
+    known: KNOWN,
+    build: |v| build(v, Place::Motor),
+};
+
+/// The known parameters of every LuGre friction. A change of the Coulomb level
+/// keeps the rise from it to the break-away, which is never below it.
+pub(super) const KNOWN: &[Known] = &[
+    Known {
+        name: "coulomb_level",
+        scale: |v, by| {
+            let [coulomb, stiction] = ["coulomb", "stiction"].map(|key| v.or(key, 0.0));
+            v.set("stiction", stiction + coulomb * (by - 1.0));
+            v.scale("coulomb", by);
+        },
+    },
+    Known {
+        name: "break_away",
+        scale: |v, by| {
+            let [coulomb, stiction] = ["coulomb", "stiction"].map(|key| v.or(key, 0.0));
+            v.set("stiction", (stiction * by).max(coulomb));
+        },
+    },
+    Known {
+        name: "stribeck_speed",
+        scale: |v, by| v.scale("stribeck_speed", by),
+    },
+    Known {
+        name: "bristle_stiffness",
+        scale: |v, by| v.scale("bristle_stiffness", by),
+    },
+    Known {
+        name: "viscous",
+        scale: |v, by| v.scale("viscous", by),
+    },
+];
+
+pub(super) fn build(v: &Values, at: Place) -> Result<Arc<Friction>, PartError> {
+    let parameters = Parameters {
+        coulomb: v.number("coulomb")?,
+        stiction: v.number("stiction")?,
+        stribeck_speed: v.number("stribeck_speed")?,
+        stiffness: v.number("bristle_stiffness")?,
+        damping: v.number("bristle_damping")?,
+        viscous: v.number("viscous")?,
+    };
+    let unit_stiffness = parameters.stiffness / parameters.coulomb;
+    Ok(Arc::new(Friction::new(parameters, unit_stiffness, at)?))
+}

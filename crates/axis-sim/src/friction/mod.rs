@@ -1,0 +1,69 @@
+//! Friction at the load: kinds of parameters for one law, LuGre.
+//!
+//! One law serves all: Coulomb's friction with a pre-sliding distance and a
+//! viscous part are parameters of it. Other laws are effects ([`crate::effects`]).
+
+mod coulomb;
+mod lugre_at_load;
+mod lugre_at_motor;
+
+use lugre::{LuGre, Parameters};
+
+use crate::mechanism::Freedom;
+use crate::part::{PartError, PartKind};
+
+/// All kinds of friction, one line each.
+pub const FRICTIONS: &[&PartKind<Friction>] = &[
+    &lugre_at_motor::KIND,
+    &lugre_at_load::LINEAR,
+    &lugre_at_load::ROTARY,
+    &coulomb::LINEAR,
+    &coulomb::ROTARY,
+];
+
+/// Friction between the load and its guides.
+#[derive(Clone, Copy, Debug)]
+pub struct Friction {
+    /// The law, in its own coordinate.
+    pub law: LuGre,
+    /// The coordinate.
+    pub at: Place,
+    /// Unit element that effects act through: Coulomb level 1, the same
+    /// pre-sliding distance.
+    pub unit: LuGre,
+}
+
+/// The coordinate of a friction law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The motor's shaft: N·m over rad/s; the force on the load is that divided by r.
+    Motor,
+    /// The load: N over m/s, or N·m over rad/s.
+    Load(Freedom),
+}
+
+impl Friction {
+    /// Load travel per unit of the law's coordinate, where the load moves by
+    /// `travel` a radian of the motor.
+    pub fn lever(&self, travel: f64) -> f64 {
+        match self.at {
+            Place::Motor => travel,
+            Place::Load(_) => 1.0,
+        }
+    }
+
+    fn new(parameters: Parameters, unit_stiffness: f64, at: Place) -> Result<Self, PartError> {
+        let valid = "stiction at least as great as coulomb";
+        let law = LuGre::new(parameters).map_err(|e| PartError::together(e, valid))?;
+        let unit = Parameters {
+            coulomb: 1.0,
+            stiction: 1.0,
+            stribeck_speed: parameters.stribeck_speed,
+            stiffness: unit_stiffness,
+            damping: 0.0,
+            viscous: 0.0,
+        };
+        let unit = LuGre::new(unit).map_err(|e| PartError::together(e, "another stiffness"))?;
+        Ok(Self { law, at, unit })
+    }
+}

@@ -1,0 +1,18 @@
+//! Loads: forces on the load besides its friction.
+
+mod gravity;
+mod pendulum;
+
+use std::fmt;
+
+use crate::effects::TableState;
+use crate::part::PartKind;
+
+/// All kinds of load, one line each.
+pub const LOADS: &[&PartKind<dyn Load>] = &[&gravity::KIND, &pendulum::KIND];
+
+/// A force on the load. The axis starts settled under it.
+pub trait Load: fmt::Debug + Send + Sync {
+    /// N or N·m, positive against positive motion.
+    fn force(&self, at: &TableState) -> f64;
+}

@@ -1,0 +1,40 @@
+//! `pendulum`: gravity on a load that turns about a horizontal axis.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use super::Load;
+use crate::effects::TableState;
+use crate::part::units::{ANGLE, TORQUE};
+use crate::part::{Known, PartKind, quantity};
+
+pub(super) static KIND: PartKind<dyn Load> = PartKind {
+    name: "pendulum",
+    summary: "gravity on a joint, m g l sin(φ − φ₀): none where its arm hangs down",
+    keys: &[
+        quantity("torque", &TORQUE, 0.0, 1e7),
+        quantity("hanging_at", &ANGLE, -TAU, TAU),
+    ],
+    known: &[Known {
+        name: "gravity_torque",
+        scale: |v, by| v.scale("torque", by),
+    }],
+    build: |v| {
+        Ok(Arc::new(Pendulum {
+            torque: v.number("torque")?,
+            hanging_at: v.number("hanging_at")?,
+        }))
+    },
+};
+
+#[derive(Debug)]
+struct Pendulum {
+    torque: f64,
+    hanging_at: f64,
+}
+
+impl Load for Pendulum {
+    fn force(&self, at: &TableState) -> f64 {
+        self.torque * (at.position - self.hanging_at).sin()
+    }
+}

@@ -1,0 +1,162 @@
+//! `ball-screw`: Timoshenko screw between motor and table, nut and couplings.
+
+use std::sync::Arc;
+
+use beam_fem::{Material, Section};
+use feed_dynamics::{
+    AxialSupport, DriveError, DriveParameters, FeedDrive, ImplicitStepper, ModalStepper, Mounting,
+    NutCoupling,
+};
+
+use super::{Mechanism, Way};
+use crate::axis::Range;
+use crate::part::units::{DENSITY, INERTIA, LENGTH, MASS, PRESSURE, STIFFNESS, TIME, TORSION};
+use crate::part::{Known, PartError, PartKind, Role, Values, count, number, quantity, word};
+use crate::plant::{Assembly, Plant};
+
+pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
+    name: "ball-screw",
+    summary: "ball screw of Timoshenko elements with couplings, nut and table",
+    keys: &[
+        quantity("length", &LENGTH, 0.01, 100.0),
+        quantity("diameter", &LENGTH, 1e-3, 1.0),
+        quantity("lead", &LENGTH, 1e-4, 1.0),
+        count("elements", 2, 1000),
+        quantity("youngs_modulus", &PRESSURE, 1e8, 1e13),
+        number("poisson_ratio", -0.99, 0.49),
+        quantity("density", &DENSITY, 100.0, 1e5),
+        quantity("motor_inertia", &INERTIA, 1e-9, 1e3).role(Role::MotorInertia),
+        quantity("torque_sensor_inertia", &INERTIA, 1e-9, 1e3),
+        quantity("motor_coupling", &TORSION, 0.1, 1e9),
+        quantity("screw_coupling", &TORSION, 0.1, 1e9),
+        quantity("nut_stiffness", &STIFFNESS, 1e3, 1e12).role(Role::TransmissionStiffness),
+        quantity("table_mass", &MASS, 1e-3, 1e6).role(Role::LoadInertia),
+        quantity("stiffness_damping", &TIME, 0.0, 0.1),
+        quantity("bearing_stiffness", &STIFFNESS, 1e3, 1e12).optional(),
+        word("mounting", &["fixed-free", "fixed-fixed"]).optional(),
+        quantity("backlash", &LENGTH, 0.0, 0.1).or(0.0).role(Role::Backlash),
+    ],
+    known: &[
+        Known {
+            name: "motor_inertia",
+            scale: |v, by| v.scale("motor_inertia", by),
+        },
+        Known {
+            name: "motor_coupling",
+            scale: |v, by| v.scale("motor_coupling", by),
+        },
+        Known {
+            name: "screw_coupling",
+            scale: |v, by| v.scale("screw_coupling", by),
+        },
+        Known {
+            name: "nut_stiffness",
+            scale: |v, by| v.scale("nut_stiffness", by),
+        },
+        Known {
+            name: "table_mass",
+            scale: |v, by| v.scale("table_mass", by),
+        },
+    ],
+    build,
+};
+
+#[derive(Debug)]
+struct BallScrew {
+    drive: FeedDrive,
+    backlash: f64,
+}
+
+fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
+    let other = |e: &dyn std::fmt::Display| PartError::together(e, "other parameters");
+    let material = Material::new(
+        v.number("youngs_modulus")?,
+        v.number("poisson_ratio")?,
+        v.number("density")?,
+    )
+    .map_err(|e| PartError::together(e, "another material"))?;
+    let section = Section::solid_circle(v.number("diameter")?, &material)
+        .map_err(|e| PartError::together(e, "another section"))?;
+    let drive = FeedDrive::new(DriveParameters {
+        section,
+        material,
+        screw_length: v.number("length")?,
+        elements: v.count("elements")? as usize,
+        lead: v.number("lead")?,
+        motor_inertia: v.number("motor_inertia")?,
+        sensor_inertia: v.number("torque_sensor_inertia")?,
+        motor_coupling_stiffness: v.number("motor_coupling")?,
+        screw_coupling_stiffness: v.number("screw_coupling")?,
+        table_mass: v.number("table_mass")?,
+        nut_stiffness: v.number("nut_stiffness")?,
+        stiffness_damping: v.number("stiffness_damping")?,
+        axial: axial(v)?,
+    })
+    .map_err(|e| other(&e))?;
+    Ok(Arc::new(BallScrew {
+        drive,
+        backlash: v.or("backlash", 0.0),
+    }))
+}
+
+/// The bearing's and the shaft's axial stiffness, where the file has the bearing's.
+fn axial(v: &Values) -> Result<Option<AxialSupport>, PartError> {
+    let Some(bearing_stiffness) = v.optional("bearing_stiffness") else {
+        return Ok(None);
+    };
+    let mounting = match v.word("mounting") {
+        Some("fixed-free") => Mounting::FixedFree,
+        Some(_) => Mounting::FixedFixed,
+        None => {
+            let valid = "\"fixed-free\" or \"fixed-fixed\"";
+            return Err(PartError::of("mounting", "is missing", valid));
+        }
+    };
+    Ok(Some(AxialSupport {
+        bearing_stiffness,
+        mounting,
+    }))
+}
+
+impl Mechanism for BallScrew {
+    fn travel_per_radian(&self) -> f64 {
+        self.drive.travel_per_radian()
+    }
+
+    fn total_inertia(&self) -> f64 {
+        self.drive.total_inertia()
+    }
+
+    fn stiffness(&self) -> Option<f64> {
+        Some(self.drive.parameters().nut_stiffness)
+    }
+
+    fn backlash(&self) -> f64 {
+        self.backlash
+    }
+
+    fn reach(&self) -> Option<Range> {
+        Some(Range {
+            least: 0.0,
+            most: self.drive.parameters().screw_length,
+        })
+    }
+
+    fn modes(&self, x: f64) -> Result<Vec<f64>, DriveError> {
+        let modes = self.drive.modes(x, NutCoupling::ShapeFunctions)?;
+        Ok(modes.frequencies.into_iter().skip(1).collect())
+    }
+
+    /// The paper's moving node on Newmark's rule.
+    fn exact_step(&self) -> Option<f64> {
+        Some(5e-5)
+    }
+
+    fn plant(&self, way: Way, step: f64, assembly: Assembly) -> Result<Arc<dyn Plant>, DriveError> {
+        let coupling = NutCoupling::MovingNode;
+        Ok(match way {
+            Way::Fast => assembly.on(ModalStepper::new(&self.drive, step)?),
+            Way::Exact => assembly.on(ImplicitStepper::new(&self.drive, coupling, step)?),
+        })
+    }
+}

@@ -1,0 +1,124 @@
+//! Mechanisms: what carries the motor's rotation to the load.
+
+mod ball_screw;
+mod belt;
+mod direct;
+mod elastic;
+mod gear;
+mod rack;
+mod rigid_mass;
+mod screw_datasheet;
+
+use std::fmt;
+use std::sync::Arc;
+
+use feed_dynamics::DriveError;
+
+use crate::axis::Range;
+use crate::effects::ScrewState;
+use crate::part::PartKind;
+use crate::plant::{Assembly, Plant};
+
+/// All kinds of mechanism, one line each.
+pub const MECHANISMS: &[&PartKind<dyn Mechanism>] = &[
+    &ball_screw::KIND,
+    &screw_datasheet::KIND,
+    &rack::KIND,
+    &belt::KIND,
+    &gear::KIND,
+    &direct::LINEAR,
+    &direct::ROTARY,
+    &rigid_mass::KIND,
+];
+
+/// How the load moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Freedom {
+    /// Along a line: m, N, kg.
+    #[default]
+    Linear,
+    /// About an axis: rad, N·m, kg·m².
+    Rotary,
+}
+
+impl Freedom {
+    /// SI unit of its position.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Linear => "m",
+            Self::Rotary => "rad",
+        }
+    }
+}
+
+/// How a mechanism's equations are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Way {
+    /// As fast as it can be: what everything runs on.
+    #[default]
+    Fast,
+    /// As exactly as it can be, by another method where there is one: to check
+    /// the fast one against, and for what stands for a real machine.
+    Exact,
+}
+
+/// An error of a transmission's kinematics: displacement and rate at the load,
+/// m and m/s or rad and rad/s.
+pub type KinematicError = Arc<dyn Fn(&ScrewState) -> [f64; 2] + Send + Sync>;
+
+/// A mechanism. Positions, forces and masses are the load's ([`Freedom`]).
+pub trait Mechanism: fmt::Debug + Send + Sync {
+    /// How the load moves.
+    fn freedom(&self) -> Freedom {
+        Freedom::Linear
+    }
+
+    /// Travel r of the load per radian of the motor, m/rad or rad/rad; 1 where
+    /// the load is the motor.
+    fn travel_per_radian(&self) -> f64;
+
+    /// Inertia of all that moves, seen at the motor, kg·m² (kg where r is 1 m).
+    fn total_inertia(&self) -> f64;
+
+    /// Stiffness that decides on positioning, seen at the load; none where motor
+    /// and load are one.
+    fn stiffness(&self) -> Option<f64>;
+
+    /// Free travel of the transmission, m or rad at the load.
+    fn backlash(&self) -> f64 {
+        0.0
+    }
+
+    /// Where the load can be at all, besides the stroke.
+    fn reach(&self) -> Option<Range> {
+        None
+    }
+
+    /// Whether the motor's angle is known apart from the load's position.
+    fn has_motor_encoder(&self) -> bool {
+        self.stiffness().is_some()
+    }
+
+    /// Natural frequencies with the load at `x`, rigid motion left out, rad/s.
+    ///
+    /// # Errors
+    /// [`DriveError`] where the load cannot be at `x`.
+    fn modes(&self, x: f64) -> Result<Vec<f64>, DriveError>;
+
+    /// What its transmission's kinematics are off by, if anything.
+    fn kinematic_error(&self) -> Option<KinematicError> {
+        None
+    }
+
+    /// Longest step of its exact way, s, where that is another than the fast one.
+    fn exact_step(&self) -> Option<f64> {
+        None
+    }
+
+    /// The machine around this mechanism, in steps of `step` seconds:
+    /// `assembly.on(stepper)` with the mechanism's [`feed_dynamics::TimeStepper`].
+    ///
+    /// # Errors
+    /// [`DriveError`] where the stepper cannot be made.
+    fn plant(&self, way: Way, step: f64, assembly: Assembly) -> Result<Arc<dyn Plant>, DriveError>;
+}

@@ -1,0 +1,198 @@
+//! One key of the axis file: its spellings, its limits, and what is valid in words.
+
+use std::borrow::Cow;
+
+use super::Role;
+use super::units::Dimension;
+use crate::SixDigits;
+use crate::axis::Range;
+
+/// One key of a table of the axis file: made by [`quantity`], [`number`],
+/// [`count`] or [`word`].
+#[derive(Clone, Debug)]
+pub struct Key {
+    /// As in the file; a quantity's is without its unit.
+    pub(crate) name: &'static str,
+    pub(crate) kind: Kind,
+    pub(crate) optional: bool,
+    /// What a number is where it is left out.
+    pub(crate) default: Option<f64>,
+    pub(crate) role: Option<Role>,
+}
+
+/// What stands under a key.
+#[derive(Clone, Debug)]
+pub(crate) enum Kind {
+    /// A number with a unit, which ends the key; the limits are SI.
+    Quantity(&'static Dimension, Range),
+    /// A number whose unit, if it has one, is always the same.
+    Number(&'static str, Range),
+    /// A whole number.
+    Count(u32, u32),
+    /// A text.
+    Text,
+    /// One of a few words.
+    Word(Cow<'static, [&'static str]>),
+    /// A table.
+    Table(Cow<'static, [Key]>),
+    /// Tables of the same kind.
+    Tables(Cow<'static, [Key]>),
+}
+
+const fn key(name: &'static str, kind: Kind) -> Key {
+    Key {
+        name,
+        kind,
+        optional: false,
+        default: None,
+        role: None,
+    }
+}
+
+/// A number whose unit ends the key (`lead_mm`), from `least` to `most` in SI units.
+pub const fn quantity(
+    name: &'static str,
+    dimension: &'static Dimension,
+    least: f64,
+    most: f64,
+) -> Key {
+    key(name, Kind::Quantity(dimension, Range { least, most }))
+}
+
+/// A number without a unit, from `least` to `most`.
+pub const fn number(name: &'static str, least: f64, most: f64) -> Key {
+    key(name, Kind::Number("", Range { least, most }))
+}
+
+/// A whole number from `least` to `most`.
+pub const fn count(name: &'static str, least: u32, most: u32) -> Key {
+    key(name, Kind::Count(least, most))
+}
+
+pub(crate) const fn text(name: &'static str) -> Key {
+    key(name, Kind::Text)
+}
+
+/// One of a few words.
+pub const fn word(name: &'static str, words: &'static [&'static str]) -> Key {
+    key(name, Kind::Word(Cow::Borrowed(words)))
+}
+
+pub(crate) const fn table(name: &'static str, keys: &'static [Key]) -> Key {
+    key(name, Kind::Table(Cow::Borrowed(keys)))
+}
+
+pub(crate) const fn tables(name: &'static str, keys: &'static [Key]) -> Key {
+    key(name, Kind::Tables(Cow::Borrowed(keys)))
+}
+
+impl Range {
+    /// Whether `value` lies inside, but for the rounding of its conversion to SI.
+    pub(crate) fn takes(&self, value: f64) -> bool {
+        let slack = |end: f64| 1e-12 * end.abs();
+        (self.least - slack(self.least)..=self.most + slack(self.most)).contains(&value)
+    }
+
+    /// In words, in a unit of `factor` SI units.
+    fn text(&self, factor: f64) -> String {
+        let (least, most) = (
+            SixDigits(self.least / factor),
+            SixDigits(self.most / factor),
+        );
+        format!("from {least} to {most}")
+    }
+}
+
+impl Key {
+    /// May be left out.
+    #[must_use]
+    pub const fn optional(mut self) -> Self {
+        self.optional = true;
+        self
+    }
+
+    /// May be left out, and is then this number.
+    #[must_use]
+    pub const fn or(mut self, default: f64) -> Self {
+        self.optional = true;
+        self.default = Some(default);
+        self
+    }
+
+    /// What the parameter is in any machine, by which effects find it.
+    #[must_use]
+    pub const fn role(mut self, role: Role) -> Self {
+        self.role = Some(role);
+        self
+    }
+
+    /// Its name, without a unit.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// A table of these keys.
+    pub(crate) const fn of_table(name: &'static str, keys: Vec<Key>) -> Self {
+        key(name, Kind::Table(Cow::Owned(keys)))
+    }
+
+    /// Tables of these keys.
+    pub(crate) const fn of_tables(name: &'static str, keys: Vec<Key>) -> Self {
+        key(name, Kind::Tables(Cow::Owned(keys)))
+    }
+
+    /// A number of an effect, in SI units.
+    pub(crate) const fn of_effect(
+        name: &'static str,
+        unit: &'static str,
+        bounds: [f64; 2],
+    ) -> Self {
+        let [least, most] = bounds;
+        key(name, Kind::Number(unit, Range { least, most }))
+    }
+
+    /// A key whose value is one of `words`.
+    pub(crate) const fn of_words(name: &'static str, words: Vec<&'static str>) -> Self {
+        key(name, Kind::Word(Cow::Owned(words)))
+    }
+
+    /// The spellings under which it may stand in a file.
+    pub(crate) fn spellings(&self) -> Vec<String> {
+        match &self.kind {
+            Kind::Quantity(dimension, _) => dimension.keys(self.name).collect(),
+            _ => vec![self.name.to_owned()],
+        }
+    }
+
+    /// A spelling with the brackets that a table has in a file.
+    pub(crate) fn shown(&self, spelling: &str) -> String {
+        match self.kind {
+            Kind::Table(_) => format!("[{spelling}]"),
+            Kind::Tables(_) => format!("[[{spelling}]]"),
+            _ => spelling.to_owned(),
+        }
+    }
+
+    /// What would be valid; `unit` is that of the key as it was given, if it was.
+    pub(crate) fn valid(&self, unit: Option<(&str, f64)>) -> String {
+        match &self.kind {
+            Kind::Quantity(dimension, limits) => {
+                let usual = dimension.units.first().copied();
+                let (unit, factor) = unit.or(usual).unwrap_or(("", 1.0));
+                format!("a number {}, in {unit}", limits.text(factor))
+            }
+            Kind::Number(unit, limits) => {
+                let text = format!("a number {} {unit}", limits.text(1.0));
+                text.trim_end().to_owned()
+            }
+            Kind::Count(least, most) => format!("a whole number from {least} to {most}"),
+            Kind::Text => "a text in quotes".to_owned(),
+            Kind::Word(words) => {
+                let quoted: Vec<String> = words.iter().map(|w| format!("\"{w}\"")).collect();
+                quoted.join(" or ")
+            }
+            Kind::Table(_) => format!("a table [{}]", self.name),
+            Kind::Tables(_) => format!("tables [[{}]]", self.name),
+        }
+    }
+}

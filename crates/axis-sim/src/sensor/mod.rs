@@ -1,0 +1,35 @@
+//! Position sensors: of the load and of the motor.
+
+mod encoder;
+mod resolver;
+mod scale;
+mod signal;
+
+use std::fmt;
+
+use crate::mechanism::Freedom;
+use crate::part::PartKind;
+
+/// All kinds of position sensor, one line each.
+pub const SENSORS: &[&PartKind<dyn Sensor>] = &[&scale::KIND, &encoder::KIND, &resolver::KIND];
+
+/// A position sensor, immutable.
+pub trait Sensor: fmt::Debug + Send + Sync {
+    /// What it measures: a position along a line, or an angle.
+    fn freedom(&self) -> Freedom;
+
+    /// The sensor at work, sampled every `period` seconds; `seed` is that of its noise.
+    fn start(&self, period: f64, seed: u64) -> Box<dyn Sensing>;
+}
+
+/// A position sensor at work.
+pub trait Sensing: fmt::Debug + Send + Sync {
+    /// What it shows of a true position or angle (m, rad).
+    fn read(&mut self, position: f64) -> f64;
+
+    /// As if the position had been there, at the speed (per second), for ever.
+    fn settle(&mut self, position: f64, speed: f64);
+
+    /// A copy.
+    fn copy(&self) -> Box<dyn Sensing>;
+}
