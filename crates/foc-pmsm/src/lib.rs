@@ -82,24 +82,25 @@
 //! without it, and then the crate needs neither `std` nor `alloc`.
 #![no_std]
 
-#[cfg(feature = "std")]
-extern crate std;
-
 mod error;
 mod exact;
+mod field_weakening;
 mod frames;
 pub mod inverter;
 mod math;
 mod motor;
 mod pi;
 mod servo;
+mod signals;
 pub mod svpwm;
 
 pub use error::FocError;
+pub use field_weakening::{FieldWeakening, FieldWeakeningParameters, FieldWeakeningState};
 pub use frames::{AlphaBeta, Dq, Phases};
 pub use motor::{MotorParameters, Pmsm};
 pub use pi::{AntiWindup, Pi, PiOutput, PiParameters, PiState};
-pub use servo::{
-    Command, Correction, Measurement, Reference, Saturated, Servo, ServoGains, ServoLimits,
-    ServoState,
+pub use servo::Servo;
+pub use signals::{
+    Command, Correction, Measurement, OperatingPoint, Reference, Saturated, ServoGains,
+    ServoLimits, ServoState,
 };
