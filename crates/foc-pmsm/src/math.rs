@@ -6,14 +6,8 @@ use scalar::Scalar;
 /// would hide.
 #[inline]
 pub(crate) fn clamp<T: Scalar>(x: T, low: T, high: T) -> T {
-    let mut inside = x;
-    if inside < low {
-        inside = low;
-    }
-    if inside > high {
-        inside = high;
-    }
-    inside
+    let above = if x < low { low } else { x };
+    if above > high { high } else { above }
 }
 
 /// Sine and cosine of an angle, rad, in the arithmetic of its own type: those
