@@ -1,62 +1,8 @@
 //! What goes into a cycle of the cascade and what comes out of it.
 
-use crate::error::{FocError, limit, not_negative};
 use crate::frames::{Dq, FRAC_1_SQRT_3};
 use crate::pi::PiState;
 use scalar::Scalar;
-
-/// The gains of the cascade. Plain data; [`crate::Servo::new`] validates them:
-/// all finite and 0 or more. Symbols of Liu et al. 2025, Table 4
-/// (doi 10.3390/machines13050433).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ServoGains<T = f64> {
-    /// P_Sw: motor speed per position error, (rad/s)/m.
-    pub position: T,
-    /// P_ωR: q current per speed error, A/(rad/s).
-    pub speed_p: T,
-    /// I_ωR: q current per integrated speed error, A/rad.
-    pub speed_i: T,
-    /// P_id: d voltage per d current error, V/A.
-    pub d_p: T,
-    /// I_id: d voltage per integrated d current error, V/(A·s).
-    pub d_i: T,
-    /// P_iq: q voltage per q current error, V/A.
-    pub q_p: T,
-    /// I_iq: q voltage per integrated q current error, V/(A·s).
-    pub q_i: T,
-}
-
-/// The limits of the cascade, greater than 0 (infinity: none).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ServoLimits<T = f64> {
-    /// Length of the current reference, A: with i_d = 0 the magnitude of the
-    /// q current reference.
-    pub current: T,
-    /// Length of the voltage vector, V; U_dc/√3 for linear modulation
-    /// ([`crate::svpwm::Svpwm::linear_limit`]).
-    pub voltage: T,
-}
-
-impl<T: Scalar> ServoGains<T> {
-    pub(crate) fn check(&self) -> Result<(), FocError> {
-        not_negative("position", self.position)?;
-        not_negative("speed_p", self.speed_p)?;
-        not_negative("speed_i", self.speed_i)?;
-        not_negative("d_p", self.d_p)?;
-        not_negative("d_i", self.d_i)?;
-        not_negative("q_p", self.q_p)?;
-        not_negative("q_i", self.q_i)?;
-        Ok(())
-    }
-}
-
-impl<T: Scalar> ServoLimits<T> {
-    pub(crate) fn check(&self) -> Result<(), FocError> {
-        limit("current", self.current)?;
-        limit("voltage", self.voltage)?;
-        Ok(())
-    }
-}
 
 /// What the controller samples at the start of a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -92,14 +38,14 @@ pub struct Correction<T = f64> {
 
 /// What one cycle has to do with beyond its references: the flux to set and
 /// the voltage to do it with. By default i_d = 0 and the voltage is limited
-/// by [`ServoLimits`] alone, as in [`crate::Servo::cycle`].
+/// by [`crate::ServoLimits`] alone, as in [`crate::Servo::cycle`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OperatingPoint<T = f64> {
     /// d current reference, A; negative weakens the field
-    /// ([`crate::FieldWeakening`]). Limited to ± [`ServoLimits::current`].
+    /// ([`crate::FieldWeakening`]). Limited to ± [`crate::ServoLimits::current`].
     pub id_ref: T,
     /// Length of the voltage vector that can be made in this cycle, V. The
-    /// lower of it and [`ServoLimits::voltage`] holds; infinity, or what is
+    /// lower of it and [`crate::ServoLimits::voltage`] holds; infinity, or what is
     /// not a number, leaves the latter, a negative one leaves no voltage.
     pub voltage_limit: T,
 }
