@@ -38,6 +38,21 @@ pub struct FieldWeakeningParameters<T = f64> {
 /// The length of the voltage grows by about ω_e L_d per ampere of i_d, so
 /// that the law's bandwidth is K_f ω_e L_d (1/s); it must stay well below
 /// that of the d current controller, P_id/L_d.
+///
+/// ```
+/// use foc_pmsm::{Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState};
+///
+/// let law = FieldWeakening::new(FieldWeakeningParameters {
+///     voltage_share: 0.95_f32, ki: 11.4, current: 13.0, period: 1e-4,
+/// })?;
+/// let mut state = FieldWeakeningState::default();
+/// let most = 312.0;
+/// // Voltage to spare, then none: (0.95 · 312 − 312) · 11.4e-4.
+/// assert_eq!(law.update(&mut state, Dq { d: 0.0, q: 200.0 }, most), 0.0);
+/// let id_ref = law.update(&mut state, Dq { d: 0.0, q: most }, most);
+/// assert!((id_ref + 0.0178).abs() < 1e-4);
+/// # Ok::<(), foc_pmsm::FocError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FieldWeakening<T = f64> {
     parameters: FieldWeakeningParameters<T>,
