@@ -1,5 +1,7 @@
 //! What can be wrong with the parameters of a motor, controller or inverter.
 
+use scalar::Scalar;
+
 /// Why a law could not be built. Nothing after construction can fail.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -20,39 +22,36 @@ pub enum FocError {
 }
 
 /// Subnormal numbers are refused too: their reciprocals overflow.
-pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64, FocError> {
+pub(crate) fn positive<T: Scalar>(field: &'static str, value: T) -> Result<T, FocError> {
     let valid = "finite, greater than 0 and not subnormal";
-    check(value.is_normal() && value > 0.0, field, value, valid)
+    let normal = value.is_finite() && value >= T::MIN_POSITIVE;
+    check(normal, field, value, valid)
 }
 
-pub(crate) fn not_negative(field: &'static str, value: f64) -> Result<f64, FocError> {
+pub(crate) fn not_negative<T: Scalar>(field: &'static str, value: T) -> Result<T, FocError> {
     let valid = "finite and 0 or greater";
-    check(value.is_finite() && value >= 0.0, field, value, valid)
+    let ok = value.is_finite() && value >= T::ZERO;
+    check(ok, field, value, valid)
 }
 
 /// A limit: infinity is allowed and means that there is none.
-pub(crate) fn limit(field: &'static str, value: f64) -> Result<f64, FocError> {
-    check(
-        value > 0.0,
-        field,
-        value,
-        "greater than 0 (infinity: no limit)",
-    )
+pub(crate) fn limit<T: Scalar>(field: &'static str, value: T) -> Result<T, FocError> {
+    let valid = "greater than 0 (infinity: no limit)";
+    check(value > T::ZERO, field, value, valid)
 }
 
-pub(crate) fn check(
+pub(crate) fn check<T: Scalar>(
     ok: bool,
     field: &'static str,
-    value: f64,
+    value: T,
     valid: &'static str,
-) -> Result<f64, FocError> {
+) -> Result<T, FocError> {
     if ok {
-        Ok(value)
-    } else {
-        Err(FocError::OutOfRange {
-            field,
-            value,
-            valid,
-        })
+        return Ok(value);
     }
+    Err(FocError::OutOfRange {
+        field,
+        value: value.to_f64(),
+        valid,
+    })
 }

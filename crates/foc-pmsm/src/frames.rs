@@ -4,6 +4,7 @@
 
 use crate::math::sin_cos;
 use core::ops::{Add, Mul, Neg, Sub};
+use scalar::Scalar;
 
 /// 1/√3.
 pub(crate) const FRAC_1_SQRT_3: f64 = 0.577_350_269_189_625_8;
@@ -11,59 +12,59 @@ const SQRT_3_HALF: f64 = 0.866_025_403_784_438_6;
 
 /// The three phase quantities, in V or A.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Phases {
+pub struct Phases<T = f64> {
     /// Phase a.
-    pub a: f64,
+    pub a: T,
     /// Phase b, 120° behind a.
-    pub b: f64,
+    pub b: T,
     /// Phase c, 240° behind a.
-    pub c: f64,
+    pub c: T,
 }
 
 /// A space vector in the stator's frame, in V or A.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct AlphaBeta {
+pub struct AlphaBeta<T = f64> {
     /// Along the axis of phase a.
-    pub alpha: f64,
+    pub alpha: T,
     /// 90° (electrical) ahead of α.
-    pub beta: f64,
+    pub beta: T,
 }
 
 /// A space vector in the rotor's frame, in V or A.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Dq {
+pub struct Dq<T = f64> {
     /// Direct axis, along the magnets' flux.
-    pub d: f64,
+    pub d: T,
     /// Quadrature axis, 90° (electrical) ahead of d.
-    pub q: f64,
+    pub q: T,
 }
 
-impl Phases {
+impl<T: Scalar> Phases<T> {
     /// Clarke transform: α = (2a − b − c)/3, β = (b − c)/√3. What the three
     /// phases have in common ([`Phases::zero_sequence`]) is dropped.
     #[inline]
-    pub fn clarke(self) -> AlphaBeta {
+    pub fn clarke(self) -> AlphaBeta<T> {
         AlphaBeta {
-            alpha: (2.0 * self.a - self.b - self.c) / 3.0,
-            beta: (self.b - self.c) * FRAC_1_SQRT_3,
+            alpha: (T::TWO * self.a - self.b - self.c) / T::of(3.0),
+            beta: (self.b - self.c) * T::of(FRAC_1_SQRT_3),
         }
     }
 
     /// The mean of the three phases, which drives no current in a star
     /// winding whose neutral is not connected.
     #[inline]
-    pub fn zero_sequence(self) -> f64 {
-        (self.a + self.b + self.c) / 3.0
+    pub fn zero_sequence(self) -> T {
+        (self.a + self.b + self.c) / T::of(3.0)
     }
 }
 
-impl AlphaBeta {
+impl<T: Scalar> AlphaBeta<T> {
     /// Inverse Clarke transform, without zero sequence:
     /// a = α, b = −α/2 + √3/2 β, c = −α/2 − √3/2 β.
     #[inline]
-    pub fn inverse_clarke(self) -> Phases {
-        let half = -0.5 * self.alpha;
-        let side = SQRT_3_HALF * self.beta;
+    pub fn inverse_clarke(self) -> Phases<T> {
+        let half = T::of(-0.5) * self.alpha;
+        let side = T::of(SQRT_3_HALF) * self.beta;
         Phases {
             a: self.alpha,
             b: half + side,
@@ -76,7 +77,7 @@ impl AlphaBeta {
     /// (R. H. Park, Trans. AIEE 48 (1929) 716–727, with the axes and scale
     /// usual today).
     #[inline]
-    pub fn park(self, angle: f64) -> Dq {
+    pub fn park(self, angle: T) -> Dq<T> {
         let (sin, cos) = sin_cos(angle);
         self.park_sin_cos(sin, cos)
     }
@@ -84,7 +85,7 @@ impl AlphaBeta {
     /// [`AlphaBeta::park`] with the angle's sine and cosine at hand, for
     /// several transforms at one angle.
     #[inline]
-    pub fn park_sin_cos(self, sin: f64, cos: f64) -> Dq {
+    pub fn park_sin_cos(self, sin: T, cos: T) -> Dq<T> {
         Dq {
             d: self.alpha * cos + self.beta * sin,
             q: self.beta * cos - self.alpha * sin,
@@ -92,20 +93,23 @@ impl AlphaBeta {
     }
 }
 
-impl Dq {
+impl<T: Scalar> Dq<T> {
     /// The zero vector.
-    pub const ZERO: Dq = Dq { d: 0.0, q: 0.0 };
+    pub const ZERO: Self = Self {
+        d: T::ZERO,
+        q: T::ZERO,
+    };
 
     /// Inverse Park transform for a d axis at the electrical `angle` (rad).
     #[inline]
-    pub fn inverse_park(self, angle: f64) -> AlphaBeta {
+    pub fn inverse_park(self, angle: T) -> AlphaBeta<T> {
         let (sin, cos) = sin_cos(angle);
         self.inverse_park_sin_cos(sin, cos)
     }
 
     /// [`Dq::inverse_park`] with the angle's sine and cosine at hand.
     #[inline]
-    pub fn inverse_park_sin_cos(self, sin: f64, cos: f64) -> AlphaBeta {
+    pub fn inverse_park_sin_cos(self, sin: T, cos: T) -> AlphaBeta<T> {
         AlphaBeta {
             alpha: self.d * cos - self.q * sin,
             beta: self.d * sin + self.q * cos,
@@ -115,15 +119,15 @@ impl Dq {
     /// Scalar product; for a voltage (V) and a current (A), 3/2 of it is the
     /// electrical power (W) in this amplitude-invariant frame.
     #[inline]
-    pub fn dot(self, other: Dq) -> f64 {
+    pub fn dot(self, other: Self) -> T {
         self.d * other.d + self.q * other.q
     }
 }
 
-impl Add for Dq {
-    type Output = Dq;
+impl<T: Scalar> Add for Dq<T> {
+    type Output = Self;
     #[inline]
-    fn add(self, o: Dq) -> Dq {
+    fn add(self, o: Self) -> Dq<T> {
         Dq {
             d: self.d + o.d,
             q: self.q + o.q,
@@ -131,10 +135,10 @@ impl Add for Dq {
     }
 }
 
-impl Sub for Dq {
-    type Output = Dq;
+impl<T: Scalar> Sub for Dq<T> {
+    type Output = Self;
     #[inline]
-    fn sub(self, o: Dq) -> Dq {
+    fn sub(self, o: Self) -> Dq<T> {
         Dq {
             d: self.d - o.d,
             q: self.q - o.q,
@@ -142,10 +146,10 @@ impl Sub for Dq {
     }
 }
 
-impl Mul<f64> for Dq {
-    type Output = Dq;
+impl<T: Scalar> Mul<T> for Dq<T> {
+    type Output = Self;
     #[inline]
-    fn mul(self, k: f64) -> Dq {
+    fn mul(self, k: T) -> Dq<T> {
         Dq {
             d: self.d * k,
             q: self.q * k,
@@ -153,10 +157,10 @@ impl Mul<f64> for Dq {
     }
 }
 
-impl Neg for Dq {
-    type Output = Dq;
+impl<T: Scalar> Neg for Dq<T> {
+    type Output = Self;
     #[inline]
-    fn neg(self) -> Dq {
+    fn neg(self) -> Dq<T> {
         Dq {
             d: -self.d,
             q: -self.q,

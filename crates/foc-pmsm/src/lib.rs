@@ -29,13 +29,20 @@
 //! - [`Phases`], [`AlphaBeta`], [`Dq`]: Clarke and Park, amplitude-invariant.
 //! - [`Pmsm`]: equations (1) to (3), one implicit step, one exact step.
 //! - [`Pi`]: a sampled PI with two kinds of anti-windup.
-//! - [`Servo`]: the cascade (4) to (6) with i_d = 0.
+//! - [`Servo`]: the cascade (4) to (6) with i_d = 0; with [`OperatingPoint`]
+//!   it takes a d current reference and the DC link of each cycle.
+//! - [`FieldWeakening`]: the d current reference above base speed.
 //! - [`svpwm`]: duty cycles, linear range, overmodulation, six-step.
 //! - [`inverter`]: averaged and switched, with dead time.
 //!
 //! Laws are immutable and validated once; states are plain structs of the
 //! caller's. After construction nothing fails, panics or allocates; a NaN
 //! passes through to the outputs.
+//!
+//! All types are generic over [`scalar::Scalar`], `f64` unless said otherwise.
+//! In `f32` nothing is computed in `f64`, which many controllers have in
+//! software only; the sine and cosine of the Park transform are the crate's
+//! own there.
 //!
 //! # Example
 //! A step of 5 A in the q current, with the motor held:
@@ -71,6 +78,31 @@
 //! # Ok::<(), foc_pmsm::FocError>(())
 //! ```
 //!
+//! The current controllers of a drive in `f32`, on the DC link measured in
+//! this cycle, the currents from two phases:
+//! ```
+//! use foc_pmsm::svpwm::{Overmodulation, Svpwm};
+//! use foc_pmsm::{Dq, OperatingPoint, Phases, Servo, ServoGains, ServoLimits, ServoState};
+//!
+//! let gains = ServoGains {
+//!     position: 0.0_f32, speed_p: 0.6474, speed_i: 6.801,
+//!     d_p: 2.776, d_i: 626.2, q_p: 8.805, q_i: 1003.3,
+//! };
+//! let limits = ServoLimits { current: 15.0, voltage: f32::INFINITY };
+//! let servo = Servo::new(gains, limits, 1e-4)?;
+//! let mut state = ServoState::default();
+//!
+//! let (a, b, angle, dc_voltage) = (1.2_f32, -0.3, 0.7, 531.0);
+//! let i = Phases { a, b, c: -a - b }.clarke().park(angle);
+//! let error = Dq { d: 0.0, q: 5.0 } - i;
+//! let limit = OperatingPoint::at_dc_voltage(dc_voltage).voltage_limit;
+//! let (u, _, _) = servo.current_loop_within(&mut state, error, Dq::ZERO, limit);
+//! let modulator = Svpwm::new(dc_voltage, Overmodulation::default())?;
+//! let duties = modulator.duties(u.inverse_park(angle));
+//! assert!((0.0..=1.0).contains(&duties.a()));
+//! # Ok::<(), foc_pmsm::FocError>(())
+//! ```
+//!
 //! # What it knows nothing of
 //! Mechanics (inertia, friction, screws), trajectories, how a compensation
 //! finds its correction, the resolution and noise of sensors, files and
@@ -78,28 +110,30 @@
 //! cogging, and the delay of a real controller.
 //!
 //! # Features
-//! `std` (default) uses the processor's square root; results are the same
-//! without it, and then the crate needs neither `std` nor `alloc`.
+//! `std` (default) changes nothing: with and without it the crate needs
+//! neither `std` nor `alloc`, and has the same results.
 #![no_std]
-
-#[cfg(feature = "std")]
-extern crate std;
 
 mod error;
 mod exact;
+mod field_weakening;
 mod frames;
+mod gains;
 pub mod inverter;
 mod math;
 mod motor;
 mod pi;
 mod servo;
+mod signals;
 pub mod svpwm;
 
 pub use error::FocError;
+pub use field_weakening::{FieldWeakening, FieldWeakeningParameters, FieldWeakeningState};
 pub use frames::{AlphaBeta, Dq, Phases};
+pub use gains::{ServoGains, ServoLimits};
 pub use motor::{MotorParameters, Pmsm};
 pub use pi::{AntiWindup, Pi, PiOutput, PiParameters, PiState};
-pub use servo::{
-    Command, Correction, Measurement, Reference, Saturated, Servo, ServoGains, ServoLimits,
-    ServoState,
+pub use servo::Servo;
+pub use signals::{
+    Command, Correction, Measurement, OperatingPoint, Reference, Saturated, ServoState,
 };

@@ -3,29 +3,30 @@
 use crate::error::{FocError, not_negative, positive};
 use crate::exact::exponential_increment;
 use crate::frames::Dq;
+use scalar::Scalar;
 
 /// The motor's constants. Plain data; [`Pmsm::new`] validates them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MotorParameters {
+pub struct MotorParameters<T = f64> {
     /// Pole pairs p, 1 or more.
     pub pole_pairs: u32,
     /// Stator resistance R of one phase, Ω, 0 or more.
-    pub resistance: f64,
+    pub resistance: T,
     /// Direct-axis inductance L_d, H, greater than 0.
-    pub inductance_d: f64,
+    pub inductance_d: T,
     /// Quadrature-axis inductance L_q, H, greater than 0.
-    pub inductance_q: f64,
+    pub inductance_q: T,
     /// Peak flux linkage ψ of the magnets with one phase, V·s, greater than 0.
-    pub flux_linkage: f64,
+    pub flux_linkage: T,
 }
 
-impl MotorParameters {
+impl<T: Scalar> MotorParameters<T> {
     /// Replaces the flux linkage by the one that gives the torque constant
     /// K_t (N·m per ampere of peak phase current, at i_d = 0):
     /// ψ = K_t / (1.5 p).
-    pub fn from_torque_constant(self, torque_constant: f64) -> Self {
+    pub fn from_torque_constant(self, torque_constant: T) -> Self {
         Self {
-            flux_linkage: torque_constant / (1.5 * f64::from(self.pole_pairs)),
+            flux_linkage: torque_constant / (T::of(1.5) * number(self.pole_pairs)),
             ..self
         }
     }
@@ -42,18 +43,23 @@ impl MotorParameters {
 /// T = 1.5 p (ψ i_q + (L_d − L_q) i_d i_q)
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pmsm {
-    parameters: MotorParameters,
-    pole_pairs: f64,
+pub struct Pmsm<T = f64> {
+    parameters: MotorParameters<T>,
+    pole_pairs: T,
 }
 
-impl Pmsm {
+/// A count as a scalar; exact up to 2²⁴ in `f32`.
+fn number<T: Scalar>(count: u32) -> T {
+    T::of(f64::from(count))
+}
+
+impl<T: Scalar> Pmsm<T> {
     /// Validates the parameters.
     ///
     /// # Errors
     /// [`FocError`] naming the first field that is NaN, infinite or out of
     /// the range its doc gives.
-    pub fn new(parameters: MotorParameters) -> Result<Self, FocError> {
+    pub fn new(parameters: MotorParameters<T>) -> Result<Self, FocError> {
         if parameters.pole_pairs == 0 {
             return Err(FocError::NoPolePairs);
         }
@@ -63,40 +69,40 @@ impl Pmsm {
         positive("flux_linkage", parameters.flux_linkage)?;
         Ok(Self {
             parameters,
-            pole_pairs: f64::from(parameters.pole_pairs),
+            pole_pairs: number(parameters.pole_pairs),
         })
     }
 
     /// The parameters the motor was built from.
-    pub fn parameters(&self) -> &MotorParameters {
+    pub fn parameters(&self) -> &MotorParameters<T> {
         &self.parameters
     }
 
     /// Electrical speed ω_e = p ω, rad/s, from the mechanical speed, rad/s.
     #[inline]
-    pub fn electrical_speed(&self, speed: f64) -> f64 {
+    pub fn electrical_speed(&self, speed: T) -> T {
         self.pole_pairs * speed
     }
 
     /// Air-gap torque, N·m, from the currents, A.
     #[inline]
-    pub fn torque(&self, i: Dq) -> f64 {
+    pub fn torque(&self, i: Dq<T>) -> T {
         let p = &self.parameters;
         let saliency = p.inductance_d - p.inductance_q;
-        1.5 * self.pole_pairs * (p.flux_linkage + saliency * i.d) * i.q
+        T::of(1.5) * self.pole_pairs * (p.flux_linkage + saliency * i.d) * i.q
     }
 
     /// The q current, A, that gives `torque` (N·m) at i_d = 0.
     #[inline]
-    pub fn q_current(&self, torque: f64) -> f64 {
-        torque / (1.5 * self.pole_pairs * self.parameters.flux_linkage)
+    pub fn q_current(&self, torque: T) -> T {
+        torque / (T::of(1.5) * self.pole_pairs * self.parameters.flux_linkage)
     }
 
     /// Voltage induced by the rotation at mechanical `speed` (rad/s):
     /// (−ω_e L_q i_q, ω_e (L_d i_d + ψ)), V. As a feed-forward it decouples
     /// the two current loops.
     #[inline]
-    pub fn rotational_voltage(&self, i: Dq, speed: f64) -> Dq {
+    pub fn rotational_voltage(&self, i: Dq<T>, speed: T) -> Dq<T> {
         let p = &self.parameters;
         let omega = self.pole_pairs * speed;
         Dq {
@@ -108,14 +114,14 @@ impl Pmsm {
     /// The voltage, V, that holds the currents `i` (A) at constant
     /// mechanical `speed` (rad/s).
     #[inline]
-    pub fn steady_voltage(&self, i: Dq, speed: f64) -> Dq {
+    pub fn steady_voltage(&self, i: Dq<T>, speed: T) -> Dq<T> {
         self.rotational_voltage(i, speed) + i * self.parameters.resistance
     }
 
     /// Rate of change of the currents, A/s, at currents `i` (A), voltage `u`
     /// (V) and mechanical `speed` (rad/s).
     #[inline]
-    pub fn derivative(&self, i: Dq, u: Dq, speed: f64) -> Dq {
+    pub fn derivative(&self, i: Dq<T>, u: Dq<T>, speed: T) -> Dq<T> {
         let drop = u - self.steady_voltage(i, speed);
         Dq {
             d: drop.d / self.parameters.inductance_d,
@@ -124,15 +130,15 @@ impl Pmsm {
     }
 
     /// Copper loss 1.5 R |i|², W.
-    pub fn copper_loss(&self, i: Dq) -> f64 {
-        1.5 * self.parameters.resistance * i.dot(i)
+    pub fn copper_loss(&self, i: Dq<T>) -> T {
+        T::of(1.5) * self.parameters.resistance * i.dot(i)
     }
 
     /// Magnetic energy of the currents, 0.75 (L_d i_d² + L_q i_q²), J
     /// (the magnets' own is constant and left out).
-    pub fn magnetic_energy(&self, i: Dq) -> f64 {
+    pub fn magnetic_energy(&self, i: Dq<T>) -> T {
         let p = &self.parameters;
-        0.75 * (p.inductance_d * i.d * i.d + p.inductance_q * i.q * i.q)
+        T::of(0.75) * (p.inductance_d * i.d * i.d + p.inductance_q * i.q * i.q)
     }
 
     /// The currents after a time `h` (s), from `i0` (A), with the voltage
@@ -144,9 +150,9 @@ impl Pmsm {
     /// holds without any error of discretisation:
     /// h·1.5 u·ī = h·copper_loss(ī) + Δ magnetic_energy + h·T(ī)·ω.
     #[inline]
-    pub fn step(&self, i0: Dq, u: Dq, speed: f64, h: f64) -> Dq {
+    pub fn step(&self, i0: Dq<T>, u: Dq<T>, speed: T, h: T) -> Dq<T> {
         let p = &self.parameters;
-        let half = 0.5 * h;
+        let half = T::HALF * h;
         // (L + h/2 Z) Δi = h (u − Z i0 − e), Z = [[R, −ω_e L_q], [ω_e L_d, R]]
         let rhs = u - self.steady_voltage(i0, speed);
         let turn = half * self.pole_pairs * speed;
@@ -166,7 +172,7 @@ impl Pmsm {
 
     /// As [`Pmsm::step`], exact for constant speed by the matrix
     /// exponential: i1 = i0 + h φ₁(hA) di/dt. Slower; for checks.
-    pub fn step_exact(&self, i0: Dq, u: Dq, speed: f64, h: f64) -> Dq {
+    pub fn step_exact(&self, i0: Dq<T>, u: Dq<T>, speed: T, h: T) -> Dq<T> {
         let p = &self.parameters;
         let omega = self.pole_pairs * speed;
         let ratio = p.inductance_q / p.inductance_d;

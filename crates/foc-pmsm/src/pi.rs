@@ -1,24 +1,25 @@
 //! A sampled PI controller with a limited output.
 
 use crate::error::{FocError, check, limit, not_negative, positive};
+use scalar::Scalar;
 
 /// The constants of a [`Pi`]. Plain data; [`Pi::new`] validates them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PiParameters {
+pub struct PiParameters<T = f64> {
     /// Proportional gain, output unit per error unit, 0 or more.
-    pub kp: f64,
+    pub kp: T,
     /// Integral gain, output unit per error unit and second, 0 or more.
-    pub ki: f64,
+    pub ki: T,
     /// Limit of the output's magnitude, output unit, greater than 0
     /// (infinity: none).
-    pub limit: f64,
+    pub limit: T,
     /// Sampling period T_s, s, greater than 0.
-    pub period: f64,
+    pub period: T,
 }
 
 /// What becomes of the integral while the output is at its limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum AntiWindup {
+pub enum AntiWindup<T = f64> {
     /// Conditional integration: the integral keeps its old value in a period
     /// in which the output saturates and the error would drive it further
     /// the same way.
@@ -30,7 +31,7 @@ pub enum AntiWindup {
     /// 1693–1698).
     BackCalculation {
         /// Tracking time T_t, s, at least one period.
-        tracking_time: f64,
+        tracking_time: T,
     },
 }
 
@@ -40,36 +41,36 @@ pub enum AntiWindup {
 /// I ← I + ki e T_s ;  y = kp e + I + feed-forward ;  output = y limited to ±limit
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pi {
-    parameters: PiParameters,
-    anti_windup: AntiWindup,
-    ki_period: f64,
+pub struct Pi<T = f64> {
+    parameters: PiParameters<T>,
+    anti_windup: AntiWindup<T>,
+    ki_period: T,
     /// T_s / T_t of back-calculation; negative for conditional integration.
-    tracking: f64,
+    tracking: T,
 }
 
 /// The memory of one PI controller; zero at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct PiState {
+pub struct PiState<T = f64> {
     /// The integral I, in the output's unit.
-    pub integral: f64,
+    pub integral: T,
 }
 
 /// One output of a PI controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PiOutput {
+pub struct PiOutput<T = f64> {
     /// The limited output.
-    pub value: f64,
+    pub value: T,
     /// Whether the limit changed it.
     pub saturated: bool,
 }
 
-impl Pi {
+impl<T: Scalar> Pi<T> {
     /// Validates the parameters; anti-windup is [`AntiWindup::Conditional`].
     ///
     /// # Errors
     /// [`FocError`] naming the first field out of the range its doc gives.
-    pub fn new(parameters: PiParameters) -> Result<Self, FocError> {
+    pub fn new(parameters: PiParameters<T>) -> Result<Self, FocError> {
         not_negative("kp", parameters.kp)?;
         not_negative("ki", parameters.ki)?;
         limit("limit", parameters.limit)?;
@@ -78,7 +79,7 @@ impl Pi {
             parameters,
             anti_windup: AntiWindup::Conditional,
             ki_period: parameters.ki * parameters.period,
-            tracking: -1.0,
+            tracking: -T::ONE,
         })
     }
 
@@ -87,9 +88,9 @@ impl Pi {
     /// # Errors
     /// [`FocError`] for a tracking time that is not finite or shorter than
     /// one period (the correction would overshoot).
-    pub fn with_anti_windup(self, anti_windup: AntiWindup) -> Result<Self, FocError> {
+    pub fn with_anti_windup(self, anti_windup: AntiWindup<T>) -> Result<Self, FocError> {
         let tracking = match anti_windup {
-            AntiWindup::Conditional => -1.0,
+            AntiWindup::Conditional => -T::ONE,
             AntiWindup::BackCalculation { tracking_time: t } => {
                 let ok = t.is_finite() && t >= self.parameters.period;
                 let valid = "finite and at least one period";
@@ -104,12 +105,12 @@ impl Pi {
     }
 
     /// The parameters the law was built from.
-    pub fn parameters(&self) -> &PiParameters {
+    pub fn parameters(&self) -> &PiParameters<T> {
         &self.parameters
     }
 
     /// The anti-windup in use.
-    pub fn anti_windup(&self) -> AntiWindup {
+    pub fn anti_windup(&self) -> AntiWindup<T> {
         self.anti_windup
     }
 
@@ -118,8 +119,8 @@ impl Pi {
     /// leaves of a voltage); the lower of it and the law's own holds. Pass
     /// infinity for the law's own.
     #[inline]
-    pub fn update(&self, state: &mut PiState, error: f64, limit: f64) -> PiOutput {
-        self.update_with_feed_forward(state, error, 0.0, limit)
+    pub fn update(&self, state: &mut PiState<T>, error: T, limit: T) -> PiOutput<T> {
+        self.update_with_feed_forward(state, error, T::ZERO, limit)
     }
 
     /// As [`Pi::update`], with a `feed_forward` (output unit) added before
@@ -128,13 +129,13 @@ impl Pi {
     #[inline]
     pub fn update_with_feed_forward(
         &self,
-        state: &mut PiState,
-        error: f64,
-        feed_forward: f64,
-        limit: f64,
-    ) -> PiOutput {
+        state: &mut PiState<T>,
+        error: T,
+        feed_forward: T,
+        limit: T,
+    ) -> PiOutput<T> {
         // `min` and `max` skip a NaN limit; a negative one leaves nothing.
-        let limit = self.parameters.limit.min(limit).max(0.0);
+        let limit = self.parameters.limit.min(limit).max(T::ZERO);
         let integral = state.integral + self.ki_period * error;
         let output = self.parameters.kp * error + integral + feed_forward;
         let saturated = output.abs() > limit;
@@ -146,9 +147,9 @@ impl Pi {
             };
         }
         let value = limit.copysign(output);
-        if self.tracking >= 0.0 {
+        if self.tracking >= T::ZERO {
             state.integral = integral + self.tracking * (value - output);
-        } else if error * output <= 0.0 {
+        } else if error * output <= T::ZERO {
             state.integral = integral;
         }
         PiOutput { value, saturated }

@@ -8,16 +8,18 @@
 
 use crate::error::{FocError, check, positive};
 use crate::frames::{AlphaBeta, FRAC_1_SQRT_3, Phases};
+use crate::math::clamp;
 use core::f64::consts::FRAC_2_PI;
+use scalar::Scalar;
 
 /// The mean fraction of a period that each leg is on the upper rail: always
 /// within \[0, 1\], or NaN where [`Svpwm`] was asked for a vector that is not
 /// a number, so that a loop that has diverged shows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Duties {
-    pub(crate) a: f64,
-    pub(crate) b: f64,
-    pub(crate) c: f64,
+pub struct Duties<T = f64> {
+    pub(crate) a: T,
+    pub(crate) b: T,
+    pub(crate) c: T,
 }
 
 /// What is made of a vector outside the hexagon. The two names are those of
@@ -37,36 +39,36 @@ pub enum Overmodulation {
 
 /// A modulator for one DC-link voltage. Immutable, without memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Svpwm {
-    dc_voltage: f64,
-    inverse: f64,
+pub struct Svpwm<T = f64> {
+    dc_voltage: T,
+    inverse: T,
     overmodulation: Overmodulation,
 }
 
-impl Svpwm {
+impl<T: Scalar> Svpwm<T> {
     /// A modulator for the DC-link voltage U_dc (V, greater than 0).
     ///
     /// # Errors
     /// [`FocError`] if the voltage is not finite and greater than 0.
-    pub fn new(dc_voltage: f64, overmodulation: Overmodulation) -> Result<Self, FocError> {
+    pub fn new(dc_voltage: T, overmodulation: Overmodulation) -> Result<Self, FocError> {
         positive("dc_voltage", dc_voltage)?;
         Ok(Self {
             dc_voltage,
-            inverse: 1.0 / dc_voltage,
+            inverse: T::ONE / dc_voltage,
             overmodulation,
         })
     }
 
     /// Radius of the linear range, U_dc/√3, V.
     #[inline]
-    pub fn linear_limit(&self) -> f64 {
-        self.dc_voltage * FRAC_1_SQRT_3
+    pub fn linear_limit(&self) -> T {
+        self.dc_voltage * T::of(FRAC_1_SQRT_3)
     }
 
     /// Fundamental of six-step operation, 2/π U_dc, V: the most there is.
     #[inline]
-    pub fn six_step_limit(&self) -> f64 {
-        self.dc_voltage * FRAC_2_PI
+    pub fn six_step_limit(&self) -> T {
+        self.dc_voltage * T::of(FRAC_2_PI)
     }
 
     /// Duty cycles for the voltage vector `u` (V): the phase voltages plus
@@ -76,23 +78,23 @@ impl Svpwm {
     /// Appl. 24 (1988) 142–150). Outside the hexagon [`Overmodulation`]
     /// decides. NaN where the phase voltages are not finite.
     #[inline]
-    pub fn duties(&self, u: AlphaBeta) -> Duties {
+    pub fn duties(&self, u: AlphaBeta<T>) -> Duties<T> {
         let phases = u.inverse_clarke();
         let max = phases.a.max(phases.b).max(phases.c);
         let min = phases.a.min(phases.b).min(phases.c);
         // Half of max − min, which does not overflow where the phases do not.
-        let half_range = 0.5 * max - 0.5 * min;
-        let shorten = half_range > 0.5 * self.dc_voltage
+        let half_range = T::HALF * max - T::HALF * min;
+        let shorten = half_range > T::HALF * self.dc_voltage
             && self.overmodulation == Overmodulation::MinimumPhaseError;
         // A ray meets the hexagon where its range is U_dc.
         let scale = if shorten {
-            0.5 / half_range
+            T::HALF / half_range
         } else {
             self.inverse
         };
-        let centre = 0.5 * (max + min);
+        let centre = T::HALF * (max + min);
         // The clamp clips outside the hexagon, and takes off rounding inside.
-        let duty = |x: f64| (0.5 + (x - centre) * scale).clamp(0.0, 1.0);
+        let duty = |x: T| clamp(T::HALF + (x - centre) * scale, T::ZERO, T::ONE);
         Duties {
             a: duty(phases.a),
             b: duty(phases.b),
@@ -102,12 +104,12 @@ impl Svpwm {
 
     /// Six-step operation: each leg on the rail of its phase's sign, the
     /// hexagon's corner nearest to `u` in angle.
-    pub fn six_step(&self, u: AlphaBeta) -> Duties {
+    pub fn six_step(&self, u: AlphaBeta<T>) -> Duties<T> {
         let phases = u.inverse_clarke();
-        let rail = |x: f64| match x {
+        let rail = |x: T| match x {
             x if x.is_nan() => x,
-            x if x > 0.0 => 1.0,
-            _ => 0.0,
+            x if x > T::ZERO => T::ONE,
+            _ => T::ZERO,
         };
         Duties {
             a: rail(phases.a),
@@ -118,20 +120,20 @@ impl Svpwm {
 
     /// The mean voltage vector (V) that the duties make.
     #[inline]
-    pub fn voltage(&self, duties: Duties) -> AlphaBeta {
+    pub fn voltage(&self, duties: Duties<T>) -> AlphaBeta<T> {
         duties.voltage(self.dc_voltage)
     }
 }
 
-impl Duties {
+impl<T: Scalar> Duties<T> {
     /// The duties of the legs a, b and c.
     ///
     /// # Errors
     /// [`FocError`] naming the first that is not within \[0, 1\].
-    pub fn new(a: f64, b: f64, c: f64) -> Result<Self, FocError> {
-        let leg = |field, duty: f64| {
+    pub fn new(a: T, b: T, c: T) -> Result<Self, FocError> {
+        let leg = |field, duty: T| {
             let valid = "0 or greater and at most 1";
-            check((0.0..=1.0).contains(&duty), field, duty, valid)
+            check((T::ZERO..=T::ONE).contains(&duty), field, duty, valid)
         };
         Ok(Self {
             a: leg("duty a", a)?,
@@ -142,25 +144,25 @@ impl Duties {
 
     /// Leg a.
     #[inline]
-    pub fn a(&self) -> f64 {
+    pub fn a(&self) -> T {
         self.a
     }
 
     /// Leg b.
     #[inline]
-    pub fn b(&self) -> f64 {
+    pub fn b(&self) -> T {
         self.b
     }
 
     /// Leg c.
     #[inline]
-    pub fn c(&self) -> f64 {
+    pub fn c(&self) -> T {
         self.c
     }
 
     /// The mean voltage vector (V) at the DC-link voltage `dc_voltage` (V).
     #[inline]
-    pub fn voltage(self, dc_voltage: f64) -> AlphaBeta {
+    pub fn voltage(self, dc_voltage: T) -> AlphaBeta<T> {
         Phases {
             a: self.a * dc_voltage,
             b: self.b * dc_voltage,
@@ -173,7 +175,7 @@ impl Duties {
 /// The hexagon's sector of a vector, 1 to 6: sector n holds the angles from
 /// (n − 1)·60° up to, not including, n·60°. The zero vector is in sector 1,
 /// as is one that is not a number.
-pub fn sector(u: AlphaBeta) -> u8 {
+pub fn sector<T: Scalar>(u: AlphaBeta<T>) -> u8 {
     let Phases { a, b, c } = u.inverse_clarke();
     if b >= a && a > c {
         2

@@ -2,13 +2,14 @@
 
 mod axis;
 
+use axis::rigid::{RADIUS, Rigid};
 use axis::{
     CurrentLoop, PERIOD, RPM, drawn_current_loop, drawn_gains, drawn_period, gains, limits,
     log_uniform, motor, servo,
 };
 use foc_pmsm::{
-    AntiWindup, Correction, Dq, FocError, Measurement, Pmsm, Reference, Servo, ServoGains,
-    ServoLimits, ServoState,
+    AntiWindup, Correction, Dq, FocError, Measurement, Reference, Servo, ServoGains, ServoLimits,
+    ServoState,
 };
 use proptest::prelude::*;
 
@@ -122,41 +123,6 @@ fn a_settled_state_stays_settled() {
     }
 }
 
-/// A motor with all that it moves on one rigid shaft.
-struct Rigid {
-    motor: Pmsm,
-    /// kg·m².
-    inertia: f64,
-    /// m/rad.
-    radius: f64,
-    angle: f64,
-    speed: f64,
-    current: Dq,
-}
-
-const RADIUS: f64 = 0.01 / core::f64::consts::TAU;
-/// A table of 515 kg, and 0.005 kg·m² of rotor and screw.
-const INERTIA: f64 = 515.0 * RADIUS * RADIUS + 0.005;
-
-impl Rigid {
-    fn measure(&self) -> Measurement {
-        Measurement {
-            position: self.radius * self.angle,
-            motor_speed: self.speed,
-            current: self.current,
-        }
-    }
-
-    fn advance(&mut self, u: Dq, load: f64, period: f64) {
-        let next = self.motor.step(self.current, u, self.speed, period);
-        let torque = self.motor.torque((self.current + next) * 0.5);
-        let acceleration = (torque - load) / self.inertia;
-        self.angle += (self.speed + 0.5 * acceleration * period) * period;
-        self.speed += acceleration * period;
-        self.current = next;
-    }
-}
-
 /// A rigid drive at 100 mm/s against a load: with velocity feed-forward and
 /// the speed integral there is no error left, the current carries the load,
 /// and i_d is 0.
@@ -170,14 +136,7 @@ fn a_rigid_drive_follows_a_ramp_without_error() {
     ] {
         let servo = servo().with_anti_windup(kind).unwrap();
         let mut state = ServoState::default();
-        let mut drive = Rigid {
-            motor: motor(),
-            inertia: INERTIA,
-            radius: RADIUS,
-            angle: 0.0,
-            speed: 0.0,
-            current: Dq::ZERO,
-        };
+        let mut drive = Rigid::table(motor());
         let (velocity, load) = (0.1, 5.0);
         let mut saturated = false;
         for k in 0..30_000 {

@@ -70,7 +70,7 @@ fn sectors_are_sixty_degrees_each() {
         let angle = (f64::from(k) + 0.5) * TAU / 3600.0;
         assert_eq!(sector(vector(100.0, angle)), 1 + (k / 600) as u8, "{angle}");
     }
-    assert_eq!(sector(AlphaBeta::default()), 1);
+    assert_eq!(sector(AlphaBeta::<f64>::default()), 1);
     assert_eq!(sector(vector(1.0, 0.0)), 1);
 }
 

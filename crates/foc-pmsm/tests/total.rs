@@ -6,7 +6,8 @@ use axis::any_number;
 use foc_pmsm::inverter::{Inverter, Rotor};
 use foc_pmsm::svpwm::{Duties, Overmodulation, Svpwm, sector};
 use foc_pmsm::{
-    AlphaBeta, AntiWindup, Correction, Dq, FocError, Measurement, MotorParameters, Phases, Pi,
+    AlphaBeta, AntiWindup, Correction, Dq, FieldWeakening, FieldWeakeningParameters,
+    FieldWeakeningState, FocError, Measurement, MotorParameters, OperatingPoint, Phases, Pi,
     PiParameters, PiState, Pmsm, Reference, Servo, ServoGains, ServoLimits, ServoState,
 };
 use proptest::prelude::*;
@@ -94,6 +95,25 @@ proptest! {
             let correction = Correction { position_offset: k, speed: l, iq: m };
             let _ = servo.cycle(&mut state, &now, &reference, &correction);
             let _ = servo.current_loop(&mut state, Dq { d: a, q: b }, Dq { d: c, q: d });
+            let point = OperatingPoint { id_ref: n, voltage_limit: k };
+            let _ = servo.cycle_with(&mut state, &now, &reference, &correction, &point);
+            let at = OperatingPoint::at_dc_voltage(l);
+            let (i, u) = (Dq { d: a, q: b }, Dq { d: c, q: d });
+            let _ = servo.current_loop_within(&mut state, i, u, at.voltage_limit);
+            let _ = servo.speed_loop_within(&mut state, e, f, servo.q_current_limit(g));
+        }
+    }
+
+    /// The d current reference keeps its range, whatever it is fed with.
+    #[test]
+    fn field_weakening([a, b, c, d, e, f] in six(), share in 0.01..0.99) {
+        let p = FieldWeakeningParameters {
+            voltage_share: share, ki: a.abs(), current: b.abs(), period: c.abs(),
+        };
+        if let Ok(law) = FieldWeakening::new(p) {
+            let mut state = FieldWeakeningState { id_ref: d };
+            let id = law.update(&mut state, Dq { d: e, q: f }, a);
+            prop_assert!(id.is_nan() || (-p.current..=0.0).contains(&id));
         }
     }
 

@@ -2,6 +2,9 @@
 //! and 5), in SI units: rpm and mm converted; and drives drawn at random.
 #![allow(dead_code)] // each test file uses its own part
 
+pub mod cast;
+pub mod rigid;
+
 use foc_pmsm::{Dq, MotorParameters, Pmsm, Servo, ServoGains, ServoLimits};
 use proptest::prelude::*;
 
