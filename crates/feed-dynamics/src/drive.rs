@@ -87,6 +87,7 @@ impl FeedDrive {
     /// Axial stiffness between screw and table k(x), N/m: of the nut, in series with
     /// the shaft on its bearings where [`DriveParameters::axial`] has them. Beyond an
     /// end of the screw it is that of the end.
+    #[inline]
     pub fn contact_stiffness(&self, x: f64) -> f64 {
         let nut = self.parameters.nut_stiffness;
         match &self.shaft {

@@ -46,8 +46,6 @@
 //! is a choice, [`NutCoupling`]: through the element's shape functions, or on
 //! a node that moves with it (the paper's).
 //!
-//! Units are SI: rad, m, N·m, N, kg·m², kg, s.
-//!
 //! # Two inertias
 //!
 //! `J θ̈ = T − r F`, `m ÿ = F − load`, with the force `F = k(x) δ + βk(x) δ̇` of the

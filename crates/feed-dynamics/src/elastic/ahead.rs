@@ -50,6 +50,8 @@ pub(super) struct Ahead<'a> {
     compression: Course,
     /// What the motor adds to δ̈ at the end, m/s².
     driven: f64,
+    /// Without a gap: the force without a load, and what a newton of load adds to it.
+    closed: [f64; 2],
 }
 
 impl<'a> Ahead<'a> {
@@ -67,25 +69,27 @@ impl<'a> Ahead<'a> {
         let y = y.accelerated(h, -stepper.load_mobility * left_out);
         let compression = start.compression.predicted(h);
         let compression = compression.accelerated(h, stepper.mobility * left_out);
-        let p = stepper.drive.parameters();
-        let stiffness = p.stiffness.at(start.origin + y.value);
-        let contact = Contact {
-            stiffness,
-            damping: stiffness * p.stiffness_damping,
-            travel: share.travel * stepper.mobility,
-            speed: share.speed * stepper.mobility,
-            half_gap: 0.5 * errors.gap(),
-        };
+        let contact = contact(stepper, start.origin + y.value, share, errors);
         let driven = stepper.per_torque * torque;
-        Self {
+        let compression = compression.accelerated(h, driven);
+        let mut ahead = Self {
             stepper,
             errors,
             share,
             contact,
             y,
-            compression: compression.accelerated(h, driven),
+            compression,
             driven,
+            closed: [0.0; 2],
+        };
+        if contact.half_gap == 0.0 {
+            let per_load = Course::default().accelerated(h, stepper.load_mobility);
+            ahead.closed = [
+                ahead.contact_force(0.0),
+                contact.force(per_load.value, per_load.rate),
+            ];
         }
+        ahead
     }
 
     /// The compression that there would be without the force.
@@ -95,9 +99,18 @@ impl<'a> Ahead<'a> {
         self.compression.accelerated(s.step, s.load_mobility * load)
     }
 
-    /// The force, linear in the load piece by piece, as the contact's end values are.
+    /// The force: linear in the load, as the contact's end values are; with a gap piece
+    /// by piece.
     #[inline]
     pub fn force(&self, load: f64) -> f64 {
+        if self.contact.half_gap == 0.0 {
+            return self.closed[0] + self.closed[1] * load;
+        }
+        self.contact_force(load)
+    }
+
+    #[inline]
+    fn contact_force(&self, load: f64) -> f64 {
         let (free, errors) = (self.free(load), self.errors);
         let (offset, rate) = (errors.offset(), errors.offset_rate());
         self.contact.force(free.value + offset, free.rate + rate)
@@ -135,5 +148,19 @@ impl<'a> Ahead<'a> {
         state.force = force;
         state.load_before = state.load;
         state.load = load;
+    }
+}
+
+/// The contact at the end of a step that leads to `x`.
+#[inline]
+fn contact(stepper: &ElasticStepper, x: f64, share: Share, errors: &NutErrors) -> Contact {
+    let p = stepper.drive.parameters();
+    let stiffness = p.stiffness.at(x);
+    Contact {
+        stiffness,
+        damping: stiffness * p.stiffness_damping,
+        travel: share.travel * stepper.mobility,
+        speed: share.speed * stepper.mobility,
+        half_gap: 0.5 * errors.gap(),
     }
 }

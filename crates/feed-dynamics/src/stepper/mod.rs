@@ -20,7 +20,8 @@ pub use nut::NutErrors;
 use crate::error::finite;
 use crate::{DriveError, FeedDrive};
 
-/// The motion of the load (the table of a ball screw) at the end of a step, as far as it is known.
+/// The motion of the load (the table of a ball screw) at the end of a step, as far
+/// as it is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TableMotion {
     /// Displacement from where the simulation began, m.

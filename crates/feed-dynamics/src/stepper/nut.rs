@@ -68,6 +68,7 @@ impl NutErrors {
 
     /// How far the nut is strained where `r θ − y` is `compression` (m): δ as far as
     /// it is beyond half the gap.
+    #[inline]
     pub(crate) fn strain(&self, compression: f64) -> f64 {
         let delta = compression + self.offset;
         let beyond = delta.abs() - 0.5 * self.gap;
