@@ -2,6 +2,8 @@
 
 use ChannelPart::{Given, Made, Sensed, Shown};
 
+use axis_log::{Log, LogError};
+
 use crate::actuator::Effort;
 use crate::axis::Axis;
 use crate::cycle::Cycle;
@@ -111,6 +113,26 @@ fn has_motor_encoder(axis: &Axis) -> bool {
 
 fn has_currents(axis: &Axis) -> bool {
     axis.actuator.has_currents()
+}
+
+/// The load's position in a log, m or rad.
+///
+/// # Errors
+/// [`LogError`] without `position_m` and `position_rad`.
+pub fn position_in(log: &Log) -> Result<&[f64], LogError> {
+    either(log, ["position_m", "position_rad"])
+}
+
+/// The position reference in a log, m or rad.
+///
+/// # Errors
+/// [`LogError`] without `position_ref_m` and `position_ref_rad`.
+pub fn reference_in(log: &Log) -> Result<&[f64], LogError> {
+    either(log, ["position_ref_m", "position_ref_rad"])
+}
+
+fn either<'a>(log: &'a Log, [linear, rotary]: [&str; 2]) -> Result<&'a [f64], LogError> {
+    log.channel(if log.has(rotary) { rotary } else { linear })
 }
 
 /// The channels that logs of this axis have.

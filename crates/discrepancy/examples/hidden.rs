@@ -3,14 +3,14 @@
 //! `cargo run --release --example hidden [NAME…]`
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Machine};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect};
 use discrepancy::hidden::{Exercise, Hidden, Noise, exercise};
 use discrepancy::{LogSet, Settings, search};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
     let axis = Axis::read(file.as_ref())?;
-    let machine = Machine::BallScrew(Box::new(axis.clone()));
+    let machine = axis.clone();
     let asked: Vec<String> = std::env::args().skip(1).collect();
     let mut effects: Vec<Option<&'static Effect>> = vec![None];
     effects.extend(EFFECTS.iter().map(|e| Some(*e)));
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             effects: effect
                 .map(|effect| ActiveEffect {
                     effect,
-                    values: effect.typical(),
+                    values: effect.typical(&Scales::of(&axis)),
                 })
                 .into_iter()
                 .collect(),

@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use axis_sim::effects::Machine;
-use axis_sim::{Probe, Trace};
+use axis_sim::{Axis, Probe, Trace};
 use rayon::prelude::*;
 
 use crate::fit::{Columns, Fit, Fitter};
@@ -96,15 +95,11 @@ pub struct Course {
 /// Speed below which a direction is not one, m/s.
 pub const STANDS: f64 = 1e-3;
 
-pub fn course(machine: &Machine, set: &LogSet, traces: &[Trace], log: usize) -> Course {
+pub fn course(machine: &Axis, set: &LogSet, traces: &[Trace], log: usize) -> Course {
     let trace = &traces[log];
-    let position = trace.channel("position_m").unwrap_or_default().to_vec();
-    let radians = match machine {
-        Machine::BallScrew(axis) => 1.0 / axis.travel_per_radian(),
-        Machine::Rigid(axis) => 1.0 / axis.travel_per_radian(),
-    };
-    let first = position.first().copied().unwrap_or(0.0);
-    let turn = |x: &f64| ((x - first) * radians).rem_euclid(std::f64::consts::TAU);
+    let position = trace.position().to_vec();
+    let radians = 1.0 / machine.travel_per_radian();
+    let turn = |x: &f64| (x * radians).rem_euclid(std::f64::consts::TAU);
     Course {
         time: (0..position.len())
             .map(|k| k as f64 * set.logs[log].period)
@@ -205,7 +200,7 @@ impl Shape {
 }
 
 /// The motions of all logs.
-pub fn courses(machine: &Machine, set: &LogSet, traces: &[Trace]) -> Vec<Course> {
+pub fn courses(machine: &Axis, set: &LogSet, traces: &[Trace]) -> Vec<Course> {
     (0..set.logs.len())
         .map(|log| course(machine, set, traces, log))
         .collect()
@@ -220,7 +215,7 @@ pub struct Curves {
 impl Curves {
     /// Simulates them at a fit; what they are on the motion hardly depends on
     /// the fit, so they may be kept.
-    pub fn new(machine: &Machine, set: &LogSet, fit: &Fit) -> Self {
+    pub fn new(machine: &Axis, set: &LogSet, fit: &Fit) -> Self {
         let courses = courses(machine, set, &fit.traces);
         let shapes = [Place::Force, Place::Offset]
             .into_iter()

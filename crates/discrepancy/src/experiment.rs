@@ -8,7 +8,7 @@
 //! proposed (experiments that discriminate between models: Hunter and Reiner,
 //! Technometrics 7 (1965) 307–323, doi:10.1080/00401706.1965.10490265).
 
-use axis_sim::effects::{ActiveEffect, Machine};
+use axis_sim::effects::{ActiveEffect, Measure, Scales};
 use axis_sim::{Axis, ClosedLoop, Recorder, ReplayError};
 use compensator::NoCompensation;
 use nalgebra::{DMatrix, DVector};
@@ -17,7 +17,7 @@ use trajectories::{Chirp, Limits, Program, Sine, Step, Sweep, TrajectoryError};
 
 use crate::fit::{Columns, Fitter};
 use crate::hidden::Noise;
-use crate::known::{known_deviation, with_known};
+use crate::known::known_deviations;
 use crate::library::rooms;
 use crate::model::{LogSet, State};
 use crate::noise::noise_on;
@@ -45,19 +45,16 @@ const SEPARATES: f64 = 25.0;
 /// # Errors
 /// [`ReplayError`] where the fitted machine no longer runs its own logs.
 pub fn propose(
-    machine: &Machine,
+    machine: &Axis,
     found: &Found,
     noise: Noise,
 ) -> Result<Option<Proposal>, ReplayError> {
-    let Machine::BallScrew(axis) = machine else {
-        return Ok(None);
-    };
     let with_class = found.named.iter().position(|n| !n.alike.is_empty());
     let Some(index) = with_class else {
         return Ok(None);
     };
     let question = Question::new(machine, found, index)?;
-    let Ok(motions) = motions(axis) else {
+    let Ok(motions) = motions(machine) else {
         return Ok(None);
     };
     let answers: Vec<Proposal> = motions
@@ -87,11 +84,18 @@ pub fn propose(
 fn motions(axis: &Axis) -> Result<Vec<(&'static str, Program)>, TrajectoryError> {
     let start = axis.stroke.start;
     let room = axis.stroke.maximum - start;
-    let fastest = axis.samples.speed.most.min(0.3);
+    let scales = Scales::of(axis);
+    let [of_speed, of_acceleration] = [Measure::Speed, Measure::Acceleration].map(|m| scales.ratio(m));
+    // The paper's axis goes at 0.333 m/s at most.
+    let most = axis.samples.map_or(0.333 * of_speed, |ranges| ranges.speed.most);
+    let fastest = most.min(0.3 * of_speed);
+    let length = scales.motion / 0.2;
+    // The same course in time, faster or slower.
+    let pace = of_speed / length;
     let to = |share: f64, speed: f64| -> Result<Step, TrajectoryError> {
         Ok(Step::Move {
             to: start + share * room,
-            limits: Limits::new(speed, 2.25 * speed, 12.0 * speed)?,
+            limits: Limits::new(speed, 2.25 * speed * pace, 12.0 * speed * pace * pace)?,
         })
     };
     let rest = |duration| Step::Dwell { duration };
@@ -106,7 +110,7 @@ fn motions(axis: &Axis) -> Result<Vec<(&'static str, Program)>, TrajectoryError>
         })
     };
     let wave = Step::Sine(Sine {
-        amplitude: 1e-3,
+        amplitude: 1e-3 * of_acceleration,
         frequency: 4.0,
         cycles: 10,
     });
@@ -119,14 +123,15 @@ fn motions(axis: &Axis) -> Result<Vec<(&'static str, Program)>, TrajectoryError>
             rest(0.2),
         ])
     };
-    let medium = 0.1_f64.min(fastest);
+    let medium = (0.1 * of_speed).min(fastest);
+    let small = 3e-5 * of_acceleration;
     let mut all = vec![
         (
             "a small chirp from 2 to 90 Hz",
-            vec![rest(0.2), chirp(3e-5), rest(0.2)],
+            vec![rest(0.2), chirp(small), rest(0.2)],
         ),
-        ("small waves of 1 mm", vec![rest(0.2), wave, rest(0.2)]),
-        ("there and back, slowly", there_and_back(0.06, 0.02)?),
+        ("small waves at 4 Hz", vec![rest(0.2), wave, rest(0.2)]),
+        ("there and back, slowly", there_and_back(0.06, 0.02 * of_speed)?),
         ("there and back, fast", there_and_back(0.4, fastest)?),
         (
             "over the whole stroke and back",
@@ -138,9 +143,9 @@ fn motions(axis: &Axis) -> Result<Vec<(&'static str, Program)>, TrajectoryError>
         halting.extend([rest(0.5), to(share, medium)?]);
     }
     all.push(("in steps with rests of half a second", halting));
-    let mut mixed = there_and_back(0.06, 0.03)?;
+    let mut mixed = there_and_back(0.06, 0.03 * of_speed)?;
     mixed.extend(there_and_back(0.3, fastest)?);
-    mixed.extend([chirp(3e-5), rest(0.2)]);
+    mixed.extend([chirp(small), rest(0.2)]);
     all.push(("slow, fast, and a small chirp", mixed));
     all.into_iter()
         .map(|(what, steps)| Ok((what, Program::new(start, steps)?)))
@@ -149,7 +154,7 @@ fn motions(axis: &Axis) -> Result<Vec<(&'static str, Program)>, TrajectoryError>
 
 /// Two explanations of the same logs.
 struct Question<'a> {
-    machine: &'a Machine,
+    machine: &'a Axis,
     pair: [ActiveEffect; 2],
     states: [State; 2],
     /// Whitened columns of the known parameters and of the other effects, on
@@ -159,7 +164,7 @@ struct Question<'a> {
 }
 
 impl<'a> Question<'a> {
-    fn new(machine: &'a Machine, found: &Found, index: usize) -> Result<Self, ReplayError> {
+    fn new(machine: &'a Axis, found: &Found, index: usize) -> Result<Self, ReplayError> {
         let named = found.fit.clone();
         let mut state = named.state.clone();
         state.effects[index] = found.named[index].alike[0].fitted.clone();
@@ -168,7 +173,8 @@ impl<'a> Question<'a> {
             set: &found.fit_logs,
         };
         let effect = |state: &State| state.effects[index].clone();
-        let sizes = |state: &State| rooms(effect(state).effect).len();
+        let scales = Scales::of(machine);
+        let sizes = |state: &State| rooms(effect(state).effect, &scales).len();
         let own = effect(&named.state);
         let (pair, first, second, known);
         if sizes(&state) > sizes(&named.state) {
@@ -228,10 +234,10 @@ impl<'a> Question<'a> {
     /// fitted to both: on the old logs the two are alike.
     fn left_of(&self, apart: &DVector<f64>, new: &[DVector<f64>]) -> f64 {
         let n = new.len();
-        let weight = known_deviation(self.machine).powi(-2);
+        let deviations = known_deviations(self.machine);
         let normal = DMatrix::from_fn(n, n, |i, j| {
             let prior = if i == j && i < self.known {
-                weight
+                deviations[i].powi(-2)
             } else {
                 0.0
             };
@@ -249,12 +255,9 @@ impl<'a> Question<'a> {
 
     /// A simulated log of the program, to replay.
     fn record(&self, program: &Program) -> Result<LogSet, ReplayError> {
-        let Machine::BallScrew(axis) = with_known(self.machine, &self.states[0].shares) else {
-            return LogSet::prepared(Vec::new(), self.machine);
-        };
-        let mut axis = *axis;
+        let mut axis = self.machine.with_known(&self.states[0].shares);
         axis.effects.extend_from_slice(&self.states[0].effects);
-        let mut recorder = Recorder::default();
+        let mut recorder = Recorder::new(&axis);
         ClosedLoop::new(&axis)?
             .run(program, &mut NoCompensation, |cycle| recorder.push(cycle))
             .completed()?;

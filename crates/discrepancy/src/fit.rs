@@ -1,13 +1,13 @@
 //! Fitting: known parameters inside their tolerance, effects free.
 
-use axis_sim::effects::{ActiveEffect, EffectParameter, Machine};
-use axis_sim::{ReplayError, Trace};
+use axis_sim::effects::{ActiveEffect, EffectParameter, Nature, Scales};
+use axis_sim::{Axis, ReplayError, Trace};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::bounded::{bounded, inverse_of};
 use crate::gauss_newton::Descent;
-use crate::known::{known_deviation, tolerance};
+use crate::known::{known_deviations, tolerances};
 use crate::model::{LogSet, State};
 use crate::spectrum::Amplitudes;
 
@@ -40,27 +40,26 @@ impl Fit {
 
 /// Which effect parameters a fit moves: all but whole numbers.
 pub fn is_free(parameter: &EffectParameter) -> bool {
-    parameter.name != "order"
+    !matches!(parameter.nature, Nature::Order(_))
 }
 
 /// Steps up and down for a difference quotient of an effect's parameter, inside
 /// its bounds. A hidden effect and a known parameter may be one quantity: their
 /// columns must agree to far better than a hundredth, or the data seem to tell
 /// them apart; so quotients are central and steps small.
-fn steps_of(parameter: &EffectParameter, value: f64) -> [f64; 2] {
-    let scale = if parameter.unit == "rad" && !parameter.size {
-        0.02
-    } else {
-        0.02 * value.abs().max(parameter.typical.abs())
+fn steps_of(parameter: &EffectParameter, value: f64, on: &Scales) -> [f64; 2] {
+    let scale = match parameter.nature {
+        Nature::Phase => 0.02,
+        _ => 0.02 * value.abs().max(parameter.typical(on).abs()),
     };
-    let [low, high] = parameter.bounds;
+    let [low, high] = parameter.bounds(on);
     [(high - value).min(scale), (low - value).max(-scale)]
 }
 
 /// The fit of a set of logs by a machine.
 pub struct Fitter<'a> {
     /// Machine as its file says.
-    pub machine: &'a Machine,
+    pub machine: &'a Axis,
     /// Logs.
     pub set: &'a LogSet,
 }
@@ -83,14 +82,16 @@ impl Fitter<'_> {
     }
 
     fn departure(&self, state: &State) -> f64 {
-        let deviation = known_deviation(self.machine);
-        state.shares.iter().map(|s| (s / deviation).powi(2)).sum()
+        let pairs = state.shares.iter().zip(known_deviations(self.machine));
+        pairs.map(|(s, deviation)| (s / deviation).powi(2)).sum()
     }
 
     /// Derivatives with respect to the known parameters.
     pub fn known_columns(&self, fit: &Fit) -> Columns {
-        let step = 0.2 * tolerance(self.machine);
+        let tolerances = tolerances(self.machine);
         let column = |i: usize| {
+            // Of what is hardly known a small step, as of what is.
+            let step = 0.2 * tolerances[i].min(0.05);
             let at = |by: f64| {
                 let mut state = fit.state.clone();
                 state.shares[i] += by;
@@ -107,9 +108,10 @@ impl Fitter<'_> {
     /// Derivatives with respect to the free parameters of the effects, but for the
     /// first `given` of them.
     pub fn effect_columns(&self, fit: &Fit, given: usize) -> Columns {
+        let scales = Scales::of(self.machine);
         let column = |(e, p): (usize, usize)| {
             let active = &fit.state.effects[e];
-            let steps = steps_of(&active.effect.parameters[p], active.values[p]);
+            let steps = steps_of(&active.effect.parameters[p], active.values[p], &scales);
             let at = |by: f64| {
                 let mut state = fit.state.clone();
                 state.effects[e].values[p] += by;
@@ -159,7 +161,7 @@ impl Fitter<'_> {
             (promised >= ENOUGH).then_some((step, columns))
         };
         let better = |fit: &Fit, (step, columns): &(DVector<f64>, Columns), length: f64| {
-            let trial = self.at(moved(&fit.state, step, length)).ok()?;
+            let trial = self.at(self.moved(&fit.state, step, length)).ok()?;
             self.below(fit, trial, columns)
         };
         let descent = Descent {
@@ -196,7 +198,7 @@ impl Fitter<'_> {
             return Some(trial);
         }
         let correction = self.solve_beside(&fit.rest, &trial, columns).step;
-        let corrected = self.at(moved(&trial.state, &correction, 1.0)).ok()?;
+        let corrected = self.at(self.moved(&trial.state, &correction, 1.0)).ok()?;
         (corrected.deviance < fit.deviance).then_some(corrected)
     }
 
@@ -204,13 +206,15 @@ impl Fitter<'_> {
     /// multiples of them: a gap or a dry force does not grow as its response at
     /// one size says.
     pub fn best_size(&self, fit: Fit, count: usize) -> Fit {
+        let scales = Scales::of(self.machine);
         let times = |by: f64| {
             let mut state = fit.state.clone();
             for active in state.effects.iter_mut().rev().take(count) {
                 let parameters = active.effect.parameters;
                 for (value, p) in active.values.iter_mut().zip(parameters) {
-                    if p.size {
-                        *value = (*value * by).clamp(p.bounds[0], p.bounds[1]);
+                    if p.is_size() {
+                        let [low, high] = p.bounds(&scales);
+                        *value = (*value * by).clamp(low, high);
                     }
                 }
             }
@@ -239,14 +243,15 @@ impl Fitter<'_> {
         }
         let mut normal = jacobian.tr_mul(&jacobian);
         let mut right = jacobian.tr_mul(&rest);
-        let weight = known_deviation(self.machine).powi(-2);
-        for i in 0..known {
+        for (i, deviation) in known_deviations(self.machine).into_iter().enumerate() {
+            let weight = deviation.powi(-2);
             normal[(i, i)] += weight;
             right[i] -= weight * fit.state.shares[i];
         }
+        let tolerances = tolerances(self.machine);
         let room = |i: usize| {
             (i < known).then(|| {
-                let (share, most) = (fit.state.shares[i], tolerance(self.machine));
+                let (share, most) = (fit.state.shares[i], tolerances[i]);
                 [-most - share, most - share]
             })
         };
@@ -282,29 +287,29 @@ pub fn free_parameters(state: &State) -> Vec<(usize, usize)> {
     state.effects.iter().enumerate().flat_map(of).collect()
 }
 
-fn moved(state: &State, step: &DVector<f64>, length: f64) -> State {
-    let mut state = state.clone();
-    let known = state.shares.len();
-    for (share, by) in state.shares.iter_mut().zip(step.iter()) {
-        *share += length * by;
-    }
-    for (i, (e, p)) in free_parameters(&state).into_iter().enumerate() {
-        let parameter = state.effects[e].effect.parameters[p];
-        let mut by = length * step[known + i];
-        if !parameter.size {
-            // A shape that moves far has left the range of its derivative.
-            let most = if parameter.unit == "rad" {
-                1.0
-            } else {
-                0.3 * parameter
-                    .typical
-                    .abs()
-                    .max(state.effects[e].values[p].abs())
-            };
-            by = by.clamp(-most, most);
+impl Fitter<'_> {
+    fn moved(&self, state: &State, step: &DVector<f64>, length: f64) -> State {
+        let scales = Scales::of(self.machine);
+        let mut state = state.clone();
+        let known = state.shares.len();
+        for (share, by) in state.shares.iter_mut().zip(step.iter()) {
+            *share += length * by;
         }
-        let value = state.effects[e].values[p] + by;
-        state.effects[e].values[p] = value.clamp(parameter.bounds[0], parameter.bounds[1]);
+        for (i, (e, p)) in free_parameters(&state).into_iter().enumerate() {
+            let parameter = state.effects[e].effect.parameters[p];
+            let before = state.effects[e].values[p];
+            let mut by = length * step[known + i];
+            if !parameter.is_size() {
+                // A shape that moves far has left the range of its derivative.
+                let most = match parameter.nature {
+                    Nature::Phase => 1.0,
+                    _ => 0.3 * parameter.typical(&scales).abs().max(before.abs()),
+                };
+                by = by.clamp(-most, most);
+            }
+            let [low, high] = parameter.bounds(&scales);
+            state.effects[e].values[p] = (before + by).clamp(low, high);
+        }
+        state
     }
-    state
 }

@@ -2,8 +2,7 @@
 
 use axis_log::Log;
 use axis_log::quality::{SamplingError, check_sampling, constant_channels, unit_slip};
-use axis_sim::Stroke;
-use axis_sim::effects::Machine;
+use axis_sim::{Axis, position_in, reference_in};
 use thiserror::Error;
 
 /// Why a log cannot be used. The message names the file first.
@@ -44,7 +43,7 @@ pub enum IntakeError {
     },
     /// Positions that the axis cannot take.
     #[error(
-        "{file}: \"{channel}\" is {position:.6} m at t = {time:.4} s, outside the axis' stroke of {minimum} to {maximum} m: the log belongs to another axis, is in another unit, or counts from another zero (offset in [log])"
+        "{file}: the {channel} is {position:.6} at t = {time:.4} s, outside the axis' stroke of {minimum} to {maximum} (m or rad): the log belongs to another axis, is in another unit, or counts from another zero (offset in [log])"
     )]
     OffStroke {
         /// The log.
@@ -110,13 +109,13 @@ pub enum IntakeError {
 ///
 /// # Errors
 /// The first thing found that would make a verdict worthless.
-pub fn check_log(file: &str, log: &Log, machine: &Machine) -> Result<f64, IntakeError> {
+pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, IntakeError> {
     let file = || file.to_owned();
     let sampling = check_sampling(log).map_err(|reason| IntakeError::Sampling {
         file: file(),
         reason,
     })?;
-    let (Ok(reference), Ok(position)) = (log.channel("position_ref_m"), log.channel("position_m"))
+    let (Ok(reference), Ok(position)) = (reference_in(log), position_in(log))
     else {
         return Ok(sampling.period);
     };
@@ -130,11 +129,15 @@ pub fn check_log(file: &str, log: &Log, machine: &Machine) -> Result<f64, Intake
     }
     let used = [
         "position_ref_m",
+        "position_ref_rad",
         "position_m",
+        "position_rad",
         "motor_angle_rad",
         "iq_a",
         "iq_ref_a",
         "uq_v",
+        "torque_ref_n_m",
+        "force_ref_n",
         "drive_command_v",
     ];
     if let Some(channel) = constant_channels(log)
@@ -181,9 +184,9 @@ pub fn from_rest(
     file: &str,
     log: Log,
     period: f64,
-    machine: &Machine,
+    machine: &Axis,
 ) -> Result<(Log, Option<String>), IntakeError> {
-    let Ok(reference) = log.channel("position_ref_m") else {
+    let Ok(reference) = reference_in(&log) else {
         return Ok((log, None));
     };
     let few = ((START_TIME / period).round() as usize).clamp(1, reference.len().max(2) - 1);
@@ -194,7 +197,7 @@ pub fn from_rest(
     if speed.abs() <= AT_REST {
         return Ok((log, None));
     }
-    if let Machine::Rigid(_) = machine {
+    if machine.control.starts_in_motion() {
         let words = format!(
             "{file} starts in motion; position and speed at its start ({speed:.4} m/s) are taken from its first samples"
         );
@@ -234,13 +237,14 @@ const START_TIME: f64 = 5e-3;
 /// How long a rest must be for the loop to have come to rest in its half, s.
 const REST_TIME: f64 = 0.2;
 
-fn on_stroke(file: &str, log: &Log, machine: &Machine) -> Result<(), IntakeError> {
-    let stroke: &Stroke = match machine {
-        Machine::BallScrew(axis) => &axis.stroke,
-        Machine::Rigid(axis) => &axis.stroke,
-    };
-    for channel in ["position_ref_m", "position_m"] {
-        let samples = log.channel(channel).unwrap_or_default();
+fn on_stroke(file: &str, log: &Log, machine: &Axis) -> Result<(), IntakeError> {
+    let stroke = &machine.stroke;
+    let channels: [(&'static str, _); 2] = [
+        ("reference", reference_in(log)),
+        ("position", position_in(log)),
+    ];
+    for (channel, samples) in channels {
+        let samples = samples.unwrap_or_default();
         let outside = |x: &f64| !(stroke.minimum - 1e-6..=stroke.maximum + 1e-6).contains(x);
         if let Some(k) = samples.iter().position(outside) {
             return Err(IntakeError::OffStroke {
@@ -286,9 +290,9 @@ pub fn check_distinct(
 ) -> Result<(), IntakeError> {
     let same = |a: &Log, b: &Log| {
         a.len() == b.len()
-            && a.channel("position_m")
+            && position_in(a)
                 .ok()
-                .is_some_and(|x| Some(x) == b.channel("position_m").ok())
+                .is_some_and(|x| Some(x) == position_in(b).ok())
     };
     for (fit_name, fit_log, _) in fit {
         for (check_name, check_log, _) in check {

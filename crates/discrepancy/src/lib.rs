@@ -55,7 +55,7 @@ pub use experiment::Proposal;
 pub use fit::{Fit, Fitter, free_parameters};
 pub use gap::{ChannelGap, Gap};
 pub use interval::Spread;
-pub use known::{Known, known_deviation, known_parameters, tolerance, with_known};
+pub use known::{known_deviations, tolerances};
 pub use lack::{Curve, Unknown};
 pub use library::{Library, applicable};
 pub use model::{LogSet, Prepared, State};

@@ -1,6 +1,7 @@
 //! What each effect of the library does on a set of logs.
 
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectParameter, Machine};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectParameter, Nature, Scales};
+use axis_sim::{Axis, position_in};
 use rayon::prelude::*;
 
 use crate::curves::Curves;
@@ -47,6 +48,8 @@ pub struct Candidate {
     pub effect: &'static Effect,
     /// Starting values, sizes typical.
     pub values: Vec<f64>,
+    /// How large things are on the axis.
+    pub scales: Scales,
     /// Response to each size parameter at its typical value; for an effect
     /// with a phase, to phase 0 and to phase π/2.
     pub columns: Columns,
@@ -54,14 +57,15 @@ pub struct Candidate {
 
 /// Bounds of an effect's columns, which are those of typical sizes; one with a
 /// phase has two, free both.
-pub fn rooms(effect: &Effect) -> Vec<Room> {
-    let phase = effect.parameters.iter().any(|p| p.name == "phase");
+pub fn rooms(effect: &Effect, on: &Scales) -> Vec<Room> {
+    let phase = phase_of(effect).is_some();
     let room = |p: &EffectParameter| {
-        let mut edges = p.bounds.map(|edge| edge / p.typical);
+        let typical = p.typical(on);
+        let mut edges = p.bounds(on).map(|edge| edge / typical);
         edges.sort_by(f64::total_cmp);
         Some(edges)
     };
-    let sizes = effect.parameters.iter().filter(|p| p.size);
+    let sizes = effect.parameters.iter().filter(|p| p.is_size());
     match phase {
         true => sizes.flat_map(|_| [None, None]).collect(),
         false => sizes.map(room).collect(),
@@ -69,74 +73,88 @@ pub fn rooms(effect: &Effect) -> Vec<Room> {
 }
 
 /// Values of an effect whose columns count so often.
-pub fn values_at(effect: &Effect, values: &[f64], solution: &[f64]) -> Vec<f64> {
+pub fn values_at(effect: &Effect, values: &[f64], solution: &[f64], on: &Scales) -> Vec<f64> {
     let parameters = effect.parameters;
     let mut values = values.to_vec();
-    let phase = parameters.iter().position(|p| p.name == "phase");
+    let phase = phase_of(effect);
     let mut next = solution.iter();
-    for (i, p) in parameters.iter().enumerate().filter(|(_, p)| p.size) {
+    for (i, p) in parameters.iter().enumerate().filter(|(_, p)| p.is_size()) {
         let mut size = next.next().copied().unwrap_or(0.0);
         if let Some(at) = phase {
             let quadrature = next.next().copied().unwrap_or(0.0);
             values[at] = quadrature.atan2(size);
             size = size.hypot(quadrature);
         }
-        values[i] = (size * p.typical).clamp(p.bounds[0], p.bounds[1]);
+        let [low, high] = p.bounds(on);
+        values[i] = (size * p.typical(on)).clamp(low, high);
     }
     values
 }
 
-/// Values of shape parameters to begin with.
+/// The place of an effect's phase among its parameters.
+pub fn phase_of(effect: &Effect) -> Option<usize> {
+    effect.place_of(|nature| matches!(nature, Nature::Phase))
+}
+
+/// Values of shape parameters to begin with: all combinations of what each nature asks
+/// for, a width being a part of the stroke that the logs cover, an end the end of the
+/// slot that it begins with.
 fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
     let duration = |l: &Prepared| l.log.len() as f64 * l.period;
     let end = fitter.set.logs.iter().map(duration).fold(0.0, f64::max);
-    let positions = fitter
-        .set
-        .logs
-        .iter()
-        .flat_map(|l| l.log.channel("position_m").unwrap_or(&[]));
+    let logs = fitter.set.logs.iter();
+    let positions = logs.flat_map(|l| position_in(&l.log).unwrap_or(&[]));
     let (low, high) = positions.fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
-    let typical = effect.typical();
-    let along = |i: usize, n: usize| low + (high - low) * (i as f64 + 0.5) / n as f64;
-    match effect.name {
-        "stribeck-friction" => [0.004, 0.015, 0.05]
-            .iter()
-            .map(|&v| vec![typical[0], v])
-            .collect(),
-        "position-dependent-friction" => {
-            let width = (high - low) / 16.0;
-            (0..8)
-                .map(|i| vec![typical[0], along(i, 8), width])
-                .collect()
-        }
-        FORCE => (0..SLOTS)
-            .map(|i| {
-                let slot = end / SLOTS as f64;
-                vec![typical[0], slot * i as f64, slot * (i + 1) as f64]
-            })
-            .collect(),
-        "cogging-torque" => (1..=ORDERS)
-            .map(|order| vec![typical[0], f64::from(order), 0.0])
-            .collect(),
-        "thermal-expansion" => [1.0, 5.0].iter().map(|&t| vec![typical[0], t]).collect(),
-        _ => vec![typical],
+    let scales = Scales::of(fitter.machine);
+    let slot = end / SLOTS as f64;
+    let mut all = vec![effect.typical(&scales)];
+    for (i, p) in effect.parameters.iter().enumerate() {
+        let begins: Vec<f64> = match p.nature {
+            Nature::Size { .. } | Nature::Phase | Nature::End(_) => continue,
+            Nature::Speed(starts, _) => starts.map(|v| v * scales.ratio(p.measure)).to_vec(),
+            Nature::Time(starts, _) => starts.to_vec(),
+            Nature::Order(most) => (1..=most).map(f64::from).collect(),
+            Nature::Width(_) => vec![(high - low) / 16.0],
+            Nature::Place(_) => (0..PLACES)
+                .map(|k| low + (high - low) * (k as f64 + 0.5) / PLACES as f64)
+                .collect(),
+            Nature::Begin(_) => (0..SLOTS).map(|k| slot * k as f64).collect(),
+        };
+        let with = |values: &Vec<f64>| -> Vec<Vec<f64>> {
+            let one = |&begin: &f64| {
+                let mut values = values.clone();
+                values[i] = begin;
+                values
+            };
+            begins.iter().map(one).collect()
+        };
+        all = all.iter().flat_map(with).collect();
     }
+    let ends = effect.place_of(|n| matches!(n, Nature::End(_)));
+    let begins = effect.place_of(|n| matches!(n, Nature::Begin(_)));
+    if let (Some(begin), Some(end)) = (begins, ends) {
+        for values in &mut all {
+            values[end] = values[begin] + slot;
+        }
+    }
+    all
 }
 
-/// Highest order of cogging that is looked for, per motor turn.
-const ORDERS: u8 = 24;
+/// Whether an effect is a force in time, of which begin and end are sought together.
+pub fn is_force_in_time(effect: &Effect) -> bool {
+    (effect.place_of(|n| matches!(n, Nature::Begin(_)))).is_some()
+}
 
-/// Name of the force in time.
-pub const FORCE: &str = "process-force";
+/// Places along the stroke at which a search starts.
+const PLACES: usize = 8;
 
 /// Parts of a motion's time in which a force may begin and end.
 const SLOTS: usize = 24;
 
-/// Effects of the library that a machine of this kind can have.
-pub fn applicable(machine: &Machine) -> impl Iterator<Item = &'static Effect> {
-    let rigid = matches!(machine, Machine::Rigid(_));
+/// Effects of the library that an axis can have.
+pub fn applicable(machine: &Axis) -> impl Iterator<Item = &'static Effect> {
     let all = EFFECTS.iter().copied();
-    all.filter(move |e| e.on_rigid || !rigid)
+    all.filter(move |e| e.applies_to(machine).is_ok())
 }
 
 /// Candidates of the library that are `wanted`, at the state of `fit`.
@@ -151,6 +169,7 @@ fn candidates(fitter: &Fitter<'_>, fit: &Fit, wanted: impl Fn(&Effect) -> bool) 
             columns: responses(fitter, fit, effect, &values),
             effect,
             values,
+            scales: Scales::of(fitter.machine),
         })
         .collect()
 }
@@ -164,16 +183,18 @@ pub fn responses(
     values: &[f64],
 ) -> Columns {
     const SHARE: f64 = 0.5;
-    let phase = effect.parameters.iter().position(|p| p.name == "phase");
-    let sizes = effect.parameters.iter().enumerate().filter(|(_, p)| p.size);
+    let scales = Scales::of(fitter.machine);
+    let phase = phase_of(effect);
+    let sizes = effect.parameters.iter().enumerate();
+    let sizes = sizes.filter(|(_, p)| p.is_size());
     let with = |size: usize, angle: Option<f64>| {
         let mut tried = values.to_vec();
         for (value, p) in tried.iter_mut().zip(effect.parameters) {
-            if p.size {
+            if p.is_size() {
                 *value = 0.0;
             }
         }
-        tried[size] = SHARE * effect.parameters[size].typical;
+        tried[size] = SHARE * effect.parameters[size].typical(&scales);
         if let (Some(at), Some(angle)) = (phase, angle) {
             tried[at] = angle;
         }

@@ -9,12 +9,12 @@
 
 use std::ops::Range;
 
-use axis_sim::effects::Machine;
+use axis_sim::Axis;
 use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::bounded::bounded;
-use crate::known::{known_deviation, tolerance};
+use crate::known::{known_deviations, tolerances};
 use crate::spectrum::{Amplitudes, Layout, deviance_of, regular};
 
 type C64 = Complex<f64>;
@@ -95,9 +95,15 @@ pub struct Problem<'a> {
     rooms: Vec<Room>,
     /// Of the known parameters.
     shares: &'a [f64],
-    tolerance: f64,
+    tolerances: Vec<f64>,
     /// Of a departure of theirs.
-    weight: f64,
+    weights: Vec<f64>,
+}
+
+/// Weights of the known parameters' departures.
+fn weights(machine: &Axis) -> Vec<f64> {
+    let deviations = known_deviations(machine).into_iter();
+    deviations.map(|deviation| deviation.powi(-2)).collect()
 }
 
 /// Where D is least.
@@ -112,7 +118,7 @@ impl<'a> Problem<'a> {
     /// Of these columns: the rest, those of the known parameters, which are at
     /// `shares` now, and others, of which the last have these bounds.
     pub fn new(
-        machine: &Machine,
+        machine: &Axis,
         products: &'a Products,
         places: Vec<usize>,
         rooms: Vec<Room>,
@@ -124,8 +130,8 @@ impl<'a> Problem<'a> {
             sum: Vec::new(),
             rooms,
             shares,
-            tolerance: tolerance(machine),
-            weight: known_deviation(machine).powi(-2),
+            tolerances: tolerances(machine),
+            weights: weights(machine),
         }
     }
 
@@ -231,7 +237,7 @@ impl<'a> Problem<'a> {
             Some(last) => self.rooms[last],
             None => (i < known).then(|| {
                 let share = self.shares[i];
-                [-self.tolerance - share, self.tolerance - share]
+                [-self.tolerances[i] - share, self.tolerances[i] - share]
             }),
         };
         for _ in 0..ROUNDS {
@@ -239,8 +245,8 @@ impl<'a> Problem<'a> {
             let mut normal = gram.view((1, 1), (n, n)).into_owned();
             let mut right = gram.view((1, 0), (n, 1)).column(0).into_owned();
             for i in 0..known {
-                normal[(i, i)] += self.weight;
-                right[i] -= self.weight * self.shares[i];
+                normal[(i, i)] += self.weights[i];
+                right[i] -= self.weights[i] * self.shares[i];
             }
             let before = std::mem::replace(&mut x, bounded(&normal, &right, room));
             matrices = self.spectral_matrices(&x);
@@ -249,10 +255,10 @@ impl<'a> Problem<'a> {
                 break;
             }
         }
-        let departures = x.iter().zip(self.shares);
-        let departure: f64 = departures.map(|(x, s)| (x + s).powi(2)).sum();
+        let departures = x.iter().zip(self.shares).zip(&self.weights);
+        let departure: f64 = departures.map(|((x, s), w)| w * (x + s).powi(2)).sum();
         let bands = matrices.iter().zip(&self.products.values);
-        let deviance = bands.map(deviance_of).sum::<f64>() + self.weight * departure;
+        let deviance = bands.map(deviance_of).sum::<f64>() + departure;
         Minimum { deviance, x }
     }
 }
@@ -279,7 +285,7 @@ mod tests {
         let products = Products::new(&layout, &all.iter().collect::<Vec<_>>());
         let axis = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
         let axis = axis_sim::Axis::read(axis.as_ref()).unwrap();
-        let machine = Machine::BallScrew(Box::new(axis));
+        let machine = axis;
         // The rest, one column, and the sum of two of three slots.
         let problem = Problem::new(&machine, &products, vec![0, 1], Vec::new(), &[]);
         let problem = problem.with_sum(3..5);

@@ -1,12 +1,13 @@
 //! The simulated side: a machine with known parameters and effects, replayed.
 
 use axis_log::Log;
-use axis_sim::effects::{ActiveEffect, Effect, Machine};
-use axis_sim::{ClosedLoop, Probe, Replay, ReplayError, Trace};
-use feed_dynamics::NutCoupling;
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Need, Scales};
+use axis_sim::part::Role;
+use axis_sim::{
+    Axis, ChannelPart, ClosedLoop, LogChannel, Probe, Replay, ReplayError, Trace, reference_in,
+};
 use rayon::prelude::*;
 
-use crate::known::{known_parameters, with_known};
 use crate::spectrum::{Amplitudes, Layout};
 
 /// A log, ready to be compared with simulations of it.
@@ -35,8 +36,8 @@ pub struct LogSet {
     pub logs: Vec<Prepared>,
     /// The channels that all of them have and that a simulation gives.
     pub channels: Vec<&'static str>,
-    /// Places in `channels` of those that are fitted. Of a rigid machine's two,
-    /// command and position, the controller makes one of the other without
+    /// Places in `channels` of those that are fitted. Of command and position, a
+    /// controller that reads no speed of the motor makes one of the other without
     /// noise of its own: they are one measurement, and the command is taken.
     pub fitted: Vec<usize>,
     /// Bins and bands.
@@ -52,25 +53,14 @@ pub struct State {
     pub effects: Vec<ActiveEffect>,
 }
 
-/// Channels that are compared where they are present.
-const COMPARED: [&str; 7] = [
-    "position_m",
-    "motor_angle_rad",
-    "iq_ref_a",
-    "iq_a",
-    "uq_v",
-    "ud_v",
-    "drive_command_v",
-];
-
 /// The channel that counts from wherever the encoder was.
 const ANGLE: &str = "motor_angle_rad";
 
 impl State {
     /// The machine as its file says.
-    pub fn initial(machine: &Machine) -> Self {
+    pub fn initial(machine: &Axis) -> Self {
         Self {
-            shares: vec![0.0; known_parameters(machine).len()],
+            shares: vec![0.0; machine.known().len()],
             effects: Vec::new(),
         }
     }
@@ -81,7 +71,7 @@ impl LogSet {
     ///
     /// # Errors
     /// [`ReplayError::Log`] where a channel that must be there is missing.
-    pub fn new(logs: Vec<(String, Log, f64)>, machine: &Machine) -> Result<Self, ReplayError> {
+    pub fn new(logs: Vec<(String, Log, f64)>, machine: &Axis) -> Result<Self, ReplayError> {
         let mut set = Self::prepared(logs, machine)?;
         set.correct_defects(machine, &State::initial(machine))?;
         Ok(set)
@@ -90,23 +80,19 @@ impl LogSet {
     /// As [`LogSet::new`], defects taken for 0.
     pub(crate) fn prepared(
         logs: Vec<(String, Log, f64)>,
-        machine: &Machine,
+        machine: &Axis,
     ) -> Result<Self, ReplayError> {
-        let simulated: &[&str] = match machine {
-            Machine::BallScrew(_) => &COMPARED[..6],
-            Machine::Rigid(_) => &["position_m", "drive_command_v"],
-        };
-        let everywhere = |name: &&&str| logs.iter().all(|(_, log, _)| log.has(name));
-        let channels: Vec<&'static str> = COMPARED
-            .iter()
-            .filter(|name| simulated.contains(name))
+        let compared = |c: &LogChannel| matches!(c.part, ChannelPart::Sensed | ChannelPart::Made);
+        let simulated = axis_sim::channels(machine).into_iter().filter(compared);
+        let everywhere = |name: &&str| logs.iter().all(|(_, log, _)| log.has(name));
+        let channels: Vec<&'static str> = simulated
+            .map(|channel| channel.name(machine))
             .filter(everywhere)
-            .copied()
             .collect();
         let prepare = |(name, log, period): (String, Log, f64)| {
             let channel = |name: &&str| Ok(relative(name, log.channel(name)?));
             Ok(Prepared {
-                taken_up: taken_up(&log),
+                taken_up: taken_up(&log, machine),
                 replay: Replay::new(&log, period)?,
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 measured: channels
@@ -123,14 +109,16 @@ impl LogSet {
             .map(prepare)
             .collect::<Result<_, ReplayError>>()?;
         let sizes: Vec<(usize, f64)> = logs.iter().map(|l| (l.log.len(), l.period)).collect();
-        let command = channels.iter().position(|c| *c == "drive_command_v");
-        let fitted = match (machine, command) {
-            (Machine::Rigid(_), Some(at)) => vec![at],
-            _ => (0..channels.len()).collect(),
+        let all = 0..channels.len();
+        let is_position = |&at: &usize| channels[at].starts_with("position_");
+        let made_of_position = machine.control.speed_gain().is_none() && channels.len() > 1;
+        let fitted: Vec<usize> = match made_of_position {
+            true => all.filter(|at| !is_position(at)).collect(),
+            false => all.collect(),
         };
-        let begins = match machine {
-            Machine::BallScrew(_) => logs.iter().map(first_move).collect(),
-            Machine::Rigid(_) => vec![0.0; logs.len()],
+        let begins = match machine.has(Role::Backlash) {
+            true => logs.iter().map(first_move).collect(),
+            false => vec![0.0; logs.len()],
         };
         Ok(Self {
             layout: Layout::new(fitted.len(), &sizes).beginning(begins),
@@ -145,12 +133,12 @@ impl LogSet {
     ///
     /// # Errors
     /// As [`LogSet::new`].
-    pub fn again(&self, logs: Vec<Log>, machine: &Machine) -> Result<Self, ReplayError> {
+    pub fn again(&self, logs: Vec<Log>, machine: &Axis) -> Result<Self, ReplayError> {
         let named =
             |(log, as_before): (Log, &Prepared)| (as_before.name.clone(), log, as_before.period);
         let same = logs.len() == self.logs.len()
             && logs.iter().zip(&self.logs).all(|(log, before)| {
-                let reference = |log: &Log| log.channel("position_ref_m").map(<[f64]>::to_vec).ok();
+                let reference = |log: &Log| reference_in(log).map(<[f64]>::to_vec).ok();
                 reference(log) == reference(&before.log)
             });
         let logs = logs.into_iter().zip(&self.logs).map(named).collect();
@@ -168,23 +156,20 @@ impl LogSet {
         Ok(set)
     }
 
-    /// Simulates each log once the slow way, with the node that follows the nut
-    /// in short implicit steps, and keeps the difference: the fast simulation's
-    /// fixed mesh is too stiff between its nodes by nanometres, and these would
-    /// be found as an effect.
+    /// Simulates each log once in the mechanism's exact way, where that is another than
+    /// the fast one, and keeps the difference: a screw's fixed mesh is too stiff between
+    /// its nodes by nanometres, and these would be found as an effect.
     ///
     /// # Errors
     /// [`ReplayError`] where the machine does not run at this state.
-    pub fn correct_defects(&mut self, machine: &Machine, state: &State) -> Result<(), ReplayError> {
-        let known = with_known(machine, &state.shares);
-        let Machine::BallScrew(axis) = &known else {
+    pub fn correct_defects(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
+        let known = machine.with_known(&state.shares);
+        let Some(step) = known.mechanism.exact_step() else {
             return Ok(());
         };
-        let mut slow = (**axis).clone();
+        let mut slow = known.clone();
         slow.effects.extend_from_slice(&state.effects);
-        slow.coupling = NutCoupling::MovingNode;
-        slow.simulation.step = slow.simulation.step.min(5e-5);
-        let slow = ClosedLoop::implicit(&slow)?;
+        let slow = ClosedLoop::exact(&slow, step)?;
         let defects: Vec<Vec<Vec<f64>>> = self
             .logs
             .par_iter()
@@ -211,7 +196,7 @@ impl LogSet {
     ///
     /// # Errors
     /// [`ReplayError`] of the first log that does not run.
-    pub fn simulate(&self, machine: &Machine, state: &State) -> Result<Vec<Trace>, ReplayError> {
+    pub fn simulate(&self, machine: &Axis, state: &State) -> Result<Vec<Trace>, ReplayError> {
         self.simulate_with(machine, state, None)
     }
 
@@ -221,11 +206,11 @@ impl LogSet {
     /// As [`LogSet::simulate`].
     pub fn simulate_with(
         &self,
-        machine: &Machine,
+        machine: &Axis,
         state: &State,
         probes: Option<&[Probe]>,
     ) -> Result<Vec<Trace>, ReplayError> {
-        let machine = with_known(machine, &state.shares);
+        let machine = machine.with_known(&state.shares);
         let run = |(i, log): (usize, &Prepared)| {
             log.replay
                 .run(&machine, &state.effects, probes.map(|p| &p[i]))
@@ -285,7 +270,7 @@ impl LogSet {
     /// Of these effects: a gap that is larger than what is taken up before a log counts,
     /// and that log.
     pub(crate) fn slack_left(&self, effects: &[ActiveEffect]) -> Option<(f64, &Prepared)> {
-        let gaps = effects.iter().filter(|a| a.effect.name == "backlash");
+        let gaps = effects.iter().filter(|a| is_gap(a.effect));
         let gap: f64 = gaps.map(|a| a.values[0]).sum();
         let least = |a: &&Prepared, b: &&Prepared| a.taken_up.total_cmp(&b.taken_up);
         let least = self.logs.iter().min_by(least)?;
@@ -298,12 +283,19 @@ impl LogSet {
     }
 }
 
+/// Whether an effect is a gap between motor and load.
+fn is_gap(effect: &Effect) -> bool {
+    effect.needs.contains(&Need::Role(Role::Backlash))
+}
+
 /// Largest gap that is taken up before a log counts, m: the largest that an axis file may
 /// have; of a motion that never goes so far, half of its farthest.
-fn taken_up(log: &Log) -> f64 {
-    let backlash = Effect::named("backlash");
-    let largest = backlash.map_or(0.0, |e| e.parameters[0].bounds[1]);
-    let reference = log.channel("position_ref_m").unwrap_or_default();
+fn taken_up(log: &Log, machine: &Axis) -> f64 {
+    let scales = Scales::of(machine);
+    let gaps = EFFECTS.iter().filter(|effect| is_gap(effect));
+    let largest = gaps.map(|e| e.parameters[0].bounds(&scales)[1]);
+    let largest = largest.fold(0.0, f64::max);
+    let reference = reference_in(log).unwrap_or_default();
     let moved = |x: &f64| (x - reference[0]).abs();
     largest.min(0.5 * reference.iter().map(moved).fold(0.0, f64::max))
 }
@@ -311,7 +303,7 @@ fn taken_up(log: &Log) -> f64 {
 /// When the reference has first moved so far that slack is taken up, s: before
 /// that nobody knows where a screw lies in its gap, and noise shakes it about.
 fn first_move(log: &Prepared) -> f64 {
-    let reference = log.log.channel("position_ref_m").unwrap_or_default();
+    let reference = reference_in(&log.log).unwrap_or_default();
     let moved = |x: &f64| (x - reference[0]).abs() >= log.taken_up;
     let first = reference.iter().position(moved).unwrap_or(0);
     first as f64 * log.period

@@ -1,6 +1,5 @@
 //! How much of a rest is noise.
 
-use axis_sim::effects::Machine;
 use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
 use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
@@ -8,7 +7,7 @@ use rayon::prelude::*;
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
 use crate::hidden::Noise;
 use crate::interval::Spread;
-use crate::known::{known_deviation, tolerance, with_known};
+use crate::known::{known_deviations, tolerances};
 use crate::model::{LogSet, Prepared, State};
 use crate::projector::Projector;
 use crate::spectrum::{Amplitudes, Layout};
@@ -23,15 +22,19 @@ pub type Rest = Vec<Vec<Vec<f64>>>;
 /// through the speed controller's gain, the current's through the current
 /// controller's.
 pub(crate) fn sensor_noise(
-    machine: &Machine,
+    machine: &Axis,
     set: &LogSet,
     state: &State,
     traces: &[Trace],
 ) -> Option<Noise> {
-    let Machine::BallScrew(axis) = with_known(machine, &state.shares) else {
-        return None;
-    };
-    Some(noise_at(&axis, set, &set.rest(traces)))
+    let axis = machine.with_known(&state.shares);
+    shows_noise(&axis).then(|| noise_at(&axis, set, &set.rest(traces)))
+}
+
+/// Whether the logs of an axis show the noise of its sensors: not where the loop has no
+/// memory and reads a position alone, of which command and position are one measurement.
+fn shows_noise(axis: &Axis) -> bool {
+    !axis.control.starts_in_motion()
 }
 
 fn noise_at(axis: &Axis, set: &LogSet, rest: &Rest) -> Noise {
@@ -39,13 +42,17 @@ fn noise_at(axis: &Axis, set: &LogSet, rest: &Rest) -> Noise {
         let channel = set.channels.iter().position(|c| *c == name);
         channel.map_or(0.0, |c| upper_level(set, rest, c))
     };
-    let gains = *axis.servo.gains();
-    let per = |level: f64, gain: f64| if gain > 0.0 { level / gain } else { 0.0 };
+    let per = |level: f64, gain: Option<f64>| match gain {
+        Some(gain) if gain > 0.0 => level / gain,
+        _ => 0.0,
+    };
+    let command = ["iq_ref_a", "torque_ref_n_m", "force_ref_n", "drive_command_v"];
+    let command = command.map(level).into_iter().fold(0.0, f64::max);
     Noise {
-        position: level("position_m"),
+        position: level("position_m").max(level("position_rad")),
         angle: level("motor_angle_rad"),
-        speed: per(level("iq_ref_a"), gains.speed_p),
-        current: per(level("ud_v"), gains.d_p),
+        speed: per(command, axis.control.speed_gain()),
+        current: per(level("ud_v"), axis.actuator.current_gain()),
     }
 }
 
@@ -90,21 +97,21 @@ impl Floor {
 /// sensors as noisy as its logs show, since most of what they do lies where the
 /// loop answers. For a rigid machine the upper spectrum is taken for white.
 pub(crate) fn floors(
-    machine: &Machine,
+    machine: &Axis,
     set: &LogSet,
     state: &State,
     best: &Rest,
 ) -> Result<Vec<Floor>, ReplayError> {
-    let Machine::BallScrew(axis) = with_known(machine, &state.shares) else {
+    let mut axis = machine.with_known(&state.shares);
+    if !shows_noise(&axis) {
         let samples: usize = set.logs.iter().map(|l| l.log.len()).sum();
         let white = |c: usize| Floor {
             rms: upper_level(set, best, c),
             independent: samples as f64,
         };
         return Ok((0..set.channels.len()).map(white).collect());
-    };
+    }
     let noise = noise_at(&axis, set, best);
-    let mut axis = *axis;
     axis.effects.extend_from_slice(&state.effects);
     let closed_loop = ClosedLoop::new(&axis)?;
     let mut alone: Vec<Vec<Vec<f64>>> = vec![Vec::new(); set.channels.len()];
@@ -181,7 +188,7 @@ const SPREAD: f64 = 2.0;
 /// # Errors
 /// [`ReplayError`] where the machine does not run with noise.
 pub(crate) fn excess(
-    machine: &Machine,
+    machine: &Axis,
     set: &LogSet,
     state: &State,
     traces: &[Trace],
@@ -268,17 +275,14 @@ fn relative_to(seen: &DMatrix<Complex<f64>>, noise: DMatrix<Complex<f64>>) -> Ve
 /// What sensors with this noise do to the logs of a set, as amplitudes; `quiet`
 /// are their simulations without noise.
 pub(crate) fn noise_on(
-    machine: &Machine,
+    machine: &Axis,
     state: &State,
     set: &LogSet,
     quiet: &[Trace],
     noise: Noise,
     seed: u64,
 ) -> Result<Amplitudes, ReplayError> {
-    let Machine::BallScrew(axis) = with_known(machine, &state.shares) else {
-        return Ok(Amplitudes::new());
-    };
-    let mut axis = *axis;
+    let mut axis = machine.with_known(&state.shares);
     axis.effects.extend_from_slice(&state.effects);
     let closed_loop = ClosedLoop::new(&axis)?;
     let run = |(log_seed, log): (usize, &Prepared)| {
@@ -339,21 +343,24 @@ pub(crate) fn spreads(
         covariance * along
     };
     let answers: Vec<DVector<f64>> = runs.par_iter().map(answer).collect();
-    let deviation = known_deviation(fitter.machine);
-    let most = tolerance(fitter.machine);
+    let deviations = known_deviations(fitter.machine);
+    let most = tolerances(fitter.machine);
     let one = |i: usize| {
         // An estimate leans on the prior's mean by so much of a known parameter.
-        let leans = (0..fit.state.shares.len()).map(|j| covariance[(i, j)] / deviation.powi(2));
+        let leans = (0..fit.state.shares.len()).map(|j| covariance[(i, j)] / deviations[j].powi(2));
         let leans: Vec<f64> = leans.collect();
         let squares = answers.iter().map(|a| a[i] * a[i]).sum::<f64>();
-        let of_known: f64 = leans.iter().map(|l| (l * deviation).powi(2)).sum();
+        let of_known: f64 = {
+            let pairs = leans.iter().zip(&deviations);
+            pairs.map(|(l, deviation)| (l * deviation).powi(2)).sum()
+        };
         let of_noise = match answers.len() {
             0 => (covariance[(i, i)] - of_known).max(0.0).sqrt(),
             n => OF_DRAWN * (squares / n as f64).sqrt(),
         };
         Spread {
             of_noise,
-            of_known: leans.iter().map(|l| l * most).collect(),
+            of_known: leans.iter().zip(&most).map(|(l, m)| l * m).collect(),
         }
     };
     (0..columns.len()).map(one).collect()
@@ -381,7 +388,7 @@ pub(crate) fn over_noise(
     let others = all().filter(|((e, _), _)| *e != effect).map(|(_, c)| c);
     let others: Vec<DVector<f64>> = known.iter().chain(others).cloned().collect();
     let active = &fit.state.effects[effect];
-    let sizes = all().filter(|((e, p), _)| *e == effect && active.effect.parameters[*p].size);
+    let sizes = all().filter(|((e, p), _)| *e == effect && active.effect.parameters[*p].is_size());
     let nothing = DVector::zeros(layout.size());
     let does = sizes.fold(nothing, |sum, ((_, p), c)| sum + c * active.values[*p]);
     let projector = Projector::new(fitter.machine, &others, pinned);

@@ -1,9 +1,9 @@
 //! What a fit's own parameters cannot do.
 
-use axis_sim::effects::Machine;
+use axis_sim::Axis;
 use nalgebra::{DMatrix, DVector};
 
-use crate::known::known_deviation;
+use crate::known::known_deviations;
 
 /// Takes out what the fit's own parameters can do.
 ///
@@ -14,15 +14,15 @@ use crate::known::known_deviation;
 pub struct Projector {
     columns: DMatrix<f64>,
     solved: DMatrix<f64>,
-    deviation: f64,
+    deviations: Vec<f64>,
     known: usize,
 }
 
 impl Projector {
     /// Of whitened columns, the first of them those of known parameters, of which
     /// some are `pinned` to the edge of their tolerance.
-    pub fn new(machine: &Machine, columns: &[DVector<f64>], pinned: &[bool]) -> Self {
-        let deviation = known_deviation(machine);
+    pub fn new(machine: &Axis, columns: &[DVector<f64>], pinned: &[bool]) -> Self {
+        let deviations = known_deviations(machine);
         let known = pinned.len();
         let rows = columns.first().map_or(0, |c| c.len());
         let n = columns.len();
@@ -32,7 +32,7 @@ impl Projector {
             } else if i < rows {
                 columns[j][i]
             } else if i - rows == j {
-                1.0 / deviation
+                1.0 / deviations[j]
             } else {
                 0.0
             }
@@ -49,7 +49,7 @@ impl Projector {
         Self {
             solved: inverse.unwrap_or_else(|| DMatrix::zeros(n, n)),
             columns,
-            deviation,
+            deviations,
             known,
         }
     }
@@ -66,7 +66,7 @@ impl Projector {
             if i < rows {
                 v[i]
             } else {
-                -shares[i - rows] / self.deviation
+                -shares[i - rows] / self.deviations[i - rows]
             }
         });
         &whole - &self.columns * (&self.solved * self.columns.tr_mul(&whole))

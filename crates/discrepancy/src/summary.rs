@@ -10,7 +10,7 @@
 //! and give no noise floor; what is shown is how far each effect closes the gap.
 
 use axis_log::metrics::ErrorSummary;
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectChannel, Scales};
 use axis_sim::{Axis, ClosedLoop, ReplayError};
 use compensator::NoCompensation;
 use nalgebra::{DMatrix, DVector};
@@ -67,8 +67,7 @@ pub fn rank(
     };
     let mut ranked: Vec<Closing> = EFFECTS
         .par_iter()
-        // Sensors' clocks and offsets do not show in errors of position alone.
-        .filter(|effect| effect.name != "clock-offset")
+        .filter(|effect| shows(effect, axis))
         .map(one)
         .collect();
     ranked.sort_by(|a, b| a.gap.total_cmp(&b.gap));
@@ -79,8 +78,13 @@ pub fn rank(
 }
 
 /// Number of effects that [`rank`] tries.
-pub fn tried() -> usize {
-    EFFECTS.len() - 1
+pub fn tried(axis: &Axis) -> usize {
+    EFFECTS.iter().filter(|effect| shows(effect, axis)).count()
+}
+
+/// Whether an effect may show in errors of position alone: a sensor's clock does not.
+fn shows(effect: &Effect, axis: &Axis) -> bool {
+    effect.channel != EffectChannel::Clock && effect.applies_to(axis).is_ok()
 }
 
 fn rms(gaps: &DVector<f64>) -> f64 {
@@ -124,8 +128,9 @@ fn close(
     effect: &'static Effect,
     base: &DVector<f64>,
 ) -> Closing {
+    let scales = Scales::of(axis);
     let sizes: Vec<usize> = (0..effect.parameters.len())
-        .filter(|&i| effect.parameters[i].size)
+        .filter(|&i| effect.parameters[i].is_size())
         .collect();
     let run = |values: &[f64]| {
         let active = ActiveEffect {
@@ -137,7 +142,7 @@ fn close(
     type Point = (Vec<f64>, DVector<f64>);
     let step = |(values, left): &Point| {
         let column = |&i: &usize| {
-            let step = 0.1 * effect.parameters[i].typical.abs().max(values[i].abs());
+            let step = 0.1 * effect.parameters[i].typical(&scales).abs().max(values[i].abs());
             let mut moved = values.clone();
             moved[i] += step;
             run(&moved).map_or_else(|| DVector::zeros(left.len()), |g| (g - left) / step)
@@ -149,7 +154,7 @@ fn close(
     let better = |(values, left): &Point, step: &DVector<f64>, length: f64| {
         let mut moved = values.clone();
         for (s, &i) in sizes.iter().enumerate() {
-            let [low, high] = effect.parameters[i].bounds;
+            let [low, high] = effect.parameters[i].bounds(&scales);
             moved[i] = (values[i] - length * step[s]).clamp(low, high);
         }
         let better = run(&moved).filter(|g| g.norm() < left.norm())?;
@@ -160,7 +165,7 @@ fn close(
         lengths: 8,
         shorter: 0.5,
     };
-    let start = (effect.null(), base.clone());
+    let start = (effect.null(&scales), base.clone());
     let (values, left) = descent.from(start, step, better, |(_, before), (_, after)| {
         let before = before.norm();
         before - after.norm() >= 1e-5 * before
@@ -169,7 +174,7 @@ fn close(
     Closing {
         name: effect.name.to_owned(),
         parameters: named
-            .map(|(p, &v)| (p.name.to_owned(), v, p.unit.to_owned()))
+            .map(|(p, &v)| (p.name.to_owned(), v, p.unit(&scales).to_owned()))
             .collect(),
         gap: rms(&left),
     }

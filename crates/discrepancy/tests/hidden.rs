@@ -3,7 +3,7 @@
 //! parameters off by up to 1 %.
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, Effect, Machine};
+use axis_sim::effects::{ActiveEffect, Effect};
 use discrepancy::hidden::{Exercise, Hidden, Noise, exercise};
 use discrepancy::{
     Discovery, Fitter, LogSet, Settings, State, Verdict, discovery, known_parameters, search,
@@ -59,7 +59,7 @@ fn over(length: f64, check: bool) -> Program {
 
 fn logs(hidden: &Hidden, motion: &Program, check: bool) -> LogSet {
     let axis = axis();
-    let machine = Machine::BallScrew(Box::new(axis.clone()));
+    let machine = axis.clone();
     let mut hidden = hidden.clone();
     // Noise of its own, known parameters as they are.
     hidden.seed += u64::from(check);
@@ -281,7 +281,7 @@ fn a_gap_of_any_allowed_size_is_taken_up_before_a_log_counts() {
     };
     let (period, machine) = (
         5.0 * axis.period,
-        Machine::BallScrew(Box::new(axis.clone())),
+        axis.clone(),
     );
     let log = hidden.log(&axis, &motion, 5).unwrap();
     let reference = log.channel("position_ref_m").unwrap();
@@ -338,7 +338,7 @@ fn settings_that_cannot_be_meant_are_refused() {
     let rigid = Machine::read(file.as_ref()).unwrap();
     let screw = Machine::BallScrew(Box::new(axis()));
     let all = |names: &[&str]| names.iter().map(|&n| n.to_owned()).collect::<Vec<_>>();
-    let said = |accepted: &[&str], rejected: &[&str], machine: &Machine| {
+    let said = |accepted: &[&str], rejected: &[&str], machine: &Axis| {
         let settings = Settings {
             accepted: all(accepted),
             rejected: all(rejected),

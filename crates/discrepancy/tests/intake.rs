@@ -2,12 +2,12 @@
 //! what would be valid; one that starts in motion is told.
 
 use axis_log::{Channel, Log};
-use axis_sim::effects::Machine;
+use axis_sim::Axis;
 use discrepancy::intake::{IntakeError, check_distinct, check_log, from_rest};
 
 const PERIOD: f64 = 1e-3;
 
-fn machine(name: &str) -> Machine {
+fn machine(name: &str) -> Axis {
     let file = format!("{}/../../data/axes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     Machine::read(file.as_ref()).unwrap()
 }

@@ -166,6 +166,10 @@ impl Actuator for FieldOriented {
         true
     }
 
+    fn current_gain(&self) -> Option<f64> {
+        Some(self.gains.d_p)
+    }
+
     fn pole_pairs(&self) -> Option<f64> {
         Some(self.gear * f64::from(self.motor.parameters().pole_pairs))
     }

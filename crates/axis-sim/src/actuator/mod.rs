@@ -95,6 +95,12 @@ pub trait Actuator: fmt::Debug + Send + Sync {
         false
     }
 
+    /// Voltage per current, as its d controller answers at once: the way by which noise of
+    /// the current comes into the voltage. None where it has no current controllers.
+    fn current_gain(&self) -> Option<f64> {
+        None
+    }
+
     /// Electrical periods per radian of the motor, where its torque ripples with them.
     fn pole_pairs(&self) -> Option<f64> {
         None

@@ -154,6 +154,10 @@ impl Control for Cascade {
         })
     }
 
+    fn speed_gain(&self) -> Option<f64> {
+        Some(self.speed[0])
+    }
+
     fn effort(&self) -> Option<Effort> {
         self.effort
     }

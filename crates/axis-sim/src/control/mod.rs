@@ -51,6 +51,12 @@ pub trait Control: fmt::Debug + Send + Sync {
         false
     }
 
+    /// Effort per speed of the motor, as it acts at once: the way by which noise of the
+    /// speed comes into the command. None where no speed of the motor is read.
+    fn speed_gain(&self) -> Option<f64> {
+        None
+    }
+
     /// The unit in which its gains give the actuator's command, where they are tied to one.
     fn effort(&self) -> Option<Effort> {
         None

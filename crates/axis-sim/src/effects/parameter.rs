@@ -59,6 +59,8 @@ pub enum Measure {
     Way,
     /// Speed of the load.
     Speed,
+    /// Acceleration of the load.
+    Acceleration,
     /// Force per speed of the load.
     Damping,
     /// Force per way of the load.
@@ -91,6 +93,7 @@ impl Measure {
             Self::Force => of("N", "N*m"),
             Self::Way => of("m", "rad"),
             Self::Speed => of("m/s", "rad/s"),
+            Self::Acceleration => of("m/s^2", "rad/s^2"),
             Self::Damping => of("N*s/m", "N*m*s/rad"),
             Self::Stiffness => of("N/m", "N*m/rad"),
             Self::Inertia => of("kg", "kg*m^2"),
@@ -124,6 +127,8 @@ pub struct Scales {
     motor_torque: f64,
     /// Greatest command.
     effort: f64,
+    /// Acceleration that the force gives to all that moves.
+    acceleration: f64,
     /// Length of a motion on which effects are looked for.
     pub motion: f64,
     /// Least and greatest position.
@@ -168,6 +173,8 @@ impl Scales {
             motor_inertia: axis.mechanism.total_inertia() / PAPER_INERTIA,
             motor_torque: torque / PAPER_TORQUE,
             effort: axis.actuator.limit() / 15.0,
+            acceleration: (torque / axis.mechanism.total_inertia() * travel)
+                / (PAPER_TORQUE / PAPER_INERTIA * PAPER_LEVER),
             motion: (stroke * PAPER_MOTION / 1.5).max(f64::MIN_POSITIVE),
             stroke: [axis.stroke.minimum, axis.stroke.maximum],
             start: axis.stroke.start,
@@ -175,11 +182,12 @@ impl Scales {
     }
 
     /// By how much a measure is larger here than on the paper's axis.
-    fn ratio(&self, measure: Measure) -> f64 {
+    pub fn ratio(&self, measure: Measure) -> f64 {
         let ratio = match measure {
             Measure::Force => self.force,
             Measure::Way => self.way,
             Measure::Speed => self.speed,
+            Measure::Acceleration => self.acceleration,
             Measure::Damping => self.force / self.speed,
             Measure::Stiffness => self.force / self.way,
             Measure::Inertia => self.inertia,

@@ -15,7 +15,7 @@ use compensator::{Compensator, Correction, Sample};
 use trajectories::Motion;
 
 use crate::axis::Axis;
-use crate::channels::{ChannelPart, LogChannel, channels};
+use crate::channels::{ChannelPart, LogChannel, channels, position_in};
 use crate::effects::{ActiveEffect, Hooks};
 use crate::plant::Start;
 use crate::work::cycles_of;
@@ -34,6 +34,12 @@ pub struct Trace {
 }
 
 impl Trace {
+    /// Position of the load, m or rad.
+    pub fn position(&self) -> &[f64] {
+        let position = self.channel("position_m").or(self.channel("position_rad"));
+        position.unwrap_or_default()
+    }
+
     /// The samples of a channel.
     pub fn channel(&self, name: &str) -> Option<&[f64]> {
         let found = self.channels.iter().find(|(n, _)| *n == name);
@@ -61,13 +67,6 @@ pub struct Replay {
     added: Option<Vec<f64>>,
 }
 
-/// Name of the load's position in logs, m or rad.
-fn position_of(log: &Log) -> Result<&[f64], ReplayError> {
-    let rotary = "position_rad";
-    let name = if log.has(rotary) { rotary } else { "position_m" };
-    Ok(log.channel(name)?)
-}
-
 /// What a log shows of a command that was added to the controller's.
 const ADDED: &str = "drive_command_added_v";
 
@@ -81,7 +80,7 @@ impl Replay {
     /// # Errors
     /// [`ReplayError::Log`] where a channel is missing; [`ReplayError::Period`].
     pub fn new(log: &Log, period: f64) -> Result<Self, ReplayError> {
-        let position = position_of(log)?;
+        let position = position_in(log)?;
         let few = position.len().min(6) - 1;
         let speed = (position[few] - position[0]) / (few.max(1) as f64 * period);
         Ok(Self {

@@ -4,6 +4,7 @@ use axis_log::Log;
 use trajectories::{Motion, Setpoint};
 
 use super::ReplayError;
+use crate::channels::reference_in;
 
 /// A logged reference as a motion: cubic between samples, through positions
 /// and velocities.
@@ -25,17 +26,16 @@ impl LoggedReference {
         if !(period.is_finite() && period > 0.0) {
             return Err(ReplayError::Period { period });
         }
-        let rotary = log.has("position_ref_rad");
-        let name = |linear, about| if rotary { about } else { linear };
-        let position = log
-            .channel(name("position_ref_m", "position_ref_rad"))?
-            .to_vec();
+        let position = reference_in(log)?.to_vec();
         let last = position.len() - 1;
         let difference = |k: usize| {
             let (a, b) = (k.saturating_sub(1), (k + 1).min(last));
             (position[b] - position[a]) / (period * (b - a).max(1) as f64)
         };
-        let velocity = match log.channel(name("velocity_ref_m_s", "velocity_ref_rad_s")) {
+        let velocity = match log
+            .channel("velocity_ref_m_s")
+            .or(log.channel("velocity_ref_rad_s"))
+        {
             Ok(samples) => samples.to_vec(),
             Err(_) => (0..=last).map(difference).collect(),
         };

@@ -9,17 +9,16 @@ mod outside;
 pub use outside::OUTSIDE;
 
 use axis_log::{Channel, Log};
-use axis_sim::effects::{ActiveEffect, Machine};
-use axis_sim::{Axis, ClosedLoop, Measured, Recorder, ReplayError};
+use axis_sim::effects::{ActiveEffect, EffectChannel, Measure, Scales};
+use axis_sim::mechanism::Freedom;
+use axis_sim::{Axis, ClosedLoop, Measured, Recorder, ReplayError, position_in};
 use compensator::NoCompensation;
-use feed_dynamics::{FeedDrive, NutCoupling};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 use trajectories::{Limits, Motion, Program, Step, TrajectoryError};
 
-use crate::known::{known_parameters, with_known};
 
 /// Standard deviations of sensor noise, white at the control rate.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +42,27 @@ impl Noise {
         speed: 0.01,
         current: 5e-3,
     };
+
+    /// As good ones for an axis: on the paper's, [`Noise::GOOD`].
+    pub fn good(axis: &Axis) -> Self {
+        let current = axis.actuator.limit() / 15.0;
+        // A resolver's noise at a motor's shaft; of a motor that is the load, that of the
+        // scale's differences.
+        let speed = match axis.mechanism.has_motor_encoder() {
+            true => Self::GOOD.speed,
+            false => Self::GOOD.speed * Self::GOOD.position / Self::GOOD.angle,
+        };
+        let position = match axis.freedom() {
+            Freedom::Linear => Self::GOOD.position,
+            Freedom::Rotary => 10.0 * Self::GOOD.position,
+        };
+        Self {
+            position,
+            speed,
+            current: current * Self::GOOD.current,
+            ..Self::GOOD
+        }
+    }
 
     /// The same, `by` times as large.
     pub fn scaled(self, by: f64) -> Self {
@@ -77,8 +97,7 @@ impl Noise {
 pub struct Hidden {
     /// What is hidden.
     pub effects: Vec<ActiveEffect>,
-    /// Shares by which its known parameters are off, in the order of
-    /// [`known_parameters`].
+    /// Shares by which its known parameters are off, in the order of [`Axis::known`].
     pub shares: Vec<f64>,
     /// Sensors.
     pub noise: Noise,
@@ -90,9 +109,8 @@ impl Hidden {
     /// Known parameters off by up to `share` of their values, evenly spread.
     pub fn with_known_off_by(mut self, machine: &Axis, share: f64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed ^ 0x6b6e_6f77);
-        let machine = Machine::BallScrew(Box::new(machine.clone()));
         let off = |_| share * (2.0 * random.random::<f64>() - 1.0);
-        self.shares = known_parameters(&machine).iter().map(off).collect();
+        self.shares = machine.known().into_iter().map(off).collect();
         self
     }
 
@@ -101,20 +119,18 @@ impl Hidden {
     /// # Errors
     /// [`ReplayError`] where the machine cannot be set up or does not hold.
     pub fn log(&self, axis: &Axis, motion: &impl Motion, every: usize) -> Result<Log, ReplayError> {
-        let machine = Machine::BallScrew(Box::new(axis.clone()));
-        let Machine::BallScrew(mut truth) = with_known(&machine, &self.shares) else {
-            return Ok(Recorder::default().log()?);
-        };
-        let mut parameters = truth.drive.parameters().clone();
-        parameters.elements = parameters.elements * 13 / 10;
-        truth.drive = FeedDrive::new(parameters)?;
-        truth.coupling = NutCoupling::MovingNode;
-        truth.simulation.step = 2e-5;
+        let mut truth = axis.with_known(&self.shares);
+        // On a finer mesh, where the mechanism has one.
+        let _ = truth.mechanism.change(|values| {
+            if let Some(elements) = values.optional_count("elements") {
+                values.set_count("elements", elements * 13 / 10);
+            }
+        });
         truth.effects.extend_from_slice(&self.effects);
 
         let sense = self.noise.sensors(self.seed);
-        let mut recorder = Recorder::default();
-        ClosedLoop::implicit(&truth)?
+        let mut recorder = Recorder::new(&truth);
+        ClosedLoop::exact(&truth, 2e-5)?
             .run_sensed(motion, &mut NoCompensation, sense, |cycle| {
                 recorder.push(cycle)
             })
@@ -133,7 +149,7 @@ impl Hidden {
         let clock = self
             .effects
             .iter()
-            .filter(|a| a.effect.name == "clock-offset");
+            .filter(|a| a.effect.channel == EffectChannel::Clock);
         clock.map(|a| a.values[0]).sum()
     }
 }
@@ -142,7 +158,7 @@ impl Hidden {
 fn shifted(log: &Log, late: f64) -> Result<Log, ReplayError> {
     let time = log.time();
     let period = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-    let position = log.channel("position_m")?;
+    let position = position_in(log)?;
     let last = (position.len() - 1) as f64;
     let at = |k: usize| {
         let along = (k as f64 - late / period).clamp(0.0, last);
@@ -150,7 +166,7 @@ fn shifted(log: &Log, late: f64) -> Result<Log, ReplayError> {
         position[i] + (along - i as f64) * (position[i + 1] - position[i])
     };
     let channel = |c: &Channel| {
-        let samples = if c.name == "position_m" {
+        let samples = if ["position_m", "position_rad"].contains(&c.name.as_str()) {
             (0..position.len()).map(at).collect()
         } else {
             c.samples.clone()
@@ -200,11 +216,18 @@ impl Exercise {
 /// [`TrajectoryError`] where it does not fit the axis.
 pub fn exercise(axis: &Axis, kind: Exercise, check: bool) -> Result<Program, TrajectoryError> {
     let start = axis.stroke.start;
-    let (length, share) = if check { (0.17, 0.8) } else { (0.2, 1.0) };
+    let (length, share) = if check { (0.85, 0.8) } else { (1.0, 1.0) };
+    let scales = Scales::of(axis);
+    let length = length * scales.motion;
+    let of_speed = scales.ratio(Measure::Speed);
+    // The same course in time as on the paper's axis, faster or slower.
+    let pace = of_speed / (scales.motion / 0.2);
     let to = |position: f64, speed: f64| -> Result<Step, TrajectoryError> {
+        let acceleration = share * 0.225 * (speed / 0.1) * of_speed * pace;
+        let jerk = 1.2 * of_speed * pace * pace;
         Ok(Step::Move {
             to: position,
-            limits: Limits::new(share * speed, share * 0.225 * (speed / 0.1), 1.2)?,
+            limits: Limits::new(share * speed * of_speed, acceleration, jerk)?,
         })
     };
     let rest = Step::Dwell { duration: 0.2 };
@@ -222,8 +245,9 @@ pub fn exercise(axis: &Axis, kind: Exercise, check: bool) -> Result<Program, Tra
         steps.extend([to(start + length, 0.25)?, rest, to(start, 0.25)?, rest]);
     }
     if kind == Exercise::WithChirp {
+        let amplitude = if check { 2.5e-5 } else { 3e-5 };
         let chirp = trajectories::Chirp {
-            amplitude: if check { 2.5e-5 } else { 3e-5 },
+            amplitude: amplitude * scales.ratio(Measure::Acceleration),
             from_frequency: 2.0,
             to_frequency: 90.0,
             duration: 2.5,

@@ -2,8 +2,8 @@
 
 use std::sync::Mutex;
 
-use axis_sim::effects::{Changes, Effect, EffectChannel, EffectParameter, TableState};
-use feed_dynamics::DriveError;
+use axis_sim::effects::{Changes, Effect, EffectChannel, EffectParameter, Measure, Nature, TableState};
+use axis_sim::SetupError;
 
 /// All of them.
 pub const OUTSIDE: [&Effect; 8] = [
@@ -21,7 +21,7 @@ const ROOT_FRICTION: Effect = outside(
     "root-friction",
     "friction with the root of speed",
     "speed",
-    &[number("coefficient", "N*s^0.5/m^0.5", 200.0)],
+    &[size("coefficient", Measure::Other("N*s^0.5/m^0.5"), 200.0)],
     |v, to| {
         let c = v[0];
         to.load(move |t| c * t.speed.abs().sqrt() * t.bristle);
@@ -33,7 +33,7 @@ const QUADRATIC_DRAG: Effect = outside(
     "quadratic-drag",
     "drag with the square of speed",
     "speed",
-    &[number("coefficient", "N*s^2/m^2", 6e3)],
+    &[size("coefficient", Measure::Other("N*s^2/m^2"), 6e3)],
     |v, to| {
         let c = v[0];
         to.load(move |t| c * t.speed * t.speed.abs());
@@ -45,7 +45,7 @@ const POSITION_DAMPING: Effect = outside(
     "position-damping",
     "viscous friction that grows along the stroke",
     "position and speed",
-    &[number("slope", "N*s/m^2", 1e4), number("zero", "m", 0.7)],
+    &[size("slope", Measure::Other("N*s/m^2"), 1e4), place("zero", 0.7)],
     |v, to| {
         let (c, zero) = (v[0], v[1]);
         to.load(move |t| c * (t.position - zero) * t.speed);
@@ -57,7 +57,7 @@ const FADING_FRICTION: Effect = outside(
     "fading-friction",
     "dry friction that fades as it warms",
     "time",
-    &[number("force", "N", 60.0), number("time", "s", 3.0)],
+    &[size("force", Measure::Force, 60.0), shape("time", Measure::Time, Nature::Time([1.0, 5.0], [1.0, 8.0]), 3.0)],
     |v, to| {
         let (force, time) = (v[0], v[1]);
         to.load(move |t| force * (-t.time / time).exp() * t.bristle);
@@ -69,7 +69,7 @@ const SPRING_LOAD: Effect = outside(
     "spring-load",
     "a spring between table and bed",
     "position",
-    &[number("stiffness", "N/m", 600.0), number("zero", "m", 0.7)],
+    &[size("stiffness", Measure::Stiffness, 600.0), place("zero", 0.7)],
     |v, to| {
         let (k, zero) = (v[0], v[1]);
         to.load(move |t| k * (t.position - zero) * t.pressed);
@@ -81,7 +81,7 @@ const WAVE_LOAD: Effect = outside(
     "wave-load",
     "a load that repeats along the stroke, as of a cable chain",
     "position",
-    &[number("amplitude", "N", 30.0), number("pitch", "m", 0.045)],
+    &[size("amplitude", Measure::Force, 30.0), shape("pitch", Measure::Way, Nature::Width([0.15, 0.4]), 0.045)],
     |v, to| {
         let (amplitude, pitch) = (v[0], v[1]);
         to.load(move |t| {
@@ -95,7 +95,7 @@ const SATURATING_TORQUE: Effect = outside(
     "saturating-torque",
     "a motor whose torque falls behind its current",
     "current",
-    &[number("cubic", "1/(N*m)^2", 2e-3)],
+    &[size("cubic", Measure::Other("1/(N*m)^2"), 2e-3)],
     |v, to| {
         let c = v[0];
         to.torque(move |_, torque| -c * torque.powi(3));
@@ -107,7 +107,7 @@ const LOCAL_RESONANCE: Effect = outside(
     "local-resonance",
     "a body on the table that swings by itself",
     "acceleration, near one frequency",
-    &[number("mass", "kg", 20.0), number("frequency", "Hz", 45.0)],
+    &[size("mass", Measure::Inertia, 20.0), shape("frequency", Measure::Other("Hz"), Nature::Time([45.0, 45.0], [20.0, 120.0]), 45.0)],
     |v, to| {
         let (mass, omega) = (v[0], std::f64::consts::TAU * v[1]);
         let body = Mutex::new(Body::default());
@@ -158,14 +158,29 @@ impl Body {
     }
 }
 
-const fn number(name: &'static str, unit: &'static str, typical: f64) -> EffectParameter {
+const fn shape(
+    name: &'static str,
+    measure: Measure,
+    nature: Nature,
+    typical: f64,
+) -> EffectParameter {
     EffectParameter {
         name,
-        unit,
+        measure,
+        nature,
         typical,
-        size: true,
         bounds: [-1e6, 1e6],
     }
+}
+
+const fn size(name: &'static str, measure: Measure, typical: f64) -> EffectParameter {
+    let nature = Nature::Size { either_sign: false };
+    shape(name, measure, nature, typical)
+}
+
+/// A place, from a motion's start on.
+const fn place(name: &'static str, typical: f64) -> EffectParameter {
+    shape(name, Measure::Way, Nature::Place([0.0, 1.0]), typical)
 }
 
 const fn outside(
@@ -173,7 +188,7 @@ const fn outside(
     summary: &'static str,
     depends_on: &'static str,
     parameters: &'static [EffectParameter],
-    install: fn(&[f64], &mut Changes<'_>) -> Result<(), DriveError>,
+    install: fn(&[f64], &mut Changes<'_>) -> Result<(), SetupError>,
 ) -> Effect {
     Effect {
         name,
@@ -181,7 +196,7 @@ const fn outside(
         channel: EffectChannel::Torque,
         depends_on,
         parameters,
-        on_rigid: false,
+        needs: &[],
         install,
     }
 }

@@ -11,8 +11,7 @@
 mod rest;
 mod term;
 
-use axis_sim::effects::Machine;
-use axis_sim::{Probe, ReplayError};
+use axis_sim::{Axis, Probe, ReplayError};
 use serde::{Deserialize, Serialize};
 
 use self::rest::{Rest, Solved};
@@ -59,7 +58,7 @@ pub struct Curve {
 /// # Errors
 /// [`ReplayError`] where the fitted machine no longer runs the check logs.
 pub fn lack(
-    machine: &Machine,
+    machine: &Axis,
     found: &Found,
     material: f64,
 ) -> Result<Option<Unknown>, ReplayError> {

@@ -1,6 +1,6 @@
 //! Short terms that may do as much as a curve.
 
-use axis_sim::effects::Machine;
+use axis_sim::Axis;
 use rayon::prelude::*;
 
 use super::rest::{Rest, Solved};
@@ -68,7 +68,7 @@ const fn with(words: &'static str, unit: &'static str, value: Value, beside: Val
 
 /// The short term that explains most, where it does nearly as much as the curve.
 pub(super) fn term(
-    machine: &Machine,
+    machine: &Axis,
     fitter: &Fitter<'_>,
     found: &Found,
     rest: &Rest<'_>,

@@ -1,13 +1,14 @@
 //! The cases.
 
 use axis_sim::Axis;
-use axis_sim::effects::{EFFECTS, Effect};
+use axis_sim::effects::{EFFECTS, Effect, EffectParameter, Nature, Scales};
 use lhs::{LatinHypercube, LhsError};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::case::{Case, HiddenEffect, Kind};
 use crate::hidden::{Exercise, OUTSIDE};
+use crate::library::applicable;
 
 /// How many cases of each kind.
 #[derive(Clone, Copy, Debug)]
@@ -99,16 +100,17 @@ fn case(axis: &Axis, kind: Kind, index: usize, row: &[f64; DIMENSIONS], seed: u6
         Kind::Poor => Exercise::OneWay,
         _ => Exercise::RICH[pick(row[1], Exercise::RICH.len())],
     };
+    let library: Vec<&'static Effect> = applicable(axis).collect();
     let effects: Vec<&'static Effect> = match kind {
         Kind::Clean => Vec::new(),
-        Kind::Single => vec![EFFECTS[pick(row[0], EFFECTS.len())]],
-        Kind::LeftOut | Kind::Poor => vec![EFFECTS[index % EFFECTS.len()]],
+        Kind::Single => vec![library[pick(row[0], library.len())]],
+        Kind::LeftOut | Kind::Poor => vec![library[index % library.len()]],
         Kind::Outside => vec![OUTSIDE[pick(row[0], OUTSIDE.len())]],
         Kind::Pair | Kind::Triple => {
-            let mut chosen = vec![EFFECTS[pick(row[0], EFFECTS.len())]];
+            let mut chosen = vec![library[pick(row[0], library.len())]];
             let wanted = if kind == Kind::Pair { 2 } else { 3 };
             while chosen.len() < wanted {
-                let next = EFFECTS[pick(random.random(), EFFECTS.len())];
+                let next = library[pick(random.random(), library.len())];
                 if chosen.iter().all(|e| e.name != next.name) {
                     chosen.push(next);
                 }
@@ -149,46 +151,30 @@ fn case(axis: &Axis, kind: Kind, index: usize, row: &[f64; DIMENSIONS], seed: u6
     }
 }
 
-/// Effects whose size may as well be negative.
-const EITHER_SIGN: [&str; 12] = [
-    "constant-load",
-    "process-force",
-    "torque-constant",
-    "current-sensor-offset",
-    "lead-error",
-    "thermal-expansion",
-    "stator-resistance",
-    "controller-gain",
-    "speed-controller-gain",
-    "velocity-feedforward",
-    "clock-offset",
-    "transmission-stiffness",
-];
-
-/// Values of an effect, `size` times typical; shapes at random.
+/// Values of an effect, `size` times typical; shapes as their nature has them drawn.
 fn values(axis: &Axis, effect: &Effect, size: f64, random: &mut ChaCha8Rng) -> Vec<f64> {
-    let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
-    let sign = if EITHER_SIGN.contains(&effect.name) && between(0.0, 1.0) < 0.5 {
+    let scales = Scales::of(axis);
+    let mut between = |[low, high]: [f64; 2]| low + (high - low) * random.random::<f64>();
+    let either = |p: &EffectParameter| p.nature == Nature::Size { either_sign: true };
+    let signed = effect.parameters.iter().any(either);
+    let sign = if signed && between([0.0, 1.0]) < 0.5 {
         -1.0
     } else {
         1.0
     };
-    let start = axis.stroke.start;
-    let process = between(0.4, 3.0);
-    let one = |p: &axis_sim::effects::EffectParameter| match (effect.name, p.name) {
-        ("stribeck-friction", "velocity") => 0.005 * 10f64.powf(between(0.0, 1.0)),
-        ("position-dependent-friction", "centre") => start + between(0.03, 0.15),
-        ("position-dependent-friction", "width") => between(0.01, 0.04),
-        ("process-force", "start") => process,
-        ("process-force", "end") => process + between(0.3, 1.5),
-        ("cogging-torque", "order") => between(1.0, 25.0).floor(),
-        ("thermal-expansion", "time_constant") => between(1.0, 10.0),
-        ("position-damping" | "spring-load", "zero") => start + between(0.0, 0.2),
-        ("fading-friction", "time") => between(1.0, 8.0),
-        ("wave-load", "pitch") => between(0.03, 0.08),
-        ("local-resonance", "frequency") => between(20.0, 120.0),
-        (_, "phase") => between(-3.0, 3.0),
-        _ => sign * size * p.typical,
+    let begin = between([0.4, 3.0]);
+    let one = |p: &EffectParameter| match p.nature {
+        Nature::Size { .. } => sign * size * p.typical(&scales),
+        Nature::Phase => between([-3.0, 3.0]),
+        Nature::Order(most) => between([1.0, f64::from(most) + 1.0]).floor(),
+        Nature::Place(shares) => scales.start + scales.motion * between(shares),
+        Nature::Width(shares) => scales.motion * between(shares),
+        Nature::Speed(_, [low, high]) => {
+            low * (high / low).powf(between([0.0, 1.0])) * scales.ratio(p.measure)
+        }
+        Nature::Time(_, range) => between(range),
+        Nature::Begin(_) => begin,
+        Nature::End(after) => begin + between(after),
     };
     effect.parameters.iter().map(one).collect()
 }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Machine};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Scales};
 use axis_sim::{Axis, ReplayError};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ use super::outcome::{Foreseen, Imitation};
 use crate::bounded::bounded;
 use crate::fit::{Columns, Fit, Fitter};
 use crate::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
-use crate::known::{known_deviation, pinned, tolerance};
+use crate::known::{known_deviations, pinned, tolerances};
 use crate::library::Library;
 use crate::model::{LogSet, State};
 use crate::noise::{noise_on, size_over_noise};
@@ -39,7 +39,7 @@ pub enum BenchError {
 /// What is the same for all cases on one motion.
 pub struct Bench {
     pub(super) axis: Axis,
-    pub(super) machine: Machine,
+    pub(super) machine: Axis,
     pub(super) exercise: Exercise,
     /// Logs of the clean machine without noise, to fit to and to check on.
     pub(super) templates: [LogSet; 2],
@@ -70,7 +70,7 @@ impl Bench {
     /// # Errors
     /// [`BenchError`] where the axis does not run the exercise.
     pub fn new(axis: &Axis, kind: Exercise) -> Result<Self, BenchError> {
-        let machine = Machine::BallScrew(Box::new(axis.clone()));
+        let machine = axis.clone();
         let quiet = Hidden {
             effects: Vec::new(),
             shares: Vec::new(),
@@ -142,13 +142,15 @@ impl Bench {
         let Some(visible) = case.visible else {
             return case.clone();
         };
+        let scales = Scales::of(&self.axis);
         let times = |by: f64| {
             let mut case = case.clone();
             for hidden in &mut case.hidden {
                 let parameters = named(&hidden.name).map_or(&[][..], |e| e.parameters);
                 let sizes = hidden.values.iter_mut().zip(parameters);
-                for (value, p) in sizes.filter(|(_, p)| p.size) {
-                    *value = (*value * by).clamp(p.bounds[0], p.bounds[1]);
+                for (value, p) in sizes.filter(|(_, p)| p.is_size()) {
+                    let [low, high] = p.bounds(&scales);
+                    *value = (*value * by).clamp(low, high);
                 }
             }
             case
@@ -262,21 +264,22 @@ impl Bench {
         shares: &[f64],
     ) -> (f64, Vec<f64>) {
         let (n, known) = (columns.len(), shares.len());
-        let deviation = known_deviation(&self.machine);
-        let most = tolerance(&self.machine);
+        let deviations = known_deviations(&self.machine);
+        let most = tolerances(&self.machine);
         let normal = DMatrix::from_fn(n, n, |i, j| {
             let own = if i != j {
                 0.0
             } else if i < known {
-                deviation.powi(-2)
+                deviations[i].powi(-2)
             } else {
                 1e-9 * columns[i].norm_squared() + f64::MIN_POSITIVE
             };
             columns[i].dot(&columns[j]) + own
         });
         let right = DVector::from_fn(n, |i, _| columns[i].dot(change));
-        let x = bounded(&normal, &right, |i| (i < known).then_some([-most, most]));
-        let price: f64 = shares.iter().map(|s| (s / deviation).powi(2)).sum();
+        let x = bounded(&normal, &right, |i| (i < known).then(|| [-most[i], most[i]]));
+        let pairs = shares.iter().zip(&deviations);
+        let price: f64 = pairs.map(|(s, deviation)| (s / deviation).powi(2)).sum();
         let left = change.norm_squared() - 2.0 * x.dot(&right) + x.dot(&(&normal * &x));
         (left - price, x.rows(0, known).iter().copied().collect())
     }

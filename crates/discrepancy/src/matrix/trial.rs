@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axis_sim::ReplayError;
-use axis_sim::effects::ActiveEffect;
+use axis_sim::effects::{ActiveEffect, Nature};
 
 use super::case::Case;
 use super::foresee::{Bench, active};
@@ -180,7 +180,7 @@ fn estimates(found: &Found, hidden: &Hidden) -> Vec<Estimate> {
             all.push(Estimate {
                 effect: active.effect.name.to_owned(),
                 parameter: spec.name.to_owned(),
-                size: spec.size,
+                size: spec.is_size(),
                 truth: truth.values[p],
                 value: shift(value),
                 ci95: [shift(value) - half, shift(value) + half],
@@ -211,7 +211,7 @@ fn known_of(found: &Found) -> usize {
 fn same_phase(found: &ActiveEffect, truth: &ActiveEffect, p: usize) -> impl Fn(f64) -> f64 {
     use std::f64::consts::{PI, TAU};
     let parameters = found.effect.parameters;
-    let phase = parameters.iter().position(|q| q.name == "phase");
+    let phase = parameters.iter().position(|q| matches!(q.nature, Nature::Phase));
     let flipped = phase.is_some() && found.values[0] * truth.values[0] < 0.0;
     let is_phase = phase == Some(p);
     let target = truth.values[p];

@@ -1,7 +1,7 @@
 //! A channel's rest with and without an effect, against what that depends on.
 
-use axis_sim::Trace;
-use axis_sim::effects::{Effect, Machine};
+use axis_sim::effects::Effect;
+use axis_sim::{Axis, Trace};
 use serde::{Deserialize, Serialize};
 
 use crate::model::LogSet;
@@ -33,7 +33,7 @@ const LEAST: usize = 5;
 /// Looks at the rests of `set` without and with an effect, simulated as
 /// `traces` with it. `None` where the motion holds its variable still.
 pub(super) fn against(
-    machine: &Machine,
+    machine: &Axis,
     set: &LogSet,
     traces: &[Trace],
     effect: &Effect,
@@ -92,7 +92,7 @@ pub(super) fn against(
 /// The variable of the motion that stands for what an effect depends on, and
 /// its course in every log.
 fn variable(
-    machine: &Machine,
+    machine: &Axis,
     set: &LogSet,
     traces: &[Trace],
     depends_on: &str,
@@ -104,13 +104,10 @@ fn variable(
             .map(|(l, t)| course(l, t))
             .collect()
     };
-    let position = |t: &Trace| t.channel("position_m").unwrap_or_default().to_vec();
+    let position = |t: &Trace| t.position().to_vec();
     let speed = |t: &Trace| t.speed.clone();
     if depends_on.contains("angle") {
-        let radians = match machine {
-            Machine::BallScrew(axis) => 1.0 / axis.travel_per_radian(),
-            Machine::Rigid(axis) => 1.0 / axis.travel_per_radian(),
-        };
+        let radians = 1.0 / machine.travel_per_radian();
         let angle = |_, t: &Trace| -> Vec<f64> {
             let turned = position(t).into_iter().map(|x| x * radians);
             turned

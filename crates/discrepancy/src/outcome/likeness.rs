@@ -1,7 +1,8 @@
 //! Which effects these logs show, from what size on, and which look alike in
 //! them.
 
-use axis_sim::effects::Machine;
+use axis_sim::Axis;
+use axis_sim::effects::Scales;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -46,7 +47,7 @@ struct Reach {
 }
 
 /// Likenesses of all effects of the library on the fitted logs, in its order.
-pub(super) fn likenesses(machine: &Machine, found: &Found) -> Vec<Likeness> {
+pub(super) fn likenesses(machine: &Axis, found: &Found) -> Vec<Likeness> {
     let fitter = Fitter {
         machine,
         set: &found.fit_logs,
@@ -58,6 +59,7 @@ pub(super) fn likenesses(machine: &Machine, found: &Found) -> Vec<Likeness> {
     let known: Vec<DVector<f64>> = known.iter().map(|c| layout.whiten(&whitener, c)).collect();
     let projector = Projector::new(machine, &known, &pinned(machine, shares));
     let library = &found.library.candidates;
+    let scales = Scales::of(machine);
     let reach = |place: usize| -> Option<Reach> {
         let columns = library[place].columns.iter();
         let seen: Vec<DVector<f64>> = columns
@@ -98,12 +100,12 @@ pub(super) fn likenesses(machine: &Machine, found: &Found) -> Vec<Likeness> {
         let mut alike: Vec<(String, f64)> = others.filter_map(angle).collect();
         alike.retain(|_| shown(own));
         alike.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let mut sizes = effect.parameters.iter().filter(|p| p.size);
+        let mut sizes = effect.parameters.iter().filter(|p| p.is_size());
         let size = sizes.next().filter(|_| sizes.next().is_none());
         let shown_from = size.filter(|_| shown(own)).map(|p| Shown {
             parameter: p.name.to_owned(),
-            value: p.typical.abs() * (needed / own.least).sqrt(),
-            unit: p.unit.to_owned(),
+            value: p.typical(&scales).abs() * (needed / own.least).sqrt(),
+            unit: p.unit(&scales).to_owned(),
         });
         Some(Likeness {
             name: (*name).to_owned(),

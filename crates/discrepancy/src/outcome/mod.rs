@@ -4,8 +4,8 @@ mod against;
 mod likeness;
 mod types;
 
-use axis_sim::ReplayError;
-use axis_sim::effects::{ActiveEffect, EffectParameter, Machine};
+use axis_sim::effects::{ActiveEffect, EffectParameter, Scales};
+use axis_sim::{Axis, ReplayError};
 
 pub use self::against::Against;
 use self::against::against;
@@ -18,7 +18,7 @@ pub use self::types::{
 use crate::experiment::{Proposal, propose};
 use crate::fit::{Fitter, free_parameters};
 use crate::gap::{Gap, REST, gap};
-use crate::known::{known_parameters, tolerance};
+use crate::known::{shown, tolerances};
 use crate::lack::{Curve, Unknown, lack};
 use crate::model::{LogSet, Prepared, State};
 use crate::noise::{Excess, Rest, excess, floors, sensor_noise};
@@ -57,7 +57,7 @@ pub struct Overlay {
 /// # Errors
 /// [`ReplayError`] where a simulation that ran before does not run again.
 pub fn discovery(
-    machine: &Machine,
+    machine: &Axis,
     fit_logs: &LogSet,
     check_logs: &LogSet,
     found: &Found,
@@ -69,7 +69,7 @@ pub fn discovery(
 
 /// As [`discovery`], without what the logs can tell of effects that are not there.
 pub(crate) fn judged(
-    machine: &Machine,
+    machine: &Axis,
     fit_logs: &LogSet,
     check_logs: &LogSet,
     found: &Found,
@@ -141,17 +141,14 @@ pub(crate) fn judged(
         Some(noise) => propose(machine, found, noise)?,
         None => None,
     };
-    let name = match machine {
-        Machine::BallScrew(axis) => axis.name.clone(),
-        Machine::Rigid(axis) => axis.name.clone(),
-    };
-    let recalibrated = known_parameters(machine)
-        .iter()
+    let name = machine.name.clone();
+    let recalibrated = (machine.known().into_iter())
         .zip(&full.shares)
-        .map(|(known, &share)| Recalibrated {
-            name: known.name.to_owned(),
+        .zip(tolerances(machine))
+        .map(|((name, &share), tolerance)| Recalibrated {
+            name: shown(name),
             share,
-            tolerance: tolerance(machine),
+            tolerance,
         })
         .collect();
     let refused = found.refused.as_ref().map(refused_effects);
@@ -169,7 +166,11 @@ pub(crate) fn judged(
         ),
         verdict,
         effects,
-        replaced: found.replaced.iter().map(replaced).collect(),
+        replaced: {
+            let scales = Scales::of(machine);
+            let all = found.replaced.iter();
+            all.map(|r| replaced(r, &scales)).collect()
+        },
         refused,
         not_added: found
             .leftover
@@ -223,7 +224,7 @@ fn in_frequency(excess: Excess) -> Unknown {
 }
 
 fn effect_found(
-    machine: &Machine,
+    machine: &Axis,
     found: &Found,
     index: usize,
     named: &crate::search::Named,
@@ -232,6 +233,7 @@ fn effect_found(
     let active = &found.fit.state.effects[index];
     let free = free_parameters(&found.fit.state);
     let known = found.fit.state.shares.len();
+    let scales = Scales::of(machine);
     let parameter = |(p, (spec, &value)): (usize, (&EffectParameter, &f64))| {
         let column = free
             .iter()
@@ -241,10 +243,10 @@ fn effect_found(
         ParameterFound {
             name: spec.name.to_owned(),
             value,
-            unit: spec.unit.to_owned(),
+            unit: spec.unit(&scales).to_owned(),
             ci95: [value - half, value + half],
             when_named: named.when_named.get(p).copied().unwrap_or(value),
-            at_screw: at_screw(machine, value, spec.unit),
+            at_screw: at_screw(machine, value, spec.unit(&scales)),
         }
     };
     EffectFound {
@@ -273,11 +275,8 @@ fn effect_found(
 
 /// Where a gap is so large that the logs do not say where the screw lay in it at their
 /// start.
-fn slack_notes(machine: &Machine, found: &Found) -> Vec<String> {
-    let Machine::BallScrew(axis) = machine else {
-        return Vec::new();
-    };
-    let effects = [&axis.effects[..], &found.fit.state.effects].concat();
+fn slack_notes(machine: &Axis, found: &Found) -> Vec<String> {
+    let effects = [&machine.effects[..], &found.fit.state.effects].concat();
     let left = [&found.fit_logs, &found.check_logs].map(|set| set.slack_left(&effects));
     let note = |(gap, log): (f64, &Prepared)| {
         format!(
@@ -295,9 +294,9 @@ fn refused_effects(refused: &Refused) -> RefusedEffects {
     }
 }
 
-fn replaced(replaced: &Replaced) -> ReplacedEffect {
+fn replaced(replaced: &Replaced, scales: &Scales) -> ReplacedEffect {
     let ActiveEffect { effect, values } = &replaced.when_named;
-    let one = |(p, &value): (&EffectParameter, &f64)| (p.name.to_owned(), value, p.unit.to_owned());
+    let one = |(p, &value): (&EffectParameter, &f64)| (p.name.to_owned(), value, p.unit(scales).to_owned());
     ReplacedEffect {
         name: effect.name.to_owned(),
         when_named: effect.parameters.iter().zip(values).map(one).collect(),
@@ -306,11 +305,8 @@ fn replaced(replaced: &Replaced) -> ReplacedEffect {
 }
 
 /// Friction acts at the table; its torque at the screw is what catalogues give.
-fn at_screw(machine: &Machine, value: f64, unit: &str) -> Option<AtScrew> {
-    let r = match machine {
-        Machine::BallScrew(axis) => axis.travel_per_radian(),
-        Machine::Rigid(axis) => axis.travel_per_radian(),
-    };
+fn at_screw(machine: &Axis, value: f64, unit: &str) -> Option<AtScrew> {
+    let r = machine.travel_per_radian();
     let (factor, unit) = match unit {
         "N" => (r, "N*m"),
         "N*s/m" => (r * r, "N*m*s/rad"),

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use axis_sim::effects::Effect;
+use axis_sim::effects::{Effect, Scales};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::library::{Candidate, FORCE};
+use crate::library::{Candidate, is_force_in_time};
 use crate::spectrum::Amplitudes;
 
 /// What a candidate does, in a space where other parameters are fitted out.
@@ -15,6 +15,8 @@ pub struct Response {
     pub effect: &'static Effect,
     /// As of its [`Candidate`].
     pub values: Vec<f64>,
+    /// How large things are on the axis.
+    pub scales: Scales,
     /// Place of that in the library; `None` of a sum of several.
     pub candidate: Option<usize>,
     /// One entry a size; two of an effect with a phase.
@@ -32,6 +34,7 @@ pub fn responses_in(
     let one = |(place, c): (usize, &Candidate)| Response {
         effect: c.effect,
         values: c.values.clone(),
+        scales: c.scales,
         candidate: Some(place),
         columns: c.columns.iter().map(&seen).collect(),
     };
@@ -41,7 +44,7 @@ pub fn responses_in(
         .filter(|(_, c)| wanted(c.effect))
         .map(one)
         .collect();
-    let (slots, mut all): (Vec<_>, Vec<_>) = all.into_iter().partition(|r| r.effect.name == FORCE);
+    let (slots, mut all): (Vec<_>, Vec<_>) = all.into_iter().partition(|r| is_force_in_time(r.effect));
     all.extend(windows(&slots, rest));
     all
 }
@@ -89,6 +92,7 @@ fn windows(slots: &[Response], rest: &DVector<f64>) -> Vec<Response> {
         Response {
             effect: slots[window.start].effect,
             values,
+            scales: slots[window.start].scales,
             candidate: None,
             columns: vec![columns[window].iter().fold(zero, |sum, c| sum + *c)],
         }

@@ -1,6 +1,6 @@
 //! A candidate with what it explains.
 
-use axis_sim::effects::Effect;
+use axis_sim::effects::{Effect, Scales};
 use nalgebra::{DMatrix, DVector};
 
 use crate::library::values_at;
@@ -14,6 +14,8 @@ pub struct Screened {
     pub gain: f64,
     /// Starting values for a fit.
     pub values: Vec<f64>,
+    /// How large things are on the axis.
+    pub scales: Scales,
     /// Its place in the library; `None` of a force over several slots of time.
     pub candidate: Option<usize>,
     /// Response to these values, whitened, known parameters fitted out.
@@ -55,6 +57,6 @@ impl Screened {
             let along = self.basis.column(i).dot(does) / self.strengths[i];
             sum + self.sizes.row(i).transpose() * along
         });
-        values_at(self.effect, &self.values, sizes.as_slice())
+        values_at(self.effect, &self.values, sizes.as_slice(), &self.scales)
     }
 }

@@ -131,7 +131,8 @@ impl Screening {
         let columns = response.columns.len();
         Screened {
             gain,
-            values: values_at(response.effect, &response.values, solution),
+            values: values_at(response.effect, &response.values, solution, &response.scales),
+            scales: response.scales,
             candidate: response.candidate,
             fingerprint,
             basis: svd.u.unwrap_or_else(|| DMatrix::zeros(rows, 1)),
@@ -182,8 +183,12 @@ fn solved(
 
 /// Whether sizes, as multiples of the typical, are such as the effect may have.
 fn within_bounds(response: &Response, solution: &[f64]) -> bool {
-    let values = values_at(response.effect, &response.values, solution);
+    let scales = &response.scales;
+    let values = values_at(response.effect, &response.values, solution, scales);
     let sizes = response.effect.parameters.iter().zip(&values);
-    let mut sizes = sizes.filter(|(p, _)| p.size);
-    sizes.all(|(p, v)| p.bounds[0] < *v && *v < p.bounds[1])
+    let mut sizes = sizes.filter(|(p, _)| p.is_size());
+    sizes.all(|(p, v)| {
+        let [low, high] = p.bounds(scales);
+        low < *v && *v < high
+    })
 }

@@ -9,14 +9,14 @@
 
 use std::ops::Range;
 
-use axis_sim::effects::ActiveEffect;
+use axis_sim::effects::{ActiveEffect, Scales};
 use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::promise::PROMISING;
 use super::state::Search;
 use crate::fit::{Columns, Fit};
-use crate::library::{Candidate, FORCE, responses};
+use crate::library::{Candidate, is_force_in_time, responses};
 use crate::linear::{Problem, Products};
 use crate::screen::mostly_same;
 use crate::spectrum::Amplitudes;
@@ -56,7 +56,7 @@ impl Search<'_> {
     pub(super) fn force_in_time(&self, own: &Columns, least: f64) -> Option<Fit> {
         let all = self.library.candidates.iter();
         let slots: Vec<Slot> = all
-            .filter(|c| c.effect.name == FORCE)
+            .filter(|c| is_force_in_time(c.effect))
             .map(|c| Slot {
                 times: [c.values[1], c.values[2]],
                 column: c.columns[0].clone(),
@@ -195,13 +195,15 @@ impl Search<'_> {
 
     fn force(&self) -> Option<&Candidate> {
         let mut all = self.library.candidates.iter();
-        all.find(|c| c.effect.name == FORCE)
+        all.find(|c| is_force_in_time(c.effect))
     }
 
     fn simulated(&self, slots: &[Slot], stretch: &Stretch) -> Option<Fit> {
         let effect = self.force()?.effect;
         let force = effect.parameters[0];
-        let size = (stretch.size() * force.typical).clamp(force.bounds[0], force.bounds[1]);
+        let scales = Scales::of(self.machine);
+        let [low, high] = force.bounds(&scales);
+        let size = (stretch.size() * force.typical(&scales)).clamp(low, high);
         let from = slots[stretch.slots.start].times[0];
         let to = slots[stretch.slots.end - 1].times[1];
         let values = vec![size, from, to];

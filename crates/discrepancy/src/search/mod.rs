@@ -13,8 +13,7 @@ mod types;
 
 use std::sync::Arc;
 
-use axis_sim::ReplayError;
-use axis_sim::effects::Machine;
+use axis_sim::{Axis, ReplayError};
 
 pub use self::evidence::{MATERIAL, needed};
 pub(crate) use self::revise::ABOVE_NOISE;
@@ -34,7 +33,7 @@ use crate::model::{LogSet, State};
 /// [`SearchError`] where the settings ask for what this machine cannot have, or where it
 /// does not run as its file says.
 pub fn search(
-    machine: &Machine,
+    machine: &Axis,
     fit_logs: &LogSet,
     check_logs: &LogSet,
     settings: &Settings,
@@ -49,7 +48,7 @@ pub fn search(
 /// As [`search`], with the library's responses to these motions where they are
 /// there already.
 pub(crate) fn search_with(
-    machine: &Machine,
+    machine: &Axis,
     fit_logs: &LogSet,
     check_logs: &LogSet,
     settings: &Settings,
@@ -122,7 +121,7 @@ pub(crate) fn search_with(
 
 /// The logs with the defects of a fitted machine, where it is one that runs.
 fn settled(
-    machine: &Machine,
+    machine: &Axis,
     fit_logs: &LogSet,
     check_logs: &LogSet,
     fit: &Fit,

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::state::Search;
 use crate::fit::Columns;
-use crate::library::{Candidate, FORCE, rooms, values_at};
+use crate::library::{Candidate, is_force_in_time, rooms, values_at};
 use crate::linear::{Problem, Products, Room};
 use crate::screen::{Screened, Screening};
 use crate::spectrum::Amplitudes;
@@ -40,9 +40,9 @@ impl<'a> Promises<'a> {
         let layout = &search.fit_logs.layout;
         let rest = [&search.fit.rest].into_iter();
         // Times of a force are sought by themselves.
-        let columns = |c: &'a Candidate| match c.effect.name {
-            FORCE => &[],
-            _ => c.columns.as_slice(),
+        let columns = |c: &'a Candidate| match is_force_in_time(c.effect) {
+            true => &[],
+            false => c.columns.as_slice(),
         };
         let of_all = candidates.iter().flat_map(columns);
         let all: Vec<&Amplitudes> = rest.chain(own).chain(of_all).collect();
@@ -104,7 +104,7 @@ impl<'a> Promises<'a> {
     /// tenth of the best or too little. The times of a force in time are to be found first.
     pub(super) fn worth_refining(&self, effects: &[Screened]) -> Vec<Vec<Screened>> {
         let (force, others): (Vec<_>, Vec<_>) =
-            effects.iter().partition(|s| s.effect.name == FORCE);
+            effects.iter().partition(|s| is_force_in_time(s.effect));
         let settings = self.search.settings;
         let best = others.first().map_or(0.0, |s| s.gain);
         let least = (PROMISING * self.search.needed(1, 1)).max(WORTH * best);
@@ -138,7 +138,7 @@ impl<'a> Promises<'a> {
     fn promised(&self, effects: &[&Screened]) -> Option<Promise> {
         let search = self.search;
         let places: Option<Vec<usize>> = effects.iter().map(|s| s.candidate).collect();
-        let rooms: Vec<Vec<Room>> = effects.iter().map(|s| rooms(s.effect)).collect();
+        let rooms: Vec<Vec<Room>> = effects.iter().map(|s| rooms(s.effect, &s.scales)).collect();
         let columns = places?.into_iter().zip(&rooms);
         let columns = columns.flat_map(|(c, rooms)| (0..rooms.len()).map(move |i| (c, i)));
         let columns = columns.map(|(c, i)| self.firsts[c] + i);
@@ -158,7 +158,7 @@ impl<'a> Promises<'a> {
             first += rooms.len();
             Screened {
                 gain: fall,
-                values: values_at(s.effect, &s.values, own),
+                values: values_at(s.effect, &s.values, own, &s.scales),
                 ..s.clone()
             }
         });

@@ -1,6 +1,6 @@
 //! Rounds of screening, refining and adding.
 
-use axis_sim::effects::ActiveEffect;
+use axis_sim::effects::{ActiveEffect, Effect};
 use rayon::prelude::*;
 
 use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
@@ -9,7 +9,7 @@ use super::refined::{Refined, alike, simplest_first};
 use super::state::Search;
 use super::types::{Named, RunnerUp};
 use crate::fit::{Columns, Fit, free_parameters};
-use crate::library::FORCE;
+use crate::library::is_force_in_time;
 use crate::screen::Screened;
 
 /// Share of the promised fall of D that a simulation must keep, or other sizes are
@@ -83,7 +83,8 @@ impl Search<'_> {
         let fitter = self.fitter();
         let promised = candidates.iter().map(|parts| parts[0].gain);
         let least = WORTH * promised.fold(0.0, f64::max);
-        let awaited = self.awaited().contains(&FORCE);
+        let awaited = self.awaited();
+        let awaited = awaited.iter().any(|name| Effect::named(name).is_some_and(is_force_in_time));
         let begin = |parts: Vec<Screened>| {
             let as_screened = || {
                 let mut state = self.fit.state.clone();
@@ -101,7 +102,7 @@ impl Search<'_> {
                 })
             };
             let start = match parts.as_slice() {
-                [force] if force.effect.name == FORCE => {
+                [force] if is_force_in_time(force.effect) => {
                     let found = self.force_in_time(own, least);
                     found.or_else(|| as_screened().filter(|_| awaited))?
                 }
@@ -115,7 +116,7 @@ impl Search<'_> {
         };
         let mut refined: Vec<Refined> = candidates.into_par_iter().filter_map(begin).collect();
         refined.retain(|r| match r.fit.state.effects.last() {
-            Some(last) if r.parts.len() == 1 && last.effect.name == FORCE => {
+            Some(last) if r.parts.len() == 1 && is_force_in_time(last.effect) => {
                 awaited || self.acts(last.values[2])
             }
             _ => true,

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use axis_sim::effects::{Effect, Machine};
+use axis_sim::Axis;
+use axis_sim::effects::{Effect, Nature};
 
 use super::evidence::needed;
 use super::types::{Named, Refused, Replaced, RunnerUp, Settings};
@@ -15,7 +16,7 @@ use crate::spectrum::Amplitudes;
 /// A search on its way.
 #[derive(Clone)]
 pub(super) struct Search<'a> {
-    pub(super) machine: &'a Machine,
+    pub(super) machine: &'a Axis,
     pub(super) settings: &'a Settings,
     pub(super) library: Arc<Library>,
     pub(super) fit_logs: LogSet,
@@ -78,7 +79,7 @@ impl Search<'_> {
         let rejected = self.settings.rejected.iter().any(|r| r == effect.name);
         // A second harmonic of the same kind may be there.
         let active = self.named.iter().any(|n| n.name == effect.name);
-        let free = !active || effect.name == "cogging-torque";
+        let free = !active || effect.place_of(|n| matches!(n, Nature::Order(_))).is_some();
         free && !rejected && (awaited.is_empty() || awaited.contains(&effect.name))
     }
 

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use axis_sim::ReplayError;
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Machine};
+use axis_sim::{Axis, ReplayError};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
@@ -95,7 +95,7 @@ impl Settings {
     ///
     /// # Errors
     /// [`SettingsError`] of the first that cannot be meant.
-    pub fn check(&self, machine: &Machine) -> Result<(), SettingsError> {
+    pub fn check(&self, machine: &Axis) -> Result<(), SettingsError> {
         let names = |all: &mut dyn Iterator<Item = &'static Effect>| {
             all.map(|e| e.name).collect::<Vec<_>>().join(", ")
         };
@@ -115,10 +115,7 @@ impl Settings {
             if applicable(machine).all(|e| e.name != name()) {
                 return Err(SettingsError::NotOn {
                     name: name(),
-                    machine: match machine {
-                        Machine::BallScrew(_) => "a ball-screw axis",
-                        Machine::Rigid(_) => "a rigid mass",
-                    },
+                    machine: machine.mechanism.kind().name,
                     all: names(&mut applicable(machine)),
                 });
             }
