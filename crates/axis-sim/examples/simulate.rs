@@ -42,7 +42,7 @@ fn run(
     csv: Option<&String>,
 ) -> Result<(), Box<dyn std::error::Error>> {
     let motion = axis.plan(spec)?;
-    let mut recorder = Recorder::default();
+    let mut recorder = Recorder::new(axis);
     let begin = std::time::Instant::now();
     ClosedLoop::new(axis)?
         .run(&motion, &mut NoCompensation, |cycle| recorder.push(cycle))

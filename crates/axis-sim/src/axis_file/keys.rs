@@ -12,8 +12,10 @@ use crate::part::units::*;
 use crate::part::{Key, count, number, quantity, table, tables, text, word};
 use crate::work::FREQUENCIES;
 
-/// The versions of the axis file's layout that this program reads: 2 has a section for each part.
-const SCHEMAS: [u32; 2] = [1, 2];
+/// The version of a file's layout: 2 has a section for each part.
+fn schema(layout: &Layout) -> u32 {
+    if layout.has_sections() { 2 } else { 1 }
+}
 
 /// Keys of the table [control] that are not the controller's.
 fn loop_keys(freedom: Freedom) -> Vec<Key> {
@@ -30,7 +32,7 @@ fn loop_keys(freedom: Freedom) -> Vec<Key> {
 /// All keys of a file whose parts are of these kinds.
 pub(super) fn keys(layout: &Layout, freedom: Freedom, effort: Effort) -> Vec<Key> {
     let mut keys = vec![
-        count("schema", SCHEMAS[0], SCHEMAS[1]),
+        count("schema", schema(layout), schema(layout)),
         text("name"),
         text("description"),
     ];

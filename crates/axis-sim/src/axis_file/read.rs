@@ -241,9 +241,14 @@ fn sample_ranges(f: &Fields<'_>, axis: &Axis) -> Result<SampleRanges, AxisFileEr
     let inside = |reach: Range| {
         reach.contains(ranges.position.least) && reach.contains(ranges.position.most)
     };
-    if !axis.mechanism.reach().is_none_or(inside) {
-        let what = "asks for positions off the screw".to_owned();
-        return Err(f.refuse_table(what, "positions from 0 to the screw's length"));
+    if let Some(reach) = axis.mechanism.reach()
+        && !inside(reach)
+    {
+        let what = "asks for positions that the mechanism does not reach".to_owned();
+        let (least, most) = (SixDigits(reach.least), SixDigits(reach.most));
+        let unit = axis.freedom().unit();
+        let valid = format!("positions from {least} {unit} to {most} {unit}");
+        return Err(f.refuse_table(what, &valid));
     }
     Ok(ranges)
 }

@@ -185,6 +185,7 @@ impl Key {
                 let text = format!("a number {} {unit}", limits.text(1.0));
                 text.trim_end().to_owned()
             }
+            Kind::Count(least, most) if least == most => least.to_string(),
             Kind::Count(least, most) => format!("a whole number from {least} to {most}"),
             Kind::Text => "a text in quotes".to_owned(),
             Kind::Word(words) => {

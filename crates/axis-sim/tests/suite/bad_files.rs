@@ -1,6 +1,5 @@
 //! Bad axis files are refused with file, line, field and what is valid.
 
-use axis_sim::effects::Machine;
 use axis_sim::{Axis, AxisFileError};
 use proptest::prelude::*;
 
@@ -64,7 +63,7 @@ const CASES: &[Case] = &[
         &["did you mean \"moving-node\"?"]),
     case("schema = 1", "schema = 1\nkind = \"rigid\"", "kind", "kind", &["\"rigid\"", "\"ball-screw\" or \"rigid-mass\""]),
     case("schema = 1", "schema = 1\nknd = \"ball-screw\"", "knd", "knd", &["did you mean `kind`?"]),
-    case("schema = 1", "schema = 1\nkind = \"rigid-mass\"", "kind", "kind", &["this command needs a ball screw"]),
+    case("schema = 1", "schema = 1\nkind = \"rigid-mass\"", "[screw]", "screw", &["not a key of this file", "[body]"]),
     // Values.
     case("table_mass_kg = 515 ", "table_mass_kg = nan ", "table_mass_kg", "drive.table_mass_kg", &["is nan", "in kg"]),
     case("displacement_mm = 300", "displacement_mm = nan", "displacement_mm", "trajectory[1].displacement_mm", &["nan", "in mm"]),
@@ -96,17 +95,17 @@ const CASES: &[Case] = &[
         &["a second time", "one of lead_mm, lead_m, lead_um"]),
     // Off the stroke or the screw.
     case("start_mm = 600", "start_mm = 1600", "[stroke]", "stroke", &["1.6 m", "start inside the stroke"]),
-    case("maximum_mm = 1500", "maximum_mm = 1501", "[stroke]", "stroke", &["1.501", "screw's length"]),
-    case("minimum_mm = 0", "minimum_mm = -1", "[stroke]", "stroke", &["-0.001 m", "0 <= minimum"]),
+    case("maximum_mm = 1500", "maximum_mm = 1501", "[stroke]", "stroke", &["1.501", "reaches from 0 m to 1.5 m"]),
+    case("minimum_mm = 0", "minimum_mm = -1", "[stroke]", "stroke", &["-0.001 m", "0 m <= minimum < maximum <= 1.5 m"]),
     case("minimum_mm = 0", "minimum_mm = 1500", "[stroke]", "stroke", &["minimum < maximum"]),
-    case("position_max_mm = 1500", "position_max_mm = 1600", "[samples]", "samples", &["off the screw"]),
+    case("position_max_mm = 1500", "position_max_mm = 1600", "[samples]", "samples", &["does not reach", "positions from 0 m to 1.5 m"]),
     case("current_min_a = -15", "current_min_a = 15", "[samples]", "samples", &["current_min", "minimum below"]),
     case("displacement_mm = 300", "displacement_mm = 901", "[[trajectory]]", "trajectory[1]",
         &["1.501", "outside the stroke", "0 m to 1.5 m"]),
     // Schema.
-    case("schema = 1", "schema = 2", "schema = 2", "schema", &["is 2", "from 1 to 1"]),
-    case("schema = 1", "schema = \"1\"", "schema = ", "schema", &["from 1 to 1"]),
-    case("schema = 1", "", "# The ball-screw axis", "schema", &["missing", "from 1 to 1"]),
+    case("schema = 1", "schema = 2", "schema = 2", "schema", &["is 2", "valid: 1"]),
+    case("schema = 1", "schema = \"1\"", "schema = ", "schema", &["is \"1\";", "valid: 1"]),
+    case("schema = 1", "", "# The ball-screw axis", "schema", &["missing", "valid: 1"]),
 ];
 
 #[test]
@@ -284,7 +283,7 @@ fn every_slip_of_the_pen_is_named_with_what_was_meant() {
                 bad[at] = line.replacen(&key, &slip, 1);
                 tried += 1;
                 let place = format!("axis.toml:{}:", at + 1);
-                let message = match Machine::parse("axis.toml", &bad.join("\n")) {
+                let message = match Axis::parse("axis.toml", &bad.join("\n")) {
                     Ok(_) => "accepted".to_owned(),
                     Err(error) => error.to_string(),
                 };

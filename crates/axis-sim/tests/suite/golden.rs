@@ -32,7 +32,8 @@ fn deviations(cycles: &[Cycle], rows: &[Vec<f64>], every: usize) -> [f64; 5] {
         let ours = [
             c.reference.position,
             c.position,
-            c.motor_angle,
+            // From where the motion began, on a motor whose angle is absolute.
+            c.motor_angle - cycles[0].motor_angle,
             c.motor_speed,
             c.current.q,
         ];
@@ -67,6 +68,9 @@ fn the_committed_reference_is_what_the_obvious_program_gives() {
 #[test]
 fn trajectory_1_of_the_obvious_program() {
     let cycles = cycles();
+    // 0.6 m of a lead of 10 mm.
+    let turned = 60.0 * std::f64::consts::TAU;
+    assert!((cycles[0].motor_angle - turned).abs() < 1e-12 * turned);
     let most = deviations(&cycles, &rows(COMMITTED), EVERY);
     println!("obvious program: reference, position, angle, speed, iq within {most:?}");
     // Measured 4.9e-14 m (the file has 13 decimals), 2.5e-10 m, 1.7e-7 rad,

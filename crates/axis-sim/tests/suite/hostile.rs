@@ -4,10 +4,10 @@
 use std::time::{Duration, Instant};
 
 use axis_log::{Channel, Log};
-use axis_sim::effects::{ActiveEffect, EFFECTS, Machine};
+use axis_sim::effects::{ActiveEffect, EFFECTS};
+use axis_sim::mechanism::Way;
 use axis_sim::{Axis, ClosedLoop, CycleInput, LoggedReference, OneCycle, Probe, Replay, SixDigits};
 use compensator::NoCompensation;
-use feed_dynamics::NutCoupling;
 use proptest::prelude::*;
 use trajectories::{Limits, Motion, SCurve};
 
@@ -47,8 +47,8 @@ fn log(samples: usize) -> Log {
     .unwrap()
 }
 
-fn machines() -> [Machine; 2] {
-    [PRINTED, RIGID].map(|file| Machine::parse(file, &text(file)).unwrap())
+fn machines() -> [Axis; 2] {
+    [PRINTED, RIGID].map(axis)
 }
 
 proptest! {
@@ -105,9 +105,9 @@ proptest! {
     ) {
         let limits = Limits::new(1.0, 100.0, 1e5).unwrap();
         let motion = SCurve::plan(0.6, 0.6001, &limits).unwrap();
-        for coupling in [NutCoupling::ShapeFunctions, NutCoupling::MovingNode] {
+        for way in [Way::Fast, Way::Exact] {
             let mut axis = axis(PRINTED);
-            (axis.period, axis.simulation.step, axis.coupling) = (period, step, coupling);
+            (axis.period, axis.simulation.step, axis.simulation.way) = (period, step, way);
             if let Ok(closed_loop) = ClosedLoop::new(&axis)
                 && closed_loop.steps(&motion) < 1e6
             {
@@ -115,14 +115,12 @@ proptest! {
             }
             let _ = OneCycle::new(&axis).map(|one| one.increment(&CycleInput::default()));
         }
-        let Ok(Machine::Rigid(mut axis)) = Machine::parse(RIGID, &text(RIGID)) else {
-            panic!("a rigid mass");
-        };
-        (axis.period, axis.step) = (period, step);
+        let mut axis = axis(RIGID);
+        (axis.period, axis.simulation.step) = (period, step);
         // What is refused, or what a test has the time for.
         let steps = (2e-3 / period + 1.0) * (period / step + 1.0);
         if !(1e6..2e10).contains(&steps) {
-            let _ = Replay::new(&log(3), 1e-3).unwrap().run(&Machine::Rigid(axis), &[], None);
+            let _ = Replay::new(&log(3), 1e-3).unwrap().run(&axis, &[], None);
         }
     }
 
@@ -181,15 +179,15 @@ proptest! {
     ) {
         let content = with_values(&text(if rigid { RIGID } else { PRINTED }), &values);
         let begin = Instant::now();
-        match Machine::parse("axis.toml", &content) {
+        match Axis::parse("axis.toml", &content) {
             Err(error) => prop_assert!(error.to_string().starts_with("axis.toml:")),
-            Ok(Machine::Rigid(axis)) => {
+            Ok(axis) if rigid => {
                 let log = log(50);
                 // Fifty periods, whatever their length.
                 let replay = Replay::new(&log, axis.period).unwrap();
-                let _ = replay.run(&Machine::Rigid(axis), &[], None);
+                let _ = replay.run(&axis, &[], None);
             }
-            Ok(Machine::BallScrew(axis)) => fifty_cycles(&axis),
+            Ok(axis) => fifty_cycles(&axis),
         }
         prop_assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", begin.elapsed());
     }

@@ -20,6 +20,7 @@ mod vibration;
 
 use std::path::PathBuf;
 
+use axis_sim::part::Part;
 use axis_sim::{Axis, ClosedLoop, Cycle};
 use compensator::NoCompensation;
 
@@ -43,6 +44,17 @@ fn text(name: &str) -> String {
 
 fn axis(name: &str) -> Axis {
     Axis::read(&data(name)).unwrap()
+}
+
+/// A number that a part was made from, SI.
+fn number<P: ?Sized>(part: &Part<P>, key: &'static str) -> f64 {
+    part.values().number(key).unwrap()
+}
+
+/// The part with other numbers.
+fn change<P: ?Sized>(part: &mut Part<P>, numbers: &[(&'static str, f64)]) {
+    part.change(|values| numbers.iter().for_each(|(key, to)| values.set(key, *to)))
+        .unwrap();
 }
 
 /// Cycles of trajectory `id` (from 1) without compensation.

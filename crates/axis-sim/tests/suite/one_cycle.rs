@@ -1,20 +1,17 @@
 //! Single cycles: almost pure kinematics, and odd in the motion.
 
 use axis_sim::{Axis, CycleInput, OneCycle};
-use feed_dynamics::Settled;
 use proptest::prelude::*;
 
-use crate::{PRINTED, axis};
+use crate::{PRINTED, axis, number};
 
 /// The command that keeps the motion up: friction and inertia balanced.
 fn balance(axis: &Axis, speed: f64, acceleration: f64) -> f64 {
     let r = axis.travel_per_radian();
-    let motion = Settled {
-        speed,
-        acceleration,
-        load: axis.friction.steady_state(speed / r) / r,
-    };
-    axis.motor.q_current(motion.motor_torque(&axis.drive))
+    // At i_d = 0 the torque is the constant times the q current.
+    let torque = axis.mechanism.total_inertia() * acceleration / r
+        + axis.friction.law.steady_state(speed / r);
+    torque / axis.torque_constant()
 }
 
 /// Beyond v T + a T²/2, m.
@@ -83,8 +80,8 @@ fn the_increment_is_kinematics_but_for_friction_near_rest() {
         // sample of Table 5 in 13 000) the bristles turn round: ż goes from 0 to
         // 2ω, and σ1 ż slows the table by at most 2 σ1 |a| T³ / (6 m r²).
         let r = axis.travel_per_radian();
-        let mass = axis.drive.parameters().table_mass;
-        let turning = 2.0 * axis.friction.parameters().damping * 1e-12 / (6.0 * mass * r * r);
+        let mass = number(&axis.mechanism, "table_mass");
+        let turning = 2.0 * axis.friction.law.parameters().damping * 1e-12 / (6.0 * mass * r * r);
         assert!(slow[0] < 1e6 * turning, "{} {}", slow[0], 1e6 * turning);
     }
 }

@@ -1,20 +1,11 @@
 //! How runs end that do not come to their end.
 
 use axis_sim::effects::{ActiveEffect, Changes, Effect, EffectChannel};
-use axis_sim::{Axis, ClosedLoop, Cycle, FOLLOWING_ERROR_LIMIT, Outcome, StopReason};
+use axis_sim::{Axis, ClosedLoop, Cycle, FOLLOWING_ERROR_LIMIT, Outcome, SetupError, StopReason};
 use compensator::{Compensator, Correction, NoCompensation, Sample};
-use feed_dynamics::DriveError;
-use foc_pmsm::{Servo, ServoGains, ServoLimits};
 use trajectories::{Limits, Motion, SCurve, Setpoint};
 
-use crate::{PRINTED, axis};
-
-fn with(axis: &Axis, gains: ServoGains, limits: ServoLimits) -> Axis {
-    Axis {
-        servo: Servo::new(gains, limits, axis.period).unwrap(),
-        ..axis.clone()
-    }
-}
+use crate::{PRINTED, axis, change, number};
 
 /// Runs trajectory 1 and checks that nothing observed was not a number.
 fn run(axis: &Axis, compensator: &mut impl Compensator) -> (Outcome, usize) {
@@ -29,44 +20,37 @@ fn run(axis: &Axis, compensator: &mut impl Compensator) -> (Outcome, usize) {
     (outcome, seen)
 }
 
-fn numbers(c: &Cycle) -> [f64; 13] {
+fn numbers(c: &Cycle) -> [f64; 14] {
     [
         c.time,
         c.position,
-        c.table_speed,
+        c.load_speed,
         c.motor_angle,
         c.motor_speed,
         c.error(),
         c.current.d,
         c.current.q,
         c.command.speed_ref,
-        c.command.iq_ref,
+        c.command.effort,
         c.command.voltage.d,
         c.command.voltage.q,
         c.correction.position,
+        c.torque,
     ]
 }
 
 fn stopped(outcome: Outcome) -> (f64, StopReason) {
-    let Outcome::Stopped {
-        time,
-        reason,
-        position,
-        error,
-        motor_speed,
-        iq,
-    } = outcome
-    else {
+    let Outcome::Stopped { time, reason, at } = outcome else {
         panic!("it came to its end");
     };
     // The message says when and in which state, with six digits at most.
     let text = outcome.completed().unwrap_err().to_string();
     for (before, value, unit) in [
         ("t = ", time, " s"),
-        ("table at ", position, " m"),
-        ("tracking error ", error, " m"),
-        ("motor speed ", motor_speed, " rad/s"),
-        ("q current ", iq, " A"),
+        ("load at ", at.position, " m"),
+        ("tracking error ", at.error, " m"),
+        ("motor speed ", at.motor_speed, " rad/s"),
+        ("motor torque ", at.torque, " N·m"),
     ] {
         // The reason may speak of the tracking error too: the last one counts.
         let from = text.rfind(before).unwrap() + before.len();
@@ -76,6 +60,12 @@ fn stopped(outcome: Outcome) -> (f64, StopReason) {
             .next()
             .unwrap()
             .trim_start_matches(['-', '0', '.']);
+        // Zeros before the point are no significant digits.
+        let digits = if said.contains('.') {
+            digits
+        } else {
+            digits.trim_end_matches('0')
+        };
         let digits = digits.chars().filter(char::is_ascii_digit).count();
         assert!(digits <= 6, "{said}");
         let said: f64 = said.parse().unwrap();
@@ -90,15 +80,9 @@ fn stopped(outcome: Outcome) -> (f64, StopReason) {
 #[test]
 fn a_current_limit_that_cannot_move_it() {
     // Friction alone needs 0.4 A.
-    let axis = axis(PRINTED);
-    let limits = ServoLimits {
-        current: 0.01,
-        ..*axis.servo.limits()
-    };
-    let (outcome, seen) = run(
-        &with(&axis, *axis.servo.gains(), limits),
-        &mut NoCompensation,
-    );
+    let mut axis = axis(PRINTED);
+    change(&mut axis.actuator, &[("current_limit", 0.01)]);
+    let (outcome, seen) = run(&axis, &mut NoCompensation);
     let (time, reason) = stopped(outcome);
     assert_eq!(reason, StopReason::FollowingError(FOLLOWING_ERROR_LIMIT));
     // It stands still: given up when the reference has moved 20 mm.
@@ -111,26 +95,22 @@ fn a_current_limit_that_cannot_move_it() {
 
 #[test]
 fn gains_that_no_loop_survives() {
-    let axis = axis(PRINTED);
-    let gains = *axis.servo.gains();
-    let unlimited = ServoLimits {
-        current: f64::INFINITY,
-        voltage: f64::INFINITY,
+    let mut unlimited = axis(PRINTED);
+    let infinite = ["current_limit", "dc_link"].map(|key| (key, f64::INFINITY));
+    change(&mut unlimited.actuator, &infinite);
+    let (mut position, mut speed, mut current) =
+        (unlimited.clone(), unlimited.clone(), unlimited.clone());
+    let scale = |part: &mut _, key, by| {
+        let part: &mut axis_sim::part::Part<dyn axis_sim::control::Control> = part;
+        let to = by * number(part, key);
+        change(part, &[(key, to)]);
     };
-    let position = ServoGains {
-        position: 100.0 * gains.position,
-        ..gains
-    };
-    let speed = ServoGains {
-        speed_p: 1e4 * gains.speed_p,
-        ..gains
-    };
-    let current = ServoGains {
-        q_p: 1e6 * gains.q_p,
-        ..gains
-    };
-    for gains in [position, speed, current] {
-        let (outcome, seen) = run(&with(&axis, gains, unlimited), &mut NoCompensation);
+    scale(&mut position.control, "position_gain", 100.0);
+    scale(&mut speed.control, "speed_proportional", 1e4);
+    let q = 1e6 * number(&unlimited.actuator, "current_q_proportional");
+    change(&mut current.actuator, &[("current_q_proportional", q)]);
+    for axis in [position, speed, current] {
+        let (outcome, seen) = run(&axis, &mut NoCompensation);
         println!("{outcome:?} after {seen} cycles");
         let (time, _) = stopped(outcome);
         assert!(time > 0.0 && seen as f64 * axis.period <= time + axis.period);
@@ -142,12 +122,9 @@ fn gains_that_no_loop_survives() {
 #[test]
 fn an_unstable_loop_hunts_within_its_limits() {
     let axis = axis(PRINTED);
-    let (gains, limits) = (*axis.servo.gains(), *axis.servo.limits());
-    let hundredfold = ServoGains {
-        position: 100.0 * gains.position,
-        ..gains
-    };
-    let unstable = with(&axis, hundredfold, limits);
+    let mut unstable = axis.clone();
+    let hundredfold = 100.0 * number(&axis.control, "position_gain");
+    change(&mut unstable.control, &[("position_gain", hundredfold)]);
     let motion = axis.plan(&axis.trajectories[0]).unwrap();
     let mut at_the_end = [f64::MAX, f64::MIN];
     ClosedLoop::new(&unstable)
@@ -158,7 +135,7 @@ fn an_unstable_loop_hunts_within_its_limits() {
                 at_the_end = [least.min(c.error()), most.max(c.error())];
             }
             // The limits hold.
-            assert!(c.command.iq_ref.abs() <= limits.current);
+            assert!(c.command.effort.abs() <= axis.actuator.limit());
         })
         .completed()
         .unwrap();
@@ -183,7 +160,7 @@ fn the_following_error_limit_is_the_axis_files() {
     );
     let text = outcome.completed().unwrap_err().to_string();
     assert!(
-        text.contains("passed 0.05 mm") && text.contains("following_error_limit_mm"),
+        text.contains("passed 5e-5 ") && text.contains("following_error_limit"),
         "{text}"
     );
     let (_, reason) = stopped(outcome);
@@ -278,7 +255,7 @@ fn a_motion_beyond_the_stroke() {
 
 /// After 0.1 s, a load that falls with the speed faster than any table of
 /// 515 kg can follow in a step of 100 µs: 2 m/h is 1e7 N·s/m.
-fn runaway(_: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError> {
+fn runaway(_: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
     to.load(|table| {
         let acts = if table.time > 0.10005 { 1.0 } else { 0.0 };
         -1e9 * acts * table.speed
@@ -287,13 +264,13 @@ fn runaway(_: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError> {
 }
 
 /// After 0.1 s, a load that is no number.
-fn nothing(_: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError> {
+fn nothing(_: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
     to.load(|table| if table.time > 0.10005 { f64::NAN } else { 0.0 });
     Ok(())
 }
 
 /// After 0.1 s, a nut that is shifted by no number.
-fn nowhere(_: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError> {
+fn nowhere(_: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
     to.offset(|screw| {
         if screw.time > 0.10005 {
             [f64::INFINITY, 0.0]
@@ -304,14 +281,14 @@ fn nowhere(_: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError> {
     Ok(())
 }
 
-const fn outside(install: fn(&[f64], &mut Changes<'_>) -> Result<(), DriveError>) -> Effect {
+const fn outside(install: fn(&[f64], &mut Changes<'_>) -> Result<(), SetupError>) -> Effect {
     Effect {
         name: "outside",
         summary: "",
         channel: EffectChannel::Torque,
         depends_on: "",
         parameters: &[],
-        on_rigid: true,
+        needs: &[],
         install,
     }
 }
@@ -338,14 +315,11 @@ fn a_load_that_no_motion_goes_with() {
         // The state is that of the last step that was made.
         assert!((time - 0.1).abs() < 1e-9 && seen == 1001, "{time} {seen}");
         let motion = axis.plan(&axis.trajectories[0]).unwrap();
-        let Outcome::Stopped {
-            position, error, ..
-        } = outcome
-        else {
+        let Outcome::Stopped { at, .. } = outcome else {
             unreachable!()
         };
         let wanted = trajectories::Motion::at(&motion, time).position;
-        assert!(error.abs() < 1e-4 && (wanted - position - error).abs() < 1e-12);
+        assert!(at.error.abs() < 1e-4 && (wanted - at.position - at.error).abs() < 1e-12);
     }
 }
 

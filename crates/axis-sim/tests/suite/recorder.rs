@@ -8,7 +8,7 @@ use crate::{PRINTED, axis};
 #[test]
 fn channels_are_named_and_complete() {
     let axis = axis(PRINTED);
-    let mut recorder = Recorder::default();
+    let mut recorder = Recorder::new(&axis);
     assert!(recorder.log().is_err(), "no cycles, no log");
     let motion = axis.plan(&axis.trajectories[1]).unwrap();
     ClosedLoop::new(&axis)
@@ -53,8 +53,8 @@ fn the_log_can_be_written_while_the_run_goes_on() {
     let motion = axis.plan(&axis.trajectories[1]).unwrap();
     // Whole blocks of rows, one more and one less, and none.
     for rows in [1, 4095, 4096, 4097, 8192, 10_000] {
-        let mut whole = Recorder::default();
-        let mut flow = CsvRecorder::new(Vec::new());
+        let mut whole = Recorder::new(&axis);
+        let mut flow = CsvRecorder::new(Vec::new(), Recorder::new(&axis));
         closed_loop.run(&motion, &mut NoCompensation, |cycle| {
             if whole.cycles().len() < rows {
                 whole.push(cycle);
@@ -65,7 +65,12 @@ fn the_log_can_be_written_while_the_run_goes_on() {
         axis_log::write_csv_to(&mut expected, &whole.log().unwrap()).unwrap();
         assert!(flow.finish().unwrap() == expected, "{rows} rows");
     }
-    assert!(CsvRecorder::new(Vec::new()).finish().is_err(), "no rows");
+    assert!(
+        CsvRecorder::new(Vec::new(), Recorder::new(&axis))
+            .finish()
+            .is_err(),
+        "no rows"
+    );
 }
 
 /// Takes some bytes, then no more.
@@ -86,12 +91,13 @@ impl std::io::Write for Full {
 
 #[test]
 fn a_disk_that_fills_up_is_told() {
+    let recorder = Recorder::new(&axis(PRINTED));
     // Times of a log increase, and these do not.
-    let mut flow = CsvRecorder::new(Vec::new());
+    let mut flow = CsvRecorder::new(Vec::new(), recorder.clone());
     (0..2).for_each(|_| flow.push(&Cycle::default()));
     let error = flow.finish().err().unwrap();
     assert_eq!(error.kind(), std::io::ErrorKind::InvalidData);
-    let mut flow = CsvRecorder::new(Full(100));
+    let mut flow = CsvRecorder::new(Full(100), recorder);
     for k in 0..5000 {
         flow.push(&Cycle {
             time: f64::from(k),

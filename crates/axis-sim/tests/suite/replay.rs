@@ -1,8 +1,7 @@
 //! Replays of a rigid mass: its following-error limit, and logs too long.
 
 use axis_log::{Channel, Log};
-use axis_sim::effects::Machine;
-use axis_sim::{Replay, ReplayError};
+use axis_sim::{Axis, Replay, ReplayError, RunStopped, StopReason};
 
 use crate::{PRINTED, RIGID, text};
 
@@ -23,7 +22,7 @@ fn a_rigid_mass_has_its_own_following_error_limit() {
     let replay = Replay::new(&moving(), 1e-3).unwrap();
     let with = |limit: &str| {
         let content = text(RIGID).replace("[stroke]", &format!("{limit}\n[stroke]"));
-        replay.run(&Machine::parse("emps.toml", &content).unwrap(), &[], None)
+        replay.run(&Axis::parse("emps.toml", &content).unwrap(), &[], None)
     };
     // A P–P loop lags by about v / K_p = 0.62 mm.
     assert!(with("").is_ok());
@@ -31,10 +30,13 @@ fn a_rigid_mass_has_its_own_following_error_limit() {
     let error = with("following_error_limit_mm = 0.5").unwrap_err();
     assert!(matches!(
         error,
-        ReplayError::FollowingError { limit: 5e-4, .. }
+        ReplayError::Stopped(RunStopped {
+            reason: StopReason::FollowingError(5e-4),
+            ..
+        })
     ));
     assert!(
-        error.to_string().contains("following_error_limit_mm"),
+        error.to_string().contains("following_error_limit"),
         "{error}"
     );
 }
@@ -42,7 +44,7 @@ fn a_rigid_mass_has_its_own_following_error_limit() {
 #[test]
 fn a_log_too_long_to_be_held_is_refused() {
     for file in [PRINTED, RIGID] {
-        let machine = Machine::parse(file, &text(file)).unwrap();
+        let axis = Axis::parse(file, &text(file)).unwrap();
         // Two rows, 10⁹ s apart.
         let ends = |name, last| Channel::new(name, vec![0.0, last]).unwrap();
         let log = Log::new(vec![
@@ -53,7 +55,7 @@ fn a_log_too_long_to_be_held_is_refused() {
         .unwrap();
         let error = Replay::new(&log, 1e9)
             .unwrap()
-            .run(&machine, &[], None)
+            .run(&axis, &[], None)
             .unwrap_err();
         assert!(matches!(error, ReplayError::TooLong { .. }), "{error}");
         assert!(

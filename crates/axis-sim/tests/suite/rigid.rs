@@ -1,13 +1,14 @@
 //! The rigid machine against a slow, obvious integration of the same equations.
 
 use axis_log::{Channel, Log};
-use axis_sim::effects::{ActiveEffect, Changes, Effect, EffectChannel, Machine};
-use axis_sim::{Replay, ReplayError, RigidAxis};
-use feed_dynamics::DriveError;
-use lugre::{LuGre, Parameters};
+use axis_sim::effects::{ActiveEffect, Changes, Effect, EffectChannel};
+use axis_sim::friction::FRICTIONS;
+use axis_sim::part::{Part, Values, named};
+use axis_sim::{Axis, Replay, ReplayError, RunStopped, SetupError, StopReason};
+use lugre::Parameters;
 use trajectories::{Limits, Motion, SCurve};
 
-use crate::data;
+use crate::{RIGID, change, number};
 
 /// Friction in N, m/s and m: 20 N on a bristle of 10 µm, damped.
 const FRICTION: Parameters = Parameters {
@@ -21,14 +22,20 @@ const FRICTION: Parameters = Parameters {
 
 /// The benchmark's machine with another mass and the same loop gain, so that a
 /// friction of 2e4 N·s/m over 50 µs asks for 1 N back per newton at 1 kg.
-fn machine(mass: f64) -> RigidAxis {
-    let Machine::Rigid(mut axis) = Machine::read(&data("emps.toml")).unwrap() else {
-        panic!("a rigid mass");
-    };
-    axis.speed_gain *= mass / axis.mass;
-    axis.mass = mass;
-    axis.friction = LuGre::new(FRICTION).unwrap();
-    *axis
+fn machine(mass: f64) -> Axis {
+    let mut axis = crate::axis(RIGID);
+    let gain = number(&axis.control, "speed_gain") * mass / number(&axis.mechanism, "mass");
+    change(&mut axis.control, &[("speed_gain", gain)]);
+    change(&mut axis.mechanism, &[("mass", mass)]);
+    let mut values = Values::default();
+    values.set("coulomb", FRICTION.coulomb);
+    values.set("stiction", FRICTION.stiction);
+    values.set("stribeck_speed", FRICTION.stribeck_speed);
+    values.set("bristle_stiffness", FRICTION.stiffness);
+    values.set("bristle_damping", FRICTION.damping);
+    values.set("viscous", FRICTION.viscous);
+    axis.friction = Part::new(named(FRICTIONS, "lugre").unwrap(), values).unwrap();
+    axis
 }
 
 /// To and fro over 20 mm: the way there, and back.
@@ -62,25 +69,29 @@ fn replay() -> Replay {
 
 /// Positions at the samples: P-P control, and between them Runge-Kutta of
 /// fourth order with steps of `h` on mass and LuGre friction.
-fn by_runge_kutta(axis: &RigidAxis, h: f64) -> Vec<f64> {
+fn by_runge_kutta(axis: &Axis, h: f64) -> Vec<f64> {
     let p = FRICTION;
+    let mass = number(&axis.mechanism, "mass");
+    let [position_gain, speed_gain] =
+        ["position_gain", "speed_gain"].map(|key| number(&axis.control, key));
+    let [force_gain, limit] =
+        ["force_gain", "command_limit"].map(|key| number(&axis.actuator, key));
     let rate = |[_, v, z]: [f64; 3], force: f64| {
         let level = p.coulomb + (p.stiction - p.coulomb) * (-(v / p.stribeck_speed).powi(2)).exp();
         let slip = v - p.stiffness * v.abs() * z / level;
         let rub = p.stiffness * z + p.damping * slip + p.viscous * v;
-        [v, (force - rub) / axis.mass, slip]
+        [v, (force - rub) / mass, slip]
     };
     let moved = |s: [f64; 3], r: [f64; 3], h: f64| [0, 1, 2].map(|i| s[i] + h * r[i]);
     let (mut s, mut before, mut seen) = ([0.0; 3], [0.0; 2], Vec::new());
     for k in 0..CYCLES {
         let filtered = [0.5 * (s[0] + before[0]), 0.5 * (before[0] + before[1])];
         let speed = (filtered[0] - filtered[1]) / PERIOD;
-        let wanted = axis.position_gain * (reference(k as f64 * PERIOD) - s[0]);
-        let limit = axis.command_limit;
-        let command = (axis.speed_gain * (wanted - speed)).clamp(-limit, limit);
+        let wanted = position_gain * (reference(k as f64 * PERIOD) - s[0]);
+        let command = (speed_gain * (wanted - speed)).clamp(-limit, limit);
         before = [s[0], before[0]];
         seen.push(s[0]);
-        let force = axis.force_gain * command;
+        let force = force_gain * command;
         for _ in 0..(PERIOD / h).round() as usize {
             let a = rate(s, force);
             let b = rate(moved(s, a, 0.5 * h), force);
@@ -101,10 +112,9 @@ fn heavy_and_light_masses_move_as_in_the_obvious_integration() {
     for (mass, tolerance) in [(95.0, 1.5e-7), (2.0, 2e-6), (0.5, 2e-5)] {
         for step in [5e-5, 5e-6] {
             let mut axis = machine(mass);
-            axis.step = step;
+            axis.simulation.step = step;
             let truth = by_runge_kutta(&axis, 1e-6);
-            let machine = Machine::Rigid(Box::new(axis));
-            let trace = replay().run(&machine, &[], None).unwrap();
+            let trace = replay().run(&axis, &[], None).unwrap();
             let seen = trace.channel("position_m").unwrap();
             let apart = seen.iter().zip(&truth).map(|(a, b)| (a - b).abs());
             let apart = apart.fold(0.0, f64::max);
@@ -116,7 +126,7 @@ fn heavy_and_light_masses_move_as_in_the_obvious_integration() {
 }
 
 /// From 0.1 s on, a load that falls with the speed for ever.
-fn runaway(_: &[f64], to: &mut Changes<'_>) -> Result<(), DriveError> {
+fn runaway(_: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
     to.load(|table| {
         let acts = if table.time > 0.1 { 1.0 } else { 0.0 };
         -1e9 * acts * table.speed
@@ -130,23 +140,28 @@ static RUNAWAY: Effect = Effect {
     channel: EffectChannel::Torque,
     depends_on: "",
     parameters: &[],
-    on_rigid: true,
+    needs: &[],
     install: runaway,
 };
 
 #[test]
 fn a_load_that_no_motion_goes_with_is_told() {
-    let machine = Machine::Rigid(Box::new(machine(95.0)));
+    let machine = machine(95.0);
     let effect = ActiveEffect {
         effect: &RUNAWAY,
         values: Vec::new(),
     };
     let error = replay().run(&machine, &[effect], None).unwrap_err();
     match error {
-        ReplayError::LoadNotFound { time, position, .. } => {
+        ReplayError::Stopped(RunStopped {
+            time,
+            reason: StopReason::LoadNotFound,
+            at,
+        }) => {
             assert!(
-                (time - 0.1).abs() < 1e-9 && position.abs() < 0.02,
-                "{time} {position}"
+                (time - 0.1).abs() < 1e-9 && at.position.abs() < 0.02,
+                "{time} {}",
+                at.position
             );
         }
         other => panic!("{other}"),
