@@ -10,7 +10,7 @@
 use std::path::{Path, PathBuf};
 
 use axis_log::read_log;
-use axis_sim::effects::Machine;
+use axis_sim::Axis;
 use discrepancy::{Discovery, EffectFound, LogSet, Settings, Verdict, discovery, search};
 
 /// Published force gain, N/V.
@@ -26,13 +26,10 @@ fn folder() -> Option<PathBuf> {
 
 fn discover(folder: &Path) -> Discovery {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/axes/emps.toml");
-    let machine = Machine::read(Path::new(file)).unwrap();
-    let Machine::Rigid(axis) = &machine else {
-        panic!("{file} is a rigid mass");
-    };
+    let machine = Axis::read(Path::new(file)).unwrap();
     let required = ["position_ref_m", "position_m"];
     let logs = |name: &str| {
-        let log = read_log(folder.join(name), &axis.log, &required).unwrap();
+        let log = read_log(folder.join(name), &machine.log, &required).unwrap();
         LogSet::new(vec![(name.to_owned(), log, 1e-3)], &machine).unwrap()
     };
     let (fit, check) = (logs("emps.csv"), logs("emps_pulses.csv"));

@@ -20,7 +20,7 @@ fn identified(axis: &Axis, seed: u64) -> Identified {
 fn all_six_parameters_are_found_on_both_axes() {
     for name in ["liu2025", "liu2025-machine"] {
         let axis = axis(name);
-        let truth = axis.friction.parameters();
+        let truth = axis.friction.law.parameters();
         for seed in 0..3 {
             let found = identified(&axis, seed).parameters;
             let close = |what: &str, found: f64, truth: f64, share: f64| {
@@ -64,7 +64,7 @@ fn runs_in_which_the_axis_vibrates_are_left_out() {
 #[test]
 fn standard_errors_cover_the_truth() {
     let axis = axis("liu2025-machine");
-    let truth = axis.friction.parameters();
+    let truth = axis.friction.law.parameters();
     let mut within_two = 0;
     let mut total = 0;
     for seed in 100..110 {

@@ -5,8 +5,8 @@
 use std::fmt::Write;
 
 use axis_log::read_log;
-use axis_sim::Replay;
-use axis_sim::effects::{ActiveEffect, Effect, Machine};
+use axis_sim::effects::{ActiveEffect, Effect};
+use axis_sim::{Axis, Replay};
 
 // As in data/axes/emps.toml, from the publication.
 const MASS: f64 = 95.1089;
@@ -87,17 +87,15 @@ fn the_rigid_loop_follows_an_independent_one() {
     let text = text
         .replace("presliding_um = 1 ", "presliding_um = 0.01 ")
         .replace("step_us = 50", "step_us = 5");
-    let machine = Machine::parse(file, &text).unwrap();
-    let Machine::Rigid(axis) = &machine else {
-        panic!("{file} is a rigid mass");
-    };
+    let machine = Axis::parse(file, &text).unwrap();
     let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
-    assert!(near(axis.presliding, 1e-8) && near(axis.step, 5e-6));
+    let presliding = machine.friction.values().number("presliding").unwrap();
+    assert!(near(presliding, 1e-8) && near(machine.simulation.step, 5e-6));
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.csv");
     std::fs::write(&path, log(&[(0.2, 1.2), (0.08, 1.6)])).unwrap();
-    let log = read_log(&path, &axis.log, &["position_ref_m", "position_m"]).unwrap();
+    let log = read_log(&path, &machine.log, &["position_ref_m", "position_m"]).unwrap();
     let replay = Replay::new(&log, PERIOD).unwrap();
     let effect = |name: &str, values: [f64; 2]| ActiveEffect {
         effect: Effect::named(name).unwrap(),

@@ -8,7 +8,8 @@ use trajectories::{Limits, SCurve, TrajectoryError};
 
 use crate::actuator::{Actuator, Surroundings};
 use crate::control::Control;
-use crate::effects::{self, ActiveEffect, Hooks};
+use crate::cycle::Cycle;
+use crate::effects::{self, ActiveEffect, Hooks, TableState};
 use crate::error::SetupError;
 use crate::friction::Friction;
 use crate::load::Load;
@@ -206,6 +207,41 @@ impl Axis {
         self.actuator.torque_constant(self.travel_per_radian())
     }
 
+    /// Name of the load's position in logs.
+    pub fn position_channel(&self) -> &'static str {
+        match self.freedom() {
+            Freedom::Linear => "position_m",
+            Freedom::Rotary => "position_rad",
+        }
+    }
+
+    /// Name of its reference in logs.
+    pub fn reference_channel(&self) -> &'static str {
+        match self.freedom() {
+            Freedom::Linear => "position_ref_m",
+            Freedom::Rotary => "position_ref_rad",
+        }
+    }
+
+    /// Motor torque as the drive knows it in a cycle, from its current, or from its command
+    /// where it has none, N·m.
+    pub fn torque_shown(&self, cycle: &Cycle) -> f64 {
+        let effort = match self.actuator.has_currents() {
+            true => cycle.current.q,
+            false => cycle.command.effort,
+        };
+        self.torque_constant() * effort
+    }
+
+    /// Force of the axis' own loads at rest at `position`, N or N·m, against positive motion.
+    pub fn load_at(&self, position: f64) -> f64 {
+        let at = TableState {
+            position,
+            ..TableState::default()
+        };
+        self.loads.iter().map(|load| load.force(&at)).sum()
+    }
+
     /// What actuator and control are told of this axis.
     pub(crate) fn surroundings(&self) -> Surroundings {
         Surroundings {
@@ -266,11 +302,7 @@ impl Axis {
     ///
     /// # Errors
     /// [`SetupError::Part`] where a part refuses the new value.
-    pub(crate) fn change(
-        &mut self,
-        role: Role,
-        to: impl Fn(f64) -> f64,
-    ) -> Result<(), SetupError> {
+    pub(crate) fn change(&mut self, role: Role, to: impl Fn(f64) -> f64) -> Result<(), SetupError> {
         self.mechanism.change_role(role, &to)?;
         self.actuator.change_role(role, &to)?;
         self.control.change_role(role, &to)?;

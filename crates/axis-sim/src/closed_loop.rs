@@ -182,8 +182,7 @@ impl ClosedLoop {
                 LoadSensor::Fitted(s) => Some(sensing(s, 0, seen.position, seen.speed)),
                 _ => None,
             },
-            motor_sensor: motor_sensor
-                .map(|s| sensing(s, 1, seen.motor_angle, seen.motor_speed)),
+            motor_sensor: motor_sensor.map(|s| sensing(s, 1, seen.motor_angle, seen.motor_speed)),
             last_angle: seen.motor_angle - seen.motor_speed * axis.period,
             last_effort: effort,
             cycles: 0,

@@ -329,7 +329,11 @@ where
         let (stepper, assembly, lever) = (&law.stepper, &law.assembly, law.lever);
         let h = stepper.step_length();
         let has_loads = law.has_loads();
-        let rise = if self.pressed { 0.0 } else { STANDING_LOAD_RISE };
+        let rise = if self.pressed {
+            0.0
+        } else {
+            STANDING_LOAD_RISE
+        };
         for _ in 0..assembly.substeps {
             // The actuator, over the mean motor speed of the step.
             let start = self.seen;

@@ -3,7 +3,7 @@
 //! `cargo run --release --example hidden [NAME…]`
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Scales};
 use discrepancy::hidden::{Exercise, Hidden, Noise, exercise};
 use discrepancy::{LogSet, Settings, search};
 

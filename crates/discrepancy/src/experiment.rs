@@ -85,9 +85,12 @@ fn motions(axis: &Axis) -> Result<Vec<(&'static str, Program)>, TrajectoryError>
     let start = axis.stroke.start;
     let room = axis.stroke.maximum - start;
     let scales = Scales::of(axis);
-    let [of_speed, of_acceleration] = [Measure::Speed, Measure::Acceleration].map(|m| scales.ratio(m));
+    let [of_speed, of_acceleration] =
+        [Measure::Speed, Measure::Acceleration].map(|m| scales.ratio(m));
     // The paper's axis goes at 0.333 m/s at most.
-    let most = axis.samples.map_or(0.333 * of_speed, |ranges| ranges.speed.most);
+    let most = axis
+        .samples
+        .map_or(0.333 * of_speed, |ranges| ranges.speed.most);
     let fastest = most.min(0.3 * of_speed);
     let length = scales.motion / 0.2;
     // The same course in time, faster or slower.
@@ -131,7 +134,10 @@ fn motions(axis: &Axis) -> Result<Vec<(&'static str, Program)>, TrajectoryError>
             vec![rest(0.2), chirp(small), rest(0.2)],
         ),
         ("small waves at 4 Hz", vec![rest(0.2), wave, rest(0.2)]),
-        ("there and back, slowly", there_and_back(0.06, 0.02 * of_speed)?),
+        (
+            "there and back, slowly",
+            there_and_back(0.06, 0.02 * of_speed)?,
+        ),
         ("there and back, fast", there_and_back(0.4, fastest)?),
         (
             "over the whole stroke and back",

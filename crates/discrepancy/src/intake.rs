@@ -115,8 +115,7 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, IntakeErr
         file: file(),
         reason,
     })?;
-    let (Ok(reference), Ok(position)) = (reference_in(log), position_in(log))
-    else {
+    let (Ok(reference), Ok(position)) = (reference_in(log), position_in(log)) else {
         return Ok(sampling.period);
     };
     if let Some(slip) = unit_slip(reference, position) {

@@ -46,7 +46,12 @@ fn noise_at(axis: &Axis, set: &LogSet, rest: &Rest) -> Noise {
         Some(gain) if gain > 0.0 => level / gain,
         _ => 0.0,
     };
-    let command = ["iq_ref_a", "torque_ref_n_m", "force_ref_n", "drive_command_v"];
+    let command = [
+        "iq_ref_a",
+        "torque_ref_n_m",
+        "force_ref_n",
+        "drive_command_v",
+    ];
     let command = command.map(level).into_iter().fold(0.0, f64::max);
     Noise {
         position: level("position_m").max(level("position_rad")),

@@ -142,7 +142,11 @@ fn close(
     type Point = (Vec<f64>, DVector<f64>);
     let step = |(values, left): &Point| {
         let column = |&i: &usize| {
-            let step = 0.1 * effect.parameters[i].typical(&scales).abs().max(values[i].abs());
+            let step = 0.1
+                * effect.parameters[i]
+                    .typical(&scales)
+                    .abs()
+                    .max(values[i].abs());
             let mut moved = values.clone();
             moved[i] += step;
             run(&moved).map_or_else(|| DVector::zeros(left.len()), |g| (g - left) / step)

@@ -3,11 +3,9 @@
 //! parameters off by up to 1 %.
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, Effect};
+use axis_sim::effects::{ActiveEffect, Effect, Scales};
 use discrepancy::hidden::{Exercise, Hidden, Noise, exercise};
-use discrepancy::{
-    Discovery, Fitter, LogSet, Settings, State, Verdict, discovery, known_parameters, search,
-};
+use discrepancy::{Discovery, Fitter, LogSet, Settings, State, Verdict, discovery, search};
 use trajectories::{Limits, Program, Step};
 
 fn axis() -> Axis {
@@ -16,7 +14,12 @@ fn axis() -> Axis {
 }
 
 fn hide(name: Option<&str>, seed: u64) -> Hidden {
-    let typical = |name| (name, Effect::named(name).unwrap().typical());
+    let typical = |name| {
+        (
+            name,
+            Effect::named(name).unwrap().typical(&Scales::of(&axis())),
+        )
+    };
     hide_all(name.map(typical).into_iter().collect(), seed)
 }
 
@@ -78,7 +81,7 @@ fn find(hidden: &Hidden, settings: &Settings) -> Discovery {
 
 /// Of a machine on one motion to fit and another to check.
 fn find_on(motions: [Program; 2], hidden: [&Hidden; 2], settings: &Settings) -> Discovery {
-    let machine = Machine::BallScrew(Box::new(axis()));
+    let machine = axis();
     let fit = logs(hidden[0], &motions[0], false);
     let check = logs(hidden[1], &motions[1], true);
     let found = search(&machine, &fit, &check, settings, |_| ()).unwrap();
@@ -195,12 +198,9 @@ fn what_was_named_too_widely_is_named_again_beside_the_others() {
 /// nearly the same: the least D lies along a curve, and a step along its tangent leaves it.
 #[test]
 fn a_fit_follows_a_narrow_curve() {
-    let machine = Machine::BallScrew(Box::new(axis()));
-    let known = known_parameters(&machine);
-    let at = known
-        .iter()
-        .position(|k| k.name == "torque-constant")
-        .unwrap();
+    let machine = axis();
+    let known = machine.known();
+    let at = known.iter().position(|&k| k == "torque_constant").unwrap();
     let effect = Effect::named("torque-constant").unwrap();
     let with = |change: f64, share: f64| {
         let mut state = State::initial(&machine);
@@ -279,10 +279,7 @@ fn a_gap_of_any_allowed_size_is_taken_up_before_a_log_counts() {
         shares: Vec::new(),
         ..hide_all(vec![("backlash", vec![gap])], 5)
     };
-    let (period, machine) = (
-        5.0 * axis.period,
-        axis.clone(),
-    );
+    let (period, machine) = (5.0 * axis.period, axis.clone());
     let log = hidden.log(&axis, &motion, 5).unwrap();
     let reference = log.channel("position_ref_m").unwrap();
     let arrived = reference
@@ -335,8 +332,8 @@ fn what_is_rejected_is_not_named() {
 #[test]
 fn settings_that_cannot_be_meant_are_refused() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/emps.toml");
-    let rigid = Machine::read(file.as_ref()).unwrap();
-    let screw = Machine::BallScrew(Box::new(axis()));
+    let rigid = Axis::read(file.as_ref()).unwrap();
+    let screw = axis();
     let all = |names: &[&str]| names.iter().map(|&n| n.to_owned()).collect::<Vec<_>>();
     let said = |accepted: &[&str], rejected: &[&str], machine: &Axis| {
         let settings = Settings {
@@ -349,7 +346,7 @@ fn settings_that_cannot_be_meant_are_refused() {
     assert_eq!(said(&["backlash"], &[], &screw), None);
     assert_eq!(said(&[], &["backlash"], &rigid), None);
     let no_gap = said(&["backlash"], &[], &rigid).unwrap();
-    assert!(no_gap.contains("a rigid mass") && no_gap.contains("coulomb-friction"));
+    assert!(no_gap.contains("rigid-mass") && no_gap.contains("coulomb-friction"));
     assert!(!no_gap.contains("lead-error"), "{no_gap}");
     assert!(said(&["warp"], &[], &screw).unwrap().contains("lead-error"));
     assert!(

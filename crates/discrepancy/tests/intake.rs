@@ -9,7 +9,7 @@ const PERIOD: f64 = 1e-3;
 
 fn machine(name: &str) -> Axis {
     let file = format!("{}/../../data/axes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    Machine::read(file.as_ref()).unwrap()
+    Axis::read(file.as_ref()).unwrap()
 }
 
 /// A rest, 50 mm out, a rest, back, a rest: half a second each.

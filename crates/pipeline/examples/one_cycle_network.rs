@@ -29,7 +29,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         seed: 1,
         threads: 0,
     };
-    let trained = train(&axis.samples, &seen, &plan, None, |_, _| {})?;
+    let trained = train(
+        &pipeline::sampling::ranges(&axis)?,
+        &seen,
+        &plan,
+        None,
+        |_, _| {},
+    )?;
     let (network, linear) = (
         test(&trained.network, &unseen)?,
         LinearMap::fit(&even)?.errors(&unseen)?,

@@ -6,9 +6,14 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PipelineError {
-    /// The mechanics cannot be set up, or a step of theirs does not come out.
-    #[error("the axis' mechanics cannot be simulated: {0}")]
-    Drive(#[from] feed_dynamics::DriveError),
+    /// The axis cannot be set up, or a step of it does not come out.
+    #[error("the axis cannot be simulated: {0}")]
+    Setup(#[from] axis_sim::SetupError),
+    /// The axis has no ranges to draw samples from.
+    #[error(
+        "the axis file has no [samples], and no [[trajectory]] that would imply their ranges: give either"
+    )]
+    NoSampleRanges,
     /// The sample design is not valid.
     #[error("the sample design is not valid: {0}")]
     Design(#[from] lhs::LhsError),

@@ -1,9 +1,9 @@
 //! Friction identification on the simulated machine, as the paper does it on
 //! its machine: constant-speed runs, then a pre-sliding test (Section 3.2).
 
+use axis_sim::effects::{Measure, Scales};
 use axis_sim::{Axis, ClosedLoop, Cycle};
 use compensator::NoCompensation;
-use feed_dynamics::FeedDrive;
 use lugre::identify::{
     ConstantSpeedRun, Motion as Measured, PreslidingFit, PreslidingRecord, StaticFit,
     identify_presliding, identify_static,
@@ -31,6 +31,10 @@ pub struct IdentificationPlan {
     /// Frequencies of the pre-sliding test, Hz; well below the axis' own, where
     /// the inertia's share of the torque is known best.
     pub presliding_frequencies: Vec<f64>,
+    /// Way after which the bristles have forgotten their past, m or rad.
+    pub settle_distance: f64,
+    /// Acceleration and jerk of the constant-speed runs' ramps, m/s², m/s³ or rad.
+    pub ramps: [f64; 2],
     /// Seed of the noise.
     pub seed: u64,
 }
@@ -48,7 +52,44 @@ impl Default for IdentificationPlan {
             torque_noise: 0.01,
             presliding_amplitude: 20e-6,
             presliding_frequencies: vec![0.5, 1.0, 2.0],
+            settle_distance: SETTLE_DISTANCE,
+            ramps: [2.0, 50.0],
             seed: 0,
+        }
+    }
+}
+
+/// Pre-sliding distance T_C/σ0 of the paper's axis at its table, m.
+const PAPER_PRESLIDING: f64 = 7.094e-5;
+
+impl IdentificationPlan {
+    /// The default experiments, in proportion to an axis: speeds to its own and to its
+    /// stroke, ways to the pre-sliding distance of its friction. On the paper's axis,
+    /// those of the default.
+    pub fn of(axis: &Axis) -> Self {
+        let scales = Scales::of(axis);
+        // A run there takes a third of the stroke at most.
+        let reach = 2.5 * scales.motion / 0.2;
+        let of_speed = scales.ratio(Measure::Speed).min(reach);
+        let pace = of_speed / (scales.motion / 0.2);
+        let unit = axis.friction.unit.parameters();
+        let presliding = axis.friction.lever(axis.travel_per_radian()) / unit.stiffness;
+        let of_way = presliding / PAPER_PRESLIDING;
+        let of_way = if (of_way - 1.0).abs() < 0.01 {
+            1.0
+        } else {
+            of_way
+        };
+        let plan = Self::default();
+        Self {
+            speeds: plan.speeds.iter().map(|speed| speed * of_speed).collect(),
+            presliding_amplitude: of_way * plan.presliding_amplitude,
+            settle_distance: of_way * plan.settle_distance,
+            ramps: [
+                plan.ramps[0] * of_speed * pace,
+                plan.ramps[1] * of_speed * pace * pace,
+            ],
+            ..plan
         }
     }
 }
@@ -105,8 +146,9 @@ pub fn identify(
     })
 }
 
-/// Bristles forget their past within some tens of micrometres of sliding, the
-/// drive's controllers within some tenths of a second: wait for both.
+/// Bristles forget their past within some pre-sliding distances of sliding, the
+/// drive's controllers within some tenths of a second: wait for both. The distance is
+/// 1.5 mm on the paper's axis.
 const SETTLE_DISTANCE: f64 = 1.5e-3;
 const SETTLE_TIME: f64 = 0.6;
 
@@ -118,10 +160,11 @@ fn constant_speed_run(
 ) -> Result<ConstantSpeedRun, PipelineError> {
     let axis = closed_loop.axis();
     let stroke = &axis.stroke;
-    let settle = SETTLE_TIME.max(SETTLE_DISTANCE / speed.abs());
-    let limits = limits(speed.abs(), 2.0, 50.0)?;
+    let settle = SETTLE_TIME.max(plan.settle_distance / speed.abs());
+    let [acceleration, jerk] = plan.ramps;
+    let limits = limits(speed.abs(), acceleration, jerk)?;
     // Ramps take speed²/2a each, plus the jerk's share; a tenth of a second more is enough.
-    let wanted = speed.abs() * (settle + plan.record_time + 0.1) + speed * speed / 2.0;
+    let wanted = speed.abs() * (settle + plan.record_time + 0.1) + speed * speed / acceleration;
     // Start where the run has the room that it needs.
     let room = stroke.maximum - stroke.minimum;
     let travel = wanted.min(0.98 * room);
@@ -131,7 +174,7 @@ fn constant_speed_run(
     let (begin, end) = motion.cruise().unwrap_or((0.0, motion.duration()));
     let from_time = (begin + settle).max(end - plan.record_time);
 
-    let r = axis.travel_per_radian();
+    let to_friction = ToFriction::of(axis);
     let mut positions = Vec::new();
     let mut torques = Vec::new();
     follow(
@@ -141,16 +184,20 @@ fn constant_speed_run(
         |cycle| {
             if (from_time..end).contains(&cycle.time) {
                 positions.push(cycle.position);
-                torques.push(axis.torque_constant * cycle.current.q);
+                let load = axis.load_at(cycle.position);
+                torques.push(axis.torque_shown(cycle) - axis.travel_per_radian() * load);
             }
         },
     )?;
     add_noise(&mut torques, plan, stream);
     let speeds: Vec<f64> = positions
         .windows(2)
-        .map(|pair| (pair[1] - pair[0]) / axis.period / r)
+        .map(|pair| (pair[1] - pair[0]) / axis.period / to_friction.lever)
         .collect();
     torques.pop();
+    torques
+        .iter_mut()
+        .for_each(|t| *t *= to_friction.per_torque);
     Ok(ConstantSpeedRun::from_record(
         &speeds,
         &torques,
@@ -183,20 +230,21 @@ fn presliding_test(
     follow(closed_loop, &motion, "pre-sliding test", |cycle| {
         positions.push(cycle.position);
         speeds.push(cycle.motor_speed);
-        torques.push(axis.torque_constant * cycle.current.q);
+        let load = axis.load_at(cycle.position);
+        torques.push(axis.torque_shown(cycle) - axis.travel_per_radian() * load);
     })?;
     add_noise(&mut torques, plan, u64::MAX);
 
-    let r = axis.travel_per_radian();
-    let inertia = Inertia::of(&axis.drive, middle);
+    let to_friction = ToFriction::of(axis);
+    let inertia = Inertia::of(axis, middle);
     let (mut speed, mut friction) = (Vec::new(), Vec::new());
     // A log of 1 kHz is what a drive gives; derivatives see every cycle.
     const EVERY: usize = 10;
     for k in (2..positions.len() - 2).step_by(EVERY) {
         let motor = slope(&speeds[k - 2..=k + 2], axis.period);
         let table = curvature(&positions[k - 2..=k + 2], axis.period);
-        speed.push(slope(&positions[k - 2..=k + 2], axis.period) / r);
-        friction.push(torques[k] - inertia.torque(motor, table));
+        speed.push(slope(&positions[k - 2..=k + 2], axis.period) / to_friction.lever);
+        friction.push(to_friction.per_torque * (torques[k] - inertia.torque(motor, table)));
     }
     let record = PreslidingRecord {
         time_step: EVERY as f64 * axis.period,
@@ -208,47 +256,53 @@ fn presliding_test(
 
 /// What acceleration takes of the motor torque, seen through the wind-up of
 /// the drive: every rotating part is turned back from the motor by its share
-/// of the static wind-up between motor and table.
+/// of the static wind-up between motor and load.
 struct Inertia {
-    /// Motor, sensor, screw: inertia (kg·m²) and share of the wind-up.
-    parts: [(f64, f64); 3],
-    /// Table mass, kg.
-    table: f64,
-    /// m/rad.
+    /// Inertias (kg·m²) and shares of the wind-up.
+    parts: Vec<[f64; 2]>,
+    /// Inertia of the load, kg or kg·m².
+    load: f64,
+    /// m/rad or rad/rad.
     travel_per_radian: f64,
 }
 
 impl Inertia {
-    /// For the table near `x`, m from the driven end.
-    fn of(drive: &FeedDrive, x: f64) -> Self {
-        let (p, r) = (drive.parameters(), drive.travel_per_radian());
-        // Compliances from the motor on, rad/(N·m).
-        let sensor = 1.0 / p.motor_coupling_stiffness;
-        let driven_end = sensor + 1.0 / p.screw_coupling_stiffness;
-        let twist = x / (p.material.shear_modulus() * p.section.torsion_constant());
-        // Linear up to the nut, constant beyond it: the mean over the screw.
-        let screw = driven_end + twist * (1.0 - 0.5 * x / p.screw_length);
-        let table = driven_end + twist + 1.0 / (p.nut_stiffness * r * r);
-        let screw_inertia = drive.rotating_inertia() - p.motor_inertia - p.sensor_inertia;
+    /// For the load near `x`.
+    fn of(axis: &Axis, x: f64) -> Self {
         Self {
-            parts: [
-                (p.motor_inertia, 0.0),
-                (p.sensor_inertia, sensor / table),
-                (screw_inertia, screw / table),
-            ],
-            table: p.table_mass,
-            travel_per_radian: r,
+            parts: axis.mechanism.rotating(x),
+            load: axis.mechanism.load_inertia(),
+            travel_per_radian: axis.travel_per_radian(),
         }
     }
 
-    /// Torque at the motor for the motor's (rad/s²) and the table's (m/s²) acceleration.
-    fn torque(&self, motor: f64, table: f64) -> f64 {
-        let lag = motor - table / self.travel_per_radian;
+    /// Torque at the motor for the motor's (rad/s²) and the load's acceleration.
+    fn torque(&self, motor: f64, load: f64) -> f64 {
+        let lag = motor - load / self.travel_per_radian;
         let parts = self
             .parts
             .iter()
-            .map(|(j, share)| j * (motor - share * lag));
-        parts.sum::<f64>() + self.travel_per_radian * self.table * table
+            .map(|[j, share]| j * (motor - share * lag));
+        parts.sum::<f64>() + self.travel_per_radian * self.load * load
+    }
+}
+
+/// From motor torques to friction in its law's coordinate.
+struct ToFriction {
+    /// Load travel per unit of the law's coordinate.
+    lever: f64,
+    /// Friction of the law per motor torque.
+    per_torque: f64,
+}
+
+impl ToFriction {
+    fn of(axis: &Axis) -> Self {
+        let r = axis.travel_per_radian();
+        let lever = axis.friction.lever(r);
+        Self {
+            lever,
+            per_torque: lever / r,
+        }
     }
 }
 

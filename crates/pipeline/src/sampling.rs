@@ -1,6 +1,6 @@
 //! One-cycle samples over a Latin hypercube: Section 4.2.
 
-use axis_sim::{Axis, CycleInput, OneCycle, Range};
+use axis_sim::{Axis, CycleInput, OneCycle, Range, SampleRanges};
 use lhs::{LatinHypercube, Marginal, Uniform};
 use rayon::prelude::*;
 
@@ -67,7 +67,7 @@ impl Sampler {
         let uniform = |range: Range| -> Result<Box<dyn Marginal>, PipelineError> {
             Ok(Box::new(Uniform::new(range.least, range.most)?))
         };
-        let ranges = &axis.samples;
+        let ranges = ranges(axis)?;
         let speed: Box<dyn Marginal> = match plan.density {
             SpeedDensity::Uniform => uniform(ranges.speed)?,
             SpeedDensity::NearZero { scale } => Box::new(near_zero(ranges.speed, scale)),
@@ -80,7 +80,7 @@ impl Sampler {
                 uniform(ranges.position)?,
                 speed,
                 uniform(ranges.acceleration)?,
-                uniform(ranges.current)?,
+                uniform(ranges.effort)?,
             ],
         })
     }
@@ -94,7 +94,7 @@ impl Sampler {
     ///
     /// # Errors
     /// [`PipelineError::Design`] where there are not as many rows,
-    /// [`PipelineError::Drive`] where the cycle cannot be simulated.
+    /// [`PipelineError::Setup`] where the cycle cannot be simulated.
     pub fn sample(&self, row: usize) -> Result<(CycleInput, f64), PipelineError> {
         let mut cell = [0.0; 4];
         self.design.row(row, &mut cell)?;
@@ -134,6 +134,14 @@ impl Sampler {
     pub fn all(&self) -> Result<SampleSet, PipelineError> {
         self.rows(0..self.count())
     }
+}
+
+/// The ranges of an axis' samples.
+///
+/// # Errors
+/// [`PipelineError::NoSampleRanges`].
+pub fn ranges(axis: &Axis) -> Result<SampleRanges, PipelineError> {
+    axis.samples.ok_or(PipelineError::NoSampleRanges)
 }
 
 /// The inverse CDF of [`SpeedDensity::NearZero`].

@@ -69,8 +69,8 @@ pub struct Predictors {
     pub printed: LuGre,
     /// Travel per radian, m/rad.
     pub travel_per_radian: f64,
-    /// Torque constant, N·m/A.
-    pub torque_constant: f64,
+    /// How friction comes into the actuator's command.
+    pub feedforward: Feedforward,
     /// Control period, s.
     pub period: f64,
 }
@@ -82,9 +82,39 @@ pub struct TransferModels {
     pub alone: TransferFunctionModel,
     /// Of the servo with LuGre feed-forward.
     pub with_feedforward: TransferFunctionModel,
-    /// Time constant 1/(P r) of the closed position loop, s, through which a
-    /// correction reaches the table; compensation leads by it.
+    /// Time constant 1/Kv = 1/(P r) of the closed position loop, s, through which a
+    /// correction reaches the load; compensation leads by it.
     pub lead_time: f64,
+}
+
+/// From a friction law in its own coordinate to the actuator's command.
+#[derive(Clone, Copy, Debug)]
+pub struct Feedforward {
+    /// Load travel per unit of the law's coordinate.
+    lever: f64,
+    /// Friction of the law per unit of the command.
+    per_effort: f64,
+}
+
+impl Feedforward {
+    /// On an axis.
+    pub fn of(axis: &Axis) -> Self {
+        let r = axis.travel_per_radian();
+        let lever = axis.friction.lever(r);
+        Self {
+            lever,
+            per_effort: axis.torque_constant() * (lever / r),
+        }
+    }
+
+    /// Feed-forward of a law, with a control period (s).
+    ///
+    /// # Errors
+    /// [`PipelineError::Compensator`] for values outside their ranges.
+    pub fn of_law(&self, law: LuGre, period: f64) -> Result<FrictionFeedforward, PipelineError> {
+        let Self { lever, per_effort } = *self;
+        Ok(FrictionFeedforward::new(law, lever, per_effort, period)?)
+    }
 }
 
 type NetworkStrategy = NetworkCompensation<Predictor<4, 1>>;
@@ -104,18 +134,20 @@ impl Predictors {
         [alone, with_feedforward]: [TransferFunctionModel; 2],
         identified: LuGre,
     ) -> Self {
-        let position_gain = axis.servo.gains().position;
         Self {
             network,
             transfer: TransferModels {
                 alone,
                 with_feedforward,
-                lead_time: 1.0 / (position_gain * axis.travel_per_radian()),
+                lead_time: axis
+                    .control
+                    .velocity_gain(axis.travel_per_radian())
+                    .map_or(0.0, |kv| 1.0 / kv),
             },
             identified,
-            printed: axis.friction,
+            printed: axis.friction.law,
             travel_per_radian: axis.travel_per_radian(),
-            torque_constant: axis.torque_constant,
+            feedforward: Feedforward::of(axis),
             period: axis.period,
         }
     }
@@ -165,7 +197,6 @@ impl Predictors {
     }
 
     fn friction(&self, law: LuGre) -> Result<FrictionFeedforward, PipelineError> {
-        let (r, k_t) = (self.travel_per_radian, self.torque_constant);
-        Ok(FrictionFeedforward::new(law, r, k_t, self.period)?)
+        self.feedforward.of_law(law, self.period)
     }
 }

@@ -7,6 +7,7 @@ use cfnn::{Scaling, Shape};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::sampling::ranges;
 use crate::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity};
 use crate::training::{input_ranges, rows, test};
 use crate::{Figures, PipelineError};
@@ -139,9 +140,10 @@ fn one(
         outputs: 1,
     };
     let data = Dataset::new(4, 1, rows(seen), positions(seen))?;
-    let positions_range = &axis.samples.position;
+    let ranges = ranges(axis)?;
+    let positions_range = ranges.position;
     let output = [(positions_range.least, positions_range.most)];
-    let scaling = Scaling::from_ranges(&input_ranges(&axis.samples), &output)?;
+    let scaling = Scaling::from_ranges(&input_ranges(&ranges), &output)?;
     let options = Settings {
         epochs: setting.epochs,
         initial_damping: setting.initial_damping,

@@ -173,7 +173,7 @@ pub(crate) fn input_ranges(ranges: &SampleRanges) -> [(f64, f64); 4] {
         ranges.position,
         ranges.speed,
         ranges.acceleration,
-        ranges.current,
+        ranges.effort,
     ]
     .map(|range| (range.least, range.most))
 }

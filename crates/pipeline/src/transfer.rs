@@ -3,14 +3,15 @@
 
 use axis_sim::{Axis, ClosedLoop};
 use compensator::{
-    Candidates, Compensator, FrictionFeedforward, Motion as Observed, NoCompensation,
-    TransferFunctionFit, identify_transfer_function,
+    Candidates, Compensator, Motion as Observed, NoCompensation, TransferFunctionFit,
+    identify_transfer_function,
 };
 use lhs::LatinHypercube;
 use rayon::prelude::*;
 use trajectories::{Limits, SCurve};
 
 use crate::PipelineError;
+use crate::strategies::Feedforward;
 use crate::tracking::{Planned, follow};
 
 /// Which motions the transfer function is identified from.
@@ -59,13 +60,7 @@ pub fn identify_transfer(
         let mut cell = [0.0; 5];
         design.row(row, &mut cell)?;
         let mut law: Box<dyn Compensator> = if feedforward {
-            let (r, k_t) = (axis.travel_per_radian(), axis.torque_constant);
-            Box::new(FrictionFeedforward::new(
-                axis.friction,
-                r,
-                k_t,
-                axis.period,
-            )?)
+            Box::new(Feedforward::of(axis).of_law(axis.friction.law, axis.period)?)
         } else {
             Box::new(NoCompensation)
         };

@@ -1,9 +1,10 @@
 //! The model against the machine, and the predictors against the machine's
 //! tracking error: Tables 13 and 14.
 
-use axis_sim::{Axis, ClosedLoop};
+use axis_sim::effects::Scales;
+use axis_sim::mechanism::Way;
+use axis_sim::{Axis, ClosedLoop, SetupError};
 use compensator::{Compensator, Correction, NoCompensation, Sample};
-use feed_dynamics::NutCoupling;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use trajectories::Motion;
@@ -50,8 +51,9 @@ pub struct ModesAt {
 pub struct NumericalChecks {
     /// Largest change of a maximum or mean when the internal step is halved.
     pub half_step: Figures,
-    /// Largest change of them from shape functions to the moving node.
-    pub moving_node: Figures,
+    /// Largest change of them from the mechanism's fast way to its exact one; none where
+    /// it has only one.
+    pub exact_way: Option<Figures>,
 }
 
 /// Everything that validation shows.
@@ -69,8 +71,17 @@ pub struct Validation {
     pub checks: NumericalChecks,
 }
 
-/// Speeds of the constant-speed runs, mm/s.
-pub const VIBRATION_SPEEDS: [f64; 10] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 20.0];
+/// Speeds of the constant-speed runs on the paper's axis, mm/s.
+const VIBRATION_SPEEDS: [f64; 10] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 20.0];
+
+/// Speeds of the constant-speed runs, mm/s (mrad/s), in proportion to the stroke.
+pub fn vibration_speeds(axis: &Axis) -> [f64; 10] {
+    let length = Scales::of(axis).motion / 0.2;
+    VIBRATION_SPEEDS.map(|speed| speed * length)
+}
+
+/// Step of the exact way, s: the paper's.
+const EXACT_STEP: f64 = 1e-5;
 
 /// Elastic modes shown.
 const MODES: usize = 4;
@@ -97,8 +108,8 @@ pub fn validate(
     let trajectories = trajectories?;
     let checks = checks(model, &planned, &trajectories, &each)?;
     Ok(Validation {
-        vibration_model: vibration(model, &VIBRATION_SPEEDS)?,
-        vibration_machine: vibration(machine, &VIBRATION_SPEEDS)?,
+        vibration_model: vibration(model, &vibration_speeds(model))?,
+        vibration_machine: vibration(machine, &vibration_speeds(model))?,
         modes: modes(model)?,
         trajectories,
         checks,
@@ -107,7 +118,12 @@ pub fn validate(
 
 /// How often [`validate`] calls back.
 pub fn runs(model: &Axis) -> usize {
-    3 * model.trajectories.len()
+    let ways = if model.mechanism.exact_step().is_some() {
+        3
+    } else {
+        2
+    };
+    ways * model.trajectories.len()
 }
 
 fn one(
@@ -181,17 +197,11 @@ fn modes(axis: &Axis) -> Result<Vec<ModesAt>, PipelineError> {
     let at = |i: usize| {
         let part = i as f64 / POSITIONS as f64;
         let position = stroke.minimum + part * (stroke.maximum - stroke.minimum);
-        let modes = axis.drive.modes(position, NutCoupling::ShapeFunctions)?;
+        let modes = axis.mechanism.modes(position).map_err(SetupError::from)?;
         let hertz = |w: &f64| w / std::f64::consts::TAU;
         Ok(ModesAt {
             position_m: position,
-            frequencies_hz: modes
-                .frequencies
-                .iter()
-                .skip(1)
-                .take(MODES)
-                .map(hertz)
-                .collect(),
+            frequencies_hz: modes.iter().take(MODES).map(hertz).collect(),
         })
     };
     (0..=POSITIONS).map(at).collect()
@@ -205,18 +215,22 @@ fn checks(
 ) -> Result<NumericalChecks, PipelineError> {
     let mut halved = model.clone();
     halved.simulation.step = 0.5 * model.simulation.step.min(model.period);
-    let mut other = model.clone();
-    other.coupling = match model.coupling {
-        NutCoupling::ShapeFunctions => NutCoupling::MovingNode,
-        NutCoupling::MovingNode => NutCoupling::ShapeFunctions,
+    // The other way than the file's.
+    let other = match (model.mechanism.exact_step(), model.simulation.way) {
+        (None, _) => None,
+        (Some(_), Way::Fast) => Some(ClosedLoop::exact(model, EXACT_STEP)?),
+        (Some(_), Way::Exact) => {
+            let mut fast = model.clone();
+            fast.simulation.way = Way::Fast;
+            Some(ClosedLoop::new(&fast)?)
+        }
     };
-    let change = |axis: &Axis| -> Result<Figures, PipelineError> {
-        let closed_loop = ClosedLoop::new(axis)?;
+    let change = |closed_loop: &ClosedLoop| -> Result<Figures, PipelineError> {
         let pairs: Result<Vec<Figures>, PipelineError> = planned
             .par_iter()
             .zip(reference)
             .map(|(planned, reference)| {
-                let run = track(&closed_loop, planned, &mut NoCompensation)?;
+                let run = track(closed_loop, planned, &mut NoCompensation)?;
                 each();
                 let (a, b) = (run.figures, reference.model.figures);
                 Ok(Figures {
@@ -233,7 +247,7 @@ fn checks(
             }))
     };
     Ok(NumericalChecks {
-        half_step: change(&halved)?,
-        moving_node: change(&other)?,
+        half_step: change(&ClosedLoop::new(&halved)?)?,
+        exact_way: other.as_ref().map(change).transpose()?,
     })
 }

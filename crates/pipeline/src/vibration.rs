@@ -1,5 +1,6 @@
 //! The self-excited vibration at constant speed.
 
+use axis_sim::effects::Scales;
 use axis_sim::{Axis, ClosedLoop};
 use compensator::NoCompensation;
 use rayon::prelude::*;
@@ -39,7 +40,9 @@ fn one(closed_loop: &ClosedLoop, speed_mm_s: f64) -> Result<Vibration, PipelineE
     };
     let (axis, speed) = (closed_loop.axis(), 1e-3 * speed_mm_s);
     let start = axis.stroke.start;
-    let limits = Limits::new(speed, 0.1, 1.0).map_err(plan)?;
+    // In proportion to the stroke, as on the paper's axis.
+    let length = Scales::of(axis).motion / 0.2;
+    let limits = Limits::new(speed, 0.1 * length, length).map_err(plan)?;
     let motion = SCurve::plan(start, start + 4.0 * speed, &limits).map_err(plan)?;
     let (begin, end) = motion.cruise().unwrap_or((0.0, motion.duration()));
     let from = begin.max(end - 1.0);

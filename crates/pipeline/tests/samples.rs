@@ -3,7 +3,7 @@
 use axis_sim::Axis;
 use pipeline::LinearMap;
 use pipeline::sample_file::{SampleFileError, read, write};
-use pipeline::sampling::{SamplePlan, Sampler, SpeedDensity};
+use pipeline::sampling::{SamplePlan, Sampler, SpeedDensity, ranges};
 use pipeline::training::{NetworkPlan, residuals, train};
 
 fn axis() -> Axis {
@@ -35,9 +35,9 @@ fn the_dense_speeds_stay_in_range_and_do_not_reverse() {
     let set = sampler(4000, SpeedDensity::NearZero { scale: 3e-3 })
         .all()
         .unwrap();
-    let range = axis.samples.speed;
+    let range = ranges(&axis).unwrap().speed;
     // What a moved sample may gain: one cycle's change of speed.
-    let change = axis.samples.acceleration.most * axis.period;
+    let change = ranges(&axis).unwrap().acceleration.most * axis.period;
     for input in &set.inputs {
         assert!(input.speed >= range.least - change && input.speed <= range.most + change);
         assert!(input.speed * (input.speed + input.acceleration * axis.period) >= -1e-18);
@@ -99,7 +99,7 @@ fn a_folded_network_is_map_plus_residual() {
         seed: 2,
         threads: 1,
     };
-    let trained = train(&axis.samples, &set, &plan, None, |_, _| {}).unwrap();
+    let trained = train(&ranges(&axis).unwrap(), &set, &plan, None, |_, _| {}).unwrap();
     let left = residuals(&trained.network, &set).unwrap();
     let rms = (left.iter().map(|r| r * r).sum::<f64>() / left.len() as f64).sqrt();
     // The trainer saw the residual network, scaled by the map's own residual.

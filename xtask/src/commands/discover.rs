@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use axis_log::{Log, read_log};
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, Machine};
+use axis_sim::effects::{ActiveEffect, Scales};
+use axis_sim::friction::Place as FrictionPlace;
 use clap::Args;
 use discrepancy::intake::{check_distinct, check_log, from_rest};
 use discrepancy::summary::{MeasuredError, SummaryFound, rank, tried};
@@ -54,12 +55,8 @@ pub fn command(options: &Options) -> Result<()> {
     let _ = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build_global();
-    let machine = Machine::read(&options.axis)?;
-    let name = match &machine {
-        Machine::BallScrew(axis) => &axis.name,
-        Machine::Rigid(axis) => &axis.name,
-    };
-    let default = || Path::new("runs").join(name).join("discover");
+    let machine = Axis::read(&options.axis)?;
+    let default = || Path::new("runs").join(&machine.name).join("discover");
     let out = options.out.clone().unwrap_or_else(default);
     match &options.summary {
         Some(table) => from_summary(options, &machine, table, &out),
@@ -67,7 +64,7 @@ pub fn command(options: &Options) -> Result<()> {
     }
 }
 
-fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
+fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     let settings = Settings {
         accepted: options.accept.clone(),
         rejected: options.reject.clone(),
@@ -100,9 +97,10 @@ fn from_logs(options: &Options, machine: &Machine, out: &Path) -> Result<()> {
     let discovery = &discovered.discovery;
     progress.finish_and_clear();
 
+    let scales = Scales::of(machine);
     let entries = |number: fn(f64) -> String| -> String {
         let all = found.fit.state.effects.iter();
-        all.map(|active| entry(active, number)).collect()
+        all.map(|active| entry(active, &scales, number)).collect()
     };
     let json = serde_json::to_vec_pretty(discovery).into_diagnostic()?;
     write_whole(&out.join("discovery.json"), &json)?;
@@ -164,16 +162,14 @@ fn moved(text: &str, from: &Path, folder: &Path) -> Result<String> {
 /// Reads logs and looks at them; what was done to any goes to `notes`.
 fn read_all(
     paths: &[PathBuf],
-    machine: &Machine,
+    machine: &Axis,
     notes: &mut Vec<String>,
 ) -> Result<Vec<(String, Log, f64)>> {
-    let mapping = match machine {
-        Machine::BallScrew(axis) => &axis.log,
-        Machine::Rigid(axis) => &axis.log,
-    };
+    let mapping = &machine.log;
+    let needed = [machine.reference_channel(), machine.position_channel()];
     let one = |path: &PathBuf| {
         let name = path.display().to_string();
-        let log = read_log(path, mapping, &["position_ref_m", "position_m"]).into_diagnostic()?;
+        let log = read_log(path, mapping, &needed).into_diagnostic()?;
         let period = check_log(&name, &log, machine).into_diagnostic()?;
         let (log, note) = from_rest(&name, log, period, machine).into_diagnostic()?;
         notes.extend(note);
@@ -193,13 +189,12 @@ fn read(value: f64) -> String {
 }
 
 /// An effect as an axis file has it.
-fn entry(active: &ActiveEffect, number: fn(f64) -> String) -> String {
+fn entry(active: &ActiveEffect, scales: &Scales, number: fn(f64) -> String) -> String {
     let mut text = format!("\n[[effects]]\nname = \"{}\"\n", active.effect.name);
     for (p, value) in active.effect.parameters.iter().zip(&active.values) {
-        let unit = if p.unit.is_empty() {
-            String::new()
-        } else {
-            format!("    # {}", p.unit)
+        let unit = match p.unit(scales) {
+            "" => String::new(),
+            unit => format!("    # {unit}"),
         };
         text += &format!("{} = {}{unit}\n", p.name, number(*value));
     }
@@ -271,16 +266,17 @@ fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
     say(format!("\n{}", out.join(REPORT).display()))
 }
 
-fn from_summary(options: &Options, machine: &Machine, table: &Path, out: &Path) -> Result<()> {
-    let Machine::BallScrew(axis) = machine else {
+fn from_summary(options: &Options, machine: &Axis, table: &Path, out: &Path) -> Result<()> {
+    let axis = machine;
+    if axis.trajectories.is_empty() {
         return Err(miette!(
-            "{} is a rigid mass without trajectories; --summary needs a ball-screw axis",
+            "{} lists no [[trajectory]]; a table of errors is compared with what the axis does on them",
             options.axis.display()
         ));
-    };
+    }
     let measured = read_summary(table, axis)?;
     ready(out)?;
-    let progress = bar("effects", tried() as u64);
+    let progress = bar("effects", tried(axis) as u64);
     let found = rank(axis, &measured, || progress.inc(1)).into_diagnostic()?;
     progress.finish_and_clear();
     let json = serde_json::to_vec_pretty(&found).into_diagnostic()?;
@@ -311,8 +307,8 @@ fn tell_summary(axis: &Axis, found: &SummaryFound, trajectories: usize) -> Resul
             100.0 * closing.gap,
             values.join(", ")
         ))?;
-        if closing.name == "viscous-friction" {
-            let total = axis.friction.parameters().viscous + closing.parameters[0].1 * r * r;
+        if closing.name == "viscous-friction" && axis.friction.at == FrictionPlace::Motor {
+            let total = axis.friction.law.parameters().viscous + closing.parameters[0].1 * r * r;
             let rpm = std::f64::consts::TAU / 60.0;
             say(format!(
                 "   with the file's own: σ2 = {:.5} N·m/rpm at the screw",

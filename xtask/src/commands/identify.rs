@@ -156,7 +156,7 @@ pub fn load_transfer(context: &Context) -> Result<([Transfer; 2], [TransferFunct
 }
 
 fn summarise(identified: &Identified, context: &Context) -> Friction {
-    let truth = context.machine.friction.parameters();
+    let truth = context.machine.friction.law.parameters();
     let (statics, presliding) = (&identified.statics, &identified.presliding);
     let found = |name: &str, unit: &str, estimate: Estimate, truth: f64| Found {
         name: name.to_owned(),
@@ -197,7 +197,7 @@ fn summarise(identified: &Identified, context: &Context) -> Friction {
 fn plans(context: &Context) -> (IdentificationPlan, TransferPlan) {
     let mut friction = IdentificationPlan {
         seed: context.seed,
-        ..IdentificationPlan::default()
+        ..IdentificationPlan::of(&context.machine)
     };
     let mut transfer = TransferPlan {
         seed: context.seed,

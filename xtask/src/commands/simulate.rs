@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use atomic_write_file::AtomicWriteFile;
-use axis_sim::{ClosedLoop, CsvRecorder, Cycle, Measured, SixDigits};
+use axis_sim::{Axis, ClosedLoop, CsvRecorder, Cycle, Measured, Recorder, SixDigits};
 use clap::{Args, ValueEnum};
 use discrepancy::hidden::Noise;
-use feed_dynamics::NutCoupling;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use pipeline::strategies::Strategy;
 use trajectories::{Motion, Program};
@@ -81,7 +80,10 @@ pub fn command(options: &Options) -> Result<()> {
     let context = options.common.open()?;
     let motion = motion(options, &context)?;
     let closed_loop = closed_loop(options, &context)?;
-    let mut log = options.log.as_deref().map(LogFile::new).transpose()?;
+    let log = options.log.as_deref();
+    let mut log = log
+        .map(|path| LogFile::new(path, &context.axis))
+        .transpose()?;
     let bar = bar("simulate", closed_loop.cycles(&*motion));
     let mut tracking = Tracking::default();
     let observe = |cycle: &Cycle| {
@@ -93,7 +95,9 @@ pub fn command(options: &Options) -> Result<()> {
             bar.set_position(tracking.cycles);
         }
     };
-    let mut sensors = Noise::GOOD.scaled(options.noise).sensors(context.seed);
+    let mut sensors = Noise::good(&context.axis)
+        .scaled(options.noise)
+        .sensors(context.seed);
     let sense = |seen: &mut Measured| {
         if options.noise > 0.0 {
             sensors(seen);
@@ -115,20 +119,18 @@ pub fn command(options: &Options) -> Result<()> {
     }
     outcome.completed().into_diagnostic()?;
     say(format!(
-        "{} s, {} cycles: tracking error max {} µm, mean {} µm (simulated)",
+        "{} s, {} cycles: tracking error max {} µ{unit}, mean {} µ{unit} (simulated)",
         SixDigits(motion.duration()),
         tracking.cycles,
         SixDigits(1e6 * tracking.most),
-        SixDigits(1e6 * tracking.sum / tracking.cycles as f64)
+        SixDigits(1e6 * tracking.sum / tracking.cycles as f64),
+        unit = context.axis.freedom().unit()
     ))
 }
 
 fn closed_loop(options: &Options, context: &Context) -> Result<ClosedLoop> {
     if options.noise > 0.0 {
-        let mut exact = context.axis.clone();
-        exact.coupling = NutCoupling::MovingNode;
-        exact.simulation.step = exact.simulation.step.min(2e-5);
-        return ClosedLoop::implicit(&exact).into_diagnostic();
+        return ClosedLoop::exact(&context.axis, 2e-5).into_diagnostic();
     }
     ClosedLoop::new(&context.axis).into_diagnostic()
 }
@@ -156,12 +158,12 @@ struct LogFile {
 }
 
 impl LogFile {
-    fn new(path: &Path) -> Result<Self> {
+    fn new(path: &Path, axis: &Axis) -> Result<Self> {
         let aside = AtomicWriteFile::open(path);
         let aside = aside.into_diagnostic().wrap_err_with(|| unwritten(path))?;
         Ok(Self {
             path: path.to_owned(),
-            rows: CsvRecorder::new(aside),
+            rows: CsvRecorder::new(aside, Recorder::new(axis)),
         })
     }
 

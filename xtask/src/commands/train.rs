@@ -78,7 +78,7 @@ pub fn run(context: &Context) -> Result<()> {
 
     let mut unsaved = false;
     let trained = train(
-        &context.axis.samples,
+        &pipeline::sampling::ranges(&context.axis).into_diagnostic()?,
         &seen,
         &plan,
         checkpoint,

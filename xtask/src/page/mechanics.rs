@@ -56,12 +56,12 @@ pub fn friction(context: &Context, results: &Results) -> Section {
     .series(Series::line(
         "axis file",
         speeds.clone(),
-        curve(&context.axis.friction),
+        curve(&context.axis.friction.law),
     ))
     .series(Series::line(
         "machine",
         speeds.clone(),
-        curve(&context.machine.friction),
+        curve(&context.machine.friction.law),
     ))
     .series(Series::line("identified", speeds.clone(), curve(&results.friction_law)).dashed())
     .log_x()

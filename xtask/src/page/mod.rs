@@ -7,7 +7,7 @@ mod mechanics;
 mod network;
 mod tracking;
 
-use feed_dynamics::NutCoupling;
+use axis_sim::mechanism::Way;
 use report::{Cell, KeyValues, Mark, Notice, Page, Section, Table};
 
 use crate::context::Context;
@@ -102,7 +102,14 @@ fn settings(context: &Context, results: &Results) -> Section {
             "Internal step",
             format!("{} µs", 1e6 * context.axis.simulation.step),
         )
-        .entry("Nut coupling", nut_coupling(context.axis.coupling))
+        .entry("Mechanism", context.axis.mechanism.kind().summary)
+        .entry(
+            "Its equations are solved",
+            match context.axis.simulation.way {
+                Way::Fast => "as fast as it can be",
+                Way::Exact => "as exactly as it can be",
+            },
+        )
         .entry(
             "Halving the step moves the figures by at most",
             format!(
@@ -111,20 +118,13 @@ fn settings(context: &Context, results: &Results) -> Section {
             ),
         )
         .entry(
-            "The other nut coupling moves them by at most",
-            format!(
-                "{:.1e} µm (max), {:.1e} µm (mean)",
-                checks.moving_node.max, checks.moving_node.mean
-            ),
+            "The mechanism's other way of being solved moves them by at most",
+            match checks.exact_way {
+                Some(by) => format!("{:.1e} µm (max), {:.1e} µm (mean)", by.max, by.mean),
+                None => "it has none".to_owned(),
+            },
         );
     Section::new("Settings").key_values(list)
-}
-
-fn nut_coupling(coupling: NutCoupling) -> &'static str {
-    match coupling {
-        NutCoupling::ShapeFunctions => "shape functions of the element that the nut is in",
-        NutCoupling::MovingNode => "a node that moves with the nut",
-    }
 }
 
 /// Maximum and mean as two cells.

@@ -72,8 +72,12 @@ const D_INTEGRAL: Key = quantity("current_d_integral", &CURRENT_INTEGRAL, 0.0, 1
 const Q_PROPORTIONAL: Key = quantity("current_q_proportional", &CURRENT_PROPORTIONAL, 0.0, 1e6);
 const Q_INTEGRAL: Key = quantity("current_q_integral", &CURRENT_INTEGRAL, 0.0, 1e9);
 const CURRENT_LIMIT: Key = quantity("current_limit", &CURRENT, 1e-3, 1e5);
-const DEAD_TIME: Key = quantity("dead_time_voltage", &VOLTAGE, -1e3, 1e3).or(0.0).role(Role::DeadTimeVoltage);
-const DELAY: Key = quantity("command_delay", &TIME, 0.0, 0.1).or(0.0).role(Role::CommandDelay);
+const DEAD_TIME: Key = quantity("dead_time_voltage", &VOLTAGE, -1e3, 1e3)
+    .or(0.0)
+    .role(Role::DeadTimeVoltage);
+const DELAY: Key = quantity("command_delay", &TIME, 0.0, 0.1)
+    .or(0.0)
+    .role(Role::CommandDelay);
 
 const KNOWN: &[Known] = &[
     Known {

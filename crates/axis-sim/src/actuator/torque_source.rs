@@ -40,7 +40,9 @@ pub(super) static LINEAR: PartKind<dyn Actuator> = PartKind {
 };
 
 const BANDWIDTH: crate::part::Key = quantity("bandwidth", &FREQUENCY, 1.0, 1e6);
-const DELAY: crate::part::Key = quantity("delay", &TIME, 0.0, 0.1).or(0.0).role(Role::CommandDelay);
+const DELAY: crate::part::Key = quantity("delay", &TIME, 0.0, 0.1)
+    .or(0.0)
+    .role(Role::CommandDelay);
 /// Share of the command that comes out.
 const GAIN: crate::part::Key = number("gain", 1e-3, 1e3).or(1.0).role(Role::TorqueConstant);
 

@@ -156,7 +156,10 @@ pub(super) fn stroke(
         let (beside, valid) = match &reach {
             None => (String::new(), "minimum < maximum".to_owned()),
             Some(r) => (
-                format!(", on a mechanism that reaches from {}", between(r.least, r.most)),
+                format!(
+                    ", on a mechanism that reaches from {}",
+                    between(r.least, r.most)
+                ),
                 format!(
                     "{} {unit} <= minimum < maximum <= {} {unit}",
                     SixDigits(r.least),

@@ -10,9 +10,9 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{AxisFileError, Source};
-use crate::part::{Key, Kind, PartError, Values};
 use super::layout::first_keys;
 use super::slips::{list, unknown_key, unknown_word};
+use crate::part::{Key, Kind, PartError, Values};
 
 /// Canonical record of what was read: `path = value in SI`, for the fingerprint.
 pub(super) type Record = Rc<RefCell<Vec<String>>>;
@@ -286,10 +286,7 @@ impl<'a> Fields<'a> {
         Ok(self.optional_number_in(name)?.map(|(number, _)| number))
     }
 
-    fn optional_number_in(
-        &self,
-        name: &str,
-    ) -> Result<Option<(f64, &'static str)>, AxisFileError> {
+    fn optional_number_in(&self, name: &str) -> Result<Option<(f64, &'static str)>, AxisFileError> {
         let key = self.key(name)?;
         let (units, limits) = match &key.kind {
             Kind::Quantity(dimension, limits) => (dimension.units, limits),

@@ -145,7 +145,10 @@ impl Layout {
 
     /// What a file has, by its sections or its kind.
     pub fn of(root: &Fields<'_>, registry: &Registry) -> Result<Self, AxisFileError> {
-        if !SECTIONS.iter().any(|(table, ..)| *table != "control" && *table != "friction" && root.has(table)) {
+        if !SECTIONS
+            .iter()
+            .any(|(table, ..)| *table != "control" && *table != "friction" && root.has(table))
+        {
             let rigid = root.has("kind") && root.word("kind")? == SHORT_KINDS[1];
             let (kinds, places) = match rigid {
                 true => (["rigid-mass", "force-gain", "p-p", "coulomb"], RIGID_MASS),

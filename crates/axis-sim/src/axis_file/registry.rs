@@ -2,11 +2,11 @@
 
 use crate::actuator::{ACTUATORS, Actuator};
 use crate::control::{CONTROLS, Control};
+use crate::effects::{EFFECTS, Effect};
 use crate::friction::{FRICTIONS, Friction};
 use crate::load::{LOADS, Load};
 use crate::mechanism::{MECHANISMS, Mechanism};
 use crate::part::PartKind;
-use crate::effects::{EFFECTS, Effect};
 use crate::sensor::{SENSORS, Sensor};
 
 /// The kinds that an axis file may name: those of this crate, and whatever a program adds.

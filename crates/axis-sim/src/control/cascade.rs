@@ -36,7 +36,13 @@ pub(super) static KIND: PartKind<dyn Control> = PartKind {
             .optional()
             .role(Role::PositionGain),
         number("velocity_feedforward", -10.0, 10.0).role(Role::VelocityFeedforward),
-        quantity("acceleration_feedforward", &ACCELERATION_FEEDFORWARD, 0.0, 1e9).optional(),
+        quantity(
+            "acceleration_feedforward",
+            &ACCELERATION_FEEDFORWARD,
+            0.0,
+            1e9,
+        )
+        .optional(),
         quantity("speed_proportional", &SPEED_PROPORTIONAL, 0.0, 1e9).role(Role::SpeedGain),
         quantity("speed_integral", &SPEED_INTEGRAL, 0.0, 1e12)
             .optional()

@@ -31,12 +31,7 @@ impl Filter {
     /// Notch at `frequency` (Hz): (s² + 2 d ζ ω s + ω²)/(s² + 2 ζ ω s + ω²) with the
     /// depth d (gain at the middle, 0 for none left) and the damping ζ, by the bilinear
     /// transformation that keeps the middle where it is.
-    pub fn notch(
-        frequency: f64,
-        damping: f64,
-        depth: f64,
-        period: f64,
-    ) -> Result<Self, PartError> {
+    pub fn notch(frequency: f64, damping: f64, depth: f64, period: f64) -> Result<Self, PartError> {
         check("notch", frequency, period)?;
         let half = 0.5 * TAU * frequency * period;
         let (sin, cos) = (2.0 * half).sin_cos();

@@ -8,7 +8,10 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction that differs between the directions",
     channel: EffectChannel::Torque,
     depends_on: "sign of speed",
-    parameters: &[size("forward", Measure::Force, 60.0, 5e3), size("backward", Measure::Force, 20.0, 5e3)],
+    parameters: &[
+        size("forward", Measure::Force, 60.0, 5e3),
+        size("backward", Measure::Force, 20.0, 5e3),
+    ],
     needs: &[],
     install,
 };

@@ -8,7 +8,10 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "viscous friction that differs between the directions",
     channel: EffectChannel::Torque,
     depends_on: "speed and its sign",
-    parameters: &[size("forward", Measure::Damping, 4000.0, 1e5), size("backward", Measure::Damping, 2000.0, 1e5)],
+    parameters: &[
+        size("forward", Measure::Damping, 4000.0, 1e5),
+        size("backward", Measure::Damping, 2000.0, 1e5),
+    ],
     needs: &[],
     install,
 };

@@ -8,7 +8,11 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "torque that repeats with the motor's turn, at any current",
     channel: EffectChannel::Torque,
     depends_on: "motor angle",
-    parameters: &[size("amplitude", Measure::MotorTorque, 0.05, 2.0), shape("order", Measure::Ratio, Nature::Order(24), 8.0, [1.0, 60.0]), PHASE],
+    parameters: &[
+        size("amplitude", Measure::MotorTorque, 0.05, 2.0),
+        shape("order", Measure::Ratio, Nature::Order(24), 8.0, [1.0, 60.0]),
+        PHASE,
+    ],
     needs: &[],
     install,
 };

@@ -62,7 +62,10 @@ fn numbers<'a>(
 fn alike(a: &ActiveEffect, b: &ActiveEffect) -> bool {
     let shapes = |active: &ActiveEffect| -> Vec<f64> {
         let numbers = active.effect.parameters.iter().zip(&active.values);
-        numbers.filter(|(p, _)| !p.is_size()).map(|(_, v)| *v).collect()
+        numbers
+            .filter(|(p, _)| !p.is_size())
+            .map(|(_, v)| *v)
+            .collect()
     };
     a.effect.name == b.effect.name && a.values.len() == b.values.len() && shapes(a) == shapes(b)
 }

@@ -157,7 +157,7 @@ impl Scales {
         let fastest = axis.trajectories.iter().map(|t| t.limits.velocity());
         let fastest = fastest.fold(0.0, f64::max);
         let stiffness = axis.mechanism.stiffness();
-        let load = axis.mechanism.value(Role::LoadInertia).unwrap_or(0.0);
+        let load = axis.mechanism.load_inertia();
         let speed = if fastest > 0.0 {
             fastest
         } else {

@@ -8,7 +8,23 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction that is higher over a stretch of the travel",
     channel: EffectChannel::Torque,
     depends_on: "position",
-    parameters: &[size("peak", Measure::Force, 60.0, 5e3), shape("centre", Measure::Way, Nature::Place([0.15, 0.75]), 0.75, [0.0, 2.0]), shape("width", Measure::Way, Nature::Width([0.05, 0.2]), 0.03, [5e-3, 0.3])],
+    parameters: &[
+        size("peak", Measure::Force, 60.0, 5e3),
+        shape(
+            "centre",
+            Measure::Way,
+            Nature::Place([0.15, 0.75]),
+            0.75,
+            [0.0, 2.0],
+        ),
+        shape(
+            "width",
+            Measure::Way,
+            Nature::Width([0.05, 0.2]),
+            0.03,
+            [5e-3, 0.3],
+        ),
+    ],
     needs: &[],
     install,
 };

@@ -8,7 +8,23 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "a force during a part of the time",
     channel: EffectChannel::Torque,
     depends_on: "time",
-    parameters: &[signed("force", Measure::Force, 60.0, 1e4), shape("start", Measure::Time, Nature::Begin([0.4, 3.0]), 1.0, [0.0, 1e3]), shape("end", Measure::Time, Nature::End([0.3, 1.5]), 1.6, [0.0, 1e3])],
+    parameters: &[
+        signed("force", Measure::Force, 60.0, 1e4),
+        shape(
+            "start",
+            Measure::Time,
+            Nature::Begin([0.4, 3.0]),
+            1.0,
+            [0.0, 1e3],
+        ),
+        shape(
+            "end",
+            Measure::Time,
+            Nature::End([0.3, 1.5]),
+            1.6,
+            [0.0, 1e3],
+        ),
+    ],
     needs: &[],
     install,
 };

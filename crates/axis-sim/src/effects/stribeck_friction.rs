@@ -14,7 +14,16 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction that falls with speed",
     channel: EffectChannel::Torque,
     depends_on: "low speed",
-    parameters: &[size("force", Measure::Force, 60.0, 5e3), shape("velocity", Measure::Speed, Nature::Speed([0.004, 0.015, 0.05], [0.005, 0.05]), 0.02, [1e-3, FASTEST])],
+    parameters: &[
+        size("force", Measure::Force, 60.0, 5e3),
+        shape(
+            "velocity",
+            Measure::Speed,
+            Nature::Speed([0.004, 0.015, 0.05], [0.005, 0.05]),
+            0.02,
+            [1e-3, FASTEST],
+        ),
+    ],
     needs: &[],
     install,
 };

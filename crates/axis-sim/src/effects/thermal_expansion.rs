@@ -8,7 +8,16 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "growth of the screw with time",
     channel: EffectChannel::Kinematics,
     depends_on: "time and position",
-    parameters: &[signed("strain", Measure::Ratio, 4e-5, 2e-3), shape("time_constant", Measure::Time, Nature::Time([1.0, 5.0], [1.0, 10.0]), 5.0, [0.2, 1e3])],
+    parameters: &[
+        signed("strain", Measure::Ratio, 4e-5, 2e-3),
+        shape(
+            "time_constant",
+            Measure::Time,
+            Nature::Time([1.0, 5.0], [1.0, 10.0]),
+            5.0,
+            [0.2, 1e3],
+        ),
+    ],
     needs: &[Need::Transmission],
     install,
 };

@@ -51,4 +51,3 @@ fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {
     let friction = Friction::new(parameters, 1.0 / presliding, Place::Load(freedom))?;
     Ok(Arc::new(friction))
 }
-

@@ -34,7 +34,9 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
         quantity("stiffness_damping", &TIME, 0.0, 0.1),
         quantity("bearing_stiffness", &STIFFNESS, 1e3, 1e12).optional(),
         word("mounting", &["fixed-free", "fixed-fixed"]).optional(),
-        quantity("backlash", &LENGTH, 0.0, 0.1).or(0.0).role(Role::Backlash),
+        quantity("backlash", &LENGTH, 0.0, 0.1)
+            .or(0.0)
+            .role(Role::Backlash),
     ],
     known: &[
         Known {
@@ -125,6 +127,29 @@ impl Mechanism for BallScrew {
 
     fn total_inertia(&self) -> f64 {
         self.drive.total_inertia()
+    }
+
+    fn load_inertia(&self) -> f64 {
+        self.drive.parameters().table_mass
+    }
+
+    /// Every part is turned back from the motor by its share of the static wind-up
+    /// between motor and table.
+    fn rotating(&self, x: f64) -> Vec<[f64; 2]> {
+        let (p, r) = (self.drive.parameters(), self.travel_per_radian());
+        // Compliances from the motor on, rad/(N·m).
+        let sensor = 1.0 / p.motor_coupling_stiffness;
+        let driven_end = sensor + 1.0 / p.screw_coupling_stiffness;
+        let twist = x / (p.material.shear_modulus() * p.section.torsion_constant());
+        // Linear up to the nut, constant beyond it: the mean over the screw.
+        let screw = driven_end + twist * (1.0 - 0.5 * x / p.screw_length);
+        let table = driven_end + twist + 1.0 / (self.drive.contact_stiffness(x) * r * r);
+        let screw_inertia = self.drive.rotating_inertia() - p.motor_inertia - p.sensor_inertia;
+        vec![
+            [p.motor_inertia, 0.0],
+            [p.sensor_inertia, sensor / table],
+            [screw_inertia, screw / table],
+        ]
     }
 
     fn stiffness(&self) -> Option<f64> {

@@ -56,6 +56,10 @@ impl Mechanism for Direct {
         self.drive.inertia()
     }
 
+    fn load_inertia(&self) -> f64 {
+        self.drive.inertia()
+    }
+
     fn stiffness(&self) -> Option<f64> {
         None
     }

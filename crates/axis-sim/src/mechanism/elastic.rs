@@ -70,6 +70,10 @@ impl Mechanism for Elastic {
         p.motor_inertia + p.load_inertia * p.travel_per_radian.powi(2)
     }
 
+    fn load_inertia(&self) -> f64 {
+        self.drive.parameters().load_inertia
+    }
+
     fn stiffness(&self) -> Option<f64> {
         Some(self.drive.parameters().stiffness.at(self.middle()))
     }

@@ -20,7 +20,9 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
         quantity("gear_stiffness", &TORSION, 0.1, 1e10).role(Role::TransmissionStiffness),
         quantity("load_inertia", &INERTIA, 1e-9, 1e6).role(Role::LoadInertia),
         quantity("stiffness_damping", &TIME, 0.0, 0.1),
-        quantity("backlash", &ANGLE, 0.0, 0.1).or(0.0).role(Role::Backlash),
+        quantity("backlash", &ANGLE, 0.0, 0.1)
+            .or(0.0)
+            .role(Role::Backlash),
         quantity("kinematic_error", &ANGLE, 0.0, 0.1).optional(),
         number("kinematic_error_order", 1e-3, 1e3).optional(),
         quantity("kinematic_error_phase", &ANGLE, -TAU, TAU).optional(),

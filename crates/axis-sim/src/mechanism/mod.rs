@@ -105,6 +105,16 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
     /// [`DriveError`] where the load cannot be at `x`.
     fn modes(&self, x: f64) -> Result<Vec<f64>, DriveError>;
 
+    /// What turns with the motor, near the position `x`: inertia at the motor (kg·m²), and
+    /// the share of the static wind-up between motor and load by which it lags the motor.
+    fn rotating(&self, _x: f64) -> Vec<[f64; 2]> {
+        let load = self.load_inertia() * self.travel_per_radian().powi(2);
+        vec![[self.total_inertia() - load, 0.0]]
+    }
+
+    /// Inertia of the load, kg or kg·m².
+    fn load_inertia(&self) -> f64;
+
     /// What its transmission's kinematics are off by, if anything.
     fn kinematic_error(&self) -> Option<KinematicError> {
         None

@@ -21,7 +21,9 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
         quantity("mesh_stiffness", &STIFFNESS, 1e3, 1e12).role(Role::TransmissionStiffness),
         quantity("carriage_mass", &MASS, 1e-3, 1e6).role(Role::LoadInertia),
         quantity("stiffness_damping", &TIME, 0.0, 0.1),
-        quantity("backlash", &LENGTH, 0.0, 0.1).or(0.0).role(Role::Backlash),
+        quantity("backlash", &LENGTH, 0.0, 0.1)
+            .or(0.0)
+            .role(Role::Backlash),
     ],
     known: &[
         Known {
@@ -48,8 +50,7 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
 /// R being the pinion's radius, in series with that of the teeth.
 fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
     let radius = 0.5 * v.number("pinion_diameter")?;
-    let gearbox: Arc<dyn Stiffness> =
-        Arc::new(v.number("gearbox_stiffness")? / (radius * radius));
+    let gearbox: Arc<dyn Stiffness> = Arc::new(v.number("gearbox_stiffness")? / (radius * radius));
     let mesh: Arc<dyn Stiffness> = Arc::new(v.number("mesh_stiffness")?);
     let motor = v.number("motor_inertia")? + v.number("gearbox_inertia")?;
     let inertias = [motor, v.number("carriage_mass")?];

@@ -40,6 +40,10 @@ impl Mechanism for RigidMass {
         self.0.inertia() * self.travel_per_radian().powi(2)
     }
 
+    fn load_inertia(&self) -> f64 {
+        self.0.inertia()
+    }
+
     fn stiffness(&self) -> Option<f64> {
         None
     }

@@ -26,7 +26,9 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
         quantity("nut_stiffness", &STIFFNESS, 1e3, 1e12).role(Role::TransmissionStiffness),
         quantity("table_mass", &MASS, 1e-3, 1e6).role(Role::LoadInertia),
         quantity("stiffness_damping", &TIME, 0.0, 0.1),
-        quantity("backlash", &LENGTH, 0.0, 0.1).or(0.0).role(Role::Backlash),
+        quantity("backlash", &LENGTH, 0.0, 0.1)
+            .or(0.0)
+            .role(Role::Backlash),
     ],
     known: &[
         Known {

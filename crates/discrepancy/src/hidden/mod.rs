@@ -19,7 +19,6 @@ use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 use trajectories::{Limits, Motion, Program, Step, TrajectoryError};
 
-
 /// Standard deviations of sensor noise, white at the control rate.
 #[derive(Clone, Copy, Debug)]
 pub struct Noise {

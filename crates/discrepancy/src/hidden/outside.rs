@@ -2,8 +2,10 @@
 
 use std::sync::Mutex;
 
-use axis_sim::effects::{Changes, Effect, EffectChannel, EffectParameter, Measure, Nature, TableState};
 use axis_sim::SetupError;
+use axis_sim::effects::{
+    Changes, Effect, EffectChannel, EffectParameter, Measure, Nature, TableState,
+};
 
 /// All of them.
 pub const OUTSIDE: [&Effect; 8] = [
@@ -45,7 +47,10 @@ const POSITION_DAMPING: Effect = outside(
     "position-damping",
     "viscous friction that grows along the stroke",
     "position and speed",
-    &[size("slope", Measure::Other("N*s/m^2"), 1e4), place("zero", 0.7)],
+    &[
+        size("slope", Measure::Other("N*s/m^2"), 1e4),
+        place("zero", 0.7),
+    ],
     |v, to| {
         let (c, zero) = (v[0], v[1]);
         to.load(move |t| c * (t.position - zero) * t.speed);
@@ -57,7 +62,15 @@ const FADING_FRICTION: Effect = outside(
     "fading-friction",
     "dry friction that fades as it warms",
     "time",
-    &[size("force", Measure::Force, 60.0), shape("time", Measure::Time, Nature::Time([1.0, 5.0], [1.0, 8.0]), 3.0)],
+    &[
+        size("force", Measure::Force, 60.0),
+        shape(
+            "time",
+            Measure::Time,
+            Nature::Time([1.0, 5.0], [1.0, 8.0]),
+            3.0,
+        ),
+    ],
     |v, to| {
         let (force, time) = (v[0], v[1]);
         to.load(move |t| force * (-t.time / time).exp() * t.bristle);
@@ -69,7 +82,10 @@ const SPRING_LOAD: Effect = outside(
     "spring-load",
     "a spring between table and bed",
     "position",
-    &[size("stiffness", Measure::Stiffness, 600.0), place("zero", 0.7)],
+    &[
+        size("stiffness", Measure::Stiffness, 600.0),
+        place("zero", 0.7),
+    ],
     |v, to| {
         let (k, zero) = (v[0], v[1]);
         to.load(move |t| k * (t.position - zero) * t.pressed);
@@ -81,7 +97,10 @@ const WAVE_LOAD: Effect = outside(
     "wave-load",
     "a load that repeats along the stroke, as of a cable chain",
     "position",
-    &[size("amplitude", Measure::Force, 30.0), shape("pitch", Measure::Way, Nature::Width([0.15, 0.4]), 0.045)],
+    &[
+        size("amplitude", Measure::Force, 30.0),
+        shape("pitch", Measure::Way, Nature::Width([0.15, 0.4]), 0.045),
+    ],
     |v, to| {
         let (amplitude, pitch) = (v[0], v[1]);
         to.load(move |t| {
@@ -107,7 +126,15 @@ const LOCAL_RESONANCE: Effect = outside(
     "local-resonance",
     "a body on the table that swings by itself",
     "acceleration, near one frequency",
-    &[size("mass", Measure::Inertia, 20.0), shape("frequency", Measure::Other("Hz"), Nature::Time([45.0, 45.0], [20.0, 120.0]), 45.0)],
+    &[
+        size("mass", Measure::Inertia, 20.0),
+        shape(
+            "frequency",
+            Measure::Other("Hz"),
+            Nature::Time([45.0, 45.0], [20.0, 120.0]),
+            45.0,
+        ),
+    ],
     |v, to| {
         let (mass, omega) = (v[0], std::f64::consts::TAU * v[1]);
         let body = Mutex::new(Body::default());

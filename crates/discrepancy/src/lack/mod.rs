@@ -57,11 +57,7 @@ pub struct Curve {
 ///
 /// # Errors
 /// [`ReplayError`] where the fitted machine no longer runs the check logs.
-pub fn lack(
-    machine: &Axis,
-    found: &Found,
-    material: f64,
-) -> Result<Option<Unknown>, ReplayError> {
+pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unknown>, ReplayError> {
     let fitter = Fitter {
         machine,
         set: &found.fit_logs,

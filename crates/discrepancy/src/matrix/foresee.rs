@@ -277,7 +277,9 @@ impl Bench {
             columns[i].dot(&columns[j]) + own
         });
         let right = DVector::from_fn(n, |i, _| columns[i].dot(change));
-        let x = bounded(&normal, &right, |i| (i < known).then(|| [-most[i], most[i]]));
+        let x = bounded(&normal, &right, |i| {
+            (i < known).then(|| [-most[i], most[i]])
+        });
         let pairs = shares.iter().zip(&deviations);
         let price: f64 = pairs.map(|(s, deviation)| (s / deviation).powi(2)).sum();
         let left = change.norm_squared() - 2.0 * x.dot(&right) + x.dot(&(&normal * &x));

@@ -211,7 +211,9 @@ fn known_of(found: &Found) -> usize {
 fn same_phase(found: &ActiveEffect, truth: &ActiveEffect, p: usize) -> impl Fn(f64) -> f64 {
     use std::f64::consts::{PI, TAU};
     let parameters = found.effect.parameters;
-    let phase = parameters.iter().position(|q| matches!(q.nature, Nature::Phase));
+    let phase = parameters
+        .iter()
+        .position(|q| matches!(q.nature, Nature::Phase));
     let flipped = phase.is_some() && found.values[0] * truth.values[0] < 0.0;
     let is_phase = phase == Some(p);
     let target = truth.values[p];

@@ -296,7 +296,9 @@ fn refused_effects(refused: &Refused) -> RefusedEffects {
 
 fn replaced(replaced: &Replaced, scales: &Scales) -> ReplacedEffect {
     let ActiveEffect { effect, values } = &replaced.when_named;
-    let one = |(p, &value): (&EffectParameter, &f64)| (p.name.to_owned(), value, p.unit(scales).to_owned());
+    let one = |(p, &value): (&EffectParameter, &f64)| {
+        (p.name.to_owned(), value, p.unit(scales).to_owned())
+    };
     ReplacedEffect {
         name: effect.name.to_owned(),
         when_named: effect.parameters.iter().zip(values).map(one).collect(),

@@ -44,7 +44,10 @@ pub fn imitate(
 /// What sizes inside their bounds leave of what is seen.
 fn left_by(responses: &[&Response], seen: &DVector<f64>) -> DVector<f64> {
     let columns: Vec<&DVector<f64>> = responses.iter().flat_map(|r| &r.columns).collect();
-    let rooms: Vec<Room> = responses.iter().flat_map(|r| rooms(r.effect, &r.scales)).collect();
+    let rooms: Vec<Room> = responses
+        .iter()
+        .flat_map(|r| rooms(r.effect, &r.scales))
+        .collect();
     let n = columns.len();
     let normal = DMatrix::from_fn(n, n, |i, j| columns[i].dot(columns[j]));
     let right = DVector::from_fn(n, |i, _| columns[i].dot(seen));

@@ -44,7 +44,8 @@ pub fn responses_in(
         .filter(|(_, c)| wanted(c.effect))
         .map(one)
         .collect();
-    let (slots, mut all): (Vec<_>, Vec<_>) = all.into_iter().partition(|r| is_force_in_time(r.effect));
+    let (slots, mut all): (Vec<_>, Vec<_>) =
+        all.into_iter().partition(|r| is_force_in_time(r.effect));
     all.extend(windows(&slots, rest));
     all
 }

@@ -131,7 +131,12 @@ impl Screening {
         let columns = response.columns.len();
         Screened {
             gain,
-            values: values_at(response.effect, &response.values, solution, &response.scales),
+            values: values_at(
+                response.effect,
+                &response.values,
+                solution,
+                &response.scales,
+            ),
             scales: response.scales,
             candidate: response.candidate,
             fingerprint,

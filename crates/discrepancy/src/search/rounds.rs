@@ -84,7 +84,9 @@ impl Search<'_> {
         let promised = candidates.iter().map(|parts| parts[0].gain);
         let least = WORTH * promised.fold(0.0, f64::max);
         let awaited = self.awaited();
-        let awaited = awaited.iter().any(|name| Effect::named(name).is_some_and(is_force_in_time));
+        let awaited = awaited
+            .iter()
+            .any(|name| Effect::named(name).is_some_and(is_force_in_time));
         let begin = |parts: Vec<Screened>| {
             let as_screened = || {
                 let mut state = self.fit.state.clone();

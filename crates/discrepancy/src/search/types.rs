@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use axis_sim::{Axis, ReplayError};
 use axis_sim::effects::{ActiveEffect, EFFECTS, Effect};
+use axis_sim::{Axis, ReplayError};
 use nalgebra::DMatrix;
 use thiserror::Error;
 

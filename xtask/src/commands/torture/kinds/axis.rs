@@ -4,8 +4,7 @@ use std::cell::Cell;
 use std::path::Path;
 
 use axis_log::{Channel, Log};
-use axis_sim::effects::Machine;
-use axis_sim::{Axis, ClosedLoop, Cycle, Replay, RigidAxis};
+use axis_sim::{Axis, ClosedLoop, Cycle, Replay};
 use compensator::NoCompensation;
 use pipeline::sampling::{SamplePlan, Sampler, SpeedDensity};
 use trajectories::{Motion, Setpoint};
@@ -21,7 +20,7 @@ const ENDLESS: f64 = 1e10;
 /// Setpoints that an endless motion gives before it ends.
 const ASKED: u32 = 20;
 /// Elements of a screw beyond which its loop is not set up for every input.
-const MANY_ELEMENTS: usize = 40;
+const MANY_ELEMENTS: u32 = 40;
 
 const RIGID: &str = include_str!("../../../../../data/axes/emps.toml");
 const BALL_SCREW: &str = include_str!("../../../../../data/axes/liu2025.toml");
@@ -91,17 +90,17 @@ impl Kind for AxisFile {
     }
 
     fn judge(&self, input: &Input, desk: &Path) -> Verdict {
-        match Machine::read(&desk.join(&input.file)) {
+        match Axis::read(&desk.join(&input.file)) {
             // A file that is not even text has no lines to name.
             Err(e) => refused(e, input, std::str::from_utf8(&input.bytes).is_ok()),
-            Ok(Machine::BallScrew(axis)) => ball_screw(&axis),
-            Ok(Machine::Rigid(axis)) => rigid(&axis),
+            Ok(axis) if axis.trajectories.is_empty() => followed(&axis),
+            Ok(axis) => run(&axis),
         }
     }
 }
 
 /// Plans every trajectory, runs the first for a few cycles, draws a few samples.
-fn ball_screw(axis: &Axis) -> Verdict {
+fn run(axis: &Axis) -> Verdict {
     let mut motions = Vec::new();
     for spec in &axis.trajectories {
         match axis.plan(spec) {
@@ -109,7 +108,8 @@ fn ball_screw(axis: &Axis) -> Verdict {
             Err(e) => return told(e),
         }
     }
-    if axis.drive.parameters().elements > MANY_ELEMENTS {
+    let elements = axis.mechanism.values().optional_count("elements");
+    if elements.is_some_and(|n| n > MANY_ELEMENTS) {
         return Verdict::Accepted;
     }
     let closed_loop = match ClosedLoop::new(axis) {
@@ -156,7 +156,7 @@ fn samples(axis: &Axis) -> Verdict {
 }
 
 /// Lets the machine follow a log of six samples.
-fn rigid(axis: &RigidAxis) -> Verdict {
+fn followed(axis: &Axis) -> Verdict {
     let time: Vec<f64> = (0..6).map(|k| f64::from(k) * 1e-3).collect();
     let place: Vec<f64> = time.iter().map(|t| t * t).collect();
     let channel = |name: &str, samples: &[f64]| Channel::new(name, samples.to_vec());
@@ -173,7 +173,7 @@ fn rigid(axis: &RigidAxis) -> Verdict {
         Ok(replay) => replay,
         Err(e) => return told(e),
     };
-    match replay.run(&Machine::Rigid(Box::new(axis.clone())), &[], None) {
+    match replay.run(axis, &[], None) {
         Err(e) => told(e),
         Ok(trace) => {
             let mut numbers = trace.channels.iter().flat_map(|(_, samples)| samples);

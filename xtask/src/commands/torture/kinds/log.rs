@@ -5,7 +5,7 @@ use std::path::Path;
 
 use axis_log::quality::MIN_SAMPLES;
 use axis_log::{ColumnMap, Mapping, read_log};
-use axis_sim::effects::Machine;
+use axis_sim::Axis;
 use discrepancy::intake::{check_log, from_rest};
 use miette::IntoDiagnostic;
 
@@ -23,13 +23,13 @@ struct LogFile {
     name: &'static str,
     file: &'static str,
     bases: Vec<Vec<u8>>,
-    machine: Option<Machine>,
+    machine: Option<Axis>,
     mapping: Mapping,
 }
 
 /// The three formats.
 pub fn kinds() -> Vec<Box<dyn Kind>> {
-    let machine = || Machine::parse("base", &small_screw()).ok();
+    let machine = || Axis::parse("base", &small_screw()).ok();
     let kind = |name, file, bases| -> Box<dyn Kind> {
         Box::new(LogFile {
             name,

@@ -51,7 +51,7 @@ pub fn kind(desk: &Path) -> Result<Box<dyn Kind>> {
 }
 
 fn make(context: &Context) -> Result<()> {
-    let law = context.axis.friction.parameters();
+    let law = context.axis.friction.law.parameters();
     let transfer = || Transfer {
         period: 1e-4,
         direct: 0.5,
