@@ -117,7 +117,7 @@ pub struct Scales {
     force: f64,
     /// Way by which that force winds the transmission up.
     way: f64,
-    /// Speed of its fastest trajectory, or a fifteenth of the stroke a second.
+    /// Speed of its fastest trajectory.
     speed: f64,
     /// Load inertia that the force moves as fast.
     inertia: f64,
@@ -148,8 +148,12 @@ const PAPER_INERTIA: f64 = 0.0096;
 const PAPER_MOTION: f64 = 0.2;
 
 impl Scales {
-    /// Those of an axis.
+    /// Those of an axis. Where its file lists no trajectories, nothing says what it is made
+    /// for, and the paper's sizes stand.
     pub fn of(axis: &Axis) -> Self {
+        if axis.trajectories.is_empty() {
+            return Self::paper(axis);
+        }
         let travel = axis.travel_per_radian();
         let torque = axis.torque_constant() * axis.actuator.limit();
         let force = torque / travel;
@@ -158,17 +162,12 @@ impl Scales {
         let fastest = fastest.fold(0.0, f64::max);
         let stiffness = axis.mechanism.stiffness();
         let load = axis.mechanism.load_inertia();
-        let speed = if fastest > 0.0 {
-            fastest
-        } else {
-            stroke * PAPER_SPEED / 1.5
-        };
         let paper_force = PAPER_TORQUE / PAPER_LEVER;
         Self {
             freedom: axis.freedom(),
             force: force / paper_force,
             way: stiffness.map_or(1.0, |k| (force / k) / (paper_force / PAPER_STIFFNESS)),
-            speed: speed / PAPER_SPEED,
+            speed: fastest / PAPER_SPEED,
             inertia: load / PAPER_MASS,
             motor_inertia: axis.mechanism.total_inertia() / PAPER_INERTIA,
             motor_torque: torque / PAPER_TORQUE,
@@ -176,6 +175,24 @@ impl Scales {
             acceleration: (torque / axis.mechanism.total_inertia() * travel)
                 / (PAPER_TORQUE / PAPER_INERTIA * PAPER_LEVER),
             motion: (stroke * PAPER_MOTION / 1.5).max(f64::MIN_POSITIVE),
+            stroke: [axis.stroke.minimum, axis.stroke.maximum],
+            start: axis.stroke.start,
+        }
+    }
+
+    /// Those of the paper's axis, on the stroke of another.
+    fn paper(axis: &Axis) -> Self {
+        Self {
+            freedom: axis.freedom(),
+            force: 1.0,
+            way: 1.0,
+            speed: 1.0,
+            inertia: 1.0,
+            motor_inertia: 1.0,
+            motor_torque: 1.0,
+            effort: 1.0,
+            acceleration: 1.0,
+            motion: PAPER_MOTION,
             stroke: [axis.stroke.minimum, axis.stroke.maximum],
             start: axis.stroke.start,
         }
