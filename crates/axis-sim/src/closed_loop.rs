@@ -39,6 +39,9 @@ pub struct LoopState {
     motor_sensor: Option<Box<dyn Sensing>>,
     /// Motor angle that its sensor showed last.
     last_angle: f64,
+    /// Position where the motor's angle would be 0, wound up as at the start: an axis
+    /// without a sensor at the load is homed where it stands.
+    home: f64,
     last_effort: f64,
     cycles: u64,
 }
@@ -183,13 +186,15 @@ impl ClosedLoop {
                 _ => None,
             },
             motor_sensor: motor_sensor.map(|s| sensing(s, 1, seen.motor_angle, seen.motor_speed)),
-            last_angle: seen.motor_angle - seen.motor_speed * axis.period,
+            last_angle: 0.0,
+            home: seen.position - axis.travel_per_radian() * seen.motor_angle,
             last_effort: effort,
             cycles: 0,
             plant,
             actuator,
             controller: axis.control.start(&on)?,
         };
+        state.last_angle = self.angle_before(&state);
         let measured = self.measure(&mut state.clone());
         state.controller.settle(effort, &measured, seen.speed);
         Ok(state)
@@ -213,19 +218,51 @@ impl ClosedLoop {
         Ok(plant.seen().displacement)
     }
 
+    /// The motor's angle as its sensor shows it, or as the load's does, which reads `load`,
+    /// where motor and load are one. None where nothing shows it but the motor itself.
+    fn angle_shown(&self, state: &mut LoopState, load: Option<f64>, angle: f64) -> Option<f64> {
+        match (&mut state.motor_sensor, load) {
+            (Some(sensor), _) => Some(sensor.read(angle)),
+            (None, Some(load)) if !self.axis.mechanism.has_motor_encoder() => {
+                Some(load / self.axis.travel_per_radian())
+            }
+            _ => None,
+        }
+    }
+
+    /// What it showed a cycle before the start, so that no step of its resolution counts
+    /// as speed.
+    fn angle_before(&self, state: &LoopState) -> f64 {
+        let mut before = state.clone();
+        let (seen, period) = (state.plant.seen(), self.axis.period);
+        let position = seen.position - period * seen.speed;
+        let angle = seen.motor_angle - period * seen.motor_speed;
+        let load = before.load_sensor.as_mut().map(|sensor| {
+            sensor.settle(position, seen.speed);
+            sensor.read(position)
+        });
+        if let Some(sensor) = &mut before.motor_sensor {
+            sensor.settle(angle, seen.motor_speed);
+        }
+        self.angle_shown(&mut before, load, angle).unwrap_or(angle)
+    }
+
     /// What the sensors show now.
     fn measure(&self, state: &mut LoopState) -> Measured {
-        let seen = state.plant.seen();
+        let travel = self.axis.travel_per_radian();
+        let seen = *state.plant.seen();
+        let load = state.load_sensor.as_mut().map(|s| s.read(seen.position));
         let (mut angle, mut speed) = (seen.motor_angle, seen.motor_speed);
-        if let Some(sensor) = &mut state.motor_sensor {
-            // A drive knows the motor's speed from its angle.
-            angle = sensor.read(angle);
+        // A drive knows the motor's speed from the angle that its sensor shows, or from
+        // the load's where motor and load are one.
+        if let Some(shown) = self.angle_shown(state, load, seen.motor_angle) {
+            angle = shown;
             speed = (angle - state.last_angle) / self.axis.period;
             state.last_angle = angle;
         }
-        let position = match (&mut state.load_sensor, &self.axis.sensors.load) {
-            (Some(sensor), _) => sensor.read(seen.position),
-            (None, LoadSensor::Missing) => angle * self.axis.travel_per_radian(),
+        let position = match (load, &self.axis.sensors.load) {
+            (Some(shown), _) => shown,
+            (None, LoadSensor::Missing) => state.home + angle * travel,
             (None, _) => seen.position,
         };
         self.hooks.sensors.show(Measured {

@@ -138,7 +138,9 @@ fn tolerances(layout: &Layout) -> Vec<Key> {
         layout.control.known,
         layout.friction.known,
     ];
-    let known = lists.into_iter().flatten().map(|known| text(known.name));
+    let loads = layout.loads.iter().map(|load| load.known);
+    let known = lists.into_iter().chain(loads).flatten();
+    let known = known.map(|known| text(known.name));
     let default = number("known_parameters_percent", 1e-3, 100.0);
     std::iter::once(default).chain(known).collect()
 }

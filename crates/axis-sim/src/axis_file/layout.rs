@@ -10,6 +10,7 @@ use super::registry::Registry;
 use crate::actuator::Actuator;
 use crate::control::Control;
 use crate::friction::Friction;
+use crate::load::Load;
 use crate::mechanism::Mechanism;
 use crate::part::{Key, PartKind, count, named, word};
 
@@ -117,6 +118,8 @@ pub(super) struct Layout {
     pub actuator: &'static PartKind<dyn Actuator>,
     pub control: &'static PartKind<dyn Control>,
     pub friction: &'static PartKind<Friction>,
+    /// Of each `[[load]]`.
+    pub loads: Vec<&'static PartKind<dyn Load>>,
     places: &'static [Place],
 }
 
@@ -134,6 +137,7 @@ impl Layout {
             actuator,
             control,
             friction,
+            loads: Vec::new(),
             places: SECTIONS,
         }
     }
@@ -145,6 +149,9 @@ impl Layout {
 
     /// What a file has, by its sections or its kind.
     pub fn of(root: &Fields<'_>, registry: &Registry) -> Result<Self, AxisFileError> {
+        let loads = root.unchecked("load", vec![kinds_key(&registry.loads)])?;
+        let loads = loads.iter().map(|load| kind_of(load, &registry.loads));
+        let loads: Vec<_> = loads.collect::<Result<_, _>>()?;
         if !SECTIONS
             .iter()
             .any(|(table, ..)| *table != "control" && *table != "friction" && root.has(table))
@@ -164,6 +171,7 @@ impl Layout {
                     actuator: named(&registry.actuators, actuator)?,
                     control: named(&registry.controls, control)?,
                     friction: named(&registry.frictions, friction)?,
+                    loads: loads.clone(),
                     places,
                 })
             };
@@ -177,6 +185,7 @@ impl Layout {
             actuator: kind_in(root, "actuator", &registry.actuators)?,
             control: kind_in(root, "control", &registry.controls)?,
             friction: kind_in(root, "friction", &registry.frictions)?,
+            loads,
             places: SECTIONS,
         })
     }

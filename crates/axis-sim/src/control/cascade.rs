@@ -199,6 +199,7 @@ impl Control for Cascade {
             speed_feedforward: self.velocity_feedforward / on.travel_per_radian,
             acceleration_feedforward: self.acceleration_feedforward,
             travel: on.travel_per_radian,
+            home: 0.0,
             from_motor: matches!(self.feedback, Feedback::Motor),
             blend,
             speed_every,
@@ -240,6 +241,8 @@ struct State {
     speed_feedforward: f64,
     acceleration_feedforward: f64,
     travel: f64,
+    /// Position where the motor's angle would be 0, as it was homed at the start.
+    home: f64,
     from_motor: bool,
     blend: Option<Filter>,
     speed_every: u32,
@@ -257,7 +260,7 @@ struct State {
 impl State {
     /// The position that the position controller goes by.
     fn position(&mut self, measured: &Measured) -> f64 {
-        let motor = self.travel * measured.motor_angle;
+        let motor = self.home + self.travel * measured.motor_angle;
         if self.from_motor {
             return motor;
         }
@@ -271,10 +274,10 @@ impl State {
 impl Controller for State {
     fn settle(&mut self, effort: f64, measured: &Measured, speed: f64) {
         self.integral = PiState { integral: effort };
-        let motor = self.travel * measured.motor_angle;
+        self.home = measured.position - self.travel * measured.motor_angle;
         let speed = speed / self.travel;
         let filters = [
-            (&mut self.blend, measured.position - motor),
+            (&mut self.blend, 0.0),
             (&mut self.speed_filter, speed),
             (&mut self.command_filter, effort),
             (&mut self.notch, effort),
