@@ -74,6 +74,6 @@ impl<T: Real> Phase<T> {
     #[inline]
     pub fn sin_cos(&self, t: T) -> (T, T) {
         let cycles = self.cycles(t);
-        (T::of(TAU) * (cycles - cycles.floor())).sin_cos()
+        (cycles - cycles.floor()).sin_cos_turn()
     }
 }

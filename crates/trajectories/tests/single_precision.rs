@@ -92,7 +92,7 @@ fn oscillations() {
             e.acceleration * phase,
         ];
         let worst = deviation(&single, &double, 100_000, sizes);
-        // 0.26 to 0.47, 0.38 to 1.72, 0.41 to 1.74 measured.
+        // 0.26 to 0.47, 0.38 to 1.71, 0.40 to 1.74 measured.
         assert!(worst.iter().all(|&x| x < 4.0), "{name}: {worst:?}");
     }
 }
