@@ -59,12 +59,11 @@ impl<'a, T: Real, const I: usize, const O: usize, const A: usize> FixedNetwork<'
         let length = crate::packed_len(I, hidden, O);
         same_length("packed weights", weights.len(), length)?;
         for (index, &w) in weights.iter().enumerate() {
-            let value: f64 = w.into();
-            if !value.is_finite() {
+            if !w.is_finite() {
                 return Err(Error::NotFinite {
                     what: "weights",
                     index,
-                    value,
+                    value: w.to_f64(),
                 });
             }
         }

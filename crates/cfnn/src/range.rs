@@ -19,8 +19,8 @@ impl<T: Real> Range<T> {
     pub fn new(what: &'static str, minimum: T, maximum: T) -> Result<Self, Error> {
         let width = maximum - minimum;
         let gain = T::TWO / width;
-        let usable = |v: T| Into::<f64>::into(v).is_finite();
-        if minimum < maximum && usable(width) && usable(gain) && usable(minimum) {
+        let usable = width.is_finite() && gain.is_finite() && minimum.is_finite();
+        if minimum < maximum && usable {
             Ok(Self {
                 minimum,
                 maximum,
@@ -30,8 +30,8 @@ impl<T: Real> Range<T> {
         } else {
             Err(Error::Range {
                 what,
-                minimum: minimum.into(),
-                maximum: maximum.into(),
+                minimum: minimum.to_f64(),
+                maximum: maximum.to_f64(),
             })
         }
     }

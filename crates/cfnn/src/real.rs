@@ -1,34 +1,11 @@
-use core::ops::{Add, AddAssign, Div, Mul, Sub};
+use scalar::Scalar;
 
 use crate::tansig::{tansig_f32, tansig_f64};
-
-mod sealed {
-    pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
-}
 
 /// The scalar of an evaluation: `f64` or `f32`.
 ///
 /// Training is in `f64` only; `f32` exists for controllers.
-pub trait Real:
-    sealed::Sealed
-    + Copy
-    + PartialOrd
-    + Add<Output = Self>
-    + AddAssign
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Into<f64>
-{
-    /// 0.
-    const ZERO: Self;
-    /// 1.
-    const ONE: Self;
-    /// 2.
-    const TWO: Self;
-
+pub trait Real: Scalar {
     /// The transfer function of the hidden layers,
     /// `2 / (1 + e^{-2x}) - 1 = tanh x`, within 8 units in the last place.
     /// NaN gives NaN.
@@ -46,10 +23,6 @@ pub trait Real:
 }
 
 impl Real for f64 {
-    const ZERO: Self = 0.0;
-    const ONE: Self = 1.0;
-    const TWO: Self = 2.0;
-
     #[inline(always)]
     fn tansig_of<const C: usize>(values: [Self; C]) -> [Self; C] {
         tansig_f64(values)
@@ -57,10 +30,6 @@ impl Real for f64 {
 }
 
 impl Real for f32 {
-    const ZERO: Self = 0.0;
-    const ONE: Self = 1.0;
-    const TWO: Self = 2.0;
-
     #[inline(always)]
     fn tansig_of<const C: usize>(values: [Self; C]) -> [Self; C] {
         tansig_f32(values)

@@ -11,7 +11,8 @@ use compensator::{
     NoCompensation, ObserverGains, Reference, Sample, TransferFunction, TransferFunctionModel,
 };
 use criterion::{Criterion, criterion_group, criterion_main};
-use lugre::{LuGre, Parameters};
+use lugre::{Exponential, LuGre, Parameters};
+use scalar::Scalar;
 
 const T: f64 = 1e-4; // control period, s
 const R: f64 = 0.01 / TAU; // travel per radian, m
@@ -44,17 +45,17 @@ fn cycles() -> Vec<Sample> {
         .collect()
 }
 
-fn friction() -> FrictionFeedforward {
-    let law = LuGre::new(Parameters {
+fn friction<S: Exponential>() -> FrictionFeedforward<S> {
+    let parameters = Parameters {
         viscous: 0.0298,
         ..Parameters::LIU_2025
-    })
-    .expect("valid parameters");
-    FrictionFeedforward::new(law, R, 1.641, T).expect("valid parameters")
+    };
+    let law = LuGre::new(parameters.cast()).expect("valid parameters");
+    FrictionFeedforward::new(law, S::of(R), S::of(1.641), S::of(T)).expect("valid parameters")
 }
 
-fn estimator() -> MotionEstimator {
-    MotionEstimator::new(R, T, ObserverGains::default()).expect("valid parameters")
+fn estimator<S: Scalar>() -> MotionEstimator<S> {
+    MotionEstimator::new(S::of(R), S::of(T), ObserverGains::default()).expect("valid parameters")
 }
 
 /// Weights of the paper's size; what they say does not matter for the time.
@@ -75,8 +76,8 @@ fn network() -> Network {
     Network::new(shape, scaling, weights).expect("a valid network")
 }
 
-fn bench(c: &mut Criterion, name: &str, mut law: impl Compensator) {
-    let cycles = cycles();
+fn bench<S: Scalar>(c: &mut Criterion, name: &str, mut law: impl Compensator<S>) {
+    let cycles: Vec<Sample<S>> = cycles().iter().map(Sample::cast).collect();
     let mut next = 0;
     c.bench_function(name, |b| {
         b.iter(|| {
@@ -87,8 +88,9 @@ fn bench(c: &mut Criterion, name: &str, mut law: impl Compensator) {
 }
 
 fn corrections(c: &mut Criterion) {
-    bench(c, "none", NoCompensation);
-    bench(c, "friction feedforward", friction());
+    bench::<f64>(c, "none", NoCompensation);
+    bench(c, "friction feedforward", friction::<f64>());
+    bench(c, "friction feedforward, f32", friction::<f32>());
     let poles = [0.9, 0.8, 0.7, 0.6];
     for order in [1, 2, 4] {
         let coefficients = [1e-7; 4];
@@ -96,6 +98,8 @@ fn corrections(c: &mut Criterion) {
             .expect("stable poles");
         let name = format!("transfer function, order {order}");
         bench(c, &name, TransferFunction::new(model));
+        let single = model.cast::<f32>().expect("stable poles");
+        bench(c, &format!("{name}, f32"), TransferFunction::new(single));
     }
     let predictor = || cfnn::Predictor::<4, 1>::new(network()).expect("four inputs, one output");
     let compensation = || NetworkCompensation::new(predictor(), estimator());
@@ -103,7 +107,7 @@ fn corrections(c: &mut Criterion) {
     bench(
         c,
         "network 4-34-19-8-1 and friction",
-        Combined::new(compensation(), friction()),
+        Combined::new(compensation(), friction::<f64>()),
     );
     single(c);
 }
@@ -122,7 +126,15 @@ fn single(c: &mut Criterion) {
     bench(
         c,
         "network 4-34-19-8-1, f32, borrowed weights",
-        NetworkCompensation::new(model, estimator()),
+        NetworkCompensation::new(model, estimator::<f64>()),
+    );
+    bench(
+        c,
+        "network 4-34-19-8-1 and friction, all f32",
+        Combined::new(
+            NetworkCompensation::new(model, estimator::<f32>()),
+            friction::<f32>(),
+        ),
     );
 }
 

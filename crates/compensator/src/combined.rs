@@ -1,5 +1,7 @@
 //! Two strategies at once.
 
+use scalar::Scalar;
+
 use crate::{Compensator, Correction, Sample};
 
 /// The sum of two strategies' corrections; nest it for more.
@@ -9,20 +11,25 @@ pub struct Combined<A, B> {
     second: B,
 }
 
-impl<A: Compensator, B: Compensator> Combined<A, B> {
-    /// Adds the corrections of both.
+impl<A, B> Combined<A, B> {
+    /// Adds the corrections of both, which compute in the same scalar.
     pub fn new(first: A, second: B) -> Self {
         Self { first, second }
     }
 }
 
-impl<A: Compensator, B: Compensator> Compensator for Combined<A, B> {
+impl<T, A, B> Compensator<T> for Combined<A, B>
+where
+    T: Scalar,
+    A: Compensator<T>,
+    B: Compensator<T>,
+{
     fn reset(&mut self) {
         self.first.reset();
         self.second.reset();
     }
 
-    fn correct(&mut self, sample: &Sample) -> Correction {
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
         let (a, b) = (self.first.correct(sample), self.second.correct(sample));
         Correction {
             position: a.position + b.position,

@@ -1,5 +1,6 @@
 //! What can be wrong with a strategy's settings.
 
+use scalar::Scalar;
 use thiserror::Error;
 
 /// Why a strategy could not be made.
@@ -11,7 +12,7 @@ pub enum CompensatorError {
     Setting {
         /// Name of the setting.
         name: &'static str,
-        /// The value given.
+        /// The value given, exactly, whatever the scalar.
         value: f64,
         /// What would be valid.
         valid: &'static str,
@@ -29,26 +30,35 @@ pub enum CompensatorError {
 }
 
 /// Refuses what lies outside a range; `inside` is false for NaN.
-pub(crate) fn require(
+pub(crate) fn require<T: Scalar>(
     inside: bool,
     name: &'static str,
-    value: f64,
+    value: T,
     valid: &'static str,
-) -> Result<f64, CompensatorError> {
+) -> Result<T, CompensatorError> {
     if inside {
         return Ok(value);
     }
-    Err(CompensatorError::Setting { name, value, valid })
+    Err(CompensatorError::Setting {
+        name,
+        value: value.to_f64(),
+        valid,
+    })
+}
+
+/// Whether a value lies from `low` to `high`.
+pub(crate) fn within<T: Scalar>(value: T, low: f64, high: f64) -> bool {
+    (T::of(low)..=T::of(high)).contains(&value)
 }
 
 /// Refuses a transmission ratio (m/rad) that no axis has.
-pub(crate) fn travel_per_radian(value: f64) -> Result<f64, CompensatorError> {
-    let inside = (1e-9..=1e3).contains(&value);
+pub(crate) fn travel_per_radian<T: Scalar>(value: T) -> Result<T, CompensatorError> {
+    let inside = within(value, 1e-9, 1e3);
     require(inside, "travel_per_radian", value, "from 1e-9 to 1e3 m/rad")
 }
 
 /// Refuses a control period (s) that no controller has.
-pub(crate) fn period(value: f64) -> Result<f64, CompensatorError> {
-    let inside = (1e-9..=1e3).contains(&value);
+pub(crate) fn period<T: Scalar>(value: T) -> Result<T, CompensatorError> {
+    let inside = within(value, 1e-9, 1e3);
     require(inside, "period", value, "from 1e-9 to 1e3 s")
 }

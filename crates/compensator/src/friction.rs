@@ -1,8 +1,8 @@
 //! Feed-forward of the current that friction asks for.
 
-use lugre::LuGre;
+use lugre::{Exponential, LuGre};
 
-use crate::error::{self, require};
+use crate::error::{self, require, within};
 use crate::{Compensator, CompensatorError, Correction, Sample};
 
 /// LuGre friction along the reference velocity, divided by the torque constant.
@@ -11,16 +11,16 @@ use crate::{Compensator, CompensatorError, Correction, Sample};
 /// the feed-forward has no noise and closes no loop (Section 4.4, Fig. 8 of
 /// Liu et al. 2025, where K_T is the torque constant).
 #[derive(Clone, Copy, Debug)]
-pub struct FrictionFeedforward {
-    law: LuGre,
-    per_travel: f64,
-    per_torque: f64,
-    period: f64,
-    bristle: f64,
-    speed: f64,
+pub struct FrictionFeedforward<T = f64> {
+    law: LuGre<T>,
+    per_travel: T,
+    per_torque: T,
+    period: T,
+    bristle: T,
+    speed: T,
 }
 
-impl FrictionFeedforward {
+impl<T: Exponential> FrictionFeedforward<T> {
     /// Friction `law` at the screw (N·m over rad/s); `travel_per_radian`
     /// r = lead/2π (from 1e-9 to 1e3 m/rad); `torque_constant` K_t (from 1e-9
     /// to 1e9 N·m/A); control `period` (from 1e-9 to 1e3 s).
@@ -28,32 +28,32 @@ impl FrictionFeedforward {
     /// # Errors
     /// [`CompensatorError::Setting`] for a value outside its range.
     pub fn new(
-        law: LuGre,
-        travel_per_radian: f64,
-        torque_constant: f64,
-        period: f64,
+        law: LuGre<T>,
+        travel_per_radian: T,
+        torque_constant: T,
+        period: T,
     ) -> Result<Self, CompensatorError> {
-        let inside = (1e-9..=1e9).contains(&torque_constant);
+        let inside = within(torque_constant, 1e-9, 1e9);
         let valid = "from 1e-9 to 1e9 N·m/A";
         let torque_constant = require(inside, "torque_constant", torque_constant, valid)?;
         Ok(Self {
             law,
-            per_travel: 1.0 / error::travel_per_radian(travel_per_radian)?,
-            per_torque: 1.0 / torque_constant,
+            per_travel: T::ONE / error::travel_per_radian(travel_per_radian)?,
+            per_torque: T::ONE / torque_constant,
             period: error::period(period)?,
-            bristle: 0.0,
-            speed: 0.0,
+            bristle: T::ZERO,
+            speed: T::ZERO,
         })
     }
 }
 
-impl Compensator for FrictionFeedforward {
+impl<T: Exponential> Compensator<T> for FrictionFeedforward<T> {
     fn reset(&mut self) {
-        self.bristle = 0.0;
-        self.speed = 0.0;
+        self.bristle = T::ZERO;
+        self.speed = T::ZERO;
     }
 
-    fn correct(&mut self, sample: &Sample) -> Correction {
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
         let speed = sample.reference.velocity * self.per_travel;
         let (bristle, torque) = self
             .law
@@ -61,7 +61,7 @@ impl Compensator for FrictionFeedforward {
         self.bristle = bristle;
         self.speed = speed;
         Correction {
-            position: 0.0,
+            position: T::ZERO,
             iq: torque * self.per_torque,
         }
     }

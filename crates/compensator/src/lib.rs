@@ -24,6 +24,10 @@
 //! [`MotionEstimator`]: motor speed, set right by the scale. The linear model
 //! comes from `identify_transfer_function` (feature `identify`, least squares).
 //!
+//! All are generic over their scalar: `f64` where none is named, `f32` for a
+//! controller without double precision in hardware; identification and
+//! [`cfnn::Network`] are in `f64`, and `cast` takes their results over.
+//!
 //! Everything but the identification works without `std`, and nothing is
 //! allocated in a cycle. The crate knows nothing of the simulator: no inner
 //! state of a plant comes in. It does not read or write files, plan motions,
@@ -65,6 +69,8 @@ mod friction;
 mod identify;
 mod network;
 mod none;
+mod remainder;
+mod sample;
 mod transfer_function;
 
 pub use combined::Combined;
@@ -77,60 +83,27 @@ pub use identify::{
 };
 pub use network::{IncrementModel, NetworkCompensation};
 pub use none::NoCompensation;
+pub use sample::{Correction, Reference, Sample};
 pub use transfer_function::{MAX_ORDER, TransferFunction, TransferFunctionModel};
 
-/// The reference motion at one instant. SI units, table side.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Reference {
-    /// Position, m.
-    pub position: f64,
-    /// Velocity, m/s.
-    pub velocity: f64,
-    /// Acceleration, m/s².
-    pub acceleration: f64,
-}
-
-/// What a controller knows at the start of a control cycle.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sample {
-    /// Reference at this instant.
-    pub reference: Reference,
-    /// Reference one cycle ahead: known, because the motion is planned.
-    pub next_reference: Reference,
-    /// Measured table position, m.
-    pub position: f64,
-    /// Measured motor speed, rad/s.
-    pub motor_speed: f64,
-    /// Measured q current, A.
-    pub iq: f64,
-    /// q current that was commanded in the cycle before, A.
-    pub iq_command: f64,
-}
-
-/// What is added to the controller in this cycle.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Correction {
-    /// Added to the position error, m.
-    pub position: f64,
-    /// Added to the speed controller's current command, A.
-    pub iq: f64,
-}
-
 /// A correction strategy. It keeps its own estimates; a cycle cannot fail.
-pub trait Compensator {
+///
+/// `T` is the scalar that it computes in: `f64` where none is named, as in
+/// `dyn Compensator`, or `f32`.
+pub trait Compensator<T = f64> {
     /// Forgets everything; the next sample is the first of a motion from rest.
     fn reset(&mut self);
 
     /// The correction for the cycle that begins with `sample`.
-    fn correct(&mut self, sample: &Sample) -> Correction;
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T>;
 }
 
-impl<C: Compensator + ?Sized> Compensator for &mut C {
+impl<T, C: Compensator<T> + ?Sized> Compensator<T> for &mut C {
     fn reset(&mut self) {
         (**self).reset();
     }
 
-    fn correct(&mut self, sample: &Sample) -> Correction {
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
         (**self).correct(sample)
     }
 }

@@ -1,21 +1,25 @@
 //! The error at the end of the cycle, from a model of one cycle.
 
+use scalar::Scalar;
+
+use crate::remainder::remainder;
 use crate::{Compensator, Correction, MotionEstimator, Sample};
 
 /// A model of one control cycle: how far the table moves in it.
 ///
 /// Implemented for closures `|position, speed, acceleration, iq_command|`,
-/// for `cfnn::Predictor<4, 1>` (feature `alloc`) and for
-/// [`cfnn::FixedNetwork`] with 4 inputs and 1 output, in `f64` or `f32`
-/// (`f32` rounds the increment, 10 µm a cycle at 100 mm/s, not the position).
-pub trait IncrementModel {
+/// for `cfnn::Predictor<4, 1>` (feature `alloc`, `f64`) and for
+/// [`cfnn::FixedNetwork`] with 4 inputs and 1 output in `f64` or `f32`. One in
+/// `f32` also serves a law in `f64`: it rounds the increment, 10 µm a cycle at
+/// 100 mm/s, not the position.
+pub trait IncrementModel<T = f64> {
     /// S(k+1) − S(k) in m, from the table's position S (m), speed (m/s) and
     /// acceleration (m/s²) at t_k, and the q current command I_qr (A).
-    fn increment(&mut self, position: f64, speed: f64, acceleration: f64, iq_command: f64) -> f64;
+    fn increment(&mut self, position: T, speed: T, acceleration: T, iq_command: T) -> T;
 }
 
-impl<F: FnMut(f64, f64, f64, f64) -> f64> IncrementModel for F {
-    fn increment(&mut self, position: f64, speed: f64, acceleration: f64, iq_command: f64) -> f64 {
+impl<T, F: FnMut(T, T, T, T) -> T> IncrementModel<T> for F {
+    fn increment(&mut self, position: T, speed: T, acceleration: T, iq_command: T) -> T {
         self(position, speed, acceleration, iq_command)
     }
 }
@@ -28,8 +32,8 @@ impl IncrementModel for cfnn::Predictor<4, 1> {
     }
 }
 
-impl<const A: usize> IncrementModel for cfnn::FixedNetwork<'_, f64, 4, 1, A> {
-    fn increment(&mut self, position: f64, speed: f64, acceleration: f64, iq_command: f64) -> f64 {
+impl<T: cfnn::Real, const A: usize> IncrementModel<T> for cfnn::FixedNetwork<'_, T, 4, 1, A> {
+    fn increment(&mut self, position: T, speed: T, acceleration: T, iq_command: T) -> T {
         let [increment] = self.evaluate(&[position, speed, acceleration, iq_command]);
         increment
     }
@@ -54,15 +58,15 @@ impl<const A: usize> IncrementModel for cfnn::FixedNetwork<'_, f32, 4, 1, A> {
 /// I_qr is the command of the cycle before: the present one follows from the
 /// correction, which would close an algebraic loop.
 #[derive(Clone, Copy, Debug)]
-pub struct NetworkCompensation<M> {
+pub struct NetworkCompensation<M, T = f64> {
     model: M,
-    estimator: MotionEstimator,
+    estimator: MotionEstimator<T>,
 }
 
-impl<M: IncrementModel> NetworkCompensation<M> {
+impl<M: IncrementModel<T>, T: Scalar> NetworkCompensation<M, T> {
     /// Joins a model of one cycle and the estimator of its inputs; both must
     /// be made for the same control period.
-    pub fn new(model: M, estimator: MotionEstimator) -> Self {
+    pub fn new(model: M, estimator: MotionEstimator<T>) -> Self {
         Self { model, estimator }
     }
 
@@ -71,7 +75,7 @@ impl<M: IncrementModel> NetworkCompensation<M> {
     ///
     /// Call it, or [`Compensator::correct`], once a cycle: both move the
     /// estimator on.
-    pub fn predict_error(&mut self, sample: &Sample) -> f64 {
+    pub fn predict_error(&mut self, sample: &Sample<T>) -> T {
         let now = self.estimator.update(sample);
         let increment = self.model.increment(
             now.position,
@@ -80,7 +84,7 @@ impl<M: IncrementModel> NetworkCompensation<M> {
             sample.iq_command,
         );
         // Eq. (36)
-        sample.next_reference.position - (now.position + increment)
+        remainder(sample.next_reference.position, now.position, increment)
     }
 }
 
@@ -103,15 +107,15 @@ impl NetworkCompensation<cfnn::Predictor<4, 1>> {
     }
 }
 
-impl<M: IncrementModel> Compensator for NetworkCompensation<M> {
+impl<M: IncrementModel<T>, T: Scalar> Compensator<T> for NetworkCompensation<M, T> {
     fn reset(&mut self) {
         self.estimator.reset();
     }
 
-    fn correct(&mut self, sample: &Sample) -> Correction {
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
         Correction {
             position: self.predict_error(sample),
-            iq: 0.0,
+            iq: T::ZERO,
         }
     }
 }

@@ -1,15 +1,17 @@
 //! No compensation: the servo as it is.
 
+use scalar::Scalar;
+
 use crate::{Compensator, Correction, Sample};
 
 /// Corrects nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoCompensation;
 
-impl Compensator for NoCompensation {
+impl<T: Scalar> Compensator<T> for NoCompensation {
     fn reset(&mut self) {}
 
-    fn correct(&mut self, _: &Sample) -> Correction {
+    fn correct(&mut self, _: &Sample<T>) -> Correction<T> {
         Correction::default()
     }
 }

@@ -2,7 +2,9 @@
 
 use core::f64::consts::TAU;
 
-use crate::error::{self, require};
+use scalar::Scalar;
+
+use crate::error::{self, require, within};
 use crate::{Compensator, CompensatorError, Correction, Sample};
 
 /// Largest number of poles of a [`TransferFunctionModel`].
@@ -20,16 +22,16 @@ pub const MAX_ORDER: usize = 16;
 /// Laguerre's functions), so the model is linear in c and d, and stable
 /// whatever they are. Plain numbers, immutable; the caller stores them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TransferFunctionModel {
-    period: f64,
-    direct: f64,
+pub struct TransferFunctionModel<T = f64> {
+    period: T,
+    direct: T,
     order: usize,
-    poles: [f64; MAX_ORDER],
-    gains: [f64; MAX_ORDER],
-    coefficients: [f64; MAX_ORDER],
+    poles: [T; MAX_ORDER],
+    gains: [T; MAX_ORDER],
+    coefficients: [T; MAX_ORDER],
 }
 
-impl TransferFunctionModel {
+impl<T: Scalar> TransferFunctionModel<T> {
     /// Control `period` (from 1e-9 to 1e3 s), `direct` feed-through d (s²), real `poles` pᵢ (of
     /// z, one for each term) and `coefficients` cᵢ (s²).
     ///
@@ -39,10 +41,10 @@ impl TransferFunctionModel {
     /// outside −1 < p < 1, more than [`MAX_ORDER`] poles, or as many
     /// coefficients as there are not poles.
     pub fn new(
-        period: f64,
-        direct: f64,
-        poles: &[f64],
-        coefficients: &[f64],
+        period: T,
+        direct: T,
+        poles: &[T],
+        coefficients: &[T],
     ) -> Result<Self, CompensatorError> {
         let order = poles.len();
         let valid = "at most 16 poles";
@@ -54,27 +56,43 @@ impl TransferFunctionModel {
             period: error::period(period)?,
             direct: require(direct.is_finite(), "direct", direct, "finite")?,
             order,
-            poles: [0.0; MAX_ORDER],
-            gains: [0.0; MAX_ORDER],
-            coefficients: [0.0; MAX_ORDER],
+            poles: [T::ZERO; MAX_ORDER],
+            gains: [T::ZERO; MAX_ORDER],
+            coefficients: [T::ZERO; MAX_ORDER],
         };
         for (i, (&p, &c)) in poles.iter().zip(coefficients).enumerate() {
-            require(p.abs() < 1.0, "pole", p, "above -1 and below 1")?;
+            require(p.abs() < T::ONE, "pole", p, "above -1 and below 1")?;
             require(c.is_finite(), "coefficient", c, "finite")?;
             model.poles[i] = p;
-            model.gains[i] = libm::sqrt((1.0 - p) * (1.0 + p));
+            model.gains[i] = ((T::ONE - p) * (T::ONE + p)).sqrt();
             model.coefficients[i] = c;
         }
         Ok(model)
     }
 
+    /// The same model, each number rounded to the nearest of another scalar.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), where one has left its range by that: in `f32` a
+    /// pole above 1 − 3e-8 becomes 1, which is not settled.
+    pub fn cast<U: Scalar>(&self) -> Result<TransferFunctionModel<U>, CompensatorError> {
+        let cast = |value: T| U::of(value.to_f64());
+        let (poles, coefficients) = (self.poles.map(cast), self.coefficients.map(cast));
+        TransferFunctionModel::new(
+            cast(self.period),
+            cast(self.direct),
+            &poles[..self.order],
+            &coefficients[..self.order],
+        )
+    }
+
     /// Control period, s.
-    pub fn period(&self) -> f64 {
+    pub fn period(&self) -> T {
         self.period
     }
 
     /// Direct feed-through d, s².
-    pub fn direct(&self) -> f64 {
+    pub fn direct(&self) -> T {
         self.direct
     }
 
@@ -84,32 +102,32 @@ impl TransferFunctionModel {
     }
 
     /// Poles of z, in the order of the terms.
-    pub fn poles(&self) -> &[f64] {
+    pub fn poles(&self) -> &[T] {
         &self.poles[..self.order]
     }
 
     /// Coefficients cᵢ, s².
-    pub fn coefficients(&self) -> &[f64] {
+    pub fn coefficients(&self) -> &[T] {
         &self.coefficients[..self.order]
     }
 
     /// Error at constant acceleration, per acceleration, s².
     ///
     /// At constant velocity the model's error is always zero.
-    pub fn dc_gain(&self) -> f64 {
-        self.response(0.0).0
+    pub fn dc_gain(&self) -> T {
+        self.response(T::ZERO).0
     }
 
     /// Real and imaginary part (s²) of H at `frequency` (Hz); NaN where that
     /// is not finite.
-    pub fn response(&self, frequency: f64) -> (f64, f64) {
-        let (sin, cos) = libm::sincos(TAU * frequency * self.period);
+    pub fn response(&self, frequency: T) -> (T, T) {
+        let (sin, cos) = (T::of(TAU) * frequency * self.period).sin_cos();
         let delay = (cos, -sin); // z⁻¹
-        let mut chain = (1.0, 0.0);
-        let mut sum = (self.direct, 0.0);
+        let mut chain = (T::ONE, T::ZERO);
+        let mut sum = (self.direct, T::ZERO);
         for i in 0..self.order {
             let p = self.poles[i];
-            let section = divide(chain, (1.0 - p * delay.0, -p * delay.1));
+            let section = divide(chain, (T::ONE - p * delay.0, -p * delay.1));
             let weight = self.coefficients[i] * self.gains[i];
             sum = (sum.0 + weight * section.0, sum.1 + weight * section.1);
             chain = multiply(section, (delay.0 - p, delay.1));
@@ -120,14 +138,14 @@ impl TransferFunctionModel {
     /// The errors (m) that a reference acceleration (m/s², one value a cycle,
     /// from rest) causes; each at the instant of its acceleration.
     #[cfg(feature = "alloc")]
-    pub fn simulate(&self, acceleration: &[f64]) -> alloc::vec::Vec<f64> {
+    pub fn simulate(&self, acceleration: &[T]) -> alloc::vec::Vec<T> {
         let mut state = Sections::default();
         let error = |&a| self.output(&mut state, a);
         acceleration.iter().map(error).collect()
     }
 
     /// One cycle of the filter.
-    fn output(&self, state: &mut Sections, acceleration: f64) -> f64 {
+    fn output(&self, state: &mut Sections<T>, acceleration: T) -> T {
         let mut error = self.direct * acceleration;
         state.advance(self.poles(), acceleration, |i, section| {
             error += self.coefficients[i] * self.gains[i] * section;
@@ -136,23 +154,23 @@ impl TransferFunctionModel {
     }
 }
 
-fn multiply(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+fn multiply<T: Scalar>(a: (T, T), b: (T, T)) -> (T, T) {
     (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
 }
 
-fn divide(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
-    let scale = 1.0 / (b.0 * b.0 + b.1 * b.1);
+fn divide<T: Scalar>(a: (T, T), b: (T, T)) -> (T, T) {
+    let scale = T::ONE / (b.0 * b.0 + b.1 * b.1);
     multiply(a, (b.0 * scale, -b.1 * scale))
 }
 
 /// The filter's memory: one number a section.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Sections([f64; MAX_ORDER]);
+pub(crate) struct Sections<T>([T; MAX_ORDER]);
 
-impl Sections {
+impl<T: Scalar> Sections<T> {
     /// Moves every section on by one cycle and shows its new value, which is
     /// Bᵢ's output without the factor √(1 − pᵢ²).
-    pub(crate) fn advance(&mut self, poles: &[f64], input: f64, mut show: impl FnMut(usize, f64)) {
+    pub(crate) fn advance(&mut self, poles: &[T], input: T, mut show: impl FnMut(usize, T)) {
         let mut chain = input;
         for (i, (section, &p)) in self.0.iter_mut().zip(poles).enumerate() {
             let last = *section;
@@ -169,19 +187,19 @@ impl Sections {
 /// At t_k the reference of t_{k+1} is known, so the correction is ê(k+1). It
 /// depends on the reference only: no noise, no loop closed.
 #[derive(Clone, Copy, Debug)]
-pub struct TransferFunction {
-    model: TransferFunctionModel,
-    lead: f64,
-    state: Sections,
-    last: Option<f64>,
+pub struct TransferFunction<T = f64> {
+    model: TransferFunctionModel<T>,
+    lead: T,
+    state: Sections<T>,
+    last: Option<T>,
 }
 
-impl TransferFunction {
+impl<T: Scalar> TransferFunction<T> {
     /// Adds ê(k+1) to the position error.
-    pub fn new(model: TransferFunctionModel) -> Self {
+    pub fn new(model: TransferFunctionModel<T>) -> Self {
         Self {
             model,
-            lead: 0.0,
+            lead: T::ZERO,
             state: Sections::default(),
             last: None,
         }
@@ -196,10 +214,10 @@ impl TransferFunction {
     /// # Errors
     /// [`CompensatorError::Setting`] unless `lead_time` lies from 0 to 1e3 s.
     pub fn with_lead(
-        model: TransferFunctionModel,
-        lead_time: f64,
+        model: TransferFunctionModel<T>,
+        lead_time: T,
     ) -> Result<Self, CompensatorError> {
-        let inside = (0.0..=1e3).contains(&lead_time);
+        let inside = within(lead_time, 0.0, 1e3);
         let lead = require(inside, "lead_time", lead_time, "from 0 to 1e3 s")?;
         Ok(Self {
             lead,
@@ -208,7 +226,7 @@ impl TransferFunction {
     }
 
     /// The model.
-    pub fn model(&self) -> &TransferFunctionModel {
+    pub fn model(&self) -> &TransferFunctionModel<T> {
         &self.model
     }
 
@@ -217,12 +235,12 @@ impl TransferFunction {
     ///
     /// Call it, or [`Compensator::correct`], once a cycle: both move the
     /// filter on.
-    pub fn predict_error(&mut self, sample: &Sample) -> f64 {
+    pub fn predict_error(&mut self, sample: &Sample<T>) -> T {
         self.step(sample).0
     }
 
     /// ê(k+1) and ê(k).
-    fn step(&mut self, sample: &Sample) -> (f64, f64) {
+    fn step(&mut self, sample: &Sample<T>) -> (T, T) {
         let present = match self.last {
             Some(error) => error,
             None => self
@@ -237,17 +255,17 @@ impl TransferFunction {
     }
 }
 
-impl Compensator for TransferFunction {
+impl<T: Scalar> Compensator<T> for TransferFunction<T> {
     fn reset(&mut self) {
         self.state = Sections::default();
         self.last = None;
     }
 
-    fn correct(&mut self, sample: &Sample) -> Correction {
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
         let (next, present) = self.step(sample);
         Correction {
             position: next + self.lead / self.model.period * (next - present),
-            iq: 0.0,
+            iq: T::ZERO,
         }
     }
 }

@@ -3,18 +3,19 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use lugre::{LuGre, Parameters};
+use lugre::{Exponential, LuGre, Parameters};
 
 const PAPER: Parameters = Parameters::LIU_2025;
 
 /// A chain of steps, each waiting for the one before, as in a simulation.
 /// The time shown is that of 1000 steps.
-fn chain(c: &mut Criterion, name: &str, from: f64, to: f64, h: f64) {
-    let law = LuGre::new(black_box(PAPER)).expect("the paper's law is valid");
-    let increment = (to - from) / 1000.0;
+fn chain<T: Exponential>(c: &mut Criterion, name: &str, [from, to, h]: [f64; 3]) {
+    let law = LuGre::new(black_box(PAPER).cast::<T>()).expect("the paper's law is valid");
+    let increment = T::of((to - from) / 1000.0);
+    let (from, h) = (T::of(from), T::of(h));
     c.bench_function(&format!("1000 step_torque, {name}"), |b| {
         b.iter(|| {
-            let (mut z, mut w, mut sum) = (0.0, black_box(from), 0.0);
+            let (mut z, mut w, mut sum) = (T::ZERO, black_box(from), T::ZERO);
             for _ in 0..1000 {
                 let next = w + increment;
                 let (z1, torque) = law.step_torque(z, w, next, black_box(h));
@@ -87,7 +88,8 @@ fn steps(c: &mut Criterion) {
         ("Stribeck 0.1 to 10 rad/s", 0.1, 10.0, 25e-6),
         ("stiff 60 to 190 rad/s, 1 ms", 60.0, 190.0, 1e-3),
     ] {
-        chain(c, name, from, to, h);
+        chain::<f64>(c, name, [from, to, h]);
+        chain::<f32>(c, &format!("f32, {name}"), [from, to, h]);
         compare(c, name, from, to, h);
     }
 }

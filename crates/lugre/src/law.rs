@@ -1,56 +1,67 @@
 //! The validated law: equations (1) to (4) of the crate page.
 
-use crate::exponential::exp_minus;
+use crate::exponential::Exponential;
 use crate::parameters::{LugreError, Parameters};
 
-/// A validated friction law: immutable, 104 bytes, free to copy.
+/// A validated friction law: immutable, 13 numbers (52 bytes in `f32`), free to
+/// copy.
 ///
 /// The bristle deflection `z` is the caller's, so that snapshots, several
 /// contacts and Monte Carlo runs need nothing from this type. No method
 /// fails or allocates; a NaN in gives a NaN out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "Parameters", into = "Parameters"))]
-pub struct LuGre {
-    parameters: Parameters,
+#[cfg_attr(
+    feature = "serde",
+    serde(try_from = "Parameters<T>", into = "Parameters<T>")
+)]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: Exponential + serde::Serialize",
+        deserialize = "T: Exponential + serde::Deserialize<'de>"
+    ))
+)]
+pub struct LuGre<T = f64> {
+    parameters: Parameters<T>,
     /// σ0 of the bristles; 0 where they carry nothing.
-    stiffness: f64,
+    stiffness: T,
     /// 1 / σ0, rad/(N·m).
-    compliance: f64,
+    compliance: T,
     /// T_S − T_C, N·m.
-    rise: f64,
+    rise: T,
     /// 1 / Ω_S, s/rad.
-    per_stribeck_speed: f64,
+    per_stribeck_speed: T,
     /// |ω| from which the level rounds to T_C, rad/s.
-    flat_above: f64,
+    flat_above: T,
     /// T_C / σ0, rad.
-    coulomb_bristle: f64,
+    coulomb_bristle: T,
     /// σ0 / T_C, 1/rad.
-    coulomb_decay: f64,
+    coulomb_decay: T,
 }
 
-impl LuGre {
+impl<T: Exponential> LuGre<T> {
     /// Validates the parameters and prepares what the hot path needs.
     ///
     /// # Errors
     /// [`LugreError`] as by [`Parameters::validate`].
-    pub fn new(parameters: Parameters) -> Result<Self, LugreError> {
+    pub fn new(parameters: Parameters<T>) -> Result<Self, LugreError> {
         parameters.validate()?;
         // Without any level the bristles carry nothing, in the limit
         // T_C → 0: z stays 0 and only σ2 ω is left.
-        let null = parameters.stiction == 0.0;
-        let stiffness = if null { 0.0 } else { parameters.stiffness };
-        let compliance = if null { 0.0 } else { 1.0 / stiffness };
+        let null = parameters.stiction == T::ZERO;
+        let stiffness = if null { T::ZERO } else { parameters.stiffness };
+        let compliance = if null { T::ZERO } else { T::ONE / stiffness };
         Ok(Self {
             parameters,
             stiffness,
             compliance,
             rise: parameters.stiction - parameters.coulomb,
-            per_stribeck_speed: 1.0 / parameters.stribeck_speed,
+            per_stribeck_speed: T::ONE / parameters.stribeck_speed,
             flat_above: flat_above(&parameters),
             coulomb_bristle: parameters.coulomb * compliance,
             coulomb_decay: if null {
-                0.0
+                T::ZERO
             } else {
                 stiffness / parameters.coulomb
             },
@@ -59,14 +70,14 @@ impl LuGre {
 
     /// The parameters that the law was made from.
     #[must_use]
-    pub fn parameters(&self) -> Parameters {
+    pub fn parameters(&self) -> Parameters<T> {
         self.parameters
     }
 
     /// `G(ω)`, equation (2), N·m; between `T_C` and `T_S`.
     #[must_use]
     #[inline]
-    pub fn level(&self, speed: f64) -> f64 {
+    pub fn level(&self, speed: T) -> T {
         let speed = speed.abs();
         if speed >= self.flat_above {
             self.parameters.coulomb
@@ -78,16 +89,16 @@ impl LuGre {
     /// The speed |ω| in rad/s from which [`level`](Self::level) is `T_C` to
     /// the last bit, so that no exponential is computed.
     #[must_use]
-    pub fn flat_above(&self) -> f64 {
+    pub fn flat_above(&self) -> T {
         self.flat_above
     }
 
     /// `T_ss(ω) = G(ω) sign ω + σ2 ω`, equation (4), N·m; 0 at rest.
     #[must_use]
     #[inline]
-    pub fn steady_state(&self, speed: f64) -> f64 {
-        if speed == 0.0 {
-            return 0.0;
+    pub fn steady_state(&self, speed: T) -> T {
+        if speed == T::ZERO {
+            return T::ZERO;
         }
         self.level(speed).copysign(speed) + self.parameters.viscous * speed
     }
@@ -97,23 +108,23 @@ impl LuGre {
     /// [`bristle_limit`](Self::bristle_limit) is steady.
     #[must_use]
     #[inline]
-    pub fn steady_bristle(&self, speed: f64) -> f64 {
-        if speed == 0.0 {
-            return 0.0;
+    pub fn steady_bristle(&self, speed: T) -> T {
+        if speed == T::ZERO {
+            return T::ZERO;
         }
         self.curve(speed.abs()).0.copysign(speed)
     }
 
     /// `T_S / σ0`, rad: no motion drives |z| beyond it from inside.
     #[must_use]
-    pub fn bristle_limit(&self) -> f64 {
+    pub fn bristle_limit(&self) -> T {
         self.parameters.stiction * self.compliance
     }
 
     /// `dz/dt`, equation (1), rad/s.
     #[must_use]
     #[inline]
-    pub fn rate(&self, z: f64, speed: f64) -> f64 {
+    pub fn rate(&self, z: T, speed: T) -> T {
         let (bristle, decay) = self.curve(speed.abs());
         decay * speed.abs() * (bristle.copysign(speed) - z)
     }
@@ -121,7 +132,7 @@ impl LuGre {
     /// `T_f`, equation (3), N·m.
     #[must_use]
     #[inline]
-    pub fn torque(&self, z: f64, speed: f64) -> f64 {
+    pub fn torque(&self, z: T, speed: T) -> T {
         self.stiffness * z
             + self.parameters.damping * self.rate(z, speed)
             + self.parameters.viscous * speed
@@ -129,7 +140,7 @@ impl LuGre {
 
     /// `σ0`, or 0 where the bristles carry nothing.
     #[inline]
-    pub(crate) fn bristle_stiffness(&self) -> f64 {
+    pub(crate) fn bristle_stiffness(&self) -> T {
         self.stiffness
     }
 
@@ -137,7 +148,7 @@ impl LuGre {
     /// relaxation per rad of sliding. Written with these two, equation (1)
     /// reads `dz/dt = |ω| σ0/G · (G/σ0 sign ω − z)`.
     #[inline(always)]
-    pub(crate) fn curve(&self, speed: f64) -> (f64, f64) {
+    pub(crate) fn curve(&self, speed: T) -> (T, T) {
         if speed >= self.flat_above {
             (self.coulomb_bristle, self.coulomb_decay)
         } else {
@@ -147,9 +158,9 @@ impl LuGre {
     }
 
     #[inline(always)]
-    fn falling_level(&self, speed: f64) -> f64 {
+    fn falling_level(&self, speed: T) -> T {
         let x = speed * self.per_stribeck_speed;
-        let level = self.parameters.coulomb + self.rise * exp_minus(x * x);
+        let level = self.parameters.coulomb + self.rise * (x * x).exp_minus();
         // T_C + (T_S − T_C) may round to above T_S. Written so that NaN stays.
         if level > self.parameters.stiction {
             self.parameters.stiction
@@ -163,33 +174,32 @@ impl LuGre {
 /// to `T_C`.
 ///
 /// A positive addend is lost when it is below half the spacing of the numbers
-/// above `T_C`, which is more than `2^{−54} T_C`. So it is lost from
-/// `u = ln((T_S − T_C)/T_C) + 54 ln 2` on. The margin of 1e-6 pays for the
-/// rounding of this function, of `u` (2 ulp of at most 750) and of the
-/// exponential.
-fn flat_above(p: &Parameters) -> f64 {
+/// above `T_C`, which is more than `ε/4 T_C` (`2^{−54} T_C` in `f64`). So it is
+/// lost from `u = ln((T_S − T_C)/T_C) + ln(4/ε)` on. [`Exponential::MARGIN`]
+/// pays for the rounding of this function, of `u` and of the exponential.
+fn flat_above<T: Exponential>(p: &Parameters<T>) -> T {
     let rise = p.stiction - p.coulomb;
-    if rise <= 0.0 {
-        return 0.0;
+    if rise <= T::ZERO {
+        return T::ZERO;
     }
-    let u = libm::log(rise / p.coulomb) + 54.0 * core::f64::consts::LN_2 + 1e-6;
-    if u <= 0.0 {
-        0.0
+    let u = (rise / p.coulomb).ln() + T::LOST + T::MARGIN;
+    if u <= T::ZERO {
+        T::ZERO
     } else {
-        p.stribeck_speed * libm::sqrt(u)
+        p.stribeck_speed * u.sqrt()
     }
 }
 
-impl TryFrom<Parameters> for LuGre {
+impl<T: Exponential> TryFrom<Parameters<T>> for LuGre<T> {
     type Error = LugreError;
 
-    fn try_from(parameters: Parameters) -> Result<Self, LugreError> {
+    fn try_from(parameters: Parameters<T>) -> Result<Self, LugreError> {
         Self::new(parameters)
     }
 }
 
-impl From<LuGre> for Parameters {
-    fn from(law: LuGre) -> Self {
+impl<T> From<LuGre<T>> for Parameters<T> {
+    fn from(law: LuGre<T>) -> Self {
         law.parameters
     }
 }

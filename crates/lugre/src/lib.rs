@@ -47,6 +47,12 @@
 //! # Ok::<(), lugre::LugreError>(())
 //! ```
 //!
+//! # Scalar
+//! The law is generic over its scalar: `f64` where none is named, `f32` for a
+//! controller without double precision in hardware. [`Exponential`] has what
+//! the two need apart. Identification is in `f64`, and
+//! [`Parameters::cast`] takes its result over.
+//!
 //! # Features
 //! Without features the crate is `no_std` and allocates nothing. `identify`
 //! (on by default, needs `std`) finds the six parameters from records, see
@@ -68,5 +74,6 @@ mod passivity;
 mod sliding;
 mod step;
 
+pub use exponential::Exponential;
 pub use law::LuGre;
 pub use parameters::{LugreError, Parameters};

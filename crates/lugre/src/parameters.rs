@@ -1,6 +1,9 @@
 //! The six numbers of the law, and which of them make a law.
 
+use scalar::Scalar;
 use thiserror::Error;
+
+use crate::exponential::Exponential;
 
 /// The six parameters of equations (1) to (3) of the crate page.
 ///
@@ -10,19 +13,19 @@ use thiserror::Error;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-pub struct Parameters {
+pub struct Parameters<T = f64> {
     /// `T_C`, the Coulomb level reached at high speed, N·m.
-    pub coulomb: f64,
+    pub coulomb: T,
     /// `T_S`, the level at vanishing speed (break-away), N·m; at least `T_C`.
-    pub stiction: f64,
+    pub stiction: T,
     /// `Ω_S`, the Stribeck speed at which 37 % of `T_S − T_C` is left, rad/s.
-    pub stribeck_speed: f64,
+    pub stribeck_speed: T,
     /// `σ0`, the bristle stiffness, N·m/rad.
-    pub stiffness: f64,
+    pub stiffness: T,
     /// `σ1`, the bristle damping, N·m·s/rad.
-    pub damping: f64,
+    pub damping: T,
     /// `σ2`, the viscous coefficient, N·m·s/rad.
-    pub viscous: f64,
+    pub viscous: T,
 }
 
 /// Why [`Parameters`] make no law.
@@ -34,7 +37,7 @@ pub enum LugreError {
     Invalid {
         /// The field of [`Parameters`].
         field: &'static str,
-        /// The value found.
+        /// The value found, exactly, whatever the scalar.
         value: f64,
         /// What would be accepted.
         valid: &'static str,
@@ -70,7 +73,35 @@ impl Parameters {
         damping: 0.1593 / RPM,
         viscous: 0.0003 / RPM,
     };
+}
 
+impl<T: Scalar> Parameters<T> {
+    /// The same parameters, each rounded to the nearest number of another
+    /// scalar; one beyond its range becomes infinite, which
+    /// [`validate`](Self::validate) refuses.
+    ///
+    /// ```
+    /// use lugre::{LuGre, Parameters};
+    ///
+    /// let law = LuGre::new(Parameters::LIU_2025.cast::<f32>())?;
+    /// assert_eq!(law.level(0.0), 0.7653_f32);
+    /// # Ok::<(), lugre::LugreError>(())
+    /// ```
+    #[must_use]
+    pub fn cast<U: Scalar>(&self) -> Parameters<U> {
+        let cast = |value: T| U::of(value.to_f64());
+        Parameters {
+            coulomb: cast(self.coulomb),
+            stiction: cast(self.stiction),
+            stribeck_speed: cast(self.stribeck_speed),
+            stiffness: cast(self.stiffness),
+            damping: cast(self.damping),
+            viscous: cast(self.viscous),
+        }
+    }
+}
+
+impl<T: Exponential> Parameters<T> {
     /// Checks every field.
     ///
     /// # Errors
@@ -78,11 +109,12 @@ impl Parameters {
     /// may be zero only together with `stiction`: a level that vanishes at
     /// high speed alone makes the relaxation of equation (1) infinitely fast.
     /// The deflections `coulomb / stiffness` and `stiction / stiffness` must
-    /// lie between 1e-150 and 1e150 rad, so that no step overflows.
+    /// lie between 1e-150 and 1e150 rad (1e-18 and 1e18 in `f32`), so that no
+    /// step overflows.
     pub fn validate(&self) -> Result<(), LugreError> {
         const NOT_NEGATIVE: &str = "finite and at least 0";
         const POSITIVE: &str = "finite and greater than 0";
-        let null = self.coulomb == 0.0 && self.stiction == 0.0;
+        let null = self.coulomb == T::ZERO && self.stiction == T::ZERO;
         let stiffness_valid = if null { NOT_NEGATIVE } else { POSITIVE };
         let coulomb_valid = if null {
             NOT_NEGATIVE
@@ -97,38 +129,38 @@ impl Parameters {
         check("viscous", self.viscous, NOT_NEGATIVE, true)?;
         if self.stiction < self.coulomb {
             return Err(LugreError::StictionBelowCoulomb {
-                stiction: self.stiction,
-                coulomb: self.coulomb,
+                stiction: self.stiction.to_f64(),
+                coulomb: self.coulomb.to_f64(),
             });
         }
         let deflections = [self.coulomb, self.stiction].map(|level| level / self.stiffness);
-        if !null && !deflections.iter().all(|z| (1e-150..=1e150).contains(z)) {
+        let (least, greatest) = T::DEFLECTIONS;
+        if !null && !deflections.iter().all(|z| (least..=greatest).contains(z)) {
             return Err(LugreError::Invalid {
                 field: "stiffness",
-                value: self.stiffness,
-                valid: "such that `coulomb` and `stiction` divided by it are between 1e-150 and \
-                        1e150 rad",
+                value: self.stiffness.to_f64(),
+                valid: T::VALID_STIFFNESS,
             });
         }
         Ok(())
     }
 }
 
-fn check(
+fn check<T: Scalar>(
     field: &'static str,
-    value: f64,
+    value: T,
     valid: &'static str,
     zero_allowed: bool,
 ) -> Result<(), LugreError> {
     // Subnormal numbers are refused too: their reciprocals overflow, and the
     // hot path divides by none of them afterwards.
-    let positive = value.is_normal() && value > 0.0;
-    if positive || (zero_allowed && value == 0.0) {
+    let positive = value >= T::MIN_POSITIVE && value.is_finite();
+    if positive || (zero_allowed && value == T::ZERO) {
         Ok(())
     } else {
         Err(LugreError::Invalid {
             field,
-            value,
+            value: value.to_f64(),
             valid,
         })
     }

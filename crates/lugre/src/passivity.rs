@@ -1,13 +1,14 @@
 //! Where the law takes energy, and where it can give some back.
 
+use crate::exponential::Exponential;
 use crate::law::LuGre;
 
-impl LuGre {
+impl<T: Exponential> LuGre<T> {
     /// The energy stored in the bristles, `σ0 z² / 2`, J.
     #[must_use]
     #[inline]
-    pub fn stored_energy(&self, z: f64) -> f64 {
-        0.5 * self.bristle_stiffness() * z * z
+    pub fn stored_energy(&self, z: T) -> T {
+        T::HALF * self.bristle_stiffness() * z * z
     }
 
     /// `σ2 − σ1 (T_S − T_C) / T_C`, N·m·s/rad. The law is passive from speed
@@ -24,9 +25,9 @@ impl LuGre {
     ///
     /// and `u ≤ T_S / T_C` on the states that can be reached.
     #[must_use]
-    pub fn passivity_margin(&self) -> f64 {
+    pub fn passivity_margin(&self) -> T {
         let p = self.parameters();
-        if self.bristle_stiffness() == 0.0 {
+        if self.bristle_stiffness() == T::ZERO {
             return p.viscous;
         }
         p.viscous - p.damping * (p.stiction - p.coulomb) / p.coulomb
@@ -36,7 +37,7 @@ impl LuGre {
     /// [`passivity_margin`](Self::passivity_margin).
     #[must_use]
     pub fn is_passive(&self) -> bool {
-        self.passivity_margin() >= 0.0
+        self.passivity_margin() >= T::ZERO
     }
 
     /// The speed in rad/s up to which the law is passive from every state:
@@ -45,11 +46,11 @@ impl LuGre {
     /// Olsson et al. (European Journal of Control 4(3), 1998,
     /// doi 10.1016/S0947-3580(98)70113-X) let `σ1` fall with the speed.
     #[must_use]
-    pub fn passive_below(&self) -> f64 {
+    pub fn passive_below(&self) -> T {
         let p = self.parameters();
-        if self.bristle_stiffness() == 0.0 || p.damping == 0.0 {
-            return f64::INFINITY;
+        if self.bristle_stiffness() == T::ZERO || p.damping == T::ZERO {
+            return T::INFINITY;
         }
-        4.0 * (p.damping + p.viscous) * p.coulomb / (p.damping * p.damping)
+        T::of(4.0) * (p.damping + p.viscous) * p.coulomb / (p.damping * p.damping)
     }
 }

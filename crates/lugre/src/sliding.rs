@@ -1,8 +1,9 @@
 //! Small oscillations about steady sliding.
 
+use crate::exponential::Exponential;
 use crate::law::LuGre;
 
-impl LuGre {
+impl<T: Exponential> LuGre<T> {
     /// The damping, N·m·s/rad, that a small oscillation of the speed with the
     /// angular frequency `frequency` (rad/s) about the steady speed `speed`
     /// meets: the real part of `δT_f/δω`. Negative: friction feeds it.
@@ -26,23 +27,23 @@ impl LuGre {
     /// At rest there is no steady sliding: the bristles are a spring beside
     /// their damping, and the result is `σ1 + σ2`.
     #[must_use]
-    pub fn vibration_damping(&self, speed: f64, frequency: f64) -> f64 {
+    pub fn vibration_damping(&self, speed: T, frequency: T) -> T {
         let p = self.parameters();
         let speed = speed.abs();
         let level = self.level(speed);
-        if level == 0.0 || speed == 0.0 {
-            let bristle_damping = if level == 0.0 { 0.0 } else { p.damping };
+        if level == T::ZERO || speed == T::ZERO {
+            let bristle_damping = if level == T::ZERO { T::ZERO } else { p.damping };
             return p.viscous + bristle_damping;
         }
         // G'(|ω|) = −2 |ω| (G − T_C) / Ω_S²
-        let slope = -2.0 * (speed / p.stribeck_speed) * ((level - p.coulomb) / p.stribeck_speed);
-        if slope == 0.0 {
+        let slope = -T::TWO * (speed / p.stribeck_speed) * ((level - p.coulomb) / p.stribeck_speed);
+        if slope == T::ZERO {
             return p.viscous;
         }
         // The share 1/(1 + (Ω τ)²) of the slow limit, without overflow.
         let turns = frequency * (level / p.stiffness) / speed;
-        let slow = 1.0 / (1.0 + turns * turns);
+        let slow = T::ONE / (T::ONE + turns * turns);
         let kappa = p.damping * speed / level;
-        p.viscous + slope * (slow + kappa * (1.0 - slow))
+        p.viscous + slope * (slow + kappa * (T::ONE - slow))
     }
 }

@@ -74,4 +74,23 @@ proptest! {
         prop_assert!(law.step(z, w, w, h).abs() <= bound);
         prop_assert!(law.step(z, w, -w, h).abs() <= bound);
     }
+
+    /// The same in `f32`, with what its range leaves of such numbers.
+    #[test]
+    fn single_precision_keeps_its_bound(
+        p in parameters(), [z, w0, w1, h] in prop::array::uniform4(any_number()),
+        share in -1.0f32..1.0, w in -1e3f32..1e3, step in 0.0f32..1e3,
+    ) {
+        let Ok(law) = LuGre::new(p.cast::<f32>()) else { return Ok(()); };
+        let [z, w0, w1, h] = [z, w0, w1, h].map(|x| x as f32);
+        let _ = (law.step_torque(z, w0, w1, h), law.step_impulse(z, w0, w1, h));
+        let _ = (law.passive_below(), law.vibration_damping(w0, w1));
+        let p = law.parameters();
+        prop_assert!(w0.is_nan() || (p.coulomb..=p.stiction).contains(&law.level(w0)));
+        let bound = law.bristle_limit();
+        prop_assert!(bound.is_finite());
+        prop_assert_eq!(law.step(share * bound, 0.0, 0.0, step), share * bound);
+        prop_assert!(law.step(share * bound, w, w, step).abs() <= bound);
+        prop_assert!(law.step(share * bound, w, -w, step).abs() <= bound);
+    }
 }

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use trajectories::{Chirp, Limits, Motion, Program, SCurve, Setpoint, Sine, Step, Sweep};
+use trajectories::{Chirp, Limits, Motion, Program, Real, SCurve, Setpoint, Sine, Step, Sweep};
 
 /// Instants per pass: enough that no branch predictor learns a random order by heart.
 const INSTANTS: usize = 100_000;
@@ -34,6 +34,10 @@ fn plan(c: &mut Criterion) {
             });
         });
     }
+    let single = limits().cast::<f32>().expect("positive");
+    group.bench_function("all limits, f32", |b| {
+        b.iter(|| SCurve::plan(black_box(0.6_f32), black_box(0.9), black_box(&single)));
+    });
     group.bench_function("all limits, limits checked anew", |b| {
         b.iter(|| {
             let limits = Limits::new(black_box(0.1), black_box(0.225), black_box(1.2))?;
@@ -100,16 +104,24 @@ fn sample(c: &mut Criterion) {
     sample_motion(c, "sample program of five steps", &program);
     sample_motion(c, "sample sine", &sine);
     sample_motion(c, "sample logarithmic chirp", &chirp);
+    let single = limits.cast::<f32>().expect("valid");
+    let single = SCurve::plan(0.6, 0.9, &single).expect("valid");
+    sample_motion(c, "sample S-curve, f32", &single);
+    let single = sine.cast::<f32>().expect("valid");
+    sample_motion(c, "sample sine, f32", &single);
+    let single = chirp.cast::<f32>().expect("valid");
+    sample_motion(c, "sample logarithmic chirp, f32", &single);
 }
 
-fn sample_motion<M: Motion>(c: &mut Criterion, name: &str, motion: &M) {
+fn sample_motion<T: Real, M: Motion<T>>(c: &mut Criterion, name: &str, motion: &M) {
     let mut group = c.benchmark_group(name);
     group.throughput(Throughput::Elements(INSTANTS as u64));
-    let in_order: Vec<f64> = (0..INSTANTS)
-        .map(|i| motion.duration() * i as f64 / INSTANTS as f64)
+    let duration = motion.duration().to_f64();
+    let in_order: Vec<T> = (0..INSTANTS)
+        .map(|i| T::of(duration * i as f64 / INSTANTS as f64))
         .collect();
-    let at_random: Vec<f64> = random()
-        .map(|u| motion.duration() * u)
+    let at_random: Vec<T> = random()
+        .map(|u| T::of(duration * u))
         .take(INSTANTS)
         .collect();
     for (order, instants) in [("in order", &in_order), ("at random", &at_random)] {
@@ -119,8 +131,8 @@ fn sample_motion<M: Motion>(c: &mut Criterion, name: &str, motion: &M) {
 }
 
 /// Uses position, velocity and acceleration of each setpoint, so that none is left out.
-fn sum<M: Motion>(motion: &M, instants: &[f64]) -> f64 {
-    let mut total = 0.0;
+fn sum<T: Real, M: Motion<T>>(motion: &M, instants: &[T]) -> T {
+    let mut total = T::ZERO;
     for &t in instants {
         let Setpoint {
             position,

@@ -1,5 +1,7 @@
 //! Why a motion was refused.
 
+use scalar::Scalar;
+
 use crate::maximum;
 
 /// Why limits, a step or a program were refused. All checks are made at construction: evaluation
@@ -12,18 +14,23 @@ pub enum TrajectoryError {
     Invalid {
         /// Name of the field, as in this crate's structs.
         field: &'static str,
-        /// The value given, in SI units.
+        /// The value given, in SI units, exactly, whatever the scalar.
         value: f64,
         /// SI unit of the value; empty for a pure number.
         unit: &'static str,
         /// What would be valid.
         valid: &'static str,
     },
-    /// Each value is valid alone, but the motion they describe overflows or underflows `f64`.
-    #[error("{what} does not fit a 64-bit float: the values given are too far apart in magnitude")]
+    /// Each value is valid alone, but the motion they describe overflows or underflows the
+    /// scalar.
+    #[error(
+        "{what} does not fit a {bits}-bit float: the values given are too far apart in magnitude"
+    )]
     Unrepresentable {
         /// The quantity that has no finite (or no non-zero) value.
         what: &'static str,
+        /// Size of the scalar, bits.
+        bits: usize,
     },
     /// A step of a program was refused.
     #[cfg(feature = "alloc")]
@@ -39,40 +46,46 @@ pub enum TrajectoryError {
 }
 
 /// `value` (m) if it lies within [`maximum::POSITION`] of zero.
-pub(crate) fn position(field: &'static str, value: f64) -> Result<f64, TrajectoryError> {
-    let inside = value.abs() <= maximum::POSITION;
+pub(crate) fn position<T: Scalar>(field: &'static str, value: T) -> Result<T, TrajectoryError> {
+    let inside = value.abs() <= T::of(maximum::POSITION);
     check(inside, field, value, "m", "from -1e6 to 1e6")
 }
 
 /// `value` (Hz) if it is a frequency of an oscillation.
-pub(crate) fn frequency(field: &'static str, value: f64) -> Result<f64, TrajectoryError> {
-    let inside = (1e-9..=maximum::FREQUENCY).contains(&value);
+pub(crate) fn frequency<T: Scalar>(field: &'static str, value: T) -> Result<T, TrajectoryError> {
+    let inside = (T::of(1e-9)..=T::of(maximum::FREQUENCY)).contains(&value);
     check(inside, field, value, "Hz", "from 1e-9 to 1e6")
 }
 
 /// `value` (s) if it is greater than zero and at most [`maximum::DURATION`].
-pub(crate) fn duration(value: f64) -> Result<f64, TrajectoryError> {
-    let inside = value > 0.0 && value <= maximum::DURATION;
+pub(crate) fn duration<T: Scalar>(value: T) -> Result<T, TrajectoryError> {
+    let inside = value > T::ZERO && value <= T::of(maximum::DURATION);
     let valid = "greater than zero and at most 1e7";
     check(inside, "duration", value, "s", valid)
 }
 
 /// `value` if `holds`, else an error that says what would be valid.
-pub(crate) fn check(
+pub(crate) fn check<T: Scalar>(
     holds: bool,
     field: &'static str,
-    value: f64,
+    value: T,
     unit: &'static str,
     valid: &'static str,
-) -> Result<f64, TrajectoryError> {
+) -> Result<T, TrajectoryError> {
     if holds {
         Ok(value)
     } else {
         Err(TrajectoryError::Invalid {
             field,
-            value,
+            value: value.to_f64(),
             unit,
             valid,
         })
     }
+}
+
+/// That `what` has no finite, or no non-zero, value in the scalar.
+pub(crate) fn unrepresentable<T>(what: &'static str) -> TrajectoryError {
+    let bits = 8 * size_of::<T>();
+    TrajectoryError::Unrepresentable { what, bits }
 }

@@ -1,33 +1,35 @@
 //! How far a motion goes in each quantity, for checks against an axis.
 
+use scalar::Scalar;
+
 /// Bounds on a motion over its whole time.
 ///
 /// For S-curves and dwells they are the values reached. For sines and chirps they are safe: never
 /// passed, but not all reached; for a sine at most 2 % above what is reached in acceleration and
 /// 10 % in jerk.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extremes {
+pub struct Extremes<T = f64> {
     /// Least position, m.
-    pub position_min: f64,
+    pub position_min: T,
     /// Greatest position, m.
-    pub position_max: f64,
+    pub position_max: T,
     /// Greatest |velocity|, m/s.
-    pub velocity: f64,
+    pub velocity: T,
     /// Greatest |acceleration|, m/s².
-    pub acceleration: f64,
+    pub acceleration: T,
     /// Greatest |jerk|, m/s³.
-    pub jerk: f64,
+    pub jerk: T,
 }
 
-impl Extremes {
+impl<T: Scalar> Extremes<T> {
     /// Standing still at `position` (m).
-    pub const fn at_rest(position: f64) -> Self {
+    pub const fn at_rest(position: T) -> Self {
         Self {
             position_min: position,
             position_max: position,
-            velocity: 0.0,
-            acceleration: 0.0,
-            jerk: 0.0,
+            velocity: T::ZERO,
+            acceleration: T::ZERO,
+            jerk: T::ZERO,
         }
     }
 

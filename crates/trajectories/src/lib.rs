@@ -16,13 +16,13 @@
 //! every case, those included that reach neither the speed nor the acceleration limit.
 //!
 //! A [`Program`] (feature `alloc`) chains such moves with dwells, sines and chirps, and both are
-//! [`Motion`]s: a duration in s and a [`Setpoint`] at any `t`, shapes `f64 -> (m, m/s, m/s², m/s³)`.
+//! [`Motion`]s: a duration in s and a [`Setpoint`] at any `t`, shapes `s -> (m, m/s, m/s², m/s³)`.
 //!
 //! ```
 //! use trajectories::{Limits, Motion, SCurve};
 //!
 //! // 300 mm at 100 mm/s, 225 mm/s² and 1200 mm/s³.
-//! let limits = Limits::new(0.1, 0.225, 1.2)?;
+//! let limits = Limits::<f64>::new(0.1, 0.225, 1.2)?;
 //! let curve = SCurve::plan(0.6, 0.9, &limits)?;
 //!
 //! // All limits are reached, so the time is d/V + V/A + A/J.
@@ -45,9 +45,14 @@
 //! instants. There is one axis and rest at both ends of each step: no blending between moves, no
 //! synchronisation of axes, no start from a state in motion.
 //!
+//! # Scalar
+//! All motions are generic over their scalar, planning included: `f64` where none is named, `f32`
+//! for a controller without double precision in hardware. Files are in `f64`; [`Program::cast`]
+//! plans what was read anew.
+//!
 //! # Features
 //! `std` (default) implies `alloc`; `alloc` gives [`Program`]; `serde` reads and writes programs
-//! and steps with keys in millimetres (see [`Step`]) and implies `alloc`. Without any of them the
+//! and steps in `f64` with keys in millimetres (see [`Step`]) and implies `alloc`. Without any of them the
 //! crate is `no_std` and allocates nothing.
 #![no_std]
 
@@ -66,6 +71,7 @@ mod oscillation;
 mod phases;
 #[cfg(feature = "alloc")]
 mod program;
+mod real;
 mod scurve;
 mod step;
 mod sweep;
@@ -77,6 +83,7 @@ pub use motion::{Motion, Setpoint};
 pub use oscillation::{Chirp, Oscillation, Sine};
 #[cfg(feature = "alloc")]
 pub use program::Program;
+pub use real::Real;
 pub use scurve::{SCurve, Segment};
 pub use step::Step;
 pub use sweep::Sweep;

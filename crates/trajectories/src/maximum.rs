@@ -18,7 +18,8 @@ pub const JERK: f64 = 1e15;
 pub const FREQUENCY: f64 = 1e6;
 /// Greatest duration of a step and of a whole program, s: 116 days.
 pub const DURATION: f64 = 1e7;
-/// Most cycles of one sine or chirp: above, the phase has lost a millionth of a cycle to rounding.
+/// Most cycles of one sine or chirp in `f64`: above, the phase has lost a millionth of a cycle to
+/// rounding. For `f32` see [`Real::MAX_CYCLES`](crate::Real::MAX_CYCLES).
 pub const CYCLES: f64 = 1e9;
 /// Most steps of a program: some 60 MB of planned moves.
 pub const STEPS: usize = 100_000;

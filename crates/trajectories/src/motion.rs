@@ -1,32 +1,36 @@
 //! What every motion of this crate offers: a duration, and a setpoint at any time.
 
+use scalar::Scalar;
+
 /// Reference state of an axis at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Setpoint {
+pub struct Setpoint<T = f64> {
     /// Position, m.
-    pub position: f64,
+    pub position: T,
     /// Velocity, m/s.
-    pub velocity: f64,
+    pub velocity: T,
     /// Acceleration, m/s².
-    pub acceleration: f64,
+    pub acceleration: T,
     /// Jerk, m/s³. Where it jumps, the value after the jump.
-    pub jerk: f64,
+    pub jerk: T,
 }
 
-impl Setpoint {
+impl<T: Scalar> Setpoint<T> {
     /// Standing still at `position` (m).
     #[inline]
-    pub const fn at_rest(position: f64) -> Self {
+    pub const fn at_rest(position: T) -> Self {
         Self {
             position,
-            velocity: 0.0,
-            acceleration: 0.0,
-            jerk: 0.0,
+            velocity: T::ZERO,
+            acceleration: T::ZERO,
+            jerk: T::ZERO,
         }
     }
 }
 
 /// A motion from rest to rest. Object safe.
+///
+/// `T` is the scalar that it computes in: `f64` where none is named, as in `dyn Motion`, or `f32`.
 ///
 /// ```
 /// use trajectories::{Limits, Motion, SCurve};
@@ -37,38 +41,38 @@ impl Setpoint {
 /// assert_eq!(motion.at(1e9).position, 0.1);
 /// # Ok::<(), trajectories::TrajectoryError>(())
 /// ```
-pub trait Motion {
+pub trait Motion<T = f64> {
     /// Time from the first to the last instant of the motion, s. Finite and not negative.
-    fn duration(&self) -> f64;
+    fn duration(&self) -> T;
 
     /// Setpoint at time `t` (s) after the start.
     ///
     /// For `t < 0` and for NaN it is rest at the start, for `t >= duration()` rest at the end,
     /// exactly. Any `t` is allowed, in any order; the result depends on `t` alone.
-    fn at(&self, t: f64) -> Setpoint;
+    fn at(&self, t: T) -> Setpoint<T>;
 }
 
-impl<M: Motion + ?Sized> Motion for &M {
+impl<T, M: Motion<T> + ?Sized> Motion<T> for &M {
     #[inline]
-    fn duration(&self) -> f64 {
+    fn duration(&self) -> T {
         (**self).duration()
     }
 
     #[inline]
-    fn at(&self, t: f64) -> Setpoint {
+    fn at(&self, t: T) -> Setpoint<T> {
         (**self).at(t)
     }
 }
 
 #[cfg(feature = "alloc")]
-impl<M: Motion + ?Sized> Motion for alloc::boxed::Box<M> {
+impl<T, M: Motion<T> + ?Sized> Motion<T> for alloc::boxed::Box<M> {
     #[inline]
-    fn duration(&self) -> f64 {
+    fn duration(&self) -> T {
         (**self).duration()
     }
 
     #[inline]
-    fn at(&self, t: f64) -> Setpoint {
+    fn at(&self, t: T) -> Setpoint<T> {
         (**self).at(t)
     }
 }

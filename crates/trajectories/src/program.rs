@@ -4,7 +4,9 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use crate::error::{check, position};
-use crate::{Extremes, Motion, Oscillation, SCurve, Setpoint, Step, TrajectoryError, maximum};
+use crate::{
+    Extremes, Motion, Oscillation, Real, SCurve, Setpoint, Step, TrajectoryError, maximum,
+};
 
 /// A motion made of [`Step`]s, planned once; evaluation finds the step by binary search.
 ///
@@ -25,41 +27,33 @@ use crate::{Extremes, Motion, Oscillation, SCurve, Setpoint, Step, TrajectoryErr
 /// # Ok::<(), trajectories::TrajectoryError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(
-        try_from = "crate::file::ProgramFile",
-        into = "crate::file::ProgramFile"
-    )
-)]
-pub struct Program {
-    start: f64,
-    steps: Vec<Step>,
-    pieces: Vec<Piece>,
+pub struct Program<T = f64> {
+    start: T,
+    steps: Vec<Step<T>>,
+    pieces: Vec<Piece<T>>,
     /// Start of each piece, s; kept apart from the pieces so that the search touches little memory.
-    times: Vec<f64>,
-    duration: f64,
-    extremes: Extremes,
+    times: Vec<T>,
+    duration: T,
+    extremes: Extremes<T>,
 }
 
 /// A planned step.
 #[derive(Clone, Debug, PartialEq)]
-enum Piece {
+enum Piece<T> {
     // Boxed: it is far larger than the others.
-    Curve(Box<SCurve>),
-    Rest { position: f64, duration: f64 },
-    Oscillation(Oscillation),
+    Curve(Box<SCurve<T>>),
+    Rest { position: T, duration: T },
+    Oscillation(Oscillation<T>),
 }
 
-impl Program {
+impl<T: Real> Program<T> {
     /// Plans `steps` from rest at `start` (m). No steps at all is a program of no duration.
     ///
     /// # Errors
     /// [`TrajectoryError::Invalid`] for a start beyond [`maximum::POSITION`] or more steps than
     /// [`maximum::STEPS`]; [`TrajectoryError::Step`] with the number of the step and what is wrong
     /// with it, such as a program that lasts longer than [`maximum::DURATION`] by its end.
-    pub fn new(start: f64, steps: Vec<Step>) -> Result<Self, TrajectoryError> {
+    pub fn new(start: T, steps: Vec<Step<T>>) -> Result<Self, TrajectoryError> {
         let mut present = position("start", start)?;
         let count = steps.len() as f64;
         let few = steps.len() <= maximum::STEPS;
@@ -91,41 +85,54 @@ impl Program {
         })
     }
 
+    /// The same steps planned in another scalar, from the nearest numbers to theirs.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), where a number has left its range by rounding.
+    pub fn cast<U: Real>(&self) -> Result<Program<U>, TrajectoryError> {
+        let steps = self
+            .steps
+            .iter()
+            .map(Step::cast)
+            .collect::<Result<_, _>>()?;
+        Program::new(U::of(self.start.to_f64()), steps)
+    }
+
     /// Position at the start, m.
-    pub const fn start(&self) -> f64 {
+    pub const fn start(&self) -> T {
         self.start
     }
 
     /// Position at the end, m.
-    pub fn end(&self) -> f64 {
+    pub fn end(&self) -> T {
         self.pieces.last().map_or(self.start, Piece::end)
     }
 
     /// The steps, as given.
-    pub fn steps(&self) -> &[Step] {
+    pub fn steps(&self) -> &[Step<T>] {
         &self.steps
     }
 
     /// Time at which each step begins, s; as many as there are steps.
-    pub fn step_times(&self) -> &[f64] {
+    pub fn step_times(&self) -> &[T] {
         &self.times
     }
 
     /// Bounds on position, velocity, acceleration and jerk: exact for moves and dwells, safe for
     /// sines and chirps.
-    pub const fn extremes(&self) -> Extremes {
+    pub const fn extremes(&self) -> Extremes<T> {
         self.extremes
     }
 }
 
-impl Motion for Program {
+impl<T: Real> Motion<T> for Program<T> {
     #[inline]
-    fn duration(&self) -> f64 {
+    fn duration(&self) -> T {
         self.duration
     }
 
     #[inline]
-    fn at(&self, t: f64) -> Setpoint {
+    fn at(&self, t: T) -> Setpoint<T> {
         if t >= self.duration {
             return Setpoint::at_rest(self.end());
         }
@@ -138,18 +145,18 @@ impl Motion for Program {
     }
 }
 
-impl Piece {
+impl<T: Real> Piece<T> {
     /// Plans one step from rest at `present`.
-    fn plan(present: f64, step: &Step) -> Result<Self, TrajectoryError> {
+    fn plan(present: T, step: &Step<T>) -> Result<Self, TrajectoryError> {
         Ok(match step {
             Step::Move { to, limits } => Self::Curve(Box::new(SCurve::plan(present, *to, limits)?)),
             Step::MoveBy { by, limits } => {
                 position("by", *by)?;
-                let to = position("end of the step", present + by)?;
+                let to = position("end of the step", present + *by)?;
                 Self::Curve(Box::new(SCurve::plan(present, to, limits)?))
             }
             Step::Dwell { duration } => {
-                let inside = (0.0..=maximum::DURATION).contains(duration);
+                let inside = (T::ZERO..=T::of(maximum::DURATION)).contains(duration);
                 check(inside, "duration", *duration, "s", "from 0 to 1e7")?;
                 Self::Rest {
                     position: present,
@@ -161,7 +168,7 @@ impl Piece {
         })
     }
 
-    fn duration(&self) -> f64 {
+    fn duration(&self) -> T {
         match self {
             Self::Curve(curve) => curve.duration(),
             Self::Rest { duration, .. } => *duration,
@@ -170,7 +177,7 @@ impl Piece {
     }
 
     #[inline]
-    fn at(&self, t: f64) -> Setpoint {
+    fn at(&self, t: T) -> Setpoint<T> {
         match self {
             Self::Curve(curve) => curve.at(t),
             Self::Rest { position, .. } => Setpoint::at_rest(*position),
@@ -178,7 +185,7 @@ impl Piece {
         }
     }
 
-    fn end(&self) -> f64 {
+    fn end(&self) -> T {
         match self {
             Self::Curve(curve) => curve.to(),
             Self::Rest { position, .. } => *position,
@@ -186,7 +193,7 @@ impl Piece {
         }
     }
 
-    fn extremes(&self) -> Extremes {
+    fn extremes(&self) -> Extremes<T> {
         match self {
             Self::Curve(curve) => curve.extremes(),
             Self::Rest { position, .. } => Extremes::at_rest(*position),
@@ -198,18 +205,18 @@ impl Piece {
 /// Sum of durations by Neumaier's compensated summation: after ten thousand steps the time is
 /// still right to rounding.
 #[derive(Default)]
-struct Clock {
-    sum: f64,
-    lost: f64,
+struct Clock<T> {
+    sum: T,
+    lost: T,
 }
 
-impl Clock {
-    fn now(&self) -> f64 {
+impl<T: Real> Clock<T> {
+    fn now(&self) -> T {
         self.sum + self.lost
     }
 
     /// Adds a duration (≥ 0) and returns the time before it.
-    fn advance(&mut self, duration: f64) -> Result<f64, TrajectoryError> {
+    fn advance(&mut self, duration: T) -> Result<T, TrajectoryError> {
         let begin = self.now();
         let sum = self.sum + duration;
         let (large, small) = if self.sum >= duration {
@@ -219,7 +226,7 @@ impl Clock {
         };
         self.lost += (large - sum) + small;
         self.sum = sum;
-        let short = self.now() <= maximum::DURATION;
+        let short = self.now() <= T::of(maximum::DURATION);
         let valid = "at most 1e7";
         check(short, "time at the end of the step", self.now(), "s", valid)?;
         Ok(begin)

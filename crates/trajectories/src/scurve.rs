@@ -1,18 +1,18 @@
 //! One rest-to-rest move: planned in closed form, evaluated by one cubic.
 
-use crate::error::{duration, position};
+use crate::error::{duration, position, unrepresentable};
 use crate::phases::Phases;
-use crate::{Extremes, Limits, Motion, Setpoint, TrajectoryError};
+use crate::{Extremes, Limits, Motion, Real, Setpoint, TrajectoryError};
 
 /// A stretch of constant jerk.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment {
+pub struct Segment<T = f64> {
     /// Time at which it begins, s after the start of the move.
-    pub start: f64,
+    pub start: T,
     /// Its length, s; may be zero.
-    pub duration: f64,
+    pub duration: T,
     /// The jerk during it, m/s³.
-    pub jerk: f64,
+    pub jerk: T,
 }
 
 /// A known state of a segment, and how to go on from it.
@@ -27,14 +27,14 @@ pub struct Segment {
 ///
 /// are the segment's parabola and cubic.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Knot {
-    origin: f64,
-    position: f64,
-    velocity: f64,
-    acceleration: f64,
-    jerk: f64,
-    velocity_share: f64,
-    position_share: f64,
+struct Knot<T> {
+    origin: T,
+    position: T,
+    velocity: T,
+    acceleration: T,
+    jerk: T,
+    velocity_share: T,
+    position_share: T,
 }
 
 /// Time-optimal jerk-limited move between two rests.
@@ -43,21 +43,21 @@ struct Knot {
 /// any `t`, in any order; no limit is passed and no position outside the two ends is given, not
 /// by rounding either.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SCurve {
+pub struct SCurve<T = f64> {
     /// Switching instants, s: 0, …, duration.
-    switches: [f64; 8],
-    knots: [Knot; 7],
-    from: f64,
-    to: f64,
+    switches: [T; 8],
+    knots: [Knot<T>; 7],
+    from: T,
+    to: T,
     /// Least position, velocity and acceleration of the move.
-    low: [f64; 3],
+    low: [T; 3],
     /// Greatest position, velocity and acceleration of the move.
-    high: [f64; 3],
+    high: [T; 3],
     /// Greatest |jerk| of the move.
-    jerk: f64,
+    jerk: T,
 }
 
-impl SCurve {
+impl<T: Real> SCurve<T> {
     /// The move in least time from rest at `from` (m) to rest at `to` (m) within `limits`.
     ///
     /// # Errors
@@ -65,34 +65,32 @@ impl SCurve {
     /// [`maximum`](crate::maximum), [`TrajectoryError::Unrepresentable`] if the duration overflows,
     /// or that of a true move underflows.
     #[inline]
-    pub fn plan(from: f64, to: f64, limits: &Limits) -> Result<Self, TrajectoryError> {
+    pub fn plan(from: T, to: T, limits: &Limits<T>) -> Result<Self, TrajectoryError> {
         position("from", from)?;
         position("to", to)?;
         let distance = (to - from).abs();
-        if distance == 0.0 {
+        if distance == T::ZERO {
             return Ok(Self::standing(to));
         }
         let phases = Phases::time_optimal(distance, limits);
         let switches = phases.switching_times();
-        if !(switches[7].is_finite() && switches[7] > 0.0) {
-            return Err(TrajectoryError::Unrepresentable {
-                what: "the duration of the move",
-            });
+        if !(switches[7].is_finite() && switches[7] > T::ZERO) {
+            return Err(unrepresentable::<T>("the duration of the move"));
         }
         duration(switches[7])?;
         Ok(Self::assemble(from, to, limits.jerk(), &phases, switches))
     }
 
     /// No move at all: the limits of zero displacement.
-    fn standing(position: f64) -> Self {
+    fn standing(position: T) -> Self {
         Self {
-            switches: [0.0; 8],
+            switches: [T::ZERO; 8],
             knots: [Knot::REST; 7],
             from: position,
             to: position,
-            low: [position, 0.0, 0.0],
-            high: [position, 0.0, 0.0],
-            jerk: 0.0,
+            low: [position, T::ZERO, T::ZERO],
+            high: [position, T::ZERO, T::ZERO],
+            jerk: T::ZERO,
         }
     }
 
@@ -103,36 +101,37 @@ impl SCurve {
     /// and 3 are evaluated backwards from their ends, 5 and 6 forwards from their starts: so all
     /// segments of full jerk are evaluated from where the acceleration is exactly zero.
     #[inline]
-    fn assemble(from: f64, to: f64, jerk: f64, phases: &Phases, switches: [f64; 8]) -> Self {
-        let sign = if to > from { 1.0 } else { -1.0 };
+    fn assemble(from: T, to: T, jerk: T, phases: &Phases<T>, switches: [T; 8]) -> Self {
+        let sign = if to > from { T::ONE } else { -T::ONE };
         let (tau, peak) = (phases.jerk_time, phases.velocity);
         // Without a cruise the two halves must meet in the middle.
-        let ramp_distance = if phases.cruise_time > 0.0 {
-            0.5 * peak * switches[3]
+        let ramp_distance = if phases.cruise_time > T::ZERO {
+            T::HALF * peak * switches[3]
         } else {
-            0.5 * (to - from).abs()
+            T::HALF * (to - from).abs()
         };
         // State at switches 2 and 5, where the acceleration begins to fall, or is fully negative.
-        let shoulder_velocity = peak - 0.5 * phases.acceleration * tau;
-        let shoulder_distance = ramp_distance - tau * (peak - phases.acceleration * tau / 6.0);
+        let shoulder_velocity = peak - T::HALF * phases.acceleration * tau;
+        let shoulder_distance =
+            ramp_distance - tau * (peak - phases.acceleration * tau / T::of(6.0));
 
         let pushed = |origin, position, velocity, jerk| Knot {
             origin,
             position,
             velocity: sign * velocity,
-            acceleration: 0.0,
+            acceleration: T::ZERO,
             jerk: sign * jerk,
-            velocity_share: 1.0 / 2.0,
-            position_share: 1.0 / 6.0,
+            velocity_share: T::HALF,
+            position_share: T::of(1.0 / 6.0),
         };
         let steady = |origin, position, velocity, acceleration| Knot {
             origin,
             position,
             velocity: sign * velocity,
             acceleration: sign * acceleration,
-            jerk: 0.0,
-            velocity_share: 1.0,
-            position_share: 1.0 / 2.0,
+            jerk: T::ZERO,
+            velocity_share: T::ONE,
+            position_share: T::HALF,
         };
         let a = phases.acceleration;
         let (begun, ended) = (from + sign * ramp_distance, to - sign * ramp_distance);
@@ -141,13 +140,13 @@ impl SCurve {
         Self {
             switches,
             knots: [
-                pushed(0.0, from, 0.0, jerk),
+                pushed(T::ZERO, from, T::ZERO, jerk),
                 steady(switches[2], rising, shoulder_velocity, a),
                 pushed(switches[3], begun, peak, -jerk),
-                steady(switches[3], begun, peak, 0.0),
+                steady(switches[3], begun, peak, T::ZERO),
                 pushed(switches[4], ended, peak, -jerk),
                 steady(switches[5], falling, shoulder_velocity, -a),
-                pushed(switches[7], to, 0.0, jerk),
+                pushed(switches[7], to, T::ZERO, jerk),
             ],
             from,
             to,
@@ -158,7 +157,7 @@ impl SCurve {
     }
 
     /// The seven segments in order, those of zero length included.
-    pub fn segments(&self) -> [Segment; 7] {
+    pub fn segments(&self) -> [Segment<T>; 7] {
         core::array::from_fn(|i| Segment {
             start: self.switches[i],
             duration: self.switches[i + 1] - self.switches[i],
@@ -169,37 +168,37 @@ impl SCurve {
     /// When the move runs at constant velocity: begin and end, s after its start.
     ///
     /// `None` if it never does.
-    pub fn cruise(&self) -> Option<(f64, f64)> {
+    pub fn cruise(&self) -> Option<(T, T)> {
         let (begin, end) = (self.switches[3], self.switches[4]);
         (end > begin).then_some((begin, end))
     }
 
     /// Position at the start, m.
     #[inline]
-    pub const fn from(&self) -> f64 {
+    pub const fn from(&self) -> T {
         self.from
     }
 
     /// Position at the end, m.
     #[inline]
-    pub const fn to(&self) -> f64 {
+    pub const fn to(&self) -> T {
         self.to
     }
 
     /// Greatest |velocity| reached, m/s.
     #[inline]
-    pub const fn peak_velocity(&self) -> f64 {
+    pub const fn peak_velocity(&self) -> T {
         self.high[1]
     }
 
     /// Greatest |acceleration| reached, m/s².
     #[inline]
-    pub const fn peak_acceleration(&self) -> f64 {
+    pub const fn peak_acceleration(&self) -> T {
         self.high[2]
     }
 
     /// Position range, and greatest velocity, acceleration and jerk reached.
-    pub const fn extremes(&self) -> Extremes {
+    pub const fn extremes(&self) -> Extremes<T> {
         Extremes {
             position_min: self.low[0],
             position_max: self.high[0],
@@ -210,18 +209,17 @@ impl SCurve {
     }
 }
 
-impl Motion for SCurve {
+impl<T: Real> Motion<T> for SCurve<T> {
     #[inline]
-    fn duration(&self) -> f64 {
+    fn duration(&self) -> T {
         self.switches[7]
     }
 
     #[inline]
-    fn at(&self, t: f64) -> Setpoint {
-        // The bits of numbers that are not negative order as the numbers do; a sign bit or NaN
-        // makes them greater than any duration. So one comparison finds the usual case, and all
-        // comparisons run beside the floating-point work instead of queueing with it.
-        if t.to_bits() < self.switches[7].to_bits() {
+    fn at(&self, t: T) -> Setpoint<T> {
+        // One comparison of integers finds the usual case, and all comparisons run beside the
+        // floating-point work instead of queueing with it.
+        if t.is_before(self.switches[7]) {
             self.during(t)
         } else {
             self.outside(t)
@@ -229,10 +227,10 @@ impl Motion for SCurve {
     }
 }
 
-impl SCurve {
+impl<T: Real> SCurve<T> {
     /// Setpoint at `t` in `[0, duration)`, sign bit clear.
     #[inline]
-    fn during(&self, t: f64) -> Setpoint {
+    fn during(&self, t: T) -> Setpoint<T> {
         let knot = &self.knots[self.segment(t)];
         let dt = t - knot.origin;
         let acceleration = knot.acceleration + dt * knot.jerk;
@@ -254,8 +252,8 @@ impl SCurve {
     /// sampled in order, and these are then foreseen; a search without branches measured half
     /// as slow again in order, and a little faster at random.
     #[inline]
-    fn segment(&self, t: f64) -> usize {
-        let before = |i: usize| t.to_bits() < self.switches[i].to_bits();
+    fn segment(&self, t: T) -> usize {
+        let before = |i: usize| t.is_before(self.switches[i]);
         match () {
             () if before(4) && !before(3) => 3,
             () if before(1) => 0,
@@ -271,16 +269,16 @@ impl SCurve {
     ///
     /// Calls nothing, lest the usual path had to save its registers for a call never made.
     #[inline]
-    fn outside(&self, t: f64) -> Setpoint {
+    fn outside(&self, t: T) -> Setpoint<T> {
         let after = t >= self.switches[7];
         Setpoint {
             position: if after { self.to } else { self.from },
-            velocity: 0.0,
-            acceleration: 0.0,
-            jerk: if t == 0.0 && !after {
+            velocity: T::ZERO,
+            acceleration: T::ZERO,
+            jerk: if t == T::ZERO && !after {
                 self.knots[0].jerk
             } else {
-                0.0
+                T::ZERO
             },
         }
     }
@@ -289,20 +287,20 @@ impl SCurve {
 /// `x` between `low` and `high`; two machine instructions, unlike `f64::clamp`, which must also
 /// check its bounds.
 #[inline]
-fn clamp(x: f64, low: f64, high: f64) -> f64 {
+fn clamp<T: Real>(x: T, low: T, high: T) -> T {
     let x = if x > low { x } else { low };
     if x < high { x } else { high }
 }
 
-impl Knot {
+impl<T: Real> Knot<T> {
     /// Stands for the segments of a move of no length, which no `t` falls into.
     const REST: Self = Self {
-        origin: 0.0,
-        position: 0.0,
-        velocity: 0.0,
-        acceleration: 0.0,
-        jerk: 0.0,
-        velocity_share: 0.0,
-        position_share: 0.0,
+        origin: T::ZERO,
+        position: T::ZERO,
+        velocity: T::ZERO,
+        acceleration: T::ZERO,
+        jerk: T::ZERO,
+        velocity_share: T::ZERO,
+        position_share: T::ZERO,
     };
 }

@@ -1,10 +1,12 @@
 //! The steps a motion program is made of.
 
-use crate::{Chirp, Limits, Sine};
+use scalar::Scalar;
+
+use crate::{Chirp, Limits, Sine, TrajectoryError};
 
 /// One step of a motion program. It begins at rest where the step before it ended.
 ///
-/// With the feature `serde` a step is read and written under the name of its kind, with one key
+/// With the feature `serde` a step in `f64` is read and written under the name of its kind, with one key
 /// per value and the unit in the key; unknown keys are refused:
 ///
 /// ```toml
@@ -23,38 +25,33 @@ use crate::{Chirp, Limits, Sine};
 /// chirp = { amplitude_mm = 0.1, from_frequency_hz = 1.0, to_frequency_hz = 100.0, duration_s = 10.0, ramp_s = 1.0, sweep = "logarithmic" }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(try_from = "crate::file::StepFile", into = "crate::file::StepFile")
-)]
-pub enum Step {
+pub enum Step<T = f64> {
     /// Time-optimal S-curve to a position of the axis. With a long travel, a constant-speed run.
     Move {
         /// Position to reach, m.
-        to: f64,
+        to: T,
         /// Limits of the move.
-        limits: Limits,
+        limits: Limits<T>,
     },
     /// Time-optimal S-curve over a distance from the present position.
     MoveBy {
         /// Signed distance, m.
-        by: f64,
+        by: T,
         /// Limits of the move.
-        limits: Limits,
+        limits: Limits<T>,
     },
     /// Standing still.
     Dwell {
         /// How long, s; from zero to [`maximum::DURATION`](crate::maximum::DURATION).
-        duration: f64,
+        duration: T,
     },
     /// Sine about the present position.
-    Sine(Sine),
+    Sine(Sine<T>),
     /// Chirp about the present position.
-    Chirp(Chirp),
+    Chirp(Chirp<T>),
 }
 
-impl Step {
+impl<T: Scalar> Step<T> {
     /// Name of the step's kind, as used in files and errors.
     pub const fn kind(&self) -> &'static str {
         match self {
@@ -64,5 +61,39 @@ impl Step {
             Self::Sine(_) => "sine",
             Self::Chirp(_) => "chirp",
         }
+    }
+
+    /// The same step, each number rounded to the nearest of another scalar.
+    ///
+    /// # Errors
+    /// As [`Limits::cast`].
+    pub fn cast<U: Scalar>(&self) -> Result<Step<U>, TrajectoryError> {
+        let cast = |value: T| U::of(value.to_f64());
+        Ok(match *self {
+            Self::Move { to, limits } => Step::Move {
+                to: cast(to),
+                limits: limits.cast()?,
+            },
+            Self::MoveBy { by, limits } => Step::MoveBy {
+                by: cast(by),
+                limits: limits.cast()?,
+            },
+            Self::Dwell { duration } => Step::Dwell {
+                duration: cast(duration),
+            },
+            Self::Sine(sine) => Step::Sine(Sine {
+                amplitude: cast(sine.amplitude),
+                frequency: cast(sine.frequency),
+                cycles: sine.cycles,
+            }),
+            Self::Chirp(chirp) => Step::Chirp(Chirp {
+                amplitude: cast(chirp.amplitude),
+                from_frequency: cast(chirp.from_frequency),
+                to_frequency: cast(chirp.to_frequency),
+                duration: cast(chirp.duration),
+                ramp: cast(chirp.ramp),
+                sweep: chirp.sweep,
+            }),
+        })
     }
 }

@@ -2,6 +2,8 @@
 
 use core::f64::consts::TAU;
 
+use crate::Real;
+
 /// Course of a chirp's frequency from its first to its last value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -16,19 +18,19 @@ pub enum Sweep {
 
 /// Phase of an oscillation, counted in cycles from 0 at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Phase {
+pub(crate) enum Phase<T> {
     /// Constant frequency, or one that changes at `slope` Hz/s.
-    Linear { frequency: f64, slope: f64 },
+    Linear { frequency: T, slope: T },
     /// Frequency that grows at the relative `rate` 1/s, not zero.
-    Exponential { frequency: f64, rate: f64 },
+    Exponential { frequency: T, rate: T },
 }
 
-impl Phase {
+impl<T: Real> Phase<T> {
     /// From frequency `f0` to `f1` (Hz, greater than zero) over `duration` (s).
-    pub fn new(f0: f64, f1: f64, duration: f64, sweep: Sweep) -> Self {
+    pub fn new(f0: T, f1: T, duration: T, sweep: Sweep) -> Self {
         // log1p keeps the digits of a ratio near one.
-        let rate = libm::log1p((f1 - f0) / f0) / duration;
-        if sweep == Sweep::Logarithmic && rate != 0.0 {
+        let rate = ((f1 - f0) / f0).ln_1p() / duration;
+        if sweep == Sweep::Logarithmic && rate != T::ZERO {
             return Self::Exponential {
                 frequency: f0,
                 rate,
@@ -42,10 +44,10 @@ impl Phase {
 
     /// Cycles passed at time `t` ≥ 0 (s).
     #[inline]
-    pub fn cycles(&self, t: f64) -> f64 {
+    pub fn cycles(&self, t: T) -> T {
         match *self {
-            Self::Linear { frequency, slope } => t * (frequency + 0.5 * slope * t),
-            Self::Exponential { frequency, rate } => frequency * libm::expm1(rate * t) / rate,
+            Self::Linear { frequency, slope } => t * (frequency + T::HALF * slope * t),
+            Self::Exponential { frequency, rate } => frequency * (rate * t).exp_m1() / rate,
         }
     }
 
@@ -53,11 +55,14 @@ impl Phase {
     ///
     /// Each is monotone in t, on which the bounds of an oscillation rely.
     #[inline]
-    pub fn derivatives(&self, t: f64) -> [f64; 3] {
+    pub fn derivatives(&self, t: T) -> [T; 3] {
+        let tau = T::of(TAU);
         match *self {
-            Self::Linear { frequency, slope } => [TAU * (frequency + slope * t), TAU * slope, 0.0],
+            Self::Linear { frequency, slope } => {
+                [tau * (frequency + slope * t), tau * slope, T::ZERO]
+            }
             Self::Exponential { frequency, rate } => {
-                let omega = TAU * frequency * libm::exp(rate * t);
+                let omega = tau * frequency * (rate * t).exp();
                 [omega, omega * rate, omega * rate * rate]
             }
         }
@@ -67,8 +72,8 @@ impl Phase {
     ///
     /// Whole cycles are dropped before multiplying by 2π, which keeps the digits of long runs.
     #[inline]
-    pub fn sin_cos(&self, t: f64) -> (f64, f64) {
+    pub fn sin_cos(&self, t: T) -> (T, T) {
         let cycles = self.cycles(t);
-        libm::sincos(TAU * (cycles - libm::floor(cycles)))
+        (cycles - cycles.floor()).sin_cos_turn()
     }
 }

@@ -243,7 +243,7 @@ fn chirps_count_the_right_cycles() {
 
 #[test]
 fn sweep_between_equal_frequencies_is_a_sine() {
-    let mut chirp = Chirp {
+    let mut chirp = Chirp::<f64> {
         amplitude: 1.0,
         from_frequency: 2.0,
         to_frequency: 2.0,

@@ -293,7 +293,8 @@ fn published_trajectories_reach_every_limit() {
 /// `python3 crates/trajectories/tests/golden/trajectory_1.py`.
 #[test]
 fn trajectory_1_matches_an_independent_program() {
-    let curve = SCurve::plan(0.6, 0.9, &Limits::new(0.1, 0.225, 1.2).unwrap()).unwrap();
+    let limits = Limits::<f64>::new(0.1, 0.225, 1.2).unwrap();
+    let curve = SCurve::plan(0.6, 0.9, &limits).unwrap();
     // 3 + 4/9 + 3/16 s; equal measured.
     assert!((curve.duration() - (3.0 + 4.0 / 9.0 + 3.0 / 16.0)).abs() <= 2.0 * f64::EPSILON);
     let expected = [

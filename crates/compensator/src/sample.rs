@@ -1,0 +1,82 @@
+//! What a controller knows in a cycle, and what it adds.
+
+use scalar::Scalar;
+
+/// The reference motion at one instant. SI units, table side.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reference<T = f64> {
+    /// Position, m.
+    pub position: T,
+    /// Velocity, m/s.
+    pub velocity: T,
+    /// Acceleration, m/s².
+    pub acceleration: T,
+}
+
+/// What a controller knows at the start of a control cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample<T = f64> {
+    /// Reference at this instant.
+    pub reference: Reference<T>,
+    /// Reference one cycle ahead: known, because the motion is planned.
+    pub next_reference: Reference<T>,
+    /// Measured table position, m.
+    pub position: T,
+    /// Measured motor speed, rad/s.
+    pub motor_speed: T,
+    /// Measured q current, A.
+    pub iq: T,
+    /// q current that was commanded in the cycle before, A.
+    pub iq_command: T,
+}
+
+/// What is added to the controller in this cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Correction<T = f64> {
+    /// Added to the position error, m.
+    pub position: T,
+    /// Added to the speed controller's current command, A.
+    pub iq: T,
+}
+
+impl<T: Scalar> Reference<T> {
+    /// Each value rounded to the nearest number of another scalar.
+    #[must_use]
+    pub fn cast<U: Scalar>(&self) -> Reference<U> {
+        Reference {
+            position: cast(self.position),
+            velocity: cast(self.velocity),
+            acceleration: cast(self.acceleration),
+        }
+    }
+}
+
+impl<T: Scalar> Sample<T> {
+    /// Each value rounded to the nearest number of another scalar.
+    #[must_use]
+    pub fn cast<U: Scalar>(&self) -> Sample<U> {
+        Sample {
+            reference: self.reference.cast(),
+            next_reference: self.next_reference.cast(),
+            position: cast(self.position),
+            motor_speed: cast(self.motor_speed),
+            iq: cast(self.iq),
+            iq_command: cast(self.iq_command),
+        }
+    }
+}
+
+impl<T: Scalar> Correction<T> {
+    /// Each value rounded to the nearest number of another scalar.
+    #[must_use]
+    pub fn cast<U: Scalar>(&self) -> Correction<U> {
+        Correction {
+            position: cast(self.position),
+            iq: cast(self.iq),
+        }
+    }
+}
+
+fn cast<T: Scalar, U: Scalar>(value: T) -> U {
+    U::of(value.to_f64())
+}
