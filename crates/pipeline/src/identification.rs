@@ -5,8 +5,8 @@ use axis_sim::effects::{Measure, Scales};
 use axis_sim::{Axis, ClosedLoop, Cycle};
 use compensator::NoCompensation;
 use lugre::identify::{
-    ConstantSpeedRun, Motion as Measured, PreslidingFit, PreslidingRecord, StaticFit,
-    identify_presliding, identify_static,
+    ConstantSpeedRun, IdentifyError, Motion as Measured, PreslidingFit, PreslidingRecord,
+    StaticFit, identify_coulomb, identify_presliding, identify_static,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -59,6 +59,12 @@ impl Default for IdentificationPlan {
     }
 }
 
+/// Speed from which the default's are above the Stribeck effect, m/s.
+const FAST: f64 = 0.02;
+
+/// Stribeck speed of the paper's axis at its table, m/s.
+const PAPER_STRIBECK: f64 = 4.3191e-3;
+
 /// Pre-sliding distance T_C/σ0 of the paper's axis at its table, m.
 const PAPER_PRESLIDING: f64 = 7.094e-5;
 
@@ -68,27 +74,37 @@ impl IdentificationPlan {
     /// those of the default.
     pub fn of(axis: &Axis) -> Self {
         let scales = Scales::of(axis);
+        let near_one = |ratio: f64| {
+            if (ratio - 1.0).abs() < 0.01 {
+                1.0
+            } else {
+                ratio
+            }
+        };
+        let lever = axis.friction.lever(axis.travel_per_radian());
+        let (own, unit) = (
+            axis.friction.law.parameters(),
+            axis.friction.unit.parameters(),
+        );
         // A run there takes a third of the stroke at most.
         let reach = 2.5 * scales.motion / 0.2;
         let of_speed = scales.ratio(Measure::Speed).min(reach);
-        let pace = of_speed / (scales.motion / 0.2);
-        let unit = axis.friction.unit.parameters();
-        let presliding = axis.friction.lever(axis.travel_per_radian()) / unit.stiffness;
-        let of_way = presliding / PAPER_PRESLIDING;
-        let of_way = if (of_way - 1.0).abs() < 0.01 {
-            1.0
-        } else {
-            of_way
+        // Slow speeds lie about the Stribeck speed, where there is one.
+        let of_slow = match own.stiction > own.coulomb {
+            true => near_one(lever * own.stribeck_speed / PAPER_STRIBECK).min(of_speed),
+            false => of_speed,
         };
+        let scaled = |&speed: &f64| speed * if speed < FAST { of_slow } else { of_speed };
+        let of_way = near_one(lever / unit.stiffness / PAPER_PRESLIDING);
+        let pace = of_speed / (scales.motion / 0.2);
+        // Ramps that the actuator has the force for.
+        let of_ramp = (of_speed * pace).min(scales.ratio(Measure::Acceleration));
         let plan = Self::default();
         Self {
-            speeds: plan.speeds.iter().map(|speed| speed * of_speed).collect(),
+            speeds: plan.speeds.iter().map(scaled).collect(),
             presliding_amplitude: of_way * plan.presliding_amplitude,
             settle_distance: of_way * plan.settle_distance,
-            ramps: [
-                plan.ramps[0] * of_speed * pace,
-                plan.ramps[1] * of_speed * pace * pace,
-            ],
+            ramps: [plan.ramps[0] * of_ramp, plan.ramps[1] * of_ramp * pace],
             ..plan
         }
     }
@@ -132,7 +148,7 @@ pub fn identify(
         })
         .collect();
     let runs = runs?;
-    let statics = identify_static(&runs)?;
+    let statics = statics(axis, &runs)?;
     let presliding = presliding_test(&closed_loop, plan, &statics)?;
     each();
     let parameters = statics
@@ -144,6 +160,19 @@ pub fn identify(
         presliding,
         parameters,
     })
+}
+
+/// The steady-state curve; without a fall with speed where the axis file's own friction has
+/// none, or the runs show none.
+fn statics(axis: &Axis, runs: &[ConstantSpeedRun]) -> Result<StaticFit, PipelineError> {
+    let own = axis.friction.law.parameters();
+    if own.stiction == own.coulomb {
+        return Ok(identify_coulomb(runs)?);
+    }
+    match identify_static(runs) {
+        Err(IdentifyError::NoStribeckEffect { .. }) => Ok(identify_coulomb(runs)?),
+        fit => Ok(fit?),
+    }
 }
 
 /// Bristles forget their past within some pre-sliding distances of sliding, the

@@ -116,6 +116,10 @@ pub fn modes(results: &Results) -> Section {
     let modes = &results.validation.modes;
     let x: Vec<f64> = modes.iter().map(|m| 1e3 * m.position_m).collect();
     let count = modes.first().map_or(0, |m| m.frequencies_hz.len());
+    if count == 0 {
+        return Section::new("Modes")
+            .paragraph("This mechanism moves as one with its motor: it has no natural frequency.");
+    }
     let mut figure = Figure::new("Natural frequencies", "table position, mm", "frequency, Hz")
         .log_y()
         .alt("Natural frequencies of the drive against the table's position");

@@ -3,7 +3,8 @@
 //! 1. Constant speeds, both directions, many speeds on either side of `Ω_S`:
 //!    [`ConstantSpeedRun::from_record`] condenses each record,
 //!    [`identify_static`] fits `T_C`, `T_S`, `Ω_S`, `σ2` of the steady-state
-//!    curve and leaves out runs in which the machine vibrated.
+//!    curve and leaves out runs in which the machine vibrated; where friction does not
+//!    fall with speed, [`identify_coulomb`] fits `T_C` and `σ2` alone.
 //! 2. Small to-and-fro motion about a standstill: [`identify_presliding`] fits
 //!    `σ0` and `σ1` by simulating the bristle along the measured motion.
 //!
@@ -11,6 +12,7 @@
 //! whatever sits between it and the sensors is for the caller to take out.
 //! The machine's inertia torque, too, where it is accelerating.
 
+mod coulomb;
 mod curve;
 mod error;
 mod estimate;
@@ -23,6 +25,7 @@ mod static_fit;
 mod statics;
 mod trial;
 
+pub use coulomb::identify_coulomb;
 pub use error::IdentifyError;
 pub use estimate::Estimate;
 pub use least_squares::Outcome;

@@ -76,7 +76,7 @@ pub fn identify_static_within(
     }
 }
 
-fn check_runs(runs: &[ConstantSpeedRun]) -> Result<(), IdentifyError> {
+pub(super) fn check_runs(runs: &[ConstantSpeedRun]) -> Result<(), IdentifyError> {
     const POSITIVE: &str = "greater than 0 and at most 1e100 (none where it is not known)";
     let bad = |index, quantity, value, valid| IdentifyError::BadNumber {
         quantity,
@@ -107,7 +107,7 @@ fn check_runs(runs: &[ConstantSpeedRun]) -> Result<(), IdentifyError> {
     Ok(())
 }
 
-fn select(runs: &[ConstantSpeedRun], limit: f64) -> (Vec<usize>, Vec<LeftOut>) {
+pub(super) fn select(runs: &[ConstantSpeedRun], limit: f64) -> (Vec<usize>, Vec<LeftOut>) {
     let (mut used, mut left_out) = (Vec::new(), Vec::new());
     for (run, r) in runs.iter().enumerate() {
         if r.is_at_rest() {
@@ -127,7 +127,7 @@ fn select(runs: &[ConstantSpeedRun], limit: f64) -> (Vec<usize>, Vec<LeftOut>) {
 }
 
 /// Different |speeds|; those within 1 % of the one before are taken as repeats.
-fn distinct_speeds(runs: &[ConstantSpeedRun]) -> Vec<f64> {
+pub(super) fn distinct_speeds(runs: &[ConstantSpeedRun]) -> Vec<f64> {
     let mut speeds: Vec<f64> = runs.iter().map(|r| r.speed.abs()).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup_by(|next, kept| *next <= 1.01 * *kept);
