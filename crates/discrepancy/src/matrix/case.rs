@@ -59,7 +59,7 @@ pub struct Case {
     pub hidden: Vec<HiddenEffect>,
     /// Motion.
     pub exercise: Exercise,
-    /// Noise, as a multiple of [`crate::hidden::Noise::GOOD`].
+    /// Noise, as a multiple of that of good sensors ([`crate::hidden::Noise::good`]).
     pub noise: f64,
     /// Share by which known parameters may be off.
     pub known_off: f64,

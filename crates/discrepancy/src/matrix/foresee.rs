@@ -46,7 +46,7 @@ pub struct Bench {
     nominal: Fit,
     known: Columns,
     pub(super) library: Arc<Library>,
-    /// Of noise at [`Noise::GOOD`].
+    /// Of good sensors' noise.
     whitener: Whitener,
     /// That noise, whitened: several runs.
     noise: Vec<DVector<f64>>,
@@ -74,7 +74,7 @@ impl Bench {
         let quiet = Hidden {
             effects: Vec::new(),
             shares: Vec::new(),
-            noise: Noise::GOOD.scaled(0.0),
+            noise: Noise::good(axis).scaled(0.0),
             seed: 0,
         };
         let template = |check: bool| -> Result<LogSet, BenchError> {
@@ -94,7 +94,8 @@ impl Bench {
         let known = fitter.known_columns(&nominal);
         let library = Arc::new(Library::new(&fitter, &nominal, known.clone()));
         let (state, quiet) = (&nominal.state, &nominal.traces);
-        let run = |seed| noise_on(&machine, state, &templates[0], quiet, Noise::GOOD, seed);
+        let good = Noise::good(axis);
+        let run = |seed| noise_on(&machine, state, &templates[0], quiet, good, seed);
         let layout = &templates[0].layout;
         let whitener = layout.whitener(&layout.spectral_matrices(&run(0)?));
         let noise = (1..=RUNS).into_par_iter().map(run);

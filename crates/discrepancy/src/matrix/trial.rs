@@ -127,7 +127,7 @@ impl Bench {
         Hidden {
             effects,
             shares: Vec::new(),
-            noise: Noise::GOOD.scaled(case.noise),
+            noise: Noise::good(&self.axis).scaled(case.noise),
             seed: case.seed,
         }
         .with_known_off_by(&self.axis, case.known_off)
