@@ -207,6 +207,13 @@ impl Axis {
         self.actuator.torque_constant(self.travel_per_radian())
     }
 
+    /// Whether the drive derives the motor's speed from what a sensor with errors shows:
+    /// the motor's, or the load's where motor and load are one.
+    pub fn derives_speed(&self) -> bool {
+        let of_load = matches!(self.sensors.load, LoadSensor::Fitted(_));
+        self.sensors.motor.is_some() || of_load && !self.mechanism.has_motor_encoder()
+    }
+
     /// Name of the load's position in logs.
     pub fn position_channel(&self) -> &'static str {
         match self.freedom() {

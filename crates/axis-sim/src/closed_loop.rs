@@ -23,7 +23,8 @@ pub struct ClosedLoop {
     axis: Axis,
     hooks: Hooks,
     plant: Arc<dyn Plant>,
-    seed: u64,
+    /// Seed of the sensors' noise, where they have some.
+    noise: Option<u64>,
 }
 
 /// A run between two cycles: everything that the next one depends on.
@@ -104,7 +105,15 @@ impl ClosedLoop {
     /// The loop with another seed of the sensors' noise; it is 0 otherwise.
     #[must_use]
     pub fn with_seed(mut self, seed: u64) -> Self {
-        self.seed = seed;
+        self.noise = Some(seed);
+        self
+    }
+
+    /// The loop with sensors that have neither noise nor steps: what a log is compared
+    /// with, as both of them differ from run to run.
+    #[must_use]
+    pub fn without_noise(mut self) -> Self {
+        self.noise = None;
         self
     }
 
@@ -134,7 +143,7 @@ impl ClosedLoop {
             plant,
             axis,
             hooks,
-            seed: 0,
+            noise: Some(0),
         })
     }
 
@@ -175,7 +184,10 @@ impl ClosedLoop {
         let effort = actuator.settle(self.plant.torque(start), seen.motor_speed);
 
         let sensing = |sensor: &crate::part::Part<dyn crate::sensor::Sensor>, stream, at, speed| {
-            let mut sensing = sensor.start(axis.period, self.seed.wrapping_mul(2) + stream);
+            let mut sensing = sensor.start(
+                axis.period,
+                self.noise.map(|seed| seed.wrapping_mul(2) + stream),
+            );
             sensing.settle(at, speed);
             sensing
         };
@@ -195,7 +207,7 @@ impl ClosedLoop {
             controller: axis.control.start(&on)?,
         };
         state.last_angle = self.angle_before(&state);
-        let measured = self.measure(&mut state.clone());
+        let measured = self.measure(&mut state.clone(), |_| ());
         state.controller.settle(effort, &measured, seen.speed);
         Ok(state)
     }
@@ -247,30 +259,33 @@ impl ClosedLoop {
         self.angle_shown(&mut before, load, angle).unwrap_or(angle)
     }
 
-    /// What the sensors show now.
-    fn measure(&self, state: &mut LoopState) -> Measured {
+    /// What the sensors show now, `sense` being shown their own readings before anything is
+    /// derived from them.
+    fn measure(&self, state: &mut LoopState, mut sense: impl FnMut(&mut Measured)) -> Measured {
         let travel = self.axis.travel_per_radian();
         let seen = *state.plant.seen();
         let load = state.load_sensor.as_mut().map(|s| s.read(seen.position));
-        let (mut angle, mut speed) = (seen.motor_angle, seen.motor_speed);
+        let motor = state.motor_sensor.as_mut().map(|s| s.read(seen.motor_angle));
+        let mut measured = self.hooks.sensors.show(Measured {
+            position: load.unwrap_or(seen.position),
+            motor_angle: motor.unwrap_or(seen.motor_angle),
+            motor_speed: seen.motor_speed,
+            current: state.actuator.electrical().current,
+        });
+        sense(&mut measured);
         // A drive knows the motor's speed from the angle that its sensor shows, or from
         // the load's where motor and load are one.
-        if let Some(shown) = self.angle_shown(state, load, seen.motor_angle) {
-            angle = shown;
-            speed = (angle - state.last_angle) / self.axis.period;
-            state.last_angle = angle;
+        if motor.is_none() && load.is_some() && !self.axis.mechanism.has_motor_encoder() {
+            measured.motor_angle = measured.position / travel;
         }
-        let position = match (load, &self.axis.sensors.load) {
-            (Some(shown), _) => shown,
-            (None, LoadSensor::Missing) => state.home + angle * travel,
-            (None, _) => seen.position,
-        };
-        self.hooks.sensors.show(Measured {
-            position,
-            motor_angle: angle,
-            motor_speed: speed,
-            current: state.actuator.electrical().current,
-        })
+        if self.axis.derives_speed() {
+            measured.motor_speed = (measured.motor_angle - state.last_angle) / self.axis.period;
+            state.last_angle = measured.motor_angle;
+        }
+        if matches!(self.axis.sensors.load, LoadSensor::Missing) {
+            measured.position = state.home + measured.motor_angle * travel;
+        }
+        measured
     }
 
     /// One control cycle: sample, correct, control, and let the machine run on until the
@@ -299,11 +314,10 @@ impl ClosedLoop {
         state: &mut LoopState,
         [reference, next]: [&Setpoint; 2],
         compensator: &mut (impl Compensator + ?Sized),
-        mut sense: impl FnMut(&mut Measured),
+        sense: impl FnMut(&mut Measured),
     ) -> Result<Cycle, crate::RunStopped> {
         // Sample.
-        let mut measured = self.measure(state);
-        sense(&mut measured);
+        let measured = self.measure(state, sense);
         let seen = *state.plant.seen();
         let current = state.actuator.electrical().current;
 
@@ -380,9 +394,9 @@ impl ClosedLoop {
         self.run_sensed(motion, compensator, |_| (), observe)
     }
 
-    /// As [`ClosedLoop::run`], with sensors: `sense` is shown what those of the axis
-    /// read in each cycle, and makes of it what the controller and the
-    /// log get to see (noise, quantisation).
+    /// As [`ClosedLoop::run`], with other sensors: `sense` is shown what those of the axis
+    /// read in each cycle (the motor's true speed, where that is derived from its angle
+    /// afterwards), and makes of it what the drive gets to read (noise, quantisation).
     pub fn run_sensed(
         &self,
         motion: &(impl Motion + ?Sized),

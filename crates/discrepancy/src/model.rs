@@ -169,7 +169,7 @@ impl LogSet {
         };
         let mut slow = known.clone();
         slow.effects.extend_from_slice(&state.effects);
-        let slow = ClosedLoop::exact(&slow, step)?;
+        let slow = ClosedLoop::exact(&slow, step)?.without_noise();
         let defects: Vec<Vec<Vec<f64>>> = self
             .logs
             .par_iter()

@@ -56,7 +56,11 @@ fn noise_at(axis: &Axis, set: &LogSet, rest: &Rest) -> Noise {
     Noise {
         position: level("position_m").max(level("position_rad")),
         angle: level("motor_angle_rad"),
-        speed: per(command, axis.control.speed_gain()),
+        // A speed that is derived from an angle has that angle's noise.
+        speed: match axis.derives_speed() {
+            true => 0.0,
+            false => per(command, axis.control.speed_gain()),
+        },
         current: per(level("ud_v"), axis.actuator.current_gain()),
     }
 }
@@ -118,7 +122,7 @@ pub(crate) fn floors(
     }
     let noise = noise_at(&axis, set, best);
     axis.effects.extend_from_slice(&state.effects);
-    let closed_loop = ClosedLoop::new(&axis)?;
+    let closed_loop = ClosedLoop::new(&axis)?.without_noise();
     let mut alone: Vec<Vec<Vec<f64>>> = vec![Vec::new(); set.channels.len()];
     for (seed, log) in set.logs.iter().enumerate() {
         let with = log
@@ -289,7 +293,7 @@ pub(crate) fn noise_on(
 ) -> Result<Amplitudes, ReplayError> {
     let mut axis = machine.with_known(&state.shares);
     axis.effects.extend_from_slice(&state.effects);
-    let closed_loop = ClosedLoop::new(&axis)?;
+    let closed_loop = ClosedLoop::new(&axis)?.without_noise();
     let run = |(log_seed, log): (usize, &Prepared)| {
         let sensors = noise.sensors(1000 * seed + log_seed as u64 + 1);
         log.replay.follow(&closed_loop, sensors)

@@ -68,6 +68,11 @@ impl Mechanism for Direct {
         Ok(Vec::new())
     }
 
+    /// The same method in short steps.
+    fn exact_step(&self) -> Option<f64> {
+        Some(2e-5)
+    }
+
     fn plant(&self, _: Way, step: f64, assembly: Assembly) -> Result<Arc<dyn Plant>, DriveError> {
         Ok(assembly.on(RigidStepper::new(&self.drive, step)?))
     }

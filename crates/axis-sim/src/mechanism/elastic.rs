@@ -94,6 +94,12 @@ impl Mechanism for Elastic {
         self.kinematic_error.clone()
     }
 
+    /// The same method in short steps: a resonance of 230 Hz is late by 0.2 % of its period in
+    /// steps of 100 µs.
+    fn exact_step(&self) -> Option<f64> {
+        Some(2e-5)
+    }
+
     fn plant(&self, _: Way, step: f64, assembly: Assembly) -> Result<Arc<dyn Plant>, DriveError> {
         Ok(assembly.on(ElasticStepper::new(&self.drive, step)?))
     }

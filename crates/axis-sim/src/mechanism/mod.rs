@@ -120,7 +120,8 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
         None
     }
 
-    /// Longest step of its exact way, s, where that is another than the fast one.
+    /// Longest step of its exact way, s, where that differs from the fast one, be it by the
+    /// step alone.
     fn exact_step(&self) -> Option<f64> {
         None
     }

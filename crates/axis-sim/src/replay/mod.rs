@@ -101,7 +101,8 @@ impl Replay {
         self.start
     }
 
-    /// Runs the reference through the axis, with `effects` beside its own.
+    /// Runs the reference through the axis, with `effects` beside its own, its sensors
+    /// without noise and steps.
     ///
     /// # Errors
     /// [`ReplayError`]: the axis cannot be set up, or its loop does not hold.
@@ -118,7 +119,7 @@ impl Replay {
                 self.attach(hooks, probe);
             }
         })?;
-        self.follow(&closed_loop, |_| ())
+        self.follow(&closed_loop.without_noise(), |_| ())
     }
 
     /// Runs the reference through a prepared closed loop; `sense` as in

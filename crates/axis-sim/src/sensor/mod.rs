@@ -18,8 +18,9 @@ pub trait Sensor: fmt::Debug + Send + Sync {
     /// What it measures: a position along a line, or an angle.
     fn freedom(&self) -> Freedom;
 
-    /// The sensor at work, sampled every `period` seconds; `seed` is that of its noise.
-    fn start(&self, period: f64, seed: u64) -> Box<dyn Sensing>;
+    /// The sensor at work, sampled every `period` seconds. `noise` is the seed of its noise;
+    /// without one it has neither noise nor steps, but all that repeats and delays.
+    fn start(&self, period: f64, noise: Option<u64>) -> Box<dyn Sensing>;
 }
 
 /// A position sensor at work.

@@ -32,10 +32,15 @@ impl Sensor for Signal {
         self.freedom
     }
 
-    fn start(&self, period: f64, seed: u64) -> Box<dyn Sensing> {
+    fn start(&self, period: f64, noise: Option<u64>) -> Box<dyn Sensing> {
+        let exact = Self {
+            resolution: 0.0,
+            noise: 0.0,
+            ..*self
+        };
         Box::new(State {
-            law: *self,
-            random: ChaCha8Rng::seed_from_u64(seed),
+            law: if noise.is_some() { *self } else { exact },
+            random: ChaCha8Rng::seed_from_u64(noise.unwrap_or(0)),
             late: self.delay / period,
             period,
             past: VecDeque::new(),

@@ -129,7 +129,10 @@ impl Hidden {
 
         let sense = self.noise.sensors(self.seed);
         let mut recorder = Recorder::new(&truth);
-        ClosedLoop::exact(&truth, 2e-5)?
+        // Shorter steps than those that a model's defects are corrected by.
+        let step = 0.4 * axis.mechanism.exact_step().unwrap_or(5e-5);
+        ClosedLoop::exact(&truth, step)?
+            .with_seed(self.seed)
             .run_sensed(motion, &mut NoCompensation, sense, |cycle| {
                 recorder.push(cycle)
             })
