@@ -12,7 +12,7 @@ use crate::control::Control;
 use crate::friction::Friction;
 use crate::load::Load;
 use crate::mechanism::Mechanism;
-use crate::part::{Key, PartKind, count, named, word};
+use crate::part::{Key, PartKind, count, named, text, word};
 
 /// Kinds of the first schema.
 pub(super) const SHORT_KINDS: [&str; 2] = ["ball-screw", "rigid-mass"];
@@ -152,7 +152,10 @@ impl Layout {
         let loads = root.unchecked("load", vec![kinds_key(&registry.loads)])?;
         let loads = loads.iter().map(|load| kind_of(load, &registry.loads));
         let loads: Vec<_> = loads.collect::<Result<_, _>>()?;
-        if !SECTIONS.iter().any(|(table, ..)| *table != "control" && *table != "friction" && root.has(table)) {
+        if !SECTIONS
+            .iter()
+            .any(|(table, ..)| *table != "control" && *table != "friction" && root.has(table))
+        {
             let rigid = root.has("kind") && root.word("kind")? == SHORT_KINDS[1];
             let (kinds, places) = match rigid {
                 true => (["rigid-mass", "force-gain", "p-p", "coulomb"], RIGID_MASS),
@@ -177,6 +180,8 @@ impl Layout {
                 root.refuse_table(what, "a file with a section for each part")
             });
         }
+        // A mistyped section is named before it is missed.
+        root.check(&section_keys())?;
         Ok(Self {
             mechanism: kind_in(root, "mechanism", &registry.mechanisms)?,
             actuator: kind_in(root, "actuator", &registry.actuators)?,
@@ -233,9 +238,29 @@ impl Layout {
     }
 }
 
+/// What a file with a section for each part may have.
+fn section_keys() -> Vec<Key> {
+    let parts = SECTIONS.iter().map(|(table, ..)| *table);
+    let own = [
+        "stroke",
+        "samples",
+        "simulation",
+        "sensors",
+        "experiment",
+        "tolerances",
+        "log",
+    ];
+    let lists = ["trajectory", "load", "effects"].map(|name| Key::of_tables(name, Vec::new()));
+    let all = parts.chain(own).map(|name| Key::of_table(name, Vec::new()));
+    all.chain(lists)
+        .chain(["name", "description"].map(text))
+        .chain([count("schema", 1, 2)])
+        .collect()
+}
+
 /// `kind`, which has been read when the rest of its table is.
 fn kind() -> Key {
-    crate::part::text("kind")
+    text("kind")
 }
 
 /// The kind that the section `table` names.

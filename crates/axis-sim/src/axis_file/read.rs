@@ -260,10 +260,7 @@ fn implied_ranges(axis: &Axis) -> Option<SampleRanges> {
         let all = axis.trajectories.iter().map(|t| of(&t.limits));
         all.fold(0.0, f64::max)
     };
-    let both_ways = |most: f64| Range {
-        least: -most,
-        most,
-    };
+    let both_ways = |most: f64| Range { least: -most, most };
     let (speed, acceleration) = (most(Limits::velocity), most(Limits::acceleration));
     (speed > 0.0).then(|| SampleRanges {
         position: Range {

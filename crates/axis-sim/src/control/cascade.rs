@@ -36,7 +36,13 @@ pub(super) static KIND: PartKind<dyn Control> = PartKind {
             .optional()
             .role(Role::PositionGain),
         number("velocity_feedforward", -10.0, 10.0).role(Role::VelocityFeedforward),
-        quantity("acceleration_feedforward", &ACCELERATION_FEEDFORWARD, 0.0, 1e9).optional(),
+        quantity(
+            "acceleration_feedforward",
+            &ACCELERATION_FEEDFORWARD,
+            0.0,
+            1e9,
+        )
+        .optional(),
         quantity("speed_proportional", &SPEED_PROPORTIONAL, 0.0, 1e9).role(Role::SpeedGain),
         quantity("speed_integral", &SPEED_INTEGRAL, 0.0, 1e12)
             .optional()
@@ -127,7 +133,10 @@ fn build(v: &Values) -> Result<Arc<dyn Control>, PartError> {
     };
     let feedback = match v.word("feedback") {
         Some("motor") => Feedback::Motor,
-        Some("blend") => Feedback::Blend(v.number("blend")?),
+        Some("blend") => Feedback::Blend(v.optional("blend").ok_or_else(|| {
+            let valid = "the frequency above which the motor counts, such as blend_hz = 10";
+            PartError::of("blend", "is missing", valid)
+        })?),
         _ => Feedback::Load,
     };
     let notch = v.optional("notch");
