@@ -167,6 +167,10 @@ impl Control for Cascade {
         self.effort
     }
 
+    fn at_motor(&self) -> &'static [&'static str] {
+        &["speed_proportional", "speed_integral"]
+    }
+
     fn start(&self, on: &Surroundings) -> Result<Box<dyn Controller>, PartError> {
         let speed_every = every("speed_rate", self.speed_rate, on.period)?;
         let position_every = every("position_rate", self.position_rate, on.period)?;

@@ -6,6 +6,7 @@ mod axis_files;
 mod bad_files;
 mod belt;
 mod closed_loop;
+mod controls;
 mod effects;
 mod energy;
 mod files;
