@@ -1,6 +1,7 @@
-//! One test binary: the axis file, the closed loop against the numbers of an
-//! independent program, the axis's own vibration, single cycles, replays, and
-//! values that nobody should give.
+//! One test binary: axis files of all kinds of parts, the closed loop against the
+//! numbers of an independent program and against slow, obvious integrations, the
+//! axis's own vibration, sensors, energy, single cycles, replays, and values that
+//! nobody should give.
 
 mod axis_files;
 mod bad_files;
