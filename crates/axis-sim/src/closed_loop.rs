@@ -199,13 +199,19 @@ impl ClosedLoop {
             },
             motor_sensor: motor_sensor.map(|s| sensing(s, 1, seen.motor_angle, seen.motor_speed)),
             last_angle: 0.0,
-            home: seen.position - axis.travel_per_radian() * seen.motor_angle,
+            home: 0.0,
             last_effort: effort,
             cycles: 0,
             plant,
             actuator,
             controller: axis.control.start(&on)?,
         };
+        let mut motor = state.motor_sensor.as_ref().map(|sensor| sensor.copy());
+        let shown = motor.as_mut().map_or(seen.motor_angle, |sensor| {
+            sensor.settle(seen.motor_angle, 0.0);
+            sensor.read(seen.motor_angle)
+        });
+        state.home = seen.position - axis.travel_per_radian() * shown;
         state.last_angle = self.angle_before(&state);
         let measured = self.measure(&mut state.clone(), |_| ());
         state.controller.settle(effort, &measured, seen.speed);

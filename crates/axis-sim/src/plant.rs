@@ -256,6 +256,7 @@ where
         let motion = self.settled(start);
         let drive = self.stepper.settled(start.position, &motion)?;
         let at = self.stepper.observe(&drive);
+        let torque = self.stepper.settled_torque(start.position, &motion);
         let [bristle, unit_bristle] = self.bristles(start);
         let mut state = State {
             origin: start.position,
@@ -269,7 +270,7 @@ where
             law: self,
             drive,
         };
-        state.look(start.time, at, 0.0, motion.load);
+        state.look(start.time, at, torque, motion.load);
         let [offset, _] = state.law.assembly.hooks.offset_at(&state.screw(start.time));
         state.offset_origin = offset;
         Ok(Box::new(state))

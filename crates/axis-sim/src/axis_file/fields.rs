@@ -56,6 +56,12 @@ impl<'a> Fields<'a> {
         keys: impl Into<Cow<'static, [Key]>>,
     ) -> Result<Self, AxisFileError> {
         let keys = keys.into();
+        self.check(&keys)?;
+        Ok(Self { keys, ..self })
+    }
+
+    /// Refuses a table with other keys than these.
+    pub(super) fn check(&self, keys: &[Key]) -> Result<(), AxisFileError> {
         let known: Vec<String> = keys.iter().flat_map(Key::spellings).collect();
         let unknown = self
             .table
@@ -63,15 +69,15 @@ impl<'a> Fields<'a> {
             .filter(|key| !known.iter().any(|k| k == key.get_ref().as_ref()))
             .min_by_key(|key| key.span().start);
         let Some(key) = unknown else {
-            return Ok(Self { keys, ..self });
+            return Ok(());
         };
         let place = if self.path.is_empty() {
             "this file"
         } else {
             "this table"
         };
-        let what = unknown_key(key.get_ref(), place, &keys);
-        Err(self.refuse(key.span(), key.get_ref(), what, list(&keys)))
+        let what = unknown_key(key.get_ref(), place, keys);
+        Err(self.refuse(key.span(), key.get_ref(), what, list(keys)))
     }
 
     fn inside(&self, path: String, value: Value<'a>, table: &'a DeTable<'a>) -> Self {

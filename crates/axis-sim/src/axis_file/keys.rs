@@ -18,7 +18,7 @@ fn schema(layout: &Layout) -> u32 {
 }
 
 /// Keys of the table [control] that are not the controller's.
-fn loop_keys(freedom: Freedom) -> Vec<Key> {
+pub(super) fn loop_keys(freedom: Freedom) -> Vec<Key> {
     let limit = match freedom {
         Freedom::Linear => quantity("following_error_limit", &LENGTH, 1e-6, 10.0),
         Freedom::Rotary => quantity("following_error_limit", &ANGLE, 1e-9, 100.0),

@@ -6,13 +6,14 @@
 
 use super::error::AxisFileError;
 use super::fields::Fields;
+use super::keys::loop_keys;
 use super::registry::Registry;
 use crate::actuator::Actuator;
 use crate::control::Control;
 use crate::friction::Friction;
 use crate::load::Load;
-use crate::mechanism::Mechanism;
-use crate::part::{Key, PartKind, count, named, word};
+use crate::mechanism::{Freedom, Mechanism};
+use crate::part::{Key, PartKind, count, named, text, word};
 
 /// Kinds of the first schema.
 pub(super) const SHORT_KINDS: [&str; 2] = ["ball-screw", "rigid-mass"];
@@ -180,6 +181,8 @@ impl Layout {
                 root.refuse_table(what, "a file with a section for each part")
             });
         }
+        // A mistyped section is named before it is missed.
+        root.check(&section_keys())?;
         Ok(Self {
             mechanism: kind_in(root, "mechanism", &registry.mechanisms)?,
             actuator: kind_in(root, "actuator", &registry.actuators)?,
@@ -236,9 +239,29 @@ impl Layout {
     }
 }
 
+/// What a file with a section for each part may have.
+fn section_keys() -> Vec<Key> {
+    let parts = SECTIONS.iter().map(|(table, ..)| *table);
+    let own = [
+        "stroke",
+        "samples",
+        "simulation",
+        "sensors",
+        "experiment",
+        "tolerances",
+        "log",
+    ];
+    let lists = ["trajectory", "load", "effects"].map(|name| Key::of_tables(name, Vec::new()));
+    let all = parts.chain(own).map(|name| Key::of_table(name, Vec::new()));
+    all.chain(lists)
+        .chain(["name", "description"].map(text))
+        .chain([count("schema", 1, 2)])
+        .collect()
+}
+
 /// `kind`, which has been read when the rest of its table is.
 fn kind() -> Key {
-    crate::part::text("kind")
+    text("kind")
 }
 
 /// The kind that the section `table` names.
@@ -248,7 +271,11 @@ pub(super) fn kind_in<P: ?Sized>(
     kinds: &[&'static PartKind<P>],
 ) -> Result<&'static PartKind<P>, AxisFileError> {
     let section = root.peek(table, vec![kinds_key(kinds)])?;
-    kind_of(&section, kinds)
+    let own = match table {
+        "control" => [Freedom::Linear, Freedom::Rotary].map(loop_keys).concat(),
+        _ => Vec::new(),
+    };
+    named_kind(&section, kinds, own)
 }
 
 /// The kind that a table names.
@@ -256,6 +283,21 @@ pub(super) fn kind_of<P: ?Sized>(
     section: &Fields<'_>,
     kinds: &[&'static PartKind<P>],
 ) -> Result<&'static PartKind<P>, AxisFileError> {
+    named_kind(section, kinds, Vec::new())
+}
+
+/// As [`kind_of`], of a table that has `own` keys besides its kind's.
+fn named_kind<P: ?Sized>(
+    section: &Fields<'_>,
+    kinds: &[&'static PartKind<P>],
+    own: Vec<Key>,
+) -> Result<&'static PartKind<P>, AxisFileError> {
+    if !section.has("kind") {
+        // It may stand there misspelt, beside the keys of any kind.
+        let all = kinds.iter().flat_map(|kind| kind.keys.iter().cloned());
+        let all = all.chain([kinds_key(kinds)]).chain(own);
+        section.check(&all.collect::<Vec<Key>>())?;
+    }
     let name = section.word("kind")?;
     named(kinds, name).ok_or_else(|| {
         let valid = kinds.iter().map(|kind| kind.name).collect::<Vec<_>>();

@@ -17,9 +17,10 @@ use crate::axis::{
     Simulation, Stroke, Tolerances,
 };
 use crate::closed_loop::ClosedLoop;
+use crate::control::{Control, effort_of};
 use crate::friction::Place;
 use crate::load::Load;
-use crate::mechanism::{Freedom, Way};
+use crate::mechanism::{Freedom, Mechanism, Way};
 use crate::part::{Key, Part, PartKind, Values};
 use crate::sensor::Sensor;
 use crate::work::{MOST_STEPS, cycles_of, substeps_of};
@@ -72,6 +73,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         let valid = format!("gains in units of {}", actuator.effort().unit());
         return Err(control_table.refuse_table(what, &valid));
     }
+    check_gains(&control_table, &control, actuator.effort(), &*mechanism)?;
     let period = 1.0 / control_table.number("frequency")?;
     let simulation = simulation(&root, &layout, mechanism.exact_step().is_some())?;
     check_step(&root.table("simulation")?, period, simulation.step)?;
@@ -115,6 +117,52 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
     fits(&root, &control_table, &axis)?;
     axis.effects = extras::effects(&root, &axis, &registry.effects)?;
     Ok(axis)
+}
+
+/// Every gain ends in the actuator's command, per m or per rad as what it acts on moves.
+fn check_gains(
+    table: &Fields<'_>,
+    control: &Part<dyn Control>,
+    effort: Effort,
+    mechanism: &dyn Mechanism,
+) -> Result<(), AxisFileError> {
+    let load_turns = mechanism.freedom() == Freedom::Rotary;
+    // Only where motor and load are one does a motor move along a line.
+    let motor_turns = load_turns || mechanism.travel_per_radian() != 1.0;
+    for key in control.kind().keys {
+        let given = control.values().unit(key.name);
+        let turns = match control.at_motor().contains(&key.name) {
+            true => motor_turns,
+            false => load_turns,
+        };
+        let fits = |unit: &str| {
+            let ends = |ends: &[&str]| ends.iter().any(|end| unit.ends_with(end));
+            let along = ends(&["_per_m", "_per_m_s", "_per_mm"]);
+            let about = ends(&["_per_rad", "_per_rad_s", "_per_rpm", "_per_rpm_s"]);
+            let moves = if turns { !along } else { !about };
+            moves && effort_of(unit).is_none_or(|of| of == effort)
+        };
+        if fits(given) {
+            continue;
+        }
+        let prefix = format!("{}_", key.name);
+        let spellings = key.spellings();
+        let valid = spellings
+            .iter()
+            .filter(|s| s.strip_prefix(&prefix).is_some_and(fits));
+        let valid: Vec<&str> = valid.map(String::as_str).collect();
+        let valid = match valid.as_slice() {
+            [] => "another way to give it".to_owned(),
+            valid => valid.join(", "),
+        };
+        let moves = if turns { "turns" } else { "moves along a line" };
+        let what = format!(
+            "is in {given}, for an actuator that takes {} and what {moves}",
+            effort.unit()
+        );
+        return Err(table.refuse_value(&format!("{prefix}{given}"), what, valid));
+    }
+    Ok(())
 }
 
 /// A part from the tables that its keys stand in.

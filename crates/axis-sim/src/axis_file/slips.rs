@@ -4,13 +4,26 @@ use crate::part::{Key, Kind};
 
 /// What is wrong with the key `given` in a table of `keys`.
 pub(super) fn unknown_key(given: &str, place: &str, keys: &[Key]) -> String {
-    if let Some(wrong) = keys.iter().find_map(|key| wrong_unit(given, key)) {
-        return wrong;
-    }
-    let spellings = keys
-        .iter()
-        .flat_map(|key| key.spellings().into_iter().map(|s| (key.shown(&s), s)));
-    let near = nearest(given, spellings, |(_, spelling)| spelling);
+    let near_of = |among: &dyn Fn(&Key) -> bool| {
+        let keys = keys.iter().filter(|key| among(key));
+        let spellings =
+            keys.flat_map(|key| key.spellings().into_iter().map(|s| (key.shown(&s), s)));
+        nearest(given, spellings, |(_, spelling)| spelling)
+    };
+    let mut wrong = keys.iter().map(|key| (key, wrong_unit(given, key)));
+    let wrong = wrong.find_map(|(key, wrong)| Some((key, wrong?)));
+    let near = match wrong {
+        // Its name may be how a longer one begins.
+        Some((begun, wrong)) => {
+            let near = near_of(&|key| key.name.starts_with(begun.name));
+            let own = begun.spellings();
+            if near.is_empty() || near.iter().any(|(_, spelling)| own.contains(spelling)) {
+                return wrong;
+            }
+            near
+        }
+        None => near_of(&|_| true),
+    };
     let near: Vec<String> = near.iter().map(|(shown, _)| format!("`{shown}`")).collect();
     format!("is not a key of {place}{}", hint(&near))
 }

@@ -133,7 +133,10 @@ fn build(v: &Values) -> Result<Arc<dyn Control>, PartError> {
     };
     let feedback = match v.word("feedback") {
         Some("motor") => Feedback::Motor,
-        Some("blend") => Feedback::Blend(v.number("blend")?),
+        Some("blend") => Feedback::Blend(v.optional("blend").ok_or_else(|| {
+            let valid = "the frequency above which the motor counts, such as blend_hz = 10";
+            PartError::of("blend", "is missing", valid)
+        })?),
         _ => Feedback::Load,
     };
     let notch = v.optional("notch");
@@ -166,6 +169,10 @@ impl Control for Cascade {
 
     fn effort(&self) -> Option<Effort> {
         self.effort
+    }
+
+    fn at_motor(&self) -> &'static [&'static str] {
+        &["speed_proportional", "speed_integral"]
     }
 
     fn start(&self, on: &Surroundings) -> Result<Box<dyn Controller>, PartError> {

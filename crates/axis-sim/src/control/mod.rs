@@ -62,6 +62,11 @@ pub trait Control: fmt::Debug + Send + Sync {
         None
     }
 
+    /// Keys of the gains that act on the motor's motion; the others act on the load's.
+    fn at_motor(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// A controller at rest.
     ///
     /// # Errors
@@ -83,7 +88,7 @@ pub trait Controller: fmt::Debug + Send + Sync {
 }
 
 /// The effort that a unit of a gain begins with (`a_per_rpm`, `n_m_s_per_rad`).
-fn effort_of(unit: &str) -> Option<Effort> {
+pub(crate) fn effort_of(unit: &str) -> Option<Effort> {
     if unit.starts_with("a_") {
         Some(Effort::Current)
     } else if unit.starts_with("n_m_") {

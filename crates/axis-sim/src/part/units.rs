@@ -78,13 +78,13 @@ dimensions! {
     FORCE "unit of force": "n" 1.0, "kn" 1e3;
     LINEAR_DAMPING "unit of damping": "n_s_per_m" 1.0;
     FORCE_GAIN "unit of a force gain": "n_per_v" 1.0;
-    SPEED_GAIN "unit of a speed gain": "v_s_per_m" 1.0, "n_s_per_m" 1.0, "n_m_s_per_m" 1.0, "n_m_s_per_rad" 1.0, "a_s_per_m" 1.0;
+    SPEED_GAIN "unit of a speed gain": "v_s_per_m" 1.0, "n_s_per_m" 1.0, "n_m_s_per_m" 1.0, "n_m_s_per_rad" 1.0, "a_s_per_m" 1.0, "a_s_per_rad" 1.0;
     PID_PROPORTIONAL "unit of a PID controller's proportional gain":
-        "v_per_m" 1.0, "n_per_m" 1.0, "n_m_per_rad" 1.0, "a_per_m" 1.0, "a_per_rad" 1.0;
+        "v_per_m" 1.0, "n_per_m" 1.0, "n_m_per_m" 1.0, "n_m_per_rad" 1.0, "a_per_m" 1.0, "a_per_rad" 1.0;
     PID_INTEGRAL "unit of a PID controller's integral gain":
-        "v_per_m_s" 1.0, "n_per_m_s" 1.0, "n_m_per_rad_s" 1.0, "a_per_m_s" 1.0, "a_per_rad_s" 1.0;
+        "v_per_m_s" 1.0, "n_per_m_s" 1.0, "n_m_per_m_s" 1.0, "n_m_per_rad_s" 1.0, "a_per_m_s" 1.0, "a_per_rad_s" 1.0;
     PID_DERIVATIVE "unit of a PID controller's derivative gain":
-        "v_s_per_m" 1.0, "n_s_per_m" 1.0, "n_m_s_per_rad" 1.0, "a_s_per_m" 1.0, "a_s_per_rad" 1.0;
+        "v_s_per_m" 1.0, "n_s_per_m" 1.0, "n_m_s_per_m" 1.0, "n_m_s_per_rad" 1.0, "a_s_per_m" 1.0, "a_s_per_rad" 1.0;
     CURRENT_PROPORTIONAL "unit of a current controller's proportional gain": "v_per_a" 1.0;
     CURRENT_INTEGRAL "unit of a current controller's integral gain": "v_per_a_s" 1.0;
 }

@@ -3,7 +3,7 @@
 use axis_sim::{Axis, AxisFileError};
 use proptest::prelude::*;
 
-use crate::{PRINTED, RIGID, text};
+use crate::{OTHERS, PRINTED, RIGID, text};
 
 /// A change to the good file, and what must be said about it.
 struct Case {
@@ -227,6 +227,7 @@ fn is_another_unit(key: &str, slip: &str) -> bool {
         ("_um", "_m"),
         ("_khz", "_hz"),
         ("_us", "_s"),
+        ("_ms", "_s"),
         ("_gpa", "_pa"),
         ("_mh", "_h"),
     ]
@@ -260,7 +261,8 @@ fn named(line: &str) -> Option<(String, String)> {
         return Some((last.to_owned(), format!("[[{last}]]")));
     }
     if let Some(inner) = code.strip_prefix('[').and_then(|c| c.strip_suffix(']')) {
-        return Some((inner.to_owned(), format!("[{inner}]")));
+        let last = inner.rsplit('.').next()?;
+        return Some((last.to_owned(), format!("[{last}]")));
     }
     let (key, _) = code.split_once('=')?;
     Some((key.trim().to_owned(), key.trim().to_owned()))
@@ -271,7 +273,7 @@ fn named(line: &str) -> Option<(String, String)> {
 #[test]
 fn every_slip_of_the_pen_is_named_with_what_was_meant() {
     let (mut tried, mut wrong) = (0, Vec::new());
-    for file in [PRINTED, RIGID] {
+    for file in [PRINTED, RIGID].into_iter().chain(OTHERS) {
         let good = text(file);
         let lines: Vec<&str> = good.lines().collect();
         for (at, line) in lines.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use axis_sim::Axis;
 
-use crate::{MACHINE, PRINTED, RIGID, text};
+use crate::{MACHINE, OTHERS, PRINTED, RIGID, text};
 
 fn fingerprint(content: &str) -> String {
     Axis::parse("axis.toml", content).unwrap().fingerprint
@@ -61,9 +61,9 @@ fn comments_names_order_and_units_do_not_count() {
     assert_eq!(fingerprint(&units), expected);
 }
 
-#[test]
-fn every_value_counts() {
-    let original = text(PRINTED);
+/// Changes every number of a file in turn; how many there are.
+fn change_each(file: &str) -> (usize, Vec<String>) {
+    let original = text(file);
     let mut seen = vec![fingerprint(&original)];
     let mut changed = 0;
     for (i, line) in original.lines().enumerate() {
@@ -78,13 +78,14 @@ fn every_value_counts() {
             continue;
         }
         // A hundredth less or more, whichever is still an axis; counts by one.
-        let whole = ["elements", "pole_pairs"].contains(&key.trim());
+        let whole = ["elements", "pole_pairs", "lines", "bits"].contains(&key.trim());
         let others = if whole {
-            [number + 1.0, number - 1.0]
+            vec![number + 1.0, number - 1.0]
         } else if number == 0.0 {
-            [1.0, -1.0]
+            vec![1.0, -1.0]
         } else {
-            [0.99 * number, 1.01 * number]
+            // Rates divide each other.
+            vec![0.99 * number, 1.01 * number, 2.0 * number, 0.5 * number]
         };
         let with = |other: f64| -> String {
             let replace = |(j, l): (usize, &str)| {
@@ -106,12 +107,26 @@ fn every_value_counts() {
         seen.push(found);
         changed += 1;
     }
+    (changed, seen)
+}
+
+#[test]
+fn every_value_counts() {
+    let (changed, seen) = change_each(PRINTED);
+    let original = text(PRINTED);
     // 7 of the screw, 7 of the drive, 6 of the friction, 5 of the motor, 1 of
     // the inverter, 10 of the control, 3 of the stroke, 8 of the samples, the
     // step, and 4 of each of the six trajectories.
     assert_eq!(changed, 72);
     let moving = original.replace("\"shape-functions\"", "\"moving-node\"");
     assert!(!seen.contains(&fingerprint(&moving)));
+}
+
+#[test]
+fn every_value_of_the_other_axes_counts() {
+    let numbers = OTHERS.map(|file| change_each(file).0);
+    // As many as the files have, but for the schema.
+    assert_eq!(numbers, [43, 47, 38, 36, 36, 29, 44]);
 }
 
 #[test]

@@ -11,7 +11,7 @@ use compensator::NoCompensation;
 use proptest::prelude::*;
 use trajectories::{Limits, Motion, SCurve};
 
-use crate::{PRINTED, RIGID, axis, text};
+use crate::{OTHERS, PRINTED, RIGID, axis, text};
 
 /// Any number at all: the odd ones often.
 fn any_number() -> impl Strategy<Value = f64> {
@@ -169,19 +169,20 @@ fn wild() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig::with_cases(600))]
 
     /// Files with wild values are refused, or their axis is planned, set up and
     /// run for fifty cycles in no time; how long a run takes is known before.
     #[test]
     fn files_with_any_values(
-        rigid in any::<bool>(), values in prop::collection::vec((0..200_usize, wild()), 1..4)
+        which in 0..2 + OTHERS.len(),
+        values in prop::collection::vec((0..200_usize, wild()), 1..4)
     ) {
-        let content = with_values(&text(if rigid { RIGID } else { PRINTED }), &values);
+        let content = with_values(&text([PRINTED, RIGID].iter().chain(&OTHERS).nth(which).unwrap()), &values);
         let begin = Instant::now();
         match Axis::parse("axis.toml", &content) {
             Err(error) => prop_assert!(error.to_string().starts_with("axis.toml:")),
-            Ok(axis) if rigid => {
+            Ok(axis) if which == 1 => {
                 let log = log(50);
                 // Fifty periods, whatever their length.
                 let replay = Replay::new(&log, axis.period).unwrap();

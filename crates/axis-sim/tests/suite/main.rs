@@ -1,21 +1,32 @@
-//! One test binary: the axis file, the closed loop against the numbers of an
-//! independent program, the axis's own vibration, single cycles, replays, and
-//! values that nobody should give.
+//! One test binary: axis files of all kinds of parts, the closed loop against the
+//! numbers of an independent program and against slow, obvious integrations, the
+//! axis's own vibration, sensors, energy, single cycles, replays, and values that
+//! nobody should give.
 
+mod axis_files;
 mod bad_files;
+mod belt;
 mod closed_loop;
+mod controls;
 mod effects;
+mod energy;
 mod files;
 mod fingerprint;
 mod golden;
 mod hostile;
 mod obvious;
 mod one_cycle;
+mod other_effects;
 mod outcome;
+mod plain;
+mod plain_loops;
 mod published;
 mod recorder;
+mod refusals;
 mod replay;
 mod rigid;
+mod sensors;
+mod starts;
 mod vibration;
 
 use std::path::PathBuf;
@@ -23,6 +34,7 @@ use std::path::PathBuf;
 use axis_sim::part::Part;
 use axis_sim::{Axis, ClosedLoop, Cycle};
 use compensator::NoCompensation;
+use trajectories::{Motion, Setpoint};
 
 /// The printed parameters.
 const PRINTED: &str = "liu2025.toml";
@@ -31,6 +43,17 @@ const MACHINE: &str = "liu2025-machine.toml";
 
 /// The other kind of machine.
 const RIGID: &str = "emps.toml";
+
+/// One axis of each other mechanism.
+const OTHERS: [&str; 7] = [
+    "rack.toml",
+    "belt.toml",
+    "joint.toml",
+    "rotary-table.toml",
+    "linear-motor.toml",
+    "linear-stage.toml",
+    "screw-datasheet.toml",
+];
 
 fn data(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -74,4 +97,57 @@ fn errors_um(cycles: &[Cycle]) -> [f64; 2] {
     let errors = cycles.iter().map(|c| 1e6 * c.error().abs());
     let most = errors.clone().fold(0.0, f64::max);
     [most, errors.sum::<f64>() / cycles.len() as f64]
+}
+
+/// The axis of a file's text with changes, each of which must be in it.
+fn changed(name: &str, changes: &[(&str, &str)]) -> Axis {
+    let mut content = text(name);
+    for (from, to) in changes {
+        assert!(content.contains(from), "`{from}` is not in {name}");
+        content = content.replacen(from, to, 1);
+    }
+    Axis::parse(name, &content).unwrap()
+}
+
+/// Rest at a place, for a time.
+struct Dwell {
+    at: f64,
+    duration: f64,
+}
+
+impl Motion for Dwell {
+    fn duration(&self) -> f64 {
+        self.duration
+    }
+    fn at(&self, _: f64) -> Setpoint {
+        Setpoint::at_rest(self.at)
+    }
+}
+
+/// Every number of a cycle, to the bit.
+fn bits(c: &Cycle) -> [u64; 21] {
+    [
+        c.time,
+        c.reference.position,
+        c.reference.velocity,
+        c.reference.acceleration,
+        c.position,
+        c.load_speed,
+        c.motor_angle,
+        c.motor_speed,
+        c.current.d,
+        c.current.q,
+        c.torque,
+        c.measured.position,
+        c.measured.motor_angle,
+        c.measured.motor_speed,
+        c.measured.current.q,
+        c.command.speed_ref,
+        c.command.effort,
+        c.command.voltage.d,
+        c.command.voltage.q,
+        c.correction.position,
+        c.correction.iq,
+    ]
+    .map(f64::to_bits)
 }
