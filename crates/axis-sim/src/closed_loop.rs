@@ -271,7 +271,10 @@ impl ClosedLoop {
         let travel = self.axis.travel_per_radian();
         let seen = *state.plant.seen();
         let load = state.load_sensor.as_mut().map(|s| s.read(seen.position));
-        let motor = state.motor_sensor.as_mut().map(|s| s.read(seen.motor_angle));
+        let motor = state
+            .motor_sensor
+            .as_mut()
+            .map(|s| s.read(seen.motor_angle));
         let mut measured = self.hooks.sensors.show(Measured {
             position: load.unwrap_or(seen.position),
             motor_angle: motor.unwrap_or(seen.motor_angle),

@@ -95,10 +95,16 @@ fn motions(axis: &Axis) -> Result<Vec<(&'static str, Program)>, TrajectoryError>
     let length = scales.motion / 0.2;
     // The same course in time, faster or slower.
     let pace = of_speed / length;
+    // As far as the actuator has the force.
+    let of_force = (of_acceleration / (of_speed * pace)).min(1.0);
     let to = |share: f64, speed: f64| -> Result<Step, TrajectoryError> {
         Ok(Step::Move {
             to: start + share * room,
-            limits: Limits::new(speed, 2.25 * speed * pace, 12.0 * speed * pace * pace)?,
+            limits: Limits::new(
+                speed,
+                2.25 * speed * pace * of_force,
+                12.0 * speed * pace * pace * of_force,
+            )?,
         })
     };
     let rest = |duration| Step::Dwell { duration };

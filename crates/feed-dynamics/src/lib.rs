@@ -14,7 +14,7 @@
 //! |---|---|---|
 //! | [`FeedDrive`], a ball screw | couplings, the screw's torsion, the nut; with [`AxialSupport`] the screw's length and its bearings | [`ModalStepper`], [`ImplicitStepper`] |
 //! | [`ElasticDrive`], two inertias | one [`Stiffness`]: a constant, [`BeltStrands`], [`ScrewShaft`], or several [`InSeries`] | [`ElasticStepper`] |
-//! | [`RigidDrive`], one inertia | nothing | [`RigidStepper`] |
+//! | [`ForceCourse, RigidDrive`], one inertia | nothing | [`RigidStepper`] |
 //!
 //! All step through the trait [`TimeStepper`]; the force on the load may depend on
 //! the load's motion at the end of the step (friction), for which [`find_load`]
@@ -133,7 +133,7 @@ pub use error::DriveError;
 pub use matrices::{Matrices, NutCoupling};
 pub use modes::DriveModes;
 pub use response::Coordinate;
-pub use rigid::{RigidDrive, RigidState, RigidStepper};
+pub use rigid::{ForceCourse, RigidDrive, RigidState, RigidStepper};
 pub use stepper::{
     ImplicitState, ImplicitStepper, LoadSearch, ModalState, ModalStepper, NutErrors, Observation,
     Settled, StepReport, TableMotion, TimeStepper, find_load,

@@ -45,16 +45,33 @@ impl RigidDrive {
     }
 }
 
+/// How torque and load of a [`RigidStepper`] go over a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ForceCourse {
+    /// Those of its end act over the whole step:
+    ///
+    /// ```text
+    /// v₁ = v₀ + h (T₁/r − load₁) / m,   y₁ = y₀ + h (v₀ + v₁) / 2
+    /// ```
+    ///
+    /// Exact for a torque and a load that are held, as of a sampled controller without
+    /// an actuator's lag; of first order where they change.
+    #[default]
+    Held,
+    /// They go linearly from their last values a = (T/r − load) / m:
+    ///
+    /// ```text
+    /// v₁ = v₀ + h (a₀ + a₁) / 2,   y₁ = y₀ + h v₀ + h² (2 a₀ + a₁) / 6
+    /// ```
+    ///
+    /// Of second order.
+    Linear,
+}
+
 /// A rigid drive for steps of one length h.
 ///
-/// Torque T₁ and load of the step's end act over the whole step:
-///
-/// ```text
-/// v₁ = v₀ + h (T₁/r − load₁) / m,   y₁ = y₀ + h (v₀ + v₁) / 2
-/// ```
-///
-/// Exact for a torque and a load held over the step, as of a sampled controller; of
-/// first order where they change within it, and stable for every step. Errors of the
+/// Torque and load go over a step as its [`ForceCourse`] says; both are stable for
+/// every step. Errors of the
 /// kinematics have no elastic transmission to act through and are ignored. The force
 /// on the load that is observed is T₁/r, as nothing tells which part of the inertia
 /// is the load's. [`StepReport::on_screw`] is always true.
@@ -62,6 +79,7 @@ impl RigidDrive {
 pub struct RigidStepper {
     drive: RigidDrive,
     step: f64,
+    course: ForceCourse,
 }
 
 /// State of a [`RigidStepper`].
@@ -83,7 +101,14 @@ impl RigidStepper {
         Ok(Self {
             drive: *drive,
             step,
+            course: ForceCourse::Held,
         })
+    }
+
+    /// The same with another course of torque and load.
+    #[must_use]
+    pub fn with_course(self, course: ForceCourse) -> Self {
+        Self { course, ..self }
     }
 }
 
@@ -122,14 +147,29 @@ impl TimeStepper for RigidStepper {
     ) -> StepReport {
         let (h, mass, start) = (self.step, self.drive.inertia, *state);
         let force = torque / self.drive.travel_per_radian;
-        let motion = |load: f64| {
-            let speed = start.speed + h * (force - load) / mass;
-            TableMotion {
-                displacement: start.displacement + 0.5 * h * (start.speed + speed),
-                speed,
+        let before = (start.force - start.load) / mass;
+        let motion = |load: f64| match self.course {
+            ForceCourse::Held => {
+                let speed = start.speed + h * (force - load) / mass;
+                TableMotion {
+                    displacement: start.displacement + 0.5 * h * (start.speed + speed),
+                    speed,
+                }
+            }
+            ForceCourse::Linear => {
+                let after = (force - load) / mass;
+                let way = start.speed + h * (2.0 * before + after) / 6.0;
+                TableMotion {
+                    displacement: start.displacement + h * way,
+                    speed: start.speed + 0.5 * h * (before + after),
+                }
             }
         };
-        let (end_load, mut found) = find_load(start.load, h / mass, motion, load);
+        let compliance = match self.course {
+            ForceCourse::Held => h / mass,
+            ForceCourse::Linear => 0.5 * h / mass,
+        };
+        let (end_load, mut found) = find_load(start.load, compliance, motion, load);
         let end = motion(end_load);
         found.converged &= end.speed.is_finite();
         *state = RigidState {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use feed_dynamics::{DriveError, RigidDrive, RigidStepper};
+use feed_dynamics::{DriveError, ForceCourse, RigidDrive, RigidStepper};
 
 use super::{Freedom, Mechanism, Way};
 use crate::part::units::{INERTIA, MASS};
@@ -74,6 +74,7 @@ impl Mechanism for Direct {
     }
 
     fn plant(&self, _: Way, step: f64, assembly: Assembly) -> Result<Arc<dyn Plant>, DriveError> {
-        Ok(assembly.on(RigidStepper::new(&self.drive, step)?))
+        let stepper = RigidStepper::new(&self.drive, step)?;
+        Ok(assembly.on(stepper.with_course(ForceCourse::Linear)))
     }
 }

@@ -18,6 +18,7 @@ fn log(axis: &Axis) -> Log {
     let mut recorder = Recorder::new(axis);
     ClosedLoop::new(axis)
         .unwrap()
+        .without_noise()
         .run(&motion, &mut NoCompensation, |c| recorder.push(c))
         .completed()
         .unwrap();

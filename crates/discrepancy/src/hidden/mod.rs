@@ -224,9 +224,11 @@ pub fn exercise(axis: &Axis, kind: Exercise, check: bool) -> Result<Program, Tra
     let of_speed = scales.ratio(Measure::Speed);
     // The same course in time as on the paper's axis, faster or slower.
     let pace = of_speed / (scales.motion / 0.2);
+    // As far as the actuator has the force.
+    let of_acceleration = (of_speed * pace).min(scales.ratio(Measure::Acceleration));
     let to = |position: f64, speed: f64| -> Result<Step, TrajectoryError> {
-        let acceleration = share * 0.225 * (speed / 0.1) * of_speed * pace;
-        let jerk = 1.2 * of_speed * pace * pace;
+        let acceleration = share * 0.225 * (speed / 0.1) * of_acceleration;
+        let jerk = 1.2 * of_acceleration * pace;
         Ok(Step::Move {
             to: position,
             limits: Limits::new(share * speed * of_speed, acceleration, jerk)?,

@@ -1,6 +1,6 @@
 //! The rigid drive against closed forms.
 
-use feed_dynamics::{NutErrors, RigidDrive, RigidStepper, Settled, TimeStepper};
+use feed_dynamics::{ForceCourse, NutErrors, RigidDrive, RigidStepper, Settled, TimeStepper};
 
 fn stepper(step: f64) -> RigidStepper {
     RigidStepper::new(&RigidDrive::new(95.0, 0.002).unwrap(), step).unwrap()
@@ -117,4 +117,34 @@ fn bad_numbers_are_refused_or_reported() {
         let mut state = s.settled(0.0, &Settled::default()).unwrap();
         assert!(!s.step(&mut state, bad, |_| 0.0).load.converged);
     }
+}
+
+#[test]
+fn a_force_that_goes_linearly_is_of_second_order() {
+    // T = T₁ sin ωt against a viscous load d ẏ, from rest:
+    // v = F/(m ω) (e^(−at) + b sin ωt − cos ωt) / (1 + b²), a = d/m, b = a/ω.
+    let (drag, omega, force) = (190.0, 40.0, 150.0);
+    let off = [1e-3, 5e-4].map(|h| {
+        let s = stepper(h).with_course(ForceCourse::Linear);
+        let mut state = s.settled(0.0, &Settled::default()).unwrap();
+        let mut off = 0.0_f64;
+        for i in 1..=(1.0 / h) as u32 {
+            let t = h * f64::from(i);
+            let torque = 0.002 * force * (omega * t).sin();
+            assert!(
+                s.step(&mut state, torque, |table| drag * table.speed)
+                    .load
+                    .converged
+            );
+            let (a, b) = (drag / 95.0, drag / 95.0 / omega);
+            let (sin, cos) = (omega * t).sin_cos();
+            let exact = force / (95.0 * omega) * ((-a * t).exp() + b * sin - cos) / (1.0 + b * b);
+            off = off.max((s.observe(&state).speed - exact).abs());
+        }
+        off
+    });
+    println!("linear course: {off:?}");
+    // 1.1e-5 and 2.6e-6 m/s of 0.079.
+    assert!(off[0] < 3e-5, "{off:?}");
+    assert!((off[0] / off[1] - 4.0).abs() < 0.1, "{off:?}");
 }
