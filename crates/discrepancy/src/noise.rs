@@ -8,6 +8,7 @@ use crate::fit::{Columns, Fit, Fitter, free_parameters};
 use crate::hidden::Noise;
 use crate::interval::Spread;
 use crate::known::{known_deviations, tolerances};
+use crate::level::{noise_at, shows_noise, upper_level};
 use crate::model::{LogSet, Prepared, State};
 use crate::projector::Projector;
 use crate::spectrum::{Amplitudes, Layout};
@@ -15,54 +16,17 @@ use crate::spectrum::{Amplitudes, Layout};
 /// Measured minus simulated: per log, per channel.
 pub type Rest = Vec<Vec<Vec<f64>>>;
 
-/// Noise of the sensors of a ball-screw loop, as the fitted logs show it.
-///
-/// The upper half of the bins lies above what the loop answers to, and shows
-/// each sensor's own noise there: position and angle directly, the speed's
-/// through the speed controller's gain, the current's through the current
-/// controller's.
+/// Noise of the sensors of an axis, as the fitted logs show it; `None` where they do not.
+/// `traces` are their simulations without noise.
 pub(crate) fn sensor_noise(
     machine: &Axis,
     set: &LogSet,
     state: &State,
     traces: &[Trace],
 ) -> Option<Noise> {
-    let axis = machine.with_known(&state.shares);
-    shows_noise(&axis).then(|| noise_at(&axis, set, &set.rest(traces)))
-}
-
-/// Whether the logs of an axis show the noise of its sensors: not where the loop has no
-/// memory and reads a position alone, of which command and position are one measurement.
-fn shows_noise(axis: &Axis) -> bool {
-    !axis.control.starts_in_motion()
-}
-
-fn noise_at(axis: &Axis, set: &LogSet, rest: &Rest) -> Noise {
-    let level = |name: &str| {
-        let channel = set.channels.iter().position(|c| *c == name);
-        channel.map_or(0.0, |c| upper_level(set, rest, c))
-    };
-    let per = |level: f64, gain: Option<f64>| match gain {
-        Some(gain) if gain > 0.0 => level / gain,
-        _ => 0.0,
-    };
-    let command = [
-        "iq_ref_a",
-        "torque_ref_n_m",
-        "force_ref_n",
-        "drive_command_v",
-    ];
-    let command = command.map(level).into_iter().fold(0.0, f64::max);
-    Noise {
-        position: level("position_m").max(level("position_rad")),
-        angle: level("motor_angle_rad"),
-        // A speed that is derived from an angle has that angle's noise.
-        speed: match axis.derives_speed() {
-            true => 0.0,
-            false => per(command, axis.control.speed_gain()),
-        },
-        current: per(level("ud_v"), axis.actuator.current_gain()),
-    }
+    let mut axis = machine.with_known(&state.shares);
+    axis.effects.extend_from_slice(&state.effects);
+    shows_noise(&axis).then(|| noise_at(&axis, set, &set.rest(traces), traces))
 }
 
 /// Noise alone in a channel.
@@ -102,9 +66,9 @@ impl Floor {
     }
 }
 
-/// Noise alone in each channel: a ball-screw loop is simulated with
-/// sensors as noisy as its logs show, since most of what they do lies where the
-/// loop answers. For a rigid machine the upper spectrum is taken for white.
+/// Noise alone in each channel: the loop is simulated with sensors as noisy as its logs
+/// show, since most of what they do lies where the loop answers. Where the logs do not show
+/// them, the upper spectrum is taken for white.
 pub(crate) fn floors(
     machine: &Axis,
     set: &LogSet,
@@ -120,15 +84,16 @@ pub(crate) fn floors(
         };
         return Ok((0..set.channels.len()).map(white).collect());
     }
-    let noise = noise_at(&axis, set, best);
     axis.effects.extend_from_slice(&state.effects);
     let closed_loop = ClosedLoop::new(&axis)?.without_noise();
+    let quiet = |log: &Prepared| log.replay.follow(&closed_loop, |_| ());
+    let quiet: Vec<Trace> = (set.logs.par_iter().map(quiet)).collect::<Result<_, _>>()?;
+    let noise = noise_at(&axis, set, best, &quiet);
     let mut alone: Vec<Vec<Vec<f64>>> = vec![Vec::new(); set.channels.len()];
-    for (seed, log) in set.logs.iter().enumerate() {
+    for (seed, (log, without)) in set.logs.iter().zip(&quiet).enumerate() {
         let with = log
             .replay
             .follow(&closed_loop, noise.sensors(seed as u64))?;
-        let without = log.replay.follow(&closed_loop, |_| ())?;
         for (series, name) in alone.iter_mut().zip(&set.channels) {
             let pair = with.channel(name).zip(without.channel(name));
             let Some((a, b)) = pair else { continue };
@@ -136,21 +101,6 @@ pub(crate) fn floors(
         }
     }
     Ok(alone.iter().map(|series| Floor::of(series)).collect())
-}
-
-/// RMS of white noise with the level of the upper half of the bins.
-fn upper_level(set: &LogSet, rest: &Rest, channel: usize) -> f64 {
-    let sizes: Vec<(usize, f64)> = set.logs.iter().map(|l| (l.log.len(), l.period)).collect();
-    let layout = Layout::new(1, &sizes);
-    let (mut sum, mut n) = (0.0, 0usize);
-    for (log, series) in rest.iter().enumerate() {
-        let bins = layout.transform(log, &series[channel..=channel], &[false]);
-        for value in &bins[bins.len() / 2..] {
-            sum += value.norm_sqr();
-            n += 1;
-        }
-    }
-    (sum / n.max(1) as f64).sqrt()
 }
 
 /// A band of frequencies in which a rest is not noise.

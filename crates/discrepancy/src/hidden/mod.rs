@@ -73,6 +73,16 @@ impl Noise {
         }
     }
 
+    /// Each sensor's noise as many times as large as `by` says.
+    pub(crate) fn times(self, by: Self) -> Self {
+        Self {
+            position: self.position * by.position,
+            angle: self.angle * by.angle,
+            speed: self.speed * by.speed,
+            current: self.current * by.current,
+        }
+    }
+
     /// Sensors with this noise, for [`ClosedLoop::run_sensed`]: the same seed
     /// gives the same noise.
     pub fn sensors(self, seed: u64) -> impl FnMut(&mut Measured) {
