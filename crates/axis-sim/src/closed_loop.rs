@@ -479,7 +479,8 @@ impl ClosedLoop {
         if !state.is_finite() {
             Some(StopReason::NotFinite)
         } else if cycle.error().abs() > axis.following_error_limit {
-            Some(StopReason::FollowingError(axis.following_error_limit))
+            let limit = axis.following_error_limit;
+            Some(StopReason::FollowingError(limit, axis.freedom()))
         } else if !(stroke.minimum..=stroke.maximum).contains(&cycle.position)
             || (axis.mechanism.reach()).is_some_and(|reach| !reach.contains(cycle.position))
         {

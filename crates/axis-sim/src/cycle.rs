@@ -90,7 +90,7 @@ pub enum StopReason {
     /// A state is no longer a finite number.
     NotFinite,
     /// The tracking error is beyond the axis' limit, m or rad.
-    FollowingError(f64),
+    FollowingError(f64, Freedom),
     /// The load has left its stroke, or the mechanism's reach.
     LeftStroke,
     /// No friction was found that goes with the load's motion at the end of a
@@ -136,10 +136,14 @@ impl std::fmt::Display for StopReason {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::NotFinite => f.write_str("a state is no longer a finite number"),
-            Self::FollowingError(limit) => write!(
+            Self::FollowingError(limit, freedom) => write!(
                 f,
-                "the tracking error passed {} (SI), the following_error_limit of the axis file's [control] (an unstable loop, or a motion too fast for the motor)",
-                SixDigits(*limit)
+                "the tracking error passed {} {}, the following_error_limit of the axis file's [control] (an unstable loop, or a motion too fast for the motor)",
+                SixDigits(1e3 * limit),
+                match freedom {
+                    Freedom::Linear => "mm",
+                    Freedom::Rotary => "mrad",
+                }
             ),
             Self::LeftStroke => f.write_str("the load left its stroke"),
             Self::LoadNotFound => f.write_str(

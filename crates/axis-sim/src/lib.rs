@@ -1,52 +1,49 @@
-//! Closed-loop simulation of a ball-screw axis: plant, servo and compensator
-//! to a log.
+//! Closed-loop simulation of a feed axis: mechanism, actuator, control, sensors,
+//! friction and loads, and a compensator, to a log.
 //!
 //! # The problem
-//! A table on a ball screw is to follow a reference S_ref(t). Between two
-//! samples the machine is a set of ordinary differential equations (Liu, Guo,
-//! Liu, Niu, Machines 2025, 13(5), 433, doi:10.3390/machines13050433,
-//! Section 3; its printed signs and units corrected):
+//! A load is to follow a reference S_ref(t). Between two samples the machine is a set of
+//! ordinary differential equations: a mechanism, which a motor torque T drives and a force
+//! F on the load opposes, both depending on what they cause. At the instants `t_k = k T`
+//! a controller samples what sensors show of it and gives the actuator a command u:
 //!
 //! ```text
-//! M q̈ + βK(x) q̇ + K(x) q = [T at the motor, −T_f / r at the table],   x = x₀ + q_table
-//! T    = 1.5 p (ψ i_q + (L_d − L_q) i_d i_q)
-//! L_d i̇_d = u_d − R i_d + p ω_m L_q i_q
-//! L_q i̇_q = u_q − R i_q − p ω_m (L_d i_d + ψ)
-//! ż    = ω − σ₀ |ω| z / G(ω),     ω = q̇_table / r,     r = lead / 2π
-//! T_f  = σ₀ z + σ₁ ż + σ₂ ω
+//! mechanism   M(x) q̈ + C(x) q̇ + K(x) q = [T at the motor, −F at the load]
+//! actuator    T = T(u, motor speed, its own state)
+//! friction    F = LuGre(load speed, bristles) + loads(position, time)
+//! sensors     what a drive gets to see of load and motor
+//! control     u = control(sensors, reference + Δ) + u_ff          Δ, u_ff: the compensator's
 //! ```
 //!
-//! with the N + 4 coordinates `q` of [`feed_dynamics`], LuGre friction
-//! ([`lugre`]) and a permanent-magnet motor ([`foc_pmsm`]). At the instants
-//! `t_k = k T` the controller samples table position, motor speed and
-//! currents, and sets the voltage for the cycle:
-//!
-//! ```text
-//! ω_ref  = P (S_ref − S + Δ) + v_ref / r        Δ, i_ff: the compensator's
-//! i_q,ref = PI(ω_ref − ω_m) + i_ff              limited, anti-windup
-//! u_d, u_q = PI(0 − i_d), PI(i_q,ref − i_q)     limited, anti-windup, held over T
-//! ```
-//!
-//! What comes out is one [`Cycle`] per sampling instant; the tracking error
-//! is S_ref − S there.
+//! Each of them is a part of an [`Axis`], of a kind that the axis file names. With a screw
+//! of Timoshenko elements, a permanent-magnet motor under field-oriented control, a P–PI
+//! cascade and LuGre friction this is the axis of Liu, Guo, Liu, Niu, Machines 2025, 13(5),
+//! 433, doi:10.3390/machines13050433, Section 3, its printed signs and units corrected; the
+//! equations of all kinds are in docs/theory/axis-sim.md. What comes out is one [`Cycle`]
+//! per sampling instant; the tracking error is S_ref − S there.
 //!
 //! # What is here
-//! - [`Axis`]: all parameters, read from a TOML file and checked once. Errors
-//!   name file, line, field and what would be valid.
-//! - [`ClosedLoop`]: the loop above for any motion and any compensator.
-//!   How a run ended is its [`Outcome`].
-//! - [`Recorder`]: cycles to an [`axis_log::Log`] with named channels;
+//! - [`Axis`]: parts and settings, read from a TOML file and checked once. Errors
+//!   name file, line, field and what would be valid. [`Registry`]: the kinds that a file may
+//!   name, to which a program may add its own.
+//! - [`mechanism`], [`actuator`], [`control`], [`sensor`], [`friction`], [`load`]: the kinds
+//!   of parts, each a file and a line of its registry ([`part`]).
+//! - [`ClosedLoop`]: the loop above for any motion and any compensator, whole
+//!   ([`ClosedLoop::run`]) or cycle by cycle for a caller who owns time
+//!   ([`ClosedLoop::step`]). How a run ended is its [`Outcome`]; what it left is a
+//!   [`LoopState`], from which the next may begin.
+//! - [`CHANNELS`]: the channels of logs; [`Recorder`]: cycles to an [`axis_log::Log`];
 //!   [`CsvRecorder`]: straight to CSV, in bounded memory.
 //! - [`OneCycle`]: a single cycle from a given motion, S(k+1) − S(k): the
 //!   samples that a network learns from.
-//! - [`effects`]: what a model may lack, as components of the loop.
-//! - [`RigidAxis`]: the other kind of machine, a rigid mass under a P–P
-//!   controller; [`effects::Machine`] is either.
-//! - [`Replay`]: a log's reference through a machine with effects.
+//! - [`effects`]: what a model may lack, as changes of parameters by their role and hooks
+//!   in the loop.
+//! - [`Replay`]: a log's reference through an axis with effects.
 //!
 //! # Units
-//! SI inside: m, rad, s, N, N·m, A, V. In the file the last part of each key
-//! is its unit (`lead_mm = 10`, `lead_m = 0.010`).
+//! SI inside: m, rad, s, N, N·m, A, V; a load that turns has rad for m, N·m for N and kg·m²
+//! for kg ([`mechanism::Freedom`]). In the file the last part of each key is its unit
+//! (`lead_mm = 10`, `lead_m = 0.010`).
 //!
 //! # Bounded work
 //! Every value of an axis file lies within stated limits, and a run of more

@@ -30,9 +30,9 @@ pub struct Found {
 /// One constant-speed run.
 #[derive(Serialize, Deserialize)]
 pub struct RunPoint {
-    /// rad/s at the screw.
+    /// In the friction law's coordinate: rad/s or m/s.
     pub speed: f64,
-    /// N·m.
+    /// N·m or N.
     pub torque: f64,
     /// Why it was left out, if it was.
     pub left_out: Option<String>,
@@ -109,8 +109,11 @@ pub fn run(context: &Context) -> Result<()> {
     stage.write_json(TRANSFER, &fits)?;
     stage.finish()?;
     let p = &identified.parameters;
+    let units = context.machine.friction.at.units();
+    let (force, speed, damping, stiffness) =
+        (units.force, units.speed, units.damping, units.stiffness);
     say(format!(
-        "identify: T_C {:.4} N·m, T_S {:.4} N·m, Ω_S {:.4} rad/s, σ2 {:.5} N·m·s/rad, σ0 {:.3} N·m/rad, σ1 {:.3} N·m·s/rad; transfer functions of order {} and {}",
+        "identify: T_C {:.4} {force}, T_S {:.4} {force}, Ω_S {:.4} {speed}, σ2 {:.5} {damping}, σ0 {:.3} {stiffness}, σ1 {:.3} {damping}; transfer functions of order {} and {}",
         p.coulomb,
         p.stiction,
         p.stribeck_speed,
@@ -157,6 +160,7 @@ pub fn load_transfer(context: &Context) -> Result<([Transfer; 2], [TransferFunct
 
 fn summarise(identified: &Identified, context: &Context) -> Friction {
     let truth = context.machine.friction.law.parameters();
+    let units = context.machine.friction.at.units();
     let (statics, presliding) = (&identified.statics, &identified.presliding);
     let found = |name: &str, unit: &str, estimate: Estimate, truth: f64| Found {
         name: name.to_owned(),
@@ -175,12 +179,17 @@ fn summarise(identified: &Identified, context: &Context) -> Friction {
     let p = &identified.parameters;
     Friction {
         parameters: vec![
-            found("T_C", "N·m", statics.coulomb, truth.coulomb),
-            found("T_S", "N·m", statics.stiction, truth.stiction),
-            found("Ω_S", "rad/s", statics.stribeck_speed, truth.stribeck_speed),
-            found("σ2", "N·m·s/rad", statics.viscous, truth.viscous),
-            found("σ0", "N·m/rad", presliding.stiffness, truth.stiffness),
-            found("σ1", "N·m·s/rad", presliding.damping, truth.damping),
+            found("T_C", units.force, statics.coulomb, truth.coulomb),
+            found("T_S", units.force, statics.stiction, truth.stiction),
+            found(
+                "Ω_S",
+                units.speed,
+                statics.stribeck_speed,
+                truth.stribeck_speed,
+            ),
+            found("σ2", units.damping, statics.viscous, truth.viscous),
+            found("σ0", units.stiffness, presliding.stiffness, truth.stiffness),
+            found("σ1", units.damping, presliding.damping, truth.damping),
         ],
         runs: identified.runs.iter().enumerate().map(point).collect(),
         law: [

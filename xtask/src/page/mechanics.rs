@@ -38,10 +38,14 @@ pub fn friction(context: &Context, results: &Results) -> Section {
             .unzip();
         (!x.is_empty()).then(|| Series::dots(name, x, y))
     };
-    // 0.1 to 200 rad/s, evenly on the logarithmic axis.
+    // A little beyond the runs, evenly on the logarithmic axis.
+    let run_speeds = || results.friction.runs.iter().map(|run| run.speed.abs());
+    let slowest = 0.8 * run_speeds().fold(f64::MAX, f64::min);
+    let fastest = 1.06 * run_speeds().fold(f64::MIN_POSITIVE, f64::max);
     let speeds: Vec<f64> = (0..=200)
-        .map(|i| 0.1 * 2000f64.powf(f64::from(i) / 200.0))
+        .map(|i| slowest * (fastest / slowest).powf(f64::from(i) / 200.0))
         .collect();
+    let units = context.machine.friction.at.units();
     let curve = |law: &LuGre| {
         speeds
             .iter()
@@ -50,8 +54,8 @@ pub fn friction(context: &Context, results: &Results) -> Section {
     };
     let mut figure = Figure::new(
         "Steady-state friction",
-        "speed at the screw, rad/s",
-        "torque, N·m",
+        format!("speed at {}, {}", units.at, units.speed),
+        format!("friction, {}", units.force),
     )
     .series(Series::line(
         "axis file",

@@ -4,13 +4,16 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use foc_pmsm::{Dq, MotorParameters, Phases, Pmsm, Servo, ServoGains, ServoLimits, ServoState};
+use foc_pmsm::{
+    Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState, MotorParameters, Phases,
+    Pmsm, Servo, ServoGains, ServoLimits, ServoState,
+};
 
 use super::delay::DelayLine;
 use super::{Actuating, Actuator, Effort, Electrical, MotorMotion, Surroundings};
 use crate::cycle::Measured;
 use crate::part::units::*;
-use crate::part::{Key, Known, PartError, PartKind, Role, Values, count, quantity};
+use crate::part::{Key, Known, PartError, PartKind, Role, Values, count, number, quantity};
 
 pub(super) static ROTARY: PartKind<dyn Actuator> = PartKind {
     name: "pmsm-foc",
@@ -29,6 +32,9 @@ pub(super) static ROTARY: PartKind<dyn Actuator> = PartKind {
         CURRENT_LIMIT,
         DEAD_TIME,
         DELAY,
+        WEAKENING_GAIN,
+        WEAKENING_CURRENT,
+        WEAKENING_SHARE,
     ],
     known: KNOWN,
     build: |v| {
@@ -54,6 +60,9 @@ pub(super) static LINEAR: PartKind<dyn Actuator> = PartKind {
         CURRENT_LIMIT,
         DEAD_TIME,
         DELAY,
+        WEAKENING_GAIN,
+        WEAKENING_CURRENT,
+        WEAKENING_SHARE,
     ],
     known: KNOWN,
     // One pole pair in π of the electrical angle, x π / pitch.
@@ -78,6 +87,12 @@ const DEAD_TIME: Key = quantity("dead_time_voltage", &VOLTAGE, -1e3, 1e3)
 const DELAY: Key = quantity("command_delay", &TIME, 0.0, 0.1)
     .or(0.0)
     .role(Role::CommandDelay);
+
+/// Field weakening is on where its gain is given.
+const WEAKENING_GAIN: Key =
+    quantity("field_weakening_gain", &FIELD_WEAKENING, 1e-6, 1e6).optional();
+const WEAKENING_CURRENT: Key = quantity("field_weakening_current", &CURRENT, 1e-3, 1e5).optional();
+const WEAKENING_SHARE: Key = number("field_weakening_voltage_share", 0.1, 0.999).or(0.95);
 
 const KNOWN: &[Known] = &[
     Known {
@@ -111,6 +126,8 @@ struct FieldOriented {
     gear: f64,
     dead_time_voltage: f64,
     delay: f64,
+    /// Gain, greatest current and share of the voltage.
+    weakening: Option<[f64; 3]>,
 }
 
 fn build(
@@ -150,7 +167,25 @@ fn build(
         gear,
         dead_time_voltage: v.or("dead_time_voltage", 0.0),
         delay: v.or("command_delay", 0.0),
+        weakening: weakening(v)?,
     }))
+}
+
+fn weakening(v: &Values) -> Result<Option<[f64; 3]>, PartError> {
+    let Some(gain) = v.optional("field_weakening_gain") else {
+        return Ok(None);
+    };
+    let current = v.number("field_weakening_current")?;
+    let limit = v.number("current_limit")?;
+    if current >= limit {
+        return Err(PartError::of(
+            "field_weakening_current",
+            format!("is {} A", crate::SixDigits(current)),
+            format!("below the current limit of {} A", crate::SixDigits(limit)),
+        ));
+    }
+    let share = v.or("field_weakening_voltage_share", 0.95);
+    Ok(Some([gain, current, share]))
 }
 
 impl Actuator for FieldOriented {
@@ -181,8 +216,19 @@ impl Actuator for FieldOriented {
     fn start(&self, on: &Surroundings) -> Result<Box<dyn Actuating>, PartError> {
         let servo = Servo::new(self.gains, self.limits, on.period)
             .map_err(|e| PartError::together(e, "other current controllers"))?;
+        let weakening = |[ki, current, voltage_share]: [f64; 3]| {
+            FieldWeakening::new(FieldWeakeningParameters {
+                voltage_share,
+                ki,
+                current,
+                period: on.period,
+            })
+            .map_err(|e| PartError::together(e, "another field weakening"))
+        };
         Ok(Box::new(State {
             law: *self,
+            weakening: self.weakening.map(weakening).transpose()?,
+            d_reference: FieldWeakeningState::default(),
             servo,
             state: ServoState::default(),
             delay: DelayLine::new(self.delay / on.period),
@@ -196,6 +242,8 @@ impl Actuator for FieldOriented {
 #[derive(Clone, Debug)]
 struct State {
     law: FieldOriented,
+    weakening: Option<FieldWeakening>,
+    d_reference: FieldWeakeningState,
     servo: Servo,
     state: ServoState,
     delay: DelayLine,
@@ -216,14 +264,22 @@ impl Actuating for State {
     }
 
     fn command(&mut self, effort: f64, measured: &Measured) {
-        let reference = Dq {
-            d: 0.0,
+        let mut reference = Dq {
+            d: self.d_reference.id_ref,
             q: self.delay.push(effort),
         };
+        if reference.d != 0.0 {
+            // The length of the current stays within its limit.
+            let most = self.servo.q_current_limit(reference.d);
+            reference.q = reference.q.clamp(-most, most);
+        }
         let error = reference - measured.current;
         let (voltage, d, q) = self.servo.current_loop(&mut self.state, error, Dq::ZERO);
         self.voltage = voltage;
         self.saturated = d || q;
+        if let Some(law) = &self.weakening {
+            law.update(&mut self.d_reference, voltage, self.law.limits.voltage);
+        }
     }
 
     fn torque(&mut self, motor: &MotorMotion, h: f64) -> f64 {

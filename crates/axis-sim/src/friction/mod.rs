@@ -42,6 +42,45 @@ pub enum Place {
     Load(Freedom),
 }
 
+/// Units of a friction law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrictionUnits {
+    /// Where it acts, in words.
+    pub at: &'static str,
+    /// Of its speed.
+    pub speed: &'static str,
+    /// Of its force or torque.
+    pub force: &'static str,
+    /// Of its damping.
+    pub damping: &'static str,
+    /// Of its bristles' stiffness.
+    pub stiffness: &'static str,
+}
+
+impl Place {
+    /// The units of a law in this coordinate.
+    pub fn units(self) -> FrictionUnits {
+        let rotary = |at| FrictionUnits {
+            at,
+            speed: "rad/s",
+            force: "N·m",
+            damping: "N·m·s/rad",
+            stiffness: "N·m/rad",
+        };
+        match self {
+            Self::Motor => rotary("the motor's shaft"),
+            Self::Load(Freedom::Rotary) => rotary("the load"),
+            Self::Load(Freedom::Linear) => FrictionUnits {
+                at: "the load",
+                speed: "m/s",
+                force: "N",
+                damping: "N·s/m",
+                stiffness: "N/m",
+            },
+        }
+    }
+}
+
 impl Friction {
     /// Load travel per unit of the law's coordinate, where the load moves by
     /// `travel` a radian of the motor.

@@ -74,6 +74,7 @@ dimensions! {
     ANGULAR_SPEED "unit of angular speed": "deg_per_s" DEGREE, "rad_per_s" 1.0, "rpm" RPM;
     ANGULAR_ACCELERATION "unit of angular acceleration": "deg_per_s2" DEGREE, "rad_per_s2" 1.0;
     ANGULAR_JERK "unit of angular jerk": "deg_per_s3" DEGREE, "rad_per_s3" 1.0;
+    FIELD_WEAKENING "unit of a field-weakening gain": "a_per_v_s" 1.0;
     FORCE_CONSTANT "unit of a force constant": "n_per_a" 1.0;
     FORCE "unit of force": "n" 1.0, "kn" 1e3;
     LINEAR_DAMPING "unit of damping": "n_s_per_m" 1.0;

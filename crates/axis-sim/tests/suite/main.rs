@@ -28,6 +28,7 @@ mod rigid;
 mod sensors;
 mod starts;
 mod vibration;
+mod weakening;
 
 use std::path::PathBuf;
 

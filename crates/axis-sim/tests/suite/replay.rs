@@ -31,7 +31,7 @@ fn a_rigid_mass_has_its_own_following_error_limit() {
     assert!(matches!(
         error,
         ReplayError::Stopped(RunStopped {
-            reason: StopReason::FollowingError(5e-4),
+            reason: StopReason::FollowingError(5e-4, _),
             ..
         })
     ));
