@@ -121,6 +121,8 @@ pub(super) struct Layout {
     pub friction: &'static PartKind<Friction>,
     /// Of each `[[load]]`.
     pub loads: Vec<&'static PartKind<dyn Load>>,
+    /// Whether each part has a section.
+    sections: bool,
     places: &'static [Place],
 }
 
@@ -139,13 +141,14 @@ impl Layout {
             control,
             friction,
             loads: Vec::new(),
+            sections: true,
             places: SECTIONS,
         }
     }
 
     /// Whether each part has a section, which names its kind.
     pub fn has_sections(&self) -> bool {
-        std::ptr::eq(self.places, SECTIONS)
+        self.sections
     }
 
     /// What a file has, by its sections or its kind.
@@ -173,6 +176,7 @@ impl Layout {
                     control: named(&registry.controls, control)?,
                     friction: named(&registry.frictions, friction)?,
                     loads: loads.clone(),
+                    sections: false,
                     places,
                 })
             };
@@ -189,6 +193,7 @@ impl Layout {
             control: kind_in(root, "control", &registry.controls)?,
             friction: kind_in(root, "friction", &registry.frictions)?,
             loads,
+            sections: true,
             places: SECTIONS,
         })
     }

@@ -15,8 +15,49 @@ use super::{Plan, Row, pool};
 
 pub fn rows(axis: &Axis, plan: &Plan) -> Result<Vec<Row>> {
     let mut rows = closed_loops(axis, plan)?;
+    for (file, text) in OTHERS {
+        rows.push(other_loop(&Axis::parse(file, text)?, plan)?);
+    }
     rows.extend(samples(axis, plan)?);
     Ok(rows)
+}
+
+/// Axes on mechanisms without elements.
+const OTHERS: [(&str, &str); 4] = [
+    ("rack.toml", include_str!("../../../../data/axes/rack.toml")),
+    ("belt.toml", include_str!("../../../../data/axes/belt.toml")),
+    ("joint.toml", include_str!("../../../../data/axes/joint.toml")),
+    (
+        "linear-stage.toml",
+        include_str!("../../../../data/axes/linear-stage.toml"),
+    ),
+];
+
+/// All trajectories of an axis, one after another.
+fn other_loop(axis: &Axis, plan: &Plan) -> Result<Row> {
+    let plans = axis.trajectories.iter();
+    let motions = plans.map(|spec| axis.plan(spec).into_diagnostic());
+    let motions: Vec<SCurve> = motions.collect::<Result<_>>()?;
+    let closed_loop = ClosedLoop::new(axis).into_diagnostic()?;
+    let run = |motion: &SCurve| {
+        black_box(closed_loop.run(motion, &mut NoCompensation, |cycle| {
+            black_box(cycle.error());
+        }));
+    };
+    let real_time: f64 = motions.iter().map(Motion::duration).sum();
+    let [once] = least(plan.repetitions, [&mut || motions.iter().for_each(run)]);
+    Ok(Row {
+        name: format!(
+            "closed loop of {} at {:.0} kHz, {:.0} steps a cycle",
+            axis.mechanism.kind().name,
+            1e-3 / axis.period,
+            closed_loop.steps(&motions[0]) / closed_loop.cycles(&motions[0]) as f64
+        ),
+        value: once,
+        unit: "s",
+        ratio: real_time / once,
+        against: "real time",
+    })
 }
 
 fn closed_loops(axis: &Axis, plan: &Plan) -> Result<Vec<Row>> {
