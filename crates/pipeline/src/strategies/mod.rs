@@ -5,6 +5,7 @@
 //! and summary and tables show it. A strategy that is made elsewhere goes into a list of
 //! one's own, which [`crate::compensation::compensate_with`] takes.
 
+mod feedforward;
 mod lugre;
 mod network;
 mod network_lugre;
@@ -17,11 +18,12 @@ mod transfer_function_lugre;
 use compensator::Compensator;
 
 use crate::PipelineError;
+pub use feedforward::Feedforward;
 pub use network::KIND as NETWORK;
 pub use network_lugre::KIND as NETWORK_LUGRE;
 pub use none::KIND as NONE;
 pub(crate) use predictors::BothPredictors;
-pub use predictors::{Feedforward, NetworkStrategy, Predictors, TransferModels};
+pub use predictors::{NetworkStrategy, Predictors, TransferModels};
 
 /// All strategies, one line each, in the order of summary and tables; without [`NONE`],
 /// which is what they are compared with.

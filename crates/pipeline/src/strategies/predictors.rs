@@ -8,7 +8,7 @@ use compensator::{
 };
 use lugre::LuGre;
 
-use super::Need;
+use super::{Feedforward, Need};
 use crate::PipelineError;
 
 /// What the strategies are made of: the axis as its file has it, and what was found from it.
@@ -31,36 +31,6 @@ pub struct TransferModels {
     pub alone: TransferFunctionModel,
     /// Of the servo with LuGre feed-forward.
     pub with_feedforward: TransferFunctionModel,
-}
-
-/// From a friction law in its own coordinate to the actuator's command.
-#[derive(Clone, Copy, Debug)]
-pub struct Feedforward {
-    /// Load travel per unit of the law's coordinate.
-    lever: f64,
-    /// Friction of the law per unit of the command.
-    per_effort: f64,
-}
-
-impl Feedforward {
-    /// On an axis.
-    pub fn of(axis: &Axis) -> Self {
-        let r = axis.travel_per_radian();
-        let lever = axis.friction.lever(r);
-        Self {
-            lever,
-            per_effort: axis.torque_constant() * (lever / r),
-        }
-    }
-
-    /// Feed-forward of a law, with a control period (s).
-    ///
-    /// # Errors
-    /// [`PipelineError::Compensator`] for values outside their ranges.
-    pub fn of_law(&self, law: LuGre, period: f64) -> Result<FrictionFeedforward, PipelineError> {
-        let Self { lever, per_effort } = *self;
-        Ok(FrictionFeedforward::new(law, lever, per_effort, period)?)
-    }
 }
 
 /// Compensation by the network.
