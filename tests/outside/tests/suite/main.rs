@@ -1,6 +1,7 @@
 //! What a program of one's own adds to the libraries works as what they hold themselves.
 
 mod axis_file;
+mod docs;
 mod hoist;
 mod own_time;
 mod power;

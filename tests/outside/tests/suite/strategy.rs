@@ -1,10 +1,11 @@
 //! The outside strategy beside those of the library.
 
 use compensator::TransferFunctionModel;
+use outside::ACCELERATION_FEEDFORWARD;
 use pipeline::PipelineError;
 use pipeline::compensation::{compensate, compensate_with, find, runs};
 use pipeline::sampling::{SamplePlan, Sampler, SpeedDensity, ranges};
-use pipeline::strategies::{Need, Predictors, STRATEGIES, Table, of_table};
+use pipeline::strategies::{NONE, Need, Predictors, STRATEGIES, Table, of_table};
 use pipeline::summary::{self, Compensated};
 use pipeline::training::{NetworkPlan, train};
 use pipeline::validation::validate;
@@ -16,10 +17,7 @@ use crate::read;
 fn it_takes_the_error_of_the_known_inertia_away() {
     let axis = read(outside::HOIST);
     let predictors = Predictors::of(&axis);
-    let strategies = [
-        &pipeline::strategies::NONE,
-        &outside::ACCELERATION_FEEDFORWARD,
-    ];
+    let strategies = [&NONE, &ACCELERATION_FEEDFORWARD];
     let runs = compensate_with(&axis, &axis, &predictors, &strategies, || ()).unwrap();
     let most = |name: &str| find(&runs, 1, name).unwrap().figures.max;
     let (without, with) = (most("none"), most("acceleration_feedforward"));
@@ -94,7 +92,7 @@ fn what_is_missing_or_twice_is_refused_by_name() {
         "{error}"
     );
 
-    let own = &outside::ACCELERATION_FEEDFORWARD;
+    let own = &ACCELERATION_FEEDFORWARD;
     let error = compensate_with(&axis, &axis, &predictors, &[own, own], || ()).unwrap_err();
     assert!(matches!(
         error,
