@@ -1,13 +1,10 @@
 //! Results of all stages together: what the report shows.
 
 use miette::{Result, miette};
-use pipeline::Figures;
-use pipeline::compensation::CompensatedRun;
-use pipeline::strategies::Strategy;
+use pipeline::compensation::{CompensatedRun, find};
+use pipeline::strategies::{STRATEGIES, StrategyKind};
 use pipeline::study::StudyRow;
-use pipeline::summary::{
-    Compensated, ErrorsUm, NetworkSummary, Predicted, Summary, TrajectorySummary,
-};
+use pipeline::summary::{self, NetworkSummary, Summary};
 use pipeline::validation::Validation;
 
 use crate::commands::identify::{Friction, Transfer};
@@ -41,7 +38,7 @@ pub fn gather(context: &Context) -> Result<Results> {
     let folder = folder.and_then(|experiment| experiment.paper_tables.as_ref());
     let paper = folder.map(|folder| paper::read(folder)).transpose()?;
     Ok(Results {
-        summary: summary(context, &validation, &compensation, &training)?,
+        summary: summarise(context, &validation, &compensation, &training)?,
         study: study::load(context)?,
         training,
         friction,
@@ -53,40 +50,21 @@ pub fn gather(context: &Context) -> Result<Results> {
     })
 }
 
-fn summary(
+fn summarise(
     context: &Context,
     validation: &Validation,
     compensation: &[CompensatedRun],
     training: &Training,
 ) -> Result<Summary> {
-    let mut trajectories = Vec::new();
     for t in &validation.trajectories {
-        let under = |strategy: Strategy| -> Result<Figures> {
-            let mut runs = compensation.iter();
-            runs.find(|run| run.id == t.id && run.strategy == strategy)
-                .map(|run| run.run.figures)
-                .ok_or_else(|| miette!("trajectory {} was not compensated with \"{}\"; run `cargo xtask compensate`", t.id, strategy.label()))
-        };
-        trajectories.push(TrajectorySummary {
-            id: t.id,
-            motion_time_s: t.motion_time_s,
-            errors_um: ErrorsUm {
-                model: t.model.figures,
-                machine: t.machine.figures,
-                predicted: Predicted {
-                    network: t.network.figures,
-                    transfer_function: t.transfer_function.figures,
-                },
-                compensated: Compensated {
-                    network: under(Strategy::Network)?,
-                    network_lugre: under(Strategy::NetworkLugre)?,
-                    transfer_function: under(Strategy::TransferFunction)?,
-                    transfer_function_lugre: under(Strategy::TransferFunctionLugre)?,
-                    lugre: under(Strategy::Lugre)?,
-                    network_lugre_printed: under(Strategy::NetworkLugrePrinted)?,
-                },
-            },
-        });
+        let without = |kind: &&&StrategyKind| find(compensation, t.id, kind.name).is_none();
+        if let Some(kind) = STRATEGIES.iter().find(without) {
+            return Err(miette!(
+                "trajectory {} was not compensated with \"{}\"; run `cargo xtask compensate`",
+                t.id,
+                kind.label
+            ));
+        }
     }
     Ok(Summary {
         axis: context.axis.name.clone(),
@@ -95,7 +73,7 @@ fn summary(
         version: env!("CARGO_PKG_VERSION").to_owned(),
         seed: context.seed,
         quick: context.quick,
-        trajectories,
+        trajectories: summary::trajectories(validation, compensation),
         network: NetworkSummary {
             hidden: training.hidden.clone(),
             epochs: training.epochs,

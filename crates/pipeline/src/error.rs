@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::strategies::Need;
+
 /// Why a stage gave no result.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -23,6 +25,17 @@ pub enum PipelineError {
     /// A compensation strategy cannot be set up.
     #[error("the compensation cannot be set up: {0}")]
     Compensator(#[from] compensator::CompensatorError),
+    /// A strategy, or the validation, asks for what was not found before.
+    #[error("{by} needs {}, which is not among the predictors; valid: predictors that hold it, or strategies that do without", need.name())]
+    Missing {
+        /// What is not there.
+        need: Need,
+        /// Who asks for it.
+        by: String,
+    },
+    /// Two strategies that results could not tell apart.
+    #[error("two of the strategies have the name \"{0}\"; valid: each name once")]
+    SameName(&'static str),
     /// A motion has no plan.
     #[error("trajectory {index} cannot be planned: {source}")]
     Trajectory {

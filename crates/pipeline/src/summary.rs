@@ -1,8 +1,13 @@
 //! The figures of a whole pipeline in one small structure.
 
-use serde::{Deserialize, Serialize};
+use std::fmt;
+
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::Figures;
+use crate::compensation::CompensatedRun;
+use crate::validation::{ValidatedTrajectory, Validation};
 
 /// What `summary.json` holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,21 +63,78 @@ pub struct Predicted {
     pub transfer_function: Figures,
 }
 
-/// The machine with compensation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Compensated {
-    /// Network alone.
-    pub network: Figures,
-    /// Network and LuGre feed-forward with the identified parameters.
-    pub network_lugre: Figures,
-    /// Transfer function alone.
-    pub transfer_function: Figures,
-    /// Transfer function and LuGre feed-forward with the identified parameters.
-    pub transfer_function_lugre: Figures,
-    /// LuGre feed-forward alone.
-    pub lugre: Figures,
-    /// Network and LuGre feed-forward with the axis file's own parameters.
-    pub network_lugre_printed: Figures,
+/// The machine with compensation, by the names of the strategies, in the order in which
+/// they ran.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Compensated(Vec<(String, Figures)>);
+
+impl Compensated {
+    /// Those of one trajectory.
+    pub fn of_trajectory(runs: &[CompensatedRun], id: usize) -> Self {
+        let runs = runs.iter().filter(|run| run.id == id);
+        Self(
+            runs.map(|run| (run.strategy.clone(), run.run.figures))
+                .collect(),
+        )
+    }
+
+    /// Under the strategy of a name, where it ran.
+    pub fn under(&self, strategy: &str) -> Option<Figures> {
+        let mut all = self.iter();
+        all.find(|(name, _)| *name == strategy).map(|(_, f)| f)
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, Figures)> {
+        self.0.iter().map(|(name, f)| (name.as_str(), *f))
+    }
+}
+
+/// A map that keeps its order.
+impl Serialize for Compensated {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.iter())
+    }
+}
+
+impl<'de> Deserialize<'de> for Compensated {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Entries;
+        impl<'de> Visitor<'de> for Entries {
+            type Value = Compensated;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("figures by the names of strategies")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Compensated, A::Error> {
+                let mut all = Vec::new();
+                while let Some(entry) = map.next_entry()? {
+                    all.push(entry);
+                }
+                Ok(Compensated(all))
+            }
+        }
+        deserializer.deserialize_map(Entries)
+    }
+}
+
+/// Figures of every trajectory, from the results of validation and compensation.
+pub fn trajectories(validation: &Validation, runs: &[CompensatedRun]) -> Vec<TrajectorySummary> {
+    let one = |t: &ValidatedTrajectory| TrajectorySummary {
+        id: t.id,
+        motion_time_s: t.motion_time_s,
+        errors_um: ErrorsUm {
+            model: t.model.figures,
+            machine: t.machine.figures,
+            predicted: Predicted {
+                network: t.network.figures,
+                transfer_function: t.transfer_function.figures,
+            },
+            compensated: Compensated::of_trajectory(runs, t.id),
+        },
+    };
+    validation.trajectories.iter().map(one).collect()
 }
 
 /// The network and the linear map that it is measured against.

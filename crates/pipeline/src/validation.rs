@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use trajectories::Motion;
 
-use crate::strategies::Predictors;
+use crate::strategies::{BothPredictors, Need, Predictors};
 use crate::tracking::{Planned, Profile, Run, follow, plan_all, profile, run_of, track};
 use crate::vibration::{Vibration, vibration};
 use crate::{Figures, PipelineError};
@@ -90,13 +90,16 @@ const MODES: usize = 4;
 /// [`runs`] tells how often.
 ///
 /// # Errors
-/// [`PipelineError`] where a run diverges.
+/// [`PipelineError::Missing`] without a network or transfer functions,
+/// [`PipelineError::Run`] where a run diverges.
 pub fn validate(
     model: &Axis,
     machine: &Axis,
     predictors: &Predictors,
     each: impl Fn() + Sync,
 ) -> Result<Validation, PipelineError> {
+    let needs = [Need::Network, Need::TransferFunctions];
+    predictors.require(&needs, "the validation")?;
     let loops = [ClosedLoop::new(model)?, ClosedLoop::new(machine)?];
     let planned = plan_all(model)?;
     let trajectory = |planned: &Planned| {
@@ -158,7 +161,7 @@ fn one(
 
 /// Asks both predictors in every cycle and corrects nothing.
 struct Watch {
-    predictors: crate::strategies::BothPredictors,
+    predictors: BothPredictors,
     /// Predicted errors from the first cycle on, which nothing predicts: zero.
     network: Vec<f64>,
     transfer_function: Vec<f64>,

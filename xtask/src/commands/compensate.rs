@@ -2,7 +2,7 @@
 
 use miette::{IntoDiagnostic, Result};
 use pipeline::compensation::{self, CompensatedRun};
-use pipeline::strategies::Strategy;
+use pipeline::strategies::{Need, STRATEGIES};
 
 use super::{identify, train, validate};
 use crate::context::{Common, Context};
@@ -34,9 +34,10 @@ pub fn stage(context: &Context) -> Stage<'_> {
 /// Runs the stage.
 pub fn run(context: &Context) -> Result<()> {
     let stage = stage(context);
-    let predictors = validate::predictors(context)?;
+    let predictors = validate::predictors(context, &Need::ALL)?;
     stage.begin()?;
-    let progress = bar("compensate", compensation::runs(&context.axis) as u64);
+    let count = compensation::runs(&context.axis, STRATEGIES);
+    let progress = bar("compensate", count as u64);
     let runs = compensation::compensate(&context.axis, &context.machine, &predictors, || {
         progress.inc(1);
     })
@@ -45,9 +46,9 @@ pub fn run(context: &Context) -> Result<()> {
     stage.write_json(COMPENSATION, &runs)?;
     stage.finish()?;
     say("compensate: tracking error of the machine (simulated), max / mean in µm")?;
-    for strategy in Strategy::COMPENSATED {
-        say(format!("  {}", strategy.label()))?;
-        for run in runs.iter().filter(|run| run.strategy == strategy) {
+    for kind in STRATEGIES {
+        say(format!("  {}", kind.label))?;
+        for run in runs.iter().filter(|run| run.strategy == kind.name) {
             let f = run.run.figures;
             say(format!("  {:>10} {:>8.3} / {:.4}", run.id, f.max, f.mean))?;
         }
@@ -58,4 +59,37 @@ pub fn run(context: &Context) -> Result<()> {
 /// The results of a finished stage.
 pub fn load(context: &Context) -> Result<Vec<CompensatedRun>> {
     stage(context).read_json(COMPENSATION)
+}
+
+#[cfg(test)]
+mod tests {
+    use pipeline::strategies::named;
+
+    use super::*;
+
+    /// Results that lie in folders from before carry these names.
+    #[test]
+    fn results_of_every_strategy_are_read_and_labelled() {
+        let labels = [
+            ("network", "network"),
+            ("network_lugre", "network + LuGre"),
+            ("transfer_function", "transfer function"),
+            ("transfer_function_lugre", "transfer function + LuGre"),
+            ("lugre", "LuGre"),
+            (
+                "network_lugre_printed",
+                "network + LuGre as in the axis file",
+            ),
+        ];
+        assert_eq!(labels.len(), STRATEGIES.len());
+        for (name, label) in labels {
+            let json = format!(
+                r#"{{"id":3,"strategy":"{name}","run":{{"figures":{{"max":2.5,"mean":1.0}},"error_um":[0.5]}}}}"#
+            );
+            let run: CompensatedRun = serde_json::from_str(&json).unwrap();
+            let kind = named(STRATEGIES, &run.strategy).unwrap();
+            assert_eq!((run.id, kind.label), (3, label));
+            assert_eq!(serde_json::to_string(&run).unwrap(), json);
+        }
+    }
 }

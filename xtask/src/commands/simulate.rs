@@ -1,13 +1,15 @@
 //! `simulate`: one motion, its error and its log.
 
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use atomic_write_file::AtomicWriteFile;
 use axis_sim::{Axis, ClosedLoop, CsvRecorder, Cycle, Measured, Recorder, SixDigits};
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use discrepancy::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use pipeline::strategies::Strategy;
+use pipeline::strategies::{NONE, STRATEGIES, StrategyKind};
 use trajectories::{Motion, Program};
 
 use super::validate;
@@ -31,9 +33,10 @@ pub struct Options {
     /// Motion program (TOML; see docs/theory/trajectories.md)
     #[arg(long, value_name = "FILE")]
     program: Option<PathBuf>,
-    /// Compensation; all but `none` need `train` and `identify` first
-    #[arg(long, value_enum, default_value_t = Compensation::None)]
-    compensation: Compensation,
+    /// Compensation; a network needs `train` first, transfer functions and identified
+    /// friction `identify`
+    #[arg(long, value_parser = compensation(), default_value = "none")]
+    compensation: &'static StrategyKind,
     /// Noise of every sensor, in multiples of a good linear scale's (10 nm), a
     /// good motor encoder's and current sensor's; 0 for perfect ones. With
     /// noise the axis is simulated the slow, exact way, to stand for a machine
@@ -44,29 +47,25 @@ pub struct Options {
     log: Option<PathBuf>,
 }
 
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Compensation {
-    None,
-    Network,
-    NetworkLugre,
-    TransferFunction,
-    TransferFunctionLugre,
-    Lugre,
-    NetworkLugrePrinted,
-}
+/// The strategies by their names on the command line.
+static COMPENSATIONS: LazyLock<Vec<(String, &StrategyKind)>> = LazyLock::new(|| {
+    let all = [&NONE].into_iter().chain(STRATEGIES.iter().copied());
+    all.map(|kind| (kind.name.replace('_', "-"), kind))
+        .collect()
+});
 
-impl Compensation {
-    fn strategy(self) -> Strategy {
-        match self {
-            Self::None => Strategy::None,
-            Self::Network => Strategy::Network,
-            Self::NetworkLugre => Strategy::NetworkLugre,
-            Self::TransferFunction => Strategy::TransferFunction,
-            Self::TransferFunctionLugre => Strategy::TransferFunctionLugre,
-            Self::Lugre => Strategy::Lugre,
-            Self::NetworkLugrePrinted => Strategy::NetworkLugrePrinted,
-        }
-    }
+/// Reads a value of `--compensation`.
+fn compensation() -> impl TypedValueParser<Value = &'static StrategyKind> {
+    let value = |(name, kind): &'static (String, &StrategyKind)| {
+        PossibleValue::new(name.as_str()).help(kind.summary)
+    };
+    PossibleValuesParser::new(COMPENSATIONS.iter().map(value)).try_map(|given| {
+        let mut all = COMPENSATIONS.iter();
+        let found = all.find(|(name, _)| *name == given);
+        found
+            .map(|(_, kind)| *kind)
+            .ok_or_else(|| format!("there is no strategy {given}"))
+    })
 }
 
 /// Runs the command: the axis file itself is simulated, not its machine.
@@ -80,6 +79,9 @@ pub fn command(options: &Options) -> Result<()> {
     let context = options.common.open()?;
     let motion = motion(options, &context)?;
     let closed_loop = closed_loop(options, &context)?;
+    let strategy = options.compensation;
+    let predictors = validate::predictors(&context, strategy.needs)?;
+    let mut law = strategy.compensator(&predictors).into_diagnostic()?;
     let log = options.log.as_deref();
     let mut log = log
         .map(|path| LogFile::new(path, &context.axis))
@@ -103,15 +105,7 @@ pub fn command(options: &Options) -> Result<()> {
             sensors(seen);
         }
     };
-    let outcome = if options.compensation == Compensation::None {
-        closed_loop.run_sensed(&*motion, &mut compensator::NoCompensation, sense, observe)
-    } else {
-        let strategy = options.compensation.strategy();
-        let mut law = validate::predictors(&context)?
-            .compensator(strategy)
-            .into_diagnostic()?;
-        closed_loop.run_sensed(&*motion, &mut *law, sense, observe)
-    };
+    let outcome = closed_loop.run_sensed(&*motion, &mut *law, sense, observe);
     bar.finish_and_clear();
     // What was computed before the run stopped is kept.
     if let Some(log) = log.filter(|_| tracking.cycles > 0) {
@@ -204,4 +198,48 @@ pub(super) fn program(file: &Path) -> Result<Program> {
     toml::from_str(&read_text(file)?)
         .into_diagnostic()
         .wrap_err_with(|| format!("{} is not a motion program", file.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::{Command, CommandFactory, FromArgMatches, Parser};
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        options: Options,
+    }
+
+    fn parse(value: &str) -> std::result::Result<&'static StrategyKind, String> {
+        let command: Command = Line::command();
+        let line = ["simulate", "--trajectory", "1", "--compensation", value];
+        let matches = command
+            .try_get_matches_from(line)
+            .map_err(|e| e.to_string())?;
+        let line = Line::from_arg_matches(&matches).map_err(|e| e.to_string())?;
+        Ok(line.options.compensation)
+    }
+
+    /// The names that scripts give and results carry.
+    #[test]
+    fn compensations_have_the_names_of_results_with_dashes() {
+        for (value, name) in [
+            ("none", "none"),
+            ("network", "network"),
+            ("network-lugre", "network_lugre"),
+            ("transfer-function", "transfer_function"),
+            ("transfer-function-lugre", "transfer_function_lugre"),
+            ("lugre", "lugre"),
+            ("network-lugre-printed", "network_lugre_printed"),
+        ] {
+            assert_eq!(parse(value).unwrap().name, name);
+        }
+        let message = parse("lurge").unwrap_err();
+        assert!(
+            message.contains("none, network, network-lugre") && message.contains("'lugre'"),
+            "{message}"
+        );
+    }
 }

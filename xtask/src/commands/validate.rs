@@ -1,7 +1,7 @@
 //! `validate`: Tables 13 and 14.
 
 use miette::{IntoDiagnostic, Result};
-use pipeline::strategies::Predictors;
+use pipeline::strategies::{Need, Predictors, TransferModels};
 use pipeline::validation::{self, Validation};
 
 use super::{identify, train};
@@ -34,7 +34,7 @@ pub fn stage(context: &Context) -> Stage<'_> {
 /// Runs the stage.
 pub fn run(context: &Context) -> Result<()> {
     let stage = stage(context);
-    let predictors = predictors(context)?;
+    let predictors = predictors(context, &Need::ALL)?;
     stage.begin()?;
     let progress = bar("validate", validation::runs(&context.axis) as u64);
     let found = validation::validate(&context.axis, &context.machine, &predictors, || {
@@ -61,10 +61,23 @@ pub fn load(context: &Context) -> Result<Validation> {
     stage(context).read_json(VALIDATION)
 }
 
-/// The predictors from the results of `train` and `identify`.
-pub fn predictors(context: &Context) -> Result<Predictors> {
-    let network = train::load_network(context)?;
-    let (_, transfer) = identify::load_transfer(context)?;
-    let (_, friction) = identify::load_friction(context)?;
-    Ok(Predictors::new(&context.axis, network, transfer, friction))
+/// Predictors with what is needed, from the results of `train` and `identify`.
+pub fn predictors(context: &Context, needs: &[Need]) -> Result<Predictors> {
+    let mut predictors = Predictors::of(&context.axis);
+    for need in needs {
+        match need {
+            Need::Network => predictors.network = Some(train::load_network(context)?),
+            Need::TransferFunctions => {
+                let (_, [alone, with_feedforward]) = identify::load_transfer(context)?;
+                predictors.transfer = Some(TransferModels {
+                    alone,
+                    with_feedforward,
+                });
+            }
+            Need::IdentifiedFriction => {
+                predictors.identified = Some(identify::load_friction(context)?.1);
+            }
+        }
+    }
+    Ok(predictors)
 }

@@ -1,131 +1,142 @@
 //! Figure 13, Tables 15 and 16.
 
-use pipeline::strategies::Strategy;
+use pipeline::compensation::{CompensatedRun, find};
+use pipeline::strategies::{STRATEGIES, StrategyKind, Table as Group, of_table};
+use pipeline::tracking::Run;
+use pipeline::validation::ValidatedTrajectory;
 use report::{Cell, Section, Series, Table};
 
 use super::{best_if, pair, printed, times, tracking};
 use crate::paper::{Pair, Row};
 use crate::results::Results;
 
-type PaperColumn = fn(&Row) -> Pair;
-
-/// The five cases of the paper's Fig. 13 without the first, and how the paper prints them.
-const CASES: [(Strategy, &str, PaperColumn); 4] = [
-    (Strategy::Network, "Network", |row| row.network),
-    (Strategy::TransferFunction, "Transfer function", |row| {
-        row.transfer
-    }),
-    (Strategy::NetworkLugre, "Network + LuGre", |row| {
-        row.network_lugre
-    }),
-    (
-        Strategy::TransferFunctionLugre,
-        "Transfer function + LuGre",
-        |row| row.transfer_lugre,
-    ),
-];
+/// What the paper prints for a strategy in one row of its tables, where it has the strategy.
+fn column(strategy: &StrategyKind) -> Option<fn(&Row) -> Pair> {
+    match strategy.name {
+        "network" => Some(|row| row.network),
+        "transfer_function" => Some(|row| row.transfer),
+        "network_lugre" => Some(|row| row.network_lugre),
+        "transfer_function_lugre" => Some(|row| row.transfer_lugre),
+        _ => None,
+    }
+}
 
 /// The section.
 pub fn compensation(results: &Results) -> Section {
-    let [network, transfer, network_lugre, transfer_lugre] = CASES;
-    let without = table(
-        results,
-        "Without friction feed-forward, µm (Table 16)",
-        [network, transfer],
-    );
-    let with = table(
-        results,
-        "With LuGre feed-forward, identified parameters, µm (Table 15)",
-        [network_lugre, transfer_lugre],
-    );
+    let [without, with] = [
+        Group::WithoutFrictionFeedforward,
+        Group::WithFrictionFeedforward,
+    ]
+    .map(|group| of_table(STRATEGIES, group));
     let grid = results.validation.trajectories.iter().map(|t| {
         let time = |run: &[f64]| times(run.len(), results.transfer[0].period);
-        let mut figure = tracking::figure(t).series(Series::line(
-            "none",
-            time(&t.machine.error_um),
-            t.machine.error_um.clone(),
-        ));
-        for (strategy, name, _) in CASES {
-            if let Some(run) = find(results, t.id, strategy) {
-                figure = figure.series(Series::line(
-                    name,
-                    time(&run.error_um),
-                    run.error_um.clone(),
-                ));
-            }
-        }
-        figure
+        let line = |name: &str, error: &[f64]| Series::line(name, time(error), error.to_vec());
+        let figure = tracking::figure(t).series(line("none", &t.machine.error_um));
+        without
+            .iter()
+            .chain(&with)
+            .fold(figure, |figure, kind| match under(results, t.id, kind) {
+                Some(run) => figure.series(line(kind.heading, &run.error_um)),
+                None => figure,
+            })
     });
+    let grid = grid.collect();
     Section::new("Compensation")
         .paragraph("On the simulated machine. The compensator sees what a controller samples: reference, table position, motor speed, currents. Network: ΔS = S_ref − S + Ê, Ê predicted for the end of the cycle (Section 4.4). Transfer function: a linear model of the tracking error, driven by the reference and led by the position loop's time constant; beside LuGre, the model of the error that LuGre leaves. LuGre: current for the friction along the reference, with the parameters identified on the machine. A figure is marked where its peak is at or below the paper's.")
-        .table(without)
-        .table(with)
-        .table(others(results))
+        .table(beside_paper(
+            results,
+            "Without friction feed-forward, µm (Table 16)",
+            &without,
+        ))
+        .table(beside_paper(
+            results,
+            "With LuGre feed-forward, identified parameters, µm (Table 15)",
+            &with,
+        ))
+        .table(more(
+            &results.validation.trajectories,
+            &results.compensation,
+            &of_table(STRATEGIES, Group::More),
+        ))
         .table(transfer_models(results))
-        .figure_grid(grid.collect(), 2)
+        .figure_grid(grid, 2)
 }
 
-fn table(results: &Results, caption: &str, cases: [(Strategy, &str, PaperColumn); 2]) -> Table {
-    let mut table = Table::new(
-        caption,
-        [
-            "Trajectory",
-            "max",
-            "mean",
-            "max",
-            "mean",
-            "max",
-            "mean",
-            "max",
-            "mean",
-            "max",
-            "mean",
-        ],
-    )
-    .group("", 1)
-    .group("None", 2);
-    for (_, name, _) in cases {
-        table = table.group(name, 2).group(format!("Paper's, {name}"), 2);
+/// Strategies beside the servo alone, and each beside the paper's figures for it.
+fn beside_paper(results: &Results, caption: &str, strategies: &[&StrategyKind]) -> Table {
+    let groups = 1 + strategies
+        .iter()
+        .map(|kind| 1 + usize::from(column(kind).is_some()))
+        .sum::<usize>();
+    let mut table = Table::new(caption, columns(groups))
+        .group("", 1)
+        .group("None", 2);
+    for kind in strategies {
+        table = table.group(kind.heading, 2);
+        if column(kind).is_some() {
+            table = table.group(format!("Paper's, {}", kind.heading), 2);
+        }
     }
     for (i, t) in results.validation.trajectories.iter().enumerate() {
         let paper = results.paper.as_ref().and_then(|p| p.trajectories.get(i));
         let mut row = vec![Cell::text(t.id.to_string())];
         row.extend(pair(t.machine.figures));
-        for (strategy, _, column) in cases {
-            let theirs = paper.map(column);
-            match find(results, t.id, strategy) {
-                Some(run) => {
-                    let met = theirs.is_some_and(|[max, _]| run.figures.max <= max);
-                    row.extend(best_if(met, pair(run.figures)));
-                }
-                None => row.extend([Cell::Missing, Cell::Missing]),
-            }
-            row.extend(printed(theirs));
+        for kind in strategies {
+            let theirs = column(kind).map(|column| paper.map(column));
+            let peak = theirs.flatten().map(|[max, _]| max);
+            row.extend(cells(under(results, t.id, kind), peak));
+            row.extend(theirs.map(printed).into_iter().flatten());
         }
         table = table.row(row);
     }
     table
 }
 
-fn others(results: &Results) -> Table {
-    let mut table = Table::new(
-        "Two more strategies, µm",
-        ["Trajectory", "max", "mean", "max", "mean"],
-    )
-    .group("", 1)
-    .group("LuGre alone, identified", 2)
-    .group("Network + LuGre, the axis file's own parameters", 2);
-    for t in &results.validation.trajectories {
+/// Strategies that the paper does not have.
+fn more(
+    trajectories: &[ValidatedTrajectory],
+    runs: &[CompensatedRun],
+    strategies: &[&StrategyKind],
+) -> Table {
+    let caption = match strategies.len() {
+        2 => "Two more strategies, µm",
+        _ => "More strategies, µm",
+    };
+    let mut table = Table::new(caption, columns(strategies.len())).group("", 1);
+    for kind in strategies {
+        table = table.group(kind.heading, 2);
+    }
+    for t in trajectories {
         let mut row = vec![Cell::text(t.id.to_string())];
-        for strategy in [Strategy::Lugre, Strategy::NetworkLugrePrinted] {
-            match find(results, t.id, strategy) {
-                Some(run) => row.extend(pair(run.figures)),
-                None => row.extend([Cell::Missing, Cell::Missing]),
-            }
+        for kind in strategies {
+            row.extend(cells(find(runs, t.id, kind.name), None));
         }
         table = table.row(row);
     }
     table
+}
+
+/// Headings of a table with a maximum and a mean for each of so many groups.
+fn columns(groups: usize) -> Vec<&'static str> {
+    let pairs = std::iter::repeat_n(["max", "mean"], groups);
+    std::iter::once("Trajectory")
+        .chain(pairs.flatten())
+        .collect()
+}
+
+/// Maximum and mean of a run, marked where the maximum is at most `peak`.
+fn cells(run: Option<&Run>, peak: Option<f64>) -> [Cell; 2] {
+    match run {
+        Some(run) => {
+            let met = peak.is_some_and(|peak| run.figures.max <= peak);
+            best_if(met, pair(run.figures))
+        }
+        None => [Cell::Missing, Cell::Missing],
+    }
+}
+
+fn under<'a>(results: &'a Results, id: usize, strategy: &StrategyKind) -> Option<&'a Run> {
+    find(&results.compensation, id, strategy.name)
 }
 
 /// The transfer functions themselves.
@@ -162,8 +173,65 @@ fn transfer_models(results: &Results) -> Table {
     table
 }
 
-fn find(results: &Results, id: usize, strategy: Strategy) -> Option<&pipeline::tracking::Run> {
-    let mut runs = results.compensation.iter();
-    runs.find(|run| run.id == id && run.strategy == strategy)
-        .map(|run| &run.run)
+#[cfg(test)]
+mod tests {
+    use pipeline::Figures;
+    use pipeline::strategies::NONE;
+    use pipeline::tracking::Profile;
+    use report::{Page, render};
+
+    use super::*;
+
+    static NEW: StrategyKind = StrategyKind {
+        name: "new",
+        label: "a new one",
+        heading: "A new one",
+        summary: "does nothing",
+        table: Group::More,
+        needs: &[],
+        build: |predictors| NONE.compensator(predictors),
+    };
+
+    /// A strategy more in the list is a pair of columns more, with its figures.
+    #[test]
+    fn a_new_strategy_stands_among_more_strategies() {
+        let run = |max: f64| Run {
+            figures: Figures { max, mean: 1.125 },
+            error_um: Vec::new(),
+        };
+        let trajectory = ValidatedTrajectory {
+            id: 1,
+            motion_time_s: 1.0,
+            profile: Profile::default(),
+            model: run(0.0),
+            machine: run(0.0),
+            network: run(0.0),
+            transfer_function: run(0.0),
+            network_deviation: Figures::default(),
+            transfer_function_deviation: Figures::default(),
+        };
+        let runs = [CompensatedRun {
+            id: 1,
+            strategy: "new".to_owned(),
+            run: run(47.25),
+        }];
+        let mut strategies = STRATEGIES.to_vec();
+        strategies.push(&NEW);
+        let table = more(&[trajectory], &runs, &of_table(&strategies, Group::More));
+        let page = Page::new("").section(Section::new("").table(table));
+        let html = render(&page).unwrap();
+        for text in [
+            "More strategies",
+            "LuGre alone",
+            "A new one",
+            "47.25",
+            "1.125",
+        ] {
+            assert!(html.contains(text), "{text}");
+        }
+        assert!(
+            !html.contains("Network + LuGre</th>"),
+            "a strategy of Table 15"
+        );
+    }
 }

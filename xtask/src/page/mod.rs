@@ -8,6 +8,7 @@ mod network;
 mod tracking;
 
 use axis_sim::mechanism::Way;
+use pipeline::strategies::{NETWORK, NETWORK_LUGRE, StrategyKind};
 use report::{Cell, KeyValues, Mark, Notice, Page, Section, Table};
 
 use crate::context::Context;
@@ -46,7 +47,11 @@ fn overview(context: &Context, results: &Results) -> Section {
     );
     let (mut best_peak, mut best_mean) = (0.0_f64, 0.0_f64);
     for t in &results.summary.trajectories {
-        let (none, both) = (t.errors_um.machine, t.errors_um.compensated.network_lugre);
+        let under = |kind: &StrategyKind| t.errors_um.compensated.under(kind.name);
+        let none = t.errors_um.machine;
+        let (Some(network), Some(both)) = (under(&NETWORK), under(&NETWORK_LUGRE)) else {
+            continue;
+        };
         let less = |before: f64, after: f64| 100.0 * (1.0 - after / before);
         let (peak, mean) = (less(none.max, both.max), less(none.mean, both.mean));
         best_peak = best_peak.max(peak);
@@ -54,7 +59,7 @@ fn overview(context: &Context, results: &Results) -> Section {
         table = table.row([
             Cell::text(t.id.to_string()),
             Cell::number(none.max, 2),
-            Cell::number(t.errors_um.compensated.network.max, 2),
+            Cell::number(network.max, 2),
             Cell::number(both.max, 2),
             Cell::text(format!("{peak:.1} %")),
             Cell::text(format!("{mean:.1} %")),

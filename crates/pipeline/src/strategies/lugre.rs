@@ -1,0 +1,16 @@
+//! `lugre`: feed-forward of the friction found on the machine, alone.
+
+use super::{Need, StrategyKind, Table};
+
+pub(super) static KIND: StrategyKind = StrategyKind {
+    name: "lugre",
+    label: "LuGre",
+    heading: "LuGre alone, identified",
+    summary: "LuGre feed-forward alone, with the identified parameters",
+    table: Table::More,
+    needs: &[Need::IdentifiedFriction],
+    build: |predictors| {
+        let law = predictors.identified()?;
+        Ok(Box::new(predictors.friction(law)?))
+    },
+};

@@ -1,0 +1,14 @@
+//! `network`: the tracking error that the network predicts for the end of the cycle.
+
+use super::{Need, StrategyKind, Table};
+
+/// The network alone.
+pub static KIND: StrategyKind = StrategyKind {
+    name: "network",
+    label: "network",
+    heading: "Network",
+    summary: "the network's predicted error",
+    table: Table::WithoutFrictionFeedforward,
+    needs: &[Need::Network],
+    build: |predictors| Ok(Box::new(predictors.network()?)),
+};

@@ -1,0 +1,19 @@
+//! `network_lugre`: the network, and feed-forward of the friction found on the machine.
+
+use compensator::Combined;
+
+use super::{Need, StrategyKind, Table};
+
+/// The network with LuGre feed-forward.
+pub static KIND: StrategyKind = StrategyKind {
+    name: "network_lugre",
+    label: "network + LuGre",
+    heading: "Network + LuGre",
+    summary: "the network, and LuGre feed-forward with the identified parameters",
+    table: Table::WithFrictionFeedforward,
+    needs: &[Need::Network, Need::IdentifiedFriction],
+    build: |predictors| {
+        let friction = predictors.friction(predictors.identified()?)?;
+        Ok(Box::new(Combined::new(predictors.network()?, friction)))
+    },
+};

@@ -1,0 +1,16 @@
+//! `none`: the servo alone.
+
+use compensator::NoCompensation;
+
+use super::{StrategyKind, Table};
+
+/// The servo alone, which no list of strategies holds: what they are compared with.
+pub static KIND: StrategyKind = StrategyKind {
+    name: "none",
+    label: "none",
+    heading: "None",
+    summary: "the servo alone",
+    table: Table::More,
+    needs: &[],
+    build: |_| Ok(Box::new(NoCompensation)),
+};

@@ -1,0 +1,16 @@
+//! `transfer_function`: the tracking error that a linear model predicts from the reference.
+
+use super::{Need, StrategyKind, Table};
+
+pub(super) static KIND: StrategyKind = StrategyKind {
+    name: "transfer_function",
+    label: "transfer function",
+    heading: "Transfer function",
+    summary: "the transfer function's predicted error",
+    table: Table::WithoutFrictionFeedforward,
+    needs: &[Need::TransferFunctions],
+    build: |predictors| {
+        let model = predictors.transfer()?.alone;
+        Ok(Box::new(predictors.leading(model)?))
+    },
+};
