@@ -198,7 +198,7 @@ fn an_effect_that_the_machine_cannot_have_is_not_accepted() {
         "discover", "--axis", emps, "--fit", "a.csv", "--check", "b.csv", "--accept", "backlash",
     ]);
     assert!(
-        said.contains("backlash") && said.contains("a rigid mass"),
+        said.contains("backlash") && said.contains("rigid-mass"),
         "{said}"
     );
     assert!(

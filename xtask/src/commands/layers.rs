@@ -45,7 +45,9 @@ pub fn command() -> Result<()> {
 }
 
 fn manifests(root: &Path) -> Result<Vec<(PathBuf, Table)>> {
-    let mut paths = vec![root.join("xtask"), root.join("tests")];
+    let mut paths = ["xtask", "tests", "tests/outside"]
+        .map(|p| root.join(p))
+        .to_vec();
     let crates = root.join("crates");
     for entry in std::fs::read_dir(&crates).into_diagnostic()? {
         paths.push(entry.into_diagnostic()?.path());

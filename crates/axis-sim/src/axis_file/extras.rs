@@ -149,8 +149,8 @@ pub(super) fn stroke(
         |least, most| format!("{} {unit} to {} {unit}", SixDigits(least), SixDigits(most));
     let own = between(stroke.minimum, stroke.maximum);
     let inside = |r: &Range| {
-        let slack = 1e-12 * (r.most - r.least);
-        stroke.minimum >= r.least - slack && stroke.maximum <= r.most + slack
+        let slack = |end: f64| 1e-12 * end.abs();
+        stroke.minimum >= r.least - slack(r.least) && stroke.maximum <= r.most + slack(r.most)
     };
     if stroke.minimum >= stroke.maximum || !reach.as_ref().is_none_or(inside) {
         let (beside, valid) = match &reach {

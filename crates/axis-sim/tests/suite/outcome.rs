@@ -1,7 +1,7 @@
 //! How runs end that do not come to their end.
 
-use axis_sim::mechanism::Freedom;
 use axis_sim::effects::{ActiveEffect, Changes, Effect, EffectChannel};
+use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, ClosedLoop, Cycle, FOLLOWING_ERROR_LIMIT, Outcome, SetupError, StopReason};
 use compensator::{Compensator, Correction, NoCompensation, Sample};
 use trajectories::{Limits, Motion, SCurve, Setpoint};
@@ -85,7 +85,10 @@ fn a_current_limit_that_cannot_move_it() {
     change(&mut axis.actuator, &[("current_limit", 0.01)]);
     let (outcome, seen) = run(&axis, &mut NoCompensation);
     let (time, reason) = stopped(outcome);
-    assert_eq!(reason, StopReason::FollowingError(FOLLOWING_ERROR_LIMIT, Freedom::Linear));
+    assert_eq!(
+        reason,
+        StopReason::FollowingError(FOLLOWING_ERROR_LIMIT, Freedom::Linear)
+    );
     // It stands still: given up when the reference has moved 20 mm.
     let motion = axis.plan(&axis.trajectories[0]).unwrap();
     let moved = trajectories::Motion::at(&motion, time).position - 0.6;
@@ -165,7 +168,10 @@ fn the_following_error_limit_is_the_axis_files() {
         "{text}"
     );
     let (_, reason) = stopped(outcome);
-    assert_eq!(reason, StopReason::FollowingError(50.0 * 1e-6, Freedom::Linear));
+    assert_eq!(
+        reason,
+        StopReason::FollowingError(50.0 * 1e-6, Freedom::Linear)
+    );
     let enough = limited.replace("_um = 50", "_um = 55");
     let (outcome, _) = run(
         &Axis::parse("axis.toml", &enough).unwrap(),

@@ -11,7 +11,10 @@ use crate::text;
 fn cycles(extra: &str, speed: f64) -> Result<Vec<Cycle>, String> {
     let file = text("rotary-table.toml")
         .replace("dc_link_v = 540", &format!("dc_link_v = 150\n{extra}"))
-        .replace("following_error_limit_deg = 1", "following_error_limit_deg = 90")
+        .replace(
+            "following_error_limit_deg = 1",
+            "following_error_limit_deg = 90",
+        )
         .replace("maximum_deg = 360", "maximum_deg = 1200");
     let axis = Axis::parse("table.toml", &file).map_err(|e| e.to_string())?;
     let limits = Limits::new(speed.to_radians(), 5.0, 50.0).unwrap();

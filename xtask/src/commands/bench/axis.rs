@@ -26,7 +26,10 @@ pub fn rows(axis: &Axis, plan: &Plan) -> Result<Vec<Row>> {
 const OTHERS: [(&str, &str); 4] = [
     ("rack.toml", include_str!("../../../../data/axes/rack.toml")),
     ("belt.toml", include_str!("../../../../data/axes/belt.toml")),
-    ("joint.toml", include_str!("../../../../data/axes/joint.toml")),
+    (
+        "joint.toml",
+        include_str!("../../../../data/axes/joint.toml"),
+    ),
     (
         "linear-stage.toml",
         include_str!("../../../../data/axes/linear-stage.toml"),
