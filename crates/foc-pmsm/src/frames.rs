@@ -2,7 +2,6 @@
 //! the transforms between them, amplitude-invariant: a balanced set of peak
 //! value X is a vector of length X in each frame.
 
-use crate::math::sin_cos;
 use core::ops::{Add, Mul, Neg, Sub};
 use scalar::Scalar;
 
@@ -78,7 +77,7 @@ impl<T: Scalar> AlphaBeta<T> {
     /// usual today).
     #[inline]
     pub fn park(self, angle: T) -> Dq<T> {
-        let (sin, cos) = sin_cos(angle);
+        let (sin, cos) = angle.sin_cos();
         self.park_sin_cos(sin, cos)
     }
 
@@ -103,7 +102,7 @@ impl<T: Scalar> Dq<T> {
     /// Inverse Park transform for a d axis at the electrical `angle` (rad).
     #[inline]
     pub fn inverse_park(self, angle: T) -> AlphaBeta<T> {
-        let (sin, cos) = sin_cos(angle);
+        let (sin, cos) = angle.sin_cos();
         self.inverse_park_sin_cos(sin, cos)
     }
 

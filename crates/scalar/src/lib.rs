@@ -3,8 +3,8 @@
 //! A Cortex-M4F computes `f32` in hardware and `f64` in software, so control
 //! laws are generic over their scalar. [`Scalar`] has the arithmetic that they
 //! need and the elementary functions of [`libm`], which are the same to the bit
-//! on every platform and need no `std`; the square root, which IEEE 754 rounds
-//! correctly, is that of `libm` as well.
+//! on every platform and need no `std`. Sine and cosine of an `f32` are computed in
+//! `f32`, where those of `libm` would be in `f64`; so is its cube root still.
 //!
 //! ```
 //! use scalar::Scalar;
@@ -24,6 +24,11 @@
 use core::fmt::{Debug, Display, LowerExp};
 use core::iter::Sum;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+mod single;
+
+use libm::sincos as double_sin_cos;
+use single::sin_cos as single_sin_cos;
 
 mod sealed {
     pub trait Sealed {}
@@ -196,7 +201,7 @@ macro_rules! scalar {
 
             #[inline]
             fn sin_cos(self) -> (Self, Self) {
-                libm::$sincos(self)
+                $sincos(self)
             }
 
             #[inline]
@@ -248,9 +253,29 @@ macro_rules! scalar {
 }
 
 scalar!(
-    f32, sqrtf, sincosf, expf, expm1f, logf, tanhf, cbrtf, floorf, ceilf
+    f32,
+    sqrtf,
+    single_sin_cos,
+    expf,
+    expm1f,
+    logf,
+    tanhf,
+    cbrtf,
+    floorf,
+    ceilf
 );
-scalar!(f64, sqrt, sincos, exp, expm1, log, tanh, cbrt, floor, ceil);
+scalar!(
+    f64,
+    sqrt,
+    double_sin_cos,
+    exp,
+    expm1,
+    log,
+    tanh,
+    cbrt,
+    floor,
+    ceil
+);
 
 #[cfg(test)]
 mod tests {
