@@ -23,6 +23,10 @@ fn every_row_is_measured_and_written() {
     for part in [
         "closed loop,",
         "closed loops on 2 threads",
+        "closed loop of rack",
+        "closed loop of belt",
+        "closed loop of gear",
+        "closed loop of linear-motor",
         "one-cycle samples",
         "streamed to disk",
         "epoch",
@@ -48,5 +52,5 @@ fn every_row_is_measured_and_written() {
         // The terminal shows the same rows.
         assert!(said.contains(row["name"].as_str().unwrap()), "{said}");
     }
-    assert_eq!(rows.len(), 14);
+    assert_eq!(rows.len(), 18);
 }

@@ -103,10 +103,11 @@ impl Levels {
         }
     }
 
-    /// How much larger these are than others, sensor by sensor.
+    /// How much larger these are than others, sensor by sensor. What is within a fifth may be
+    /// the scatter of either, and counts as the same.
     fn over(&self, other: &Self) -> Noise {
         let ratio = |own: f64, other: f64| match own / other {
-            ratio if ratio.is_finite() => ratio,
+            ratio if ratio.is_finite() && !(0.8..=1.25).contains(&ratio) => ratio,
             _ => 1.0,
         };
         Noise {

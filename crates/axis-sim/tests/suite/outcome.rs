@@ -164,7 +164,7 @@ fn the_following_error_limit_is_the_axis_files() {
     );
     let text = outcome.completed().unwrap_err().to_string();
     assert!(
-        text.contains("passed 5e-5 ") && text.contains("following_error_limit"),
+        text.contains("passed 0.05 mm,") && text.contains("following_error_limit"),
         "{text}"
     );
     let (_, reason) = stopped(outcome);
