@@ -45,7 +45,10 @@ pub fn run(context: &Context) -> Result<()> {
     progress.finish_and_clear();
     stage.write_json(COMPENSATION, &runs)?;
     stage.finish()?;
-    say("compensate: tracking error of the machine (simulated), max / mean in µm")?;
+    let unit = context.axis.freedom().unit();
+    say(format!(
+        "compensate: tracking error of the machine (simulated), max / mean in µ{unit}"
+    ))?;
     for kind in STRATEGIES {
         say(format!("  {}", kind.label))?;
         for run in runs.iter().filter(|run| run.strategy == kind.name) {

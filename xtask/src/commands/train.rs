@@ -119,13 +119,14 @@ pub fn run(context: &Context) -> Result<()> {
     stage.write_json(TRAINING, &training)?;
     stage.finish()?;
     say(format!(
-        "train: {} epochs in {:.1} s; unseen samples max {:.2e} µm, mean {:.2e} µm (linear map {:.2e}, {:.2e})",
+        "train: {} epochs in {:.1} s; unseen samples max {:.2e} µ{unit}, mean {:.2e} µ{unit} (linear map {:.2e}, {:.2e})",
         training.epochs,
         training.seconds,
         training.network.max,
         training.network.mean,
         training.linear.max,
-        training.linear.mean
+        training.linear.mean,
+        unit = context.axis.freedom().unit()
     ))
 }
 

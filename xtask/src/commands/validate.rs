@@ -44,7 +44,8 @@ pub fn run(context: &Context) -> Result<()> {
     progress.finish_and_clear();
     stage.write_json(VALIDATION, &found)?;
     stage.finish()?;
-    say("validate: tracking error, max / mean in µm")?;
+    let unit = context.axis.freedom().unit();
+    say(format!("validate: tracking error, max / mean in µ{unit}"))?;
     say("  trajectory      model          machine (simulated)")?;
     for t in &found.trajectories {
         let (a, b) = (t.model.figures, t.machine.figures);

@@ -7,7 +7,7 @@ mod mechanics;
 mod network;
 mod tracking;
 
-use axis_sim::mechanism::Way;
+use axis_sim::mechanism::{Freedom, Way};
 use pipeline::strategies::{NETWORK, NETWORK_LUGRE, StrategyKind};
 use report::{Cell, KeyValues, Mark, Notice, Page, Section, Table};
 
@@ -31,6 +31,16 @@ pub fn page(context: &Context, results: &Results) -> Page {
         .section(mechanics::modes(results))
         .section(network::study(results))
         .section(settings(context, results))
+}
+
+/// What units mean on an axis that turns; nothing on others.
+fn of_units(section: Section, context: &Context) -> Section {
+    match context.axis.freedom() {
+        Freedom::Linear => section,
+        Freedom::Rotary => section.paragraph(
+            "This axis turns: wherever this page has mm or µm, of positions, speeds and errors, read mrad or µrad.",
+        ),
+    }
 }
 
 fn overview(context: &Context, results: &Results) -> Section {
@@ -73,7 +83,8 @@ fn overview(context: &Context, results: &Results) -> Section {
     } else {
         "No stand-in for a machine was given, so \u{201c}machine\u{201d} is the model itself. Nothing on this page was measured.".to_owned()
     };
-    let mut section = Section::new("Overview").notice(Notice::Info, machine);
+    let section = Section::new("Overview").notice(Notice::Info, machine);
+    let mut section = of_units(section, context);
     if context.quick {
         section = section.notice(
             Notice::Warn,
