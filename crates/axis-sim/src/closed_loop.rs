@@ -335,6 +335,7 @@ impl ClosedLoop {
             reference: reference_of(reference),
             next_reference: reference_of(next),
             position: measured.position,
+            motor_angle: measured.motor_angle,
             motor_speed: measured.motor_speed,
             iq: measured.current.q,
             iq_command: state.last_effort,

@@ -90,6 +90,7 @@
 pub mod actuator;
 mod axis;
 mod axis_file;
+mod belief;
 mod channels;
 mod closed_loop;
 pub mod control;

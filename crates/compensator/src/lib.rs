@@ -67,8 +67,10 @@ mod estimator;
 mod friction;
 #[cfg(feature = "identify")]
 mod identify;
+mod model;
 mod network;
 mod none;
+mod plan;
 mod remainder;
 mod sample;
 mod transfer_function;
@@ -81,8 +83,10 @@ pub use friction::FrictionFeedforward;
 pub use identify::{
     Candidates, IdentifyError, Motion, TransferFunctionFit, Trial, identify_transfer_function,
 };
+pub use model::{Along, Cascade, Drive, DriveModel, Mode, SECTIONS, Section};
 pub use network::{IncrementModel, NetworkCompensation};
 pub use none::NoCompensation;
+pub use plan::{Plan, PlanSettings, Planned, Planner, Standstill, Target};
 pub use sample::{Correction, Reference, Sample};
 pub use transfer_function::{MAX_ORDER, TransferFunction, TransferFunctionModel};
 

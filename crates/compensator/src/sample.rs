@@ -22,6 +22,8 @@ pub struct Sample<T = f64> {
     pub next_reference: Reference<T>,
     /// Measured table position, m.
     pub position: T,
+    /// Measured motor angle, rad.
+    pub motor_angle: T,
     /// Measured motor speed, rad/s.
     pub motor_speed: T,
     /// Measured q current, A.
@@ -59,6 +61,7 @@ impl<T: Scalar> Sample<T> {
             reference: self.reference.cast(),
             next_reference: self.next_reference.cast(),
             position: cast(self.position),
+            motor_angle: cast(self.motor_angle),
             motor_speed: cast(self.motor_speed),
             iq: cast(self.iq),
             iq_command: cast(self.iq_command),

@@ -4,6 +4,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use compensator::Drive;
 use foc_pmsm::{
     Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState, MotorParameters, Phases,
     Pmsm, Servo, ServoGains, ServoLimits, ServoState,
@@ -211,6 +212,17 @@ impl Actuator for FieldOriented {
 
     fn pole_pairs(&self) -> Option<f64> {
         Some(self.gear * f64::from(self.motor.parameters().pole_pairs))
+    }
+
+    fn inverse(&self, _: f64) -> (Drive, f64) {
+        let field_oriented = Drive::FieldOriented {
+            motor: self.motor,
+            gear: self.gear,
+            d: [self.gains.d_p, self.gains.d_i],
+            q: [self.gains.q_p, self.gains.q_i],
+            voltage: self.limits.voltage,
+        };
+        (field_oriented, self.delay)
     }
 
     fn start(&self, on: &Surroundings) -> Result<Box<dyn Actuating>, PartError> {

@@ -7,6 +7,7 @@ mod torque_source;
 
 use std::fmt;
 
+use compensator::Drive;
 use foc_pmsm::Dq;
 
 use crate::cycle::Measured;
@@ -104,6 +105,16 @@ pub trait Actuator: fmt::Debug + Send + Sync {
     /// Electrical periods per radian of the motor, where its torque ripples with them.
     fn pole_pairs(&self) -> Option<f64> {
         None
+    }
+
+    /// It as a feed-forward inverts it, where the load moves by `travel` a radian, and the
+    /// time by which its command comes late, s.
+    fn inverse(&self, travel: f64) -> (Drive, f64) {
+        let lag = Drive::Lag {
+            gain: self.torque_constant(travel),
+            bandwidth: f64::INFINITY,
+        };
+        (lag, 0.0)
     }
 
     /// An actuator at rest, without a command.

@@ -7,6 +7,8 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use compensator::Drive;
+
 use super::delay::DelayLine;
 use super::{Actuating, Actuator, Effort, MotorMotion, Surroundings};
 use crate::cycle::Measured;
@@ -86,6 +88,14 @@ impl Actuator for Source {
             Effort::Force => self.gain * travel,
             _ => self.gain,
         }
+    }
+
+    fn inverse(&self, travel: f64) -> (Drive, f64) {
+        let lag = Drive::Lag {
+            gain: self.torque_constant(travel),
+            bandwidth: self.bandwidth,
+        };
+        (lag, self.delay)
     }
 
     fn start(&self, on: &Surroundings) -> Result<Box<dyn Actuating>, PartError> {

@@ -167,6 +167,17 @@ impl Control for Cascade {
         Some(self.speed[0])
     }
 
+    fn cascade(&self, travel: f64) -> Option<compensator::Cascade> {
+        Some(compensator::Cascade {
+            position: self.velocity_gain(travel)? / travel,
+            velocity_feedforward: self.velocity_feedforward,
+            acceleration_feedforward: self.acceleration_feedforward,
+            speed: self.speed[0],
+            speed_integral: self.speed[1],
+            from_motor: matches!(self.feedback, Feedback::Motor),
+        })
+    }
+
     fn effort(&self) -> Option<Effort> {
         self.effort
     }

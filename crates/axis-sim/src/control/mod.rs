@@ -7,7 +7,7 @@ mod pid;
 
 use std::fmt;
 
-use compensator::Correction;
+use compensator::{Cascade, Correction};
 use trajectories::Setpoint;
 
 use crate::actuator::{Effort, Surroundings};
@@ -54,6 +54,12 @@ pub trait Control: fmt::Debug + Send + Sync {
     /// Effort per speed of the motor, as it acts at once: the way by which noise of the
     /// speed comes into the command. None where no speed of the motor is read.
     fn speed_gain(&self) -> Option<f64> {
+        None
+    }
+
+    /// It as corrections pass through it, on a load that moves by `travel` a radian. None
+    /// where there is no speed loop to pass through.
+    fn cascade(&self, _travel: f64) -> Option<Cascade> {
         None
     }
 

@@ -8,6 +8,8 @@
 
 use std::sync::Arc;
 
+use compensator::Cascade;
+
 use super::{Control, Controller, Demand, Situation};
 use crate::actuator::{Effort, Surroundings};
 use crate::cycle::Measured;
@@ -43,6 +45,17 @@ struct PP {
 impl Control for PP {
     fn velocity_gain(&self, _: f64) -> Option<f64> {
         Some(self.position)
+    }
+
+    fn cascade(&self, travel: f64) -> Option<Cascade> {
+        Some(Cascade {
+            position: self.position / travel,
+            velocity_feedforward: 0.0,
+            acceleration_feedforward: 0.0,
+            speed: self.speed * travel,
+            speed_integral: 0.0,
+            from_motor: false,
+        })
     }
 
     fn starts_in_motion(&self) -> bool {

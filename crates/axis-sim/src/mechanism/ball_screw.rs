@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use beam_fem::{Material, Section};
+use compensator::Mode;
 use feed_dynamics::{
     AxialSupport, DriveError, DriveParameters, FeedDrive, ImplicitStepper, ModalStepper, Mounting,
     NutCoupling,
@@ -136,20 +137,41 @@ impl Mechanism for BallScrew {
     /// Every part is turned back from the motor by its share of the static wind-up
     /// between motor and table.
     fn rotating(&self, x: f64) -> Vec<[f64; 2]> {
-        let (p, r) = (self.drive.parameters(), self.travel_per_radian());
+        let p = self.drive.parameters();
         // Compliances from the motor on, rad/(N·m).
         let sensor = 1.0 / p.motor_coupling_stiffness;
         let driven_end = sensor + 1.0 / p.screw_coupling_stiffness;
         let twist = x / (p.material.shear_modulus() * p.section.torsion_constant());
         // Linear up to the nut, constant beyond it: the mean over the screw.
         let screw = driven_end + twist * (1.0 - 0.5 * x / p.screw_length);
-        let table = driven_end + twist + 1.0 / (self.drive.contact_stiffness(x) * r * r);
+        let table = self.compliance(x);
         let screw_inertia = self.drive.rotating_inertia() - p.motor_inertia - p.sensor_inertia;
         vec![
             [p.motor_inertia, 0.0],
             [p.sensor_inertia, sensor / table],
             [screw_inertia, screw / table],
         ]
+    }
+
+    fn compliance(&self, x: f64) -> f64 {
+        let (p, r) = (self.drive.parameters(), self.travel_per_radian());
+        let couplings = 1.0 / p.motor_coupling_stiffness + 1.0 / p.screw_coupling_stiffness;
+        let twist = x / (p.material.shear_modulus() * p.section.torsion_constant());
+        couplings + twist + 1.0 / (self.drive.contact_stiffness(x) * r * r)
+    }
+
+    fn participation(&self, x: f64) -> Result<Vec<Mode>, DriveError> {
+        let modes = self.drive.modes(x, NutCoupling::ShapeFunctions)?;
+        let load = modes.shapes.nrows() - 1;
+        let beta = self.drive.parameters().stiffness_damping;
+        let elastic = modes.frequencies.iter().enumerate().skip(1);
+        let elastic = elastic.map(|(i, &frequency)| Mode {
+            frequency,
+            damping: beta * frequency * frequency,
+            motor: modes.shapes[(0, i)],
+            load: modes.shapes[(load, i)],
+        });
+        Ok(std::iter::once(self.rigid_mode()).chain(elastic).collect())
     }
 
     fn stiffness(&self) -> Option<f64> {

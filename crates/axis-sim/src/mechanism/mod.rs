@@ -12,6 +12,7 @@ mod screw_datasheet;
 use std::fmt;
 use std::sync::Arc;
 
+use compensator::Mode;
 use feed_dynamics::DriveError;
 
 use crate::axis::Range;
@@ -114,6 +115,29 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
 
     /// Inertia of the load, kg or kg·m².
     fn load_inertia(&self) -> f64;
+
+    /// Compliance from motor to load with the load at `x`, seen at the motor, rad/(N·m);
+    /// 0 where they are one.
+    fn compliance(&self, x: f64) -> f64;
+
+    /// All natural modes with the load at `x`, the rigid motion first, as motor and load
+    /// take part in them.
+    ///
+    /// # Errors
+    /// As [`Mechanism::modes`].
+    fn participation(&self, _x: f64) -> Result<Vec<Mode>, DriveError> {
+        Ok(vec![self.rigid_mode()])
+    }
+
+    /// The rigid motion.
+    fn rigid_mode(&self) -> Mode {
+        let share = 1.0 / self.total_inertia().sqrt();
+        Mode {
+            motor: share,
+            load: share * self.travel_per_radian(),
+            ..Mode::default()
+        }
+    }
 
     /// What its transmission's kinematics are off by, if anything.
     fn kinematic_error(&self) -> Option<KinematicError> {

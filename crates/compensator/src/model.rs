@@ -1,0 +1,243 @@
+//! What a compensator believes of an axis: the numbers of its feed-forward.
+//!
+//! ```text
+//! T = J a/r + r (m a + F) + (J − J_w) s̈        torque of the motor
+//! s = C (r (m a + F) + J_w a/r)                wind-up of the motor against the load
+//! ```
+//!
+//! r is the travel per radian, m the load's inertia, F the force against it (friction and
+//! loads), J what turns with the motor, C the compliance from motor to load as seen at the
+//! motor, and J_w = Σ Jᵢ κᵢ the part of J that lags the motor by a share κᵢ of the wind-up.
+//! `docs/theory/compensator.md` derives both.
+
+use foc_pmsm::Pmsm;
+use lugre::{Exponential, LuGre};
+use scalar::Scalar;
+
+use crate::CompensatorError;
+use crate::error::{self, require, within};
+
+/// Positions at which [`Along`] holds its values.
+pub const SECTIONS: usize = 33;
+
+/// What of an axis depends on the load's position.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Section<T = f64> {
+    /// Compliance C from motor to load, rad/(N·m) at the motor.
+    pub compliance: T,
+    /// J, all that turns with the motor, kg·m².
+    pub rotating: T,
+    /// J_w, the part of it that lags the motor, kg·m².
+    pub lagging: T,
+    /// Force of the axis' own loads against positive motion, N (N·m where it turns).
+    pub load: T,
+}
+
+/// Sections evenly spread over the stroke; linear between them, constant beyond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Along<T = f64> {
+    least: T,
+    per_length: T,
+    sections: [Section<T>; SECTIONS],
+}
+
+impl<T: Scalar> Along<T> {
+    /// From the position `least` to `most` (m or rad), the section at each position from
+    /// `at`.
+    ///
+    /// # Errors
+    /// [`CompensatorError::Setting`] where the ends are not finite or not in order, or a
+    /// section is not finite or has a negative compliance or inertia.
+    pub fn new(
+        [least, most]: [T; 2],
+        mut at: impl FnMut(T) -> Section<T>,
+    ) -> Result<Self, CompensatorError> {
+        let inside = least.is_finite() && most.is_finite() && most > least;
+        require(inside, "stroke", most, "finite, and above its lower end")?;
+        let gaps = T::of((SECTIONS - 1) as f64);
+        let mut sections = [Section::default(); SECTIONS];
+        for (i, section) in sections.iter_mut().enumerate() {
+            *section = at(least + (most - least) * T::of(i as f64) / gaps);
+            let s = *section;
+            let named = [
+                ("compliance", s.compliance),
+                ("rotating", s.rotating),
+                ("lagging", s.lagging),
+            ];
+            for (name, value) in named {
+                let inside = value >= T::ZERO && value.is_finite();
+                require(inside, name, value, "finite and at least 0")?;
+            }
+            require(s.load.is_finite(), "load", s.load, "finite")?;
+        }
+        Ok(Self {
+            least,
+            per_length: gaps / (most - least),
+            sections,
+        })
+    }
+
+    /// The section at `position`.
+    #[must_use]
+    pub fn at(&self, position: T) -> Section<T> {
+        let last = T::of((SECTIONS - 1) as f64);
+        // Not a number goes to the lower end.
+        let along = ((position - self.least) * self.per_length)
+            .max(T::ZERO)
+            .min(last);
+        let node = (along.to_f64() as usize).min(SECTIONS - 2);
+        let share = along - T::of(node as f64);
+        let [a, b] = [&self.sections[node], &self.sections[node + 1]];
+        let between = |a: T, b: T| a + share * (b - a);
+        Section {
+            compliance: between(a.compliance, b.compliance),
+            rotating: between(a.rotating, b.rotating),
+            lagging: between(a.lagging, b.lagging),
+            load: between(a.load, b.load),
+        }
+    }
+
+    /// The same with every compliance times `scale`.
+    #[must_use]
+    pub fn with_compliance(mut self, scale: T) -> Self {
+        for section in &mut self.sections {
+            section.compliance = section.compliance * scale;
+        }
+        self
+    }
+}
+
+/// A natural mode of the mechanism at one position.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mode {
+    /// Angular frequency, rad/s; 0 for the rigid motion.
+    pub frequency: f64,
+    /// 2ζω, 1/s.
+    pub damping: f64,
+    /// Mass-normalised shape at the motor, rad/√(kg·m²).
+    pub motor: f64,
+    /// At the load, m/√(kg·m²), or rad/√(kg·m²).
+    pub load: f64,
+}
+
+/// How the actuator makes torque of its command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drive<T = f64> {
+    /// Torque per command (N·m per A, N·m, N or V) behind a first-order lag (rad/s;
+    /// infinite for none).
+    Lag {
+        /// N·m per unit of the command.
+        gain: T,
+        /// Bandwidth, rad/s.
+        bandwidth: T,
+    },
+    /// A permanent-magnet motor under two PI current controllers, i_d = 0.
+    FieldOriented {
+        /// The motor; its speed is `gear` times that of the axis' motor coordinate.
+        motor: Pmsm<T>,
+        /// Radians of the motor per unit of the axis' motor coordinate; 1 where it turns.
+        gear: T,
+        /// Gains [k_p in V/A, k_i in V/(A·s)] of the d controller.
+        d: [T; 2],
+        /// Those of the q controller.
+        q: [T; 2],
+        /// Greatest length of the voltage, V.
+        voltage: T,
+    },
+}
+
+/// The drive's own position and speed loop, as far as corrections pass through it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cascade<T = f64> {
+    /// Speed of the motor per position error P, rad/s per m; 0 where a correction of the
+    /// position does not become a speed.
+    pub position: T,
+    /// Speed feed-forward that the drive has itself, as a share of v/r.
+    pub velocity_feedforward: T,
+    /// Command per acceleration of the load that the drive feeds forward itself.
+    pub acceleration_feedforward: T,
+    /// Command per speed error of the motor, unit of the command per rad/s.
+    pub speed: T,
+    /// Command per angle error of the motor, unit of the command per rad.
+    pub speed_integral: T,
+    /// Whether the position comes from the motor, not from the load.
+    pub from_motor: bool,
+}
+
+/// Everything that a plan is made from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveModel<T = f64> {
+    /// Travel of the load per radian of the motor r, m/rad or rad/rad.
+    pub travel: T,
+    /// Inertia of the load m, kg or kg·m².
+    pub load_inertia: T,
+    /// Friction, in its own coordinate.
+    pub friction: LuGre<T>,
+    /// Travel of the load per unit of that coordinate.
+    pub lever: T,
+    /// What depends on the position.
+    pub along: Along<T>,
+    /// The actuator.
+    pub drive: Drive<T>,
+    /// Time by which its command comes late, s.
+    pub delay: T,
+    /// Greatest command, in its unit.
+    pub effort_limit: T,
+    /// The loops around it.
+    pub cascade: Cascade<T>,
+    /// Control period, s.
+    pub period: T,
+}
+
+impl<T: Exponential> DriveModel<T> {
+    /// Torque per command at rest, N·m per unit of the command.
+    #[must_use]
+    pub fn torque_constant(&self) -> T {
+        match &self.drive {
+            Drive::Lag { gain, .. } => *gain,
+            Drive::FieldOriented { motor, gear, .. } => *gear / motor.q_current(T::ONE),
+        }
+    }
+
+    /// Refuses what no plan can be made from.
+    pub(crate) fn check(&self) -> Result<(), CompensatorError> {
+        error::travel_per_radian(self.travel)?;
+        error::period(self.period)?;
+        let positive = |name, value: T| {
+            let inside = within(value, 1e-9, 1e12);
+            require(inside, name, value, "from 1e-9 to 1e12")
+        };
+        positive("load_inertia", self.load_inertia)?;
+        positive("lever", self.lever)?;
+        positive("torque_constant", self.torque_constant())?;
+        let inside = self.effort_limit > T::ZERO;
+        require(inside, "effort_limit", self.effort_limit, "above 0")?;
+        let cycles = self.delay / self.period;
+        let inside = within(cycles, 0.0, MOST_DELAY as f64);
+        require(inside, "delay", self.delay, "from 0 to 16 control periods")?;
+        let c = &self.cascade;
+        let gains = [
+            ("position", c.position),
+            ("speed", c.speed),
+            ("speed_integral", c.speed_integral),
+        ];
+        for (name, gain) in gains {
+            let inside = gain >= T::ZERO && gain.is_finite();
+            require(inside, name, gain, "finite and at least 0")?;
+        }
+        match &self.drive {
+            Drive::Lag { bandwidth, .. } => {
+                let inside = *bandwidth > T::ZERO;
+                require(inside, "bandwidth", *bandwidth, "above 0")?;
+            }
+            Drive::FieldOriented { q: [kp, ki], .. } => {
+                let inside = *kp > T::ZERO && kp.is_finite() && *ki >= T::ZERO && ki.is_finite();
+                require(inside, "current_q", *kp, "finite and above 0")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Most control periods by which a command may come late in a plan.
+pub(crate) const MOST_DELAY: usize = 16;

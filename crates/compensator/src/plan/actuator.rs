@@ -1,0 +1,130 @@
+//! The actuator inverted: the command that brings a torque a cycle later.
+
+use foc_pmsm::Dq;
+use lugre::Exponential;
+
+use crate::model::{Drive, DriveModel};
+
+/// The command of a cycle and what comes of it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Commanded<T> {
+    /// In the actuator's unit.
+    pub effort: T,
+    /// Whether a limit keeps the torque from being reached.
+    pub limited: bool,
+}
+
+/// The actuator's state along the plan.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inverse<T> {
+    drive: Drive<T>,
+    limit: T,
+    period: T,
+    /// Share of the torque that a lag keeps over a cycle.
+    kept: T,
+    torque: T,
+    current: Dq<T>,
+    integral: Dq<T>,
+}
+
+impl<T: Exponential> Inverse<T> {
+    pub fn new(model: &DriveModel<T>) -> Self {
+        let kept = match &model.drive {
+            Drive::Lag { bandwidth, .. } => (-*bandwidth * model.period).exp(),
+            Drive::FieldOriented { .. } => T::ZERO,
+        };
+        Self {
+            drive: model.drive,
+            limit: model.effort_limit,
+            period: model.period,
+            kept,
+            torque: T::ZERO,
+            current: Dq::ZERO,
+            integral: Dq::ZERO,
+        }
+    }
+
+    /// At rest with a torque (N·m) that it has held for ever.
+    pub fn settle(&mut self, torque: T) {
+        self.torque = torque;
+        if let Drive::FieldOriented { motor, gear, .. } = &self.drive {
+            let q = motor.q_current(torque / *gear);
+            self.current = Dq { d: T::ZERO, q };
+            self.integral = motor.steady_voltage(self.current, T::ZERO);
+        }
+    }
+
+    /// q current along the plan at the start of the coming cycle, A; the command that
+    /// would hold the torque where there is none.
+    pub fn effort_now(&self) -> T {
+        match &self.drive {
+            Drive::FieldOriented { .. } => self.current.q,
+            Drive::Lag { gain, .. } => self.torque / *gain,
+        }
+    }
+
+    /// The command of the coming cycle, at whose end the torque is to be `torque` (N·m),
+    /// the motor turning at the mean `speed` (rad/s).
+    pub fn towards(&mut self, torque: T, speed: T) -> Commanded<T> {
+        match self.drive {
+            Drive::Lag { gain, .. } => self.lag(gain, torque),
+            Drive::FieldOriented {
+                motor,
+                gear,
+                d,
+                q,
+                voltage,
+            } => {
+                let h = self.period;
+                let speed = gear * speed;
+                let error = -self.current.d;
+                self.integral.d += d[1] * h * error;
+                let ud = (d[0] * error + self.integral.d).max(-voltage).min(voltage);
+                let at = |uq| motor.step(self.current, Dq { d: ud, q: uq }, speed, h);
+                let (free, one) = (at(T::ZERO), at(T::ONE));
+                let rise = one - free;
+                let per_current = gear
+                    * motor.torque(Dq {
+                        d: free.d,
+                        q: T::ONE,
+                    });
+                let wanted = (torque / per_current - free.q) / rise.q;
+                // As the drive limits it: d first, then what the vector leaves for q, and
+                // the command.
+                let left = ((voltage - ud) * (voltage + ud)).max(T::ZERO).sqrt();
+                let per_error = q[0] + q[1] * h;
+                let error = (wanted.max(-left).min(left) - self.integral.q) / per_error;
+                let asked = self.current.q + error;
+                let effort = asked.max(-self.limit).min(self.limit);
+                let error = effort - self.current.q;
+                self.integral.q += q[1] * h * error;
+                let uq = q[0] * error + self.integral.q;
+                let uq = uq.max(-left).min(left);
+                self.current = free + rise * uq;
+                self.torque = gear * motor.torque(self.current);
+                Commanded {
+                    effort,
+                    limited: effort != asked || wanted.abs() > left,
+                }
+            }
+        }
+    }
+
+    fn lag(&mut self, gain: T, torque: T) -> Commanded<T> {
+        // Without a lag the torque acts over the whole cycle: its mean counts.
+        let wanted = if self.kept == T::ZERO {
+            T::HALF * (self.torque + torque)
+        } else {
+            (torque - self.kept * self.torque) / (T::ONE - self.kept)
+        };
+        let asked = wanted / gain;
+        let effort = asked.max(-self.limit).min(self.limit);
+        let limited = effort != asked;
+        self.torque = match (self.kept == T::ZERO, limited) {
+            (true, false) => torque,
+            (true, true) => gain * effort,
+            (false, _) => self.kept * self.torque + (T::ONE - self.kept) * gain * effort,
+        };
+        Commanded { effort, limited }
+    }
+}

@@ -1,0 +1,87 @@
+//! The plan of a motion that is known to its end.
+
+use lugre::Exponential;
+
+use super::{PlanSettings, Planned, Planner, Standstill, Target};
+use crate::model::DriveModel;
+use crate::{Compensator, CompensatorError, Correction, Sample};
+
+/// A [`Planner`] that is fed from a motion, as far ahead as it needs.
+#[derive(Clone, Debug)]
+pub struct Plan<F, T = f64> {
+    planner: Planner<T>,
+    /// Target of a cycle, counted from the start of the motion; beyond its end, rest.
+    targets: F,
+    own: T,
+    cycle: usize,
+    planned: Planned<T>,
+}
+
+impl<T: Exponential, F: FnMut(usize) -> Target<T>> Plan<F, T> {
+    /// For the motion whose set point of cycle k is `targets(k)`. It is asked for each
+    /// cycle once, in order, and again from 0 on after a [`Compensator::reset`].
+    ///
+    /// # Errors
+    /// As [`Planner::new`].
+    pub fn new(
+        model: &DriveModel<T>,
+        settings: &PlanSettings<T>,
+        targets: F,
+    ) -> Result<Self, CompensatorError> {
+        Ok(Self {
+            planner: Planner::new(model, settings)?,
+            targets,
+            own: T::ZERO,
+            cycle: 0,
+            planned: Planned::default(),
+        })
+    }
+
+    /// Says which part of the command, before this motion, was a compensator's: what is
+    /// left is taken as held by the drive's integrator.
+    #[must_use]
+    pub fn after(mut self, own: &Correction<T>) -> Self {
+        self.own = own.iq;
+        self
+    }
+
+    /// What the plan says of the cycle that begins with `sample`.
+    pub fn advance(&mut self, sample: &Sample<T>) -> Planned<T> {
+        let ahead = self.planner.look_ahead();
+        if self.cycle == 0 {
+            let first = (self.targets)(0);
+            self.planner.begin(
+                first.reference.position,
+                &Standstill {
+                    effort: sample.iq_command,
+                    own: self.own,
+                },
+            );
+            self.planner.push(first);
+            for k in 1..ahead {
+                self.planner.push((self.targets)(k));
+            }
+        }
+        let newest = (self.targets)(self.cycle + ahead);
+        if let Some(planned) = self.planner.push(newest) {
+            self.planned = planned;
+        }
+        self.cycle += 1;
+        self.planned
+    }
+
+    /// What it said last.
+    pub fn planned(&self) -> &Planned<T> {
+        &self.planned
+    }
+}
+
+impl<T: Exponential, F: FnMut(usize) -> Target<T>> Compensator<T> for Plan<F, T> {
+    fn reset(&mut self) {
+        self.cycle = 0;
+    }
+
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
+        self.advance(sample).correction
+    }
+}

@@ -1,0 +1,373 @@
+//! The plan: offsets of position and torque from the motion that is known ahead.
+//!
+//! For every set point the force of friction and loads is known beforehand, from it the
+//! transmission's wind-up s, and from both the motor's speed and torque:
+//!
+//! ```text
+//! F   = T_f(ω_ref)/lever + load(x)               LuGre stepped along the reference
+//! s   = Gauss * C (r (m a + F) + J_w a/r)        smooth: its rates enter below
+//! ω_d = v/r + ṡ
+//! T_d = J a/r + r (m a + F) + (J − J_w) s̈
+//! u   = the command with which the actuator's model has T_d a cycle later
+//! ```
+//!
+//! and the offsets that make the drive ask for just that, its own errors being zero:
+//!
+//! ```text
+//! position = (ω_d − f_v v/r)/P      effort = u − what the integrator holds
+//! ```
+//!
+//! [`Planner`] takes set points one by one and is [`Planner::look_ahead`] of them late;
+//! [`Plan`] runs it ahead of a motion that is known.
+
+mod actuator;
+mod known;
+mod smoothing;
+
+use lugre::Exponential;
+
+pub use known::Plan;
+
+use crate::error::{require, within};
+use crate::model::{DriveModel, MOST_DELAY};
+use crate::{CompensatorError, Correction, Reference};
+use actuator::Inverse;
+use smoothing::{MOST_HALF, Smoothing};
+
+/// How a plan is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanSettings<T = f64> {
+    /// Deviation of the Gaussian over the wind-up, s. 2 ms by default; it costs four
+    /// times itself of look-ahead. 0: none, with two set points ahead.
+    pub smoothing: T,
+}
+
+impl<T: Exponential> Default for PlanSettings<T> {
+    fn default() -> Self {
+        Self {
+            smoothing: T::of(2e-3),
+        }
+    }
+}
+
+/// What comes to the planner: a set point, and what was learned for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Target<T = f64> {
+    /// The set point.
+    pub reference: Reference<T>,
+    /// Where the load is to be led besides, relative to it: a learned correction.
+    pub shift: Reference<T>,
+    /// Force against the load that the model does not have, N.
+    pub force: T,
+}
+
+impl<T: Exponential> Target<T> {
+    /// A set point without anything learned.
+    pub fn of(reference: Reference<T>) -> Self {
+        Self {
+            reference,
+            ..Self::default()
+        }
+    }
+}
+
+/// How an axis stands before a motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Standstill<T = f64> {
+    /// Command that the drive holds the axis with, in the actuator's unit: what it has
+    /// commanded last, or the mean over a standstill where that is noisy. With the load
+    /// known it tells how the friction's bristles were left.
+    pub effort: T,
+    /// Part of it that is a compensator's own; the drive's integrator holds the rest.
+    pub own: T,
+}
+
+/// What the plan says of a cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Planned<T = f64> {
+    /// The set point.
+    pub reference: Reference<T>,
+    /// Where the load is to be, m or rad: the set point, and what was learned.
+    pub position: T,
+    /// Speed of the motor ω_d, rad/s.
+    pub motor_speed: T,
+    /// Wind-up s of the motor against the load, rad.
+    pub wind_up: T,
+    /// Torque of the motor at the start of the cycle, N·m.
+    pub torque: T,
+    /// Friction force on the load, N.
+    pub friction: T,
+    /// Share χ of bristles that follow the motion: 1 in pre-sliding, 0 in sliding.
+    pub sticking: T,
+    /// q current at the start of the cycle, A; of another actuator, the command that
+    /// would hold its torque.
+    pub current: T,
+    /// The command of the cycle, in the actuator's unit.
+    pub effort: T,
+    /// Whether a limit of the actuator keeps the plan from being followed.
+    pub limited: bool,
+    /// The offsets.
+    pub correction: Correction<T>,
+}
+
+/// One set point with the forces along it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ahead<T> {
+    target: Target<T>,
+    friction: T,
+    sticking: T,
+    /// J a/r + r (m a + F), N·m.
+    rigid: T,
+    /// J − J_w, kg·m².
+    inertia: T,
+}
+
+/// A set point with wind-up and torque.
+#[derive(Clone, Copy, Debug, Default)]
+struct Wound<T> {
+    ahead: Ahead<T>,
+    wind_up: T,
+    motor_speed: T,
+    torque: T,
+}
+
+/// Set points between the newest and the one whose wind-up is smoothed.
+const AHEAD: usize = MOST_HALF + 1;
+/// Those between that and the cycle that is planned.
+const WOUND: usize = MOST_DELAY + 2;
+
+/// Makes the plan of a stream of set points, one a control cycle. No allocation; 26 KB in
+/// `f64`.
+#[derive(Clone, Debug)]
+pub struct Planner<T = f64> {
+    model: DriveModel<T>,
+    half: usize,
+    /// Cycles by which a command comes late, whole.
+    late: usize,
+    /// What a part of a cycle more is.
+    late_part: T,
+    smoothing: Smoothing<T>,
+    inverse: Inverse<T>,
+    bristle: T,
+    speed: T,
+    ahead: [Ahead<T>; AHEAD],
+    wound: [Wound<T>; WOUND],
+    pushed: usize,
+    /// Wind-up at the start, rad.
+    home: T,
+    /// What the drive's integrator holds.
+    held: T,
+}
+
+impl<T: Exponential> Planner<T> {
+    /// For an axis as `model` has it, relaxed at position 0 until [`Planner::begin`].
+    ///
+    /// # Errors
+    /// [`CompensatorError::Setting`] names what no plan can be made from.
+    pub fn new(
+        model: &DriveModel<T>,
+        settings: &PlanSettings<T>,
+    ) -> Result<Self, CompensatorError> {
+        model.check()?;
+        let sigma = settings.smoothing / model.period;
+        let most = MOST_HALF as f64 / 4.0;
+        let valid = "from 0 to 48 control periods";
+        require(
+            within(sigma, 0.0, most),
+            "smoothing",
+            settings.smoothing,
+            valid,
+        )?;
+        let half = ((T::of(4.0) * sigma).ceil().to_f64() as usize + 1).min(MOST_HALF);
+        let cycles = model.delay / model.period;
+        let whole = cycles.floor();
+        let mut planner = Self {
+            model: *model,
+            half,
+            late: whole.to_f64() as usize,
+            late_part: cycles - whole,
+            smoothing: Smoothing::new(sigma, half, model.period),
+            inverse: Inverse::new(model),
+            bristle: T::ZERO,
+            speed: T::ZERO,
+            ahead: [Ahead::default(); AHEAD],
+            wound: [Wound::default(); WOUND],
+            pushed: 0,
+            home: T::ZERO,
+            held: T::ZERO,
+        };
+        planner.begin(T::ZERO, &Standstill::default());
+        Ok(planner)
+    }
+
+    /// The model that it plans with.
+    pub fn model(&self) -> &DriveModel<T> {
+        &self.model
+    }
+
+    /// Set points that must be known beyond the present one.
+    pub fn look_ahead(&self) -> usize {
+        self.half + 1 + self.late_cycles()
+    }
+
+    fn late_cycles(&self) -> usize {
+        self.late + usize::from(self.late_part > T::ZERO)
+    }
+
+    /// Starts anew, at rest at `position`, the drive holding what `standstill` says. Where
+    /// that differs from the axis' own load, friction holds the difference: bristles are
+    /// taken as deflected so far.
+    pub fn begin(&mut self, position: T, standstill: &Standstill<T>) {
+        let m = &self.model;
+        let section = m.along.at(position);
+        let holding = m.torque_constant() * standstill.effort / m.travel - section.load;
+        let p = m.friction.parameters();
+        let most = m.friction.bristle_limit();
+        self.bristle = if p.stiffness > T::ZERO {
+            (holding * m.lever / p.stiffness).max(-most).min(most)
+        } else {
+            T::ZERO
+        };
+        self.speed = T::ZERO;
+        let friction = m.friction.torque(self.bristle, T::ZERO) / m.lever;
+        let rigid = m.travel * (friction + section.load);
+        let wind_up = section.compliance * rigid;
+        let ahead = Ahead {
+            target: Target::of(Reference {
+                position,
+                ..Reference::default()
+            }),
+            friction,
+            sticking: T::ONE,
+            rigid,
+            inertia: section.rotating - section.lagging,
+        };
+        self.ahead = [ahead; AHEAD];
+        self.wound = [Wound {
+            ahead,
+            wind_up,
+            motor_speed: T::ZERO,
+            torque: rigid,
+        }; WOUND];
+        self.smoothing.settle(wind_up);
+        self.inverse.settle(rigid);
+        self.home = wind_up;
+        self.held = standstill.effort - standstill.own;
+        self.pushed = 0;
+    }
+
+    /// Takes the next set point. From the [`Planner::look_ahead`]th after the first on it
+    /// gives the plan of the cycle that many before.
+    pub fn push(&mut self, target: Target<T>) -> Option<Planned<T>> {
+        let (ahead, wind_up) = self.forces(target);
+        // Rings: the newest overwrites the oldest.
+        let (length, at) = (self.half + 1, self.pushed);
+        self.ahead[at % length] = ahead;
+        let middle = self.ahead[(at + 1) % length];
+        let [wind_up, rate, second] = self.smoothing.push(wind_up);
+        let reference = &middle.target.reference;
+        let shift = &middle.target.shift;
+        let velocity = reference.velocity + shift.velocity;
+        let newest = Wound {
+            wind_up,
+            motor_speed: velocity / self.model.travel + rate,
+            torque: middle.rigid + middle.inertia * second,
+            ahead: middle,
+        };
+        let late = self.late_cycles();
+        let length = late + 2;
+        self.wound[at % length] = newest;
+        self.pushed += 1;
+        (at >= self.look_ahead()).then(|| {
+            let ago = |i: usize| self.wound[(at + length - i) % length];
+            self.cycle(&ago(late + 1), [&ago(1), &newest])
+        })
+    }
+
+    /// Force and raw wind-up at a set point.
+    fn forces(&mut self, target: Target<T>) -> (Ahead<T>, T) {
+        let m = &self.model;
+        let r = &target.reference;
+        let speed = r.velocity / m.lever;
+        let (bristle, torque) = m
+            .friction
+            .step_torque(self.bristle, self.speed, speed, m.period);
+        self.bristle = bristle;
+        self.speed = speed;
+        let section = m.along.at(r.position);
+        let friction = torque / m.lever;
+        let acceleration = r.acceleration + target.shift.acceleration;
+        let at_motor = acceleration / m.travel;
+        let force = m.load_inertia * acceleration + friction + section.load + target.force;
+        let rigid = m.travel * force;
+        let ahead = Ahead {
+            target,
+            friction,
+            sticking: self.sticking(),
+            rigid: section.rotating * at_motor + rigid,
+            inertia: section.rotating - section.lagging,
+        };
+        (
+            ahead,
+            section.compliance * (rigid + section.lagging * at_motor),
+        )
+    }
+
+    /// χ = 1 − z/z_ss, from 0 to 1.
+    fn sticking(&self) -> T {
+        let steady = self.model.friction.steady_bristle(self.speed);
+        if steady == T::ZERO {
+            return T::ONE;
+        }
+        (T::ONE - self.bristle / steady).max(T::ZERO).min(T::ONE)
+    }
+
+    /// The plan of the cycle that begins at `start`. Its command acts on the torque a cycle
+    /// and a delay later, which lies between the two of `late`.
+    fn cycle(&mut self, start: &Wound<T>, late: [&Wound<T>; 2]) -> Planned<T> {
+        let model = self.model;
+        let Target {
+            reference, shift, ..
+        } = start.ahead.target;
+        let share = if self.late_part > T::ZERO {
+            self.late_part
+        } else {
+            T::ONE
+        };
+        let [before, after] = late;
+        let torque = before.torque + share * (after.torque - before.torque);
+        let current = match self.late_cycles() {
+            0 => self.inverse.effort_now(),
+            _ => start.torque / model.torque_constant(),
+        };
+        let mean = T::HALF * (before.motor_speed + after.motor_speed);
+        let commanded = self.inverse.towards(torque, mean);
+        let c = &model.cascade;
+        let fed = c.velocity_feedforward * reference.velocity / model.travel;
+        let mut position = shift.position;
+        if c.position > T::ZERO {
+            position += (start.motor_speed - fed) / c.position;
+        }
+        if c.from_motor {
+            position += model.travel * (start.wind_up - self.home);
+        }
+        let effort =
+            commanded.effort - self.held - c.acceleration_feedforward * reference.acceleration;
+        Planned {
+            reference,
+            position: reference.position + shift.position,
+            motor_speed: start.motor_speed,
+            wind_up: start.wind_up,
+            torque: start.torque,
+            friction: start.ahead.friction,
+            sticking: start.ahead.sticking,
+            current,
+            effort: commanded.effort,
+            limited: commanded.limited,
+            correction: Correction {
+                position,
+                iq: effort,
+            },
+        }
+    }
+}
