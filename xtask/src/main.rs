@@ -10,6 +10,7 @@ mod paper;
 mod progress;
 mod results;
 mod store;
+mod strategy_name;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -51,8 +52,8 @@ enum Command {
     Identify(Common),
     /// Model against machine, and both predictors against the machine (Tables 13, 14)
     Validate(Common),
-    /// Run the machine under every compensation (Tables 15, 16)
-    Compensate(Common),
+    /// Run the machine under every compensation (Tables 15, 16), or moves under one
+    Compensate(compensate::Options),
     /// Damping, layers, neurons and epochs over several seeds (Tables 7 to 10)
     Study(Common),
     /// Write summary.json and report.html from the stages' results
@@ -101,7 +102,7 @@ fn run(command: Command) -> miette::Result<()> {
         Command::Train(common) => train::command(&common),
         Command::Identify(common) => identify::command(&common),
         Command::Validate(common) => validate::command(&common),
-        Command::Compensate(common) => compensate::command(&common),
+        Command::Compensate(options) => compensate::command(&options),
         Command::Study(common) => study::command(&common),
         Command::Report(common) => report::command(&common),
         Command::Simulate(options) => simulate::command(&options),

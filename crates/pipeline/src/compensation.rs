@@ -1,12 +1,13 @@
 //! Compensated runs on what stands for the machine: Tables 15 and 16.
 
-use axis_sim::{Axis, ClosedLoop};
+use axis_sim::{Axis, ClosedLoop, Measured};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::PipelineError;
-use crate::strategies::{Predictors, STRATEGIES, StrategyKind};
-use crate::tracking::{Run, plan_all, track};
+use crate::moves::{Moves, NamedMotion};
+use crate::strategies::{Build, Predictors, STRATEGIES, StrategyKind};
+use crate::tracking::{Planned, Run, plan_all, run_of};
 
 /// One trajectory under one strategy.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -20,7 +21,8 @@ pub struct CompensatedRun {
 }
 
 /// Runs every trajectory of `model` on `machine` under every strategy of [`STRATEGIES`],
-/// in that order. `each` is called once a run; [`runs`] tells how often.
+/// in that order; a strategy that learns does so from each trajectory for those after it.
+/// `each` is called once a run; [`runs`] tells how often.
 ///
 /// # Errors
 /// [`PipelineError::Missing`] where the predictors lack what a strategy needs,
@@ -51,27 +53,43 @@ pub fn compensate_with(
             return Err(PipelineError::SameName(kind.name));
         }
         // Refused before anything is computed.
-        kind.compensator(predictors)?;
+        kind.strategy(predictors)?;
     }
     let closed_loop = ClosedLoop::new(machine)?;
-    let planned = plan_all(model)?;
-    let cases: Vec<_> = planned
+    let motions: Vec<NamedMotion> = plan_all(model)?.into_iter().map(Planned::named).collect();
+    // One after the other where a strategy carries something from move to move.
+    let series: Vec<(&StrategyKind, &[NamedMotion], usize)> = strategies
         .iter()
-        .flat_map(|planned| strategies.iter().map(move |kind| (planned, kind)))
-        .collect();
-    cases
-        .par_iter()
-        .map(|&(planned, kind)| {
-            let mut compensator = kind.compensator(predictors)?;
-            let run = track(&closed_loop, planned, &mut *compensator)?;
-            each();
-            Ok(CompensatedRun {
-                id: planned.id,
-                strategy: kind.name.to_owned(),
-                run,
-            })
+        .flat_map(|kind| {
+            let length = match kind.build {
+                Build::Each(_) => 1,
+                Build::Carrying(_) => motions.len(),
+            };
+            let chunks = motions.chunks(length).enumerate();
+            chunks.map(move |(i, motions)| (*kind, motions, i * length + 1))
         })
-        .collect()
+        .collect();
+    let runs: Vec<Vec<CompensatedRun>> = series
+        .par_iter()
+        .map(|&(kind, motions, first)| {
+            let mut strategy = kind.strategy(predictors)?;
+            let mut moves = Moves::new(&closed_loop, |_: &mut Measured| ());
+            let one = |(i, motion)| {
+                let made = moves.make(&mut *strategy, motion)?;
+                each();
+                Ok(CompensatedRun {
+                    id: first + i,
+                    strategy: kind.name.to_owned(),
+                    run: run_of(&made.errors)?,
+                })
+            };
+            motions.iter().enumerate().map(one).collect()
+        })
+        .collect::<Result<_, PipelineError>>()?;
+    let mut runs = runs.concat();
+    // By trajectory, the strategies in their order.
+    runs.sort_by_key(|run| run.id);
+    Ok(runs)
 }
 
 /// How often [`compensate_with`] calls back.

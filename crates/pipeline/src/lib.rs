@@ -18,6 +18,7 @@ mod error;
 mod figures;
 pub mod identification;
 mod linear_map;
+pub mod moves;
 pub mod sample_file;
 pub mod sampling;
 pub mod strategies;

@@ -1,10 +1,13 @@
 //! Runs of the closed loop over an axis' trajectories.
 
+use std::sync::Arc;
+
 use axis_sim::{Axis, ClosedLoop, Cycle};
 use compensator::Compensator;
 use serde::{Deserialize, Serialize};
 use trajectories::{Motion, SCurve};
 
+use crate::moves::NamedMotion;
 use crate::{Figures, PipelineError};
 
 /// One run: its figures over every control cycle, and the error thinned for display.
@@ -26,6 +29,16 @@ pub struct Planned {
     pub id: usize,
     /// The S-curve.
     pub motion: SCurve,
+}
+
+impl Planned {
+    /// Under its number.
+    pub fn named(self) -> NamedMotion {
+        NamedMotion {
+            name: self.id.to_string(),
+            motion: Arc::new(self.motion),
+        }
+    }
 }
 
 /// Plans every trajectory of an axis.

@@ -1,7 +1,7 @@
 //! `acceleration_feedforward`: the command that the known inertia asks for.
 
 use compensator::{Compensator, Correction, Sample};
-use pipeline::strategies::{StrategyKind, Table};
+use pipeline::strategies::{Build, StrategyKind, Table};
 
 /// Feed-forward of the reference's acceleration: J a / (r K), with J the inertia of all
 /// that moves, seen at the motor (kg·m²), r the load's travel per radian (m/rad) and K
@@ -13,13 +13,13 @@ pub static ACCELERATION_FEEDFORWARD: StrategyKind = StrategyKind {
     summary: "the command that the axis file's inertia asks for",
     table: Table::More,
     needs: &[],
-    build: |predictors| {
+    build: Build::Each(|predictors| {
         let axis = &predictors.axis;
         let per_torque = axis.travel_per_radian() * axis.torque_constant();
         Ok(Box::new(AccelerationFeedforward {
             per_acceleration: axis.mechanism.total_inertia() / per_torque,
         }))
-    },
+    }),
 };
 
 #[derive(Debug)]

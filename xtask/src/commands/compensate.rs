@@ -1,10 +1,11 @@
 //! `compensate`: Tables 15 and 16.
 
+use clap::Args;
 use miette::{IntoDiagnostic, Result};
 use pipeline::compensation::{self, CompensatedRun};
 use pipeline::strategies::{Need, STRATEGIES};
 
-use super::{identify, train, validate};
+use super::{compensate_moves, identify, train, validate};
 use crate::context::{Common, Context};
 use crate::output::say;
 use crate::progress::bar;
@@ -12,9 +13,21 @@ use crate::store::Stage;
 
 const COMPENSATION: &str = "compensation.json";
 
-/// Runs the command.
-pub fn command(common: &Common) -> Result<()> {
-    let context = common.open()?;
+/// Options of `compensate`.
+#[derive(Args)]
+pub struct Options {
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    moves: compensate_moves::Options,
+}
+
+/// Runs the command: the stage, or moves under one strategy.
+pub fn command(options: &Options) -> Result<()> {
+    let context = options.common.open()?;
+    if let Some(strategy) = options.moves.strategy {
+        return compensate_moves::run(&context, &options.moves, strategy);
+    }
     let _claim = context.claim()?;
     run(&context)
 }

@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod compensate;
+mod compensate_moves;
 pub mod discover;
 pub mod discover_matrix;
 pub mod identify;

@@ -1,21 +1,21 @@
 //! `simulate`: one motion, its error and its log.
 
 use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
+use std::sync::Arc;
 
 use atomic_write_file::AtomicWriteFile;
 use axis_sim::{Axis, ClosedLoop, CsvRecorder, Cycle, Measured, Recorder, SixDigits};
 use clap::Args;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use discrepancy::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use pipeline::strategies::{NONE, STRATEGIES, StrategyKind};
-use trajectories::{Motion, Program};
+use pipeline::strategies::{SharedMotion, StrategyKind};
+use trajectories::Program;
 
 use super::validate;
 use crate::context::{Common, Context, read_text};
 use crate::output::say;
 use crate::progress::bar;
+use crate::strategy_name::strategy_name;
 
 /// Options of `simulate`.
 #[derive(Args)]
@@ -35,7 +35,7 @@ pub struct Options {
     program: Option<PathBuf>,
     /// Compensation; a network needs `train` first, transfer functions and identified
     /// friction `identify`
-    #[arg(long, value_parser = compensation(), default_value = "none")]
+    #[arg(long, value_parser = strategy_name(), default_value = "none")]
     compensation: &'static StrategyKind,
     /// Noise of every sensor, in multiples of a good linear scale's (10 nm), a
     /// good motor encoder's and current sensor's; 0 for perfect ones. With
@@ -45,27 +45,6 @@ pub struct Options {
     /// Where to write the log (CSV, a row each control cycle)
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
-}
-
-/// The strategies by their names on the command line.
-static COMPENSATIONS: LazyLock<Vec<(String, &StrategyKind)>> = LazyLock::new(|| {
-    let all = [&NONE].into_iter().chain(STRATEGIES.iter().copied());
-    all.map(|kind| (kind.name.replace('_', "-"), kind))
-        .collect()
-});
-
-/// Reads a value of `--compensation`.
-fn compensation() -> impl TypedValueParser<Value = &'static StrategyKind> {
-    let value = |(name, kind): &'static (String, &StrategyKind)| {
-        PossibleValue::new(name.as_str()).help(kind.summary)
-    };
-    PossibleValuesParser::new(COMPENSATIONS.iter().map(value)).try_map(|given| {
-        let mut all = COMPENSATIONS.iter();
-        let found = all.find(|(name, _)| *name == given);
-        found
-            .map(|(_, kind)| *kind)
-            .ok_or_else(|| format!("there is no strategy {given}"))
-    })
 }
 
 /// Runs the command: the axis file itself is simulated, not its machine.
@@ -81,7 +60,9 @@ pub fn command(options: &Options) -> Result<()> {
     let closed_loop = closed_loop(options, &context)?;
     let strategy = options.compensation;
     let predictors = validate::predictors(&context, strategy.needs)?;
-    let mut law = strategy.compensator(&predictors).into_diagnostic()?;
+    let mut law = strategy
+        .compensator(&predictors, motion.clone())
+        .into_diagnostic()?;
     let log = options.log.as_deref();
     let mut log = log
         .map(|path| LogFile::new(path, &context.axis))
@@ -178,19 +159,21 @@ fn unwritten(path: &Path) -> String {
     format!("cannot write the log {}", path.display())
 }
 
-fn motion(options: &Options, context: &Context) -> Result<Box<dyn Motion>> {
+fn motion(options: &Options, context: &Context) -> Result<SharedMotion> {
     if let Some(file) = &options.program {
-        return Ok(Box::new(program(file)?));
+        return Ok(Arc::new(program(file)?));
     }
-    let number = options.trajectory.unwrap_or(0);
+    trajectory("--trajectory", options.trajectory.unwrap_or(0), context)
+}
+
+/// The motion of a trajectory's number, asked for by an option.
+pub(super) fn trajectory(option: &str, number: usize, context: &Context) -> Result<SharedMotion> {
     let count = context.axis.trajectories.len();
     let spec = number
         .checked_sub(1)
         .and_then(|index| context.axis.trajectories.get(index))
-        .ok_or_else(|| {
-            miette!("--trajectory {number}: the axis file has trajectories 1 to {count}")
-        })?;
-    Ok(Box::new(context.axis.plan(spec).into_diagnostic()?))
+        .ok_or_else(|| miette!("{option} {number}: the axis file has trajectories 1 to {count}"))?;
+    Ok(Arc::new(context.axis.plan(spec).into_diagnostic()?))
 }
 
 /// Reads a motion program.

@@ -189,7 +189,7 @@ mod tests {
         summary: "does nothing",
         table: Group::More,
         needs: &[],
-        build: |predictors| NONE.compensator(predictors),
+        build: NONE.build,
     };
 
     /// A strategy more in the list is a pair of columns more, with its figures.

@@ -60,10 +60,6 @@ impl Mechanism for Direct {
         self.drive.inertia()
     }
 
-    fn compliance(&self, _: f64) -> f64 {
-        0.0
-    }
-
     fn stiffness(&self) -> Option<f64> {
         None
     }

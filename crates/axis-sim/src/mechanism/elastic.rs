@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use compensator::Mode;
 use feed_dynamics::{DriveError, ElasticDrive, ElasticDriveParameters, ElasticStepper, Stiffness};
 
 use super::{Freedom, KinematicError, Mechanism, Way};
@@ -80,19 +79,8 @@ impl Mechanism for Elastic {
         1.0 / (p.stiffness.at(x) * p.travel_per_radian.powi(2))
     }
 
-    fn participation(&self, x: f64) -> Result<Vec<Mode>, DriveError> {
-        let p = self.drive.parameters();
-        let frequency = self.drive.resonance(x);
-        // Orthogonal to the rigid motion, and normalised: J a² + m b² = 1, J a + m r b = 0.
-        let ratio = p.load_inertia * p.travel_per_radian / p.motor_inertia;
-        let load = 1.0 / (p.load_inertia * (1.0 + ratio * p.travel_per_radian)).sqrt();
-        let elastic = Mode {
-            frequency,
-            damping: p.stiffness_damping * frequency * frequency,
-            motor: -ratio * load,
-            load,
-        };
-        Ok(vec![self.rigid_mode(), elastic])
+    fn stiffness_damping(&self) -> f64 {
+        self.drive.parameters().stiffness_damping
     }
 
     fn stiffness(&self) -> Option<f64> {

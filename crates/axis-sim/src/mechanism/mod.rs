@@ -118,15 +118,40 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
 
     /// Compliance from motor to load with the load at `x`, seen at the motor, rad/(N·m);
     /// 0 where they are one.
-    fn compliance(&self, x: f64) -> f64;
+    fn compliance(&self, _x: f64) -> f64 {
+        let r = self.travel_per_radian();
+        self.stiffness().map_or(0.0, |k| 1.0 / (k * r * r))
+    }
+
+    /// Stiffness-proportional damping β of its transmission, s.
+    fn stiffness_damping(&self) -> f64 {
+        0.0
+    }
 
     /// All natural modes with the load at `x`, the rigid motion first, as motor and load
-    /// take part in them.
+    /// take part in them: those of two inertias on the compliance, unless the mechanism
+    /// knows better.
     ///
     /// # Errors
     /// As [`Mechanism::modes`].
-    fn participation(&self, _x: f64) -> Result<Vec<Mode>, DriveError> {
-        Ok(vec![self.rigid_mode()])
+    fn participation(&self, x: f64) -> Result<Vec<Mode>, DriveError> {
+        let compliance = self.compliance(x);
+        if compliance == 0.0 {
+            return Ok(vec![self.rigid_mode()]);
+        }
+        let (r, m) = (self.travel_per_radian(), self.load_inertia());
+        let motor = self.total_inertia() - m * r * r;
+        // Orthogonal to the rigid motion, and normalised: J a² + m b² = 1, J a + m r b = 0.
+        let ratio = m * r / motor;
+        let load = 1.0 / (m * (1.0 + ratio * r)).sqrt();
+        let squared = (1.0 / m + r * r / motor) / (compliance * r * r);
+        let elastic = Mode {
+            frequency: squared.sqrt(),
+            damping: self.stiffness_damping() * squared,
+            motor: -ratio * load,
+            load,
+        };
+        Ok(vec![self.rigid_mode(), elastic])
     }
 
     /// The rigid motion.

@@ -44,10 +44,6 @@ impl Mechanism for RigidMass {
         self.0.inertia()
     }
 
-    fn compliance(&self, _: f64) -> f64 {
-        0.0
-    }
-
     fn stiffness(&self) -> Option<f64> {
         None
     }

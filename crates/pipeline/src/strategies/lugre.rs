@@ -1,6 +1,6 @@
 //! `lugre`: feed-forward of the friction found on the machine, alone.
 
-use super::{Need, StrategyKind, Table};
+use super::{Build, Need, StrategyKind, Table};
 
 pub(super) static KIND: StrategyKind = StrategyKind {
     name: "lugre",
@@ -9,8 +9,8 @@ pub(super) static KIND: StrategyKind = StrategyKind {
     summary: "LuGre feed-forward alone, with the identified parameters",
     table: Table::More,
     needs: &[Need::IdentifiedFriction],
-    build: |predictors| {
+    build: Build::Each(|predictors| {
         let law = predictors.identified()?;
         Ok(Box::new(predictors.friction(law)?))
-    },
+    }),
 };

@@ -11,11 +11,16 @@ mod network;
 mod network_lugre;
 mod network_lugre_printed;
 mod none;
+mod plan;
 mod predictors;
 mod transfer_function;
 mod transfer_function_lugre;
 
-use compensator::Compensator;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use compensator::{Compensator, Correction, Sample};
+use trajectories::Motion;
 
 use crate::PipelineError;
 pub use feedforward::Feedforward;
@@ -34,6 +39,7 @@ pub const STRATEGIES: &[&StrategyKind] = &[
     &transfer_function_lugre::KIND,
     &lugre::KIND,
     &network_lugre_printed::KIND,
+    &plan::KIND,
 ];
 
 /// A compensation strategy: a line of the registry.
@@ -52,8 +58,63 @@ pub struct StrategyKind {
     pub table: Table,
     /// What must have been found before it can be made.
     pub needs: &'static [Need],
-    /// Makes the compensator of one run.
-    pub build: fn(&Predictors) -> Result<Box<dyn Compensator>, PipelineError>,
+    /// How it is made.
+    pub build: Build,
+}
+
+/// How a strategy is made of what was found before.
+#[derive(Clone, Copy, Debug)]
+pub enum Build {
+    /// One compensator after the other, each move alike.
+    Each(fn(&Predictors) -> Result<Box<dyn Compensator>, PipelineError>),
+    /// A strategy that knows each motion ahead, or learns from move to move.
+    Carrying(fn(&Predictors) -> Result<Box<dyn Strategy>, PipelineError>),
+}
+
+/// A strategy at work on one axis, from move to move.
+pub trait Strategy {
+    /// The compensator of the coming move.
+    ///
+    /// # Errors
+    /// [`PipelineError`] where there is none for this axis or motion.
+    fn compensator(&mut self, next: &NextMove) -> Result<Box<dyn Compensator>, PipelineError>;
+
+    /// Learns from what a controller logged in the move that is over; what it knows now.
+    ///
+    /// # Errors
+    /// [`PipelineError`] where the record cannot be learned from.
+    fn learn(&mut self, _record: &[Sample]) -> Result<Learned, PipelineError> {
+        Ok(Learned::default())
+    }
+}
+
+/// A move that is to come.
+#[derive(Clone)]
+pub struct NextMove {
+    /// Its motion.
+    pub motion: SharedMotion,
+    /// What the compensator added last, where the axis stands as the move before has left
+    /// it; none where it was settled anew.
+    pub continued: Option<Correction>,
+}
+
+/// A motion that several may hold.
+pub type SharedMotion = Arc<dyn Motion + Send + Sync>;
+
+/// What a strategy has learned, by name: relative errors of the axis file's parameters,
+/// and what else it tells, in the unit that the name ends in.
+pub type Learned = BTreeMap<String, f64>;
+
+/// Each move alike.
+struct EachAlike {
+    predictors: Predictors,
+    build: fn(&Predictors) -> Result<Box<dyn Compensator>, PipelineError>,
+}
+
+impl Strategy for EachAlike {
+    fn compensator(&mut self, _: &NextMove) -> Result<Box<dyn Compensator>, PipelineError> {
+        (self.build)(&self.predictors)
+    }
 }
 
 /// The table of a report that shows a strategy.
@@ -97,17 +158,38 @@ impl Need {
 }
 
 impl StrategyKind {
-    /// The compensator of one run.
+    /// The strategy, which has not learned anything.
     ///
     /// # Errors
     /// [`PipelineError::Missing`] where the predictors lack what it needs, and whatever
     /// its own making gives.
+    pub fn strategy(&self, predictors: &Predictors) -> Result<Box<dyn Strategy>, PipelineError> {
+        predictors.require(self.needs, &format!("the strategy \"{}\"", self.name))?;
+        match self.build {
+            Build::Carrying(build) => build(predictors),
+            Build::Each(build) => {
+                build(predictors)?;
+                Ok(Box::new(EachAlike {
+                    predictors: predictors.clone(),
+                    build,
+                }))
+            }
+        }
+    }
+
+    /// The compensator of one run along `motion`, from rest.
+    ///
+    /// # Errors
+    /// As [`StrategyKind::strategy`] and [`Strategy::compensator`].
     pub fn compensator(
         &self,
         predictors: &Predictors,
+        motion: SharedMotion,
     ) -> Result<Box<dyn Compensator>, PipelineError> {
-        predictors.require(self.needs, &format!("the strategy \"{}\"", self.name))?;
-        (self.build)(predictors)
+        self.strategy(predictors)?.compensator(&NextMove {
+            motion,
+            continued: None,
+        })
     }
 }
 

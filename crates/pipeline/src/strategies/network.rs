@@ -1,6 +1,6 @@
 //! `network`: the tracking error that the network predicts for the end of the cycle.
 
-use super::{Need, StrategyKind, Table};
+use super::{Build, Need, StrategyKind, Table};
 
 /// The network alone.
 pub static KIND: StrategyKind = StrategyKind {
@@ -10,5 +10,5 @@ pub static KIND: StrategyKind = StrategyKind {
     summary: "the network's predicted error",
     table: Table::WithoutFrictionFeedforward,
     needs: &[Need::Network],
-    build: |predictors| Ok(Box::new(predictors.network()?)),
+    build: Build::Each(|predictors| Ok(Box::new(predictors.network()?))),
 };

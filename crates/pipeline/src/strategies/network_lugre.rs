@@ -2,7 +2,7 @@
 
 use compensator::Combined;
 
-use super::{Need, StrategyKind, Table};
+use super::{Build, Need, StrategyKind, Table};
 
 /// The network with LuGre feed-forward.
 pub static KIND: StrategyKind = StrategyKind {
@@ -12,8 +12,8 @@ pub static KIND: StrategyKind = StrategyKind {
     summary: "the network, and LuGre feed-forward with the identified parameters",
     table: Table::WithFrictionFeedforward,
     needs: &[Need::Network, Need::IdentifiedFriction],
-    build: |predictors| {
+    build: Build::Each(|predictors| {
         let friction = predictors.friction(predictors.identified()?)?;
         Ok(Box::new(Combined::new(predictors.network()?, friction)))
-    },
+    }),
 };

@@ -2,7 +2,7 @@
 
 use compensator::Combined;
 
-use super::{Need, StrategyKind, Table};
+use super::{Build, Need, StrategyKind, Table};
 
 pub(super) static KIND: StrategyKind = StrategyKind {
     name: "network_lugre_printed",
@@ -11,8 +11,8 @@ pub(super) static KIND: StrategyKind = StrategyKind {
     summary: "the network, and LuGre feed-forward with the axis file's own parameters",
     table: Table::More,
     needs: &[Need::Network],
-    build: |predictors| {
+    build: Build::Each(|predictors| {
         let friction = predictors.friction(predictors.axis.friction.law)?;
         Ok(Box::new(Combined::new(predictors.network()?, friction)))
-    },
+    }),
 };

@@ -2,7 +2,7 @@
 
 use compensator::NoCompensation;
 
-use super::{StrategyKind, Table};
+use super::{Build, StrategyKind, Table};
 
 /// The servo alone, which no list of strategies holds: what they are compared with.
 pub static KIND: StrategyKind = StrategyKind {
@@ -12,5 +12,5 @@ pub static KIND: StrategyKind = StrategyKind {
     summary: "the servo alone",
     table: Table::More,
     needs: &[],
-    build: |_| Ok(Box::new(NoCompensation)),
+    build: Build::Each(|_| Ok(Box::new(NoCompensation))),
 };

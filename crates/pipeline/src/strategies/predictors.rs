@@ -3,8 +3,8 @@
 use axis_sim::Axis;
 use cfnn::{Network, Predictor};
 use compensator::{
-    FrictionFeedforward, MotionEstimator, NetworkCompensation, ObserverGains, TransferFunction,
-    TransferFunctionModel,
+    DriveModel, FrictionFeedforward, MotionEstimator, NetworkCompensation, ObserverGains,
+    TransferFunction, TransferFunctionModel,
 };
 use lugre::LuGre;
 
@@ -93,6 +93,19 @@ impl Predictors {
                 by: by.to_owned(),
             }),
         }
+    }
+
+    /// What is believed of the axis: its file, with the friction identified on the machine
+    /// where that is known.
+    ///
+    /// # Errors
+    /// [`PipelineError::Compensator`] where no plan can be made from it.
+    pub fn believed(&self) -> Result<DriveModel, PipelineError> {
+        let mut model = self.axis.drive_model()?;
+        if let Some(law) = self.identified {
+            model.friction = law;
+        }
+        Ok(model)
     }
 
     /// Compensation by the network.

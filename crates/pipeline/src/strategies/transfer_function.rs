@@ -1,6 +1,6 @@
 //! `transfer_function`: the tracking error that a linear model predicts from the reference.
 
-use super::{Need, StrategyKind, Table};
+use super::{Build, Need, StrategyKind, Table};
 
 pub(super) static KIND: StrategyKind = StrategyKind {
     name: "transfer_function",
@@ -9,8 +9,8 @@ pub(super) static KIND: StrategyKind = StrategyKind {
     summary: "the transfer function's predicted error",
     table: Table::WithoutFrictionFeedforward,
     needs: &[Need::TransferFunctions],
-    build: |predictors| {
+    build: Build::Each(|predictors| {
         let model = predictors.transfer()?.alone;
         Ok(Box::new(predictors.leading(model)?))
-    },
+    }),
 };

@@ -3,7 +3,7 @@
 
 use compensator::Combined;
 
-use super::{Need, StrategyKind, Table};
+use super::{Build, Need, StrategyKind, Table};
 
 pub(super) static KIND: StrategyKind = StrategyKind {
     name: "transfer_function_lugre",
@@ -12,12 +12,12 @@ pub(super) static KIND: StrategyKind = StrategyKind {
     summary: "the transfer function, and LuGre feed-forward with the identified parameters",
     table: Table::WithFrictionFeedforward,
     needs: &[Need::TransferFunctions, Need::IdentifiedFriction],
-    build: |predictors| {
+    build: Build::Each(|predictors| {
         let model = predictors.transfer()?.with_feedforward;
         let friction = predictors.friction(predictors.identified()?)?;
         Ok(Box::new(Combined::new(
             predictors.leading(model)?,
             friction,
         )))
-    },
+    }),
 };

@@ -1,0 +1,133 @@
+//! Moves one after the other under a strategy, which learns between them.
+
+use axis_sim::{ClosedLoop, LoopState, Measured, Outcome, Start};
+use compensator::{Compensator, Correction, Sample};
+
+use crate::strategies::{Learned, NextMove, SharedMotion, Strategy};
+use crate::{Figures, PipelineError};
+
+/// Positions nearer than this count as one, m or rad: the same place in two programs.
+const SAME_PLACE: f64 = 1e-9;
+
+/// A motion with a name.
+#[derive(Clone)]
+pub struct NamedMotion {
+    /// As it was asked for: a trajectory's number or a program's file.
+    pub name: String,
+    /// The motion.
+    pub motion: SharedMotion,
+}
+
+/// How a move went.
+#[derive(Clone, Debug)]
+pub struct MoveRun {
+    /// Tracking error at every control cycle, m or rad.
+    pub errors: Vec<f64>,
+    /// Its figures, µm or µrad.
+    pub figures: Figures,
+    /// What the strategy knew after it.
+    pub learned: Learned,
+}
+
+/// An axis on which moves are made one after the other.
+pub struct Moves<'a, S> {
+    closed_loop: &'a ClosedLoop,
+    sense: S,
+    left: Option<Left>,
+}
+
+/// How the last move has left the axis.
+struct Left {
+    state: LoopState,
+    /// What was added to its command.
+    own: Correction,
+    /// Where its motion ended.
+    end: f64,
+}
+
+impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
+    /// On the axis of a closed loop; `sense` makes of what its sensors show what the drive
+    /// gets to read ([`ClosedLoop::run_sensed`]).
+    pub fn new(closed_loop: &'a ClosedLoop, sense: S) -> Self {
+        Self {
+            closed_loop,
+            sense,
+            left: None,
+        }
+    }
+
+    /// Makes a move and lets the strategy learn from it. A move that begins where the last
+    /// has ended goes on from the state that the axis was left in; before any other the
+    /// axis is settled anew, its friction relaxed.
+    ///
+    /// # Errors
+    /// [`PipelineError::Run`] where the move does not come to its end, and what the
+    /// strategy refuses.
+    pub fn make(
+        &mut self,
+        strategy: &mut dyn Strategy,
+        planned: &NamedMotion,
+    ) -> Result<MoveRun, PipelineError> {
+        let begin = planned.motion.at(0.0).position;
+        let left = self.left.take();
+        let (mut state, continued) = match left.filter(|l| (l.end - begin).abs() < SAME_PLACE) {
+            Some(left) => (left.state.at_rest(), Some(left.own)),
+            None => (self.closed_loop.start(&Start::at(begin))?, None),
+        };
+        let mut compensator = strategy.compensator(&NextMove {
+            motion: planned.motion.clone(),
+            continued,
+        })?;
+        let mut recording = Recording {
+            inner: &mut *compensator,
+            samples: Vec::new(),
+            last: Correction::default(),
+        };
+        let mut errors = Vec::new();
+        let outcome = self.closed_loop.run_from(
+            &mut state,
+            &*planned.motion,
+            &mut recording,
+            &mut self.sense,
+            |cycle| errors.push(cycle.error()),
+        );
+        let Recording { samples, last, .. } = recording;
+        if let Outcome::Completed = outcome {
+            let end = planned.motion.at(f64::INFINITY).position;
+            self.left = Some(Left {
+                state,
+                own: last,
+                end,
+            });
+        }
+        outcome.completed().map_err(|source| PipelineError::Run {
+            what: format!("move {}", planned.name),
+            source,
+        })?;
+        let learned = strategy.learn(&samples)?;
+        Ok(MoveRun {
+            figures: Figures::of_metres(&errors)?,
+            errors,
+            learned,
+        })
+    }
+}
+
+/// A compensator whose samples are kept: what a controller logs.
+struct Recording<'a> {
+    inner: &'a mut dyn Compensator,
+    samples: Vec<Sample>,
+    last: Correction,
+}
+
+impl Compensator for Recording<'_> {
+    fn reset(&mut self) {
+        self.inner.reset();
+    }
+
+    fn correct(&mut self, sample: &Sample) -> Correction {
+        self.samples.push(*sample);
+        self.last = self.inner.correct(sample);
+        self.last
+    }
+}
