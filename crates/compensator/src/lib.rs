@@ -65,8 +65,11 @@ mod combined;
 mod error;
 mod estimator;
 mod friction;
+mod guard;
 #[cfg(feature = "identify")]
 mod identify;
+#[cfg(feature = "alloc")]
+mod learning;
 mod model;
 mod network;
 mod none;
@@ -79,10 +82,13 @@ pub use combined::Combined;
 pub use error::CompensatorError;
 pub use estimator::{Estimate, MotionEstimator, NoiseGains, ObserverGains};
 pub use friction::FrictionFeedforward;
+pub use guard::{Guard, GuardLimits, Guarded, Status, Trip};
 #[cfg(feature = "identify")]
 pub use identify::{
     Candidates, IdentifyError, Motion, TransferFunctionFit, Trial, identify_transfer_function,
 };
+#[cfg(feature = "alloc")]
+pub use learning::{Advice, Gauss, LearnedMove, LearningSettings, Round};
 pub use model::{Along, Cascade, Drive, DriveModel, Mode, SECTIONS, Section};
 pub use network::{IncrementModel, NetworkCompensation};
 pub use none::NoCompensation;
@@ -94,20 +100,30 @@ pub use transfer_function::{MAX_ORDER, TransferFunction, TransferFunctionModel};
 ///
 /// `T` is the scalar that it computes in: `f64` where none is named, as in
 /// `dyn Compensator`, or `f32`.
-pub trait Compensator<T = f64> {
+pub trait Compensator<T: scalar::Scalar = f64> {
     /// Forgets everything; the next sample is the first of a motion from rest.
     fn reset(&mut self);
 
     /// The correction for the cycle that begins with `sample`.
     fn correct(&mut self, sample: &Sample<T>) -> Correction<T>;
+
+    /// How far what it observed last is from what it expected, in deviations of its noise;
+    /// 0 where it observes nothing. What a [`Guard`] watches.
+    fn surprise(&self) -> T {
+        T::ZERO
+    }
 }
 
-impl<T, C: Compensator<T> + ?Sized> Compensator<T> for &mut C {
+impl<T: scalar::Scalar, C: Compensator<T> + ?Sized> Compensator<T> for &mut C {
     fn reset(&mut self) {
         (**self).reset();
     }
 
     fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
         (**self).correct(sample)
+    }
+
+    fn surprise(&self) -> T {
+        (**self).surprise()
     }
 }

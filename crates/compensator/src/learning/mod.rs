@@ -1,0 +1,250 @@
+//! Iterative learning: the same move again, led by what it was off by before.
+//!
+//! ```text
+//! δ ← Gauss(σ) * (δ + e)       e = S_ref − S of the move that was made with δ
+//! ```
+//!
+//! δ is where the load is to be led besides, relative to the set point ([`Target::shift`]);
+//! the plan takes it in with its speed and acceleration, friction staying that of the
+//! reference. The Gaussian lets through what the plan's own smoothing passes: with a
+//! narrower one the loop gain of learning exceeds 1 near the resonance, and δ diverges
+//! (D. A. Bristow, M. Tharayil, A. G. Alleyne, A survey of iterative learning control,
+//! IEEE Control Systems 26(3), 2006, doi:10.1109/MCS.2006.1636313).
+//!
+//! A move has been learned when what is left of e behind the Gaussian is what the noise of
+//! one measurement leaves there.
+//!
+//! [`Target::shift`]: crate::Target::shift
+
+mod gauss;
+
+use alloc::vec::Vec;
+
+use scalar::Scalar;
+
+use crate::error::{self, require, within};
+use crate::{CompensatorError, Reference};
+pub use gauss::Gauss;
+
+/// How a move is learned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LearningSettings {
+    /// Deviation σ of the Gaussian, s.
+    pub smoothing: f64,
+    /// Rounds after which learning ends: later ones learn noise.
+    pub most_rounds: u32,
+    /// Greatest |δ|, m or rad.
+    pub limit: f64,
+}
+
+impl Default for LearningSettings {
+    fn default() -> Self {
+        Self {
+            smoothing: 3e-3,
+            most_rounds: 6,
+            limit: 1e-3,
+        }
+    }
+}
+
+/// What a round of learning came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Round {
+    /// Rounds so far, this one included.
+    pub rounds: u32,
+    /// Greatest |e| of the move, m or rad.
+    pub peak: f64,
+    /// Root of the mean square of what can be learned of it: behind the Gaussian.
+    pub learnable: f64,
+    /// What noise leaves there, from that part of e which does not pass.
+    pub floor: f64,
+    /// What to do now.
+    pub advice: Advice,
+}
+
+/// What to do after a round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Advice {
+    /// Make the move again: more can be learned.
+    Again,
+    /// What is left is noise.
+    Done,
+    /// Enough rounds, or the last one hardly helped: more would learn noise.
+    Enough,
+    /// The move has become worse than without δ, or than twice its best: something has
+    /// changed. δ starts anew from this move.
+    Restarted,
+}
+
+/// The correction of one move, learned from its repetitions. The sampling instants are
+/// those of the controller, from the start of the motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LearnedMove {
+    period: f64,
+    settings: LearningSettings,
+    shift: Vec<f64>,
+    rounds: u32,
+    /// Learnable part of the first move and of the best one so far.
+    first: f64,
+    best: f64,
+}
+
+impl LearnedMove {
+    /// Nothing learned yet, of a move sampled every `period` seconds.
+    ///
+    /// # Errors
+    /// [`CompensatorError::Setting`] names what is out of range.
+    pub fn new(period: f64, settings: &LearningSettings) -> Result<Self, CompensatorError> {
+        error::period(period)?;
+        let inside = within(settings.smoothing / period, 1.0, 1e5);
+        let valid = "from 1 to 1e5 control periods";
+        require(inside, "smoothing", settings.smoothing, valid)?;
+        require(settings.limit > 0.0, "limit", settings.limit, "above 0")?;
+        Ok(Self {
+            period,
+            settings: *settings,
+            shift: Vec::new(),
+            rounds: 0,
+            first: f64::INFINITY,
+            best: f64::INFINITY,
+        })
+    }
+
+    /// A correction as it was stored: δ at each sampling instant, and the rounds in which
+    /// it was learned with the learnable parts of the first and the best of them.
+    ///
+    /// # Errors
+    /// [`CompensatorError::Setting`] where a value is not finite or beyond the limit.
+    pub fn stored(
+        period: f64,
+        settings: &LearningSettings,
+        shift: Vec<f64>,
+        rounds: u32,
+        [first, best]: [f64; 2],
+    ) -> Result<Self, CompensatorError> {
+        let mut learned = Self::new(period, settings)?;
+        let most = shift.iter().fold(0.0_f64, |most, d| match d.is_nan() {
+            true => f64::INFINITY,
+            false => most.max(d.abs()),
+        });
+        require(most <= settings.limit, "shift", most, "within its limit")?;
+        require(first >= 0.0 && best >= 0.0, "best", best, "at least 0")?;
+        learned.shift = shift;
+        learned.rounds = rounds;
+        learned.first = first;
+        learned.best = best;
+        Ok(learned)
+    }
+
+    /// Learns from the errors e of the move, m or rad, one a control cycle; none where a
+    /// sample is missing: there the errors beside it count.
+    pub fn learn(&mut self, errors: &[Option<f64>]) -> Round {
+        let gauss = Gauss::new(self.settings.smoothing / self.period);
+        let filled = fill(errors);
+        let smooth = gauss.pass(&filled);
+        let learnable = rms(smooth.iter().copied());
+        // White noise of the same power as what does not pass leaves this behind it.
+        let rough = filled.iter().zip(&smooth).map(|(e, s)| e - s);
+        let floor = rms(rough) * gauss.noise_gain();
+        let peak = filled.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
+        let worse = self.rounds > 0
+            && (learnable > self.first || learnable > 2.0 * self.best)
+            && learnable > 3.0 * floor;
+        if worse {
+            self.shift.clear();
+            self.rounds = 0;
+        }
+        let advice = match () {
+            () if worse => Advice::Restarted,
+            () if learnable <= 1.5 * floor => Advice::Done,
+            // It gets hardly better: what is left varies faster than the Gaussian passes.
+            () if self.rounds > 0 && learnable > 0.8 * self.best => Advice::Enough,
+            () if self.rounds >= self.settings.most_rounds => Advice::Enough,
+            () => Advice::Again,
+        };
+        if self.rounds == 0 {
+            self.first = learnable;
+            self.best = learnable;
+        }
+        self.best = self.best.min(learnable);
+        if matches!(advice, Advice::Again | Advice::Restarted) {
+            self.shift.resize(filled.len().max(self.shift.len()), 0.0);
+            let sum = self.shift.iter().enumerate();
+            let sum: Vec<f64> = sum
+                .map(|(k, d)| d + filled.get(k).copied().unwrap_or(0.0))
+                .collect();
+            let limit = self.settings.limit;
+            let next = gauss.pass(&sum);
+            self.shift = next.into_iter().map(|d| d.clamp(-limit, limit)).collect();
+        }
+        self.rounds += 1;
+        Round {
+            rounds: self.rounds,
+            peak,
+            learnable,
+            floor,
+            advice,
+        }
+    }
+
+    /// δ with its speed and acceleration at a sampling instant.
+    #[must_use]
+    pub fn at(&self, cycle: usize) -> Reference {
+        let last = self.shift.len().saturating_sub(1);
+        let value = |k: usize| self.shift.get(k.min(last)).copied().unwrap_or(0.0);
+        let (before, at, after) = (
+            value(cycle.saturating_sub(1)),
+            value(cycle),
+            value(cycle + 1),
+        );
+        Reference {
+            position: at,
+            velocity: 0.5 * (after - before) / self.period,
+            acceleration: (after - 2.0 * at + before) / (self.period * self.period),
+        }
+    }
+
+    /// δ at each sampling instant, m or rad.
+    pub fn shift(&self) -> &[f64] {
+        &self.shift
+    }
+
+    /// Rounds so far.
+    pub fn rounds(&self) -> u32 {
+        self.rounds
+    }
+
+    /// Learnable parts of the first and of the best move, m or rad.
+    pub fn history(&self) -> [f64; 2] {
+        [self.first, self.best]
+    }
+}
+
+/// Missing samples from those beside them, linear between.
+fn fill(errors: &[Option<f64>]) -> Vec<f64> {
+    let known = |e: &Option<f64>| e.filter(|e| e.is_finite());
+    let mut filled: Vec<f64> = errors.iter().map(|e| known(e).unwrap_or(0.0)).collect();
+    let mut last = None;
+    for k in 0..errors.len() {
+        let Some(value) = known(&errors[k]) else {
+            continue;
+        };
+        let from = last.map_or(0, |l: usize| l + 1);
+        let before = last.map_or(value, |l| filled[l]);
+        let gap = (k - from + 1) as f64;
+        for (i, at) in filled[from..k].iter_mut().enumerate() {
+            *at = before + (value - before) * (i + 1) as f64 / gap;
+        }
+        last = Some(k);
+    }
+    if let Some(last) = last {
+        let value = filled[last];
+        filled[last + 1..].iter_mut().for_each(|e| *e = value);
+    }
+    filled
+}
+
+fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (count, sum) = values.fold((0_u32, 0.0), |(n, sum), v| (n + 1, sum + v * v));
+    Scalar::sqrt(sum / f64::from(count.max(1)))
+}

@@ -1,0 +1,144 @@
+//! The guard: limits, fading, trips.
+
+use compensator::{Compensator, Correction, Guard, GuardLimits, Guarded, Sample, Status, Trip};
+use proptest::prelude::*;
+
+const LIMITS: GuardLimits = GuardLimits {
+    position: 1e-4,
+    effort: 3.0,
+    surprise: 6.0,
+    patience: 5,
+    fade: 20,
+};
+
+fn correction(position: f64, iq: f64) -> Correction {
+    Correction { position, iq }
+}
+
+fn on() -> Guard {
+    let mut guard = Guard::new(LIMITS).unwrap();
+    guard.switch(true);
+    for _ in 0..LIMITS.fade {
+        guard.pass(&Correction::default(), 0.0);
+    }
+    guard
+}
+
+#[test]
+fn it_fades_in_and_out_without_a_jump() {
+    let mut guard = Guard::new(LIMITS).unwrap();
+    let asked = correction(5e-5, 2.0);
+    let mut before = guard.pass(&asked, 0.0);
+    assert_eq!(before, Correction::default());
+    for switched in [true, false, true] {
+        guard.switch(switched);
+        for _ in 0..LIMITS.fade {
+            let now = guard.pass(&asked, 0.0);
+            let step = (now.iq - before.iq).abs();
+            // The steepest of sin² over 20 cycles.
+            assert!(step <= 2.0 * std::f64::consts::PI / 40.0 + 1e-12, "{step}");
+            before = now;
+        }
+        let whole = if switched {
+            asked
+        } else {
+            Correction::default()
+        };
+        assert!((before.iq - whole.iq).abs() < 1e-12);
+        assert!((before.position - whole.position).abs() < 1e-16);
+    }
+}
+
+#[test]
+fn it_trips_for_each_reason_and_stays_off_until_switched() {
+    let fine = correction(1e-5, 1.0);
+    for (asked, surprise, why) in [
+        (correction(2e-4, 1.0), 0.0, Trip::Position),
+        (correction(1e-5, -4.0), 0.0, Trip::Effort),
+        (fine, 7.0, Trip::Surprise),
+        (fine, f64::NAN, Trip::Surprise),
+    ] {
+        let mut guard = on();
+        for _ in 0..LIMITS.patience {
+            guard.pass(&asked, surprise);
+            assert_eq!(guard.status(), Status::On);
+        }
+        // A cycle within the limits starts the count anew.
+        guard.pass(&fine, 0.0);
+        for _ in 0..=LIMITS.patience {
+            guard.pass(&asked, surprise);
+        }
+        assert_eq!(guard.status(), Status::Tripped(why));
+        for _ in 0..LIMITS.fade {
+            guard.pass(&fine, 0.0);
+        }
+        assert_eq!(guard.pass(&fine, 0.0), Correction::default());
+        guard.switch(true);
+        assert_eq!(guard.status(), Status::On);
+    }
+}
+
+#[test]
+fn what_is_no_number_trips_at_once_and_never_comes_out() {
+    let mut guard = on();
+    guard.pass(&correction(1e-5, 1.0), 0.0);
+    for _ in 0..2 * LIMITS.fade {
+        let out = guard.pass(&correction(f64::NAN, f64::INFINITY), 0.0);
+        assert!(out.position.is_finite() && out.iq.is_finite());
+    }
+    assert_eq!(guard.status(), Status::Tripped(Trip::NotFinite));
+}
+
+#[test]
+fn limits_that_are_none_are_refused() {
+    for bad in [0.0, -1.0, f64::NAN] {
+        let limits = GuardLimits {
+            effort: bad,
+            ..LIMITS
+        };
+        let message = Guard::new(limits).unwrap_err().to_string();
+        assert!(message.contains("effort"), "{message}");
+    }
+}
+
+/// Counts what it is asked.
+struct Counting(u32);
+
+impl Compensator for Counting {
+    fn reset(&mut self) {
+        self.0 = 0;
+    }
+
+    fn correct(&mut self, _: &Sample) -> Correction {
+        self.0 += 1;
+        correction(1e-5, 1.0)
+    }
+}
+
+#[test]
+fn a_compensator_goes_on_observing_while_it_is_off() {
+    let mut law = Guarded::new(Counting(0), Guard::new(LIMITS).unwrap());
+    for _ in 0..7 {
+        assert_eq!(law.correct(&Sample::default()), Correction::default());
+    }
+    assert_eq!(law.inner().0, 7);
+    law.guard_mut().switch(true);
+    law.reset();
+    assert_eq!((law.inner().0, law.guard().status()), (0, Status::On));
+}
+
+proptest! {
+    #[test]
+    fn nothing_beyond_a_limit_comes_out(
+        asked in prop::collection::vec((any::<f64>(), any::<f64>(), any::<f64>()), 1..60),
+        switches in prop::collection::vec(any::<bool>(), 60),
+    ) {
+        let mut guard = Guard::new(LIMITS).unwrap();
+        for (i, (position, iq, surprise)) in asked.into_iter().enumerate() {
+            guard.switch(switches[i]);
+            let out = guard.pass(&correction(position, iq), surprise);
+            prop_assert!(out.position.abs() <= LIMITS.position);
+            prop_assert!(out.iq.abs() <= LIMITS.effort);
+        }
+    }
+}
