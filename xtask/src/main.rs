@@ -18,8 +18,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    bench, compensate, discover, discover_matrix, identify, layers, pipeline, report, sample,
-    simulate, study, torture, train, validate,
+    bench, compensate, discover, discover_matrix, identify, layers, learn, pipeline, report,
+    sample, simulate, study, torture, train, validate,
 };
 use context::Common;
 use diagnostic::Compiler;
@@ -58,6 +58,8 @@ enum Command {
     Study(Common),
     /// Write summary.json and report.html from the stages' results
     Report(Common),
+    /// Learn the correction of a move from the log of a repetition
+    Learn(learn::Options),
     /// Simulate one motion and write its log
     Simulate(simulate::Options),
     /// Name what a model lacks, from logs of the real axis
@@ -110,6 +112,7 @@ fn run(command: Command) -> miette::Result<()> {
         Command::DiscoverMatrix(options) => discover_matrix::command(&options),
         Command::Bench(options) => bench::command(&options),
         Command::Torture(options) => torture::command(&options),
+        Command::Learn(options) => learn::command(&options),
         Command::Layers => layers::command(),
     }
 }

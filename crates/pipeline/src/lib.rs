@@ -17,6 +17,7 @@ pub mod compensation;
 mod error;
 mod figures;
 pub mod identification;
+pub mod learning;
 mod linear_map;
 pub mod moves;
 pub mod sample_file;

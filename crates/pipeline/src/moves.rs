@@ -1,7 +1,9 @@
 //! Moves one after the other under a strategy, which learns between them.
 
+use std::sync::Arc;
+
 use axis_sim::{ClosedLoop, LoopState, Measured, Outcome, Start};
-use compensator::{Compensator, Correction, Sample};
+use compensator::{Compensator, Correction, LearnedMove, Sample};
 
 use crate::strategies::{Learned, NextMove, SharedMotion, Strategy};
 use crate::{Figures, PipelineError};
@@ -16,6 +18,8 @@ pub struct NamedMotion {
     pub name: String,
     /// The motion.
     pub motion: SharedMotion,
+    /// What was learned from its repetitions before, where something was.
+    pub learned: Option<Arc<LearnedMove>>,
 }
 
 /// How a move went.
@@ -77,6 +81,7 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
         let mut compensator = strategy.compensator(&NextMove {
             motion: planned.motion.clone(),
             continued,
+            learned: planned.learned.clone(),
         })?;
         let mut recording = Recording {
             inner: &mut *compensator,

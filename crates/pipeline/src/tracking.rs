@@ -37,6 +37,7 @@ impl Planned {
         NamedMotion {
             name: self.id.to_string(),
             motion: Arc::new(self.motion),
+            learned: None,
         }
     }
 }

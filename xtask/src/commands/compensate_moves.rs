@@ -207,5 +207,6 @@ fn motion(name: &str, context: &Context) -> Result<NamedMotion> {
     Ok(NamedMotion {
         name: name.to_owned(),
         motion,
+        learned: None,
     })
 }

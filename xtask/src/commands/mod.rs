@@ -7,6 +7,7 @@ pub mod discover;
 pub mod discover_matrix;
 pub mod identify;
 pub mod layers;
+pub mod learn;
 pub mod pipeline;
 pub mod report;
 pub mod sample;

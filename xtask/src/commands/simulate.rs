@@ -8,10 +8,10 @@ use axis_sim::{Axis, ClosedLoop, CsvRecorder, Cycle, Measured, Recorder, SixDigi
 use clap::Args;
 use discrepancy::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use pipeline::strategies::{SharedMotion, StrategyKind};
+use pipeline::strategies::{Build, NextMove, SharedMotion, StrategyKind};
 use trajectories::Program;
 
-use super::validate;
+use super::{learn, validate};
 use crate::context::{Common, Context, read_text};
 use crate::output::say;
 use crate::progress::bar;
@@ -37,6 +37,9 @@ pub struct Options {
     /// friction `identify`
     #[arg(long, value_parser = strategy_name(), default_value = "none")]
     compensation: &'static StrategyKind,
+    /// Correction of this move as `learn` has written it, for a compensation that plans
+    #[arg(long, value_name = "FILE")]
+    correction: Option<PathBuf>,
     /// Noise of every sensor, in multiples of a good linear scale's (10 nm), a
     /// good motor encoder's and current sensor's; 0 for perfect ones. With
     /// noise the axis is simulated the slow, exact way, to stand for a machine
@@ -60,9 +63,23 @@ pub fn command(options: &Options) -> Result<()> {
     let closed_loop = closed_loop(options, &context)?;
     let strategy = options.compensation;
     let predictors = validate::predictors(&context, strategy.needs)?;
-    let mut law = strategy
-        .compensator(&predictors, motion.clone())
-        .into_diagnostic()?;
+    if options.correction.is_some() && matches!(strategy.build, Build::Each(_)) {
+        return Err(miette!(
+            "--correction: {} does not know a motion ahead; give a --compensation that plans, such as plan",
+            strategy.label
+        ));
+    }
+    let learned = match &options.correction {
+        Some(file) => Some(Arc::new(learn::correction(file, &context.axis, &*motion)?)),
+        None => None,
+    };
+    let mut law = strategy.strategy(&predictors).into_diagnostic()?;
+    let next = NextMove {
+        motion: motion.clone(),
+        continued: None,
+        learned,
+    };
+    let mut law = law.compensator(&next).into_diagnostic()?;
     let log = options.log.as_deref();
     let mut log = log
         .map(|path| LogFile::new(path, &context.axis))

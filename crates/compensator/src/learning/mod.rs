@@ -137,7 +137,8 @@ impl LearnedMove {
     }
 
     /// Learns from the errors e of the move, m or rad, one a control cycle; none where a
-    /// sample is missing: there the errors beside it count.
+    /// sample is missing: there the errors beside it count. Before the first sample and
+    /// after the last nothing is learned.
     pub fn learn(&mut self, errors: &[Option<f64>]) -> Round {
         let gauss = Gauss::new(self.settings.smoothing / self.period);
         let filled = fill(errors);
@@ -220,26 +221,23 @@ impl LearnedMove {
     }
 }
 
-/// Missing samples from those beside them, linear between.
+/// Missing samples from those beside them, linear between; before the first and after the
+/// last nothing is known to be off.
 fn fill(errors: &[Option<f64>]) -> Vec<f64> {
     let known = |e: &Option<f64>| e.filter(|e| e.is_finite());
     let mut filled: Vec<f64> = errors.iter().map(|e| known(e).unwrap_or(0.0)).collect();
-    let mut last = None;
+    let mut last: Option<usize> = None;
     for k in 0..errors.len() {
         let Some(value) = known(&errors[k]) else {
             continue;
         };
-        let from = last.map_or(0, |l: usize| l + 1);
-        let before = last.map_or(value, |l| filled[l]);
-        let gap = (k - from + 1) as f64;
-        for (i, at) in filled[from..k].iter_mut().enumerate() {
-            *at = before + (value - before) * (i + 1) as f64 / gap;
+        if let Some(last) = last {
+            let (before, gap) = (filled[last], (k - last) as f64);
+            for (i, at) in filled[last + 1..k].iter_mut().enumerate() {
+                *at = before + (value - before) * (i + 1) as f64 / gap;
+            }
         }
         last = Some(k);
-    }
-    if let Some(last) = last {
-        let value = filled[last];
-        filled[last + 1..].iter_mut().for_each(|e| *e = value);
     }
     filled
 }

@@ -19,7 +19,7 @@ mod transfer_function_lugre;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use compensator::{Compensator, Correction, Sample};
+use compensator::{Compensator, Correction, LearnedMove, Sample};
 use trajectories::Motion;
 
 use crate::PipelineError;
@@ -96,6 +96,8 @@ pub struct NextMove {
     /// What the compensator added last, where the axis stands as the move before has left
     /// it; none where it was settled anew.
     pub continued: Option<Correction>,
+    /// What was learned from repetitions of this very move, where something was.
+    pub learned: Option<Arc<LearnedMove>>,
 }
 
 /// A motion that several may hold.
@@ -189,6 +191,7 @@ impl StrategyKind {
         self.strategy(predictors)?.compensator(&NextMove {
             motion,
             continued: None,
+            learned: None,
         })
     }
 }

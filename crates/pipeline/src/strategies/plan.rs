@@ -34,14 +34,21 @@ pub(super) fn plan(
     model: &DriveModel,
     next: &NextMove,
 ) -> Result<Plan<impl FnMut(usize) -> Target + use<>>, PipelineError> {
-    let (motion, period) = (next.motion.clone(), model.period);
+    let (motion, learned) = (next.motion.clone(), next.learned.clone());
+    let period = model.period;
     let target = move |cycle: usize| {
         let at = motion.at(cycle as f64 * period);
-        Target::of(Reference {
-            position: at.position,
-            velocity: at.velocity,
-            acceleration: at.acceleration,
-        })
+        Target {
+            reference: Reference {
+                position: at.position,
+                velocity: at.velocity,
+                acceleration: at.acceleration,
+            },
+            shift: learned
+                .as_ref()
+                .map_or_else(Reference::default, |l| l.at(cycle)),
+            ..Target::default()
+        }
     };
     let plan = Plan::new(model, &PlanSettings::default(), target)?;
     Ok(match &next.continued {
