@@ -75,6 +75,7 @@ mod network;
 mod none;
 mod plan;
 mod remainder;
+mod residual;
 mod sample;
 mod transfer_function;
 
@@ -93,6 +94,9 @@ pub use model::{Along, Cascade, Drive, DriveModel, Mode, SECTIONS, Section};
 pub use network::{IncrementModel, NetworkCompensation};
 pub use none::NoCompensation;
 pub use plan::{Plan, PlanSettings, Planned, Planner, Standstill, Target};
+pub use residual::{HARMONICS, KNOTS, ResidualModel};
+#[cfg(feature = "identify")]
+pub use residual::{ResidualLearner, Unexplained};
 pub use sample::{Correction, Reference, Sample};
 pub use transfer_function::{MAX_ORDER, TransferFunction, TransferFunctionModel};
 

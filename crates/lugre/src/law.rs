@@ -121,6 +121,17 @@ impl<T: Exponential> LuGre<T> {
         self.parameters.stiction * self.compliance
     }
 
+    /// Share of the Coulomb level that the bristles hold at the deflection `z`, from −1 to
+    /// 1; 0 where they carry nothing.
+    #[must_use]
+    #[inline]
+    pub fn coulomb_share(&self, z: T) -> T {
+        if self.coulomb_bristle == T::ZERO {
+            return T::ZERO;
+        }
+        (z / self.coulomb_bristle).max(-T::ONE).min(T::ONE)
+    }
+
     /// `dz/dt`, equation (1), rad/s.
     #[must_use]
     #[inline]

@@ -45,6 +45,13 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>> Plan<F, T> {
         self
     }
 
+    /// With what was learned of torque over angle and force over position.
+    #[must_use]
+    pub fn with_residual(mut self, residual: Option<crate::ResidualModel<T>>) -> Self {
+        self.planner = self.planner.with_residual(residual);
+        self
+    }
+
     /// What the plan says of the cycle that begins with `sample`.
     pub fn advance(&mut self, sample: &Sample<T>) -> Planned<T> {
         let ahead = self.planner.look_ahead();
@@ -55,6 +62,7 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>> Plan<F, T> {
                 &Standstill {
                     effort: sample.iq_command,
                     own: self.own,
+                    motor_angle: sample.motor_angle,
                 },
             );
             self.planner.push(first);

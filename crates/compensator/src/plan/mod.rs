@@ -30,6 +30,7 @@ pub use known::Plan;
 
 use crate::error::{require, within};
 use crate::model::{DriveModel, MOST_DELAY};
+use crate::residual::ResidualModel;
 use crate::{CompensatorError, Correction, Reference};
 use actuator::Inverse;
 use smoothing::{MOST_HALF, Smoothing};
@@ -80,6 +81,8 @@ pub struct Standstill<T = f64> {
     pub effort: T,
     /// Part of it that is a compensator's own; the drive's integrator holds the rest.
     pub own: T,
+    /// Angle of the motor, rad: where what repeats with its turn is.
+    pub motor_angle: T,
 }
 
 /// What the plan says of a cycle.
@@ -157,6 +160,9 @@ pub struct Planner<T = f64> {
     home: T,
     /// What the drive's integrator holds.
     held: T,
+    residual: Option<ResidualModel<T>>,
+    /// Angle of the motor where the load is at 0 and nothing wound up, rad.
+    zero_angle: T,
 }
 
 impl<T: Exponential> Planner<T> {
@@ -195,9 +201,18 @@ impl<T: Exponential> Planner<T> {
             pushed: 0,
             home: T::ZERO,
             held: T::ZERO,
+            residual: None,
+            zero_angle: T::ZERO,
         };
         planner.begin(T::ZERO, &Standstill::default());
         Ok(planner)
+    }
+
+    /// With what was learned of torque over angle and force over position.
+    #[must_use]
+    pub fn with_residual(mut self, residual: Option<ResidualModel<T>>) -> Self {
+        self.residual = residual;
+        self
     }
 
     /// The model that it plans with.
@@ -252,6 +267,7 @@ impl<T: Exponential> Planner<T> {
         self.smoothing.settle(wind_up);
         self.inverse.settle(rigid);
         self.home = wind_up;
+        self.zero_angle = standstill.motor_angle - position / m.travel - wind_up;
         self.held = standstill.effort - standstill.own;
         self.pushed = 0;
     }
@@ -298,13 +314,22 @@ impl<T: Exponential> Planner<T> {
         let friction = torque / m.lever;
         let acceleration = r.acceleration + target.shift.acceleration;
         let at_motor = acceleration / m.travel;
-        let force = m.load_inertia * acceleration + friction + section.load + target.force;
+        let mut force = m.load_inertia * acceleration + friction + section.load + target.force;
+        let mut at_angle = T::ZERO;
+        if let Some(residual) = &self.residual {
+            let wind_up = section.compliance * m.travel * force;
+            let angle = self.zero_angle + r.position / m.travel + wind_up;
+            let direction = m.friction.coulomb_share(bristle);
+            let [torque, besides] = residual.at(angle, r.position, direction);
+            at_angle = torque;
+            force += besides;
+        }
         let rigid = m.travel * force;
         let ahead = Ahead {
             target,
             friction,
             sticking: self.sticking(),
-            rigid: section.rotating * at_motor + rigid,
+            rigid: section.rotating * at_motor + rigid + at_angle,
             inertia: section.rotating - section.lagging,
         };
         (

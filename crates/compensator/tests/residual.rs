@@ -1,0 +1,149 @@
+//! What no parameter holds: found from records made here, and left alone where it is noise.
+#![cfg(feature = "identify")]
+
+use compensator::{HARMONICS, ResidualLearner, ResidualModel, Unexplained};
+use proptest::prelude::*;
+
+const TRAVEL: f64 = 0.01 / std::f64::consts::TAU;
+const STROKE: [f64; 2] = [0.0, 1.5];
+const COULOMB: f64 = 0.68;
+const SMOOTHING: f64 = 1.5e-3;
+const SPACING: f64 = 1e-3;
+
+/// Cogging of 11 periods a turn, more friction near 0.7 m, a spring about 0.75 m.
+fn truth(angle: f64, position: f64, direction: f64) -> f64 {
+    let bump = 30.0 * (-((position - 0.7) / 0.03).powi(2)).exp();
+    let spring = 40.0 * (position - 0.75);
+    0.04 * (11.0 * angle + 0.6).cos() + TRAVEL * (direction * bump + spring)
+}
+
+struct Noise(u64);
+
+impl Noise {
+    /// Nearly normal, of deviation 1.
+    fn next(&mut self) -> f64 {
+        let mut sum = -6.0;
+        for _ in 0..12 {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            sum += (self.0 >> 11) as f64 / (1_u64 << 53) as f64;
+        }
+        sum
+    }
+}
+
+/// A move there and back at one speed, with torque behind the Gaussian.
+fn move_at(speed: f64, noise: &mut Noise, deviation: f64, scale: f64) -> Vec<Unexplained> {
+    let one_way = 0.3 / speed;
+    let count = (2.0 * one_way / SPACING) as usize;
+    (0..count)
+        .map(|k| {
+            let t = k as f64 * SPACING;
+            let (position, direction) = if t < one_way {
+                (0.6 + speed * t, 1.0)
+            } else {
+                (0.9 - speed * (t - one_way), -1.0)
+            };
+            let angle = position / TRAVEL + 0.3;
+            let motor_speed = direction * speed / TRAVEL;
+            // Only the cogging varies within the Gaussian.
+            let gain = (-0.5 * (11.0 * motor_speed * SMOOTHING).powi(2)).exp();
+            let cogging = 0.04 * (11.0 * angle + 0.6).cos();
+            let smooth = truth(angle, position, direction) + (gain - 1.0) * cogging;
+            Unexplained {
+                position,
+                motor_angle: angle,
+                motor_speed,
+                direction,
+                torque: scale * smooth + deviation * noise.next(),
+            }
+        })
+        .collect()
+}
+
+fn learner() -> ResidualLearner {
+    ResidualLearner::new(STROKE, TRAVEL, COULOMB)
+}
+
+#[test]
+fn torque_over_angle_and_force_over_position_are_found() {
+    let (mut learner, mut noise) = (learner(), Noise(3));
+    for (i, speed) in [0.05, 0.08, 0.06, 0.1].into_iter().enumerate() {
+        let explained = learner.learn(&move_at(speed, &mut noise, 0.008, 1.0), SPACING, SMOOTHING);
+        // A new move was explained before it was learned from, but for the first.
+        assert!(i == 0 || explained > 0.8, "{i} {explained}");
+    }
+    let model = learner.model().unwrap();
+    let (mut worst, mut most) = (0.0_f64, 0.0_f64);
+    for k in 0..3000 {
+        let position = 0.62 + 0.26 * f64::from(k) / 3000.0;
+        let angle = position / TRAVEL + 0.3;
+        for direction in [-1.0, 1.0] {
+            let [torque, force] = model.at(angle, position, direction);
+            let wanted = truth(angle, position, direction);
+            worst = worst.max((torque + TRAVEL * force - wanted).abs());
+            most = most.max(wanted.abs());
+        }
+    }
+    assert!(worst < 0.08 * most, "{worst} of {most}");
+    // Where it has not been it adds next to nothing but the cogging.
+    let [_, force] = model.at(0.0, 0.2, 1.0);
+    assert!((TRAVEL * force).abs() < 0.02, "{force}");
+}
+
+#[test]
+fn noise_is_not_learned_and_what_stops_helping_is_not_used() {
+    let (mut nothing, mut noise) = (learner(), Noise(11));
+    for _ in 0..5 {
+        nothing.learn(&move_at(0.1, &mut noise, 0.01, 0.0), SPACING, SMOOTHING);
+        assert!(nothing.model().is_none());
+    }
+    let mut changed = learner();
+    for _ in 0..3 {
+        changed.learn(&move_at(0.08, &mut noise, 0.005, 1.0), SPACING, SMOOTHING);
+    }
+    assert!(changed.model().is_some());
+    // Another machine: the opposite of what was learned.
+    changed.learn(&move_at(0.08, &mut noise, 0.005, -1.0), SPACING, SMOOTHING);
+    assert!(changed.model().is_none(), "{:?}", changed.explained());
+}
+
+#[test]
+fn what_is_no_number_is_passed_over() {
+    let mut learner = learner();
+    let poor = vec![
+        Unexplained {
+            torque: f64::NAN,
+            ..Unexplained::default()
+        };
+        50
+    ];
+    assert_eq!(learner.learn(&poor, SPACING, SMOOTHING), 0.0);
+    assert_eq!(learner.learn(&[], SPACING, SMOOTHING), 0.0);
+    assert!(learner.model().is_none());
+}
+
+proptest! {
+    /// The harmonics by recurrence are those by their sines and cosines.
+    #[test]
+    fn harmonics_are_what_they_say(
+        pairs in prop::collection::vec((-1.0..1.0_f64, -1.0..1.0_f64), HARMONICS),
+        angle in -1e3..1e3_f64,
+    ) {
+        let mut model = ResidualModel::none(STROKE);
+        for (slot, (a, b)) in model.harmonics.iter_mut().zip(&pairs) {
+            *slot = [*a, *b];
+        }
+        let wanted: f64 = (1..).zip(&pairs).map(|(n, (a, b))| {
+            let (sin, cos) = (f64::from(n) * angle).sin_cos();
+            a * cos + b * sin
+        }).sum();
+        let [torque, force] = model.at(angle, 0.5, 0.0);
+        prop_assert!((torque - wanted).abs() < 1e-9);
+        prop_assert_eq!(force, 0.0);
+        let [single, _] = model.cast::<f32>().at(angle as f32, 0.5, 0.0);
+        prop_assert!((f64::from(single) - wanted).abs() < 0.05);
+    }
+}
