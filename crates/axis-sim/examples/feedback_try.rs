@@ -44,8 +44,8 @@ fn run<M: Motion + Clone>(cl: &ClosedLoop, c: &mut impl Compensator, m: &M, seed
     (p, q, matches!(o, Outcome::Completed))
 }
 
-fn settings() -> FeedbackSettings {
-    let mut s = FeedbackSettings::default();
+fn settings(axis: &Axis) -> FeedbackSettings {
+    let mut s = FeedbackSettings { speed_by_differences: axis.derives_speed(), ..FeedbackSettings::default() };
     let get = |name: &str, to: &mut f64| if let Ok(v) = std::env::var(name) { *to = v.parse().unwrap() };
     get("STIFF", &mut s.stiffness); get("DAMP", &mut s.damping); get("FLOOR", &mut s.floor);
     get("WANDER", &mut s.wandering); get("COMMAND", &mut s.command); get("POS", &mut s.position);
@@ -68,11 +68,11 @@ fn main() {
     let modes = at(0.5);
     for m in modes.iter().take(5) { println!("mode {:.1} Hz, motor {:.4} load {:.5}", m.frequency / 6.2832, m.motor, m.load); }
     let t0 = std::time::Instant::now();
-    let design = match FeedbackDesign::new(&model, &modes, &settings()) {
+    let design = match FeedbackDesign::new(&model, &modes, &settings(&axis)) {
         Ok(d) => d,
         Err(e) => {
             println!("REFUSED: {e}");
-            let s = FeedbackSettings { sensitivity: f64::INFINITY, sensitivity_late: f64::INFINITY, ..settings() };
+            let s = FeedbackSettings { sensitivity: f64::INFINITY, sensitivity_late: f64::INFINITY, ..settings(&axis) };
             match FeedbackDesign::new(&model, &modes, &s) { Ok(d) => d, Err(e) => { println!("REFUSED: {e}"); return; } }
         }
     };
@@ -92,7 +92,7 @@ fn main() {
     }
     let motions: Vec<_> = axis.trajectories.iter().map(|s| axis.plan(s).unwrap()).collect();
     let with = |model: &DriveModel, m: &trajectories::SCurve| {
-        let design_of = FeedbackDesign::new(model, &modes, &FeedbackSettings { sensitivity: f64::INFINITY, sensitivity_late: f64::INFINITY, ..settings() }).unwrap();
+        let design_of = FeedbackDesign::new(model, &modes, &FeedbackSettings { sensitivity: f64::INFINITY, sensitivity_late: f64::INFINITY, ..settings(&axis) }).unwrap();
         PlanWithFeedback::new(Plan::new(model, &PlanSettings::default(), targets(m, model.period)).unwrap(), design_of.feedback())
     };
     let mut none = vec![];
@@ -108,7 +108,7 @@ fn main() {
     }
     if what == "all" || what == "slow" {
         for v in [0.001, 0.002, 0.003, 0.004, 0.005, 0.006, 0.007, 0.008] {
-            let limits = trajectories::Limits { velocity: v, ..axis.trajectories[2].limits };
+            let limits = trajectories::Limits::new(v, 0.12, 1.0).unwrap();
             let m = trajectories::SCurve::plan(0.5 * (lo + hi), 0.5 * (lo + hi) + 1.5 * v, &limits).unwrap();
             let a = run(&cl, &mut NoCompensation, &m, 7, n, 0.0);
             let p = run(&cl, &mut Plan::new(&model, &PlanSettings::default(), targets(&m, model.period)).unwrap(), &m, 7, n, 0.0);

@@ -56,6 +56,8 @@ pub(super) struct Gains<T> {
     /// Greatest command; u is in units of it.
     pub limit: T,
     pub travel: T,
+    /// Whether the motor's speed is a difference of angles.
+    pub differences: bool,
     pub cascade: Cascade<T>,
 }
 
@@ -73,6 +75,7 @@ impl<T: Scalar> Gains<T> {
             force: cast(self.force),
             limit: cast(self.limit),
             travel: cast(self.travel),
+            differences: self.differences,
             cascade: Cascade {
                 position: cast(c.position),
                 velocity_feedforward: cast(c.velocity_feedforward),

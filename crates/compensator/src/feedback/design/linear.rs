@@ -12,7 +12,7 @@
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-use super::DesignError;
+use super::{DesignError, FeedbackSettings};
 use crate::feedback::MOST_STATES;
 use crate::model::{Drive, DriveModel, Mode};
 
@@ -44,7 +44,12 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    pub fn new(model: &DriveModel, modes: &[Mode], at: &Situation) -> Result<Self, DesignError> {
+    pub fn new(
+        model: &DriveModel,
+        modes: &[Mode],
+        settings: &FeedbackSettings,
+        at: &Situation,
+    ) -> Result<Self, DesignError> {
         let n = modes.len();
         let (constant, h, limit) = (model.torque_constant(), model.period, model.effort_limit);
         let cycles = model.delay / h;
@@ -55,7 +60,8 @@ impl Linear {
             Drive::FieldOriented { .. } => (1, 1),
             Drive::Lag { bandwidth, .. } => (usize::from(bandwidth.is_finite()), 0),
         };
-        let size = 2 * n + inner + held + late + 1;
+        let angles = usize::from(settings.speed_by_differences);
+        let size = 2 * n + inner + held + late + angles + 1;
         if size > MOST_STATES {
             return Err(DesignError::Size {
                 states: size,
@@ -184,7 +190,16 @@ impl Linear {
             true => row(&motor, 0) * model.travel,
             false => load_at.clone(),
         };
-        let mut rows = vec![position, row(&motor, n)];
+        let mut speed = row(&motor, n);
+        if angles == 1 {
+            // A state for the motor's angle a cycle ago, in units of the modes' own.
+            let (before, now) = (past + late, row(&motor, 0));
+            units[before] = push / motor[0].abs();
+            a.row_mut(before).copy_from(&(&now / units[before]));
+            speed = now / h;
+            speed[before] = -units[before] / h;
+        }
+        let mut rows = vec![position, speed];
         if held == 1 {
             rows.push(RowDVector::from_fn(size, |_, j| {
                 if j == 2 * n { limit } else { 0.0 }

@@ -104,7 +104,7 @@ impl FeedbackDesign {
             friction: on.friction,
             floor: self.floor * on.friction,
         };
-        Linear::new(&self.model, modes, &situation)
+        Linear::new(&self.model, modes, &self.settings, &situation)
     }
 
     /// Refuses a design whose margins are not those that its settings ask for.

@@ -112,6 +112,7 @@ impl FeedbackDesign {
             force: linear.units[linear.size() - 1],
             limit: self.model.effort_limit,
             travel: self.model.travel,
+            differences: self.settings.speed_by_differences,
             cascade: self.model.cascade,
         })
     }
@@ -129,7 +130,7 @@ impl FeedbackDesign {
             friction: 1.0,
             floor: self.floor,
         };
-        let linear = Linear::new(model, &self.modes, &situation)?;
+        let linear = Linear::new(model, &self.modes, settings, &situation)?;
         let n = linear.size() - 1;
         let riccati = |what| {
             move |residual| DesignError::Riccati {

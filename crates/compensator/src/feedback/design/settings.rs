@@ -11,6 +11,9 @@ use crate::model::{DriveModel, Mode};
 /// any size. What they come to on the ball-screw axis of the reference machine is in brackets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeedbackSettings {
+    /// Whether the motor's speed is the difference of two angles, a cycle apart, and so half a
+    /// cycle late; false.
+    pub speed_by_differences: bool,
     /// Modes that the model has, the rigid motion among them; 3.
     pub modes: usize,
     /// Weight of the load's position per command, in gains of the cascade P k_p; 160
@@ -49,6 +52,7 @@ pub struct FeedbackSettings {
 impl Default for FeedbackSettings {
     fn default() -> Self {
         Self {
+            speed_by_differences: false,
             modes: 3,
             stiffness: 160.0,
             damping: 37.0,
