@@ -68,8 +68,8 @@ fn main() {
     let modes = at(0.5);
     for m in modes.iter().take(5) { println!("mode {:.1} Hz, motor {:.4} load {:.5}", m.frequency / 6.2832, m.motor, m.load); }
     let t0 = std::time::Instant::now();
-    let design = match FeedbackDesign::new(&model, &modes, &settings(&axis)) {
-        Ok(d) => d,
+    let design = match FeedbackDesign::within_margins(&model, &modes, &[&at(0.02), &at(0.25), &at(0.75), &at(0.98)], &settings(&axis)) {
+        Ok(d) => { println!("{:?}", d.settings()); d }
         Err(e) => {
             println!("REFUSED: {e}");
             let s = FeedbackSettings { sensitivity: f64::INFINITY, sensitivity_late: f64::INFINITY, ..settings(&axis) };
@@ -92,7 +92,7 @@ fn main() {
     }
     let motions: Vec<_> = axis.trajectories.iter().map(|s| axis.plan(s).unwrap()).collect();
     let with = |model: &DriveModel, m: &trajectories::SCurve| {
-        let design_of = FeedbackDesign::new(model, &modes, &FeedbackSettings { sensitivity: f64::INFINITY, sensitivity_late: f64::INFINITY, ..settings(&axis) }).unwrap();
+        let design_of = FeedbackDesign::new(model, &modes, &FeedbackSettings { sensitivity: f64::INFINITY, sensitivity_late: f64::INFINITY, ..*design.settings() }).unwrap();
         PlanWithFeedback::new(Plan::new(model, &PlanSettings::default(), targets(m, model.period)).unwrap(), design_of.feedback())
     };
     let mut none = vec![];

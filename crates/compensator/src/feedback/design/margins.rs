@@ -6,7 +6,7 @@
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 use super::linear::{Linear, Situation};
-use super::{Design, DesignError, FeedbackDesign, STICKING};
+use super::{Design, DesignError, FeedbackDesign, FeedbackSettings, STICKING};
 use crate::model::Mode;
 
 /// Frequencies, evenly spread over the logarithm up to half the sampling rate.
@@ -75,7 +75,7 @@ impl FeedbackDesign {
             for late in [false, true] {
                 let radius = at.radius(late);
                 let (mut sensitivity, delay) = at.frequencies(late, self.model.period);
-                if !(radius < 1.0) {
+                if radius.is_nan() || radius >= 1.0 {
                     sensitivity = f64::INFINITY;
                 }
                 let (worst, place) = if late {
@@ -85,7 +85,7 @@ impl FeedbackDesign {
                     all.delay = all.delay.min(delay);
                     (&mut all.sensitivity, &mut all.sticking)
                 };
-                if !(sensitivity <= *worst) {
+                if sensitivity > *worst {
                     (*worst, *place) = (sensitivity, sticking);
                 }
             }
@@ -107,41 +107,59 @@ impl FeedbackDesign {
         Linear::new(&self.model, modes, &self.settings, &situation)
     }
 
-    /// Refuses a design whose margins are not those that its settings ask for.
-    pub(super) fn require_margins(&self) -> Result<(), DesignError> {
+    /// Refuses a design whose margins are not those that its settings ask for, with the load
+    /// where it was designed for and `elsewhere`.
+    pub(super) fn require_margins(&self, elsewhere: &[&[Mode]]) -> Result<(), DesignError> {
         let s = &self.settings;
         if s.sensitivity.is_infinite() && s.sensitivity_late.is_infinite() {
             return Ok(());
         }
+        let here: &[Mode] = &self.modes;
         for mass in [1.0, s.mass[0], s.mass[1]] {
             for friction in [1.0, s.friction[0], s.friction[1]] {
-                let on = Variation {
-                    mass,
-                    friction,
-                    ..Variation::default()
-                };
-                let m = self.margins(&on)?;
-                let asked = [
-                    ("the sensitivity", m.sensitivity, s.sensitivity, m.sticking),
-                    (
-                        "the sensitivity with one more cycle of delay",
-                        m.sensitivity_late,
-                        s.sensitivity_late,
-                        m.sticking_late,
-                    ),
-                ];
-                for (what, value, most, sticking) in asked {
-                    if !(value <= most) {
-                        return Err(DesignError::Margin {
-                            what,
-                            value,
-                            most,
-                            mass,
-                            friction,
-                            sticking,
-                        });
-                    }
+                for modes in core::iter::once(&here).chain(elsewhere) {
+                    let on = Variation {
+                        modes,
+                        mass,
+                        friction,
+                        ..Variation::default()
+                    };
+                    self.margins(&on)?.within(s, &on)?;
                 }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Margins {
+    fn within(&self, s: &FeedbackSettings, on: &Variation<'_>) -> Result<(), DesignError> {
+        let late = "the sensitivity with one more cycle of delay";
+        let asked = [
+            (
+                "the sensitivity",
+                self.sensitivity,
+                s.sensitivity,
+                self.sticking,
+            ),
+            (
+                late,
+                self.sensitivity_late,
+                s.sensitivity_late,
+                self.sticking_late,
+            ),
+        ];
+        for (what, value, most, sticking) in asked {
+            if value > most {
+                return Err(DesignError::Margin {
+                    what,
+                    value,
+                    most,
+                    mass: on.mass,
+                    friction: on.friction,
+                    sticking,
+                    frequency: on.modes.get(1).map_or(0.0, |mode| mode.frequency),
+                });
             }
         }
         Ok(())

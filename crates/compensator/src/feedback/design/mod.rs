@@ -20,6 +20,10 @@ pub use settings::FeedbackSettings;
 /// χ at which gains are held: friction changes fastest where few bristles stick.
 const STICKING: [f64; NODES] = [0.0, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
 
+/// Steps of bandwidth that are tried, and factors of the command's uncertainty in each.
+const SOFTENINGS: usize = 9;
+const UNCERTAIN: [f64; 3] = [1.0, 4.0, 16.0];
+
 /// Gains at one χ.
 #[derive(Clone, Debug)]
 struct Design {
@@ -53,6 +57,51 @@ impl FeedbackDesign {
         modes: &[Mode],
         settings: &FeedbackSettings,
     ) -> Result<Self, DesignError> {
+        let designed = Self::unchecked(model, modes, settings)?;
+        designed.require_margins(&[])?;
+        Ok(designed)
+    }
+
+    /// The quickest feedback whose margins hold with the load anywhere: weights go down from
+    /// those of `settings` in steps of √2 in bandwidth, down to a sixteenth of it, and the
+    /// command is taken as less and less certain, until the margins are there. `elsewhere` has
+    /// the modes at other positions.
+    ///
+    /// # Errors
+    /// As [`FeedbackDesign::new`]; where no weights do, what the softest fall short of.
+    pub fn within_margins(
+        model: &DriveModel,
+        modes: &[Mode],
+        elsewhere: &[&[Mode]],
+        settings: &FeedbackSettings,
+    ) -> Result<Self, DesignError> {
+        let mut bandwidth = 1.0;
+        let mut refused = None;
+        for _ in 0..SOFTENINGS {
+            for command in UNCERTAIN {
+                let softer = settings.softened(bandwidth, command);
+                let designed = Self::unchecked(model, modes, &softer)?;
+                match designed.require_margins(elsewhere) {
+                    Ok(()) => return Ok(designed),
+                    Err(error) => refused = Some(error),
+                }
+            }
+            bandwidth *= std::f64::consts::FRAC_1_SQRT_2;
+        }
+        Err(refused.unwrap_or(DesignError::Modes("there is none")))
+    }
+
+    /// What it was designed with.
+    pub fn settings(&self) -> &FeedbackSettings {
+        &self.settings
+    }
+
+    /// Without a look at the margins.
+    fn unchecked(
+        model: &DriveModel,
+        modes: &[Mode],
+        settings: &FeedbackSettings,
+    ) -> Result<Self, DesignError> {
         model.check()?;
         settings.check(model)?;
         let c = &model.cascade;
@@ -80,7 +129,6 @@ impl FeedbackDesign {
             designed.designs.push(design);
             designed.residual = designed.residual.max(residual);
         }
-        designed.require_margins()?;
         Ok(designed)
     }
 

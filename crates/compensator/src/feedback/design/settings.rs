@@ -128,6 +128,18 @@ impl FeedbackSettings {
         Ok(())
     }
 
+    /// The same for another bandwidth of the state feedback, as a share of this one, and
+    /// another uncertainty of the command.
+    #[must_use]
+    pub fn softened(&self, bandwidth: f64, command: f64) -> Self {
+        Self {
+            stiffness: self.stiffness * bandwidth * bandwidth,
+            damping: self.damping * bandwidth,
+            command: self.command * command,
+            ..*self
+        }
+    }
+
     /// The modes that count, checked.
     pub(super) fn used(&self, modes: &[Mode]) -> Result<Vec<Mode>, DesignError> {
         let used: Vec<Mode> = modes.iter().copied().take(self.modes.max(1)).collect();
