@@ -64,6 +64,7 @@ extern crate alloc;
 mod combined;
 mod error;
 mod estimator;
+mod feedback;
 mod friction;
 mod guard;
 #[cfg(feature = "identify")]
@@ -82,6 +83,9 @@ mod transfer_function;
 pub use combined::Combined;
 pub use error::CompensatorError;
 pub use estimator::{Estimate, MotionEstimator, NoiseGains, ObserverGains};
+#[cfg(feature = "design")]
+pub use feedback::{DesignError, FeedbackDesign, FeedbackSettings, Margins, Variation};
+pub use feedback::{Deviations, Feedback, MOST_MEASURED, MOST_STATES, PlanWithFeedback};
 pub use friction::FrictionFeedforward;
 pub use guard::{Guard, GuardLimits, Guarded, Status, Trip};
 #[cfg(feature = "identify")]

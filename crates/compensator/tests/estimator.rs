@@ -21,6 +21,7 @@ fn observe(
         let time = f64::from(k) * T;
         estimate = estimator.update(&Sample {
             position: position(time),
+            motor_angle: 0.0,
             motor_speed: motor_side_speed(time) / R,
             ..Sample::default()
         });
@@ -125,6 +126,7 @@ fn reset_starts_anew() {
     let mut estimator = MotionEstimator::new(R, T, ObserverGains::default()).unwrap();
     let sample = Sample {
         position: 0.3,
+        motor_angle: 0.0,
         motor_speed: 20.0,
         ..Sample::default()
     };

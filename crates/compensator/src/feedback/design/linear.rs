@@ -1,0 +1,221 @@
+//! Deviations of an axis from its plan, as a linear model over one control period.
+//!
+//! ```text
+//! η̈ᵢ + 2ζωᵢ η̇ᵢ + ωᵢ² ηᵢ = φ_mᵢ T + φ_lᵢ F        x = Σ φ_lᵢ ηᵢ,  θ = Σ φ_mᵢ ηᵢ
+//! F = −(σ0 χ x + (σ2 + σ1 χ + floor) ẋ)/lever² − d       d(k+1) = d(k)
+//! T = K_t i,   L_q di/dt = v − R i − ψ ω_e               field-oriented, v held over a cycle
+//! w(k) = w(k−1) + k_i T_s e(k),   v(k) = k_p e(k) + w(k),   e(k) = u(k − delay) − i(k)
+//! ```
+//!
+//! or torque behind a first-order lag. The mechanics, the current and the back-EMF are
+//! discretised together and exactly (matrix exponential).
+
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+use super::{DesignError, FeedbackSettings};
+use crate::feedback::MOST_STATES;
+use crate::model::{Drive, DriveModel, Mode};
+
+/// An axis as a linear model may have it, off the believed one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Situation {
+    /// Share of bristles that follow the motion.
+    pub sticking: f64,
+    /// Shares of the believed load's inertia, and of σ0, σ1 and σ2.
+    pub mass: f64,
+    pub friction: f64,
+    /// Damping besides, N·s/m at the load.
+    pub floor: f64,
+}
+
+/// x(k+1) = A x + b u, y = C x. States are in units of their own; u is in units of the effort
+/// limit. The last state is the disturbance.
+#[derive(Clone, Debug)]
+pub(super) struct Linear {
+    pub a: DMatrix<f64>,
+    pub b: DVector<f64>,
+    /// Rows: position that is measured (m), motor speed (rad/s), current (A) where measured.
+    pub c: DMatrix<f64>,
+    /// Load's position and speed.
+    pub load: RowDVector<f64>,
+    pub load_speed: RowDVector<f64>,
+    /// What one unit of each state is in SI.
+    pub units: DVector<f64>,
+}
+
+impl Linear {
+    pub fn new(
+        model: &DriveModel,
+        modes: &[Mode],
+        settings: &FeedbackSettings,
+        at: &Situation,
+    ) -> Result<Self, DesignError> {
+        let n = modes.len();
+        let (constant, h, limit) = (model.torque_constant(), model.period, model.effort_limit);
+        let cycles = model.delay / h;
+        let whole = cycles as usize;
+        let part = cycles - whole as f64;
+        let late = whole + usize::from(part > 0.0);
+        let (inner, held) = match &model.drive {
+            Drive::FieldOriented { .. } => (1, 1),
+            Drive::Lag { bandwidth, .. } => (usize::from(bandwidth.is_finite()), 0),
+        };
+        let angles = usize::from(settings.speed_by_differences);
+        let size = 2 * n + inner + held + late + angles + 1;
+        if size > MOST_STATES {
+            return Err(DesignError::Size {
+                states: size,
+                most: MOST_STATES,
+            });
+        }
+        let flow = 2 * n + inner;
+        let motor = DVector::from_iterator(n, modes.iter().map(|m| m.motor));
+        let load = DVector::from_iterator(n, modes.iter().map(|m| m.load));
+        // Units: what the greatest torque moves in a cycle.
+        let push = constant * limit * modes[0].motor.abs() * h * h;
+        let force = constant * limit / model.travel;
+        let mut units = DVector::from_element(size, limit);
+        units.rows_mut(0, n).fill(push);
+        units.rows_mut(n, n).fill(push / h);
+        units[size - 1] = force;
+
+        // Continuous: mechanics and current, with inputs v (or command) and d.
+        let extra = model.load_inertia * (at.mass - 1.0);
+        let share = extra / (1.0 + extra * load.dot(&load));
+        let per_mass = DMatrix::identity(n, n) - &load * load.transpose() * share;
+        let p = model.friction.parameters();
+        let lever = model.lever * model.lever;
+        let spring = at.friction * p.stiffness * at.sticking / lever;
+        let damping = at.friction * (p.viscous + p.damping * at.sticking) / lever + at.floor;
+        let own = |f: fn(&Mode) -> f64| {
+            DMatrix::from_diagonal(&DVector::from_iterator(n, modes.iter().map(f)))
+        };
+        let outer = &load * load.transpose();
+        let stiff = own(|m| m.frequency * m.frequency) + &outer * spring;
+        let damp = own(|m| m.damping) + &outer * damping;
+        let mut ac = DMatrix::zeros(flow + 2, flow + 2);
+        ac.view_mut((0, n), (n, n)).fill_with_identity();
+        ac.view_mut((n, 0), (n, n)).copy_from(&-(&per_mass * stiff));
+        ac.view_mut((n, n), (n, n)).copy_from(&-(&per_mass * damp));
+        let torque = &per_mass * &motor * constant;
+        let (at_v, at_d) = (flow, flow + 1);
+        ac.view_mut((n, at_d), (n, 1))
+            .copy_from(&-(&per_mass * &load));
+        let mut pi = [0.0; 2];
+        match &model.drive {
+            Drive::FieldOriented {
+                motor: m, gear, q, ..
+            } => {
+                let e = m.parameters();
+                let i = 2 * n;
+                ac.view_mut((n, i), (n, 1)).copy_from(&torque);
+                ac[(i, i)] = -e.resistance / e.inductance_q;
+                ac[(i, at_v)] = 1.0 / e.inductance_q;
+                let induced = m.electrical_speed(*gear) * e.flux_linkage / e.inductance_q;
+                for (j, shape) in motor.iter().enumerate() {
+                    ac[(i, n + j)] = -induced * shape;
+                }
+                pi = [q[0] + q[1] * h, q[1] * h];
+            }
+            Drive::Lag { bandwidth, .. } if inner == 1 => {
+                let i = 2 * n;
+                ac.view_mut((n, i), (n, 1)).copy_from(&torque);
+                ac[(i, i)] = -bandwidth;
+                ac[(i, at_v)] = *bandwidth;
+            }
+            Drive::Lag { .. } => ac.view_mut((n, at_v), (n, 1)).copy_from(&torque),
+        }
+        // In its own units, where no entry is far from the others.
+        let unit = |i: usize| match i {
+            i if i == at_v => limit,
+            i if i == at_d => force,
+            i => units[i],
+        };
+        let ac = DMatrix::from_fn(flow + 2, flow + 2, |i, j| {
+            ac[(i, j)] * h * unit(j) / unit(i)
+        });
+        let ad = ac.exp();
+
+        let mut a = DMatrix::zeros(size, size);
+        let mut b = DVector::zeros(size);
+        a.view_mut((0, 0), (flow, flow))
+            .copy_from(&ad.view((0, 0), (flow, flow)));
+        a.view_mut((0, size - 1), (flow, 1))
+            .copy_from(&ad.view((0, at_d), (flow, 1)));
+        a[(size - 1, size - 1)] = 1.0;
+        let into = DVector::from_fn(size, |i, _| if i < flow { ad[(i, at_v)] } else { 0.0 });
+        // What the late command does: through the PI, or at once.
+        let mut acts = into.clone();
+        if held == 1 {
+            let (i, w) = (flow - 1, flow);
+            acts = &into * pi[0];
+            acts[w] = pi[1];
+            let from_current = a.column(i) - &acts;
+            a.set_column(i, &from_current);
+            a.set_column(w, &into);
+            a[(w, w)] = 1.0;
+        }
+        // u(k − j): the j-th past command, or the one that is made now.
+        let past = flow + held;
+        let mut late_by = |j: usize, weight: f64| match j {
+            0 => b += &acts * weight,
+            j => {
+                let column = a.column(past + j - 1) + &acts * weight;
+                a.set_column(past + j - 1, &column);
+            }
+        };
+        late_by(whole, 1.0 - part);
+        if part > 0.0 {
+            late_by(whole + 1, part);
+        }
+        for j in 0..late {
+            match j {
+                0 => b[past] = 1.0,
+                j => a[(past + j, past + j - 1)] = 1.0,
+            }
+        }
+
+        let row = |values: &DVector<f64>, from: usize| {
+            RowDVector::from_fn(size, |_, j| {
+                let inside = (from..from + n).contains(&j);
+                if inside {
+                    values[j - from] * units[j]
+                } else {
+                    0.0
+                }
+            })
+        };
+        let (load_at, load_speed) = (row(&load, 0), row(&load, n));
+        let position = match model.cascade.from_motor {
+            true => row(&motor, 0) * model.travel,
+            false => load_at.clone(),
+        };
+        let mut speed = row(&motor, n);
+        if angles == 1 {
+            // A state for the motor's angle a cycle ago, in units of the modes' own.
+            let (before, now) = (past + late, row(&motor, 0));
+            units[before] = push / motor[0].abs();
+            a.row_mut(before).copy_from(&(&now / units[before]));
+            speed = now / h;
+            speed[before] = -units[before] / h;
+        }
+        let mut rows = vec![position, speed];
+        if held == 1 {
+            rows.push(RowDVector::from_fn(size, |_, j| {
+                if j == 2 * n { limit } else { 0.0 }
+            }));
+        }
+        Ok(Self {
+            a,
+            b,
+            c: DMatrix::from_rows(&rows),
+            load: load_at,
+            load_speed,
+            units,
+        })
+    }
+
+    pub fn size(&self) -> usize {
+        self.b.len()
+    }
+}

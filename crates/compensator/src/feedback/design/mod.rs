@@ -1,0 +1,258 @@
+//! Design of a [`Feedback`]: linear-quadratic state feedback and Kalman filter at each χ.
+
+mod error;
+mod linear;
+mod margins;
+mod riccati;
+mod settings;
+
+use nalgebra::{DMatrix, DVector};
+use std::vec::Vec;
+
+use super::gains::{Gains, Node, States};
+use super::{Feedback, MOST_MEASURED, MOST_STATES, NODES};
+use crate::model::{DriveModel, Mode};
+pub use error::DesignError;
+use linear::{Linear, Situation};
+pub use margins::{Margins, Variation};
+pub use settings::FeedbackSettings;
+
+/// χ at which gains are held: friction changes fastest where few bristles stick.
+const STICKING: [f64; NODES] = [0.0, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
+
+/// Steps of bandwidth that are tried, and factors of the command's uncertainty in each.
+const SOFTENINGS: usize = 9;
+const UNCERTAIN: [f64; 3] = [1.0, 4.0, 16.0];
+
+/// Gains at one χ.
+#[derive(Clone, Debug)]
+struct Design {
+    linear: Linear,
+    /// State feedback, the disturbance's cancellation last; u and states in their own units.
+    k: DVector<f64>,
+    l: DMatrix<f64>,
+}
+
+/// A feedback, designed and checked, with all that its margins are computed from.
+#[derive(Clone, Debug)]
+pub struct FeedbackDesign {
+    model: DriveModel,
+    modes: Vec<Mode>,
+    settings: FeedbackSettings,
+    floor: f64,
+    designs: Vec<Design>,
+    residual: f64,
+}
+
+impl FeedbackDesign {
+    /// For the axis `model`, whose natural modes, the rigid motion first, are `modes` with the
+    /// load where its gains are to be made for: mid-stroke. The first
+    /// [`FeedbackSettings::modes`] of them count.
+    ///
+    /// # Errors
+    /// [`DesignError`] says what cannot be carried: no speed loop that could be replaced, too
+    /// many states, a Riccati equation without solution, margins that are not met.
+    pub fn new(
+        model: &DriveModel,
+        modes: &[Mode],
+        settings: &FeedbackSettings,
+    ) -> Result<Self, DesignError> {
+        let designed = Self::unchecked(model, modes, settings)?;
+        designed.require_margins(&[])?;
+        Ok(designed)
+    }
+
+    /// The quickest feedback whose margins hold with the load anywhere: weights go down from
+    /// those of `settings` in steps of √2 in bandwidth, down to a sixteenth of it, and the
+    /// command is taken as less and less certain, until the margins are there. `elsewhere` has
+    /// the modes at other positions.
+    ///
+    /// # Errors
+    /// As [`FeedbackDesign::new`]; where no weights do, what the softest fall short of.
+    pub fn within_margins(
+        model: &DriveModel,
+        modes: &[Mode],
+        elsewhere: &[&[Mode]],
+        settings: &FeedbackSettings,
+    ) -> Result<Self, DesignError> {
+        let mut bandwidth = 1.0;
+        let mut refused = None;
+        for _ in 0..SOFTENINGS {
+            for command in UNCERTAIN {
+                let softer = settings.softened(bandwidth, command);
+                let designed = Self::unchecked(model, modes, &softer)?;
+                match designed.require_margins(elsewhere) {
+                    Ok(()) => return Ok(designed),
+                    Err(error) => refused = Some(error),
+                }
+            }
+            bandwidth *= std::f64::consts::FRAC_1_SQRT_2;
+        }
+        Err(refused.unwrap_or(DesignError::Modes("there is none")))
+    }
+
+    /// What it was designed with.
+    pub fn settings(&self) -> &FeedbackSettings {
+        &self.settings
+    }
+
+    /// Without a look at the margins.
+    fn unchecked(
+        model: &DriveModel,
+        modes: &[Mode],
+        settings: &FeedbackSettings,
+    ) -> Result<Self, DesignError> {
+        model.check()?;
+        settings.check(model)?;
+        let c = &model.cascade;
+        if c.position <= 0.0 {
+            return Err(DesignError::Control(
+                "it has no speed controller whose set point an offset of the position sets",
+            ));
+        }
+        if c.speed <= 0.0 {
+            return Err(DesignError::Control("its speed controller has no gain"));
+        }
+        let modes = settings.used(modes)?;
+        let floor =
+            settings.floor * c.speed * model.torque_constant() / (model.travel * model.travel);
+        let mut designed = Self {
+            model: *model,
+            modes,
+            settings: *settings,
+            floor,
+            designs: Vec::new(),
+            residual: 0.0,
+        };
+        for sticking in STICKING {
+            let (design, residual) = designed.design(sticking)?;
+            designed.designs.push(design);
+            designed.residual = designed.residual.max(residual);
+        }
+        Ok(designed)
+    }
+
+    /// The feedback, at the start of a motion.
+    pub fn feedback(&self) -> Feedback {
+        let mut nodes = [Node::ZERO; NODES];
+        for (node, design) in nodes.iter_mut().zip(&self.designs) {
+            for (to, from) in node.a.iter_mut().zip(design.linear.a.column_iter()) {
+                *to = states(from.iter());
+            }
+            node.b = states(design.linear.b.iter());
+            for (to, from) in node.l.iter_mut().zip(design.l.column_iter()) {
+                *to = states(from.iter());
+            }
+            node.k = states(design.k.iter());
+        }
+        let linear = &self.designs[0].linear;
+        let mut c = [[0.0; MOST_STATES]; MOST_MEASURED];
+        for (to, from) in c.iter_mut().zip(linear.c.row_iter()) {
+            *to = states(from.iter());
+        }
+        Feedback::new(Gains {
+            states: linear.size(),
+            measured: linear.c.nrows(),
+            sticking: STICKING,
+            nodes,
+            c,
+            load: [&linear.load, &linear.load_speed].map(|row| states(row.iter())),
+            force: linear.units[linear.size() - 1],
+            limit: self.model.effort_limit,
+            travel: self.model.travel,
+            differences: self.settings.speed_by_differences,
+            cascade: self.model.cascade,
+        })
+    }
+
+    /// Greatest relative residual of the Riccati equations that were solved.
+    pub fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    fn design(&self, sticking: f64) -> Result<(Design, f64), DesignError> {
+        let (model, settings) = (&self.model, &self.settings);
+        let situation = Situation {
+            sticking,
+            mass: 1.0,
+            friction: 1.0,
+            floor: self.floor,
+        };
+        let linear = Linear::new(model, &self.modes, settings, &situation)?;
+        let n = linear.size() - 1;
+        let riccati = |what| {
+            move |residual| DesignError::Riccati {
+                what,
+                sticking,
+                residual,
+            }
+        };
+
+        // State feedback: all but the disturbance, which no command moves.
+        let (a, b) = (
+            linear.a.view((0, 0), (n, n)).into_owned(),
+            linear.b.rows(0, n),
+        );
+        let [position, speed] = settings.weights(model);
+        let weigh = |row: &nalgebra::RowDVector<f64>, weight: f64| {
+            let row = row.columns(0, n) * weight;
+            row.transpose() * row
+        };
+        let q = weigh(&linear.load, position) + weigh(&linear.load_speed, speed);
+        let (p, first) =
+            riccati::solve(&a, &(b * b.transpose()), &q).map_err(riccati("state feedback"))?;
+        let pb = &p * b;
+        let k = a.transpose() * &pb / (1.0 + b.dot(&pb));
+
+        // u = −K (x̂ − N_x d̂) + N_u d̂: where the load stands still under a constant force.
+        let mut steady = DMatrix::zeros(n + 1, n + 1);
+        steady
+            .view_mut((0, 0), (n, n))
+            .copy_from(&(&a - DMatrix::identity(n, n)));
+        steady.view_mut((0, n), (n, 1)).copy_from(&b);
+        steady
+            .view_mut((n, 0), (1, n))
+            .copy_from(&linear.load.columns(0, n));
+        let mut acting = DVector::zeros(n + 1);
+        acting
+            .rows_mut(0, n)
+            .copy_from(&-linear.a.view((0, n), (n, 1)));
+        let steady = steady
+            .lu()
+            .solve(&acting)
+            .filter(|s| s.iter().all(|x| x.is_finite()))
+            .ok_or(DesignError::SteadyState { sticking })?;
+        let cancelled = -(k.dot(&steady.rows(0, n)) + steady[n]);
+        let k = k.push(cancelled);
+
+        // Observer: the disturbance wanders, the command is uncertain.
+        let noise = settings.noise(model, &self.modes[0]);
+        let force = noise.force / linear.units[n];
+        let mut w = &linear.b * linear.b.transpose() * (noise.command * noise.command);
+        w[(n, n)] += force * force;
+        let sigmas = [noise.position, noise.speed, noise.current];
+        // Per deviation of the sensors, so that all of them weigh alike.
+        let c = DMatrix::from_fn(linear.c.nrows(), n + 1, |i, j| linear.c[(i, j)] / sigmas[i]);
+        let (p, second) = riccati::solve(&linear.a.transpose(), &(c.transpose() * &c), &w)
+            .map_err(riccati("observer"))?;
+        let pc = &p * c.transpose();
+        let s = DMatrix::identity(c.nrows(), c.nrows()) + &c * &pc;
+        let gain = s
+            .lu()
+            .solve(&pc.transpose())
+            .ok_or(DesignError::Riccati {
+                what: "observer",
+                sticking,
+                residual: f64::NAN,
+            })?
+            .transpose();
+        let l = DMatrix::from_fn(n + 1, c.nrows(), |i, j| gain[(i, j)] / sigmas[j]);
+        Ok((Design { linear, k, l }, first.max(second)))
+    }
+}
+
+fn states<'a>(from: impl Iterator<Item = &'a f64>) -> States<f64> {
+    let mut to = [0.0; MOST_STATES];
+    to.iter_mut().zip(from).for_each(|(to, &from)| *to = from);
+    to
+}

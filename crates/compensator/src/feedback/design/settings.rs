@@ -1,0 +1,185 @@
+//! How a feedback is designed.
+
+use std::vec::Vec;
+
+use super::DesignError;
+use crate::error::{require, within};
+use crate::model::{DriveModel, Mode};
+
+/// Weights, noise and margins of a design. Everything is relative to the axis: its own
+/// loops' gains, its actuator's limit, its control period, so that the defaults suit axes of
+/// any size. What they come to on the ball-screw axis of the reference machine is in brackets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FeedbackSettings {
+    /// Whether the motor's speed is the difference of two angles, a cycle apart, and so half a
+    /// cycle late; false.
+    pub speed_by_differences: bool,
+    /// Modes that the model has, the rigid motion among them; 3.
+    pub modes: usize,
+    /// Weight of the load's position per command, in gains of the cascade P k_p; 160
+    /// [3.0e6 A/m].
+    pub stiffness: f64,
+    /// Weight of the load's speed per command, in gains of the cascade k_p/r; 37
+    /// [1.5e4 A/(m/s)].
+    pub damping: f64,
+    /// Damping of the load that is taken for sure besides that of the friction model, as a
+    /// share of the speed loop's own k_p K_t/r²; 0.014 [0.015 N·m·s/rad at the screw]. It is
+    /// what the observer may trust.
+    pub floor: f64,
+    /// How much the unknown force wanders, in greatest forces of the actuator per √s; 1.6e-3
+    /// [4e-4 N·m a cycle at the motor].
+    pub wandering: f64,
+    /// Deviation of the command from what acts, in greatest commands; 1/15 [1 A]. It keeps
+    /// the observer quick, and with it the margins.
+    pub command: f64,
+    /// Noise of the position, in ways r a_max T² of the greatest acceleration in a cycle; 1.8
+    /// [70 nm].
+    pub position: f64,
+    /// Noise of the motor's speed, in speeds a_max T; 0.04 [0.01 rad/s].
+    pub speed: f64,
+    /// Noise of the q current, in greatest commands; 1/3000 [5 mA].
+    pub current: f64,
+    /// Greatest sensitivity that is accepted; 1.3. Infinite: not checked.
+    pub sensitivity: f64,
+    /// The same with one more cycle of delay; 1.6.
+    pub sensitivity_late: f64,
+    /// Shares of the believed load's inertia for which the two must hold; 0.9 and 1.4.
+    pub mass: [f64; 2],
+    /// Shares of the believed σ0, σ1 and σ2 for which they must hold; 0.5 and 2.
+    pub friction: [f64; 2],
+}
+
+impl Default for FeedbackSettings {
+    fn default() -> Self {
+        Self {
+            speed_by_differences: false,
+            modes: 3,
+            stiffness: 160.0,
+            damping: 37.0,
+            floor: 0.014,
+            wandering: 1.6e-3,
+            command: 1.0 / 15.0,
+            position: 1.8,
+            speed: 0.04,
+            current: 1.0 / 3000.0,
+            sensitivity: 1.3,
+            sensitivity_late: 1.6,
+            mass: [0.9, 1.4],
+            friction: [0.5, 2.0],
+        }
+    }
+}
+
+/// Standard deviations a cycle: of the force in N, of the command in greatest commands, of
+/// the measurements in SI.
+pub(super) struct Noise {
+    pub force: f64,
+    pub command: f64,
+    pub position: f64,
+    pub speed: f64,
+    pub current: f64,
+}
+
+impl FeedbackSettings {
+    pub(super) fn check(&self, model: &DriveModel) -> Result<(), DesignError> {
+        let positive = [
+            ("stiffness", self.stiffness),
+            ("damping", self.damping),
+            ("wandering", self.wandering),
+            ("command", self.command),
+            ("position", self.position),
+            ("speed", self.speed),
+            ("current", self.current),
+        ];
+        for (name, value) in positive {
+            require(within(value, 1e-9, 1e9), name, value, "from 1e-9 to 1e9")?;
+        }
+        require(
+            within(self.floor, 0.0, 1e3),
+            "floor",
+            self.floor,
+            "from 0 to 1000",
+        )?;
+        for (name, value) in [
+            ("sensitivity", self.sensitivity),
+            ("sensitivity_late", self.sensitivity_late),
+        ] {
+            require(value > 1.0, name, value, "above 1")?;
+        }
+        for value in self.mass {
+            require(
+                within(value, 0.01, 100.0),
+                "mass",
+                value,
+                "from 0.01 to 100",
+            )?;
+        }
+        for value in self.friction {
+            require(
+                within(value, 0.0, 100.0),
+                "friction",
+                value,
+                "from 0 to 100",
+            )?;
+        }
+        let limit = model.effort_limit;
+        let valid = "finite, so that a feedback can be scaled by it";
+        require(within(limit, 1e-9, 1e12), "effort_limit", limit, valid)?;
+        Ok(())
+    }
+
+    /// The same for another bandwidth of the state feedback, as a share of this one, and
+    /// another uncertainty of the command.
+    #[must_use]
+    pub fn softened(&self, bandwidth: f64, command: f64) -> Self {
+        Self {
+            stiffness: self.stiffness * bandwidth * bandwidth,
+            damping: self.damping * bandwidth,
+            command: self.command * command,
+            ..*self
+        }
+    }
+
+    /// The modes that count, checked.
+    pub(super) fn used(&self, modes: &[Mode]) -> Result<Vec<Mode>, DesignError> {
+        let used: Vec<Mode> = modes.iter().copied().take(self.modes.max(1)).collect();
+        let finite = |m: &Mode| {
+            let all = [m.frequency, m.damping, m.motor, m.load];
+            all.iter().all(|v| v.is_finite()) && m.frequency >= 0.0
+        };
+        match used.first() {
+            None => Err(DesignError::Modes("there is none")),
+            Some(rigid) if rigid.frequency != 0.0 => {
+                Err(DesignError::Modes("the first must be the rigid motion"))
+            }
+            Some(rigid) if rigid.motor * rigid.load <= 0.0 => Err(DesignError::Modes(
+                "in the rigid motion, motor and load must move the same way",
+            )),
+            _ if !used.iter().all(finite) => Err(DesignError::Modes("one is not finite")),
+            _ => Ok(used),
+        }
+    }
+
+    /// Weights of the load's position (1/m) and speed (s/m), against the greatest command.
+    pub(super) fn weights(&self, model: &DriveModel) -> [f64; 2] {
+        let per_limit = model.cascade.speed / model.effort_limit;
+        [
+            self.stiffness * model.cascade.position * per_limit,
+            self.damping * per_limit / model.travel,
+        ]
+    }
+
+    pub(super) fn noise(&self, model: &DriveModel, rigid: &Mode) -> Noise {
+        let greatest = model.torque_constant() * model.effort_limit;
+        let h = model.period;
+        // Motor's acceleration by the greatest torque, over a cycle.
+        let speed = greatest * rigid.motor * rigid.motor * h;
+        Noise {
+            force: self.wandering * greatest / model.travel * scalar::Scalar::sqrt(h),
+            command: self.command,
+            position: self.position * model.travel * speed * h,
+            speed: self.speed * speed,
+            current: self.current * model.effort_limit,
+        }
+    }
+}
