@@ -1,0 +1,234 @@
+//! Gauss–Newton on one record: the most probable parameters of it and of what was known.
+
+use std::vec::Vec;
+
+use nalgebra::{SMatrix, SVector};
+
+use super::parameter::{AdaptParameter, Belief, COUNT, Theta};
+use super::record::Record;
+use super::residual::{NUISANCES, Residuals, long_run_variance};
+
+/// Parameters and nuisances.
+pub(super) const ALL: usize = COUNT + NUISANCES;
+/// Information about the parameters alone.
+pub(super) type Information = SMatrix<f64, COUNT, COUNT>;
+type Full = SMatrix<f64, ALL, ALL>;
+type Column = SVector<f64, ALL>;
+
+/// Most Gauss–Newton steps.
+const STEPS: usize = 30;
+/// A step below this share of the standard error ends them.
+const CLOSE: f64 = 1e-2;
+/// Deviations of the prior beyond which it gives way.
+const GIVES_WAY: f64 = 2.0;
+/// A residual below this share of the torque is not believed.
+const FINEST: f64 = 1e-4;
+
+/// What was known before the record.
+pub(super) struct Known<'a> {
+    pub belief: &'a Belief,
+    /// Estimate that `information` is about.
+    pub estimate: Theta,
+    pub information: Information,
+}
+
+/// What a record says.
+pub(super) struct Fit {
+    pub estimate: Theta,
+    /// Of the record and of what was known, the prior left out.
+    pub information: Information,
+    /// Posterior variances, the prior included.
+    pub variances: Theta,
+    /// RMS of the torque balance before and after, N·m.
+    pub rms: [f64; 2],
+    /// Standard error of one independent value of the balance, N·m.
+    pub noise: f64,
+}
+
+impl Known<'_> {
+    /// Whether a coordinate is free.
+    fn free(&self, record: &Record, i: usize) -> bool {
+        match AdaptParameter::ALL.get(i) {
+            Some(AdaptParameter::Compliance) => {
+                record.sees_load && self.belief.adapts(AdaptParameter::Compliance)
+            }
+            Some(&parameter) => self.belief.adapts(parameter),
+            None => Residuals::has_nuisance(self.belief, record, i - COUNT),
+        }
+    }
+
+    /// Precision of the prior of a coordinate at a value.
+    fn precision(&self, record: &Record, i: usize, value: f64) -> f64 {
+        let deviation = match AdaptParameter::ALL.get(i) {
+            Some(&parameter) => self.belief.prior.of(parameter).deviation,
+            None => Residuals::nuisance_deviation(self.belief, record, i - COUNT),
+        };
+        let far = (value.abs() / deviation / GIVES_WAY).max(1.0);
+        1.0 / (deviation * far).powi(2)
+    }
+
+    fn bounds(&self, i: usize) -> [f64; 2] {
+        match AdaptParameter::ALL.get(i) {
+            Some(&parameter) => self.belief.bounds(parameter),
+            None => [f64::NEG_INFINITY, f64::INFINITY],
+        }
+    }
+
+    /// Gradient and curvature of the prior and of what was known.
+    fn before(&self, record: &Record, at: &Column) -> (Column, Full) {
+        let (mut gradient, mut curvature) = (Column::zeros(), Full::zeros());
+        for i in 0..ALL {
+            let precision = self.precision(record, i, at[i]);
+            gradient[i] = precision * at[i];
+            curvature[(i, i)] = precision;
+        }
+        for i in 0..COUNT {
+            for j in 0..COUNT {
+                let information = self.information[(i, j)];
+                gradient[i] += information * (at[j] - self.estimate[j]);
+                curvature[(i, j)] += information;
+            }
+        }
+        (gradient, curvature)
+    }
+
+    /// Twice the negative logarithm of prior and record, but for a constant. The prior's
+    /// precisions are those at `from`.
+    fn cost(&self, record: &Record, at: &Column, from: &Column, r: &Residuals, w: [f64; 2]) -> f64 {
+        let prior = |i: usize| self.precision(record, i, from[i]) * at[i] * at[i];
+        let away = SVector::<f64, COUNT>::from_fn(|i, _| at[i] - self.estimate[i]);
+        (0..ALL).map(prior).sum::<f64>()
+            + away.dot(&(self.information * away))
+            + w[0] * r.square(0)
+            + w[1] * r.square(1)
+    }
+
+    /// The most probable parameters of what was known and the record.
+    pub fn fit(&self, record: &Record) -> Fit {
+        let mut at = Column::zeros();
+        for i in 0..COUNT {
+            at[i] = self.estimate[i];
+        }
+        let free: Vec<usize> = (0..ALL).filter(|&i| self.free(record, i)).collect();
+        let mut residuals = Residuals::at(self.belief, record, &at, &free);
+        let rms = residuals.rms(0);
+        let mut weights = residuals.weights(record, free.len());
+        let mut settled = false;
+        for _ in 0..STEPS {
+            let (gradient, curvature) = self.normal(record, &at, &residuals, weights);
+            let held = |i: &usize| {
+                let [least, most] = self.bounds(*i);
+                (at[*i] <= least && gradient[*i] > 0.0) || (at[*i] >= most && gradient[*i] < 0.0)
+            };
+            let moving: Vec<usize> = free.iter().copied().filter(|i| !held(i)).collect();
+            let Some(inverse) = inverse(&curvature, &moving) else {
+                break;
+            };
+            let step = -(inverse * gradient);
+            let before = self.cost(record, &at, &at, &residuals, weights);
+            let mut share = 1.0;
+            let mut better = None;
+            while share > 1e-3 && better.is_none() {
+                let mut next = at + share * step;
+                for i in 0..ALL {
+                    let [least, most] = self.bounds(i);
+                    next[i] = next[i].clamp(least, most);
+                }
+                let there = Residuals::at(self.belief, record, &next, &free);
+                let cost = self.cost(record, &next, &at, &there, weights);
+                // Not a number is no improvement.
+                if cost <= before {
+                    better = Some((next, there));
+                }
+                share *= 0.5;
+            }
+            let small = |i: &usize| step[*i].abs() <= CLOSE * inverse[(*i, *i)].sqrt();
+            let close = moving.iter().all(small);
+            let stuck = better.is_none();
+            if let Some((next, there)) = better {
+                (at, residuals) = (next, there);
+            }
+            // Weights are those of the residuals that are left in the end.
+            if close || stuck {
+                if settled {
+                    break;
+                }
+                settled = true;
+            }
+            weights = residuals.weights(record, free.len());
+        }
+        self.result(record, &at, &residuals, weights, &free, rms)
+    }
+
+    fn normal(&self, record: &Record, at: &Column, r: &Residuals, w: [f64; 2]) -> (Column, Full) {
+        let (mut gradient, mut curvature) = self.before(record, at);
+        r.add_to(w, &mut gradient, &mut curvature);
+        (gradient, curvature)
+    }
+
+    fn result(
+        &self,
+        record: &Record,
+        at: &Column,
+        residuals: &Residuals,
+        weights: [f64; 2],
+        free: &[usize],
+        before: f64,
+    ) -> Fit {
+        let (_, curvature) = self.normal(record, at, residuals, weights);
+        let covariance = inverse(&curvature, free).unwrap_or_else(Full::zeros);
+        // What the record says of the parameters once the nuisances are integrated out.
+        let (mut unused, mut of_record) = (Column::zeros(), Full::zeros());
+        residuals.add_to(weights, &mut unused, &mut of_record);
+        for i in COUNT..ALL {
+            of_record[(i, i)] += self.precision(record, i, at[i]);
+        }
+        let nuisances: Vec<usize> = free.iter().copied().filter(|&i| i >= COUNT).collect();
+        let within = inverse(&of_record, &nuisances).unwrap_or_else(Full::zeros);
+        let marginal = of_record - of_record * within * of_record;
+        let mut information = self.information;
+        for &i in free.iter().filter(|&&i| i < COUNT) {
+            for &j in free.iter().filter(|&&j| j < COUNT) {
+                information[(i, j)] += 0.5 * (marginal[(i, j)] + marginal[(j, i)]);
+            }
+        }
+        Fit {
+            estimate: std::array::from_fn(|i| at[i]),
+            information,
+            variances: std::array::from_fn(|i| covariance[(i, i)].max(0.0)),
+            rms: [before, residuals.rms(0)],
+            noise: (1.0 / weights[0]).sqrt(),
+        }
+    }
+}
+
+impl Residuals {
+    /// Weight of one value of each balance.
+    fn weights(&self, record: &Record, free: usize) -> [f64; 2] {
+        let floor = [FINEST * record.torque, FINEST * self.scale(1)];
+        [0, 1].map(|channel| {
+            let variance = long_run_variance(self.values(channel), free);
+            1.0 / variance.max(floor[channel].powi(2)).max(f64::MIN_POSITIVE)
+        })
+    }
+}
+
+/// Inverse of the rows and columns of `kept`, scaled so that units do not matter; 0
+/// elsewhere.
+fn inverse(curvature: &Full, kept: &[usize]) -> Option<Full> {
+    let scale = |i: usize| 1.0 / curvature[(i, i)].abs().sqrt().max(1e-150);
+    let mut scaled = Full::identity();
+    for &i in kept {
+        for &j in kept {
+            scaled[(i, j)] = curvature[(i, j)] * scale(i) * scale(j);
+        }
+    }
+    let mut inverse = scaled.cholesky()?.inverse();
+    for i in 0..ALL {
+        for j in 0..ALL {
+            let both = kept.contains(&i) && kept.contains(&j);
+            inverse[(i, j)] *= if both { scale(i) * scale(j) } else { 0.0 };
+        }
+    }
+    Some(inverse)
+}

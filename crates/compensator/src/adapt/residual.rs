@@ -1,0 +1,233 @@
+//! Residuals of the two balances along a record, and how they change with the parameters.
+//!
+//! ```text
+//! e₁ = T − (J − J_w) θ̈ − J_w a/r − r load(x) − r (m a + T_f/lever + F₀)    N·m
+//! e₂ = θ − x/r − c − b sat(T_t) − C T_t                                    rad
+//! ```
+//!
+//! T_t = T − (J − J_w) θ̈ is the torque through the transmission.
+
+use std::vec::Vec;
+
+use libm::{exp, tanh};
+use lugre::LuGre;
+use nalgebra::{SMatrix, SVector};
+
+use super::kernel::Kernel;
+use super::parameter::{AdaptParameter, Belief, COUNT, Theta};
+use super::record::Record;
+
+/// Unknowns of a record that no model keeps: the force that its bristles begin with, the
+/// angle between the two scales, and half the free travel at the motor.
+pub(super) const NUISANCES: usize = 3;
+/// Change of a parameter by which sensitivities are found.
+const STEP: f64 = 0.01;
+/// Share of the break-away level by which the force held at the start is uncertain.
+const HELD: f64 = 0.1;
+
+/// Residuals and their rates of change.
+pub(super) struct Residuals {
+    values: [Vec<f64>; 2],
+    /// Of each channel, the coordinate and the change of the prediction with it.
+    columns: [Vec<(usize, Vec<f64>)>; 2],
+    scale: f64,
+}
+
+impl Residuals {
+    /// At parameters and nuisances.
+    pub fn at<const N: usize>(
+        belief: &Belief,
+        record: &Record,
+        at: &SVector<f64, N>,
+        free: &[usize],
+    ) -> Self {
+        let theta: Theta = std::array::from_fn(|i| at[i]);
+        let [held, offset, gap] = [0, 1, 2].map(|i| at[COUNT + i]);
+        let (model, points) = (&belief.model, &record.points);
+        let travel = model.travel;
+        let friction = |theta: &Theta, held: f64| {
+            forces(&belief.friction(theta), record, belief.held(record, held))
+        };
+        let own = friction(&theta, held);
+        let mass = model.load_inertia * exp(theta[AdaptParameter::LoadInertia.index()]);
+        let standing = belief.standing_load(&theta);
+        let torque = |i: usize| {
+            travel * (mass * points[i].acceleration + own[i] / model.lever + standing)
+        };
+        let count = points.len();
+        let balance = (0..count).map(|i| points[i].left - torque(i)).collect();
+        let central = |more: Vec<f64>, less: Vec<f64>| -> Vec<f64> {
+            let pairs = more.into_iter().zip(less);
+            let by = travel / (2.0 * STEP * model.lever);
+            pairs.map(|(more, less)| by * (more - less)).collect()
+        };
+        let off = |i: usize, by: f64| {
+            let mut off = theta;
+            off[i] += by;
+            off
+        };
+        let mut columns = [Vec::new(), Vec::new()];
+        for &i in free {
+            let column = match AdaptParameter::ALL.get(i) {
+                Some(AdaptParameter::Compliance) => continue,
+                Some(AdaptParameter::LoadInertia) => {
+                    let inertia = points.iter().map(|p| travel * mass * p.acceleration);
+                    inertia.collect()
+                }
+                Some(AdaptParameter::StandingLoad) => {
+                    vec![travel * belief.value(AdaptParameter::StandingLoad); count]
+                }
+                Some(_) => central(
+                    friction(&off(i, STEP), held),
+                    friction(&off(i, -STEP), held),
+                ),
+                None if i == COUNT => central(
+                    friction(&theta, held + STEP),
+                    friction(&theta, held - STEP),
+                ),
+                None => continue,
+            };
+            columns[0].push((i, column));
+        }
+
+        let mut lead = Vec::new();
+        let mut scale = 0.0;
+        if record.sees_load {
+            let factor = exp(theta[AdaptParameter::Compliance.index()]);
+            let level = travel * belief.value(AdaptParameter::StandingLoad);
+            let side = |i: usize| tanh(10.0 * points[i].transmitted / level.max(1e-12));
+            let wound = |i: usize| factor * points[i].compliance * points[i].transmitted;
+            lead = (0..count)
+                .map(|i| points[i].lead - offset - gap * side(i) - wound(i))
+                .collect();
+            columns[1] = vec![
+                (AdaptParameter::Compliance.index(), (0..count).map(wound).collect()),
+                (COUNT + 1, vec![1.0; count]),
+                (COUNT + 2, (0..count).map(side).collect()),
+            ];
+            columns[1].retain(|(i, _)| free.contains(i));
+            scale = (0..count).map(|i| wound(i).powi(2)).sum::<f64>().sqrt()
+                / (count as f64).sqrt();
+        }
+        Self {
+            values: [balance, lead],
+            columns,
+            scale,
+        }
+    }
+
+    /// Whether a record has this nuisance.
+    pub fn has_nuisance(belief: &Belief, record: &Record, nuisance: usize) -> bool {
+        let friction = belief.model.friction.parameters().coulomb > 0.0;
+        match nuisance {
+            0 => friction,
+            1 => record.sees_load,
+            _ => record.sees_load && friction,
+        }
+    }
+
+    /// Deviation of a nuisance, in its unit.
+    pub fn nuisance_deviation(belief: &Belief, record: &Record, nuisance: usize) -> f64 {
+        let level = belief.model.travel * belief.value(AdaptParameter::StandingLoad);
+        let wound = belief.value(AdaptParameter::Compliance) * level;
+        match nuisance {
+            0 => HELD,
+            // The two scales begin anywhere.
+            1 => 1e3 * record.points.iter().fold(wound.max(1e-9), |a, p| a.max(p.lead.abs())),
+            _ => 0.1 * wound.max(1e-12),
+        }
+    }
+
+    /// Residuals of the torque (0) or of the wind-up (1).
+    pub fn values(&self, channel: usize) -> &[f64] {
+        &self.values[channel]
+    }
+
+    pub fn square(&self, channel: usize) -> f64 {
+        self.values[channel].iter().map(|e| e * e).sum()
+    }
+
+    pub fn rms(&self, channel: usize) -> f64 {
+        (self.square(channel) / self.values[channel].len().max(1) as f64).sqrt()
+    }
+
+    /// RMS of the wind-up, rad.
+    pub fn scale(&self, _channel: usize) -> f64 {
+        self.scale
+    }
+
+    /// Adds gradient and curvature of ½ Σ w e².
+    pub fn add_to<const N: usize>(
+        &self,
+        weights: [f64; 2],
+        gradient: &mut SVector<f64, N>,
+        curvature: &mut SMatrix<f64, N, N>,
+    ) {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        for channel in 0..2 {
+            let (w, columns) = (weights[channel], &self.columns[channel]);
+            for (i, a) in columns {
+                gradient[*i] -= w * dot(a, &self.values[channel]);
+                for (j, b) in columns {
+                    curvature[(*i, *j)] += w * dot(a, b);
+                }
+            }
+        }
+    }
+}
+
+impl Belief {
+    /// The bristles' force at the start, `share` of the break-away level from what the
+    /// record seems to begin with.
+    fn held(&self, record: &Record, share: f64) -> f64 {
+        let most = self.model.friction.parameters().stiction;
+        record.held.clamp(-most, most) + share * most
+    }
+}
+
+/// Friction smoothed at each point, in its own coordinate, the bristles beginning with the
+/// force `held`.
+fn forces(law: &LuGre, record: &Record, held: f64) -> Vec<f64> {
+    let limit = law.bristle_limit();
+    let stiffness = law.parameters().stiffness;
+    let mut z = match stiffness > 0.0 {
+        true => (held / stiffness).clamp(-limit, limit),
+        false => 0.0,
+    };
+    let mut before = record.speeds.first().copied().unwrap_or(0.0);
+    let each = record.speeds.iter().map(|&speed| {
+        let (next, force) = law.step_torque(z, before, speed, record.period);
+        (z, before) = (next, speed);
+        force
+    });
+    let series: Vec<f64> = each.collect();
+    let padded = Kernel::pad(&series, record.kernel.half());
+    let smooth = record.points.iter().map(|p| record.kernel.of(0, &padded, p.sample));
+    smooth.collect()
+}
+
+/// Variance that the mean of a series times its length has, per value: the variance of
+/// its values and twice all their covariances, by Bartlett's window (Newey and West,
+/// Econometrica 55 (1987) 703–708). Correlated residuals so count as the fewer values
+/// that they are.
+pub(super) fn long_run_variance(values: &[f64], fitted: usize) -> f64 {
+    let count = values.len();
+    if count == 0 {
+        return 1.0;
+    }
+    let covariance = |lag: usize| {
+        let pairs = values.iter().zip(&values[lag..]);
+        pairs.map(|(a, b)| a * b).sum::<f64>() / count as f64
+    };
+    let own = covariance(0);
+    let most = ((2.0 * (count as f64).sqrt()) as usize).min(count / 4);
+    let mut total = own;
+    for lag in 1..=most {
+        let window = 1.0 - lag as f64 / (most + 1) as f64;
+        total += 2.0 * window * covariance(lag);
+    }
+    let total = total.max(own);
+    // What was fitted has taken its share of the independent values.
+    let independent = count as f64 * own / total.max(f64::MIN_POSITIVE);
+    total * independent.max(fitted as f64 + 1.0) / (independent - fitted as f64).max(1.0)
+}
