@@ -145,6 +145,15 @@ fn main() {
                 }
             }
         }
+        "bias" => {
+            let cl = ClosedLoop::new(&axis).unwrap();
+            let m = axis.plan(&axis.trajectories[0]).unwrap();
+            for noise in [false, true] {
+            let (_, _, _, log) = run(&cl, &nominal, &m, noise, 0);
+            let mut ad = Adaptation::new(&nominal, &prior).unwrap();
+            show(&ad.learn(&log).unwrap());
+            }
+        }
         "axes" => {
             for name in ["screw-datasheet", "rack", "belt", "joint", "linear-motor", "linear-stage", "rotary-table", "emps"] {
                 let axis = Axis::read(format!("{root}{name}.toml").as_ref()).unwrap();

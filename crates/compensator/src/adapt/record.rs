@@ -46,7 +46,8 @@ pub(super) struct Record {
     pub speeds: Vec<f64>,
     /// What friction computed of the velocity is smoothed with.
     pub kernel: Kernel,
-    /// What friction seems to hold at the start, in its coordinate.
+    /// What the torque at the start leaves to friction and standing load, in the
+    /// friction's coordinate.
     pub held: f64,
     /// Whether the load's position was measured apart from the motor's angle.
     pub sees_load: bool,
@@ -61,11 +62,15 @@ impl Record {
     pub fn new(model: &DriveModel, log: &[Sample]) -> Result<Self, AdaptError> {
         let period = model.period;
         // Few samples a deviation make no Gaussian.
+        let get = |n: &str, d: f64| std::env::var(n).map_or(d, |s| s.parse().unwrap());
+        let (balance_s, velocity_s) = (get("BAL", BALANCE), get("VEL", VELOCITY));
         let cycles = |time: f64| (time / period).max(1.0);
-        let rest = (BALANCE * BALANCE - VELOCITY * VELOCITY).sqrt();
+        let rest = (balance_s * balance_s - velocity_s * velocity_s).sqrt();
         let [balance, velocity, rest] =
-            [BALANCE, VELOCITY, rest].map(|time| Kernel::new(cycles(time), period));
-        let stride = ((SPACING * cycles(BALANCE)) as usize).max(1);
+            [balance_s, velocity_s, rest].map(|time| Kernel::new(cycles(time), period));
+        // Without any smoothing: central differences.
+        let steps = Kernel::new(0.0, period);
+        let stride = ((SPACING * cycles(balance_s)) as usize).max(1);
         let edge = balance.half();
         let least = 2 * edge + LEAST_POINTS * stride;
         check(model, log, least)?;
@@ -131,8 +136,15 @@ impl Record {
             return Err(AdaptError::Saturated { share });
         }
 
-        let smooth = padded(&velocity, &position);
-        let speed = |k: usize| velocity.of(1, &smooth, k) / model.lever;
+        // Only what the load did beside its reference is smoothed: breaking away keeps its
+        // shape where the axis follows.
+        let reference: Vec<f64> = log.iter().map(|s| s.reference.position).collect();
+        let beside = position.iter().zip(&reference).map(|(x, r)| x - r);
+        let beside = padded(&velocity, &beside.collect::<Vec<_>>());
+        let ahead = padded(&steps, &reference);
+        let speed = |k: usize| {
+            (steps.of(1, &ahead, k) + velocity.of(1, &beside, k)) / model.lever
+        };
         let first = &torque[..edge.min(torque.len())];
         let standing = first.iter().sum::<f64>() / first.len() as f64;
         let load = model.along.at(position[0]).load;
@@ -140,7 +152,7 @@ impl Record {
         Ok(Self {
             points,
             speeds: (0..log.len()).map(speed).collect(),
-            kernel: rest,
+            kernel: balance.clone(),
             held: (standing / model.travel - load) * model.lever,
             sees_load,
             torque: mean_square.sqrt(),

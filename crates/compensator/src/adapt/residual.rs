@@ -46,7 +46,7 @@ impl Residuals {
         let (model, points) = (&belief.model, &record.points);
         let travel = model.travel;
         let friction = |theta: &Theta, held: f64| {
-            forces(&belief.friction(theta), record, belief.held(record, held))
+            forces(&belief.friction(theta), record, belief.held(record, theta, held))
         };
         let own = friction(&theta, held);
         let mass = model.load_inertia * exp(theta[AdaptParameter::LoadInertia.index()]);
@@ -75,7 +75,12 @@ impl Residuals {
                     inertia.collect()
                 }
                 Some(AdaptParameter::StandingLoad) => {
-                    vec![travel * belief.value(AdaptParameter::StandingLoad); count]
+                    let direct = travel * belief.value(AdaptParameter::StandingLoad);
+                    let by_start = central(
+                        friction(&off(i, STEP), held),
+                        friction(&off(i, -STEP), held),
+                    );
+                    by_start.iter().map(|by| by + direct).collect()
                 }
                 Some(_) => central(
                     friction(&off(i, STEP), held),
@@ -177,11 +182,12 @@ impl Residuals {
 }
 
 impl Belief {
-    /// The bristles' force at the start, `share` of the break-away level from what the
-    /// record seems to begin with.
-    fn held(&self, record: &Record, share: f64) -> f64 {
+    /// The bristles' force at the start: what the torque there leaves to friction, and
+    /// `share` of the break-away level more.
+    fn held(&self, record: &Record, theta: &Theta, share: f64) -> f64 {
         let most = self.model.friction.parameters().stiction;
-        record.held.clamp(-most, most) + share * most
+        let left = record.held - self.model.lever * self.standing_load(theta);
+        left.clamp(-most, most) + share * most
     }
 }
 
