@@ -6,7 +6,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::parameter::{AdaptParameter, Belief, COUNT, Theta};
 use super::record::Record;
-use super::residual::{NUISANCES, Residuals, long_run_variance};
+use super::residual::{NUISANCES, Residuals, Weights};
 
 /// Parameters and nuisances.
 pub(super) const ALL: usize = COUNT + NUISANCES;
@@ -21,8 +21,8 @@ const STEPS: usize = 30;
 const CLOSE: f64 = 1e-2;
 /// Deviations of the prior beyond which it gives way.
 const GIVES_WAY: f64 = 2.0;
-/// A residual below this share of the torque is not believed.
-const FINEST: f64 = 1e-4;
+/// No move tells a parameter to better than this: a model is none of the axis to more.
+const MODEL: f64 = 5e-4;
 
 /// What was known before the record.
 pub(super) struct Known<'a> {
@@ -41,8 +41,6 @@ pub(super) struct Fit {
     pub variances: Theta,
     /// RMS of the torque balance before and after, N·m.
     pub rms: [f64; 2],
-    /// Standard error of one independent value of the balance, N·m.
-    pub noise: f64,
 }
 
 impl Known<'_> {
@@ -94,13 +92,12 @@ impl Known<'_> {
 
     /// Twice the negative logarithm of prior and record, but for a constant. The prior's
     /// precisions are those at `from`.
-    fn cost(&self, record: &Record, at: &Column, from: &Column, r: &Residuals, w: [f64; 2]) -> f64 {
+    fn cost(&self, record: &Record, at: &Column, from: &Column, r: &Residuals, w: &Weights) -> f64 {
         let prior = |i: usize| self.precision(record, i, from[i]) * at[i] * at[i];
         let away = SVector::<f64, COUNT>::from_fn(|i, _| at[i] - self.estimate[i]);
         (0..ALL).map(prior).sum::<f64>()
             + away.dot(&(self.information * away))
-            + w[0] * r.square(0)
-            + w[1] * r.square(1)
+            + r.square(w)
     }
 
     /// The most probable parameters of what was known and the record.
@@ -115,7 +112,7 @@ impl Known<'_> {
         let mut weights = residuals.weights(record, free.len());
         let mut settled = false;
         for _ in 0..STEPS {
-            let (gradient, curvature) = self.normal(record, &at, &residuals, weights);
+            let (gradient, curvature) = self.normal(record, &at, &residuals, &weights);
             let held = |i: &usize| {
                 let [least, most] = self.bounds(*i);
                 (at[*i] <= least && gradient[*i] > 0.0) || (at[*i] >= most && gradient[*i] < 0.0)
@@ -125,7 +122,7 @@ impl Known<'_> {
                 break;
             };
             let step = -(inverse * gradient);
-            let before = self.cost(record, &at, &at, &residuals, weights);
+            let before = self.cost(record, &at, &at, &residuals, &weights);
             let mut share = 1.0;
             let mut better = None;
             while share > 1e-3 && better.is_none() {
@@ -135,7 +132,7 @@ impl Known<'_> {
                     next[i] = next[i].clamp(least, most);
                 }
                 let there = Residuals::at(self.belief, record, &next, &free);
-                let cost = self.cost(record, &next, &at, &there, weights);
+                let cost = self.cost(record, &next, &at, &there, &weights);
                 // Not a number is no improvement.
                 if cost <= before {
                     better = Some((next, there));
@@ -157,10 +154,10 @@ impl Known<'_> {
             }
             weights = residuals.weights(record, free.len());
         }
-        self.result(record, &at, &residuals, weights, &free, rms)
+        self.result(record, &at, &residuals, &weights, &free, rms)
     }
 
-    fn normal(&self, record: &Record, at: &Column, r: &Residuals, w: [f64; 2]) -> (Column, Full) {
+    fn normal(&self, record: &Record, at: &Column, r: &Residuals, w: &Weights) -> (Column, Full) {
         let (mut gradient, mut curvature) = self.before(record, at);
         r.add_to(w, &mut gradient, &mut curvature);
         (gradient, curvature)
@@ -171,12 +168,10 @@ impl Known<'_> {
         record: &Record,
         at: &Column,
         residuals: &Residuals,
-        weights: [f64; 2],
+        weights: &Weights,
         free: &[usize],
         before: f64,
     ) -> Fit {
-        let (_, curvature) = self.normal(record, at, residuals, weights);
-        let covariance = inverse(&curvature, free).unwrap_or_else(Full::zeros);
         // What the record says of the parameters once the nuisances are integrated out.
         let (mut unused, mut of_record) = (Column::zeros(), Full::zeros());
         residuals.add_to(weights, &mut unused, &mut of_record);
@@ -186,30 +181,35 @@ impl Known<'_> {
         let nuisances: Vec<usize> = free.iter().copied().filter(|&i| i >= COUNT).collect();
         let within = inverse(&of_record, &nuisances).unwrap_or_else(Full::zeros);
         let marginal = of_record - of_record * within * of_record;
+        let parameters: Vec<usize> = free.iter().copied().filter(|&i| i < COUNT).collect();
+        // (M⁻¹ + ε²)⁻¹ = M − M (M + ε⁻²)⁻¹ M, whatever M does not determine.
+        let mut blunt = marginal;
+        for i in 0..COUNT {
+            blunt[(i, i)] += 1.0 / (MODEL * MODEL);
+        }
+        let blunt = inverse(&blunt, &parameters).unwrap_or_else(Full::zeros);
+        let blunted = marginal - marginal * blunt * marginal;
         let mut information = self.information;
-        for &i in free.iter().filter(|&&i| i < COUNT) {
-            for &j in free.iter().filter(|&&j| j < COUNT) {
-                information[(i, j)] += 0.5 * (marginal[(i, j)] + marginal[(j, i)]);
+        for &i in &parameters {
+            for &j in &parameters {
+                information[(i, j)] += 0.5 * (blunted[(i, j)] + blunted[(j, i)]);
             }
         }
+        let mut all = Full::zeros();
+        for i in 0..COUNT {
+            all[(i, i)] = self.precision(record, i, at[i]);
+            for j in 0..COUNT {
+                all[(i, j)] += information[(i, j)];
+            }
+        }
+        let adapted: Vec<usize> = (0..COUNT).filter(|&i| all[(i, i)].is_finite()).collect();
+        let covariance = inverse(&all, &adapted).unwrap_or_else(Full::zeros);
         Fit {
             estimate: std::array::from_fn(|i| at[i]),
             information,
             variances: std::array::from_fn(|i| covariance[(i, i)].max(0.0)),
             rms: [before, residuals.rms(0)],
-            noise: (1.0 / weights[0]).sqrt(),
         }
-    }
-}
-
-impl Residuals {
-    /// Weight of one value of each balance.
-    fn weights(&self, record: &Record, free: usize) -> [f64; 2] {
-        let floor = [FINEST * record.torque, FINEST * self.scale(1)];
-        [0, 1].map(|channel| {
-            let variance = long_run_variance(self.values(channel), free);
-            1.0 / variance.max(floor[channel].powi(2)).max(f64::MIN_POSITIVE)
-        })
     }
 }
 

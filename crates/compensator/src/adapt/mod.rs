@@ -23,6 +23,7 @@ mod parameter;
 mod record;
 mod residual;
 mod torque;
+mod weight;
 
 use std::vec::Vec;
 

@@ -98,13 +98,14 @@ pub struct AdaptPrior {
 
 impl Default for AdaptPrior {
     /// Settings of friction and compliance known to 20 %, inertia and break-away ratio to
-    /// 10 %, a standing load of 5 % of the Coulomb level.
+    /// 10 %. A standing load of 1 % of the Coulomb level: in moves of one direction it looks
+    /// like friction, which is the likelier of the two; a reversal tells them apart.
     fn default() -> Self {
         let spread = |parameter| {
             let (deviation, bound) = match parameter {
                 AdaptParameter::LoadInertia => (0.1, 3.0),
                 AdaptParameter::BreakAway => (0.1, 2.0),
-                AdaptParameter::StandingLoad => (0.05, 2.0),
+                AdaptParameter::StandingLoad => (0.01, 2.0),
                 _ => (0.2, 3.0),
             };
             Spread { deviation, bound }

@@ -16,6 +16,7 @@ use nalgebra::{SMatrix, SVector};
 use super::kernel::Kernel;
 use super::parameter::{AdaptParameter, Belief, COUNT, Theta};
 use super::record::Record;
+use super::weight::weights;
 
 /// Unknowns of a record that no model keeps: the force that its bristles begin with, the
 /// angle between the two scales, and half the free travel at the motor.
@@ -24,6 +25,12 @@ pub(super) const NUISANCES: usize = 3;
 const STEP: f64 = 0.01;
 /// Share of the break-away level by which the force held at the start is uncertain.
 const HELD: f64 = 0.1;
+
+/// A residual below this share of the whole is not believed.
+const FINEST: f64 = 1e-4;
+
+/// Weight of each value of the two balances.
+pub(super) type Weights = [Vec<f64>; 2];
 
 /// Residuals and their rates of change.
 pub(super) struct Residuals {
@@ -143,38 +150,44 @@ impl Residuals {
         }
     }
 
-    /// Residuals of the torque (0) or of the wind-up (1).
-    pub fn values(&self, channel: usize) -> &[f64] {
-        &self.values[channel]
+    /// Σ w e² over both.
+    pub fn square(&self, weights: &Weights) -> f64 {
+        let of = |channel: usize| {
+            let pairs = self.values[channel].iter().zip(&weights[channel]);
+            pairs.map(|(e, w)| w * e * e).sum::<f64>()
+        };
+        of(0) + of(1)
     }
 
-    pub fn square(&self, channel: usize) -> f64 {
-        self.values[channel].iter().map(|e| e * e).sum()
-    }
-
+    /// RMS of a channel.
     pub fn rms(&self, channel: usize) -> f64 {
-        (self.square(channel) / self.values[channel].len().max(1) as f64).sqrt()
+        let values = &self.values[channel];
+        let square: f64 = values.iter().map(|e| e * e).sum();
+        (square / values.len().max(1) as f64).sqrt()
     }
 
-    /// RMS of the wind-up, rad.
-    pub fn scale(&self, _channel: usize) -> f64 {
-        self.scale
+    /// Weight of each value, `free` coordinates being fitted.
+    pub fn weights(&self, record: &Record, free: usize) -> Weights {
+        let floor = [record.torque, self.scale].map(|scale| FINEST * scale);
+        [0, 1].map(|channel| weights(&self.values[channel], floor[channel], free))
     }
 
     /// Adds gradient and curvature of ½ Σ w e².
     pub fn add_to<const N: usize>(
         &self,
-        weights: [f64; 2],
+        weights: &Weights,
         gradient: &mut SVector<f64, N>,
         curvature: &mut SMatrix<f64, N, N>,
     ) {
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         for channel in 0..2 {
-            let (w, columns) = (weights[channel], &self.columns[channel]);
+            let (columns, values) = (&self.columns[channel], &self.values[channel]);
             for (i, a) in columns {
-                gradient[*i] -= w * dot(a, &self.values[channel]);
+                let weighed: Vec<f64> =
+                    a.iter().zip(&weights[channel]).map(|(a, w)| a * w).collect();
+                let dot = |b: &[f64]| weighed.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+                gradient[*i] -= dot(values);
                 for (j, b) in columns {
-                    curvature[(*i, *j)] += w * dot(a, b);
+                    curvature[(*i, *j)] += dot(b);
                 }
             }
         }
@@ -210,30 +223,4 @@ fn forces(law: &LuGre, record: &Record, held: f64) -> Vec<f64> {
     let padded = Kernel::pad(&series, record.kernel.half());
     let smooth = record.points.iter().map(|p| record.kernel.of(0, &padded, p.sample));
     smooth.collect()
-}
-
-/// Variance that the mean of a series times its length has, per value: the variance of
-/// its values and twice all their covariances, by Bartlett's window (Newey and West,
-/// Econometrica 55 (1987) 703–708). Correlated residuals so count as the fewer values
-/// that they are.
-pub(super) fn long_run_variance(values: &[f64], fitted: usize) -> f64 {
-    let count = values.len();
-    if count == 0 {
-        return 1.0;
-    }
-    let covariance = |lag: usize| {
-        let pairs = values.iter().zip(&values[lag..]);
-        pairs.map(|(a, b)| a * b).sum::<f64>() / count as f64
-    };
-    let own = covariance(0);
-    let most = ((2.0 * (count as f64).sqrt()) as usize).min(count / 4);
-    let mut total = own;
-    for lag in 1..=most {
-        let window = 1.0 - lag as f64 / (most + 1) as f64;
-        total += 2.0 * window * covariance(lag);
-    }
-    let total = total.max(own);
-    // What was fitted has taken its share of the independent values.
-    let independent = count as f64 * own / total.max(f64::MIN_POSITIVE);
-    total * independent.max(fitted as f64 + 1.0) / (independent - fitted as f64).max(1.0)
 }
