@@ -59,6 +59,7 @@ fn show(l: &Learned) {
     println!("   rms {:.2e} -> {:.2e} of {:.2e}", l.torque_before, l.torque_after, l.torque);
     for p in &l.parameters { println!("   {:18} {:+8.4} ± {:.4} % = {:.5e}{}", p.parameter.name(), 100.0 * p.relative, 100.0 * p.standard_error, p.value, if p.at_bound { " BOUND" } else { "" }); }
 }
+fn a_model(a: &Axis) -> DriveModel { let mut m = a.drive_model().unwrap(); m.along = m.along.with_compliance(1.2127); m }
 fn main() {
     let args: Vec<String> = std::env::args().collect();
     let mode = args[1].as_str();
@@ -142,6 +143,19 @@ fn main() {
                     }
                 }
             }
+        }
+        "dump" => {
+            let mut rng = ChaCha8Rng::seed_from_u64(90 + seed);
+            let mut a = axis.clone(); if args.len() > 4 { a.effects.push(ActiveEffect { effect: Effect::named("transmission-stiffness").unwrap(), values: vec![-0.2] }); }
+            let cl = ClosedLoop::new(&a).unwrap();
+            let mut model = nominal; if args.len() > 4 { model = a_model(&a); }
+            let p = random_program(&mut rng);
+            let (e, _, w, log) = run(&cl, &model, &p, false, 0);
+            println!("{:.3} at {w}", 1e6 * e);
+            let mut ad = Adaptation::new(&model, &prior).unwrap();
+            show(&ad.learn(&log).unwrap());
+            let (e, _, w, _) = run(&cl, &ad.model(), &p, false, 0);
+            println!("{:.3} at {w}", 1e6 * e);
         }
         "bias" => {
             let cl = ClosedLoop::new(&axis).unwrap();

@@ -109,8 +109,8 @@ impl Known<'_> {
         let free: Vec<usize> = (0..ALL).filter(|&i| self.free(record, i)).collect();
         let mut residuals = Residuals::at(self.belief, record, &at, &free);
         let rms = residuals.rms(0);
-        let mut weights = residuals.weights(record, free.len());
-        let mut settled = false;
+        let mut weights = residuals.weights(record, free.len(), true);
+        let mut settled = 0;
         for _ in 0..STEPS {
             let (gradient, curvature) = self.normal(record, &at, &residuals, &weights);
             let held = |i: &usize| {
@@ -145,14 +145,15 @@ impl Known<'_> {
             if let Some((next, there)) = better {
                 (at, residuals) = (next, there);
             }
-            // Weights are those of the residuals that are left in the end.
+            // First all alike, then by what is left: weights of residuals far off would keep
+            // them there.
             if close || stuck {
-                if settled {
+                settled += 1;
+                if settled > 2 {
                     break;
                 }
-                settled = true;
             }
-            weights = residuals.weights(record, free.len());
+            weights = residuals.weights(record, free.len(), settled == 0);
         }
         self.result(record, &at, &residuals, &weights, &free, rms)
     }
@@ -172,6 +173,7 @@ impl Known<'_> {
         free: &[usize],
         before: f64,
     ) -> Fit {
+        if let Ok(p) = std::env::var("DUMP") { use std::fmt::Write; let mut o = String::new(); for (i, q) in record.points.iter().enumerate() { writeln!(o, "{} {} {} {} {} {} {}", q.sample, residuals.values[0][i], residuals.values[1].get(i).unwrap_or(&0.0), q.left, q.acceleration, record.speeds[q.sample], q.transmitted).unwrap(); } std::fs::write(p, o).unwrap(); }
         // What the record says of the parameters once the nuisances are integrated out.
         let (mut unused, mut of_record) = (Column::zeros(), Full::zeros());
         residuals.add_to(weights, &mut unused, &mut of_record);

@@ -127,7 +127,7 @@ impl Adaptation {
     /// [`AdaptError`] says what the log lacks.
     pub fn learn(&mut self, log: &[Sample]) -> Result<Learned, AdaptError> {
         let state = self.state();
-        let record = Record::new(&self.belief.without_standing_load(&state.estimate), log)?;
+        let record = Record::new(&self.belief.model, log)?;
         let known = Known {
             belief: &self.belief,
             estimate: state.estimate,

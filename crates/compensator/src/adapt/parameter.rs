@@ -226,13 +226,6 @@ impl Belief {
         }
     }
 
-    /// The model at `theta`, but for the standing load.
-    pub fn without_standing_load(&self, theta: &Theta) -> DriveModel {
-        let mut others = *theta;
-        others[AdaptParameter::StandingLoad.index()] = 0.0;
-        self.at(&others)
-    }
-
     /// The whole model at `theta`.
     pub fn at(&self, theta: &Theta) -> DriveModel {
         let factor = |parameter: AdaptParameter| exp(theta[parameter.index()]);

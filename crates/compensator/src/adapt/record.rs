@@ -12,6 +12,8 @@ use crate::{DriveModel, Sample};
 const BALANCE: f64 = 3e-3;
 /// Part of it that is over the velocity before friction is computed of it, s.
 const VELOCITY: f64 = 1.5e-3;
+/// Time at the start over which nothing has moved yet, s.
+const AT_START: f64 = 1e-3;
 /// Deviations between two points: closer ones say the same.
 const SPACING: f64 = 0.5;
 /// Greatest magnitude of a sample.
@@ -145,7 +147,7 @@ impl Record {
         let speed = |k: usize| {
             (steps.of(1, &ahead, k) + velocity.of(1, &beside, k)) / model.lever
         };
-        let first = &torque[..edge.min(torque.len())];
+        let first = &torque[..(cycles(AT_START) as usize).clamp(1, torque.len())];
         let standing = first.iter().sum::<f64>() / first.len() as f64;
         let load = model.along.at(position[0]).load;
         let mean_square = torque.iter().map(|t| t * t).sum::<f64>() / torque.len() as f64;

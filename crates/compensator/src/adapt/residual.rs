@@ -34,7 +34,7 @@ pub(super) type Weights = [Vec<f64>; 2];
 
 /// Residuals and their rates of change.
 pub(super) struct Residuals {
-    values: [Vec<f64>; 2],
+    pub values: [Vec<f64>; 2],
     /// Of each channel, the coordinate and the change of the prediction with it.
     columns: [Vec<(usize, Vec<f64>)>; 2],
     scale: f64,
@@ -166,10 +166,10 @@ impl Residuals {
         (square / values.len().max(1) as f64).sqrt()
     }
 
-    /// Weight of each value, `free` coordinates being fitted.
-    pub fn weights(&self, record: &Record, free: usize) -> Weights {
+    /// Weight of each value, `free` coordinates being fitted; see [`weights`].
+    pub fn weights(&self, record: &Record, free: usize, even: bool) -> Weights {
         let floor = [record.torque, self.scale].map(|scale| FINEST * scale);
-        [0, 1].map(|channel| weights(&self.values[channel], floor[channel], free))
+        [0, 1].map(|channel| weights(&self.values[channel], floor[channel], free, even))
     }
 
     /// Adds gradient and curvature of ½ Σ w e².

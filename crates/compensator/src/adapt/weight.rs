@@ -10,18 +10,23 @@ const MORE: f64 = 2.0;
 /// Weight of each value of a series of residuals of which `free` coordinates were fitted:
 /// one over the variance nearby, over the number of values that are one by correlation.
 /// No deviation is taken for less than `floor`. Structure that the model does not have so
-/// makes uncertain what is seen where it is, and nothing else.
-pub(super) fn weights(values: &[f64], floor: f64, free: usize) -> Vec<f64> {
+/// makes uncertain what is seen where it is, and nothing else. `even`: as if all were as
+/// large as their mean square, for estimates that are still far off.
+pub(super) fn weights(values: &[f64], floor: f64, free: usize, even: bool) -> Vec<f64> {
     if values.is_empty() {
         return Vec::new();
     }
-    let nearby = nearby(values);
+    let nearby = match even {
+        true => Vec::from([values.iter().map(|e| e * e).sum::<f64>() / values.len() as f64]),
+        false => nearby(values),
+    };
     let mut sorted = nearby.clone();
     sorted.sort_by(f64::total_cmp);
     let usual = sorted[sorted.len() / 2].max(floor * floor).max(f64::MIN_POSITIVE);
-    let variances: Vec<f64> = nearby.iter().map(|v| (v / MORE).max(usual)).collect();
-    let even: Vec<f64> = values.iter().zip(&variances).map(|(e, v)| e / v.sqrt()).collect();
-    let correlated = long_run_variance(&even, free).max(1.0);
+    let all = nearby.iter().cycle().take(values.len());
+    let variances: Vec<f64> = all.map(|v| (v / MORE).max(usual)).collect();
+    let unit: Vec<f64> = values.iter().zip(&variances).map(|(e, v)| e / v.sqrt()).collect();
+    let correlated = long_run_variance(&unit, free).max(1.0);
     variances.iter().map(|v| 1.0 / (v * correlated)).collect()
 }
 
