@@ -61,6 +61,8 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+#[cfg(feature = "identify")]
+mod adapt;
 mod combined;
 mod error;
 mod estimator;
@@ -80,6 +82,8 @@ mod residual;
 mod sample;
 mod transfer_function;
 
+#[cfg(feature = "identify")]
+pub use adapt::{AdaptError, AdaptParameter, AdaptPrior, Adaptation, Estimated, Learned, Spread};
 pub use combined::Combined;
 pub use error::CompensatorError;
 pub use estimator::{Estimate, MotionEstimator, NoiseGains, ObserverGains};

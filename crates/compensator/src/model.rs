@@ -105,6 +105,22 @@ impl<T: Scalar> Along<T> {
         }
         self
     }
+
+    /// The same with a load of `force` (N, N·m where it turns) more everywhere.
+    #[must_use]
+    pub fn with_load(mut self, force: T) -> Self {
+        for section in &mut self.sections {
+            section.load += force;
+        }
+        self
+    }
+
+    /// The greatest compliance, rad/(N·m).
+    #[must_use]
+    pub fn most_compliance(&self) -> T {
+        let of = |most: T, section: &Section<T>| most.max(section.compliance);
+        self.sections.iter().fold(T::ZERO, of)
+    }
 }
 
 /// A natural mode of the mechanism at one position.

@@ -1,0 +1,80 @@
+//! A zero-phase Gaussian over a series: value, rate and second rate.
+
+use std::vec::Vec;
+
+use libm::exp;
+
+/// Weights of a Gaussian and of its differences.
+#[derive(Clone, Debug)]
+pub(super) struct Kernel {
+    half: usize,
+    weights: [Vec<f64>; 3],
+}
+
+impl Kernel {
+    /// Deviation `sigma` in samples, `period` s apart.
+    pub fn new(sigma: f64, period: f64) -> Self {
+        // The differences below need one sample more on either side.
+        let reach = (4.0 * sigma).ceil() as usize;
+        let half = reach + 1;
+        let bell = |i: isize| {
+            let m = i as f64 / sigma.max(1e-9);
+            match i.unsigned_abs() > reach {
+                true => 0.0,
+                false => exp(-0.5 * m * m),
+            }
+        };
+        let span = -(half as isize)..=half as isize;
+        let sum: f64 = span.clone().map(bell).sum();
+        let of = |f: &dyn Fn(isize) -> f64| span.clone().map(|i| f(i) / sum).collect();
+        let value = of(&bell);
+        let rate = of(&|i| (bell(i - 1) - bell(i + 1)) / (2.0 * period));
+        let second = of(&|i| (bell(i - 1) - 2.0 * bell(i) + bell(i + 1)) / (period * period));
+        Self {
+            half,
+            weights: [value, rate, second],
+        }
+    }
+
+    /// Samples to either side.
+    pub fn half(&self) -> usize {
+        self.half
+    }
+
+    /// `series` with `by` samples put before and after it as its image through the end
+    /// points: a series at rest goes on resting, one in motion moving.
+    pub fn pad(series: &[f64], by: usize) -> Vec<f64> {
+        let (Some(first), Some(last)) = (series.first(), series.last()) else {
+            return Vec::new();
+        };
+        let at = |i: usize| series[i.min(series.len() - 1)];
+        let from_end = |i: usize| at((series.len() - 1).saturating_sub(i));
+        let before = (1..=by).rev().map(|i| 2.0 * first - at(i));
+        let after = (1..=by).map(|i| 2.0 * last - from_end(i));
+        before.chain(series.iter().copied()).chain(after).collect()
+    }
+
+    /// Value (0), rate (1) or second rate (2) of a series padded by `half`, at the sample
+    /// `at` of the series itself.
+    pub fn of(&self, which: usize, padded: &[f64], at: usize) -> f64 {
+        let window = &padded[at..at + 2 * self.half + 1];
+        // About the middle, so that the rates lose no digits to a standing value.
+        let middle = window[self.half];
+        let sum = dot(&self.weights[which], window, middle);
+        if which == 0 { middle + sum } else { sum }
+    }
+}
+
+/// Σ wᵢ (xᵢ − middle), in partial sums for the compiler.
+fn dot(weights: &[f64], window: &[f64], middle: f64) -> f64 {
+    let mut sums = [0.0; 8];
+    let (w, x) = (weights.chunks_exact(8), window.chunks_exact(8));
+    let rest = w.remainder().iter().zip(x.remainder());
+    let tail: f64 = rest.map(|(w, x)| w * (x - middle)).sum();
+    for (w, x) in w.zip(x) {
+        for i in 0..8 {
+            sums[i] += w[i] * (x[i] - middle);
+        }
+    }
+    sums.iter().sum::<f64>() + tail
+}

@@ -1,0 +1,213 @@
+//! Adaptation between moves: what the log of a move says of the parameters of a
+//! [`DriveModel`], and the model for the next move.
+//!
+//! A log is judged along the motion that was measured, not through the closed loop: what
+//! controllers and compensators did does not matter, and nothing need be known of them.
+//! With a zero-phase Gaussian (σ = 3 ms) over all signals, torque and motion must balance,
+//!
+//! ```text
+//! T = (J − J_w) θ̈ + J_w a/r + r (m a + T_f(v)/lever + load(x))
+//! θ − x/r = const + C (T − (J − J_w) θ̈)
+//! ```
+//!
+//! θ being the motor's angle, x, v, a the load's position and its rates, T_f LuGre stepped
+//! along v. Gauss–Newton finds the relative errors of friction, inertia and compliance for
+//! which they do, weighing log, prior and what earlier moves said. Residuals count as many
+//! values as their correlation leaves independent, so that structure which the model does
+//! not have makes estimates uncertain, not wrong and sure.
+
+mod error;
+mod fit;
+mod kernel;
+mod parameter;
+mod record;
+mod residual;
+mod torque;
+mod weight;
+
+use std::vec::Vec;
+
+use libm::{exp, expm1};
+
+use crate::error::{require, within};
+use crate::{DriveModel, Sample};
+pub use error::AdaptError;
+use fit::{Information, Known};
+pub use parameter::{AdaptParameter, AdaptPrior, Spread};
+use parameter::{Belief, COUNT, Theta};
+use record::Record;
+
+/// A torque balance of which more than this share is left is of another machine.
+const MOST_LEFT: f64 = 0.3;
+
+/// The parameters of a model, adapted from move to move.
+#[derive(Clone, Debug)]
+pub struct Adaptation {
+    belief: Belief,
+    states: Vec<State>,
+}
+
+/// What is known after a move.
+#[derive(Clone, Debug)]
+struct State {
+    estimate: Theta,
+    information: Information,
+    variances: Theta,
+}
+
+/// One parameter as it is known after a move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimated {
+    /// Which.
+    pub parameter: AdaptParameter,
+    /// Relative error of the belief: value over belief − 1; of a standing load, its share
+    /// of the believed Coulomb force.
+    pub relative: f64,
+    /// Standard error of `relative`.
+    pub standard_error: f64,
+    /// In the model's unit: friction in its own coordinate, inertia in kg or kg·m², the
+    /// greatest compliance along the stroke in rad/(N·m), a standing load in N or N·m.
+    pub value: f64,
+    /// Standard error of `value`.
+    pub value_error: f64,
+    /// Whether the estimate is held by its bound.
+    pub at_bound: bool,
+}
+
+/// What a move has taught.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Learned {
+    /// Moves learned by now, this one included.
+    pub moves: usize,
+    /// The parameters that are adapted on this axis.
+    pub parameters: Vec<Estimated>,
+    /// RMS of the smoothed torque that the model did not explain before, N·m.
+    pub torque_before: f64,
+    /// And after.
+    pub torque_after: f64,
+    /// RMS of the motor's torque, N·m.
+    pub torque: f64,
+}
+
+impl Adaptation {
+    /// Of a model of which `prior` tells how far it may be off.
+    ///
+    /// # Errors
+    /// [`AdaptError::Setting`] for a model that no plan can be made from, a prior out of
+    /// its range or a control period above 2 ms; [`AdaptError::Nothing`] where nothing is
+    /// free.
+    pub fn new(model: &DriveModel, prior: &AdaptPrior) -> Result<Self, AdaptError> {
+        model.check()?;
+        prior.check()?;
+        let inside = within(model.period, 1e-6, 2e-3);
+        require(inside, "period", model.period, "from 1e-6 to 2e-3 s to adapt")?;
+        let belief = Belief {
+            model: *model,
+            prior: *prior,
+        };
+        let state = State {
+            estimate: [0.0; COUNT],
+            information: Information::zeros(),
+            variances: prior.spreads.map(|spread| spread.deviation.powi(2)),
+        };
+        if !AdaptParameter::ALL.iter().any(|&p| belief.adapts(p)) {
+            return Err(AdaptError::Nothing);
+        }
+        Ok(Self {
+            belief,
+            states: Vec::from([state]),
+        })
+    }
+
+    /// Learns from the log of a move, one sample a control cycle; the move may begin with
+    /// loaded bristles, and be a program of several moves. After an error everything is as
+    /// it was.
+    ///
+    /// # Errors
+    /// [`AdaptError`] says what the log lacks.
+    pub fn learn(&mut self, log: &[Sample]) -> Result<Learned, AdaptError> {
+        let state = self.state();
+        let record = Record::new(&self.belief.model, log)?;
+        let known = Known {
+            belief: &self.belief,
+            estimate: state.estimate,
+            information: state.information * self.belief.prior.retention,
+        };
+        let fit = known.fit(&record);
+        let left = fit.rms[1];
+        // Written so that NaN is refused too.
+        if !(left <= MOST_LEFT * record.torque) {
+            return Err(AdaptError::Unexplained {
+                residual: left,
+                torque: record.torque,
+            });
+        }
+        self.states.push(State {
+            estimate: fit.estimate,
+            information: fit.information,
+            variances: fit.variances,
+        });
+        Ok(Learned {
+            moves: self.moves(),
+            parameters: self.estimates(),
+            torque_before: fit.rms[0],
+            torque_after: left,
+            torque: record.torque,
+        })
+    }
+
+    /// The model with the present estimates.
+    pub fn model(&self) -> DriveModel {
+        self.belief.at(&self.state().estimate)
+    }
+
+    /// Moves learned and not taken back.
+    pub fn moves(&self) -> usize {
+        self.states.len() - 1
+    }
+
+    /// Takes the last move back; false where there is none.
+    pub fn step_back(&mut self) -> bool {
+        let some = self.moves() > 0;
+        if some {
+            self.states.pop();
+        }
+        some
+    }
+
+    /// Takes all moves back: the model is the belief again.
+    pub fn forget(&mut self) {
+        self.states.truncate(1);
+    }
+
+    /// The parameters that are adapted on this axis, as they are known now.
+    pub fn estimates(&self) -> Vec<Estimated> {
+        let state = self.state();
+        let adapted = AdaptParameter::ALL.into_iter();
+        let adapted = adapted.filter(|&parameter| self.belief.adapts(parameter));
+        let estimated = adapted.map(|parameter| {
+            let i = parameter.index();
+            let (theta, deviation) = (state.estimate[i], state.variances[i].sqrt());
+            let believed = self.belief.value(parameter);
+            let (relative, standard_error, value) = match parameter.is_ratio() {
+                true => (expm1(theta), exp(theta) * deviation, believed * exp(theta)),
+                false => (theta, deviation, believed * theta),
+            };
+            let [least, most] = self.belief.bounds(parameter);
+            Estimated {
+                parameter,
+                relative,
+                standard_error,
+                value,
+                value_error: believed * standard_error,
+                at_bound: theta <= least || theta >= most,
+            }
+        });
+        estimated.collect()
+    }
+
+    fn state(&self) -> &State {
+        // There is always the belief at the bottom.
+        &self.states[self.states.len() - 1]
+    }
+}
