@@ -25,6 +25,12 @@ pub enum PipelineError {
     /// A compensation strategy cannot be set up.
     #[error("the compensation cannot be set up: {0}")]
     Compensator(#[from] compensator::CompensatorError),
+    /// No feedback can be designed for the axis.
+    #[error("no feedback can be designed for this axis: {0}")]
+    Feedback(#[from] compensator::DesignError),
+    /// The model cannot be adapted.
+    #[error("the model of this axis cannot be adapted: {0}")]
+    Adapt(#[from] compensator::AdaptError),
     /// A strategy, or the validation, asks for what was not found before.
     #[error("{by} needs {}, which is not among the predictors; valid: predictors that hold it, or strategies that do without", need.name())]
     Missing {

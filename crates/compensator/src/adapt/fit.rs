@@ -95,9 +95,7 @@ impl Known<'_> {
     fn cost(&self, record: &Record, at: &Column, from: &Column, r: &Residuals, w: &Weights) -> f64 {
         let prior = |i: usize| self.precision(record, i, from[i]) * at[i] * at[i];
         let away = SVector::<f64, COUNT>::from_fn(|i, _| at[i] - self.estimate[i]);
-        (0..ALL).map(prior).sum::<f64>()
-            + away.dot(&(self.information * away))
-            + r.square(w)
+        (0..ALL).map(prior).sum::<f64>() + away.dot(&(self.information * away)) + r.square(w)
     }
 
     /// The most probable parameters of what was known and the record.
@@ -173,7 +171,25 @@ impl Known<'_> {
         free: &[usize],
         before: f64,
     ) -> Fit {
-        if let Ok(p) = std::env::var("DUMP") { use std::fmt::Write; let mut o = String::new(); for (i, q) in record.points.iter().enumerate() { writeln!(o, "{} {} {} {} {} {} {}", q.sample, residuals.values[0][i], residuals.values[1].get(i).unwrap_or(&0.0), q.left, q.acceleration, record.speeds[q.sample], q.transmitted).unwrap(); } std::fs::write(p, o).unwrap(); }
+        if let Ok(p) = std::env::var("DUMP") {
+            use std::fmt::Write;
+            let mut o = String::new();
+            for (i, q) in record.points.iter().enumerate() {
+                writeln!(
+                    o,
+                    "{} {} {} {} {} {} {}",
+                    q.sample,
+                    residuals.values[0][i],
+                    residuals.values[1].get(i).unwrap_or(&0.0),
+                    q.left,
+                    q.acceleration,
+                    record.speeds[q.sample],
+                    q.transmitted
+                )
+                .unwrap();
+            }
+            std::fs::write(p, o).unwrap();
+        }
         // What the record says of the parameters once the nuisances are integrated out.
         let (mut unused, mut of_record) = (Column::zeros(), Full::zeros());
         residuals.add_to(weights, &mut unused, &mut of_record);

@@ -100,7 +100,12 @@ impl Adaptation {
         model.check()?;
         prior.check()?;
         let inside = within(model.period, 1e-6, 2e-3);
-        require(inside, "period", model.period, "from 1e-6 to 2e-3 s to adapt")?;
+        require(
+            inside,
+            "period",
+            model.period,
+            "from 1e-6 to 2e-3 s to adapt",
+        )?;
         let belief = Belief {
             model: *model,
             prior: *prior,

@@ -144,9 +144,7 @@ impl Record {
         let beside = position.iter().zip(&reference).map(|(x, r)| x - r);
         let beside = padded(&velocity, &beside.collect::<Vec<_>>());
         let ahead = padded(&steps, &reference);
-        let speed = |k: usize| {
-            (steps.of(1, &ahead, k) + velocity.of(1, &beside, k)) / model.lever
-        };
+        let speed = |k: usize| (steps.of(1, &ahead, k) + velocity.of(1, &beside, k)) / model.lever;
         let first = &torque[..(cycles(AT_START) as usize).clamp(1, torque.len())];
         let standing = first.iter().sum::<f64>() / first.len() as f64;
         let load = model.along.at(position[0]).load;

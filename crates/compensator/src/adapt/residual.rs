@@ -53,14 +53,17 @@ impl Residuals {
         let (model, points) = (&belief.model, &record.points);
         let travel = model.travel;
         let friction = |theta: &Theta, held: f64| {
-            forces(&belief.friction(theta), record, belief.held(record, theta, held))
+            forces(
+                &belief.friction(theta),
+                record,
+                belief.held(record, theta, held),
+            )
         };
         let own = friction(&theta, held);
         let mass = model.load_inertia * exp(theta[AdaptParameter::LoadInertia.index()]);
         let standing = belief.standing_load(&theta);
-        let torque = |i: usize| {
-            travel * (mass * points[i].acceleration + own[i] / model.lever + standing)
-        };
+        let torque =
+            |i: usize| travel * (mass * points[i].acceleration + own[i] / model.lever + standing);
         let count = points.len();
         let balance = (0..count).map(|i| points[i].left - torque(i)).collect();
         let central = |more: Vec<f64>, less: Vec<f64>| -> Vec<f64> {
@@ -93,10 +96,9 @@ impl Residuals {
                     friction(&off(i, STEP), held),
                     friction(&off(i, -STEP), held),
                 ),
-                None if i == COUNT => central(
-                    friction(&theta, held + STEP),
-                    friction(&theta, held - STEP),
-                ),
+                None if i == COUNT => {
+                    central(friction(&theta, held + STEP), friction(&theta, held - STEP))
+                }
                 None => continue,
             };
             columns[0].push((i, column));
@@ -113,13 +115,16 @@ impl Residuals {
                 .map(|i| points[i].lead - offset - gap * side(i) - wound(i))
                 .collect();
             columns[1] = vec![
-                (AdaptParameter::Compliance.index(), (0..count).map(wound).collect()),
+                (
+                    AdaptParameter::Compliance.index(),
+                    (0..count).map(wound).collect(),
+                ),
                 (COUNT + 1, vec![1.0; count]),
                 (COUNT + 2, (0..count).map(side).collect()),
             ];
             columns[1].retain(|(i, _)| free.contains(i));
-            scale = (0..count).map(|i| wound(i).powi(2)).sum::<f64>().sqrt()
-                / (count as f64).sqrt();
+            scale =
+                (0..count).map(|i| wound(i).powi(2)).sum::<f64>().sqrt() / (count as f64).sqrt();
         }
         Self {
             values: [balance, lead],
@@ -145,7 +150,12 @@ impl Residuals {
         match nuisance {
             0 => HELD,
             // The two scales begin anywhere.
-            1 => 1e3 * record.points.iter().fold(wound.max(1e-9), |a, p| a.max(p.lead.abs())),
+            1 => {
+                1e3 * record
+                    .points
+                    .iter()
+                    .fold(wound.max(1e-9), |a, p| a.max(p.lead.abs()))
+            }
             _ => 0.1 * wound.max(1e-12),
         }
     }
@@ -182,8 +192,11 @@ impl Residuals {
         for channel in 0..2 {
             let (columns, values) = (&self.columns[channel], &self.values[channel]);
             for (i, a) in columns {
-                let weighed: Vec<f64> =
-                    a.iter().zip(&weights[channel]).map(|(a, w)| a * w).collect();
+                let weighed: Vec<f64> = a
+                    .iter()
+                    .zip(&weights[channel])
+                    .map(|(a, w)| a * w)
+                    .collect();
                 let dot = |b: &[f64]| weighed.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
                 gradient[*i] -= dot(values);
                 for (j, b) in columns {
@@ -221,6 +234,9 @@ fn forces(law: &LuGre, record: &Record, held: f64) -> Vec<f64> {
     });
     let series: Vec<f64> = each.collect();
     let padded = Kernel::pad(&series, record.kernel.half());
-    let smooth = record.points.iter().map(|p| record.kernel.of(0, &padded, p.sample));
+    let smooth = record
+        .points
+        .iter()
+        .map(|p| record.kernel.of(0, &padded, p.sample));
     smooth.collect()
 }

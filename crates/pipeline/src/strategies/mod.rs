@@ -5,7 +5,12 @@
 //! and summary and tables show it. A strategy that is made elsewhere goes into a list of
 //! one's own, which [`crate::compensation::compensate_with`] takes.
 
+mod adaptive;
+mod adaptive_feedback;
+mod feedback;
 mod feedforward;
+mod ladder;
+mod learned;
 mod lugre;
 mod network;
 mod network_lugre;
@@ -40,6 +45,10 @@ pub const STRATEGIES: &[&StrategyKind] = &[
     &lugre::KIND,
     &network_lugre_printed::KIND,
     &plan::KIND,
+    &feedback::KIND,
+    &adaptive::KIND,
+    &adaptive_feedback::KIND,
+    &learned::KIND,
 ];
 
 /// A compensation strategy: a line of the registry.

@@ -1,0 +1,193 @@
+//! What plan, feedback, adaptation and learning share: one strategy with its rungs.
+//!
+//! ```text
+//! axis file ─► model ─► plan (+ feedback) ─► move ─► log ─► adaptation, residual, repetition
+//!                ▲                                                    │
+//!                └────────────────────────────────────────────────────┘
+//! ```
+
+use std::sync::Arc;
+
+use axis_sim::Axis;
+use compensator::{
+    AdaptPrior, Adaptation, Compensator, DriveModel, FeedbackDesign, FeedbackSettings, LearnedMove,
+    LearningSettings, PlanWithFeedback, ResidualLearner, ResidualModel, Sample,
+};
+use trajectories::Motion;
+
+use super::plan::plan;
+use super::{Learned, NextMove, Predictors, SharedMotion, Strategy};
+use crate::PipelineError;
+
+/// Which rungs a strategy has above the plan.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Rungs {
+    /// State feedback that knows the friction's state.
+    pub feedback: bool,
+    /// Adaptation of the model's parameters between moves.
+    pub adaptation: bool,
+    /// Torque over angle and force over position, and repetitions of a move.
+    pub learning: bool,
+}
+
+/// The plan and what stands on it.
+pub(super) struct Ladder {
+    axis: Axis,
+    believed: DriveModel,
+    rungs: Rungs,
+    adaptation: Option<Adaptation>,
+    residual: Option<ResidualLearner>,
+    repeated: Vec<Repeated>,
+    /// Which of them runs now.
+    now: Option<usize>,
+}
+
+/// A move that has been made before.
+struct Repeated {
+    motion: SharedMotion,
+    /// Believed since its first repetition: what is learned of a move holds beside one
+    /// model.
+    frozen: Option<(DriveModel, Option<ResidualModel>)>,
+    learned: LearnedMove,
+}
+
+impl Ladder {
+    /// For the axis of the predictors.
+    pub fn new(predictors: &Predictors, rungs: Rungs) -> Result<Self, PipelineError> {
+        let axis = predictors.axis.clone();
+        let believed = predictors.believed()?;
+        let adaptation = match rungs.adaptation {
+            true => Some(Adaptation::new(&believed, &AdaptPrior::default())?),
+            false => None,
+        };
+        let stroke = [axis.stroke.minimum, axis.stroke.maximum];
+        let level = believed.friction.parameters().coulomb * believed.travel / believed.lever;
+        let residual = rungs
+            .learning
+            .then(|| ResidualLearner::new(stroke, believed.travel, level));
+        let ladder = Self {
+            axis,
+            believed,
+            rungs,
+            adaptation,
+            residual,
+            repeated: Vec::new(),
+            now: None,
+        };
+        if rungs.feedback {
+            // Refused before anything is computed.
+            ladder.design(&ladder.believed)?;
+        }
+        Ok(ladder)
+    }
+
+    /// What is believed after all moves so far.
+    fn model(&self) -> DriveModel {
+        let adapted = self.adaptation.as_ref().map(Adaptation::model);
+        adapted.unwrap_or(self.believed)
+    }
+
+    fn design(&self, model: &DriveModel) -> Result<FeedbackDesign, PipelineError> {
+        let mechanism = &self.axis.mechanism;
+        let stroke = &self.axis.stroke;
+        let modes = |share: f64| {
+            let x = stroke.minimum + share * (stroke.maximum - stroke.minimum);
+            mechanism
+                .participation(x)
+                .map_err(axis_sim::SetupError::from)
+        };
+        let [near, middle, far] = [modes(0.05)?, modes(0.5)?, modes(0.95)?];
+        let settings = FeedbackSettings {
+            speed_by_differences: self.axis.derives_speed(),
+            ..FeedbackSettings::default()
+        };
+        let elsewhere: [&[_]; 2] = [&near, &far];
+        Ok(FeedbackDesign::within_margins(
+            model, &middle, &elsewhere, &settings,
+        )?)
+    }
+
+    /// The repetitions of a motion, where it has been made before.
+    fn repeats(&mut self, motion: &SharedMotion) -> Result<usize, PipelineError> {
+        let known = self.repeated.iter();
+        if let Some(found) = known.clone().position(|r| same(&*r.motion, &**motion)) {
+            return Ok(found);
+        }
+        let settings = LearningSettings::default();
+        self.repeated.push(Repeated {
+            motion: motion.clone(),
+            frozen: None,
+            learned: LearnedMove::new(self.believed.period, &settings)?,
+        });
+        Ok(self.repeated.len() - 1)
+    }
+}
+
+/// Whether two motions are one.
+fn same(a: &dyn Motion, b: &dyn Motion) -> bool {
+    let duration = a.duration();
+    duration == b.duration()
+        && (0..=256).all(|i| {
+            let t = duration * f64::from(i) / 256.0;
+            a.at(t).position == b.at(t).position
+        })
+}
+
+impl Strategy for Ladder {
+    fn compensator(&mut self, next: &NextMove) -> Result<Box<dyn Compensator>, PipelineError> {
+        let mut next = next.clone();
+        let mut model = self.model();
+        let mut residual = self.residual.as_ref().and_then(|r| r.model().copied());
+        if self.rungs.learning {
+            let made = self.repeated.len();
+            let now = self.repeats(&next.motion)?;
+            if now < made {
+                // From its first repetition on it is learned beside one model.
+                let repeated = &mut self.repeated[now];
+                (model, residual) = *repeated.frozen.get_or_insert((model, residual));
+                next.learned = Some(Arc::new(repeated.learned.clone()));
+            }
+            self.now = Some(now);
+        }
+        let plan = plan(&model, &next)?.with_residual(residual);
+        if !self.rungs.feedback {
+            return Ok(Box::new(plan));
+        }
+        let feedback = self.design(&model)?.feedback();
+        Ok(Box::new(PlanWithFeedback::new(plan, feedback)))
+    }
+
+    fn learn(&mut self, record: &[Sample]) -> Result<Learned, PipelineError> {
+        let mut known = Learned::new();
+        if let Some(adaptation) = &mut self.adaptation {
+            // A log that cannot be learned from leaves everything as it was.
+            let refused = adaptation.learn(record).err();
+            known.insert(
+                "moves_refused".to_owned(),
+                f64::from(u8::from(refused.is_some())),
+            );
+            if let Some(refused) = refused {
+                tracing::warn!("nothing learned of this move: {refused}");
+            }
+            for estimate in adaptation.estimates() {
+                let name = estimate.parameter.name().replace(' ', "_");
+                known.insert(format!("{name}_relative"), estimate.relative);
+                known.insert(format!("{name}_standard_error"), estimate.standard_error);
+            }
+        }
+        if let Some(now) = self.now.take() {
+            let repeated = &mut self.repeated[now];
+            if repeated.frozen.is_some() {
+                let errors: Vec<_> = record
+                    .iter()
+                    .map(|s| Some(s.reference.position - s.position))
+                    .collect();
+                let round = repeated.learned.learn(&errors);
+                known.insert("repetitions".to_owned(), f64::from(round.rounds));
+                known.insert("learnable_um".to_owned(), 1e6 * round.learnable);
+                known.insert("noise_um".to_owned(), 1e6 * round.floor);
+            }
+        }
+        Ok(known)
+    }
+}

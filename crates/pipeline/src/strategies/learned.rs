@@ -1,0 +1,23 @@
+//! `learned`: plan and feedback adapted between moves, and what no parameter holds learned.
+
+use super::ladder::{Ladder, Rungs};
+use super::{Build, StrategyKind, Table};
+
+pub(super) static KIND: StrategyKind = StrategyKind {
+    name: "learned",
+    label: "learned",
+    heading: "Adapted and learned",
+    summary: "plan and feedback adapted between moves, and what no parameter holds learned",
+    table: Table::More,
+    needs: &[],
+    build: Build::Carrying(|predictors| {
+        Ok(Box::new(Ladder::new(
+            predictors,
+            Rungs {
+                feedback: true,
+                adaptation: true,
+                learning: true,
+            },
+        )?))
+    }),
+};
