@@ -87,7 +87,19 @@ pub struct LearnedMove {
     /// Learnable part of the first move and of the best one so far.
     first: f64,
     best: f64,
+    /// Noise behind the Gaussian, as it was found last.
+    floor: f64,
+    /// Smoothed δ + e of the last repetition, where it was seen.
+    whole: Option<Vec<f64>>,
+    /// By how much δ was changed last (RMS).
+    changed: f64,
 }
+
+/// Share of a change of δ that the axis may not follow.
+const UNFOLLOWED: f64 = 0.3;
+
+/// Times the white noise up to which an error may be noise that is not white.
+const HIDDEN: f64 = 20.0;
 
 impl LearnedMove {
     /// Nothing learned yet, of a move sampled every `period` seconds.
@@ -107,6 +119,9 @@ impl LearnedMove {
             rounds: 0,
             first: f64::INFINITY,
             best: f64::INFINITY,
+            floor: 0.0,
+            whole: None,
+            changed: 0.0,
         })
     }
 
@@ -139,6 +154,10 @@ impl LearnedMove {
     /// Learns from the errors e of the move, m or rad, one a control cycle; none where a
     /// sample is missing: there the errors beside it count. Before the first sample and
     /// after the last nothing is learned.
+    ///
+    /// What is left of a move is noise where δ + e differs as much between two repetitions:
+    /// that is what the axis did not do twice. After the first move only the noise that is
+    /// white is known; an error that it might hide is looked at twice before it is learned.
     pub fn learn(&mut self, errors: &[Option<f64>]) -> Round {
         let gauss = Gauss::new(self.settings.smoothing / self.period);
         let filled = fill(errors);
@@ -146,11 +165,24 @@ impl LearnedMove {
         let learnable = rms(smooth.iter().copied());
         // White noise of the same power as what does not pass leaves this behind it.
         let rough = filled.iter().zip(&smooth).map(|(e, s)| e - s);
-        let floor = rms(rough) * gauss.noise_gain();
+        let white = rms(rough) * gauss.noise_gain();
+        let led = |k: usize| self.shift.get(k).copied().unwrap_or(0.0);
+        let whole: Vec<f64> = smooth.iter().enumerate().map(|(k, e)| led(k) + e).collect();
+        let twice = self
+            .whole
+            .as_ref()
+            .filter(|before| before.len() == whole.len());
+        let twice = twice.map(|before| {
+            let apart = rms(whole.iter().zip(before).map(|(a, b)| a - b));
+            // An axis that does not follow δ quite is no noise.
+            let unfollowed = UNFOLLOWED * self.changed;
+            Scalar::sqrt((apart * apart - unfollowed * unfollowed).max(0.0) / 2.0)
+        });
+        let floor = twice.map_or(white, |twice| twice.max(white));
         let peak = filled.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
         let worse = self.rounds > 0
             && (learnable > self.first || learnable > 2.0 * self.best)
-            && learnable > 3.0 * floor;
+            && learnable > 3.0 * self.floor.max(white);
         if worse {
             self.shift.clear();
             self.rounds = 0;
@@ -159,7 +191,7 @@ impl LearnedMove {
             () if worse => Advice::Restarted,
             () if learnable <= 1.5 * floor => Advice::Done,
             // It gets hardly better: what is left varies faster than the Gaussian passes.
-            () if self.rounds > 0 && learnable > 0.8 * self.best => Advice::Enough,
+            () if self.rounds > 1 && learnable > 0.8 * self.best => Advice::Enough,
             () if self.rounds >= self.settings.most_rounds => Advice::Enough,
             () => Advice::Again,
         };
@@ -168,7 +200,9 @@ impl LearnedMove {
             self.best = learnable;
         }
         self.best = self.best.min(learnable);
-        if matches!(advice, Advice::Again | Advice::Restarted) {
+        self.floor = floor;
+        let hidden = twice.is_none() && learnable <= HIDDEN * white;
+        if matches!(advice, Advice::Again | Advice::Restarted) && !hidden {
             self.shift.resize(filled.len().max(self.shift.len()), 0.0);
             let sum = self.shift.iter().enumerate();
             let sum: Vec<f64> = sum
@@ -176,8 +210,13 @@ impl LearnedMove {
                 .collect();
             let limit = self.settings.limit;
             let next = gauss.pass(&sum);
-            self.shift = next.into_iter().map(|d| d.clamp(-limit, limit)).collect();
+            let next: Vec<f64> = next.into_iter().map(|d| d.clamp(-limit, limit)).collect();
+            self.changed = rms(next.iter().zip(&self.shift).map(|(a, b)| a - b));
+            self.shift = next;
+        } else {
+            self.changed = 0.0;
         }
+        self.whole = Some(whole);
         self.rounds += 1;
         Round {
             rounds: self.rounds,
