@@ -39,6 +39,9 @@ pub enum PipelineError {
         /// Who asks for it.
         by: String,
     },
+    /// There is no strategy of that name.
+    #[error("there is no strategy \"{0}\"; valid: those of the registry")]
+    NoStrategy(String),
     /// Two strategies that results could not tell apart.
     #[error("two of the strategies have the name \"{0}\"; valid: each name once")]
     SameName(&'static str),

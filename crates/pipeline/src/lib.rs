@@ -20,6 +20,7 @@ pub mod identification;
 pub mod learning;
 mod linear_map;
 pub mod moves;
+pub mod robustness;
 pub mod sample_file;
 pub mod sampling;
 pub mod strategies;

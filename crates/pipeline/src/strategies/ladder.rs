@@ -26,8 +26,10 @@ pub(super) struct Rungs {
     pub feedback: bool,
     /// Adaptation of the model's parameters between moves.
     pub adaptation: bool,
-    /// Torque over angle and force over position, and repetitions of a move.
-    pub learning: bool,
+    /// Torque over angle and force over position, learned from all moves.
+    pub residual: bool,
+    /// Iterative learning of a move that is made again.
+    pub repetition: bool,
 }
 
 /// The plan and what stands on it.
@@ -63,7 +65,7 @@ impl Ladder {
         let stroke = [axis.stroke.minimum, axis.stroke.maximum];
         let level = believed.friction.parameters().coulomb * believed.travel / believed.lever;
         let residual = rungs
-            .learning
+            .residual
             .then(|| ResidualLearner::new(stroke, believed.travel, level));
         let ladder = Self {
             axis,
@@ -138,7 +140,7 @@ impl Strategy for Ladder {
         let mut next = next.clone();
         let mut model = self.model();
         let mut residual = self.residual.as_ref().and_then(|r| r.model().copied());
-        if self.rungs.learning {
+        if self.rungs.repetition {
             let made = self.repeated.len();
             let now = self.repeats(&next.motion)?;
             if now < made {

@@ -16,7 +16,8 @@ pub(super) static KIND: StrategyKind = StrategyKind {
             Rungs {
                 feedback: true,
                 adaptation: true,
-                learning: true,
+                residual: true,
+                repetition: true,
             },
         )?))
     }),

@@ -9,6 +9,7 @@ mod adaptive;
 mod adaptive_feedback;
 mod feedback;
 mod feedforward;
+mod iterative;
 mod ladder;
 mod learned;
 mod lugre;
@@ -48,6 +49,7 @@ pub const STRATEGIES: &[&StrategyKind] = &[
     &feedback::KIND,
     &adaptive::KIND,
     &adaptive_feedback::KIND,
+    &iterative::KIND,
     &learned::KIND,
 ];
 

@@ -22,6 +22,8 @@ pub struct Predictors {
     pub transfer: Option<TransferModels>,
     /// Friction as identified on the machine.
     pub identified: Option<LuGre>,
+    /// What plans believe of the axis, where that is not what its file says.
+    pub believed: Option<DriveModel>,
 }
 
 /// Linear models of the tracking error, without and with friction feed-forward.
@@ -50,6 +52,7 @@ impl Predictors {
             network: None,
             transfer: None,
             identified: None,
+            believed: None,
         }
     }
 
@@ -69,6 +72,7 @@ impl Predictors {
                 with_feedforward,
             }),
             identified: Some(identified),
+            believed: None,
         }
     }
 
@@ -95,12 +99,15 @@ impl Predictors {
         }
     }
 
-    /// What is believed of the axis: its file, with the friction identified on the machine
-    /// where that is known.
+    /// What plans believe of the axis: where nothing else is given its file, with the friction
+    /// identified on the machine where that is known.
     ///
     /// # Errors
     /// [`PipelineError::Compensator`] where no plan can be made from it.
     pub fn believed(&self) -> Result<DriveModel, PipelineError> {
+        if let Some(model) = self.believed {
+            return Ok(model);
+        }
         let mut model = self.axis.drive_model()?;
         if let Some(law) = self.identified {
             model.friction = law;
