@@ -13,19 +13,24 @@ use libm::{exp, tanh};
 use lugre::LuGre;
 use nalgebra::{SMatrix, SVector};
 
+use super::belief::Belief;
 use super::kernel::Kernel;
-use super::parameter::{AdaptParameter, Belief, COUNT, Theta};
+use super::parameter::{AdaptParameter, COUNT, Theta};
 use super::record::Record;
 use super::weight::weights;
 
 /// Unknowns of a record that no model keeps: the force that its bristles begin with, the
 /// angle between the two scales, and half the free travel at the motor.
 pub(super) const NUISANCES: usize = 3;
+/// The last of them.
+pub(super) const GAP: usize = COUNT + 2;
 /// Change of a parameter by which sensitivities are found.
 const STEP: f64 = 0.01;
 /// Share of the break-away level by which the force held at the start is uncertain.
 const HELD: f64 = 0.1;
 
+/// Deviation of half the free travel, in wind-ups by the Coulomb level.
+const FREE: f64 = 0.2;
 /// A residual below this share of the whole is not believed.
 const FINEST: f64 = 1e-4;
 
@@ -33,8 +38,9 @@ const FINEST: f64 = 1e-4;
 pub(super) type Weights = [Vec<f64>; 2];
 
 /// Residuals and their rates of change.
+#[derive(Clone)]
 pub(super) struct Residuals {
-    pub values: [Vec<f64>; 2],
+    values: [Vec<f64>; 2],
     /// Of each channel, the coordinate and the change of the prediction with it.
     columns: [Vec<(usize, Vec<f64>)>; 2],
     scale: f64,
@@ -53,14 +59,17 @@ impl Residuals {
         let (model, points) = (&belief.model, &record.points);
         let travel = model.travel;
         let friction = |theta: &Theta, held: f64| {
-            forces(&belief.friction(theta), record, belief.held(record, theta, held))
+            forces(
+                &belief.friction(theta),
+                record,
+                belief.held(record, theta, held),
+            )
         };
         let own = friction(&theta, held);
         let mass = model.load_inertia * exp(theta[AdaptParameter::LoadInertia.index()]);
         let standing = belief.standing_load(&theta);
-        let torque = |i: usize| {
-            travel * (mass * points[i].acceleration + own[i] / model.lever + standing)
-        };
+        let torque =
+            |i: usize| travel * (mass * points[i].acceleration + own[i] / model.lever + standing);
         let count = points.len();
         let balance = (0..count).map(|i| points[i].left - torque(i)).collect();
         let central = |more: Vec<f64>, less: Vec<f64>| -> Vec<f64> {
@@ -93,10 +102,9 @@ impl Residuals {
                     friction(&off(i, STEP), held),
                     friction(&off(i, -STEP), held),
                 ),
-                None if i == COUNT => central(
-                    friction(&theta, held + STEP),
-                    friction(&theta, held - STEP),
-                ),
+                None if i == COUNT => {
+                    central(friction(&theta, held + STEP), friction(&theta, held - STEP))
+                }
                 None => continue,
             };
             columns[0].push((i, column));
@@ -113,13 +121,16 @@ impl Residuals {
                 .map(|i| points[i].lead - offset - gap * side(i) - wound(i))
                 .collect();
             columns[1] = vec![
-                (AdaptParameter::Compliance.index(), (0..count).map(wound).collect()),
+                (
+                    AdaptParameter::Compliance.index(),
+                    (0..count).map(wound).collect(),
+                ),
                 (COUNT + 1, vec![1.0; count]),
-                (COUNT + 2, (0..count).map(side).collect()),
+                (GAP, (0..count).map(side).collect()),
             ];
             columns[1].retain(|(i, _)| free.contains(i));
-            scale = (0..count).map(|i| wound(i).powi(2)).sum::<f64>().sqrt()
-                / (count as f64).sqrt();
+            scale =
+                (0..count).map(|i| wound(i).powi(2)).sum::<f64>().sqrt() / (count as f64).sqrt();
         }
         Self {
             values: [balance, lead],
@@ -145,8 +156,13 @@ impl Residuals {
         match nuisance {
             0 => HELD,
             // The two scales begin anywhere.
-            1 => 1e3 * record.points.iter().fold(wound.max(1e-9), |a, p| a.max(p.lead.abs())),
-            _ => 0.1 * wound.max(1e-12),
+            1 => {
+                1e3 * record
+                    .points
+                    .iter()
+                    .fold(wound.max(1e-9), |a, p| a.max(p.lead.abs()))
+            }
+            _ => FREE * wound.max(1e-12),
         }
     }
 
@@ -159,11 +175,16 @@ impl Residuals {
         of(0) + of(1)
     }
 
-    /// RMS of a channel.
-    pub fn rms(&self, channel: usize) -> f64 {
-        let values = &self.values[channel];
-        let square: f64 = values.iter().map(|e| e * e).sum();
-        (square / values.len().max(1) as f64).sqrt()
+    /// RMS of the torque balance, N·m.
+    pub fn rms(&self) -> f64 {
+        self.weighed(&vec![1.0; self.values[0].len()])
+    }
+
+    /// The same by weights.
+    pub fn weighed(&self, weights: &[f64]) -> f64 {
+        let pairs = self.values[0].iter().zip(weights);
+        let square: f64 = pairs.map(|(e, w)| w * e * e).sum();
+        (square / weights.iter().sum::<f64>()).sqrt()
     }
 
     /// Weight of each value, `free` coordinates being fitted; see [`weights`].
@@ -182,8 +203,11 @@ impl Residuals {
         for channel in 0..2 {
             let (columns, values) = (&self.columns[channel], &self.values[channel]);
             for (i, a) in columns {
-                let weighed: Vec<f64> =
-                    a.iter().zip(&weights[channel]).map(|(a, w)| a * w).collect();
+                let weighed: Vec<f64> = a
+                    .iter()
+                    .zip(&weights[channel])
+                    .map(|(a, w)| a * w)
+                    .collect();
                 let dot = |b: &[f64]| weighed.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
                 gradient[*i] -= dot(values);
                 for (j, b) in columns {
@@ -221,6 +245,9 @@ fn forces(law: &LuGre, record: &Record, held: f64) -> Vec<f64> {
     });
     let series: Vec<f64> = each.collect();
     let padded = Kernel::pad(&series, record.kernel.half());
-    let smooth = record.points.iter().map(|p| record.kernel.of(0, &padded, p.sample));
+    let smooth = record
+        .points
+        .iter()
+        .map(|p| record.kernel.of(0, &padded, p.sample));
     smooth.collect()
 }

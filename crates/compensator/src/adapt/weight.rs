@@ -22,10 +22,16 @@ pub(super) fn weights(values: &[f64], floor: f64, free: usize, even: bool) -> Ve
     };
     let mut sorted = nearby.clone();
     sorted.sort_by(f64::total_cmp);
-    let usual = sorted[sorted.len() / 2].max(floor * floor).max(f64::MIN_POSITIVE);
+    let usual = sorted[sorted.len() / 2]
+        .max(floor * floor)
+        .max(f64::MIN_POSITIVE);
     let all = nearby.iter().cycle().take(values.len());
     let variances: Vec<f64> = all.map(|v| (v / MORE).max(usual)).collect();
-    let unit: Vec<f64> = values.iter().zip(&variances).map(|(e, v)| e / v.sqrt()).collect();
+    let unit: Vec<f64> = values
+        .iter()
+        .zip(&variances)
+        .map(|(e, v)| e / v.sqrt())
+        .collect();
     let correlated = long_run_variance(&unit, free).max(1.0);
     variances.iter().map(|v| 1.0 / (v * correlated)).collect()
 }
