@@ -60,4 +60,14 @@ pub enum AdaptError {
         /// RMS of the torque, N·m.
         torque: f64,
     },
+    /// Prior and earlier moves hold the parameters where this log is explained worse.
+    #[error(
+        "the log disagrees with what was learned before: the torque left unexplained would rise from {before} to {after} N·m; forget() or step_back() would let it be learned"
+    )]
+    NoBetter {
+        /// RMS of what was left before, N·m.
+        before: f64,
+        /// And after, N·m.
+        after: f64,
+    },
 }

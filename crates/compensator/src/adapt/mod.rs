@@ -3,7 +3,7 @@
 //!
 //! A log is judged along the motion that was measured, not through the closed loop: what
 //! controllers and compensators did does not matter, and nothing need be known of them.
-//! With a zero-phase Gaussian (σ = 3 ms) over all signals, torque and motion must balance,
+//! With a zero-phase Gaussian (σ = 4 ms) over all signals, torque and motion must balance,
 //!
 //! ```text
 //! T = (J − J_w) θ̈ + J_w a/r + r (m a + T_f(v)/lever + load(x))
@@ -16,9 +16,13 @@
 //! values as their correlation leaves independent, so that structure which the model does
 //! not have makes estimates uncertain, not wrong and sure.
 
+mod belief;
+mod check;
 mod error;
 mod fit;
+mod information;
 mod kernel;
+mod known;
 mod parameter;
 mod record;
 mod residual;
@@ -31,14 +35,19 @@ use libm::{exp, expm1};
 
 use crate::error::{require, within};
 use crate::{DriveModel, Sample};
+use belief::Belief;
 pub use error::AdaptError;
-use fit::{Information, Known};
+use known::{Information, Known};
 pub use parameter::{AdaptParameter, AdaptPrior, Spread};
-use parameter::{Belief, COUNT, Theta};
+use parameter::{COUNT, Theta};
 use record::Record;
 
 /// A torque balance of which more than this share is left is of another machine.
 const MOST_LEFT: f64 = 0.3;
+/// What is left may rise by this factor, and by this share of the torque, before a fit
+/// counts as none: earlier moves and the prior pull as well.
+const WORSE: f64 = 1.1;
+const FINEST: f64 = 1e-3;
 
 /// The parameters of a model, adapted from move to move.
 #[derive(Clone, Debug)]
@@ -81,12 +90,17 @@ pub struct Learned {
     pub moves: usize,
     /// The parameters that are adapted on this axis.
     pub parameters: Vec<Estimated>,
-    /// RMS of the smoothed torque that the model did not explain before, N·m.
+    /// RMS of the smoothed torque that the model did not explain before, what is seen
+    /// where it explains little counting less, N·m.
     pub torque_before: f64,
     /// And after.
     pub torque_after: f64,
     /// RMS of the motor's torque, N·m.
     pub torque: f64,
+    /// Free travel between motor and load that the log seems to show, and its standard
+    /// error, m or rad at the load; none where the load has no sensor of its own. No model
+    /// has it: it is told for maintenance.
+    pub free_travel: Option<[f64; 2]>,
 }
 
 impl Adaptation {
@@ -132,20 +146,23 @@ impl Adaptation {
     /// [`AdaptError`] says what the log lacks.
     pub fn learn(&mut self, log: &[Sample]) -> Result<Learned, AdaptError> {
         let state = self.state();
-        let record = Record::new(&self.belief.model, log)?;
+        let record = Record::new(&self.belief, log)?;
         let known = Known {
             belief: &self.belief,
             estimate: state.estimate,
             information: state.information * self.belief.prior.retention,
         };
         let fit = known.fit(&record);
-        let left = fit.rms[1];
+        let (torque, [before, after]) = (record.torque, fit.weighed);
         // Written so that NaN is refused too.
-        if !(left <= MOST_LEFT * record.torque) {
+        if !(fit.left <= MOST_LEFT * torque) {
             return Err(AdaptError::Unexplained {
-                residual: left,
-                torque: record.torque,
+                residual: fit.left,
+                torque,
             });
+        }
+        if !(after <= WORSE * before + FINEST * torque) {
+            return Err(AdaptError::NoBetter { before, after });
         }
         self.states.push(State {
             estimate: fit.estimate,
@@ -155,9 +172,12 @@ impl Adaptation {
         Ok(Learned {
             moves: self.moves(),
             parameters: self.estimates(),
-            torque_before: fit.rms[0],
-            torque_after: left,
-            torque: record.torque,
+            torque_before: before,
+            torque_after: after,
+            torque,
+            free_travel: fit
+                .gap
+                .map(|gap| gap.map(|by| by * self.belief.model.travel)),
         })
     }
 

@@ -4,24 +4,18 @@
 use std::vec::Vec;
 
 use super::AdaptError;
+use super::belief::Belief;
+use super::check::check;
 use super::kernel::Kernel;
 use super::torque::torques;
-use crate::{DriveModel, Sample};
+use crate::Sample;
 
-/// Deviation of the Gaussian over the balance of torques, s.
-const BALANCE: f64 = 3e-3;
-/// Part of it that is over the velocity before friction is computed of it, s.
-const VELOCITY: f64 = 1.5e-3;
 /// Time at the start over which nothing has moved yet, s.
 const AT_START: f64 = 1e-3;
 /// Deviations between two points: closer ones say the same.
 const SPACING: f64 = 0.5;
-/// Greatest magnitude of a sample.
-const LARGEST: f64 = 1e9;
 /// Least number of points.
 const LEAST_POINTS: usize = 40;
-/// Least way, in deflections at which friction breaks away.
-const LEAST_WAY: f64 = 3.0;
 
 /// The balance at one instant. Torques at the motor, N·m.
 #[derive(Clone, Copy, Debug)]
@@ -60,19 +54,17 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// Of a log of the axis that `model` stands for.
-    pub fn new(model: &DriveModel, log: &[Sample]) -> Result<Self, AdaptError> {
-        let period = model.period;
+    /// Of a log of the axis that is believed.
+    pub fn new(belief: &Belief, log: &[Sample]) -> Result<Self, AdaptError> {
+        let model = &belief.model;
+        let (period, smoothing) = (model.period, belief.smoothing());
         // Few samples a deviation make no Gaussian.
-        let get = |n: &str, d: f64| std::env::var(n).map_or(d, |s| s.parse().unwrap());
-        let (balance_s, velocity_s) = (get("BAL", BALANCE), get("VEL", VELOCITY));
         let cycles = |time: f64| (time / period).max(1.0);
-        let rest = (balance_s * balance_s - velocity_s * velocity_s).sqrt();
-        let [balance, velocity, rest] =
-            [balance_s, velocity_s, rest].map(|time| Kernel::new(cycles(time), period));
+        let [balance, velocity] =
+            [smoothing, 0.5 * smoothing].map(|time| Kernel::new(cycles(time), period));
         // Without any smoothing: central differences.
         let steps = Kernel::new(0.0, period);
-        let stride = ((SPACING * cycles(balance_s)) as usize).max(1);
+        let stride = ((SPACING * cycles(smoothing)) as usize).max(1);
         let edge = balance.half();
         let least = 2 * edge + LEAST_POINTS * stride;
         check(model, log, least)?;
@@ -138,8 +130,8 @@ impl Record {
             return Err(AdaptError::Saturated { share });
         }
 
-        // Only what the load did beside its reference is smoothed: breaking away keeps its
-        // shape where the axis follows.
+        // Only what the load did beside its reference is smoothed, and that less: breaking
+        // away keeps its shape where the axis follows.
         let reference: Vec<f64> = log.iter().map(|s| s.reference.position).collect();
         let beside = position.iter().zip(&reference).map(|(x, r)| x - r);
         let beside = padded(&velocity, &beside.collect::<Vec<_>>());
@@ -166,36 +158,4 @@ fn differs(position: &[f64], angle: &[f64], travel: f64) -> bool {
     let apart = |k: usize| (position[k] - position[0]) - travel * (angle[k] - angle[0]);
     let scale = |k: usize| position[k].abs() + travel * angle[k].abs();
     (0..position.len()).any(|k| apart(k).abs() > 1e-9 * scale(k))
-}
-
-fn check(model: &DriveModel, log: &[Sample], least: usize) -> Result<(), AdaptError> {
-    let samples = log.len();
-    if samples < least {
-        return Err(AdaptError::TooShort { samples, least });
-    }
-    for (sample, s) in log.iter().enumerate() {
-        let named = [
-            ("position", s.position),
-            ("motor_angle", s.motor_angle),
-            ("motor_speed", s.motor_speed),
-            ("iq", s.iq),
-            ("iq_command", s.iq_command),
-        ];
-        // Written so that NaN is caught too.
-        if let Some((what, value)) = named.into_iter().find(|(_, v)| !(v.abs() <= LARGEST)) {
-            return Err(AdaptError::Value {
-                sample,
-                what,
-                value,
-            });
-        }
-    }
-    let positions = log.iter().map(|s| s.position);
-    let most = positions.clone().fold(f64::MIN, f64::max);
-    let way = most - positions.fold(f64::MAX, f64::min);
-    let least = LEAST_WAY * model.friction.bristle_limit() * model.lever;
-    if !(way > least) {
-        return Err(AdaptError::Standstill { way, least });
-    }
-    Ok(())
 }

@@ -13,19 +13,24 @@ use libm::{exp, tanh};
 use lugre::LuGre;
 use nalgebra::{SMatrix, SVector};
 
+use super::belief::Belief;
 use super::kernel::Kernel;
-use super::parameter::{AdaptParameter, Belief, COUNT, Theta};
+use super::parameter::{AdaptParameter, COUNT, Theta};
 use super::record::Record;
 use super::weight::weights;
 
 /// Unknowns of a record that no model keeps: the force that its bristles begin with, the
 /// angle between the two scales, and half the free travel at the motor.
 pub(super) const NUISANCES: usize = 3;
+/// The last of them.
+pub(super) const GAP: usize = COUNT + 2;
 /// Change of a parameter by which sensitivities are found.
 const STEP: f64 = 0.01;
 /// Share of the break-away level by which the force held at the start is uncertain.
 const HELD: f64 = 0.1;
 
+/// Deviation of half the free travel, in wind-ups by the Coulomb level.
+const FREE: f64 = 0.2;
 /// A residual below this share of the whole is not believed.
 const FINEST: f64 = 1e-4;
 
@@ -33,8 +38,9 @@ const FINEST: f64 = 1e-4;
 pub(super) type Weights = [Vec<f64>; 2];
 
 /// Residuals and their rates of change.
+#[derive(Clone)]
 pub(super) struct Residuals {
-    pub values: [Vec<f64>; 2],
+    values: [Vec<f64>; 2],
     /// Of each channel, the coordinate and the change of the prediction with it.
     columns: [Vec<(usize, Vec<f64>)>; 2],
     scale: f64,
@@ -120,7 +126,7 @@ impl Residuals {
                     (0..count).map(wound).collect(),
                 ),
                 (COUNT + 1, vec![1.0; count]),
-                (COUNT + 2, (0..count).map(side).collect()),
+                (GAP, (0..count).map(side).collect()),
             ];
             columns[1].retain(|(i, _)| free.contains(i));
             scale =
@@ -156,7 +162,7 @@ impl Residuals {
                     .iter()
                     .fold(wound.max(1e-9), |a, p| a.max(p.lead.abs()))
             }
-            _ => 0.1 * wound.max(1e-12),
+            _ => FREE * wound.max(1e-12),
         }
     }
 
@@ -169,11 +175,16 @@ impl Residuals {
         of(0) + of(1)
     }
 
-    /// RMS of a channel.
-    pub fn rms(&self, channel: usize) -> f64 {
-        let values = &self.values[channel];
-        let square: f64 = values.iter().map(|e| e * e).sum();
-        (square / values.len().max(1) as f64).sqrt()
+    /// RMS of the torque balance, N·m.
+    pub fn rms(&self) -> f64 {
+        self.weighed(&vec![1.0; self.values[0].len()])
+    }
+
+    /// The same by weights.
+    pub fn weighed(&self, weights: &[f64]) -> f64 {
+        let pairs = self.values[0].iter().zip(weights);
+        let square: f64 = pairs.map(|(e, w)| w * e * e).sum();
+        (square / weights.iter().sum::<f64>()).sqrt()
     }
 
     /// Weight of each value, `free` coordinates being fitted; see [`weights`].

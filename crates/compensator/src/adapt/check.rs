@@ -1,0 +1,43 @@
+//! Refusal of logs that nothing can be learned from.
+
+use super::AdaptError;
+use crate::{DriveModel, Sample};
+
+/// Greatest magnitude of a sample.
+const LARGEST: f64 = 1e9;
+/// Least way, in deflections at which friction breaks away.
+const LEAST_WAY: f64 = 3.0;
+
+/// Refuses a log with fewer than `least` samples, with values that no sensor shows, or of
+/// an axis that stands.
+pub(super) fn check(model: &DriveModel, log: &[Sample], least: usize) -> Result<(), AdaptError> {
+    let samples = log.len();
+    if samples < least {
+        return Err(AdaptError::TooShort { samples, least });
+    }
+    for (sample, s) in log.iter().enumerate() {
+        let named = [
+            ("position", s.position),
+            ("motor_angle", s.motor_angle),
+            ("motor_speed", s.motor_speed),
+            ("iq", s.iq),
+            ("iq_command", s.iq_command),
+        ];
+        // Written so that NaN is caught too.
+        if let Some((what, value)) = named.into_iter().find(|(_, v)| !(v.abs() <= LARGEST)) {
+            return Err(AdaptError::Value {
+                sample,
+                what,
+                value,
+            });
+        }
+    }
+    let positions = log.iter().map(|s| s.position);
+    let most = positions.clone().fold(f64::MIN, f64::max);
+    let way = most - positions.fold(f64::MAX, f64::min);
+    let least = LEAST_WAY * model.friction.bristle_limit() * model.lever;
+    if !(way > least) {
+        return Err(AdaptError::Standstill { way, least });
+    }
+    Ok(())
+}

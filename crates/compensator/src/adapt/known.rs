@@ -1,0 +1,95 @@
+//! What is known before a record: the prior, and what earlier moves said.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::belief::Belief;
+use super::parameter::{AdaptParameter, COUNT, Theta};
+use super::record::Record;
+use super::residual::{NUISANCES, Residuals};
+
+/// Parameters and nuisances.
+pub(super) const ALL: usize = COUNT + NUISANCES;
+/// Information about the parameters alone.
+pub(super) type Information = SMatrix<f64, COUNT, COUNT>;
+/// About all coordinates.
+pub(super) type Full = SMatrix<f64, ALL, ALL>;
+/// All coordinates.
+pub(super) type Column = SVector<f64, ALL>;
+
+/// Deviations of the prior beyond which it gives way.
+const GIVES_WAY: f64 = 2.0;
+
+/// What was known before the record.
+pub(super) struct Known<'a> {
+    pub belief: &'a Belief,
+    /// Estimate that `information` is about.
+    pub estimate: Theta,
+    pub information: Information,
+}
+
+impl Known<'_> {
+    /// Whether a coordinate is free.
+    pub fn free(&self, record: &Record, i: usize) -> bool {
+        match AdaptParameter::ALL.get(i) {
+            Some(AdaptParameter::Compliance) => {
+                record.sees_load && self.belief.adapts(AdaptParameter::Compliance)
+            }
+            Some(&parameter) => self.belief.adapts(parameter),
+            None => Residuals::has_nuisance(self.belief, record, i - COUNT),
+        }
+    }
+
+    /// Precision of the prior of a coordinate at a value. Beyond two deviations its pull
+    /// falls with the distance, so that data which insist win.
+    pub fn precision(&self, record: &Record, i: usize, value: f64) -> f64 {
+        let deviation = match AdaptParameter::ALL.get(i) {
+            Some(&parameter) => self.belief.prior.of(parameter).deviation,
+            None => Residuals::nuisance_deviation(self.belief, record, i - COUNT),
+        };
+        let far = (value.abs() / deviation / GIVES_WAY).max(1.0);
+        1.0 / (deviation * far).powi(2)
+    }
+
+    /// Least and greatest value of a coordinate.
+    pub fn bounds(&self, i: usize) -> [f64; 2] {
+        match AdaptParameter::ALL.get(i) {
+            Some(&parameter) => self.belief.bounds(parameter),
+            None => [f64::NEG_INFINITY, f64::INFINITY],
+        }
+    }
+
+    /// Gradient and curvature of half the cost of all that is known, the record included.
+    pub fn normal(
+        &self,
+        record: &Record,
+        at: &Column,
+        residuals: &Residuals,
+        weights: &[std::vec::Vec<f64>; 2],
+    ) -> (Column, Full) {
+        let (mut gradient, mut curvature) = (Column::zeros(), Full::zeros());
+        for i in 0..ALL {
+            // What is not free has no prior either; its row is never used.
+            let precision = self.precision(record, i, at[i]).min(1e300);
+            gradient[i] = precision * at[i];
+            curvature[(i, i)] = precision;
+        }
+        let away = SVector::<f64, COUNT>::from_fn(|i, _| at[i] - self.estimate[i]);
+        let pull = self.information * away;
+        for i in 0..COUNT {
+            gradient[i] += pull[i];
+            for j in 0..COUNT {
+                curvature[(i, j)] += self.information[(i, j)];
+            }
+        }
+        residuals.add_to(weights, &mut gradient, &mut curvature);
+        (gradient, curvature)
+    }
+
+    /// Twice the negative logarithm of the probability of `at`, but for a constant. The
+    /// prior's precisions are those at `from`.
+    pub fn cost(&self, record: &Record, [at, from]: [&Column; 2], free: &[usize]) -> f64 {
+        let prior = |&i: &usize| self.precision(record, i, from[i]) * at[i] * at[i];
+        let away = SVector::<f64, COUNT>::from_fn(|i, _| at[i] - self.estimate[i]);
+        free.iter().map(prior).sum::<f64>() + away.dot(&(self.information * away))
+    }
+}
