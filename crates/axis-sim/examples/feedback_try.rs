@@ -252,6 +252,20 @@ fn main() {
             );
         }
     }
+    if what == "trace" {
+        let m = &motions[0];
+        let mut plan = Plan::new(&model, &PlanSettings::default(), targets(m, model.period)).unwrap();
+        let mut k = 0;
+        cl.run(m, &mut plan, |c| { if k % (motions[0].duration() / model.period / 20.0) as usize == 0 { println!("{:.4} err {:.1} v {:.3} torque {:.4} effort {:.4} r*th-x {:.1} corr {:.3e} speed ref-m {:.4}", c.time, 1e6 * c.error(), c.reference.velocity, c.torque, c.command.effort, 1e6 * (c.motor_angle * model.travel - c.position), c.correction.position, c.command.speed_ref - c.motor_speed); } k += 1; });
+        let mut f = with(&model, m);
+        let mut k = 0;
+        struct Spy<'a, C>(&'a mut C, Vec<(Deviations, Planned)>);
+        impl<F: FnMut(usize) -> Target> Compensator for Spy<'_, PlanWithFeedback<F>> { fn reset(&mut self) { self.0.reset() } fn correct(&mut self, s: &Sample) -> Correction { let c = self.0.correct(s); self.1.push((*self.0.deviations(), *self.0.planned())); c } }
+        let mut spy = Spy(&mut f, vec![]);
+        let mut rows = vec![];
+        cl.run_sensed(m, &mut spy, noise(1, n), |c| { if k % (motions[0].duration() / model.period / 20.0) as usize == 0 { rows.push((k, *c)); } k += 1; });
+        for (k, c) in rows { let (d, p) = &spy.1[k]; println!("{:.4} err {:.3} dev load {:.3} force {:.3} effort {:.4} innov {:.2e} {:.2e} planned {:.4} wind {:.2}", c.time, 1e6 * c.error(), 1e6 * d.load, d.force, d.effort, d.innovation[0], d.innovation[1], p.effort, 1e6 * model.travel * p.wind_up); }
+    }
     if what == "all" || what == "slow" {
         for v in [0.001, 0.002, 0.003, 0.004, 0.005, 0.006, 0.007, 0.008] {
             let limits = trajectories::Limits::new(v, 0.12, 1.0).unwrap();

@@ -2,7 +2,7 @@
 
 use compensator::{Along, Cascade, CompensatorError, DriveModel, Section};
 
-use crate::axis::Axis;
+use crate::axis::{Axis, LoadSensor};
 
 impl Axis {
     /// Everything that a plan of this axis is made from, its effects left out.
@@ -27,6 +27,16 @@ impl Axis {
                 load: self.load_at(x),
             }
         })?;
+        let mut cascade = self.control.cascade(travel).unwrap_or(Cascade {
+            position: 0.0,
+            velocity_feedforward: 0.0,
+            acceleration_feedforward: 0.0,
+            speed: 0.0,
+            speed_integral: 0.0,
+            from_motor: false,
+        });
+        // A load without a sensor is where the motor says that it is.
+        cascade.from_motor |= matches!(self.sensors.load, LoadSensor::Missing);
         Ok(DriveModel {
             travel,
             load_inertia: self.mechanism.load_inertia(),
@@ -36,14 +46,7 @@ impl Axis {
             drive,
             delay,
             effort_limit: self.actuator.limit(),
-            cascade: self.control.cascade(travel).unwrap_or(Cascade {
-                position: 0.0,
-                velocity_feedforward: 0.0,
-                acceleration_feedforward: 0.0,
-                speed: 0.0,
-                speed_integral: 0.0,
-                from_motor: false,
-            }),
+            cascade,
             period: self.period,
         })
     }

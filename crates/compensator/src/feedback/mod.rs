@@ -88,6 +88,8 @@ pub struct Feedback<T = f64> {
     before: Option<Before<T>>,
     /// What the drive's own loops add to the command, beside what they held at the start.
     own: T,
+    /// How that changes in a cycle.
+    own_rate: T,
     /// Wind-up along the plan at the start: where the motor's angle was set to the load.
     home: Option<T>,
     /// Motor's speed along the plan in the cycle before, rad/s.
@@ -104,6 +106,7 @@ impl<T: Scalar> Feedback<T> {
             estimated: [T::ZERO; MOST_STATES],
             before: None,
             own: T::ZERO,
+            own_rate: T::ZERO,
             home: None,
             speed: T::ZERO,
             last: Deviations::default(),
@@ -120,6 +123,7 @@ impl<T: Scalar> Feedback<T> {
             estimated: [U::ZERO; MOST_STATES],
             before: None,
             own: U::ZERO,
+            own_rate: U::ZERO,
             home: None,
             speed: U::ZERO,
             last: Deviations::default(),
@@ -132,6 +136,7 @@ impl<T: Scalar> Feedback<T> {
         self.estimated = self.expected;
         self.before = None;
         self.own = T::ZERO;
+        self.own_rate = T::ZERO;
         self.home = None;
         self.speed = T::ZERO;
         self.last = Deviations::default();
@@ -222,7 +227,8 @@ impl<T: Scalar> Feedback<T> {
         let other = commanded - before.effort;
         if other.abs() <= T::TWO * g.limit {
             effort = commanded;
-            self.own += T::of(OWN) * other;
+            self.own_rate += T::of(0.25 * OWN * OWN) * other;
+            self.own += self.own_rate + T::of(OWN) * other;
         }
         let (low, high, share) = g.around(before.sticking);
         let mut next = [T::ZERO; MOST_STATES];

@@ -39,6 +39,9 @@ pub(super) struct Linear {
     /// Load's position and speed.
     pub load: RowDVector<f64>,
     pub load_speed: RowDVector<f64>,
+    /// Position and speed that the state feedback weighs: the load's, or the motor's as the
+    /// load's where nothing else is measured, so that sensor and actuator are at one place.
+    pub weighed: [RowDVector<f64>; 2],
     /// What one unit of each state is in SI.
     pub units: DVector<f64>,
 }
@@ -175,6 +178,9 @@ impl Linear {
             }
         }
 
+        if angles == 1 {
+            units[past + late] = push / motor[0].abs();
+        }
         let row = |values: &DVector<f64>, from: usize| {
             RowDVector::from_fn(size, |_, j| {
                 let inside = (from..from + n).contains(&j);
@@ -194,11 +200,14 @@ impl Linear {
         if angles == 1 {
             // A state for the motor's angle a cycle ago, in units of the modes' own.
             let (before, now) = (past + late, row(&motor, 0));
-            units[before] = push / motor[0].abs();
             a.row_mut(before).copy_from(&(&now / units[before]));
             speed = now / h;
             speed[before] = -units[before] / h;
         }
+        let weighed = match model.cascade.from_motor {
+            true => [row(&motor, 0), row(&motor, n)].map(|row| row * model.travel),
+            false => [load_at.clone(), load_speed.clone()],
+        };
         let mut rows = vec![position, speed];
         if held == 1 {
             rows.push(RowDVector::from_fn(size, |_, j| {
@@ -209,6 +218,7 @@ impl Linear {
             a,
             b,
             c: DMatrix::from_rows(&rows),
+            weighed,
             load: load_at,
             load_speed,
             units,

@@ -20,9 +20,20 @@ pub use settings::FeedbackSettings;
 /// χ at which gains are held: friction changes fastest where few bristles stick.
 const STICKING: [f64; NODES] = [0.0, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
 
-/// Steps of bandwidth that are tried, and factors of the command's uncertainty in each.
+/// Steps of bandwidth that are tried, and in each factors of how much the force wanders and
+/// of how uncertain the command is.
 const SOFTENINGS: usize = 9;
-const UNCERTAIN: [f64; 3] = [1.0, 4.0, 16.0];
+const TRIED: [[f64; 2]; 9] = [
+    [1.0, 1.0],
+    [1.0, 4.0],
+    [1.0, 16.0],
+    [0.1, 1.0],
+    [0.1, 4.0],
+    [0.1, 16.0],
+    [0.01, 1.0],
+    [0.01, 4.0],
+    [0.01, 16.0],
+];
 
 /// Gains at one χ.
 #[derive(Clone, Debug)]
@@ -63,8 +74,9 @@ impl FeedbackDesign {
     }
 
     /// The quickest feedback whose margins hold with the load anywhere: weights go down from
-    /// those of `settings` in steps of √2 in bandwidth, down to a sixteenth of it, and the
-    /// command is taken as less and less certain, until the margins are there. `elsewhere` has
+    /// those of `settings` in steps of √2 in bandwidth, down to a sixteenth of it, and in each
+    /// the force is taken to wander less and the command as less certain, until the margins
+    /// are there. `elsewhere` has
     /// the modes at other positions.
     ///
     /// # Errors
@@ -78,8 +90,8 @@ impl FeedbackDesign {
         let mut bandwidth = 1.0;
         let mut refused = None;
         for _ in 0..SOFTENINGS {
-            for command in UNCERTAIN {
-                let softer = settings.softened(bandwidth, command);
+            for [wandering, command] in TRIED {
+                let softer = settings.softened(bandwidth, wandering, command);
                 let designed = Self::unchecked(model, modes, &softer)?;
                 match designed.require_margins(elsewhere) {
                     Ok(()) => return Ok(designed),
@@ -198,7 +210,7 @@ impl FeedbackDesign {
             let row = row.columns(0, n) * weight;
             row.transpose() * row
         };
-        let q = weigh(&linear.load, position) + weigh(&linear.load_speed, speed);
+        let q = weigh(&linear.weighed[0], position) + weigh(&linear.weighed[1], speed);
         let (p, first) =
             riccati::solve(&a, &(b * b.transpose()), &q).map_err(riccati("state feedback"))?;
         let pb = &p * b;

@@ -129,12 +129,13 @@ impl FeedbackSettings {
     }
 
     /// The same for another bandwidth of the state feedback, as a share of this one, and
-    /// another uncertainty of the command.
+    /// factors of how much the force wanders and of how uncertain the command is.
     #[must_use]
-    pub fn softened(&self, bandwidth: f64, command: f64) -> Self {
+    pub fn softened(&self, bandwidth: f64, wandering: f64, command: f64) -> Self {
         Self {
             stiffness: self.stiffness * bandwidth * bandwidth,
             damping: self.damping * bandwidth,
+            wandering: self.wandering * wandering,
             command: self.command * command,
             ..*self
         }
