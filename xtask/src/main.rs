@@ -19,7 +19,7 @@ use clap::{Parser, Subcommand};
 
 use commands::{
     bench, compensate, discover, discover_matrix, identify, layers, learn, pipeline, report,
-    sample, simulate, study, torture, train, validate,
+    robustness, sample, simulate, study, torture, train, validate,
 };
 use context::Common;
 use diagnostic::Compiler;
@@ -58,6 +58,8 @@ enum Command {
     Study(Common),
     /// Write summary.json and report.html from the stages' results
     Report(Common),
+    /// What compensation leaves where what is believed is wrong, draw by draw
+    Robustness(Common),
     /// Learn the correction of a move from the log of a repetition
     Learn(learn::Options),
     /// Simulate one motion and write its log
@@ -112,6 +114,7 @@ fn run(command: Command) -> miette::Result<()> {
         Command::DiscoverMatrix(options) => discover_matrix::command(&options),
         Command::Bench(options) => bench::command(&options),
         Command::Torture(options) => torture::command(&options),
+        Command::Robustness(common) => robustness::command(&common),
         Command::Learn(options) => learn::command(&options),
         Command::Layers => layers::command(),
     }

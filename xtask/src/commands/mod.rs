@@ -10,6 +10,7 @@ pub mod layers;
 pub mod learn;
 pub mod pipeline;
 pub mod report;
+pub mod robustness;
 pub mod sample;
 pub mod simulate;
 pub mod study;
