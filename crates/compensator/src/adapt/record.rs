@@ -10,6 +10,8 @@ use super::kernel::Kernel;
 use super::torque::torques;
 use crate::Sample;
 
+/// Share of the smoothing that is over the velocity beside the reference.
+const VELOCITY: f64 = 0.25;
 /// Time at the start over which nothing has moved yet, s.
 const AT_START: f64 = 1e-3;
 /// Deviations between two points: closer ones say the same.
@@ -61,7 +63,7 @@ impl Record {
         // Few samples a deviation make no Gaussian.
         let cycles = |time: f64| (time / period).max(1.0);
         let [balance, velocity] =
-            [smoothing, 0.5 * smoothing].map(|time| Kernel::new(cycles(time), period));
+            [smoothing, VELOCITY * smoothing].map(|time| Kernel::new(cycles(time), period));
         // Without any smoothing: central differences.
         let steps = Kernel::new(0.0, period);
         let stride = ((SPACING * cycles(smoothing)) as usize).max(1);
