@@ -95,8 +95,8 @@ fn simulated() -> Vec<Sample> {
             let stiffness = 1.0 / m.along.at(x).compliance;
             let spring = stiffness * (angle - x / TRAVEL);
             let omega = v / TRAVEL;
-            let level = p.coulomb
-                + (p.stiction - p.coulomb) * (-(omega / p.stribeck_speed).powi(2)).exp();
+            let level =
+                p.coulomb + (p.stiction - p.coulomb) * (-(omega / p.stribeck_speed).powi(2)).exp();
             let rate = omega - p.stiffness * omega.abs() / level * z;
             let friction = p.stiffness * z + p.damping * rate + p.viscous * omega;
             w += h * (command - spring) / 6e-3;
@@ -185,14 +185,23 @@ fn one_log_tells_the_parameters_of_an_independent_simulation() {
         let learned = adaptation.learn(&noisy(&log, 1.0, &mut draw)).unwrap();
         assert!(learned.torque_after < 0.1 * learned.torque_before);
         for (parameter, error) in DRAWN.iter().zip(errors) {
-            let found = learned.parameters.iter().find(|p| p.parameter == *parameter);
+            let found = learned
+                .parameters
+                .iter()
+                .find(|p| p.parameter == *parameter);
             let found = found.unwrap();
             let off = (found.relative - error).abs();
-            assert!(off < 0.01 && off < 5.0 * found.standard_error, "{found:?} {error}");
+            assert!(
+                off < 0.01 && off < 5.0 * found.standard_error,
+                "{found:?} {error}"
+            );
             assert!(!found.at_bound);
         }
         let [travel, deviation] = learned.free_travel.unwrap();
-        assert!(travel.abs() < 0.2e-6 + 3.0 * deviation, "{travel} {deviation}");
+        assert!(
+            travel.abs() < 0.2e-6 + 3.0 * deviation,
+            "{travel} {deviation}"
+        );
         // What is handed on is what was found.
         let mass = adaptation.model().load_inertia;
         assert!((mass - 500.0).abs() < 5.0, "{mass}");
@@ -210,16 +219,30 @@ fn intervals_hold_as_often_as_they_say() {
         let mut draw = Draw(1000 + seed);
         let (model, errors) = belief(&mut draw);
         let mut adaptation = adaptation(&model);
-        let learned = adaptation.learn(&noisy(&log, std::env::var("N").unwrap().parse().unwrap(), &mut draw)).unwrap();
+        let learned = adaptation
+            .learn(&noisy(
+                &log,
+                std::env::var("N").unwrap().parse().unwrap(),
+                &mut draw,
+            ))
+            .unwrap();
         for (i, ((parameter, error), held)) in DRAWN.iter().zip(errors).zip(&mut held).enumerate() {
-            let found = learned.parameters.iter().find(|p| p.parameter == *parameter);
+            let found = learned
+                .parameters
+                .iter()
+                .find(|p| p.parameter == *parameter);
             let found = found.unwrap();
             let z = (found.relative - error) / found.standard_error;
-            z1[i] += z / draws as f64; z2[i] += z * z / draws as f64; ses[i] += 100.0 * found.standard_error / draws as f64;
+            z1[i] += z / draws as f64;
+            z2[i] += z * z / draws as f64;
+            ses[i] += 100.0 * found.standard_error / draws as f64;
             *held += usize::from((found.relative - error).abs() < 1.96 * found.standard_error);
         }
     }
-    println!("mean z {z1:.2?} rms z {:.2?} se % {ses:.3?}", z2.map(|z| z.sqrt()));
+    println!(
+        "mean z {z1:.2?} rms z {:.2?} se % {ses:.3?}",
+        z2.map(|z| z.sqrt())
+    );
     let all: usize = held.iter().sum();
     let share = all as f64 / (6 * draws) as f64;
     assert!((0.90..=0.985).contains(&share), "{share} {held:?}");
@@ -343,5 +366,7 @@ fn settings_are_checked() {
     assert_eq!(fixed, AdaptError::Nothing);
     let mut slow = truth();
     slow.period = 0.01;
-    assert!(setting(Adaptation::new(&slow, &AdaptPrior::default()).unwrap_err()));
+    assert!(setting(
+        Adaptation::new(&slow, &AdaptPrior::default()).unwrap_err()
+    ));
 }

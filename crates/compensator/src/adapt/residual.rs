@@ -14,7 +14,6 @@ use lugre::LuGre;
 use nalgebra::{SMatrix, SVector};
 
 use super::belief::Belief;
-use super::kernel::Kernel;
 use super::parameter::{AdaptParameter, COUNT, Theta};
 use super::record::Record;
 use super::weight::weights;
@@ -244,7 +243,7 @@ fn forces(law: &LuGre, record: &Record, held: f64) -> Vec<f64> {
         force
     });
     let series: Vec<f64> = each.collect();
-    let padded = Kernel::pad(&series, record.kernel.half());
+    let padded = record.kernel.pad(&series, record.rest);
     let smooth = record
         .points
         .iter()

@@ -8,6 +8,8 @@ const NEARBY: usize = 32;
 const BY_SMOOTHING: f64 = 7.1;
 /// Values after which it has left no correlation.
 const SMOOTHED: usize = 16;
+/// Mean over median of the variances of some nine independent values.
+const TYPICAL: f64 = 1.1;
 /// How many times the usual variance must be passed to count as more.
 const MORE: f64 = 2.0;
 
@@ -26,7 +28,7 @@ pub(super) fn weights(values: &[f64], floor: f64, free: usize, even: bool) -> Ve
     };
     let mut sorted = nearby.clone();
     sorted.sort_by(f64::total_cmp);
-    let usual = sorted[sorted.len() / 2]
+    let usual = (TYPICAL * sorted[sorted.len() / 2])
         .max(floor * floor)
         .max(f64::MIN_POSITIVE);
     let all = nearby.iter().cycle().take(values.len());
@@ -73,10 +75,14 @@ fn long_run_variance(values: &[f64], fitted: usize) -> f64 {
     };
     let own = covariance(0);
     let most = ((2.0 * (count as f64).sqrt()) as usize).min(count / 4);
-    let covariances: Vec<f64> = (0..=most.max(SMOOTHED).min(count - 1)).map(covariance).collect();
+    let covariances: Vec<f64> = (0..=most.max(SMOOTHED).min(count - 1))
+        .map(covariance)
+        .collect();
     let total = |reach: usize, window: &dyn Fn(f64) -> f64| {
         let lags = covariances.iter().enumerate().skip(1).take(reach);
-        let sum: f64 = lags.map(|(lag, c)| window(lag as f64 / (reach + 1) as f64) * c).sum();
+        let sum: f64 = lags
+            .map(|(lag, c)| window(lag as f64 / (reach + 1) as f64) * c)
+            .sum();
         own + 2.0 * sum
     };
     let near = total(SMOOTHED, &|share| (2.0 * (1.0 - share)).min(1.0));
