@@ -38,6 +38,7 @@ fn cycles() -> Vec<Sample> {
             reference: reference(k),
             next_reference: reference(k + 1),
             position: reference(k).position - 1e-6,
+            motor_angle: 0.0,
             motor_speed: reference(k).velocity / R,
             iq: 0.5,
             iq_command: 0.5,

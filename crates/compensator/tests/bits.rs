@@ -73,6 +73,7 @@ fn samples() -> Vec<Sample> {
             reference: pair[0],
             next_reference: pair[1],
             position: pair[0].position + 1e-5 * random.next(),
+            motor_angle: 0.0,
             motor_speed: pair[0].velocity / R + 0.1 * random.next(),
             iq: random.next(),
             iq_command: 3.0 * random.next(),

@@ -48,6 +48,7 @@ fn any_sample() -> impl Strategy<Value = Sample> {
             reference: reference(0),
             next_reference: reference(3),
             position: v[6],
+            motor_angle: 0.0,
             motor_speed: v[7],
             iq: v[8],
             iq_command: v[9],

@@ -94,6 +94,7 @@ proptest! {
                 reference: at(k, reference_a),
                 next_reference: at(k + 1, reference_a),
                 position: table.position,
+                motor_angle: 0.0,
                 motor_speed: table.velocity / R,
                 iq: -1.0,
                 iq_command: iq,

@@ -49,6 +49,7 @@ fn samples(row: [f64; 3]) -> Vec<Sample<f32>> {
                 reference: now,
                 next_reference: reference(time + period),
                 position: reference(time - period).position,
+                motor_angle: 0.0,
                 motor_speed: 1.001 * now.velocity / f64::from(R),
                 iq,
                 iq_command: iq,

@@ -16,6 +16,7 @@
 //! values as their correlation leaves independent, so that structure which the model does
 //! not have makes estimates uncertain, not wrong and sure.
 
+mod balance;
 mod belief;
 mod check;
 mod error;
@@ -127,7 +128,7 @@ impl Adaptation {
         let state = State {
             estimate: [0.0; COUNT],
             information: Information::zeros(),
-            variances: prior.spreads.map(|spread| spread.deviation.powi(2)),
+            variances: prior.spreads.map(|s| s.deviation * s.deviation),
         };
         if !AdaptParameter::ALL.iter().any(|&p| belief.adapts(p)) {
             return Err(AdaptError::Nothing);
@@ -155,13 +156,15 @@ impl Adaptation {
         let fit = known.fit(&record);
         let (torque, [before, after]) = (record.torque, fit.weighed);
         // Written so that NaN is refused too.
-        if !(fit.left <= MOST_LEFT * torque) {
+        let explained = fit.left <= MOST_LEFT * torque;
+        if !explained {
             return Err(AdaptError::Unexplained {
                 residual: fit.left,
                 torque,
             });
         }
-        if !(after <= WORSE * before + FINEST * torque) {
+        let agrees = after <= WORSE * before + FINEST * torque;
+        if !agrees {
             return Err(AdaptError::NoBetter { before, after });
         }
         self.states.push(State {
