@@ -7,6 +7,7 @@ use super::AdaptError;
 use super::belief::Belief;
 use super::check::check;
 use super::kernel::{Kernel, mean};
+use super::smooth::{Point, Smooth};
 use super::torque::torques;
 use crate::{DriveModel, Sample};
 
@@ -22,23 +23,6 @@ const SLOW: f64 = 0.01;
 const SPACING: f64 = 0.5;
 /// Least number of points.
 const LEAST_POINTS: usize = 40;
-
-/// The balance at one instant. Torques at the motor, N·m.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Point {
-    /// Sample that it is at.
-    pub sample: usize,
-    /// Torque that is left for inertia of the load, friction and standing load.
-    pub left: f64,
-    /// Acceleration of the load.
-    pub acceleration: f64,
-    /// Motor angle against that of the load, rad.
-    pub lead: f64,
-    /// Torque through the transmission.
-    pub transmitted: f64,
-    /// Compliance of the model there, rad/(N·m).
-    pub compliance: f64,
-}
 
 /// A log made ready.
 #[derive(Clone, Debug)]
@@ -136,55 +120,6 @@ impl Record {
             period,
             rest,
         })
-    }
-}
-
-/// Signals of a log, to be smoothed where they are asked for.
-struct Smooth<'a> {
-    model: &'a DriveModel,
-    balance: &'a Kernel,
-    torques: Vec<f64>,
-    angles: Vec<f64>,
-}
-
-impl Smooth<'_> {
-    /// Position of a load that has no sensor: the motor's, less the wind-up that the torque
-    /// tells.
-    fn load(&self, measured: &[f64], angle: &[f64]) -> Vec<f64> {
-        let m = self.model;
-        let wound = |k: usize| {
-            let section = m.along.at(measured[k]);
-            let of_motor = self.balance.of(2, &self.angles, k);
-            let inertia = section.rotating - section.lagging;
-            section.compliance * (self.balance.of(0, &self.torques, k) - inertia * of_motor)
-        };
-        let start = measured[0] - m.travel * (angle[0] - wound(0));
-        let load = |k: usize| start + m.travel * (angle[k] - wound(k));
-        (0..measured.len()).map(load).collect()
-    }
-
-    /// The balance at a sample.
-    fn point(&self, sample: usize, positions: &[f64], elastic: bool) -> Point {
-        let (m, of) = (self.model, |which, of: &[f64]| {
-            self.balance.of(which, of, sample)
-        });
-        let (x, acceleration) = (of(0, positions), of(2, positions));
-        let section = m.along.at(x);
-        let of_motor = match elastic {
-            true => of(2, &self.angles),
-            false => acceleration / m.travel,
-        };
-        let inertia = section.rotating - section.lagging;
-        let transmitted = of(0, &self.torques) - inertia * of_motor;
-        let of_rotation = section.lagging * acceleration / m.travel;
-        Point {
-            sample,
-            left: transmitted - of_rotation - m.travel * section.load,
-            acceleration,
-            lead: of(0, &self.angles) - x / m.travel,
-            transmitted,
-            compliance: section.compliance,
-        }
     }
 }
 
