@@ -24,11 +24,14 @@
 //! [`MotionEstimator`]: motor speed, set right by the scale. The linear model
 //! comes from `identify_transfer_function` (feature `identify`, least squares).
 //!
+//! `Adaptation` (feature `identify`) learns a [`DriveModel`] from the logs of moves, for
+//! the [`Plan`] of the next.
+//!
 //! All are generic over their scalar: `f64` where none is named, `f32` for a
 //! controller without double precision in hardware; identification and
 //! [`cfnn::Network`] are in `f64`, and `cast` takes their results over.
 //!
-//! Everything but the identification works without `std`, and nothing is
+//! Everything but identification and adaptation works without `std`, and nothing is
 //! allocated in a cycle. The crate knows nothing of the simulator: no inner
 //! state of a plant comes in. It does not read or write files, plan motions,
 //! or train networks.

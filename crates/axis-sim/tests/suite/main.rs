@@ -3,6 +3,7 @@
 //! axis's own vibration, sensors, energy, single cycles, replays, and values that
 //! nobody should give.
 
+mod adaptation;
 mod axis_files;
 mod bad_files;
 mod belt;

@@ -24,7 +24,8 @@ pub(super) fn check(model: &DriveModel, log: &[Sample], least: usize) -> Result<
             ("iq_command", s.iq_command),
         ];
         // Written so that NaN is caught too.
-        if let Some((what, value)) = named.into_iter().find(|(_, v)| !(v.abs() <= LARGEST)) {
+        let inside = |value: f64| value.abs() <= LARGEST;
+        if let Some((what, value)) = named.into_iter().find(|(_, v)| !inside(*v)) {
             return Err(AdaptError::Value {
                 sample,
                 what,
@@ -36,8 +37,8 @@ pub(super) fn check(model: &DriveModel, log: &[Sample], least: usize) -> Result<
     let most = positions.clone().fold(f64::MIN, f64::max);
     let way = most - positions.fold(f64::MAX, f64::min);
     let least = LEAST_WAY * model.friction.bristle_limit() * model.lever;
-    if !(way > least) {
-        return Err(AdaptError::Standstill { way, least });
+    if way > least {
+        return Ok(());
     }
-    Ok(())
+    Err(AdaptError::Standstill { way, least })
 }

@@ -39,7 +39,7 @@ impl Known<'_> {
         }
         let free: Vec<usize> = (0..ALL).filter(|&i| self.free(record, i)).collect();
         let start = Residuals::at(self.belief, record, &at, &free);
-        let mut weights = start.weights(record, free.len(), true);
+        let mut weights = start.weights(free.len(), true);
         let mut residuals = start.clone();
         let mut settled = 0;
         for _ in 0..STEPS {
@@ -84,9 +84,9 @@ impl Known<'_> {
             }
             // First all alike, then by what is left: weights of residuals that are far off
             // would keep them there.
-            weights = residuals.weights(record, free.len(), settled == 0);
+            weights = residuals.weights(free.len(), settled == 0);
         }
-        let weights = residuals.weights(record, free.len(), false);
+        let weights = residuals.weights(free.len(), false);
         let (information, variances, gap) = gained(self, record, &at, &residuals, &weights, &free);
         Fit {
             estimate: std::array::from_fn(|i| at[i]),

@@ -41,16 +41,19 @@ impl Kernel {
         self.half
     }
 
-    /// `series` with `by` samples put before and after it as its image through the end
-    /// points: a series at rest goes on resting, one in motion moving.
-    pub fn pad(series: &[f64], by: usize) -> Vec<f64> {
+    /// `series` with `half` samples more before and after it: its image through the end
+    /// points, so that one in motion goes on moving. Where it rests at its start, the mean
+    /// of its first `rest` samples comes before it.
+    pub fn pad(&self, series: &[f64], rest: Option<usize>) -> Vec<f64> {
         let (Some(first), Some(last)) = (series.first(), series.last()) else {
             return Vec::new();
         };
         let at = |i: usize| series[i.min(series.len() - 1)];
         let from_end = |i: usize| at((series.len() - 1).saturating_sub(i));
-        let before = (1..=by).rev().map(|i| 2.0 * first - at(i));
-        let after = (1..=by).map(|i| 2.0 * last - from_end(i));
+        let rest = rest.map(|count| mean(&series[..count.clamp(1, series.len())]));
+        let images = (1..=self.half).rev().map(|i| 2.0 * first - at(i));
+        let before = images.map(|image| rest.unwrap_or(image));
+        let after = (1..=self.half).map(|i| 2.0 * last - from_end(i));
         before.chain(series.iter().copied()).chain(after).collect()
     }
 
@@ -63,6 +66,11 @@ impl Kernel {
         let sum = dot(&self.weights[which], window, middle);
         if which == 0 { middle + sum } else { sum }
     }
+}
+
+/// Mean of values.
+pub(super) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Σ wᵢ (xᵢ − middle), in partial sums for the compiler.

@@ -35,7 +35,7 @@ impl Known<'_> {
                 record.sees_load && self.belief.adapts(AdaptParameter::Compliance)
             }
             Some(&parameter) => self.belief.adapts(parameter),
-            None => Residuals::has_nuisance(self.belief, record, i - COUNT),
+            None => Residuals::has_nuisance(self.belief, record, i),
         }
     }
 
@@ -44,10 +44,11 @@ impl Known<'_> {
     pub fn precision(&self, record: &Record, i: usize, value: f64) -> f64 {
         let deviation = match AdaptParameter::ALL.get(i) {
             Some(&parameter) => self.belief.prior.of(parameter).deviation,
-            None => Residuals::nuisance_deviation(self.belief, record, i - COUNT),
+            None => Residuals::nuisance_deviation(self.belief, record, i),
         };
         let far = (value.abs() / deviation / GIVES_WAY).max(1.0);
-        1.0 / (deviation * far).powi(2)
+        let spread = deviation * far;
+        1.0 / (spread * spread)
     }
 
     /// Least and greatest value of a coordinate.

@@ -16,6 +16,7 @@
 //! values as their correlation leaves independent, so that structure which the model does
 //! not have makes estimates uncertain, not wrong and sure.
 
+mod balance;
 mod belief;
 mod check;
 mod error;
@@ -25,7 +26,9 @@ mod kernel;
 mod known;
 mod parameter;
 mod record;
+mod report;
 mod residual;
+mod smooth;
 mod torque;
 mod weight;
 
@@ -41,6 +44,7 @@ use known::{Information, Known};
 pub use parameter::{AdaptParameter, AdaptPrior, Spread};
 use parameter::{COUNT, Theta};
 use record::Record;
+pub use report::{Estimated, Learned};
 
 /// A torque balance of which more than this share is left is of another machine.
 const MOST_LEFT: f64 = 0.3;
@@ -62,45 +66,6 @@ struct State {
     estimate: Theta,
     information: Information,
     variances: Theta,
-}
-
-/// One parameter as it is known after a move.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimated {
-    /// Which.
-    pub parameter: AdaptParameter,
-    /// Relative error of the belief: value over belief − 1; of a standing load, its share
-    /// of the believed Coulomb force.
-    pub relative: f64,
-    /// Standard error of `relative`.
-    pub standard_error: f64,
-    /// In the model's unit: friction in its own coordinate, inertia in kg or kg·m², the
-    /// greatest compliance along the stroke in rad/(N·m), a standing load in N or N·m.
-    pub value: f64,
-    /// Standard error of `value`.
-    pub value_error: f64,
-    /// Whether the estimate is held by its bound.
-    pub at_bound: bool,
-}
-
-/// What a move has taught.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Learned {
-    /// Moves learned by now, this one included.
-    pub moves: usize,
-    /// The parameters that are adapted on this axis.
-    pub parameters: Vec<Estimated>,
-    /// RMS of the smoothed torque that the model did not explain before, what is seen
-    /// where it explains little counting less, N·m.
-    pub torque_before: f64,
-    /// And after.
-    pub torque_after: f64,
-    /// RMS of the motor's torque, N·m.
-    pub torque: f64,
-    /// Free travel between motor and load that the log seems to show, and its standard
-    /// error, m or rad at the load; none where the load has no sensor of its own. No model
-    /// has it: it is told for maintenance.
-    pub free_travel: Option<[f64; 2]>,
 }
 
 impl Adaptation {
@@ -127,7 +92,7 @@ impl Adaptation {
         let state = State {
             estimate: [0.0; COUNT],
             information: Information::zeros(),
-            variances: prior.spreads.map(|spread| spread.deviation.powi(2)),
+            variances: prior.spreads.map(|s| s.deviation * s.deviation),
         };
         if !AdaptParameter::ALL.iter().any(|&p| belief.adapts(p)) {
             return Err(AdaptError::Nothing);
@@ -155,13 +120,15 @@ impl Adaptation {
         let fit = known.fit(&record);
         let (torque, [before, after]) = (record.torque, fit.weighed);
         // Written so that NaN is refused too.
-        if !(fit.left <= MOST_LEFT * torque) {
+        let explained = fit.left <= MOST_LEFT * torque;
+        if !explained {
             return Err(AdaptError::Unexplained {
                 residual: fit.left,
                 torque,
             });
         }
-        if !(after <= WORSE * before + FINEST * torque) {
+        let agrees = after <= WORSE * before + FINEST * torque;
+        if !agrees {
             return Err(AdaptError::NoBetter { before, after });
         }
         self.states.push(State {

@@ -6,33 +6,23 @@ use std::vec::Vec;
 use super::AdaptError;
 use super::belief::Belief;
 use super::check::check;
-use super::kernel::Kernel;
+use super::kernel::{Kernel, mean};
+use super::smooth::{Point, Smooth};
 use super::torque::torques;
-use crate::Sample;
+use crate::{DriveModel, Sample};
 
+/// Share of the smoothing that is over the velocity beside the reference.
+const VELOCITY: f64 = 0.25;
 /// Time at the start over which nothing has moved yet, s.
 const AT_START: f64 = 1e-3;
+/// Share of friction's torque that counts as hardly any.
+const HARDLY: f64 = 0.01;
+/// Share of the greatest speed below which an axis counts as at rest there.
+const SLOW: f64 = 0.01;
 /// Deviations between two points: closer ones say the same.
 const SPACING: f64 = 0.5;
 /// Least number of points.
 const LEAST_POINTS: usize = 40;
-
-/// The balance at one instant. Torques at the motor, N·m.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Point {
-    /// Sample that it is at.
-    pub sample: usize,
-    /// Torque that is left for inertia of the load, friction and standing load.
-    pub left: f64,
-    /// Acceleration of the load.
-    pub acceleration: f64,
-    /// Motor angle against that of the load, rad.
-    pub lead: f64,
-    /// Torque through the transmission.
-    pub transmitted: f64,
-    /// Compliance of the model there, rad/(N·m).
-    pub compliance: f64,
-}
 
 /// A log made ready.
 #[derive(Clone, Debug)]
@@ -51,6 +41,8 @@ pub(super) struct Record {
     pub torque: f64,
     /// Control period, s.
     pub period: f64,
+    /// Samples at the start over which the axis rests, where it does.
+    pub rest: Option<usize>,
 }
 
 impl Record {
@@ -61,70 +53,46 @@ impl Record {
         // Few samples a deviation make no Gaussian.
         let cycles = |time: f64| (time / period).max(1.0);
         let [balance, velocity] =
-            [smoothing, 0.5 * smoothing].map(|time| Kernel::new(cycles(time), period));
-        // Without any smoothing: central differences.
-        let steps = Kernel::new(0.0, period);
+            [smoothing, VELOCITY * smoothing].map(|time| Kernel::new(cycles(time), period));
         let stride = ((SPACING * cycles(smoothing)) as usize).max(1);
         let edge = balance.half();
-        let least = 2 * edge + LEAST_POINTS * stride;
-        check(model, log, least)?;
+        check(model, log, 2 * edge + LEAST_POINTS * stride)?;
 
-        let padded = |kernel: &Kernel, series: &[f64]| Kernel::pad(series, kernel.half());
+        let at_start = standing(model, &log[..cycles(AT_START) as usize]);
+        let rest = rests(log, at_start).then_some(at_start);
         let torque = torques(model, log);
         let angle: Vec<f64> = log.iter().map(|s| s.motor_angle).collect();
-        let (torques, angles) = (padded(&balance, &torque), padded(&balance, &angle));
-        let measured: Vec<f64> = log.iter().map(|s| s.position).collect();
         let elastic = model.along.most_compliance() > 0.0;
+        let measured: Vec<f64> = log.iter().map(|s| s.position).collect();
         let sees_load = elastic && differs(&measured, &angle, model.travel);
+        let smooth = Smooth {
+            model,
+            torques: balance.pad(&torque, rest),
+            angles: balance.pad(&angle, rest),
+            balance: &balance,
+        };
         let position = match elastic && !sees_load {
+            true => smooth.load(&measured, &angle),
             false => measured,
-            // It is the motor's angle: less the wind-up that the torque tells.
-            true => {
-                let home = measured[0] - model.travel * angle[0];
-                let wound = |k: usize| {
-                    let section = model.along.at(measured[k]);
-                    let through = balance.of(0, &torques, k)
-                        - (section.rotating - section.lagging) * balance.of(2, &angles, k);
-                    section.compliance * through
-                };
-                let start = wound(0);
-                let load = |k: usize| home + model.travel * (angle[k] - wound(k) + start);
-                (0..log.len()).map(load).collect()
-            }
         };
-        let positions = padded(&balance, &position);
-        let at_limit: Vec<usize> = (log.iter().enumerate())
-            .filter(|(_, s)| s.iq_command.abs() >= 0.999 * model.effort_limit)
-            .map(|(k, _)| k)
-            .collect();
+        let positions = balance.pad(&position, rest);
+
+        let limit = 0.999 * model.effort_limit;
+        let commands = log.iter().enumerate();
+        let limited = commands.filter(|(_, s)| s.iq_command.abs() >= limit);
+        let limited: Vec<usize> = limited.map(|(k, _)| k).collect();
         let near_limit = |k: usize| {
-            let next = at_limit.partition_point(|&at| at + edge < k);
-            at_limit.get(next).is_some_and(|&at| at <= k + edge)
+            let next = limited.partition_point(|&at| at + edge < k);
+            limited.get(next).is_some_and(|&at| at <= k + edge)
         };
-        let all: Vec<usize> = (edge..log.len() - edge).step_by(stride).collect();
-        let point = |sample: usize| {
-            let x = balance.of(0, &positions, sample);
-            let acceleration = balance.of(2, &positions, sample);
-            let section = model.along.at(x);
-            let of_motor = match elastic {
-                true => balance.of(2, &angles, sample),
-                false => acceleration / model.travel,
-            };
-            let torque = balance.of(0, &torques, sample);
-            let transmitted = torque - (section.rotating - section.lagging) * of_motor;
-            Point {
-                sample,
-                left: transmitted
-                    - section.lagging * acceleration / model.travel
-                    - model.travel * section.load,
-                acceleration,
-                lead: balance.of(0, &angles, sample) - x / model.travel,
-                transmitted,
-                compliance: section.compliance,
-            }
-        };
+        // What is before a log can be told of one at rest only, and only where friction
+        // breaks away too early is that worth its noise.
+        let way = log[2 * edge].reference.position - log[0].reference.position;
+        let early = way.abs() > model.friction.bristle_limit() * model.lever;
+        let from = if rest.is_some() && early { 0 } else { edge };
+        let all: Vec<usize> = (from..log.len() - edge).step_by(stride).collect();
         let free = all.iter().copied().filter(|&k| !near_limit(k));
-        let points: Vec<Point> = free.map(point).collect();
+        let points: Vec<Point> = free.map(|k| smooth.point(k, &positions, elastic)).collect();
         if points.len() < LEAST_POINTS.max(all.len() / 2) {
             let share = 100.0 * (1.0 - points.len() as f64 / all.len() as f64);
             return Err(AdaptError::Saturated { share });
@@ -134,23 +102,45 @@ impl Record {
         // away keeps its shape where the axis follows.
         let reference: Vec<f64> = log.iter().map(|s| s.reference.position).collect();
         let beside = position.iter().zip(&reference).map(|(x, r)| x - r);
-        let beside = padded(&velocity, &beside.collect::<Vec<_>>());
-        let ahead = padded(&steps, &reference);
+        let beside = velocity.pad(&beside.collect::<Vec<_>>(), rest);
+        // Without any smoothing: central differences.
+        let steps = Kernel::new(0.0, period);
+        let ahead = steps.pad(&reference, rest.map(|_| 1));
         let speed = |k: usize| (steps.of(1, &ahead, k) + velocity.of(1, &beside, k)) / model.lever;
-        let first = &torque[..(cycles(AT_START) as usize).clamp(1, torque.len())];
-        let standing = first.iter().sum::<f64>() / first.len() as f64;
+        let holding = mean(&torque[..at_start]);
         let load = model.along.at(position[0]).load;
-        let mean_square = torque.iter().map(|t| t * t).sum::<f64>() / torque.len() as f64;
+        let squares: Vec<f64> = torque.iter().map(|t| t * t).collect();
         Ok(Self {
             points,
             speeds: (0..log.len()).map(speed).collect(),
-            kernel: balance.clone(),
-            held: (standing / model.travel - load) * model.lever,
+            kernel: balance,
+            held: (holding / model.travel - load) * model.lever,
             sees_load,
-            torque: mean_square.sqrt(),
+            torque: mean(&squares).sqrt(),
             period,
+            rest,
         })
     }
+}
+
+/// First samples in which the reference asks for hardly any torque yet, beside friction's.
+fn standing(model: &DriveModel, log: &[Sample]) -> usize {
+    let section = model.along.at(log[0].position);
+    let inertia = section.rotating / model.travel + model.travel * model.load_inertia;
+    let friction = model.travel * model.friction.parameters().stiction / model.lever;
+    let hardly = |s: &Sample| (inertia * s.reference.acceleration).abs() <= HARDLY * friction;
+    log.iter().take_while(|s| hardly(s)).count().max(1)
+}
+
+/// Whether the axis rests over the first samples, as told and as measured.
+fn rests(log: &[Sample], samples: usize) -> bool {
+    let (first, then) = (&log[0], &log[samples.min(log.len() - 1)]);
+    let fastest = |f: &dyn Fn(&Sample) -> f64| {
+        let by = |pair: &[Sample]| (f(&pair[samples]) - f(&pair[0])).abs();
+        log.windows(samples + 1).map(by).fold(0.0, f64::max)
+    };
+    let slow = |f: &dyn Fn(&Sample) -> f64| (f(then) - f(first)).abs() <= SLOW * fastest(f);
+    slow(&|s| s.reference.position) && slow(&|s| s.position)
 }
 
 /// Whether the load's position says more than the motor's angle.

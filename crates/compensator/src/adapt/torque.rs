@@ -53,7 +53,7 @@ pub(super) fn torques(model: &DriveModel, log: &[Sample]) -> Vec<f64> {
                 let torque = gear * motor.torque(i);
                 integral += d[1] * h * -id;
                 let held = Dq {
-                    d: (d[0] * -id + integral).clamp(-voltage.abs(), voltage.abs()),
+                    d: (d[0] * -id + integral).max(-voltage).min(voltage),
                     q: motor.steady_voltage(i, speed).q,
                 };
                 id = motor.step(i, held, speed, h).d;

@@ -4,6 +4,12 @@ use std::vec::Vec;
 
 /// Values to either side over which a residual's size is judged.
 const NEARBY: usize = 32;
+/// Values that the Gaussian makes one of, half its deviation apart: 2 √π · 2.
+const BY_SMOOTHING: f64 = 7.1;
+/// Values after which it has left no correlation.
+const SMOOTHED: usize = 16;
+/// Mean over median of the variances of some nine independent values.
+const TYPICAL: f64 = 1.1;
 /// How many times the usual variance must be passed to count as more.
 const MORE: f64 = 2.0;
 
@@ -22,7 +28,7 @@ pub(super) fn weights(values: &[f64], floor: f64, free: usize, even: bool) -> Ve
     };
     let mut sorted = nearby.clone();
     sorted.sort_by(f64::total_cmp);
-    let usual = sorted[sorted.len() / 2]
+    let usual = (TYPICAL * sorted[sorted.len() / 2])
         .max(floor * floor)
         .max(f64::MIN_POSITIVE);
     let all = nearby.iter().cycle().take(values.len());
@@ -32,7 +38,11 @@ pub(super) fn weights(values: &[f64], floor: f64, free: usize, even: bool) -> Ve
         .zip(&variances)
         .map(|(e, v)| e / v.sqrt())
         .collect();
-    let correlated = long_run_variance(&unit, free).max(1.0);
+    // Residuals that are still far off are one long correlation, and would count as nothing.
+    let correlated = match even {
+        true => BY_SMOOTHING,
+        false => long_run_variance(&unit, free).max(1.0),
+    };
     variances.iter().map(|v| 1.0 / (v * correlated)).collect()
 }
 
@@ -52,9 +62,11 @@ fn nearby(values: &[f64]) -> Vec<f64> {
 }
 
 /// Variance that the mean of a series times its length has, per value: the variance of
-/// its values and twice all their covariances, by Bartlett's window (Newey and West,
-/// Econometrica 55 (1987) 703–708). Correlated residuals so count as the fewer values
-/// that they are.
+/// its values and twice all their covariances, so that correlated residuals count as the
+/// fewer values that they are. The larger of two estimates: over as far as the smoothing
+/// reaches (a flat-topped window: Politis and Romano, J. Time Ser. Anal. 16 (1995) 67–103),
+/// which what was fitted disturbs little; and over longer times (Bartlett's window: Newey
+/// and West, Econometrica 55 (1987) 703–708), for structure that the model does not have.
 fn long_run_variance(values: &[f64], fitted: usize) -> f64 {
     let count = values.len();
     let covariance = |lag: usize| {
@@ -63,12 +75,21 @@ fn long_run_variance(values: &[f64], fitted: usize) -> f64 {
     };
     let own = covariance(0);
     let most = ((2.0 * (count as f64).sqrt()) as usize).min(count / 4);
-    let mut total = own;
-    for lag in 1..=most {
-        let window = 1.0 - lag as f64 / (most + 1) as f64;
-        total += 2.0 * window * covariance(lag);
-    }
-    let total = total.max(own);
+    let covariances: Vec<f64> = (0..=most.max(SMOOTHED).min(count - 1))
+        .map(covariance)
+        .collect();
+    let total = |reach: usize, window: &dyn Fn(f64) -> f64| {
+        let lags = covariances.iter().enumerate().skip(1).take(reach);
+        let sum: f64 = lags
+            .map(|(lag, c)| window(lag as f64 / (reach + 1) as f64) * c)
+            .sum();
+        own + 2.0 * sum
+    };
+    let near = total(SMOOTHED, &|share| (2.0 * (1.0 - share)).min(1.0));
+    let far = total(most, &|share| 1.0 - share);
+    // A variance that is itself estimated counts as one standard error more.
+    let unsure = 1.0 + (4.0 / 3.0 * SMOOTHED as f64 / count as f64).sqrt();
+    let total = unsure * near.max(far).max(own);
     // What was fitted has taken its share of the independent values.
     let independent = count as f64 * own / total.max(f64::MIN_POSITIVE);
     total * independent.max(fitted as f64 + 1.0) / (independent - fitted as f64).max(1.0)

@@ -1,0 +1,44 @@
+//! What is told of an adaptation.
+
+use std::vec::Vec;
+
+use super::AdaptParameter;
+
+/// One parameter as it is known after a move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimated {
+    /// Which.
+    pub parameter: AdaptParameter,
+    /// Relative error of the belief: value over belief − 1; of a standing load, its share
+    /// of the believed Coulomb force.
+    pub relative: f64,
+    /// Standard error of `relative`.
+    pub standard_error: f64,
+    /// In the model's unit: friction in its own coordinate, inertia in kg or kg·m², the
+    /// greatest compliance along the stroke in rad/(N·m), a standing load in N or N·m.
+    pub value: f64,
+    /// Standard error of `value`.
+    pub value_error: f64,
+    /// Whether the estimate is held by its bound.
+    pub at_bound: bool,
+}
+
+/// What a move has taught.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Learned {
+    /// Moves learned by now, this one included.
+    pub moves: usize,
+    /// The parameters that are adapted on this axis.
+    pub parameters: Vec<Estimated>,
+    /// RMS of the smoothed torque that the model did not explain before, what is seen
+    /// where it explains little counting less, N·m.
+    pub torque_before: f64,
+    /// And after.
+    pub torque_after: f64,
+    /// RMS of the motor's torque, N·m.
+    pub torque: f64,
+    /// Free travel between motor and load that the log seems to show, and its standard
+    /// error, m or rad at the load; none where the load has no sensor of its own. No model
+    /// has it: it is told for maintenance.
+    pub free_travel: Option<[f64; 2]>,
+}

@@ -1,0 +1,72 @@
+//! Signals of a log through the Gaussian.
+
+use std::vec::Vec;
+
+use super::kernel::Kernel;
+use crate::DriveModel;
+
+/// The balance at one instant. Torques at the motor, N·m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    /// Sample that it is at.
+    pub sample: usize,
+    /// Torque that is left for inertia of the load, friction and standing load.
+    pub left: f64,
+    /// Acceleration of the load.
+    pub acceleration: f64,
+    /// Motor angle against that of the load, rad.
+    pub lead: f64,
+    /// Torque through the transmission.
+    pub transmitted: f64,
+    /// Compliance of the model there, rad/(N·m).
+    pub compliance: f64,
+}
+
+/// Signals of a log, to be smoothed where they are asked for.
+pub(super) struct Smooth<'a> {
+    pub model: &'a DriveModel,
+    pub balance: &'a Kernel,
+    pub torques: Vec<f64>,
+    pub angles: Vec<f64>,
+}
+
+impl Smooth<'_> {
+    /// Position of a load that has no sensor: the motor's, less the wind-up that the torque
+    /// tells.
+    pub fn load(&self, measured: &[f64], angle: &[f64]) -> Vec<f64> {
+        let m = self.model;
+        let wound = |k: usize| {
+            let section = m.along.at(measured[k]);
+            let of_motor = self.balance.of(2, &self.angles, k);
+            let inertia = section.rotating - section.lagging;
+            section.compliance * (self.balance.of(0, &self.torques, k) - inertia * of_motor)
+        };
+        let start = measured[0] - m.travel * (angle[0] - wound(0));
+        let load = |k: usize| start + m.travel * (angle[k] - wound(k));
+        (0..measured.len()).map(load).collect()
+    }
+
+    /// The balance at a sample.
+    pub fn point(&self, sample: usize, positions: &[f64], elastic: bool) -> Point {
+        let (m, of) = (self.model, |which, of: &[f64]| {
+            self.balance.of(which, of, sample)
+        });
+        let (x, acceleration) = (of(0, positions), of(2, positions));
+        let section = m.along.at(x);
+        let of_motor = match elastic {
+            true => of(2, &self.angles),
+            false => acceleration / m.travel,
+        };
+        let inertia = section.rotating - section.lagging;
+        let transmitted = of(0, &self.torques) - inertia * of_motor;
+        let of_rotation = section.lagging * acceleration / m.travel;
+        Point {
+            sample,
+            left: transmitted - of_rotation - m.travel * section.load,
+            acceleration,
+            lead: of(0, &self.angles) - x / m.travel,
+            transmitted,
+            compliance: section.compliance,
+        }
+    }
+}
