@@ -47,7 +47,7 @@ fn run<M: Motion + Clone>(cl: &ClosedLoop, c: &mut impl Compensator, m: &M, seed
 fn settings(axis: &Axis) -> FeedbackSettings {
     let mut s = FeedbackSettings { speed_by_differences: axis.derives_speed(), ..FeedbackSettings::default() };
     let get = |name: &str, to: &mut f64| if let Ok(v) = std::env::var(name) { *to = v.parse().unwrap() };
-    get("STIFF", &mut s.stiffness); get("DAMP", &mut s.damping); get("FLOOR", &mut s.floor);
+    get("STIFF", &mut s.stiffness); get("DAMP", &mut s.damping); get("BRIST", &mut s.bristles); get("FLOOR", &mut s.floor);
     get("WANDER", &mut s.wandering); get("COMMAND", &mut s.command); get("POS", &mut s.position);
     get("SPEED", &mut s.speed); get("CURRENT", &mut s.current);
     get("MS", &mut s.sensitivity); get("MSL", &mut s.sensitivity_late);

@@ -24,6 +24,8 @@ pub(super) struct Situation {
     /// Shares of the believed load's inertia, and of σ0, σ1 and σ2.
     pub mass: f64,
     pub friction: f64,
+    /// Share of σ0 and σ1 besides.
+    pub bristles: f64,
     /// Damping besides, N·s/m at the load.
     pub floor: f64,
 }
@@ -88,8 +90,9 @@ impl Linear {
         let per_mass = DMatrix::identity(n, n) - &load * load.transpose() * share;
         let p = model.friction.parameters();
         let lever = model.lever * model.lever;
-        let spring = at.friction * p.stiffness * at.sticking / lever;
-        let damping = at.friction * (p.viscous + p.damping * at.sticking) / lever + at.floor;
+        let stuck = at.sticking * at.bristles;
+        let spring = at.friction * p.stiffness * stuck / lever;
+        let damping = at.friction * (p.viscous + p.damping * stuck) / lever + at.floor;
         let own = |f: fn(&Mode) -> f64| {
             DMatrix::from_diagonal(&DVector::from_iterator(n, modes.iter().map(f)))
         };

@@ -102,6 +102,7 @@ impl FeedbackDesign {
             sticking: (sticking * on.sticking).clamp(0.0, 1.0),
             mass: on.mass,
             friction: on.friction,
+            bristles: 1.0,
             floor: self.floor * on.friction,
         };
         Linear::new(&self.model, modes, &self.settings, &situation)

@@ -188,6 +188,7 @@ impl FeedbackDesign {
             sticking,
             mass: 1.0,
             friction: 1.0,
+            bristles: settings.bristles,
             floor: self.floor,
         };
         let linear = Linear::new(model, &self.modes, settings, &situation)?;

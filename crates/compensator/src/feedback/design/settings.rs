@@ -16,18 +16,21 @@ pub struct FeedbackSettings {
     pub speed_by_differences: bool,
     /// Modes that the model has, the rigid motion among them; 3.
     pub modes: usize,
-    /// Weight of the load's position per command, in gains of the cascade P k_p; 160
-    /// [3.0e6 A/m].
+    /// Weight of the load's position per command, in gains of the cascade P k_p; 640
+    /// [1.2e7 A/m].
     pub stiffness: f64,
     /// Weight of the load's speed per command, in gains of the cascade k_p/r; 37
     /// [1.5e4 A/(m/s)].
     pub damping: f64,
+    /// Share of the bristles' stiffness and damping that the design relies on; 0.4. A spring
+    /// that is not there does more harm than one that was not counted on.
+    pub bristles: f64,
     /// Damping of the load that is taken for sure besides that of the friction model, as a
     /// share of the speed loop's own k_p K_t/r²; 0.014 [0.015 N·m·s/rad at the screw]. It is
     /// what the observer may trust.
     pub floor: f64,
-    /// How much the unknown force wanders, in greatest forces of the actuator per √s; 1.6e-3
-    /// [4e-4 N·m a cycle at the motor].
+    /// How much the unknown force wanders, in greatest forces of the actuator per √s; 3.2e-3
+    /// [8e-4 N·m a cycle at the motor].
     pub wandering: f64,
     /// Deviation of the command from what acts, in greatest commands; 1/15 [1 A]. It keeps
     /// the observer quick, and with it the margins.
@@ -54,10 +57,11 @@ impl Default for FeedbackSettings {
         Self {
             speed_by_differences: false,
             modes: 3,
-            stiffness: 160.0,
+            stiffness: 640.0,
             damping: 37.0,
+            bristles: 0.4,
             floor: 0.014,
-            wandering: 1.6e-3,
+            wandering: 3.2e-3,
             command: 1.0 / 15.0,
             position: 1.8,
             speed: 0.04,
