@@ -47,7 +47,7 @@ fn run<M: Motion + Clone>(cl: &ClosedLoop, c: &mut impl Compensator, m: &M, seed
 fn settings(axis: &Axis) -> FeedbackSettings {
     let mut s = FeedbackSettings { speed_by_differences: axis.derives_speed(), ..FeedbackSettings::default() };
     let get = |name: &str, to: &mut f64| if let Ok(v) = std::env::var(name) { *to = v.parse().unwrap() };
-    get("STIFF", &mut s.stiffness); get("DAMP", &mut s.damping); get("BRIST", &mut s.bristles); get("FLOOR", &mut s.floor);
+    get("STIFF", &mut s.stiffness); get("DAMP", &mut s.damping); get("BRIST", &mut s.bristles); get("STRIB", &mut s.stribeck);
     get("WANDER", &mut s.wandering); get("COMMAND", &mut s.command); get("POS", &mut s.position);
     get("SPEED", &mut s.speed); get("CURRENT", &mut s.current);
     get("MS", &mut s.sensitivity); get("MSL", &mut s.sensitivity_late);
@@ -81,12 +81,12 @@ fn main() {
         for s in [0.02, 0.25, 0.5, 0.75, 0.98] {
             let modes = at(s);
             let mut w = (0.0f64, 0.0f64, f64::INFINITY);
-            for mass in [0.9, 1.0, 1.4] { for friction in [0.5, 1.0, 2.0] { for sticking in [0.5, 1.0, 2.0] {
-                let m = design.margins(&Variation { modes: &modes, mass, friction, sticking }).unwrap();
+            for mass in [0.9, 1.0, 1.4] { for friction in [0.5, 1.0, 2.0] { for sticking in [0.5, 1.0, 2.0] { for stribeck in [0.0, 1.0] {
+                let m = design.margins(&Variation { modes: &modes, mass, friction, sticking, stribeck }).unwrap();
                 if mass == 1.0 && friction == 1.0 && sticking == 1.0 { println!("at {s}: {m:.4?}"); }
-                if s == 0.5 { println!("   mass {mass} friction {friction} sticking {sticking}: {:.3} at {} late {:.3} at {} delay {:.2} r {:.4}", m.sensitivity, m.sticking, m.sensitivity_late, m.sticking_late, m.delay / model.period, m.radius); }
+                if s == 0.5 { println!("   mass {mass} friction {friction} sticking {sticking} stribeck {stribeck}: {:.3} at {} late {:.3} at {} delay {:.2} r {:.4}", m.sensitivity, m.sticking, m.sensitivity_late, m.sticking_late, m.delay / model.period, m.radius); }
                 w = (w.0.max(m.sensitivity), w.1.max(m.sensitivity_late), w.2.min(m.delay));
-            }}}
+            }}}}
             println!("   worst Ms {:.3} late {:.3} delay {:.2} cycles", w.0, w.1, w.2 / model.period);
         }
     }
@@ -121,7 +121,7 @@ fn main() {
         for (k, c) in rows { let (d, p) = &spy.1[k]; println!("{:.4} err {:.3} dev load {:.3} force {:.3} effort {:.4} innov {:.2e} {:.2e} planned {:.4} wind {:.2}", c.time, 1e6 * c.error(), 1e6 * d.load, d.force, d.effort, d.innovation[0], d.innovation[1], p.effort, 1e6 * model.travel * p.wind_up); }
     }
     if what == "all" || what == "slow" {
-        for v in [0.001, 0.002, 0.003, 0.004, 0.005, 0.006, 0.007, 0.008] {
+        for v in [0.002, 0.003, 0.004, 0.005, 0.006, 0.007, 0.008] {
             let limits = trajectories::Limits::new(v, 0.12, 1.0).unwrap();
             let m = trajectories::SCurve::plan(0.5 * (lo + hi), 0.5 * (lo + hi) + 1.5 * v, &limits).unwrap();
             let a = run(&cl, &mut NoCompensation, &m, 7, n, 0.0);

@@ -25,6 +25,9 @@ pub struct Variation<'a> {
     pub friction: f64,
     /// Its χ as a share of the one that the feedback goes by, at most 1 in all.
     pub sticking: f64,
+    /// Share of the least damping of slow sliding, which is negative; 1 where the load slides
+    /// at about half the Stribeck speed and more, 0 where it slides fast.
+    pub stribeck: f64,
 }
 
 impl Default for Variation<'_> {
@@ -34,6 +37,7 @@ impl Default for Variation<'_> {
             mass: 1.0,
             friction: 1.0,
             sticking: 1.0,
+            stribeck: 0.0,
         }
     }
 }
@@ -103,7 +107,7 @@ impl FeedbackDesign {
             mass: on.mass,
             friction: on.friction,
             bristles: 1.0,
-            floor: self.floor * on.friction,
+            sliding: on.stribeck * self.stribeck,
         };
         Linear::new(&self.model, modes, &self.settings, &situation)
     }
@@ -118,14 +122,17 @@ impl FeedbackDesign {
         let here: &[Mode] = &self.modes;
         for mass in [1.0, s.mass[0], s.mass[1]] {
             for friction in [1.0, s.friction[0], s.friction[1]] {
-                for modes in core::iter::once(&here).chain(elsewhere) {
-                    let on = Variation {
-                        modes,
-                        mass,
-                        friction,
-                        ..Variation::default()
-                    };
-                    self.margins(&on)?.within(s, &on)?;
+                for stribeck in [0.0, 1.0] {
+                    for modes in core::iter::once(&here).chain(elsewhere) {
+                        let on = Variation {
+                            modes,
+                            mass,
+                            friction,
+                            stribeck,
+                            ..Variation::default()
+                        };
+                        self.margins(&on)?.within(s, &on)?;
+                    }
                 }
             }
         }
@@ -159,6 +166,7 @@ impl Margins {
                     mass: on.mass,
                     friction: on.friction,
                     sticking,
+                    stribeck: on.stribeck,
                     frequency: on.modes.get(1).map_or(0.0, |mode| mode.frequency),
                 });
             }

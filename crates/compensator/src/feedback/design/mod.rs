@@ -13,7 +13,7 @@ use super::gains::{Gains, Node, States};
 use super::{Feedback, MOST_MEASURED, MOST_STATES, NODES};
 use crate::model::{DriveModel, Mode};
 pub use error::DesignError;
-use linear::{Linear, Situation};
+use linear::{Linear, Situation, stribeck_damping};
 pub use margins::{Margins, Variation};
 pub use settings::FeedbackSettings;
 
@@ -50,7 +50,8 @@ pub struct FeedbackDesign {
     model: DriveModel,
     modes: Vec<Mode>,
     settings: FeedbackSettings,
-    floor: f64,
+    /// Damping of slow sliding, N·s/m at the load.
+    stribeck: f64,
     designs: Vec<Design>,
     residual: f64,
 }
@@ -126,13 +127,12 @@ impl FeedbackDesign {
             return Err(DesignError::Control("its speed controller has no gain"));
         }
         let modes = settings.used(modes)?;
-        let floor =
-            settings.floor * c.speed * model.torque_constant() / (model.travel * model.travel);
+        let stribeck = stribeck_damping(model, &modes);
         let mut designed = Self {
             model: *model,
             modes,
             settings: *settings,
-            floor,
+            stribeck,
             designs: Vec::new(),
             residual: 0.0,
         };
@@ -189,7 +189,7 @@ impl FeedbackDesign {
             mass: 1.0,
             friction: 1.0,
             bristles: settings.bristles,
-            floor: self.floor,
+            sliding: settings.stribeck * self.stribeck,
         };
         let linear = Linear::new(model, &self.modes, settings, &situation)?;
         let n = linear.size() - 1;

@@ -25,10 +25,9 @@ pub struct FeedbackSettings {
     /// Share of the bristles' stiffness and damping that the design relies on; 0.4. A spring
     /// that is not there does more harm than one that was not counted on.
     pub bristles: f64,
-    /// Damping of the load that is taken for sure besides that of the friction model, as a
-    /// share of the speed loop's own k_p K_t/r²; 0.014 [0.015 N·m·s/rad at the screw]. It is
-    /// what the observer may trust.
-    pub floor: f64,
+    /// Share of the damping that a vibration meets in slow sliding, which the falling
+    /// Stribeck curve makes negative, that the design reckons with; 0.5.
+    pub stribeck: f64,
     /// How much the unknown force wanders, in greatest forces of the actuator per √s; 3.2e-3
     /// [8e-4 N·m a cycle at the motor].
     pub wandering: f64,
@@ -60,7 +59,7 @@ impl Default for FeedbackSettings {
             stiffness: 640.0,
             damping: 37.0,
             bristles: 0.4,
-            floor: 0.014,
+            stribeck: 0.5,
             wandering: 3.2e-3,
             command: 1.0 / 15.0,
             position: 1.8,
@@ -89,6 +88,7 @@ impl FeedbackSettings {
         let positive = [
             ("stiffness", self.stiffness),
             ("damping", self.damping),
+            ("bristles", self.bristles),
             ("wandering", self.wandering),
             ("command", self.command),
             ("position", self.position),
@@ -99,10 +99,10 @@ impl FeedbackSettings {
             require(within(value, 1e-9, 1e9), name, value, "from 1e-9 to 1e9")?;
         }
         require(
-            within(self.floor, 0.0, 1e3),
-            "floor",
-            self.floor,
-            "from 0 to 1000",
+            within(self.stribeck, 0.0, 100.0),
+            "stribeck",
+            self.stribeck,
+            "from 0 to 100",
         )?;
         for (name, value) in [
             ("sensitivity", self.sensitivity),
