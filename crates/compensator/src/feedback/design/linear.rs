@@ -113,7 +113,7 @@ impl Linear {
         let stuck = at.sticking * at.bristles;
         let spring = at.friction * p.stiffness * stuck / lever;
         let damping = at.friction * (p.viscous + p.damping * stuck) / lever
-            + at.friction * at.sliding * (1.0 - at.sticking);
+            + at.sliding * (1.0 - at.sticking);
         let own = |f: fn(&Mode) -> f64| {
             DMatrix::from_diagonal(&DVector::from_iterator(n, modes.iter().map(f)))
         };

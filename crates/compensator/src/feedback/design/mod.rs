@@ -22,7 +22,7 @@ const STICKING: [f64; NODES] = [0.0, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
 
 /// Steps of bandwidth that are tried, and in each factors of how much the force wanders and
 /// of how uncertain the command is.
-const SOFTENINGS: usize = 9;
+const SOFTENINGS: usize = 11;
 const TRIED: [[f64; 2]; 9] = [
     [1.0, 1.0],
     [1.0, 4.0],
@@ -75,7 +75,7 @@ impl FeedbackDesign {
     }
 
     /// The quickest feedback whose margins hold with the load anywhere: weights go down from
-    /// those of `settings` in steps of √2 in bandwidth, down to a sixteenth of it, and in each
+    /// those of `settings` in steps of √2 in bandwidth, down to a thirty-second of it, and in each
     /// the force is taken to wander less and the command as less certain, until the margins
     /// are there. `elsewhere` has
     /// the modes at other positions.

@@ -16,8 +16,8 @@ pub struct FeedbackSettings {
     pub speed_by_differences: bool,
     /// Modes that the model has, the rigid motion among them; 3.
     pub modes: usize,
-    /// Weight of the load's position per command, in gains of the cascade P k_p; 640
-    /// [1.2e7 A/m].
+    /// Weight of the load's position per command, in gains of the cascade P k_p; 500
+    /// [9.5e6 A/m].
     pub stiffness: f64,
     /// Weight of the load's speed per command, in gains of the cascade k_p/r; 37
     /// [1.5e4 A/(m/s)].
@@ -26,7 +26,7 @@ pub struct FeedbackSettings {
     /// that is not there does more harm than one that was not counted on.
     pub bristles: f64,
     /// Share of the damping that a vibration meets in slow sliding, which the falling
-    /// Stribeck curve makes negative, that the design reckons with; 0.5.
+    /// Stribeck curve makes negative, that the design reckons with; 1.
     pub stribeck: f64,
     /// How much the unknown force wanders, in greatest forces of the actuator per √s; 3.2e-3
     /// [8e-4 N·m a cycle at the motor].
@@ -45,6 +45,8 @@ pub struct FeedbackSettings {
     pub sensitivity: f64,
     /// The same with one more cycle of delay; 1.6.
     pub sensitivity_late: f64,
+    /// Both of them where the load slides so slowly that friction feeds vibrations; 2.
+    pub sensitivity_slow: f64,
     /// Shares of the believed load's inertia for which the two must hold; 0.9 and 1.4.
     pub mass: [f64; 2],
     /// Shares of the believed σ0, σ1 and σ2 for which they must hold; 0.5 and 2.
@@ -56,10 +58,10 @@ impl Default for FeedbackSettings {
         Self {
             speed_by_differences: false,
             modes: 3,
-            stiffness: 640.0,
+            stiffness: 500.0,
             damping: 37.0,
             bristles: 0.4,
-            stribeck: 0.5,
+            stribeck: 1.0,
             wandering: 3.2e-3,
             command: 1.0 / 15.0,
             position: 1.8,
@@ -67,6 +69,7 @@ impl Default for FeedbackSettings {
             current: 1.0 / 3000.0,
             sensitivity: 1.3,
             sensitivity_late: 1.6,
+            sensitivity_slow: 2.0,
             mass: [0.9, 1.4],
             friction: [0.5, 2.0],
         }
@@ -107,6 +110,7 @@ impl FeedbackSettings {
         for (name, value) in [
             ("sensitivity", self.sensitivity),
             ("sensitivity_late", self.sensitivity_late),
+            ("sensitivity_slow", self.sensitivity_slow),
         ] {
             require(value > 1.0, name, value, "above 1")?;
         }
