@@ -110,7 +110,7 @@ impl Machine {
     }
 
     fn cycle(&mut self, modes: &[Mode], command: f64, force: f64) {
-        let steps = 200;
+        let steps = 50;
         let h = T / f64::from(steps);
         for _ in 0..steps {
             for (mode, [at, rate]) in modes.iter().zip(&mut self.state) {
@@ -151,7 +151,7 @@ fn run(feedback: &mut Feedback, force: f64, cycles: usize) -> (Machine, Vec<f64>
 #[test]
 fn a_constant_force_is_cancelled() {
     let mut feedback = design().feedback();
-    let (machine, commands) = run(&mut feedback, 100.0, 30_000);
+    let (machine, commands) = run(&mut feedback, 100.0, 120_000);
     let (_, modes) = axis(CASCADE[1]);
     let [load, _] = machine.seen(&modes);
     let found = feedback.deviations();

@@ -13,6 +13,10 @@
 //! neither, and gains for the one make a limit cycle of the other. They are linear in χ
 //! between nodes. `FeedbackDesign` (feature `design`) makes them.
 //!
+//! A load that slides slowly is unstable by itself: with 1/τ = σ0 |ω|/G a vibration faster
+//! than that meets the damping σ2 + σ1 |ω| G'/G, negative where the Stribeck curve falls
+//! ([`lugre::LuGre::vibration_damping`]). The gains at χ = 0 are made for that.
+//!
 //! The drive is untouched. The offset of the position
 //!
 //! ```text
@@ -20,7 +24,9 @@
 //! ```
 //!
 //! makes its speed error zero, so that its proportional part gives nothing and its integrator
-//! holds what it has; the offset of the command is the plan's and u.
+//! holds what it has; the offset of the command is the plan's and u. What the drive commanded
+//! besides (a position loop at a lower rate leaves something) is taken off again, and the
+//! observer goes by [`Sample::iq_command`].
 
 #[cfg(feature = "design")]
 mod design;

@@ -20,19 +20,22 @@ pub use settings::FeedbackSettings;
 /// χ at which gains are held: friction changes fastest where few bristles stick.
 const STICKING: [f64; NODES] = [0.0, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
 
-/// Steps of bandwidth that are tried, and in each factors of how much the force wanders and
-/// of how uncertain the command is.
+/// Steps of bandwidth that are tried, and in each factors of how much the force wanders, of
+/// how uncertain the command is, and of how far friction is reckoned to feed vibrations.
 const SOFTENINGS: usize = 11;
-const TRIED: [[f64; 2]; 9] = [
-    [1.0, 1.0],
-    [1.0, 4.0],
-    [1.0, 16.0],
-    [0.1, 1.0],
-    [0.1, 4.0],
-    [0.1, 16.0],
-    [0.01, 1.0],
-    [0.01, 4.0],
-    [0.01, 16.0],
+const TRIED: [[f64; 3]; 12] = [
+    [1.0, 1.0, 1.0],
+    [1.0, 4.0, 1.0],
+    [1.0, 16.0, 1.0],
+    [1.0, 1.0, 0.5],
+    [0.1, 1.0, 1.0],
+    [0.1, 4.0, 1.0],
+    [0.1, 16.0, 1.0],
+    [0.1, 1.0, 0.5],
+    [0.1, 1.0, 0.25],
+    [0.1, 1.0, 0.0],
+    [0.01, 1.0, 0.0],
+    [0.01, 4.0, 1.0],
 ];
 
 /// Gains at one χ.
@@ -91,8 +94,9 @@ impl FeedbackDesign {
         let mut bandwidth = 1.0;
         let mut refused = None;
         for _ in 0..SOFTENINGS {
-            for [wandering, command] in TRIED {
-                let softer = settings.softened(bandwidth, wandering, command);
+            for [wandering, command, stribeck] in TRIED {
+                let mut softer = settings.softened(bandwidth, wandering, command);
+                softer.stribeck *= stribeck;
                 let designed = Self::unchecked(model, modes, &softer)?;
                 match designed.require_margins(elsewhere) {
                     Ok(()) => return Ok(designed),

@@ -22,14 +22,14 @@ pub struct FeedbackSettings {
     /// Weight of the load's speed per command, in gains of the cascade k_p/r; 37
     /// [1.5e4 A/(m/s)].
     pub damping: f64,
-    /// Share of the bristles' stiffness and damping that the design relies on; 0.4. A spring
+    /// Share of the bristles' stiffness and damping that the design relies on; 0.5. A spring
     /// that is not there does more harm than one that was not counted on.
     pub bristles: f64,
     /// Share of the damping that a vibration meets in slow sliding, which the falling
     /// Stribeck curve makes negative, that the design reckons with; 1.
     pub stribeck: f64,
-    /// How much the unknown force wanders, in greatest forces of the actuator per √s; 3.2e-3
-    /// [8e-4 N·m a cycle at the motor].
+    /// How much the unknown force wanders, in greatest forces of the actuator per √s; 2.4e-3
+    /// [6e-4 N·m a cycle at the motor].
     pub wandering: f64,
     /// Deviation of the command from what acts, in greatest commands; 1/15 [1 A]. It keeps
     /// the observer quick, and with it the margins.
@@ -60,9 +60,9 @@ impl Default for FeedbackSettings {
             modes: 3,
             stiffness: 500.0,
             damping: 37.0,
-            bristles: 0.4,
+            bristles: 0.5,
             stribeck: 1.0,
-            wandering: 3.2e-3,
+            wandering: 2.4e-3,
             command: 1.0 / 15.0,
             position: 1.8,
             speed: 0.04,
