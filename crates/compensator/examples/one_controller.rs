@@ -43,6 +43,7 @@ fn run(friction: &LuGre, law: &mut impl Compensator, duration: f64, speed: f64) 
             reference: now,
             next_reference: reference(f64::from(k + 1) * T, duration, speed),
             position,
+            motor_angle: 0.0,
             motor_speed: omega,
             iq,
             iq_command: iq,

@@ -356,3 +356,10 @@ fn design_once() -> &'static Feedback {
     static FEEDBACK: std::sync::OnceLock<Feedback> = std::sync::OnceLock::new();
     FEEDBACK.get_or_init(|| design().feedback())
 }
+
+/// As the documentation says.
+#[test]
+fn memory() {
+    let sizes = [size_of::<Feedback<f64>>(), size_of::<Feedback<f32>>()];
+    assert!(sizes[0] <= 13 * 1024 && sizes[1] <= 13 * 512, "{sizes:?}");
+}

@@ -75,7 +75,7 @@ impl Bench {
         believed: &DriveModel,
         motion: &SCurve,
     ) -> Plan<impl FnMut(usize) -> Target + use<>> {
-        let (motion, period) = (motion.clone(), self.model.period);
+        let (motion, period) = (*motion, self.model.period);
         let targets = move |k: usize| {
             let s = motion.at(k as f64 * period);
             Target::of(Reference {

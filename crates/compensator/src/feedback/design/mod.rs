@@ -1,5 +1,6 @@
 //! Design of a [`Feedback`]: linear-quadratic state feedback and Kalman filter at each χ.
 
+mod cut;
 mod error;
 mod linear;
 mod margins;
