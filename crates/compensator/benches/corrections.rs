@@ -7,10 +7,13 @@ use std::hint::black_box;
 
 use cfnn::{FixedNetwork, Network, Range, Scaling, Shape, packed_len};
 use compensator::{
-    Combined, Compensator, FrictionFeedforward, MotionEstimator, NetworkCompensation,
-    NoCompensation, ObserverGains, Reference, Sample, TransferFunction, TransferFunctionModel,
+    Along, Cascade, Combined, Compensator, Drive, DriveModel, FeedbackDesign, FeedbackSettings,
+    FrictionFeedforward, Mode, MotionEstimator, NetworkCompensation, NoCompensation, ObserverGains,
+    Plan, PlanSettings, PlanWithFeedback, Planned, Reference, Sample, Section, Target,
+    TransferFunction, TransferFunctionModel,
 };
 use criterion::{Criterion, criterion_group, criterion_main};
+use foc_pmsm::{MotorParameters, Pmsm};
 use lugre::{Exponential, LuGre, Parameters};
 use scalar::Scalar;
 
@@ -88,7 +91,116 @@ fn bench<S: Scalar>(c: &mut Criterion, name: &str, mut law: impl Compensator<S>)
     });
 }
 
+/// The axis of the paper as plan and feedback see it, its screw a spring.
+fn planned() -> (DriveModel, Vec<Mode>) {
+    let motor = Pmsm::new(
+        MotorParameters {
+            pole_pairs: 4,
+            resistance: 0.75,
+            inductance_d: 4.11e-3,
+            inductance_q: 13.2e-3,
+            flux_linkage: 0.0,
+        }
+        .from_torque_constant(1.641),
+    )
+    .expect("a motor");
+    let section = Section {
+        compliance: 1e-3,
+        rotating: 0.0085,
+        lagging: 0.002,
+        load: 0.0,
+    };
+    let parameters = Parameters {
+        viscous: 0.0298,
+        ..Parameters::LIU_2025
+    };
+    let model = DriveModel {
+        travel: R,
+        load_inertia: 515.0,
+        friction: LuGre::new(parameters).expect("a law"),
+        lever: R,
+        along: Along::new([0.0, 1.5], |_| section).expect("a stroke"),
+        drive: Drive::FieldOriented {
+            motor,
+            gear: 1.0,
+            d: [2.776, 626.2],
+            q: [8.805, 1003.3],
+            voltage: 311.0,
+        },
+        delay: 0.0,
+        effort_limit: 15.0,
+        cascade: Cascade {
+            position: 29_342.0,
+            velocity_feedforward: 1.0,
+            acceleration_feedforward: 0.0,
+            speed: 0.6474,
+            speed_integral: 6.8,
+            from_motor: false,
+        },
+        period: T,
+    };
+    let mode = |frequency: f64, motor, load| Mode {
+        frequency: TAU * frequency,
+        damping: 1e-5 * (TAU * frequency) * (TAU * frequency),
+        motor,
+        load,
+    };
+    let modes = vec![
+        mode(0.0, 10.17, 0.01619),
+        mode(62.8, 5.115, -0.04059),
+        mode(139.1, -7.621, -0.00564),
+    ];
+    (model, modes)
+}
+
+/// The plan and the feedback around it, each cycle's set point being asked for.
+fn feedback(c: &mut Criterion) {
+    let (model, modes) = planned();
+    let settings = FeedbackSettings {
+        sensitivity: f64::INFINITY,
+        sensitivity_late: f64::INFINITY,
+        ..FeedbackSettings::default()
+    };
+    let design = FeedbackDesign::new(&model, &modes, &settings).expect("a design");
+    let cycles = cycles();
+    let target = move |k: usize| Target::of(cycles[k % CYCLES].reference);
+    let plan = || Plan::new(&model, &PlanSettings::default(), target.clone()).expect("a plan");
+    bench(c, "plan", plan());
+    let law = PlanWithFeedback::new(plan(), design.feedback());
+    bench(c, "plan with feedback", law);
+    let rows = self::cycles();
+    let mut double = design.feedback();
+    let mut single = double.cast::<f32>();
+    let mut next = 0;
+    c.bench_function("feedback alone", |b| {
+        b.iter(|| {
+            next = (next + 1) % CYCLES;
+            let planned = Planned {
+                motor_speed: rows[next].motor_speed,
+                position: rows[next].position,
+                sticking: 0.02,
+                ..Planned::default()
+            };
+            double.correct(black_box(&rows[next]), &planned)
+        });
+    });
+    let rows: Vec<Sample<f32>> = rows.iter().map(Sample::cast).collect();
+    c.bench_function("feedback alone, f32", |b| {
+        b.iter(|| {
+            next = (next + 1) % CYCLES;
+            let planned = Planned {
+                motor_speed: rows[next].motor_speed,
+                position: rows[next].position,
+                sticking: 0.02,
+                ..Planned::default()
+            };
+            single.correct(black_box(&rows[next]), &planned)
+        });
+    });
+}
+
 fn corrections(c: &mut Criterion) {
+    feedback(c);
     bench::<f64>(c, "none", NoCompensation);
     bench(c, "friction feedforward", friction::<f64>());
     bench(c, "friction feedforward, f32", friction::<f32>());

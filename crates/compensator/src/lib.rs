@@ -18,11 +18,14 @@
 //! | [`NetworkCompensation`] | `network.rs` | the error that a network predicts for the end of the cycle (Section 4.4 of Liu et al. 2025, doi:10.3390/machines13050433) |
 //! | [`TransferFunction`] | `transfer_function.rs` | the error that a linear model predicts from the reference alone |
 //! | [`FrictionFeedforward`] | `friction.rs` | the current that LuGre friction asks for |
+//! | [`Plan`] | `plan/` | offsets with which the drive follows a motion that is known ahead |
+//! | [`PlanWithFeedback`] | `feedback/` | the plan, and an observer and state feedback in place of the drive's loops |
 //! | [`Combined`] | `combined.rs` | the sum of two |
 //!
 //! Speed and acceleration, which the network asks for, come from the
 //! [`MotionEstimator`]: motor speed, set right by the scale. The linear model
-//! comes from `identify_transfer_function` (feature `identify`, least squares).
+//! comes from `identify_transfer_function` (feature `identify`, least squares), the gains of a
+//! [`Feedback`] from `FeedbackDesign` (feature `design`, Riccati equations).
 //!
 //! `Adaptation` (feature `identify`) learns a [`DriveModel`] from the logs of moves, for
 //! the [`Plan`] of the next.
@@ -31,7 +34,7 @@
 //! controller without double precision in hardware; identification and
 //! [`cfnn::Network`] are in `f64`, and `cast` takes their results over.
 //!
-//! Everything but identification and adaptation works without `std`, and nothing is
+//! Everything but identification, adaptation and design works without `std`, and nothing is
 //! allocated in a cycle. The crate knows nothing of the simulator: no inner
 //! state of a plant comes in. It does not read or write files, plan motions,
 //! or train networks.

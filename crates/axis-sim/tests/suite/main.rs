@@ -11,6 +11,7 @@ mod closed_loop;
 mod controls;
 mod effects;
 mod energy;
+mod feedback;
 mod files;
 mod fingerprint;
 mod golden;

@@ -21,6 +21,7 @@ pub(super) struct Node<T> {
 }
 
 impl<T: Scalar> Node<T> {
+    #[cfg(feature = "design")]
     pub const ZERO: Self = Self {
         a: [[T::ZERO; MOST_STATES]; MOST_STATES],
         b: [T::ZERO; MOST_STATES],

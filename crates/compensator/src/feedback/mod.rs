@@ -13,6 +13,10 @@
 //! neither, and gains for the one make a limit cycle of the other. They are linear in χ
 //! between nodes. `FeedbackDesign` (feature `design`) makes them.
 //!
+//! A load that slides slowly is unstable by itself: with 1/τ = σ0 |ω|/G a vibration faster
+//! than that meets the damping σ2 + σ1 |ω| G'/G, negative where the Stribeck curve falls
+//! ([`lugre::LuGre::vibration_damping`]). The gains at χ = 0 are made for that.
+//!
 //! The drive is untouched. The offset of the position
 //!
 //! ```text
@@ -20,7 +24,9 @@
 //! ```
 //!
 //! makes its speed error zero, so that its proportional part gives nothing and its integrator
-//! holds what it has; the offset of the command is the plan's and u.
+//! holds what it has; the offset of the command is the plan's and u. What the drive commanded
+//! besides (a position loop at a lower rate leaves something) is taken off again, and the
+//! observer goes by [`Sample::iq_command`].
 
 #[cfg(feature = "design")]
 mod design;
@@ -46,6 +52,9 @@ const NODES: usize = 7;
 /// that is taken as lasting. Slow against filters in the drive's command, quick against an
 /// integrator that sees the speed between two executions of a slower position loop.
 const OWN: f64 = 1.0 / 16.0;
+/// Greatest state that is believed, in its unit: what the greatest force moves in a cycle, or
+/// that force, or the greatest command.
+const MOST: f64 = 1e6;
 
 /// What a feedback believes of the axis' deviations from the plan, after a cycle's sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -195,7 +204,8 @@ impl<T: Scalar> Feedback<T> {
                 - (sample.reference.position - sample.position),
             iq: planned.correction.iq + (effort - planned.effort) - self.own,
         };
-        let sound = x.iter().all(|x| x.is_finite()) && correction.position.is_finite();
+        // Beyond this nothing was measured: the sample was wrong.
+        let sound = x.iter().all(|x| x.abs() <= T::of(MOST)) && correction.position.is_finite();
         if !sound || !correction.iq.is_finite() {
             return self.without_sample(planned);
         }
@@ -227,8 +237,9 @@ impl<T: Scalar> Feedback<T> {
         let other = commanded - before.effort;
         if other.abs() <= T::TWO * g.limit {
             effort = commanded;
-            self.own_rate += T::of(0.25 * OWN * OWN) * other;
-            self.own += self.own_rate + T::of(OWN) * other;
+            let limited = |value: T| value.max(-g.limit).min(g.limit);
+            self.own_rate = limited(self.own_rate + T::of(0.25 * OWN * OWN) * other);
+            self.own = limited(self.own + self.own_rate + T::of(OWN) * other);
         }
         let (low, high, share) = g.around(before.sticking);
         let mut next = [T::ZERO; MOST_STATES];
@@ -236,6 +247,7 @@ impl<T: Scalar> Feedback<T> {
             add(&mut next, &low.a[i], &high.a[i], share, x);
         }
         let input = (effort - before.planned) / g.limit;
+        let input = input.max(-T::TWO).min(T::TWO);
         add(&mut next, &low.b, &high.b, share, input);
         self.expected = next;
     }

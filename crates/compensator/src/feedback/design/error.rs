@@ -47,7 +47,7 @@ pub enum DesignError {
     },
     /// A margin that was asked for is not there.
     #[error(
-        "{what} is {value}, and {most} at most was asked for: load inertia × {mass}, friction × {friction}, χ = {sticking}, first resonance {frequency:.0} rad/s"
+        "{what} is {value}, and {most} at most was asked for: load inertia × {mass}, friction × {friction}, χ = {sticking}, slow sliding {stribeck}, first resonance {frequency:.0} rad/s"
     )]
     Margin {
         /// What is too great.
@@ -62,6 +62,8 @@ pub enum DesignError {
         friction: f64,
         /// Share of bristles that follow the motion.
         sticking: f64,
+        /// Share of the negative damping of slow sliding.
+        stribeck: f64,
         /// Where the load was: the first elastic mode there, rad/s; 0 for none.
         frequency: f64,
     },

@@ -2,12 +2,13 @@
 //!
 //! ```text
 //! η̈ᵢ + 2ζωᵢ η̇ᵢ + ωᵢ² ηᵢ = φ_mᵢ T + φ_lᵢ F        x = Σ φ_lᵢ ηᵢ,  θ = Σ φ_mᵢ ηᵢ
-//! F = −(σ0 χ x + (σ2 + σ1 χ + floor) ẋ)/lever² − d       d(k+1) = d(k)
+//! F = −(σ0 χ x + (σ2 + σ1 χ + g (1 − χ)) ẋ)/lever² − d       d(k+1) = d(k)
 //! T = K_t i,   L_q di/dt = v − R i − ψ ω_e               field-oriented, v held over a cycle
 //! w(k) = w(k−1) + k_i T_s e(k),   v(k) = k_p e(k) + w(k),   e(k) = u(k − delay) − i(k)
 //! ```
 //!
-//! or torque behind a first-order lag. The mechanics, the current and the back-EMF are
+//! g is what a vibration in slow sliding meets: the falling Stribeck curve feeds it (g < 0).
+//! The actuator may also be torque behind a first-order lag. The mechanics, the current and the back-EMF are
 //! discretised together and exactly (matrix exponential).
 
 use nalgebra::{DMatrix, DVector, RowDVector};
@@ -15,6 +16,25 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 use super::{DesignError, FeedbackSettings};
 use crate::feedback::MOST_STATES;
 use crate::model::{Drive, DriveModel, Mode};
+
+/// Least damping that the Stribeck curve and the bristles give a vibration of a load that
+/// slides slowly, beside σ2: N·s/m at the load, negative or 0.
+pub(super) fn stribeck_damping(model: &DriveModel, modes: &[Mode]) -> f64 {
+    let p = model.friction.parameters();
+    // Without a resonance of its own, as fast a vibration as a cycle can show.
+    let frequency = match modes.get(1) {
+        Some(mode) => mode.frequency,
+        None => std::f64::consts::PI / model.period,
+    };
+    let speeds = (1..=SPEEDS).map(|i| 4.0 * p.stribeck_speed * f64::from(i) / f64::from(SPEEDS));
+    let least = speeds
+        .map(|speed| model.friction.vibration_damping(speed, frequency) - p.viscous)
+        .fold(0.0, f64::min);
+    least / (model.lever * model.lever)
+}
+
+/// Speeds, up to four Stribeck speeds, at which that is looked for.
+const SPEEDS: u32 = 100;
 
 /// An axis as a linear model may have it, off the believed one.
 #[derive(Clone, Copy, Debug)]
@@ -24,8 +44,10 @@ pub(super) struct Situation {
     /// Shares of the believed load's inertia, and of σ0, σ1 and σ2.
     pub mass: f64,
     pub friction: f64,
-    /// Damping besides, N·s/m at the load.
-    pub floor: f64,
+    /// Share of σ0 and σ1 besides.
+    pub bristles: f64,
+    /// Damping of a load that slides, N·s/m: 0 at χ = 1.
+    pub sliding: f64,
 }
 
 /// x(k+1) = A x + b u, y = C x. States are in units of their own; u is in units of the effort
@@ -88,8 +110,10 @@ impl Linear {
         let per_mass = DMatrix::identity(n, n) - &load * load.transpose() * share;
         let p = model.friction.parameters();
         let lever = model.lever * model.lever;
-        let spring = at.friction * p.stiffness * at.sticking / lever;
-        let damping = at.friction * (p.viscous + p.damping * at.sticking) / lever + at.floor;
+        let stuck = at.sticking * at.bristles;
+        let spring = at.friction * p.stiffness * stuck / lever;
+        let damping = at.friction * (p.viscous + p.damping * stuck) / lever
+            + at.sliding * (1.0 - at.sticking);
         let own = |f: fn(&Mode) -> f64| {
             DMatrix::from_diagonal(&DVector::from_iterator(n, modes.iter().map(f)))
         };

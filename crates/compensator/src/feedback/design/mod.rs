@@ -1,5 +1,6 @@
 //! Design of a [`Feedback`]: linear-quadratic state feedback and Kalman filter at each χ.
 
+mod cut;
 mod error;
 mod linear;
 mod margins;
@@ -13,26 +14,29 @@ use super::gains::{Gains, Node, States};
 use super::{Feedback, MOST_MEASURED, MOST_STATES, NODES};
 use crate::model::{DriveModel, Mode};
 pub use error::DesignError;
-use linear::{Linear, Situation};
+use linear::{Linear, Situation, stribeck_damping};
 pub use margins::{Margins, Variation};
 pub use settings::FeedbackSettings;
 
 /// χ at which gains are held: friction changes fastest where few bristles stick.
 const STICKING: [f64; NODES] = [0.0, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0];
 
-/// Steps of bandwidth that are tried, and in each factors of how much the force wanders and
-/// of how uncertain the command is.
-const SOFTENINGS: usize = 9;
-const TRIED: [[f64; 2]; 9] = [
-    [1.0, 1.0],
-    [1.0, 4.0],
-    [1.0, 16.0],
-    [0.1, 1.0],
-    [0.1, 4.0],
-    [0.1, 16.0],
-    [0.01, 1.0],
-    [0.01, 4.0],
-    [0.01, 16.0],
+/// Steps of bandwidth that are tried, and in each factors of how much the force wanders, of
+/// how uncertain the command is, and of how far friction is reckoned to feed vibrations.
+const SOFTENINGS: usize = 11;
+const TRIED: [[f64; 3]; 12] = [
+    [1.0, 1.0, 1.0],
+    [1.0, 4.0, 1.0],
+    [1.0, 16.0, 1.0],
+    [1.0, 1.0, 0.5],
+    [0.1, 1.0, 1.0],
+    [0.1, 4.0, 1.0],
+    [0.1, 16.0, 1.0],
+    [0.1, 1.0, 0.5],
+    [0.1, 1.0, 0.25],
+    [0.1, 1.0, 0.0],
+    [0.01, 1.0, 0.0],
+    [0.01, 4.0, 1.0],
 ];
 
 /// Gains at one χ.
@@ -50,7 +54,8 @@ pub struct FeedbackDesign {
     model: DriveModel,
     modes: Vec<Mode>,
     settings: FeedbackSettings,
-    floor: f64,
+    /// Damping of slow sliding, N·s/m at the load.
+    stribeck: f64,
     designs: Vec<Design>,
     residual: f64,
 }
@@ -74,7 +79,7 @@ impl FeedbackDesign {
     }
 
     /// The quickest feedback whose margins hold with the load anywhere: weights go down from
-    /// those of `settings` in steps of √2 in bandwidth, down to a sixteenth of it, and in each
+    /// those of `settings` in steps of √2 in bandwidth, down to a thirty-second of it, and in each
     /// the force is taken to wander less and the command as less certain, until the margins
     /// are there. `elsewhere` has
     /// the modes at other positions.
@@ -90,8 +95,9 @@ impl FeedbackDesign {
         let mut bandwidth = 1.0;
         let mut refused = None;
         for _ in 0..SOFTENINGS {
-            for [wandering, command] in TRIED {
-                let softer = settings.softened(bandwidth, wandering, command);
+            for [wandering, command, stribeck] in TRIED {
+                let mut softer = settings.softened(bandwidth, wandering, command);
+                softer.stribeck *= stribeck;
                 let designed = Self::unchecked(model, modes, &softer)?;
                 match designed.require_margins(elsewhere) {
                     Ok(()) => return Ok(designed),
@@ -126,13 +132,12 @@ impl FeedbackDesign {
             return Err(DesignError::Control("its speed controller has no gain"));
         }
         let modes = settings.used(modes)?;
-        let floor =
-            settings.floor * c.speed * model.torque_constant() / (model.travel * model.travel);
+        let stribeck = stribeck_damping(model, &modes);
         let mut designed = Self {
             model: *model,
             modes,
             settings: *settings,
-            floor,
+            stribeck,
             designs: Vec::new(),
             residual: 0.0,
         };
@@ -188,7 +193,8 @@ impl FeedbackDesign {
             sticking,
             mass: 1.0,
             friction: 1.0,
-            floor: self.floor,
+            bristles: settings.bristles,
+            sliding: settings.stribeck * self.stribeck,
         };
         let linear = Linear::new(model, &self.modes, settings, &situation)?;
         let n = linear.size() - 1;

@@ -16,18 +16,20 @@ pub struct FeedbackSettings {
     pub speed_by_differences: bool,
     /// Modes that the model has, the rigid motion among them; 3.
     pub modes: usize,
-    /// Weight of the load's position per command, in gains of the cascade P k_p; 160
-    /// [3.0e6 A/m].
+    /// Weight of the load's position per command, in gains of the cascade P k_p; 500
+    /// [9.5e6 A/m].
     pub stiffness: f64,
     /// Weight of the load's speed per command, in gains of the cascade k_p/r; 37
     /// [1.5e4 A/(m/s)].
     pub damping: f64,
-    /// Damping of the load that is taken for sure besides that of the friction model, as a
-    /// share of the speed loop's own k_p K_t/r²; 0.014 [0.015 N·m·s/rad at the screw]. It is
-    /// what the observer may trust.
-    pub floor: f64,
-    /// How much the unknown force wanders, in greatest forces of the actuator per √s; 1.6e-3
-    /// [4e-4 N·m a cycle at the motor].
+    /// Share of the bristles' stiffness and damping that the design relies on; 0.5. A spring
+    /// that is not there does more harm than one that was not counted on.
+    pub bristles: f64,
+    /// Share of the damping that a vibration meets in slow sliding, which the falling
+    /// Stribeck curve makes negative, that the design reckons with; 1.
+    pub stribeck: f64,
+    /// How much the unknown force wanders, in greatest forces of the actuator per √s; 2.4e-3
+    /// [6e-4 N·m a cycle at the motor].
     pub wandering: f64,
     /// Deviation of the command from what acts, in greatest commands; 1/15 [1 A]. It keeps
     /// the observer quick, and with it the margins.
@@ -43,6 +45,8 @@ pub struct FeedbackSettings {
     pub sensitivity: f64,
     /// The same with one more cycle of delay; 1.6.
     pub sensitivity_late: f64,
+    /// Both of them where the load slides so slowly that friction feeds vibrations; 2.
+    pub sensitivity_slow: f64,
     /// Shares of the believed load's inertia for which the two must hold; 0.9 and 1.4.
     pub mass: [f64; 2],
     /// Shares of the believed σ0, σ1 and σ2 for which they must hold; 0.5 and 2.
@@ -54,16 +58,18 @@ impl Default for FeedbackSettings {
         Self {
             speed_by_differences: false,
             modes: 3,
-            stiffness: 160.0,
+            stiffness: 500.0,
             damping: 37.0,
-            floor: 0.014,
-            wandering: 1.6e-3,
+            bristles: 0.5,
+            stribeck: 1.0,
+            wandering: 2.4e-3,
             command: 1.0 / 15.0,
             position: 1.8,
             speed: 0.04,
             current: 1.0 / 3000.0,
             sensitivity: 1.3,
             sensitivity_late: 1.6,
+            sensitivity_slow: 2.0,
             mass: [0.9, 1.4],
             friction: [0.5, 2.0],
         }
@@ -85,6 +91,7 @@ impl FeedbackSettings {
         let positive = [
             ("stiffness", self.stiffness),
             ("damping", self.damping),
+            ("bristles", self.bristles),
             ("wandering", self.wandering),
             ("command", self.command),
             ("position", self.position),
@@ -95,14 +102,15 @@ impl FeedbackSettings {
             require(within(value, 1e-9, 1e9), name, value, "from 1e-9 to 1e9")?;
         }
         require(
-            within(self.floor, 0.0, 1e3),
-            "floor",
-            self.floor,
-            "from 0 to 1000",
+            within(self.stribeck, 0.0, 100.0),
+            "stribeck",
+            self.stribeck,
+            "from 0 to 100",
         )?;
         for (name, value) in [
             ("sensitivity", self.sensitivity),
             ("sensitivity_late", self.sensitivity_late),
+            ("sensitivity_slow", self.sensitivity_slow),
         ] {
             require(value > 1.0, name, value, "above 1")?;
         }
