@@ -18,6 +18,7 @@
 //! | [`NetworkCompensation`] | `network.rs` | the error that a network predicts for the end of the cycle (Section 4.4 of Liu et al. 2025, doi:10.3390/machines13050433) |
 //! | [`TransferFunction`] | `transfer_function.rs` | the error that a linear model predicts from the reference alone |
 //! | [`FrictionFeedforward`] | `friction.rs` | the current that LuGre friction asks for |
+//! | [`DriveTermsFeedforward`] | `drive_terms/` | what an ordinary drive makes of its own constants, pulses and tables |
 //! | [`Combined`] | `combined.rs` | the sum of two |
 //!
 //! Speed and acceleration, which the network asks for, come from the
@@ -62,6 +63,7 @@
 extern crate alloc;
 
 mod combined;
+mod drive_terms;
 mod error;
 mod estimator;
 mod friction;
@@ -79,6 +81,7 @@ mod sample;
 mod transfer_function;
 
 pub use combined::Combined;
+pub use drive_terms::{DriveTerms, DriveTermsFeedforward, Pulse, Row, Start};
 pub use error::CompensatorError;
 pub use estimator::{Estimate, MotionEstimator, NoiseGains, ObserverGains};
 pub use friction::FrictionFeedforward;

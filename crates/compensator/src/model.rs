@@ -77,6 +77,13 @@ impl<T: Scalar> Along<T> {
         })
     }
 
+    /// The positions of its first and its last section.
+    #[must_use]
+    pub fn ends(&self) -> [T; 2] {
+        let gaps = T::of((SECTIONS - 1) as f64);
+        [self.least, self.least + gaps / self.per_length]
+    }
+
     /// The section at `position`.
     #[must_use]
     pub fn at(&self, position: T) -> Section<T> {

@@ -5,6 +5,7 @@
 //! and summary and tables show it. A strategy that is made elsewhere goes into a list of
 //! one's own, which [`crate::compensation::compensate_with`] takes.
 
+mod drive_terms;
 mod feedforward;
 mod lugre;
 mod network;
@@ -39,6 +40,7 @@ pub const STRATEGIES: &[&StrategyKind] = &[
     &transfer_function_lugre::KIND,
     &lugre::KIND,
     &network_lugre_printed::KIND,
+    &drive_terms::KIND,
     &plan::KIND,
 ];
 
