@@ -81,7 +81,9 @@ mod sample;
 mod transfer_function;
 
 pub use combined::Combined;
-pub use drive_terms::{DriveTerms, DriveTermsFeedforward, Pulse, Row, Start};
+pub use drive_terms::{
+    DriveTerms, DriveTermsFeedforward, DriveTermsRow, ReversalPulse, ReversalStart,
+};
 pub use error::CompensatorError;
 pub use estimator::{Estimate, MotionEstimator, NoiseGains, ObserverGains};
 pub use friction::FrictionFeedforward;

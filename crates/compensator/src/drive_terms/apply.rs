@@ -5,10 +5,12 @@ use lugre::Exponential;
 use super::DriveTerms;
 use crate::{Compensator, Correction, Reference, Sample};
 
-/// Applies [`DriveTerms`] and nothing else, from the reference alone.
+/// Applies [`DriveTerms`] and nothing else, from the reference alone: its difference to a
+/// [`crate::Plan`] is what the export into a drive loses.
 ///
 /// At the start the drive's integrator holds the axis' own loads there: only how they
-/// change from then on is added.
+/// change from then on is added. A sample whose reference is not finite repeats the
+/// correction before it.
 #[derive(Clone, Copy, Debug)]
 pub struct DriveTermsFeedforward<T = f64> {
     terms: DriveTerms<T>,
@@ -19,13 +21,14 @@ pub struct DriveTermsFeedforward<T = f64> {
 
 #[derive(Clone, Copy, Debug)]
 struct State<T> {
-    /// What was held at the start: load torque (N·m) and wind-up (rad).
+    /// What is held at the start: load torque (N·m) and wind-up (rad).
     home: Option<[T; 2]>,
-    /// Direction, −1, 0 or 1, and the levels before and after it changed last.
+    /// −1 or 1; 0 before the first motion.
     direction: T,
+    /// Friction level before and after the direction changed last, N·m.
     before: T,
     after: T,
-    /// Since then, s.
+    /// Time since then, s.
     since: T,
     last: Correction<T>,
 }
@@ -44,7 +47,7 @@ impl<T: Exponential> State<T> {
 }
 
 impl<T: Exponential> DriveTermsFeedforward<T> {
-    /// With friction relaxed.
+    /// A drive at rest, friction relaxed.
     #[must_use]
     pub fn new(terms: DriveTerms<T>) -> Self {
         Self {
@@ -54,7 +57,7 @@ impl<T: Exponential> DriveTermsFeedforward<T> {
         }
     }
 
-    /// The same drive before its next motion: the friction level is kept.
+    /// The same drive at rest before its next motion: it keeps its friction level.
     #[must_use]
     pub fn carried_on(mut self) -> Self {
         self.carried = self.state.after;
@@ -67,47 +70,74 @@ impl<T: Exponential> DriveTermsFeedforward<T> {
         &self.terms
     }
 
-    /// Torque of friction's level with its pulse, and the level as the wind-up takes it.
-    fn friction(&mut self, next: &Reference<T>) -> [T; 2] {
-        let (t, s) = (&self.terms, &mut self.state);
-        if next.velocity != T::ZERO {
-            let direction = T::ONE.copysign(next.velocity);
-            if direction != s.direction {
-                // A pulse that is not over is cut short: the level counts from then on.
-                s.before = if s.since < t.pulse.delay { s.before } else { s.after };
-                s.direction = direction;
-                s.after = direction * t.coulomb;
-                s.since = T::ZERO;
-            }
-        }
+    /// Torque of friction, N·m, and its level as the wind-up takes it.
+    fn friction(&self) -> [T; 2] {
+        let (t, s) = (&self.terms, &self.state);
         let since = s.since - t.pulse.delay;
-        s.since = (s.since + t.period).min(T::of(1e6));
         if since < T::ZERO {
-            return [s.before, s.before];
+            return [s.before; 2];
         }
-        let change = s.after - s.before;
-        let left = if t.pulse.decay > T::ZERO {
-            (-since / t.pulse.decay).exp()
-        } else {
-            T::ZERO
-        };
-        let height = if t.coulomb > T::ZERO {
-            t.pulse.amplitude / t.coulomb
-        } else {
-            T::ZERO
-        };
-        [s.after + height * change * left, s.after - change * left]
+        if t.pulse.decay <= T::ZERO || t.coulomb <= T::ZERO {
+            return [s.after; 2];
+        }
+        let left = (s.after - s.before) * (-since / t.pulse.decay).exp();
+        let height = t.pulse.amplitude / t.coulomb;
+        [s.after + height * left, s.after - left]
     }
 
-    /// What the table makes of a set point: load torque (N·m), wind-up (rad) but for
-    /// friction's level, and compliance.
-    fn tables(&self, at: &Reference<T>) -> [T; 3] {
+    /// A change of direction, by the reference; the level holds on at rest.
+    fn turn(&mut self, velocity: T) {
+        if velocity == T::ZERO {
+            return;
+        }
+        let direction = T::ONE.copysign(velocity);
+        if direction != self.state.direction {
+            let [_, level] = self.friction();
+            self.state.before = level;
+            self.state.after = direction * self.terms.coulomb;
+            self.state.direction = direction;
+            self.state.since = T::ZERO;
+        }
+    }
+
+    /// Load torque (N·m) and wind-up (rad) at a set point with a friction level.
+    fn tables(&self, at: &Reference<T>, level: T) -> [T; 2] {
         let t = &self.terms;
         let section = t.along.at(at.position);
         let load = t.travel * section.load;
         let viscous = t.viscous * at.velocity / t.travel;
-        let torque = t.winding(&section) * at.acceleration + viscous + load;
-        [load, section.compliance * torque, section.compliance]
+        let torque = t.winding(&section) * at.acceleration + viscous + load + level;
+        [load, section.compliance * torque]
+    }
+
+    fn cycle(&mut self, now: &Reference<T>, next: &Reference<T>) -> Correction<T> {
+        let [_, level] = self.friction();
+        let [load_now, wound_now] = self.tables(now, level);
+        self.turn(next.velocity);
+        // Not for ever: beyond, nothing changes, and a sum would stop to grow.
+        self.state.since = (self.state.since + self.terms.period).min(T::of(1e6));
+        let [friction, level] = self.friction();
+        let [load, wound] = self.tables(next, level);
+        let [home_load, home_wound] = *self.state.home.get_or_insert([load_now, wound_now]);
+        let (t, own) = (&self.terms, &self.terms.own);
+        let mut position = T::ZERO;
+        if own.position > T::ZERO {
+            let share = t.velocity_feedforward - own.velocity;
+            position += share * now.velocity / (t.travel * own.position);
+            if !own.from_motor {
+                position += (wound - wound_now) / (t.period * own.position);
+            }
+        }
+        if own.from_motor {
+            position += t.travel * (wound_now - home_wound);
+        }
+        let torque = t.viscous * next.velocity / t.travel + load - home_load + friction;
+        let effort = (t.effort_per_acceleration - own.acceleration) * next.acceleration
+            + torque / t.torque_constant;
+        Correction {
+            position,
+            iq: effort,
+        }
     }
 }
 
@@ -121,52 +151,20 @@ impl<T: Exponential> Compensator<T> for DriveTermsFeedforward<T> {
         let finite = |r: &Reference<T>| {
             r.position.is_finite() && r.velocity.is_finite() && r.acceleration.is_finite()
         };
-        // What no set point says is not acted on.
-        if !(finite(now) && finite(next)) {
-            return self.state.last;
-        }
-        let level_before = self.level();
-        let [friction, level] = self.friction(next);
-        let t = self.terms;
-        let [load_now, wind_now, compliance_now] = self.tables(now);
-        let [load, wind, compliance] = self.tables(next);
-        let wind_now = wind_now + compliance_now * level_before;
-        let wind = wind + compliance * level;
-        let [home_load, home_wind] = *self.state.home.get_or_insert([load_now, wind_now]);
-        let mut position = T::ZERO;
-        let own = &t.own;
-        if own.position > T::ZERO {
-            let fed = (t.velocity_feedforward - own.velocity) * now.velocity / t.travel;
-            position += fed / own.position;
-            if !own.from_motor { position += (wind - wind_now) / (t.period * own.position); }
-        }
-        if own.from_motor {
-            position += t.travel * (wind_now - home_wind);
-        }
-        let torque = t.viscous * next.velocity / t.travel + load - home_load + friction;
-        let effort = (t.effort_per_acceleration - own.acceleration) * next.acceleration
-            + torque / t.torque_constant;
-        let iq = effort.max(-t.effort_limit).min(t.effort_limit);
-        if position.is_finite() && effort.is_finite() {
-            self.state.last = Correction { position, iq };
+        if finite(now) && finite(next) {
+            let before = self.state;
+            let made = self.cycle(now, next);
+            if made.position.is_finite() && made.iq.is_finite() {
+                let limit = self.terms.effort_limit;
+                self.state.last = Correction {
+                    position: made.position,
+                    iq: made.iq.max(-limit).min(limit),
+                };
+            } else {
+                // Beyond the scalar's range: as if it had not come.
+                self.state = before;
+            }
         }
         self.state.last
-    }
-}
-
-impl<T: Exponential> DriveTermsFeedforward<T> {
-    /// The level as the wind-up took it last.
-    fn level(&self) -> T {
-        let (t, s) = (&self.terms, &self.state);
-        let since = s.since - t.period - t.pulse.delay;
-        if since < T::ZERO {
-            return s.before;
-        }
-        let left = if t.pulse.decay > T::ZERO {
-            (-since / t.pulse.decay).exp()
-        } else {
-            T::ZERO
-        };
-        s.after - (s.after - s.before) * left
     }
 }

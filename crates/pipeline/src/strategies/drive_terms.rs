@@ -1,7 +1,8 @@
 //! `drive_terms`: what an ordinary drive makes of the constants, the pulse and the table
 //! that it can be given.
 
-use compensator::{Compensator, DriveTerms, DriveTermsFeedforward, Sample, Start};
+use axis_sim::Axis;
+use compensator::{Compensator, DriveTerms, DriveTermsFeedforward, ReversalStart, Sample};
 
 use super::{Build, Learned, NextMove, Strategy, StrategyKind, Table};
 use crate::PipelineError;
@@ -14,7 +15,7 @@ pub(super) static KIND: StrategyKind = StrategyKind {
     table: Table::More,
     needs: &[],
     build: Build::Carrying(|predictors| {
-        let start = start(&predictors.axis);
+        let start = reversal_start(&predictors.axis);
         let terms = DriveTerms::new(&predictors.believed()?, &start)?;
         Ok(Box::new(Applied(DriveTermsFeedforward::new(terms))))
     }),
@@ -22,10 +23,10 @@ pub(super) static KIND: StrategyKind = StrategyKind {
 
 /// The start that the reversal pulse is fitted to: that of the axis' trajectories, with the
 /// mean of their jerks; 1 m/s³ where there are none.
-pub fn start(axis: &axis_sim::Axis) -> Start {
+pub fn reversal_start(axis: &Axis) -> ReversalStart {
     let jerks = axis.trajectories.iter().map(|t| t.limits.jerk());
     let mean = jerks.sum::<f64>() / axis.trajectories.len() as f64;
-    Start {
+    ReversalStart {
         acceleration: 0.0,
         jerk: if mean > 0.0 { mean } else { 1.0 },
     }

@@ -24,6 +24,7 @@ use compensator::{Compensator, Correction, Sample};
 use trajectories::Motion;
 
 use crate::PipelineError;
+pub use drive_terms::reversal_start;
 pub use feedforward::Feedforward;
 pub use network::KIND as NETWORK;
 pub use network_lugre::KIND as NETWORK_LUGRE;
