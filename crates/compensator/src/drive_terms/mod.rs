@@ -65,6 +65,7 @@ pub struct DriveTerms<T = f64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Own<T> {
     position: T,
+    speed: T,
     velocity: T,
     acceleration: T,
     from_motor: bool,
@@ -124,6 +125,7 @@ impl DriveTerms {
             period: model.period,
             own: Own {
                 position: model.cascade.position,
+                speed: model.cascade.speed,
                 velocity: model.cascade.velocity_feedforward,
                 acceleration: model.cascade.acceleration_feedforward,
                 from_motor: model.cascade.from_motor,
@@ -169,6 +171,7 @@ impl<T: Exponential> DriveTerms<T> {
             period: to(self.period),
             own: Own {
                 position: to(self.own.position),
+                speed: to(self.own.speed),
                 velocity: to(self.own.velocity),
                 acceleration: to(self.own.acceleration),
                 from_motor: self.own.from_motor,
@@ -215,6 +218,38 @@ impl<T: Exponential> DriveTerms<T> {
     #[must_use]
     pub fn position_gain(&self) -> T {
         self.own.position
+    }
+
+    /// Share of v/r that the drive feeds forward itself already.
+    #[must_use]
+    pub fn own_velocity_feedforward(&self) -> T {
+        self.own.velocity
+    }
+
+    /// The pulse as a jump of the speed reference, a/(K k_p), which the speed controller of
+    /// gain k_p makes the pulse's torque of, rad/s; 0 where there is no speed controller.
+    #[must_use]
+    pub fn speed_injection(&self) -> T {
+        let per_speed = self.torque_constant * self.own.speed;
+        if per_speed > T::ZERO {
+            self.pulse.amplitude / per_speed
+        } else {
+            T::ZERO
+        }
+    }
+
+    /// The jump of the speed with which the motor is to wind the transmission up as the
+    /// friction level comes after a start, C T_C/decay at mid-stroke, rad/s; twice that
+    /// after a reversal. 0 where the level comes at once.
+    #[must_use]
+    pub fn winding_speed(&self) -> T {
+        let [least, most] = self.along.ends();
+        let section = self.along.at(T::HALF * (least + most));
+        if self.pulse.decay > T::ZERO {
+            section.compliance * self.coulomb / self.pulse.decay
+        } else {
+            T::ZERO
+        }
     }
 
     /// r m + J_w/r: torque that winds the transmission up, per acceleration.
