@@ -119,7 +119,10 @@ impl Units {
 /// (a ratio to an inertia of 0) is left out.
 pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
     let u = Units::of(axis);
-    let per = |a: &str, b: &str| format!("{a}/({b})");
+    let per = |a: &str, b: &str| match b.contains('/') {
+        true => format!("{a}/({b})"),
+        false => format!("{a}/{b}"),
+    };
     let (r, k) = (of.travel, of.torque_constant);
     let [least, most] = of.along.ends();
     let row = of.row(0.5 * (least + most));
@@ -369,11 +372,14 @@ pub fn over_turn(axis: &Axis, errors: &PositionErrors) -> Option<TermTable> {
 }
 
 /// Runs the trajectories of `model` on `machine` without compensation, with the drive terms
-/// and with the plan, both made from `model`.
+/// and with the plan, both made from `model`; nothing where it has no trajectories.
 ///
 /// # Errors
 /// As [`compensate_with`].
 pub fn losses(model: &Axis, machine: &Axis) -> Result<Vec<Loss>, PipelineError> {
+    if model.trajectories.is_empty() {
+        return Ok(Vec::new());
+    }
     let kinds: Vec<&StrategyKind> = ["drive_terms", "plan"]
         .into_iter()
         .filter_map(|name| named(STRATEGIES, name))
