@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use axis_sim::effects::{ActiveEffect, Effect};
 use axis_sim::{Axis, ClosedLoop, Measured};
+use compensator::{DriveTerms, DriveTermsFeedforward, ReversalPulse};
 use pipeline::drive_terms::{losses, of_axis, over_position, over_turn, terms};
 use pipeline::moves::{Moves, NamedMotion};
-use pipeline::strategies::{Predictors, STRATEGIES, named};
+use pipeline::strategies::{Predictors, STRATEGIES, named, reversal_start};
 use trajectories::{Limits, SCurve};
 
 fn axis(name: &str) -> Axis {
@@ -130,6 +131,63 @@ fn better_than_friction_alone() {
     for pair in runs.chunks(2) {
         let [lugre, terms] = [&pair[0].run.figures, &pair[1].run.figures];
         assert!(terms.max < 0.6 * lugre.max && terms.mean < 0.5 * lugre.mean);
+    }
+}
+
+/// Greatest and mean error over the trajectories under terms, µm; `cargo test -p pipeline
+/// --test drive_terms worth -- --nocapture` prints the table of docs/drive-terms.md.
+fn error_under(machine: &Axis, terms: DriveTerms) -> [f64; 2] {
+    let closed_loop = ClosedLoop::new(machine).unwrap();
+    let [mut most, mut mean] = [0.0_f64; 2];
+    for spec in &machine.trajectories {
+        let motion = machine.plan(spec).unwrap();
+        let mut errors = Vec::new();
+        let mut law = DriveTermsFeedforward::new(terms);
+        let run = closed_loop.run(&motion, &mut law, |cycle| errors.push(cycle.error()));
+        run.completed().unwrap();
+        let figures = pipeline::Figures::of_metres(&errors).unwrap();
+        most = most.max(figures.max);
+        mean = mean.max(figures.mean);
+    }
+    [most, mean]
+}
+
+/// Every term is worth having: without it more is left.
+#[test]
+fn what_each_term_is_worth() {
+    let machine = axis("liu2025-machine.toml");
+    let model = machine.drive_model().unwrap();
+    let start = reversal_start(&machine);
+    let all = DriveTerms::new(&model, &start).unwrap();
+    let mut rigid = model;
+    rigid.along = model.along.with_compliance(0.0);
+    let with = |change: fn(&mut DriveTerms)| {
+        let mut terms = all;
+        change(&mut terms);
+        terms
+    };
+    let without = [
+        (
+            "without torque feed-forward of the inertia",
+            with(|t| t.effort_per_acceleration = 0.0),
+        ),
+        ("without viscous friction", with(|t| t.viscous = 0.0)),
+        (
+            "without wind-up, the pulse fitted again",
+            DriveTerms::new(&rigid, &start).unwrap(),
+        ),
+        (
+            "without the pulse: the level steps with the direction",
+            with(|t| t.pulse = ReversalPulse::default()),
+        ),
+        ("pulse without delay", with(|t| t.pulse.delay = 0.0)),
+    ];
+    let best = error_under(&machine, all);
+    println!("all: {:.2} / {:.3}", best[0], best[1]);
+    for (name, terms) in without {
+        let [most, mean] = error_under(&machine, terms);
+        println!("{name}: {most:.2} / {mean:.3}");
+        assert!(most > 1.1 * best[0] || mean > 1.1 * best[1], "{name}");
     }
 }
 
