@@ -124,7 +124,7 @@ impl<T: Scalar> Along<T> {
     #[must_use]
     pub fn with_compliance(mut self, scale: T) -> Self {
         for section in &mut self.sections {
-            section.compliance = section.compliance * scale;
+            section.compliance *= scale;
         }
         self
     }
