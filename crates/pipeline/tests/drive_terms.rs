@@ -1,4 +1,5 @@
 //! Drive terms of the paper's axis: values by hand, units, and the loss against the plan.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use std::f64::consts::{PI, TAU};
 use std::path::PathBuf;
