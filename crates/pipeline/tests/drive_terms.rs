@@ -182,6 +182,16 @@ fn what_each_term_is_worth() {
             with(|t| t.pulse = ReversalPulse::default()),
         ),
         ("pulse without delay", with(|t| t.pulse.delay = 0.0)),
+        ("without wind-up, pulse without delay", {
+            let mut terms = DriveTerms::new(&rigid, &start).unwrap();
+            terms.pulse.delay = 0.0;
+            terms
+        }),
+        ("without wind-up and pulse", {
+            let mut terms = DriveTerms::new(&rigid, &start).unwrap();
+            terms.pulse = ReversalPulse::default();
+            terms
+        }),
     ];
     let best = error_under(&machine, all);
     println!("all: {:.2} / {:.3}", best[0], best[1]);
