@@ -18,8 +18,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    bench, compensate, discover, discover_matrix, identify, layers, learn, pipeline, report,
-    robustness, sample, simulate, study, torture, train, validate,
+    bench, compensate, discover, discover_matrix, export_drive, identify, layers, learn, pipeline,
+    report, robustness, sample, simulate, study, torture, train, validate,
 };
 use context::Common;
 use diagnostic::Compiler;
@@ -68,6 +68,8 @@ enum Command {
     Discover(discover::Options),
     /// Hide effects in simulated machines, search for them blind, and score it
     DiscoverMatrix(discover_matrix::Options),
+    /// Write what of the correction a drive or CNC can be given (docs/drive-terms.md)
+    ExportDrive(export_drive::Options),
     /// Measure the speed of every hot path (docs/performance.md)
     Bench(bench::Options),
     /// Try damaged inputs and disturbed runs, and judge what comes of them
@@ -112,6 +114,7 @@ fn run(command: Command) -> miette::Result<()> {
         Command::Simulate(options) => simulate::command(&options),
         Command::Discover(options) => discover::command(&options),
         Command::DiscoverMatrix(options) => discover_matrix::command(&options),
+        Command::ExportDrive(options) => export_drive::command(&options),
         Command::Bench(options) => bench::command(&options),
         Command::Torture(options) => torture::command(&options),
         Command::Robustness(common) => robustness::command(&common),

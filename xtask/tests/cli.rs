@@ -29,6 +29,7 @@ fn help_names_every_command() {
         "simulate",
         "discover",
         "discover-matrix",
+        "export-drive",
         "bench",
         "torture",
         "layers",

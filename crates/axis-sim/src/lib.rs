@@ -114,6 +114,7 @@ pub use axis::{
     Simulation, Stroke, Tolerances,
 };
 pub use axis_file::{AxisFileError, Registry};
+pub use belief::PositionErrors;
 pub use channels::{CHANNELS, ChannelPart, LogChannel, channels, position_in, reference_in};
 pub use closed_loop::{ClosedLoop, LoopState};
 pub use cycle::{Command, Cycle, Measured, Outcome, RunStopped, Stop, StopReason};

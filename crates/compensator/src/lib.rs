@@ -20,6 +20,7 @@
 //! | [`FrictionFeedforward`] | `friction.rs` | the current that LuGre friction asks for |
 //! | [`Plan`] | `plan/` | offsets with which the drive follows a motion that is known ahead |
 //! | [`PlanWithFeedback`] | `feedback/` | the plan, and an observer and state feedback in place of the drive's loops |
+//! | [`DriveTermsFeedforward`] | `drive_terms/` | what an ordinary drive makes of its own constants, pulses and tables |
 //! | [`Combined`] | `combined.rs` | the sum of two |
 //!
 //! Speed and acceleration, which the network asks for, come from the
@@ -70,6 +71,7 @@ extern crate alloc;
 #[cfg(feature = "identify")]
 mod adapt;
 mod combined;
+mod drive_terms;
 mod error;
 mod estimator;
 mod feedback;
@@ -89,8 +91,13 @@ mod sample;
 mod transfer_function;
 
 #[cfg(feature = "identify")]
-pub use adapt::{AdaptError, AdaptParameter, AdaptPrior, Adaptation, Estimated, Learned, Spread};
+pub use adapt::{
+    AdaptError, AdaptParameter, AdaptPrior, Adaptation, Estimated, Learned, Rest, Spread,
+};
 pub use combined::Combined;
+pub use drive_terms::{
+    DriveTerms, DriveTermsFeedforward, DriveTermsRow, ReversalPulse, ReversalStart,
+};
 pub use error::CompensatorError;
 pub use estimator::{Estimate, MotionEstimator, NoiseGains, ObserverGains};
 #[cfg(feature = "design")]

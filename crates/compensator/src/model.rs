@@ -77,6 +77,29 @@ impl<T: Scalar> Along<T> {
         })
     }
 
+    /// The positions of its first and its last section.
+    #[must_use]
+    pub fn ends(&self) -> [T; 2] {
+        let gaps = T::of((SECTIONS - 1) as f64);
+        [self.least, self.least + gaps / self.per_length]
+    }
+
+    /// Each value rounded to the nearest number of another scalar.
+    #[must_use]
+    pub fn cast<U: Scalar>(&self) -> Along<U> {
+        let to = |value: T| U::of(value.to_f64());
+        Along {
+            least: to(self.least),
+            per_length: to(self.per_length),
+            sections: self.sections.map(|s| Section {
+                compliance: to(s.compliance),
+                rotating: to(s.rotating),
+                lagging: to(s.lagging),
+                load: to(s.load),
+            }),
+        }
+    }
+
     /// The section at `position`.
     #[must_use]
     pub fn at(&self, position: T) -> Section<T> {

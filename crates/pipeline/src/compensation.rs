@@ -22,6 +22,7 @@ pub struct CompensatedRun {
 
 /// Runs every trajectory of `model` on `machine` under every strategy of [`STRATEGIES`],
 /// in that order; a strategy that learns does so from each trajectory for those after it.
+/// One that the axis cannot carry (a feedback without margins) is left out, with a warning.
 /// `each` is called once a run; [`runs`] tells how often.
 ///
 /// # Errors
@@ -52,13 +53,22 @@ pub fn compensate_with(
         if strategies[..i].iter().any(|other| other.name == kind.name) {
             return Err(PipelineError::SameName(kind.name));
         }
-        // Refused before anything is computed.
-        kind.strategy(predictors)?;
+    }
+    let mut suited = Vec::new();
+    for kind in strategies {
+        match kind.strategy(predictors) {
+            Ok(_) => suited.push(*kind),
+            Err(error) if error.is_unsuited() => {
+                tracing::warn!("{} is left out: {error}", kind.label);
+            }
+            // Refused before anything is computed.
+            Err(error) => return Err(error),
+        }
     }
     let closed_loop = ClosedLoop::new(machine)?;
     let motions: Vec<NamedMotion> = plan_all(model)?.into_iter().map(Planned::named).collect();
     // One after the other where a strategy carries something from move to move.
-    let series: Vec<(&StrategyKind, &[NamedMotion], usize)> = strategies
+    let series: Vec<(&StrategyKind, &[NamedMotion], usize)> = suited
         .iter()
         .flat_map(|kind| {
             let length = match kind.build {

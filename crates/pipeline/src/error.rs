@@ -4,6 +4,13 @@ use thiserror::Error;
 
 use crate::strategies::Need;
 
+impl PipelineError {
+    /// Whether a strategy cannot be made for this axis at all: another one may be.
+    pub fn is_unsuited(&self) -> bool {
+        matches!(self, Self::Feedback(_) | Self::Adapt(_))
+    }
+}
+
 /// Why a stage gave no result.
 #[derive(Debug, Error)]
 #[non_exhaustive]

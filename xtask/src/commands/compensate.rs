@@ -96,6 +96,8 @@ mod tests {
                 "network_lugre_printed",
                 "network + LuGre as in the axis file",
             ),
+            ("drive_terms", "drive terms"),
+            ("plan", "plan"),
         ];
         assert_eq!(labels.len(), STRATEGIES.len());
         for (name, label) in labels {

@@ -20,7 +20,10 @@ use crate::progress::bar;
 use crate::strategy_name::strategy_name;
 
 /// Options for moves under one strategy.
+// A group by itself: clap names groups after their type, and the command's own options
+// have that name.
 #[derive(Args)]
+#[group(id = "moves-options")]
 pub struct Options {
     /// Make moves under this strategy, which keeps what it learns from move to move,
     /// instead of every trajectory under every strategy. The axis file is what the

@@ -233,6 +233,8 @@ mod tests {
             ("transfer-function-lugre", "transfer_function_lugre"),
             ("lugre", "lugre"),
             ("network-lugre-printed", "network_lugre_printed"),
+            ("drive-terms", "drive_terms"),
+            ("plan", "plan"),
         ] {
             assert_eq!(parse(value).unwrap().name, name);
         }

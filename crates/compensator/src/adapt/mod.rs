@@ -30,6 +30,7 @@ mod report;
 mod residual;
 mod smooth;
 mod torque;
+mod unexplained;
 mod weight;
 
 use std::vec::Vec;
@@ -45,6 +46,7 @@ pub use parameter::{AdaptParameter, AdaptPrior, Spread};
 use parameter::{COUNT, Theta};
 use record::Record;
 pub use report::{Estimated, Learned};
+pub use unexplained::Rest;
 
 /// A torque balance of which more than this share is left is of another machine.
 const MOST_LEFT: f64 = 0.3;

@@ -48,8 +48,13 @@ pub(super) struct Record {
 impl Record {
     /// Of a log of the axis that is believed.
     pub fn new(belief: &Belief, log: &[Sample]) -> Result<Self, AdaptError> {
+        Self::smoothed(belief, log, belief.smoothing())
+    }
+
+    /// The same behind a Gaussian of the deviation `smoothing` (s).
+    pub fn smoothed(belief: &Belief, log: &[Sample], smoothing: f64) -> Result<Self, AdaptError> {
         let model = &belief.model;
-        let (period, smoothing) = (model.period, belief.smoothing());
+        let period = model.period;
         // Few samples a deviation make no Gaussian.
         let cycles = |time: f64| (time / period).max(1.0);
         let [balance, velocity] =

@@ -80,6 +80,11 @@ impl Residuals {
         of.sum()
     }
 
+    /// The torque balance at each point, N·m.
+    pub fn torque(&self) -> &[f64] {
+        &self.0[0].values
+    }
+
     /// RMS of the torque balance, N·m.
     pub fn rms(&self) -> f64 {
         self.weighed(&std::vec![1.0; self.0[0].values.len()])

@@ -11,8 +11,8 @@
 //! (D. A. Bristow, M. Tharayil, A. G. Alleyne, A survey of iterative learning control,
 //! IEEE Control Systems 26(3), 2006, doi:10.1109/MCS.2006.1636313).
 //!
-//! A move has been learned when what is left of e behind the Gaussian is what the noise of
-//! one measurement leaves there.
+//! A move has been learned when what is left of e behind the Gaussian is noise, as most of
+//! a move shows it.
 //!
 //! [`Target::shift`]: crate::Target::shift
 
@@ -56,7 +56,7 @@ pub struct Round {
     pub peak: f64,
     /// Root of the mean square of what can be learned of it: behind the Gaussian.
     pub learnable: f64,
-    /// What noise leaves there, from that part of e which does not pass.
+    /// What noise leaves there: by the median of e behind the Gaussian.
     pub floor: f64,
     /// What to do now.
     pub advice: Advice,
@@ -87,19 +87,12 @@ pub struct LearnedMove {
     /// Learnable part of the first move and of the best one so far.
     first: f64,
     best: f64,
-    /// Noise behind the Gaussian, as it was found last.
-    floor: f64,
-    /// Smoothed δ + e of the last repetition, where it was seen.
-    whole: Option<Vec<f64>>,
-    /// By how much δ was changed last (RMS).
-    changed: f64,
 }
 
-/// Share of a change of δ that the axis may not follow.
-const UNFOLLOWED: f64 = 0.3;
-
-/// Times the white noise up to which an error may be noise that is not white.
-const HIDDEN: f64 = 20.0;
+/// Median of the magnitude of a normal variable of deviation 1.
+const NORMAL_MEDIAN: f64 = 0.6745;
+/// How long a while is, in deviations of the Gaussian.
+const WHILE: f64 = 5.0;
 
 impl LearnedMove {
     /// Nothing learned yet, of a move sampled every `period` seconds.
@@ -119,9 +112,6 @@ impl LearnedMove {
             rounds: 0,
             first: f64::INFINITY,
             best: f64::INFINITY,
-            floor: 0.0,
-            whole: None,
-            changed: 0.0,
         })
     }
 
@@ -155,41 +145,26 @@ impl LearnedMove {
     /// sample is missing: there the errors beside it count. Before the first sample and
     /// after the last nothing is learned.
     ///
-    /// What is left of a move is noise where δ + e differs as much between two repetitions:
-    /// that is what the axis did not do twice. After the first move only the noise that is
-    /// white is known; an error that it might hide is looked at twice before it is learned.
+    /// Most of a move is noise alone behind the Gaussian: the median of its magnitude tells
+    /// how much, whatever the noise's spectrum. Where the move is off by more than that for
+    /// a while, the error is learned; elsewhere not.
     pub fn learn(&mut self, errors: &[Option<f64>]) -> Round {
         let gauss = Gauss::new(self.settings.smoothing / self.period);
         let filled = fill(errors);
         let smooth = gauss.pass(&filled);
         let learnable = rms(smooth.iter().copied());
-        // White noise of the same power as what does not pass leaves this behind it.
-        let rough = filled.iter().zip(&smooth).map(|(e, s)| e - s);
-        let white = rms(rough) * gauss.noise_gain();
-        let led = |k: usize| self.shift.get(k).copied().unwrap_or(0.0);
-        let whole: Vec<f64> = smooth.iter().enumerate().map(|(k, e)| led(k) + e).collect();
-        let twice = self
-            .whole
-            .as_ref()
-            .filter(|before| before.len() == whole.len());
-        let twice = twice.map(|before| {
-            let apart = rms(whole.iter().zip(before).map(|(a, b)| a - b));
-            // An axis that does not follow δ quite is no noise.
-            let unfollowed = UNFOLLOWED * self.changed;
-            Scalar::sqrt((apart * apart - unfollowed * unfollowed).max(0.0) / 2.0)
-        });
-        let floor = twice.map_or(white, |twice| twice.max(white));
+        let floor = median(&smooth) / NORMAL_MEDIAN;
         let peak = filled.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
         let worse = self.rounds > 0
             && (learnable > self.first || learnable > 2.0 * self.best)
-            && learnable > 3.0 * self.floor.max(white);
+            && learnable > 3.0 * floor;
         if worse {
             self.shift.clear();
             self.rounds = 0;
         }
         let advice = match () {
             () if worse => Advice::Restarted,
-            () if learnable <= 1.5 * floor => Advice::Done,
+            () if learnable <= 1.3 * floor => Advice::Done,
             // It gets hardly better: what is left varies faster than the Gaussian passes.
             () if self.rounds > 1 && learnable > 0.8 * self.best => Advice::Enough,
             () if self.rounds >= self.settings.most_rounds => Advice::Enough,
@@ -200,23 +175,20 @@ impl LearnedMove {
             self.best = learnable;
         }
         self.best = self.best.min(learnable);
-        self.floor = floor;
-        let hidden = twice.is_none() && learnable <= HIDDEN * white;
-        if matches!(advice, Advice::Again | Advice::Restarted) && !hidden {
+        if matches!(advice, Advice::Again | Advice::Restarted) {
             self.shift.resize(filled.len().max(self.shift.len()), 0.0);
-            let sum = self.shift.iter().enumerate();
-            let sum: Vec<f64> = sum
-                .map(|(k, d)| d + filled.get(k).copied().unwrap_or(0.0))
-                .collect();
+            let shares = shares(
+                &smooth,
+                floor,
+                WHILE * self.settings.smoothing / self.period,
+            );
+            let learned = filled.iter().zip(&shares).map(|(e, share)| e * share);
+            let mut sum = self.shift.clone();
+            sum.iter_mut().zip(learned).for_each(|(d, e)| *d += e);
             let limit = self.settings.limit;
             let next = gauss.pass(&sum);
-            let next: Vec<f64> = next.into_iter().map(|d| d.clamp(-limit, limit)).collect();
-            self.changed = rms(next.iter().zip(&self.shift).map(|(a, b)| a - b));
-            self.shift = next;
-        } else {
-            self.changed = 0.0;
+            self.shift = next.into_iter().map(|d| d.clamp(-limit, limit)).collect();
         }
-        self.whole = Some(whole);
         self.rounds += 1;
         Round {
             rounds: self.rounds,
@@ -279,6 +251,25 @@ fn fill(errors: &[Option<f64>]) -> Vec<f64> {
         last = Some(k);
     }
     filled
+}
+
+/// Share of the error at each instant that is no noise: 1 − 2 floor²/power, the power being
+/// the mean square over a while.
+fn shares(smooth: &[f64], floor: f64, samples: f64) -> Vec<f64> {
+    let squares: Vec<f64> = smooth.iter().map(|e| e * e).collect();
+    let power = Gauss::new(samples).pass(&squares);
+    let share = |power: f64| match power > 0.0 {
+        true => (1.0 - 2.0 * floor * floor / power).max(0.0),
+        false => 0.0,
+    };
+    power.into_iter().map(share).collect()
+}
+
+/// Median of the magnitudes.
+fn median(values: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    sizes.get(sizes.len() / 2).copied().unwrap_or(0.0)
 }
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {

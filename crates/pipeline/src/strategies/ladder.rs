@@ -10,13 +10,13 @@ use std::sync::Arc;
 
 use axis_sim::Axis;
 use compensator::{
-    AdaptPrior, Adaptation, Compensator, DriveModel, FeedbackDesign, FeedbackSettings, LearnedMove,
-    LearningSettings, PlanWithFeedback, ResidualLearner, ResidualModel, Sample,
+    AdaptPrior, Adaptation, Compensator, DriveModel, Feedback, FeedbackDesign, FeedbackSettings,
+    LearnedMove, LearningSettings, PlanWithFeedback, ResidualLearner, ResidualModel, Sample,
 };
 use trajectories::Motion;
 
 use super::plan::plan;
-use super::{Learned, NextMove, Predictors, SharedMotion, Strategy};
+use super::{DesignOnce, Learned, NextMove, Predictors, SharedMotion, Strategy};
 use crate::PipelineError;
 
 /// Which rungs a strategy has above the plan.
@@ -36,9 +36,13 @@ pub(super) struct Rungs {
 pub(super) struct Ladder {
     axis: Axis,
     believed: DriveModel,
+    /// The feedback for that.
+    first_design: DesignOnce,
     rungs: Rungs,
     adaptation: Option<Adaptation>,
     residual: Option<ResidualLearner>,
+    /// The feedback, and the model that it was designed for.
+    design: Option<(FeedbackDesign, DriveModel)>,
     repeated: Vec<Repeated>,
     /// Which of them runs now.
     now: Option<usize>,
@@ -67,18 +71,20 @@ impl Ladder {
         let residual = rungs
             .residual
             .then(|| ResidualLearner::new(stroke, believed.travel, level));
-        let ladder = Self {
+        let mut ladder = Self {
             axis,
             believed,
+            first_design: predictors.design.clone(),
             rungs,
             adaptation,
             residual,
+            design: None,
             repeated: Vec::new(),
             now: None,
         };
         if rungs.feedback {
             // Refused before anything is computed.
-            ladder.design(&ladder.believed)?;
+            ladder.feedback(&believed)?;
         }
         Ok(ladder)
     }
@@ -89,7 +95,21 @@ impl Ladder {
         adapted.unwrap_or(self.believed)
     }
 
-    fn design(&self, model: &DriveModel) -> Result<FeedbackDesign, PipelineError> {
+    /// The feedback for a model. It is designed anew where the model has left what the margins
+    /// of the last design hold for.
+    fn feedback(&mut self, model: &DriveModel) -> Result<Feedback, PipelineError> {
+        match &self.design {
+            Some((design, of)) if near(model, of) => Ok(design.feedback()),
+            _ => {
+                let design = self.designed(model)?;
+                let feedback = design.feedback();
+                self.design = Some((design, *model));
+                Ok(feedback)
+            }
+        }
+    }
+
+    fn designed(&self, model: &DriveModel) -> Result<FeedbackDesign, PipelineError> {
         let mechanism = &self.axis.mechanism;
         let stroke = &self.axis.stroke;
         let modes = |share: f64| {
@@ -104,9 +124,11 @@ impl Ladder {
             ..FeedbackSettings::default()
         };
         let elsewhere: [&[_]; 2] = [&near, &far];
-        Ok(FeedbackDesign::within_margins(
-            model, &middle, &elsewhere, &settings,
-        )?)
+        let design = || FeedbackDesign::within_margins(model, &middle, &elsewhere, &settings);
+        Ok(match *model == self.believed {
+            true => self.first_design.get(design)?,
+            false => design()?,
+        })
     }
 
     /// The repetitions of a motion, where it has been made before.
@@ -123,6 +145,21 @@ impl Ladder {
         });
         Ok(self.repeated.len() - 1)
     }
+}
+
+/// Whether a feedback designed for one model holds for another: well inside the shares of
+/// mass and friction that its margins are asked for.
+fn near(model: &DriveModel, designed: &DriveModel) -> bool {
+    let (a, b) = (model.friction.parameters(), designed.friction.parameters());
+    let shares = [
+        a.coulomb / b.coulomb,
+        a.stiffness / b.stiffness,
+        a.damping / b.damping,
+        a.viscous / b.viscous,
+    ];
+    let within = |share: f64| share.is_nan() || (0.7..=1.4).contains(&share);
+    let mass = model.load_inertia / designed.load_inertia;
+    (0.95..=1.2).contains(&mass) && shares.into_iter().all(within)
 }
 
 /// Whether two motions are one.
@@ -143,8 +180,8 @@ impl Strategy for Ladder {
         if self.rungs.repetition {
             let made = self.repeated.len();
             let now = self.repeats(&next.motion)?;
-            if now < made {
-                // From its first repetition on it is learned beside one model.
+            if now < made || !self.rungs.adaptation {
+                // Beside one model: from its first repetition on where that is adapted.
                 let repeated = &mut self.repeated[now];
                 (model, residual) = *repeated.frozen.get_or_insert((model, residual));
                 next.learned = Some(Arc::new(repeated.learned.clone()));
@@ -155,7 +192,7 @@ impl Strategy for Ladder {
         if !self.rungs.feedback {
             return Ok(Box::new(plan));
         }
-        let feedback = self.design(&model)?.feedback();
+        let feedback = self.feedback(&model)?;
         Ok(Box::new(PlanWithFeedback::new(plan, feedback)))
     }
 
@@ -170,6 +207,13 @@ impl Strategy for Ladder {
             );
             if let Some(refused) = refused {
                 tracing::warn!("nothing learned of this move: {refused}");
+            }
+            if let (Some(residual), Ok(rest)) = (&mut self.residual, adaptation.unexplained(record))
+            {
+                let explained = residual.learn(&rest.instants, rest.spacing, rest.smoothing);
+                known.insert("residual_explained".to_owned(), explained);
+                let used = residual.model().is_some();
+                known.insert("residual_used".to_owned(), f64::from(u8::from(used)));
             }
             for estimate in adaptation.estimates() {
                 let name = estimate.parameter.name().replace(' ', "_");

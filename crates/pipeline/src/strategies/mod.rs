@@ -7,6 +7,7 @@
 
 mod adaptive;
 mod adaptive_feedback;
+mod drive_terms;
 mod feedback;
 mod feedforward;
 mod iterative;
@@ -29,12 +30,13 @@ use compensator::{Compensator, Correction, LearnedMove, Sample};
 use trajectories::Motion;
 
 use crate::PipelineError;
+pub use drive_terms::reversal_start;
 pub use feedforward::Feedforward;
 pub use network::KIND as NETWORK;
 pub use network_lugre::KIND as NETWORK_LUGRE;
 pub use none::KIND as NONE;
 pub(crate) use predictors::BothPredictors;
-pub use predictors::{NetworkStrategy, Predictors, TransferModels};
+pub use predictors::{DesignOnce, NetworkStrategy, Predictors, TransferModels};
 
 /// All strategies, one line each, in the order of summary and tables; without [`NONE`],
 /// which is what they are compared with.
@@ -45,6 +47,7 @@ pub const STRATEGIES: &[&StrategyKind] = &[
     &transfer_function_lugre::KIND,
     &lugre::KIND,
     &network_lugre_printed::KIND,
+    &drive_terms::KIND,
     &plan::KIND,
     &feedback::KIND,
     &adaptive::KIND,

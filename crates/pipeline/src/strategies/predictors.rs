@@ -1,10 +1,12 @@
 //! What the strategies are made of.
 
+use std::sync::{Arc, OnceLock};
+
 use axis_sim::Axis;
 use cfnn::{Network, Predictor};
 use compensator::{
-    DriveModel, FrictionFeedforward, MotionEstimator, NetworkCompensation, ObserverGains,
-    TransferFunction, TransferFunctionModel,
+    DesignError, DriveModel, FeedbackDesign, FrictionFeedforward, MotionEstimator,
+    NetworkCompensation, ObserverGains, TransferFunction, TransferFunctionModel,
 };
 use lugre::LuGre;
 
@@ -24,6 +26,25 @@ pub struct Predictors {
     pub identified: Option<LuGre>,
     /// What plans believe of the axis, where that is not what its file says.
     pub believed: Option<DriveModel>,
+    /// The feedback for what is believed, designed when it is first asked for.
+    pub design: DesignOnce,
+}
+
+/// A feedback that is designed once, or found impossible once.
+#[derive(Clone, Debug, Default)]
+pub struct DesignOnce(Arc<OnceLock<Result<FeedbackDesign, DesignError>>>);
+
+impl DesignOnce {
+    /// The design, by `make` the first time.
+    ///
+    /// # Errors
+    /// [`DesignError`] as it came the first time.
+    pub fn get(
+        &self,
+        make: impl FnOnce() -> Result<FeedbackDesign, DesignError>,
+    ) -> Result<FeedbackDesign, DesignError> {
+        self.0.get_or_init(make).clone()
+    }
 }
 
 /// Linear models of the tracking error, without and with friction feed-forward.
@@ -53,6 +74,7 @@ impl Predictors {
             transfer: None,
             identified: None,
             believed: None,
+            design: DesignOnce::default(),
         }
     }
 
@@ -73,6 +95,7 @@ impl Predictors {
             }),
             identified: Some(identified),
             believed: None,
+            design: DesignOnce::default(),
         }
     }
 

@@ -1,0 +1,228 @@
+//! The numbers by name.
+
+use axis_sim::Axis;
+use compensator::DriveTerms;
+use serde::Serialize;
+
+use super::units::Units;
+
+/// A number that a drive takes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Term {
+    /// Words in lower case, `_` between them.
+    pub name: &'static str,
+    /// In its SI unit.
+    pub value: f64,
+    /// That unit.
+    pub unit: String,
+    /// The same in a unit that drives use.
+    pub drive_value: f64,
+    /// That unit.
+    pub drive_unit: String,
+    /// What it is.
+    pub meaning: &'static str,
+}
+
+/// Name, value, its unit, factor to a drive's unit and that unit, meaning.
+type Line = (&'static str, f64, String, (f64, String), &'static str);
+
+/// Every number, in SI units and in those that drives use. What is no number on this axis
+/// (a ratio to an inertia of 0) is left out.
+pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
+    let u = Units::of(axis);
+    let per = |a: &str, b: &str| match b.contains('/') {
+        true => format!("{a}/({b})"),
+        false => format!("{a}/{b}"),
+    };
+    let (r, k) = (of.travel, of.torque_constant);
+    let [least, most] = of.along.ends();
+    let row = of.row(0.5 * (least + most));
+    let same = |unit: &str| (1.0, unit.to_owned());
+    let scaled = |(factor, unit): (f64, &str)| (factor, unit.to_owned());
+    let [acceleration, jerk] = ["s²", "s³"].map(|s| format!("{}/{s}", u.load));
+    let speed = format!("{}/s", u.angle);
+    let micro = format!("µ{}", u.load);
+    let feeding = per(u.effort, &acceleration);
+    let share = (100.0, "%".to_owned());
+    let ms = (1e3, "ms".to_owned());
+    let list: [Line; 24] = [
+        (
+            "travel_per_radian",
+            r,
+            per(u.load, u.angle),
+            scaled(u.turn),
+            "travel of the load per angle of the motor",
+        ),
+        (
+            "torque_constant",
+            k,
+            per(u.torque, u.effort),
+            same(&per(u.torque, u.effort)),
+            "torque of the motor per command",
+        ),
+        (
+            "inertia_total",
+            of.inertia,
+            u.inertia.into(),
+            scaled(u.drive_inertia),
+            "inertia of all that moves, at the motor, for torque feed-forward",
+        ),
+        (
+            "inertia_rotating",
+            of.rotating,
+            u.inertia.into(),
+            scaled(u.drive_inertia),
+            "what of it turns with the motor",
+        ),
+        (
+            "inertia_ratio",
+            of.inertia / of.rotating,
+            "1".into(),
+            same("1"),
+            "total inertia over the inertia that turns with the motor",
+        ),
+        (
+            "acceleration_feedforward",
+            of.effort_per_acceleration,
+            feeding.clone(),
+            same(&feeding),
+            "command per acceleration of the load, in all",
+        ),
+        (
+            "acceleration_feedforward_to_add",
+            of.effort_per_acceleration - of.own_effort_per_acceleration(),
+            feeding.clone(),
+            same(&feeding),
+            "what of it the drive of the axis file does not have yet",
+        ),
+        (
+            "velocity_feedforward",
+            of.velocity_feedforward,
+            "1".into(),
+            share.clone(),
+            "share of the reference's speed that is fed forward, in all",
+        ),
+        (
+            "velocity_feedforward_to_add",
+            of.velocity_feedforward - of.own_velocity_feedforward(),
+            "1".into(),
+            share,
+            "what of it the drive of the axis file does not have yet",
+        ),
+        (
+            "viscous_friction",
+            of.viscous,
+            per(u.torque, &speed),
+            scaled(u.viscous),
+            "friction torque per speed of the motor",
+        ),
+        (
+            "viscous_command",
+            of.viscous / (r * k),
+            per(u.effort, &format!("{}/s", u.load)),
+            (1.0 / u.feed.0, per(u.effort, u.feed.1)),
+            "command per speed of the load",
+        ),
+        (
+            "coulomb_friction",
+            of.coulomb,
+            u.torque.into(),
+            same(u.torque),
+            "friction torque at any speed, with the sign of the motion",
+        ),
+        (
+            "coulomb_command",
+            of.coulomb / k,
+            u.effort.into(),
+            same(u.effort),
+            "command for it",
+        ),
+        (
+            "reversal_delay",
+            of.pulse.delay,
+            "s".into(),
+            ms.clone(),
+            "time from a change of direction to the new friction level and its pulse",
+        ),
+        (
+            "reversal_pulse",
+            of.pulse.amplitude,
+            u.torque.into(),
+            same(u.torque),
+            "height of the torque pulse after a start with relaxed friction; twice this after a reversal",
+        ),
+        (
+            "reversal_pulse_command",
+            of.pulse.amplitude / k,
+            u.effort.into(),
+            same(u.effort),
+            "command for it",
+        ),
+        (
+            "reversal_decay",
+            of.pulse.decay,
+            "s".into(),
+            ms,
+            "time in which the pulse falls to 37 %",
+        ),
+        (
+            "reversal_speed_injection",
+            of.speed_injection(),
+            speed.clone(),
+            (r * u.feed.0, u.feed.1.into()),
+            "the same pulse on the speed reference instead, for the drive's speed controller to make the torque of; speed of the motor, and of the load in the drive's unit",
+        ),
+        (
+            "reversal_winding_speed",
+            of.winding_speed(),
+            speed.clone(),
+            scaled(u.speed),
+            "pulse of the motor's speed that winds the transmission up as the new level comes, after a start, with the same decay; for a position loop closed at the load",
+        ),
+        (
+            "standing_load",
+            of.standing,
+            u.torque.into(),
+            same(u.torque),
+            "torque of the axis' own loads at mid-stroke",
+        ),
+        (
+            "standing_load_command",
+            of.standing / k,
+            u.effort.into(),
+            same(u.effort),
+            "command for it",
+        ),
+        (
+            "wind_up_per_acceleration",
+            row.position_per_acceleration,
+            per(u.load, &acceleration),
+            (1e6, per(&micro, &acceleration)),
+            "offset of the position per acceleration at mid-stroke; for a position loop closed at the motor",
+        ),
+        (
+            "speed_per_jerk",
+            row.speed_per_jerk,
+            per(&speed, &jerk),
+            (u.speed.0, per(u.speed.1, &jerk)),
+            "offset of the motor's speed per jerk at mid-stroke; for a position loop closed at the load",
+        ),
+        (
+            "lost_motion",
+            row.lost_motion,
+            u.load.into(),
+            (1e6, micro),
+            "way lost to wind-up by friction from one direction to the other, at mid-stroke; for a position loop closed at the motor",
+        ),
+    ];
+    let term = |(name, value, unit, (factor, drive_unit), meaning): Line| Term {
+        name,
+        value,
+        unit,
+        drive_value: factor * value,
+        drive_unit,
+        meaning,
+    };
+    let list = list.into_iter().map(term);
+    list.filter(|t| t.drive_value.is_finite()).collect()
+}

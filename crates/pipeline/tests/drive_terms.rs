@@ -1,0 +1,259 @@
+//! Drive terms of the paper's axis: values by hand, units, and the loss against the plan.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
+
+use std::f64::consts::{PI, TAU};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use axis_sim::effects::{ActiveEffect, Effect};
+use axis_sim::{Axis, ClosedLoop, Measured};
+use compensator::{DriveTerms, DriveTermsFeedforward, ReversalPulse};
+use pipeline::drive_terms::{losses, of_axis, over_position, over_turn, terms};
+use pipeline::moves::{Moves, NamedMotion};
+use pipeline::strategies::{Predictors, STRATEGIES, named, reversal_start};
+use trajectories::{Limits, SCurve};
+
+fn axis(name: &str) -> Axis {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../data/axes");
+    Axis::read(&folder.join(name)).unwrap()
+}
+
+/// From the numbers of the file: screw and mass, couplings, nut, friction.
+#[test]
+fn terms_of_the_papers_axis_by_hand() {
+    let axis = axis("liu2025.toml");
+    let list = terms(&axis, &of_axis(&axis).unwrap());
+    let r = 0.01 / TAU;
+    let (density, length, g) = (7850.0, 1.5, 206e9 / 2.6);
+    let polar = PI * 0.04_f64.powi(4) / 32.0;
+    let screw = density * polar * length;
+    let rotating = 0.0053 + 1e-4 + screw;
+    let total = rotating + r * r * 515.0;
+    // At mid-stroke: nut, two couplings, half of the screw; of the screw's own inertia,
+    // the parts beyond each spring.
+    let x = 0.75;
+    let per_force = 1.0 / 7.45e7 + r * r * (2.0 / 2800.0 + x / (g * polar));
+    let lag = (1e-4 + screw) / 2800.0 + screw / 2800.0 + density * (length * x - x * x / 2.0) / g;
+    let wind_up = 515.0 * per_force + lag;
+    let expected = [
+        ("travel_per_radian", r, 10.0),
+        ("torque_constant", 1.641, 1.641),
+        ("inertia_total", total, 1e4 * total),
+        ("inertia_rotating", rotating, 1e4 * rotating),
+        ("inertia_ratio", total / rotating, total / rotating),
+        (
+            "acceleration_feedforward",
+            total / (r * 1.641),
+            total / (r * 1.641),
+        ),
+        ("velocity_feedforward", 1.0, 100.0),
+        ("velocity_feedforward_to_add", 0.0, 0.0),
+        ("viscous_friction", 0.0003 * 30.0 / PI, 0.3),
+        ("coulomb_friction", 0.6757, 0.6757),
+        ("coulomb_command", 0.6757 / 1.641, 0.6757 / 1.641),
+        ("standing_load", 0.0, 0.0),
+        ("wind_up_per_acceleration", wind_up, 1e6 * wind_up),
+        ("speed_per_jerk", wind_up / r, wind_up / r * 30.0 / PI),
+        (
+            "lost_motion",
+            2.0 * per_force * 0.6757 / r,
+            2e6 * per_force * 0.6757 / r,
+        ),
+    ];
+    for (name, si, drive) in expected {
+        let term = list.iter().find(|t| t.name == name).unwrap();
+        let near = |a: f64, b: f64| (a - b).abs() <= 2e-4 * b.abs() + 1e-15;
+        assert!(near(term.value, si), "{term:?} {si}");
+        assert!(near(term.drive_value, drive), "{term:?} {drive}");
+    }
+}
+
+#[test]
+fn every_term_has_units_and_a_meaning_on_every_axis() {
+    for file in [
+        "liu2025.toml",
+        "belt.toml",
+        "rotary-table.toml",
+        "linear-motor.toml",
+        "linear-stage.toml",
+        "emps.toml",
+        "joint.toml",
+    ] {
+        let axis = axis(file);
+        let of = of_axis(&axis).unwrap();
+        let list = terms(&axis, &of);
+        assert!(list.len() >= 23, "{file}");
+        for t in &list {
+            assert!(
+                !t.unit.is_empty() && !t.drive_unit.is_empty() && !t.meaning.is_empty(),
+                "{t:?}"
+            );
+            assert!(
+                t.value.is_finite() && t.drive_value.is_finite(),
+                "{file} {t:?}"
+            );
+        }
+        let table = over_position(&axis, &of, &axis.position_errors().unwrap());
+        assert!(table.rows.len() == 33);
+        assert!(
+            table
+                .rows
+                .iter()
+                .all(|row| row.len() == table.headings.len())
+        );
+    }
+}
+
+/// Each step takes away most of what the one before has left.
+#[test]
+fn loss_is_ordered_on_the_models_own_trajectories() {
+    let machine = axis("liu2025-machine.toml");
+    let losses = losses(&machine, &machine).unwrap();
+    assert_eq!(losses.len(), 6);
+    for l in losses {
+        assert!(l.drive_terms.max < 0.2 * l.none.max, "{l:?}");
+        assert!(l.drive_terms.mean < 0.2 * l.none.mean, "{l:?}");
+        assert!(l.plan.max < 0.05 * l.drive_terms.max, "{l:?}");
+        assert!(l.plan.mean < 0.05 * l.drive_terms.mean, "{l:?}");
+    }
+}
+
+/// Better than friction feed-forward alone, which has the true law but neither inertia
+/// nor wind-up.
+#[test]
+fn better_than_friction_alone() {
+    let machine = axis("liu2025-machine.toml");
+    let mut predictors = Predictors::of(&machine);
+    predictors.identified = Some(machine.friction.law);
+    let kinds = ["lugre", "drive_terms"].map(|name| named(STRATEGIES, name).unwrap());
+    let runs =
+        pipeline::compensation::compensate_with(&machine, &machine, &predictors, &kinds, || ())
+            .unwrap();
+    for pair in runs.chunks(2) {
+        let [lugre, terms] = [&pair[0].run.figures, &pair[1].run.figures];
+        assert!(terms.max < 0.6 * lugre.max && terms.mean < 0.5 * lugre.mean);
+    }
+}
+
+/// Greatest and mean error over the trajectories under terms, µm; `cargo test -p pipeline
+/// --test drive_terms worth -- --nocapture` prints the table of docs/drive-terms.md.
+fn error_under(machine: &Axis, terms: DriveTerms) -> [f64; 2] {
+    let closed_loop = ClosedLoop::new(machine).unwrap();
+    let [mut most, mut mean] = [0.0_f64; 2];
+    for spec in &machine.trajectories {
+        let motion = machine.plan(spec).unwrap();
+        let mut errors = Vec::new();
+        let mut law = DriveTermsFeedforward::new(terms);
+        let run = closed_loop.run(&motion, &mut law, |cycle| errors.push(cycle.error()));
+        run.completed().unwrap();
+        let figures = pipeline::Figures::of_metres(&errors).unwrap();
+        most = most.max(figures.max);
+        mean = mean.max(figures.mean);
+    }
+    [most, mean]
+}
+
+/// Every term is worth having: without it more is left.
+#[test]
+fn what_each_term_is_worth() {
+    let machine = axis("liu2025-machine.toml");
+    let model = machine.drive_model().unwrap();
+    let start = reversal_start(&machine);
+    let all = DriveTerms::new(&model, &start).unwrap();
+    let mut rigid = model;
+    rigid.along = model.along.with_compliance(0.0);
+    let with = |change: fn(&mut DriveTerms)| {
+        let mut terms = all;
+        change(&mut terms);
+        terms
+    };
+    let without = [
+        (
+            "without torque feed-forward of the inertia",
+            with(|t| t.effort_per_acceleration = 0.0),
+        ),
+        ("without viscous friction", with(|t| t.viscous = 0.0)),
+        (
+            "without wind-up, the pulse fitted again",
+            DriveTerms::new(&rigid, &start).unwrap(),
+        ),
+        (
+            "without the pulse: the level steps with the direction",
+            with(|t| t.pulse = ReversalPulse::default()),
+        ),
+        ("pulse without delay", with(|t| t.pulse.delay = 0.0)),
+        ("without wind-up, pulse without delay", {
+            let mut terms = DriveTerms::new(&rigid, &start).unwrap();
+            terms.pulse.delay = 0.0;
+            terms
+        }),
+        ("without wind-up and pulse", {
+            let mut terms = DriveTerms::new(&rigid, &start).unwrap();
+            terms.pulse = ReversalPulse::default();
+            terms
+        }),
+    ];
+    let best = error_under(&machine, all);
+    println!("all: {:.2} / {:.3}", best[0], best[1]);
+    for (name, terms) in without {
+        let [most, mean] = error_under(&machine, terms);
+        println!("{name}: {most:.2} / {mean:.3}");
+        assert!(most > 1.1 * best[0] || mean > 1.1 * best[1], "{name}");
+    }
+}
+
+/// Moves that go on from each other: the drive keeps its friction level, so that none
+/// starts with a jump, and a way back is no worse than a start.
+#[test]
+fn moves_go_on_from_each_other() {
+    let machine = axis("liu2025-machine.toml");
+    let limits = Limits::new(0.1, 0.225, 1.2).unwrap();
+    let motion = |from: f64, to: f64| NamedMotion {
+        name: format!("{from} to {to}"),
+        learned: None,
+        motion: Arc::new(SCurve::plan(from, to, &limits).unwrap()),
+    };
+    let motions = [motion(0.6, 0.9), motion(0.9, 1.2), motion(1.2, 0.6)];
+    let closed_loop = ClosedLoop::new(&machine).unwrap();
+    let run = |name: &str| -> Vec<f64> {
+        let kind = named(STRATEGIES, name).unwrap_or(&pipeline::strategies::NONE);
+        let mut strategy = kind.strategy(&Predictors::of(&machine)).unwrap();
+        let mut moves = Moves::new(&closed_loop, |_: &mut Measured| ());
+        let make = |m| moves.make(&mut *strategy, m).unwrap().figures.max;
+        motions.iter().map(make).collect()
+    };
+    let (none, terms) = (run("none"), run("drive_terms"));
+    for (none, terms) in none.iter().zip(&terms) {
+        assert!(*terms < 0.5 * none, "{none} {terms}");
+    }
+}
+
+/// Lead error and cogging of the axis file's effects come into the tables.
+#[test]
+fn effects_that_depend_on_position_are_tabled() {
+    let plain = axis("liu2025.toml");
+    assert_eq!(over_turn(&plain, &plain.position_errors().unwrap()), None);
+    let mut with = plain.clone();
+    let effect = |name, values: Vec<f64>| ActiveEffect {
+        effect: Effect::named(name).unwrap(),
+        values,
+    };
+    with.effects = vec![
+        effect("lead-error", vec![1e-4]),
+        effect("periodic-lead-error", vec![2e-6, 0.0]),
+        effect("cogging-torque", vec![0.05, 8.0, 0.0]),
+    ];
+    let errors = with.position_errors().unwrap();
+    let table = over_position(&with, &of_axis(&with).unwrap(), &errors);
+    for row in &table.rows {
+        assert!((row[1] - 1e-4 * (row[0] - 0.6)).abs() < 1e-12, "{row:?}");
+    }
+    let turn = over_turn(&with, &errors).unwrap();
+    for row in &turn.rows {
+        assert!(
+            (row[1] - 0.05 * (8.0 * row[0]).sin()).abs() < 1e-12,
+            "{row:?}"
+        );
+        assert!((row[2] - 2e-6 * row[0].sin()).abs() < 1e-12, "{row:?}");
+    }
+}
