@@ -1,4 +1,5 @@
 //! Iterative learning on a loop that is written down here: a delayed, smoothed response.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{Advice, LearnedMove, LearningSettings};
 

@@ -1,5 +1,6 @@
 //! What no parameter holds: found from records made here, and left alone where it is noise.
 #![cfg(feature = "identify")]
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{HARMONICS, ResidualLearner, ResidualModel, Unexplained};
 use proptest::prelude::*;

@@ -79,7 +79,7 @@ impl Cycles {
         let begin = time.first().copied().unwrap_or(0.0);
         let index = |t: f64| ((t - begin) / period).round();
         let last = time.last().map_or(0.0, |t| index(*t));
-        if time.len() < LEAST || !(last < 1e8) {
+        if time.len() < LEAST || last.is_nan() || last >= 1e8 {
             return Err(LearningError::Samples {
                 what: format!(
                     "the log has {} samples over {last} control cycles",

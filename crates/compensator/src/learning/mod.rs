@@ -54,7 +54,8 @@ pub struct Round {
     pub rounds: u32,
     /// Greatest |e| of the move, m or rad.
     pub peak: f64,
-    /// Root of the mean square of what can be learned of it: behind the Gaussian.
+    /// What can be learned of it: RMS behind the Gaussian over the worst while of the move,
+    /// five of its deviations long.
     pub learnable: f64,
     /// What noise leaves there: by the median of e behind the Gaussian.
     pub floor: f64,
@@ -93,6 +94,8 @@ pub struct LearnedMove {
 const NORMAL_MEDIAN: f64 = 0.6745;
 /// How long a while is, in deviations of the Gaussian.
 const WHILE: f64 = 5.0;
+/// Times the noise that it may reach itself in the worst while of a move.
+const STANDS_OUT: f64 = 2.0;
 
 impl LearnedMove {
     /// Nothing learned yet, of a move sampled every `period` seconds.
@@ -152,7 +155,8 @@ impl LearnedMove {
         let gauss = Gauss::new(self.settings.smoothing / self.period);
         let filled = fill(errors);
         let smooth = gauss.pass(&filled);
-        let learnable = rms(smooth.iter().copied());
+        let power = power(&smooth, WHILE * self.settings.smoothing / self.period);
+        let learnable = Scalar::sqrt(power.iter().fold(0.0_f64, |most, p| most.max(*p)));
         let floor = median(&smooth) / NORMAL_MEDIAN;
         let peak = filled.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
         let worse = self.rounds > 0
@@ -164,7 +168,7 @@ impl LearnedMove {
         }
         let advice = match () {
             () if worse => Advice::Restarted,
-            () if learnable <= 1.3 * floor => Advice::Done,
+            () if learnable <= STANDS_OUT * floor => Advice::Done,
             // It gets hardly better: what is left varies faster than the Gaussian passes.
             () if self.rounds > 1 && learnable > 0.8 * self.best => Advice::Enough,
             () if self.rounds >= self.settings.most_rounds => Advice::Enough,
@@ -177,12 +181,12 @@ impl LearnedMove {
         self.best = self.best.min(learnable);
         if matches!(advice, Advice::Again | Advice::Restarted) {
             self.shift.resize(filled.len().max(self.shift.len()), 0.0);
-            let shares = shares(
-                &smooth,
-                floor,
-                WHILE * self.settings.smoothing / self.period,
-            );
-            let learned = filled.iter().zip(&shares).map(|(e, share)| e * share);
+            // 1 − 2 floor²/power of the error at an instant is no noise.
+            let share = |power: &f64| match *power > 0.0 {
+                true => (1.0 - 2.0 * floor * floor / power).max(0.0),
+                false => 0.0,
+            };
+            let learned = filled.iter().zip(&power).map(|(e, power)| e * share(power));
             let mut sum = self.shift.clone();
             sum.iter_mut().zip(learned).for_each(|(d, e)| *d += e);
             let limit = self.settings.limit;
@@ -253,16 +257,10 @@ fn fill(errors: &[Option<f64>]) -> Vec<f64> {
     filled
 }
 
-/// Share of the error at each instant that is no noise: 1 − 2 floor²/power, the power being
-/// the mean square over a while.
-fn shares(smooth: &[f64], floor: f64, samples: f64) -> Vec<f64> {
+/// Mean square over a while around each instant.
+fn power(smooth: &[f64], samples: f64) -> Vec<f64> {
     let squares: Vec<f64> = smooth.iter().map(|e| e * e).collect();
-    let power = Gauss::new(samples).pass(&squares);
-    let share = |power: f64| match power > 0.0 {
-        true => (1.0 - 2.0 * floor * floor / power).max(0.0),
-        false => 0.0,
-    };
-    power.into_iter().map(share).collect()
+    Gauss::new(samples).pass(&squares)
 }
 
 /// Median of the magnitudes.
@@ -270,9 +268,4 @@ fn median(values: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     sizes.get(sizes.len() / 2).copied().unwrap_or(0.0)
-}
-
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (count, sum) = values.fold((0_u32, 0.0), |(n, sum), v| (n + 1, sum + v * v));
-    Scalar::sqrt(sum / f64::from(count.max(1)))
 }

@@ -23,6 +23,8 @@ const CURVE_SHARE: f64 = 0.1;
 const CURVE_LENGTH: f64 = 0.01;
 /// Part of the power of a move not learned from that must be explained for use.
 const LEAST_EXPLAINED: f64 = 0.1;
+/// RMS of what is explained, as a share of the Coulomb level: less is not worth the risk.
+const LEAST_SIZE: f64 = 0.01;
 
 /// What the model did not explain at an instant of a log.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,6 +45,8 @@ pub struct Unexplained {
 #[derive(Clone, Debug)]
 pub struct ResidualLearner {
     travel: f64,
+    /// Coulomb level at the motor, N·m.
+    level: f64,
     model: Box<ResidualModel>,
     /// Prior and moves: normal matrix and right side, in units of the noise.
     normal: DMatrix<f64>,
@@ -59,8 +63,9 @@ impl ResidualLearner {
         let model = ResidualModel::none(stroke);
         let mut normal = DMatrix::zeros(SIZE, SIZE);
         let level = coulomb.max(1e-9);
+        let amplitude = HARMONIC_SHARE * level;
         for i in 0..2 * HARMONICS {
-            normal[(i, i)] = (HARMONIC_SHARE * level).powi(-2);
+            normal[(i, i)] = 1.0 / (amplitude * amplitude);
         }
         let knots = (KNOTS - 1) as f64;
         let length = (CURVE_LENGTH * knots).max(1.0);
@@ -69,7 +74,7 @@ impl ResidualLearner {
             let at = |i: usize| 2 * HARMONICS + curve * KNOTS + i;
             for i in 0..KNOTS {
                 // Of a smooth curve each knot stands for as many as it is long.
-                normal[(at(i), at(i))] += force.powi(-2) / length;
+                normal[(at(i), at(i))] += 1.0 / (force * force * length);
             }
             let bend = force / (length * length);
             for i in 1..KNOTS - 1 {
@@ -83,6 +88,7 @@ impl ResidualLearner {
         }
         Self {
             travel,
+            level,
             model: Box::new(model),
             normal,
             right: DVector::zeros(SIZE),
@@ -102,8 +108,11 @@ impl ResidualLearner {
             .map(|u| self.row(u, smoothing))
             .collect();
         let before = self.coefficients();
+        let mut foreseen = 0.0;
         for row in &rows {
-            let rest = row.torque - row.times(&before);
+            let part = row.times(&before);
+            let rest = row.torque - part;
+            foreseen += part * part;
             left += rest * rest;
             whole += row.torque * row.torque;
         }
@@ -111,7 +120,9 @@ impl ResidualLearner {
         if rows.is_empty() || !explained.is_finite() {
             return 0.0;
         }
-        self.explained.push(explained);
+        let size = sqrt(foreseen / rows.len() as f64);
+        let worth = size >= LEAST_SIZE * self.level;
+        self.explained.push(if worth { explained } else { 0.0 });
         // Neighbours within the Gaussian say the same.
         let same = (2.0 * sqrt(core::f64::consts::PI) * smoothing / spacing).max(1.0);
         let count = rows.len() as f64;
@@ -154,7 +165,8 @@ impl ResidualLearner {
         (tested && fits).then_some(&*self.model)
     }
 
-    /// Share of the power of each move that was explained before learning from it.
+    /// Share of the power of each move that was explained before learning from it; 0 where
+    /// that was too little to matter.
     #[must_use]
     pub fn explained(&self) -> &[f64] {
         &self.explained

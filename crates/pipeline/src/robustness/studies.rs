@@ -185,7 +185,7 @@ impl Ground<'_> {
         });
         Ok(Study {
             name: "friction × 0.8".to_owned(),
-            strategy: "iterative",
+            strategy: "learned",
             noise: true,
             moves: vec![("after 3 repetitions", Goal::Left(0.1))],
             draws: draws.collect::<Result<_, PipelineError>>()?,

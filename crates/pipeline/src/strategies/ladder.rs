@@ -208,8 +208,12 @@ impl Strategy for Ladder {
             if let Some(refused) = refused {
                 tracing::warn!("nothing learned of this move: {refused}");
             }
-            if let (Some(residual), Ok(rest)) = (&mut self.residual, adaptation.unexplained(record))
-            {
+            // What repeats with a move is not what repeats with angle and position.
+            let again = self
+                .now
+                .is_some_and(|now| self.repeated[now].frozen.is_some());
+            let residual = self.residual.as_mut().filter(|_| !again);
+            if let (Some(residual), Ok(rest)) = (residual, adaptation.unexplained(record)) {
                 let explained = residual.learn(&rest.instants, rest.spacing, rest.smoothing);
                 known.insert("residual_explained".to_owned(), explained);
                 let used = residual.model().is_some();
