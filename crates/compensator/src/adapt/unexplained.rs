@@ -11,7 +11,7 @@ use super::{AdaptError, AdaptPrior, Adaptation};
 use crate::{Sample, Unexplained};
 
 /// Deviation of the Gaussian over the log, s: short, as cogging varies quickly.
-const SMOOTHING: f64 = 2e-3;
+const SMOOTHING: f64 = 1e-3;
 
 /// The torque that a log needed besides the model's.
 #[derive(Clone, Debug, PartialEq)]
