@@ -98,6 +98,11 @@ mod tests {
             ),
             ("drive_terms", "drive terms"),
             ("plan", "plan"),
+            ("feedback", "feedback"),
+            ("adaptive", "adaptive"),
+            ("adaptive_feedback", "adaptive feedback"),
+            ("iterative", "iterative learning"),
+            ("learned", "learned"),
         ];
         assert_eq!(labels.len(), STRATEGIES.len());
         for (name, label) in labels {
