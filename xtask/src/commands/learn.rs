@@ -20,7 +20,7 @@ pub struct Options {
     #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
     axis: PathBuf,
     /// Log of the move as it was made with the correction: time, reference and position
-    /// of the load, as the axis file's [log] names them
+    /// of the load, as `[log]` of the axis file names them
     #[arg(long, value_name = "FILE")]
     log: PathBuf,
     /// The correction: read where it exists, and written for the next repetition
