@@ -7,6 +7,7 @@ use compensator::{Along, Cascade, CompensatorError, DriveModel, Section};
 use crate::axis::{Axis, LoadSensor};
 use crate::effects::{Hooks, ScrewState};
 use crate::error::SetupError;
+use crate::plant::Start;
 
 /// What the effects of an axis file do that depends on the position alone: what the
 /// compensation tables of a drive are for. As at the start of a motion: what grows with
@@ -71,6 +72,33 @@ impl Axis {
             start: axis.stroke.start,
             hooks,
         })
+    }
+
+    /// Rest at `position` as a log tells it: the drive held the axis with the command `effort`
+    /// (the mean over a standstill, where that is noisy), and what the axis' own loads do not
+    /// ask for is held by the friction's bristles.
+    ///
+    /// ```
+    /// # use axis_sim::{Axis, ClosedLoop, Start};
+    /// # let text = include_str!("../../../data/axes/liu2025.toml");
+    /// let axis = Axis::parse("liu2025.toml", text)?;
+    /// // Left by a move forward: friction holds the table back by half its Coulomb level.
+    /// let start = axis.held(0.7, 0.5 * 0.6757 / 1.641);
+    /// assert!((start.friction - 0.5).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn held(&self, position: f64, effort: f64) -> Start {
+        let r = self.travel_per_radian();
+        let level = self.friction.law.parameters().coulomb / self.friction.lever(r);
+        let held = self.torque_constant() * effort / r - self.load_at(position);
+        Start {
+            friction: if level > 0.0 {
+                (held / level).clamp(-1.0, 1.0)
+            } else {
+                0.0
+            },
+            ..Start::at(position)
+        }
     }
 
     /// Everything that a plan of this axis is made from, its effects left out.

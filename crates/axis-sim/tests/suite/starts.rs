@@ -195,3 +195,27 @@ fn a_state_is_a_snapshot() {
         go(&mut again)[7].measured.position
     );
 }
+
+/// What the command of a standstill tells of it is how the axis was left.
+#[test]
+fn a_start_is_estimated_from_the_command_that_holds_it() {
+    let axes = OTHERS.iter().map(|name| axis(name));
+    for axis in axes.chain([loaded(PRINTED, 300.0)]) {
+        let start = Start {
+            friction: -0.4,
+            ..Start::at(axis.stroke.start)
+        };
+        let closed_loop = ClosedLoop::new(&axis).unwrap();
+        let mut state = closed_loop.start(&start).unwrap();
+        let rest = Setpoint::at_rest(start.position);
+        let cycle = closed_loop
+            .step(&mut state, [&rest, &rest], &mut NoCompensation, |_| ())
+            .unwrap();
+        let found = axis.held(start.position, cycle.command.effort);
+        assert!(
+            (found.friction + 0.4).abs() < 0.02,
+            "{}: {found:?}",
+            axis.name
+        );
+    }
+}
