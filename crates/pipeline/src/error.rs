@@ -4,6 +4,12 @@ use thiserror::Error;
 
 use crate::strategies::Need;
 
+impl From<compensator::DesignError> for PipelineError {
+    fn from(error: compensator::DesignError) -> Self {
+        Self::Feedback(Box::new(error))
+    }
+}
+
 impl PipelineError {
     /// Whether a strategy cannot be made for this axis at all: another one may be.
     pub fn is_unsuited(&self) -> bool {
@@ -33,8 +39,10 @@ pub enum PipelineError {
     #[error("the compensation cannot be set up: {0}")]
     Compensator(#[from] compensator::CompensatorError),
     /// No feedback can be designed for the axis.
-    #[error("no feedback can be designed for this axis: {0}")]
-    Feedback(#[from] compensator::DesignError),
+    #[error(
+        "no feedback can be designed for this axis; valid: a strategy without one, such as plan or adaptive"
+    )]
+    Feedback(#[source] Box<compensator::DesignError>),
     /// The model cannot be adapted.
     #[error("the model of this axis cannot be adapted: {0}")]
     Adapt(#[from] compensator::AdaptError),

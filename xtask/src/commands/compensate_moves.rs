@@ -92,6 +92,8 @@ pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) ->
         .map(|name| motion(name, context))
         .collect::<Result<_>>()?;
     let predictors = validate::predictors(context, kind.needs)?;
+    // Refused before anything is computed.
+    kind.strategy(&predictors).into_diagnostic()?;
     let closed_loop = ClosedLoop::new(&context.machine).into_diagnostic()?;
     let progress = bar("compensate", 2 * motions.len() as u64);
     let made = |kind| -> Made {

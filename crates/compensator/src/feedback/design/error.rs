@@ -29,7 +29,7 @@ pub enum DesignError {
     },
     /// A Riccati equation has no solution that could be found.
     #[error(
-        "the Riccati equation of the {what} at χ = {sticking} was not solved: relative residual {residual:e}"
+        "the Riccati equation of the {what} at χ = {sticking} was not solved: relative residual {residual:.1e}"
     )]
     Riccati {
         /// "state feedback" or "observer".
@@ -47,7 +47,7 @@ pub enum DesignError {
     },
     /// A margin that was asked for is not there.
     #[error(
-        "{what} is {value}, and {most} at most was asked for: load inertia × {mass}, friction × {friction}, χ = {sticking}, slow sliding {stribeck}, first resonance {frequency:.0} rad/s"
+        "{what} is {value:.3}, and {most} at most was asked for: load inertia × {mass}, friction × {friction}, χ = {sticking}, slow sliding {stribeck}, first resonance {frequency:.0} rad/s"
     )]
     Margin {
         /// What is too great.
