@@ -29,7 +29,9 @@
 //! [`Feedback`] from `FeedbackDesign` (feature `design`, Riccati equations).
 //!
 //! `Adaptation` (feature `identify`) learns a [`DriveModel`] from the logs of moves, for
-//! the [`Plan`] of the next.
+//! the [`Plan`] of the next; `ResidualLearner` what no parameter of it holds; `LearnedMove`
+//! (feature `alloc`) the correction of one move from its repetitions. A [`Guard`] limits,
+//! fades and watches any of them.
 //!
 //! All are generic over their scalar: `f64` where none is named, `f32` for a
 //! controller without double precision in hardware; identification and
