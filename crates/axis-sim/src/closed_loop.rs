@@ -312,19 +312,21 @@ impl ClosedLoop {
         compensator: &mut (impl Compensator + ?Sized),
         sense: impl FnMut(&mut Measured),
     ) -> Result<Cycle, crate::RunStopped> {
-        let cycle = self.decide(state, [reference, next], compensator, sense)?;
+        let mut cycle = Cycle::default();
+        self.decide(state, [reference, next], compensator, sense, &mut cycle)?;
         self.advance(state, &cycle)?;
         Ok(cycle)
     }
 
-    /// Sample, correct and control.
+    /// Sample, correct and control; what comes of it is `cycle`, whatever it was before.
     fn decide(
         &self,
         state: &mut LoopState,
         [reference, next]: [&Setpoint; 2],
         compensator: &mut (impl Compensator + ?Sized),
         sense: impl FnMut(&mut Measured),
-    ) -> Result<Cycle, crate::RunStopped> {
+        cycle: &mut Cycle,
+    ) -> Result<(), crate::RunStopped> {
         // Sample.
         let measured = self.measure(state, sense);
         let seen = *state.plant.seen();
@@ -349,7 +351,7 @@ impl ClosedLoop {
         state.actuator.command(demand.effort, &measured);
         let electrical = state.actuator.electrical();
 
-        let cycle = Cycle {
+        *cycle = Cycle {
             time: state.cycles as f64 * self.axis.period,
             reference: *reference,
             position: seen.position,
@@ -367,9 +369,9 @@ impl ClosedLoop {
             },
             correction,
         };
-        match self.stop_reason(&cycle) {
-            Some(reason) => Err(self.stopped(reason, &cycle)),
-            None => Ok(cycle),
+        match self.stop_reason(cycle) {
+            Some(reason) => Err(self.stopped(reason, cycle)),
+            None => Ok(()),
         }
     }
 
@@ -453,10 +455,12 @@ impl ClosedLoop {
             return self.given_up(StopReason::TooLong(steps), &at);
         }
         compensator.reset();
+        let mut cycle = Cycle::default();
         for k in 0..self.cycles(motion) {
             let next = motion.at((k + 1) as f64 * period);
-            let decided = self.decide(state, [&reference, &next], compensator, &mut sense);
-            let advanced = decided.and_then(|cycle| {
+            let now = &mut cycle;
+            let decided = self.decide(state, [&reference, &next], compensator, &mut sense, now);
+            let advanced = decided.and_then(|()| {
                 observe(&cycle);
                 self.advance(state, &cycle)
             });
