@@ -215,6 +215,17 @@ impl<S: TimeStepper> Law<S> {
         start.speed != 0.0 || start.acceleration != 0.0
     }
 
+    /// A speed of the load in the friction's coordinate, or a force there at the load.
+    #[inline]
+    fn by_lever(&self, value: f64) -> f64 {
+        // Mostly the load's own coordinate; the step would wait for the division.
+        if self.lever == 1.0 {
+            value
+        } else {
+            value / self.lever
+        }
+    }
+
     /// Bristle deflections, in the friction's coordinate: the law's and the unit
     /// element's.
     fn bristles(&self, start: &Start) -> [f64; 2] {
@@ -294,7 +305,8 @@ where
             law: self,
             drive,
         };
-        state.look(start.time, at, torque, motion.load);
+        let origins = [state.origin, state.motor_origin];
+        state.seen = Seen::of(&at, origins, start.time, torque, motion.load);
         let screw = state.seen.screw(start.time, state.seen.motor_angle);
         let [offset, _] = state.law.assembly.hooks.offset_at(&screw);
         state.offset_origin = offset;
@@ -307,23 +319,22 @@ where
     }
 }
 
-impl<S: TimeStepper> State<S> {
-    fn look(&mut self, time: f64, at: Observation, torque: f64, load: f64) {
-        self.seen = Seen {
+impl Seen {
+    /// What is seen of a drive whose load and motor began at `origins`.
+    fn of(at: &Observation, origins: [f64; 2], time: f64, torque: f64, load: f64) -> Self {
+        Self {
             time,
-            position: self.origin + at.displacement,
+            position: origins[0] + at.displacement,
             displacement: at.displacement,
             speed: at.speed,
-            motor_angle: self.motor_origin + at.motor_angle,
+            motor_angle: origins[1] + at.motor_angle,
             motor_speed: at.motor_speed,
             transmission_force: at.nut_force,
             torque,
             load,
-        };
+        }
     }
-}
 
-impl Seen {
     /// The transmission at `time`, where the motor will be at `angle`.
     fn screw(&self, time: f64, angle: f64) -> ScrewState {
         ScrewState {
@@ -342,8 +353,8 @@ where
     S::State: fmt::Debug + Send + Sync + 'static,
 {
     fn advance(&mut self, actuator: &mut dyn Actuating) -> Result<(), DriveError> {
-        let law = self.law.clone();
-        let (stepper, assembly, lever) = (&law.stepper, &law.assembly, law.lever);
+        let law = &*self.law;
+        let (stepper, assembly) = (&law.stepper, &law.assembly);
         let (friction, hooks) = (&assembly.friction, &assembly.hooks);
         let h = stepper.step_length();
         let has_loads = hooks.has_loads() || !assembly.loads.is_empty();
@@ -372,15 +383,15 @@ where
             if hooks.has_offsets() {
                 errors = law.errors(&start.screw(time, angle), self.offset_origin)?;
             }
-            let (z0, u0, w0) = (self.bristle, self.unit_bristle, start.speed / lever);
+            let (z0, u0, w0) = (self.bristle, self.unit_bristle, law.by_lever(start.speed));
             let origin = self.origin;
             let pressed = (time / rise).min(1.0);
             let (mut z1, mut u1, mut end_load) = (z0, u0, 0.0);
             let report = stepper.step_through(&mut self.drive, torque, &errors, |table| {
-                let w1 = table.speed / lever;
+                let w1 = law.by_lever(table.speed);
                 let (z, own) = friction.law.step_torque(z0, w0, w1, h);
                 z1 = z;
-                let mut load = own / lever;
+                let mut load = law.by_lever(own);
                 if has_loads {
                     let mut bristle = 0.0;
                     if law.moves_bristle {
@@ -407,7 +418,14 @@ where
             }
             self.bristle = z1;
             self.unit_bristle = u1;
-            self.look(time, stepper.observe(&self.drive), torque, end_load);
+            let origins = [self.origin, self.motor_origin];
+            self.seen = Seen::of(
+                &stepper.observe(&self.drive),
+                origins,
+                time,
+                torque,
+                end_load,
+            );
             self.motor_acceleration = (self.seen.motor_speed - start.motor_speed) / h;
         }
         Ok(())

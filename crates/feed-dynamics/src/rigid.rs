@@ -82,6 +82,8 @@ pub struct RigidStepper {
     steepest_load: f64,
     /// 1/m, 1/kg.
     mobility: f64,
+    /// 1/r.
+    radians_per_travel: f64,
 }
 
 /// State of a [`RigidStepper`].
@@ -107,6 +109,7 @@ impl RigidStepper {
             course: ForceCourse::Held,
             steepest_load: f64::INFINITY,
             mobility: 1.0 / drive.inertia,
+            radians_per_travel: 1.0 / drive.travel_per_radian,
         })
     }
 
@@ -159,7 +162,7 @@ impl TimeStepper for RigidStepper {
         load: impl FnMut(TableMotion) -> f64,
     ) -> StepReport {
         let (h, mass, start) = (self.step, self.drive.inertia, *state);
-        let force = torque / self.drive.travel_per_radian;
+        let force = torque * self.radians_per_travel;
         let before = (start.force - start.load) * self.mobility;
         let motion = |load: f64| match self.course {
             ForceCourse::Held => {
