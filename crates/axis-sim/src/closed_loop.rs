@@ -23,8 +23,19 @@ pub struct ClosedLoop {
     axis: Axis,
     hooks: Hooks,
     plant: Arc<dyn Plant>,
+    sampling: Sampling,
     /// Seed of the sensors' noise, where they have some.
     noise: Option<u64>,
+}
+
+/// What each sample of an axis takes to know, asked of its parts once.
+#[derive(Clone, Copy, Debug)]
+struct Sampling {
+    /// Load travel per radian of the motor, m/rad or rad/rad.
+    travel: f64,
+    /// Whether the motor's angle can be seen by itself.
+    has_motor_encoder: bool,
+    derives_speed: bool,
 }
 
 /// A run between two cycles: everything that the next one depends on.
@@ -140,6 +151,11 @@ impl ClosedLoop {
         axis.actuator.start(&axis.surroundings())?;
         axis.control.start(&axis.surroundings())?;
         Ok(Self {
+            sampling: Sampling {
+                travel: axis.travel_per_radian(),
+                has_motor_encoder: axis.mechanism.has_motor_encoder(),
+                derives_speed: axis.derives_speed(),
+            },
             plant,
             axis,
             hooks,
@@ -241,8 +257,8 @@ impl ClosedLoop {
     fn angle_shown(&self, state: &mut LoopState, load: Option<f64>, angle: f64) -> Option<f64> {
         match (&mut state.motor_sensor, load) {
             (Some(sensor), _) => Some(sensor.read(angle)),
-            (None, Some(load)) if !self.axis.mechanism.has_motor_encoder() => {
-                Some(load / self.axis.travel_per_radian())
+            (None, Some(load)) if !self.sampling.has_motor_encoder => {
+                Some(load / self.sampling.travel)
             }
             _ => None,
         }
@@ -268,7 +284,7 @@ impl ClosedLoop {
     /// What the sensors show now, `sense` being shown their own readings before anything is
     /// derived from them.
     fn measure(&self, state: &mut LoopState, mut sense: impl FnMut(&mut Measured)) -> Measured {
-        let travel = self.axis.travel_per_radian();
+        let travel = self.sampling.travel;
         let seen = *state.plant.seen();
         let load = state.load_sensor.as_mut().map(|s| s.read(seen.position));
         let motor = state
@@ -284,10 +300,10 @@ impl ClosedLoop {
         sense(&mut measured);
         // A drive knows the motor's speed from the angle that its sensor shows, or from
         // the load's where motor and load are one.
-        if motor.is_none() && load.is_some() && !self.axis.mechanism.has_motor_encoder() {
+        if motor.is_none() && load.is_some() && !self.sampling.has_motor_encoder {
             measured.motor_angle = measured.position / travel;
         }
-        if self.axis.derives_speed() {
+        if self.sampling.derives_speed {
             measured.motor_speed = (measured.motor_angle - state.last_angle) / self.axis.period;
             state.last_angle = measured.motor_angle;
         }
@@ -312,19 +328,21 @@ impl ClosedLoop {
         compensator: &mut (impl Compensator + ?Sized),
         sense: impl FnMut(&mut Measured),
     ) -> Result<Cycle, crate::RunStopped> {
-        let cycle = self.decide(state, [reference, next], compensator, sense)?;
+        let mut cycle = Cycle::default();
+        self.decide(state, [reference, next], compensator, sense, &mut cycle)?;
         self.advance(state, &cycle)?;
         Ok(cycle)
     }
 
-    /// Sample, correct and control.
+    /// Sample, correct and control; what comes of it is `cycle`, whatever it was before.
     fn decide(
         &self,
         state: &mut LoopState,
         [reference, next]: [&Setpoint; 2],
         compensator: &mut (impl Compensator + ?Sized),
         sense: impl FnMut(&mut Measured),
-    ) -> Result<Cycle, crate::RunStopped> {
+        cycle: &mut Cycle,
+    ) -> Result<(), crate::RunStopped> {
         // Sample.
         let measured = self.measure(state, sense);
         let seen = *state.plant.seen();
@@ -350,7 +368,7 @@ impl ClosedLoop {
         state.actuator.command(demand.effort, &measured);
         let electrical = state.actuator.electrical();
 
-        let cycle = Cycle {
+        *cycle = Cycle {
             time: state.cycles as f64 * self.axis.period,
             reference: *reference,
             position: seen.position,
@@ -368,9 +386,9 @@ impl ClosedLoop {
             },
             correction,
         };
-        match self.stop_reason(&cycle) {
-            Some(reason) => Err(self.stopped(reason, &cycle)),
-            None => Ok(cycle),
+        match self.stop_reason(cycle) {
+            Some(reason) => Err(self.stopped(reason, cycle)),
+            None => Ok(()),
         }
     }
 
@@ -454,10 +472,12 @@ impl ClosedLoop {
             return self.given_up(StopReason::TooLong(steps), &at);
         }
         compensator.reset();
+        let mut cycle = Cycle::default();
         for k in 0..self.cycles(motion) {
             let next = motion.at((k + 1) as f64 * period);
-            let decided = self.decide(state, [&reference, &next], compensator, &mut sense);
-            let advanced = decided.and_then(|cycle| {
+            let now = &mut cycle;
+            let decided = self.decide(state, [&reference, &next], compensator, &mut sense, now);
+            let advanced = decided.and_then(|()| {
                 observe(&cycle);
                 self.advance(state, &cycle)
             });

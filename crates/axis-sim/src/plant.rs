@@ -7,7 +7,7 @@ use feed_dynamics::{DriveError, NutErrors, Observation, Settled, TimeStepper};
 use lugre::LuGre;
 
 use crate::actuator::{Actuating, MotorMotion};
-use crate::effects::{Hooks, ScrewState, TableState};
+use crate::effects::{Hooks, ScrewState, Steepness, TableState};
 use crate::friction::Friction;
 use crate::load::Load;
 
@@ -119,12 +119,31 @@ impl Assembly {
         S::State: fmt::Debug + Send + Sync + 'static,
     {
         let travel = stepper.travel_per_radian();
+        let steepness = self.steepness(stepper.step_length(), travel);
         Arc::new(Law {
             lever: self.friction.lever(travel),
+            moves_bristle: self.beside_friction().bristle != 0.0,
+            stepper: stepper.with_steepest_load(steepness),
             assembly: self,
-            stepper,
             travel,
         })
+    }
+
+    /// How the forces on the load beside its friction depend on its motion, at most.
+    fn beside_friction(&self) -> Steepness {
+        let loads = self.loads.iter().map(|load| load.steepness());
+        loads.fold(self.hooks.steepness(), Steepness::and)
+    }
+
+    /// Most by which the force on the load changes with its speed at the end of a step of
+    /// `h` seconds, N·s/m, where the load moves by `travel` a radian.
+    fn steepness(&self, h: f64, travel: f64) -> f64 {
+        let (friction, lever) = (&self.friction, self.friction.lever(travel));
+        let own = friction.law.steepness(h) / (lever * lever);
+        let others = self.beside_friction();
+        let bristle = friction.unit.steepness(h) / lever;
+        // The position at the end of a step changes by at most h times what the speed does.
+        own + others.speed + h * others.position + bristle * others.bristle
     }
 }
 
@@ -137,6 +156,8 @@ struct Law<S> {
     travel: f64,
     /// Load travel per unit of the friction's coordinate.
     lever: f64,
+    /// Whether a force looks at the unit bristle.
+    moves_bristle: bool,
 }
 
 /// The machine's inner state, which no controller sees.
@@ -194,6 +215,17 @@ impl<S: TimeStepper> Law<S> {
         start.speed != 0.0 || start.acceleration != 0.0
     }
 
+    /// A speed of the load in the friction's coordinate, or a force there at the load.
+    #[inline]
+    fn by_lever(&self, value: f64) -> f64 {
+        // Mostly the load's own coordinate; the step would wait for the division.
+        if self.lever == 1.0 {
+            value
+        } else {
+            value / self.lever
+        }
+    }
+
     /// Bristle deflections, in the friction's coordinate: the law's and the unit
     /// element's.
     fn bristles(&self, start: &Start) -> [f64; 2] {
@@ -242,8 +274,11 @@ impl<S: TimeStepper> Law<S> {
         loads.iter().map(|load| load.force(table)).sum()
     }
 
-    fn has_loads(&self) -> bool {
-        self.assembly.hooks.has_loads() || !self.assembly.loads.is_empty()
+    /// Errors of the transmission's kinematics at the end of a step, where the motor will
+    /// be `at`; `origin` is their displacement when the motion began.
+    fn errors(&self, at: &ScrewState, origin: f64) -> Result<NutErrors, DriveError> {
+        let [offset, rate] = self.assembly.hooks.offset_at(at);
+        NutErrors::new(offset - origin, rate, self.assembly.backlash)
     }
 }
 
@@ -270,8 +305,10 @@ where
             law: self,
             drive,
         };
-        state.look(start.time, at, torque, motion.load);
-        let [offset, _] = state.law.assembly.hooks.offset_at(&state.screw(start.time));
+        let origins = [state.origin, state.motor_origin];
+        state.seen = Seen::of(&at, origins, start.time, torque, motion.load);
+        let screw = state.seen.screw(start.time, state.seen.motor_angle);
+        let [offset, _] = state.law.assembly.hooks.offset_at(&screw);
         state.offset_origin = offset;
         Ok(Box::new(state))
     }
@@ -282,41 +319,31 @@ where
     }
 }
 
-impl<S: TimeStepper> State<S> {
-    fn look(&mut self, time: f64, at: Observation, torque: f64, load: f64) {
-        self.seen = Seen {
+impl Seen {
+    /// What is seen of a drive whose load and motor began at `origins`.
+    fn of(at: &Observation, origins: [f64; 2], time: f64, torque: f64, load: f64) -> Self {
+        Self {
             time,
-            position: self.origin + at.displacement,
+            position: origins[0] + at.displacement,
             displacement: at.displacement,
             speed: at.speed,
-            motor_angle: self.motor_origin + at.motor_angle,
+            motor_angle: origins[1] + at.motor_angle,
             motor_speed: at.motor_speed,
             transmission_force: at.nut_force,
             torque,
             load,
-        };
-    }
-
-    fn screw(&self, time: f64) -> ScrewState {
-        ScrewState {
-            time,
-            angle: self.seen.motor_angle,
-            rate: self.seen.motor_speed,
-            position: self.seen.position,
-            speed: self.seen.speed,
         }
     }
 
-    /// Errors of the transmission's kinematics at the end of a step, where the
-    /// motor will be at `angle`.
-    fn errors(&self, time: f64, angle: f64) -> Result<NutErrors, DriveError> {
-        let assembly = &self.law.assembly;
-        let at = ScrewState {
+    /// The transmission at `time`, where the motor will be at `angle`.
+    fn screw(&self, time: f64, angle: f64) -> ScrewState {
+        ScrewState {
+            time,
             angle,
-            ..self.screw(time)
-        };
-        let [offset, rate] = assembly.hooks.offset_at(&at);
-        NutErrors::new(offset - self.offset_origin, rate, assembly.backlash)
+            rate: self.motor_speed,
+            position: self.position,
+            speed: self.speed,
+        }
     }
 }
 
@@ -326,15 +353,17 @@ where
     S::State: fmt::Debug + Send + Sync + 'static,
 {
     fn advance(&mut self, actuator: &mut dyn Actuating) -> Result<(), DriveError> {
-        let law = self.law.clone();
-        let (stepper, assembly, lever) = (&law.stepper, &law.assembly, law.lever);
+        let law = &*self.law;
+        let (stepper, assembly) = (&law.stepper, &law.assembly);
+        let (friction, hooks) = (&assembly.friction, &assembly.hooks);
         let h = stepper.step_length();
-        let has_loads = law.has_loads();
+        let has_loads = hooks.has_loads() || !assembly.loads.is_empty();
         let rise = if self.pressed {
             0.0
         } else {
             STANDING_LOAD_RISE
         };
+        let mut errors = NutErrors::new(0.0, 0.0, assembly.backlash)?;
         for _ in 0..assembly.substeps {
             // The actuator, over the mean motor speed of the step.
             let start = self.seen;
@@ -348,28 +377,35 @@ where
             );
             let time = start.time + h;
             let angle = start.motor_angle + h * mean_speed;
-            let torque = assembly.hooks.torque_at(angle, own);
+            let torque = hooks.torque_at(angle, own);
 
             // Mechanics; the friction follows the load's speed at the end of the step.
-            let errors = self.errors(time, angle)?;
-            let (z0, u0, w0) = (self.bristle, self.unit_bristle, start.speed / lever);
+            if hooks.has_offsets() {
+                errors = law.errors(&start.screw(time, angle), self.offset_origin)?;
+            }
+            let (z0, u0, w0) = (self.bristle, self.unit_bristle, law.by_lever(start.speed));
             let origin = self.origin;
+            let pressed = (time / rise).min(1.0);
             let (mut z1, mut u1, mut end_load) = (z0, u0, 0.0);
             let report = stepper.step_through(&mut self.drive, torque, &errors, |table| {
-                let w1 = table.speed / lever;
-                let (z, friction) = assembly.friction.law.step_torque(z0, w0, w1, h);
+                let w1 = law.by_lever(table.speed);
+                let (z, own) = friction.law.step_torque(z0, w0, w1, h);
                 z1 = z;
-                let mut load = friction / lever;
+                let mut load = law.by_lever(own);
                 if has_loads {
-                    u1 = assembly.friction.unit.step(u0, w0, w1, h);
+                    let mut bristle = 0.0;
+                    if law.moves_bristle {
+                        u1 = friction.unit.step(u0, w0, w1, h);
+                        bristle = friction.unit.torque(u1, w1);
+                    }
                     let at = TableState {
                         time,
                         position: origin + table.displacement,
                         speed: table.speed,
-                        bristle: assembly.friction.unit.torque(u1, w1),
-                        pressed: (time / rise).min(1.0),
+                        bristle,
+                        pressed,
                     };
-                    load += assembly.hooks.loads_at(&at) + law.loads_at(&at);
+                    load += hooks.loads_at(&at) + law.loads_at(&at);
                 }
                 end_load = load;
                 load
@@ -382,7 +418,14 @@ where
             }
             self.bristle = z1;
             self.unit_bristle = u1;
-            self.look(time, stepper.observe(&self.drive), torque, end_load);
+            let origins = [self.origin, self.motor_origin];
+            self.seen = Seen::of(
+                &stepper.observe(&self.drive),
+                origins,
+                time,
+                torque,
+                end_load,
+            );
             self.motor_acceleration = (self.seen.motor_speed - start.motor_speed) / h;
         }
         Ok(())

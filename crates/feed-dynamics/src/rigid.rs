@@ -1,10 +1,8 @@
 //! A drive without elasticity: one inertia.
 
 use crate::error::{finite, positive};
-use crate::stepper::check_step;
-use crate::{
-    DriveError, NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper, find_load,
-};
+use crate::stepper::{check_step, find_load_within};
+use crate::{DriveError, NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper};
 
 /// A drive whose motor and load move as one. Immutable.
 ///
@@ -80,6 +78,12 @@ pub struct RigidStepper {
     drive: RigidDrive,
     step: f64,
     course: ForceCourse,
+    /// Most by which the load changes with the end speed, N·s/m.
+    steepest_load: f64,
+    /// 1/m, 1/kg.
+    mobility: f64,
+    /// 1/r.
+    radians_per_travel: f64,
 }
 
 /// State of a [`RigidStepper`].
@@ -89,6 +93,7 @@ pub struct RigidState {
     speed: f64,
     force: f64,
     load: f64,
+    load_before: f64,
 }
 
 impl RigidStepper {
@@ -102,6 +107,9 @@ impl RigidStepper {
             drive: *drive,
             step,
             course: ForceCourse::Held,
+            steepest_load: f64::INFINITY,
+            mobility: 1.0 / drive.inertia,
+            radians_per_travel: 1.0 / drive.travel_per_radian,
         })
     }
 
@@ -114,6 +122,13 @@ impl RigidStepper {
 
 impl TimeStepper for RigidStepper {
     type State = RigidState;
+
+    fn with_steepest_load(self, steepness: f64) -> Self {
+        Self {
+            steepest_load: steepness,
+            ..self
+        }
+    }
 
     fn step_length(&self) -> f64 {
         self.step
@@ -135,6 +150,7 @@ impl TimeStepper for RigidStepper {
             speed: motion.speed,
             force: self.drive.inertia * motion.acceleration + motion.load,
             load: motion.load,
+            load_before: motion.load,
         })
     }
 
@@ -146,8 +162,8 @@ impl TimeStepper for RigidStepper {
         load: impl FnMut(TableMotion) -> f64,
     ) -> StepReport {
         let (h, mass, start) = (self.step, self.drive.inertia, *state);
-        let force = torque / self.drive.travel_per_radian;
-        let before = (start.force - start.load) / mass;
+        let force = torque * self.radians_per_travel;
+        let before = (start.force - start.load) * self.mobility;
         let motion = |load: f64| match self.course {
             ForceCourse::Held => {
                 let speed = start.speed + h * (force - load) / mass;
@@ -157,8 +173,8 @@ impl TimeStepper for RigidStepper {
                 }
             }
             ForceCourse::Linear => {
-                let after = (force - load) / mass;
-                let way = start.speed + h * (2.0 * before + after) / 6.0;
+                let after = (force - load) * self.mobility;
+                let way = start.speed + h * (2.0 * before + after) * (1.0 / 6.0);
                 TableMotion {
                     displacement: start.displacement + h * way,
                     speed: start.speed + 0.5 * h * (before + after),
@@ -166,10 +182,12 @@ impl TimeStepper for RigidStepper {
             }
         };
         let compliance = match self.course {
-            ForceCourse::Held => h / mass,
-            ForceCourse::Linear => 0.5 * h / mass,
+            ForceCourse::Held => h * self.mobility,
+            ForceCourse::Linear => 0.5 * h * self.mobility,
         };
-        let (end_load, mut found) = find_load(start.load, compliance, motion, load);
+        let guess = 2.0 * start.load - start.load_before;
+        let (end_load, mut found) =
+            find_load_within(self.steepest_load, guess, compliance, motion, load);
         let end = motion(end_load);
         found.converged &= end.speed.is_finite();
         *state = RigidState {
@@ -177,6 +195,7 @@ impl TimeStepper for RigidStepper {
             speed: end.speed,
             force,
             load: end_load,
+            load_before: start.load,
         };
         StepReport {
             load: found,

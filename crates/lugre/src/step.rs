@@ -48,6 +48,31 @@ impl<T: Exponential> LuGre<T> {
         (z1, self.torque(z1, w1))
     }
 
+    /// The most by which the torque of [`step_torque`](Self::step_torque) changes
+    /// with `w1`, N·m·s/rad, in a step of `h` seconds from any speed and any `z0`
+    /// within [`bristle_limit`](Self::bristle_limit):
+    ///
+    /// ```text
+    /// σ2 + (2 σ0 h + 3 σ1) D Q,   D = 1 + T_S/T_C,   Q = 1 + (2/e) (T_S/T_C − 1)
+    /// ```
+    ///
+    /// A bound, not the steepest slope: D is the greatest distance of the bristles
+    /// from where they tend, in units of that, and Q what G(ω) adds, as
+    /// `|ω G'(ω)| ≤ (2/e) (T_S − T_C)`. Of the damping, `|ω| dz1/dω` is what has to be
+    /// bounded: bristles forget the start of a step as `e^{−a}`, and `a e^{−a} ≤ 1/e`.
+    #[must_use]
+    pub fn steepness(&self, h: T) -> T {
+        let p = self.parameters();
+        if self.bristle_stiffness() == T::ZERO {
+            return p.viscous;
+        }
+        let rise = p.stiction / p.coulomb - T::ONE;
+        let distance = T::TWO + rise;
+        let falling = T::ONE + T::of(0.736) * rise;
+        let bristles = T::TWO * p.stiffness * h + T::of(3.0) * p.damping;
+        p.viscous + bristles * distance * falling
+    }
+
     /// [`step`](Self::step), and the friction's angular impulse
     /// `∫ T_f dt` (N·m·s) over it: `(z1, impulse)`.
     ///

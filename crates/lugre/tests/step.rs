@@ -172,3 +172,40 @@ proptest! {
         prop_assert!((impulse - sum).abs() < 1e-10 * 60.0 * h);
     }
 }
+
+proptest! {
+    /// Slopes of the end torque over the end speed, through zero speed too and from
+    /// bristles anywhere within their limit.
+    #[test]
+    fn no_end_torque_is_steeper_than_said(
+        rise in 1.0..3.0_f64,
+        stribeck_speed in -3.0..1.0_f64,
+        presliding in -6.0..-2.0_f64,
+        damping in 0.0..10.0_f64,
+        share in -1.0..1.0_f64,
+        speeds in (-3.0..3.0_f64, -3.0..3.0_f64),
+        scale in -4.0..2.0_f64,
+        h in -6.0..-2.0_f64,
+    ) {
+        let coulomb = 2.0;
+        let law = LuGre::new(Parameters {
+            coulomb,
+            stiction: rise * coulomb,
+            stribeck_speed: 10_f64.powf(stribeck_speed),
+            stiffness: coulomb / 10_f64.powf(presliding),
+            damping,
+            viscous: 0.3,
+        }).expect("valid");
+        let (h, scale) = (10_f64.powf(h), 10_f64.powf(scale));
+        let (z0, w0) = (share * law.bristle_limit(), scale * speeds.0);
+        let torque = |w1: f64| law.step_torque(z0, w0, w1, h).1;
+        let most = law.steepness(h);
+        for i in -50..50 {
+            let w1 = scale * (speeds.1 + 0.02 * f64::from(i));
+            let by = 1e-3 * scale;
+            let rounding = 1e-13 * (torque(w1).abs() + 10.0 + damping * scale);
+            let change = (torque(w1 + by) - torque(w1)).abs();
+            prop_assert!(change <= most * by + rounding, "{change} {}", most * by);
+        }
+    }
+}

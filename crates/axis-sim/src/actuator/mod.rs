@@ -37,6 +37,22 @@ pub enum Effort {
 }
 
 impl Effort {
+    /// The effort that the unit of a gain begins with (`a_per_rpm`, `n_m_s_per_rad`), where
+    /// it is one.
+    pub fn of_gain(unit: &str) -> Option<Self> {
+        if unit.starts_with("a_") {
+            Some(Self::Current)
+        } else if unit.starts_with("n_m_") {
+            Some(Self::Torque)
+        } else if unit.starts_with("n_") {
+            Some(Self::Force)
+        } else if unit.starts_with("v_") {
+            Some(Self::Voltage)
+        } else {
+            None
+        }
+    }
+
     /// Its SI unit.
     pub fn unit(self) -> &'static str {
         match self {

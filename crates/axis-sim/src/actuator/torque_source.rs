@@ -120,8 +120,24 @@ struct State {
     /// What acts now, late and limited, and what the source has made of it.
     command: f64,
     made: f64,
-    /// Length of a step and e^(−bandwidth·step).
+    /// Length of a step, and what is left after it of the lag behind the command.
     decay: [f64; 2],
+}
+
+/// What a step leaves of the lag behind a held command, `x` being the bandwidth (rad/s)
+/// times the step.
+///
+/// The torque acts as straight lines between the ends of steps. With (2 − x)/(2 + x) these
+/// lines have the impulse of the exact lag, so the source is late by just its time constant;
+/// through the points e^(−x) of the exact lag they would have x²/12 too much of it: 1 nm on
+/// a rack at x = 0.13. Steps longer than the time constant leave no straight line worth
+/// the name, and take the points.
+fn lag(x: f64) -> f64 {
+    if x <= 1.0 {
+        (2.0 - x) / (2.0 + x)
+    } else {
+        (-x).exp()
+    }
 }
 
 impl Actuating for State {
@@ -138,7 +154,7 @@ impl Actuating for State {
 
     fn torque(&mut self, _: &MotorMotion, h: f64) -> f64 {
         if self.decay[0] != h {
-            self.decay = [h, (-self.bandwidth * h).exp()];
+            self.decay = [h, lag(self.bandwidth * h)];
         }
         self.made = self.command + self.decay[1] * (self.made - self.command);
         self.constant * self.made

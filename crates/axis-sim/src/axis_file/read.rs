@@ -17,7 +17,7 @@ use crate::axis::{
     Simulation, Stroke, Tolerances,
 };
 use crate::closed_loop::ClosedLoop;
-use crate::control::{Control, effort_of};
+use crate::control::Control;
 use crate::friction::Place;
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism, Way};
@@ -53,11 +53,11 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
             mechanism.kind().name,
             freedom.unit()
         );
-        let fits = registry.frictions.iter().map(|kind| kind.name);
-        let fits: Vec<&str> = fits
-            .filter(|name| name.ends_with("-rotary") == (freedom == Freedom::Rotary))
-            .collect();
-        return Err(root.table("friction")?.refuse_table(what, &fits.join(", ")));
+        let fits = names(&registry.frictions, |friction| match friction.at {
+            Place::Motor => true,
+            Place::Load(of) => of == freedom,
+        });
+        return Err(root.table("friction")?.refuse_table(what, &fits));
     }
     let control_table = root.table("control")?;
     let control = part(&root, &layout, Section::Control, layout.control)?;
@@ -140,7 +140,7 @@ fn check_gains(
             let along = ends(&["_per_m", "_per_m_s", "_per_mm"]);
             let about = ends(&["_per_rad", "_per_rad_s", "_per_rpm", "_per_rpm_s"]);
             let moves = if turns { !along } else { !about };
-            moves && effort_of(unit).is_none_or(|of| of == effort)
+            moves && Effort::of_gain(unit).is_none_or(|of| of == effort)
         };
         if fits(given) {
             continue;
@@ -211,6 +211,16 @@ fn own_part<P: ?Sized>(
     Part::new(kind, values).map_err(|error| table.refuse_part(&error))
 }
 
+/// Names of the kinds whose parts would fit; a kind of which that is not to be seen
+/// counts as one.
+fn names<P: ?Sized>(kinds: &[&'static PartKind<P>], fits: impl Fn(&P) -> bool) -> String {
+    let fitting = kinds
+        .iter()
+        .filter(|kind| kind.example().is_none_or(|part| fits(&part)));
+    let names: Vec<&str> = fitting.map(|kind| kind.name).collect();
+    names.join(", ")
+}
+
 fn loads(root: &Fields<'_>, registry: &Registry) -> Result<Vec<Part<dyn Load>>, AxisFileError> {
     let tables = root.unchecked("load", vec![kinds_key(&registry.loads)])?;
     let one = |table: Fields<'_>| own_part(table, &registry.loads);
@@ -241,11 +251,8 @@ fn sensors(
             part.freedom().unit(),
             of.unit()
         );
-        let fits: Vec<&str> = match of {
-            Freedom::Linear => vec!["scale"],
-            Freedom::Rotary => vec!["encoder", "resolver"],
-        };
-        Err(section()?.refuse_value("kind", what, fits.join(", ")))
+        let fits = names(&registry.sensors, |sensor| sensor.freedom() == of);
+        Err(section()?.refuse_value("kind", what, fits))
     };
     Ok(Sensors {
         load: sensor("load", freedom)?.map_or(LoadSensor::Missing, LoadSensor::Fitted),

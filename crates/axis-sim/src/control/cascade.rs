@@ -15,7 +15,7 @@ use std::sync::Arc;
 use foc_pmsm::{Pi, PiParameters, PiState};
 
 use super::filter::Filter;
-use super::{Control, Controller, Demand, Situation, effort_of};
+use super::{Control, Controller, Demand, Situation};
 use crate::SixDigits;
 use crate::actuator::{Effort, Surroundings};
 use crate::cycle::Measured;
@@ -151,7 +151,7 @@ fn build(v: &Values) -> Result<Arc<dyn Control>, PartError> {
         speed_lowpass: v.optional("speed_lowpass"),
         command_lowpass: v.optional("command_lowpass"),
         notch: notch.map(|f| [f, v.or("notch_damping", 0.3), v.or("notch_depth", 0.1)]),
-        effort: effort_of(v.unit("speed_proportional")),
+        effort: Effort::of_gain(v.unit("speed_proportional")),
     }))
 }
 

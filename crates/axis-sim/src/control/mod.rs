@@ -92,18 +92,3 @@ pub trait Controller: fmt::Debug + Send + Sync {
     /// A copy.
     fn copy(&self) -> Box<dyn Controller>;
 }
-
-/// The effort that a unit of a gain begins with (`a_per_rpm`, `n_m_s_per_rad`).
-pub(crate) fn effort_of(unit: &str) -> Option<Effort> {
-    if unit.starts_with("a_") {
-        Some(Effort::Current)
-    } else if unit.starts_with("n_m_") {
-        Some(Effort::Torque)
-    } else if unit.starts_with("n_") {
-        Some(Effort::Force)
-    } else if unit.starts_with("v_") {
-        Some(Effort::Voltage)
-    } else {
-        None
-    }
-}

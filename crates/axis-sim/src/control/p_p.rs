@@ -28,7 +28,7 @@ pub(super) static KIND: PartKind<dyn Control> = PartKind {
         Ok(Arc::new(PP {
             position: v.number("position_gain")?,
             speed: v.number("speed_gain")?,
-            effort: super::effort_of(v.unit("speed_gain")),
+            effort: Effort::of_gain(v.unit("speed_gain")),
         }))
     },
 };

@@ -29,7 +29,7 @@ pub(super) static KIND: PartKind<dyn Control> = PartKind {
             integral: v.number("integral")?,
             derivative: v.number("derivative")?,
             lowpass: v.number("derivative_lowpass")?,
-            effort: super::effort_of(v.unit("proportional")),
+            effort: Effort::of_gain(v.unit("proportional")),
         }))
     },
 };

@@ -18,7 +18,11 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 2] = super::changes::array(values);
-    to.load(move |t| {
+    let steepness = super::Steepness {
+        bristle: v[0].abs().max(v[1].abs()),
+        ..super::Steepness::default()
+    };
+    to.load_within(steepness, move |t| {
         let level = if t.bristle > 0.0 { v[0] } else { v[1] };
         level * t.bristle
     });

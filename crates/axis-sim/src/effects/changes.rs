@@ -17,11 +17,47 @@ pub struct TableState {
     pub position: f64,
     /// m/s or rad/s.
     pub speed: f64,
-    /// Unit bristle, −1 to 1: the direction of sliding, without a jump.
+    /// Unit bristle, −1 to 1: the direction of sliding, without a jump. 0 where no force on
+    /// the load changes with it ([`Steepness::bristle`]).
     pub bristle: f64,
     /// Share of a standing load that acts: it comes up over 20 ms, so that a
     /// log may start with the machine at rest under it.
     pub pressed: f64,
+}
+
+/// The most by which a force on the load changes with each part of its motion, rising or
+/// falling. The default is not at all.
+///
+/// It tells the search for the force at the end of a step how near it is
+/// ([`feed_dynamics::TimeStepper::with_steepest_load`]); one that is given too small makes
+/// that end wrong.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Steepness {
+    /// With the position, N/m or N·m/rad.
+    pub position: f64,
+    /// With the speed, N·s/m or N·m·s/rad.
+    pub speed: f64,
+    /// With the unit bristle, N or N·m.
+    pub bristle: f64,
+}
+
+impl Steepness {
+    /// Nobody knows: as steep as can be.
+    pub const UNKNOWN: Self = Self {
+        position: f64::INFINITY,
+        speed: f64::INFINITY,
+        bristle: f64::INFINITY,
+    };
+
+    /// That of two forces together.
+    #[must_use]
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            position: self.position + other.position,
+            speed: self.speed + other.speed,
+            bristle: self.bristle + other.bristle,
+        }
+    }
 }
 
 /// The transmission as an error of its kinematics sees it.
@@ -72,6 +108,8 @@ type Offset = Arc<dyn Fn(&ScrewState) -> [f64; 2] + Send + Sync>;
 #[derive(Clone, Default)]
 pub(crate) struct Hooks {
     loads: Vec<Load>,
+    /// That of all loads together.
+    steepness: Steepness,
     torques: Vec<Torque>,
     offsets: Vec<Offset>,
     pub(crate) sensors: SensorErrors,
@@ -89,8 +127,14 @@ impl fmt::Debug for Hooks {
 }
 
 impl Hooks {
-    /// Adds a load on the table, N, positive against positive motion.
-    pub fn load(&mut self, load: impl Fn(&TableState) -> f64 + Send + Sync + 'static) {
+    /// Adds a load on the table, N, positive against positive motion, that changes with
+    /// its motion by at most `steepness`.
+    pub fn load(
+        &mut self,
+        steepness: Steepness,
+        load: impl Fn(&TableState) -> f64 + Send + Sync + 'static,
+    ) {
+        self.steepness = self.steepness.and(steepness);
         self.loads.push(Arc::new(load));
     }
 
@@ -104,8 +148,16 @@ impl Hooks {
         self.offsets.push(Arc::new(offset));
     }
 
+    pub(crate) fn steepness(&self) -> Steepness {
+        self.steepness
+    }
+
     pub(crate) fn has_loads(&self) -> bool {
         !self.loads.is_empty()
+    }
+
+    pub(crate) fn has_offsets(&self) -> bool {
+        !self.offsets.is_empty()
     }
 
     pub(crate) fn loads_at(&self, table: &TableState) -> f64 {
@@ -139,7 +191,16 @@ pub(super) fn array<const K: usize>(values: &[f64]) -> [f64; K] {
 impl Changes<'_> {
     /// Adds a load, N or N·m, positive against positive motion.
     pub fn load(&mut self, load: impl Fn(&TableState) -> f64 + Send + Sync + 'static) {
-        self.hooks.load(load);
+        self.load_within(Steepness::UNKNOWN, load);
+    }
+
+    /// The same for a load of which it is known how steep it is at most, which saves time.
+    pub fn load_within(
+        &mut self,
+        steepness: Steepness,
+        load: impl Fn(&TableState) -> f64 + Send + Sync + 'static,
+    ) {
+        self.hooks.load(steepness, load);
     }
 
     /// Adds a motor torque, N·m, from motor angle (rad) and the actuator's torque (N·m).

@@ -48,7 +48,7 @@ mod velocity_feedforward;
 mod viscous_friction;
 
 pub(crate) use changes::Hooks;
-pub use changes::{Changes, ScrewState, SensorErrors, TableState};
+pub use changes::{Changes, ScrewState, SensorErrors, Steepness, TableState};
 pub(crate) use install::install;
 pub use parameter::{EffectParameter, Measure, Nature, Need, Scales};
 use parameter::{PHASE, positive, shape, signed, size};

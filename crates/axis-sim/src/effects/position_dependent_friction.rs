@@ -31,7 +31,13 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 3] = super::changes::array(values);
-    to.load(move |t| {
+    // The steepest slope of e^(−x²/2) is 1/√e.
+    let steepness = super::Steepness {
+        position: 0.607 * (v[0] / v[2]).abs(),
+        bristle: v[0].abs(),
+        ..super::Steepness::default()
+    };
+    to.load_within(steepness, move |t| {
         let ratio = (t.position - v[1]) / v[2];
         v[0] * (-0.5 * ratio * ratio).exp() * t.bristle
     });

@@ -33,6 +33,9 @@ fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError
     let v: [f64; 3] = super::changes::array(values);
     // Rises and falls over 10 ms, so that the times can be estimated.
     let ramp = |t: f64| (t / 0.01).clamp(0.0, 1.0);
-    to.load(move |t| v[0] * (ramp(t.time - v[1]) - ramp(t.time - v[2])));
+    let steepness = super::Steepness::default();
+    to.load_within(steepness, move |t| {
+        v[0] * (ramp(t.time - v[1]) - ramp(t.time - v[2]))
+    });
     Ok(())
 }

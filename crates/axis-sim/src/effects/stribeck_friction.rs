@@ -30,7 +30,13 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 2] = super::changes::array(values);
-    to.load(move |t| {
+    // The steepest slope of e^(−x²) is √(2/e).
+    let steepness = super::Steepness {
+        speed: 0.858 * (v[0] / v[1]).abs(),
+        bristle: v[0].abs(),
+        ..super::Steepness::default()
+    };
+    to.load_within(steepness, move |t| {
         let ratio = t.speed / v[1];
         v[0] * (-ratio * ratio).exp() * t.bristle
     });

@@ -15,6 +15,10 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
-    to.load(move |t| v[0] * t.speed);
+    let steepness = super::Steepness {
+        speed: v[0].abs(),
+        ..super::Steepness::default()
+    };
+    to.load_within(steepness, move |t| v[0] * t.speed);
     Ok(())
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Load;
-use crate::effects::TableState;
+use crate::effects::{Steepness, TableState};
 use crate::part::units::FORCE;
 use crate::part::{Known, PartKind, quantity};
 
@@ -24,5 +24,9 @@ struct Gravity(f64);
 impl Load for Gravity {
     fn force(&self, _: &TableState) -> f64 {
         self.0
+    }
+
+    fn steepness(&self) -> Steepness {
+        Steepness::default()
     }
 }

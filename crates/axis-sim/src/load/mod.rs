@@ -5,7 +5,7 @@ mod pendulum;
 
 use std::fmt;
 
-use crate::effects::TableState;
+use crate::effects::{Steepness, TableState};
 use crate::part::PartKind;
 
 /// All kinds of load, one line each.
@@ -15,4 +15,9 @@ pub const LOADS: &[&PartKind<dyn Load>] = &[&gravity::KIND, &pendulum::KIND];
 pub trait Load: fmt::Debug + Send + Sync {
     /// N or N·m, positive against positive motion.
     fn force(&self, at: &TableState) -> f64;
+
+    /// How the force depends on the load's motion, at most.
+    fn steepness(&self) -> Steepness {
+        Steepness::UNKNOWN
+    }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::Load;
-use crate::effects::TableState;
+use crate::effects::{Steepness, TableState};
 use crate::part::units::{ANGLE, TORQUE};
 use crate::part::{Known, PartKind, quantity};
 
@@ -36,5 +36,12 @@ struct Pendulum {
 impl Load for Pendulum {
     fn force(&self, at: &TableState) -> f64 {
         self.torque * (at.position - self.hanging_at).sin()
+    }
+
+    fn steepness(&self) -> Steepness {
+        Steepness {
+            position: self.torque,
+            ..Steepness::default()
+        }
     }
 }

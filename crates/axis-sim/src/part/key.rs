@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use super::Role;
 use super::units::Dimension;
+use super::{Role, Values};
 use crate::SixDigits;
 use crate::axis::Range;
 
@@ -129,6 +129,24 @@ impl Key {
     /// Its name, without a unit.
     pub fn name(&self) -> &'static str {
         self.name
+    }
+
+    /// Gives it the least value that it takes, or its first word.
+    pub(crate) fn set_least(&self, values: &mut Values) {
+        match &self.kind {
+            Kind::Quantity(dimension, limits) => {
+                let unit = dimension.units.first().map_or("", |(unit, _)| unit);
+                values.set_in(self.name, limits.least, unit);
+            }
+            Kind::Number(unit, limits) => values.set_in(self.name, limits.least, unit),
+            Kind::Count(least, _) => values.set_count(self.name, *least),
+            Kind::Word(words) => {
+                if let Some(word) = words.first() {
+                    values.set_word(self.name, word);
+                }
+            }
+            Kind::Text | Kind::Table(_) | Kind::Tables(_) => {}
+        }
     }
 
     /// A table of these keys.

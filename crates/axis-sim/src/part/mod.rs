@@ -127,6 +127,18 @@ pub struct PartKind<P: ?Sized> {
     pub build: fn(&Values) -> Result<Arc<P>, PartError>,
 }
 
+impl<P: ?Sized> PartKind<P> {
+    /// A part of this kind with the least values that its keys take, to see how parts of
+    /// it move; none where they make no part.
+    pub(crate) fn example(&self) -> Option<Arc<P>> {
+        let mut values = Values::default();
+        for key in self.keys.iter().filter(|key| !key.optional) {
+            key.set_least(&mut values);
+        }
+        (self.build)(&values).ok()
+    }
+}
+
 impl<P: ?Sized> fmt::Debug for PartKind<P> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("PartKind").field(&self.name).finish()

@@ -96,7 +96,7 @@ impl Values {
     }
 
     /// The unit in which a number was given in the file; empty where it was not.
-    pub(crate) fn unit(&self, key: &str) -> &'static str {
+    pub fn unit(&self, key: &str) -> &'static str {
         match self.0.get(key) {
             Some(Value::Number(_, unit)) => unit,
             _ => "",

@@ -16,7 +16,7 @@ use trajectories::Motion;
 
 use crate::axis::Axis;
 use crate::channels::{ChannelPart, LogChannel, channels, position_in};
-use crate::effects::{ActiveEffect, Hooks};
+use crate::effects::{ActiveEffect, Hooks, Steepness};
 use crate::plant::Start;
 use crate::work::cycles_of;
 use crate::{ClosedLoop, Measured};
@@ -220,7 +220,9 @@ impl Replay {
             ]
         };
         match probe.clone() {
-            Probe::Load(samples) => hooks.load(move |t| value(&samples, t.time)[0]),
+            Probe::Load(samples) => {
+                hooks.load(Steepness::default(), move |t| value(&samples, t.time)[0]);
+            }
             Probe::Offset(samples) => hooks.offset(move |s| value(&samples, s.time)),
         }
     }

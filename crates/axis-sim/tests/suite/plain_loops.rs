@@ -58,7 +58,10 @@ fn check(name: &str, cycles: &[Cycle], rows: &[Row], tolerance: [f64; 3]) {
 
 /// With perfect sensors, in steps of `step` µs.
 fn rack(step: &str, changes: &[(&str, &str)]) -> Axis {
-    let mut axis = changed("rack.toml", &[&[("step_us = 25", step)], changes].concat());
+    let mut axis = changed(
+        "rack.toml",
+        &[&[("step_us = 62.5", step)], changes].concat(),
+    );
     axis.sensors = axis_sim::Sensors::default();
     axis
 }
@@ -91,10 +94,12 @@ fn plain_rack() -> Plain<'static> {
 
 #[test]
 fn a_rack_under_p_pi_with_a_torque_source() {
-    // Of second order; measured 7.3e-9 m, 2.3e-6 rad, 1.7e-4 N·m and 2.9e-10, 9.1e-8, 6.9e-6.
+    // Of second order; measured 2.4e-9 m, 7.6e-7 rad, 1.1e-3 N·m, then 3.9e-10, 1.2e-7, 1.8e-4,
+    // and 1.5e-11, 4.8e-9, 7.3e-6.
     for (step, tolerance) in [
-        ("step_us = 25", [5e-8, 1e-5, 1e-3]),
-        ("step_us = 5", [2e-9, 5e-7, 5e-5]),
+        ("step_us = 62.5", [1e-8, 5e-6, 5e-3]),
+        ("step_us = 25", [2e-9, 6e-7, 1e-3]),
+        ("step_us = 5", [1e-10, 3e-8, 5e-5]),
     ] {
         let axis = rack(step, &[]);
         let motion = motion(&axis, 0.05, 0.5, 5.0, 200.0);
@@ -117,8 +122,8 @@ fn a_limit_and_a_delay_between_cycles() {
     let mut plain = plain_rack();
     (plain.source.limit, plain.source.cycles_late) = (8.0, 1.5);
     let rows = plainly(&plain, &cycles, &motion);
-    // Measured 3.3e-9 m, 9.6e-7 rad, 1.7e-5 N·m.
-    check("limited and late", &cycles, &rows, [2e-8, 5e-6, 1e-4]);
+    // Measured 3.2e-10 m, 9.6e-8 rad, 2.7e-5 N·m.
+    check("limited and late", &cycles, &rows, [2e-9, 5e-7, 1e-4]);
     let limited = cycles.iter().filter(|c| c.command.saturated).count();
     assert!(limited > 100, "{limited}");
 }
@@ -138,8 +143,8 @@ fn loops_at_their_own_rates() {
         *every = [4, 2];
     }
     let rows = plainly(&plain, &cycles, &motion);
-    // Measured 2.9e-10 m, 9.1e-8 rad, 6.9e-6 N·m.
-    check("own rates", &cycles, &rows, [2e-9, 5e-7, 5e-5]);
+    // Measured 1.8e-11 m, 5.6e-9 rad, 9.8e-6 N·m.
+    check("own rates", &cycles, &rows, [1e-10, 3e-8, 5e-5]);
     for (k, pair) in cycles.windows(2).enumerate() {
         let held = |f: fn(&Cycle) -> f64| f(&pair[0]) == f(&pair[1]);
         assert!((k + 1) % 4 == 0 || held(|c| c.command.speed_ref), "{k}");
@@ -160,12 +165,14 @@ fn loops_at_their_own_rates() {
 
 #[test]
 fn a_joint_under_gravity_with_a_kinematic_error() {
-    // Measured 2.3e-7 rad, 2.4e-5 rad, 4.3e-5 N·m and 4.1e-10, 3.9e-8, 1.0e-7.
+    // Measured 8.4e-8 rad, 1.3e-5 rad, 2.4e-4 N·m, then 2.0e-8, 3.2e-6, 5.7e-5, and 2.1e-10, 2.0e-8,
+    // 1.2e-7.
     for (step, tolerance) in [
-        ("step_us = 125", [1e-6, 1e-4, 2e-4]),
-        ("step_us = 5", [2e-9, 2e-7, 5e-7]),
+        ("step_us = 250", [5e-7, 5e-5, 1e-3]),
+        ("step_us = 125", [1e-7, 2e-5, 2e-4]),
+        ("step_us = 5", [1e-9, 1e-7, 5e-7]),
     ] {
-        let mut axis = changed("joint.toml", &[("step_us = 125", step)]);
+        let mut axis = changed("joint.toml", &[("step_us = 250", step)]);
         axis.sensors = axis_sim::Sensors::default();
         let degree = TAU / 360.0;
         let motion = motion(&axis, 20.0 * degree, 1.0, 5.0, 60.0);
@@ -219,12 +226,14 @@ fn a_joint_under_gravity_with_a_kinematic_error() {
 
 #[test]
 fn a_linear_motor_under_pid() {
-    // Of first order: 8.3e-8 m and 0.029 N, 2.1e-8 m and 0.0074 N as measured.
+    // Of second order: 2.0e-10 m and 2.1e-3 N, 3.2e-11 m and 3.3e-4 N, 2.0e-12 m and 2.1e-5 N as
+    // measured.
     for (step, tolerance) in [
-        ("step_us = 20", [4e-7, 4e-7, 0.1]),
-        ("step_us = 5", [1e-7, 1e-7, 0.03]),
+        ("step_us = 50", [1e-9, 1e-9, 1e-2]),
+        ("step_us = 20", [2e-10, 2e-10, 2e-3]),
+        ("step_us = 5", [1e-11, 1e-11, 1e-4]),
     ] {
-        let mut axis = changed("linear-stage.toml", &[("step_us = 20", step)]);
+        let mut axis = changed("linear-stage.toml", &[("step_us = 50", step)]);
         axis.sensors = axis_sim::Sensors::default();
         let motion = motion(&axis, 0.02, 0.2, 4.0, 200.0);
         let cycles = follow(&axis, &motion);

@@ -77,7 +77,8 @@ const CASES: &[Case] = &[
     case(["rotary-table.toml",
         "kind = \"coulomb-rotary\"\ncoulomb_n_m = 8\nviscous_n_m_s_per_rad = 5\npresliding_arcsec = 20",
         "kind = \"lugre\"\ncoulomb_n = 1\nstiction_n = 1\nstribeck_speed_m_per_s = 1\nbristle_stiffness_n_per_m = 1\nbristle_damping_n_s_per_m = 1\nviscous_n_s_per_m = 1"],
-        "[friction]", "friction", &["\"lugre\", per m", "\"torque-motor\" moves in rad", "coulomb-rotary"]),
+        "[friction]", "friction", &["\"lugre\", per m", "\"torque-motor\" moves in rad",
+            "valid: lugre-at-motor, lugre-rotary, coulomb-rotary"]),
     // Kinds that do not exist.
     case(["rack.toml", "kind = \"rack\"", "kind = \"rac\""], "kind = \"rac\"", "mechanism.kind", &["did you mean \"rack\"?", "\"belt\""]),
     case(["rack.toml", "kind = \"torque-source\"", "kind = \"torque-sorce\""], "torque-sorce", "actuator.kind", &["did you mean \"torque-source\"?"]),

@@ -38,6 +38,48 @@ impl Share {
     }
 }
 
+/// The transmission where its stiffness is known.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Transmission {
+    /// k, N/m.
+    stiffness: f64,
+    /// βk, N·s/m.
+    damping: f64,
+    /// Without a gap, over a step with the force of both ends: what is left of a force once
+    /// it has moved both sides, and the force that a newton of load brings about.
+    left: f64,
+    per_load: f64,
+}
+
+impl Transmission {
+    #[inline]
+    pub fn new(stepper: &ElasticStepper, stiffness: f64) -> Self {
+        let (h, mobility) = (stepper.step, stepper.mobility);
+        let damping = stiffness * stepper.drive.parameters().stiffness_damping;
+        let share = Share::average(h);
+        let own = stiffness * share.travel + damping * share.speed;
+        let left = 1.0 / (1.0 + own * mobility);
+        Self {
+            stiffness,
+            damping,
+            left,
+            per_load: left * own * stepper.load_mobility,
+        }
+    }
+
+    /// As a contact with a gap or without.
+    #[inline]
+    fn contact(&self, mobility: f64, share: Share, half_gap: f64) -> Contact {
+        Contact {
+            stiffness: self.stiffness,
+            damping: self.damping,
+            travel: share.travel * mobility,
+            speed: share.speed * mobility,
+            half_gap,
+        }
+    }
+}
+
 /// What start and torque of a step tell of its end: load and force are left.
 pub(super) struct Ahead<'a> {
     stepper: &'a ElasticStepper,
@@ -68,28 +110,28 @@ impl<'a> Ahead<'a> {
         let y = start.y.predicted(h);
         let y = y.accelerated(h, -stepper.load_mobility * left_out);
         let compression = start.compression.predicted(h);
-        let compression = compression.accelerated(h, stepper.mobility * left_out);
-        let contact = contact(stepper, start.origin + y.value, share, errors);
         let driven = stepper.per_torque * torque;
-        let compression = compression.accelerated(h, driven);
-        let mut ahead = Self {
+        let compression = compression.accelerated(h, stepper.mobility * left_out + driven);
+        let transmission = match stepper.constant {
+            Some(transmission) => transmission,
+            None => {
+                let stiffness = &stepper.drive.parameters().stiffness;
+                Transmission::new(stepper, stiffness.at(start.origin + y.value))
+            }
+        };
+        let (offset, rate) = (errors.offset(), errors.offset_rate());
+        let pressed = transmission.stiffness * (compression.value + offset)
+            + transmission.damping * (compression.rate + rate);
+        Self {
             stepper,
             errors,
             share,
-            contact,
+            contact: transmission.contact(stepper.mobility, share, 0.5 * errors.gap()),
             y,
             compression,
             driven,
-            closed: [0.0; 2],
-        };
-        if contact.half_gap == 0.0 {
-            let per_load = Course::default().accelerated(h, stepper.load_mobility);
-            ahead.closed = [
-                ahead.contact_force(0.0),
-                contact.force(per_load.value, per_load.rate),
-            ];
+            closed: [transmission.left * pressed, transmission.per_load],
         }
-        ahead
     }
 
     /// The compression that there would be without the force.
@@ -148,19 +190,5 @@ impl<'a> Ahead<'a> {
         state.force = force;
         state.load_before = state.load;
         state.load = load;
-    }
-}
-
-/// The contact at the end of a step that leads to `x`.
-#[inline]
-fn contact(stepper: &ElasticStepper, x: f64, share: Share, errors: &NutErrors) -> Contact {
-    let p = stepper.drive.parameters();
-    let stiffness = p.stiffness.at(x);
-    Contact {
-        stiffness,
-        damping: stiffness * p.stiffness_damping,
-        travel: share.travel * stepper.mobility,
-        speed: share.speed * stepper.mobility,
-        half_gap: 0.5 * errors.gap(),
     }
 }

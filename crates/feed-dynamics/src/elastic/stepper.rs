@@ -17,12 +17,11 @@
 //! not θ: the force k δ then keeps its digits however far the axis travels.
 
 use super::ElasticDrive;
-use super::ahead::{Ahead, Share};
+use super::ahead::{Ahead, Share, Transmission};
 use super::course::Course;
-use crate::stepper::check_step;
+use crate::stepper::{check_step, find_load_within};
 use crate::{
     DriveError, LoadSearch, NutErrors, Observation, Settled, StepReport, TableMotion, TimeStepper,
-    find_load,
 };
 
 /// An elastic drive for steps of one length.
@@ -42,6 +41,10 @@ pub struct ElasticStepper {
     radians_per_travel: f64,
     /// r/J: what a newton metre of the motor adds to δ̈.
     pub(super) per_torque: f64,
+    /// The transmission where its stiffness is the same everywhere.
+    pub(super) constant: Option<Transmission>,
+    /// Most by which the load changes with the end speed, N·s/m.
+    steepest_load: f64,
 }
 
 /// State of an [`ElasticStepper`].
@@ -70,14 +73,19 @@ impl ElasticStepper {
     pub fn new(drive: &ElasticDrive, step: f64) -> Result<Self, DriveError> {
         check_step(step)?;
         let p = drive.parameters();
-        Ok(Self {
+        let mut stepper = Self {
             step,
             load_mobility: 1.0 / p.load_inertia,
             mobility: drive.mobility(),
             radians_per_travel: 1.0 / p.travel_per_radian,
             per_torque: p.travel_per_radian / p.motor_inertia,
+            constant: None,
+            steepest_load: f64::INFINITY,
             drive: drive.clone(),
-        })
+        };
+        let stiffness = p.stiffness.constant();
+        stepper.constant = stiffness.map(|k| Transmission::new(&stepper, k));
+        Ok(stepper)
     }
 
     /// A step in which the force has the given share.
@@ -100,7 +108,7 @@ impl ElasticStepper {
         };
         let guess = 2.0 * state.load - state.load_before;
         let give = 0.5 * self.step * self.load_mobility;
-        let (load, mut found) = find_load(guess, give, motion, load);
+        let (load, mut found) = find_load_within(self.steepest_load, guess, give, motion, load);
         ahead.finish(state, load);
         found.converged &= state.compression.value.is_finite();
         found
@@ -133,6 +141,13 @@ impl ElasticStepper {
 
 impl TimeStepper for ElasticStepper {
     type State = ElasticState;
+
+    fn with_steepest_load(self, steepness: f64) -> Self {
+        Self {
+            steepest_load: steepness,
+            ..self
+        }
+    }
 
     fn step_length(&self) -> f64 {
         self.step

@@ -13,12 +13,22 @@ pub trait Stiffness: Debug + Send + Sync {
     /// Must be finite and above zero wherever the load may be; a step at which it
     /// is not gives a state that is no number, and says that it did not converge.
     fn at(&self, x: f64) -> f64;
+
+    /// The stiffness where it is the same everywhere, to the bit: a stepper then asks
+    /// for it once.
+    fn constant(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// The same everywhere.
 impl Stiffness for f64 {
     fn at(&self, _: f64) -> f64 {
         *self
+    }
+
+    fn constant(&self) -> Option<f64> {
+        Some(*self)
     }
 }
 
@@ -31,6 +41,11 @@ impl Stiffness for InSeries {
         let soft = |sum, spring: &Arc<dyn Stiffness>| sum + 1.0 / spring.at(x);
         let compliance = self.0.iter().fold(0.0, soft);
         1.0 / compliance
+    }
+
+    fn constant(&self) -> Option<f64> {
+        let all = self.0.iter().all(|spring| spring.constant().is_some());
+        all.then(|| self.at(0.0))
     }
 }
 

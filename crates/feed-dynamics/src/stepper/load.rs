@@ -45,8 +45,33 @@ pub fn find_load(
     guess: f64,
     compliance: f64,
     motion: impl Fn(f64) -> TableMotion,
+    law: impl FnMut(TableMotion) -> f64,
+) -> (f64, LoadSearch) {
+    find_load_within(f64::INFINITY, guess, compliance, motion, law)
+}
+
+/// As [`find_load`], of a law whose load changes by at most `steepness` newtons for
+/// each metre a second of the end speed, rising or falling; infinite where nobody
+/// knows.
+///
+/// With L = `steepness` · `compliance` what the law gives is then within
+/// L/(1 − L) of its residual, and where that moves the speed by less than 1e-11 m/s
+/// the search ends: for a heavy table after the first load tried. The last motion that
+/// the law was called at is that of a load as far from the solution as the residual.
+#[inline]
+pub(crate) fn find_load_within(
+    steepness: f64,
+    guess: f64,
+    compliance: f64,
+    motion: impl Fn(f64) -> TableMotion,
     mut law: impl FnMut(TableMotion) -> f64,
 ) -> (f64, LoadSearch) {
+    let contraction = steepness * compliance;
+    let left = if contraction < 0.5 {
+        contraction / (1.0 - contraction)
+    } else {
+        1.0
+    };
     let mut search = Search::new();
     let mut end = LoadSearch {
         rounds: 0,
@@ -62,9 +87,9 @@ pub fn find_load(
             break;
         }
         end.residual = residual;
-        if residual.abs() * compliance <= SPEED_TOLERANCE {
+        if left * (residual.abs() * compliance) <= SPEED_TOLERANCE {
             end.converged = true;
-            return (search.closest(load, given), end);
+            return (search.closest(load, given, left), end);
         }
         load = search.next(load, given);
         if search.width() * compliance <= SPEED_TOLERANCE {
@@ -105,18 +130,20 @@ impl Search {
         self.high[0] - self.low[0]
     }
 
-    /// The best that can be said after the law gave nearly `load` there: the
-    /// secant's load, where that is not further away than the law's.
-    fn closest(&self, load: f64, given: f64) -> f64 {
+    /// The best that can be said after the law gave nearly `load` there, the solution
+    /// being within `left` residuals of that: the secant's load, where that may be it;
+    /// otherwise the law's where it is known to be near, and the one tried where not.
+    fn closest(&self, load: f64, given: f64, left: f64) -> f64 {
         let Some(before) = self.last else {
             return given;
         };
         let residual = given - load;
         let secant = secant(before, [load, residual]);
-        if (secant - load).abs() <= residual.abs() {
+        let middle = if left < 1.0 { given } else { load };
+        if (secant - middle).abs() <= left * residual.abs() {
             secant
         } else {
-            load
+            middle
         }
     }
 

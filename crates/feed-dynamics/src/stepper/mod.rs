@@ -12,6 +12,7 @@ mod modal;
 mod nut;
 
 pub use implicit::{ImplicitState, ImplicitStepper};
+pub(crate) use load::find_load_within;
 pub use load::{LoadSearch, find_load};
 pub use modal::{ModalState, ModalStepper};
 pub(crate) use nut::Contact;
@@ -92,6 +93,18 @@ pub struct StepReport {
 pub trait TimeStepper {
     /// The state that a step changes.
     type State: Clone;
+
+    /// The stepper for loads that change by at most `steepness` (N·s/m) with the load's
+    /// speed at the end of a step, rising or falling: it may then know a load after
+    /// fewer calls. One that gains nothing by it stays as it is.
+    #[must_use]
+    fn with_steepest_load(self, steepness: f64) -> Self
+    where
+        Self: Sized,
+    {
+        let _ = steepness;
+        self
+    }
 
     /// Length of a step, s.
     fn step_length(&self) -> f64;

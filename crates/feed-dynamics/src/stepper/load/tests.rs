@@ -1,6 +1,6 @@
 //! The search against plain halving of the speed, and where there is nothing to find.
 
-use super::{LoadSearch, find_load};
+use super::{LoadSearch, find_load, find_load_within};
 use crate::TableMotion;
 use proptest::prelude::*;
 
@@ -41,6 +41,31 @@ fn by_halving(free: f64, compliance: f64, law: impl Fn(f64) -> f64) -> f64 {
 }
 
 proptest! {
+    /// A law that is known to be no steeper than a part of what the motion gives way:
+    /// fewer tries, the same end.
+    #[test]
+    fn a_bound_of_the_slope_saves_tries_and_keeps_the_end(
+        compliance in -9.0..-2.0_f64,
+        contraction in -6.0..0.0_f64,
+        slopes in (-1.0..1.0_f64, -1.0..1.0_f64),
+        knee in -0.1..0.1_f64,
+        free in -0.3..0.3_f64,
+        off in -8.0..0.0_f64,
+    ) {
+        let c = 10_f64.powf(compliance);
+        let steepest = 10_f64.powf(contraction) / c;
+        let law = |v: f64| steepest * if v > knee { slopes.1 } else { slopes.0 } * (v - knee);
+        let truth = free - c * find(free, c, 0.0, law).0;
+        let guess = law(truth) + 10_f64.powf(off) / c;
+        let motion = falling(free, c);
+        let (load, end) = find_load_within(steepest, guess, c, motion, |m| law(m.speed));
+        prop_assert!(end.converged, "{end:?}");
+        let rounding = 1e-14 * c * load.abs();
+        let speed = free - c * load;
+        prop_assert!((speed - truth).abs() <= 2.01e-11 + rounding, "{speed} {truth} {end:?}");
+        prop_assert!(end.rounds <= find(free, c, guess, law).1.rounds);
+    }
+
     /// Laws with kinks, a soft start of any steepness and two straight parts: a
     /// newton of load calls for up to 10⁵ newtons back.
     #[test]
