@@ -131,7 +131,8 @@ fn the_loop_moves_the_load_as_a_plain_integrator_does() {
     assert!(missed > 0.1, "{missed} m");
 }
 
-/// A drag of 0 changes nothing, to the bit.
+/// A drag of 0 changes nothing but last bits: how steep a drag is nobody knows beforehand, so
+/// the load at the end of a step is searched for more closely with one.
 #[test]
 fn the_effect_vanishes_at_its_null() {
     let null = DRAG.replace("2000", "0");
@@ -140,5 +141,10 @@ fn the_effect_vanishes_at_its_null() {
         run(&read(&format!("{}{null}", outside::HOIST))),
     );
     assert_eq!(a.len(), b.len());
-    assert!(a.iter().zip(&b).all(|(a, b)| a.position == b.position));
+    let pairs = a.iter().zip(&b);
+    let most = pairs.fold(0.0_f64, |most, (a, b)| {
+        most.max((a.position - b.position).abs())
+    });
+    // Measured 1.4e-11.
+    assert!(most < 1e-10, "{most:e} m");
 }
