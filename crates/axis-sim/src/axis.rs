@@ -270,15 +270,13 @@ impl Axis {
     /// The parameters that the file gives and that may be off by its tolerances:
     /// those of mechanism, actuator, control, friction and loads, in that order.
     pub fn known(&self) -> Vec<&'static str> {
-        let lists = [
-            self.mechanism.kind().known,
-            self.actuator.kind().known,
-            self.control.kind().known,
-            self.friction.kind().known,
-        ];
-        let loads = self.loads.iter().map(|load| load.kind().known);
-        let lists = lists.into_iter().chain(loads);
-        lists.flatten().map(|known| known.name).collect()
+        let of_loads = self.loads.iter().flat_map(Part::known);
+        let all = (self.mechanism.known())
+            .chain(self.actuator.known())
+            .chain(self.control.known())
+            .chain(self.friction.known())
+            .chain(of_loads);
+        all.map(|known| known.name).collect()
     }
 
     /// The axis with its known parameters off by `shares` of their values, in the
@@ -320,11 +318,11 @@ impl Axis {
 
 /// Changes the known parameters of a part by the next shares.
 fn off<'a, P: ?Sized>(part: &mut Part<P>, shares: &mut impl Iterator<Item = &'a f64>) {
-    let known: &'static [Known] = part.kind().known;
-    for (known, share) in known.iter().zip(shares) {
+    let known: Vec<&Known> = part.known().collect();
+    for (known, share) in known.into_iter().zip(shares) {
         if *share != 0.0 {
             // What would make no part is passed over: the part stays as it was.
-            let _ = part.change(|values| (known.scale)(values, 1.0 + share));
+            let _ = part.change(|values| known.scale(values, 1.0 + share));
         }
     }
 }

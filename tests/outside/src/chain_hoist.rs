@@ -27,14 +27,8 @@ pub static CHAIN_HOIST: PartKind<dyn Mechanism> = PartKind {
         quantity("stiffness_damping", &TIME, 0.0, 0.1),
     ],
     known: &[
-        Known {
-            name: "chain_stiffness",
-            scale: |v, by| v.scale("chain_stiffness", by),
-        },
-        Known {
-            name: "load_mass",
-            scale: |v, by| v.scale("load_mass", by),
-        },
+        Known::key("chain_stiffness"),
+        Known::key("load_mass"),
     ],
     build,
 };

@@ -96,24 +96,13 @@ const WEAKENING_CURRENT: Key = quantity("field_weakening_current", &CURRENT, 1e-
 const WEAKENING_SHARE: Key = number("field_weakening_voltage_share", 0.1, 0.999).or(0.95);
 
 const KNOWN: &[Known] = &[
-    Known {
-        name: "torque_constant",
-        scale: |v, by| {
-            v.scale("torque_constant", by);
-            v.scale("force_constant", by);
-        },
-    },
-    Known {
-        name: "resistance",
-        scale: |v, by| v.scale("resistance", by),
-    },
-    Known {
-        name: "inductance",
-        scale: |v, by| {
-            v.scale("inductance_d", by);
-            v.scale("inductance_q", by);
-        },
-    },
+    Known::by("torque_constant", |v, by| {
+        v.scale("torque_constant", by);
+        v.scale("force_constant", by);
+    }),
+    Known::key("resistance"),
+    Known::key("inductance_d"),
+    Known::key("inductance_q"),
 ];
 
 #[derive(Clone, Copy, Debug)]

@@ -48,10 +48,12 @@ const DELAY: crate::part::Key = quantity("delay", &TIME, 0.0, 0.1)
 /// Share of the command that comes out.
 const GAIN: crate::part::Key = number("gain", 1e-3, 1e3).or(1.0).role(Role::TorqueConstant);
 
-const KNOWN: &[Known] = &[Known {
-    name: "torque_constant",
-    scale: |v, by| v.set("gain", v.or("gain", 1.0) * by),
-}];
+const KNOWN: &[Known] = &[
+    Known::by("torque_constant", |v, by| {
+        v.set("gain", v.or("gain", 1.0) * by)
+    }),
+    Known::key("bandwidth"),
+];
 
 #[derive(Clone, Copy, Debug)]
 struct Source {

@@ -33,10 +33,11 @@ pub(super) static ROTARY: PartKind<Friction> = PartKind {
     build: |v| build(v, Freedom::Rotary),
 };
 
-const KNOWN: &[Known] = &[Known {
-    name: "viscous",
-    scale: |v, by| v.scale("viscous", by),
-}];
+const KNOWN: &[Known] = &[
+    Known::key("viscous"),
+    Known::key("coulomb"),
+    Known::key("presliding"),
+];
 
 fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {
     let (coulomb, presliding) = (v.number("coulomb")?, v.number("presliding")?);

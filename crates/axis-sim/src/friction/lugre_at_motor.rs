@@ -27,33 +27,19 @@ pub(super) static KIND: PartKind<Friction> = PartKind {
 /// The known parameters of every LuGre friction. A change of the Coulomb level
 /// keeps the rise from it to the break-away, which is never below it.
 pub(super) const KNOWN: &[Known] = &[
-    Known {
-        name: "coulomb_level",
-        scale: |v, by| {
-            let [coulomb, stiction] = ["coulomb", "stiction"].map(|key| v.or(key, 0.0));
-            v.set("stiction", stiction + coulomb * (by - 1.0));
-            v.scale("coulomb", by);
-        },
-    },
-    Known {
-        name: "break_away",
-        scale: |v, by| {
-            let [coulomb, stiction] = ["coulomb", "stiction"].map(|key| v.or(key, 0.0));
-            v.set("stiction", (stiction * by).max(coulomb));
-        },
-    },
-    Known {
-        name: "stribeck_speed",
-        scale: |v, by| v.scale("stribeck_speed", by),
-    },
-    Known {
-        name: "bristle_stiffness",
-        scale: |v, by| v.scale("bristle_stiffness", by),
-    },
-    Known {
-        name: "viscous",
-        scale: |v, by| v.scale("viscous", by),
-    },
+    Known::by("coulomb_level", |v, by| {
+        let [coulomb, stiction] = ["coulomb", "stiction"].map(|key| v.or(key, 0.0));
+        v.set("stiction", stiction + coulomb * (by - 1.0));
+        v.scale("coulomb", by);
+    }),
+    Known::by("break_away", |v, by| {
+        let [coulomb, stiction] = ["coulomb", "stiction"].map(|key| v.or(key, 0.0));
+        v.set("stiction", (stiction * by).max(coulomb));
+    }),
+    Known::key("stribeck_speed"),
+    Known::key("bristle_stiffness"),
+    Known::key("viscous"),
+    Known::key("bristle_damping"),
 ];
 
 pub(super) fn build(v: &Values, at: Place) -> Result<Arc<Friction>, PartError> {

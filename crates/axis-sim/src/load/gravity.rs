@@ -11,10 +11,7 @@ pub(super) static KIND: PartKind<dyn Load> = PartKind {
     name: "gravity",
     summary: "weight of a vertical axis that its counterweight leaves, down being positive",
     keys: &[quantity("weight", &FORCE, -1e7, 1e7)],
-    known: &[Known {
-        name: "weight",
-        scale: |v, by| v.scale("weight", by),
-    }],
+    known: &[Known::key("weight")],
     build: |v| Ok(Arc::new(Gravity(v.number("weight")?))),
 };
 

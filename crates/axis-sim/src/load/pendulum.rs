@@ -15,10 +15,7 @@ pub(super) static KIND: PartKind<dyn Load> = PartKind {
         quantity("torque", &TORQUE, 0.0, 1e7),
         quantity("hanging_at", &ANGLE, -TAU, TAU),
     ],
-    known: &[Known {
-        name: "gravity_torque",
-        scale: |v, by| v.scale("torque", by),
-    }],
+    known: &[Known::by("gravity_torque", |v, by| v.scale("torque", by))],
     build: |v| {
         Ok(Arc::new(Pendulum {
             torque: v.number("torque")?,

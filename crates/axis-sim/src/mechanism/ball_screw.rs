@@ -40,26 +40,16 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
             .role(Role::Backlash),
     ],
     known: &[
-        Known {
-            name: "motor_inertia",
-            scale: |v, by| v.scale("motor_inertia", by),
-        },
-        Known {
-            name: "motor_coupling",
-            scale: |v, by| v.scale("motor_coupling", by),
-        },
-        Known {
-            name: "screw_coupling",
-            scale: |v, by| v.scale("screw_coupling", by),
-        },
-        Known {
-            name: "nut_stiffness",
-            scale: |v, by| v.scale("nut_stiffness", by),
-        },
-        Known {
-            name: "table_mass",
-            scale: |v, by| v.scale("table_mass", by),
-        },
+        Known::key("motor_inertia"),
+        Known::key("motor_coupling"),
+        Known::key("screw_coupling"),
+        Known::key("nut_stiffness"),
+        Known::key("table_mass"),
+        Known::key("torque_sensor_inertia"),
+        Known::key("youngs_modulus"),
+        Known::key("density"),
+        Known::key("stiffness_damping"),
+        Known::key("bearing_stiffness"),
     ],
     build,
 };

@@ -29,18 +29,12 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
             .role(Role::Backlash),
     ],
     known: &[
-        Known {
-            name: "motor_inertia",
-            scale: |v, by| v.scale("motor_inertia", by),
-        },
-        Known {
-            name: "specific_stiffness",
-            scale: |v, by| v.scale("specific_stiffness", by),
-        },
-        Known {
-            name: "carriage_mass",
-            scale: |v, by| v.scale("carriage_mass", by),
-        },
+        Known::key("motor_inertia"),
+        Known::key("specific_stiffness"),
+        Known::key("carriage_mass"),
+        Known::key("pulley_inertia"),
+        Known::key("shaft_stiffness"),
+        Known::key("stiffness_damping"),
     ],
     build,
 };

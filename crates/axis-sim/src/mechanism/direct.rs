@@ -13,10 +13,7 @@ pub(super) static LINEAR: PartKind<dyn Mechanism> = PartKind {
     name: "linear-motor",
     summary: "slide moved by a linear motor; the motor's coordinate is the slide's, in m",
     keys: &[quantity("slide_mass", &MASS, 1e-3, 1e6).role(Role::LoadInertia)],
-    known: &[Known {
-        name: "slide_mass",
-        scale: |v, by| v.scale("slide_mass", by),
-    }],
+    known: &[Known::key("slide_mass")],
     build: |v| build(v.number("slide_mass")?, Freedom::Linear),
 };
 
@@ -24,10 +21,7 @@ pub(super) static ROTARY: PartKind<dyn Mechanism> = PartKind {
     name: "torque-motor",
     summary: "table turned by a torque motor without a gear",
     keys: &[quantity("table_inertia", &INERTIA, 1e-9, 1e6).role(Role::LoadInertia)],
-    known: &[Known {
-        name: "table_inertia",
-        scale: |v, by| v.scale("table_inertia", by),
-    }],
+    known: &[Known::key("table_inertia")],
     build: |v| build(v.number("table_inertia")?, Freedom::Rotary),
 };
 

@@ -28,18 +28,10 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
         quantity("kinematic_error_phase", &ANGLE, -TAU, TAU).optional(),
     ],
     known: &[
-        Known {
-            name: "motor_inertia",
-            scale: |v, by| v.scale("motor_inertia", by),
-        },
-        Known {
-            name: "gear_stiffness",
-            scale: |v, by| v.scale("gear_stiffness", by),
-        },
-        Known {
-            name: "load_inertia",
-            scale: |v, by| v.scale("load_inertia", by),
-        },
+        Known::key("motor_inertia"),
+        Known::key("gear_stiffness"),
+        Known::key("load_inertia"),
+        Known::key("stiffness_damping"),
     ],
     build,
 };

@@ -26,22 +26,12 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
             .role(Role::Backlash),
     ],
     known: &[
-        Known {
-            name: "motor_inertia",
-            scale: |v, by| v.scale("motor_inertia", by),
-        },
-        Known {
-            name: "gearbox_stiffness",
-            scale: |v, by| v.scale("gearbox_stiffness", by),
-        },
-        Known {
-            name: "mesh_stiffness",
-            scale: |v, by| v.scale("mesh_stiffness", by),
-        },
-        Known {
-            name: "carriage_mass",
-            scale: |v, by| v.scale("carriage_mass", by),
-        },
+        Known::key("motor_inertia"),
+        Known::key("gearbox_stiffness"),
+        Known::key("mesh_stiffness"),
+        Known::key("carriage_mass"),
+        Known::key("gearbox_inertia"),
+        Known::key("stiffness_damping"),
     ],
     build,
 };

@@ -16,10 +16,7 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
         quantity("mass", &MASS, 1e-3, 1e6).role(Role::LoadInertia),
         quantity("lead", &LENGTH, 1e-4, 10.0),
     ],
-    known: &[Known {
-        name: "mass",
-        scale: |v, by| v.scale("mass", by),
-    }],
+    known: &[Known::key("mass")],
     build: |v: &Values| -> Result<Arc<dyn Mechanism>, PartError> {
         let travel = v.number("lead")? / std::f64::consts::TAU;
         let drive = RigidDrive::new(v.number("mass")?, travel)

@@ -31,22 +31,13 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
             .role(Role::Backlash),
     ],
     known: &[
-        Known {
-            name: "motor_inertia",
-            scale: |v, by| v.scale("motor_inertia", by),
-        },
-        Known {
-            name: "bearing_stiffness",
-            scale: |v, by| v.scale("bearing_stiffness", by),
-        },
-        Known {
-            name: "nut_stiffness",
-            scale: |v, by| v.scale("nut_stiffness", by),
-        },
-        Known {
-            name: "table_mass",
-            scale: |v, by| v.scale("table_mass", by),
-        },
+        Known::key("motor_inertia"),
+        Known::key("bearing_stiffness"),
+        Known::key("nut_stiffness"),
+        Known::key("table_mass"),
+        Known::key("youngs_modulus"),
+        Known::key("density"),
+        Known::key("stiffness_damping"),
     ],
     build,
 };

@@ -109,8 +109,35 @@ impl PartError {
 pub struct Known {
     /// Its name in reports; with `_` for `-` in `[tolerances]`.
     pub name: &'static str,
-    /// Multiplies it by a factor near 1.
-    pub scale: fn(&mut Values, f64),
+    scale: Option<fn(&mut Values, f64)>,
+}
+
+impl Known {
+    /// The parameter under a key, which is its name.
+    pub const fn key(name: &'static str) -> Self {
+        Self { name, scale: None }
+    }
+
+    /// One that `scale` multiplies by a factor near 1, whatever it takes.
+    pub const fn by(name: &'static str, scale: fn(&mut Values, f64)) -> Self {
+        Self {
+            name,
+            scale: Some(scale),
+        }
+    }
+
+    /// Whether these values have it: a parameter that is 0 has no share to be off by.
+    pub(crate) fn is_in(&self, values: &Values) -> bool {
+        self.scale.is_some() || values.optional(self.name).is_some_and(|value| value != 0.0)
+    }
+
+    /// Multiplies it by a factor; nothing where the values do not have it.
+    pub(crate) fn scale(&self, values: &mut Values, by: f64) {
+        match self.scale {
+            Some(scale) => scale(values, by),
+            None => values.scale(self.name, by),
+        }
+    }
 }
 
 /// One kind of a part: a line of its registry.
@@ -195,6 +222,12 @@ impl<P: ?Sized> Part<P> {
     /// Its kind.
     pub fn kind(&self) -> &'static PartKind<P> {
         self.kind
+    }
+
+    /// The parameters of it that may be off.
+    pub fn known(&self) -> impl Iterator<Item = &'static Known> + '_ {
+        let all = self.kind.known.iter();
+        all.filter(|known| known.is_in(&self.values))
     }
 
     /// What it was made from.
