@@ -16,11 +16,10 @@ use rayon::prelude::*;
 use trajectories::{Chirp, Limits, Program, Sine, Step, Sweep, TrajectoryError};
 
 use crate::fit::{Columns, Fitter};
-use crate::hidden::Noise;
 use crate::known::known_deviations;
 use crate::library::rooms;
 use crate::model::{LogSet, State};
-use crate::noise::noise_on;
+use crate::noise::{LogNoise, noise_on};
 use crate::search::Found;
 
 /// A motion to run next.
@@ -47,7 +46,7 @@ const SEPARATES: f64 = 25.0;
 pub fn propose(
     machine: &Axis,
     found: &Found,
-    noise: Noise,
+    noise: &LogNoise,
 ) -> Result<Option<Proposal>, ReplayError> {
     let with_class = found.named.iter().position(|n| !n.alike.is_empty());
     let Some(index) = with_class else {
@@ -217,7 +216,7 @@ impl<'a> Question<'a> {
         })
     }
 
-    fn separation(&self, program: &Program, noise: Noise) -> Result<f64, ReplayError> {
+    fn separation(&self, program: &Program, noise: &LogNoise) -> Result<f64, ReplayError> {
         let set = self.record(program)?;
         let fitter = Fitter {
             machine: self.machine,

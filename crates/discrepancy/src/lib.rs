@@ -39,7 +39,6 @@ pub mod intake;
 mod interval;
 mod known;
 mod lack;
-mod level;
 mod library;
 mod linear;
 pub mod matrix;

@@ -261,10 +261,15 @@ impl LogSet {
         series.iter().enumerate().map(one).collect()
     }
 
+    /// Whether a channel has no zero of its own.
+    pub(crate) fn counts_from_its_mean(&self, channel: usize) -> bool {
+        self.channels[channel] == ANGLE
+    }
+
     /// Which of the fitted channels have no zero of their own.
     fn free(&self) -> Vec<bool> {
         let fitted = self.fitted.iter();
-        fitted.map(|&c| self.channels[c] == ANGLE).collect()
+        fitted.map(|&c| self.counts_from_its_mean(c)).collect()
     }
 
     /// Of these effects: a gap that is larger than what is taken up before a log counts,

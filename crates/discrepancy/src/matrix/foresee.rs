@@ -18,7 +18,7 @@ use crate::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
 use crate::known::{known_deviations, pinned, tolerances};
 use crate::library::Library;
 use crate::model::{LogSet, State};
-use crate::noise::{noise_on, size_over_noise};
+use crate::noise::{LogNoise, noise_on, size_over_noise};
 use crate::projector::{Projector, sine};
 use crate::screen::{Screened, Screening, imitate};
 use crate::search::{ABOVE_NOISE, ONE_CLASS, Settings, needed};
@@ -95,7 +95,16 @@ impl Bench {
         let library = Arc::new(Library::new(&fitter, &nominal, known.clone()));
         let (state, quiet) = (&nominal.state, &nominal.traces);
         let good = Noise::good(axis);
-        let run = |seed| noise_on(&machine, state, &templates[0], quiet, good, seed);
+        let run = |seed| {
+            noise_on(
+                &machine,
+                state,
+                &templates[0],
+                quiet,
+                &LogNoise::of_sensors(good),
+                seed,
+            )
+        };
         let layout = &templates[0].layout;
         let whitener = layout.whitener(&layout.spectral_matrices(&run(0)?));
         let noise = (1..=RUNS).into_par_iter().map(run);

@@ -21,7 +21,7 @@ use crate::gap::{Gap, REST, gap};
 use crate::known::{shown, tolerances};
 use crate::lack::{Curve, Unknown, lack};
 use crate::model::{LogSet, Prepared, State};
-use crate::noise::{Excess, Rest, excess, floors, sensor_noise};
+use crate::noise::{Excess, Rest, excess, floors, log_noise};
 use crate::search::{Found, MATERIAL, Refused, Replaced};
 
 /// A search's result in words, figures and pictures.
@@ -137,8 +137,8 @@ pub(crate) fn judged(
         (false, false) if check.reduction >= 0.9 => Verdict::Explained,
         (false, _) => Verdict::PartlyExplained,
     };
-    let proposal = match sensor_noise(machine, &found.fit_logs, full, &found.fit.traces) {
-        Some(noise) => propose(machine, found, noise)?,
+    let proposal = match log_noise(machine, &found.fit_logs, full, &found.fit.traces) {
+        Some(noise) => propose(machine, found, &noise)?,
         None => None,
     };
     let name = machine.name.clone();

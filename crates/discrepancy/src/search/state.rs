@@ -10,7 +10,7 @@ use super::types::{Named, Refused, Replaced, RunnerUp, Settings};
 use crate::fit::{Columns, Fit, Fitter};
 use crate::library::Library;
 use crate::model::LogSet;
-use crate::noise::{noise_on, sensor_noise};
+use crate::noise::{log_noise, noise_on};
 use crate::spectrum::Amplitudes;
 
 /// A search on its way.
@@ -87,8 +87,8 @@ impl Search<'_> {
     /// not show it.
     pub(super) fn noise(&self) -> Option<Amplitudes> {
         let (machine, set, fit) = (self.machine, &self.fit_logs, &self.fit);
-        let noise = sensor_noise(machine, set, &fit.state, &fit.traces)?;
-        noise_on(machine, &fit.state, set, &fit.traces, noise, 0).ok()
+        let noise = log_noise(machine, set, &fit.state, &fit.traces)?;
+        noise_on(machine, &fit.state, set, &fit.traces, &noise, 0).ok()
     }
 
     /// Fits all parameters again, and the defects of the machine as it now is.

@@ -1,0 +1,72 @@
+//! Noise alone in each channel.
+
+use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
+use rayon::prelude::*;
+
+use super::level::{noise_at, shows_noise, upper_level};
+use super::{Rest, at_state, noise_series};
+use crate::model::{LogSet, Prepared, State};
+
+/// Noise alone in a channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Floor {
+    /// Root mean square.
+    pub rms: f64,
+    /// Independent values that its samples are worth, where what is slow is averaged:
+    /// their number times the variance over the spectral density at zero frequency.
+    pub independent: f64,
+}
+
+/// Parts of a log of which the sums show how noise adds up.
+const BATCHES: usize = 32;
+
+impl Floor {
+    /// Of noise as it was simulated, one series a log. Sums over a part of a log have its
+    /// length times the density near zero frequency as their variance (batch means).
+    pub(crate) fn of(series: &[Vec<f64>]) -> Self {
+        let (mut squares, mut of_sums, mut samples) = (0.0, 0.0, 0usize);
+        for log in series {
+            squares += log.iter().map(|v| v * v).sum::<f64>();
+            let batches = log.chunks(log.len().div_ceil(BATCHES).max(1));
+            of_sums += batches.map(|b| b.iter().sum::<f64>().powi(2)).sum::<f64>();
+            samples += log.len();
+        }
+        let samples = samples.max(1) as f64;
+        let worth = if of_sums > 0.0 {
+            squares / of_sums
+        } else {
+            1.0
+        };
+        Self {
+            rms: (squares / samples).sqrt(),
+            independent: samples * worth.min(1.0),
+        }
+    }
+}
+
+/// Noise alone in each channel: the loop is simulated with sensors as noisy as its logs
+/// show, since most of what they do lies where the loop answers. Where the logs do not show
+/// them, the upper spectrum is taken for white.
+pub(crate) fn floors(
+    machine: &Axis,
+    set: &LogSet,
+    state: &State,
+    best: &Rest,
+) -> Result<Vec<Floor>, ReplayError> {
+    let axis = at_state(machine, state);
+    if !shows_noise(&axis) {
+        let samples: usize = set.logs.iter().map(|l| l.log.len()).sum();
+        let white = |c: usize| Floor {
+            rms: upper_level(set, best, c),
+            independent: samples as f64,
+        };
+        return Ok((0..set.channels.len()).map(white).collect());
+    }
+    let closed_loop = ClosedLoop::new(&axis)?.without_noise();
+    let quiet = |log: &Prepared| log.replay.follow(&closed_loop, |_| ());
+    let quiet: Vec<Trace> = (set.logs.par_iter().map(quiet)).collect::<Result<_, _>>()?;
+    let noise = noise_at(&axis, set, best, &quiet);
+    let alone = noise_series(&closed_loop, set, &quiet, &noise, 0)?;
+    let of = |c: usize| alone.iter().map(|log| log[c].clone()).collect::<Vec<_>>();
+    Ok((0..set.channels.len()).map(|c| Floor::of(&of(c))).collect())
+}

@@ -1,0 +1,111 @@
+//! How much of a rest is noise: what goes round the loop, and what the logger adds.
+
+mod excess;
+mod floor;
+mod level;
+mod sources;
+mod spread;
+
+use std::collections::BTreeMap;
+
+use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
+
+pub(crate) use self::excess::{Excess, excess};
+pub(crate) use self::floor::{Floor, floors};
+use self::level::{noise_at, shows_noise};
+pub(crate) use self::spread::{drawn, over_noise, size_over_noise, spreads};
+use crate::hidden::Noise;
+use crate::model::{LogSet, Prepared, State};
+use crate::spectrum::Amplitudes;
+
+/// Measured minus simulated: per log, per channel.
+pub type Rest = Vec<Vec<Vec<f64>>>;
+
+/// Noise of logs: of the sensors, which the controller sees as well, and of the logger,
+/// which nothing sees but the log.
+#[derive(Clone, Debug)]
+pub struct LogNoise {
+    /// Of the sensors.
+    pub sensors: Noise,
+    /// Standard deviation of what the logger adds, white, by channel, in its unit.
+    pub logger: BTreeMap<&'static str, f64>,
+}
+
+impl LogNoise {
+    /// Of sensors alone.
+    pub fn of_sensors(sensors: Noise) -> Self {
+        Self {
+            sensors,
+            logger: BTreeMap::new(),
+        }
+    }
+
+    /// What the logger adds to a channel of a log, of so many samples.
+    fn logged(&self, channel: &str, seed: u64, samples: usize) -> Vec<f64> {
+        let deviation = self.logger.get(channel).copied().unwrap_or(0.0);
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+        (0..samples).map(|_| deviation * normal()).collect()
+    }
+}
+
+/// Noise of the fitted logs, as their rest shows it; `None` of an axis that does not
+/// ([`shows_noise`]). `traces` are their simulations without noise.
+pub(crate) fn log_noise(
+    machine: &Axis,
+    set: &LogSet,
+    state: &State,
+    traces: &[Trace],
+) -> Option<LogNoise> {
+    let axis = at_state(machine, state);
+    shows_noise(&axis).then(|| noise_at(&axis, set, &set.rest(traces), traces))
+}
+
+/// The machine at a state.
+fn at_state(machine: &Axis, state: &State) -> Axis {
+    let mut axis = machine.with_known(&state.shares);
+    axis.effects.extend_from_slice(&state.effects);
+    axis
+}
+
+/// What noise does to the logs of a set; `quiet` are their simulations without any.
+fn noise_series(
+    closed_loop: &ClosedLoop,
+    set: &LogSet,
+    quiet: &[Trace],
+    noise: &LogNoise,
+    seed: u64,
+) -> Result<Rest, ReplayError> {
+    let one = |(l, (log, quiet)): (usize, (&Prepared, &Trace))| {
+        let stream = 1000 * seed + l as u64 + 1;
+        let sensors = noise.sensors.sensors(stream);
+        let noisy = log.replay.follow(closed_loop, sensors)?;
+        let channel = |(c, name): (usize, &&'static str)| -> Vec<f64> {
+            let [a, b] = [&noisy, quiet].map(|t| t.channel(name).unwrap_or_default());
+            let own_stream = (stream << 8) + c as u64;
+            let logged = noise.logged(name, own_stream, a.len());
+            let of_loop = a.iter().zip(b).map(|(a, b)| a - b);
+            of_loop.zip(logged).map(|(n, l)| n + l).collect()
+        };
+        Ok(set.channels.iter().enumerate().map(channel).collect())
+    };
+    let logs: Vec<(&Prepared, &Trace)> = set.logs.iter().zip(quiet).collect();
+    logs.into_par_iter().enumerate().map(one).collect()
+}
+
+/// The same as amplitudes, with the machine at a state.
+pub(crate) fn noise_on(
+    machine: &Axis,
+    state: &State,
+    set: &LogSet,
+    quiet: &[Trace],
+    noise: &LogNoise,
+    seed: u64,
+) -> Result<Amplitudes, ReplayError> {
+    let closed_loop = ClosedLoop::new(&at_state(machine, state))?.without_noise();
+    Ok(set.amplitudes(&noise_series(&closed_loop, set, quiet, noise, seed)?))
+}
