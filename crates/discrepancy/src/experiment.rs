@@ -16,12 +16,12 @@ use rayon::prelude::*;
 use trajectories::{Chirp, Limits, Program, Sine, Step, Sweep, TrajectoryError};
 
 use crate::fit::{Columns, Fitter};
-use crate::hidden::Noise;
 use crate::known::known_deviations;
 use crate::library::rooms;
 use crate::model::{LogSet, State};
 use crate::noise::noise_on;
 use crate::search::Found;
+use crate::sensor_noise::SensorNoise;
 
 /// A motion to run next.
 #[derive(Clone, Debug)]
@@ -47,7 +47,7 @@ const SEPARATES: f64 = 25.0;
 pub fn propose(
     machine: &Axis,
     found: &Found,
-    noise: Noise,
+    noise: SensorNoise,
 ) -> Result<Option<Proposal>, ReplayError> {
     let with_class = found.named.iter().position(|n| !n.alike.is_empty());
     let Some(index) = with_class else {
@@ -217,7 +217,7 @@ impl<'a> Question<'a> {
         })
     }
 
-    fn separation(&self, program: &Program, noise: Noise) -> Result<f64, ReplayError> {
+    fn separation(&self, program: &Program, noise: SensorNoise) -> Result<f64, ReplayError> {
         let set = self.record(program)?;
         let fitter = Fitter {
             machine: self.machine,

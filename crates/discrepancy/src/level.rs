@@ -3,9 +3,9 @@
 use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
 use rayon::prelude::*;
 
-use crate::hidden::Noise;
 use crate::model::{LogSet, Prepared};
 use crate::noise::Rest;
+use crate::sensor_noise::SensorNoise;
 use crate::spectrum::Layout;
 
 /// Whether the logs of an axis show the noise of its sensors: not where the loop has no
@@ -22,7 +22,7 @@ pub fn shows_noise(axis: &Axis) -> bool {
 /// speed controller, the d voltage that of the current through the current controller. By
 /// how much is first taken from the proportional gains, and then seen in a simulation with
 /// noise like that: a current controller of 800 Hz answers to half of what is there.
-pub fn noise_at(axis: &Axis, set: &LogSet, rest: &Rest, quiet: &[Trace]) -> Noise {
+pub fn noise_at(axis: &Axis, set: &LogSet, rest: &Rest, quiet: &[Trace]) -> SensorNoise {
     let seen = Levels::of(set, rest);
     let guess = seen.noise(axis);
     match simulated(axis, set, quiet, guess) {
@@ -36,7 +36,7 @@ fn simulated(
     axis: &Axis,
     set: &LogSet,
     quiet: &[Trace],
-    noise: Noise,
+    noise: SensorNoise,
 ) -> Result<Rest, ReplayError> {
     let closed_loop = ClosedLoop::new(axis)?.without_noise();
     let one = |(seed, (log, quiet)): (usize, (&Prepared, &Trace))| {
@@ -86,12 +86,12 @@ impl Levels {
     }
 
     /// By the proportional gains alone.
-    fn noise(&self, axis: &Axis) -> Noise {
+    fn noise(&self, axis: &Axis) -> SensorNoise {
         let per = |level: f64, gain: Option<f64>| match gain {
             Some(gain) if gain > 0.0 => level / gain,
             _ => 0.0,
         };
-        Noise {
+        SensorNoise {
             position: self.position,
             angle: self.angle,
             // A speed that is derived from an angle has that angle's noise.
@@ -105,12 +105,12 @@ impl Levels {
 
     /// How much larger these are than others, sensor by sensor. What is within a fifth may be
     /// the scatter of either, and counts as the same.
-    fn over(&self, other: &Self) -> Noise {
+    fn over(&self, other: &Self) -> SensorNoise {
         let ratio = |own: f64, other: f64| match own / other {
             ratio if ratio.is_finite() && !(0.8..=1.25).contains(&ratio) => ratio,
             _ => 1.0,
         };
-        Noise {
+        SensorNoise {
             position: ratio(self.position, other.position),
             angle: ratio(self.angle, other.angle),
             speed: ratio(self.command, other.command),

@@ -5,12 +5,12 @@ use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
-use crate::hidden::Noise;
 use crate::interval::Spread;
 use crate::known::{known_deviations, tolerances};
 use crate::level::{noise_at, shows_noise, upper_level};
 use crate::model::{LogSet, Prepared, State};
 use crate::projector::Projector;
+use crate::sensor_noise::SensorNoise;
 use crate::spectrum::{Amplitudes, Layout};
 
 /// Measured minus simulated: per log, per channel.
@@ -23,7 +23,7 @@ pub(crate) fn sensor_noise(
     set: &LogSet,
     state: &State,
     traces: &[Trace],
-) -> Option<Noise> {
+) -> Option<SensorNoise> {
     let mut axis = machine.with_known(&state.shares);
     axis.effects.extend_from_slice(&state.effects);
     shows_noise(&axis).then(|| noise_at(&axis, set, &set.rest(traces), traces))
@@ -238,7 +238,7 @@ pub(crate) fn noise_on(
     state: &State,
     set: &LogSet,
     quiet: &[Trace],
-    noise: Noise,
+    noise: SensorNoise,
     seed: u64,
 ) -> Result<Amplitudes, ReplayError> {
     let mut axis = machine.with_known(&state.shares);
