@@ -22,8 +22,8 @@
 //! known parameters, screens all effects by what they would do to these logs,
 //! refines the best few by simulation, adds the best, and begins again;
 //! [`discovery`] puts what was found into a [`Verdict`], intervals and gaps.
-//! [`summary`] is for where only a table of errors was measured; [`hidden`]
-//! makes simulated logs with effects hidden in them.
+//! [`summary`] is for where only a table of errors was measured. [`Foresight`] says
+//! before any search what it could see and tell apart on a motion.
 //!
 //! # What this crate knows nothing of
 //! Files, terminals and pictures. It simulates nothing itself.
@@ -32,27 +32,28 @@ mod bounded;
 mod curves;
 mod experiment;
 mod fit;
+mod foresight;
 mod gap;
 mod gauss_newton;
-pub mod hidden;
 pub mod intake;
 mod interval;
 mod known;
 mod lack;
 mod library;
 mod linear;
-pub mod matrix;
 mod model;
 mod noise;
 mod outcome;
 mod projector;
 mod screen;
 mod search;
+mod sensor_noise;
 mod spectrum;
 pub mod summary;
 
 pub use experiment::Proposal;
 pub use fit::{Fit, Fitter, free_parameters};
+pub use foresight::{Foreseen, Foresight, Hypothesis, Imitation};
 pub use gap::{ChannelGap, Gap};
 pub use interval::Spread;
 pub use known::{known_deviations, tolerances};
@@ -62,8 +63,10 @@ pub use model::{LogSet, Prepared, State};
 pub use outcome::{
     Against, AtScrew, Discovered, Discovery, EffectFound, Gaps, Likeness, NextExperiment, Overlay,
     ParameterFound, Recalibrated, RefusedEffects, ReplacedEffect, Shown, Verdict, discovery,
+    judged,
 };
 pub use search::{
     Alike, Found, Named, ONE_CLASS, Refused, Replaced, RunnerUp, SearchError, Settings,
-    SettingsError, search,
+    SettingsError, search, search_with,
 };
+pub use sensor_noise::SensorNoise;

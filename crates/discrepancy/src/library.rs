@@ -1,13 +1,13 @@
 //! What each effect of the library does on a set of logs.
 
 use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectParameter, Nature, Scales};
-use axis_sim::{Axis, position_in};
+use axis_sim::{Axis, ReplayError, position_in};
 use rayon::prelude::*;
 
 use crate::curves::Curves;
 use crate::fit::{Columns, Fit, Fitter};
 use crate::linear::Room;
-use crate::model::Prepared;
+use crate::model::{LogSet, Prepared, State};
 
 /// What all effects, and curves for what is no effect, do on a set of logs.
 #[derive(Debug)]
@@ -22,22 +22,35 @@ impl Library {
     pub(crate) fn new(fitter: &Fitter<'_>, fit: &Fit, known: Columns) -> Self {
         Self {
             curves: Curves::new(fitter.machine, fitter.set, fit),
-            ..Self::of_effects(fitter, fit, known, |_| true)
+            candidates: candidates(fitter, fit, |_| true),
+            known,
         }
     }
 
-    /// Of some effects, and no curves.
-    pub(crate) fn of_effects(
-        fitter: &Fitter<'_>,
-        fit: &Fit,
-        known: Columns,
+    /// Of those effects that are `wanted` and that the machine can have, on the motions of
+    /// these logs; a search with it names no other, and looks for nothing that is no effect.
+    ///
+    /// # Errors
+    /// [`ReplayError`] where the machine as its file says does not run the logs.
+    pub fn of_effects(
+        machine: &Axis,
+        logs: &LogSet,
         wanted: impl Fn(&Effect) -> bool,
-    ) -> Self {
-        Self {
-            known,
-            candidates: candidates(fitter, fit, wanted),
+    ) -> Result<Self, ReplayError> {
+        let fitter = Fitter { machine, set: logs };
+        let start = fitter.at(State::initial(machine))?;
+        Ok(Self {
+            known: fitter.known_columns(&start),
+            candidates: candidates(&fitter, &start, wanted),
             curves: Curves::default(),
-        }
+        })
+    }
+
+    /// Whether it has what this machine's known parameters do, on logs like these.
+    pub(crate) fn fits(&self, machine: &Axis, logs: &LogSet) -> bool {
+        let of_candidates = self.candidates.iter().flat_map(|c| &c.columns);
+        let mut columns = self.known.iter().chain(of_candidates);
+        self.known.len() == machine.known().len() && columns.all(|c| logs.layout.holds(c))
     }
 }
 

@@ -170,6 +170,12 @@ impl Layout {
         bins.filter(move |(b, _)| **b == band).map(|(_, bin)| bin)
     }
 
+    /// Whether these are amplitudes of logs and channels like those of this layout.
+    pub fn holds(&self, amplitudes: &Amplitudes) -> bool {
+        let like = |(bands, a): (&Vec<usize>, &Vec<C64>)| bands.len() * self.channels == a.len();
+        amplitudes.len() == self.bands.len() && self.bands.iter().zip(amplitudes).all(like)
+    }
+
     /// Number of real numbers in the amplitudes.
     pub fn size(&self) -> usize {
         let bins: usize = self.counts.iter().sum();

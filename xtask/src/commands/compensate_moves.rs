@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use axis_sim::{ClosedLoop, Measured};
 use clap::Args;
-use discrepancy::hidden::Noise;
+use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, miette};
 use pipeline::Figures;
 use pipeline::moves::{MoveRun, Moves, NamedMotion};

@@ -6,8 +6,8 @@ use std::sync::Mutex;
 
 use axis_sim::Axis;
 use clap::Args;
-use discrepancy::hidden::Exercise;
-use discrepancy::matrix::{Bench, Case, Outcome, Score, Sizes, cases};
+use discover_matrix::hidden::Exercise;
+use discover_matrix::matrix::{Bench, Case, Outcome, Score, Sizes, cases};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use axis_sim::Measured;
-use discrepancy::hidden::Noise;
+use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use pipeline::robustness::{Draw, Goal, Point, Study, make, studies};
 use rayon::prelude::*;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use atomic_write_file::AtomicWriteFile;
 use axis_sim::{Axis, ClosedLoop, CsvRecorder, Cycle, Measured, Recorder, SixDigits};
 use clap::Args;
-use discrepancy::hidden::Noise;
+use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use pipeline::strategies::{Build, NextMove, SharedMotion, StrategyKind};
 use trajectories::Program;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use axis_sim::Axis;
-use discrepancy::matrix::{NamedEffect, Outcome, Rate, Score};
+use discover_matrix::matrix::{NamedEffect, Outcome, Rate, Score};
 
 /// The figures, one a line, as a table in Markdown.
 pub fn figures(score: &Score) -> String {

@@ -4,8 +4,8 @@ use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
 
 use super::sources::{Powers, variances};
 use super::{LogNoise, Rest, noise_series};
-use crate::hidden::Noise;
 use crate::model::LogSet;
+use crate::sensor_noise::SensorNoise;
 use crate::spectrum::Layout;
 
 /// Whether the logs of an axis show the noise of its sensors: not where the loop has no
@@ -14,7 +14,7 @@ pub fn shows_noise(axis: &Axis) -> bool {
     !axis.control.starts_in_motion()
 }
 
-/// Noise of the logs of an axis (its effects included), as their rest shows it beside
+/// SensorNoise of the logs of an axis (its effects included), as their rest shows it beside
 /// simulations without any.
 ///
 /// The upper half of the bins lies above what the position loop answers to. There the
@@ -73,7 +73,7 @@ impl Sensor {
     const ALL: [Self; 4] = [Self::Position, Self::Angle, Self::Speed, Self::Current];
 
     /// That of its noise.
-    fn of(self, noise: &mut Noise) -> &mut f64 {
+    fn of(self, noise: &mut SensorNoise) -> &mut f64 {
         match self {
             Self::Position => &mut noise.position,
             Self::Angle => &mut noise.angle,
@@ -83,8 +83,8 @@ impl Sensor {
     }
 
     /// This sensor's noise, and no other's.
-    fn alone(self, mut all: Noise) -> Noise {
-        let mut own = Noise {
+    fn alone(self, mut all: SensorNoise) -> SensorNoise {
+        let mut own = SensorNoise {
             position: 0.0,
             angle: 0.0,
             speed: 0.0,
@@ -95,7 +95,7 @@ impl Sensor {
     }
 
     /// With this sensor's noise so many times as large.
-    fn times(self, mut noise: Noise, by: f64) -> Noise {
+    fn times(self, mut noise: SensorNoise, by: f64) -> SensorNoise {
         *self.of(&mut noise) *= by;
         noise
     }
@@ -106,7 +106,7 @@ fn simulated(
     axis: &Axis,
     set: &LogSet,
     quiet: &[Trace],
-    sensors: Noise,
+    sensors: SensorNoise,
 ) -> Result<Rest, ReplayError> {
     let silent = [
         sensors.position,
@@ -194,13 +194,13 @@ impl Levels {
 
     /// By the proportional gains alone. Where neither command nor voltage is logged, the
     /// current stands for both.
-    fn noise(&self, axis: &Axis) -> Noise {
+    fn noise(&self, axis: &Axis) -> SensorNoise {
         let either = |first: f64, other: f64| if first > 0.0 { first } else { other };
         let per = |level: f64, gain: Option<f64>| match gain {
             Some(gain) if gain > 0.0 => level / gain,
             _ => 0.0,
         };
-        Noise {
+        SensorNoise {
             position: self.position,
             angle: self.angle,
             // A speed that is derived from an angle has that angle's noise.

@@ -18,26 +18,26 @@ pub(crate) use self::excess::{Excess, excess};
 pub(crate) use self::floor::{Floor, floors};
 use self::level::{noise_at, shows_noise};
 pub(crate) use self::spread::{drawn, over_noise, size_over_noise, spreads};
-use crate::hidden::Noise;
 use crate::model::{LogSet, Prepared, State};
+use crate::sensor_noise::SensorNoise;
 use crate::spectrum::Amplitudes;
 
 /// Measured minus simulated: per log, per channel.
 pub type Rest = Vec<Vec<Vec<f64>>>;
 
-/// Noise of logs: of the sensors, which the controller sees as well, and of the logger,
+/// SensorNoise of logs: of the sensors, which the controller sees as well, and of the logger,
 /// which nothing sees but the log.
 #[derive(Clone, Debug)]
 pub struct LogNoise {
     /// Of the sensors.
-    pub sensors: Noise,
+    pub sensors: SensorNoise,
     /// Standard deviation of what the logger adds, white, by channel, in its unit.
     pub logger: BTreeMap<&'static str, f64>,
 }
 
 impl LogNoise {
     /// Of sensors alone.
-    pub fn of_sensors(sensors: Noise) -> Self {
+    pub fn of_sensors(sensors: SensorNoise) -> Self {
         Self {
             sensors,
             logger: BTreeMap::new(),
@@ -53,7 +53,7 @@ impl LogNoise {
     }
 }
 
-/// Noise of the fitted logs, as their rest shows it; `None` of an axis that does not
+/// SensorNoise of the fitted logs, as their rest shows it; `None` of an axis that does not
 /// ([`shows_noise`]). `traces` are their simulations without noise.
 pub(crate) fn log_noise(
     machine: &Axis,

@@ -67,8 +67,12 @@ pub fn discovery(
     Ok(told)
 }
 
-/// As [`discovery`], without what the logs can tell of effects that are not there.
-pub(crate) fn judged(
+/// As [`discovery`], without what the logs can tell of effects that are not there: its
+/// likenesses are empty, and it takes a fraction of the time.
+///
+/// # Errors
+/// As [`discovery`].
+pub fn judged(
     machine: &Axis,
     fit_logs: &LogSet,
     check_logs: &LogSet,

@@ -40,14 +40,36 @@ pub fn search(
     progress: impl FnMut(&str),
 ) -> Result<Found, SearchError> {
     settings.check(machine)?;
-    Ok(search_with(
+    Ok(searched(
         machine, fit_logs, check_logs, settings, None, progress,
     )?)
 }
 
-/// As [`search`], with the library's responses to these motions where they are
-/// there already.
-pub(crate) fn search_with(
+/// As [`search`], with what the library's effects do on motions like these, where that is
+/// there already: of many searches on one motion, it takes most of the time.
+///
+/// # Errors
+/// As [`search`], and [`SearchError::OtherLibrary`] where the library was made for logs of
+/// another length or with other channels, or for another machine.
+pub fn search_with(
+    machine: &Axis,
+    fit_logs: &LogSet,
+    check_logs: &LogSet,
+    settings: &Settings,
+    library: Arc<Library>,
+    progress: impl FnMut(&str),
+) -> Result<Found, SearchError> {
+    settings.check(machine)?;
+    if !library.fits(machine, fit_logs) {
+        return Err(SearchError::OtherLibrary);
+    }
+    let library = Some(library);
+    Ok(searched(
+        machine, fit_logs, check_logs, settings, library, progress,
+    )?)
+}
+
+fn searched(
     machine: &Axis,
     fit_logs: &LogSet,
     check_logs: &LogSet,

@@ -88,6 +88,12 @@ pub enum SearchError {
     /// The machine as its file says does not run.
     #[error(transparent)]
     Replay(#[from] ReplayError),
+    /// A library that was made for other logs or another machine.
+    #[error(
+        "the library's responses are of logs with another length or other channels, or of \
+         another machine; make it from the logs that are fitted, or from logs like them"
+    )]
+    OtherLibrary,
 }
 
 impl Settings {

@@ -4,19 +4,19 @@
 //! [`cases`] lays out the machines: Latin hypercubes over effect, size, noise
 //! and motion. A [`Bench`] holds what is the same for all cases on one motion;
 //! [`Bench::try_case`] makes a case's logs, says beforehand what can be seen in
-//! them ([`Foreseen`]), runs the search without that knowledge, and keeps
+//! them ([`discrepancy::Foreseen`]), runs the search without that knowledge, and keeps
 //! both. [`Score`] counts.
 
+mod bench;
 mod case;
 mod design;
-mod foresee;
 mod outcome;
 mod score;
 mod told;
 mod trial;
 
+pub use bench::{Bench, BenchError};
 pub use case::{Case, HiddenEffect, Kind};
 pub use design::{Sizes, cases};
-pub use foresee::{Bench, BenchError};
-pub use outcome::{Estimate, Foreseen, Imitation, NamedEffect, Outcome, Split};
+pub use outcome::{Estimate, NamedEffect, Outcome, Split};
 pub use score::{OfEffect, Rate, Score};

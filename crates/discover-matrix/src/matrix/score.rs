@@ -1,11 +1,11 @@
 //! Counting.
 
 use axis_sim::effects::EFFECTS;
+use discrepancy::Verdict;
 use serde::{Deserialize, Serialize};
 
 use super::case::Kind;
 use super::outcome::{Estimate, Outcome};
-use crate::outcome::Verdict;
 
 /// So many of so many.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

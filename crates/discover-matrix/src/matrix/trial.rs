@@ -4,17 +4,15 @@ use std::sync::Arc;
 
 use axis_sim::ReplayError;
 use axis_sim::effects::{ActiveEffect, Nature};
+use discrepancy::{
+    Foreseen, Found, Library, LogSet, Named, Proposal, SearchError, Settings, free_parameters,
+    judged, search_with,
+};
 
+use super::bench::{Bench, active};
 use super::case::Case;
-use super::foresee::{Bench, active};
-use super::outcome::{Estimate, Foreseen, NamedEffect, Outcome, Split};
-use crate::experiment::Proposal;
-use crate::fit::{Fitter, free_parameters};
+use super::outcome::{Estimate, NamedEffect, Outcome, Split};
 use crate::hidden::{Hidden, Noise, exercise};
-use crate::library::Library;
-use crate::model::{LogSet, State};
-use crate::outcome::judged;
-use crate::search::{Found, Named, Settings, search_with};
 
 impl Bench {
     /// Runs a case of this bench's motion.
@@ -54,7 +52,7 @@ impl Bench {
         outcome
     }
 
-    fn run(&self, case: &Case, outcome: &mut Outcome) -> Result<(), ReplayError> {
+    fn run(&self, case: &Case, outcome: &mut Outcome) -> Result<(), SearchError> {
         let hidden = self.hidden(case);
         let logs = [self.logs(&hidden, false)?, self.logs(&hidden, true)?];
         let [fit, check] = &logs;
@@ -62,7 +60,7 @@ impl Bench {
             rejected: case.rejected.clone(),
             ..Settings::default()
         };
-        let library = Some(self.library.clone());
+        let library = self.foresight.library();
         let found = search_with(&self.machine, fit, check, &settings, library, |_| ())?;
         let told = judged(&self.machine, fit, check, &found)?;
         if let Some(proposal) = &told.proposal {
@@ -86,7 +84,7 @@ impl Bench {
         hidden: &Hidden,
         logs: &[LogSet; 2],
         proposal: &Proposal,
-    ) -> Result<Option<Split>, ReplayError> {
+    ) -> Result<Option<Split>, SearchError> {
         let is_hidden = |name: &&str| hidden.effects.iter().any(|h| h.effect.name == *name);
         let [first, second] = proposal.pair.each_ref().map(|a| a.effect.name);
         let pair = match (is_hidden(&first), is_hidden(&second)) {
@@ -104,16 +102,10 @@ impl Bench {
             .map(|l| (l.name.clone(), l.log.clone(), l.period));
         let new = ("proposed".to_owned(), log, self.axis.period);
         let both = LogSet::new(old.chain([new]).collect(), &self.machine)?;
-        let fitter = Fitter {
-            machine: &self.machine,
-            set: &both,
-        };
-        let start = fitter.at(State::initial(&self.machine))?;
-        let known = fitter.known_columns(&start);
-        let library = Library::of_effects(&fitter, &start, known, |e| {
+        let library = Library::of_effects(&self.machine, &both, |e| {
             pair.contains(&e.name) || is_hidden(&e.name)
-        });
-        let (settings, library) = (Settings::default(), Some(Arc::new(library)));
+        })?;
+        let (settings, library) = (Settings::default(), Arc::new(library));
         let found = search_with(&self.machine, &both, check, &settings, library, |_| ())?;
         Ok(Some(Split {
             pair: pair.map(str::to_owned),

@@ -1,8 +1,9 @@
 //! What was said in a case, beside what was hidden.
 
+use discrepancy::{Foreseen, Verdict};
+
 use super::case::Kind;
-use super::outcome::{Foreseen, Outcome};
-use crate::outcome::Verdict;
+use super::outcome::Outcome;
 
 impl Outcome {
     /// Whether all that is hidden can be seen, by what was known beforehand.

@@ -2,9 +2,9 @@
 //! case on poor motion.
 
 use axis_sim::Axis;
-use discrepancy::Verdict;
-use discrepancy::hidden::Exercise;
-use discrepancy::matrix::{Bench, Case, Foreseen, Kind, Outcome, Score, Sizes, cases};
+use discover_matrix::hidden::Exercise;
+use discover_matrix::matrix::{Bench, Case, Kind, Outcome, Score, Sizes, cases};
+use discrepancy::{Foreseen, Verdict};
 use rayon::prelude::*;
 
 /// A seed of its own: neither one that was tuned on nor the one that is scored.

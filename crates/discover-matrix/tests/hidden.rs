@@ -4,7 +4,7 @@
 
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, Scales};
-use discrepancy::hidden::{Exercise, Hidden, Noise, exercise};
+use discover_matrix::hidden::{Exercise, Hidden, Noise, exercise};
 use discrepancy::{Discovery, Fitter, LogSet, Settings, State, Verdict, discovery, search};
 use trajectories::{Limits, Program, Step};
 
@@ -327,39 +327,4 @@ fn what_is_rejected_is_not_named() {
     assert!(found.effects.iter().all(|e| e.name != "viscous-friction"));
     assert_ne!(found.verdict, Verdict::Explained, "{found:?}");
     assert_ne!(found.verdict, Verdict::NothingMissing, "{found:?}");
-}
-
-#[test]
-fn settings_that_cannot_be_meant_are_refused() {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/emps.toml");
-    let rigid = Axis::read(file.as_ref()).unwrap();
-    let screw = axis();
-    let all = |names: &[&str]| names.iter().map(|&n| n.to_owned()).collect::<Vec<_>>();
-    let said = |accepted: &[&str], rejected: &[&str], machine: &Axis| {
-        let settings = Settings {
-            accepted: all(accepted),
-            rejected: all(rejected),
-            ..Settings::default()
-        };
-        settings.check(machine).err().map(|e| e.to_string())
-    };
-    assert_eq!(said(&["backlash"], &[], &screw), None);
-    assert_eq!(said(&[], &["backlash"], &rigid), None);
-    let no_gap = said(&["backlash"], &[], &rigid).unwrap();
-    assert!(no_gap.contains("rigid-mass") && no_gap.contains("coulomb-friction"));
-    assert!(!no_gap.contains("lead-error"), "{no_gap}");
-    assert!(said(&["warp"], &[], &screw).unwrap().contains("lead-error"));
-    assert!(
-        said(&["backlash"], &["backlash"], &screw)
-            .unwrap()
-            .contains("both")
-    );
-    let five = [
-        "backlash",
-        "lead-error",
-        "torque-ripple",
-        "constant-load",
-        "payload-mass",
-    ];
-    assert!(said(&five, &[], &screw).unwrap().contains("at most 4"));
 }

@@ -2,13 +2,13 @@
 
 use axis_sim::Axis;
 use axis_sim::effects::{EFFECTS, Effect, EffectParameter, Nature, Scales};
+use discrepancy::applicable;
 use lhs::{LatinHypercube, LhsError};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::case::{Case, HiddenEffect, Kind};
 use crate::hidden::{Exercise, OUTSIDE};
-use crate::library::applicable;
 
 /// How many cases of each kind.
 #[derive(Clone, Copy, Debug)]

@@ -1,41 +1,9 @@
 //! What could be known of a case, and what came out of it.
 
+use discrepancy::{ChannelGap, Foreseen, Unknown, Verdict};
 use serde::{Deserialize, Serialize};
 
 use super::case::Case;
-use crate::gap::ChannelGap;
-use crate::lack::Unknown;
-use crate::outcome::Verdict;
-
-/// What can be known of a hidden effect beforehand.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Foreseen {
-    /// Expected fall of D on the fit log, known parameters and the case's other
-    /// effects fitted out.
-    pub gain: f64,
-    /// Its size in deviations, of what a fit makes of noise.
-    pub above_noise: f64,
-    /// Whether the gain is at least twice what the search asks for, and the size by as
-    /// much more.
-    pub detectable: bool,
-    /// Effects of the library that do nearly the same on this log: the sine of
-    /// their angle is below [`crate::ONE_CLASS`], or too little is left beside them.
-    pub class: Vec<String>,
-    /// Of an effect that the search does not have: what those it has make of it.
-    pub imitation: Option<Imitation>,
-}
-
-/// How far the library's effects together do what another effect does.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Imitation {
-    /// The effects, as many as a search may name at most.
-    pub by: Vec<String>,
-    /// Fall of D that is left beside them.
-    pub left: f64,
-    /// Whether that is less than twice what the search asks for: no search can
-    /// then say that something else is there.
-    pub complete: bool,
-}
 
 /// An estimate beside the truth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@
 
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Scales};
-use discrepancy::hidden::{Exercise, Hidden, Noise, exercise};
+use discover_matrix::hidden::{Exercise, Hidden, Noise, exercise};
 use discrepancy::{LogSet, Settings, search};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

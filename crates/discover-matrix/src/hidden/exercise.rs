@@ -1,0 +1,87 @@
+//! Motions that logs are taken on.
+
+use axis_sim::Axis;
+use axis_sim::effects::{Measure, Scales};
+use serde::{Deserialize, Serialize};
+use trajectories::{Limits, Program, Step, TrajectoryError};
+
+/// Motions that a log may be taken on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Exercise {
+    /// A move and the way back.
+    ThereAndBack,
+    /// That, slow and fast.
+    SlowAndFast,
+    /// That, and a small chirp.
+    WithChirp,
+    /// A move, and no way back: too poor to tell many effects from one another.
+    OneWay,
+}
+
+impl Exercise {
+    /// Those that are rich enough for most questions.
+    pub const RICH: [Self; 3] = [Self::ThereAndBack, Self::SlowAndFast, Self::WithChirp];
+
+    /// In tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ThereAndBack => "there-and-back",
+            Self::SlowAndFast => "slow-and-fast",
+            Self::WithChirp => "with-chirp",
+            Self::OneWay => "one-way",
+        }
+    }
+}
+
+/// The exercise on this axis; `check` gives one of the same kind that differs
+/// in length and speed.
+///
+/// # Errors
+/// [`TrajectoryError`] where it does not fit the axis.
+pub fn exercise(axis: &Axis, kind: Exercise, check: bool) -> Result<Program, TrajectoryError> {
+    let start = axis.stroke.start;
+    let (length, share) = if check { (0.85, 0.8) } else { (1.0, 1.0) };
+    let scales = Scales::of(axis);
+    let length = length * scales.motion;
+    let of_speed = scales.ratio(Measure::Speed);
+    // The same course in time as on the paper's axis, faster or slower.
+    let pace = of_speed / (scales.motion / 0.2);
+    // As far as the actuator has the force.
+    let of_acceleration = (of_speed * pace).min(scales.ratio(Measure::Acceleration));
+    let to = |position: f64, speed: f64| -> Result<Step, TrajectoryError> {
+        let acceleration = share * 0.225 * (speed / 0.1) * of_acceleration;
+        let jerk = 1.2 * of_acceleration * pace;
+        Ok(Step::Move {
+            to: position,
+            limits: Limits::new(share * speed * of_speed, acceleration, jerk)?,
+        })
+    };
+    let rest = Step::Dwell { duration: 0.2 };
+    let mut steps = vec![rest, to(start + length, 0.1)?, rest];
+    if kind != Exercise::OneWay {
+        steps.extend([to(start, 0.1)?, rest]);
+    }
+    if matches!(kind, Exercise::SlowAndFast | Exercise::WithChirp) {
+        steps.extend([
+            to(start + 0.2 * length, 0.03)?,
+            rest,
+            to(start, 0.03)?,
+            rest,
+        ]);
+        steps.extend([to(start + length, 0.25)?, rest, to(start, 0.25)?, rest]);
+    }
+    if kind == Exercise::WithChirp {
+        let amplitude = if check { 2.5e-5 } else { 3e-5 };
+        let chirp = trajectories::Chirp {
+            amplitude: amplitude * scales.ratio(Measure::Acceleration),
+            from_frequency: 2.0,
+            to_frequency: 90.0,
+            duration: 2.5,
+            ramp: 0.1,
+            sweep: trajectories::Sweep::default(),
+        };
+        steps.extend([Step::Chirp(chirp), rest]);
+    }
+    Program::new(start, steps)
+}

@@ -1,0 +1,112 @@
+//! Machines with something hidden in them, to try the search on.
+//!
+//! The truth is made another way than the model: the paper's moving node on a
+//! finer mesh, Newmark's rule in steps of 20 µs, known parameters off, and
+//! noise in every sensor that the controller sees as well.
+
+mod exercise;
+mod noise;
+mod outside;
+
+pub use exercise::{Exercise, exercise};
+pub use noise::Noise;
+pub use outside::OUTSIDE;
+
+use axis_log::{Channel, Log};
+use axis_sim::effects::{ActiveEffect, EffectChannel};
+use axis_sim::{Axis, ClosedLoop, Recorder, ReplayError, position_in};
+use compensator::NoCompensation;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use trajectories::Motion;
+
+/// A machine with effects hidden in it.
+#[derive(Clone, Debug)]
+pub struct Hidden {
+    /// What is hidden.
+    pub effects: Vec<ActiveEffect>,
+    /// Shares by which its known parameters are off, in the order of [`Axis::known`].
+    pub shares: Vec<f64>,
+    /// Sensors.
+    pub noise: Noise,
+    /// Of the noise.
+    pub seed: u64,
+}
+
+impl Hidden {
+    /// Known parameters off by up to `share` of their values, evenly spread.
+    pub fn with_known_off_by(mut self, machine: &Axis, share: f64) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed ^ 0x6b6e_6f77);
+        let off = |_| share * (2.0 * random.random::<f64>() - 1.0);
+        self.shares = machine.known().into_iter().map(off).collect();
+        self
+    }
+
+    /// The log of a motion, one sample every `every` control cycles.
+    ///
+    /// # Errors
+    /// [`ReplayError`] where the machine cannot be set up or does not hold.
+    pub fn log(&self, axis: &Axis, motion: &impl Motion, every: usize) -> Result<Log, ReplayError> {
+        let mut truth = axis.with_known(&self.shares);
+        // On a finer mesh, where the mechanism has one.
+        let _ = truth.mechanism.change(|values| {
+            if let Some(elements) = values.optional_count("elements") {
+                values.set_count("elements", elements * 13 / 10);
+            }
+        });
+        truth.effects.extend_from_slice(&self.effects);
+
+        let sense = self.noise.sensors(self.seed);
+        let mut recorder = Recorder::new(&truth);
+        // Shorter steps than those that a model's defects are corrected by.
+        let step = 0.4 * axis.mechanism.exact_step().unwrap_or(5e-5);
+        ClosedLoop::exact(&truth, step)?
+            .with_seed(self.seed)
+            .run_sensed(motion, &mut NoCompensation, sense, |cycle| {
+                recorder.push(cycle)
+            })
+            .completed()?;
+        let late = self.clock_offset();
+        let log = recorder.log()?;
+        let log = if late == 0.0 {
+            log
+        } else {
+            shifted(&log, late)?
+        };
+        Ok(log.decimate(every)?)
+    }
+
+    fn clock_offset(&self) -> f64 {
+        let clock = self
+            .effects
+            .iter()
+            .filter(|a| a.effect.channel == EffectChannel::Clock);
+        clock.map(|a| a.values[0]).sum()
+    }
+}
+
+/// The log with the table's channel late by a time.
+fn shifted(log: &Log, late: f64) -> Result<Log, ReplayError> {
+    let time = log.time();
+    let period = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
+    let position = position_in(log)?;
+    let last = (position.len() - 1) as f64;
+    let at = |k: usize| {
+        let along = (k as f64 - late / period).clamp(0.0, last);
+        let i = (along as usize).min(position.len() - 2);
+        position[i] + (along - i as f64) * (position[i + 1] - position[i])
+    };
+    let channel = |c: &Channel| {
+        let samples = if ["position_m", "position_rad"].contains(&c.name.as_str()) {
+            (0..position.len()).map(at).collect()
+        } else {
+            c.samples.clone()
+        };
+        Channel {
+            name: c.name.clone(),
+            unit: c.unit.clone(),
+            samples,
+        }
+    };
+    Ok(Log::new(log.channels().iter().map(channel).collect())?)
+}

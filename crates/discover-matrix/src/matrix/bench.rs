@@ -1,0 +1,145 @@
+//! What is the same for all cases on one motion, and what can be seen and told apart in
+//! a case, before any search.
+
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Scales};
+use axis_sim::{Axis, ReplayError};
+use discrepancy::{Foreseen, Foresight, Hypothesis, LogSet};
+use thiserror::Error;
+use trajectories::TrajectoryError;
+
+use super::case::{Case, HiddenEffect};
+use crate::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
+
+/// Why a bench cannot be set up.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum BenchError {
+    /// The exercise does not fit the axis.
+    #[error(transparent)]
+    Motion(#[from] TrajectoryError),
+    /// The axis as its file says does not run it.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+}
+
+/// What is the same for all cases on one motion.
+pub struct Bench {
+    pub(super) axis: Axis,
+    pub(super) machine: Axis,
+    pub(super) exercise: Exercise,
+    /// Logs of the clean machine without noise, to fit to and to check on.
+    pub(super) templates: [LogSet; 2],
+    /// Of the first of them, with good sensors.
+    pub(super) foresight: Foresight,
+}
+
+/// Sizes between which one is sought at which an effect is just so visible, as
+/// multiples of the typical, and how often they are halved.
+const SCALES: (f64, f64) = (1e-5, 4.0);
+const HALVINGS: usize = 12;
+
+impl Bench {
+    /// Simulates what a motion needs: defects, known parameters, the library.
+    ///
+    /// # Errors
+    /// [`BenchError`] where the axis does not run the exercise.
+    pub fn new(axis: &Axis, kind: Exercise) -> Result<Self, BenchError> {
+        let machine = axis.clone();
+        let quiet = Hidden {
+            effects: Vec::new(),
+            shares: Vec::new(),
+            noise: Noise::good(axis).scaled(0.0),
+            seed: 0,
+        };
+        let template = |check: bool| -> Result<LogSet, BenchError> {
+            let log = quiet.log(axis, &exercise(axis, kind, check)?, 1)?;
+            let name = if check { "check" } else { "fit" };
+            Ok(LogSet::new(
+                vec![(name.to_owned(), log, axis.period)],
+                &machine,
+            )?)
+        };
+        let templates = [template(false)?, template(true)?];
+        let good = Noise::good(axis).into();
+        Ok(Self {
+            axis: axis.clone(),
+            exercise: kind,
+            foresight: Foresight::new(&machine, &templates[0], good)?,
+            templates,
+            machine,
+        })
+    }
+
+    /// The motion of this bench.
+    pub fn exercise(&self) -> Exercise {
+        self.exercise
+    }
+
+    /// What can be known of a case's effects; `None` for one that does not run
+    /// on the nominal machine, and for all where one is unknown.
+    pub fn foresee(&self, case: &Case) -> Vec<Option<Foreseen>> {
+        match self.supposed(case) {
+            Some(supposed) => self.foresight.foresee(&supposed),
+            None => vec![None; case.hidden.len()],
+        }
+    }
+
+    /// The case with its sizes where they are to be.
+    pub(super) fn scaled(&self, case: &Case) -> Case {
+        let Some(visible) = case.visible else {
+            return case.clone();
+        };
+        let scales = Scales::of(&self.axis);
+        let times = |by: f64| {
+            let mut case = case.clone();
+            for hidden in &mut case.hidden {
+                let parameters = named(&hidden.name).map_or(&[][..], |e| e.parameters);
+                let sizes = hidden.values.iter_mut().zip(parameters);
+                for (value, p) in sizes.filter(|(_, p)| p.is_size()) {
+                    let [low, high] = p.bounds(&scales);
+                    *value = (*value * by).clamp(low, high);
+                }
+            }
+            case
+        };
+        let seen_in = |case: &Case| {
+            let supposed = self.supposed(case);
+            supposed.map_or(f64::INFINITY, |s| self.foresight.gain_over_needed(&s))
+        };
+        // The gain grows with the size, from nothing as long as known parameters make
+        // up for it: bisection of the size's logarithm.
+        let (mut low, mut high) = SCALES;
+        for _ in 0..HALVINGS {
+            let middle = f64::sqrt(low * high);
+            match seen_in(&times(middle)) < visible {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        times(high)
+    }
+
+    /// What is true of a case; `None` where an effect of it is unknown.
+    fn supposed(&self, case: &Case) -> Option<Hypothesis> {
+        let effects = case.hidden.iter().map(active);
+        Some(Hypothesis {
+            effects: effects.collect::<Option<_>>()?,
+            shares: self.hidden(case).shares,
+            noise: case.noise,
+            rejected: case.rejected.clone(),
+        })
+    }
+}
+
+/// The effect of that name, in the library or outside of it.
+fn named(name: &str) -> Option<&'static Effect> {
+    let mut all = EFFECTS.iter().chain(&OUTSIDE);
+    all.find(|e| e.name == name).copied()
+}
+
+pub(super) fn active(hidden: &HiddenEffect) -> Option<ActiveEffect> {
+    Some(ActiveEffect {
+        effect: named(&hidden.name)?,
+        values: hidden.values.clone(),
+    })
+}

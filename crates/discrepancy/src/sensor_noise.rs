@@ -1,0 +1,41 @@
+//! Noise of the sensors, as the search supposes it.
+
+use axis_sim::Measured;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+/// Standard deviations of sensor noise, white at the control rate.
+///
+/// It is the model's: a maker of simulated logs to try a search on needs a generator of
+/// its own, or the search would know the noise that it is to find its way through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorNoise {
+    /// Position of the load, m or rad.
+    pub position: f64,
+    /// Motor angle, rad.
+    pub angle: f64,
+    /// Motor speed, rad/s.
+    pub speed: f64,
+    /// Each current, A.
+    pub current: f64,
+}
+
+impl SensorNoise {
+    /// Sensors with this noise, for [`axis_sim::ClosedLoop::run_sensed`]: the same seed
+    /// gives the same noise.
+    pub fn sensors(self, seed: u64) -> impl FnMut(&mut Measured) {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut normal = move |deviation: f64| {
+            let unit: f64 = StandardNormal.sample(&mut random);
+            deviation * unit
+        };
+        move |seen: &mut Measured| {
+            seen.position += normal(self.position);
+            seen.motor_angle += normal(self.angle);
+            seen.motor_speed += normal(self.speed);
+            seen.current.d += normal(self.current);
+            seen.current.q += normal(self.current);
+        }
+    }
+}
