@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use axis_sim::effects::Measure;
+use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, Probe, Trace};
 use rayon::prelude::*;
 
@@ -22,13 +24,6 @@ impl Place {
         match self {
             Self::Force => 10.0,
             Self::Offset => 2e-7,
-        }
-    }
-
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::Force => "N",
-            Self::Offset => "m",
         }
     }
 
@@ -54,13 +49,37 @@ pub enum Variable {
     Position,
     Time,
     Angle,
+    Acceleration,
+    /// What the drive gives: its current, or its command.
+    Effort,
 }
 
-pub const VARIABLES: [Variable; 4] = [
-    Variable::Speed,
-    Variable::Position,
-    Variable::Time,
-    Variable::Angle,
+/// What a curve is multiplied by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Factor {
+    One,
+    Speed,
+    /// Of motion: −1 to 1, without a jump.
+    Direction,
+}
+
+/// All curves that are tried: a line each, the simple ones first.
+const CURVES: &[(Place, Factor, Variable)] = &[
+    (Place::Force, Factor::One, Variable::Speed),
+    (Place::Force, Factor::One, Variable::Position),
+    (Place::Force, Factor::One, Variable::Time),
+    (Place::Force, Factor::One, Variable::Angle),
+    (Place::Force, Factor::One, Variable::Acceleration),
+    (Place::Offset, Factor::One, Variable::Speed),
+    (Place::Offset, Factor::One, Variable::Position),
+    (Place::Offset, Factor::One, Variable::Time),
+    (Place::Offset, Factor::One, Variable::Angle),
+    (Place::Offset, Factor::One, Variable::Effort),
+    (Place::Force, Factor::Speed, Variable::Position),
+    (Place::Force, Factor::Speed, Variable::Time),
+    (Place::Force, Factor::Direction, Variable::Position),
+    (Place::Force, Factor::Direction, Variable::Time),
+    (Place::Force, Factor::Direction, Variable::Effort),
 ];
 
 impl Variable {
@@ -70,15 +89,20 @@ impl Variable {
             Self::Position => "position",
             Self::Time => "time",
             Self::Angle => "motor angle in its turn",
+            Self::Acceleration => "acceleration",
+            Self::Effort => "what the drive gives",
         }
     }
 
-    pub fn unit(self) -> &'static str {
+    /// On a load that moves like this.
+    pub fn unit(self, freedom: Freedom) -> &'static str {
         match self {
-            Self::Speed => "m/s",
-            Self::Position => "m",
+            Self::Speed => Measure::Speed.unit(freedom),
+            Self::Position => Measure::Way.unit(freedom),
             Self::Time => "s",
             Self::Angle => "rad",
+            Self::Acceleration => Measure::Acceleration.unit(freedom),
+            Self::Effort => "in the unit of the drive's channel",
         }
     }
 }
@@ -90,7 +114,32 @@ pub struct Course {
     pub speed: Vec<f64>,
     /// In [0, 2π).
     pub angle: Vec<f64>,
+    pub acceleration: Vec<f64>,
+    /// Empty where no channel shows it.
+    pub effort: Vec<f64>,
 }
+
+impl Course {
+    fn of(&self, variable: Variable) -> &[f64] {
+        match variable {
+            Variable::Speed => &self.speed,
+            Variable::Position => &self.position,
+            Variable::Time => &self.time,
+            Variable::Angle => &self.angle,
+            Variable::Acceleration => &self.acceleration,
+            Variable::Effort => &self.effort,
+        }
+    }
+}
+
+/// Channels that show what a drive gives.
+const EFFORTS: [&str; 5] = [
+    "iq_a",
+    "iq_ref_a",
+    "torque_ref_n_m",
+    "force_ref_n",
+    "drive_command_v",
+];
 
 /// Speed below which a direction is not one, m/s.
 pub const STANDS: f64 = 1e-3;
@@ -100,88 +149,129 @@ pub fn course(machine: &Axis, set: &LogSet, traces: &[Trace], log: usize) -> Cou
     let position = trace.position().to_vec();
     let radians = 1.0 / machine.travel_per_radian();
     let turn = |x: &f64| (x * radians).rem_euclid(std::f64::consts::TAU);
+    let period = set.logs[log].period;
+    let effort = EFFORTS.iter().find_map(|name| trace.channel(name));
     Course {
-        time: (0..position.len())
-            .map(|k| k as f64 * set.logs[log].period)
-            .collect(),
+        time: (0..position.len()).map(|k| k as f64 * period).collect(),
         angle: position.iter().map(turn).collect(),
+        acceleration: slope(&trace.speed, period),
+        effort: effort.unwrap_or_default().to_vec(),
         speed: trace.speed.clone(),
         position,
     }
+}
+
+/// Central differences.
+fn slope(samples: &[f64], period: f64) -> Vec<f64> {
+    let last = samples.len().saturating_sub(1);
+    let at = |k: usize| {
+        let (from, to) = (k.saturating_sub(1), (k + 1).min(last));
+        (samples[to] - samples[from]) / (period * (to - from).max(1) as f64)
+    };
+    (0..samples.len()).map(at).collect()
 }
 
 /// A curve: where it acts, on what it depends, and its hats' places.
 #[derive(Debug)]
 pub struct Shape {
     pub place: Place,
+    pub factor: Factor,
     pub variable: Variable,
     pub knots: Vec<f64>,
 }
 
-/// Hats of a curve.
+/// Hats of a curve, and of one that is multiplied by something.
 pub const KNOTS: usize = 10;
+const KNOTS_OF_PRODUCT: usize = 6;
 
 impl Shape {
-    pub fn new(place: Place, variable: Variable, courses: &[Course]) -> Self {
-        let of = |c: &Course| match variable {
-            Variable::Speed => c.speed.clone(),
-            Variable::Position => c.position.clone(),
-            Variable::Time => c.time.clone(),
-            Variable::Angle => c.angle.clone(),
+    pub fn new(place: Place, factor: Factor, variable: Variable, courses: &[Course]) -> Self {
+        let all = courses.iter().flat_map(|c| c.of(variable));
+        let (low, high) = all.fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+        let count = if factor == Factor::One {
+            KNOTS
+        } else {
+            KNOTS_OF_PRODUCT
         };
-        let all = courses.iter().flat_map(of);
-        let (low, high) = all.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
         let knots = match variable {
-            Variable::Angle => (0..KNOTS)
-                .map(|j| std::f64::consts::TAU * j as f64 / KNOTS as f64)
+            Variable::Angle => (0..count)
+                .map(|j| std::f64::consts::TAU * j as f64 / count as f64)
                 .collect(),
             // Denser where machines are slow; none at rest, where the sign jumps.
             Variable::Speed => {
-                let half = KNOTS / 2;
+                let half = count / 2;
                 let up = |j: usize| ((j + 1) as f64 / half as f64).powi(2);
                 let down = (0..half).rev().map(|j| low.min(-STANDS) * up(j));
                 down.chain((0..half).map(|j| high.max(STANDS) * up(j)))
                     .collect()
             }
-            _ => (0..KNOTS)
-                .map(|j| low + (high - low) * j as f64 / (KNOTS - 1) as f64)
+            _ => (0..count)
+                .map(|j| low + (high - low) * j as f64 / (count - 1) as f64)
                 .collect(),
         };
         Self {
             place,
+            factor,
             variable,
             knots,
         }
     }
 
+    /// On what it depends, in words.
+    pub fn depends_on(&self) -> String {
+        match self.factor {
+            Factor::One => self.variable.name().to_owned(),
+            Factor::Speed => format!("the product of speed and {}", self.variable.name()),
+            Factor::Direction => format!("{} and the direction of motion", self.variable.name()),
+        }
+    }
+
+    /// Unit of its values.
+    pub fn unit(&self, freedom: Freedom) -> &'static str {
+        match (self.place, self.factor) {
+            (Place::Force, Factor::Speed) => Measure::Damping.unit(freedom),
+            (Place::Force, _) => Measure::Force.unit(freedom),
+            (Place::Offset, _) => Measure::Way.unit(freedom),
+        }
+    }
+
     /// The hat of knot j, in time.
     pub fn hat(&self, j: usize, c: &Course) -> Vec<f64> {
-        let samples = |k: usize| match self.variable {
+        let values = c.of(self.variable);
+        let factor = |k: usize| match self.factor {
+            Factor::One => 1.0,
+            Factor::Speed => c.speed[k],
+            Factor::Direction => (c.speed[k] / STANDS).tanh(),
+        };
+        let samples = |k: usize| match values.get(k) {
+            Some(&at) => factor(k) * self.hat_at(j, at),
+            None => 0.0,
+        };
+        (0..c.time.len()).map(samples).collect()
+    }
+
+    fn hat_at(&self, j: usize, at: f64) -> f64 {
+        match self.variable {
             Variable::Speed => {
-                let v = c.speed[k];
-                if (v > 0.0) != (self.knots[j] > 0.0) {
+                let same_way = |x: f64| (x > 0.0) == (self.knots[j] > 0.0);
+                if !same_way(at) {
                     return 0.0;
                 }
                 // Flat inward of the slowest knot, and nothing at rest.
-                let moving = (v / STANDS).tanh().abs();
+                let moving = (at / STANDS).tanh().abs();
                 moving
-                    * self.linear(j, v, |i| {
-                        self.knots
-                            .get(i)
-                            .copied()
-                            .filter(|x| (*x > 0.0) == (self.knots[j] > 0.0))
+                    * self.linear(j, at, |i| {
+                        self.knots.get(i).copied().filter(|x| same_way(*x))
                     })
             }
             Variable::Angle => {
-                let step = std::f64::consts::TAU / KNOTS as f64;
-                let away = (c.angle[k] - self.knots[j]).rem_euclid(std::f64::consts::TAU);
+                let step = std::f64::consts::TAU / self.knots.len() as f64;
+                let away = (at - self.knots[j]).rem_euclid(std::f64::consts::TAU);
                 let away = away.min(std::f64::consts::TAU - away);
                 (1.0 - away / step).max(0.0)
             }
-            Variable::Position => self.linear(j, c.position[k], |i| self.knots.get(i).copied()),
-            Variable::Time => self.linear(j, c.time[k], |i| self.knots.get(i).copied()),
-        };
-        (0..c.time.len()).map(samples).collect()
+            _ => self.linear(j, at, |i| self.knots.get(i).copied()),
+        }
     }
 
     /// Hat j of piecewise linear interpolation, flat beyond the ends.
@@ -217,10 +307,11 @@ impl Curves {
     /// the fit, so they may be kept.
     pub fn new(machine: &Axis, set: &LogSet, fit: &Fit) -> Self {
         let courses = courses(machine, set, &fit.traces);
-        let shapes = [Place::Force, Place::Offset]
-            .into_iter()
-            .flat_map(|place| VARIABLES.map(|v| Shape::new(place, v, &courses)));
-        let shapes: Vec<Shape> = shapes.collect();
+        let moves = |v: Variable| courses.iter().all(|c| !c.of(v).is_empty());
+        let all = CURVES.iter().filter(|(_, _, v)| moves(*v));
+        let shapes: Vec<Shape> = all
+            .map(|&(place, factor, v)| Shape::new(place, factor, v, &courses))
+            .collect();
         let fitter = Fitter { machine, set };
         let answers = |shape: Shape| {
             let column = |j: usize| {

@@ -38,9 +38,9 @@ impl Fit {
     }
 }
 
-/// Which effect parameters a fit moves: all but whole numbers.
+/// Which effect parameters a fit moves: all but whole numbers and what is given.
 pub fn is_free(parameter: &EffectParameter) -> bool {
-    !matches!(parameter.nature, Nature::Order(_))
+    !matches!(parameter.nature, Nature::Order(_) | Nature::Held)
 }
 
 /// Steps up and down for a difference quotient of an effect's parameter, inside

@@ -123,7 +123,7 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
     let mut all = vec![effect.typical(&scales)];
     for (i, p) in effect.parameters.iter().enumerate() {
         let begins: Vec<f64> = match p.nature {
-            Nature::Size { .. } | Nature::Phase | Nature::End(_) => continue,
+            Nature::Size { .. } | Nature::Phase | Nature::End(_) | Nature::Held => continue,
             Nature::Speed(starts, _) => starts.map(|v| v * scales.ratio(p.measure)).to_vec(),
             Nature::Time(starts, _) => starts.to_vec(),
             Nature::Order(most) => (1..=most).map(f64::from).collect(),

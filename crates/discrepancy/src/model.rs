@@ -1,7 +1,7 @@
 //! The simulated side: a machine with known parameters and effects, replayed.
 
 use axis_log::Log;
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Need, Scales};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Need, OnsetForm, Scales};
 use axis_sim::part::Role;
 use axis_sim::{
     Axis, ChannelPart, ClosedLoop, LogChannel, Probe, Replay, ReplayError, Trace, reference_in,
@@ -64,6 +64,24 @@ impl State {
             effects: Vec::new(),
         }
     }
+
+    /// Takes an effect out, and with it the forms of it; their places, each as it was
+    /// when its turn came.
+    pub(crate) fn remove(&mut self, index: usize) -> Vec<usize> {
+        let taken = self.effects.remove(index);
+        let mut places = vec![index];
+        while let Some(place) = self.effects.iter().position(|a| is_form_of(a, &taken)) {
+            self.effects.remove(place);
+            places.push(place);
+        }
+        places
+    }
+}
+
+/// Whether one active effect is a form of another.
+pub(crate) fn is_form_of(active: &ActiveEffect, other: &ActiveEffect) -> bool {
+    let base = OnsetForm::of(active).and_then(|form| form.base());
+    base.is_some_and(|base| base.effect.name == other.effect.name)
 }
 
 impl LogSet {

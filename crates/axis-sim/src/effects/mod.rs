@@ -31,6 +31,7 @@ mod install;
 mod inverter_dead_time;
 mod lead_error;
 mod motor_inertia;
+mod onset;
 mod parameter;
 mod payload_mass;
 mod periodic_lead_error;
@@ -50,6 +51,7 @@ mod viscous_friction;
 pub(crate) use changes::Hooks;
 pub use changes::{Changes, ScrewState, SensorErrors, Steepness, TableState};
 pub(crate) use install::install;
+pub use onset::{ONSET_FORM, ONSET_KNOTS, OnsetForm};
 pub use parameter::{EffectParameter, Measure, Nature, Need, Scales};
 use parameter::{PHASE, positive, shape, signed, size};
 

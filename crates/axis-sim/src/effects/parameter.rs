@@ -44,6 +44,8 @@ pub enum Nature {
     Time([f64; 2], [f64; 2]),
     /// When something begins, s, drawn between these.
     Begin([f64; 2]),
+    /// A number that is given, and that no search moves.
+    Held,
     /// When it ends, s; drawn between these after its beginning.
     End([f64; 2]),
 }

@@ -166,6 +166,7 @@ fn values(axis: &Axis, effect: &Effect, size: f64, random: &mut ChaCha8Rng) -> V
     let one = |p: &EffectParameter| match p.nature {
         Nature::Size { .. } => sign * size * p.typical(&scales),
         Nature::Phase => between([-3.0, 3.0]),
+        Nature::Held => p.typical(&scales),
         Nature::Order(most) => between([1.0, f64::from(most) + 1.0]).floor(),
         Nature::Place(shares) => scales.start + scales.motion * between(shares),
         Nature::Width(shares) => scales.motion * between(shares),

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use self::rest::{Rest, Solved};
 use self::term::term;
-use crate::curves::{Course, KNOTS, courses};
+use crate::curves::{Course, courses};
 use crate::fit::Fitter;
 use crate::search::{Found, needed};
 
@@ -70,16 +70,19 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     let curves = &found.library.curves;
     let rest = Rest::new(&fitter, found);
     let layout = &found.fit_logs.layout;
-    let needed = needed(layout, KNOTS, curves.shapes.len(), 0.01).max(material);
+    let needed = |knots: usize| needed(layout, knots, curves.shapes.len(), 0.01).max(material);
     let mut solved: Vec<(usize, Solved)> = curves
         .shapes
         .iter()
         .enumerate()
         .map(|(i, (_, columns))| (i, rest.solve(columns)))
-        .filter(|(_, s)| s.gain >= needed.max(ABOVE * s.of_noise))
+        .filter(|(i, s)| {
+            let knots = curves.shapes[*i].0.knots.len();
+            s.gain >= needed(knots).max(ABOVE * s.of_noise)
+        })
         .collect();
     solved.sort_by(|a, b| b.1.gain.total_cmp(&a.1.gain));
-    tracing::debug!(gains = ?solved.iter().map(|(i, s)| (curves.shapes[*i].0.place, curves.shapes[*i].0.variable, s.gain, s.of_noise)).collect::<Vec<_>>(), needed, "curves");
+    tracing::debug!(gains = ?solved.iter().map(|(i, s)| (curves.shapes[*i].0.place, curves.shapes[*i].0.depends_on(), s.gain, s.of_noise)).collect::<Vec<_>>(), "curves");
     // Of those that are significant, the one that tells most of other motion.
     let courses_check = courses(machine, &found.check_logs, &check.traces);
     let held_out = |(i, s): &(usize, Solved)| -> f64 {
@@ -106,11 +109,12 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
             set.layout.deviance(&check.rest) - set.layout.deviance(&amplitudes)
         })
     };
-    let best = solved
-        .iter()
-        .take(4)
-        .map(|s| (s, held_out(s)))
-        .max_by(|a, b| a.1.total_cmp(&b.1));
+    let told: Vec<(&(usize, Solved), f64)> =
+        solved.iter().take(TOLD).map(|s| (s, held_out(s))).collect();
+    let most = told.iter().map(|t| t.1).fold(f64::NEG_INFINITY, f64::max);
+    // The simplest of those that tell about as much: they stand in the order of the list.
+    let about = told.into_iter().filter(|t| t.1 >= ABOUT * most);
+    let best = about.min_by_key(|(s, _)| s.0);
     let Some(((index, solution), told)) = best else {
         return Ok(None);
     };
@@ -118,15 +122,19 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     if told < (0.1 * solution.gain).max(25.0) {
         return Ok(None);
     }
-    let shape = &curves.shapes[*index].0;
+    let (shape, freedom) = (&curves.shapes[*index].0, machine.freedom());
     let formula = term(machine, &fitter, found, &rest, shape.place, solution.gain);
     Ok(Some(Unknown {
         channel: shape.place.name().to_owned(),
-        depends_on: shape.variable.name().to_owned(),
+        depends_on: shape.depends_on(),
         formula,
         curve: Curve {
-            variable: format!("{}, {}", shape.variable.name(), shape.variable.unit()),
-            unit: shape.place.unit().to_owned(),
+            variable: format!(
+                "{}, {}",
+                shape.variable.name(),
+                shape.variable.unit(freedom)
+            ),
+            unit: shape.unit(freedom).to_owned(),
             at: shape.knots.clone(),
             value: solution.values.iter().copied().collect(),
             within: solution.deviations.iter().map(|d| 1.96 * d).collect(),
@@ -134,6 +142,13 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
         evidence: [solution.gain, told],
     }))
 }
+
+/// Curves of which it is seen how much they tell of other motion.
+const TOLD: usize = 6;
+
+/// Share of what the best curve tells of other motion that a simpler one must tell to be
+/// taken in its place.
+const ABOUT: f64 = 0.9;
 
 /// Fall of D that a curve must bring, over what noise alone brings in the mean:
 /// near zero frequency that is far above its average in a band.

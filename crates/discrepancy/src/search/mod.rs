@@ -2,6 +2,7 @@
 
 mod evidence;
 mod force;
+mod form;
 mod intervals;
 mod promise;
 mod refined;
@@ -16,6 +17,7 @@ use std::sync::Arc;
 use axis_sim::{Axis, ReplayError};
 
 pub use self::evidence::{MATERIAL, needed};
+pub(crate) use self::form::{is_form, own_friction};
 pub(crate) use self::revise::ABOVE_NOISE;
 use self::state::Search;
 pub use self::types::{
@@ -118,8 +120,8 @@ fn searched(
         check_logs,
     };
     let without = search.clone();
-    while search.named.len() < settings.most_effects {
-        progress(&format!("effect {}", search.named.len() + 1));
+    while search.effects_named() < settings.most_effects {
+        progress(&format!("effect {}", search.effects_named() + 1));
         if !search.add_next() {
             break;
         }

@@ -1,6 +1,6 @@
 //! Candidates after refinement by simulation.
 
-use axis_sim::effects::ActiveEffect;
+use axis_sim::effects::{ActiveEffect, Nature};
 
 use super::evidence::{EQUAL, enough};
 use super::types::{Alike, ONE_CLASS, RunnerUp};
@@ -80,8 +80,8 @@ pub(super) fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
     };
     let enough = enough(best);
     let parameters = |r: &Refined| -> usize {
-        let each = r.parts.iter().map(|p| p.effect.parameters.len());
-        each.sum()
+        let all = r.parts.iter().flat_map(|p| p.effect.parameters);
+        all.filter(|p| p.nature != Nature::Held).count()
     };
     let near = refined.iter().enumerate().filter(|(_, r)| r.gain >= enough);
     if let Some((at, _)) = near.min_by_key(|(_, r)| parameters(r)) {

@@ -9,10 +9,12 @@
 use axis_sim::effects::{ActiveEffect, Effect};
 
 use super::evidence::{BY_CHANCE, MATERIAL};
+use super::form::is_form;
 use super::intervals::Intervals;
 use super::promise::Promises;
 use super::state::Search;
 use super::types::Replaced;
+use crate::fit::is_free;
 use crate::known::pinned;
 use crate::noise::over_noise;
 
@@ -37,7 +39,8 @@ impl Search<'_> {
             let loss = without.fit.deviance - self.fit.deviance;
             let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
             let dropped = self.fit.state.effects[index].effect;
-            let needed = self.needed(dropped.parameters.len(), 1);
+            let needed = self.needed(dropped.parameters.iter().filter(|p| is_free(p)).count(), 1);
+            let form = is_form(&self.fit.state.effects[index]);
             let accepted = self.is_accepted(dropped.name);
             if !accepted && loss < needed.max(MATERIAL * largest) {
                 *self = without;
@@ -45,7 +48,7 @@ impl Search<'_> {
             }
             self.named[index].evidence = loss;
             let values = self.named[index].when_named.clone();
-            let other = (!accepted).then(|| without.with_another(dropped.name, loss));
+            let other = (!accepted && !form).then(|| without.with_another(dropped.name, loss));
             if let Some((other, by)) = other.flatten() {
                 tracing::debug!(of = dropped.name, by, "exchange");
                 let when_named = ActiveEffect {
@@ -102,9 +105,10 @@ impl Search<'_> {
     /// Without one effect, the others and known parameters fitted again.
     fn without(&self, index: usize) -> Option<Self> {
         let mut without = self.clone();
-        without.named.remove(index);
         let mut state = self.fit.state.clone();
-        state.effects.remove(index);
+        for place in state.remove(index) {
+            without.named.remove(place);
+        }
         let start = self.fitter().at(state).ok()?;
         without.fit = self.fitter().refine(start, &self.known, 4);
         without.check = self.checker().at(without.fit.state.clone()).ok()?;

@@ -4,6 +4,7 @@ use axis_sim::effects::{ActiveEffect, Effect};
 use rayon::prelude::*;
 
 use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
+use super::form::effects_before_forms;
 use super::promise::{Promises, WORTH};
 use super::refined::{Refined, alike, simplest_first};
 use super::state::Search;
@@ -27,15 +28,17 @@ impl Search<'_> {
         let screened = promises.one_by_one(&screenings[0]);
         let candidates = if awaited.is_empty() {
             let mut worth = promises.worth_refining(&screened);
-            if self.named.len() + 2 <= self.settings.most_effects {
+            if self.effects_named() + 2 <= self.settings.most_effects {
                 let most = screened.first().map_or(0.0, |s| s.gain);
                 worth.extend(promises.pairs(&screenings, most));
             }
+            worth.extend(self.forms(&own).into_iter().map(|form| vec![form]));
             worth
         } else {
             screened.iter().map(|s| vec![s.clone()]).collect()
         };
-        let refined = self.refine(candidates, &own);
+        let mut refined = self.refine(candidates, &own);
+        effects_before_forms(&mut refined);
         // Where the best does not hold on other motion, the next may.
         let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
             let check = self.checker().at(candidate.fit.state.clone()).ok()?;
@@ -45,7 +48,9 @@ impl Search<'_> {
             holds.then_some((place, check))
         });
         let Some((place, check)) = proven else {
-            let alone = refined.iter().filter(|r| r.parts.len() == 1);
+            let alone = refined
+                .iter()
+                .filter(|r| r.parts.len() == 1 && !r.is_form());
             self.leftover = alone.map(Refined::runner_up).collect();
             return false;
         };
@@ -56,14 +61,17 @@ impl Search<'_> {
     fn add(&mut self, refined: &[Refined], place: usize, check: Fit, screened: &[Screened]) {
         let best = &refined[place];
         let others = refined.iter().enumerate();
-        let others = others.filter(|(i, r)| *i != place && r.parts.len() == 1);
+        let others = others.filter(|(i, r)| *i != place && r.parts.len() == 1 && !r.is_form());
         let others: Vec<RunnerUp> = others.map(|(_, r)| r.runner_up()).collect();
         for part in &best.parts {
             self.named.push(Named {
                 name: part.effect.name,
                 evidence: best.gain,
                 held_out: self.check.deviance - check.deviance,
-                alike: alike(part, best, refined, screened),
+                alike: match best.is_form() {
+                    true => Vec::new(),
+                    false => alike(part, best, refined, screened),
+                },
                 when_named: Vec::new(),
                 runners_up: others.clone(),
             });

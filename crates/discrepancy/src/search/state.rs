@@ -6,6 +6,7 @@ use axis_sim::Axis;
 use axis_sim::effects::{Effect, Nature};
 
 use super::evidence::needed;
+use super::form::is_form;
 use super::types::{Named, Refused, Replaced, RunnerUp, Settings};
 use crate::fit::{Columns, Fit, Fitter};
 use crate::library::Library;
@@ -66,6 +67,12 @@ impl Search<'_> {
         let active = |name: &str| self.named.iter().any(|n| n.name == name);
         let accepted = self.settings.accepted.iter().map(String::as_str);
         accepted.filter(|name| !active(name)).collect()
+    }
+
+    /// Number of effects that are named, their forms not counted.
+    pub(super) fn effects_named(&self) -> usize {
+        let effects = self.fit.state.effects.iter();
+        effects.filter(|active| !is_form(active)).count()
     }
 
     /// Derivatives with respect to all parameters of the fit.
