@@ -135,13 +135,23 @@ impl Parameters {
 
     /// Names and shares by which each physical parameter is put off, uniformly by up to
     /// `share` of its value. Lengths, pole pairs, DC link and the drive's settings are
-    /// exact: they are read off, not measured.
+    /// exact: they are read off, not measured. Meant for the paper's values.
     pub fn put_off(&mut self, share: f64, random: &mut Random) -> Vec<(&'static str, f64)> {
         let mut by = Vec::new();
         for (name, value) in self.uncertain() {
             let off = share * (2.0 * random.uniform() - 1.0);
             *value *= 1.0 + off;
             by.push((name, off));
+        }
+        // Friction does not begin below its sliding level.
+        if self.stiction < self.coulomb {
+            let off = self.coulomb / Self::paper().stiction - 1.0;
+            self.stiction = self.coulomb;
+            for (name, told) in &mut by {
+                if *name == "stiction" {
+                    *told = off;
+                }
+            }
         }
         by
     }
