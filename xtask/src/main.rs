@@ -18,8 +18,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    bench, compensate, discover, discover_matrix, export_drive, identify, layers, learn, pipeline,
-    report, robustness, sample, simulate, study, torture, train, validate,
+    bench, compensate, discover, discover_matrix, export_drive, identify, independent, layers,
+    learn, pipeline, report, robustness, sample, simulate, study, torture, train, validate,
 };
 use context::Common;
 use diagnostic::Compiler;
@@ -68,6 +68,8 @@ enum Command {
     Discover(discover::Options),
     /// Hide effects in simulated machines, search for them blind, and score it
     DiscoverMatrix(discover_matrix::Options),
+    /// Search logs of a simulator that shares no code with this one, and score it
+    Independent(independent::Options),
     /// Write what of the correction a drive or CNC can be given (docs/drive-terms.md)
     ExportDrive(export_drive::Options),
     /// Measure the speed of every hot path (docs/performance.md)
@@ -114,6 +116,7 @@ fn run(command: Command) -> miette::Result<()> {
         Command::Simulate(options) => simulate::command(&options),
         Command::Discover(options) => discover::command(&options),
         Command::DiscoverMatrix(options) => discover_matrix::command(&options),
+        Command::Independent(options) => independent::command(&options),
         Command::ExportDrive(options) => export_drive::command(&options),
         Command::Bench(options) => bench::command(&options),
         Command::Torture(options) => torture::command(&options),

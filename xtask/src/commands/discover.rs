@@ -160,7 +160,7 @@ fn moved(text: &str, from: &Path, folder: &Path) -> Result<String> {
 }
 
 /// Reads logs and looks at them; what was done to any goes to `notes`.
-fn read_all(
+pub(super) fn read_all(
     paths: &[PathBuf],
     machine: &Axis,
     notes: &mut Vec<String>,

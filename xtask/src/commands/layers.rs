@@ -45,7 +45,7 @@ pub fn command() -> Result<()> {
 }
 
 fn manifests(root: &Path) -> Result<Vec<(PathBuf, Table)>> {
-    let mut paths = ["xtask", "tests", "tests/outside"]
+    let mut paths = ["xtask", "tests", "tests/independent", "tests/outside"]
         .map(|p| root.join(p))
         .to_vec();
     let crates = root.join("crates");

@@ -1,0 +1,54 @@
+//! A second simulator of the ball-screw axis of Liu, Guo, Liu and Niu, Machines
+//! 2025, 13(5), 433, doi:10.3390/machines13050433.
+//!
+//! It makes logs on which the search for a missing effect is proved, and so shares no
+//! code with the rest of the project. What differs on purpose:
+//!
+//! | | here | in the library |
+//! |---|---|---|
+//! | mesh of the screw | 40 elements in torsion | 10 Timoshenko elements |
+//! | mechanics in time | implicit midpoint, steps of 10 µs | modes with an exact propagator, or Newmark |
+//! | bristle in time | implicit midpoint | exponential step |
+//! | currents in time | Runge–Kutta of order 4, split by halves (Strang) | implicit midpoint |
+//! | onset of hidden dry friction | tanh(v / 80 µm/s) | bristle |
+//! | contact with backlash | damping comes up over 50 nm | jumps to its value |
+//! | random numbers | xorshift64*, Box–Muller | ChaCha8, ziggurat |
+//!
+//! The equations are those of the paper, with its lost signs: for the rotating chain
+//! `q` (motor, torque sensor, nodes of the screw) and the table `y`,
+//!
+//! ```text
+//! M q'' + βK q' + K q = T e_motor − r F n(y)          m y'' = F − friction − loads
+//! F = k δ + βk δ',   δ = r n(y)ᵀ q + errors of the lead − y,   r = lead / 2π
+//! ```
+//!
+//! [`cases`] holds the table of what is hidden; [`write_case`] writes one as two logs to
+//! fit, two to check, the axis file and the truth.
+
+pub mod cases;
+mod chain;
+mod drive;
+mod error;
+mod friction;
+mod hidden;
+mod logger;
+mod machine;
+mod motion;
+mod motor;
+mod output;
+mod parameters;
+mod random;
+mod run;
+mod truth;
+
+pub use drive::{Command, Drive, Reading};
+pub use error::IndependentError;
+pub use hidden::{Bump, Cogging, Friction, Hidden, Periodic, Thermal};
+pub use logger::{Columns, Logger, Table};
+pub use machine::Machine;
+pub use motion::{Chirp, Motion, Setpoint, SmoothMove, exercises, s_curve};
+pub use output::{Rough, write_case};
+pub use parameters::Parameters;
+pub use random::Random;
+pub use run::{LoopNoise, Sample, run};
+pub use truth::{TrueEffect, Truth, Wanted};

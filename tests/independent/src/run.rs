@@ -1,0 +1,101 @@
+//! The closed loop over a motion.
+
+use crate::drive::{Command, Drive, Reading};
+use crate::error::IndependentError;
+use crate::hidden::Hidden;
+use crate::machine::Machine;
+use crate::motion::{Motion, Setpoint};
+use crate::parameters::Parameters;
+use crate::random::Random;
+
+/// Steps of the machine in a control period.
+const STEPS: u32 = 10;
+/// Time before the log in which a standing load settles, s.
+const BEFORE: f64 = 1.5;
+
+/// Standard deviations of what the drive's own sensors add, white, every control period.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LoopNoise {
+    /// m.
+    pub position: f64,
+    /// rad.
+    pub angle: f64,
+    /// rad/s.
+    pub speed: f64,
+    /// Of each current, A.
+    pub current: f64,
+}
+
+impl LoopNoise {
+    /// Of a good linear scale, encoder and current sensor.
+    pub const GOOD: Self = Self {
+        position: 10e-9,
+        angle: 2e-6,
+        speed: 0.01,
+        current: 5e-3,
+    };
+
+    fn on(&self, mut seen: Reading, random: &mut Random) -> Reading {
+        seen.position += self.position * random.normal();
+        seen.angle += self.angle * random.normal();
+        seen.speed += self.speed * random.normal();
+        for i in &mut seen.current {
+            *i += self.current * random.normal();
+        }
+        seen
+    }
+}
+
+/// A control period: what was wanted, read and commanded.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// s.
+    pub time: f64,
+    /// Reference.
+    pub wanted: Setpoint,
+    /// As the drive read it.
+    pub seen: Reading,
+    /// What it asked for.
+    pub command: Command,
+}
+
+/// Runs a motion; every control period is shown to `each`.
+///
+/// # Errors
+/// [`IndependentError::NotConverged`], [`IndependentError::OffScrew`].
+pub fn run(
+    p: &Parameters,
+    hidden: &Hidden,
+    motion: &Motion,
+    noise: &LoopNoise,
+    random: &mut Random,
+    mut each: impl FnMut(&Sample),
+) -> Result<(), IndependentError> {
+    let periods = |time: f64| (time / p.period + 1e-6).floor() as i64;
+    let before = match hidden.friction.load_held && hidden.friction.load != 0.0 {
+        true => periods(BEFORE),
+        false => 0,
+    };
+    let mut drive = Drive::new(p, hidden.delay_cycles);
+    let begin = -(before as f64) * p.period;
+    let step = p.period / f64::from(STEPS);
+    let mut machine = Machine::new(p, hidden.clone(), motion.start(), begin, step);
+    for k in -before..=periods(motion.duration()) {
+        let time = k as f64 * p.period;
+        let wanted = motion.at(time);
+        let seen = noise.on(machine.seen(), random);
+        let command = drive.step([wanted.position, wanted.velocity], &seen);
+        if k >= 0 {
+            each(&Sample {
+                time,
+                wanted,
+                seen,
+                command,
+            });
+        }
+        for _ in 0..STEPS {
+            machine.step(command.voltage)?;
+        }
+    }
+    Ok(())
+}
