@@ -61,9 +61,9 @@ pub use lack::{Curve, Unknown};
 pub use library::{Library, applicable};
 pub use model::{LogSet, Prepared, State};
 pub use outcome::{
-    Against, AtScrew, Discovered, Discovery, EffectFound, Gaps, Likeness, NextExperiment, Overlay,
-    ParameterFound, Recalibrated, RefusedEffects, ReplacedEffect, Shown, Verdict, discovery,
-    judged,
+    Against, AtScrew, Discovered, Discovery, EffectFound, FormFound, Gaps, Likeness,
+    NextExperiment, Overlay, ParameterFound, Recalibrated, RefusedEffects, ReplacedEffect, Shown,
+    Verdict, discovery, judged,
 };
 pub use search::{
     Alike, Found, Named, ONE_CLASS, Refused, Replaced, RunnerUp, SearchError, Settings,

@@ -30,6 +30,8 @@ pub struct Products {
     channels: usize,
     columns: usize,
     values: Vec<f64>,
+    /// Variances by which simulations may be off.
+    inexact: Vec<f64>,
     /// Block (i, j), by columns, at (i · columns + j) · channels².
     bands: Vec<Vec<C64>>,
 }
@@ -69,6 +71,7 @@ impl Products {
             channels: m,
             columns: n,
             values: layout.values().to_vec(),
+            inexact: layout.inexactness().to_vec(),
             bands: (layout.counts().par_iter().enumerate().map(band)).collect(),
         }
     }
@@ -188,7 +191,7 @@ impl<'a> Problem<'a> {
                 }
             }
             let half = DMatrix::from_vec(m, m, half) / C64::new(values.max(1.0), 0.0);
-            regular(&half + half.adjoint())
+            regular(&half + half.adjoint(), &self.products.inexact)
         };
         self.products.values.iter().enumerate().map(one).collect()
     }

@@ -50,6 +50,8 @@ pub struct Layout {
     edges: Vec<f64>,
     /// Per log: from when on it counts, s.
     begins: Vec<f64>,
+    /// Variance, as of white noise, by which a simulation may be off in each channel.
+    inexact: Vec<f64>,
 }
 
 /// Frequency above which nothing mechanical is left to see, Hz.
@@ -125,6 +127,16 @@ impl Layout {
             counts,
             edges,
             begins: vec![0.0; logs.len()],
+            inexact: vec![0.0; channels],
+        }
+    }
+
+    /// The same for simulations that may be off by these standard deviations, as of white
+    /// noise, channel by channel: what is smaller says nothing.
+    pub fn inexact(self, deviations: &[f64]) -> Self {
+        Self {
+            inexact: deviations.iter().map(|d| d * d).collect(),
+            ..self
         }
     }
 
@@ -251,9 +263,20 @@ impl Layout {
             }
         }
         let mean = |(sum, &values): (DMatrix<C64>, &f64)| {
-            regular(sum * C64::new(1.0 / values.max(1.0), 0.0))
+            self.regular(sum * C64::new(1.0 / values.max(1.0), 0.0))
         };
         sums.into_iter().zip(&self.values).map(mean).collect()
+    }
+
+    /// A spectral matrix with what a simulation may be off by, and a share of each channel's
+    /// own variance, on its diagonal.
+    pub(crate) fn regular(&self, s: DMatrix<C64>) -> DMatrix<C64> {
+        regular(s, &self.inexact)
+    }
+
+    /// What [`Layout::inexact`] was given, squared.
+    pub(crate) fn inexactness(&self) -> &[f64] {
+        &self.inexact
     }
 
     /// D for the rest, S estimated from it.
@@ -314,11 +337,12 @@ pub(crate) fn deviance_of((s, &values): (&DMatrix<C64>, &f64)) -> f64 {
     }
 }
 
-/// A spectral matrix with a share of each channel's own variance added to it.
-pub(crate) fn regular(mut s: DMatrix<C64>) -> DMatrix<C64> {
+/// A spectral matrix with variances and a share of each channel's own on its diagonal.
+pub(crate) fn regular(mut s: DMatrix<C64>, added: &[f64]) -> DMatrix<C64> {
     for i in 0..s.nrows() {
         let own = s[(i, i)].re;
-        s[(i, i)] += C64::new(own * REGULAR + f64::MIN_POSITIVE, 0.0);
+        let more = added.get(i).copied().unwrap_or(0.0);
+        s[(i, i)] += C64::new(own * REGULAR + more + f64::MIN_POSITIVE, 0.0);
     }
     s
 }

@@ -140,7 +140,7 @@ impl Bench {
 
 /// In the order of evidence.
 fn named(found: &Found) -> Vec<NamedEffect> {
-    let mut named: Vec<&Named> = found.named.iter().collect();
+    let mut named: Vec<&Named> = found.named.iter().filter(|n| !n.is_form()).collect();
     named.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let entry = |n: &Named| NamedEffect {
         name: n.name.to_owned(),

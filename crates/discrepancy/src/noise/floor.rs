@@ -57,7 +57,7 @@ pub(crate) fn floors(
     if !shows_noise(&axis) {
         let samples: usize = set.logs.iter().map(|l| l.log.len()).sum();
         let white = |c: usize| Floor {
-            rms: upper_level(set, best, c),
+            rms: upper_level(set, best, c).hypot(set.inexactness(machine, c)),
             independent: samples as f64,
         };
         return Ok((0..set.channels.len()).map(white).collect());
@@ -68,5 +68,12 @@ pub(crate) fn floors(
     let noise = noise_at(&axis, set, best, &quiet);
     let alone = noise_series(&closed_loop, set, &quiet, &noise, 0)?;
     let of = |c: usize| alone.iter().map(|log| log[c].clone()).collect::<Vec<_>>();
-    Ok((0..set.channels.len()).map(|c| Floor::of(&of(c))).collect())
+    let floor = |c: usize| {
+        let noise = Floor::of(&of(c));
+        Floor {
+            rms: noise.rms.hypot(set.inexactness(machine, c)),
+            ..noise
+        }
+    };
+    Ok((0..set.channels.len()).map(floor).collect())
 }

@@ -1,6 +1,7 @@
 //! What a discovery says: verdict, effects with intervals, gap before and after.
 
 mod against;
+mod form;
 mod likeness;
 mod types;
 
@@ -9,6 +10,7 @@ use axis_sim::{Axis, ReplayError};
 
 pub use self::against::Against;
 use self::against::against;
+pub use self::form::FormFound;
 use self::likeness::likenesses;
 pub use self::likeness::{Likeness, Shown};
 pub use self::types::{
@@ -20,9 +22,9 @@ use crate::fit::{Fitter, free_parameters};
 use crate::gap::{Gap, REST, gap};
 use crate::known::{shown, tolerances};
 use crate::lack::{Curve, Unknown, lack};
-use crate::model::{LogSet, Prepared, State};
+use crate::model::{LogSet, Prepared, State, is_form_of};
 use crate::noise::{Excess, Rest, excess, floors, log_noise};
-use crate::search::{Found, MATERIAL, Refused, Replaced};
+use crate::search::{Found, MATERIAL, Refused, Replaced, is_form};
 
 /// A search's result in words, figures and pictures.
 #[derive(Clone, Debug)]
@@ -51,6 +53,12 @@ pub struct Overlay {
     /// Measured minus model, after.
     pub after: Vec<f64>,
 }
+
+/// Share of the gap on check motion that named effects must take away to explain it.
+const EXPLAINED: f64 = 0.9;
+
+/// Share beyond which what is left is of no use to name: a fiftieth of the gap.
+const NEARLY_ALL: f64 = 0.98;
 
 /// Puts a search's result into words and figures.
 ///
@@ -99,9 +107,15 @@ pub fn judged(
 
     let mut effects = Vec::new();
     let mut pictured = Vec::new();
+    let mut own_form = None;
     for (index, named) in found.named.iter().enumerate() {
+        if is_form(&full.effects[index]) {
+            own_form = own_form.or_else(|| form_of_own(machine, found, index));
+            continue;
+        }
         let mut other = full.clone();
-        let taken = other.effects.remove(index).effect;
+        let taken = full.effects[index].effect;
+        other.remove(index);
         let without = set.rest(&set.simulate(machine, &other)?);
         let lost = gap(set, &before, &without, &check_floors);
         pictured.extend(against(
@@ -131,14 +145,17 @@ pub fn judged(
     let largest = found.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
     let unknown = match lack(machine, found, MATERIAL * largest)? {
         Some(unknown) => Some(unknown),
+        // Beside effects that leave next to nothing, a rest without a curve is small change.
+        None if check.reduction >= NEARLY_ALL && !effects.is_empty() => None,
         None => excess(machine, set, full, &traces)?.map(in_frequency),
     };
-    let rest_significant = !at_floor(&check) || unknown.is_some();
+    let nearly_all = check.reduction >= NEARLY_ALL && !effects.is_empty();
+    let rest_significant = !(at_floor(&check) || nearly_all) || unknown.is_some();
     let verdict = match (effects.is_empty(), rest_significant) {
         _ if found.refused.is_some() => Verdict::Unknown,
         (true, false) => Verdict::NothingMissing,
         (true, true) => Verdict::Unknown,
-        (false, false) if check.reduction >= 0.9 => Verdict::Explained,
+        (false, false) if check.reduction >= EXPLAINED => Verdict::Explained,
         (false, _) => Verdict::PartlyExplained,
     };
     let proposal = match log_noise(machine, &found.fit_logs, full, &found.fit.traces) {
@@ -167,9 +184,11 @@ pub fn judged(
             &check,
             unknown.as_ref(),
             refused.as_ref(),
+            own_form.as_ref(),
         ),
         verdict,
         effects,
+        own_form,
         replaced: {
             let scales = Scales::of(machine);
             let all = found.replaced.iter();
@@ -274,7 +293,31 @@ fn effect_found(
             .iter()
             .map(|r| (r.name.to_owned(), r.gain))
             .collect(),
+        form: form_of(machine, found, active),
     }
+}
+
+/// The form of a named effect, where it has one.
+fn form_of(machine: &Axis, found: &Found, active: &ActiveEffect) -> Option<FormFound> {
+    let mut all = found.fit.state.effects.iter().zip(&found.named);
+    let (form, named) = all.find(|(form, _)| is_form_of(form, active))?;
+    let evidence = [named.evidence, named.held_out];
+    FormFound::new(machine, form, active.effect.name, evidence)
+}
+
+/// The form at a place, where it is that of the axis' own dry friction.
+fn form_of_own(machine: &Axis, found: &Found, index: usize) -> Option<FormFound> {
+    let all = &found.fit.state.effects;
+    if all.iter().any(|active| is_form_of(&all[index], active)) {
+        return None;
+    }
+    let evidence = [found.named[index].evidence, found.named[index].held_out];
+    FormFound::new(
+        machine,
+        &all[index],
+        "axis\u{2019} own dry friction",
+        evidence,
+    )
 }
 
 /// Where a gap is so large that the logs do not say where the screw lay in it at their
@@ -346,6 +389,7 @@ fn sentence(
     check: &Gap,
     unknown: Option<&Unknown>,
     refused: Option<&RefusedEffects>,
+    own_form: Option<&FormFound>,
 ) -> String {
     let names: Vec<String> = effects
         .iter()
@@ -358,6 +402,11 @@ fn sentence(
             ),
         })
         .collect();
+    let forms = effects
+        .iter()
+        .filter_map(|e| e.form.as_ref())
+        .chain(own_form);
+    let forms: String = forms.map(FormFound::sentence).collect();
     let it = if names.len() == 1 { "it" } else { "them" };
     let names = names.join("; ");
     let gone = 100.0 * check.reduction;
@@ -372,19 +421,19 @@ fn sentence(
         )
     });
     match verdict {
-        Verdict::NothingMissing => {
-            "Nothing is missing: the model and the logs agree to the noise, with known parameters inside their tolerance.".to_owned()
-        }
+        Verdict::NothingMissing => format!(
+            "Nothing is missing: the model and the logs agree to the noise, with known parameters inside their tolerance.{forms}"
+        ),
         Verdict::Explained => format!(
-            "The model lacks {names}. With {it}, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to."
+            "The model lacks {names}. With {it}, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to.{forms}"
         ),
         Verdict::PartlyExplained => format!(
-            "Partly explained: with {names}, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to, and a rest remains that is not named.{place} What is named may stand for something that is not in the library."
+            "Partly explained: with {names}, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to, and a rest remains that is not named.{place} What is named may stand for something that is not in the library.{forms}"
         ),
         Verdict::Unknown => {
             let refused = refused.map_or(String::new(), RefusedEffects::sentence);
             format!(
-                "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}{refused}"
+                "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}{refused}{forms}"
             )
         }
     }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use trajectories::Program;
 
+use super::form::FormFound;
 use super::likeness::Likeness;
 use crate::gap::Gap;
 use crate::lack::Unknown;
@@ -81,6 +82,8 @@ pub struct EffectFound {
     pub evidence: [f64; 2],
     /// What else was tried in its place, with the fall that it reached.
     pub runners_up: Vec<(String, f64)>,
+    /// In what its law differs from the library's; `None` where nothing shows that.
+    pub form: Option<FormFound>,
 }
 
 /// An effect that was named on the way.
@@ -167,6 +170,9 @@ pub struct Discovery {
     pub sentence: String,
     /// Named effects, largest share first.
     pub effects: Vec<EffectFound>,
+    /// In what the law of the axis' own dry friction differs from the model's; `None`
+    /// where nothing shows that.
+    pub own_form: Option<FormFound>,
     /// Effects that were named on the way, until another took their place.
     pub replaced: Vec<ReplacedEffect>,
     /// What was named in the end and is not given, as it makes check motion worse.

@@ -17,7 +17,7 @@ use std::sync::Arc;
 use axis_sim::{Axis, ReplayError};
 
 pub use self::evidence::{MATERIAL, needed};
-pub(crate) use self::form::{is_form, own_friction};
+pub(crate) use self::form::is_form;
 pub(crate) use self::revise::ABOVE_NOISE;
 use self::state::Search;
 pub use self::types::{

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, ONSET_FORM};
 use axis_sim::{Axis, ReplayError};
 use nalgebra::DMatrix;
 use thiserror::Error;
@@ -173,6 +173,13 @@ pub struct Named {
     pub when_named: Vec<f64>,
     /// The others of the round in which it was added.
     pub runners_up: Vec<RunnerUp>,
+}
+
+impl Named {
+    /// Whether it is no effect, but says in which form one is there.
+    pub fn is_form(&self) -> bool {
+        self.name == ONSET_FORM.name
+    }
 }
 
 /// An effect that another took the place of, once more effects were there.

@@ -1,0 +1,77 @@
+//! How the law of a friction differs from the model's, in words and as a curve.
+
+use axis_sim::Axis;
+use axis_sim::effects::{ActiveEffect, Measure, OnsetForm};
+use serde::{Deserialize, Serialize};
+
+/// How a friction comes on and falls with speed, where that is not as in the model: the
+/// curve is its steady force over that of sliding.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FormFound {
+    /// The friction whose form it is, in words.
+    pub of: String,
+    /// Speed below which it differs by more than a tenth of the sliding force.
+    pub below: f64,
+    /// Unit of the speeds.
+    pub unit: String,
+    /// Share of the onset that comes with speed, and not with displacement as in the model.
+    pub with_speed: f64,
+    /// Speeds, rising.
+    pub speed: Vec<f64>,
+    /// Steady friction there over that of sliding; 1 everywhere in the model.
+    pub ratio: Vec<f64>,
+    /// Fall of minus twice the log-likelihood: on the fit logs, on the check logs.
+    pub evidence: [f64; 2],
+}
+
+/// Speeds of the curve between two knots.
+const BETWEEN: usize = 8;
+
+/// Departure from the model's law beyond which a form is said to differ.
+const DIFFERS: f64 = 0.1;
+
+impl FormFound {
+    pub(super) fn new(
+        machine: &Axis,
+        form: &ActiveEffect,
+        of: &str,
+        evidence: [f64; 2],
+    ) -> Option<Self> {
+        let form = OnsetForm::of(form)?;
+        let knots = form.knots();
+        let (first, last) = (*knots.first()?, *knots.last()?);
+        let count = BETWEEN * knots.len();
+        let at = |k: usize| {
+            let share = k as f64 / (count - 1) as f64;
+            0.1 * first * (last / (0.1 * first)).powf(share)
+        };
+        let speed: Vec<f64> = (0..count).map(at).collect();
+        let ratio: Vec<f64> = speed.iter().map(|&v| form.at(v)).collect();
+        let differs = ratio.iter().rposition(|r| (r - 1.0).abs() > DIFFERS);
+        Some(Self {
+            of: of.to_owned(),
+            below: differs.map_or(0.0, |k| speed[k]),
+            unit: Measure::Speed.unit(machine.freedom()).to_owned(),
+            with_speed: form.with_speed(),
+            speed,
+            ratio,
+            evidence,
+        })
+    }
+
+    /// In a sentence that follows another.
+    pub(super) fn sentence(&self) -> String {
+        let (scale, unit) = match self.unit.as_str() {
+            "m/s" => (1e3, "mm/s"),
+            _ => (1e3, "mrad/s"),
+        };
+        let how = match self.below > 0.0 {
+            true => format!("below {:.2} {unit} differs", scale * self.below),
+            false => "before it slides differs".to_owned(),
+        };
+        format!(
+            " The onset of the {} {how} from the model\u{2019}s; the report has the curve.",
+            self.of
+        )
+    }
+}
