@@ -4,7 +4,8 @@ use axis_log::Log;
 use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Need, OnsetForm, Scales};
 use axis_sim::part::Role;
 use axis_sim::{
-    Axis, ChannelPart, ClosedLoop, LogChannel, Probe, Replay, ReplayError, Trace, reference_in,
+    Axis, ChannelPart, ClosedLoop, LogChannel, Probe, Replay, ReplayError, Trace, position_in,
+    reference_in,
 };
 use rayon::prelude::*;
 
