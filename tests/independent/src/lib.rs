@@ -47,7 +47,7 @@ pub use hidden::{Bump, Cogging, Friction, Hidden, Periodic, Thermal};
 pub use logger::{Columns, Logger, Table};
 pub use machine::Machine;
 pub use motion::{Chirp, Motion, Setpoint, SmoothMove, exercises, s_curve};
-pub use output::{Rough, write_case};
+pub use output::{Rough, log, write_case};
 pub use parameters::Parameters;
 pub use random::Random;
 pub use run::{LoopNoise, Sample, run};
