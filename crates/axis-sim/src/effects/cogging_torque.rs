@@ -10,7 +10,13 @@ pub(super) const EFFECT: Effect = Effect {
     depends_on: "motor angle",
     parameters: &[
         size("amplitude", Measure::MotorTorque, 0.05, 2.0),
-        shape("order", Measure::Ratio, Nature::Order(24), 8.0, [1.0, 60.0]),
+        shape(
+            "order",
+            Measure::Ratio,
+            Nature::Order([1, 24]),
+            8.0,
+            [1.0, 60.0],
+        ),
         PHASE,
     ],
     needs: &[],

@@ -25,11 +25,20 @@ mod constant_load;
 mod control_delay;
 mod controller_gain;
 mod coulomb_friction;
+mod current_sensor_gain;
 mod current_sensor_offset;
+mod cyclic_load;
 mod encoder_eccentricity;
+mod force_ripple;
+mod gravity_imbalance;
+mod hardening_stiffness;
 mod install;
 mod inverter_dead_time;
+mod kinematic_error_harmonic;
 mod lead_error;
+mod load_dependent_friction;
+mod maxwell_slip_hysteresis;
+mod memory;
 mod motor_inertia;
 mod parameter;
 mod payload_mass;
@@ -38,18 +47,23 @@ mod position_dependent_friction;
 mod presliding;
 mod process_force;
 mod speed_controller_gain;
+mod spring_force;
 mod stator_resistance;
 mod stribeck_friction;
+mod structural_resonance;
 mod thermal_expansion;
 mod torque_constant;
 mod torque_ripple;
 mod transmission_stiffness;
 mod velocity_feedforward;
 mod viscous_friction;
+mod warming_friction;
 
 pub(crate) use changes::Hooks;
 pub use changes::{Changes, ScrewState, SensorErrors, Steepness, TableState};
 pub(crate) use install::install;
+pub(crate) use memory::Memory;
+pub use memory::{MemoryLaw, TableStep};
 pub use parameter::{EffectParameter, Measure, Nature, Need, Scales};
 use parameter::{PHASE, positive, shape, signed, size};
 
@@ -161,19 +175,30 @@ pub const EFFECTS: &[&Effect] = &[
     &stribeck_friction::EFFECT,
     &presliding::EFFECT,
     &position_dependent_friction::EFFECT,
+    &load_dependent_friction::EFFECT,
+    &warming_friction::EFFECT,
+    &maxwell_slip_hysteresis::EFFECT,
     &constant_load::EFFECT,
     &process_force::EFFECT,
+    &cyclic_load::EFFECT,
+    &spring_force::EFFECT,
+    &gravity_imbalance::EFFECT,
     &payload_mass::EFFECT,
+    &structural_resonance::EFFECT,
     &motor_inertia::EFFECT,
     &torque_constant::EFFECT,
     &cogging_torque::EFFECT,
     &torque_ripple::EFFECT,
+    &force_ripple::EFFECT,
     &current_sensor_offset::EFFECT,
+    &current_sensor_gain::EFFECT,
     &backlash::EFFECT,
     &lead_error::EFFECT,
     &periodic_lead_error::EFFECT,
+    &kinematic_error_harmonic::EFFECT,
     &thermal_expansion::EFFECT,
     &transmission_stiffness::EFFECT,
+    &hardening_stiffness::EFFECT,
     &encoder_eccentricity::EFFECT,
     &inverter_dead_time::EFFECT,
     &stator_resistance::EFFECT,
