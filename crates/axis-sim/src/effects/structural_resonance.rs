@@ -100,3 +100,101 @@ impl MemoryLaw for Body {
         self.force(settled)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OMEGA: f64 = 250.0;
+
+    fn body(damping: f64) -> Body {
+        Body {
+            mass: 3.0,
+            omega: OMEGA,
+            damping,
+        }
+    }
+
+    /// A step of a load that stands still.
+    fn still(length: f64) -> TableStep {
+        TableStep {
+            length,
+            ..TableStep::default()
+        }
+    }
+
+    /// Without damping a load that stands still leaves the body its energy, at any step;
+    /// with some it takes e^(−2 ζ ω t).
+    #[test]
+    fn a_body_left_alone_keeps_its_energy_and_swings_at_its_frequency() {
+        let energy = |m: &[f64; 2]| 0.5 * 3.0 * (m[1] * m[1] + (OMEGA * m[0]).powi(2));
+        for step in [1e-5, 1e-3, 0.1] {
+            let mut memory = [1e-3, 0.2];
+            let first = energy(&memory);
+            for _ in 0..2000 {
+                body(0.0).step(&still(step), &mut memory);
+            }
+            assert!((energy(&memory) / first - 1.0).abs() < 1e-11);
+        }
+        let mut memory = [1e-3, 0.0];
+        let first = energy(&memory);
+        let quarter = TAU / OMEGA / 4.0 / 5000.0;
+        for _ in 0..20_000 {
+            body(0.02).step(&still(quarter), &mut memory);
+        }
+        let left = (-2.0 * 0.02 * TAU).exp();
+        assert!((energy(&memory) / first / left - 1.0).abs() < 1e-3);
+        // The damped period is longer by ζ²/2.
+        assert!((memory[0] / 1e-3 - left.sqrt()).abs() < 1e-3);
+    }
+
+    /// What a load does that is swung: its mass far below the resonance, m / (1 − (Ω/ω)²)
+    /// anywhere without damping.
+    #[test]
+    fn a_swung_load_feels_the_dynamic_mass() {
+        for share in [0.01, 0.5, 2.0] {
+            let (at, step) = (share * OMEGA, 1e-5);
+            // Body in its steady motion from the start: q = ÿ / (Ω² − ω²) · ..., y = sin Ωt.
+            let q = at * at / (OMEGA * OMEGA - at * at);
+            let speed = |t: f64| at * (at * t).cos();
+            let mut memory = [0.0, q * at];
+            let (mut most, mut time) = (0.0_f64, 0.0);
+            for _ in 0..(2.0 * TAU / at / step) as usize {
+                let swung = TableStep {
+                    length: step,
+                    way: 0.0,
+                    speed_before: speed(time),
+                    speed: speed(time + step),
+                };
+                most = most.max(body(0.0).step(&swung, &mut memory).abs());
+                time += step;
+            }
+            let expected = 3.0 * at * at / (1.0 - share * share).abs();
+            assert!((most / expected - 1.0).abs() < 1e-3, "{most} {expected}");
+        }
+    }
+
+    #[test]
+    fn the_force_is_no_steeper_than_said() {
+        for damping in [1e-3, 0.03, 1.0] {
+            let most = 3.0 * OMEGA * (0.5 + 2.0 * damping);
+            for step in [1e-5, 1e-3, 2.0 / OMEGA, 0.1] {
+                let force = |speed: f64| {
+                    let mut memory = [1e-3, 0.1];
+                    body(damping).step(
+                        &TableStep {
+                            speed,
+                            ..still(step)
+                        },
+                        &mut memory,
+                    )
+                };
+                let slope = force(1.0) - force(0.0);
+                assert!(
+                    (0.0..=most * (1.0 + 1e-12)).contains(&slope),
+                    "{slope} {most}"
+                );
+            }
+        }
+    }
+}
