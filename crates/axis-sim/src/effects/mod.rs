@@ -98,6 +98,25 @@ impl EffectChannel {
     }
 }
 
+/// What of a motion an effect is best shown over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variable {
+    /// Speed of the load.
+    Speed,
+    /// Position of the load.
+    Position,
+    /// Angle of the motor within its turn.
+    MotorAngle,
+    /// Acceleration of the load, which most of the force is for.
+    Acceleration,
+    /// q current, where there is one; time otherwise.
+    Current,
+    /// Way travelled to and fro since the log began.
+    Way,
+    /// Time since the log began: also for what depends on nothing, or on no single number.
+    Time,
+}
+
 /// An effect of the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct Effect {
@@ -109,6 +128,8 @@ pub struct Effect {
     pub channel: EffectChannel,
     /// What it depends on, in words.
     pub depends_on: &'static str,
+    /// What of the motion stands for that.
+    pub shown_over: Variable,
     /// Its numbers.
     pub parameters: &'static [EffectParameter],
     /// What an axis must have for it.
