@@ -7,7 +7,7 @@ use feed_dynamics::{DriveError, NutErrors, Observation, Settled, TimeStepper};
 use lugre::LuGre;
 
 use crate::actuator::{Actuating, MotorMotion};
-use crate::effects::{Hooks, ScrewState, Steepness, TableState};
+use crate::effects::{Hooks, Memory, ScrewState, Steepness, TableState, TableStep};
 use crate::friction::Friction;
 use crate::load::Load;
 
@@ -123,6 +123,7 @@ impl Assembly {
         Arc::new(Law {
             lever: self.friction.lever(travel),
             moves_bristle: self.beside_friction().bristle != 0.0,
+            feels_transmission: self.beside_friction().transmitted != 0.0,
             stepper: stepper.with_steepest_load(steepness),
             assembly: self,
             travel,
@@ -158,6 +159,8 @@ struct Law<S> {
     lever: f64,
     /// Whether a force looks at the unit bristle.
     moves_bristle: bool,
+    /// Whether one looks at the force of the transmission.
+    feels_transmission: bool,
 }
 
 /// The machine's inner state, which no controller sees.
@@ -173,6 +176,12 @@ struct State<S: TimeStepper> {
     bristle: f64,
     /// That of the unit element.
     unit_bristle: f64,
+    /// What forces with a memory remember.
+    memory: Memory,
+    /// Way that the load has travelled since the motion began, m or rad.
+    travelled: f64,
+    /// Change of the transmission's force over the last step, N or N·m.
+    force_change: f64,
     /// Motor acceleration over the last step, rad/s².
     motor_acceleration: f64,
     /// Whether standing loads act from the start on.
@@ -185,6 +194,7 @@ impl<S: TimeStepper> Clone for State<S> {
         Self {
             law: self.law.clone(),
             drive: self.drive.clone(),
+            memory: self.memory.clone(),
             ..*self
         }
     }
@@ -205,6 +215,10 @@ fn coulomb_bristle(law: &LuGre) -> f64 {
         0.0
     }
 }
+
+/// Rounds in which a settled load that grows with the force that moves it is searched
+/// for: 60 halve what is off to the last bit.
+const SETTLING_ROUNDS: usize = 60;
 
 /// Time over which a standing load comes up, s.
 const STANDING_LOAD_RISE: f64 = 0.02;
@@ -238,8 +252,8 @@ impl<S: TimeStepper> Law<S> {
         [law, unit].map(|law| share * coulomb_bristle(law))
     }
 
-    /// The table as loads see it at the start.
-    fn table(start: &Start) -> TableState {
+    /// The table as loads see it at the start, under that force of the transmission.
+    fn table(start: &Start, transmitted: f64) -> TableState {
         TableState {
             time: start.time,
             position: start.position,
@@ -249,17 +263,46 @@ impl<S: TimeStepper> Law<S> {
                 speed => speed.signum(),
             },
             pressed: if Self::in_motion(start) { 1.0 } else { 0.0 },
+            transmitted,
+            travelled: 0.0,
         }
     }
 
     fn settled(&self, start: &Start) -> Settled {
+        let mut motion = self.settled_under(start, 0.0);
+        if !(self.feels_transmission && Self::in_motion(start)) {
+            return motion;
+        }
+        // A load that grows by a share of the force that moves it: each round shrinks what
+        // is off by that share.
+        for _ in 0..SETTLING_ROUNDS {
+            let Ok(drive) = self.stepper.settled(start.position, &motion) else {
+                break;
+            };
+            let force = self.stepper.observe(&drive).nut_force;
+            let next = self.settled_under(start, force);
+            let done = (next.load - motion.load).abs() <= f64::EPSILON * next.load.abs();
+            motion = next;
+            if done {
+                break;
+            }
+        }
+        motion
+    }
+
+    /// The settled motion if the transmission's force were `transmitted`.
+    fn settled_under(&self, start: &Start, transmitted: f64) -> Settled {
         let friction = &self.assembly.friction.law;
         let [bristle, _] = self.bristles(start);
         let own = friction.torque(bristle, start.speed / self.lever) / self.lever;
-        let table = Self::table(start);
+        let table = Self::table(start, transmitted);
         let mut load = own + self.loads_at(&table);
         if Self::in_motion(start) {
-            load += self.assembly.hooks.loads_at(&table);
+            let hooks = &self.assembly.hooks;
+            load += hooks.loads_at(&table);
+            if !hooks.memories().is_empty() {
+                load += hooks.memories().settled(start).1;
+            }
         }
         Settled {
             speed: start.speed,
@@ -299,6 +342,9 @@ where
             offset_origin: 0.0,
             bristle,
             unit_bristle,
+            memory: self.assembly.hooks.memories().settled(start).0,
+            travelled: 0.0,
+            force_change: 0.0,
             motor_acceleration: start.acceleration / self.travel,
             pressed: Self::in_motion(start),
             seen: Seen::default(),
@@ -307,7 +353,8 @@ where
         };
         let origins = [state.origin, state.motor_origin];
         state.seen = Seen::of(&at, origins, start.time, torque, motion.load);
-        let screw = state.seen.screw(start.time, state.seen.motor_angle);
+        let (angle, force) = (state.seen.motor_angle, state.seen.transmission_force);
+        let screw = state.seen.screw(start.time, angle, force);
         let [offset, _] = state.law.assembly.hooks.offset_at(&screw);
         state.offset_origin = offset;
         Ok(Box::new(state))
@@ -335,14 +382,16 @@ impl Seen {
         }
     }
 
-    /// The transmission at `time`, where the motor will be at `angle`.
-    fn screw(&self, time: f64, angle: f64) -> ScrewState {
+    /// The transmission at `time`, where the motor will be at `angle` and its force be
+    /// `transmitted`.
+    fn screw(&self, time: f64, angle: f64, transmitted: f64) -> ScrewState {
         ScrewState {
             time,
             angle,
             rate: self.motor_speed,
             position: self.position,
             speed: self.speed,
+            transmitted,
         }
     }
 }
@@ -381,10 +430,11 @@ where
 
             // Mechanics; the friction follows the load's speed at the end of the step.
             if hooks.has_offsets() {
-                errors = law.errors(&start.screw(time, angle), self.offset_origin)?;
+                let force = start.transmission_force + self.force_change;
+                errors = law.errors(&start.screw(time, angle, force), self.offset_origin)?;
             }
             let (z0, u0, w0) = (self.bristle, self.unit_bristle, law.by_lever(start.speed));
-            let origin = self.origin;
+            let (origin, travelled, memory) = (self.origin, self.travelled, &mut self.memory);
             let pressed = (time / rise).min(1.0);
             let (mut z1, mut u1, mut end_load) = (z0, u0, 0.0);
             let report = stepper.step_through(&mut self.drive, torque, &errors, |table| {
@@ -404,8 +454,19 @@ where
                         speed: table.speed,
                         bristle,
                         pressed,
+                        transmitted: start.transmission_force,
+                        travelled,
                     };
                     load += hooks.loads_at(&at) + law.loads_at(&at);
+                    if !hooks.memories().is_empty() {
+                        let step = TableStep {
+                            length: h,
+                            way: table.displacement - start.displacement,
+                            speed_before: start.speed,
+                            speed: table.speed,
+                        };
+                        load += hooks.memories().step(&step, memory);
+                    }
                 }
                 end_load = load;
                 load
@@ -427,6 +488,11 @@ where
                 end_load,
             );
             self.motor_acceleration = (self.seen.motor_speed - start.motor_speed) / h;
+            if has_loads {
+                self.memory.accept();
+                self.travelled += (self.seen.displacement - start.displacement).abs();
+            }
+            self.force_change = self.seen.transmission_force - start.transmission_force;
         }
         Ok(())
     }

@@ -126,7 +126,10 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
             Nature::Size { .. } | Nature::Phase | Nature::End(_) | Nature::Held => continue,
             Nature::Speed(starts, _) => starts.map(|v| v * scales.ratio(p.measure)).to_vec(),
             Nature::Time(starts, _) => starts.to_vec(),
-            Nature::Order(most) => (1..=most).map(f64::from).collect(),
+            Nature::Extent(starts, _) => {
+                starts.iter().map(|v| v * scales.ratio(p.measure)).collect()
+            }
+            Nature::Order([least, most]) => (least..=most).map(f64::from).collect(),
             Nature::Width(_) => vec![(high - low) / 16.0],
             Nature::Place(_) => (0..PLACES)
                 .map(|k| low + (high - low) * (k as f64 + 0.5) / PLACES as f64)

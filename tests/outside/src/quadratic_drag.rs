@@ -1,7 +1,9 @@
 //! `quadratic-drag`: a force against motion that grows with the square of the speed.
 
 use axis_sim::SetupError;
-use axis_sim::effects::{Changes, Effect, EffectChannel, EffectParameter, Measure, Nature};
+use axis_sim::effects::{
+    Changes, Effect, EffectChannel, EffectParameter, Measure, Nature, Variable,
+};
 
 /// Air or fluid that the load pushes aside, F = c v |v|.
 pub static QUADRATIC_DRAG: Effect = Effect {
@@ -9,6 +11,7 @@ pub static QUADRATIC_DRAG: Effect = Effect {
     summary: "force against motion that grows with the square of the speed",
     channel: EffectChannel::Torque,
     depends_on: "speed",
+    shown_over: Variable::Speed,
     parameters: &[EffectParameter {
         name: "coefficient",
         measure: Measure::Other("N*s^2/m^2"),

@@ -1,6 +1,6 @@
 //! `asymmetric-friction`: dry friction that differs between the directions.
 
-use super::{Effect, EffectChannel, Measure, size};
+use super::{Effect, EffectChannel, Measure, Variable, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,6 +8,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction that differs between the directions",
     channel: EffectChannel::Torque,
     depends_on: "sign of speed",
+    shown_over: Variable::Speed,
     parameters: &[
         size("forward", Measure::Force, 60.0, 5e3),
         size("backward", Measure::Force, 20.0, 5e3),

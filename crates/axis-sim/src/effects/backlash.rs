@@ -1,6 +1,6 @@
 //! `backlash`: free travel between screw and nut.
 
-use super::{Effect, EffectChannel, Measure, Need, positive};
+use super::{Effect, EffectChannel, Measure, Need, Variable, positive};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,6 +9,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "free travel between screw and nut",
     channel: EffectChannel::Kinematics,
     depends_on: "sign of nut force",
+    shown_over: Variable::Acceleration,
     parameters: &[positive("gap", Measure::Way, 4e-6, 1e-3)],
     needs: &[Need::Role(Role::Backlash)],
     install,

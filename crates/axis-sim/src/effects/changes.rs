@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::memory::{MemoryLaw, MemoryLaws};
 use crate::axis::Axis;
 use crate::cycle::Measured;
 use crate::error::SetupError;
@@ -23,6 +24,16 @@ pub struct TableState {
     /// Share of a standing load that acts: it comes up over 20 ms, so that a
     /// log may start with the machine at rest under it.
     pub pressed: f64,
+    /// Force of the transmission on the load at the start of the step, N or N·m.
+    ///
+    /// It is that of one step before, as the one at the end is not known before the load
+    /// is: what is made of it is of first order in the step. A force on the load of at most
+    /// the share η < 1 of it is stable at every step, as an error of it that is carried
+    /// from step to step shrinks by η.
+    pub transmitted: f64,
+    /// Way that the load has travelled to and fro since the log began, up to the start of
+    /// the step, m or rad; never falls.
+    pub travelled: f64,
 }
 
 /// The most by which a force on the load changes with each part of its motion, rising or
@@ -39,6 +50,9 @@ pub struct Steepness {
     pub speed: f64,
     /// With the unit bristle, N or N·m.
     pub bristle: f64,
+    /// With the force of the transmission, N/N. No step is made shorter by it, as that is
+    /// known before the step; but settled motion is searched for where it is not 0.
+    pub transmitted: f64,
 }
 
 impl Steepness {
@@ -47,6 +61,7 @@ impl Steepness {
         position: f64::INFINITY,
         speed: f64::INFINITY,
         bristle: f64::INFINITY,
+        transmitted: f64::INFINITY,
     };
 
     /// That of two forces together.
@@ -56,6 +71,7 @@ impl Steepness {
             position: self.position + other.position,
             speed: self.speed + other.speed,
             bristle: self.bristle + other.bristle,
+            transmitted: self.transmitted + other.transmitted,
         }
     }
 }
@@ -73,11 +89,16 @@ pub struct ScrewState {
     pub position: f64,
     /// Its speed, m/s or rad/s.
     pub speed: f64,
+    /// Force of the transmission on the load, N or N·m: its course over the last step
+    /// continued to the end of this one, of second order in the step.
+    pub transmitted: f64,
 }
 
 /// What the sensors get wrong.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensorErrors {
+    /// Share by which both currents are shown too great.
+    pub current_gain: f64,
     /// Added to the q current, A.
     pub current_offset: f64,
     /// Amplitude and phase of each of the motor encoder's errors, rad.
@@ -87,7 +108,11 @@ pub struct SensorErrors {
 impl SensorErrors {
     /// What these sensors make of what perfect ones would show.
     pub(crate) fn show(&self, mut m: Measured) -> Measured {
-        m.current.q += self.current_offset;
+        let gain = 1.0 + self.current_gain;
+        m.current = foc_pmsm::Dq {
+            d: gain * m.current.d,
+            q: gain * m.current.q + self.current_offset,
+        };
         let true_angle = m.motor_angle;
         let mut speed_ratio = 1.0;
         for [amplitude, phase] in &self.eccentricities {
@@ -108,6 +133,7 @@ type Offset = Arc<dyn Fn(&ScrewState) -> [f64; 2] + Send + Sync>;
 #[derive(Clone, Default)]
 pub(crate) struct Hooks {
     loads: Vec<Load>,
+    memories: MemoryLaws,
     /// That of all loads together.
     steepness: Steepness,
     torques: Vec<Torque>,
@@ -120,6 +146,7 @@ impl fmt::Debug for Hooks {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Hooks")
             .field("loads", &self.loads.len())
+            .field("memories", &self.memories)
             .field("torques", &self.torques.len())
             .field("offsets", &self.offsets.len())
             .finish_non_exhaustive()
@@ -138,6 +165,13 @@ impl Hooks {
         self.loads.push(Arc::new(load));
     }
 
+    /// Adds a load with a memory that changes with the motion at the end of a step by at
+    /// most `steepness`.
+    pub fn memory(&mut self, steepness: Steepness, law: impl MemoryLaw + 'static) {
+        self.steepness = self.steepness.and(steepness);
+        self.memories.push(law);
+    }
+
     /// Adds a motor torque, N·m, from motor angle (rad) and air-gap torque (N·m).
     pub fn torque(&mut self, torque: impl Fn(f64, f64) -> f64 + Send + Sync + 'static) {
         self.torques.push(Arc::new(torque));
@@ -153,7 +187,11 @@ impl Hooks {
     }
 
     pub(crate) fn has_loads(&self) -> bool {
-        !self.loads.is_empty()
+        !(self.loads.is_empty() && self.memories.is_empty())
+    }
+
+    pub(crate) fn memories(&self) -> &MemoryLaws {
+        &self.memories
     }
 
     pub(crate) fn has_offsets(&self) -> bool {
@@ -203,6 +241,13 @@ impl Changes<'_> {
         self.hooks.load(steepness, load);
     }
 
+    /// Adds a load that depends on what the load did before: each run has a memory of
+    /// its own. `steepness` says by how much it changes at most with the motion at the end
+    /// of a step of any length.
+    pub fn load_with_memory(&mut self, steepness: Steepness, law: impl MemoryLaw + 'static) {
+        self.hooks.memory(steepness, law);
+    }
+
     /// Adds a motor torque, N·m, from motor angle (rad) and the actuator's torque (N·m).
     pub fn torque(&mut self, torque: impl Fn(f64, f64) -> f64 + Send + Sync + 'static) {
         self.hooks.torque(torque);
@@ -248,6 +293,23 @@ impl Changes<'_> {
     /// Travel of the load per unit of the friction law's coordinate.
     pub fn friction_lever(&self) -> f64 {
         self.axis.friction.lever(self.travel_per_radian())
+    }
+
+    /// Where motions start, m or rad.
+    pub fn stroke_start(&self) -> f64 {
+        self.axis.stroke.start
+    }
+
+    /// Stiffness of the transmission, N/m or N·m/rad at the load; infinite where motor and
+    /// load are one.
+    pub fn stiffness(&self) -> f64 {
+        self.axis.mechanism.stiffness().unwrap_or(f64::INFINITY)
+    }
+
+    /// Greatest force of the actuator at the load, N or N·m.
+    pub fn greatest_force(&self) -> f64 {
+        let torque = self.axis.torque_constant() * self.axis.actuator.limit();
+        torque / self.travel_per_radian()
     }
 
     /// Electrical periods per radian of the motor; 1 where it has none.

@@ -1,6 +1,6 @@
 //! `cogging-torque`: torque that repeats with the motor's turn, at any current.
 
-use super::{Effect, EffectChannel, Measure, Nature, PHASE, shape, size};
+use super::{Effect, EffectChannel, Measure, Nature, PHASE, Variable, shape, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,9 +8,16 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "torque that repeats with the motor's turn, at any current",
     channel: EffectChannel::Torque,
     depends_on: "motor angle",
+    shown_over: Variable::MotorAngle,
     parameters: &[
         size("amplitude", Measure::MotorTorque, 0.05, 2.0),
-        shape("order", Measure::Ratio, Nature::Order(24), 8.0, [1.0, 60.0]),
+        shape(
+            "order",
+            Measure::Ratio,
+            Nature::Order([1, 24]),
+            8.0,
+            [1.0, 60.0],
+        ),
         PHASE,
     ],
     needs: &[],

@@ -1,6 +1,6 @@
 //! `controller-gain`: gain of the position controller.
 
-use super::{Effect, EffectChannel, Measure, Need, signed};
+use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,6 +9,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "gain of the position controller",
     channel: EffectChannel::Controller,
     depends_on: "position error",
+    shown_over: Variable::Position,
     parameters: &[signed("relative_change", Measure::Ratio, 0.05, 0.8)],
     needs: &[Need::Role(Role::PositionGain)],
     install,

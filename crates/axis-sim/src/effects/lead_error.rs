@@ -1,6 +1,6 @@
 //! `lead-error`: travel per turn.
 
-use super::{Effect, EffectChannel, Measure, Need, signed};
+use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,6 +8,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "travel per turn",
     channel: EffectChannel::Kinematics,
     depends_on: "position",
+    shown_over: Variable::Position,
     parameters: &[signed("slope", Measure::Ratio, 1e-4, 5e-3)],
     needs: &[Need::Transmission],
     install,

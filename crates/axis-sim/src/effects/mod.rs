@@ -25,11 +25,20 @@ mod constant_load;
 mod control_delay;
 mod controller_gain;
 mod coulomb_friction;
+mod current_sensor_gain;
 mod current_sensor_offset;
+mod cyclic_load;
 mod encoder_eccentricity;
+mod force_ripple;
+mod gravity_imbalance;
+mod hardening_stiffness;
 mod install;
 mod inverter_dead_time;
+mod kinematic_error_harmonic;
 mod lead_error;
+mod load_dependent_friction;
+mod maxwell_slip_hysteresis;
+mod memory;
 mod motor_inertia;
 mod onset;
 mod parameter;
@@ -39,19 +48,24 @@ mod position_dependent_friction;
 mod presliding;
 mod process_force;
 mod speed_controller_gain;
+mod spring_force;
 mod stator_resistance;
 mod stribeck_friction;
+mod structural_resonance;
 mod thermal_expansion;
 mod torque_constant;
 mod torque_ripple;
 mod transmission_stiffness;
 mod velocity_feedforward;
 mod viscous_friction;
+mod warming_friction;
 
 pub(crate) use changes::Hooks;
 pub use changes::{Changes, ScrewState, SensorErrors, Steepness, TableState};
 pub(crate) use install::install;
 pub use onset::{ONSET_FORM, ONSET_KNOTS, OnsetForm};
+pub(crate) use memory::Memory;
+pub use memory::{MemoryLaw, TableStep};
 pub use parameter::{EffectParameter, Measure, Nature, Need, Scales};
 use parameter::{PHASE, positive, shape, signed, size};
 
@@ -86,6 +100,25 @@ impl EffectChannel {
     }
 }
 
+/// What of a motion an effect is best shown over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variable {
+    /// Speed of the load.
+    Speed,
+    /// Position of the load.
+    Position,
+    /// Angle of the motor within its turn.
+    MotorAngle,
+    /// Acceleration of the load, which most of the force is for.
+    Acceleration,
+    /// q current, where there is one; time otherwise.
+    Current,
+    /// Way travelled to and fro since the log began.
+    Way,
+    /// Time since the log began: also for what depends on nothing, or on no single number.
+    Time,
+}
+
 /// An effect of the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct Effect {
@@ -97,6 +130,8 @@ pub struct Effect {
     pub channel: EffectChannel,
     /// What it depends on, in words.
     pub depends_on: &'static str,
+    /// What of the motion stands for that.
+    pub shown_over: Variable,
     /// Its numbers.
     pub parameters: &'static [EffectParameter],
     /// What an axis must have for it.
@@ -163,19 +198,30 @@ pub const EFFECTS: &[&Effect] = &[
     &stribeck_friction::EFFECT,
     &presliding::EFFECT,
     &position_dependent_friction::EFFECT,
+    &load_dependent_friction::EFFECT,
+    &warming_friction::EFFECT,
+    &maxwell_slip_hysteresis::EFFECT,
     &constant_load::EFFECT,
     &process_force::EFFECT,
+    &cyclic_load::EFFECT,
+    &spring_force::EFFECT,
+    &gravity_imbalance::EFFECT,
     &payload_mass::EFFECT,
+    &structural_resonance::EFFECT,
     &motor_inertia::EFFECT,
     &torque_constant::EFFECT,
     &cogging_torque::EFFECT,
     &torque_ripple::EFFECT,
+    &force_ripple::EFFECT,
     &current_sensor_offset::EFFECT,
+    &current_sensor_gain::EFFECT,
     &backlash::EFFECT,
     &lead_error::EFFECT,
     &periodic_lead_error::EFFECT,
+    &kinematic_error_harmonic::EFFECT,
     &thermal_expansion::EFFECT,
     &transmission_stiffness::EFFECT,
+    &hardening_stiffness::EFFECT,
     &encoder_eccentricity::EFFECT,
     &inverter_dead_time::EFFECT,
     &stator_resistance::EFFECT,

@@ -1,6 +1,6 @@
 //! `motor-inertia`: inertia on the motor's shaft.
 
-use super::{Effect, EffectChannel, Measure, Need, size};
+use super::{Effect, EffectChannel, Measure, Need, Variable, size};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,6 +9,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "inertia on the motor's shaft",
     channel: EffectChannel::Torque,
     depends_on: "acceleration",
+    shown_over: Variable::Acceleration,
     parameters: &[size("inertia", Measure::MotorInertia, 4e-4, 0.05)],
     needs: &[Need::Role(Role::MotorInertia)],
     install,

@@ -15,7 +15,7 @@
 //! It is no effect by itself and not in [`EFFECTS`]: it says in which form one is there.
 
 use super::changes::Hooks;
-use super::{ActiveEffect, EFFECTS, Effect, EffectChannel, EffectParameter, Measure, Nature};
+use super::{ActiveEffect, EFFECTS, Effect, EffectChannel, EffectParameter, Measure, Nature, Variable};
 use crate::error::SetupError;
 use crate::part::PartError;
 
@@ -43,6 +43,7 @@ pub static ONSET_FORM: Effect = Effect {
     summary: "onset of a dry friction that differs from a bristle\u{2019}s",
     channel: EffectChannel::Torque,
     depends_on: "low speed",
+    shown_over: Variable::Speed,
     // Place of the effect and its values; knots; p and c_1 to c_5.
     parameters: &[
         HELD, HELD, HELD, HELD, HELD, HELD, HELD, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT, SHARE, SHARE,
@@ -190,6 +191,7 @@ fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError
         position: 4.0 * of_base.position,
         speed: 4.0 * of_base.speed + of_base.bristle * curve.steepest(),
         bristle: of_base.bristle * (2.0 + curve.share.abs()),
+        ..of_base
     };
     to.load_within(steepness, move |t| {
         let formed = super::TableState {

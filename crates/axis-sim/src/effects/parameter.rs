@@ -30,9 +30,9 @@ pub enum Nature {
     },
     /// Angle at which something that repeats begins, rad.
     Phase,
-    /// How often something repeats in a turn: a whole number, up to this one where
+    /// How often something repeats in a turn: a whole number, between these where
     /// it is searched for.
-    Order(u8),
+    Order([u8; 2]),
     /// A place along the stroke; a test draws it between these shares of a motion.
     Place([f64; 2]),
     /// A width along the stroke; a test draws it between these shares of a motion.
@@ -42,6 +42,9 @@ pub enum Nature {
     Speed([f64; 3], [f64; 2]),
     /// A time constant, s: where the search starts, and between which a test draws it.
     Time([f64; 2], [f64; 2]),
+    /// Any other number above zero: where the search starts (on the paper's axis), and
+    /// between which a test draws it, in logarithm.
+    Extent(&'static [f64], [f64; 2]),
     /// When something begins, s, drawn between these.
     Begin([f64; 2]),
     /// A number that is given, and that no search moves.
@@ -57,16 +60,20 @@ pub enum Measure {
     Ratio,
     /// Force on the load.
     Force,
-    /// Way of the load.
+    /// Way of the load by which something gives way.
     Way,
+    /// Way of the load that is as long as its motions.
+    Travel,
     /// Speed of the load.
     Speed,
     /// Acceleration of the load.
     Acceleration,
     /// Force per speed of the load.
     Damping,
-    /// Force per way of the load.
+    /// Force per way of the load by which something gives way.
     Stiffness,
+    /// Force per way of the load along its stroke.
+    SpringRate,
     /// Inertia of the load.
     Inertia,
     /// Inertia of the motor.
@@ -93,11 +100,11 @@ impl Measure {
         match self {
             Self::Ratio => "",
             Self::Force => of("N", "N*m"),
-            Self::Way => of("m", "rad"),
+            Self::Way | Self::Travel => of("m", "rad"),
             Self::Speed => of("m/s", "rad/s"),
             Self::Acceleration => of("m/s^2", "rad/s^2"),
             Self::Damping => of("N*s/m", "N*m*s/rad"),
-            Self::Stiffness => of("N/m", "N*m/rad"),
+            Self::Stiffness | Self::SpringRate => of("N/m", "N*m/rad"),
             Self::Inertia => of("kg", "kg*m^2"),
             Self::MotorInertia => "kg*m^2",
             Self::MotorTorque => "N*m",
@@ -205,10 +212,12 @@ impl Scales {
         let ratio = match measure {
             Measure::Force => self.force,
             Measure::Way => self.way,
+            Measure::Travel => self.motion / PAPER_MOTION,
             Measure::Speed => self.speed,
             Measure::Acceleration => self.acceleration,
             Measure::Damping => self.force / self.speed,
             Measure::Stiffness => self.force / self.way,
+            Measure::SpringRate => self.force / (self.motion / PAPER_MOTION),
             Measure::Inertia => self.inertia,
             Measure::MotorInertia => self.motor_inertia,
             Measure::MotorTorque => self.motor_torque,
@@ -347,6 +356,10 @@ pub enum Need {
     Currents,
     /// Poles.
     Poles,
+    /// A load that turns.
+    Turning,
+    /// A motor that moves its load along a line without a transmission, with poles.
+    LinearMotor,
 }
 
 impl Need {
@@ -358,6 +371,8 @@ impl Need {
             Self::MotorEncoder => "motor encoder apart from the load's position",
             Self::Currents => "currents that are measured",
             Self::Poles => "motor poles",
+            Self::Turning => "load that turns",
+            Self::LinearMotor => "linear motor with poles",
         }
     }
 
@@ -369,6 +384,12 @@ impl Need {
             Self::MotorEncoder => axis.mechanism.has_motor_encoder(),
             Self::Currents => axis.actuator.has_currents(),
             Self::Poles => axis.actuator.pole_pairs().is_some(),
+            Self::Turning => axis.freedom() == Freedom::Rotary,
+            Self::LinearMotor => {
+                axis.freedom() == Freedom::Linear
+                    && axis.mechanism.stiffness().is_none()
+                    && axis.actuator.pole_pairs().is_some()
+            }
         };
         if has {
             return Ok(());

@@ -1,6 +1,6 @@
 //! `payload-mass`: mass on the table.
 
-use super::{Effect, EffectChannel, Measure, Need, size};
+use super::{Effect, EffectChannel, Measure, Need, Variable, size};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,6 +9,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "mass on the table",
     channel: EffectChannel::Torque,
     depends_on: "acceleration",
+    shown_over: Variable::Acceleration,
     parameters: &[size("mass", Measure::Inertia, 30.0, 1e3)],
     needs: &[Need::Role(Role::LoadInertia)],
     install,

@@ -1,6 +1,7 @@
-//! `periodic-lead-error`: travel error that repeats with the screw's turn.
+//! `periodic-lead-error`: travel error that repeats with the screw's turn; of another order it is
+//! `kinematic-error-harmonic`.
 
-use super::{Effect, EffectChannel, Measure, Need, PHASE, size};
+use super::{Effect, EffectChannel, Measure, Need, PHASE, Variable, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,6 +9,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "travel error that repeats with the screw's turn",
     channel: EffectChannel::Kinematics,
     depends_on: "screw angle",
+    shown_over: Variable::MotorAngle,
     parameters: &[size("amplitude", Measure::Way, 2e-6, 1e-3), PHASE],
     needs: &[Need::Transmission],
     install,
@@ -15,9 +17,6 @@ pub(super) const EFFECT: Effect = Effect {
 
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 2] = super::changes::array(values);
-    to.offset(move |s| {
-        let at = s.angle + v[1];
-        [v[0] * at.sin(), v[0] * s.rate * at.cos()]
-    });
+    super::kinematic_error_harmonic::add(to, 1.0, v);
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `presliding`: stiffness of the contact before it slides.
 
-use super::{Effect, EffectChannel, Measure, Need, size};
+use super::{Effect, EffectChannel, Measure, Need, Variable, size};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,6 +9,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "stiffness of the contact before it slides",
     channel: EffectChannel::Torque,
     depends_on: "displacement after a reversal",
+    shown_over: Variable::Time,
     parameters: &[size("stiffness", Measure::Stiffness, 1.5e6, 5e7)],
     needs: &[Need::Role(Role::BristleStiffness)],
     install,

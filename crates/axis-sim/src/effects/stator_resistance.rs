@@ -1,6 +1,6 @@
 //! `stator-resistance`: resistance of the winding.
 
-use super::{Effect, EffectChannel, Measure, Need, signed};
+use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,6 +9,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "resistance of the winding",
     channel: EffectChannel::Voltage,
     depends_on: "current",
+    shown_over: Variable::Current,
     parameters: &[signed("relative_change", Measure::Ratio, 0.15, 0.8)],
     needs: &[Need::Role(Role::Resistance)],
     install,

@@ -1,6 +1,6 @@
 //! Effects vanish at their null value, to the bit, and do something elsewhere.
 
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Nature, Scales};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Nature, Need, Scales};
 use axis_sim::{Axis, LoggedReference, Replay, Trace};
 use trajectories::Motion;
 
@@ -33,12 +33,18 @@ fn same(a: &Trace, b: &Trace) -> bool {
     channels.into_iter().all(|((_, a), (_, b))| a == b)
 }
 
+/// Effects that the axis can have.
+fn fitting(axis: &Axis) -> impl Iterator<Item = &'static Effect> {
+    let all = EFFECTS.iter().copied();
+    all.filter(move |effect| effect.applies_to(axis).is_ok())
+}
+
 #[test]
 fn each_effect_vanishes_at_its_null_value_and_not_at_a_typical_one() {
     let axis = axis();
     let replay = replay(&axis);
     let without = replay.run(&axis, &[], None).unwrap();
-    for effect in EFFECTS.iter().copied() {
+    for effect in fitting(&axis) {
         let with = |values| {
             let active = ActiveEffect { effect, values };
             replay.run(&axis, &[active], None).unwrap()
@@ -83,7 +89,7 @@ fn values(effect: &Effect, axis: &Axis, share: f64) -> Vec<f64> {
 fn two_of_an_effect_add() {
     let axis = axis();
     let replay = replay(&axis);
-    for effect in EFFECTS.iter().copied() {
+    for effect in fitting(&axis) {
         let run = |all: &[&Vec<f64>]| {
             let active = |values: &&Vec<f64>| ActiveEffect {
                 effect,
@@ -175,9 +181,14 @@ const ON_RIGID: &[&str] = &[
     "asymmetric-viscous-friction",
     "stribeck-friction",
     "position-dependent-friction",
+    "warming-friction",
+    "maxwell-slip-hysteresis",
     "constant-load",
     "process-force",
+    "cyclic-load",
+    "spring-force",
     "payload-mass",
+    "structural-resonance",
     "torque-constant",
     "cogging-torque",
     "controller-gain",
@@ -196,7 +207,10 @@ fn an_effect_tells_whether_it_applies() {
     .unwrap();
     let replay = Replay::new(&log, 1e-3).unwrap();
     for effect in EFFECTS.iter().copied() {
-        assert_eq!(effect.applies_to(&ball_screw), Ok(()));
+        // A ball screw has all but what needs a load that turns, or a linear motor.
+        let others = [Need::Turning, Need::LinearMotor];
+        let elsewhere = others.iter().any(|need| effect.needs.contains(need));
+        assert_eq!(effect.applies_to(&ball_screw).is_err(), elsewhere);
         // One mass under force and P-P control has no transmission, currents or encoder
         // at the motor; what has no need of them fits it.
         let fits = ON_RIGID.contains(&effect.name);

@@ -10,6 +10,7 @@ mod belt;
 mod closed_loop;
 mod controls;
 mod effects;
+mod effect_laws;
 mod energy;
 mod feedback;
 mod files;

@@ -1,11 +1,10 @@
 //! Effects that are in no library: what a search must not give a wrong name.
 
-use std::sync::Mutex;
-
-use axis_sim::SetupError;
 use axis_sim::effects::{
-    Changes, Effect, EffectChannel, EffectParameter, Measure, Nature, TableState,
+    Changes, Effect, EffectChannel, EffectParameter, Measure, MemoryLaw, Nature, Steepness,
+    TableStep, Variable,
 };
+use axis_sim::{SetupError, Start};
 
 /// All of them.
 pub const OUTSIDE: [&Effect; 8] = [
@@ -13,16 +12,16 @@ pub const OUTSIDE: [&Effect; 8] = [
     &QUADRATIC_DRAG,
     &POSITION_DAMPING,
     &FADING_FRICTION,
-    &SPRING_LOAD,
+    &END_CUSHION,
     &WAVE_LOAD,
     &SATURATING_TORQUE,
-    &LOCAL_RESONANCE,
+    &CREEPING_LOAD,
 ];
 
 const ROOT_FRICTION: Effect = outside(
     "root-friction",
     "friction with the root of speed",
-    "speed",
+    ("speed", Variable::Speed),
     &[size("coefficient", Measure::Other("N*s^0.5/m^0.5"), 200.0)],
     |v, to| {
         let c = v[0];
@@ -34,7 +33,7 @@ const ROOT_FRICTION: Effect = outside(
 const QUADRATIC_DRAG: Effect = outside(
     "quadratic-drag",
     "drag with the square of speed",
-    "speed",
+    ("speed", Variable::Speed),
     &[size("coefficient", Measure::Other("N*s^2/m^2"), 6e3)],
     |v, to| {
         let c = v[0];
@@ -46,7 +45,7 @@ const QUADRATIC_DRAG: Effect = outside(
 const POSITION_DAMPING: Effect = outside(
     "position-damping",
     "viscous friction that grows along the stroke",
-    "position and speed",
+    ("position and speed", Variable::Speed),
     &[
         size("slope", Measure::Other("N*s/m^2"), 1e4),
         place("zero", 0.7),
@@ -61,7 +60,7 @@ const POSITION_DAMPING: Effect = outside(
 const FADING_FRICTION: Effect = outside(
     "fading-friction",
     "dry friction that fades as it warms",
-    "time",
+    ("time", Variable::Time),
     &[
         size("force", Measure::Force, 60.0),
         shape(
@@ -78,17 +77,17 @@ const FADING_FRICTION: Effect = outside(
     },
 );
 
-const SPRING_LOAD: Effect = outside(
-    "spring-load",
-    "a spring between table and bed",
-    "position",
+const END_CUSHION: Effect = outside(
+    "end-cushion",
+    "a cushion that the table runs into, with the square of its depth",
+    ("position", Variable::Position),
     &[
-        size("stiffness", Measure::Stiffness, 600.0),
-        place("zero", 0.7),
+        size("stiffness", Measure::Other("N/m^2"), 1e4),
+        place("begin", 0.65),
     ],
     |v, to| {
-        let (k, zero) = (v[0], v[1]);
-        to.load(move |t| k * (t.position - zero) * t.pressed);
+        let (k, begin) = (v[0], v[1]);
+        to.load(move |t| k * (t.position - begin).max(0.0).powi(2) * t.pressed);
         Ok(())
     },
 );
@@ -96,7 +95,7 @@ const SPRING_LOAD: Effect = outside(
 const WAVE_LOAD: Effect = outside(
     "wave-load",
     "a load that repeats along the stroke, as of a cable chain",
-    "position",
+    ("position", Variable::Position),
     &[
         size("amplitude", Measure::Force, 30.0),
         shape("pitch", Measure::Way, Nature::Width([0.15, 0.4]), 0.045),
@@ -113,7 +112,7 @@ const WAVE_LOAD: Effect = outside(
 const SATURATING_TORQUE: Effect = outside(
     "saturating-torque",
     "a motor whose torque falls behind its current",
-    "current",
+    ("current", Variable::Current),
     &[size("cubic", Measure::Other("1/(N*m)^2"), 2e-3)],
     |v, to| {
         let c = v[0];
@@ -122,66 +121,51 @@ const SATURATING_TORQUE: Effect = outside(
     },
 );
 
-const LOCAL_RESONANCE: Effect = outside(
-    "local-resonance",
-    "a body on the table that swings by itself",
-    "acceleration, near one frequency",
+const CREEPING_LOAD: Effect = outside(
+    "creeping-load",
+    "a spring that creeps after the table, as of a hose or a seal",
+    ("time", Variable::Time),
     &[
-        size("mass", Measure::Inertia, 20.0),
+        size("stiffness", Measure::SpringRate, 3e3),
         shape(
-            "frequency",
-            Measure::Other("Hz"),
-            Nature::Time([45.0, 45.0], [20.0, 120.0]),
-            45.0,
+            "time",
+            Measure::Time,
+            Nature::Time([0.2, 0.2], [0.1, 0.5]),
+            0.2,
         ),
     ],
     |v, to| {
-        let (mass, omega) = (v[0], std::f64::consts::TAU * v[1]);
-        let body = Mutex::new(Body::default());
-        to.load(move |t| {
-            let mut body = body
-                .lock()
-                .unwrap_or_else(std::sync::PoisonError::into_inner);
-            mass * body.follow(t, omega)
-        });
+        let [stiffness, time] = [v[0], v[1]];
+        let steepness = Steepness {
+            position: stiffness.abs(),
+            ..Steepness::default()
+        };
+        to.load_with_memory(steepness, Creep { stiffness, time });
         Ok(())
     },
 );
 
-/// Damping ratio of the swinging body.
-const DAMPING: f64 = 0.02;
-
-/// A body on a spring and a damper on the table. One run at a time.
-#[derive(Default)]
-struct Body {
+/// A spring and a damper in a row (Maxwell's body), k z with ż = v − z / τ; remembers z.
+struct Creep {
+    /// k, N/m.
+    stiffness: f64,
+    /// τ, s.
     time: f64,
-    position: f64,
-    speed: f64,
-    /// Force on the table per kg, against positive motion.
-    pull: f64,
 }
 
-impl Body {
-    fn pull(&self, table: &TableState, omega: f64) -> f64 {
-        omega * omega * (table.position - self.position)
-            + 2.0 * DAMPING * omega * (table.speed - self.speed)
+impl MemoryLaw for Creep {
+    fn size(&self) -> usize {
+        1
     }
 
-    /// Moves on to the table's time, and gives the force on the way; a time that
-    /// goes back begins anew.
-    fn follow(&mut self, table: &TableState, omega: f64) -> f64 {
-        let step = table.time - self.time;
-        if step < 0.0 || (self.time == 0.0 && self.position == 0.0) {
-            (self.position, self.speed, self.pull) = (table.position, table.speed, 0.0);
-        } else if step > 0.0 {
-            // The spring's length before the step: with the one after it, a
-            // steady speed would pull.
-            self.pull = self.pull(table, omega);
-            self.speed += step * self.pull;
-            self.position += step * self.speed;
-        }
-        self.time = table.time;
-        self.pull
+    fn settle(&self, start: &Start, memory: &mut [f64]) -> f64 {
+        memory[0] = start.speed * self.time;
+        self.stiffness * memory[0]
+    }
+
+    fn step(&self, step: &TableStep, memory: &mut [f64]) -> f64 {
+        memory[0] = (memory[0] + step.way) / (1.0 + step.length / self.time);
+        self.stiffness * memory[0]
     }
 }
 
@@ -213,7 +197,7 @@ const fn place(name: &'static str, typical: f64) -> EffectParameter {
 const fn outside(
     name: &'static str,
     summary: &'static str,
-    depends_on: &'static str,
+    (depends_on, shown_over): (&'static str, Variable),
     parameters: &'static [EffectParameter],
     install: fn(&[f64], &mut Changes<'_>) -> Result<(), SetupError>,
 ) -> Effect {
@@ -222,6 +206,7 @@ const fn outside(
         summary,
         channel: EffectChannel::Torque,
         depends_on,
+        shown_over,
         parameters,
         needs: &[],
         install,

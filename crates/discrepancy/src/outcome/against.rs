@@ -1,6 +1,6 @@
 //! A channel's rest with and without an effect, against what that depends on.
 
-use axis_sim::effects::Effect;
+use axis_sim::effects::{Effect, Variable};
 use axis_sim::{Axis, Trace};
 use serde::{Deserialize, Serialize};
 
@@ -40,7 +40,7 @@ pub(super) fn against(
     [without, with]: [&Rest; 2],
     floors: &[Floor],
 ) -> Option<Against> {
-    let (variable, values) = variable(machine, set, traces, effect.depends_on);
+    let (variable, values) = variable(machine, set, traces, effect.shown_over);
     let all = || values.iter().flatten().copied();
     let (low, high) = all().fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
     if low >= high {
@@ -89,56 +89,70 @@ pub(super) fn against(
     })
 }
 
-/// The variable of the motion that stands for what an effect depends on, and
-/// its course in every log.
+/// A variable of the motion in words with its unit, and its course in every log.
 fn variable(
     machine: &Axis,
     set: &LogSet,
     traces: &[Trace],
-    depends_on: &str,
+    over: Variable,
 ) -> (String, Vec<Vec<f64>>) {
-    let per_log = |course: &dyn Fn(usize, &Trace) -> Vec<f64>| -> Vec<Vec<f64>> {
-        traces
-            .iter()
-            .enumerate()
-            .map(|(l, t)| course(l, t))
-            .collect()
+    let shown = |trace: &Trace| trace.channel("iq_a").is_some();
+    let over = match over {
+        Variable::Current if !traces.iter().all(shown) => Variable::Time,
+        over => over,
     };
-    let position = |t: &Trace| t.position().to_vec();
-    let speed = |t: &Trace| t.speed.clone();
-    if depends_on.contains("angle") {
-        let radians = 1.0 / machine.travel_per_radian();
-        let angle = |_, t: &Trace| -> Vec<f64> {
-            let turned = position(t).into_iter().map(|x| x * radians);
-            turned
-                .map(|a| a.rem_euclid(std::f64::consts::TAU))
-                .collect()
-        };
-        ("screw angle, rad".to_owned(), per_log(&angle))
-    } else if depends_on.contains("speed") || depends_on.contains("velocity") {
-        ("speed, m/s".to_owned(), per_log(&|_, t| speed(t)))
-    } else if depends_on.contains("position") {
-        ("position, m".to_owned(), per_log(&|_, t| position(t)))
-    } else if depends_on.contains("acceleration") || depends_on.contains("nut force") {
-        let slope = |l: usize, t: &Trace| -> Vec<f64> {
-            let v = speed(t);
-            let last = v.len().saturating_sub(1);
-            let at = |k: usize| {
-                let (from, to) = (k.saturating_sub(1), (k + 1).min(last));
-                (v[to] - v[from]) / (set.logs[l].period * (to - from).max(1) as f64)
-            };
-            (0..v.len()).map(at).collect()
-        };
-        ("acceleration, m/s²".to_owned(), per_log(&slope))
-    } else if depends_on.contains("current") && traces.iter().all(|t| t.channel("iq_a").is_some()) {
-        let current = |_, t: &Trace| t.channel("iq_a").unwrap_or_default().to_vec();
-        ("current iq, A".to_owned(), per_log(&current))
-    } else {
-        let time = |l: usize, t: &Trace| -> Vec<f64> {
-            (0..t.speed.len())
-                .map(|k| k as f64 * set.logs[l].period)
-                .collect()
-        };
-        ("time, s".to_owned(), per_log(&time))
-    }
+    let course = |(log, trace): (usize, &Trace)| {
+        let period = set.logs[log].period;
+        match over {
+            Variable::MotorAngle => angles(trace, machine.travel_per_radian()),
+            Variable::Speed => trace.speed.clone(),
+            Variable::Position => trace.position().to_vec(),
+            Variable::Acceleration => slope(&trace.speed, period),
+            Variable::Current => trace.channel("iq_a").unwrap_or_default().to_vec(),
+            Variable::Way => way(trace.position()),
+            Variable::Time => (0..trace.speed.len()).map(|k| k as f64 * period).collect(),
+        }
+    };
+    let name = match over {
+        Variable::MotorAngle => "screw angle, rad",
+        Variable::Speed => "speed, m/s",
+        Variable::Position => "position, m",
+        Variable::Acceleration => "acceleration, m/s²",
+        Variable::Current => "current iq, A",
+        Variable::Way => "way travelled, m",
+        Variable::Time => "time, s",
+    };
+    let courses = traces.iter().enumerate().map(course).collect();
+    (name.to_owned(), courses)
+}
+
+/// Angles within a turn, where the load moves by `travel` a radian.
+fn angles(trace: &Trace, travel: f64) -> Vec<f64> {
+    let radians = 1.0 / travel;
+    let turned = trace.position().iter().map(|x| x * radians);
+    turned
+        .map(|a| a.rem_euclid(std::f64::consts::TAU))
+        .collect()
+}
+
+/// Central differences.
+fn slope(values: &[f64], period: f64) -> Vec<f64> {
+    let last = values.len().saturating_sub(1);
+    let at = |k: usize| {
+        let (from, to) = (k.saturating_sub(1), (k + 1).min(last));
+        (values[to] - values[from]) / (period * (to - from).max(1) as f64)
+    };
+    (0..values.len()).map(at).collect()
+}
+
+/// Sum of all ways to and fro.
+fn way(positions: &[f64]) -> Vec<f64> {
+    let mut last = positions.first().copied().unwrap_or(0.0);
+    let mut sum = 0.0;
+    let one = |&x: &f64| {
+        sum += (x - last).abs();
+        last = x;
+        sum
+    };
+    positions.iter().map(one).collect()
 }
