@@ -65,6 +65,7 @@
 //!     channel: channel.into(),
 //!     scale,
 //!     offset: 0.0,
+//!     delay: 0.0,
 //! };
 //! let mapping = Mapping {
 //!     columns: vec![
@@ -98,6 +99,7 @@ mod csv_out;
 mod csv_table;
 mod csv_text;
 mod error;
+pub mod intake;
 mod log;
 mod mapping;
 #[cfg(feature = "mat")]
@@ -105,6 +107,7 @@ mod mat_element;
 #[cfg(feature = "mat")]
 mod mat_table;
 pub mod metrics;
+mod numeric;
 #[cfg(feature = "parquet")]
 mod parquet_pages;
 #[cfg(feature = "parquet")]
@@ -113,6 +116,7 @@ pub mod quality;
 mod read;
 mod read_error;
 mod select;
+mod source_unit;
 mod table;
 #[cfg(feature = "parquet")]
 mod thrift;
@@ -123,7 +127,7 @@ pub use csv_in::{read_csv, read_csv_from};
 pub use csv_out::{write_csv, write_csv_to};
 pub use error::{CsvError, CsvProblem, LogError};
 pub use log::{Log, TIME_CHANNEL};
-pub use mapping::{ColumnMap, Mapping, MappingError};
+pub use mapping::{ColumnMap, ColumnUnit, Mapping, MappingError};
 pub use read::read_log;
 pub use read_error::{Place, ReadError, ReadProblem};
 pub use unit::{unit_of, unit_suffixes};

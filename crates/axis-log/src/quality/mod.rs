@@ -1,9 +1,11 @@
 //! Whether a log is fit to draw conclusions from: even sampling, channels that
 //! move, units that agree.
 
+mod outliers;
 mod sampling;
 mod unit_slip;
 
+pub use outliers::{Outlier, outliers};
 pub use sampling::{
     MAX_JITTER, MAX_RATE_HZ, MIN_RATE_HZ, MIN_SAMPLES, Sampling, SamplingError, check_sampling,
 };
