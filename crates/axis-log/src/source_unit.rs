@@ -131,7 +131,7 @@ fn channel_row(source: &str, channel: &str) -> Result<Option<&'static Row>, Mapp
 }
 
 /// The dimension of a unit by its symbol, and its size in SI.
-pub(crate) fn dimension_of(symbol: &str) -> Option<(&'static str, f64)> {
+fn dimension_of(symbol: &str) -> Option<(&'static str, f64)> {
     row(symbol).map(|(_, of, size)| (*of, *size))
 }
 

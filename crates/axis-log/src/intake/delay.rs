@@ -3,7 +3,7 @@
 use super::done::FileDelay;
 use super::recording::{Even, Recording};
 use crate::channel::Channel;
-use crate::numeric::align::{Fit, Free, align};
+use crate::numeric::align::{Fit, Free, align, integral};
 use crate::numeric::holes::{bridge, runs};
 use crate::numeric::resample::Resampler;
 use crate::unit::stem_of;
@@ -135,17 +135,4 @@ fn estimate(
     };
     let delay = Some(count as usize / 2);
     align(&x, &y, Free { delay, drift })
-}
-
-/// The sum by the trapezoidal rule, per sample: without phase.
-pub(crate) fn integral(x: &[f64]) -> Vec<f64> {
-    let mut sum = 0.0;
-    let mut last = x.first().copied().unwrap_or(0.0);
-    let step = |v: &f64| {
-        sum += 0.5 * (v + last);
-        last = *v;
-        sum
-    };
-    // The first adds its own value; an offset is free wherever this is used.
-    x.iter().map(step).collect()
 }

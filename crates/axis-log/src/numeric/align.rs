@@ -296,3 +296,16 @@ fn inverse(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     }
     Some(rows.into_iter().map(|row| row[n..].to_vec()).collect())
 }
+
+/// The sum by the trapezoidal rule, per sample: without phase.
+pub(crate) fn integral(x: &[f64]) -> Vec<f64> {
+    let mut sum = 0.0;
+    let mut last = x.first().copied().unwrap_or(0.0);
+    let step = |v: &f64| {
+        sum += 0.5 * (v + last);
+        last = *v;
+        sum
+    };
+    // The first adds its own value; an offset is free wherever this is used.
+    x.iter().map(step).collect()
+}
