@@ -18,8 +18,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    bench, compensate, discover, discover_matrix, export_drive, identify, layers, learn, pipeline,
-    report, robustness, sample, simulate, study, torture, train, validate,
+    bench, compensate, discover, discover_matrix, export_drive, identify, layers, learn, log,
+    pipeline, report, robustness, sample, simulate, study, torture, train, validate,
 };
 use context::Common;
 use diagnostic::Compiler;
@@ -66,6 +66,8 @@ enum Command {
     Simulate(simulate::Options),
     /// Name what a model lacks, from logs of the real axis
     Discover(discover::Options),
+    /// Look at a log: channels, sampling, noise, and what its mapping should be
+    Log(log::Options),
     /// Hide effects in simulated machines, search for them blind, and score it
     DiscoverMatrix(discover_matrix::Options),
     /// Write what of the correction a drive or CNC can be given (docs/drive-terms.md)
@@ -113,6 +115,7 @@ fn run(command: Command) -> miette::Result<()> {
         Command::Report(common) => report::command(&common),
         Command::Simulate(options) => simulate::command(&options),
         Command::Discover(options) => discover::command(&options),
+        Command::Log(options) => log::command(&options),
         Command::DiscoverMatrix(options) => discover_matrix::command(&options),
         Command::ExportDrive(options) => export_drive::command(&options),
         Command::Bench(options) => bench::command(&options),

@@ -9,6 +9,7 @@ pub mod export_drive;
 pub mod identify;
 pub mod layers;
 pub mod learn;
+pub mod log;
 pub mod pipeline;
 pub mod report;
 pub mod robustness;

@@ -25,16 +25,18 @@ pub struct Saturation {
 const HALVES: [usize; 3] = [8, 32, 128];
 /// How many steps of quantisation these must be apart.
 const STEPS: f64 = 4.0;
+/// How many for each sample between: noise of a step must not repeat values.
+const STEPS_A_SAMPLE: f64 = 3.0;
 /// Share of repeated values that is told.
 const LEAST: f64 = 0.2;
 
 /// The hold of a channel with this sampling period and quantisation step (0 for none).
 ///
-/// A sample is in motion where it lies more than four quanta, and for each sample between a
-/// quantum more, from those before and after. Finite samples.
+/// A sample is in motion where it lies more than four quanta, and three more for each sample
+/// between, from those before and after. Finite samples.
 pub(super) fn hold(x: &[f64], period: f64, quantum: f64) -> Option<Hold> {
     for half in HALVES {
-        let apart = (STEPS + 1.2 * half as f64) * quantum;
+        let apart = (STEPS + STEPS_A_SAMPLE * half as f64) * quantum;
         let moves = |k: usize| {
             let (before, after) = (x[k] - x[k - half], x[k + half] - x[k]);
             before * after > 0.0 && before.abs().min(after.abs()) > apart

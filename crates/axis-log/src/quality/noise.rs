@@ -73,6 +73,14 @@ fn bands(p: &[f64]) -> Vec<[f64; 2]> {
     bands
 }
 
+/// The level of the even stretch at the end of these bands: the median of those down to the
+/// first that is far from the greatest of the last three.
+fn plateau(bands: &[[f64; 2]], high: f64) -> f64 {
+    let near = |b: &&[f64; 2]| (0.5 * high..=2.0 * high).contains(&b[1]);
+    let mut level: Vec<f64> = bands.iter().rev().take_while(near).map(|b| b[1]).collect();
+    crate::numeric::order::median(&mut level)
+}
+
 fn corner(p: &[f64]) -> Option<f64> {
     let bands = bands(p);
     // From the highest even stretch down: what is below it is motion.
@@ -83,7 +91,7 @@ fn corner(p: &[f64]) -> Option<f64> {
         if high > 1.6 * low || low == 0.0 {
             continue;
         }
-        let level = flat.iter().map(|b| b[1]).sum::<f64>() / 3.0;
+        let level = plateau(&bands[..start + 3], high);
         let after = &bands[start + 3..];
         let half = after.iter().position(|b| b[1] < 0.5 * level)?;
         let reach = 4.0 * after[half][0];

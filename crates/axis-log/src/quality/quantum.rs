@@ -31,9 +31,11 @@ pub(super) fn quantum(samples: &[f64]) -> Option<Quantum> {
     let steps = x.windows(2).map(|w| (w[1] - w[0]).abs());
     let mut steps: Vec<f64> = steps.filter(|d| *d > least).collect();
     steps.sort_unstable_by(f64::total_cmp);
-    let first = recurring(&steps)?;
-    (1..=8)
-        .map(|part| refined(&steps, first / f64::from(part)))
+    let recur = [5, (steps.len() / 100).max(5)].into_iter();
+    let firsts = recur.filter_map(|often| recurring(&steps, often));
+    let parts = firsts.flat_map(|first| (1..=8).map(move |part| first / f64::from(part)));
+    parts
+        .map(|step| refined(&steps, step))
         .filter(|step| *step > least)
         .map(|step| Quantum {
             step,
@@ -42,9 +44,8 @@ pub(super) fn quantum(samples: &[f64]) -> Option<Quantum> {
         .find(|q| q.on_grid >= LEAST)
 }
 
-/// The smallest value that a hundredth of the sorted differences have, five at least.
-fn recurring(steps: &[f64]) -> Option<f64> {
-    let often = (steps.len() / 100).max(5);
+/// The smallest value that so many of the sorted differences have.
+fn recurring(steps: &[f64], often: usize) -> Option<f64> {
     let from = (0..steps.len().checked_sub(often)? + 1)
         .find(|&k| steps[k + often - 1] <= steps[k] * (1.0 + SAME))?;
     let same = steps[from..]

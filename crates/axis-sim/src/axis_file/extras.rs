@@ -125,7 +125,10 @@ fn column(c: &Fields<'_>) -> Result<ColumnMap, AxisFileError> {
     };
     let map = ColumnMap::in_unit(c.text("source")?, c.text("channel")?, unit);
     let map = map.map_err(|why| {
-        c.refuse_table(format!("cannot be read: {why}"), "a column that makes its channel")
+        c.refuse_table(
+            format!("cannot be read: {why}"),
+            "a column that makes its channel",
+        )
     })?;
     Ok(ColumnMap {
         offset: c.optional_number("offset")?.unwrap_or(0.0),
