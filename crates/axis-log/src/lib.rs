@@ -30,7 +30,8 @@
 //! MAT files and makes each channel `scale · column + offset` as a [`Mapping`]
 //! says. [`quality`] then judges what was read: instants on an even grid
 //! `t_k ≈ t_0 + k T` without gaps, channels that move, units that agree with the
-//! reference.
+//! reference. Logs with holes, spikes, delays or in several files are made one by
+//! [`intake::prepare`].
 //!
 //! # Example
 //!
@@ -88,9 +89,9 @@
 //!
 //! # What it knows nothing of
 //!
-//! Machines, controllers and models. It does not resample or filter, and
-//! converts units only as a [`Mapping`] tells it to: [`quality::unit_slip`]
-//! notices a slip and changes nothing.
+//! Machines, controllers and models: what channels should be of each other comes from
+//! the caller ([`quality::Relation`]). It converts units only as a [`Mapping`] tells it to:
+//! [`quality::cross_check`] proposes another and changes nothing.
 #![forbid(unsafe_code)]
 
 mod channel;
