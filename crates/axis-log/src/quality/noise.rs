@@ -23,8 +23,9 @@ pub enum Colour {
 }
 
 /// Factor between the densities of the third and fourth quarter of the spectrum up to which
-/// it is even: 1.25 dB would be noise of the estimate, 3 dB are not.
-const EVEN: f64 = 2.0;
+/// it is even: the estimate's own noise is a few per cent, as each is a mean over many bins
+/// and segments; differences of white noise make 1.38.
+const EVEN: f64 = 1.25;
 /// Share of half the rate above which the last bins are left out: a decimating filter's.
 const TOP: f64 = 0.98;
 /// Fall below the level before, over two octaves or to the end, that is a filter's.
