@@ -19,7 +19,7 @@ use clap::{Parser, Subcommand};
 
 use commands::{
     bench, compensate, discover, discover_matrix, export_drive, identify, independent, layers,
-    learn, pipeline, report, robustness, sample, simulate, study, torture, train, validate,
+    learn, log, pipeline, report, robustness, sample, simulate, study, torture, train, validate,
 };
 use context::Common;
 use diagnostic::Compiler;
@@ -66,6 +66,8 @@ enum Command {
     Simulate(simulate::Options),
     /// Name what a model lacks, from logs of the real axis
     Discover(discover::Options),
+    /// Look at a log: channels, sampling, noise, and what its mapping should be
+    Log(log::Options),
     /// Hide effects in simulated machines, search for them blind, and score it
     DiscoverMatrix(discover_matrix::Options),
     /// Search logs of a simulator that shares no code with this one, and score it
@@ -115,6 +117,7 @@ fn run(command: Command) -> miette::Result<()> {
         Command::Report(common) => report::command(&common),
         Command::Simulate(options) => simulate::command(&options),
         Command::Discover(options) => discover::command(&options),
+        Command::Log(options) => log::command(&options),
         Command::DiscoverMatrix(options) => discover_matrix::command(&options),
         Command::Independent(options) => independent::command(&options),
         Command::ExportDrive(options) => export_drive::command(&options),

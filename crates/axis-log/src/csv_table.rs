@@ -5,7 +5,7 @@ use csv::{Position, StringRecord};
 use crate::csv_text::Text;
 use crate::error::CsvProblem;
 use crate::read_error::{Place, ReadProblem};
-use crate::table::{Head, Table};
+use crate::table::{Head, Holes, Table};
 
 pub(crate) struct CsvTable<'a> {
     text: Text<'a>,
@@ -30,8 +30,17 @@ impl<'a> CsvTable<'a> {
         })
     }
 
-    fn number(&self, row: usize, column: usize, text: &str) -> Result<f64, ReadProblem> {
+    fn number(
+        &self,
+        row: usize,
+        column: usize,
+        text: &str,
+        holes: Holes,
+    ) -> Result<f64, ReadProblem> {
         let at = || (self.place(row, column), self.heads[column].name.clone());
+        if holes == Holes::Kept && HOLES.contains(&text) {
+            return Ok(f64::NAN);
+        }
         if text.is_empty() {
             let (place, name) = at();
             return Err(ReadProblem::MissingValue { place, name });
@@ -44,12 +53,15 @@ impl<'a> CsvTable<'a> {
     }
 }
 
+/// How files write that there is no value; `NaN` reads as a number.
+const HOLES: [&str; 6] = ["", "NA", "N/A", "null", "NULL", "-"];
+
 impl Table for CsvTable<'_> {
     fn heads(&self) -> &[Head] {
         &self.heads
     }
 
-    fn read(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, ReadProblem> {
+    fn read(&mut self, wanted: &[usize], holes: Holes) -> Result<Vec<Vec<f64>>, ReadProblem> {
         let most = self.text.most_rows(self.heads.len());
         let mut columns: Vec<Vec<f64>> = wanted.iter().map(|_| Vec::with_capacity(most)).collect();
         let (mut rows, mut record) = (self.text.parser(), StringRecord::new());
@@ -64,7 +76,7 @@ impl Table for CsvTable<'_> {
                 }));
             }
             for (column, &index) in columns.iter_mut().zip(wanted) {
-                column.push(self.number(row, index, &record[index])?);
+                column.push(self.number(row, index, &record[index], holes)?);
             }
             row += 1;
         }

@@ -30,7 +30,8 @@
 //! MAT files and makes each channel `scale · column + offset` as a [`Mapping`]
 //! says. [`quality`] then judges what was read: instants on an even grid
 //! `t_k ≈ t_0 + k T` without gaps, channels that move, units that agree with the
-//! reference.
+//! reference. Logs with holes, spikes, delays or in several files are made one by
+//! [`intake::prepare`].
 //!
 //! # Example
 //!
@@ -65,6 +66,7 @@
 //!     channel: channel.into(),
 //!     scale,
 //!     offset: 0.0,
+//!     delay: 0.0,
 //! };
 //! let mapping = Mapping {
 //!     columns: vec![
@@ -87,9 +89,9 @@
 //!
 //! # What it knows nothing of
 //!
-//! Machines, controllers and models. It does not resample or filter, and
-//! converts units only as a [`Mapping`] tells it to: [`quality::unit_slip`]
-//! notices a slip and changes nothing.
+//! Machines, controllers and models: what channels should be of each other comes from
+//! the caller ([`quality::Relation`]). It converts units only as a [`Mapping`] tells it to:
+//! [`quality::cross_check`] proposes another and changes nothing.
 #![forbid(unsafe_code)]
 
 mod channel;
@@ -98,6 +100,7 @@ mod csv_out;
 mod csv_table;
 mod csv_text;
 mod error;
+pub mod intake;
 mod log;
 mod mapping;
 #[cfg(feature = "mat")]
@@ -105,6 +108,7 @@ mod mat_element;
 #[cfg(feature = "mat")]
 mod mat_table;
 pub mod metrics;
+mod numeric;
 #[cfg(feature = "parquet")]
 mod parquet_pages;
 #[cfg(feature = "parquet")]
@@ -113,6 +117,7 @@ pub mod quality;
 mod read;
 mod read_error;
 mod select;
+mod source_unit;
 mod table;
 #[cfg(feature = "parquet")]
 mod thrift;
@@ -123,7 +128,7 @@ pub use csv_in::{read_csv, read_csv_from};
 pub use csv_out::{write_csv, write_csv_to};
 pub use error::{CsvError, CsvProblem, LogError};
 pub use log::{Log, TIME_CHANNEL};
-pub use mapping::{ColumnMap, Mapping, MappingError};
+pub use mapping::{ColumnMap, ColumnUnit, Mapping, MappingError};
 pub use read::read_log;
 pub use read_error::{Place, ReadError, ReadProblem};
 pub use unit::{unit_of, unit_suffixes};

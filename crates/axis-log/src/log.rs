@@ -1,5 +1,8 @@
 //! The log: channels over one time axis.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
+
 use crate::channel::Channel;
 use crate::error::LogError;
 
@@ -11,9 +14,15 @@ pub const TIME_CHANNEL: &str = "t_s";
 /// Holds from construction on: the first channel is [`TIME_CHANNEL`], strictly
 /// increasing; all channels are equally long (at least one sample), finite,
 /// uniquely named, and their units agree with the suffixes of their names.
+///
+/// Samples that were not measured, or not believed, may be marked as
+/// [missing](Self::missing): their values are interpolated, for display, and must be
+/// given no weight. CSV does not keep the marks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
     channels: Vec<Channel>,
+    /// Of each channel that has any: sorted, apart, not empty, within the log.
+    missing: BTreeMap<String, Vec<Range<usize>>>,
 }
 
 impl Log {
@@ -28,6 +37,7 @@ impl Log {
         check_time(&time)?;
         let mut log = Self {
             channels: vec![time],
+            missing: BTreeMap::new(),
         };
         for channel in channels {
             log.push_channel(channel)?;
@@ -37,7 +47,8 @@ impl Log {
 
     /// A log of channels that the caller has checked.
     pub(crate) fn from_checked(channels: Vec<Channel>) -> Self {
-        Self { channels }
+        let missing = BTreeMap::new();
+        Self { channels, missing }
     }
 
     /// Adds a channel behind the others.
@@ -83,6 +94,34 @@ impl Log {
         self.channels.iter().any(|c| c.name == name)
     }
 
+    /// The instants, as ranges of their indices, at which the channel of that name was not
+    /// measured and its value is interpolated: sorted and apart. None for a channel that
+    /// is not there.
+    pub fn missing(&self, name: &str) -> &[Range<usize>] {
+        self.missing.get(name).map_or(&[], Vec::as_slice)
+    }
+
+    /// Marks instants of a channel as not measured, beside those marked before. What lies
+    /// outside the log is left out.
+    ///
+    /// # Errors
+    /// [`LogError::MissingChannel`].
+    pub fn mark_missing(
+        &mut self,
+        name: &str,
+        instants: impl IntoIterator<Item = Range<usize>>,
+    ) -> Result<(), LogError> {
+        self.channel(name)?;
+        let length = self.len();
+        let mut all: Vec<Range<usize>> = self.missing.remove(name).unwrap_or_default();
+        all.extend(instants);
+        let merged = merged(all, length);
+        if !merged.is_empty() {
+            self.missing.insert(name.to_owned(), merged);
+        }
+        Ok(())
+    }
+
     /// All channels in their order, the time first.
     pub fn channels(&self) -> &[Channel] {
         &self.channels
@@ -112,8 +151,11 @@ impl Log {
             unit: c.unit.clone(),
             samples: c.samples[instants..].to_vec(),
         };
+        let moved =
+            |r: &Range<usize>| r.start.saturating_sub(instants)..r.end.saturating_sub(instants);
         Ok(Self {
             channels: self.channels.iter().map(rest).collect(),
+            missing: self.moved(self.len() - instants, moved),
         })
     }
 
@@ -134,10 +176,40 @@ impl Log {
             unit: c.unit.clone(),
             samples: c.samples.iter().copied().step_by(every).collect(),
         };
+        // The first of the kept instants at or behind an index.
+        let moved = |r: &Range<usize>| r.start.div_ceil(every)..r.end.div_ceil(every);
         Ok(Self {
             channels: self.channels.iter().map(thin).collect(),
+            missing: self.moved(self.len().div_ceil(every), moved),
         })
     }
+
+    fn moved(
+        &self,
+        length: usize,
+        to: impl Fn(&Range<usize>) -> Range<usize>,
+    ) -> BTreeMap<String, Vec<Range<usize>>> {
+        let of = |(name, ranges): (&String, &Vec<Range<usize>>)| {
+            let ranges = merged(ranges.iter().map(&to).collect(), length);
+            (!ranges.is_empty()).then(|| (name.clone(), ranges))
+        };
+        self.missing.iter().filter_map(of).collect()
+    }
+}
+
+/// The same instants as ranges that are sorted, apart and within the length.
+fn merged(mut ranges: Vec<Range<usize>>, length: usize) -> Vec<Range<usize>> {
+    ranges.iter_mut().for_each(|r| r.end = r.end.min(length));
+    ranges.retain(|r| r.start < r.end);
+    ranges.sort_by_key(|r| r.start);
+    let mut apart: Vec<Range<usize>> = Vec::with_capacity(ranges.len());
+    for range in ranges {
+        match apart.last_mut() {
+            Some(last) if range.start <= last.end => last.end = last.end.max(range.end),
+            _ => apart.push(range),
+        }
+    }
+    apart
 }
 
 fn check_time(time: &Channel) -> Result<(), LogError> {

@@ -4,6 +4,8 @@ use std::collections::HashSet;
 
 use thiserror::Error;
 
+use crate::log::TIME_CHANNEL;
+use crate::source_unit::{scale_of, source_units};
 use crate::unit::{suffix_list, unit_of};
 
 /// One column of a file under another name, in another unit.
@@ -19,12 +21,75 @@ pub struct ColumnMap {
     pub scale: f64,
     /// What is added after scaling, in units of the channel. Finite.
     pub offset: f64,
+    /// By how much the file shows the quantity late, s; negative where early. What
+    /// stands at `t` in the file is the quantity's value at `t − delay`. Finite.
+    /// [`read_log`](crate::read_log) refuses a delay, [`prepare`](crate::intake::prepare)
+    /// takes it out.
+    pub delay: f64,
+}
+
+/// How a column is written in a file, before its unit is resolved to a scale.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ColumnUnit<'a> {
+    /// Name of the column's unit: `"mm"`, `"deg"`, `"counts"`, `"%"`, ….
+    pub unit: Option<&'a str>,
+    /// Encoder counts in a turn; finite and above 0. For `"counts"` and `"counts/s"`.
+    pub counts_per_turn: Option<f64>,
+    /// Factor on top of the unit's; negative where the sign is reversed. Of `"%"`, the
+    /// channel's value at 100 %.
+    pub factor: Option<f64>,
 }
 
 impl ColumnMap {
+    /// A column in a unit of its own, without offset and delay.
+    ///
+    /// ```
+    /// use axis_log::{ColumnMap, ColumnUnit};
+    /// let unit = ColumnUnit { unit: Some("deg"), factor: Some(-1.0), ..Default::default() };
+    /// let map = ColumnMap::in_unit("Phi", "motor_angle_rad", unit)?;
+    /// assert_eq!(map.apply(180.0), -std::f64::consts::PI);
+    /// # Ok::<(), axis_log::MappingError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A [`MappingError`]: a unit that is not known or of another dimension than the
+    /// channel, counts without `counts_per_turn` (or that without counts), a share
+    /// without full scale.
+    pub fn in_unit(
+        source: impl Into<String>,
+        channel: impl Into<String>,
+        unit: ColumnUnit<'_>,
+    ) -> Result<Self, MappingError> {
+        let (source, channel) = (source.into(), channel.into());
+        let counts = unit.unit.is_some_and(|unit| unit.starts_with("counts"));
+        if unit.counts_per_turn.is_some() && !counts {
+            return Err(MappingError::CountsPerTurn { channel });
+        }
+        let scale = match unit.unit {
+            None => unit.factor.unwrap_or(1.0),
+            Some(name) => {
+                let per_turn = unit.counts_per_turn;
+                scale_of(&source, &channel, name, per_turn, unit.factor)?
+            }
+        };
+        Ok(Self {
+            source,
+            channel,
+            scale,
+            offset: 0.0,
+            delay: 0.0,
+        })
+    }
+
     /// The channel's value, `scale · value + offset`.
     pub fn apply(&self, value: f64) -> f64 {
         self.scale * value + self.offset
+    }
+
+    /// The column's value that [`apply`](Self::apply) makes this one of,
+    /// `(value − offset) / scale`, but for rounding.
+    pub fn invert(&self, value: f64) -> f64 {
+        (value - self.offset) / self.scale
     }
 }
 
@@ -80,6 +145,54 @@ pub enum MappingError {
         /// The offset.
         value: f64,
     },
+    /// A delay that is NaN or infinite.
+    #[error("channel \"{channel}\": delay is {value} s: it must be finite, and 0 for t_s")]
+    Delay {
+        /// Name of the channel.
+        channel: String,
+        /// The delay, s.
+        value: f64,
+    },
+    /// A unit that is not known.
+    #[error(
+        "channel \"{channel}\": unit is \"{unit}\": it must be one of {}",
+        source_units()
+    )]
+    Unit {
+        /// Name of the channel.
+        channel: String,
+        /// The unit given.
+        unit: String,
+    },
+    /// A unit of another dimension than the channel's.
+    #[error(
+        "channel \"{channel}\" cannot be read from a column in {unit}: that is another \
+         dimension; give a factor without unit, or a channel of that dimension"
+    )]
+    UnitDimension {
+        /// Name of the channel.
+        channel: String,
+        /// The unit given.
+        unit: String,
+    },
+    /// Counts without their number a turn, or that without counts.
+    #[error(
+        "channel \"{channel}\": unit = \"counts\" (or \"counts/s\") and counts_per_turn, \
+         finite and above 0, go together"
+    )]
+    CountsPerTurn {
+        /// Name of the channel.
+        channel: String,
+    },
+    /// A share without the value at 100 %.
+    #[error(
+        "channel \"{channel}\": unit is \"%\": give as factor what 100 % is, in the unit of \
+         the channel"
+    )]
+    FullScale {
+        /// Name of the channel.
+        channel: String,
+    },
     /// A sample rate that is not a positive number.
     #[error("sample_rate_hz is {value}: it must be finite and above 0")]
     SampleRate {
@@ -117,6 +230,10 @@ impl Mapping {
             if !map.offset.is_finite() {
                 let value = map.offset;
                 return Err(MappingError::Offset { channel, value });
+            }
+            if !map.delay.is_finite() || map.delay != 0.0 && channel == TIME_CHANNEL {
+                let value = map.delay;
+                return Err(MappingError::Delay { channel, value });
             }
         }
         Ok(())

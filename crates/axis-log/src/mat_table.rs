@@ -7,7 +7,7 @@ use miniz_oxide::inflate::{TINFLStatus, decompress_to_vec_zlib_with_limit};
 use crate::csv_text::MAX_COLUMNS;
 use crate::mat_element::{ArrayHead, MATRIX, TAG, head};
 use crate::read_error::{Place, ReadProblem};
-use crate::table::{Budget, Fault, Head, Table};
+use crate::table::{Budget, Fault, Head, Holes, Table};
 
 /// Length of the file header.
 const HEADER: usize = 128;
@@ -77,7 +77,7 @@ impl Table for MatTable<'_> {
         self.unreadable
     }
 
-    fn read(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, ReadProblem> {
+    fn read(&mut self, wanted: &[usize], _: Holes) -> Result<Vec<Vec<f64>>, ReadProblem> {
         let mut budget = Budget::of(self.file);
         for (element, array) in wanted.iter().map(|&index| &self.arrays[index]) {
             budget.keep(array.count);

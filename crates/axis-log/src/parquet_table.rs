@@ -16,7 +16,7 @@ use parquet::schema::types::ColumnDescriptor;
 use crate::csv_text::MAX_COLUMNS;
 use crate::parquet_pages::pages;
 use crate::read_error::{Place, ReadProblem};
-use crate::table::{Budget, Fault, Head, Table};
+use crate::table::{Budget, Fault, Head, Holes, Table};
 
 const VALID: &str = "a flat column of float, double, int32 or int64";
 /// Rows asked for at a time.
@@ -129,7 +129,7 @@ impl Table for ParquetTable {
         &self.heads
     }
 
-    fn read(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, ReadProblem> {
+    fn read(&mut self, wanted: &[usize], _: Holes) -> Result<Vec<Vec<f64>>, ReadProblem> {
         let counts = self.claims(wanted)?;
         let all = wanted.iter().zip(counts);
         let named = |index: usize, problem| match problem {

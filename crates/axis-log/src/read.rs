@@ -12,7 +12,7 @@ use crate::mat_table::MatTable;
 use crate::parquet_table::ParquetTable;
 use crate::read_error::{ReadError, ReadProblem};
 use crate::select::{Pick, select};
-use crate::table::Table;
+use crate::table::{Holes, Table};
 
 /// Reads a log from a CSV, Parquet or MAT file, by its extension (`.csv`,
 /// `.parquet`, `.mat`, in any case), renaming and scaling columns as `mapping`
@@ -54,26 +54,39 @@ pub fn read_log(
     required: &[&str],
 ) -> Result<Log, ReadError> {
     let path = path.as_ref();
-    read(path, mapping, required).map_err(|problem| ReadError {
+    let whole = || {
+        if let Some(late) = mapping.columns.iter().find(|c| c.delay != 0.0) {
+            let channel = late.channel.clone();
+            return Err(ReadProblem::Delay { channel });
+        }
+        Ok(Log::new(read(path, mapping, required, Holes::Refused)?)?)
+    };
+    whole().map_err(|problem| ReadError {
         file: path.display().to_string(),
         problem,
     })
 }
 
-fn read(path: &Path, mapping: &Mapping, required: &[&str]) -> Result<Log, ReadProblem> {
+/// The channels, the time first; NaN in the others only where holes are kept.
+pub(crate) fn read(
+    path: &Path,
+    mapping: &Mapping,
+    required: &[&str],
+    holes: Holes,
+) -> Result<Vec<Channel>, ReadProblem> {
     mapping.check()?;
     let found = path.extension().unwrap_or_default().to_string_lossy();
     match found.to_ascii_lowercase().as_str() {
-        "csv" => to_log(CsvTable::open(&whole(path)?)?, mapping, required),
+        "csv" => channels(CsvTable::open(&whole(path)?)?, mapping, required, holes),
         #[cfg(feature = "parquet")]
-        "parquet" => to_log(ParquetTable::open(whole(path)?)?, mapping, required),
+        "parquet" => channels(ParquetTable::open(whole(path)?)?, mapping, required, holes),
         #[cfg(not(feature = "parquet"))]
         "parquet" => Err(ReadProblem::LeftOut {
             format: "Parquet",
             feature: "parquet",
         }),
         #[cfg(feature = "mat")]
-        "mat" => to_log(MatTable::open(&whole(path)?)?, mapping, required),
+        "mat" => channels(MatTable::open(&whole(path)?)?, mapping, required, holes),
         #[cfg(not(feature = "mat"))]
         "mat" => Err(ReadProblem::LeftOut {
             format: "MAT",
@@ -92,14 +105,19 @@ fn whole(path: &Path) -> Result<Vec<u8>, ReadProblem> {
     })
 }
 
-fn to_log(mut table: impl Table, mapping: &Mapping, required: &[&str]) -> Result<Log, ReadProblem> {
+fn channels(
+    mut table: impl Table,
+    mapping: &Mapping,
+    required: &[&str],
+    holes: Holes,
+) -> Result<Vec<Channel>, ReadProblem> {
     let mut picks = select(&table, mapping, required)?;
     // The time goes first, the others keep their order.
     picks.sort_by_key(|p| p.map.channel != TIME_CHANNEL);
     let mut wanted: Vec<usize> = picks.iter().map(|p| p.column).collect();
     wanted.sort_unstable();
     wanted.dedup();
-    let mut columns = table.read(&wanted)?;
+    let mut columns = table.read(&wanted, holes)?;
     let at = |pick: &Pick| wanted.partition_point(|&c| c < pick.column);
     let samples = length(&mut picks, |pick| &columns[at(pick)])?;
     let mut channels = Vec::with_capacity(picks.len() + 1);
@@ -118,9 +136,9 @@ fn to_log(mut table: impl Table, mapping: &Mapping, required: &[&str]) -> Result
         } else {
             std::mem::take(values)
         };
-        channels.push(channel(&table, pick, values)?);
+        channels.push(channel(&table, pick, values, holes)?);
     }
-    Ok(Log::new(channels)?)
+    Ok(channels)
 }
 
 /// The number of samples, set by the first column that someone asked for (the
@@ -154,12 +172,19 @@ fn length<'a>(
 }
 
 /// Scales and checks one column.
-fn channel(table: &impl Table, pick: &Pick, mut samples: Vec<f64>) -> Result<Channel, ReadProblem> {
+fn channel(
+    table: &impl Table,
+    pick: &Pick,
+    mut samples: Vec<f64>,
+    holes: Holes,
+) -> Result<Channel, ReadProblem> {
     for value in &mut samples {
         *value = pick.map.apply(*value);
     }
     let at = |row| (table.place(row, pick.column), pick.map.source.clone());
-    if let Some(row) = samples.iter().position(|v| !v.is_finite()) {
+    let kept = holes == Holes::Kept && pick.map.channel != TIME_CHANNEL;
+    let refused = |v: &f64| !(v.is_finite() || kept && v.is_nan());
+    if let Some(row) = samples.iter().position(refused) {
         let ((place, name), value) = (at(row), samples[row]);
         return Err(ReadProblem::NotFinite { place, name, value });
     }

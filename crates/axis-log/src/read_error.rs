@@ -78,6 +78,15 @@ pub enum ReadProblem {
         /// Size of the file, bytes.
         file: usize,
     },
+    /// A delay in the mapping, and a reader that does not take it out.
+    #[error(
+        "the mapping gives \"{channel}\" a delay: this reader does not move channels in time; \
+         use axis_log::intake::prepare"
+    )]
+    Delay {
+        /// The channel.
+        channel: String,
+    },
     /// The file cannot be opened or read.
     #[error("cannot {action}: {source}")]
     Io {

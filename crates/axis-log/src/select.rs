@@ -63,6 +63,7 @@ fn own(name: &str) -> ColumnMap {
         scale: 1.0,
         // Adding −0 keeps every bit, the sign of a zero too.
         offset: -0.0,
+        delay: 0.0,
     }
 }
 

@@ -13,8 +13,9 @@ pub(crate) trait Table {
     }
 
     /// The numbers of these columns (indices into the heads, none of which has
-    /// a fault). NaN passes through; what is not a number at all does not.
-    fn read(&mut self, wanted: &[usize]) -> Result<Vec<Vec<f64>>, ReadProblem>;
+    /// a fault). NaN passes through; what is not a number at all does not. An empty field
+    /// is refused, or read as NaN.
+    fn read(&mut self, wanted: &[usize], holes: Holes) -> Result<Vec<Vec<f64>>, ReadProblem>;
 
     /// Where the sample `row` of a column stands, both from 0.
     fn place(&self, row: usize, column: usize) -> Place;
@@ -22,6 +23,15 @@ pub(crate) trait Table {
     fn names(&self) -> Vec<String> {
         self.heads().iter().map(|h| h.name.clone()).collect()
     }
+}
+
+/// What is done about values that are missing.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Holes {
+    /// The file is refused.
+    Refused,
+    /// They are NaN.
+    Kept,
 }
 
 /// A column.

@@ -56,6 +56,13 @@ pub fn unit_of(name: &str) -> Option<&'static str> {
         .map(|&(_, symbol)| symbol)
 }
 
+/// The name without its unit, and the unit's symbol.
+pub(crate) fn stem_of(name: &str) -> Option<(&str, &'static str)> {
+    let fits = UNITS.iter().filter(|(suffix, _)| has_suffix(name, suffix));
+    let (suffix, symbol) = fits.max_by_key(|(suffix, _)| suffix.len())?;
+    Some((&name[..name.len() - suffix.len() - 1], symbol))
+}
+
 /// All suffixes that [`unit_of`] knows, without the leading underscore.
 pub fn unit_suffixes() -> impl Iterator<Item = &'static str> {
     UNITS.iter().map(|&(suffix, _)| suffix)

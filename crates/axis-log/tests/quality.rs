@@ -51,18 +51,18 @@ fn short_logs_are_refused() {
 
 #[test]
 fn rates_out_of_range_are_named() {
-    for period in [1e-3 * 1.0009, 1e-3, 5e-5, 5e-5 / 1.0009] {
+    for period in [1e-2 * 1.0009, 1e-2, 5e-5, 5e-5 / 1.0009] {
         assert!(check_sampling(&timed(even(200, 0.0, period))).is_ok());
     }
-    for period in [1e-3 * 1.0011, 5e-5 / 1.0011] {
+    for period in [1e-2 * 1.0011, 5e-5 / 1.0011] {
         assert!(matches!(
             check_sampling(&timed(even(200, 0.0, period))),
             Err(SamplingError::Rate { .. })
         ));
     }
-    let slow = refusal(even(200, 0.0, 1e-2));
+    let slow = refusal(even(200, 0.0, 2e-2));
     assert!(
-        slow.starts_with("the sample rate is 100.000000 Hz"),
+        slow.starts_with("the sample rate is 50.000000 Hz"),
         "{slow}"
     );
     // 1 kHz stamped in milliseconds.

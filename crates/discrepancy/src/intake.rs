@@ -1,8 +1,13 @@
 //! Looking at logs before anything is concluded from them.
 
-use axis_log::Log;
-use axis_log::quality::{SamplingError, check_sampling, constant_channels, unit_slip};
-use axis_sim::{Axis, position_in, reference_in};
+use axis_log::intake::SHORT_GAP;
+use axis_log::quality::{
+    Finding, Law, Relation, SamplingError, Verdict, check_sampling, constant_channels, cross_check,
+    unit_slip,
+};
+use axis_log::{Log, unit_of};
+use axis_sim::mechanism::Freedom;
+use axis_sim::{Axis, ChannelPart, channels, position_in, reference_in};
 use thiserror::Error;
 
 /// Why a log cannot be used. The message names the file first.
@@ -40,6 +45,30 @@ pub enum IntakeError {
         guess: &'static str,
         /// What would mend it.
         scale: f64,
+    },
+    /// Too long a time without measurement.
+    #[error(
+        "{file}: \"{channel}\" was not measured for {samples} samples from t = {time:.4} s on: at most {SHORT_GAP} in a row can be bridged; split the log there"
+    )]
+    Hole {
+        /// The log.
+        file: String,
+        /// Its channel.
+        channel: String,
+        /// Samples in a row.
+        samples: usize,
+        /// When they begin, s.
+        time: f64,
+    },
+    /// Channels that do not agree with each other, by a unit, a sign or a zero.
+    #[error("{file}: {what}; if that is so, this in the axis file mends it:\n{lines}")]
+    Mapping {
+        /// The log.
+        file: String,
+        /// Which channels, and what they look like.
+        what: String,
+        /// Lines for the axis file.
+        lines: String,
     },
     /// Positions that the axis cannot take.
     #[error(
@@ -148,6 +177,8 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, IntakeErr
             channel,
         });
     }
+    no_holes(&file(), log)?;
+    agree(&file(), log, machine)?;
     on_stroke(&file(), log, machine)?;
     follows(&file(), log, reference, position)?;
     let step = |w: &[f64]| w[1] - w[0];
@@ -169,6 +200,90 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, IntakeErr
         file: file(),
         missing,
     })
+}
+
+fn no_holes(file: &str, log: &Log) -> Result<(), IntakeError> {
+    for channel in log.channels() {
+        let long = log
+            .missing(&channel.name)
+            .iter()
+            .find(|r| r.len() > SHORT_GAP);
+        if let Some(run) = long {
+            return Err(IntakeError::Hole {
+                file: file.to_owned(),
+                channel: channel.name.clone(),
+                samples: run.len(),
+                time: log.time()[run.start],
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a log whose channels say that one of them is in another unit, turned, or from
+/// another zero.
+fn agree(file: &str, log: &Log, machine: &Axis) -> Result<(), IntakeError> {
+    let found = cross_checks(log, machine);
+    let wrong = |f: &&Finding| f.verdict == Verdict::Contradicts;
+    match found.iter().find(wrong) {
+        None => Ok(()),
+        Some(finding) => Err(IntakeError::Mapping {
+            file: file.to_owned(),
+            what: finding.to_string(),
+            lines: finding.lines().unwrap_or_default(),
+        }),
+    }
+}
+
+/// Checks of a log's channels against each other, by what this axis has them be.
+pub fn cross_checks(log: &Log, machine: &Axis) -> Vec<Finding> {
+    cross_check(log, &machine.log, &relations(log, machine))
+}
+
+/// What channels of a log should be of each other on this axis.
+pub fn relations(log: &Log, machine: &Axis) -> Vec<Relation> {
+    let (position, reference) = (machine.position_channel(), machine.reference_channel());
+    let speed = match machine.freedom() {
+        Freedom::Linear => "velocity_m_s",
+        Freedom::Rotary => "velocity_rad_s",
+    };
+    let travel = machine.travel_per_radian();
+    let mut all = vec![
+        Relation::new(position, reference, Law::Same),
+        Relation::new(position, "motor_angle_rad", Law::Scaled { factor: travel }),
+        Relation::new(
+            "motor_angle_rad",
+            "motor_speed_rad_s",
+            Law::Integral { factor: 1.0 },
+        ),
+        Relation::new(
+            position,
+            "motor_speed_rad_s",
+            Law::Integral { factor: travel },
+        ),
+        Relation::new(position, speed, Law::Integral { factor: 1.0 }),
+        Relation::new("iq_a", "iq_ref_a", Law::Follows),
+    ];
+    // Whatever torque there is beside the current.
+    let factor = machine.torque_constant();
+    if factor.is_finite() && factor != 0.0 && log.has("iq_a") {
+        let torque = |name: &str| name.contains("torque") && unit_of(name) == Some("N·m");
+        let torques = log.channels().iter().filter(|c| torque(&c.name));
+        let about = Law::About {
+            factor,
+            within: 2.0,
+        };
+        all.extend(torques.map(|c| Relation::new(&c.name, "iq_a", about)));
+    }
+    all
+}
+
+/// Channels of a log that are commands and not measured, on this axis.
+pub fn exact_channels(machine: &Axis) -> Vec<&'static str> {
+    let given = channels(machine).into_iter();
+    let given = given.filter(|c| c.part == ChannelPart::Given);
+    let added = "drive_command_added_v";
+    given.map(|c| c.name(machine)).chain([added]).collect()
 }
 
 /// A log as a replay can begin it, and what was done for that, in words.

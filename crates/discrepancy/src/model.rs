@@ -243,7 +243,8 @@ impl LogSet {
         self.logs.par_iter().enumerate().map(run).collect()
     }
 
-    /// Measured minus simulated, per log and channel.
+    /// Measured minus simulated, per log and channel; 0 where nothing was measured, so that
+    /// what was put there has no weight.
     pub fn rest(&self, traces: &[Trace]) -> Vec<Vec<Vec<f64>>> {
         let channel = |log: &Prepared, trace: &Trace, c: usize| {
             let simulated = self.simulated(trace, c);
@@ -252,6 +253,9 @@ impl LogSet {
             rest.iter_mut()
                 .zip(&log.defect[c])
                 .for_each(|(r, d)| *r -= d);
+            for instants in log.log.missing(self.channels[c]) {
+                rest[instants.clone()].fill(0.0);
+            }
             rest
         };
         let one = |(log, trace): (&Prepared, &Trace)| {

@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use axis_log::{Log, read_log};
+use axis_log::Log;
+use axis_log::intake::{Options as Intake, prepare};
+use axis_log::quality::Verdict as Agreement;
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Scales};
 use axis_sim::friction::Place as FrictionPlace;
 use clap::Args;
-use discrepancy::intake::{check_distinct, check_log, from_rest};
+use discrepancy::intake::{check_distinct, check_log, cross_checks, exact_channels, from_rest};
 use discrepancy::summary::{MeasuredError, SummaryFound, rank, tried};
 use discrepancy::{Discovery, LogSet, Settings, Verdict, discovery, search};
 use indicatif::ProgressBar;
@@ -25,7 +27,8 @@ pub struct Options {
     /// Axis file: the model that the logs are compared with
     #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
     axis: PathBuf,
-    /// Logs to fit to: CSV, Parquet or MAT v5, 1 to 20 kHz
+    /// Logs to fit to: CSV, Parquet or MAT v5, 100 Hz to 20 kHz; a
+    /// log in several files as their paths with + between
     #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
     fit: Vec<PathBuf>,
     /// Logs of other motion, to check on; never fitted to
@@ -165,17 +168,39 @@ pub(super) fn read_all(
     machine: &Axis,
     notes: &mut Vec<String>,
 ) -> Result<Vec<(String, Log, f64)>> {
-    let mapping = &machine.log;
-    let needed = [machine.reference_channel(), machine.position_channel()];
     let one = |path: &PathBuf| {
         let name = path.display().to_string();
-        let log = read_log(path, mapping, &needed).into_diagnostic()?;
+        let log = read_as_one(path, machine, notes)?;
         let period = check_log(&name, &log, machine).into_diagnostic()?;
+        let unsure = cross_checks(&log, machine).into_iter();
+        let unsure = unsure.filter(|f| f.verdict == Agreement::Unsure);
+        notes.extend(unsure.map(|f| format!("{name}: to be looked at: {f}")));
         let (log, note) = from_rest(&name, log, period, machine).into_diagnostic()?;
         notes.extend(note);
         Ok((name, log, period))
     };
     paths.iter().map(one).collect()
+}
+
+/// One log of a file, or of several with `+` between them.
+fn read_as_one(path: &Path, machine: &Axis, notes: &mut Vec<String>) -> Result<Log> {
+    let needed = [machine.reference_channel(), machine.position_channel()];
+    let exact = exact_channels(machine);
+    let options = Intake {
+        exact: &exact,
+        rate_hz: None,
+    };
+    let prepared = prepare(&files(path), &machine.log, &needed, options).into_diagnostic()?;
+    notes.extend(prepared.done.iter().map(ToString::to_string));
+    Ok(prepared.log)
+}
+
+/// The files of a path that joins them with `+`, unless there is a file of that very name.
+pub(super) fn files(path: &Path) -> Vec<PathBuf> {
+    match path.to_str() {
+        Some(text) if !path.exists() => text.split('+').map(PathBuf::from).collect(),
+        _ => vec![path.to_owned()],
+    }
 }
 
 /// A number for a file: all of it.

@@ -10,6 +10,7 @@ pub mod identify;
 pub mod independent;
 pub mod layers;
 pub mod learn;
+pub mod log;
 pub mod pipeline;
 pub mod report;
 pub mod robustness;

@@ -1,9 +1,23 @@
 //! Whether a log is fit to draw conclusions from: even sampling, channels that
-//! move, units that agree.
+//! move, units that agree; what each channel is like, and whether channels agree.
 
+mod channel;
+mod crosscheck;
+mod hold;
+mod noise;
+mod outliers;
+mod quantum;
+mod relation;
 mod sampling;
 mod unit_slip;
 
+pub use channel::{ChannelQuality, Clock, Delay, channel_quality, clock};
+pub use crosscheck::{Finding, Verdict, cross_check};
+pub use hold::{Hold, Saturation};
+pub use noise::{Colour, Noise};
+pub use outliers::{Outlier, outliers};
+pub use quantum::Quantum;
+pub use relation::{Law, Relation};
 pub use sampling::{
     MAX_JITTER, MAX_RATE_HZ, MIN_RATE_HZ, MIN_SAMPLES, Sampling, SamplingError, check_sampling,
 };

@@ -7,7 +7,7 @@ use crate::log::Log;
 /// Fewest samples that are judged.
 pub const MIN_SAMPLES: usize = 100;
 /// Lowest sample rate, Hz.
-pub const MIN_RATE_HZ: f64 = 1e3;
+pub const MIN_RATE_HZ: f64 = 100.0;
 /// Highest sample rate, Hz.
 pub const MAX_RATE_HZ: f64 = 20e3;
 /// Greatest deviation from the even grid, as a share of the period.

@@ -12,6 +12,7 @@ pub fn map(source: &str, channel: &str, scale: f64, offset: f64) -> ColumnMap {
         channel: channel.into(),
         scale,
         offset,
+        delay: 0.0,
     }
 }
 

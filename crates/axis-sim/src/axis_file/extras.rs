@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use axis_log::{ColumnMap, Mapping};
+use axis_log::{ColumnMap, ColumnUnit, Mapping};
 
 use super::error::AxisFileError;
 use super::fields::Fields;
@@ -103,18 +103,37 @@ pub(super) fn log(root: &Fields<'_>) -> Result<Mapping, AxisFileError> {
     let Some(f) = root.optional_table("log")? else {
         return Ok(Mapping::default());
     };
-    let one = |c: Fields<'_>| {
-        Ok(ColumnMap {
-            source: c.text("source")?.to_owned(),
-            channel: c.text("channel")?.to_owned(),
-            scale: c.optional_number("scale")?.unwrap_or(1.0),
-            offset: c.optional_number("offset")?.unwrap_or(0.0),
-        })
-    };
     let columns = f.tables("column")?;
     Ok(Mapping {
-        columns: columns.into_iter().map(one).collect::<Result<_, _>>()?,
+        columns: columns.iter().map(column).collect::<Result<_, _>>()?,
         sample_rate_hz: f.optional_number("sample_rate")?,
+    })
+}
+
+/// One column: `unit`, `counts_per_turn` and `factor` (once called `scale`) make its scale.
+fn column(c: &Fields<'_>) -> Result<ColumnMap, AxisFileError> {
+    let factor = c.optional_number("factor")?;
+    let scale = c.optional_number("scale")?;
+    if factor.is_some() && scale.is_some() {
+        let valid = "one of them: scale is another name of factor";
+        return Err(c.refuse_value("scale", "stands beside factor".to_owned(), valid.to_owned()));
+    }
+    let unit = ColumnUnit {
+        unit: c.optional_text("unit")?,
+        counts_per_turn: c.optional_number("counts_per_turn")?,
+        factor: factor.or(scale),
+    };
+    let map = ColumnMap::in_unit(c.text("source")?, c.text("channel")?, unit);
+    let map = map.map_err(|why| {
+        c.refuse_table(
+            format!("cannot be read: {why}"),
+            "a column that makes its channel",
+        )
+    })?;
+    Ok(ColumnMap {
+        offset: c.optional_number("offset")?.unwrap_or(0.0),
+        delay: 1e-3 * c.optional_number("delay_ms")?.unwrap_or(0.0),
+        ..map
     })
 }
 

@@ -153,8 +153,12 @@ const LOG: &[Key] = &[
 const COLUMN: &[Key] = &[
     text("source"),
     text("channel"),
+    text("unit"),
+    number("counts_per_turn", 1e-6, 1e12),
+    number("factor", -1e12, 1e12),
     number("scale", -1e12, 1e12),
     number("offset", -1e12, 1e12),
+    number("delay_ms", -1e7, 1e7),
 ];
 
 fn trajectory(freedom: Freedom) -> Vec<Key> {

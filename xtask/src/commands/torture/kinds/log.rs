@@ -57,6 +57,7 @@ fn mapping() -> Mapping {
         channel: channel.to_owned(),
         scale: 1.0,
         offset: 0.0,
+        delay: 0.0,
     };
     let names = [("t", "t_s"), ("qg", "position_ref_m"), ("qm", "position_m")];
     Mapping {

@@ -1,0 +1,177 @@
+//! What was done to a log, to be told.
+
+use std::fmt;
+
+/// The delay of one file's clock against another's, found from their channels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileDelay {
+    /// Channels that it was found from: of the first file, of this one.
+    pub channels: [String; 2],
+    /// By how much this file shows things late, s; negative where early.
+    pub delay: f64,
+    /// Standard error of the delay, s.
+    pub standard_error: f64,
+    /// Correlation of the two channels at that delay.
+    pub correlation: f64,
+}
+
+/// Something that was done to a log, or could not be.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Done {
+    /// Rows that were missing between time stamps.
+    Rows {
+        /// The file.
+        file: String,
+        /// Rows put back, empty.
+        rows: usize,
+        /// In so many places.
+        gaps: usize,
+    },
+    /// Isolated outliers taken out.
+    Outliers {
+        /// The channel.
+        channel: String,
+        /// Samples.
+        samples: usize,
+        /// The instant of the first, s.
+        first: f64,
+        /// The farthest from its neighbours, in the channel's unit.
+        farthest: f64,
+        /// Unit of the channel.
+        unit: String,
+    },
+    /// Samples without a value, bridged by a straight line and marked.
+    Bridged {
+        /// The channel.
+        channel: String,
+        /// Samples, outliers among them.
+        samples: usize,
+        /// Samples of the longest run.
+        longest: usize,
+        /// The instant at which that begins, s.
+        at: f64,
+    },
+    /// A channel moved in time, as its column's delay says.
+    Delayed {
+        /// The channel.
+        channel: String,
+        /// s.
+        delay: f64,
+    },
+    /// Files that were joined.
+    Joined {
+        /// The files.
+        files: Vec<String>,
+        /// Sampling period, s.
+        period: f64,
+        /// First and last instant, s.
+        span: [f64; 2],
+    },
+    /// The delay of a file against the first one, found and taken out.
+    Aligned {
+        /// The file.
+        file: String,
+        /// What was found.
+        found: FileDelay,
+    },
+    /// A delay that was found beside another that was given; the given one was taken.
+    DelayDiffers {
+        /// The file.
+        file: String,
+        /// What is left after the given one.
+        found: FileDelay,
+    },
+    /// A file with no channel that tells its delay, and no delay given.
+    DelayUnknown {
+        /// The file.
+        file: String,
+        /// The first file.
+        against: String,
+    },
+    /// A channel that an earlier file has too; that one was taken.
+    Twice {
+        /// The file whose channel was left out.
+        file: String,
+        /// The channel.
+        channel: String,
+    },
+}
+
+impl fmt::Display for Done {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rows { file, rows, gaps } => {
+                write!(
+                    f,
+                    "{file}: {rows} rows missing in {gaps} place(s); put back without values"
+                )
+            }
+            Self::Outliers {
+                channel,
+                samples,
+                first,
+                farthest,
+                unit,
+            } => write!(
+                f,
+                "{channel}: {samples} isolated outlier(s), the first at t = {first:.4} s, up to {farthest:.3e} {unit} from what stands around; taken out"
+            ),
+            Self::Bridged {
+                channel,
+                samples,
+                longest,
+                at,
+            } => write!(
+                f,
+                "{channel}: {samples} sample(s) without a value, at most {longest} in a row (from t = {at:.4} s); a straight line stands there, without weight"
+            ),
+            Self::Delayed { channel, delay } => {
+                write!(
+                    f,
+                    "{channel}: moved by {:.4} ms, its delay_ms",
+                    -1e3 * delay
+                )
+            }
+            Self::Joined {
+                files,
+                period,
+                span,
+            } => write!(
+                f,
+                "{}: joined from t = {:.4} to {:.4} s at {:.6} Hz",
+                files.join(" + "),
+                span[0],
+                span[1],
+                1.0 / period
+            ),
+            Self::Aligned { file, found } => write!(
+                f,
+                "{file}: its clock is {:.4} ± {:.4} ms late ({} against {}, correlation {:.4}); taken out",
+                1e3 * found.delay,
+                1e3 * found.standard_error,
+                found.channels[1],
+                found.channels[0],
+                found.correlation
+            ),
+            Self::DelayDiffers { file, found } => write!(
+                f,
+                "{file}: after its delay_ms it is {:.4} ± {:.4} ms late ({} against {}); left as given",
+                1e3 * found.delay,
+                1e3 * found.standard_error,
+                found.channels[1],
+                found.channels[0]
+            ),
+            Self::DelayUnknown { file, against } => write!(
+                f,
+                "{file}: its delay against {against} is unknown, as they share no quantity; time stamps are taken as they are; if it is known, give delay_ms to its columns"
+            ),
+            Self::Twice { file, channel } => {
+                write!(
+                    f,
+                    "{file}: {channel} is in an earlier file too and is taken from there"
+                )
+            }
+        }
+    }
+}

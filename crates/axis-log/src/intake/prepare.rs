@@ -1,0 +1,113 @@
+//! Files to a log.
+
+use std::path::Path;
+
+use super::done::Done;
+use super::error::IntakeError;
+use super::join::join;
+use super::recording::Recording;
+use super::repair::{bridged, take_out};
+use crate::channel::Channel;
+use crate::log::{Log, TIME_CHANNEL};
+use crate::mapping::Mapping;
+
+/// What is done to files besides reading them.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Options<'a> {
+    /// Channels that are commands and not measured: nothing in them is an outlier.
+    pub exact: &'a [&'a str],
+    /// Rate of the joined log, Hz; `None` for that of the slowest file. Of a single file
+    /// it means a resampling.
+    pub rate_hz: Option<f64>,
+}
+
+/// A log, and what was done to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prepared {
+    /// The log.
+    pub log: Log,
+    /// What was done, in its order.
+    pub done: Vec<Done>,
+}
+
+/// Reads files as one log. [The module](super) tells the steps.
+///
+/// Several files are resampled on the grid that begins where the last of them begins and
+/// ends where the first ends. Where a rate falls, a windowed sinc without phase takes out
+/// what is above 0.54 of the new rate and keeps what is below 0.36 of it; else it keeps what
+/// is below 0.41 of a channel's own rate. A sample that rests on missing ones is missing. The
+/// delay of a file against the first is found where both have a channel of one name, or one
+/// has the derivative of the other's (`position` and `velocity` or `speed`, likewise
+/// `angle`), which correlate above 0.95: the peak of the cross-correlation by a parabola,
+/// refined by least squares, with its standard error. It is taken out unless a column of
+/// either file has a delay of its own; where it cannot be found, [`Done::DelayUnknown`]
+/// says so. Clocks must agree to half of the time that the files share.
+///
+/// # Errors
+/// An [`IntakeError`]: a file that cannot be read ([`read_log`](crate::read_log), except
+/// that missing values and rows are taken), a required channel that none has, time stamps
+/// more than a quarter of a period off an even grid where something is resampled, no time in
+/// common, a rate above that of all files.
+pub fn prepare<P: AsRef<Path>>(
+    paths: &[P],
+    mapping: &Mapping,
+    required: &[&str],
+    options: Options<'_>,
+) -> Result<Prepared, IntakeError> {
+    let mut done = Vec::new();
+    let alone: &[&str] = if paths.len() == 1 { required } else { &[] };
+    let mut parts = Vec::with_capacity(paths.len());
+    for path in paths {
+        let mut part = Recording::read(path.as_ref(), mapping, alone)?;
+        let (file, [rows, gaps]) = (part.name.clone(), part.missing);
+        if gaps > 0 {
+            done.push(Done::Rows { file, rows, gaps });
+        }
+        take_out(&mut part, options.exact, &mut done);
+        parts.push(part);
+    }
+    let names: Vec<&str> = parts.iter().map(|p| p.name.as_str()).collect();
+    let file = names.join(" + ");
+    let single = parts.len() == 1 && options.rate_hz.is_none();
+    let channels = match parts.pop() {
+        None => return Err(IntakeError::None),
+        Some(part) if single && part.delays.iter().all(|&d| d == 0.0) => as_it_is(part),
+        Some(part) => {
+            parts.push(part);
+            join(parts, options.rate_hz, &mut done)?
+        }
+    };
+    let log = into_log(channels, &mut done).and_then(|log| {
+        required
+            .iter()
+            .try_for_each(|name| log.channel(name).map(drop))?;
+        Ok(log)
+    });
+    match log {
+        Ok(log) => Ok(Prepared { log, done }),
+        Err(problem) => Err(IntakeError::Log { file, problem }),
+    }
+}
+
+fn as_it_is(part: Recording) -> Vec<Channel> {
+    let time = Channel {
+        name: TIME_CHANNEL.to_owned(),
+        unit: "s".to_owned(),
+        samples: part.time,
+    };
+    std::iter::once(time).chain(part.channels).collect()
+}
+
+fn into_log(mut channels: Vec<Channel>, done: &mut Vec<Done>) -> Result<Log, crate::LogError> {
+    let mut marks = Vec::new();
+    if let Some((time, others)) = channels.split_first_mut() {
+        for channel in others {
+            marks.push((channel.name.clone(), bridged(channel, &time.samples, done)));
+        }
+    }
+    let mut log = Log::new(channels)?;
+    for (name, holes) in marks {
+        log.mark_missing(&name, holes)?;
+    }
+    Ok(log)
+}

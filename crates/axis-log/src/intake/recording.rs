@@ -1,0 +1,144 @@
+//! One file on its own clock, with holes.
+
+use std::path::Path;
+
+use super::error::IntakeError;
+use crate::channel::Channel;
+use crate::mapping::Mapping;
+use crate::numeric::grid::Grid;
+use crate::read::read;
+use crate::read_error::ReadError;
+use crate::table::Holes;
+
+/// Channels on one clock; NaN where there is no value.
+pub(super) struct Recording {
+    pub name: String,
+    pub time: Vec<f64>,
+    /// Without the time.
+    pub channels: Vec<Channel>,
+    /// By how much each channel comes late, as the mapping says, s.
+    pub delays: Vec<f64>,
+    /// Sampling period, s, and greatest jitter in periods; of one row there is none.
+    pub grid: Option<Even>,
+    /// Rows that were missing, and in how many places.
+    pub missing: [usize; 2],
+}
+
+/// The even grid of a recording.
+#[derive(Clone, Copy)]
+pub(super) struct Even {
+    pub start: f64,
+    pub period: f64,
+}
+
+/// Greatest distance of an instant from the grid at which it can be taken to lie on it,
+/// in periods.
+const MOST_JITTER: f64 = 0.25;
+/// Rows of the grid for each row there is.
+const MOST_EMPTY: usize = 4;
+
+impl Recording {
+    pub(super) fn read(
+        path: &Path,
+        mapping: &Mapping,
+        required: &[&str],
+    ) -> Result<Self, IntakeError> {
+        let name = path.display().to_string();
+        let refused = |problem| ReadError {
+            file: name.clone(),
+            problem,
+        };
+        let mut channels = read(path, mapping, required, Holes::Kept).map_err(refused)?;
+        // The reader puts the time first.
+        let time = channels.remove(0).samples;
+        let delay = |c: &Channel| {
+            let map = mapping.columns.iter().find(|m| m.channel == c.name);
+            map.map_or(0.0, |m| m.delay)
+        };
+        let mut recording = Self {
+            delays: channels.iter().map(delay).collect(),
+            name,
+            time,
+            channels,
+            grid: None,
+            missing: [0; 2],
+        };
+        recording.fill_rows()?;
+        Ok(recording)
+    }
+
+    /// Puts missing rows back, as NaN. Other rows keep their time stamps.
+    fn fill_rows(&mut self) -> Result<(), IntakeError> {
+        let Some(grid) = Grid::of(&self.time) else {
+            return Ok(());
+        };
+        self.grid = Some(Even {
+            start: grid.start,
+            period: grid.period,
+        });
+        let (rows, length) = (self.time.len(), grid.length());
+        if length == rows {
+            return Ok(());
+        }
+        if length > MOST_EMPTY.saturating_mul(rows) {
+            let file = self.name.clone();
+            return Err(IntakeError::Sparse {
+                file,
+                rows,
+                grid: length,
+            });
+        }
+        let spread = |from: &[f64], empty: &dyn Fn(usize) -> f64| {
+            let mut to: Vec<f64> = (0..length).map(empty).collect();
+            grid.places.iter().zip(from).for_each(|(&p, &v)| to[p] = v);
+            to
+        };
+        let gaps = grid.places.windows(2).filter(|w| w[1] > w[0] + 1).count();
+        self.missing = [length - rows, gaps];
+        let even = |k: usize| grid.start + k as f64 * grid.period;
+        self.time = increasing(spread(&self.time, &even), &grid);
+        for channel in &mut self.channels {
+            channel.samples = spread(&channel.samples, &|_| f64::NAN);
+        }
+        Ok(())
+    }
+
+    /// Its even grid.
+    pub(super) fn even(&self) -> Result<Even, IntakeError> {
+        let file = || self.name.clone();
+        let rows = self.time.len();
+        let grid = self
+            .grid
+            .ok_or_else(|| IntakeError::TooShort { file: file(), rows })?;
+        let off = |k: usize| {
+            let at = grid.start + k as f64 * grid.period;
+            (self.time[k] - at).abs() / grid.period
+        };
+        let worst = (0..rows)
+            .max_by(|&a, &b| off(a).total_cmp(&off(b)))
+            .unwrap_or(0);
+        if off(worst) > MOST_JITTER {
+            return Err(IntakeError::Jitter {
+                file: file(),
+                time: self.time[worst],
+                jitter: off(worst),
+                period: grid.period,
+                most: MOST_JITTER,
+            });
+        }
+        Ok(grid)
+    }
+}
+
+/// Jitter beside a gap could turn an instant that was put there with one that was stamped;
+/// the one that was put there gives way.
+fn increasing(mut time: Vec<f64>, grid: &Grid) -> Vec<f64> {
+    for w in grid.places.windows(2).filter(|w| w[1] > w[0] + 1) {
+        let (from, to) = (time[w[0]], time[w[1]]);
+        let steps = (w[1] - w[0]) as f64;
+        for place in w[0] + 1..w[1] {
+            time[place] = from + (to - from) * ((place - w[0]) as f64 / steps);
+        }
+    }
+    time
+}

@@ -1,0 +1,9 @@
+//! Arithmetic that several modules share; nothing here knows what a channel is.
+
+pub(crate) mod align;
+pub(crate) mod grid;
+pub(crate) mod holes;
+pub(crate) mod lag;
+pub(crate) mod order;
+pub(crate) mod resample;
+pub(crate) mod welch;

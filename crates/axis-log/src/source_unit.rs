@@ -1,0 +1,152 @@
+//! The units that drives export, and the factors between them.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::mapping::MappingError;
+use crate::unit::unit_of;
+
+/// Names of a unit, its dimension, and how many SI units (rad for angles) one of it is.
+type Row = (&'static [&'static str], &'static str, f64);
+
+const UNITS: &[Row] = &[
+    (&["s"], "time", 1.0),
+    (&["ms"], "time", 1e-3),
+    (&["us", "µs"], "time", 1e-6),
+    (&["Hz", "hz"], "frequency", 1.0),
+    (&["kHz", "khz"], "frequency", 1e3),
+    (&["m"], "length", 1.0),
+    (&["mm"], "length", 1e-3),
+    (&["um", "µm"], "length", 1e-6),
+    (&["nm"], "length", 1e-9),
+    (&["in", "inch"], "length", 25.4e-3),
+    (&["m/s"], "speed", 1.0),
+    (&["mm/s"], "speed", 1e-3),
+    (&["m/min"], "speed", 1.0 / 60.0),
+    (&["mm/min"], "speed", 1e-3 / 60.0),
+    (&["m/s²", "m/s2"], "acceleration", 1.0),
+    (&["mm/s²", "mm/s2"], "acceleration", 1e-3),
+    (&["m/s³", "m/s3"], "jerk", 1.0),
+    (&["rad"], "angle", 1.0),
+    (&["mrad"], "angle", 1e-3),
+    (&["deg", "°"], "angle", PI / 180.0),
+    (&["arcmin"], "angle", PI / 10_800.0),
+    (&["arcsec"], "angle", PI / 648_000.0),
+    (&["rev"], "angle", TAU),
+    (&["rad/s"], "angular speed", 1.0),
+    (&["deg/s", "°/s"], "angular speed", PI / 180.0),
+    (&["rev/s"], "angular speed", TAU),
+    (&["rpm", "1/min"], "angular speed", TAU / 60.0),
+    (&["rad/s²", "rad/s2"], "angular acceleration", 1.0),
+    (&["A", "a"], "current", 1.0),
+    (&["mA", "ma"], "current", 1e-3),
+    (&["V", "v"], "voltage", 1.0),
+    (&["mV", "mv"], "voltage", 1e-3),
+    (&["W", "w"], "power", 1.0),
+    (&["kW"], "power", 1e3),
+    (&["N", "n"], "force", 1.0),
+    (&["kN"], "force", 1e3),
+    (&["N·m", "Nm", "n_m"], "torque", 1.0),
+    (&["N·mm", "Nmm", "mN·m", "mNm", "n_mm"], "torque", 1e-3),
+    (&["kg"], "mass", 1.0),
+    (&["1"], "number", 1.0),
+];
+
+/// Encoder counts, and counts a second: their size is `counts_per_turn`'s.
+const COUNTS: [(&str, &str); 2] = [("counts", "angle"), ("counts/s", "angular speed")];
+/// A share of a full scale, which is the factor's to give.
+const PERCENT: &str = "%";
+
+fn row(name: &str) -> Option<&'static Row> {
+    UNITS.iter().find(|(names, ..)| names.contains(&name))
+}
+
+/// Names of the units that a column may be given in, as error messages list them.
+pub(crate) fn source_units() -> String {
+    let names = UNITS.iter().map(|(names, ..)| names[0]);
+    let all: Vec<&str> = names.chain(COUNTS.map(|c| c.0)).chain([PERCENT]).collect();
+    all.join(" ")
+}
+
+/// Channel units per unit of the source: what a column in `unit` is multiplied by to be
+/// the channel, where its factor is `factor`.
+///
+/// A unit converts to that of the channel's suffix by definition: `"deg"` of a channel in
+/// rad by π/180, `"rpm"` of one in rad/s by 2π/60, `"mm"` of one in m by 10⁻³. `"counts"`
+/// and `"counts/s"` are of an encoder with `counts_per_turn` counts a turn. `"%"` is a
+/// share of a full scale: 0.01 times `factor`, which must then be the channel's value at
+/// 100 % unless the channel is without dimension (`_1`). The result is the definition's
+/// value times `factor`, rounded twice at most.
+///
+/// # Errors
+/// [`MappingError::Unit`], [`MappingError::UnitDimension`],
+/// [`MappingError::CountsPerTurn`], [`MappingError::FullScale`], or
+/// [`MappingError::UnitSuffix`].
+pub(crate) fn scale_of(
+    source: &str,
+    channel: &str,
+    unit: &str,
+    counts_per_turn: Option<f64>,
+    factor: Option<f64>,
+) -> Result<f64, MappingError> {
+    let target = channel_row(source, channel)?;
+    let k = factor.unwrap_or(1.0);
+    let dimension = |dimension: &str, size: f64| match target {
+        Some((_, of, own)) if *of == dimension => Ok(size / own * k),
+        _ => Err(MappingError::UnitDimension {
+            channel: channel.to_owned(),
+            unit: unit.to_owned(),
+        }),
+    };
+    if unit == PERCENT {
+        let number = target.is_some_and(|(_, of, _)| *of == "number");
+        return match factor.is_some() || number {
+            true => Ok(0.01 * k),
+            false => Err(MappingError::FullScale {
+                channel: channel.to_owned(),
+            }),
+        };
+    }
+    if let Some((_, of)) = COUNTS.iter().find(|(name, _)| *name == unit) {
+        let counts = counts_per_turn.filter(|c| c.is_finite() && *c > 0.0);
+        let counts = counts.ok_or_else(|| MappingError::CountsPerTurn {
+            channel: channel.to_owned(),
+        })?;
+        return dimension(of, TAU / counts);
+    }
+    match row(unit) {
+        Some((_, of, size)) => dimension(of, *size),
+        None => Err(MappingError::Unit {
+            channel: channel.to_owned(),
+            unit: unit.to_owned(),
+        }),
+    }
+}
+
+fn channel_row(source: &str, channel: &str) -> Result<Option<&'static Row>, MappingError> {
+    let symbol = unit_of(channel).ok_or_else(|| MappingError::UnitSuffix {
+        channel: channel.to_owned(),
+        column: source.to_owned(),
+    })?;
+    Ok(row(symbol))
+}
+
+/// The dimension of a unit by its symbol, and its size in SI.
+fn dimension_of(symbol: &str) -> Option<(&'static str, f64)> {
+    row(symbol).map(|(_, of, size)| (*of, *size))
+}
+
+/// The name of the unit that a channel with this symbol was read from as if it were its
+/// own, where its numbers are `factor` times too large; within `tolerance` of it.
+pub(crate) fn slipped_unit(
+    symbol: &str,
+    factor: f64,
+    tolerance: f64,
+) -> Option<(&'static str, f64)> {
+    let (dimension, own) = dimension_of(symbol)?;
+    let of_kind = UNITS.iter().filter(|(_, of, _)| *of == dimension);
+    let distance = |size: f64| (factor * size / own - 1.0).abs();
+    of_kind
+        .filter(|(_, _, size)| *size != own && distance(*size) < tolerance)
+        .min_by(|a, b| distance(a.2).total_cmp(&distance(b.2)))
+        .map(|(names, _, size)| (names[0], own / size))
+}
