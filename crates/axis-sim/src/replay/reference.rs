@@ -17,8 +17,8 @@ pub struct LoggedReference {
 
 impl LoggedReference {
     /// The reference of a uniformly sampled log with the sampling period
-    /// `period` (s). Without `velocity_ref_m_s` the velocity is the central
-    /// difference of the position.
+    /// `period` (s). Without `velocity_ref_m_s` the velocity is that of the cubic spline
+    /// through the positions.
     ///
     /// # Errors
     /// [`ReplayError::Log`] without `position_ref_m`; [`ReplayError::Period`].
@@ -27,17 +27,12 @@ impl LoggedReference {
             return Err(ReplayError::Period { period });
         }
         let position = reference_in(log)?.to_vec();
-        let last = position.len() - 1;
-        let difference = |k: usize| {
-            let (a, b) = (k.saturating_sub(1), (k + 1).min(last));
-            (position[b] - position[a]) / (period * (b - a).max(1) as f64)
-        };
         let velocity = match log
             .channel("velocity_ref_m_s")
             .or(log.channel("velocity_ref_rad_s"))
         {
             Ok(samples) => samples.to_vec(),
-            Err(_) => (0..=last).map(difference).collect(),
+            Err(_) => slopes(&position, period),
         };
         Ok(Self {
             period,
@@ -45,6 +40,39 @@ impl LoggedReference {
             velocity,
         })
     }
+}
+
+/// Slopes at its knots of the cubic spline through samples, at rest at both ends or, where
+/// it begins or ends in motion, with the slope of the first or last step there:
+///
+/// ```text
+/// s(k−1) + 4 s(k) + s(k+1) = 3 (x(k+1) − x(k−1)) / h
+/// ```
+///
+/// A wave of the frequency ω comes out off by (ω h)⁴/180, where a central difference is off
+/// by (ω h)²/6: at 90 Hz and 1 kHz 0.06 instead of 5 %, which would be found as a
+/// controller's gain.
+fn slopes(samples: &[f64], period: f64) -> Vec<f64> {
+    let last = samples.len() - 1;
+    let step = |k: usize| (samples[k + 1] - samples[k]) / period;
+    if last < 2 {
+        return vec![if last == 0 { 0.0 } else { step(0) }; samples.len()];
+    }
+    // Thomas' algorithm; the matrix is diagonally dominant.
+    let mut slopes = vec![0.0; samples.len()];
+    slopes[0] = step(0);
+    let mut factors = vec![0.0; samples.len()];
+    for k in 1..last {
+        let right = 3.0 * (samples[k + 1] - samples[k - 1]) / period;
+        let pivot = 4.0 - factors[k - 1];
+        factors[k] = 1.0 / pivot;
+        slopes[k] = (right - slopes[k - 1]) / pivot;
+    }
+    slopes[last] = step(last - 1);
+    for k in (1..last).rev() {
+        slopes[k] -= factors[k] * slopes[k + 1];
+    }
+    slopes
 }
 
 impl Motion for LoggedReference {
@@ -86,5 +114,30 @@ impl Motion for LoggedReference {
             velocity,
             ..Setpoint::default()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::slopes;
+
+    #[test]
+    fn slopes_of_a_wave_are_off_by_the_fourth_order() {
+        let (h, frequency) = (1e-3, 90.0 * std::f64::consts::TAU);
+        let at = |k: usize| (frequency * k as f64 * h).sin();
+        let samples: Vec<f64> = (0..400).map(at).collect();
+        let bound = 1.1 * (frequency * h).powi(4) / 180.0;
+        for (k, slope) in slopes(&samples, h).into_iter().enumerate().skip(20).take(360) {
+            let exact = (frequency * k as f64 * h).cos();
+            assert!((slope / frequency - exact).abs() < bound, "{k}");
+        }
+    }
+
+    #[test]
+    fn a_line_has_one_slope() {
+        let samples: Vec<f64> = (0..50).map(|k| 0.3 - 2e-3 * f64::from(k)).collect();
+        assert!(slopes(&samples, 1e-2).iter().all(|s| (s + 0.2).abs() < 1e-12));
+        assert_eq!(slopes(&[1.0], 1.0), [0.0]);
+        assert_eq!(slopes(&[1.0, 3.0], 1.0), [2.0, 2.0]);
     }
 }
