@@ -4,6 +4,7 @@
 use axis_log::{Channel, Log};
 use axis_sim::Axis;
 use discrepancy::intake::{IntakeError, check_distinct, check_log, from_rest};
+use discrepancy::{LogSet, State};
 
 const PERIOD: f64 = 1e-3;
 
@@ -154,4 +155,41 @@ fn a_log_that_starts_in_motion_begins_at_its_first_rest_or_is_refused() {
     let (left, note) = from_rest("drive.csv", cut.clone(), PERIOD, &machine("emps")).unwrap();
     assert_eq!(left.len(), cut.len());
     assert!(note.unwrap().contains("taken from its first samples"));
+}
+
+#[test]
+fn a_turned_sign_is_refused_with_the_lines_that_mend_it() {
+    let turned = log(0.0, 2.5, reference, |t| -followed(t), current);
+    let message = refusal(&turned);
+    for part in [
+        "but for its sign",
+        "[[log.column]]",
+        "\"position_m\"",
+        "factor = -1",
+    ] {
+        assert!(message.contains(part), "{part}: {message}");
+    }
+}
+
+#[test]
+fn a_long_hole_is_refused_and_a_short_one_has_no_weight() {
+    let sound = log(0.0, 2.5, reference, followed, current);
+    let hole = |samples: usize| {
+        let mut log = sound.clone();
+        log.mark_missing("iq_a", [300..300 + samples]).unwrap();
+        log
+    };
+    let message = refusal(&hole(6));
+    assert!(
+        message.contains("6 samples from t = 0.3000 s") && message.contains("iq_a"),
+        "{message}"
+    );
+    let machine = machine("liu2025");
+    let period = check_log("drive.csv", &hole(5), &machine).unwrap();
+    let set = LogSet::new(vec![("drive.csv".to_owned(), hole(5), period)], &machine).unwrap();
+    let traces = set.simulate(&machine, &State::initial(&machine)).unwrap();
+    let channel = set.channels.iter().position(|c| *c == "iq_a").unwrap();
+    let rest = &set.rest(&traces)[0][channel];
+    assert!(rest[300..305].iter().all(|r| *r == 0.0));
+    assert!(rest[299] != 0.0 && rest[305] != 0.0);
 }

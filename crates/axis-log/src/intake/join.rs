@@ -86,12 +86,10 @@ fn drop_doubles(parts: &mut [Recording], done: &mut Vec<Done>, period: f64) {
         let given = part.delays.iter().any(|&d| d != 0.0) || first.delays.iter().any(|&d| d != 0.0);
         match between(first, part, period) {
             Some(found) if given => {
-                if found.delay.abs() > 3.0 * found.standard_error + 0.5 * period {
-                    done.push(Done::DelayDiffers {
-                        file: file.clone(),
-                        found,
-                    });
-                }
+                let surely = 3.0 * found.standard_error + 0.5 * period;
+                let differs = found.delay.abs() > surely;
+                let file = file.clone();
+                done.extend(differs.then_some(Done::DelayDiffers { file, found }));
             }
             Some(found) => {
                 let grid = part.grid.as_mut();

@@ -136,8 +136,8 @@ fn increasing(mut time: Vec<f64>, grid: &Grid) -> Vec<f64> {
     for w in grid.places.windows(2).filter(|w| w[1] > w[0] + 1) {
         let (from, to) = (time[w[0]], time[w[1]]);
         let steps = (w[1] - w[0]) as f64;
-        for place in w[0] + 1..w[1] {
-            time[place] = from + (to - from) * ((place - w[0]) as f64 / steps);
+        for (i, t) in time[w[0] + 1..w[1]].iter_mut().enumerate() {
+            *t = from + (to - from) * ((i + 1) as f64 / steps);
         }
     }
     time
