@@ -7,7 +7,7 @@ use axis_log::Mapping;
 use trajectories::{Limits, SCurve, TrajectoryError};
 
 use crate::actuator::{Actuator, Surroundings};
-use crate::control::Control;
+use crate::control::{Control, absent};
 use crate::cycle::Cycle;
 use crate::effects::{self, ActiveEffect, Hooks, TableState};
 use crate::error::SetupError;
@@ -35,7 +35,7 @@ pub struct Axis {
     pub mechanism: Part<dyn Mechanism>,
     /// What makes a torque of the controller's command.
     pub actuator: Part<dyn Actuator>,
-    /// Position and speed control.
+    /// Position and speed control ([`Axis::has_control`]).
     pub control: Part<dyn Control>,
     /// Friction between load and guides.
     pub friction: Part<Friction>,
@@ -43,7 +43,7 @@ pub struct Axis {
     pub loads: Vec<Part<dyn Load>>,
     /// Position sensors.
     pub sensors: Sensors,
-    /// Control period, s.
+    /// Control period, s; 1 ms where there is no control.
     pub period: f64,
     /// Tracking error at which a run is given up, m or rad; infinite for none.
     pub following_error_limit: f64,
@@ -63,6 +63,9 @@ pub struct Axis {
     pub tolerances: Tolerances,
     /// How the columns of logs of this axis are called.
     pub log: Mapping,
+    /// Cut-off frequency of its torque balance, Hz; where there is none it is taken from
+    /// each log ([`crate::balance`]).
+    pub balance_cutoff: Option<f64>,
     /// Hash of every value in SI units: the same for files that differ only
     /// in comments, units or order.
     pub fingerprint: String,
@@ -195,6 +198,12 @@ impl Axis {
     /// How the load moves.
     pub fn freedom(&self) -> Freedom {
         self.mechanism.freedom()
+    }
+
+    /// Whether its controller is known. One whose file leaves `[control]` out can be balanced
+    /// ([`crate::balance`]), and not simulated in a closed loop.
+    pub fn has_control(&self) -> bool {
+        !std::ptr::eq(self.control.kind(), &absent::KIND)
     }
 
     /// Travel of the load per radian of the motor, r, m/rad or rad/rad.

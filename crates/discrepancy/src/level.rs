@@ -1,17 +1,18 @@
 //! How noisy the sensors are that logs were taken with.
 
-use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
+use axis_sim::{Axis, ClosedLoop, Replay, ReplayError, Trace};
 use rayon::prelude::*;
 
 use crate::hidden::Noise;
-use crate::model::{LogSet, Prepared};
+use crate::model::LogSet;
 use crate::noise::Rest;
 use crate::spectrum::Layout;
 
 /// Whether the logs of an axis show the noise of its sensors: not where the loop has no
-/// memory and reads a position alone, of which command and position are one measurement.
-pub fn shows_noise(axis: &Axis) -> bool {
-    !axis.control.starts_in_motion()
+/// memory and reads a position alone, of which command and position are one measurement, nor
+/// in a torque balance.
+pub fn shows_noise(axis: &Axis, set: &LogSet) -> bool {
+    !axis.control.starts_in_motion() && !set.is_balanced()
 }
 
 /// Noise of the sensors of an axis (its effects included), as the rest of its logs shows it
@@ -39,10 +40,8 @@ fn simulated(
     noise: Noise,
 ) -> Result<Rest, ReplayError> {
     let closed_loop = ClosedLoop::new(axis)?.without_noise();
-    let one = |(seed, (log, quiet)): (usize, (&Prepared, &Trace))| {
-        let noisy = log
-            .replay
-            .follow(&closed_loop, noise.sensors(seed as u64))?;
+    let one = |(seed, (replay, quiet)): (usize, (&Replay, &Trace))| {
+        let noisy = replay.follow(&closed_loop, noise.sensors(seed as u64))?;
         let channel = |name: &&str| -> Vec<f64> {
             let pair = noisy.channel(name).zip(quiet.channel(name));
             let (a, b) = pair.unwrap_or_default();
@@ -50,7 +49,7 @@ fn simulated(
         };
         Ok(set.channels.iter().map(channel).collect())
     };
-    let logs: Vec<(&Prepared, &Trace)> = set.logs.iter().zip(quiet).collect();
+    let logs: Vec<(&Replay, &Trace)> = set.replays().into_iter().zip(quiet).collect();
     logs.into_par_iter().enumerate().map(one).collect()
 }
 

@@ -28,6 +28,7 @@
 //! # What this crate knows nothing of
 //! Files, terminals and pictures. It simulates nothing itself.
 
+mod answer;
 mod bounded;
 mod curves;
 mod experiment;
@@ -52,6 +53,7 @@ mod search;
 mod spectrum;
 pub mod summary;
 
+pub use answer::{Answer, is_balanced};
 pub use experiment::Proposal;
 pub use fit::{Fit, Fitter, free_parameters};
 pub use gap::{ChannelGap, Gap};

@@ -1,15 +1,16 @@
 //! How much of a rest is noise.
 
-use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
+use axis_sim::{Axis, ClosedLoop, Replay, ReplayError, Trace};
 use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::answer::{floor, turned};
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
 use crate::hidden::Noise;
 use crate::interval::Spread;
 use crate::known::{known_deviations, tolerances};
 use crate::level::{noise_at, shows_noise, upper_level};
-use crate::model::{LogSet, Prepared, State};
+use crate::model::{LogSet, State};
 use crate::projector::Projector;
 use crate::spectrum::{Amplitudes, Layout};
 
@@ -26,7 +27,7 @@ pub(crate) fn sensor_noise(
 ) -> Option<Noise> {
     let mut axis = machine.with_known(&state.shares);
     axis.effects.extend_from_slice(&state.effects);
-    shows_noise(&axis).then(|| noise_at(&axis, set, &set.rest(traces), traces))
+    shows_noise(&axis, set).then(|| noise_at(&axis, set, &set.rest(traces), traces))
 }
 
 /// Noise alone in a channel.
@@ -76,7 +77,10 @@ pub(crate) fn floors(
     best: &Rest,
 ) -> Result<Vec<Floor>, ReplayError> {
     let mut axis = machine.with_known(&state.shares);
-    if !shows_noise(&axis) {
+    if set.is_balanced() {
+        return Ok(vec![floor(&set.balances())]);
+    }
+    if !shows_noise(&axis, set) {
         let samples: usize = set.logs.iter().map(|l| l.log.len()).sum();
         let white = |c: usize| Floor {
             rms: upper_level(set, best, c),
@@ -86,14 +90,13 @@ pub(crate) fn floors(
     }
     axis.effects.extend_from_slice(&state.effects);
     let closed_loop = ClosedLoop::new(&axis)?.without_noise();
-    let quiet = |log: &Prepared| log.replay.follow(&closed_loop, |_| ());
-    let quiet: Vec<Trace> = (set.logs.par_iter().map(quiet)).collect::<Result<_, _>>()?;
+    let replays: Vec<&Replay> = set.replays();
+    let quiet = |replay: &&Replay| replay.follow(&closed_loop, |_| ());
+    let quiet: Vec<Trace> = (replays.par_iter().map(quiet)).collect::<Result<_, _>>()?;
     let noise = noise_at(&axis, set, best, &quiet);
     let mut alone: Vec<Vec<Vec<f64>>> = vec![Vec::new(); set.channels.len()];
-    for (seed, (log, without)) in set.logs.iter().zip(&quiet).enumerate() {
-        let with = log
-            .replay
-            .follow(&closed_loop, noise.sensors(seed as u64))?;
+    for (seed, (replay, without)) in replays.iter().zip(&quiet).enumerate() {
+        let with = replay.follow(&closed_loop, noise.sensors(seed as u64))?;
         for (series, name) in alone.iter_mut().zip(&set.channels) {
             let pair = with.channel(name).zip(without.channel(name));
             let Some((a, b)) = pair else { continue };
@@ -244,11 +247,11 @@ pub(crate) fn noise_on(
     let mut axis = machine.with_known(&state.shares);
     axis.effects.extend_from_slice(&state.effects);
     let closed_loop = ClosedLoop::new(&axis)?.without_noise();
-    let run = |(log_seed, log): (usize, &Prepared)| {
+    let run = |(log_seed, replay): (usize, &Replay)| {
         let sensors = noise.sensors(1000 * seed + log_seed as u64 + 1);
-        log.replay.follow(&closed_loop, sensors)
+        replay.follow(&closed_loop, sensors)
     };
-    let noisy = set.logs.iter().enumerate().map(run);
+    let noisy = set.replays().into_iter().enumerate().map(run);
     let noisy: Vec<Trace> = noisy.collect::<Result<_, ReplayError>>()?;
     Ok(set.difference(&noisy, quiet, 1.0))
 }
@@ -256,17 +259,25 @@ pub(crate) fn noise_on(
 /// Noise runs in which parameters' spread is seen.
 const DRAWN: u64 = 16;
 
+/// Times that the rest of a torque balance is drawn anew: there they cost nothing.
+const TURNED: u64 = 64;
+
 /// The 97.5 % point of Student's t with that many degrees of freedom, over that of
 /// the normal distribution.
 const OF_DRAWN: f64 = 2.120 / 1.960;
 
-/// Runs with simulated noise alone, of sensors as noisy as the logs show. None of a
-/// rigid machine, whose sensors are not in its logs.
+/// Runs with simulated noise alone, of sensors as noisy as the logs show; of a torque balance,
+/// what it leaves, drawn anew. None of a rigid machine, whose sensors are not in its logs.
 ///
 /// # Errors
 /// [`ReplayError`] where the machine does not run with noise.
 pub(crate) fn drawn(fitter: &Fitter<'_>, fit: &Fit) -> Result<Vec<Amplitudes>, ReplayError> {
     let (machine, set) = (fitter.machine, fitter.set);
+    if set.is_balanced() {
+        let rest = set.rest(&fit.traces);
+        let run = |seed| set.amplitudes(&turned(&rest, seed));
+        return Ok((0..TURNED).into_par_iter().map(run).collect());
+    }
     let Some(noise) = sensor_noise(machine, set, &fit.state, &fit.traces) else {
         return Ok(Vec::new());
     };

@@ -118,6 +118,14 @@ pub(super) fn log(root: &Fields<'_>) -> Result<Mapping, AxisFileError> {
     })
 }
 
+/// `[balance]`: cut-off frequency of the torque balance, Hz.
+pub(super) fn balance_cutoff(root: &Fields<'_>) -> Result<Option<f64>, AxisFileError> {
+    match root.optional_table("balance")? {
+        Some(f) => f.optional_number("cutoff"),
+        None => Ok(None),
+    }
+}
+
 /// A control period has only so many internal steps.
 pub(super) fn check_step(f: &Fields<'_>, period: f64, step: f64) -> Result<(), AxisFileError> {
     if substeps_of(period, step) <= f64::from(MOST_SUBSTEPS) {

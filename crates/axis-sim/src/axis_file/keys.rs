@@ -52,6 +52,7 @@ pub(super) fn keys(layout: &Layout, freedom: Freedom, effort: Effort) -> Vec<Key
         table("experiment", EXPERIMENT),
         Key::of_table("tolerances", tolerances(layout)),
         table("log", LOG),
+        table("balance", BALANCE),
         Key::of_tables("trajectory", trajectory(freedom)),
         tables("load", KIND),
         tables("effects", ENTRY),
@@ -149,6 +150,9 @@ const LOG: &[Key] = &[
     quantity("sample_rate", &FREQUENCY, 1e-3, 1e8),
     tables("column", COLUMN),
 ];
+
+/// Where the cut-off is left out it is taken from the log.
+const BALANCE: &[Key] = &[quantity("cutoff", &FREQUENCY, 1e-3, 1e5).optional()];
 
 const COLUMN: &[Key] = &[
     text("source"),
