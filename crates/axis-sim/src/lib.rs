@@ -112,8 +112,8 @@ mod six_digits;
 mod work;
 
 pub use axis::{
-    Axis, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, Range, SampleRanges, Sensors,
-    Simulation, Stroke, Tolerances,
+    Axis, BalanceSettings, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, Range,
+    SampleRanges, Sensors, Simulation, Stroke, Tolerances,
 };
 pub use axis_file::{AxisFileError, Registry};
 pub use balance::{Balance, BalanceError, BalanceQuality};

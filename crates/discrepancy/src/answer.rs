@@ -1,8 +1,7 @@
 //! How a model answers a log: by its closed loop, or by its torque balance.
 
-use axis_log::Log;
 use axis_sim::effects::ActiveEffect;
-use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace, reference_in};
+use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -17,12 +16,6 @@ pub enum Answer {
     /// The measured motion asks for a motor torque, which is compared with what the log
     /// shows of it: for all others.
     Balance(Box<Balance>),
-}
-
-/// Whether logs of a machine are answered by torque balance: where its file has no
-/// controller, or not every log has a reference.
-pub fn is_balanced<'a>(machine: &Axis, logs: impl IntoIterator<Item = &'a Log>) -> bool {
-    !machine.has_control() || logs.into_iter().any(|log| reference_in(log).is_err())
 }
 
 /// Parts of a log that are turned round, or not, as a whole.

@@ -53,7 +53,7 @@ mod search;
 mod spectrum;
 pub mod summary;
 
-pub use answer::{Answer, is_balanced};
+pub use answer::Answer;
 pub use experiment::Proposal;
 pub use fit::{Fit, Fitter, free_parameters};
 pub use gap::{ChannelGap, Gap};

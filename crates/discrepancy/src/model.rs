@@ -9,7 +9,7 @@ use axis_sim::{
 };
 use rayon::prelude::*;
 
-use crate::answer::{Answer, is_balanced};
+use crate::answer::Answer;
 use crate::spectrum::{Amplitudes, Layout};
 
 /// A log, ready to be compared with simulations of it.
@@ -69,7 +69,8 @@ impl State {
 }
 
 impl LogSet {
-    /// Takes logs with their names and sampling periods, for this machine.
+    /// Takes logs with their names and sampling periods, for this machine. One without a
+    /// control is compared by torque balance.
     ///
     /// # Errors
     /// [`ReplayError::Log`] where a channel that must be there is missing.
@@ -84,7 +85,7 @@ impl LogSet {
         logs: Vec<(String, Log, f64)>,
         machine: &Axis,
     ) -> Result<Self, ReplayError> {
-        if is_balanced(machine, logs.iter().map(|(_, log, _)| log)) {
+        if !machine.has_control() {
             return Self::balanced(&logs, machine);
         }
         let compared = |c: &LogChannel| matches!(c.part, ChannelPart::Sensed | ChannelPart::Made);
@@ -177,6 +178,20 @@ impl LogSet {
     /// The replays of its logs; none of logs that are balanced.
     pub(crate) fn replays(&self) -> Vec<&Replay> {
         self.logs.iter().filter_map(|l| l.answer.replay()).collect()
+    }
+
+    /// What was decided for the torque balance of each log, in words.
+    pub fn notes(&self) -> Vec<String> {
+        let notes = self.logs.iter().filter_map(|log| {
+            let balance = log.answer.balance()?;
+            Some(balance.quality().sentence(&log.name))
+        });
+        notes.collect()
+    }
+
+    /// How the model answers these logs, as the file of results has it.
+    pub fn answer(&self) -> &'static str {
+        self.logs.first().map_or("", |log| log.answer.name())
     }
 
     /// Whether its logs are answered by torque balance.

@@ -45,6 +45,10 @@ pub struct Options {
     /// Search anew, and never name this effect (may be repeated)
     #[arg(long, value_name = "NAME")]
     reject: Vec<String>,
+    /// Compare by torque balance, as if the axis file had no [control]: measured motion in,
+    /// the torque that the model needs for it out
+    #[arg(long, conflicts_with = "summary")]
+    balance: bool,
     /// Threads, 0 for all cores; results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
@@ -55,7 +59,10 @@ pub fn command(options: &Options) -> Result<()> {
     let _ = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build_global();
-    let machine = Axis::read(&options.axis)?;
+    let mut machine = Axis::read(&options.axis)?;
+    if options.balance {
+        machine = machine.without_control().into_diagnostic()?;
+    }
     let default = || Path::new("runs").join(&machine.name).join("discover");
     let out = options.out.clone().unwrap_or_else(default);
     match &options.summary {
@@ -78,7 +85,11 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     let fit = LogSet::new(fit, machine).into_diagnostic()?;
     let check = LogSet::new(check, machine).into_diagnostic()?;
     notes.iter().try_for_each(say)?;
-    say(format!("channels compared: {}", fit.channels.join(", ")))?;
+    say(format!(
+        "{}; channels compared: {}",
+        fit.answer(),
+        fit.channels.join(", ")
+    ))?;
 
     ready(out)?;
     let text = moved(&read_text(&options.axis)?, &options.axis, out)?;
@@ -166,10 +177,14 @@ fn read_all(
     notes: &mut Vec<String>,
 ) -> Result<Vec<(String, Log, f64)>> {
     let mapping = &machine.log;
-    let needed = [machine.reference_channel(), machine.position_channel()];
+    // A torque balance says itself what it needs.
+    let needed: &[&str] = match machine.has_control() {
+        true => &[machine.reference_channel(), machine.position_channel()],
+        false => &[],
+    };
     let one = |path: &PathBuf| {
         let name = path.display().to_string();
-        let log = read_log(path, mapping, &needed).into_diagnostic()?;
+        let log = read_log(path, mapping, needed).into_diagnostic()?;
         let period = check_log(&name, &log, machine).into_diagnostic()?;
         let (log, note) = from_rest(&name, log, period, machine).into_diagnostic()?;
         notes.extend(note);

@@ -7,7 +7,7 @@ use axis_log::{ColumnMap, Mapping};
 use super::error::AxisFileError;
 use super::fields::Fields;
 use crate::SixDigits;
-use crate::axis::{Axis, Range, Stroke, Tolerances};
+use crate::axis::{Axis, BalanceSettings, Range, Stroke, Tolerances};
 use crate::effects::{ActiveEffect, Effect, EffectParameter, Scales};
 use crate::mechanism::Freedom;
 use crate::part::Key;
@@ -118,12 +118,15 @@ pub(super) fn log(root: &Fields<'_>) -> Result<Mapping, AxisFileError> {
     })
 }
 
-/// `[balance]`: cut-off frequency of the torque balance, Hz.
-pub(super) fn balance_cutoff(root: &Fields<'_>) -> Result<Option<f64>, AxisFileError> {
-    match root.optional_table("balance")? {
-        Some(f) => f.optional_number("cutoff"),
-        None => Ok(None),
-    }
+/// `[balance]`: settings of the torque balance; what is left out is taken from the log.
+pub(super) fn balance(root: &Fields<'_>) -> Result<BalanceSettings, AxisFileError> {
+    let Some(f) = root.optional_table("balance")? else {
+        return Ok(BalanceSettings::default());
+    };
+    Ok(BalanceSettings {
+        cutoff: f.optional_number("cutoff")?,
+        slowest: f.optional_number("slowest")?,
+    })
 }
 
 /// A control period has only so many internal steps.

@@ -119,7 +119,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         effects: Vec::new(),
         tolerances: Tolerances::all(0.01),
         log: extras::log(&root)?,
-        balance_cutoff: extras::balance_cutoff(&root)?,
+        balance: extras::balance(&root)?,
         fingerprint: String::new(),
         mechanism,
         actuator,

@@ -102,13 +102,14 @@ impl TorqueChannel {
         }
     }
 
-    /// Time by which it shows a torque before that acts, s; `period` is that of the log.
+    /// Time by which it shows a torque before that acts, and time constant with which the
+    /// torque follows, s; `period` is that of the log.
     ///
     /// A command acts from one sample to the next, so half a period late in the mean, and
-    /// by the actuator's delay and lag later still.
-    pub fn early(&self, axis: &Axis, period: f64) -> f64 {
+    /// by the actuator's delay later still.
+    pub fn ahead(&self, axis: &Axis, period: f64) -> [f64; 2] {
         if self.shows != Shows::Command {
-            return 0.0;
+            return [0.0; 2];
         }
         let held = match axis.has_control() {
             true => axis.period,
@@ -122,7 +123,7 @@ impl TorqueChannel {
             }
             _ => 0.0,
         };
-        0.5 * held + delay + lag
+        [0.5 * held + delay, lag]
     }
 }
 

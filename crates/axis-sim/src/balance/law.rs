@@ -20,7 +20,7 @@ const ROUNDS: usize = 30;
 /// Motor torque, N·m, that `axis` (its effects made) needs at each sample.
 ///
 /// ```text
-/// T + T_hooks(θ, T) = J_m α + r (m a + F_friction(v, z) + F_loads(x, v, t))
+/// T + T_hooks(θ, T) = Σ J_i ((1 − s_i) α + s_i a / r) + r (m a + F_friction(v, z) + F_loads(x, v, t))
 /// ```
 pub(super) fn torque(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> Vec<f64> {
     let shifted = shifted(hooks, motions, h);
@@ -28,13 +28,28 @@ pub(super) fn torque(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> V
     let motor = &motions.motor;
     let r = axis.travel_per_radian();
     let mass = axis.mechanism.load_inertia();
-    let inertia = axis.mechanism.total_inertia() - mass * r * r;
+    // What turns along a screw lags the motor by a share of the wind-up.
+    let rotating = axis.mechanism.rotating(middle(&load.position));
+    let lagging: f64 = rotating
+        .iter()
+        .map(|[inertia, share]| inertia * share)
+        .sum();
+    let inertia = axis.mechanism.total_inertia() - mass * r * r - lagging;
     let forces = forces(axis, hooks, load, h);
     let one = |(k, force): (usize, f64)| {
-        let all = inertia * motor.acceleration[k] + r * (mass * load.acceleration[k] + force);
+        let of_load = load.acceleration[k];
+        let rotation = inertia * motor.acceleration[k] + lagging * of_load / r;
+        let all = rotation + r * (mass * of_load + force);
         own(hooks, motor.position[k], all)
     };
     forces.into_iter().enumerate().map(one).collect()
+}
+
+/// Middle of a course.
+fn middle(positions: &[f64]) -> f64 {
+    let ends = positions.iter();
+    let [low, high] = ends.fold([f64::MAX, f64::MIN], |[a, b], x| [a.min(*x), b.max(*x)]);
+    0.5 * (low + high)
 }
 
 /// The load's course with errors of the transmission's kinematics, where only the motor's

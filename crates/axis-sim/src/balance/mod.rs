@@ -31,7 +31,7 @@ use crate::effects::ActiveEffect;
 use crate::replay::{Probe, ReplayError, Trace};
 use channel::TorqueChannel;
 pub use error::BalanceError;
-use filter::{LowPass, ahead};
+use filter::{LowPass, ahead, derivative};
 use law::{Motions, torque};
 pub use quality::BalanceQuality;
 
@@ -74,10 +74,14 @@ impl Balance {
             false => 0.0,
         };
         let needed = torque(&axis, &hooks, &self.motions, self.period);
-        let shown = needed.iter().map(|t| per_torque * t + zero).collect();
+        let [early, lag] = self.channel.ahead(&axis, self.period);
+        // T + τ Ṫ makes the torque T of an actuator with the time constant τ.
+        let rates = derivative(&needed, self.period);
+        let pairs = needed.iter().zip(rates);
+        let shown = pairs.map(|(t, rate)| per_torque * (t + lag * rate) + zero);
         // A position that is logged late shows the motion of before.
-        let early = self.channel.early(&axis, self.period) + hooks.clock_offset;
-        let smooth = self.filter.apply(&ahead(shown, early / self.period));
+        let by = (early + hooks.clock_offset) / self.period;
+        let smooth = self.filter.apply(&ahead(shown.collect(), by));
         let mut compared: Vec<f64> = self.kept.iter().map(|&k| smooth[k]).collect();
         if let Some(Probe::Load(force)) = probe {
             let by = per_torque * axis.travel_per_radian();

@@ -13,7 +13,8 @@ pub struct BalanceQuality {
     pub motion_cutoff: f64,
     /// Share by which noise of the acceleration draws an inertia towards zero.
     pub attenuation: f64,
-    /// Speed below which the sensor does not tell motion from rest, m/s or rad/s.
+    /// Speed up to which nothing is compared, m/s or rad/s: that which the sensor tells from
+    /// rest, or the axis file's `slowest`.
     pub standstill: f64,
     /// Period of the compared samples, s.
     pub compared_period: f64,
@@ -34,7 +35,7 @@ impl BalanceQuality {
             false => "",
         };
         format!(
-            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz (motion at {:.3} Hz); noise of the acceleration takes {drawn:.2e} % from an inertia{beware}; {:.1} % of the samples are left out, where the speed is below {:.2e} (what its sensor tells from rest) or at the ends",
+            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz (motion at {:.3} Hz); noise of the acceleration takes {drawn:.2e} % from an inertia{beware}; {:.1} % of the samples are left out, where the speed is below {:.2e} (what its sensor tells from rest, or the axis file's slowest) or at the ends",
             self.channel,
             self.motion.join(" and "),
             self.cutoff,

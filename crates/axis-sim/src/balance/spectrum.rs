@@ -1,7 +1,7 @@
 //! What the spectrum of a measured motion says: its noise, and up to which frequency its
 //! acceleration can be had.
 
-use std::f64::consts::{LN_2, TAU};
+use std::f64::consts::{LN_2, PI, TAU};
 
 use realfft::RealFftPlanner;
 
@@ -22,6 +22,14 @@ impl Source {
             Self::Speed => 1,
         }
     }
+}
+
+/// ∫ f^p / (1 + (f/f_c)⁸)² df from 0 on: what the low-pass of a balance leaves of a density
+/// that rises with f^p, p = 0, 2 or 4. With a = (p + 1)/8 it is
+/// f_c^(p+1) (1 − a) π / (8 sin πa).
+pub(super) fn passed(power: i32, cutoff: f64) -> f64 {
+    let a = f64::from(power + 1) / 8.0;
+    cutoff.powi(power + 1) * (1.0 - a) * PI / (8.0 * (PI * a).sin())
 }
 
 /// Power spectral density of a series' differences, one-sided, and what divides it to give
@@ -139,25 +147,22 @@ impl Noise {
         }
     }
 
-    /// Mean square of the acceleration's noise below a frequency, of a density.
-    fn acceleration(&self, frequency: f64, density: f64) -> f64 {
+    /// Mean square of the acceleration's noise behind a low-pass, of a density.
+    fn acceleration(&self, cutoff: f64, density: f64) -> f64 {
         let order = self.source.order();
-        let power = f64::from(2 * order + 1);
-        density * TAU.powi(2 * order) * frequency.powf(power) / power
+        density * TAU.powi(2 * order) * passed(2 * order, cutoff)
     }
 
-    /// Least estimate of the acceleration's noise below a frequency, RMS, m/s² or rad/s².
+    /// Least estimate of the acceleration's noise behind a low-pass, RMS, m/s² or rad/s².
     pub fn least_acceleration(&self, frequency: f64) -> f64 {
         self.acceleration(frequency, self.density[0]).sqrt()
     }
 
-    /// Noise of the speed below a frequency, RMS, m/s or rad/s.
+    /// Noise of the speed behind a low-pass, RMS, m/s or rad/s.
     pub fn speed(&self, frequency: f64) -> f64 {
-        let mean_square = match self.source {
-            Source::Position => self.density[1] * TAU.powi(2) * frequency.powi(3) / 3.0,
-            Source::Speed => self.density[1] * frequency,
-        };
-        mean_square.sqrt()
+        let order = self.source.order() - 1;
+        let density = self.density[1] * TAU.powi(2 * order);
+        (density * passed(2 * order, frequency)).sqrt()
     }
 
     /// Share by which noise of the acceleration draws an inertia towards zero, where all
@@ -192,5 +197,24 @@ impl Noise {
             }
         }
         best.1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::passed;
+
+    #[test]
+    fn what_passes_is_the_integral() {
+        for power in [0, 2, 4] {
+            let step = 1e-4;
+            let at = |k: u32| {
+                let x = (f64::from(k) + 0.5) * step;
+                x.powi(power) / (1.0 + x.powi(8)).powi(2) * step
+            };
+            let sum: f64 = (0..100_000).map(at).sum();
+            let ratio = passed(power, 3.0) / (3.0_f64.powi(power + 1) * sum);
+            assert!((ratio - 1.0).abs() < 1e-6, "{power}: {ratio}");
+        }
     }
 }

@@ -156,7 +156,8 @@ pub(crate) fn judged(
     let discovery = Discovery {
         schema: 1,
         axis: name,
-        notes: slack_notes(machine, found),
+        answer: found.fit_logs.answer().to_owned(),
+        notes: notes(machine, found),
         sentence: sentence(
             verdict,
             &effects,
@@ -272,6 +273,20 @@ fn effect_found(
             .collect(),
     }
 }
+
+/// What must be known of the logs.
+fn notes(machine: &Axis, found: &Found) -> Vec<String> {
+    let sets = [&found.fit_logs, &found.check_logs];
+    let mut notes: Vec<String> = sets.iter().flat_map(|set| set.notes()).collect();
+    if !notes.is_empty() {
+        notes.push(FLOOR.to_owned());
+    }
+    notes.extend(slack_notes(machine, found));
+    notes
+}
+
+/// How the noise of a torque balance is to be read.
+const FLOOR: &str = "the noise given of a torque balance is the least that the spectra of torque and motion leave possible, as no controller is known: a rest above it may be noise";
 
 /// Where a gap is so large that the logs do not say where the screw lay in it at their
 /// start.

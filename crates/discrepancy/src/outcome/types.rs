@@ -151,6 +151,11 @@ pub struct Recalibrated {
     pub tolerance: f64,
 }
 
+/// Of files from before there was another way.
+fn replayed() -> String {
+    "closed-loop-replay".to_owned()
+}
+
 /// What `discovery.json` holds.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Discovery {
@@ -158,6 +163,9 @@ pub struct Discovery {
     pub schema: u32,
     /// Name of the axis.
     pub axis: String,
+    /// How the model was compared with the logs: `closed-loop-replay` or `torque-balance`.
+    #[serde(default = "replayed")]
+    pub answer: String,
     /// What must be known of the logs beside the verdict; whoever reads them adds what
     /// was done to them.
     pub notes: Vec<String>,
