@@ -57,8 +57,7 @@ fn a_push_has_the_published_friction() {
     let Some(folder) = folder("rack", FROM) else {
         return;
     };
-    // As published.
-    let machine = axis("rack-push", "\n[balance]\ncutoff_hz = 30\n");
+    let machine = axis("rack-push", "");
     let log = joined(&folder);
     let period = (log.time()[log.len() - 1] - log.time()[0]) / (log.len() - 1) as f64;
     let set = prepared(&machine, vec![("push".to_owned(), log, period)]);
