@@ -7,14 +7,14 @@ use axis_log::Mapping;
 use trajectories::{Limits, SCurve, TrajectoryError};
 
 use crate::actuator::{Actuator, Surroundings};
-use crate::control::Control;
+use crate::control::{Control, absent};
 use crate::cycle::Cycle;
 use crate::effects::{self, ActiveEffect, Hooks, TableState};
 use crate::error::SetupError;
 use crate::friction::Friction;
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism, Way};
-use crate::part::{Known, Part, Role};
+use crate::part::{Known, Part, PartError, Role, Values};
 use crate::sensor::Sensor;
 
 /// Tracking error at which a run is given up where the axis file does not say, m.
@@ -35,7 +35,7 @@ pub struct Axis {
     pub mechanism: Part<dyn Mechanism>,
     /// What makes a torque of the controller's command.
     pub actuator: Part<dyn Actuator>,
-    /// Position and speed control.
+    /// Position and speed control ([`Axis::has_control`]).
     pub control: Part<dyn Control>,
     /// Friction between load and guides.
     pub friction: Part<Friction>,
@@ -43,7 +43,7 @@ pub struct Axis {
     pub loads: Vec<Part<dyn Load>>,
     /// Position sensors.
     pub sensors: Sensors,
-    /// Control period, s.
+    /// Control period, s; 1 ms where there is no control.
     pub period: f64,
     /// Tracking error at which a run is given up, m or rad; infinite for none.
     pub following_error_limit: f64,
@@ -63,6 +63,8 @@ pub struct Axis {
     pub tolerances: Tolerances,
     /// How the columns of logs of this axis are called.
     pub log: Mapping,
+    /// Settings of its torque balance.
+    pub balance: BalanceSettings,
     /// Hash of every value in SI units: the same for files that differ only
     /// in comments, units or order.
     pub fingerprint: String,
@@ -87,6 +89,16 @@ pub enum LoadSensor {
     Missing,
     /// One with errors.
     Fitted(Part<dyn Sensor>),
+}
+
+/// Settings of the torque balance of logs ([`crate::balance`]).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BalanceSettings {
+    /// Cut-off frequency of what is compared, Hz; taken from each log where there is none.
+    pub cutoff: Option<f64>,
+    /// Speed of the load up to which nothing is compared, m/s or rad/s; where there is none,
+    /// that which a log's sensor tells from rest.
+    pub slowest: Option<f64>,
 }
 
 /// Settings of the simulation.
@@ -195,6 +207,21 @@ impl Axis {
     /// How the load moves.
     pub fn freedom(&self) -> Freedom {
         self.mechanism.freedom()
+    }
+
+    /// Whether its controller is known. One whose file leaves `[control]` out can be balanced
+    /// ([`crate::balance`]), and not simulated in a closed loop.
+    pub fn has_control(&self) -> bool {
+        !std::ptr::eq(self.control.kind(), &absent::KIND)
+    }
+
+    /// The same axis as if its controller were not known.
+    ///
+    /// # Errors
+    /// None that a file's axis can have.
+    pub fn without_control(mut self) -> Result<Self, PartError> {
+        self.control = Part::new(&absent::KIND, Values::default())?;
+        Ok(self)
     }
 
     /// Travel of the load per radian of the motor, r, m/rad or rad/rad.

@@ -8,11 +8,12 @@ use trajectories::{Motion, Setpoint};
 
 use crate::actuator::Actuating;
 use crate::axis::{Axis, LoadSensor};
-use crate::control::{Controller, Situation};
+use crate::control::{Controller, Situation, absent};
 use crate::cycle::{Command, Cycle, Measured, Outcome, Stop, StopReason};
 use crate::effects::Hooks;
 use crate::error::SetupError;
 use crate::mechanism::Way;
+use crate::part::PartError;
 use crate::plant::{Assembly, Plant, Running, Start};
 use crate::sensor::Sensing;
 use crate::work::{MOST_STEPS, check_period, cycles_of, substeps};
@@ -134,6 +135,9 @@ impl ClosedLoop {
         disturb: impl FnOnce(&mut Hooks),
     ) -> Result<Self, SetupError> {
         check_period(axis.period)?;
+        if !axis.has_control() {
+            return Err(PartError::together(absent::WHAT, absent::VALID).into());
+        }
         let (axis, mut hooks) = axis.with_effects()?;
         disturb(&mut hooks);
         let substeps = substeps(&axis);

@@ -38,7 +38,8 @@
 //!   samples that a network learns from.
 //! - [`effects`]: what a model may lack, as changes of parameters by their role and hooks
 //!   in the loop.
-//! - [`Replay`]: a log's reference through an axis with effects.
+//! - [`Replay`]: a log's reference through an axis with effects; [`balance`]: the motor
+//!   torque that an axis with effects needs for a log's measured motion.
 //!
 //! # Units
 //! SI inside: m, rad, s, N, N·m, A, V; a load that turns has rad for m, N·m for N and kg·m²
@@ -90,6 +91,7 @@
 pub mod actuator;
 mod axis;
 mod axis_file;
+pub mod balance;
 mod belief;
 mod channels;
 mod closed_loop;
@@ -110,10 +112,11 @@ mod six_digits;
 mod work;
 
 pub use axis::{
-    Axis, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, Range, SampleRanges, Sensors,
-    Simulation, Stroke, Tolerances,
+    Axis, BalanceSettings, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, Range,
+    SampleRanges, Sensors, Simulation, Stroke, Tolerances,
 };
 pub use axis_file::{AxisFileError, Registry};
+pub use balance::{Balance, BalanceError, BalanceQuality};
 pub use belief::PositionErrors;
 pub use channels::{CHANNELS, ChannelPart, LogChannel, channels, position_in, reference_in};
 pub use closed_loop::{ClosedLoop, LoopState};

@@ -7,7 +7,9 @@ use axis_log::quality::{
 };
 use axis_log::{Log, unit_of};
 use axis_sim::mechanism::Freedom;
-use axis_sim::{Axis, ChannelPart, channels, position_in, reference_in};
+use axis_sim::{
+    Axis, Balance, BalanceError, ChannelPart, ReplayError, channels, position_in, reference_in,
+};
 use thiserror::Error;
 
 /// Why a log cannot be used. The message names the file first.
@@ -21,6 +23,14 @@ pub enum IntakeError {
         file: String,
         /// What is wrong.
         reason: SamplingError,
+    },
+    /// No torque balance can be made of it.
+    #[error("{file}: {reason}")]
+    Balance {
+        /// The log.
+        file: String,
+        /// What it lacks.
+        reason: BalanceError,
     },
     /// A channel that never changes.
     #[error(
@@ -144,6 +154,9 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, IntakeErr
         file: file(),
         reason,
     })?;
+    if !machine.has_control() {
+        return check_balanced(file(), log, sampling.period, machine);
+    }
     let (Ok(reference), Ok(position)) = (reference_in(log), position_in(log)) else {
         return Ok(sampling.period);
     };
@@ -286,6 +299,34 @@ pub fn exact_channels(machine: &Axis) -> Vec<&'static str> {
     given.map(|c| c.name(machine)).chain([added]).collect()
 }
 
+/// The same for a torque balance, which needs no reference: a motion in any direction, and
+/// what made it.
+fn check_balanced(
+    file: String,
+    log: &Log,
+    period: f64,
+    machine: &Axis,
+) -> Result<f64, IntakeError> {
+    let balance = match Balance::new(log, period, machine) {
+        Ok(balance) => balance,
+        Err(ReplayError::Balance(reason)) => return Err(IntakeError::Balance { file, reason }),
+        // What else there may be is of the axis, and is said where that is set up.
+        Err(_) => return Ok(period),
+    };
+    let quality = balance.quality();
+    let used = quality.motion.iter().chain([&quality.channel]);
+    let constant = constant_channels(log);
+    if let Some(channel) = used
+        .copied()
+        .find(|name| constant.iter().any(|c| c == name))
+    {
+        let channel = channel.to_owned();
+        return Err(IntakeError::Constant { file, channel });
+    }
+    on_stroke(&file, log, machine)?;
+    Ok(period)
+}
+
 /// A log as a replay can begin it, and what was done for that, in words.
 ///
 /// A ball-screw loop begins at rest: of a log that starts in motion, what lies
@@ -300,7 +341,9 @@ pub fn from_rest(
     period: f64,
     machine: &Axis,
 ) -> Result<(Log, Option<String>), IntakeError> {
-    let Ok(reference) = reference_in(&log) else {
+    // A torque balance begins with the measured motion.
+    let reference = reference_in(&log).ok().filter(|_| machine.has_control());
+    let Some(reference) = reference else {
         return Ok((log, None));
     };
     let few = ((START_TIME / period).round() as usize).clamp(1, reference.len().max(2) - 1);

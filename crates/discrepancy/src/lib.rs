@@ -28,6 +28,7 @@
 //! # What this crate knows nothing of
 //! Files, terminals and pictures. It simulates nothing itself.
 
+mod answer;
 mod bounded;
 mod curves;
 mod experiment;
@@ -51,6 +52,7 @@ mod sensor_noise;
 mod spectrum;
 pub mod summary;
 
+pub use answer::Answer;
 pub use experiment::Proposal;
 pub use fit::{Fit, Fitter, free_parameters};
 pub use foresight::{Foreseen, Foresight, Hypothesis, Imitation};
@@ -66,7 +68,7 @@ pub use outcome::{
     Verdict, discovery, judged,
 };
 pub use search::{
-    Alike, Found, Named, ONE_CLASS, Refused, Replaced, RunnerUp, SearchError, Settings,
+    Alike, Found, Named, ONE_CLASS, Reason, Refused, Replaced, RunnerUp, SearchError, Settings,
     SettingsError, search, search_with,
 };
 pub use sensor_noise::SensorNoise;

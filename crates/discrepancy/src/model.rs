@@ -4,11 +4,12 @@ use axis_log::Log;
 use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Need, OnsetForm, Scales};
 use axis_sim::part::Role;
 use axis_sim::{
-    Axis, ChannelPart, ClosedLoop, LogChannel, Probe, Replay, ReplayError, Trace, position_in,
-    reference_in,
+    Axis, Balance, ChannelPart, ClosedLoop, LogChannel, Probe, Replay, ReplayError, Trace,
+    position_in, reference_in,
 };
 use rayon::prelude::*;
 
+use crate::answer::Answer;
 use crate::spectrum::{Amplitudes, Layout};
 
 /// A log, ready to be compared with simulations of it.
@@ -18,11 +19,11 @@ pub struct Prepared {
     pub name: String,
     /// Sampling period, s.
     pub period: f64,
-    /// Its reference.
-    pub replay: Replay,
+    /// How a model answers it.
+    pub answer: Answer,
     /// The channels compared, in the order of [`LogSet::channels`].
     pub measured: Vec<Vec<f64>>,
-    /// The log itself.
+    /// The log itself; of a torque balance, as it is compared.
     pub log: Log,
     /// Largest gap between screw and nut that is taken up before the log counts, m.
     pub taken_up: f64,
@@ -86,7 +87,8 @@ pub(crate) fn is_form_of(active: &ActiveEffect, other: &ActiveEffect) -> bool {
 }
 
 impl LogSet {
-    /// Takes logs with their names and sampling periods, for this machine.
+    /// Takes logs with their names and sampling periods, for this machine. One without a
+    /// control is compared by torque balance.
     ///
     /// # Errors
     /// [`ReplayError::Log`] where a channel that must be there is missing.
@@ -101,6 +103,9 @@ impl LogSet {
         logs: Vec<(String, Log, f64)>,
         machine: &Axis,
     ) -> Result<Self, ReplayError> {
+        if !machine.has_control() {
+            return Self::balanced(&logs, machine);
+        }
         let compared = |c: &LogChannel| matches!(c.part, ChannelPart::Sensed | ChannelPart::Made);
         let simulated = axis_sim::channels(machine).into_iter().filter(compared);
         let everywhere = |name: &&str| logs.iter().all(|(_, log, _)| log.has(name));
@@ -112,7 +117,7 @@ impl LogSet {
             let channel = |name: &&str| Ok(relative(name, log.channel(name)?));
             Ok(Prepared {
                 taken_up: taken_up(&log, machine),
-                replay: Replay::new(&log, period)?,
+                answer: Answer::Replay(Replay::new(&log, period)?),
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 measured: channels
                     .iter()
@@ -153,6 +158,71 @@ impl LogSet {
         })
     }
 
+    /// Logs that are answered by torque balance: of the one channel that shows it.
+    fn balanced(logs: &[(String, Log, f64)], machine: &Axis) -> Result<Self, ReplayError> {
+        let only: Vec<(&Log, f64)> = logs.iter().map(|(_, log, h)| (log, *h)).collect();
+        let balances = Balance::of_logs(&only, machine)?;
+        let channels: Vec<&'static str> = balances.iter().map(Balance::channel).take(1).collect();
+        let prepare = |((name, ..), balance): (&(String, Log, f64), Balance)| {
+            let log = balance.compared().clone();
+            let channel = |name: &&str| Ok(log.channel(name)?.to_vec());
+            Ok(Prepared {
+                name: name.clone(),
+                period: balance.compared_period(),
+                measured: channels
+                    .iter()
+                    .map(channel)
+                    .collect::<Result<_, ReplayError>>()?,
+                taken_up: 0.0,
+                defect: vec![vec![0.0; log.len()]; channels.len()],
+                log,
+                answer: Answer::Balance(Box::new(balance)),
+            })
+        };
+        let prepared = logs.iter().zip(balances).map(prepare);
+        let logs: Vec<Prepared> = prepared.collect::<Result<_, ReplayError>>()?;
+        let sizes: Vec<(usize, f64)> = logs.iter().map(|l| (l.log.len(), l.period)).collect();
+        let fitted: Vec<usize> = (0..channels.len()).collect();
+        Ok(Self {
+            layout: Layout::new(fitted.len(), &sizes),
+            logs,
+            channels,
+            fitted,
+        })
+    }
+
+    /// The torque balances of its logs; none of logs that are replayed.
+    pub fn balances(&self) -> Vec<&Balance> {
+        self.logs
+            .iter()
+            .filter_map(|l| l.answer.balance())
+            .collect()
+    }
+
+    /// The replays of its logs; none of logs that are balanced.
+    pub(crate) fn replays(&self) -> Vec<&Replay> {
+        self.logs.iter().filter_map(|l| l.answer.replay()).collect()
+    }
+
+    /// What was decided for the torque balance of each log, in words.
+    pub fn notes(&self) -> Vec<String> {
+        let notes = self.logs.iter().filter_map(|log| {
+            let balance = log.answer.balance()?;
+            Some(balance.quality().sentence(&log.name))
+        });
+        notes.collect()
+    }
+
+    /// How the model answers these logs, as the file of results has it.
+    pub fn answer(&self) -> &'static str {
+        self.logs.first().map_or("", |log| log.answer.name())
+    }
+
+    /// Whether its logs are answered by torque balance.
+    pub fn is_balanced(&self) -> bool {
+        !self.balances().is_empty()
+    }
+
     /// Further logs of the same motions: where a reference is the same to the
     /// bit, so is what the fast simulation is short of on it.
     ///
@@ -189,7 +259,7 @@ impl LogSet {
     /// [`ReplayError`] where the machine does not run at this state.
     pub fn correct_defects(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
         let known = machine.with_known(&state.shares);
-        let Some(step) = known.mechanism.exact_step() else {
+        let Some(step) = known.mechanism.exact_step().filter(|_| !self.is_balanced()) else {
             return Ok(());
         };
         let mut slow = known.clone();
@@ -199,8 +269,11 @@ impl LogSet {
             .logs
             .par_iter()
             .map(|log| {
-                let exact = log.replay.follow(&slow, |_| ())?;
-                let fast = log.replay.run(&known, &state.effects, None)?;
+                let fast = log.answer.run(&known, &state.effects, None)?;
+                let exact = match log.answer.replay() {
+                    Some(replay) => replay.follow(&slow, |_| ())?,
+                    None => fast.clone(),
+                };
                 let channel = |c: usize| {
                     let pairs = self
                         .simulated(&exact, c)
@@ -237,7 +310,7 @@ impl LogSet {
     ) -> Result<Vec<Trace>, ReplayError> {
         let machine = machine.with_known(&state.shares);
         let run = |(i, log): (usize, &Prepared)| {
-            log.replay
+            log.answer
                 .run(&machine, &state.effects, probes.map(|p| &p[i]))
         };
         self.logs.par_iter().enumerate().map(run).collect()

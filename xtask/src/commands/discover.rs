@@ -6,7 +6,7 @@ use axis_log::Log;
 use axis_log::intake::{Options as Intake, prepare};
 use axis_log::quality::Verdict as Agreement;
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, Scales};
+use axis_sim::effects::{ActiveEffect, OnsetForm, Scales};
 use axis_sim::friction::Place as FrictionPlace;
 use clap::Args;
 use discrepancy::intake::{check_distinct, check_log, cross_checks, exact_channels, from_rest};
@@ -48,6 +48,10 @@ pub struct Options {
     /// Search anew, and never name this effect (may be repeated)
     #[arg(long, value_name = "NAME")]
     reject: Vec<String>,
+    /// Compare by torque balance, as if the axis file had no [control]: measured motion in,
+    /// the torque that the model needs for it out
+    #[arg(long, conflicts_with = "summary")]
+    balance: bool,
     /// Threads, 0 for all cores; results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
@@ -58,7 +62,10 @@ pub fn command(options: &Options) -> Result<()> {
     let _ = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build_global();
-    let machine = Axis::read(&options.axis)?;
+    let mut machine = Axis::read(&options.axis)?;
+    if options.balance {
+        machine = machine.without_control().into_diagnostic()?;
+    }
     let default = || Path::new("runs").join(&machine.name).join("discover");
     let out = options.out.clone().unwrap_or_else(default);
     match &options.summary {
@@ -81,7 +88,11 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     let fit = LogSet::new(fit, machine).into_diagnostic()?;
     let check = LogSet::new(check, machine).into_diagnostic()?;
     notes.iter().try_for_each(say)?;
-    say(format!("channels compared: {}", fit.channels.join(", ")))?;
+    say(format!(
+        "{}; channels compared: {}",
+        fit.answer(),
+        fit.channels.join(", ")
+    ))?;
 
     ready(out)?;
     let text = moved(&read_text(&options.axis)?, &options.axis, out)?;
@@ -103,7 +114,8 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     let scales = Scales::of(machine);
     let entries = |number: fn(f64) -> String| -> String {
         let all = found.fit.state.effects.iter();
-        all.map(|active| entry(active, &scales, number)).collect()
+        let effects = all.filter(|active| OnsetForm::of(active).is_none());
+        effects.map(|active| entry(active, &scales, number)).collect()
     };
     let json = serde_json::to_vec_pretty(discovery).into_diagnostic()?;
     write_whole(&out.join("discovery.json"), &json)?;
@@ -184,13 +196,17 @@ pub(super) fn read_all(
 
 /// One log of a file, or of several with `+` between them.
 fn read_as_one(path: &Path, machine: &Axis, notes: &mut Vec<String>) -> Result<Log> {
-    let needed = [machine.reference_channel(), machine.position_channel()];
+    // A torque balance says itself what it needs.
+    let needed: &[&str] = match machine.has_control() {
+        true => &[machine.reference_channel(), machine.position_channel()],
+        false => &[],
+    };
     let exact = exact_channels(machine);
     let options = Intake {
         exact: &exact,
         rate_hz: None,
     };
-    let prepared = prepare(&files(path), &machine.log, &needed, options).into_diagnostic()?;
+    let prepared = prepare(&files(path), &machine.log, needed, options).into_diagnostic()?;
     notes.extend(prepared.done.iter().map(ToString::to_string));
     Ok(prepared.log)
 }

@@ -7,7 +7,7 @@ use axis_log::{ColumnMap, ColumnUnit, Mapping};
 use super::error::AxisFileError;
 use super::fields::Fields;
 use crate::SixDigits;
-use crate::axis::{Axis, Range, Stroke, Tolerances};
+use crate::axis::{Axis, BalanceSettings, Range, Stroke, Tolerances};
 use crate::effects::{ActiveEffect, Effect, EffectParameter, Scales};
 use crate::mechanism::Freedom;
 use crate::part::Key;
@@ -134,6 +134,17 @@ fn column(c: &Fields<'_>) -> Result<ColumnMap, AxisFileError> {
         offset: c.optional_number("offset")?.unwrap_or(0.0),
         delay: 1e-3 * c.optional_number("delay_ms")?.unwrap_or(0.0),
         ..map
+    })
+}
+
+/// `[balance]`: settings of the torque balance; what is left out is taken from the log.
+pub(super) fn balance(root: &Fields<'_>) -> Result<BalanceSettings, AxisFileError> {
+    let Some(f) = root.optional_table("balance")? else {
+        return Ok(BalanceSettings::default());
+    };
+    Ok(BalanceSettings {
+        cutoff: f.optional_number("cutoff")?,
+        slowest: f.optional_number("slowest")?,
     })
 }
 

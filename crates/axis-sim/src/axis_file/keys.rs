@@ -52,6 +52,7 @@ pub(super) fn keys(layout: &Layout, freedom: Freedom, effort: Effort) -> Vec<Key
         table("experiment", EXPERIMENT),
         Key::of_table("tolerances", tolerances(layout)),
         table("log", LOG),
+        Key::of_table("balance", balance(freedom)),
         Key::of_tables("trajectory", trajectory(freedom)),
         tables("load", KIND),
         tables("effects", ENTRY),
@@ -149,6 +150,16 @@ const LOG: &[Key] = &[
     quantity("sample_rate", &FREQUENCY, 1e-3, 1e8),
     tables("column", COLUMN),
 ];
+
+/// What is left out is taken from the log.
+fn balance(freedom: Freedom) -> Vec<Key> {
+    let slowest = match freedom {
+        Freedom::Linear => quantity("slowest", &SPEED, 1e-9, 1e3),
+        Freedom::Rotary => quantity("slowest", &ANGULAR_SPEED, 1e-9, 1e4),
+    };
+    let cutoff = quantity("cutoff", &FREQUENCY, 1e-3, 1e5);
+    vec![cutoff.optional(), slowest.optional()]
+}
 
 const COLUMN: &[Key] = &[
     text("source"),

@@ -9,7 +9,7 @@ use super::fields::Fields;
 use super::keys::loop_keys;
 use super::registry::Registry;
 use crate::actuator::Actuator;
-use crate::control::Control;
+use crate::control::{Control, absent};
 use crate::friction::Friction;
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism};
@@ -190,7 +190,10 @@ impl Layout {
         Ok(Self {
             mechanism: kind_in(root, "mechanism", &registry.mechanisms)?,
             actuator: kind_in(root, "actuator", &registry.actuators)?,
-            control: kind_in(root, "control", &registry.controls)?,
+            control: match root.has("control") {
+                true => kind_in(root, "control", &registry.controls)?,
+                false => &absent::KIND,
+            },
             friction: kind_in(root, "friction", &registry.frictions)?,
             loads,
             sections: true,
@@ -255,6 +258,7 @@ fn section_keys() -> Vec<Key> {
         "experiment",
         "tolerances",
         "log",
+        "balance",
     ];
     let lists = ["trajectory", "load", "effects"].map(|name| Key::of_tables(name, Vec::new()));
     let all = parts.chain(own).map(|name| Key::of_table(name, Vec::new()));

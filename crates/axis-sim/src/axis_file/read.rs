@@ -17,7 +17,7 @@ use crate::axis::{
     Simulation, Stroke, Tolerances,
 };
 use crate::closed_loop::ClosedLoop;
-use crate::control::Control;
+use crate::control::{Control, absent};
 use crate::friction::Place;
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism, Way};
@@ -28,6 +28,9 @@ use crate::work::{MOST_STEPS, cycles_of, substeps_of};
 /// Tracking error at which a run is given up where a file of an axis that turns does
 /// not say, rad.
 const FOLLOWING_ANGLE_LIMIT: f64 = 0.1;
+
+/// Control period of an axis without control, s: what asks for one has nothing better.
+const PERIOD: f64 = 1e-3;
 
 /// Step of an exact way at which a whole file runs, s.
 const EXACT_STEP: f64 = 1e-5;
@@ -59,8 +62,10 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         });
         return Err(root.table("friction")?.refuse_table(what, &fits));
     }
-    let control_table = root.table("control")?;
     let control = part(&root, &layout, Section::Control, layout.control)?;
+    let has_control = !std::ptr::eq(layout.control, &absent::KIND);
+    // Where there is none, no message is about it.
+    let control_table = root.table(if has_control { "control" } else { "actuator" })?;
     if let Some(effort) = control.effort()
         && effort != actuator.effort()
     {
@@ -74,11 +79,26 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         return Err(control_table.refuse_table(what, &valid));
     }
     check_gains(&control_table, &control, actuator.effort(), &*mechanism)?;
-    let period = 1.0 / control_table.number("frequency")?;
-    let simulation = simulation(&root, &layout, mechanism.exact_step().is_some())?;
-    check_step(&root.table("simulation")?, period, simulation.step)?;
+    let period = match has_control {
+        true => 1.0 / control_table.number("frequency")?,
+        false => PERIOD,
+    };
+    // What is not simulated needs no step.
+    let simulation = match has_control || root.has("simulation") {
+        true => simulation(&root, &layout, mechanism.exact_step().is_some())?,
+        false => Simulation {
+            step: PERIOD,
+            way: Way::Fast,
+        },
+    };
+    if root.has("simulation") {
+        check_step(&root.table("simulation")?, period, simulation.step)?;
+    }
     let stroke = extras::stroke(&root.table("stroke")?, mechanism.reach(), freedom)?;
-    let limit = control_table.optional_number("following_error_limit")?;
+    let limit = match has_control {
+        true => control_table.optional_number("following_error_limit")?,
+        false => None,
+    };
     let following_error_limit = limit.unwrap_or(match (layout.has_sections(), freedom) {
         (_, Freedom::Rotary) => FOLLOWING_ANGLE_LIMIT,
         (false, _) if control.starts_in_motion() => f64::INFINITY,
@@ -99,6 +119,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         effects: Vec::new(),
         tolerances: Tolerances::all(0.01),
         log: extras::log(&root)?,
+        balance: extras::balance(&root)?,
         fingerprint: String::new(),
         mechanism,
         actuator,
@@ -269,6 +290,10 @@ fn fits(root: &Fields<'_>, control: &Fields<'_>, axis: &Axis) -> Result<(), Axis
         );
         let valid = "[sensors.load] alone";
         return Err(root.table("sensors")?.refuse_table(what, valid));
+    }
+    if !axis.has_control() {
+        let started = axis.actuator.start(&axis.surroundings());
+        return started.map(|_| ()).map_err(|e| control.refuse_part(&e));
     }
     ClosedLoop::new(axis).map_err(|error| match error {
         crate::SetupError::Part(error) => control.refuse_part(&error),

@@ -1,5 +1,6 @@
 //! Controls: from what the sensors show and the reference asks to the actuator's command.
 
+pub(crate) mod absent;
 mod cascade;
 mod filter;
 mod p_p;

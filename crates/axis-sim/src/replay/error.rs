@@ -3,6 +3,7 @@
 use axis_log::LogError;
 use thiserror::Error;
 
+use crate::balance::BalanceError;
 use crate::work::MOST_STEPS;
 use crate::{RunStopped, SetupError, SixDigits};
 
@@ -22,6 +23,9 @@ pub enum ReplayError {
     /// The closed loop was given up.
     #[error(transparent)]
     Stopped(#[from] RunStopped),
+    /// A log's torque balance cannot be made.
+    #[error(transparent)]
+    Balance(#[from] BalanceError),
     /// A sampling period that is none.
     #[error(
         "the sampling period of {period} s is not valid: it must be a finite number above zero"

@@ -29,7 +29,7 @@ pub use reference::LoggedReference;
 pub struct Trace {
     /// Name with unit, samples.
     pub channels: Vec<(&'static str, Vec<f64>)>,
-    /// Speed of the load, for looking at residuals.
+    /// Speed of the load, for looking at residuals; measured in a torque balance.
     pub speed: Vec<f64>,
 }
 

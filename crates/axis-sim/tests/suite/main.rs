@@ -6,6 +6,8 @@
 mod adaptation;
 mod axis_files;
 mod bad_files;
+mod balance;
+mod balance_noise;
 mod belt;
 mod closed_loop;
 mod controls;

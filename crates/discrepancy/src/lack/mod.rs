@@ -14,7 +14,8 @@ mod term;
 use axis_sim::{Axis, Probe, ReplayError};
 use serde::{Deserialize, Serialize};
 
-use self::rest::{Rest, Solved};
+pub(crate) use self::rest::Rest;
+use self::rest::Solved;
 use self::term::term;
 use crate::curves::{Course, courses};
 use crate::fit::Fitter;

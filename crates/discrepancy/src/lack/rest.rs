@@ -2,11 +2,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::fit::{Columns, Fitter};
+use crate::fit::{Columns, Fit, Fitter};
 use crate::known::pinned;
 use crate::projector::Projector;
 use crate::search::Found;
-use crate::spectrum::Whitener;
+use crate::spectrum::{Amplitudes, Whitener};
 
 /// The fitted logs' rest, with known parameters and effects fitted out.
 pub struct Rest<'a> {
@@ -26,16 +26,22 @@ pub struct Solved {
 }
 
 impl<'a> Rest<'a> {
+    /// Of what was found.
     pub fn new(fitter: &'a Fitter<'a>, found: &Found) -> Self {
+        Self::of(fitter, &found.fit, &found.columns, &found.noise)
+    }
+
+    /// Of a fit with the derivatives of its own parameters, beside runs with noise.
+    pub fn of(fitter: &'a Fitter<'a>, fit: &Fit, own: &Columns, noise: &[Amplitudes]) -> Self {
         let layout = &fitter.set.layout;
-        let whitener = layout.whitener(&layout.spectral_matrices(&found.fit.rest));
-        let own = found.columns.iter();
+        let whitener = layout.whitener(&layout.spectral_matrices(&fit.rest));
+        let own = own.iter();
         let own: Vec<DVector<f64>> = own.map(|c| layout.whiten(&whitener, c)).collect();
-        let shares = &found.fit.state.shares;
+        let shares = &fit.state.shares;
         let projector = Projector::new(fitter.machine, &own, &pinned(fitter.machine, shares));
-        let rest = projector.reject_at(&layout.whiten(&whitener, &found.fit.rest), shares);
+        let rest = projector.reject_at(&layout.whiten(&whitener, &fit.rest), shares);
         let white = |run| projector.reject(&layout.whiten(&whitener, run));
-        let noise = found.noise.iter().map(white).collect();
+        let noise = noise.iter().map(white).collect();
         Self {
             noise,
             fitter,

@@ -1,11 +1,12 @@
 //! Noise alone in each channel.
 
-use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
+use axis_sim::{Axis, ClosedLoop, Replay, ReplayError, Trace};
 use rayon::prelude::*;
 
 use super::level::{noise_at, shows_noise, upper_level};
 use super::{Rest, at_state, noise_series};
-use crate::model::{LogSet, Prepared, State};
+use crate::answer::floor;
+use crate::model::{LogSet, State};
 
 /// Noise alone in a channel.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +55,10 @@ pub(crate) fn floors(
     best: &Rest,
 ) -> Result<Vec<Floor>, ReplayError> {
     let axis = at_state(machine, state);
-    if !shows_noise(&axis) {
+    if set.is_balanced() {
+        return Ok(vec![floor(&set.balances())]);
+    }
+    if !shows_noise(&axis, set) {
         let samples: usize = set.logs.iter().map(|l| l.log.len()).sum();
         let white = |c: usize| Floor {
             rms: upper_level(set, best, c).hypot(set.inexactness(machine, c)),
@@ -63,17 +67,18 @@ pub(crate) fn floors(
         return Ok((0..set.channels.len()).map(white).collect());
     }
     let closed_loop = ClosedLoop::new(&axis)?.without_noise();
-    let quiet = |log: &Prepared| log.replay.follow(&closed_loop, |_| ());
-    let quiet: Vec<Trace> = (set.logs.par_iter().map(quiet)).collect::<Result<_, _>>()?;
+    let replays: Vec<&Replay> = set.replays();
+    let quiet = |replay: &&Replay| replay.follow(&closed_loop, |_| ());
+    let quiet: Vec<Trace> = (replays.par_iter().map(quiet)).collect::<Result<_, _>>()?;
     let noise = noise_at(&axis, set, best, &quiet);
     let alone = noise_series(&closed_loop, set, &quiet, &noise, 0)?;
     let of = |c: usize| alone.iter().map(|log| log[c].clone()).collect::<Vec<_>>();
-    let floor = |c: usize| {
+    let inexact = |c: usize| {
         let noise = Floor::of(&of(c));
         Floor {
             rms: noise.rms.hypot(set.inexactness(machine, c)),
             ..noise
         }
     };
-    Ok((0..set.channels.len()).map(floor).collect())
+    Ok((0..set.channels.len()).map(inexact).collect())
 }

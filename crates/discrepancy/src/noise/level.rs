@@ -9,9 +9,10 @@ use crate::sensor_noise::SensorNoise;
 use crate::spectrum::Layout;
 
 /// Whether the logs of an axis show the noise of its sensors: not where the loop has no
-/// memory and reads a position alone, of which command and position are one measurement.
-pub fn shows_noise(axis: &Axis) -> bool {
-    !axis.control.starts_in_motion()
+/// memory and reads a position alone, of which command and position are one measurement, nor
+/// in a torque balance.
+pub fn shows_noise(axis: &Axis, set: &LogSet) -> bool {
+    !axis.control.starts_in_motion() && !set.is_balanced()
 }
 
 /// SensorNoise of the logs of an axis (its effects included), as their rest shows it beside

@@ -8,7 +8,7 @@ mod spread;
 
 use std::collections::BTreeMap;
 
-use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
+use axis_sim::{Axis, ClosedLoop, Replay, ReplayError, Trace};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -18,7 +18,7 @@ pub(crate) use self::excess::{Excess, excess};
 pub(crate) use self::floor::{Floor, floors};
 use self::level::{noise_at, shows_noise};
 pub(crate) use self::spread::{drawn, over_noise, size_over_noise, spreads};
-use crate::model::{LogSet, Prepared, State};
+use crate::model::{LogSet, State};
 use crate::sensor_noise::SensorNoise;
 use crate::spectrum::Amplitudes;
 
@@ -62,7 +62,7 @@ pub(crate) fn log_noise(
     traces: &[Trace],
 ) -> Option<LogNoise> {
     let axis = at_state(machine, state);
-    shows_noise(&axis).then(|| noise_at(&axis, set, &set.rest(traces), traces))
+    shows_noise(&axis, set).then(|| noise_at(&axis, set, &set.rest(traces), traces))
 }
 
 /// The machine at a state.
@@ -80,10 +80,10 @@ fn noise_series(
     noise: &LogNoise,
     seed: u64,
 ) -> Result<Rest, ReplayError> {
-    let one = |(l, (log, quiet)): (usize, (&Prepared, &Trace))| {
+    let one = |(l, (replay, quiet)): (usize, (&Replay, &Trace))| {
         let stream = 1000 * seed + l as u64 + 1;
         let sensors = noise.sensors.sensors(stream);
-        let noisy = log.replay.follow(closed_loop, sensors)?;
+        let noisy = replay.follow(closed_loop, sensors)?;
         let channel = |(c, name): (usize, &&'static str)| -> Vec<f64> {
             let [a, b] = [&noisy, quiet].map(|t| t.channel(name).unwrap_or_default());
             let own_stream = (stream << 8) + c as u64;
@@ -93,7 +93,7 @@ fn noise_series(
         };
         Ok(set.channels.iter().enumerate().map(channel).collect())
     };
-    let logs: Vec<(&Prepared, &Trace)> = set.logs.iter().zip(quiet).collect();
+    let logs: Vec<(&Replay, &Trace)> = set.replays().into_iter().zip(quiet).collect();
     logs.into_par_iter().enumerate().map(one).collect()
 }
 

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::{log_noise, noise_on};
+use crate::answer::turned;
 use crate::fit::{Columns, Fit, Fitter, free_parameters};
 use crate::interval::Spread;
 use crate::known::{known_deviations, tolerances};
@@ -14,17 +15,25 @@ use crate::spectrum::Amplitudes;
 /// Noise runs in which parameters' spread is seen.
 const DRAWN: u64 = 16;
 
+/// Times that the rest of a torque balance is drawn anew: there they cost nothing.
+const TURNED: u64 = 64;
+
 /// The 97.5 % point of Student's t with that many degrees of freedom, over that of
 /// the normal distribution.
 const OF_DRAWN: f64 = 2.120 / 1.960;
 
-/// Runs with simulated noise alone, of sensors as noisy as the logs show. None of a
-/// rigid machine, whose sensors are not in its logs.
+/// Runs with simulated noise alone, as noisy as the logs show; of a torque balance,
+/// what it leaves, drawn anew. None of a rigid machine, whose sensors are not in its logs.
 ///
 /// # Errors
 /// [`ReplayError`] where the machine does not run with noise.
 pub(crate) fn drawn(fitter: &Fitter<'_>, fit: &Fit) -> Result<Vec<Amplitudes>, ReplayError> {
     let (machine, set) = (fitter.machine, fitter.set);
+    if set.is_balanced() {
+        let rest = set.rest(&fit.traces);
+        let run = |seed| set.amplitudes(&turned(&rest, seed));
+        return Ok((0..TURNED).into_par_iter().map(run).collect());
+    }
     let Some(noise) = log_noise(machine, set, &fit.state, &fit.traces) else {
         return Ok(Vec::new());
     };

@@ -24,7 +24,7 @@ use crate::known::{shown, tolerances};
 use crate::lack::{Curve, Unknown, lack};
 use crate::model::{LogSet, Prepared, State, is_form_of};
 use crate::noise::{Excess, Rest, excess, floors, log_noise};
-use crate::search::{Found, MATERIAL, Refused, Replaced, is_form};
+use crate::search::{Found, MATERIAL, Reason, Refused, Replaced, is_form};
 
 /// A search's result in words, figures and pictures.
 #[derive(Clone, Debug)]
@@ -177,7 +177,8 @@ pub fn judged(
     let discovery = Discovery {
         schema: 1,
         axis: name,
-        notes: slack_notes(machine, found),
+        answer: found.fit_logs.answer().to_owned(),
+        notes: notes(machine, found),
         sentence: sentence(
             verdict,
             &effects,
@@ -320,6 +321,20 @@ fn form_of_own(machine: &Axis, found: &Found, index: usize) -> Option<FormFound>
     )
 }
 
+/// What must be known of the logs.
+fn notes(machine: &Axis, found: &Found) -> Vec<String> {
+    let sets = [&found.fit_logs, &found.check_logs];
+    let mut notes: Vec<String> = sets.iter().flat_map(|set| set.notes()).collect();
+    if !notes.is_empty() {
+        notes.push(FLOOR.to_owned());
+    }
+    notes.extend(slack_notes(machine, found));
+    notes
+}
+
+/// How the noise of a torque balance is to be read.
+const FLOOR: &str = "the noise given of a torque balance is the least that the spectra of torque and motion leave possible, as no controller is known: a rest above it may be noise";
+
 /// Where a gap is so large that the logs do not say where the screw lay in it at their
 /// start.
 fn slack_notes(machine: &Axis, found: &Found) -> Vec<String> {
@@ -337,7 +352,14 @@ fn slack_notes(machine: &Axis, found: &Found) -> Vec<String> {
 fn refused_effects(refused: &Refused) -> RefusedEffects {
     RefusedEffects {
         effects: refused.effects.iter().map(|n| n.name.to_owned()).collect(),
-        channels: refused.channels.iter().map(|&c| c.to_owned()).collect(),
+        channels: match &refused.reason {
+            Reason::Worse(channels) => channels.iter().map(|&c| c.to_owned()).collect(),
+            Reason::Little(_) => Vec::new(),
+        },
+        takes_away: match refused.reason {
+            Reason::Little(share) => Some(share),
+            Reason::Worse(_) => None,
+        },
     }
 }
 

@@ -97,19 +97,29 @@ pub struct ReplacedEffect {
     pub by: String,
 }
 
-/// Effects that explain the fitted logs, and with which check motion is further off than
-/// without them. None of them is given.
+/// Effects that explain something of the fitted logs, and are not given: with them check
+/// motion is further off, or they take away too little of its gap.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RefusedEffects {
     /// Names.
     pub effects: Vec<String>,
-    /// Channels that are further off; none where they are so in total only.
+    /// Channels that are further off; none where they are so in total only, or in none.
     pub channels: Vec<String>,
+    /// Share of the gap on check motion that they take away, where that is too little.
+    #[serde(default)]
+    pub takes_away: Option<f64>,
 }
 
 impl RefusedEffects {
     /// In a sentence that follows another.
     pub(super) fn sentence(&self) -> String {
+        if let Some(share) = self.takes_away {
+            return format!(
+                " {} would take away {:.0} % of the gap, which explains nothing, so it is not given.",
+                self.effects.join(" with "),
+                100.0 * share.max(0.0)
+            );
+        }
         let where_ = match self.channels.as_slice() {
             [] => "in total".to_owned(),
             channels => format!("in {}", channels.join(", ")),
@@ -154,6 +164,11 @@ pub struct Recalibrated {
     pub tolerance: f64,
 }
 
+/// Of files from before there was another way.
+fn replayed() -> String {
+    "closed-loop-replay".to_owned()
+}
+
 /// What `discovery.json` holds.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Discovery {
@@ -161,6 +176,9 @@ pub struct Discovery {
     pub schema: u32,
     /// Name of the axis.
     pub axis: String,
+    /// How the model was compared with the logs: `closed-loop-replay` or `torque-balance`.
+    #[serde(default = "replayed")]
+    pub answer: String,
     /// What must be known of the logs beside the verdict; whoever reads them adds what
     /// was done to them.
     pub notes: Vec<String>,

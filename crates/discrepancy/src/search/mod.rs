@@ -3,6 +3,7 @@
 mod evidence;
 mod force;
 mod form;
+mod free_curve;
 mod intervals;
 mod promise;
 mod refined;
@@ -21,7 +22,7 @@ pub(crate) use self::form::is_form;
 pub(crate) use self::revise::ABOVE_NOISE;
 use self::state::Search;
 pub use self::types::{
-    Alike, Found, Named, ONE_CLASS, Refused, Replaced, RunnerUp, SearchError, Settings,
+    Alike, Found, Named, ONE_CLASS, Reason, Refused, Replaced, RunnerUp, SearchError, Settings,
     SettingsError,
 };
 use crate::fit::{Fit, Fitter};

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
 use super::form::effects_before_forms;
+use super::free_curve::FreeCurve;
 use super::promise::{Promises, WORTH};
 use super::refined::{Refined, alike, simplest_first};
 use super::state::Search;
@@ -39,8 +40,13 @@ impl Search<'_> {
         };
         let mut refined = self.refine(candidates, &own);
         effects_before_forms(&mut refined);
+        let fitter = self.fitter();
+        let curve = FreeCurve::new(self, &fitter, &own);
         // Where the best does not hold on other motion, the next may.
         let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
+            if awaited.is_empty() && !candidate.is_form() && !curve.is_matched_by(candidate) {
+                return None;
+            }
             let check = self.checker().at(candidate.fit.state.clone()).ok()?;
             let held_out = self.check.deviance - check.deviance;
             let holds = !awaited.is_empty()

@@ -191,13 +191,23 @@ pub struct Replaced {
     pub by: &'static str,
 }
 
-/// Effects that were named, and with which check motion was further off than without.
+/// Effects that were named and are not given.
 #[derive(Clone, Debug)]
 pub struct Refused {
     /// The effects.
     pub effects: Vec<Named>,
-    /// Channels that were further off; none where they were so in total only.
-    pub channels: Vec<&'static str>,
+    /// Why not.
+    pub reason: Reason,
+}
+
+/// Why effects are not given.
+#[derive(Clone, Debug)]
+pub enum Reason {
+    /// Check motion was further off than without them in these channels; in none, where it
+    /// was so in total only.
+    Worse(Vec<&'static str>),
+    /// They take away this share of the gap on check motion, too little to explain it.
+    Little(f64),
 }
 
 /// What a search found.

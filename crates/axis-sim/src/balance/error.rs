@@ -1,0 +1,53 @@
+//! Why a log cannot be balanced.
+
+use thiserror::Error;
+
+/// Why the torque balance of a log cannot be made.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum BalanceError {
+    /// Nothing that says how the axis moved.
+    #[error(
+        "no channel shows the motion: a torque balance needs one of {needed}; the log has {available}"
+    )]
+    NoMotion {
+        /// Channels of which one would do.
+        needed: String,
+        /// Channels that there are.
+        available: String,
+    },
+    /// Nothing that says what moved it.
+    #[error(
+        "no channel shows the motor's torque: a torque balance of an actuator \"{actuator}\" needs one of {needed}; the log has {available}"
+    )]
+    NoTorque {
+        /// Kind of the actuator.
+        actuator: String,
+        /// Channels of which one would do.
+        needed: String,
+        /// Channels that there are.
+        available: String,
+    },
+    /// A sampling period that is none.
+    #[error(
+        "the sampling period of {period} s is not valid: it must be a finite number above zero"
+    )]
+    Period {
+        /// As given, s.
+        period: f64,
+    },
+    /// Hardly any sample in which the axis moves.
+    #[error(
+        "only {kept} of {samples} samples are left for a torque balance: the axis must move faster than {speed:.3e} (m/s or rad/s), which its sensor tells from rest, in at least {least} of them"
+    )]
+    Standstill {
+        /// Samples left.
+        kept: usize,
+        /// Samples at the reduced rate.
+        samples: usize,
+        /// Fewest that do.
+        least: usize,
+        /// Speed that is told from rest, m/s or rad/s.
+        speed: f64,
+    },
+}

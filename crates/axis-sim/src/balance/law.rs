@@ -1,0 +1,149 @@
+//! The motor torque that a model needs for a motion.
+
+use super::filter::derivative;
+use super::motion::Course;
+use crate::axis::Axis;
+use crate::effects::{Hooks, ScrewState, TableState, TableStep};
+use crate::plant::Start;
+
+/// The motions of load and motor.
+#[derive(Clone, Debug)]
+pub(super) struct Motions {
+    pub load: Course,
+    pub motor: Course,
+    /// Whether the load's is the motor's times the travel per radian, and nothing else.
+    pub load_is_derived: bool,
+}
+
+/// Rounds in which a torque is found of which the ripple depends on itself.
+const ROUNDS: usize = 30;
+
+/// Motor torque, N·m, that `axis` (its effects made) needs at each sample.
+///
+/// ```text
+/// T + T_hooks(θ, T) = Σ J_i ((1 − s_i) α + s_i a / r) + r (m a + F_friction(v, z) + F_loads(x, v, t))
+/// ```
+pub(super) fn torque(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> Vec<f64> {
+    let shifted = shifted(hooks, motions, h);
+    let load = shifted.as_ref().unwrap_or(&motions.load);
+    let motor = &motions.motor;
+    let r = axis.travel_per_radian();
+    let mass = axis.mechanism.load_inertia();
+    // What turns along a screw lags the motor by a share of the wind-up.
+    let rotating = axis.mechanism.rotating(middle(&load.position));
+    let lagging: f64 = rotating
+        .iter()
+        .map(|[inertia, share]| inertia * share)
+        .sum();
+    let inertia = axis.mechanism.total_inertia() - mass * r * r - lagging;
+    let forces = forces(axis, hooks, load, h);
+    let one = |(k, force): (usize, f64)| {
+        let of_load = load.acceleration[k];
+        let rotation = inertia * motor.acceleration[k] + lagging * of_load / r;
+        let all = rotation + r * (mass * of_load + force);
+        own(hooks, motor.position[k], all)
+    };
+    forces.into_iter().enumerate().map(one).collect()
+}
+
+/// Middle of a course.
+fn middle(positions: &[f64]) -> f64 {
+    let ends = positions.iter();
+    let [low, high] = ends.fold([f64::MAX, f64::MIN], |[a, b], x| [a.min(*x), b.max(*x)]);
+    0.5 * (low + high)
+}
+
+/// The load's course with errors of the transmission's kinematics, where only the motor's
+/// is measured and there are some.
+fn shifted(hooks: &Hooks, motions: &Motions, h: f64) -> Option<Course> {
+    if !(motions.load_is_derived && hooks.has_offsets()) {
+        return None;
+    }
+    let (load, motor) = (&motions.load, &motions.motor);
+    let at = |k: usize| {
+        hooks.offset_at(&ScrewState {
+            time: k as f64 * h,
+            angle: motor.position[k],
+            rate: motor.speed[k],
+            position: load.position[k],
+            speed: load.speed[k],
+            // Of a transmission that gives way with its load no motion of the motor tells.
+            transmitted: 0.0,
+        })
+    };
+    let offsets: Vec<[f64; 2]> = (0..load.position.len()).map(at).collect();
+    let origin = offsets.first().map_or(0.0, |o| o[0]);
+    let rates: Vec<f64> = offsets.iter().map(|o| o[1]).collect();
+    let add = |to: &[f64], by: &[f64]| to.iter().zip(by).map(|(a, b)| a + b).collect();
+    let moved: Vec<f64> = offsets.iter().map(|o| o[0] - origin).collect();
+    Some(Course {
+        position: add(&load.position, &moved),
+        speed: add(&load.speed, &rates),
+        acceleration: add(&load.acceleration, &derivative(&rates, h)),
+    })
+}
+
+/// Forces on the load, against positive motion, N or N·m: friction, whose bristles go along
+/// with the measured speed, loads, and those of effects.
+fn forces(axis: &Axis, hooks: &Hooks, load: &Course, h: f64) -> Vec<f64> {
+    let friction = axis.friction.share();
+    let lever = friction.lever(axis.travel_per_radian());
+    let has_loads = hooks.has_loads() || !axis.loads.is_empty();
+    let speed = |k: usize| load.speed[k] / lever;
+    let mut before = load.speed.first().map_or(0.0, |v| v / lever);
+    let mut bristle = friction.law.steady_bristle(before);
+    let mut unit = friction.unit.steady_bristle(before);
+    let start = Start {
+        speed: load.speed.first().copied().unwrap_or(0.0),
+        ..Start::at(load.position.first().copied().unwrap_or(0.0))
+    };
+    let (mut memory, _) = hooks.memories().settled(&start);
+    let mass = axis.mechanism.load_inertia();
+    let (mut transmitted, mut travelled) = (0.0, 0.0);
+    let one = |k: usize| {
+        let now = speed(k);
+        let (z, own) = friction.law.step_torque(bristle, before, now, h);
+        bristle = z;
+        let mut force = own / lever;
+        if has_loads {
+            unit = friction.unit.step(unit, before, now, h);
+            let at = TableState {
+                time: k as f64 * h,
+                position: load.position[k],
+                speed: load.speed[k],
+                bristle: friction.unit.torque(unit, now),
+                pressed: 1.0,
+                transmitted,
+                travelled,
+            };
+            let last = k.saturating_sub(1);
+            let step = TableStep {
+                length: h,
+                way: load.position[k] - load.position[last],
+                speed_before: load.speed[last],
+                speed: load.speed[k],
+            };
+            travelled += step.way.abs();
+            force += hooks.loads_at(&at) + hooks.memories().step(&step, &mut memory);
+            memory.accept();
+            force += axis.loads.iter().map(|l| l.force(&at)).sum::<f64>();
+        }
+        before = now;
+        transmitted = mass * load.acceleration[k] + force;
+        force
+    };
+    (0..load.speed.len()).map(one).collect()
+}
+
+/// The actuator's own torque where what acts at `angle` with the hooks' is `all`.
+fn own(hooks: &Hooks, angle: f64, all: f64) -> f64 {
+    let mut own = all;
+    for _ in 0..ROUNDS {
+        let off = all - hooks.torque_at(angle, own);
+        own += off;
+        if off.abs() <= 1e-13 * all.abs() {
+            break;
+        }
+    }
+    own
+}

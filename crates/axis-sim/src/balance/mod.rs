@@ -1,0 +1,117 @@
+//! Torque balance: measured motion in, the motor torque that a model needs for it out.
+//!
+//! Where nobody knows the controller, a log cannot be replayed through the closed loop. But
+//! whatever made the motion, the motor's torque must have been that of the equation of
+//! motion along it,
+//!
+//! ```text
+//! T(t) = J_m α + r (m a + F_friction(v, z) + F_loads(x, v, t)),
+//! ```
+//!
+//! and what a log shows of the torque (a current, a command, a torque sensor) is compared
+//! with that. Both go through the same low-pass without phase before they are compared, so
+//! what it does to one it does to the other (inverse dynamic identification with parallel
+//! filtering: Gautier, Janot, Vandanjon, IEEE Trans. Control Syst. Technol. 21 (2013)
+//! 428–444, doi:10.1109/TCST.2012.2185697). The page docs/theory/torque-balance.md has the
+//! formulas, what was decided, and the limits.
+
+mod channel;
+mod error;
+mod filter;
+mod law;
+mod motion;
+mod prepared;
+mod quality;
+mod spectrum;
+
+use axis_log::Log;
+
+use crate::axis::Axis;
+use crate::effects::ActiveEffect;
+use crate::replay::{Probe, ReplayError, Trace};
+use channel::TorqueChannel;
+pub use error::BalanceError;
+use filter::{LowPass, ahead, derivative};
+use law::{Motions, torque};
+pub use quality::BalanceQuality;
+
+/// One log's measured motion and torque, ready to be compared with any model of the axis.
+#[derive(Clone, Debug)]
+pub struct Balance {
+    channel: TorqueChannel,
+    motions: Motions,
+    /// Sampling period of the log, s.
+    period: f64,
+    /// Applied to both sides before they are compared.
+    filter: LowPass,
+    /// Samples compared, of those at the log's rate.
+    kept: Vec<usize>,
+    /// What of the load's motion goes with a trace: name, samples kept.
+    position: (&'static str, Vec<f64>),
+    speed: Vec<f64>,
+    compared: Log,
+    quality: BalanceQuality,
+}
+
+impl Balance {
+    /// What the model needs at the compared samples: the one channel, and the load's
+    /// position and speed as they were measured.
+    ///
+    /// # Errors
+    /// [`ReplayError::Setup`] where an effect does not fit the axis.
+    pub fn run(
+        &self,
+        axis: &Axis,
+        effects: &[ActiveEffect],
+        probe: Option<&Probe>,
+    ) -> Result<Trace, ReplayError> {
+        let mut axis = axis.clone();
+        axis.effects.extend_from_slice(effects);
+        let (axis, hooks) = axis.with_effects()?;
+        let per_torque = self.channel.per_torque(&axis);
+        let zero = match self.channel.is_current(&axis) {
+            true => hooks.sensors.current_offset,
+            false => 0.0,
+        };
+        let needed = torque(&axis, &hooks, &self.motions, self.period);
+        let [early, lag] = self.channel.ahead(&axis, self.period);
+        // T + τ Ṫ makes the torque T of an actuator with the time constant τ.
+        let rates = derivative(&needed, self.period);
+        let pairs = needed.iter().zip(rates);
+        let shown = pairs.map(|(t, rate)| per_torque * (t + lag * rate) + zero);
+        // A position that is logged late shows the motion of before.
+        let by = (early + hooks.clock_offset) / self.period;
+        let smooth = self.filter.apply(&ahead(shown.collect(), by));
+        let mut compared: Vec<f64> = self.kept.iter().map(|&k| smooth[k]).collect();
+        if let Some(Probe::Load(force)) = probe {
+            let by = per_torque * axis.travel_per_radian();
+            let pairs = compared.iter_mut().zip(force.iter());
+            pairs.for_each(|(value, force)| *value += by * force);
+        }
+        Ok(Trace {
+            channels: vec![(self.channel.name, compared), self.position.clone()],
+            speed: self.speed.clone(),
+        })
+    }
+
+    /// Name of the channel that is compared.
+    pub fn channel(&self) -> &'static str {
+        self.channel.name
+    }
+
+    /// The log as it is compared: low-passed, at a lower rate, without what lies at its
+    /// ends and without standstill. Its time has gaps where samples are left out.
+    pub fn compared(&self) -> &Log {
+        &self.compared
+    }
+
+    /// Period of the compared samples, s.
+    pub fn compared_period(&self) -> f64 {
+        self.quality.compared_period
+    }
+
+    /// What was decided for this log, and why.
+    pub fn quality(&self) -> &BalanceQuality {
+        &self.quality
+    }
+}

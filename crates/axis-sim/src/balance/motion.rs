@@ -1,0 +1,127 @@
+//! The motion that a log shows, with its derivatives.
+
+use axis_log::Log;
+
+use super::channel::names;
+use super::error::BalanceError;
+use super::filter::{LowPass, derivative, integral};
+use super::spectrum::{Noise, Source};
+use crate::axis::Axis;
+use crate::mechanism::Freedom;
+
+/// A coordinate with its derivatives, one value a sample.
+#[derive(Clone, Debug)]
+pub(super) struct Course {
+    /// m or rad.
+    pub position: Vec<f64>,
+    /// Per second.
+    pub speed: Vec<f64>,
+    /// Per second squared.
+    pub acceleration: Vec<f64>,
+}
+
+/// Whose motion a channel shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Whose {
+    Load,
+    Motor,
+}
+
+/// A channel that shows a motion.
+#[derive(Clone, Copy, Debug)]
+struct MotionChannel {
+    name: &'static str,
+    source: Source,
+    whose: Whose,
+}
+
+/// Those of an axis: positions before speeds, the load's before the motor's.
+fn channels(axis: &Axis) -> Vec<MotionChannel> {
+    let [position, speed] = match axis.freedom() {
+        Freedom::Linear => ["position_m", "velocity_m_s"],
+        Freedom::Rotary => ["position_rad", "velocity_rad_s"],
+    };
+    let all = [
+        (position, Source::Position, Whose::Load),
+        ("motor_angle_rad", Source::Position, Whose::Motor),
+        (speed, Source::Speed, Whose::Load),
+        ("motor_speed_rad_s", Source::Speed, Whose::Motor),
+    ];
+    all.map(|(name, source, whose)| MotionChannel {
+        name,
+        source,
+        whose,
+    })
+    .to_vec()
+}
+
+/// A motion as it was measured.
+#[derive(Clone, Debug)]
+pub(super) struct Measured {
+    pub whose: Whose,
+    pub name: &'static str,
+    source: Source,
+    samples: Vec<f64>,
+    pub noise: Noise,
+}
+
+impl Measured {
+    /// The motions of load and motor that a log shows: one of them or both, positions
+    /// rather than speeds.
+    pub fn of(log: &Log, period: f64, axis: &Axis) -> Result<Vec<Self>, BalanceError> {
+        let mut found: Vec<Self> = Vec::new();
+        let mut there: Vec<MotionChannel> = channels(axis);
+        there.retain(|channel| log.has(channel.name));
+        for channel in there {
+            let known = |m: &Self| m.whose == channel.whose || channel.source == Source::Speed;
+            if found.iter().any(known) {
+                continue;
+            }
+            let samples = log.channel(channel.name).unwrap_or_default().to_vec();
+            found.push(Self {
+                whose: channel.whose,
+                name: channel.name,
+                source: channel.source,
+                noise: Noise::of(&samples, channel.source, period),
+                samples,
+            });
+        }
+        if found.is_empty() {
+            let needed: Vec<&str> = channels(axis).iter().map(|c| c.name).collect();
+            return Err(BalanceError::NoMotion {
+                needed: needed.join(", "),
+                available: names(log),
+            });
+        }
+        Ok(found)
+    }
+
+    /// Low-passed at `cutoff` (Hz), and differentiated.
+    pub fn course(&self, period: f64, cutoff: f64) -> Course {
+        let smooth = LowPass::new(cutoff * period).apply(&self.samples);
+        let [position, speed] = match self.source {
+            Source::Position => {
+                let speed = derivative(&smooth, period);
+                [smooth, speed]
+            }
+            Source::Speed => [integral(&smooth, period), smooth],
+        };
+        Course {
+            acceleration: derivative(&speed, period),
+            position,
+            speed,
+        }
+    }
+}
+
+impl Course {
+    /// The same motion at the other end of a stiff transmission.
+    pub fn times(&self, factor: f64) -> Self {
+        let scaled = |series: &[f64]| series.iter().map(|x| factor * x).collect();
+        Self {
+            position: scaled(&self.position),
+            speed: scaled(&self.speed),
+            acceleration: scaled(&self.acceleration),
+        }
+    }
+}

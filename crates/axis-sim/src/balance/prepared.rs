@@ -1,0 +1,232 @@
+//! A log made ready for its torque balance.
+
+use axis_log::{Channel, Log};
+
+use super::Balance;
+use super::channel::TorqueChannel;
+use super::error::BalanceError;
+use super::filter::LowPass;
+use super::law::Motions;
+use super::motion::{Course, Measured, Whose};
+use super::quality::{BalanceQuality, TOLERATED};
+use super::spectrum::{least_noise, passed};
+use crate::axis::Axis;
+use crate::replay::ReplayError;
+
+/// Highest cut-off of the motion, as a share of the sampling rate: above it, differences are
+/// no derivatives any more.
+const HIGHEST: f64 = 0.1;
+
+/// Cut-off of the comparison as a share of that of the motion: there the latter takes less
+/// than 0.1 % from the motion, 0.4⁸.
+const BELOW: f64 = 0.4;
+
+/// Compared samples per period of the cut-off.
+const RATE: f64 = 2.5;
+
+/// Highest cut-off as a share of the natural frequency below which what is measured moves as
+/// one: there a two-mass drive's inertia seems greater by 4 %.
+const RIGID: f64 = 0.2;
+
+/// Speeds below so many deviations of its noise are not told from rest.
+const DEVIATIONS: f64 = 3.0;
+
+/// Periods of the cut-off at either end of a log that are left out: in two, what a filter
+/// makes of an end has decayed to a hundredth.
+const EDGE: f64 = 2.0;
+
+/// Fewest samples that are compared.
+const LEAST: usize = 32;
+
+impl Balance {
+    /// Prepares logs that are compared together, with their sampling periods (s): with one
+    /// channel of torque that all have, and the lowest of their cut-offs.
+    ///
+    /// # Errors
+    /// [`ReplayError::Balance`] names what a log lacks.
+    pub fn of_logs(logs: &[(&Log, f64)], axis: &Axis) -> Result<Vec<Self>, ReplayError> {
+        let only: Vec<&Log> = logs.iter().map(|(log, _)| *log).collect();
+        let channel = TorqueChannel::of(&only, axis)?;
+        let measured = logs.iter().map(|(log, period)| {
+            if !(period.is_finite() && *period > 0.0) {
+                return Err(BalanceError::Period { period: *period });
+            }
+            Measured::of(log, *period, axis)
+        });
+        let measured: Vec<Vec<Measured>> = measured.collect::<Result<_, _>>()?;
+        let own = |(motions, (_, period)): (&Vec<Measured>, &(&Log, f64))| {
+            let most = BELOW * HIGHEST / period;
+            let each = motions.iter().map(|m| m.noise.cutoff(most, TOLERATED));
+            let asked = axis.balance.cutoff.unwrap_or(f64::INFINITY);
+            let stiff = rigid_below(axis, motions.len());
+            let found = each.fold(most.min(stiff), f64::min);
+            match asked.is_finite() {
+                true => asked.min(0.5 * HIGHEST / BELOW / period),
+                false => found,
+            }
+        };
+        let cutoffs = measured.iter().zip(logs).map(own);
+        let cutoff = cutoffs.fold(f64::INFINITY, f64::min);
+        let one = |(motions, (log, period)): (Vec<Measured>, &(&Log, f64))| {
+            Self::prepared(log, *period, axis, channel, &motions, cutoff)
+        };
+        measured.into_iter().zip(logs).map(one).collect()
+    }
+
+    /// One log alone.
+    ///
+    /// # Errors
+    /// As [`Balance::of_logs`].
+    pub fn new(log: &Log, period: f64, axis: &Axis) -> Result<Self, ReplayError> {
+        let mut all = Self::of_logs(&[(log, period)], axis)?;
+        Ok(all.remove(0))
+    }
+
+    fn prepared(
+        log: &Log,
+        period: f64,
+        axis: &Axis,
+        channel: TorqueChannel,
+        measured: &[Measured],
+        cutoff: f64,
+    ) -> Result<Self, ReplayError> {
+        let motion_cutoff = cutoff / BELOW;
+        let motions = motions(axis, measured, period, motion_cutoff);
+        let every = ((1.0 / (RATE * cutoff * period)).floor() as usize).max(1);
+        let compared_period = every as f64 * period;
+        let told = DEVIATIONS * standing(axis, measured, motion_cutoff);
+        let standstill = axis
+            .balance
+            .slowest
+            .map_or(told, |slowest| slowest.max(told));
+        let (kept, all) = moving(&motions.load, period, cutoff, every, standstill);
+        if kept.len() < LEAST {
+            let error = BalanceError::Standstill {
+                kept: kept.len(),
+                samples: all,
+                least: LEAST,
+                speed: standstill,
+            };
+            return Err(error.into());
+        }
+        let filter = LowPass::new(cutoff * period);
+        let logged = log.channel(channel.name)?;
+        let shown = filter.apply(logged);
+        let pick = |series: &[f64]| -> Vec<f64> { kept.iter().map(|&k| series[k]).collect() };
+        let position = pick(&motions.load.position);
+        let speed = pick(&motions.load.speed);
+        let noise = &measured[0].noise;
+        let of_motion = noise.least_acceleration(cutoff) * inertia(axis, measured[0].whose);
+        let of_torque = least_noise(logged, period) * passed(0, cutoff);
+        let quality = BalanceQuality {
+            channel: channel.name,
+            motion: measured.iter().map(|m| m.name).collect(),
+            cutoff,
+            motion_cutoff,
+            attenuation: (measured.iter())
+                .map(|m| m.noise.attenuation(cutoff))
+                .fold(0.0, f64::max),
+            standstill,
+            compared_period,
+            samples: [kept.len(), all],
+            floor: (of_torque + (channel.per_torque(axis) * of_motion).powi(2)).sqrt(),
+        };
+        let compared = Log::new(vec![
+            Channel::new("t_s", pick(log.time()))?,
+            Channel::new(axis.position_channel(), position.clone())?,
+            Channel::new(channel.name, pick(&shown))?,
+        ])?;
+        Ok(Self {
+            channel,
+            motions,
+            period,
+            filter,
+            kept,
+            position: (axis.position_channel(), position),
+            speed,
+            compared,
+            quality,
+        })
+    }
+}
+
+/// The frequency, Hz, below which one measured motion stands for that of motor and load:
+/// well below the first mode. Of two, each has its own inertia, up to the second.
+fn rigid_below(axis: &Axis, motions: usize) -> f64 {
+    let at = 0.5 * (axis.stroke.minimum + axis.stroke.maximum);
+    let mut modes = axis.mechanism.modes(at).unwrap_or_default();
+    modes.retain(|w| *w > 0.0);
+    modes.sort_by(f64::total_cmp);
+    let first = modes.get(motions.saturating_sub(1)).copied();
+    first.map_or(f64::INFINITY, |w| RIGID * w / std::f64::consts::TAU)
+}
+
+/// Motor torque per acceleration of what was measured.
+fn inertia(axis: &Axis, whose: Whose) -> f64 {
+    match whose {
+        Whose::Motor => axis.mechanism.total_inertia(),
+        Whose::Load => axis.mechanism.total_inertia() / axis.travel_per_radian(),
+    }
+}
+
+/// Noise of the load's speed, RMS.
+fn standing(axis: &Axis, measured: &[Measured], cutoff: f64) -> f64 {
+    let one = &measured[0];
+    match one.whose {
+        Whose::Load => one.noise.speed(cutoff),
+        Whose::Motor => one.noise.speed(cutoff) * axis.travel_per_radian(),
+    }
+}
+
+/// The motions of load and motor, one made of the other where only one was measured.
+fn motions(axis: &Axis, measured: &[Measured], period: f64, cutoff: f64) -> Motions {
+    let of = |whose: Whose| measured.iter().find(|m| m.whose == whose);
+    let course = |m: &Measured| m.course(period, cutoff);
+    let r = axis.travel_per_radian();
+    let (load, motor) = (of(Whose::Load).map(course), of(Whose::Motor).map(course));
+    let load_is_derived = load.is_none();
+    let empty = || Course {
+        position: Vec::new(),
+        speed: Vec::new(),
+        acceleration: Vec::new(),
+    };
+    let (load, motor) = match (load, motor) {
+        (Some(load), Some(motor)) => (load, motor),
+        (Some(load), None) => {
+            let motor = load.times(1.0 / r);
+            (load, motor)
+        }
+        (None, Some(motor)) => (motor.times(r), motor),
+        // One was found, or there is no motion to prepare.
+        (None, None) => (empty(), empty()),
+    };
+    Motions {
+        load,
+        motor,
+        load_is_derived,
+    }
+}
+
+/// Every so manyth sample at which the load moves, and how many there are with those at
+/// which it does not.
+///
+/// At rest the force of friction is whatever holds the load, which no measured motion says;
+/// a filter spreads it over half a period of its cut-off. At the ends a filter has not
+/// settled.
+fn moving(
+    load: &Course,
+    period: f64,
+    cutoff: f64,
+    every: usize,
+    standstill: f64,
+) -> (Vec<usize>, usize) {
+    let n = load.speed.len();
+    let near = (0.25 / (cutoff * period)).ceil() as usize;
+    let edge = (EDGE / (cutoff * period)).ceil() as usize;
+    let moves = |k: &usize| {
+        let window = &load.speed[k.saturating_sub(near)..(k + near + 1).min(n)];
+        *k >= edge && k + edge < n && window.iter().all(|v| v.abs() > standstill)
+    };
+    let all = (0..n).step_by(every);
+    (all.clone().filter(moves).collect(), all.len())
+}

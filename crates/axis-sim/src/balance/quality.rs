@@ -1,0 +1,50 @@
+//! What was decided on a log, for messages.
+
+/// How a log was prepared for its torque balance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BalanceQuality {
+    /// Channel of the torque.
+    pub channel: &'static str,
+    /// Channels of the motion.
+    pub motion: Vec<&'static str>,
+    /// Cut-off of the low-pass that both sides go through, Hz.
+    pub cutoff: f64,
+    /// Cut-off of the low-pass of the motion before it is differentiated, Hz.
+    pub motion_cutoff: f64,
+    /// Share by which noise of the acceleration draws an inertia towards zero.
+    pub attenuation: f64,
+    /// Speed up to which nothing is compared, m/s or rad/s: that which the sensor tells from
+    /// rest, or the axis file's `slowest`.
+    pub standstill: f64,
+    /// Period of the compared samples, s.
+    pub compared_period: f64,
+    /// Samples compared, and how many there were at that rate.
+    pub samples: [usize; 2],
+    /// Noise alone in the compared channel, RMS in its unit: the least that the upper
+    /// spectra of torque and motion leave possible.
+    pub floor: f64,
+}
+
+impl BalanceQuality {
+    /// In words, of the log of that name.
+    pub fn sentence(&self, name: &str) -> String {
+        let [kept, all] = self.samples;
+        let drawn = 100.0 * self.attenuation;
+        let beware = match self.attenuation > TOLERATED {
+            true => ", more than 0.1 %: inertia and friction come out too small by about that",
+            false => "",
+        };
+        format!(
+            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz (motion at {:.3} Hz); noise of the acceleration takes {drawn:.2e} % from an inertia{beware}; {:.1} % of the samples are left out, where the speed is below {:.2e} (what its sensor tells from rest, or the axis file's slowest) or at the ends",
+            self.channel,
+            self.motion.join(" and "),
+            self.cutoff,
+            self.motion_cutoff,
+            100.0 * (all - kept) as f64 / all.max(1) as f64,
+            self.standstill,
+        )
+    }
+}
+
+/// Share of the acceleration's power that its noise may have below the cut-off.
+pub(super) const TOLERATED: f64 = 1e-3;

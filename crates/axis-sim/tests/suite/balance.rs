@@ -1,0 +1,225 @@
+//! Torque balance: a model balances what it simulated itself, and effects change it as
+//! their laws say.
+
+use axis_log::{Channel, Log};
+use axis_sim::effects::{ActiveEffect, Effect};
+use axis_sim::{Axis, Balance, BalanceError, ClosedLoop, Recorder, ReplayError, Sensors};
+use compensator::NoCompensation;
+
+use crate::{axis, text};
+
+/// The first trajectory as it is simulated, sensors without noise.
+fn simulated(axis: &Axis) -> Log {
+    let mut recorder = Recorder::new(axis);
+    let motion = axis.plan(&axis.trajectories[0]).unwrap();
+    ClosedLoop::new(axis)
+        .unwrap()
+        .without_noise()
+        .run(&motion, &mut NoCompensation, |cycle| recorder.push(cycle))
+        .completed()
+        .unwrap();
+    recorder.log().unwrap()
+}
+
+fn without(log: &Log, names: &[&str]) -> Log {
+    let kept = log
+        .channels()
+        .iter()
+        .filter(|c| !names.contains(&c.name.as_str()));
+    Log::new(kept.cloned().collect()).unwrap()
+}
+
+fn rms(series: &[f64]) -> f64 {
+    (series.iter().map(|v| v * v).sum::<f64>() / series.len() as f64).sqrt()
+}
+
+fn active(name: &str, values: &[f64]) -> ActiveEffect {
+    ActiveEffect {
+        effect: Effect::named(name).unwrap(),
+        values: values.to_vec(),
+    }
+}
+
+/// What is needed for a log, with effects.
+fn needed(balance: &Balance, axis: &Axis, effects: &[ActiveEffect]) -> Vec<f64> {
+    let trace = balance.run(axis, effects, None).unwrap();
+    trace.channel(balance.channel()).unwrap().to_vec()
+}
+
+/// RMS of log minus model as a share of the log's, of the model that made the log.
+fn unbalanced(axis: &Axis, log: &Log) -> f64 {
+    let balance = Balance::new(log, axis.period, axis).unwrap();
+    let measured = balance.compared().channel(balance.channel()).unwrap();
+    let model = needed(&balance, axis, &[]);
+    let rest: Vec<f64> = measured.iter().zip(&model).map(|(a, b)| a - b).collect();
+    rms(&rest) / rms(measured)
+}
+
+/// A known model leaves next to nothing of its own log: with motor and load measured, with
+/// one of them alone, by the current and by the command.
+#[test]
+fn a_model_balances_its_own_log() {
+    let mut worst = 0.0_f64;
+    for (name, left_out, most) in [
+        ("linear-motor.toml", &[][..], 5e-5),
+        // A current loop is more than the lag it is taken for.
+        ("linear-motor.toml", &["iq_a"], 0.02),
+        ("rack.toml", &[], 2e-6),
+        ("rack.toml", &["motor_angle_rad"], 4e-3),
+        ("rack.toml", &["position_m"], 3e-3),
+        ("rotary-table.toml", &[], 2e-5),
+        ("liu2025.toml", &[], 0.02),
+    ] {
+        let mut axis = axis(name);
+        // A scale's periodic error is an error of the motion that no filter takes out.
+        axis.sensors = Sensors::default();
+        // Slower, friction breaks away within less than a filter lets through.
+        axis.balance.slowest = Some(0.05 * axis.trajectories[0].limits.velocity());
+        let log = without(&simulated(&axis), left_out);
+        let share = unbalanced(&axis, &log);
+        println!("{name} without {left_out:?}: {share:.2e}");
+        worst = worst.max(share / most);
+    }
+    assert!(worst < 1.0, "{worst}");
+}
+
+/// A motion of several frequencies, sampled at 1 kHz: position, and its acceleration.
+pub fn motion(n: usize) -> [Vec<f64>; 2] {
+    let parts = [(0.5, 0.4, 0.1), (0.1, 1.7, 0.5), (0.02, 4.1, 1.1)];
+    let sum = |power: i32, sign: f64| -> Vec<f64> {
+        let at = |k: usize| {
+            let part = |(a, f, phase): &(f64, f64, f64)| {
+                let w = std::f64::consts::TAU * f;
+                sign * a * w.powi(power) * (w * k as f64 * 1e-3 + phase).sin()
+            };
+            parts.iter().map(part).sum()
+        };
+        (0..n).map(at).collect()
+    };
+    [sum(0, 1.0), sum(2, -1.0)]
+}
+
+/// A table on a torque motor without control: inertia alone.
+pub fn bench(inertia: f64, more: &str) -> Axis {
+    let text = format!(
+        "schema = 2\nname = \"bench\"\n[mechanism]\nkind = \"torque-motor\"\ntable_inertia_kg_m2 = {inertia}\n[actuator]\nkind = \"torque-source\"\ntorque_limit_n_m = 100\nbandwidth_hz = 1e6\n[friction]\nkind = \"coulomb-rotary\"\nviscous_n_m_s_per_rad = 0\ncoulomb_n_m = 0\npresliding_rad = 1e-4\n[stroke]\nminimum_rad = -100\nmaximum_rad = 100\nstart_rad = 0\n{more}"
+    );
+    Axis::parse("bench.toml", &text).unwrap()
+}
+
+pub fn log_of(channels: &[(&str, Vec<f64>)]) -> Log {
+    let time = (0..channels[0].1.len()).map(|k| k as f64 * 1e-3).collect();
+    let all = std::iter::once(Channel::new("t_s", time).unwrap());
+    let others = channels
+        .iter()
+        .map(|(n, s)| Channel::new(*n, s.clone()).unwrap());
+    Log::new(all.chain(others).collect()).unwrap()
+}
+
+/// A log of a bench with the torque of its inertia.
+fn bench_log(inertia: f64) -> Log {
+    let [position, acceleration] = motion(20_000);
+    let torque = acceleration.iter().map(|a| inertia * a).collect();
+    log_of(&[("position_rad", position), ("torque_n_m", torque)])
+}
+
+#[test]
+fn effects_add_what_their_laws_say() {
+    let axis = bench(0.3, "");
+    let balance = Balance::new(&bench_log(0.3), 1e-3, &axis).unwrap();
+    let bare = needed(&balance, &axis, &[]);
+    let measured = balance.compared().channel("torque_n_m").unwrap();
+    let off: Vec<f64> = bare.iter().zip(measured).map(|(a, b)| a - b).collect();
+    assert!(
+        rms(&off) < 1e-3 * rms(measured),
+        "{}",
+        rms(&off) / rms(measured)
+    );
+
+    // Twice the inertia: twice the torque.
+    let doubled = needed(&balance, &axis, &[active("payload-mass", &[0.3])]);
+    let off = doubled.iter().zip(&bare).map(|(d, b)| (d - 2.0 * b).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-12 * rms(&bare).max(1.0));
+
+    let trace = balance.run(&axis, &[], None).unwrap();
+    let difference = |effect: ActiveEffect| -> Vec<f64> {
+        let with = needed(&balance, &axis, &[effect]);
+        with.iter().zip(&bare).map(|(a, b)| a - b).collect()
+    };
+    let near = |found: &[f64], law: &dyn Fn(usize) -> f64| {
+        let off: Vec<f64> = (0..found.len()).map(|k| found[k] - law(k)).collect();
+        rms(&off) / rms(found)
+    };
+    let viscous = difference(active("viscous-friction", &[0.7]));
+    assert!(near(&viscous, &|k| 0.7 * trace.speed[k]) < 1e-3);
+    let load = difference(active("constant-load", &[2.0]));
+    assert!(near(&load, &|_| 2.0) < 1e-9);
+    // What cogging gives the motor need not.
+    let cogging = difference(active("cogging-torque", &[0.5, 2.0, 0.3]));
+    let angle = trace.position();
+    let law = |k: usize| -0.5 * (2.0 * angle[k] + 0.3).sin();
+    assert!(near(&cogging, &law) < 1e-2, "{}", near(&cogging, &law));
+    // A torque constant has no say in a measured torque; an offset of nothing none at all.
+    assert_eq!(rms(&difference(active("torque-constant", &[0.1]))), 0.0);
+}
+
+#[test]
+fn an_effect_of_nothing_changes_no_bit() {
+    let axis = bench(0.3, "");
+    let balance = Balance::new(&bench_log(0.3), 1e-3, &axis).unwrap();
+    let bare = needed(&balance, &axis, &[]);
+    for name in [
+        "payload-mass",
+        "viscous-friction",
+        "coulomb-friction",
+        "constant-load",
+    ] {
+        let null = active(name, &[0.0, 0.0]);
+        assert_eq!(needed(&balance, &axis, &[null]), bare, "{name}");
+    }
+}
+
+#[test]
+fn an_axis_without_control_is_balanced_and_not_looped() {
+    let axis = bench(0.3, "");
+    assert!(!axis.has_control());
+    let error = ClosedLoop::new(&axis).unwrap_err().to_string();
+    assert!(
+        error.contains("no [control]") && error.contains("discover"),
+        "{error}"
+    );
+    // A table that is misspelt is not one that is left out.
+    let misspelt = text("rack.toml").replace("[control]", "[contrl]");
+    let error = Axis::parse("rack.toml", &misspelt).unwrap_err().to_string();
+    assert!(error.contains("did you mean `[control]`?"), "{error}");
+    assert!(
+        !crate::axis("rack.toml")
+            .without_control()
+            .unwrap()
+            .has_control()
+    );
+}
+
+#[test]
+fn what_a_log_lacks_is_named() {
+    let axis = bench(0.3, "");
+    let [position, _] = motion(5000);
+    let refusal = |channels: &[(&str, Vec<f64>)]| -> BalanceError {
+        match Balance::new(&log_of(channels), 1e-3, &axis) {
+            Err(ReplayError::Balance(error)) => error,
+            other => panic!("{other:?}"),
+        }
+    };
+    let error = refusal(&[("position_rad", position.clone())]);
+    assert!(matches!(error, BalanceError::NoTorque { .. }));
+    assert!(error.to_string().contains("torque_ref_n_m"), "{error}");
+    let error = refusal(&[
+        ("torque_n_m", position.clone()),
+        ("position_m", position.clone()),
+    ]);
+    assert!(matches!(error, BalanceError::NoMotion { .. }));
+    assert!(error.to_string().contains("velocity_rad_s"), "{error}");
+    let still = vec![0.1; position.len()];
+    let error = refusal(&[("torque_n_m", position), ("position_rad", still)]);
+    assert!(matches!(error, BalanceError::Standstill { .. }), "{error}");
+}
