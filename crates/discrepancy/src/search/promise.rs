@@ -18,12 +18,6 @@ pub(super) const PROMISING: f64 = 0.3;
 /// Share of what the best effect promises that another must promise.
 pub(super) const WORTH: f64 = 0.1;
 
-/// Share of the best promise from which on something simple is refined beside the best.
-const NEARLY: f64 = 0.8;
-
-/// Most of these.
-const SIMPLER: usize = 3;
-
 /// Most pairs that are simulated.
 const PAIRS: usize = 3;
 
@@ -107,21 +101,14 @@ impl<'a> Promises<'a> {
     }
 
     /// Of these effects, the first few, but none that promises less than a
-    /// tenth of the best or too little; and a few simpler ones that promise nearly as much,
-    /// as on poor motion more effects look alike than are refined. The times of a force in
-    /// time are to be found first.
+    /// tenth of the best or too little. The times of a force in time are to be found first.
     pub(super) fn worth_refining(&self, effects: &[Screened]) -> Vec<Vec<Screened>> {
         let (force, others): (Vec<_>, Vec<_>) =
             effects.iter().partition(|s| is_force_in_time(s.effect));
         let settings = self.search.settings;
         let best = others.first().map_or(0.0, |s| s.gain);
         let least = (PROMISING * self.search.needed(1, 1)).max(WORTH * best);
-        let (few, rest) = others.split_at(settings.refined.min(others.len()));
-        let simplest = few.iter().map(|s| s.effect.parameters.len()).min();
-        let simple = |s: &&&Screened| Some(s.effect.parameters.len()) <= simplest;
-        let near = rest.iter().filter(|s| s.gain >= NEARLY * best);
-        let simpler = near.filter(simple).take(SIMPLER);
-        let few = few.iter().chain(simpler).copied();
+        let few = others.into_iter().take(settings.refined);
         let few = few.filter(|s| s.gain >= least).chain(force);
         few.map(|s| vec![s.clone()]).collect()
     }
