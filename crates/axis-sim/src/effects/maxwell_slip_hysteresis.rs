@@ -24,6 +24,10 @@ const REACHES: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 /// Share of the force that each element has.
 const SHARE: f64 = 1.0 / REACHES.len() as f64;
 
+/// Greatest pre-sliding distance, m: rolling contacts slide after some 0.1 mm, and over
+/// millimetres this would be a force that rises with a whole motion.
+const LONGEST: f64 = 1e-3;
+
 pub(super) const EFFECT: Effect = Effect {
     name: "maxwell-slip-hysteresis",
     summary: "dry friction with a memory of its reversals",
@@ -37,7 +41,7 @@ pub(super) const EFFECT: Effect = Effect {
             Measure::Way,
             Nature::Extent(&[3e-5, 3e-4], [2e-5, 5e-4]),
             1e-4,
-            [1e-6, 1e-2],
+            [1e-6, LONGEST],
         ),
     ],
     needs: &[],
