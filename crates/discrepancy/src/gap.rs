@@ -51,7 +51,7 @@ fn mean(rest: &Rest, channel: usize, value: impl Fn(usize, usize) -> f64) -> f64
     all.map(|(l, k)| value(l, k)).sum::<f64>() / lengths.sum::<usize>().max(1) as f64
 }
 
-fn mean_square(rest: &Rest, channel: usize) -> f64 {
+pub(crate) fn mean_square(rest: &Rest, channel: usize) -> f64 {
     mean(rest, channel, |l, k| rest[l][channel][k].powi(2))
 }
 

@@ -3,8 +3,10 @@
 use crate::numeric::holes::{bridge, runs};
 use crate::numeric::order::{SIGMA_OF_MAD, median};
 
-/// Half the window of the running median, samples: as many in a row are found.
+/// Half the window of the running median, samples.
 const HALF: usize = 5;
+/// Most samples in a row: what a mechanism does takes longer.
+const MOST: usize = 2;
 /// Half the window in which the usual distance is taken once more.
 const AROUND: usize = 25;
 /// Distance from the median, in standard deviations, from which on a sample is out.
@@ -19,7 +21,7 @@ pub struct Outlier {
     pub distance: f64,
 }
 
-/// Isolated outliers: at most five samples in a row that lie off the samples before and
+/// Isolated outliers: at most two samples in a row that lie off the samples before and
 /// after them, to one side, by Hampel's test.
 ///
 /// A sample is out where it lies more than 8 σ from the median of the eleven samples around
@@ -57,7 +59,7 @@ pub fn outliers(samples: &[f64]) -> Vec<Outlier> {
         while k < x.len() && far(k) {
             k += 1;
         }
-        let alone = (1..=HALF).contains(&(k - from)) && quiet(&off, from, k, usual);
+        let alone = (1..=MOST).contains(&(k - from)) && quiet(&off, from, k, usual);
         if alone && apart(x, from, k, usual) {
             let index = (from..k).filter(|&i| !samples[i].is_nan());
             found.extend(index.map(|index| Outlier {

@@ -24,17 +24,16 @@ pub(super) static KIND: PartKind<Friction> = PartKind {
     build: |v| build(v, Place::Motor),
 };
 
-/// The known parameters of every LuGre friction. A change of the Coulomb level
-/// keeps the rise from it to the break-away, which is never below it.
+/// The known parameters of every LuGre friction. Each of the two levels may be off by its own
+/// tolerance; the break-away is never below the Coulomb level.
 pub(super) const KNOWN: &[Known] = &[
     Known::by("coulomb_level", |v, by| {
-        let [coulomb, stiction] = ["coulomb", "stiction"].map(|key| v.or(key, 0.0));
-        v.set("stiction", stiction + coulomb * (by - 1.0));
         v.scale("coulomb", by);
+        v.set("stiction", v.or("stiction", 0.0).max(v.or("coulomb", 0.0)));
     }),
     Known::by("break_away", |v, by| {
-        let [coulomb, stiction] = ["coulomb", "stiction"].map(|key| v.or(key, 0.0));
-        v.set("stiction", (stiction * by).max(coulomb));
+        let stiction = by * v.or("stiction", 0.0);
+        v.set("stiction", stiction.max(v.or("coulomb", 0.0)));
     }),
     Known::key("stribeck_speed"),
     Known::key("bristle_stiffness"),

@@ -3,7 +3,7 @@
 use axis_sim::effects::{ActiveEffect, Effect};
 use rayon::prelude::*;
 
-use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
+use super::evidence::{LEAST_HELD_OUT, MATERIAL, MATERIAL_NOISE, WORSE};
 use super::form::effects_before_forms;
 use super::free_curve::FreeCurve;
 use super::promise::{Promises, WORTH};
@@ -11,7 +11,9 @@ use super::refined::{Refined, alike, simplest_first};
 use super::state::Search;
 use super::types::{Named, RunnerUp};
 use crate::fit::{Columns, Fit, free_parameters};
+use crate::gap::mean_square;
 use crate::library::is_force_in_time;
+use crate::noise::floors;
 use crate::screen::Screened;
 
 /// Share of the promised fall of D that a simulation must keep, or other sizes are
@@ -50,7 +52,9 @@ impl Search<'_> {
             let check = self.checker().at(candidate.fit.state.clone()).ok()?;
             let held_out = self.check.deviance - check.deviance;
             let holds = !awaited.is_empty()
-                || self.proves_itself(candidate, held_out) && self.worsens_none(&check);
+                || self.proves_itself(candidate, held_out)
+                    && self.worsens_none(&check)
+                    && self.is_material(&check);
             holds.then_some((place, check))
         });
         let Some((place, check)) = proven else {
@@ -180,6 +184,27 @@ impl Search<'_> {
         let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
         tracing::debug!(gain = best.gain, held_out, needed, "on check logs");
         best.gain >= needed && held_out >= LEAST_HELD_OUT && best.gain >= MATERIAL * largest
+    }
+
+    /// Whether some channel of the check logs comes nearer by what is not small beside its
+    /// noise. With a log of 10 s, D falls by thousands for a gap of 60 nm beneath 20 nm of
+    /// noise, which no engineer looks for, and for what simulations differ by.
+    fn is_material(&self, check: &Fit) -> bool {
+        let set = &self.check_logs;
+        let [before, after] = [&self.check, check].map(|fit| set.rest(&fit.traces));
+        let Ok(floors) = floors(self.machine, set, &check.state, &after) else {
+            return true;
+        };
+        let nearer = |c: usize| {
+            (mean_square(&before, c) - mean_square(&after, c))
+                .max(0.0)
+                .sqrt()
+        };
+        let most =
+            (0..set.channels.len()).map(|c| nearer(c) / floors[c].rms.max(f64::MIN_POSITIVE));
+        let most = most.fold(0.0, f64::max);
+        tracing::debug!(most, "nearer on check logs, in noise");
+        most >= MATERIAL_NOISE
     }
 
     /// Whether no channel of the check logs, fitted or not, is so much further off than
