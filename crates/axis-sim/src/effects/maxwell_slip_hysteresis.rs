@@ -24,9 +24,9 @@ const REACHES: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 /// Share of the force that each element has.
 const SHARE: f64 = 1.0 / REACHES.len() as f64;
 
-/// Greatest pre-sliding distance, m: rolling contacts slide after some 0.1 mm, and over
-/// millimetres this would be a force that rises with a whole motion.
-const LONGEST: f64 = 1e-3;
+/// Greatest pre-sliding distance, m: rolling contacts slide after some 0.1 mm. Over
+/// millimetres this would be a force that comes up with a motion, and explain slow noise.
+const LONGEST: f64 = 3e-4;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "maxwell-slip-hysteresis",
@@ -39,7 +39,7 @@ pub(super) const EFFECT: Effect = Effect {
         shape(
             "presliding_distance",
             Measure::Way,
-            Nature::Extent(&[3e-5, 3e-4], [2e-5, 5e-4]),
+            Nature::Extent(&[3e-5, 2e-4], [2e-5, 2e-4]),
             1e-4,
             [1e-6, LONGEST],
         ),
