@@ -71,8 +71,10 @@ pub fn floor(balances: &[&Balance]) -> Floor {
     let squares = balances.iter().map(|b| b.quality().floor.powi(2));
     let sum: f64 = samples.clone().zip(squares).map(|(n, s)| n * s).sum();
     let independent: f64 = samples.sum();
+    let rms = (sum / independent.max(1.0)).sqrt();
     Floor {
-        rms: (sum / independent.max(1.0)).sqrt(),
+        rms,
+        most: rms,
         independent,
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use axis_sim::effects::Measure;
+use axis_sim::effects::{self, Measure};
 use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, Probe, Trace};
 use rayon::prelude::*;
@@ -215,6 +215,42 @@ impl Shape {
             variable,
             knots,
         }
+    }
+
+    /// Whether it is over what an effect is shown over, or over a product with it.
+    pub fn is_over(&self, variable: effects::Variable) -> bool {
+        match variable {
+            effects::Variable::Speed => {
+                self.variable == Variable::Speed || self.factor != Factor::One
+            }
+            effects::Variable::Position => self.variable == Variable::Position,
+            effects::Variable::MotorAngle => self.variable == Variable::Angle,
+            effects::Variable::Acceleration => self.variable == Variable::Acceleration,
+            effects::Variable::Current => self.variable == Variable::Effort,
+            effects::Variable::Way | effects::Variable::Time => self.variable == Variable::Time,
+        }
+    }
+
+    /// Fall of D on logs that were not fitted, of which this is the fit, with these values at
+    /// the knots; nothing where it does not run.
+    pub fn told(&self, machine: &Axis, set: &LogSet, fit: &Fit, values: &[f64]) -> f64 {
+        let sum = |course: &Course| {
+            let mut total = vec![0.0; course.time.len()];
+            for (j, by) in values.iter().enumerate() {
+                for (t, h) in total.iter_mut().zip(self.hat(j, course)) {
+                    *t += by * h;
+                }
+            }
+            total
+        };
+        let probes: Vec<Probe> = (courses(machine, set, &fit.traces).iter())
+            .map(|course| self.place.probe(sum(course)))
+            .collect();
+        let traces = set.simulate_with(machine, &fit.state, Some(&probes));
+        traces.map_or(f64::NEG_INFINITY, |traces| {
+            let rest = set.amplitudes(&set.rest(&traces));
+            set.layout.deviance(&fit.rest) - set.layout.deviance(&rest)
+        })
     }
 
     /// On what it depends, in words.

@@ -14,8 +14,17 @@ pub struct ChannelGap {
     pub before: f64,
     /// With the effects.
     pub after: f64,
-    /// Of noise alone: sensors as noisy as the rest's highest frequencies show.
+    /// Of noise alone: sensors and logger as noisy as the rest shows.
     pub floor: f64,
+    /// The most of it in any of a few simulated runs.
+    pub floor_most: f64,
+}
+
+impl ChannelGap {
+    /// Whether what is left is noise.
+    pub(crate) fn is_at_floor(&self) -> bool {
+        self.after <= (REST * self.floor).max(OF_RUNS * self.floor_most)
+    }
 }
 
 /// Gap on a set of logs.
@@ -29,7 +38,10 @@ pub struct Gap {
 }
 
 /// A channel's rest is significant beyond this multiple of its floor.
-pub const REST: f64 = 1.2;
+const REST: f64 = 1.2;
+
+/// And beyond this multiple of the noisiest of the runs.
+const OF_RUNS: f64 = 1.1;
 
 /// A rest within this multiple of its floor is noise: where nothing was left in
 /// simulated logs, it came out between 0.79 (a motor angle, else 0.90) and 1.05
@@ -67,6 +79,7 @@ pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
             before: rms(before, c),
             after: rms(after, c),
             floor: floors[c].rms,
+            floor_most: floors[c].most,
         })
         .collect();
     let above = |rms: f64, floor: f64| {

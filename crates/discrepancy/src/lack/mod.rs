@@ -11,13 +11,12 @@
 mod rest;
 mod term;
 
-use axis_sim::{Axis, Probe, ReplayError};
+use axis_sim::{Axis, ReplayError};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use self::rest::Rest;
 use self::rest::Solved;
 use self::term::term;
-use crate::curves::{Course, courses};
 use crate::fit::Fitter;
 use crate::search::{Found, needed};
 
@@ -85,30 +84,9 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     solved.sort_by(|a, b| b.1.gain.total_cmp(&a.1.gain));
     tracing::debug!(gains = ?solved.iter().map(|(i, s)| (curves.shapes[*i].0.place, curves.shapes[*i].0.depends_on(), s.gain, s.of_noise)).collect::<Vec<_>>(), "curves");
     // Of those that are significant, the one that tells most of other motion.
-    let courses_check = courses(machine, &found.check_logs, &check.traces);
     let held_out = |(i, s): &(usize, Solved)| -> f64 {
         let shape = &curves.shapes[*i].0;
-        let sum = |c: &Course| {
-            let mut total = vec![0.0; c.time.len()];
-            for (j, by) in s.values.iter().enumerate() {
-                for (t, h) in total.iter_mut().zip(shape.hat(j, c)) {
-                    *t += by * h;
-                }
-            }
-            total
-        };
-        let probes: Vec<Probe> = courses_check
-            .iter()
-            .map(|c| shape.place.probe(sum(c)))
-            .collect();
-        let traces = found
-            .check_logs
-            .simulate_with(machine, &check.state, Some(&probes));
-        traces.map_or(f64::NEG_INFINITY, |traces| {
-            let set = &found.check_logs;
-            let amplitudes = set.amplitudes(&set.rest(&traces));
-            set.layout.deviance(&check.rest) - set.layout.deviance(&amplitudes)
-        })
+        shape.told(machine, &found.check_logs, &check, s.values.as_slice())
     };
     let told: Vec<(&(usize, Solved), f64)> =
         solved.iter().take(TOLD).map(|s| (s, held_out(s))).collect();

@@ -46,12 +46,15 @@ pub fn noise_at(axis: &Axis, set: &LogSet, rest: &Rest, quiet: &[Trace]) -> LogN
     let sources: Vec<Powers> = (answers.iter().map(of_answer))
         .chain((0..set.channels.len()).map(of_logger))
         .collect();
-    let found = variances(
-        &bands.powers(set, rest),
-        &sources,
-        &bands.values,
-        bands.upper,
-    );
+    // A command is made of what the sensors show, and tells them from the logger. Without one
+    // nobody knows, and neither comes first.
+    let has_command = set.channels.iter().any(|c| COMMANDS.contains(c));
+    let last = match has_command {
+        true => sensors.len(),
+        false => sources.len(),
+    };
+    let observed = bands.powers(set, rest);
+    let found = variances(&observed, &sources, &bands.values, bands.upper, last);
     let (of_sensors, of_logger) = found.split_at(sensors.len());
     let loop_noise = Sensor::ALL.iter().zip(of_sensors);
     let logger = set.channels.iter().zip(of_logger);

@@ -19,7 +19,7 @@ pub use self::types::{
 };
 use crate::experiment::{Proposal, propose};
 use crate::fit::{Fitter, free_parameters};
-use crate::gap::{Gap, REST, gap};
+use crate::gap::{ChannelGap, Gap, gap};
 use crate::known::{shown, tolerances};
 use crate::lack::{Curve, Unknown, lack};
 use crate::model::{LogSet, Prepared, State, is_form_of};
@@ -141,7 +141,7 @@ pub fn judged(
         set: check_logs,
     };
     let base = checker.at(found.base.state.clone())?;
-    let at_floor = |gap: &Gap| gap.channels.iter().all(|c| c.after <= REST * c.floor);
+    let at_floor = |gap: &Gap| gap.channels.iter().all(ChannelGap::is_at_floor);
     let largest = found.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
     let unknown = match lack(machine, found, MATERIAL * largest)? {
         Some(unknown) => Some(unknown),

@@ -79,15 +79,26 @@ impl Refined {
     pub(super) fn is_form(&self) -> bool {
         self.parts.iter().any(|p| p.effect.name == ONSET_FORM.name)
     }
+
+    /// Whether it is a form, or a friction that is another one in another form: slip with a
+    /// memory is dry friction whose onset has one.
+    fn is_of_another_form(&self) -> bool {
+        let with_memory = |p: &Screened| p.effect.name == WITH_MEMORY;
+        self.is_form() || self.parts.len() == 1 && self.parts.iter().any(with_memory)
+    }
 }
+
+/// Dry friction with a memory.
+const WITH_MEMORY: &str = "maxwell-slip-hysteresis";
 
 /// Effects before a form that explains hardly more.
 pub(super) fn effects_before_forms(refined: &mut [Refined]) {
-    let Some(first) = refined.first().filter(|r| r.is_form()) else {
+    let Some(first) = refined.first().filter(|r| r.is_of_another_form()) else {
         return;
     };
     let least = INSTEAD * first.gain;
-    let effect = refined.iter().position(|r| !r.is_form() && r.gain >= least);
+    let mut all = refined.iter();
+    let effect = all.position(|r| !r.is_of_another_form() && r.gain >= least);
     if let Some(at) = effect {
         refined[..=at].rotate_right(1);
     }

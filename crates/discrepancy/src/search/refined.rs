@@ -89,3 +89,21 @@ pub(super) fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
     }
     refined
 }
+
+/// Share of what two effects explain together that one must explain to be taken first: the
+/// other then follows, or what is there does. Pairs are for what nearly cancels.
+const ALONE: f64 = 0.5;
+
+/// An effect that explains much alone before two that explain more together.
+pub(super) fn single_before_pair(refined: &mut [Refined]) {
+    let Some(first) = refined.first().filter(|r| r.parts.len() > 1) else {
+        return;
+    };
+    let least = ALONE * first.gain;
+    let single = refined
+        .iter()
+        .position(|r| r.parts.len() == 1 && !r.is_form() && r.gain >= least);
+    if let Some(at) = single {
+        refined[..=at].rotate_right(1);
+    }
+}

@@ -5,9 +5,9 @@ use rayon::prelude::*;
 
 use super::evidence::{LEAST_HELD_OUT, MATERIAL, MATERIAL_NOISE, WORSE};
 use super::form::effects_before_forms;
-use super::free_curve::FreeCurve;
+use super::free_curve::FreeCurves;
 use super::promise::{Promises, WORTH};
-use super::refined::{Refined, alike, simplest_first};
+use super::refined::{Refined, alike, simplest_first, single_before_pair};
 use super::state::Search;
 use super::types::{Named, RunnerUp};
 use crate::fit::{Columns, Fit, free_parameters};
@@ -42,11 +42,12 @@ impl Search<'_> {
         };
         let mut refined = self.refine(candidates, &own);
         effects_before_forms(&mut refined);
+        single_before_pair(&mut refined);
         let fitter = self.fitter();
-        let curve = FreeCurve::new(self, &fitter, &own);
+        let curves = FreeCurves::new(self, &fitter, &own);
         // Where the best does not hold on other motion, the next may.
         let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
-            if awaited.is_empty() && !candidate.is_form() && !curve.is_matched_by(candidate) {
+            if awaited.is_empty() && !candidate.is_form() && !curves.are_matched_by(candidate) {
                 return None;
             }
             let check = self.checker().at(candidate.fit.state.clone()).ok()?;
