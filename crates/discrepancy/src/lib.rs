@@ -30,6 +30,7 @@
 
 mod answer;
 mod bounded;
+pub mod controller;
 mod curves;
 mod experiment;
 mod fit;
