@@ -30,7 +30,6 @@
 
 mod answer;
 mod bounded;
-pub mod controller;
 mod curves;
 mod experiment;
 mod fit;

@@ -7,7 +7,6 @@ pub mod discover;
 pub mod discover_matrix;
 pub mod export_drive;
 pub mod identify;
-pub mod identify_control;
 pub mod independent;
 pub mod layers;
 pub mod learn;
