@@ -23,10 +23,7 @@ pub(super) static KIND: PartKind<dyn Control> = PartKind {
         quantity("position_gain", &VELOCITY_GAIN, 1e-3, 1e6).role(Role::PositionGain),
         quantity("speed_gain", &SPEED_GAIN, 1e-6, 1e9).role(Role::SpeedGain),
     ],
-    known: &[
-        Known::exact("position_gain"),
-        Known::exact("speed_gain"),
-    ],
+    known: &[Known::exact("position_gain"), Known::exact("speed_gain")],
     build: |v| {
         Ok(Arc::new(PP {
             position: v.number("position_gain")?,
