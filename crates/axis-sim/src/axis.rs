@@ -190,6 +190,11 @@ impl Tolerances {
         }
     }
 
+    /// Whether they let a parameter be off at all.
+    fn free(&self, known: &Known) -> bool {
+        !known.is_exact() || self.by_name.contains_key(known.name)
+    }
+
     /// Of one parameter.
     pub fn of(&self, name: &str) -> f64 {
         self.by_name.get(name).copied().unwrap_or(self.default)
@@ -295,15 +300,23 @@ impl Axis {
     }
 
     /// The parameters that the file gives and that may be off by its tolerances:
-    /// those of mechanism, actuator, control, friction and loads, in that order.
+    /// those of mechanism, actuator, control, friction and loads, in that order. One that is
+    /// exact by itself ([`Known::exact`]) is among them where the tolerances name it.
     pub fn known(&self) -> Vec<&'static str> {
+        let all = self.may_be_known().into_iter();
+        let is_free = |known: &&Known| self.tolerances.free(known);
+        all.filter(is_free).map(|known| known.name).collect()
+    }
+
+    /// As [`Axis::known`], with all that are exact unless the tolerances name them.
+    pub(crate) fn may_be_known(&self) -> Vec<&'static Known> {
         let of_loads = self.loads.iter().flat_map(Part::known);
         let all = (self.mechanism.known())
             .chain(self.actuator.known())
             .chain(self.control.known())
             .chain(self.friction.known())
             .chain(of_loads);
-        all.map(|known| known.name).collect()
+        all.collect()
     }
 
     /// The axis with its known parameters off by `shares` of their values, in the
@@ -311,13 +324,13 @@ impl Axis {
     #[must_use]
     pub fn with_known(&self, shares: &[f64]) -> Self {
         let mut axis = self.clone();
-        let mut shares = shares.iter();
-        off(&mut axis.mechanism, &mut shares);
-        off(&mut axis.actuator, &mut shares);
-        off(&mut axis.control, &mut shares);
-        off(&mut axis.friction, &mut shares);
+        let (mut shares, tolerances) = (shares.iter(), &self.tolerances);
+        off(&mut axis.mechanism, tolerances, &mut shares);
+        off(&mut axis.actuator, tolerances, &mut shares);
+        off(&mut axis.control, tolerances, &mut shares);
+        off(&mut axis.friction, tolerances, &mut shares);
         for load in &mut axis.loads {
-            off(load, &mut shares);
+            off(load, tolerances, &mut shares);
         }
         axis
     }
@@ -344,8 +357,13 @@ impl Axis {
 }
 
 /// Changes the known parameters of a part by the next shares.
-fn off<'a, P: ?Sized>(part: &mut Part<P>, shares: &mut impl Iterator<Item = &'a f64>) {
-    let known: Vec<&Known> = part.known().collect();
+fn off<'a, P: ?Sized>(
+    part: &mut Part<P>,
+    tolerances: &Tolerances,
+    shares: &mut impl Iterator<Item = &'a f64>,
+) {
+    let known = part.known().filter(|known| tolerances.free(known));
+    let known: Vec<&Known> = known.collect();
     for (known, share) in known.into_iter().zip(shares) {
         if *share != 0.0 {
             // What would make no part is passed over: the part stays as it was.

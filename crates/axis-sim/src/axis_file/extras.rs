@@ -10,7 +10,7 @@ use crate::SixDigits;
 use crate::axis::{Axis, BalanceSettings, Range, Stroke, Tolerances};
 use crate::effects::{ActiveEffect, Effect, EffectParameter, Scales};
 use crate::mechanism::Freedom;
-use crate::part::Key;
+use crate::part::{Key, Known};
 use crate::work::{MOST_SUBSTEPS, substeps_of};
 
 /// The entries of `[[effects]]`: `name`, and each parameter in SI units.
@@ -61,18 +61,18 @@ pub(super) fn effects(
 /// `[tolerances]`: how far known parameters may be off; 1 % unless it says more.
 pub(super) fn tolerances(
     root: &Fields<'_>,
-    known: &[&'static str],
+    known: &[&'static Known],
 ) -> Result<Tolerances, AxisFileError> {
     let Some(f) = root.optional_table("tolerances")? else {
         return Ok(Tolerances::all(0.01));
     };
     let default = f.optional_number("known_parameters_percent")?;
     let mut by_name = BTreeMap::new();
-    for name in known {
-        if f.has(name) {
-            let share = share(&f, name)?;
-            f.keep(name, share);
-            by_name.insert(*name, share);
+    for known in known {
+        if f.has(known.name) {
+            let share = share(&f, known.name)?;
+            f.keep(known.name, share);
+            by_name.insert(known.name, share);
         }
     }
     Ok(Tolerances {

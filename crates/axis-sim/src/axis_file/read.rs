@@ -17,7 +17,7 @@ use crate::axis::{
     Simulation, Stroke, Tolerances,
 };
 use crate::closed_loop::ClosedLoop;
-use crate::control::{Control, absent};
+use crate::control::{Control, absent, gain_fits, gain_turns};
 use crate::friction::Place;
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism, Way};
@@ -134,7 +134,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         Some(f) => Some(sample_ranges(&f, &axis)?),
         None => implied_ranges(&axis),
     };
-    axis.tolerances = extras::tolerances(&root, &axis.known())?;
+    axis.tolerances = extras::tolerances(&root, &axis.may_be_known())?;
     fits(&root, &control_table, &axis)?;
     axis.effects = extras::effects(&root, &axis, &registry.effects)?;
     Ok(axis)
@@ -147,22 +147,10 @@ fn check_gains(
     effort: Effort,
     mechanism: &dyn Mechanism,
 ) -> Result<(), AxisFileError> {
-    let load_turns = mechanism.freedom() == Freedom::Rotary;
-    // Only where motor and load are one does a motor move along a line.
-    let motor_turns = load_turns || mechanism.travel_per_radian() != 1.0;
     for key in control.kind().keys {
         let given = control.values().unit(key.name);
-        let turns = match control.at_motor().contains(&key.name) {
-            true => motor_turns,
-            false => load_turns,
-        };
-        let fits = |unit: &str| {
-            let ends = |ends: &[&str]| ends.iter().any(|end| unit.ends_with(end));
-            let along = ends(&["_per_m", "_per_m_s", "_per_mm"]);
-            let about = ends(&["_per_rad", "_per_rad_s", "_per_rpm", "_per_rpm_s"]);
-            let moves = if turns { !along } else { !about };
-            moves && Effort::of_gain(unit).is_none_or(|of| of == effort)
-        };
+        let turns = gain_turns(&**control, key.name, mechanism);
+        let fits = |unit: &str| gain_fits(unit, turns, effort);
         if fits(given) {
             continue;
         }

@@ -23,7 +23,7 @@ use crate::part::units::{
     ACCELERATION_FEEDFORWARD, FREQUENCY, POSITION_GAIN, SPEED_INTEGRAL, SPEED_PROPORTIONAL, TIME,
     VELOCITY_GAIN,
 };
-use crate::part::{PartError, PartKind, Role, Values, number, quantity, word};
+use crate::part::{Known, PartError, PartKind, Role, Values, number, quantity, word};
 
 pub(super) static KIND: PartKind<dyn Control> = PartKind {
     name: "p-pi",
@@ -58,7 +58,14 @@ pub(super) static KIND: PartKind<dyn Control> = PartKind {
         number("notch_damping", 1e-3, 10.0).optional(),
         number("notch_depth", 0.0, 1.0).optional(),
     ],
-    known: &[],
+    known: &[
+        Known::exact("position_gain"),
+        Known::exact("kv"),
+        Known::exact("velocity_feedforward"),
+        Known::exact("speed_proportional"),
+        Known::exact("speed_integral"),
+        Known::exact("speed_integral_time"),
+    ],
     build,
 };
 

@@ -13,7 +13,8 @@ use trajectories::Setpoint;
 
 use crate::actuator::{Effort, Surroundings};
 use crate::cycle::Measured;
-use crate::part::{PartError, PartKind};
+use crate::mechanism::{Freedom, Mechanism};
+use crate::part::{Key, PartError, PartKind};
 
 /// All kinds of control, one line each.
 pub const CONTROLS: &[&PartKind<dyn Control>] = &[&cascade::KIND, &p_p::KIND, &pid::KIND];
@@ -79,6 +80,40 @@ pub trait Control: fmt::Debug + Send + Sync {
     /// # Errors
     /// [`PartError`] where it does not fit its surroundings.
     fn start(&self, on: &Surroundings) -> Result<Box<dyn Controller>, PartError>;
+}
+
+/// The units that a gain of a control may be given in, with their factors to SI: those that
+/// end in the actuator's command, per m or per rad as what the gain acts on moves.
+pub fn units_of_gain(
+    control: &dyn Control,
+    key: &Key,
+    effort: Effort,
+    mechanism: &dyn Mechanism,
+) -> Vec<(&'static str, f64)> {
+    let turns = gain_turns(control, key.name(), mechanism);
+    let units = key.units().iter().copied();
+    units
+        .filter(|(unit, _)| gain_fits(unit, turns, effort))
+        .collect()
+}
+
+/// Whether what the gain under a key acts on turns.
+pub(crate) fn gain_turns(control: &dyn Control, key: &str, mechanism: &dyn Mechanism) -> bool {
+    let load_turns = mechanism.freedom() == Freedom::Rotary;
+    // Only where motor and load are one does a motor move along a line.
+    match control.at_motor().contains(&key) {
+        true => load_turns || mechanism.travel_per_radian() != 1.0,
+        false => load_turns,
+    }
+}
+
+/// Whether a unit is that of a gain on what turns or not, to a command in `effort`.
+pub(crate) fn gain_fits(unit: &str, turns: bool, effort: Effort) -> bool {
+    let ends = |ends: &[&str]| ends.iter().any(|end| unit.ends_with(end));
+    let along = ends(&["_per_m", "_per_m_s", "_per_mm"]);
+    let about = ends(&["_per_rad", "_per_rad_s", "_per_rpm", "_per_rpm_s"]);
+    let moves = if turns { !along } else { !about };
+    moves && Effort::of_gain(unit).is_none_or(|of| of == effort)
 }
 
 /// A controller at work.

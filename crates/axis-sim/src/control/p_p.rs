@@ -14,7 +14,7 @@ use super::{Control, Controller, Demand, Situation};
 use crate::actuator::{Effort, Surroundings};
 use crate::cycle::Measured;
 use crate::part::units::{SPEED_GAIN, VELOCITY_GAIN};
-use crate::part::{PartError, PartKind, Role, quantity};
+use crate::part::{Known, PartError, PartKind, Role, quantity};
 
 pub(super) static KIND: PartKind<dyn Control> = PartKind {
     name: "p-p",
@@ -23,7 +23,7 @@ pub(super) static KIND: PartKind<dyn Control> = PartKind {
         quantity("position_gain", &VELOCITY_GAIN, 1e-3, 1e6).role(Role::PositionGain),
         quantity("speed_gain", &SPEED_GAIN, 1e-6, 1e9).role(Role::SpeedGain),
     ],
-    known: &[],
+    known: &[Known::exact("position_gain"), Known::exact("speed_gain")],
     build: |v| {
         Ok(Arc::new(PP {
             position: v.number("position_gain")?,

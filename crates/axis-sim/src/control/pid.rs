@@ -11,7 +11,7 @@ use super::{Control, Controller, Demand, Situation};
 use crate::actuator::{Effort, Surroundings};
 use crate::cycle::Measured;
 use crate::part::units::{FREQUENCY, PID_DERIVATIVE, PID_INTEGRAL, PID_PROPORTIONAL};
-use crate::part::{PartError, PartKind, Role, quantity};
+use crate::part::{Known, PartError, PartKind, Role, quantity};
 
 pub(super) static KIND: PartKind<dyn Control> = PartKind {
     name: "pid",
@@ -22,7 +22,11 @@ pub(super) static KIND: PartKind<dyn Control> = PartKind {
         quantity("derivative", &PID_DERIVATIVE, 0.0, 1e12).role(Role::SpeedGain),
         quantity("derivative_lowpass", &FREQUENCY, 1.0, 1e6),
     ],
-    known: &[],
+    known: &[
+        Known::exact("proportional"),
+        Known::exact("integral"),
+        Known::exact("derivative"),
+    ],
     build: |v| {
         Ok(Arc::new(Pid {
             proportional: v.number("proportional")?,

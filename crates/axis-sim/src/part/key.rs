@@ -131,6 +131,14 @@ impl Key {
         self.name
     }
 
+    /// The units that it may be given in, with their factors to SI; none of what has none.
+    pub fn units(&self) -> &'static [(&'static str, f64)] {
+        match &self.kind {
+            Kind::Quantity(dimension, _) => dimension.units,
+            _ => &[],
+        }
+    }
+
     /// Gives it the least value that it takes, or its first word.
     pub(crate) fn set_least(&self, values: &mut Values) {
         match &self.kind {

@@ -110,12 +110,31 @@ pub struct Known {
     /// Its name in reports; with `_` for `-` in `[tolerances]`.
     pub name: &'static str,
     scale: Option<fn(&mut Values, f64)>,
+    exact: bool,
 }
 
 impl Known {
     /// The parameter under a key, which is its name.
     pub const fn key(name: &'static str) -> Self {
-        Self { name, scale: None }
+        Self {
+            name,
+            scale: None,
+            exact: false,
+        }
+    }
+
+    /// The parameter under a key, exact unless `[tolerances]` names it: one that somebody
+    /// has set, as a controller's gain.
+    pub const fn exact(name: &'static str) -> Self {
+        Self {
+            exact: true,
+            ..Self::key(name)
+        }
+    }
+
+    /// Whether it is exact unless `[tolerances]` names it.
+    pub fn is_exact(&self) -> bool {
+        self.exact
     }
 
     /// One that `scale` multiplies by a factor near 1, whatever it takes.
@@ -123,6 +142,7 @@ impl Known {
         Self {
             name,
             scale: Some(scale),
+            exact: false,
         }
     }
 
@@ -224,7 +244,8 @@ impl<P: ?Sized> Part<P> {
         self.kind
     }
 
-    /// The parameters of it that may be off.
+    /// The parameters of it that may be off, with those that are exact unless
+    /// `[tolerances]` names them.
     pub fn known(&self) -> impl Iterator<Item = &'static Known> + '_ {
         let all = self.kind.known.iter();
         all.filter(|known| known.is_in(&self.values))
