@@ -252,9 +252,7 @@ fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
     }
     say("\nThe numbers in SI")?;
     for effect in &discovery.effects {
-        say(format!(
-            "{} ({})", effect.name, effect.channel
-        ))?;
+        say(format!("{} ({})", effect.name, effect.channel))?;
         for p in &effect.parameters {
             say(format!(
                 "  {} = {:.5e} {}   95 %: {:.5e} to {:.5e}{}",

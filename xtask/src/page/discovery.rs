@@ -230,9 +230,8 @@ fn dependences(all: &[Against]) -> Section {
     let figure = |a: &Against| {
         let over = unit_of(&a.at, &a.variable_unit);
         let unit = unit_of(&a.without, &a.unit);
-        let series = |name, means: &[f64]| {
-            Series::line(name, read(&a.at, &over), read(means, &unit))
-        };
+        let series =
+            |name, means: &[f64]| Series::line(name, read(&a.at, &over), read(means, &unit));
         Figure::new(
             a.effect.clone(),
             labelled(&a.variable, &over),
@@ -273,7 +272,10 @@ fn likenesses(discovery: &Discovery) -> Section {
 fn unknown(unknown: &Unknown) -> Section {
     let curve = &unknown.curve;
     let unit = unit_of(&curve.value, &curve.unit);
-    let (variable, si) = curve.variable.rsplit_once(", ").unwrap_or((&curve.variable, ""));
+    let (variable, si) = curve
+        .variable
+        .rsplit_once(", ")
+        .unwrap_or((curve.variable.as_str(), ""));
     let over = unit_of(&curve.at, si);
     let at = || read(&curve.at, &over);
     let edge = |sign: f64| -> Vec<f64> {

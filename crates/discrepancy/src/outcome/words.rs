@@ -255,3 +255,6 @@ fn capital(text: &str) -> String {
     let first = chars.next().map(|c| c.to_uppercase().to_string());
     first.unwrap_or_default() + chars.as_str()
 }
+
+#[cfg(test)]
+mod tests;
