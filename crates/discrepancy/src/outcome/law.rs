@@ -99,7 +99,7 @@ pub(super) fn friction_law(
     let fitted = machine.with_known(&state.shares);
     let speeds = || traces.iter().flat_map(|trace| &trace.speed);
     let most = speeds().fold(0.0_f64, |most, v| most.max(v.abs()));
-    if !(most > 0.0) {
+    if most == 0.0 {
         return None;
     }
     let speed = grid(most);

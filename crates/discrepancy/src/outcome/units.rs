@@ -78,7 +78,7 @@ impl ReadUnit {
     /// A value with its unit and 95 % interval, to two digits of the interval's half width.
     pub fn said_within(&self, value: f64, [low, high]: [f64; 2]) -> String {
         let half = 0.5 * self.factor * (high - low);
-        if !(half > 0.0) {
+        if half.is_nan() || half <= 0.0 {
             return self.said(value);
         }
         let digits = decimals(half);
@@ -123,7 +123,7 @@ fn fixed(value: f64, decimals: usize) -> String {
 
 /// Decimals that show two digits of a number of this size.
 fn decimals(size: f64) -> usize {
-    if !(size.abs() > 0.0 && size.is_finite()) {
+    if size == 0.0 || !size.is_finite() {
         return 2;
     }
     (1.0 - size.abs().log10().floor()).clamp(0.0, 6.0) as usize

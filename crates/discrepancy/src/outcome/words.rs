@@ -127,7 +127,7 @@ fn tracking(t: &TrackingCost, named: usize) -> String {
         named => {
             let it = if named == 1 { "it" } else { "them" };
             format!(
-                "Tracking error: {measured} as measured; {with} in the model with {it}, {without} without."
+                "Tracking error: {measured} as measured. Model: {with} with {it}; {without} without {it}."
             )
         }
     }

@@ -111,7 +111,7 @@ fn an_effect_is_told_with_its_cost_confidence_and_remedy() {
     assert_eq!(
         lines(&made, "What it costs"),
         [
-            "Tracking error: 6.10 µm RMS, 55.0 µm peak as measured; 6.00 µm RMS, 54.0 µm peak in the model with it, 4.20 µm RMS, 50.0 µm peak without.",
+            "Tracking error: 6.10 µm RMS, 55.0 µm peak as measured. Model: 6.00 µm RMS, 54.0 µm peak with it; 4.20 µm RMS, 50.0 µm peak without it.",
             "It takes 103 N RMS (206 N peak) at the load: 100 mA RMS of iq_a, of 500 mA in all.",
         ]
     );
