@@ -151,7 +151,7 @@ mod tests {
     fn an_interval_shows_two_digits_of_its_half_width() {
         let unit = ReadUnit::of("N*s/m", 1.06319e4);
         let said = unit.said_within(1.06319e4, [1.06198e4, 1.06441e4]);
-        assert_eq!(said, "10.6319 N/(mm/s) (95 %: 10.6198 to 10.6441)");
+        assert_eq!(said, "10.632 N/(mm/s) (95 %: 10.620 to 10.644)");
         let unit = ReadUnit::of("m", 4e-6);
         assert_eq!(unit.said_within(4e-6, [4e-6, 4e-6]), "4.00 µm");
         let said = unit.said_within(1e-6, [-1e-6, 3e-6]);
