@@ -7,7 +7,7 @@ use discrepancy::{
     Unknown, Verdict,
 };
 use miette::{IntoDiagnostic, Result};
-use report::{Block, Cell, Figure, Notice, Page, Section, Series, Table, render};
+use report::{Block, Cell, Figure, KeyValues, Notice, Page, Section, Series, Table, render};
 
 /// The page as HTML.
 pub fn page(discovered: &Discovered) -> Result<String> {
@@ -16,7 +16,9 @@ pub fn page(discovered: &Discovered) -> Result<String> {
         Verdict::Explained | Verdict::NothingMissing => Notice::Good,
         Verdict::PartlyExplained | Verdict::Unknown => Notice::Warn,
     };
-    let verdict = Section::new("Verdict").notice(kind, discovery.sentence.clone());
+    let verdict = Section::new("Verdict")
+        .notice(kind, discovery.sentence.clone())
+        .key_values(answered(discovery.first_screen()));
     let verdict = match discovery.notes.as_slice() {
         [] => verdict,
         notes => {
@@ -24,7 +26,6 @@ pub fn page(discovered: &Discovered) -> Result<String> {
             verdict.folded("What must be known of the logs", vec![Block::List(notes)])
         }
     };
-    let screen = discovery.first_screen();
     let further = [
         discovery.unknown.as_ref().map(unknown),
         discovery.next_experiment.as_ref().map(next),
@@ -32,7 +33,6 @@ pub fn page(discovered: &Discovered) -> Result<String> {
     let page = Page::new(format!("What the model of {} lacks", discovery.axis))
         .lead("Logs replayed through the simulated closed loop; what is left, and which effect explains it.")
         .section(verdict);
-    let page = screen.into_iter().map(answered).fold(page, Page::section);
     let page = [discovered.friction.as_ref().map(friction)]
         .into_iter()
         .flatten()
@@ -50,8 +50,14 @@ pub fn page(discovered: &Discovered) -> Result<String> {
     render(&page).into_diagnostic()
 }
 
-fn answered(answered: Answered) -> Section {
-    Section::new(answered.question).block(Block::List(answered.lines))
+/// Questions and answers, a line each; a question is written once.
+fn answered(all: Vec<Answered>) -> KeyValues {
+    let lines = all.into_iter().flat_map(|Answered { question, lines }| {
+        let questions = std::iter::once(question).chain(std::iter::repeat(""));
+        questions.zip(lines).collect::<Vec<_>>()
+    });
+    let add = |list: KeyValues, (question, line)| list.entry(question, line);
+    lines.fold(KeyValues::new(""), add)
 }
 
 /// Values in a unit for people.
@@ -194,11 +200,12 @@ fn gaps(discovery: &Discovery) -> Section {
     let table = |title: &str, gap: &Gap| {
         let mut table = Table::new(title, ["Channel", "before", "after", "noise"]);
         for c in &gap.channels {
+            let unit = ReadUnit::of_channel(&c.channel, c.before);
             table = table.row([
                 Cell::text(c.channel.clone()),
-                Cell::scientific(c.before, 3),
-                Cell::scientific(c.after, 3),
-                Cell::scientific(c.floor, 3),
+                Cell::text(unit.said(c.before)),
+                Cell::text(unit.said(c.after)),
+                Cell::text(unit.said(c.floor)),
             ]);
         }
         table.note(format!(
@@ -206,7 +213,7 @@ fn gaps(discovery: &Discovery) -> Section {
             100.0 * gap.reduction
         ))
     };
-    Section::new("Gap, RMS in the unit of each channel")
+    Section::new("Gap, RMS")
         .table(table("Check motion, never fitted to", &discovery.gap.check))
         .table(table("Fit motion", &discovery.gap.fit))
 }
