@@ -63,9 +63,10 @@ pub use lack::{Curve, Unknown};
 pub use library::{Library, applicable};
 pub use model::{LogSet, Prepared, State};
 pub use outcome::{
-    Against, AtScrew, Discovered, Discovery, EffectFound, FormFound, Gaps, Likeness,
-    NextExperiment, Overlay, ParameterFound, Recalibrated, RefusedEffects, ReplacedEffect, Shown,
-    Verdict, discovery, judged,
+    Against, Answered, AtScrew, Confidence, Cost, Discovered, Discovery, DriveFunction,
+    EffectFound, EffortCost, FormFound, FrictionLaw, Gaps, Level, Likeness, NextExperiment,
+    Overlay, ParameterFound, REMEDIES, ReadUnit, Recalibrated, RefusedEffects, Remedy, RemedyTold,
+    ReplacedEffect, Shown, Size, Told, TrackingCost, Verdict, discovery, judged,
 };
 pub use search::{
     Alike, Found, Named, ONE_CLASS, Reason, Refused, Replaced, RunnerUp, SearchError, Settings,

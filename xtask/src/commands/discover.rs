@@ -243,12 +243,16 @@ fn entry(active: &ActiveEffect, scales: &Scales, number: fn(f64) -> String) -> S
 }
 
 fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
-    say(format!("\n{}\n", discovery.sentence))?;
+    say(format!("\n{}", discovery.sentence))?;
+    for answered in discovery.first_screen() {
+        say(format!("\n{}", answered.question))?;
+        for line in &answered.lines {
+            say(format!("  {line}"))?;
+        }
+    }
+    say("\nThe numbers in SI")?;
     for effect in &discovery.effects {
-        say(format!(
-            "{} ({}; {})",
-            effect.name, effect.summary, effect.channel
-        ))?;
+        say(format!("{} ({})", effect.name, effect.channel))?;
         for p in &effect.parameters {
             say(format!(
                 "  {} = {:.5e} {}   95 %: {:.5e} to {:.5e}{}",

@@ -2,9 +2,12 @@
 
 use axis_sim::Axis;
 use discrepancy::summary::SummaryFound;
-use discrepancy::{Against, Discovered, Discovery, Gap, NextExperiment, Overlay, Unknown, Verdict};
+use discrepancy::{
+    Against, Answered, Discovered, Discovery, FrictionLaw, Gap, NextExperiment, Overlay, ReadUnit,
+    Unknown, Verdict,
+};
 use miette::{IntoDiagnostic, Result};
-use report::{Cell, Figure, Notice, Page, Section, Series, Table, render};
+use report::{Block, Cell, Figure, KeyValues, Notice, Page, Section, Series, Table, render};
 
 /// The page as HTML.
 pub fn page(discovered: &Discovered) -> Result<String> {
@@ -13,18 +16,27 @@ pub fn page(discovered: &Discovered) -> Result<String> {
         Verdict::Explained | Verdict::NothingMissing => Notice::Good,
         Verdict::PartlyExplained | Verdict::Unknown => Notice::Warn,
     };
-    let verdict = Section::new("Verdict").notice(kind, discovery.sentence.clone());
-    let verdict = discovery
-        .notes
-        .iter()
-        .fold(verdict, |v, n| v.paragraph(format!("{n}.")));
+    let verdict = Section::new("Verdict")
+        .notice(kind, discovery.sentence.clone())
+        .key_values(answered(discovery.first_screen()));
+    let verdict = match discovery.notes.as_slice() {
+        [] => verdict,
+        notes => {
+            let notes = notes.iter().map(|n| format!("{n}.")).collect();
+            verdict.folded("What must be known of the logs", vec![Block::List(notes)])
+        }
+    };
     let further = [
         discovery.unknown.as_ref().map(unknown),
         discovery.next_experiment.as_ref().map(next),
     ];
     let page = Page::new(format!("What the model of {} lacks", discovery.axis))
         .lead("Logs replayed through the simulated closed loop; what is left, and which effect explains it.")
-        .section(verdict)
+        .section(verdict);
+    let page = [discovered.friction.as_ref().map(friction)]
+        .into_iter()
+        .flatten()
+        .fold(page, Page::section)
         .section(effects(discovery))
         .section(gaps(discovery))
         .section(pictures(&discovered.overlays));
@@ -36,6 +48,76 @@ pub fn page(discovered: &Discovered) -> Result<String> {
         .chain([likenesses(discovery), known(discovery)])
         .fold(page, Page::section);
     render(&page).into_diagnostic()
+}
+
+/// Questions and answers, a line each; a question is written once.
+fn answered(all: Vec<Answered>) -> KeyValues {
+    let lines = all.into_iter().flat_map(|Answered { question, lines }| {
+        let questions = std::iter::once(question).chain(std::iter::repeat(""));
+        questions.zip(lines).collect::<Vec<_>>()
+    });
+    let add = |list: KeyValues, (question, line)| list.entry(question, line);
+    lines.fold(KeyValues::new(""), add)
+}
+
+/// Values in a unit for people.
+fn read(values: &[f64], unit: &ReadUnit) -> Vec<f64> {
+    values.iter().map(|v| unit.factor * v).collect()
+}
+
+/// The unit for people in which the largest of these is read.
+fn unit_of(values: &[f64], si: &str) -> ReadUnit {
+    ReadUnit::of(si, values.iter().fold(0.0, |most, v| most.max(v.abs())))
+}
+
+fn labelled(what: &str, unit: &ReadUnit) -> String {
+    match unit.name.as_str() {
+        "" => what.to_owned(),
+        unit => format!("{what}, {unit}"),
+    }
+}
+
+/// Friction over speed, to both sides, and where it counts from low speed on.
+fn friction(law: &FrictionLaw) -> Section {
+    let both = friction_over(law, |_| true, "Friction over speed");
+    let low = friction_over(law, |v| v > 0.0, "The same from low speed on").log_x();
+    let figures = match law.at_low_speed {
+        true => vec![both, low],
+        false => vec![both],
+    };
+    let section = Section::new("Friction over speed").paragraph("Steady force on the load against its motion. Dots: what the drive gave against friction on check motion, mean over a range of speeds: the law with all that was named, and what is left of the log above the model.");
+    match figures.len() {
+        1 => figures.into_iter().fold(section, Section::figure),
+        columns => section.figure_grid(figures, columns),
+    }
+}
+
+fn friction_over(law: &FrictionLaw, kept: fn(f64) -> bool, title: &str) -> Figure {
+    let [speed_unit, force_unit] = [
+        unit_of(&law.speed, &law.speed_unit),
+        unit_of(&law.with, &law.force_unit),
+    ];
+    let series = |name: &str, speeds: &[f64], forces: &[f64]| {
+        let pairs = speeds.iter().zip(forces).filter(|(v, _)| kept(**v));
+        let (x, y): (Vec<f64>, Vec<f64>) = pairs.unzip();
+        Series::line(name, read(&x, &speed_unit), read(&y, &force_unit))
+    };
+    let [speeds, forces] = &law.measured;
+    let dots = series("from the logs", speeds, forces);
+    let dots = Series::dots(dots.name, dots.x, dots.y);
+    let all = [
+        series("model as in its file", &law.speed, &law.own).dashed(),
+        series("with what was named", &law.speed, &law.with),
+        series("in the form found", &law.speed, &law.formed),
+        dots,
+    ];
+    let figure = Figure::new(
+        title,
+        labelled("speed", &speed_unit),
+        labelled("friction", &force_unit),
+    );
+    let shown = all.into_iter().filter(|series| !series.x.is_empty());
+    shown.fold(figure, Figure::series)
 }
 
 fn effects(discovery: &Discovery) -> Section {
@@ -118,11 +200,12 @@ fn gaps(discovery: &Discovery) -> Section {
     let table = |title: &str, gap: &Gap| {
         let mut table = Table::new(title, ["Channel", "before", "after", "noise"]);
         for c in &gap.channels {
+            let unit = ReadUnit::of_channel(&c.channel, c.before);
             table = table.row([
                 Cell::text(c.channel.clone()),
-                Cell::scientific(c.before, 3),
-                Cell::scientific(c.after, 3),
-                Cell::scientific(c.floor, 3),
+                Cell::text(unit.said(c.before)),
+                Cell::text(unit.said(c.after)),
+                Cell::text(unit.said(c.floor)),
             ]);
         }
         table.note(format!(
@@ -130,20 +213,20 @@ fn gaps(discovery: &Discovery) -> Section {
             100.0 * gap.reduction
         ))
     };
-    Section::new("Gap, RMS in the unit of each channel")
+    Section::new("Gap, RMS")
         .table(table("Check motion, never fitted to", &discovery.gap.check))
         .table(table("Fit motion", &discovery.gap.fit))
 }
 
 fn pictures(overlays: &[Overlay]) -> Section {
     let figure = |o: &Overlay| {
-        Figure::new(
-            o.title.clone(),
-            "time, s",
-            format!("log − model: {}", o.channel),
-        )
-        .series(Series::line("before", o.time.clone(), o.before.clone()))
-        .series(Series::line("after", o.time.clone(), o.after.clone()))
+        let most = o.before.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let unit = ReadUnit::of_channel(&o.channel, most);
+        let series = |name, rest: &[f64]| Series::line(name, o.time.clone(), read(rest, &unit));
+        let label = format!("log − model: {}", o.channel);
+        Figure::new(o.title.clone(), "time, s", labelled(&label, &unit))
+            .series(series("before", &o.before))
+            .series(series("after", &o.after))
     };
     Section::new("Check motion, channel by channel")
         .paragraph("Before: known parameters moved inside their tolerance, no effect added.")
@@ -152,16 +235,20 @@ fn pictures(overlays: &[Overlay]) -> Section {
 
 fn dependences(all: &[Against]) -> Section {
     let figure = |a: &Against| {
+        let over = unit_of(&a.at, &a.variable_unit);
+        let unit = unit_of(&a.without, &a.unit);
+        let series =
+            |name, means: &[f64]| Series::line(name, read(&a.at, &over), read(means, &unit));
         Figure::new(
             a.effect.clone(),
-            a.variable.clone(),
-            format!("mean of log − model: {}", a.channel),
+            labelled(&a.variable, &over),
+            labelled(&format!("log − model: {}", a.channel), &unit),
         )
-        .series(Series::line("without it", a.at.clone(), a.without.clone()))
-        .series(Series::line("with it", a.at.clone(), a.with.clone()))
+        .series(series("without it", &a.without))
+        .series(series("with it", &a.with))
     };
     Section::new("What is left, against what the effect depends on")
-        .paragraph("Check motion, in the channel whose rest the variable makes out best; all other named effects are in the model both times.")
+        .paragraph("Check motion, means over ranges of that variable, a torque as the force on the load; all other named effects are in the model both times.")
         .figure_grid(all.iter().map(figure).collect(), 2)
 }
 
@@ -191,24 +278,27 @@ fn likenesses(discovery: &Discovery) -> Section {
 
 fn unknown(unknown: &Unknown) -> Section {
     let curve = &unknown.curve;
+    let unit = unit_of(&curve.value, &curve.unit);
+    let (variable, si) = curve
+        .variable
+        .rsplit_once(", ")
+        .unwrap_or((curve.variable.as_str(), ""));
+    let over = unit_of(&curve.at, si);
+    let at = || read(&curve.at, &over);
     let edge = |sign: f64| -> Vec<f64> {
         let pairs = curve.value.iter().zip(&curve.within);
-        pairs.map(|(v, w)| v + sign * w).collect()
+        pairs.map(|(v, w)| unit.factor * (v + sign * w)).collect()
     };
     let figure = Figure::new(
         format!("Against {}", unknown.depends_on),
-        curve.variable.clone(),
-        format!("missing, {}", curve.unit),
+        labelled(variable, &over),
+        labelled("missing", &unit),
     )
-    .series(Series::line(
-        "estimate",
-        curve.at.clone(),
-        curve.value.clone(),
-    ));
+    .series(Series::line("estimate", at(), edge(0.0)));
     let figure = if curve.within.iter().any(|w| *w > 0.0) {
         figure
-            .series(Series::line("95 % from", curve.at.clone(), edge(-1.0)))
-            .series(Series::line("to", curve.at.clone(), edge(1.0)))
+            .series(Series::line("95 % from", at(), edge(-1.0)).dashed())
+            .series(Series::line("to", at(), edge(1.0)).dashed())
     } else {
         figure
     };

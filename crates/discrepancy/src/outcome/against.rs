@@ -1,9 +1,11 @@
 //! A channel's rest with and without an effect, against what that depends on.
 
-use axis_sim::effects::{Effect, Variable};
+use axis_sim::effects::{Effect, EffectChannel, Measure, Variable};
 use axis_sim::{Axis, Trace};
 use serde::{Deserialize, Serialize};
 
+use super::cost::effort;
+use super::units::channel_unit;
 use crate::model::LogSet;
 use crate::noise::{Floor, Rest};
 
@@ -12,10 +14,15 @@ use crate::noise::{Floor, Rest};
 pub struct Against {
     /// The effect.
     pub effect: String,
-    /// The channel whose rest the variable makes out best.
+    /// The channel that shows it: of a torque what the drive gives, of others the one whose
+    /// rest the variable makes out best.
     pub channel: String,
-    /// The variable with its unit.
+    /// SI unit of the means: of a torque that of a force on the load, of others the channel's.
+    pub unit: String,
+    /// The variable.
     pub variable: String,
+    /// Its SI unit.
+    pub variable_unit: String,
     /// Middles of the variable's bins.
     pub at: Vec<f64>,
     /// Mean of log − model in each, the effect taken out of the model.
@@ -40,7 +47,7 @@ pub(super) fn against(
     [without, with]: [&Rest; 2],
     floors: &[Floor],
 ) -> Option<Against> {
-    let (variable, values) = variable(machine, set, traces, effect.shown_over);
+    let ([variable, variable_unit], values) = variable(machine, set, traces, effect.shown_over);
     let all = || values.iter().flatten().copied();
     let (low, high) = all().fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
     if low >= high {
@@ -61,6 +68,7 @@ pub(super) fn against(
     };
     let kept: Vec<usize> = (0..BINS).filter(|&b| counts[b] >= LEAST).collect();
     let pick = |means: Vec<f64>| -> Vec<f64> { kept.iter().map(|&b| means[b]).collect() };
+    let scaled = |means: Vec<f64>, by: f64| -> Vec<f64> { means.iter().map(|m| by * m).collect() };
     // How much of a channel's rest above its noise the variable alone makes out:
     // a force is the sharpest in the current, a slack in the position.
     let power = |channel: usize| -> f64 {
@@ -74,28 +82,41 @@ pub(super) fn against(
         let squares = kept.iter().map(|&b| counts[b] as f64 * means[b].powi(2));
         squares.sum::<f64>() / (power(channel) + 10.0 * noise).max(f64::MIN_POSITIVE)
     };
-    let channel = (0..set.channels.len()).max_by(|&a, &b| made_out(a).total_cmp(&made_out(b)))?;
+    let force = effort(machine, set).filter(|_| effect.channel == EffectChannel::Torque);
+    let (channel, factor) = match force {
+        Some(force) => force,
+        None => {
+            let sharpest = |a: &usize, b: &usize| made_out(*a).total_cmp(&made_out(*b));
+            ((0..set.channels.len()).max_by(sharpest)?, 1.0)
+        }
+    };
+    let unit = match force {
+        Some(_) => Measure::Force.unit(machine.freedom()),
+        None => channel_unit(set.channels[channel]),
+    };
     let width = (high - low) / BINS as f64;
     Some(Against {
         effect: effect.name.to_owned(),
         channel: set.channels[channel].to_owned(),
+        unit: unit.to_owned(),
         variable,
+        variable_unit,
         at: kept
             .iter()
             .map(|&b| low + width * (b as f64 + 0.5))
             .collect(),
-        without: pick(means(without, channel)),
-        with: pick(means(with, channel)),
+        without: scaled(pick(means(without, channel)), factor),
+        with: scaled(pick(means(with, channel)), factor),
     })
 }
 
-/// A variable of the motion in words with its unit, and its course in every log.
+/// A variable of the motion in words, its unit, and its course in every log.
 fn variable(
     machine: &Axis,
     set: &LogSet,
     traces: &[Trace],
     over: Variable,
-) -> (String, Vec<Vec<f64>>) {
+) -> ([String; 2], Vec<Vec<f64>>) {
     let shown = |trace: &Trace| trace.channel("iq_a").is_some();
     let over = match over {
         Variable::Current if !traces.iter().all(shown) => Variable::Time,
@@ -113,17 +134,18 @@ fn variable(
             Variable::Time => (0..trace.speed.len()).map(|k| k as f64 * period).collect(),
         }
     };
-    let name = match over {
-        Variable::MotorAngle => "screw angle, rad",
-        Variable::Speed => "speed, m/s",
-        Variable::Position => "position, m",
-        Variable::Acceleration => "acceleration, m/s²",
-        Variable::Current => "current iq, A",
-        Variable::Way => "way travelled, m",
-        Variable::Time => "time, s",
+    let of = |measure: Measure| measure.unit(machine.freedom());
+    let words = match over {
+        Variable::MotorAngle => ["motor angle in its turn", "rad"],
+        Variable::Speed => ["speed", of(Measure::Speed)],
+        Variable::Position => ["position", of(Measure::Travel)],
+        Variable::Acceleration => ["acceleration", of(Measure::Acceleration)],
+        Variable::Current => ["current iq", "A"],
+        Variable::Way => ["way travelled", of(Measure::Travel)],
+        Variable::Time => ["time", "s"],
     };
     let courses = traces.iter().enumerate().map(course).collect();
-    (name.to_owned(), courses)
+    (words.map(str::to_owned), courses)
 }
 
 /// Angles within a turn, where the load moves by `travel` a radian.

@@ -1,22 +1,37 @@
 //! What a discovery says: verdict, effects with intervals, gap before and after.
 
 mod against;
+mod cost;
 mod form;
+mod law;
 mod likeness;
+mod remedy;
+mod told;
 mod types;
+mod units;
+mod words;
 
 use axis_sim::effects::{ActiveEffect, EffectParameter, Scales};
 use axis_sim::{Axis, ReplayError};
 
 pub use self::against::Against;
 use self::against::against;
+use self::cost::cost;
+pub use self::cost::{Cost, EffortCost, Size, TrackingCost};
 pub use self::form::FormFound;
+pub use self::law::FrictionLaw;
+use self::law::{friction_law, steady};
 use self::likeness::likenesses;
 pub use self::likeness::{Likeness, Shown};
+pub use self::remedy::{DriveFunction, REMEDIES, Remedy};
+use self::told::remedies;
+pub use self::told::{Confidence, Level, RemedyTold, Told};
 pub use self::types::{
     AtScrew, Discovery, EffectFound, Gaps, NextExperiment, ParameterFound, Recalibrated,
     RefusedEffects, ReplacedEffect, Verdict,
 };
+pub use self::units::ReadUnit;
+pub use self::words::Answered;
 use crate::experiment::{Proposal, propose};
 use crate::fit::{Fitter, free_parameters};
 use crate::gap::{ChannelGap, Gap, gap};
@@ -35,6 +50,8 @@ pub struct Discovered {
     pub overlays: Vec<Overlay>,
     /// The check logs' rest against what each named effect depends on.
     pub against: Vec<Against>,
+    /// Friction over speed; `None` where none was named.
+    pub friction: Option<FrictionLaw>,
     /// The next experiment, with the values of both rivals.
     pub proposal: Option<Proposal>,
 }
@@ -107,6 +124,7 @@ pub fn judged(
 
     let mut effects = Vec::new();
     let mut pictured = Vec::new();
+    let mut each = Vec::new();
     let mut own_form = None;
     for (index, named) in found.named.iter().enumerate() {
         if is_form(&full.effects[index]) {
@@ -118,14 +136,18 @@ pub fn judged(
         other.remove(index);
         let without = set.rest(&set.simulate(machine, &other)?);
         let lost = gap(set, &before, &without, &check_floors);
-        pictured.extend(against(
-            machine,
-            set,
-            &traces,
-            taken,
-            [&without, &after],
-            &check_floors,
-        ));
+        each.push((taken.name.to_owned(), cost(machine, set, &without, &after)));
+        // A friction over speed is shown as its law.
+        if steady(&full.effects[index], 1.0).is_none() {
+            pictured.extend(against(
+                machine,
+                set,
+                &traces,
+                taken,
+                [&without, &after],
+                &check_floors,
+            ));
+        }
         effects.push(effect_found(
             machine,
             found,
@@ -163,7 +185,7 @@ pub fn judged(
         None => None,
     };
     let name = machine.name.clone();
-    let recalibrated = (machine.known().into_iter())
+    let recalibrated: Vec<Recalibrated> = (machine.known().into_iter())
         .zip(&full.shares)
         .zip(tolerances(machine))
         .map(|((name, &share), tolerance)| Recalibrated {
@@ -173,6 +195,13 @@ pub fn judged(
         })
         .collect();
     let refused = found.refused.as_ref().map(refused_effects);
+    let told = Told {
+        cost: whole_cost(machine, set, full, &after, &each)?,
+        each: if each.len() > 1 { each } else { Vec::new() },
+        confidence: Confidence::new(verdict, &effects, &recalibrated),
+        remedies: remedies(&effects),
+    };
+    let friction = friction_law(machine, set, full, &traces, &after);
     let overlays = overlays(check_logs, &check_logs.rest(&base.traces), &after);
     let discovery = Discovery {
         schema: 1,
@@ -204,6 +233,7 @@ pub fn judged(
         unknown,
         gap: Gaps { fit, check },
         recalibrated,
+        told,
         likenesses: Vec::new(),
         next_experiment: proposal.as_ref().map(next_experiment),
     };
@@ -211,8 +241,31 @@ pub fn judged(
         discovery,
         overlays,
         against: pictured,
+        friction,
         proposal,
     })
+}
+
+/// What all that was named costs together; `each` is what each costs alone.
+fn whole_cost(
+    machine: &Axis,
+    set: &LogSet,
+    full: &State,
+    after: &Rest,
+    each: &[(String, Cost)],
+) -> Result<Cost, ReplayError> {
+    match each {
+        [] => Ok(cost(machine, set, after, after)),
+        [(_, only)] if full.effects.len() == 1 => Ok(only.clone()),
+        _ => {
+            let bare = State {
+                shares: full.shares.clone(),
+                effects: Vec::new(),
+            };
+            let without = set.rest(&set.simulate(machine, &bare)?);
+            Ok(cost(machine, set, &without, after))
+        }
+    }
 }
 
 fn next_experiment(proposal: &Proposal) -> NextExperiment {

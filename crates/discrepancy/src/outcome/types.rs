@@ -5,6 +5,7 @@ use trajectories::Program;
 
 use super::form::FormFound;
 use super::likeness::Likeness;
+use super::told::Told;
 use crate::gap::Gap;
 use crate::lack::Unknown;
 
@@ -154,7 +155,7 @@ pub struct NextExperiment {
 }
 
 /// A known parameter that was moved inside its tolerance.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recalibrated {
     /// Name.
     pub name: String,
@@ -203,6 +204,9 @@ pub struct Discovery {
     pub gap: Gaps,
     /// Known parameters.
     pub recalibrated: Vec<Recalibrated>,
+    /// What a first screen says beside: costs, confidence, remedies.
+    #[serde(default)]
+    pub told: Told,
     /// What these logs can tell of each effect of the library.
     pub likenesses: Vec<Likeness>,
     /// What to run next, where effects look alike.
