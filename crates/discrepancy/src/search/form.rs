@@ -7,7 +7,7 @@
 //! any effect.
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, ONSET_FORM, ONSET_KNOTS, OnsetForm, Scales};
+use axis_sim::effects::{ActiveEffect, Effect, ONSET_FORM, ONSET_KNOTS, OnsetForm, Scales};
 use rayon::prelude::*;
 
 use super::refined::Refined;
@@ -23,6 +23,10 @@ const KNOTS: [f64; ONSET_KNOTS] = [1e-4, 4e-4, 1.6e-3, 6e-3, 2.5e-2, 1e-1];
 /// instead: it says more, with fewer numbers.
 const INSTEAD: f64 = 0.9;
 
+/// The same beside slip with a memory, which on most logs does nearly what plain dry friction
+/// does.
+const INSTEAD_OF_MEMORY: f64 = 0.6;
+
 /// Whether an active effect is a form of another.
 pub(crate) fn is_form(active: &ActiveEffect) -> bool {
     OnsetForm::of(active).is_some()
@@ -32,7 +36,7 @@ pub(crate) fn is_form(active: &ActiveEffect) -> bool {
 pub(super) fn own_friction(axis: &Axis) -> Option<ActiveEffect> {
     let friction = &axis.friction;
     let level = friction.law.parameters().coulomb / friction.lever(axis.travel_per_radian());
-    let effect = axis_sim::effects::Effect::named("coulomb-friction")?;
+    let effect = Effect::named("coulomb-friction")?;
     (level > 0.0).then(|| ActiveEffect {
         effect,
         values: vec![level],
@@ -88,6 +92,17 @@ impl Refined {
     }
 }
 
+impl Search<'_> {
+    /// Whether an effect is dry friction in another form beside one that is there: the two
+    /// would share what is one friction.
+    pub(super) fn doubles_a_friction(&self, effect: &Effect) -> bool {
+        let plain = ["coulomb-friction", "asymmetric-friction"];
+        let mut named = self.named.iter();
+        effect.name == WITH_MEMORY && named.any(|n| plain.contains(&n.name))
+            || plain.contains(&effect.name) && self.named.iter().any(|n| n.name == WITH_MEMORY)
+    }
+}
+
 /// Dry friction with a memory.
 const WITH_MEMORY: &str = "maxwell-slip-hysteresis";
 
@@ -96,7 +111,11 @@ pub(super) fn effects_before_forms(refined: &mut [Refined]) {
     let Some(first) = refined.first().filter(|r| r.is_of_another_form()) else {
         return;
     };
-    let least = INSTEAD * first.gain;
+    let share = match first.is_form() {
+        true => INSTEAD,
+        false => INSTEAD_OF_MEMORY,
+    };
+    let least = share * first.gain;
     let mut all = refined.iter();
     let effect = all.position(|r| !r.is_of_another_form() && r.gain >= least);
     if let Some(at) = effect {

@@ -87,7 +87,9 @@ impl Search<'_> {
         // A second harmonic of the same kind may be there.
         let active = self.named.iter().any(|n| n.name == effect.name);
         let free = !active || effect.place_of(|n| matches!(n, Nature::Order(_))).is_some();
-        free && !rejected && (awaited.is_empty() || awaited.contains(&effect.name))
+        free && !rejected
+            && !self.doubles_a_friction(effect)
+            && (awaited.is_empty() || awaited.contains(&effect.name))
     }
 
     /// Noise alone, as of sensors like those of the logs; `None` where these do
