@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use axis_sim::effects::{self, Measure};
 use axis_sim::mechanism::Freedom;
-use axis_sim::{Axis, Probe, Trace};
+use axis_sim::{Axis, Probe, ReplayError, Trace};
 use rayon::prelude::*;
 
 use crate::fit::{Columns, Fit, Fitter};
 use crate::model::LogSet;
+use crate::noise::Rest;
 use crate::spectrum::Amplitudes;
 
 /// Where a disturbance acts.
@@ -231,9 +232,17 @@ impl Shape {
         }
     }
 
-    /// Fall of D on logs that were not fitted, of which this is the fit, with these values at
-    /// the knots; nothing where it does not run.
-    pub fn told(&self, machine: &Axis, set: &LogSet, fit: &Fit, values: &[f64]) -> f64 {
+    /// What is left on logs of which this is the fit with these values at the knots.
+    ///
+    /// # Errors
+    /// [`ReplayError`] where the machine does not run with it.
+    pub fn rest(
+        &self,
+        machine: &Axis,
+        set: &LogSet,
+        fit: &Fit,
+        values: &[f64],
+    ) -> Result<Rest, ReplayError> {
         let sum = |course: &Course| {
             let mut total = vec![0.0; course.time.len()];
             for (j, by) in values.iter().enumerate() {
@@ -246,10 +255,15 @@ impl Shape {
         let probes: Vec<Probe> = (courses(machine, set, &fit.traces).iter())
             .map(|course| self.place.probe(sum(course)))
             .collect();
-        let traces = set.simulate_with(machine, &fit.state, Some(&probes));
-        traces.map_or(f64::NEG_INFINITY, |traces| {
-            let rest = set.amplitudes(&set.rest(&traces));
-            set.layout.deviance(&fit.rest) - set.layout.deviance(&rest)
+        Ok(set.rest(&set.simulate_with(machine, &fit.state, Some(&probes))?))
+    }
+
+    /// Fall of D on logs that were not fitted, of which this is the fit, with these values at
+    /// the knots; nothing where it does not run.
+    pub fn told(&self, machine: &Axis, set: &LogSet, fit: &Fit, values: &[f64]) -> f64 {
+        let rest = self.rest(machine, set, fit, values);
+        rest.map_or(f64::NEG_INFINITY, |rest| {
+            set.layout.deviance(&fit.rest) - set.layout.deviance(&set.amplitudes(&rest))
         })
     }
 

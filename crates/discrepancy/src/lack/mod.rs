@@ -18,6 +18,7 @@ pub(crate) use self::rest::Rest;
 use self::rest::Solved;
 use self::term::term;
 use crate::fit::Fitter;
+use crate::gap::is_material;
 use crate::search::{Found, needed};
 
 /// Something that is in the logs, and neither in the model nor in the library.
@@ -99,6 +100,13 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     };
     tracing::debug!(told, "curve on check logs");
     if told < (0.1 * solution.gain).max(25.0) {
+        return Ok(None);
+    }
+    let set = &found.check_logs;
+    let after = curves.shapes[*index]
+        .0
+        .rest(machine, set, &check, solution.values.as_slice())?;
+    if !is_material(machine, set, &check, &after)? {
         return Ok(None);
     }
     let (shape, freedom) = (&curves.shapes[*index].0, machine.freedom());

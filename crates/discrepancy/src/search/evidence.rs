@@ -7,12 +7,6 @@ use crate::spectrum::Layout;
 /// Least evidence of a further effect, as a share of the largest so far.
 pub const MATERIAL: f64 = 0.01;
 
-/// Least by which an effect must bring a channel of the check logs nearer, RMS, as a share
-/// of the channel's noise: left out, it would raise the RMS of what is left by 3 %. What two
-/// simulations of one machine differ by was 0.05 to 0.15 of it, effects of half their typical
-/// size 0.5 and more.
-pub(super) const MATERIAL_NOISE: f64 = 0.25;
-
 /// Most by which the power of a channel's rest on the check logs may rise when an effect
 /// is added: what is not named yet may have made up for some of it there. What is fitted
 /// to one channel at the cost of another raises it more: a controller's gain, on the real

@@ -3,7 +3,7 @@
 use axis_sim::effects::{ActiveEffect, Effect};
 use rayon::prelude::*;
 
-use super::evidence::{LEAST_HELD_OUT, MATERIAL, MATERIAL_NOISE, WORSE};
+use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
 use super::form::effects_before_forms;
 use super::free_curve::FreeCurves;
 use super::promise::{Promises, WORTH};
@@ -11,9 +11,8 @@ use super::refined::{Refined, alike, simplest_first, single_before_pair};
 use super::state::Search;
 use super::types::{Named, RunnerUp};
 use crate::fit::{Columns, Fit, free_parameters};
-use crate::gap::mean_square;
+use crate::gap::is_material;
 use crate::library::is_force_in_time;
-use crate::noise::floors;
 use crate::screen::Screened;
 
 /// Share of the promised fall of D that a simulation must keep, or other sizes are
@@ -187,25 +186,11 @@ impl Search<'_> {
         best.gain >= needed && held_out >= LEAST_HELD_OUT && best.gain >= MATERIAL * largest
     }
 
-    /// Whether some channel of the check logs comes nearer by what is not small beside its
-    /// noise. With a log of 10 s, D falls by thousands for a gap of 60 nm beneath 20 nm of
-    /// noise, which no engineer looks for, and for what simulations differ by.
+    /// Whether what a fit of the check logs adds is material.
     fn is_material(&self, check: &Fit) -> bool {
         let set = &self.check_logs;
-        let [before, after] = [&self.check, check].map(|fit| set.rest(&fit.traces));
-        let Ok(floors) = floors(self.machine, set, &check.state, &after) else {
-            return true;
-        };
-        let nearer = |c: usize| {
-            (mean_square(&before, c) - mean_square(&after, c))
-                .max(0.0)
-                .sqrt()
-        };
-        let most =
-            (0..set.channels.len()).map(|c| nearer(c) / floors[c].rms.max(f64::MIN_POSITIVE));
-        let most = most.fold(0.0, f64::max);
-        tracing::debug!(most, "nearer on check logs, in noise");
-        most >= MATERIAL_NOISE
+        let after = set.rest(&check.traces);
+        is_material(self.machine, set, &self.check, &after).unwrap_or(true)
     }
 
     /// Whether no channel of the check logs, fitted or not, is so much further off than
