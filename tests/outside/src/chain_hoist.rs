@@ -26,10 +26,7 @@ pub static CHAIN_HOIST: PartKind<dyn Mechanism> = PartKind {
         quantity("load_mass", &MASS, 1e-3, 1e6).role(Role::LoadInertia),
         quantity("stiffness_damping", &TIME, 0.0, 0.1),
     ],
-    known: &[
-        Known::key("chain_stiffness"),
-        Known::key("load_mass"),
-    ],
+    known: &[Known::key("chain_stiffness"), Known::key("load_mass")],
     build,
 };
 

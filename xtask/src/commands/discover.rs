@@ -115,7 +115,9 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     let entries = |number: fn(f64) -> String| -> String {
         let all = found.fit.state.effects.iter();
         let effects = all.filter(|active| OnsetForm::of(active).is_none());
-        effects.map(|active| entry(active, &scales, number)).collect()
+        effects
+            .map(|active| entry(active, &scales, number))
+            .collect()
     };
     let json = serde_json::to_vec_pretty(discovery).into_diagnostic()?;
     write_whole(&out.join("discovery.json"), &json)?;

@@ -63,9 +63,9 @@ mod warming_friction;
 pub(crate) use changes::Hooks;
 pub use changes::{Changes, ScrewState, SensorErrors, Steepness, TableState};
 pub(crate) use install::install;
-pub use onset::{ONSET_FORM, ONSET_KNOTS, OnsetForm};
 pub(crate) use memory::Memory;
 pub use memory::{MemoryLaw, TableStep};
+pub use onset::{ONSET_FORM, ONSET_KNOTS, OnsetForm};
 pub use parameter::{EffectParameter, Measure, Nature, Need, Scales};
 use parameter::{PHASE, positive, shape, signed, size};
 

@@ -15,7 +15,9 @@
 //! It is no effect by itself and not in [`EFFECTS`]: it says in which form one is there.
 
 use super::changes::Hooks;
-use super::{ActiveEffect, EFFECTS, Effect, EffectChannel, EffectParameter, Measure, Nature, Variable};
+use super::{
+    ActiveEffect, EFFECTS, Effect, EffectChannel, EffectParameter, Measure, Nature, Variable,
+};
 use crate::error::SetupError;
 use crate::part::PartError;
 

@@ -127,7 +127,12 @@ mod tests {
         let at = |k: usize| (frequency * k as f64 * h).sin();
         let samples: Vec<f64> = (0..400).map(at).collect();
         let bound = 1.1 * (frequency * h).powi(4) / 180.0;
-        for (k, slope) in slopes(&samples, h).into_iter().enumerate().skip(20).take(360) {
+        for (k, slope) in slopes(&samples, h)
+            .into_iter()
+            .enumerate()
+            .skip(20)
+            .take(360)
+        {
             let exact = (frequency * k as f64 * h).cos();
             assert!((slope / frequency - exact).abs() < bound, "{k}");
         }
@@ -136,7 +141,11 @@ mod tests {
     #[test]
     fn a_line_has_one_slope() {
         let samples: Vec<f64> = (0..50).map(|k| 0.3 - 2e-3 * f64::from(k)).collect();
-        assert!(slopes(&samples, 1e-2).iter().all(|s| (s + 0.2).abs() < 1e-12));
+        assert!(
+            slopes(&samples, 1e-2)
+                .iter()
+                .all(|s| (s + 0.2).abs() < 1e-12)
+        );
         assert_eq!(slopes(&[1.0], 1.0), [0.0]);
         assert_eq!(slopes(&[1.0, 3.0], 1.0), [2.0, 2.0]);
     }
