@@ -145,12 +145,16 @@ fn bad_logs_are_refused_with_file_and_place() {
     let cases: [(&str, Damage, &[&str]); 8] = [
         (
             "nan.csv",
-            |l| l[700] = with_cell(&l[700], 2, |_| "NaN".to_owned()),
-            &["line701", "position_m"],
+            |l| {
+                for line in &mut l[700..720] {
+                    *line = with_cell(line, 2, |_| "NaN".to_owned());
+                }
+            },
+            &["hole", "position_m"],
         ),
         (
-            "blank.csv",
-            |l| l[700] = with_cell(&l[700], 3, |_| String::new()),
+            "word.csv",
+            |l| l[700] = with_cell(&l[700], 3, |_| "much".to_owned()),
             &["line701", "iq_a"],
         ),
         ("repeated.csv", |l| l[900] = l[899].clone(), &["line901"]),

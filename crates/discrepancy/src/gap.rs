@@ -113,8 +113,18 @@ pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
 /// size 0.5 and more.
 const MATERIAL: f64 = 0.25;
 
+/// Least by which it must bring that channel nearer, as a share of the gap, RMS, that there
+/// was before anything was named: a thirtieth, a thousandth of its power.
+const OF_GAP: f64 = 0.03;
+
+/// Root mean square of each channel's rest.
+pub(crate) fn sizes(set: &LogSet, rest: &Rest) -> Vec<f64> {
+    let all = 0..set.channels.len();
+    all.map(|c| mean_square(rest, c).sqrt()).collect()
+}
+
 /// Whether some channel comes nearer than `before`, with `after` left, by what is not small
-/// beside its noise. With a log of 10 s, D falls by thousands for a gap of 60 nm beneath 20 nm
+/// beside its noise, nor beside the `gap` that there was. With a log of 10 s, D falls by thousands for a gap of 60 nm beneath 20 nm
 /// of noise, which no engineer looks for, and for what simulations differ by.
 ///
 /// # Errors
@@ -124,6 +134,7 @@ pub(crate) fn is_material(
     set: &LogSet,
     before: &Fit,
     after: &Rest,
+    gap: &[f64],
 ) -> Result<bool, ReplayError> {
     let earlier = set.rest(&before.traces);
     let floors = floors(machine, set, &before.state, after)?;
@@ -132,10 +143,14 @@ pub(crate) fn is_material(
             .max(0.0)
             .sqrt()
     };
-    let most = (0..set.channels.len()).map(|c| nearer(c) / floors[c].rms.max(f64::MIN_POSITIVE));
+    let least = |c: usize| {
+        let of_gap = OF_GAP * gap.get(c).copied().unwrap_or(0.0);
+        (MATERIAL * floors[c].rms).max(of_gap)
+    };
+    let most = (0..set.channels.len()).map(|c| nearer(c) / least(c).max(f64::MIN_POSITIVE));
     let most = most.fold(0.0, f64::max);
-    tracing::debug!(most, "nearer on check logs, in noise");
-    Ok(most >= MATERIAL)
+    tracing::debug!(most, "nearer on check logs, of what is material");
+    Ok(most >= 1.0)
 }
 
 /// Channels that are further off after something was done than before, beyond what noise

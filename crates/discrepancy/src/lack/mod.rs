@@ -106,7 +106,7 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     let after = curves.shapes[*index]
         .0
         .rest(machine, set, &check, solution.values.as_slice())?;
-    if !is_material(machine, set, &check, &after)? {
+    if !is_material(machine, set, &check, &after, &[])? {
         return Ok(None);
     }
     let (shape, freedom) = (&curves.shapes[*index].0, machine.freedom());

@@ -30,7 +30,7 @@ const SCATTER: f64 = 1.5;
 /// Share with which a source begins that is taken last: it grows where no other does.
 const LAST: f64 = 1e-2;
 
-/// Times what is foreseen beyond which more power in such a band does not count.
+/// Times what is foreseen beyond which power in such a band does not count.
 const BEYOND: f64 = 2.0;
 
 /// Rounds of updates: powers of ten in a variance are gained in a few dozen, and two sources
@@ -74,8 +74,9 @@ pub(super) fn variances(
         for (p, source) in all.iter_mut().zip(sources) {
             let (mut asked, mut given) = (0.0, 0.0);
             for ((&(c, b), by), w) in cells.iter().zip(&foreseen).zip(&weights) {
-                let seen = match b < upper {
-                    true => observed[c][b].min(BEYOND * by),
+                // Far more than foreseen is of no noise, and asks for nothing.
+                let seen = match b < upper && observed[c][b] > BEYOND * by {
+                    true => *by,
                     false => observed[c][b],
                 };
                 asked += w * source[c][b] * seen / (by * by);

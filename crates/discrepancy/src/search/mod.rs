@@ -26,6 +26,7 @@ pub use self::types::{
     SettingsError,
 };
 use crate::fit::{Fit, Fitter};
+use crate::gap::sizes;
 use crate::library::Library;
 use crate::model::{LogSet, State};
 
@@ -102,15 +103,17 @@ fn searched(
         progress("screening all effects");
         Arc::new(Library::new(&fitter, &base, known.clone()))
     });
+    let checker = Fitter {
+        machine,
+        set: &check_logs,
+    };
+    let check = checker.at(base.state.clone())?;
     let mut search = Search {
         machine,
         settings,
         library,
-        check: Fitter {
-            machine,
-            set: &check_logs,
-        }
-        .at(base.state.clone())?,
+        gap_before: sizes(&check_logs, &check_logs.rest(&check.traces)),
+        check,
         fit: base.clone(),
         known,
         named: Vec::new(),

@@ -190,7 +190,7 @@ impl Search<'_> {
     fn is_material(&self, check: &Fit) -> bool {
         let set = &self.check_logs;
         let after = set.rest(&check.traces);
-        is_material(self.machine, set, &self.check, &after).unwrap_or(true)
+        is_material(self.machine, set, &self.check, &after, &self.gap_before).unwrap_or(true)
     }
 
     /// Whether no channel of the check logs, fitted or not, is so much further off than

@@ -29,6 +29,8 @@ pub(super) struct Search<'a> {
     pub(super) replaced: Vec<Replaced>,
     pub(super) leftover: Vec<RunnerUp>,
     pub(super) refused: Option<Refused>,
+    /// Root mean square of each channel's rest on the check logs before anything was named.
+    pub(super) gap_before: Vec<f64>,
 }
 
 impl Search<'_> {
