@@ -150,7 +150,7 @@ fn bad_logs_are_refused_with_file_and_place() {
                     *line = with_cell(line, 2, |_| "NaN".to_owned());
                 }
             },
-            &["hole", "position_m"],
+            &["20samples", "position_m"],
         ),
         (
             "word.csv",

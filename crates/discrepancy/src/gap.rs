@@ -108,10 +108,10 @@ pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
 }
 
 /// Least by which something must bring a channel of the check logs nearer, RMS, as a share
-/// of the channel's noise: left out, it would raise the RMS of what is left by 3 %. What two
+/// of the channel's noise: left out, it would raise the RMS of what is left by 1.6 %. What two
 /// simulations of one machine differ by was 0.05 to 0.15 of it, effects of half their typical
 /// size 0.5 and more.
-const MATERIAL: f64 = 0.25;
+const MATERIAL: f64 = 0.18;
 
 /// Least by which it must bring that channel nearer, as a share of the gap, RMS, that there
 /// was before anything was named: a thirtieth, a thousandth of its power.
