@@ -176,7 +176,8 @@ fn a_long_hole_is_refused_and_a_short_one_has_no_weight() {
     let sound = log(0.0, 2.5, reference, followed, current);
     let hole = |samples: usize| {
         let mut log = sound.clone();
-        log.mark_missing("iq_a", [300..300 + samples]).unwrap();
+        log.mark_missing("iq_a", std::iter::once(300..300 + samples))
+            .unwrap();
         log
     };
     let message = refusal(&hole(6));

@@ -48,7 +48,7 @@ pub struct Options {
     /// Search anew, and never name this effect (may be repeated)
     #[arg(long, value_name = "NAME")]
     reject: Vec<String>,
-    /// Compare by torque balance, as if the axis file had no [control]: measured motion in,
+    /// Compare by torque balance, as if the axis file had no `[control]`: measured motion in,
     /// the torque that the model needs for it out
     #[arg(long, conflicts_with = "summary")]
     balance: bool,

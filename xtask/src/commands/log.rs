@@ -22,7 +22,7 @@ pub struct Options {
     /// Logs: CSV, Parquet or MAT v5; several files of one log with + between
     #[arg(required = true, value_name = "FILE")]
     logs: Vec<PathBuf>,
-    /// Axis file: its [log] maps columns, its sizes tell what channels should be of each other
+    /// Axis file: its `[log]` maps columns, its sizes tell what channels should be of each other
     #[arg(long, value_name = "FILE")]
     axis: Option<PathBuf>,
     /// Sampling rate of the log, Hz [default: that of its slowest file]

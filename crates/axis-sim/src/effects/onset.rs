@@ -39,7 +39,7 @@ const fn held(name: &'static str, measure: Measure) -> EffectParameter {
     super::shape(name, measure, Nature::Held, 0.0, [f64::MIN, f64::MAX])
 }
 
-/// See [the module](self).
+/// In what form a dry friction comes on with speed; made by [`OnsetForm::none`].
 pub static ONSET_FORM: Effect = Effect {
     name: "onset-form",
     summary: "onset of a dry friction that differs from a bristle\u{2019}s",
@@ -172,7 +172,7 @@ fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError
         values: values.to_vec(),
     };
     let curve = Curve::new(values);
-    if !(curve.knots[0] > 0.0) {
+    if curve.knots[0].is_nan() || curve.knots[0] <= 0.0 {
         return Err(PartError::of("knot", "is not above 0", "knots of speed that rise").into());
     }
     let Some(base) = OnsetForm(&active).base() else {
