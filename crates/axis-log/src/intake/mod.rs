@@ -1,4 +1,4 @@
-//! Logs as they come: several files, missing values, spikes, delays; made one [`Log`].
+//! Logs as they come: several files, missing values, spikes, delays; made one [`Log`](crate::Log).
 //!
 //! [`prepare`] reads files by a [`Mapping`](crate::Mapping) and does, in this order:
 //!

@@ -58,10 +58,12 @@ pub fn noise_at(axis: &Axis, set: &LogSet, rest: &Rest, quiet: &[Trace]) -> LogN
     let (of_sensors, of_logger) = found.split_at(sensors.len());
     let loop_noise = Sensor::ALL.iter().zip(of_sensors);
     let logger = set.channels.iter().zip(of_logger);
-    LogNoise {
+    let noise = LogNoise {
         sensors: loop_noise.fold(guess, |noise, (sensor, p)| sensor.times(noise, p.sqrt())),
         logger: logger.map(|(&name, p)| (name, p.sqrt())).collect(),
-    }
+    };
+    tracing::debug!(?noise, "noise of the logs");
+    noise
 }
 
 /// A sensor of the loop.
