@@ -17,59 +17,49 @@
 //! than a hundredth of what was found before. Where the effects named in the end make any
 //! channel of these logs worse than it was without them, none is given.
 //!
-//! # Steps
-//! [`intake`] looks at the logs; [`LogSet`] prepares them; [`search()`] moves the
-//! known parameters, screens all effects by what they would do to these logs,
-//! refines the best few by simulation, adds the best, and begins again;
-//! [`discovery`] puts what was found into a [`Verdict`], intervals and gaps.
-//! [`summary`] is for where only a table of errors was measured. [`Foresight`] says
-//! before any search what it could see and tell apart on a motion.
+//! # Rooms, in the order in which data passes
+//! - [`logs`]: whether logs can be compared at all: sampling, units, signs, holes.
+//! - `answers`: how a model answers a log, by closed-loop replay or torque balance; a
+//!   [`LogSet`] is logs that are compared together. `spectrum`: their rest in frequency, and D.
+//! - `noise`: how much of a rest is noise of sensors or of the logger.
+//! - `estimate`: known parameters and sizes of effects, with intervals ([`Fitter`]).
+//! - `name`: [`search()`] screens all effects by what they would do to these logs, refines
+//!   the best few by simulation, adds the best, and begins again.
+//! - `judge`: [`discovery`] puts what was found into a [`Verdict`], with what it costs, what
+//!   it may be confused with, what no effect explains, and the motion to run next.
+//!
+//! [`Foresight`] says before any search what it could see and tell apart on a motion;
+//! [`summary`] is for where only a table of errors was measured.
 //!
 //! # What this crate knows nothing of
 //! Files, terminals and pictures. It simulates nothing itself.
 
-mod answer;
-mod bounded;
-mod curves;
-mod experiment;
-mod fit;
+mod answers;
+mod estimate;
 mod foresight;
-mod gap;
-mod gauss_newton;
-pub mod intake;
-mod interval;
-mod known;
-mod lack;
-mod library;
-mod linear;
-mod model;
+mod judge;
+pub mod logs;
+mod name;
 mod noise;
-mod outcome;
-mod projector;
-mod screen;
-mod search;
-mod sensor_noise;
 mod spectrum;
 pub mod summary;
 
-pub use answer::Answer;
-pub use experiment::Proposal;
-pub use fit::{Fit, Fitter, free_parameters};
+pub use answers::{Answer, LogSet, Prepared, State};
+pub use estimate::fit::{Fit, Fitter, free_parameters};
+pub use estimate::interval::Spread;
+pub use estimate::known::{known_deviations, tolerances};
 pub use foresight::{Foreseen, Foresight, Hypothesis, Imitation};
-pub use gap::{ChannelGap, Gap};
-pub use interval::Spread;
-pub use known::{known_deviations, tolerances};
-pub use lack::{Curve, Unknown};
-pub use library::{Library, applicable};
-pub use model::{LogSet, Prepared, State};
-pub use outcome::{
-    Against, Answered, AtScrew, Confidence, Cost, Discovered, Discovery, DriveFunction,
+pub use judge::{
+    Against, Answered, AtScrew, Confidence, Cost, Curve, Discovered, Discovery, DriveFunction,
     EffectFound, EffortCost, FormFound, FrictionLaw, Gaps, Level, Likeness, NextExperiment,
-    Overlay, ParameterFound, REMEDIES, ReadUnit, Recalibrated, RefusedEffects, Remedy, RemedyTold,
-    ReplacedEffect, Shown, Size, Told, TrackingCost, Verdict, discovery, judged,
+    Overlay, ParameterFound, Proposal, REMEDIES, ReadUnit, Recalibrated, RefusedEffects, Remedy,
+    RemedyTold, ReplacedEffect, Shown, Size, Told, TrackingCost, Unknown, Verdict, discovery,
+    judged,
 };
-pub use search::{
+pub use name::gap::{ChannelGap, Gap};
+pub use name::library::{Library, applicable};
+pub use name::search::{
     Alike, Found, Named, ONE_CLASS, Reason, Refused, Replaced, RunnerUp, SearchError, Settings,
     SettingsError, search, search_with,
 };
-pub use sensor_noise::SensorNoise;
+pub use noise::SensorNoise;

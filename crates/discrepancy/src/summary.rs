@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::gauss_newton::Descent;
+use crate::estimate::gauss_newton::Descent;
 
 /// Measured figures of one trajectory of the axis file, m.
 #[derive(Clone, Copy, Debug)]

@@ -9,7 +9,7 @@ use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, OnsetForm, Scales};
 use axis_sim::friction::Place as FrictionPlace;
 use clap::Args;
-use discrepancy::intake::{check_distinct, check_log, cross_checks, exact_channels, from_rest};
+use discrepancy::logs::{check_distinct, check_log, cross_checks, exact_channels, from_rest};
 use discrepancy::summary::{MeasuredError, SummaryFound, rank, tried};
 use discrepancy::{Discovery, LogSet, Settings, Verdict, discovery, search};
 use indicatif::ProgressBar;

@@ -8,7 +8,7 @@ use std::time::Instant;
 use axis_sim::Axis;
 use axis_sim::effects::Effect;
 use clap::Args;
-use discrepancy::intake::check_distinct;
+use discrepancy::logs::check_distinct;
 use discrepancy::{Discovery, EffectFound, LogSet, Settings, Verdict, discovery, search};
 use independent_axis::cases::{CASES, Case, named};
 use independent_axis::{Rough, TrueEffect, Truth, Wanted, write_case};

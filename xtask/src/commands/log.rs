@@ -9,7 +9,7 @@ use axis_log::quality::{
 use axis_log::{Log, Mapping};
 use axis_sim::Axis;
 use clap::Args;
-use discrepancy::intake::{exact_channels, relations};
+use discrepancy::logs::{exact_channels, relations};
 use miette::{IntoDiagnostic, Result, miette};
 use report::{Cell, Figure, Notice, Page, Section, Series, Table, render};
 

@@ -4,10 +4,10 @@ use axis_sim::effects::{ActiveEffect, Effect};
 use nalgebra::{DMatrix, DVector};
 
 use super::Foresight;
-use crate::bounded::bounded;
-use crate::known::{known_deviations, tolerances};
-use crate::model::State;
-use crate::search::needed;
+use crate::answers::State;
+use crate::estimate::bounded::bounded;
+use crate::estimate::known::{known_deviations, tolerances};
+use crate::name::search::needed;
 use crate::spectrum::Amplitudes;
 
 impl Foresight {

@@ -12,15 +12,16 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 pub use self::types::{Foreseen, Hypothesis, Imitation};
-use crate::fit::{Columns, Fit, Fitter};
-use crate::known::pinned;
-use crate::library::Library;
-use crate::model::{LogSet, State};
-use crate::noise::{LogNoise, noise_on, size_over_noise};
-use crate::projector::{Projector, sine};
-use crate::screen::{Screened, Screening, imitate};
-use crate::search::{ABOVE_NOISE, ONE_CLASS, Settings};
-use crate::sensor_noise::SensorNoise;
+use crate::answers::{LogSet, State};
+use crate::estimate::fit::{Columns, Fit, Fitter};
+use crate::estimate::known::pinned;
+use crate::estimate::projector::{Projector, sine};
+use crate::estimate::spread::size_over_noise;
+use crate::name::library::Library;
+use crate::name::screen::{Screened, Screening, imitate};
+use crate::name::search::{ABOVE_NOISE, ONE_CLASS, Settings};
+use crate::noise::SensorNoise;
+use crate::noise::{LogNoise, noise_on};
 use crate::spectrum::{Amplitudes, Whitener};
 
 /// What a set of logs will show of effects: what is the same for all of them.

@@ -5,7 +5,7 @@ use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 
 use super::{log_noise, noise_on};
-use crate::model::{LogSet, State};
+use crate::answers::{LogSet, State};
 use crate::spectrum::Layout;
 
 /// A band of frequencies in which a rest is not noise.

@@ -1,12 +1,11 @@
 //! Noise alone in each channel.
 
-use axis_sim::{Axis, ClosedLoop, Replay, ReplayError, Trace};
+use axis_sim::{Axis, Balance, ClosedLoop, Replay, ReplayError, Trace};
 use rayon::prelude::*;
 
 use super::level::{noise_at, shows_noise, upper_level};
 use super::{Rest, at_state, noise_series};
-use crate::answer::floor;
-use crate::model::{LogSet, State};
+use crate::answers::{LogSet, State};
 
 /// Noise alone in a channel.
 #[derive(Clone, Copy, Debug)]
@@ -85,7 +84,7 @@ pub(crate) fn floors(
 ) -> Result<Vec<Floor>, ReplayError> {
     let axis = at_state(machine, state);
     if set.is_balanced() {
-        return Ok(vec![floor(&set.balances())]);
+        return Ok(vec![of_balances(&set.balances())]);
     }
     if !shows_noise(&axis, set) {
         let samples: usize = set.logs.iter().map(|l| l.log.len()).sum();
@@ -116,4 +115,20 @@ pub(crate) fn floors(
         Floor::of_runs(&runs.iter().map(one).collect::<Vec<_>>()).beside(inexact)
     };
     Ok((0..set.channels.len()).map(of).collect())
+}
+
+/// Noise of a balance's channel: the least that its log leaves possible. Nobody knows what
+/// its controller makes of its sensors' noise, and a floor that is too low never lets a rest
+/// pass for noise.
+fn of_balances(balances: &[&Balance]) -> Floor {
+    let samples = balances.iter().map(|b| b.quality().samples[0] as f64);
+    let squares = balances.iter().map(|b| b.quality().floor.powi(2));
+    let sum: f64 = samples.clone().zip(squares).map(|(n, s)| n * s).sum();
+    let independent: f64 = samples.sum();
+    let rms = (sum / independent.max(1.0)).sqrt();
+    Floor {
+        rms,
+        most: rms,
+        independent,
+    }
 }

@@ -3,9 +3,8 @@
 use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
 
 use super::sources::{Powers, variances};
-use super::{LogNoise, Rest, noise_series};
-use crate::model::LogSet;
-use crate::sensor_noise::SensorNoise;
+use super::{LogNoise, Rest, SensorNoise, noise_series};
+use crate::answers::LogSet;
 use crate::spectrum::Layout;
 
 /// Whether the logs of an axis show the noise of its sensors: not where the loop has no
@@ -15,7 +14,7 @@ pub fn shows_noise(axis: &Axis, set: &LogSet) -> bool {
     !axis.control.starts_in_motion() && !set.is_balanced()
 }
 
-/// SensorNoise of the logs of an axis (its effects included), as their rest shows it beside
+/// Noise of the logs of an axis (its effects included), as their rest shows it beside
 /// simulations without any.
 ///
 /// The upper half of the bins lies above what the position loop answers to. There the

@@ -3,8 +3,9 @@
 mod excess;
 mod floor;
 mod level;
+mod sensor;
 mod sources;
-mod spread;
+mod turned;
 
 use std::collections::BTreeMap;
 
@@ -17,15 +18,15 @@ use rayon::prelude::*;
 pub(crate) use self::excess::{Excess, excess};
 pub(crate) use self::floor::{Floor, floors};
 use self::level::{noise_at, shows_noise};
-pub(crate) use self::spread::{drawn, over_noise, size_over_noise, spreads};
-use crate::model::{LogSet, State};
-use crate::sensor_noise::SensorNoise;
+pub use self::sensor::SensorNoise;
+pub(crate) use self::turned::turned;
+use crate::answers::{LogSet, State};
 use crate::spectrum::Amplitudes;
 
 /// Measured minus simulated: per log, per channel.
 pub type Rest = Vec<Vec<Vec<f64>>>;
 
-/// SensorNoise of logs: of the sensors, which the controller sees as well, and of the logger,
+/// Noise of logs: of the sensors, which the controller sees as well, and of the logger,
 /// which nothing sees but the log.
 #[derive(Clone, Debug)]
 pub struct LogNoise {
@@ -53,7 +54,7 @@ impl LogNoise {
     }
 }
 
-/// SensorNoise of the fitted logs, as their rest shows it; `None` of an axis that does not
+/// Noise of the fitted logs, as their rest shows it; `None` of an axis that does not
 /// ([`shows_noise`]). `traces` are their simulations without noise.
 pub(crate) fn log_noise(
     machine: &Axis,

@@ -6,7 +6,7 @@ use std::path::Path;
 use axis_log::quality::MIN_SAMPLES;
 use axis_log::{ColumnMap, Mapping, read_log};
 use axis_sim::Axis;
-use discrepancy::intake::{check_log, from_rest};
+use discrepancy::logs::{check_log, from_rest};
 use miette::IntoDiagnostic;
 
 use super::axis::small_screw;

@@ -1,0 +1,178 @@
+//! Logs that are compared together, and what a model leaves of them.
+
+use axis_log::Log;
+use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
+use rayon::prelude::*;
+
+use super::{Answer, State};
+use crate::spectrum::{Amplitudes, Layout};
+
+/// A log, ready to be compared with simulations of it.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// Its name in messages.
+    pub name: String,
+    /// Sampling period, s.
+    pub period: f64,
+    /// How a model answers it.
+    pub answer: Answer,
+    /// The channels compared, in the order of [`LogSet::channels`].
+    pub measured: Vec<Vec<f64>>,
+    /// The log itself; of a torque balance, as it is compared.
+    pub log: Log,
+    /// Largest gap between screw and nut that is taken up before the log counts, m.
+    pub taken_up: f64,
+    /// What the fast simulation is short of beside the slow one, by channel.
+    pub defect: Vec<Vec<f64>>,
+}
+
+/// Logs that are compared together.
+#[derive(Clone, Debug)]
+pub struct LogSet {
+    /// The logs.
+    pub logs: Vec<Prepared>,
+    /// The channels that all of them have and that a simulation gives.
+    pub channels: Vec<&'static str>,
+    /// Places in `channels` of those that are fitted. Of command and position, a
+    /// controller that reads no speed of the motor makes one of the other without
+    /// noise of its own: they are one measurement, and the command is taken.
+    pub fitted: Vec<usize>,
+    /// Bins and bands.
+    pub layout: Layout,
+}
+
+/// The channel that counts from wherever the encoder was.
+pub(super) const ANGLE: &str = "motor_angle_rad";
+
+impl LogSet {
+    /// The torque balances of its logs; none of logs that are replayed.
+    pub fn balances(&self) -> Vec<&Balance> {
+        self.logs
+            .iter()
+            .filter_map(|l| l.answer.balance())
+            .collect()
+    }
+
+    /// The replays of its logs; none of logs that are balanced.
+    pub(crate) fn replays(&self) -> Vec<&Replay> {
+        self.logs.iter().filter_map(|l| l.answer.replay()).collect()
+    }
+
+    /// What was decided for the torque balance of each log, in words.
+    pub fn notes(&self) -> Vec<String> {
+        let notes = self.logs.iter().filter_map(|log| {
+            let balance = log.answer.balance()?;
+            Some(balance.quality().sentence(&log.name))
+        });
+        notes.collect()
+    }
+
+    /// How the model answers these logs, as the file of results has it.
+    pub fn answer(&self) -> &'static str {
+        self.logs.first().map_or("", |log| log.answer.name())
+    }
+
+    /// Whether its logs are answered by torque balance.
+    pub fn is_balanced(&self) -> bool {
+        !self.balances().is_empty()
+    }
+
+    /// Simulates every log.
+    ///
+    /// # Errors
+    /// [`ReplayError`] of the first log that does not run.
+    pub fn simulate(&self, machine: &Axis, state: &State) -> Result<Vec<Trace>, ReplayError> {
+        self.simulate_with(machine, state, None)
+    }
+
+    /// As [`LogSet::simulate`], with one disturbance per log.
+    ///
+    /// # Errors
+    /// As [`LogSet::simulate`].
+    pub fn simulate_with(
+        &self,
+        machine: &Axis,
+        state: &State,
+        probes: Option<&[Probe]>,
+    ) -> Result<Vec<Trace>, ReplayError> {
+        let machine = machine.with_known(&state.shares);
+        let run = |(i, log): (usize, &Prepared)| {
+            log.answer
+                .run(&machine, &state.effects, probes.map(|p| &p[i]))
+        };
+        self.logs.par_iter().enumerate().map(run).collect()
+    }
+
+    /// Measured minus simulated, per log and channel; 0 where nothing was measured, so that
+    /// what was put there has no weight.
+    pub fn rest(&self, traces: &[Trace]) -> Vec<Vec<Vec<f64>>> {
+        let channel = |log: &Prepared, trace: &Trace, c: usize| {
+            let simulated = self.simulated(trace, c);
+            let pairs = log.measured[c].iter().zip(simulated);
+            let mut rest: Vec<f64> = pairs.map(|(m, s)| m - s).collect();
+            rest.iter_mut()
+                .zip(&log.defect[c])
+                .for_each(|(r, d)| *r -= d);
+            for instants in log.log.missing(self.channels[c]) {
+                rest[instants.clone()].fill(0.0);
+            }
+            rest
+        };
+        let one = |(log, trace): (&Prepared, &Trace)| {
+            (0..self.channels.len())
+                .map(|c| channel(log, trace, c))
+                .collect()
+        };
+        self.logs.iter().zip(traces).map(one).collect()
+    }
+
+    /// Difference of two simulations divided by `by`, as amplitudes.
+    pub fn difference(&self, a: &[Trace], b: &[Trace], by: f64) -> Amplitudes {
+        let free = self.free();
+        let one = |(i, (a, b)): (usize, (&Trace, &Trace))| {
+            let channel = |c: usize| {
+                let pairs = self.simulated(a, c).into_iter().zip(self.simulated(b, c));
+                pairs.map(|(x, y)| (x - y) / by).collect()
+            };
+            let series: Vec<Vec<f64>> = self.fitted.iter().map(|&c| channel(c)).collect();
+            self.layout.transform(i, &series, &free)
+        };
+        a.iter().zip(b).enumerate().map(one).collect()
+    }
+
+    /// Amplitudes of series per log and channel, of the channels that are fitted.
+    pub fn amplitudes(&self, series: &[Vec<Vec<f64>>]) -> Amplitudes {
+        let free = self.free();
+        let one = |(i, all): (usize, &Vec<Vec<f64>>)| {
+            let fitted: Vec<Vec<f64>> = self.fitted.iter().map(|&c| all[c].clone()).collect();
+            self.layout.transform(i, &fitted, &free)
+        };
+        series.iter().enumerate().map(one).collect()
+    }
+
+    /// Whether a channel has no zero of its own.
+    pub(crate) fn counts_from_its_mean(&self, channel: usize) -> bool {
+        self.channels[channel] == ANGLE
+    }
+
+    /// Which of the fitted channels have no zero of their own.
+    fn free(&self) -> Vec<bool> {
+        let fitted = self.fitted.iter();
+        fitted.map(|&c| self.counts_from_its_mean(c)).collect()
+    }
+
+    pub(super) fn simulated(&self, trace: &Trace, channel: usize) -> Vec<f64> {
+        let name = self.channels[channel];
+        relative(name, trace.channel(name).unwrap_or_default())
+    }
+}
+
+/// Angles count from their mean, whatever the encoder's zero; the first sample
+/// would carry its noise into all others.
+pub(super) fn relative(name: &str, samples: &[f64]) -> Vec<f64> {
+    if name != ANGLE {
+        return samples.to_vec();
+    }
+    let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
+    samples.iter().map(|v| v - mean).collect()
+}

@@ -1,0 +1,315 @@
+//! Fitting: known parameters inside their tolerance, effects free.
+
+use axis_sim::effects::{ActiveEffect, EffectParameter, Nature, Scales};
+use axis_sim::{Axis, ReplayError, Trace};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::answers::{LogSet, State};
+use crate::estimate::bounded::{bounded, inverse_of};
+use crate::estimate::gauss_newton::Descent;
+use crate::estimate::known::{known_deviations, tolerances};
+use crate::spectrum::Amplitudes;
+
+/// A fitted model.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// Parameters.
+    pub state: State,
+    /// Its simulations of the logs.
+    pub traces: Vec<Trace>,
+    /// What they leave.
+    pub rest: Amplitudes,
+    /// D of the rest, and the known parameters' departures.
+    pub deviance: f64,
+}
+
+/// Derivatives of all channels with respect to parameters, one entry each.
+pub type Columns = Vec<Amplitudes>;
+
+impl Fit {
+    /// The one with the lower D.
+    pub(crate) fn better(self, other: Self) -> Self {
+        if other.deviance < self.deviance {
+            other
+        } else {
+            self
+        }
+    }
+}
+
+/// Which effect parameters a fit moves: all but whole numbers and what is given.
+pub fn is_free(parameter: &EffectParameter) -> bool {
+    !matches!(parameter.nature, Nature::Order(_) | Nature::Held)
+}
+
+/// Steps up and down for a difference quotient of an effect's parameter, inside
+/// its bounds. A hidden effect and a known parameter may be one quantity: their
+/// columns must agree to far better than a hundredth, or the data seem to tell
+/// them apart; so quotients are central and steps small.
+fn steps_of(parameter: &EffectParameter, value: f64, on: &Scales) -> [f64; 2] {
+    let scale = match parameter.nature {
+        Nature::Phase => 0.02,
+        _ => 0.02 * value.abs().max(parameter.typical(on).abs()),
+    };
+    let [low, high] = parameter.bounds(on);
+    [(high - value).min(scale), (low - value).max(-scale)]
+}
+
+/// The fit of a set of logs by a machine.
+pub struct Fitter<'a> {
+    /// Machine as its file says.
+    pub machine: &'a Axis,
+    /// Logs.
+    pub set: &'a LogSet,
+}
+
+impl Fitter<'_> {
+    /// The model at a state.
+    ///
+    /// # Errors
+    /// [`ReplayError`] where a simulation does not run.
+    pub fn at(&self, state: State) -> Result<Fit, ReplayError> {
+        let traces = self.set.simulate(self.machine, &state)?;
+        let rest = self.set.amplitudes(&self.set.rest(&traces));
+        let deviance = self.set.layout.deviance(&rest) + self.departure(&state);
+        Ok(Fit {
+            state,
+            traces,
+            rest,
+            deviance,
+        })
+    }
+
+    fn departure(&self, state: &State) -> f64 {
+        let pairs = state.shares.iter().zip(known_deviations(self.machine));
+        pairs.map(|(s, deviation)| (s / deviation).powi(2)).sum()
+    }
+
+    /// Derivatives with respect to the known parameters.
+    pub fn known_columns(&self, fit: &Fit) -> Columns {
+        let tolerances = tolerances(self.machine);
+        let column = |i: usize| {
+            // Of what is hardly known a small step, as of what is.
+            let step = 0.2 * tolerances[i].min(0.05);
+            let at = |by: f64| {
+                let mut state = fit.state.clone();
+                state.shares[i] += by;
+                state
+            };
+            self.quotient(fit, [at(step), at(-step)], 2.0 * step)
+        };
+        (0..fit.state.shares.len())
+            .into_par_iter()
+            .map(column)
+            .collect()
+    }
+
+    /// Derivatives with respect to the free parameters of the effects, but for the
+    /// first `given` of them.
+    pub fn effect_columns(&self, fit: &Fit, given: usize) -> Columns {
+        let scales = Scales::of(self.machine);
+        let column = |(e, p): (usize, usize)| {
+            let active = &fit.state.effects[e];
+            let steps = steps_of(&active.effect.parameters[p], active.values[p], &scales);
+            let at = |by: f64| {
+                let mut state = fit.state.clone();
+                state.effects[e].values[p] += by;
+                state
+            };
+            self.quotient(fit, steps.map(at), steps[0] - steps[1])
+        };
+        let free = free_parameters(&fit.state);
+        let new = free.into_par_iter().skip(given);
+        new.map(column).collect()
+    }
+
+    fn quotient(&self, fit: &Fit, states: [State; 2], width: f64) -> Amplitudes {
+        let run = |state: &State| self.set.simulate(self.machine, state);
+        match (run(&states[0]), run(&states[1])) {
+            (Ok(up), Ok(down)) => self.set.difference(&up, &down, width),
+            _ => self.nothing(fit),
+        }
+    }
+
+    /// No change at all.
+    pub fn nothing(&self, fit: &Fit) -> Amplitudes {
+        let zeros = |bins: &Vec<_>| vec![Default::default(); bins.len()];
+        fit.rest.iter().map(zeros).collect()
+    }
+
+    /// A difference quotient; a simulation that does not run has none.
+    pub fn column(&self, fit: &Fit, moved: State, step: f64) -> Amplitudes {
+        match self.set.simulate(self.machine, &moved) {
+            Ok(traces) => self.set.difference(&traces, &fit.traces, step),
+            Err(_) => self.nothing(fit),
+        }
+    }
+
+    /// Gauss–Newton from `fit`, with re-simulation in every round. Derivatives
+    /// with respect to the first parameters, known ones and then those of effects,
+    /// are `given` and may be from a neighbouring state; the others are made anew.
+    ///
+    /// # Errors
+    /// [`ReplayError`] never of trial steps, which are shortened instead.
+    pub fn refine(&self, fit: Fit, given: &Columns, rounds: usize) -> Fit {
+        let of_effects = given.len() - fit.state.shares.len();
+        let step = |fit: &Fit| {
+            let new = self.effect_columns(fit, of_effects);
+            let columns: Columns = given.iter().cloned().chain(new).collect();
+            let Solved { step, promised, .. } = self.solve(fit, &columns);
+            (promised >= ENOUGH).then_some((step, columns))
+        };
+        let better = |fit: &Fit, (step, columns): &(DVector<f64>, Columns), length: f64| {
+            let trial = self.at(self.moved(&fit.state, step, length)).ok()?;
+            self.below(fit, trial, columns)
+        };
+        let descent = Descent {
+            rounds,
+            lengths: 4,
+            shorter: 0.35,
+        };
+        descent.from(fit, step, better, |before, after| {
+            before.deviance - after.deviance >= ENOUGH
+        })
+    }
+
+    /// The known parameters fitted, and their derivatives where that ends: these
+    /// are made anew until it gets no further.
+    pub fn calibrated(&self, mut fit: Fit, mut known: Columns) -> (Fit, Columns) {
+        for _ in 0..3 {
+            let before = fit.deviance;
+            fit = self.refine(fit, &known, 8);
+            if before - fit.deviance < 10.0 {
+                break;
+            }
+            known = self.known_columns(&fit);
+        }
+        (fit, known)
+    }
+
+    /// What a trial step reaches, where that has a lower D than `fit`: as it is, or after
+    /// a correction by what the step left, with the same derivatives and weights. Where
+    /// two parameters do nearly the same, as a torque constant does through the known one,
+    /// D is lowest along a narrow curve, and a step along its tangent leaves it
+    /// (second-order correction: Nocedal and Wright, Numerical Optimization, 2nd ed., §15.6).
+    fn below(&self, fit: &Fit, trial: Fit, columns: &Columns) -> Option<Fit> {
+        if trial.deviance < fit.deviance {
+            return Some(trial);
+        }
+        let correction = self.solve_beside(&fit.rest, &trial, columns).step;
+        let corrected = self.at(self.moved(&trial.state, &correction, 1.0)).ok()?;
+        (corrected.deviance < fit.deviance).then_some(corrected)
+    }
+
+    /// Begins with the sizes of the last effects, `count` of them, or with
+    /// multiples of them: a gap or a dry force does not grow as its response at
+    /// one size says.
+    pub fn best_size(&self, fit: Fit, count: usize) -> Fit {
+        let scales = Scales::of(self.machine);
+        let times = |by: f64| {
+            let mut state = fit.state.clone();
+            for active in state.effects.iter_mut().rev().take(count) {
+                let parameters = active.effect.parameters;
+                for (value, p) in active.values.iter_mut().zip(parameters) {
+                    if p.is_size() {
+                        let [low, high] = p.bounds(&scales);
+                        *value = (*value * by).clamp(low, high);
+                    }
+                }
+            }
+            self.at(state).ok()
+        };
+        let tried = [0.5, 2.0, 4.0, 8.0, 16.0].map(times).into_iter().flatten();
+        tried.fold(fit.clone(), Fit::better)
+    }
+
+    /// Step and covariance of all parameters from the linearised problem: the
+    /// rest's own spectral matrices as weights, the tolerances as priors.
+    pub fn solve(&self, fit: &Fit, columns: &Columns) -> Solved {
+        self.solve_beside(&fit.rest, fit, columns)
+    }
+
+    /// The same with the spectral matrices of another rest as weights.
+    fn solve_beside(&self, weighing: &Amplitudes, fit: &Fit, columns: &Columns) -> Solved {
+        let layout = &self.set.layout;
+        let whitener = layout.whitener(&layout.spectral_matrices(weighing));
+        let rest = layout.whiten(&whitener, &fit.rest);
+        let known = fit.state.shares.len();
+        let n = columns.len();
+        let mut jacobian = DMatrix::zeros(rest.len(), n);
+        for (i, column) in columns.iter().enumerate() {
+            jacobian.set_column(i, &layout.whiten(&whitener, column));
+        }
+        let mut normal = jacobian.tr_mul(&jacobian);
+        let mut right = jacobian.tr_mul(&rest);
+        for (i, deviation) in known_deviations(self.machine).into_iter().enumerate() {
+            let weight = deviation.powi(-2);
+            normal[(i, i)] += weight;
+            right[i] -= weight * fit.state.shares[i];
+        }
+        let tolerances = tolerances(self.machine);
+        let room = |i: usize| {
+            (i < known).then(|| {
+                let (share, most) = (fit.state.shares[i], tolerances[i]);
+                [-most - share, most - share]
+            })
+        };
+        let step = bounded(&normal, &right, room);
+        Solved {
+            promised: 2.0 * step.dot(&right) - step.dot(&(&normal * &step)),
+            step,
+            covariance: inverse_of(&normal),
+        }
+    }
+}
+
+/// The linearised problem, solved.
+pub struct Solved {
+    /// To its minimum inside the known parameters' tolerance.
+    pub step: DVector<f64>,
+    /// By how much D falls on the way, if the problem is as linear as that.
+    pub promised: f64,
+    /// Of all parameters.
+    pub covariance: DMatrix<f64>,
+}
+
+/// Fall of D that is not worth another round.
+const ENOUGH: f64 = 0.1;
+
+/// Indices (effect, parameter) of what a fit moves.
+pub fn free_parameters(state: &State) -> Vec<(usize, usize)> {
+    let of = |(e, active): (usize, &ActiveEffect)| {
+        let parameters = active.effect.parameters;
+        let free = (0..parameters.len()).filter(|&p| is_free(&parameters[p]));
+        free.map(move |p| (e, p)).collect::<Vec<_>>()
+    };
+    state.effects.iter().enumerate().flat_map(of).collect()
+}
+
+impl Fitter<'_> {
+    fn moved(&self, state: &State, step: &DVector<f64>, length: f64) -> State {
+        let scales = Scales::of(self.machine);
+        let mut state = state.clone();
+        let known = state.shares.len();
+        for (share, by) in state.shares.iter_mut().zip(step.iter()) {
+            *share += length * by;
+        }
+        for (i, (e, p)) in free_parameters(&state).into_iter().enumerate() {
+            let parameter = state.effects[e].effect.parameters[p];
+            let before = state.effects[e].values[p];
+            let mut by = length * step[known + i];
+            if !parameter.is_size() {
+                // A shape that moves far has left the range of its derivative.
+                let most = match parameter.nature {
+                    Nature::Phase => 1.0,
+                    _ => 0.3 * parameter.typical(&scales).abs().max(before.abs()),
+                };
+                by = by.clamp(-most, most);
+            }
+            let [low, high] = parameter.bounds(&scales);
+            state.effects[e].values[p] = (before + by).clamp(low, high);
+        }
+        state
+    }
+}

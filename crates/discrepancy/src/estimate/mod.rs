@@ -1,0 +1,10 @@
+//! Parameters: known ones inside their tolerance, sizes of effects, and how sure they are.
+
+pub mod bounded;
+pub mod fit;
+pub mod gauss_newton;
+pub mod interval;
+pub mod known;
+pub mod linear;
+pub mod projector;
+pub mod spread;

@@ -1,0 +1,124 @@
+//! What was named, with intervals and words.
+
+use axis_sim::Axis;
+use axis_sim::effects::{ActiveEffect, EffectParameter, Scales};
+
+use super::form::FormFound;
+use super::types::{AtScrew, EffectFound, ParameterFound, RefusedEffects, ReplacedEffect};
+use crate::answers::is_form_of;
+use crate::estimate::fit::free_parameters;
+use crate::name::search::{Found, Named, Reason, Refused, Replaced};
+
+pub(super) fn effect_found(
+    machine: &Axis,
+    found: &Found,
+    index: usize,
+    named: &Named,
+    share_of_gap: f64,
+) -> EffectFound {
+    let active = &found.fit.state.effects[index];
+    let free = free_parameters(&found.fit.state);
+    let known = found.fit.state.shares.len();
+    let scales = Scales::of(machine);
+    let parameter = |(p, (spec, &value)): (usize, (&EffectParameter, &f64))| {
+        let column = free
+            .iter()
+            .position(|&at| at == (index, p))
+            .map(|i| known + i);
+        let half = column.map_or(0.0, |i| found.half_width(i, value));
+        ParameterFound {
+            name: spec.name.to_owned(),
+            value,
+            unit: spec.unit(&scales).to_owned(),
+            ci95: [value - half, value + half],
+            when_named: named.when_named.get(p).copied().unwrap_or(value),
+            at_screw: at_screw(machine, value, spec.unit(&scales)),
+        }
+    };
+    EffectFound {
+        name: active.effect.name.to_owned(),
+        summary: active.effect.summary.to_owned(),
+        indistinguishable_from: named
+            .alike
+            .iter()
+            .map(|a| a.fitted.effect.name.to_owned())
+            .collect(),
+        parameters: (active.effect.parameters.iter().zip(&active.values))
+            .enumerate()
+            .map(parameter)
+            .collect(),
+        channel: active.effect.channel.name().to_owned(),
+        depends_on: active.effect.depends_on.to_owned(),
+        share_of_gap,
+        evidence: [named.evidence, named.held_out],
+        runners_up: named
+            .runners_up
+            .iter()
+            .map(|r| (r.name.to_owned(), r.gain))
+            .collect(),
+        form: form_of(machine, found, active),
+    }
+}
+
+/// The form of a named effect, where it has one.
+fn form_of(machine: &Axis, found: &Found, active: &ActiveEffect) -> Option<FormFound> {
+    let mut all = found.fit.state.effects.iter().zip(&found.named);
+    let (form, named) = all.find(|(form, _)| is_form_of(form, active))?;
+    let evidence = [named.evidence, named.held_out];
+    FormFound::new(machine, form, active.effect.name, evidence)
+}
+
+/// The form at a place, where it is that of the axis' own dry friction.
+pub(super) fn form_of_own(machine: &Axis, found: &Found, index: usize) -> Option<FormFound> {
+    let all = &found.fit.state.effects;
+    if all.iter().any(|active| is_form_of(&all[index], active)) {
+        return None;
+    }
+    let evidence = [found.named[index].evidence, found.named[index].held_out];
+    FormFound::new(
+        machine,
+        &all[index],
+        "axis\u{2019} own dry friction",
+        evidence,
+    )
+}
+
+pub(super) fn refused_effects(refused: &Refused) -> RefusedEffects {
+    RefusedEffects {
+        effects: refused.effects.iter().map(|n| n.name.to_owned()).collect(),
+        channels: match &refused.reason {
+            Reason::Worse(channels) => channels.iter().map(|&c| c.to_owned()).collect(),
+            Reason::Little(_) => Vec::new(),
+        },
+        takes_away: match refused.reason {
+            Reason::Little(share) => Some(share),
+            Reason::Worse(_) => None,
+        },
+    }
+}
+
+pub(super) fn replaced(replaced: &Replaced, scales: &Scales) -> ReplacedEffect {
+    let ActiveEffect { effect, values } = &replaced.when_named;
+    let one = |(p, &value): (&EffectParameter, &f64)| {
+        (p.name.to_owned(), value, p.unit(scales).to_owned())
+    };
+    ReplacedEffect {
+        name: effect.name.to_owned(),
+        when_named: effect.parameters.iter().zip(values).map(one).collect(),
+        by: replaced.by.to_owned(),
+    }
+}
+
+/// Friction acts at the table; its torque at the screw is what catalogues give.
+fn at_screw(machine: &Axis, value: f64, unit: &str) -> Option<AtScrew> {
+    let r = machine.travel_per_radian();
+    let (factor, unit) = match unit {
+        "N" => (r, "N*m"),
+        "N*s/m" => (r * r, "N*m*s/rad"),
+        _ => return None,
+    };
+    Some(AtScrew {
+        value: value * factor,
+        unit: unit.to_owned(),
+    })
+}

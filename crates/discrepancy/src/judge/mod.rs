@@ -1,0 +1,247 @@
+//! What a discovery says: verdict, effects with intervals, gap before and after.
+
+mod against;
+mod cost;
+mod experiment;
+mod form;
+mod found;
+mod law;
+mod likeness;
+mod motions;
+mod notes;
+mod overlay;
+mod remedy;
+mod sentence;
+mod term;
+mod told;
+mod types;
+mod units;
+mod unknown;
+mod words;
+
+use axis_sim::effects::Scales;
+use axis_sim::{Axis, ReplayError};
+
+pub use self::against::Against;
+use self::against::against;
+pub use self::cost::{Cost, EffortCost, Size, TrackingCost};
+use self::cost::{cost, whole_cost};
+pub use self::experiment::Proposal;
+use self::experiment::propose;
+pub use self::form::FormFound;
+use self::found::{effect_found, form_of_own, refused_effects, replaced};
+pub use self::law::FrictionLaw;
+use self::law::{friction_law, steady};
+use self::likeness::likenesses;
+pub use self::likeness::{Likeness, Shown};
+use self::notes::notes;
+pub use self::overlay::Overlay;
+use self::overlay::overlays;
+pub use self::remedy::{DriveFunction, REMEDIES, Remedy};
+use self::sentence::sentence;
+use self::told::remedies;
+pub use self::told::{Confidence, Level, RemedyTold, Told};
+pub use self::types::{
+    AtScrew, Discovery, EffectFound, Gaps, NextExperiment, ParameterFound, Recalibrated,
+    RefusedEffects, ReplacedEffect, Verdict,
+};
+pub use self::units::ReadUnit;
+pub use self::unknown::{Curve, Unknown};
+use self::unknown::{in_frequency, lack};
+pub use self::words::Answered;
+use crate::answers::{LogSet, State};
+use crate::estimate::fit::Fitter;
+use crate::estimate::known::{shown, tolerances};
+use crate::name::gap::{ChannelGap, Gap, gap};
+use crate::name::search::{Found, MATERIAL, is_form};
+use crate::noise::{Rest, excess, floors, log_noise};
+
+/// A search's result in words, figures and pictures.
+#[derive(Clone, Debug)]
+pub struct Discovered {
+    /// Words and figures.
+    pub discovery: Discovery,
+    /// Pictures of the check logs.
+    pub overlays: Vec<Overlay>,
+    /// The check logs' rest against what each named effect depends on.
+    pub against: Vec<Against>,
+    /// Friction over speed; `None` where none was named.
+    pub friction: Option<FrictionLaw>,
+    /// The next experiment, with the values of both rivals.
+    pub proposal: Option<Proposal>,
+}
+
+/// Share of the gap on check motion that named effects must take away to explain it.
+const EXPLAINED: f64 = 0.9;
+
+/// Share beyond which what is left is of no use to name: a fiftieth of the gap.
+const NEARLY_ALL: f64 = 0.98;
+
+/// Puts a search's result into words and figures.
+///
+/// # Errors
+/// [`ReplayError`] where a simulation that ran before does not run again.
+pub fn discovery(
+    machine: &Axis,
+    fit_logs: &LogSet,
+    check_logs: &LogSet,
+    found: &Found,
+) -> Result<Discovered, ReplayError> {
+    let mut told = judged(machine, fit_logs, check_logs, found)?;
+    told.discovery.likenesses = likenesses(machine, found);
+    Ok(told)
+}
+
+/// As [`discovery`], without what the logs can tell of effects that are not there: its
+/// likenesses are empty, and it takes a fraction of the time.
+///
+/// # Errors
+/// As [`discovery`].
+pub fn judged(
+    machine: &Axis,
+    fit_logs: &LogSet,
+    check_logs: &LogSet,
+    found: &Found,
+) -> Result<Discovered, ReplayError> {
+    let initial = State::initial(machine);
+    let full = &found.fit.state;
+    // Before: as the file says. After: with the defects of the fitted machine.
+    let before_of = |set: &LogSet| -> Result<Rest, ReplayError> {
+        Ok(set.rest(&set.simulate(machine, &initial)?))
+    };
+    let fit = {
+        let set = &found.fit_logs;
+        let after = set.rest(&set.simulate(machine, full)?);
+        let floors = floors(machine, set, full, &after)?;
+        gap(set, &before_of(fit_logs)?, &after, &floors)
+    };
+    let set = &found.check_logs;
+    let before = before_of(check_logs)?;
+    let traces = set.simulate(machine, full)?;
+    let after = set.rest(&traces);
+    let check_floors = floors(machine, set, full, &after)?;
+    let check = gap(set, &before, &after, &check_floors);
+
+    let mut effects = Vec::new();
+    let mut pictured = Vec::new();
+    let mut each = Vec::new();
+    let mut own_form = None;
+    for (index, named) in found.named.iter().enumerate() {
+        if is_form(&full.effects[index]) {
+            own_form = own_form.or_else(|| form_of_own(machine, found, index));
+            continue;
+        }
+        let mut other = full.clone();
+        let taken = full.effects[index].effect;
+        other.remove(index);
+        let without = set.rest(&set.simulate(machine, &other)?);
+        let lost = gap(set, &before, &without, &check_floors);
+        each.push((taken.name.to_owned(), cost(machine, set, &without, &after)));
+        // A friction over speed is shown as its law.
+        if steady(&full.effects[index], 1.0).is_none() {
+            pictured.extend(against(
+                machine,
+                set,
+                &traces,
+                taken,
+                [&without, &after],
+                &check_floors,
+            ));
+        }
+        effects.push(effect_found(
+            machine,
+            found,
+            index,
+            named,
+            (check.reduction - lost.reduction).clamp(0.0, 1.0),
+        ));
+    }
+    effects.sort_by(|a, b| b.share_of_gap.total_cmp(&a.share_of_gap));
+
+    let checker = Fitter {
+        machine,
+        set: check_logs,
+    };
+    let base = checker.at(found.base.state.clone())?;
+    let at_floor = |gap: &Gap| gap.channels.iter().all(ChannelGap::is_at_floor);
+    let largest = found.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
+    let unknown = match lack(machine, found, MATERIAL * largest)? {
+        Some(unknown) => Some(unknown),
+        // Beside effects that leave next to nothing, a rest without a curve is small change.
+        None if check.reduction >= NEARLY_ALL && !effects.is_empty() => None,
+        None => excess(machine, set, full, &traces)?.map(in_frequency),
+    };
+    let nearly_all = check.reduction >= NEARLY_ALL && !effects.is_empty();
+    let rest_significant = !(at_floor(&check) || nearly_all) || unknown.is_some();
+    let verdict = match (effects.is_empty(), rest_significant) {
+        _ if found.refused.is_some() => Verdict::Unknown,
+        (true, false) => Verdict::NothingMissing,
+        (true, true) => Verdict::Unknown,
+        (false, false) if check.reduction >= EXPLAINED => Verdict::Explained,
+        (false, _) => Verdict::PartlyExplained,
+    };
+    let proposal = match log_noise(machine, &found.fit_logs, full, &found.fit.traces) {
+        Some(noise) => propose(machine, found, &noise)?,
+        None => None,
+    };
+    let name = machine.name.clone();
+    let recalibrated: Vec<Recalibrated> = (machine.known().into_iter())
+        .zip(&full.shares)
+        .zip(tolerances(machine))
+        .map(|((name, &share), tolerance)| Recalibrated {
+            name: shown(name),
+            share,
+            tolerance,
+        })
+        .collect();
+    let refused = found.refused.as_ref().map(refused_effects);
+    let told = Told {
+        cost: whole_cost(machine, set, full, &after, &each)?,
+        each: if each.len() > 1 { each } else { Vec::new() },
+        confidence: Confidence::new(verdict, &effects, &recalibrated),
+        remedies: remedies(&effects),
+    };
+    let friction = friction_law(machine, set, full, &traces, &after);
+    let overlays = overlays(check_logs, &check_logs.rest(&base.traces), &after);
+    let discovery = Discovery {
+        schema: 1,
+        axis: name,
+        answer: found.fit_logs.answer().to_owned(),
+        notes: notes(machine, found),
+        sentence: sentence(
+            verdict,
+            &effects,
+            &check,
+            unknown.as_ref(),
+            refused.as_ref(),
+            own_form.as_ref(),
+        ),
+        verdict,
+        effects,
+        own_form,
+        replaced: {
+            let scales = Scales::of(machine);
+            let all = found.replaced.iter();
+            all.map(|r| replaced(r, &scales)).collect()
+        },
+        refused,
+        not_added: found
+            .leftover
+            .iter()
+            .map(|r| (r.name.to_owned(), r.gain))
+            .collect(),
+        unknown,
+        gap: Gaps { fit, check },
+        recalibrated,
+        told,
+        likenesses: Vec::new(),
+        next_experiment: proposal.as_ref().map(NextExperiment::new),
+    };
+    Ok(Discovered {
+        discovery,
+        overlays,
+        against: pictured,
+        friction,
+        proposal,
+    })
+}

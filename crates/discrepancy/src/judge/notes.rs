@@ -1,0 +1,34 @@
+//! What must be known of the logs to read a result.
+
+use axis_sim::Axis;
+
+use crate::answers::Prepared;
+use crate::name::search::Found;
+
+/// What must be known of the logs.
+pub(super) fn notes(machine: &Axis, found: &Found) -> Vec<String> {
+    let sets = [&found.fit_logs, &found.check_logs];
+    let mut notes: Vec<String> = sets.iter().flat_map(|set| set.notes()).collect();
+    if !notes.is_empty() {
+        notes.push(FLOOR.to_owned());
+    }
+    notes.extend(slack_notes(machine, found));
+    notes
+}
+
+/// How the noise of a torque balance is to be read.
+const FLOOR: &str = "the noise given of a torque balance is the least that the spectra of torque and motion leave possible, as no controller is known: a rest above it may be noise";
+
+/// Where a gap is so large that the logs do not say where the screw lay in it at their
+/// start.
+fn slack_notes(machine: &Axis, found: &Found) -> Vec<String> {
+    let effects = [&machine.effects[..], &found.fit.state.effects].concat();
+    let left = [&found.fit_logs, &found.check_logs].map(|set| set.slack_left(&effects));
+    let note = |(gap, log): (f64, &Prepared)| {
+        format!(
+            "{} counts from where its reference has moved by {:.3e} m; of a gap of {gap:.3e} m that takes up a part, and the screw\u{2019}s place in the rest is not known: record a longer first move",
+            log.name, log.taken_up
+        )
+    };
+    left.into_iter().flatten().map(note).collect()
+}

@@ -1,0 +1,63 @@
+//! A result in one sentence.
+
+use super::form::FormFound;
+use super::types::{EffectFound, RefusedEffects, Verdict};
+use super::unknown::Unknown;
+use crate::name::gap::Gap;
+
+/// A verdict in words, with what was named, what is left, and where.
+pub(super) fn sentence(
+    verdict: Verdict,
+    effects: &[EffectFound],
+    check: &Gap,
+    unknown: Option<&Unknown>,
+    refused: Option<&RefusedEffects>,
+    own_form: Option<&FormFound>,
+) -> String {
+    let names: Vec<String> = effects
+        .iter()
+        .map(|e| match e.indistinguishable_from.as_slice() {
+            [] => e.name.clone(),
+            others => format!(
+                "{} (or {}: these logs cannot tell)",
+                e.name,
+                others.join(", ")
+            ),
+        })
+        .collect();
+    let forms = effects
+        .iter()
+        .filter_map(|e| e.form.as_ref())
+        .chain(own_form);
+    let forms: String = forms.map(FormFound::sentence).collect();
+    let it = if names.len() == 1 { "it" } else { "them" };
+    let names = names.join("; ");
+    let gone = 100.0 * check.reduction;
+    let place = unknown.map_or(String::new(), |u| {
+        let formula = u
+            .formula
+            .as_ref()
+            .map_or(String::new(), |f| format!(": {f}"));
+        format!(
+            " It sits in the {} and depends on {}{formula}.",
+            u.channel, u.depends_on
+        )
+    });
+    match verdict {
+        Verdict::NothingMissing => format!(
+            "Nothing is missing: the model and the logs agree to the noise, with known parameters inside their tolerance.{forms}"
+        ),
+        Verdict::Explained => format!(
+            "The model lacks {names}. With {it}, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to.{forms}"
+        ),
+        Verdict::PartlyExplained => format!(
+            "Partly explained: with {names}, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to, and a rest remains that is not named.{place} What is named may stand for something that is not in the library.{forms}"
+        ),
+        Verdict::Unknown => {
+            let refused = refused.map_or(String::new(), RefusedEffects::sentence);
+            format!(
+                "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}{refused}{forms}"
+            )
+        }
+    }
+}

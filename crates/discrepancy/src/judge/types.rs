@@ -1,0 +1,227 @@
+//! What `discovery.json` holds.
+
+use serde::{Deserialize, Serialize};
+use trajectories::Program;
+
+use super::experiment::Proposal;
+use super::form::FormFound;
+use super::likeness::Likeness;
+use super::told::Told;
+use super::unknown::Unknown;
+use crate::name::gap::Gap;
+
+/// The verdict on a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Named effects remove at least 90 % of the gap above the floor on check
+    /// motion, and nothing significant is left.
+    Explained,
+    /// Named effects, and a significant rest that is not named.
+    PartlyExplained,
+    /// No gap beyond noise and the tolerance of known parameters.
+    NothingMissing,
+    /// A significant gap, and nothing in the library that explains it.
+    Unknown,
+}
+
+impl Verdict {
+    /// As in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Explained => "explained",
+            Self::PartlyExplained => "partly-explained",
+            Self::NothingMissing => "nothing-missing",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+/// A parameter of an effect with its 95 % interval.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ParameterFound {
+    /// Name.
+    pub name: String,
+    /// Estimate, SI.
+    pub value: f64,
+    /// SI unit.
+    pub unit: String,
+    /// 95 % interval.
+    pub ci95: [f64; 2],
+    /// The value before further effects were added.
+    pub when_named: f64,
+    /// A force or a coefficient at the table as a torque at the screw.
+    pub at_screw: Option<AtScrew>,
+}
+
+/// A number at the table as it is at the screw.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct AtScrew {
+    /// Estimate.
+    pub value: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+/// An effect that was named.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct EffectFound {
+    /// Name, as in the axis file.
+    pub name: String,
+    /// One line for people.
+    pub summary: String,
+    /// Effects that these logs cannot tell from it.
+    pub indistinguishable_from: Vec<String>,
+    /// Its numbers.
+    pub parameters: Vec<ParameterFound>,
+    /// Where it shows first.
+    pub channel: String,
+    /// On what it depends.
+    pub depends_on: String,
+    /// Share of the check logs' gap that comes back without it.
+    pub share_of_gap: f64,
+    /// Fall of minus twice the log-likelihood: on the fit logs, on the check logs.
+    pub evidence: [f64; 2],
+    /// What else was tried in its place, with the fall that it reached.
+    pub runners_up: Vec<(String, f64)>,
+    /// In what its law differs from the library's; `None` where nothing shows that.
+    pub form: Option<FormFound>,
+}
+
+/// An effect that was named on the way.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ReplacedEffect {
+    /// Name.
+    pub name: String,
+    /// Its numbers when it had just been named: name, value, unit.
+    pub when_named: Vec<(String, f64, String)>,
+    /// The effect that explains as much in its place, now that the others are there.
+    pub by: String,
+}
+
+/// Effects that explain something of the fitted logs, and are not given: with them check
+/// motion is further off, or they take away too little of its gap.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RefusedEffects {
+    /// Names.
+    pub effects: Vec<String>,
+    /// Channels that are further off; none where they are so in total only, or in none.
+    pub channels: Vec<String>,
+    /// Share of the gap on check motion that they take away, where that is too little.
+    #[serde(default)]
+    pub takes_away: Option<f64>,
+}
+
+impl RefusedEffects {
+    /// In a sentence that follows another.
+    pub(super) fn sentence(&self) -> String {
+        if let Some(share) = self.takes_away {
+            return format!(
+                " {} would take away {:.0} % of the gap, which explains nothing, so it is not given.",
+                self.effects.join(" with "),
+                100.0 * share.max(0.0)
+            );
+        }
+        let where_ = match self.channels.as_slice() {
+            [] => "in total".to_owned(),
+            channels => format!("in {}", channels.join(", ")),
+        };
+        format!(
+            " Of the fitted logs {} would explain most; with it, motion that was not fitted to is further off {where_} than without, so it is not given.",
+            self.effects.join(" with ")
+        )
+    }
+}
+
+/// Gap on both sets of logs.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Gaps {
+    /// On the logs that were fitted.
+    pub fit: Gap,
+    /// On the logs that were not.
+    pub check: Gap,
+}
+
+/// The motion that would tell apart what these logs cannot.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct NextExperiment {
+    /// What it is, in words.
+    pub what: String,
+    /// Effects that it separates.
+    pub separates: [String; 2],
+    /// Fall of −2 log L to be expected between the two; 25 and more decide.
+    pub by: f64,
+    /// The motion, as a program file has it (`simulate --program`).
+    pub program: Program,
+}
+
+/// A known parameter that was moved inside its tolerance.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Recalibrated {
+    /// Name.
+    pub name: String,
+    /// Share of its value by which it was moved.
+    pub share: f64,
+    /// Tolerance as a share.
+    pub tolerance: f64,
+}
+
+/// Of files from before there was another way.
+fn replayed() -> String {
+    "closed-loop-replay".to_owned()
+}
+
+/// What `discovery.json` holds.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Discovery {
+    /// Layout of this file.
+    pub schema: u32,
+    /// Name of the axis.
+    pub axis: String,
+    /// How the model was compared with the logs: `closed-loop-replay` or `torque-balance`.
+    #[serde(default = "replayed")]
+    pub answer: String,
+    /// What must be known of the logs beside the verdict; whoever reads them adds what
+    /// was done to them.
+    pub notes: Vec<String>,
+    /// Verdict.
+    pub verdict: Verdict,
+    /// The verdict in a sentence.
+    pub sentence: String,
+    /// Named effects, largest share first.
+    pub effects: Vec<EffectFound>,
+    /// In what the law of the axis' own dry friction differs from the model's; `None`
+    /// where nothing shows that.
+    pub own_form: Option<FormFound>,
+    /// Effects that were named on the way, until another took their place.
+    pub replaced: Vec<ReplacedEffect>,
+    /// What was named in the end and is not given, as it makes check motion worse.
+    pub refused: Option<RefusedEffects>,
+    /// Best candidates that were not added.
+    pub not_added: Vec<(String, f64)>,
+    /// What is left, is significant, and is nothing in the library.
+    pub unknown: Option<Unknown>,
+    /// Gap before and after.
+    pub gap: Gaps,
+    /// Known parameters.
+    pub recalibrated: Vec<Recalibrated>,
+    /// What a first screen says beside: costs, confidence, remedies.
+    #[serde(default)]
+    pub told: Told,
+    /// What these logs can tell of each effect of the library.
+    pub likenesses: Vec<Likeness>,
+    /// What to run next, where effects look alike.
+    pub next_experiment: Option<NextExperiment>,
+}
+
+impl NextExperiment {
+    /// As it is told.
+    pub(super) fn new(proposal: &Proposal) -> Self {
+        Self {
+            what: proposal.what.to_owned(),
+            separates: proposal.pair.each_ref().map(|a| a.effect.name.to_owned()),
+            by: proposal.separation,
+            program: proposal.program.clone(),
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! What is left and fits nothing in the library: where it sits, on what it
+//! depends, and a curve.
+//!
+//! A force on the table, or a displacement between screw and table, is let
+//! depend on one variable of the motion by a curve of hat functions. The loop
+//! answers to each hat (by simulation), known parameters and named effects are
+//! fitted out, and what a curve explains beyond chance, on logs that were not
+//! fitted as well, is not in the model. The curve with the most is reported,
+//! and a short term that does as much, where there is one. Terms are empirical.
+
+use axis_sim::{Axis, ReplayError};
+use serde::{Deserialize, Serialize};
+
+use super::term::term;
+use crate::estimate::fit::Fitter;
+use crate::name::curves::{Rest, Solved};
+use crate::name::gap::is_material;
+use crate::name::search::{Found, needed};
+use crate::noise::Excess;
+
+/// Something that is in the logs, and neither in the model nor in the library.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Unknown {
+    /// Where it acts.
+    pub channel: String,
+    /// On what it depends, as far as one variable shows it.
+    pub depends_on: String,
+    /// A short term with its number, empirical; `None` where none does nearly
+    /// as much as the curve.
+    pub formula: Option<String>,
+    /// The curve.
+    pub curve: Curve,
+    /// Fall of D on the fit logs (0 of what was looked for on the check logs
+    /// alone), and on the check logs.
+    pub evidence: [f64; 2],
+}
+
+/// A curve over a variable of the motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Curve {
+    /// Variable with its unit.
+    pub variable: String,
+    /// Unit of the values.
+    pub unit: String,
+    /// Places of the variable.
+    pub at: Vec<f64>,
+    /// Value there.
+    pub value: Vec<f64>,
+    /// Half-width of its 95 % interval; 0 where there is none.
+    pub within: Vec<f64>,
+}
+
+/// What no effect explains, if there is any: significant on both sets of logs,
+/// and `material` at least.
+///
+/// # Errors
+/// [`ReplayError`] where the fitted machine no longer runs the check logs.
+pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unknown>, ReplayError> {
+    let fitter = Fitter {
+        machine,
+        set: &found.fit_logs,
+    };
+    let checker = Fitter {
+        machine,
+        set: &found.check_logs,
+    };
+    let check = checker.at(found.fit.state.clone())?;
+    let curves = &found.library.curves;
+    let rest = Rest::new(&fitter, &found.fit, &found.columns, &found.noise);
+    let layout = &found.fit_logs.layout;
+    let needed = |knots: usize| needed(layout, knots, curves.shapes.len(), 0.01).max(material);
+    let mut solved: Vec<(usize, Solved)> = curves
+        .shapes
+        .iter()
+        .enumerate()
+        .map(|(i, (_, columns))| (i, rest.solve(columns)))
+        .filter(|(i, s)| {
+            let knots = curves.shapes[*i].0.knots.len();
+            s.gain >= needed(knots).max(ABOVE * s.of_noise)
+        })
+        .collect();
+    solved.sort_by(|a, b| b.1.gain.total_cmp(&a.1.gain));
+    tracing::debug!(gains = ?solved.iter().map(|(i, s)| (curves.shapes[*i].0.place, curves.shapes[*i].0.depends_on(), s.gain, s.of_noise)).collect::<Vec<_>>(), "curves");
+    // Of those that are significant, the one that tells most of other motion.
+    let held_out = |(i, s): &(usize, Solved)| -> f64 {
+        let shape = &curves.shapes[*i].0;
+        shape.told(machine, &found.check_logs, &check, s.values.as_slice())
+    };
+    let told: Vec<(&(usize, Solved), f64)> =
+        solved.iter().take(TOLD).map(|s| (s, held_out(s))).collect();
+    let most = told.iter().map(|t| t.1).fold(f64::NEG_INFINITY, f64::max);
+    // The simplest of those that tell about as much: they stand in the order of the list.
+    let about = told.into_iter().filter(|t| t.1 >= ABOUT * most);
+    let best = about.min_by_key(|(s, _)| s.0);
+    let Some(((index, solution), told)) = best else {
+        return Ok(None);
+    };
+    tracing::debug!(told, "curve on check logs");
+    if told < (0.1 * solution.gain).max(25.0) {
+        return Ok(None);
+    }
+    let set = &found.check_logs;
+    let after = curves.shapes[*index]
+        .0
+        .rest(machine, set, &check, solution.values.as_slice())?;
+    if !is_material(machine, set, &check, &after, &[])? {
+        return Ok(None);
+    }
+    let (shape, freedom) = (&curves.shapes[*index].0, machine.freedom());
+    let formula = term(machine, &fitter, found, &rest, shape.place, solution.gain);
+    Ok(Some(Unknown {
+        channel: shape.place.name().to_owned(),
+        depends_on: shape.depends_on(),
+        formula,
+        curve: Curve {
+            variable: format!(
+                "{}, {}",
+                shape.variable.name(),
+                shape.variable.unit(freedom)
+            ),
+            unit: shape.unit(freedom).to_owned(),
+            at: shape.knots.clone(),
+            value: solution.values.iter().copied().collect(),
+            within: solution.deviations.iter().map(|d| 1.96 * d).collect(),
+        },
+        evidence: [solution.gain, told],
+    }))
+}
+
+/// Curves of which it is seen how much they tell of other motion.
+const TOLD: usize = 6;
+
+/// Share of what the best curve tells of other motion that a simpler one must tell to be
+/// taken in its place.
+const ABOUT: f64 = 0.9;
+
+/// Fall of D that a curve must bring, over what noise alone brings in the mean:
+/// near zero frequency that is far above its average in a band.
+const ABOVE: f64 = 8.0;
+
+/// What is known of a rest that shows in no curve over the motion.
+pub fn in_frequency(excess: Excess) -> Unknown {
+    let ([low, high], _) = excess.bands[excess.worst];
+    let middles = excess
+        .bands
+        .iter()
+        .map(|([low, high], _)| 0.5 * (low + high));
+    let values: Vec<f64> = excess.bands.iter().map(|(_, v)| *v).collect();
+    Unknown {
+        channel: "rest of all channels together".to_owned(),
+        depends_on: format!("frequency, most from {low:.0} to {high:.0} Hz"),
+        formula: None,
+        curve: Curve {
+            variable: "frequency, Hz".to_owned(),
+            unit: "times the power of the noise".to_owned(),
+            at: middles.collect(),
+            within: vec![0.0; values.len()],
+            value: values,
+        },
+        evidence: [0.0, excess.fall],
+    }
+}

@@ -1,0 +1,260 @@
+//! A discovery in sentences and in the units of engineers, alike on every screen.
+
+use axis_sim::effects::Effect;
+
+use super::cost::{Cost, EffortCost, Size, TrackingCost};
+use super::form::FormFound;
+use super::told::{RemedyTold, Told};
+use super::types::{Discovery, EffectFound, ParameterFound, RefusedEffects, Verdict};
+use super::units::ReadUnit;
+use super::unknown::Unknown;
+
+/// One question of a first screen, and its answer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Answered {
+    /// The question, as a heading.
+    pub question: &'static str,
+    /// Sentences, one a line.
+    pub lines: Vec<String>,
+}
+
+impl Discovery {
+    /// What a first screen says: what is missing, what it costs, how sure that is, what
+    /// else it could be, and what to do next. Questions without an answer are left out.
+    pub fn first_screen(&self) -> Vec<Answered> {
+        let all = [
+            ("What is missing", missing(self)),
+            ("What it costs on check motion", costs(self)),
+            ("How sure that is", sure(self)),
+            ("What else it could be", alike(&self.effects)),
+            ("What to do next", next(self)),
+        ];
+        let answered = all.into_iter().filter(|(_, lines)| !lines.is_empty());
+        answered
+            .map(|(question, lines)| Answered { question, lines })
+            .collect()
+    }
+}
+
+fn missing(discovery: &Discovery) -> Vec<String> {
+    let mut lines: Vec<String> = discovery.effects.iter().map(effect).collect();
+    if discovery.verdict == Verdict::NothingMissing {
+        lines.push("Nothing: model and logs agree to the noise, with the known parameters inside their tolerances.".to_owned());
+    }
+    lines.extend(
+        discovery
+            .unknown
+            .as_ref()
+            .map(|u| unknown(u, !discovery.effects.is_empty())),
+    );
+    if discovery.verdict == Verdict::Unknown && discovery.unknown.is_none() {
+        lines.push("Unknown: model and logs disagree by more than noise and tolerances, and no effect of the library explains it.".to_owned());
+    }
+    let refused = discovery.refused.as_ref().map(RefusedEffects::sentence);
+    let forms = discovery.effects.iter().filter_map(|e| e.form.as_ref());
+    let forms = forms.chain(&discovery.own_form).map(FormFound::sentence);
+    lines.extend(
+        refused
+            .into_iter()
+            .chain(forms)
+            .map(|s| s.trim().to_owned()),
+    );
+    lines
+}
+
+/// Name in plain words and in files, and its numbers.
+fn effect(effect: &EffectFound) -> String {
+    let numbers: Vec<String> = effect.parameters.iter().map(number).collect();
+    let (summary, name) = (capital(&effect.summary), &effect.name);
+    format!("{summary} ({name}): {}.", numbers.join("; "))
+}
+
+fn number(p: &ParameterFound) -> String {
+    let said = ReadUnit::of_parameter(&p.name, &p.unit, p.value).said_within(p.value, p.ci95);
+    format!("{} {said}", p.name.replace('_', " "))
+}
+
+fn unknown(unknown: &Unknown, beside: bool) -> String {
+    let what = match beside {
+        true => "Besides, something that is not in the library",
+        false => "Unknown: something that is not in the library",
+    };
+    let curve = &unknown.curve;
+    let most = curve
+        .value
+        .iter()
+        .fold(0.0_f64, |most, v| most.max(v.abs()));
+    let size = match curve.unit.as_str() {
+        // A ratio of spectra, say, is for the picture.
+        "N" | "N*m" | "m" | "rad" => {
+            format!(", up to {}", ReadUnit::of(&curve.unit, most).said(most))
+        }
+        _ => String::new(),
+    };
+    let law = match &unknown.formula {
+        Some(formula) => format!(": {formula}"),
+        None => "; the report has the curve".to_owned(),
+    };
+    let (channel, over) = (&unknown.channel, &unknown.depends_on);
+    format!("{what}{size}. It acts in the {channel} and depends on {over}{law}.")
+}
+
+fn costs(discovery: &Discovery) -> Vec<String> {
+    let Told { cost, each, .. } = &discovery.told;
+    let named = !discovery.effects.is_empty();
+    let mut lines = Vec::new();
+    if let Some(t) = &cost.tracking {
+        lines.push(tracking(t, discovery.effects.len()));
+    } else if discovery.answer == "torque-balance" {
+        lines.push(
+            "The tracking error is not known: a torque balance takes the measured motion as given."
+                .to_owned(),
+        );
+    }
+    if let Some(e) = cost.effort.as_ref().filter(|_| named) {
+        lines.push(effort(e));
+    }
+    lines.extend(each.iter().map(|(name, cost)| share(name, cost)));
+    lines
+}
+
+fn tracking(t: &TrackingCost, named: usize) -> String {
+    let unit = ReadUnit::of(&t.unit, t.measured.peak);
+    let of = |size: &Size| format!("{} RMS, {} peak", unit.said(size.rms), unit.said(size.peak));
+    let (measured, with, without) = (of(&t.measured), of(&t.with), of(&t.without));
+    match named {
+        0 => format!("Tracking error: {measured} as measured; {with} in the model."),
+        named => {
+            let it = if named == 1 { "it" } else { "them" };
+            format!(
+                "Tracking error: {measured} as measured. Model: {with} with {it}; {without} without {it}."
+            )
+        }
+    }
+}
+
+fn effort(e: &EffortCost) -> String {
+    let unit = ReadUnit::of(&e.unit, e.measured.rms);
+    let force = ReadUnit::of(&e.force_unit, e.force.rms);
+    format!(
+        "It takes {} RMS ({} peak) at the load: {} RMS of {}, of {} in all.",
+        force.said(e.force.rms),
+        force.said(e.force.peak),
+        unit.said(e.taken.rms),
+        e.channel,
+        unit.said(e.measured.rms),
+    )
+}
+
+fn share(name: &str, cost: &Cost) -> String {
+    let error = cost.tracking.as_ref().map(|t| {
+        let unit = ReadUnit::of(&t.unit, t.with.peak);
+        let (rms, peak) = (unit.said(t.without.rms), unit.said(t.without.peak));
+        format!("without it the model's tracking error is {rms} RMS, {peak} peak")
+    });
+    let force = cost.effort.as_ref().map(|e| {
+        let unit = ReadUnit::of(&e.force_unit, e.force.rms);
+        format!("it takes {} RMS", unit.said(e.force.rms))
+    });
+    let all: Vec<String> = [error, force].into_iter().flatten().collect();
+    format!("{name} alone: {}.", all.join("; "))
+}
+
+fn sure(discovery: &Discovery) -> Vec<String> {
+    let confidence = &discovery.told.confidence;
+    let mut lines = vec![format!(
+        "Confidence: {} ({}).",
+        confidence.level.word(),
+        verdict(discovery.verdict)
+    )];
+    if !discovery.effects.is_empty() {
+        let gone = 100.0 * discovery.gap.check.reduction;
+        lines.push(format!(
+            "{gone:.1} % of the gap above the noise is gone on motion that was not fitted to."
+        ));
+    }
+    lines.push(answer(&discovery.answer).to_owned());
+    let edges = confidence.at_edge.iter().map(|k| {
+        let [share, tolerance] = [k.share, k.tolerance].map(|v| 100.0 * v);
+        format!("{} is at the edge of its tolerance ({share:+.2} % of ±{tolerance:.2} %): it may stand for something else. Measure it, or widen its tolerance.", k.name)
+    });
+    lines.extend(edges);
+    let wide = confidence.wide.iter();
+    lines.extend(wide.map(|[effect, p]| {
+        format!(
+            "The {} of {effect} is known badly: its 95 % interval is wider than half of it.",
+            p.replace('_', " ")
+        )
+    }));
+    lines
+}
+
+fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Explained => "the gap is explained",
+        Verdict::PartlyExplained => {
+            "the gap is explained in part, what is named may stand for something else"
+        }
+        Verdict::NothingMissing => "no gap beyond noise and tolerances",
+        Verdict::Unknown => "there is a gap, and nothing in the library explains it",
+    }
+}
+
+fn answer(answer: &str) -> &'static str {
+    match answer {
+        "torque-balance" => {
+            "Compared by torque balance: measured motion in, the torque that the model needs for it against the one shown."
+        }
+        _ => {
+            "Compared by closed-loop replay: the logged reference run through the simulated control and machine."
+        }
+    }
+}
+
+fn alike(effects: &[EffectFound]) -> Vec<String> {
+    let one = |effect: &EffectFound| {
+        let plain = |name: &String| {
+            let summary = Effect::named(name).map_or("", |e| e.summary);
+            format!("{name} ({summary})")
+        };
+        let others: Vec<String> = effect.indistinguishable_from.iter().map(plain).collect();
+        (!others.is_empty()).then(|| {
+            format!(
+                "These logs cannot tell {} from {}.",
+                effect.name,
+                others.join(", ")
+            )
+        })
+    };
+    effects.iter().filter_map(one).collect()
+}
+
+fn next(discovery: &Discovery) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some(next) = &discovery.next_experiment {
+        let [a, b] = &next.separates;
+        lines.push(format!(
+            "Run the next experiment: {}; it tells {a} from {b}.",
+            next.what
+        ));
+    }
+    let one = |r: &RemedyTold| {
+        format!(
+            "{}: {}. {}.",
+            r.effect,
+            r.function.words(),
+            capital(&r.parameter)
+        )
+    };
+    lines.extend(discovery.told.remedies.iter().map(one));
+    lines
+}
+
+fn capital(text: &str) -> String {
+    let mut chars = text.chars();
+    let first = chars.next().map(|c| c.to_uppercase().to_string());
+    first.unwrap_or_default() + chars.as_str()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,231 @@
+//! What a first screen says of made discoveries.
+
+use crate::judge::told::{Confidence, Level, remedies};
+use crate::judge::{
+    Cost, Discovery, EffectFound, EffortCost, Gaps, ParameterFound, Recalibrated, Size, Told,
+    TrackingCost, Verdict,
+};
+use crate::judge::{Curve, Unknown};
+use crate::name::gap::Gap;
+
+fn discovery(verdict: Verdict, effects: Vec<EffectFound>, known: Vec<Recalibrated>) -> Discovery {
+    let gap = Gap {
+        channels: Vec::new(),
+        reduction: 0.997,
+    };
+    Discovery {
+        schema: 1,
+        axis: "made".to_owned(),
+        answer: "closed-loop-replay".to_owned(),
+        notes: Vec::new(),
+        verdict,
+        sentence: String::new(),
+        told: Told {
+            cost: cost(),
+            each: Vec::new(),
+            confidence: Confidence::new(verdict, &effects, &known),
+            remedies: remedies(&effects),
+        },
+        effects,
+        own_form: None,
+        replaced: Vec::new(),
+        refused: None,
+        not_added: Vec::new(),
+        unknown: None,
+        gap: Gaps {
+            fit: gap.clone(),
+            check: gap,
+        },
+        recalibrated: known,
+        likenesses: Vec::new(),
+        next_experiment: None,
+    }
+}
+
+fn cost() -> Cost {
+    let size = |rms: f64, peak: f64| Size { rms, peak };
+    Cost {
+        tracking: Some(TrackingCost {
+            unit: "m".to_owned(),
+            measured: size(6.1e-6, 55e-6),
+            with: size(6.0e-6, 54e-6),
+            without: size(4.2e-6, 50e-6),
+        }),
+        effort: Some(EffortCost {
+            channel: "iq_a".to_owned(),
+            unit: "A".to_owned(),
+            measured: size(0.5, 1.5),
+            taken: size(0.1, 0.2),
+            force_unit: "N".to_owned(),
+            force: size(103.0, 206.0),
+        }),
+    }
+}
+
+fn viscous() -> EffectFound {
+    EffectFound {
+        name: "viscous-friction".to_owned(),
+        summary: "friction proportional to speed".to_owned(),
+        indistinguishable_from: Vec::new(),
+        parameters: vec![ParameterFound {
+            name: "coefficient".to_owned(),
+            value: 1.0632e4,
+            unit: "N*s/m".to_owned(),
+            ci95: [1.062e4, 1.0644e4],
+            when_named: 1.0632e4,
+            at_screw: None,
+        }],
+        channel: "torque balance".to_owned(),
+        depends_on: "speed".to_owned(),
+        share_of_gap: 0.99,
+        evidence: [1e5, 1e5],
+        runners_up: Vec::new(),
+        form: None,
+    }
+}
+
+fn known(share: f64) -> Recalibrated {
+    Recalibrated {
+        name: "nut-stiffness".to_owned(),
+        share,
+        tolerance: 0.1,
+    }
+}
+
+/// The lines under a question; none where it is not there.
+fn lines(discovery: &Discovery, question: &str) -> Vec<String> {
+    let all = discovery.first_screen();
+    let found = all.into_iter().find(|a| a.question.starts_with(question));
+    found.map_or(Vec::new(), |a| a.lines)
+}
+
+#[test]
+fn an_effect_is_told_with_its_cost_confidence_and_remedy() {
+    let made = discovery(Verdict::Explained, vec![viscous()], vec![known(0.01)]);
+    assert_eq!(
+        lines(&made, "What is missing"),
+        [
+            "Friction proportional to speed (viscous-friction): coefficient 10.632 N/(mm/s) (95 %: 10.620 to 10.644)."
+        ]
+    );
+    assert_eq!(
+        lines(&made, "What it costs"),
+        [
+            "Tracking error: 6.10 µm RMS, 55.0 µm peak as measured. Model: 6.00 µm RMS, 54.0 µm peak with it; 4.20 µm RMS, 50.0 µm peak without it.",
+            "It takes 103 N RMS (206 N peak) at the load: 100 mA RMS of iq_a, of 500 mA in all.",
+        ]
+    );
+    let sure = lines(&made, "How sure");
+    assert_eq!(sure[0], "Confidence: high (the gap is explained).");
+    assert!(sure[1].starts_with("99.7 % of the gap"));
+    assert!(lines(&made, "What else").is_empty());
+    let next = lines(&made, "What to do next");
+    assert!(
+        next[0].contains("speed-proportional torque feed-forward"),
+        "{next:?}"
+    );
+}
+
+#[test]
+fn every_doubt_lowers_the_confidence_by_a_step() {
+    let level = |verdict, effect: EffectFound, share: f64| {
+        Confidence::new(verdict, &[effect], &[known(share)]).level
+    };
+    let alike = EffectFound {
+        indistinguishable_from: vec!["payload-mass".to_owned()],
+        ..viscous()
+    };
+    let mut wide = viscous();
+    wide.parameters[0].ci95 = [0.5e4, 1.6e4];
+    assert_eq!(level(Verdict::Explained, viscous(), 0.05), Level::High);
+    assert_eq!(level(Verdict::Explained, viscous(), -0.1), Level::Medium);
+    assert_eq!(level(Verdict::Explained, wide.clone(), 0.05), Level::Medium);
+    assert_eq!(level(Verdict::Explained, alike, 0.1), Level::Low);
+    assert_eq!(
+        level(Verdict::PartlyExplained, viscous(), 0.0),
+        Level::Medium
+    );
+    assert_eq!(level(Verdict::PartlyExplained, wide, 0.1), Level::Low);
+}
+
+#[test]
+fn a_parameter_without_tolerance_has_no_edge() {
+    let held = Recalibrated {
+        tolerance: 0.0,
+        ..known(0.0)
+    };
+    assert!(!held.is_at_edge());
+    assert!(known(-0.1).is_at_edge() && !known(0.09).is_at_edge());
+}
+
+#[test]
+fn all_parameters_at_their_edge_are_listed() {
+    let second = Recalibrated {
+        name: "table-mass".to_owned(),
+        ..known(-0.1)
+    };
+    let made = discovery(
+        Verdict::Explained,
+        vec![viscous()],
+        vec![known(0.1), second],
+    );
+    let sure = lines(&made, "How sure");
+    let at_edge: Vec<&String> = sure.iter().filter(|l| l.contains("edge")).collect();
+    assert_eq!(at_edge.len(), 2);
+    assert!(at_edge[0].contains("+10.00 % of ±10.00 %"), "{sure:?}");
+    assert!(at_edge[1].starts_with("table-mass"));
+}
+
+#[test]
+fn nothing_and_the_unknown_are_said_so() {
+    let nothing = discovery(Verdict::NothingMissing, Vec::new(), Vec::new());
+    assert!(lines(&nothing, "What is missing")[0].starts_with("Nothing:"));
+    assert_eq!(lines(&nothing, "What it costs").len(), 1);
+    let mut unknown = discovery(Verdict::Unknown, Vec::new(), Vec::new());
+    assert!(lines(&unknown, "What is missing")[0].starts_with("Unknown:"));
+    unknown.unknown = Some(Unknown {
+        channel: "torque balance".to_owned(),
+        depends_on: "speed".to_owned(),
+        formula: Some("force = 3 N·s²/m² · |v|·v".to_owned()),
+        curve: Curve {
+            variable: "speed, m/s".to_owned(),
+            unit: "N".to_owned(),
+            at: vec![0.0, 0.1],
+            value: vec![0.0, -35.2],
+            within: vec![0.0, 0.0],
+        },
+        evidence: [100.0, 100.0],
+    });
+    assert_eq!(
+        lines(&unknown, "What is missing"),
+        [
+            "Unknown: something that is not in the library, up to 35.2 N. It acts in the torque balance and depends on speed: force = 3 N·s²/m² · |v|·v."
+        ]
+    );
+    assert_eq!(
+        lines(&unknown, "How sure")[0].split(' ').nth(1),
+        Some("low")
+    );
+}
+
+#[test]
+fn effects_that_look_alike_are_named_in_plain_words() {
+    let effect = EffectFound {
+        indistinguishable_from: vec!["payload-mass".to_owned()],
+        ..viscous()
+    };
+    let made = discovery(Verdict::Explained, vec![effect], Vec::new());
+    assert_eq!(
+        lines(&made, "What else"),
+        ["These logs cannot tell viscous-friction from payload-mass (mass on the table)."]
+    );
+}
+
+#[test]
+fn a_torque_balance_has_no_tracking_error() {
+    let mut made = discovery(Verdict::Explained, vec![viscous()], Vec::new());
+    made.answer = "torque-balance".to_owned();
+    made.told.cost.tracking = None;
+    assert!(lines(&made, "What it costs")[0].starts_with("The tracking error is not known"));
+    assert!(lines(&made, "How sure")[2].starts_with("Compared by torque balance"));
+}

@@ -1,0 +1,204 @@
+//! Checks of a log before anything is concluded from it.
+
+use axis_log::Log;
+use axis_log::intake::SHORT_GAP;
+use axis_log::quality::{check_sampling, constant_channels, unit_slip};
+use axis_sim::{Axis, Balance, ReplayError, position_in, reference_in};
+
+use super::error::IntakeError;
+use super::relations::agree;
+
+/// Channels that are compared: a constant one is not connected.
+const COMPARED: [&str; 11] = [
+    "position_ref_m",
+    "position_ref_rad",
+    "position_m",
+    "position_rad",
+    "motor_angle_rad",
+    "iq_a",
+    "iq_ref_a",
+    "uq_v",
+    "torque_ref_n_m",
+    "force_ref_n",
+    "drive_command_v",
+];
+
+/// Checks a log against its axis; its sampling period, s.
+///
+/// # Errors
+/// The first thing found that would make a verdict worthless.
+pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, IntakeError> {
+    let file = || file.to_owned();
+    let sampling = check_sampling(log).map_err(|reason| IntakeError::Sampling {
+        file: file(),
+        reason,
+    })?;
+    if !machine.has_control() {
+        return check_balanced(file(), log, sampling.period, machine);
+    }
+    let (Ok(reference), Ok(position)) = (reference_in(log), position_in(log)) else {
+        return Ok(sampling.period);
+    };
+    if let Some(slip) = unit_slip(reference, position) {
+        return Err(IntakeError::Unit {
+            file: file(),
+            factor: slip.factor,
+            guess: slip.guess,
+            scale: 1.0 / slip.exact,
+        });
+    }
+    if let Some(channel) = constant_channels(log)
+        .into_iter()
+        .find(|name| COMPARED.contains(&name.as_str()))
+    {
+        return Err(IntakeError::Constant {
+            file: file(),
+            channel,
+        });
+    }
+    no_holes(&file(), log)?;
+    agree(&file(), log, machine)?;
+    on_stroke(&file(), log, machine)?;
+    follows(&file(), log, reference, position)?;
+    moves_both_ways(&file(), reference)?;
+    Ok(sampling.period)
+}
+
+/// Dry friction and a standing load look alike where the axis goes one way only.
+fn moves_both_ways(file: &str, reference: &[f64]) -> Result<(), IntakeError> {
+    let step = |w: &[f64]| w[1] - w[0];
+    let moved = |sign: f64| {
+        reference
+            .windows(2)
+            .map(step)
+            .filter(|d| d * sign > 0.0)
+            .sum::<f64>()
+            .abs()
+    };
+    let (forward, back) = (moved(1.0), moved(-1.0));
+    let missing = match (forward > 1e-4, back > 1e-4) {
+        (true, true) => return Ok(()),
+        (false, false) => "the reference moves by less than 0.1 mm",
+        _ => "the axis moves in one direction only, so dry friction and a standing load look alike",
+    };
+    Err(IntakeError::Poor {
+        file: file.to_owned(),
+        missing,
+    })
+}
+
+fn no_holes(file: &str, log: &Log) -> Result<(), IntakeError> {
+    for channel in log.channels() {
+        let long = log
+            .missing(&channel.name)
+            .iter()
+            .find(|r| r.len() > SHORT_GAP);
+        if let Some(run) = long {
+            return Err(IntakeError::Hole {
+                file: file.to_owned(),
+                channel: channel.name.clone(),
+                samples: run.len(),
+                time: log.time()[run.start],
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The same for a torque balance, which needs no reference: a motion in any direction, and
+/// what made it.
+fn check_balanced(
+    file: String,
+    log: &Log,
+    period: f64,
+    machine: &Axis,
+) -> Result<f64, IntakeError> {
+    let balance = match Balance::new(log, period, machine) {
+        Ok(balance) => balance,
+        Err(ReplayError::Balance(reason)) => return Err(IntakeError::Balance { file, reason }),
+        // What else there may be is of the axis, and is said where that is set up.
+        Err(_) => return Ok(period),
+    };
+    let quality = balance.quality();
+    let used = quality.motion.iter().chain([&quality.channel]);
+    let constant = constant_channels(log);
+    if let Some(channel) = used
+        .copied()
+        .find(|name| constant.iter().any(|c| c == name))
+    {
+        let channel = channel.to_owned();
+        return Err(IntakeError::Constant { file, channel });
+    }
+    on_stroke(&file, log, machine)?;
+    Ok(period)
+}
+
+fn on_stroke(file: &str, log: &Log, machine: &Axis) -> Result<(), IntakeError> {
+    let stroke = &machine.stroke;
+    let channels: [(&'static str, _); 2] = [
+        ("reference", reference_in(log)),
+        ("position", position_in(log)),
+    ];
+    for (channel, samples) in channels {
+        let samples = samples.unwrap_or_default();
+        let outside = |x: &f64| !(stroke.minimum - 1e-6..=stroke.maximum + 1e-6).contains(x);
+        if let Some(k) = samples.iter().position(outside) {
+            return Err(IntakeError::OffStroke {
+                file: file.to_owned(),
+                channel,
+                position: samples[k],
+                time: log.time()[k],
+                minimum: stroke.minimum,
+                maximum: stroke.maximum,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn follows(file: &str, log: &Log, reference: &[f64], position: &[f64]) -> Result<(), IntakeError> {
+    let (low, high) = reference
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+    let travel = high - low;
+    let error = |k: &usize| (reference[*k] - position[*k]).abs();
+    let worst = (0..reference.len())
+        .max_by(|a, b| error(a).total_cmp(&error(b)))
+        .unwrap_or(0);
+    if travel > 0.0 && error(&worst) > 0.1 * travel {
+        return Err(IntakeError::NotFollowing {
+            file: file.to_owned(),
+            time: log.time()[worst],
+            error: reference[worst] - position[worst],
+            travel,
+        });
+    }
+    Ok(())
+}
+
+/// Refuses a check log that is one of the fit logs.
+///
+/// # Errors
+/// [`IntakeError::SameLog`].
+pub fn check_distinct(
+    fit: &[(String, Log, f64)],
+    check: &[(String, Log, f64)],
+) -> Result<(), IntakeError> {
+    let same = |a: &Log, b: &Log| {
+        a.len() == b.len()
+            && position_in(a)
+                .ok()
+                .is_some_and(|x| Some(x) == position_in(b).ok())
+    };
+    for (fit_name, fit_log, _) in fit {
+        for (check_name, check_log, _) in check {
+            if same(fit_log, check_log) {
+                return Err(IntakeError::SameLog {
+                    fit: fit_name.clone(),
+                    check: check_name.clone(),
+                });
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,140 @@
+//! Why a log cannot be used.
+
+use axis_log::intake::SHORT_GAP;
+use axis_log::quality::SamplingError;
+use axis_sim::BalanceError;
+use thiserror::Error;
+
+use super::start::REST_TIME;
+
+/// Why a log cannot be used. The message names the file first.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum IntakeError {
+    /// Samples that are not uniform in time.
+    #[error("{file}: {reason}")]
+    Sampling {
+        /// The log.
+        file: String,
+        /// What is wrong.
+        reason: SamplingError,
+    },
+    /// No torque balance can be made of it.
+    #[error("{file}: {reason}")]
+    Balance {
+        /// The log.
+        file: String,
+        /// What it lacks.
+        reason: BalanceError,
+    },
+    /// A channel that never changes.
+    #[error(
+        "{file}: channel \"{channel}\" has the same value in every sample: it is not connected, or belongs to another axis; leave the column out, or map another one to it in [log]"
+    )]
+    Constant {
+        /// The log.
+        file: String,
+        /// Its channel.
+        channel: String,
+    },
+    /// Position and reference differ by the factor between two units.
+    #[error(
+        "{file}: \"position_m\" is {factor:.4e} times \"position_ref_m\" ({guess}): give the column a scale in the axis file, [[log.column]] source = …, channel = \"position_m\", scale = {scale}"
+    )]
+    Unit {
+        /// The log.
+        file: String,
+        /// Measured by reference.
+        factor: f64,
+        /// In words.
+        guess: &'static str,
+        /// What would mend it.
+        scale: f64,
+    },
+    /// Too long a time without measurement.
+    #[error(
+        "{file}: \"{channel}\" was not measured for {samples} samples from t = {time:.4} s on: at most {SHORT_GAP} in a row can be bridged; split the log there"
+    )]
+    Hole {
+        /// The log.
+        file: String,
+        /// Its channel.
+        channel: String,
+        /// Samples in a row.
+        samples: usize,
+        /// When they begin, s.
+        time: f64,
+    },
+    /// Channels that do not agree with each other, by a unit, a sign or a zero.
+    #[error("{file}: {what}; if that is so, this in the axis file mends it:\n{lines}")]
+    Mapping {
+        /// The log.
+        file: String,
+        /// Which channels, and what they look like.
+        what: String,
+        /// Lines for the axis file.
+        lines: String,
+    },
+    /// Positions that the axis cannot take.
+    #[error(
+        "{file}: the {channel} is {position:.6} at t = {time:.4} s, outside the axis' stroke of {minimum} to {maximum} (m or rad): the log belongs to another axis, is in another unit, or counts from another zero (offset in [log])"
+    )]
+    OffStroke {
+        /// The log.
+        file: String,
+        /// Its channel.
+        channel: &'static str,
+        /// Where, m.
+        position: f64,
+        /// When, s.
+        time: f64,
+        /// Least position, m.
+        minimum: f64,
+        /// Greatest position, m.
+        maximum: f64,
+    },
+    /// The table does not follow the reference at all.
+    #[error(
+        "{file}: at t = {time:.4} s the table is {error:.6} m from its reference, more than a tenth of the motion's {travel:.6} m: the two columns are not of one axis and one time"
+    )]
+    NotFollowing {
+        /// The log.
+        file: String,
+        /// When, s.
+        time: f64,
+        /// Reference minus measured, m.
+        error: f64,
+        /// Range of the reference, m.
+        travel: f64,
+    },
+    /// Nothing moves, or only one way.
+    #[error(
+        "{file}: the motion is too poor to tell effects apart: {missing}; record a move and the way back, with a rest between"
+    )]
+    Poor {
+        /// The log.
+        file: String,
+        /// What it lacks.
+        missing: &'static str,
+    },
+    /// It never stands still, so a simulation cannot begin like it.
+    #[error(
+        "{file}: starts in motion, at {speed:.4} m/s, and never rests for {REST_TIME} s: where the loop stands at its start is not in the log; record from rest"
+    )]
+    NeverRests {
+        /// The log.
+        file: String,
+        /// At its start, m/s.
+        speed: f64,
+    },
+    /// The same samples to fit and to check.
+    #[error(
+        "{check} holds the same samples as {fit}: a check must be motion that was not fitted to; give another log"
+    )]
+    SameLog {
+        /// Given to fit.
+        fit: String,
+        /// Given to check.
+        check: String,
+    },
+}

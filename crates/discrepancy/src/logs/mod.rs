@@ -1,0 +1,11 @@
+//! Looking at logs before anything is concluded from them.
+
+mod checks;
+mod error;
+mod relations;
+mod start;
+
+pub use self::checks::{check_distinct, check_log};
+pub use self::error::IntakeError;
+pub use self::relations::{cross_checks, exact_channels, relations};
+pub use self::start::from_rest;

@@ -1,0 +1,73 @@
+//! Where a replay can begin in a log.
+
+use axis_log::Log;
+use axis_sim::{Axis, reference_in};
+
+use super::error::IntakeError;
+
+/// A log as a replay can begin it, and what was done for that, in words.
+///
+/// A ball-screw loop begins at rest: of a log that starts in motion, what lies
+/// before its first rest is left out. A rigid machine begins with the position
+/// and the speed of the log's first samples.
+///
+/// # Errors
+/// [`IntakeError::NeverRests`].
+pub fn from_rest(
+    file: &str,
+    log: Log,
+    period: f64,
+    machine: &Axis,
+) -> Result<(Log, Option<String>), IntakeError> {
+    // A torque balance begins with the measured motion.
+    let reference = reference_in(&log).ok().filter(|_| machine.has_control());
+    let Some(reference) = reference else {
+        return Ok((log, None));
+    };
+    let few = ((START_TIME / period).round() as usize).clamp(1, reference.len().max(2) - 1);
+    let speed = match reference.get(few) {
+        Some(later) => (later - reference[0]) / (few as f64 * period),
+        None => 0.0,
+    };
+    if speed.abs() <= AT_REST {
+        return Ok((log, None));
+    }
+    if machine.control.starts_in_motion() {
+        let words = format!(
+            "{file} starts in motion; position and speed at its start ({speed:.4} m/s) are taken from its first samples"
+        );
+        return Ok((log, Some(words)));
+    }
+    let rest = (REST_TIME / period).round() as usize;
+    let still = |window: &[f64]| {
+        let ends = window
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+        ends.1 - ends.0 <= AT_REST * REST_TIME
+    };
+    let first = reference.windows(rest + 1).position(still);
+    // So late that nothing follows is as good as never.
+    let left = first.and_then(|k| Some((k, log.skip(k + rest / 2).ok()?)));
+    match left {
+        Some((k, left)) => {
+            let from = log.time()[k + rest / 2];
+            let words = format!(
+                "{file} starts in motion ({speed:.4} m/s); what lies before its first rest, at t = {from:.3} s, is left out"
+            );
+            Ok((left, Some(words)))
+        }
+        None => Err(IntakeError::NeverRests {
+            file: file.to_owned(),
+            speed,
+        }),
+    }
+}
+
+/// Reference speed below which a log is at rest, m/s.
+const AT_REST: f64 = 1e-3;
+
+/// Over what time a log's first speed is taken, s.
+const START_TIME: f64 = 5e-3;
+
+/// How long a rest must be for the loop to have come to rest in its half, s.
+pub(super) const REST_TIME: f64 = 0.2;

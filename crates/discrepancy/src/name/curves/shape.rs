@@ -1,0 +1,179 @@
+//! A curve over a variable: hat functions, and what they do to logs.
+
+use axis_sim::effects::{self, Measure};
+use axis_sim::mechanism::Freedom;
+use axis_sim::{Axis, Probe, ReplayError};
+
+use super::course::{Course, STANDS, courses};
+use super::variable::{Factor, Place, Variable};
+use crate::answers::LogSet;
+use crate::estimate::fit::Fit;
+use crate::noise;
+
+/// A curve: where it acts, on what it depends, and its hats' places.
+#[derive(Debug)]
+pub struct Shape {
+    pub place: Place,
+    pub factor: Factor,
+    pub variable: Variable,
+    pub knots: Vec<f64>,
+}
+
+/// Hats of a curve, and of one that is multiplied by something.
+pub const KNOTS: usize = 10;
+
+const KNOTS_OF_PRODUCT: usize = 6;
+
+impl Shape {
+    pub fn new(place: Place, factor: Factor, variable: Variable, courses: &[Course]) -> Self {
+        let all = courses.iter().flat_map(|c| c.of(variable));
+        let (low, high) = all.fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+        let count = if factor == Factor::One {
+            KNOTS
+        } else {
+            KNOTS_OF_PRODUCT
+        };
+        let knots = match variable {
+            Variable::Angle => (0..count)
+                .map(|j| std::f64::consts::TAU * j as f64 / count as f64)
+                .collect(),
+            // Denser where machines are slow; none at rest, where the sign jumps.
+            Variable::Speed => {
+                let half = count / 2;
+                let up = |j: usize| ((j + 1) as f64 / half as f64).powi(2);
+                let down = (0..half).rev().map(|j| low.min(-STANDS) * up(j));
+                down.chain((0..half).map(|j| high.max(STANDS) * up(j)))
+                    .collect()
+            }
+            _ => (0..count)
+                .map(|j| low + (high - low) * j as f64 / (count - 1) as f64)
+                .collect(),
+        };
+        Self {
+            place,
+            factor,
+            variable,
+            knots,
+        }
+    }
+
+    /// Whether it is over what an effect is shown over, or over a product with it.
+    pub fn is_over(&self, variable: effects::Variable) -> bool {
+        match variable {
+            effects::Variable::Speed => {
+                self.variable == Variable::Speed || self.factor != Factor::One
+            }
+            effects::Variable::Position => self.variable == Variable::Position,
+            effects::Variable::MotorAngle => self.variable == Variable::Angle,
+            effects::Variable::Acceleration => self.variable == Variable::Acceleration,
+            effects::Variable::Current => self.variable == Variable::Effort,
+            effects::Variable::Way | effects::Variable::Time => self.variable == Variable::Time,
+        }
+    }
+
+    /// What is left on logs of which this is the fit with these values at the knots.
+    ///
+    /// # Errors
+    /// [`ReplayError`] where the machine does not run with it.
+    pub fn rest(
+        &self,
+        machine: &Axis,
+        set: &LogSet,
+        fit: &Fit,
+        values: &[f64],
+    ) -> Result<noise::Rest, ReplayError> {
+        let sum = |course: &Course| {
+            let mut total = vec![0.0; course.time.len()];
+            for (j, by) in values.iter().enumerate() {
+                for (t, h) in total.iter_mut().zip(self.hat(j, course)) {
+                    *t += by * h;
+                }
+            }
+            total
+        };
+        let probes: Vec<Probe> = (courses(machine, set, &fit.traces).iter())
+            .map(|course| self.place.probe(sum(course)))
+            .collect();
+        Ok(set.rest(&set.simulate_with(machine, &fit.state, Some(&probes))?))
+    }
+
+    /// Fall of D on logs that were not fitted, of which this is the fit, with these values at
+    /// the knots; nothing where it does not run.
+    pub fn told(&self, machine: &Axis, set: &LogSet, fit: &Fit, values: &[f64]) -> f64 {
+        let rest = self.rest(machine, set, fit, values);
+        rest.map_or(f64::NEG_INFINITY, |rest| {
+            set.layout.deviance(&fit.rest) - set.layout.deviance(&set.amplitudes(&rest))
+        })
+    }
+
+    /// On what it depends, in words.
+    pub fn depends_on(&self) -> String {
+        match self.factor {
+            Factor::One => self.variable.name().to_owned(),
+            Factor::Speed => format!("the product of speed and {}", self.variable.name()),
+            Factor::Direction => format!("{} and the direction of motion", self.variable.name()),
+        }
+    }
+
+    /// Unit of its values.
+    pub fn unit(&self, freedom: Freedom) -> &'static str {
+        match (self.place, self.factor) {
+            (Place::Force, Factor::Speed) => Measure::Damping.unit(freedom),
+            (Place::Force, _) => Measure::Force.unit(freedom),
+            (Place::Offset, _) => Measure::Way.unit(freedom),
+        }
+    }
+
+    /// The hat of knot j, in time.
+    pub fn hat(&self, j: usize, c: &Course) -> Vec<f64> {
+        let values = c.of(self.variable);
+        let factor = |k: usize| match self.factor {
+            Factor::One => 1.0,
+            Factor::Speed => c.speed[k],
+            Factor::Direction => (c.speed[k] / STANDS).tanh(),
+        };
+        let samples = |k: usize| match values.get(k) {
+            Some(&at) => factor(k) * self.hat_at(j, at),
+            None => 0.0,
+        };
+        (0..c.time.len()).map(samples).collect()
+    }
+
+    fn hat_at(&self, j: usize, at: f64) -> f64 {
+        match self.variable {
+            Variable::Speed => {
+                let same_way = |x: f64| (x > 0.0) == (self.knots[j] > 0.0);
+                if !same_way(at) {
+                    return 0.0;
+                }
+                // Flat inward of the slowest knot, and nothing at rest.
+                let moving = (at / STANDS).tanh().abs();
+                moving
+                    * self.linear(j, at, |i| {
+                        self.knots.get(i).copied().filter(|x| same_way(*x))
+                    })
+            }
+            Variable::Angle => {
+                let step = std::f64::consts::TAU / self.knots.len() as f64;
+                let away = (at - self.knots[j]).rem_euclid(std::f64::consts::TAU);
+                let away = away.min(std::f64::consts::TAU - away);
+                (1.0 - away / step).max(0.0)
+            }
+            _ => self.linear(j, at, |i| self.knots.get(i).copied()),
+        }
+    }
+
+    /// Hat j of piecewise linear interpolation, flat beyond the ends.
+    pub fn linear(&self, j: usize, x: f64, knot: impl Fn(usize) -> Option<f64>) -> f64 {
+        let own = self.knots[j];
+        let next = if x < own {
+            j.checked_sub(1).and_then(knot)
+        } else {
+            knot(j + 1)
+        };
+        match next {
+            Some(next) => (1.0 - (x - own) / (next - own)).max(0.0),
+            None => 1.0,
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Which effects of the library explain what a model leaves.
+
+pub mod curves;
+pub mod gap;
+pub mod library;
+pub mod screen;
+pub mod search;

@@ -1,0 +1,230 @@
+//! Where a force in time begins and ends.
+//!
+//! D has lesser minima in both times beside that at the truth, which is narrow:
+//! what goes downhill ends in them. But what a force does over neighbouring slots
+//! of time is nearly the sum of what it does in each: the fall of D of the sum was
+//! within a fifth of the simulated one. So all stretches between slots are compared
+//! without simulating any, and the slots at the edges of the best are cut finer
+//! and finer.
+
+use std::ops::Range;
+
+use axis_sim::effects::{ActiveEffect, Scales};
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use super::promise::PROMISING;
+use super::state::Search;
+use crate::estimate::fit::{Columns, Fit};
+use crate::estimate::linear::{Problem, Products};
+use crate::name::library::{Candidate, is_force_in_time, responses};
+use crate::name::screen::mostly_same;
+use crate::spectrum::Amplitudes;
+
+/// Stretches of which the edges are sought.
+const STRETCHES: usize = 2;
+
+/// Length of the slots at the edges at which Gauss and Newton take over, s.
+const FINEST: f64 = 0.01;
+
+/// A slot of time, and what a force of typical size does in it.
+#[derive(Clone)]
+struct Slot {
+    times: [f64; 2],
+    column: Amplitudes,
+}
+
+/// A force over neighbouring slots.
+struct Stretch {
+    slots: Range<usize>,
+    /// D of the linearised model.
+    deviance: f64,
+    /// Of the fit's own columns, and its size as a multiple of the typical.
+    x: DVector<f64>,
+}
+
+impl Stretch {
+    fn size(&self) -> f64 {
+        self.x[self.x.len() - 1]
+    }
+}
+
+impl Search<'_> {
+    /// The best force in time beside the fit; `None` where the linearised model
+    /// promises less than is worth a simulation, or than the `least`, of all. `own`
+    /// are the derivatives of the fit's own parameters.
+    pub(super) fn force_in_time(&self, own: &Columns, least: f64) -> Option<Fit> {
+        let all = self.library.candidates.iter();
+        let slots: Vec<Slot> = all
+            .filter(|c| is_force_in_time(c.effect))
+            .map(|c| Slot {
+                times: [c.values[1], c.values[2]],
+                column: c.columns[0].clone(),
+            })
+            .collect();
+        // A force over the whole motion is a constant load.
+        let n = slots.len();
+        let all = (0..n).flat_map(|i| (i + 1..=n).map(move |j| i..j));
+        let all = all.filter(|s| s.len() < n && self.acts(slots[s.end - 1].times[1]));
+        let all = all.collect();
+        let start = DVector::zeros(own.len() + 1);
+        let mut chosen: Vec<Stretch> = Vec::new();
+        for stretch in self.compared(own, &slots, all, &start) {
+            let new = chosen
+                .iter()
+                .all(|c| !mostly_same(&c.slots, &stretch.slots));
+            if chosen.len() < STRETCHES && new {
+                chosen.push(stretch);
+            }
+        }
+        let least = least.max(PROMISING * self.needed(3, 1));
+        chosen.retain(|s| self.fit.deviance - s.deviance >= least);
+        let simulated = |stretch: Stretch| {
+            let (slots, stretch) = self.cut_finer(own, &slots, stretch);
+            self.simulated(&slots, &stretch)
+        };
+        let fits = chosen.into_par_iter().filter_map(simulated);
+        let fits: Vec<Fit> = fits.collect();
+        fits.into_iter().reduce(Fit::better)
+    }
+
+    /// Whether a force that ends then acts while the logs count. One before only
+    /// changes the state that they begin in, which is not known: noise shakes
+    /// dry friction loose at the first standstill.
+    pub(super) fn acts(&self, end: f64) -> bool {
+        end > self.fit_logs.layout.full_weight_from()
+    }
+
+    /// Cuts the slots on either side of both edges into three, as often as it takes.
+    fn cut_finer(&self, own: &Columns, slots: &[Slot], first: Stretch) -> (Vec<Slot>, Stretch) {
+        let (mut slots, mut best) = (slots.to_vec(), first);
+        loop {
+            let Range { start, end } = best.slots;
+            let at_edges = [start.saturating_sub(1), start, end - 1, end];
+            let at_edge = |i: usize| at_edges.contains(&i);
+            let longest = (0..slots.len()).filter(|&i| at_edge(i));
+            let longest = longest.map(|i| slots[i].times[1] - slots[i].times[0]);
+            if longest.fold(0.0, f64::max) <= FINEST {
+                return (slots, best);
+            }
+            let mut finer: Vec<Slot> = Vec::new();
+            let mut inside: Option<usize> = None;
+            for (i, slot) in slots.iter().enumerate() {
+                if at_edge(i) {
+                    finer.extend(self.thirds(slot));
+                } else if (start..end).contains(&i) {
+                    // What is inside in any case is one slot.
+                    match inside {
+                        Some(whole) => finer[whole] = joined(&finer[whole], slot),
+                        None => {
+                            inside = Some(finer.len());
+                            finer.push(slot.clone());
+                        }
+                    }
+                }
+            }
+            let n = finer.len();
+            let holds = |s: &Range<usize>| {
+                inside.is_none_or(|i| s.contains(&i)) && self.acts(finer[s.end - 1].times[1])
+            };
+            let all = (0..n).flat_map(|i| (i + 1..=n).map(move |j| i..j));
+            let all = all.filter(holds);
+            let compared = self.compared(own, &finer, all.collect(), &best.x);
+            let Some(next) = compared.into_iter().next() else {
+                return (slots, best);
+            };
+            (slots, best) = (finer, next);
+        }
+    }
+
+    /// A slot in three parts, of which two are simulated.
+    fn thirds(&self, slot: &Slot) -> Vec<Slot> {
+        let [from, to] = slot.times;
+        let Some(force) = self.force() else {
+            return vec![slot.clone()];
+        };
+        let third = (to - from) / 3.0;
+        let edges = [from, from + third, to - third, to];
+        let simulated = |i: usize| {
+            let times = [edges[i], edges[i + 1]];
+            let values = [force.values[0], times[0], times[1]];
+            let mut columns = responses(&self.fitter(), &self.fit, force.effect, &values);
+            Slot {
+                times,
+                column: columns.swap_remove(0),
+            }
+        };
+        let two: Vec<Slot> = [0, 1].into_par_iter().map(simulated).collect();
+        let last = less(&slot.column, &two[0].column);
+        let last = Slot {
+            times: [edges[2], edges[3]],
+            column: less(&last, &two[1].column),
+        };
+        two.into_iter().chain([last]).collect()
+    }
+
+    /// Stretches of slots, that with the lowest D first.
+    fn compared(
+        &self,
+        own: &Columns,
+        slots: &[Slot],
+        stretches: Vec<Range<usize>>,
+        start: &DVector<f64>,
+    ) -> Vec<Stretch> {
+        let rest = [&self.fit.rest].into_iter();
+        let columns = slots.iter().map(|s| &s.column);
+        let all: Vec<&Amplitudes> = rest.chain(own).chain(columns).collect();
+        let products = Products::new(&self.fit_logs.layout, &all);
+        let first = 1 + own.len();
+        let fitted = |slots: Range<usize>| {
+            let summed = first + slots.start..first + slots.end;
+            let shares = &self.fit.state.shares;
+            let kept = (0..first).collect();
+            let problem = Problem::new(self.machine, &products, kept, Vec::new(), shares);
+            let least = problem.with_sum(summed).minimum(start);
+            Stretch {
+                slots,
+                deviance: least.deviance,
+                x: least.x,
+            }
+        };
+        let mut fitted: Vec<Stretch> = stretches.into_par_iter().map(fitted).collect();
+        fitted.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
+        fitted
+    }
+
+    fn force(&self) -> Option<&Candidate> {
+        let mut all = self.library.candidates.iter();
+        all.find(|c| is_force_in_time(c.effect))
+    }
+
+    fn simulated(&self, slots: &[Slot], stretch: &Stretch) -> Option<Fit> {
+        let effect = self.force()?.effect;
+        let force = effect.parameters[0];
+        let scales = Scales::of(self.machine);
+        let [low, high] = force.bounds(&scales);
+        let size = (stretch.size() * force.typical(&scales)).clamp(low, high);
+        let from = slots[stretch.slots.start].times[0];
+        let to = slots[stretch.slots.end - 1].times[1];
+        let values = vec![size, from, to];
+        let mut state = self.fit.state.clone();
+        state.effects.push(ActiveEffect { effect, values });
+        let fit = self.fitter().at(state).ok()?;
+        let [foreseen, gain] = [stretch.deviance, fit.deviance].map(|d| self.fit.deviance - d);
+        tracing::debug!(size, from, to, foreseen, gain, "force in time");
+        Some(fit)
+    }
+}
+
+fn joined(a: &Slot, b: &Slot) -> Slot {
+    let add = |(a, b): (&Vec<_>, &Vec<_>)| a.iter().zip(b).map(|(a, b)| a + b).collect();
+    Slot {
+        times: [a.times[0], b.times[1]],
+        column: a.column.iter().zip(&b.column).map(add).collect(),
+    }
+}
+
+fn less(a: &Amplitudes, b: &Amplitudes) -> Amplitudes {
+    let take = |(a, b): (&Vec<_>, &Vec<_>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
+    a.iter().zip(b).map(take).collect()
+}

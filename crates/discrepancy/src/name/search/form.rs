@@ -1,0 +1,124 @@
+//! In what form a friction is there: candidates beside the effects of the library.
+//!
+//! Nature's friction is not that of the model with other numbers. Were only the library's
+//! effects tried, what is left of a friction whose onset differs would be named as a
+//! second effect. So a form of each friction that is there already, and of the axis' own,
+//! is tried beside them ([`OnsetForm`]), and is taken where it explains clearly more than
+//! any effect.
+
+use axis_sim::Axis;
+use axis_sim::effects::{ActiveEffect, Effect, ONSET_FORM, ONSET_KNOTS, OnsetForm, Scales};
+use rayon::prelude::*;
+
+use super::refined::Refined;
+use super::state::Search;
+use crate::estimate::fit::Columns;
+use crate::name::library::{Candidate, responses};
+use crate::name::screen::{Screened, Screening};
+
+/// Knots of speed as shares of the greatest speed.
+const KNOTS: [f64; ONSET_KNOTS] = [1e-4, 4e-4, 1.6e-3, 6e-3, 2.5e-2, 1e-1];
+
+/// Share of what a form explains that an effect of the library must explain to be taken
+/// instead: it says more, with fewer numbers.
+const INSTEAD: f64 = 0.9;
+
+/// The same beside slip with a memory, which on most logs does nearly what plain dry friction
+/// does.
+const INSTEAD_OF_MEMORY: f64 = 0.6;
+
+/// Whether an active effect is a form of another.
+pub(crate) fn is_form(active: &ActiveEffect) -> bool {
+    OnsetForm::of(active).is_some()
+}
+
+/// The axis' own dry friction as an effect; `None` where it has none.
+pub(super) fn own_friction(axis: &Axis) -> Option<ActiveEffect> {
+    let friction = &axis.friction;
+    let level = friction.law.parameters().coulomb / friction.lever(axis.travel_per_radian());
+    let effect = Effect::named("coulomb-friction")?;
+    (level > 0.0).then(|| ActiveEffect {
+        effect,
+        values: vec![level],
+    })
+}
+
+impl Search<'_> {
+    /// Forms that are not there yet, beside the derivatives of the fit's own parameters.
+    pub(super) fn forms(&self, own: &Columns) -> Vec<Screened> {
+        let speeds = self.fit.traces.iter().flat_map(|t| &t.speed);
+        let fastest = speeds.fold(0.0_f64, |most, v| most.max(v.abs()));
+        let there = |of: &ActiveEffect| {
+            let forms = self.fit.state.effects.iter().filter_map(OnsetForm::of);
+            let mut bases = forms.filter_map(|form| form.base());
+            bases.any(|base| base.effect.name == of.effect.name)
+        };
+        let all = self.fit.state.effects.iter().cloned();
+        let all = all
+            .chain(own_friction(self.machine))
+            .filter(|of| !there(of));
+        let none = |of| OnsetForm::none(&of, KNOTS.map(|share| share * fastest));
+        let fitter = self.fitter();
+        let scales = Scales::of(self.machine);
+        let candidate = |form: ActiveEffect| Candidate {
+            columns: responses(&fitter, &self.fit, form.effect, &form.values),
+            effect: form.effect,
+            values: form.values,
+            scales,
+        };
+        let forms: Vec<ActiveEffect> = all.filter_map(none).collect();
+        let forms: Vec<Candidate> = forms.into_par_iter().map(candidate).collect();
+        let matrices = self.fit_logs.layout.spectral_matrices(&self.fit.rest);
+        let screening = Screening::new(&fitter, &self.fit, own, &forms, &matrices, |_| true);
+        let mut screened = screening.one_by_one();
+        // They have no place in the library.
+        screened.iter_mut().for_each(|s| s.candidate = None);
+        let least = super::promise::PROMISING * self.needed(ONSET_KNOTS, 1);
+        screened.retain(|s| s.gain >= least);
+        screened
+    }
+}
+
+impl Refined {
+    pub(super) fn is_form(&self) -> bool {
+        self.parts.iter().any(|p| p.effect.name == ONSET_FORM.name)
+    }
+
+    /// Whether it is a form, or a friction that is another one in another form: slip with a
+    /// memory is dry friction whose onset has one.
+    fn is_of_another_form(&self) -> bool {
+        let with_memory = |p: &Screened| p.effect.name == WITH_MEMORY;
+        self.is_form() || self.parts.len() == 1 && self.parts.iter().any(with_memory)
+    }
+}
+
+impl Search<'_> {
+    /// Whether an effect is dry friction in another form beside one that is there: the two
+    /// would share what is one friction.
+    pub(super) fn doubles_a_friction(&self, effect: &Effect) -> bool {
+        let plain = ["coulomb-friction", "asymmetric-friction"];
+        let mut named = self.named.iter();
+        effect.name == WITH_MEMORY && named.any(|n| plain.contains(&n.name))
+            || plain.contains(&effect.name) && self.named.iter().any(|n| n.name == WITH_MEMORY)
+    }
+}
+
+/// Dry friction with a memory.
+const WITH_MEMORY: &str = "maxwell-slip-hysteresis";
+
+/// Effects before a form that explains hardly more.
+pub(super) fn effects_before_forms(refined: &mut [Refined]) {
+    let Some(first) = refined.first().filter(|r| r.is_of_another_form()) else {
+        return;
+    };
+    let share = match first.is_form() {
+        true => INSTEAD,
+        false => INSTEAD_OF_MEMORY,
+    };
+    let least = share * first.gain;
+    let mut all = refined.iter();
+    let effect = all.position(|r| !r.is_of_another_form() && r.gain >= least);
+    if let Some(at) = effect {
+        refined[..=at].rotate_right(1);
+    }
+}

@@ -1,0 +1,75 @@
+//! What is named must do about as well as a free curve.
+//!
+//! A law that is not in the library can be imitated a little by what is: a friction bump
+//! takes away some of a damping that grows along the stroke. A curve over the variables that
+//! the effect could stand for, which knows nothing of any law, then does far better.
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use super::refined::Refined;
+use super::state::Search;
+use crate::estimate::fit::{Columns, Fitter};
+use crate::name::curves::{Rest, Shape};
+use crate::spectrum::Amplitudes;
+
+/// Share of what the best curve explains that an effect must explain. Of effects that were
+/// there it was 0.9 and more, of those that were not and were imitated 0.1 to 0.3.
+const SHARE: f64 = 0.5;
+
+/// Fall of D that a curve brings by chance, a knot.
+const BY_CHANCE: f64 = 4.0;
+
+/// Curves of which it is seen how much they tell of check motion.
+const TOLD: usize = 4;
+
+/// What free curves explain beside a fit.
+pub(super) struct FreeCurves<'a> {
+    search: &'a Search<'a>,
+    rest: Rest<'a>,
+    /// The best: of which shape, by how much D falls beyond chance.
+    best: Vec<(&'a Shape, f64)>,
+}
+
+impl<'a> FreeCurves<'a> {
+    /// Beside the derivatives of the fit's own parameters.
+    pub(super) fn new(search: &'a Search<'a>, fitter: &'a Fitter<'a>, own: &Columns) -> Self {
+        let rest = Rest::new(fitter, &search.fit, own, &[]);
+        let solved = |(shape, columns): &'a (Shape, Columns)| {
+            let solved = rest.solve(columns);
+            let gain = solved.gain - BY_CHANCE * columns.len() as f64;
+            (shape, gain, solved.values)
+        };
+        let curves = &search.library.curves.shapes;
+        let mut all: Vec<_> = curves.par_iter().map(solved).collect();
+        all.sort_by(|a, b| b.1.total_cmp(&a.1));
+        all.truncate(TOLD);
+        // What does not hold on other motion explains nothing.
+        let told = |(shape, gain, values): (&'a Shape, f64, DVector<f64>)| {
+            let (set, fit) = (&search.check_logs, &search.check);
+            let told = shape.told(search.machine, set, fit, values.as_slice());
+            (shape, gain.min(told))
+        };
+        let best = all.into_iter().map(told).collect();
+        Self { search, rest, best }
+    }
+
+    /// Whether what was refined explains about as much as the best curve over what it
+    /// depends on, or more.
+    pub(super) fn are_matched_by(&self, refined: &Refined) -> bool {
+        let pair = self.search.fit.rest.iter().zip(&refined.fit.rest);
+        let does: Amplitudes = pair
+            .map(|(before, after)| before.iter().zip(after).map(|(b, a)| b - a).collect())
+            .collect();
+        let gain = self.rest.solve(&vec![does]).gain;
+        let stands_for = |shape: &Shape| {
+            let mut parts = refined.parts.iter();
+            parts.any(|part| shape.is_over(part.effect.shown_over))
+        };
+        let of_its_own = self.best.iter().filter(|(shape, _)| stands_for(shape));
+        let curve = of_its_own.map(|(_, gain)| *gain).fold(0.0, f64::max);
+        let name = refined.parts.first().map_or("", |p| p.effect.name);
+        tracing::debug!(name, gain, curve, "beside a free curve");
+        gain >= SHARE * curve
+    }
+}

@@ -1,0 +1,92 @@
+//! How well a search knows what it found.
+
+use axis_sim::ReplayError;
+use axis_sim::effects::{ActiveEffect, Measure, Nature};
+use nalgebra::DMatrix;
+
+use super::form::{is_form, own_friction};
+use super::state::Search;
+use super::types::Found;
+use crate::answers::is_form_of;
+use crate::estimate::fit::{Columns, Fit, free_parameters};
+use crate::estimate::interval::Spread;
+use crate::estimate::known::tolerances;
+use crate::estimate::spread::{drawn, spreads};
+use crate::spectrum::Amplitudes;
+
+/// How well the parameters of a fit are known.
+pub(super) struct Intervals {
+    pub(super) columns: Columns,
+    covariance: DMatrix<f64>,
+    pub(super) noise: Vec<Amplitudes>,
+    spreads: Vec<Spread>,
+}
+
+impl Search<'_> {
+    /// Derivatives, covariance and spread of all parameters at the end.
+    pub(super) fn intervals(&self) -> Result<Intervals, ReplayError> {
+        let columns = self.own_columns();
+        let fitter = self.fitter();
+        let covariance = fitter.solve(&self.fit, &columns).covariance;
+        let noise = drawn(&fitter, &self.fit)?;
+        let mut spreads = spreads(&fitter, &self.fit, &columns, &covariance, &noise);
+        self.widen_by_own_friction(&mut spreads);
+        Ok(Intervals {
+            spreads,
+            columns,
+            covariance,
+            noise,
+        })
+    }
+
+    /// What tells a dry friction from the axis' own is its onset. Where that has another form
+    /// than the library's, it tells nothing, and the tolerance of the own one counts in full.
+    fn widen_by_own_friction(&self, spreads: &mut [Spread]) {
+        let Some(own) = own_friction(self.machine) else {
+            return;
+        };
+        let known = self.machine.known();
+        let levels = ["coulomb_level", "coulomb"];
+        let Some(level) = known.iter().position(|name| levels.contains(name)) else {
+            return;
+        };
+        let most = tolerances(self.machine)[level] * own.values[0];
+        let effects = &self.fit.state.effects;
+        let has_form = |of: &ActiveEffect| effects.iter().any(|a| is_form_of(a, of));
+        let everywhere = |of: &ActiveEffect| {
+            (of.effect.place_of(|n| matches!(n, Nature::Place(_)))).is_none() && !is_form(of)
+        };
+        for (i, (e, p)) in free_parameters(&self.fit.state).into_iter().enumerate() {
+            let active = &effects[e];
+            let is_force = active.effect.parameters[p].measure == Measure::Force;
+            if is_force && everywhere(active) && has_form(active) {
+                let leans = &mut spreads[known.len() + i].of_known[level];
+                *leans = leans.abs().max(most);
+            }
+        }
+    }
+
+    pub(super) fn finish(self, base: Fit, intervals: Intervals) -> Found {
+        let Intervals {
+            columns,
+            covariance,
+            spreads,
+            noise,
+        } = intervals;
+        Found {
+            spreads,
+            base,
+            columns,
+            covariance,
+            noise,
+            fit: self.fit,
+            named: self.named,
+            replaced: self.replaced,
+            refused: self.refused,
+            leftover: self.leftover,
+            library: self.library,
+            fit_logs: self.fit_logs,
+            check_logs: self.check_logs,
+        }
+    }
+}

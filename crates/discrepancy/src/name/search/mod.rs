@@ -1,0 +1,169 @@
+//! Stepwise search: screen, refine the best few by simulation, add, drop.
+
+mod evidence;
+mod force;
+mod form;
+mod free_curve;
+mod intervals;
+mod promise;
+mod refined;
+mod refusal;
+mod revise;
+mod rounds;
+mod state;
+mod types;
+
+use std::sync::Arc;
+
+use axis_sim::{Axis, ReplayError};
+
+pub use self::evidence::{MATERIAL, needed};
+pub(crate) use self::form::is_form;
+pub(crate) use self::revise::ABOVE_NOISE;
+use self::state::Search;
+pub use self::types::{
+    Alike, Found, Named, ONE_CLASS, Reason, Refused, Replaced, RunnerUp, SearchError, Settings,
+    SettingsError,
+};
+use crate::answers::{LogSet, State};
+use crate::estimate::fit::{Fit, Fitter};
+use crate::name::gap::sizes;
+use crate::name::library::Library;
+
+/// Searches for effects that explain the rest of `fit_logs`, and that prove
+/// themselves on `check_logs`. `progress` is told what is being done.
+///
+/// # Errors
+/// [`SearchError`] where the settings ask for what this machine cannot have, or where it
+/// does not run as its file says.
+pub fn search(
+    machine: &Axis,
+    fit_logs: &LogSet,
+    check_logs: &LogSet,
+    settings: &Settings,
+    progress: impl FnMut(&str),
+) -> Result<Found, SearchError> {
+    settings.check(machine)?;
+    Ok(searched(
+        machine, fit_logs, check_logs, settings, None, progress,
+    )?)
+}
+
+/// As [`search`], with what the library's effects do on motions like these, where that is
+/// there already: of many searches on one motion, it takes most of the time.
+///
+/// # Errors
+/// As [`search`], and [`SearchError::OtherLibrary`] where the library was made for logs of
+/// another length or with other channels, or for another machine.
+pub fn search_with(
+    machine: &Axis,
+    fit_logs: &LogSet,
+    check_logs: &LogSet,
+    settings: &Settings,
+    library: Arc<Library>,
+    progress: impl FnMut(&str),
+) -> Result<Found, SearchError> {
+    settings.check(machine)?;
+    if !library.fits(machine, fit_logs) {
+        return Err(SearchError::OtherLibrary);
+    }
+    let library = Some(library);
+    Ok(searched(
+        machine, fit_logs, check_logs, settings, library, progress,
+    )?)
+}
+
+fn searched(
+    machine: &Axis,
+    fit_logs: &LogSet,
+    check_logs: &LogSet,
+    settings: &Settings,
+    library: Option<Arc<Library>>,
+    mut progress: impl FnMut(&str),
+) -> Result<Found, ReplayError> {
+    progress("known parameters");
+    let fitter = Fitter {
+        machine,
+        set: fit_logs,
+    };
+    let start = fitter.at(State::initial(machine))?;
+    let nominal = library.as_ref().map(|l| l.known.clone());
+    let nominal = nominal.unwrap_or_else(|| fitter.known_columns(&start));
+    let (base, known) = fitter.calibrated(start, nominal);
+    // Defects of the machine with its parameters as they were fitted.
+    let settled = settled(machine, fit_logs, check_logs, &base);
+    let as_filed = check_logs;
+    let (fit_logs, check_logs) = settled.unwrap_or_else(|| (fit_logs.clone(), check_logs.clone()));
+    let fitter = Fitter {
+        machine,
+        set: &fit_logs,
+    };
+    let (base, known) = fitter.calibrated(fitter.at(base.state)?, known);
+    let library = library.unwrap_or_else(|| {
+        progress("screening all effects");
+        Arc::new(Library::new(&fitter, &base, known.clone()))
+    });
+    let checker = Fitter {
+        machine,
+        set: &check_logs,
+    };
+    let check = checker.at(base.state.clone())?;
+    let mut search = Search {
+        machine,
+        settings,
+        library,
+        gap_before: sizes(&check_logs, &check_logs.rest(&check.traces)),
+        check,
+        fit: base.clone(),
+        known,
+        named: Vec::new(),
+        replaced: Vec::new(),
+        leftover: Vec::new(),
+        refused: None,
+        fit_logs,
+        check_logs,
+    };
+    let without = search.clone();
+    while search.effects_named() < settings.most_effects {
+        progress(&format!("effect {}", search.effects_named() + 1));
+        if !search.add_next() {
+            break;
+        }
+    }
+    if search.named.len() > 1 {
+        search.revise();
+    }
+    progress("intervals");
+    let mut intervals = search.intervals()?;
+    while search.drop_noise(&intervals) {
+        // What was named together with it may be nothing without it.
+        search.revise();
+        intervals = search.intervals()?;
+    }
+    if let Some(refused) = search.refused(as_filed, &without)? {
+        search = without.with_refused(refused);
+        intervals = search.intervals()?;
+    }
+    Ok(search.finish(base, intervals))
+}
+
+/// The logs with the defects of a fitted machine, where it is one that runs.
+fn settled(
+    machine: &Axis,
+    fit_logs: &LogSet,
+    check_logs: &LogSet,
+    fit: &Fit,
+) -> Option<(LogSet, LogSet)> {
+    let corrected = |set: &LogSet| {
+        let mut set = set.clone();
+        set.correct_defects(machine, &fit.state).ok()?;
+        Some(set)
+    };
+    let (fitted, checked) = (corrected(fit_logs)?, corrected(check_logs)?);
+    let with = Fitter {
+        machine,
+        set: &fitted,
+    };
+    let better = with.at(fit.state.clone()).ok()?;
+    (better.deviance <= fit.deviance + 1.0).then_some((fitted, checked))
+}

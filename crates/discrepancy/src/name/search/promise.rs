@@ -1,0 +1,177 @@
+//! What is worth a simulation: what the linearised model promises.
+
+use axis_sim::effects::Effect;
+use nalgebra::{Complex, DMatrix};
+use rayon::prelude::*;
+
+use super::state::Search;
+use crate::estimate::fit::Columns;
+use crate::estimate::linear::{Problem, Products, Room};
+use crate::name::library::{Candidate, is_force_in_time, rooms, values_at};
+use crate::name::screen::{Screened, Screening};
+use crate::spectrum::Amplitudes;
+
+/// Share of the needed fall of D that an effect must promise, or a pair beyond
+/// twice what the best effect does alone, before it is simulated.
+pub(super) const PROMISING: f64 = 0.3;
+
+/// Share of what the best effect promises that another must promise.
+pub(super) const WORTH: f64 = 0.1;
+
+/// Most pairs that are simulated.
+const PAIRS: usize = 3;
+
+/// The linearised model of a fit and all candidates.
+pub(super) struct Promises<'a> {
+    search: &'a Search<'a>,
+    products: Products,
+    /// Columns of the rest and the fit's own parameters.
+    own: usize,
+    /// First column of each candidate.
+    firsts: Vec<usize>,
+    /// Spectral matrices of the rest, and of noise alone where that is known.
+    weights: Vec<Vec<DMatrix<Complex<f64>>>>,
+}
+
+impl<'a> Promises<'a> {
+    /// Beside these derivatives of the fit's own parameters.
+    pub(super) fn new(search: &'a Search<'a>, own: &Columns) -> Self {
+        let candidates = &search.library.candidates;
+        let layout = &search.fit_logs.layout;
+        let rest = [&search.fit.rest].into_iter();
+        // Times of a force are sought by themselves.
+        let columns = |c: &'a Candidate| match is_force_in_time(c.effect) {
+            true => &[],
+            false => c.columns.as_slice(),
+        };
+        let of_all = candidates.iter().flat_map(columns);
+        let all: Vec<&Amplitudes> = rest.chain(own).chain(of_all).collect();
+        let mut next = 1 + own.len();
+        let first = |c: &'a Candidate| {
+            let first = next;
+            next += columns(c).len();
+            first
+        };
+        let mut weights = vec![layout.spectral_matrices(&search.fit.rest)];
+        weights.extend(search.noise().map(|n| layout.spectral_matrices(&n)));
+        Self {
+            firsts: candidates.iter().map(first).collect(),
+            products: Products::new(layout, &all),
+            own: 1 + own.len(),
+            weights,
+            search,
+        }
+    }
+
+    /// Screenings with these candidates: weighed by the rest, and by noise alone
+    /// where that is known.
+    pub(super) fn screenings(
+        &self,
+        own: &Columns,
+        wanted: impl Fn(&Effect) -> bool + Sync,
+    ) -> Vec<Screening> {
+        let search = self.search;
+        let library = &search.library.candidates;
+        let weighed = |matrices: &Vec<_>| {
+            Screening::new(
+                &search.fitter(),
+                &search.fit,
+                own,
+                library,
+                matrices,
+                &wanted,
+            )
+        };
+        self.weights.iter().map(weighed).collect()
+    }
+
+    /// What each effect explains alone, best first, one entry an effect.
+    pub(super) fn one_by_one(&self, screening: &Screening) -> Vec<Screened> {
+        let promised = |s: Screened| self.promised(&[&s]).map_or(vec![s], |p| p.parts).remove(0);
+        let all = screening.one_by_one().into_par_iter().map(promised);
+        let mut all: Vec<Screened> = all.collect();
+        all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let mut seen: Vec<&str> = Vec::new();
+        all.retain(|s| {
+            let new = !seen.contains(&s.effect.name);
+            seen.push(s.effect.name);
+            new
+        });
+        all
+    }
+
+    /// Of these effects, the first few, but none that promises less than a
+    /// tenth of the best or too little. The times of a force in time are to be found first.
+    pub(super) fn worth_refining(&self, effects: &[Screened]) -> Vec<Vec<Screened>> {
+        let (force, others): (Vec<_>, Vec<_>) =
+            effects.iter().partition(|s| is_force_in_time(s.effect));
+        let settings = self.search.settings;
+        let best = others.first().map_or(0.0, |s| s.gain);
+        let least = (PROMISING * self.search.needed(1, 1)).max(WORTH * best);
+        let few = others.into_iter().take(settings.refined);
+        let few = few.filter(|s| s.gain >= least).chain(force);
+        few.map(|s| vec![s.clone()]).collect()
+    }
+
+    /// Pairs of which the linearised model promises more than twice as much as the
+    /// `most` of single effects: what two do may nearly cancel, and neither is
+    /// worth anything alone then.
+    pub(super) fn pairs(&self, screenings: &[Screening], most: f64) -> Vec<Vec<Screened>> {
+        let least = 2.0 * most + PROMISING * self.search.needed(2, 2);
+        let mut all: Vec<[Screened; 2]> = Vec::new();
+        for pair in screenings.iter().flat_map(Screening::two_by_two) {
+            let candidates = |p: &[Screened; 2]| [p[0].candidate, p[1].candidate];
+            if all.iter().all(|p| candidates(p) != candidates(&pair)) {
+                all.push(pair);
+            }
+        }
+        let promised = |[a, b]: [Screened; 2]| self.promised(&[&a, &b]);
+        let mut all: Vec<Promise> = all.into_par_iter().filter_map(promised).collect();
+        all.retain(|p| p.fall >= least);
+        all.sort_by(|a, b| b.fall.total_cmp(&a.fall));
+        all.into_iter().take(PAIRS).map(|p| p.parts).collect()
+    }
+
+    /// What the linearised model makes of these effects together; `None` where one
+    /// is a force in time. With the rest as it is in the weights, as the screening
+    /// has it, gains are too small, and a gap promises nothing.
+    fn promised(&self, effects: &[&Screened]) -> Option<Promise> {
+        let search = self.search;
+        let places: Option<Vec<usize>> = effects.iter().map(|s| s.candidate).collect();
+        let rooms: Vec<Vec<Room>> = effects.iter().map(|s| rooms(s.effect, &s.scales)).collect();
+        let columns = places?.into_iter().zip(&rooms);
+        let columns = columns.flat_map(|(c, rooms)| (0..rooms.len()).map(move |i| (c, i)));
+        let columns = columns.map(|(c, i)| self.firsts[c] + i);
+        let problem = Problem::new(
+            search.machine,
+            &self.products,
+            (0..self.own).chain(columns).collect(),
+            rooms.concat(),
+            &search.fit.state.shares,
+        );
+        let least = self.weights.iter().map(|w| problem.minimum_weighed(w));
+        let least = least.min_by(|a, b| a.deviance.total_cmp(&b.deviance))?;
+        let fall = search.fit.deviance - least.deviance;
+        let mut first = self.own - 1;
+        let parts = effects.iter().zip(&rooms).map(|(&s, rooms)| {
+            let own = &least.x.as_slice()[first..first + rooms.len()];
+            first += rooms.len();
+            Screened {
+                gain: fall,
+                values: values_at(s.effect, &s.values, own, &s.scales),
+                ..s.clone()
+            }
+        });
+        Some(Promise {
+            parts: parts.collect(),
+            fall,
+        })
+    }
+}
+
+/// What some effects together promise.
+struct Promise {
+    /// With the sizes at which they do.
+    parts: Vec<Screened>,
+    fall: f64,
+}

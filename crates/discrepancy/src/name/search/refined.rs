@@ -1,0 +1,109 @@
+//! Candidates after refinement by simulation.
+
+use axis_sim::effects::{ActiveEffect, Nature};
+
+use super::evidence::{EQUAL, enough};
+use super::types::{Alike, ONE_CLASS, RunnerUp};
+use crate::estimate::fit::Fit;
+use crate::estimate::projector::sine;
+use crate::name::screen::Screened;
+
+/// One effect, or two, after refinement by simulation.
+pub(super) struct Refined {
+    pub(super) parts: Vec<Screened>,
+    pub(super) fit: Fit,
+    pub(super) gain: f64,
+}
+
+impl Refined {
+    pub(super) fn runner_up(&self) -> RunnerUp {
+        RunnerUp {
+            name: self.parts[0].effect.name,
+            gain: self.gain,
+        }
+    }
+}
+
+/// Effects that do nearly the same as the best, or explain as much: the logs
+/// cannot tell. What can do more is not among them, unless these logs would not
+/// show the more.
+pub(super) fn alike(
+    own: &Screened,
+    best: &Refined,
+    refined: &[Refined],
+    all: &[Screened],
+) -> Vec<Alike> {
+    let pair = best.parts.iter().map(|p| p.effect.name);
+    let pair: Vec<&str> = pair.collect();
+    let others = all
+        .iter()
+        .filter(|other| !pair.contains(&other.effect.name))
+        .filter(|other| {
+            let more = other.basis.ncols() > own.basis.ncols();
+            !(more && other.more_is_shown(own, best.gain, EQUAL))
+        });
+    let mut all: Vec<Alike> = others
+        .filter_map(|other| {
+            let same = |r: &&Refined| match r.parts.as_slice() {
+                [one] => one.effect.name == other.effect.name,
+                _ => false,
+            };
+            let fitted = refined.iter().find(same);
+            let equal = fitted.is_some_and(|r| (r.gain - best.gain).abs() < EQUAL);
+            let sine = sine(&own.fingerprint, &other.basis);
+            let more = other.basis.ncols() > own.basis.ncols();
+            let nearest = || ActiveEffect {
+                effect: other.effect,
+                // A fit drives what the logs do not show wherever noise points.
+                values: match more {
+                    true => other.nearest(&own.fingerprint),
+                    false => other.values.clone(),
+                },
+            };
+            let fitted = fitted.filter(|_| !more);
+            let last = fitted.and_then(|r| r.fit.state.effects.last().cloned());
+            (sine < ONE_CLASS || equal).then(|| Alike {
+                fitted: last.unwrap_or_else(nearest),
+                sine,
+            })
+        })
+        .collect();
+    all.sort_by(|a, b| a.sine.total_cmp(&b.sine));
+    all
+}
+
+/// Moves the simplest of those that explain about as much as the best to the
+/// front.
+pub(super) fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
+    let Some(best) = refined.first().map(|r| r.gain) else {
+        return refined;
+    };
+    let enough = enough(best);
+    let parameters = |r: &Refined| -> usize {
+        let all = r.parts.iter().flat_map(|p| p.effect.parameters);
+        all.filter(|p| p.nature != Nature::Held).count()
+    };
+    let near = refined.iter().enumerate().filter(|(_, r)| r.gain >= enough);
+    if let Some((at, _)) = near.min_by_key(|(_, r)| parameters(r)) {
+        refined[..=at].rotate_right(1);
+    }
+    refined
+}
+
+/// Share of what two effects explain together that one must explain to be taken first: the
+/// other then follows, or what is there does. Pairs are for what nearly cancels.
+const ALONE: f64 = 0.5;
+
+/// An effect that explains much alone before two that explain more together.
+pub(super) fn single_before_pair(refined: &mut [Refined]) {
+    let Some(first) = refined.first().filter(|r| r.parts.len() > 1) else {
+        return;
+    };
+    let least = ALONE * first.gain;
+    let single = refined
+        .iter()
+        .position(|r| r.parts.len() == 1 && !r.is_form() && r.gain >= least);
+    if let Some(at) = single {
+        refined[..=at].rotate_right(1);
+    }
+}

@@ -1,0 +1,139 @@
+//! Second thoughts, once all effects are there.
+//!
+//! What was named first was named beside all that was not named yet, which may have
+//! made something of more parameters, or something else, look better. So each
+//! effect is taken out again: where the others do without it, it goes; where the
+//! search would now take another in its place, that comes (sequential
+//! replacement: A. Miller, Subset Selection in Regression, 2nd ed., 2002, §3.6).
+
+use axis_sim::effects::{ActiveEffect, Effect};
+
+use super::evidence::{BY_CHANCE, MATERIAL};
+use super::form::is_form;
+use super::intervals::Intervals;
+use super::promise::Promises;
+use super::state::Search;
+use super::types::Replaced;
+use crate::estimate::fit::is_free;
+use crate::estimate::known::pinned;
+use crate::estimate::spread::over_noise;
+
+/// Share of what an effect brings that another must promise in its place before
+/// that is tried.
+const RIVAL: f64 = 0.5;
+
+/// Least size of an effect, in deviations of noise: what it passes in one of a
+/// thousand draws, with deviations from sixteen runs.
+pub(crate) const ABOVE_NOISE: f64 = 4.0;
+
+impl Search<'_> {
+    /// Takes out effects that others added later have made needless, and puts
+    /// others in the place of those in whose place they explain as much.
+    pub(super) fn revise(&mut self) {
+        let mut index = 0;
+        while index < self.named.len() {
+            let Some(without) = self.without(index) else {
+                index += 1;
+                continue;
+            };
+            let loss = without.fit.deviance - self.fit.deviance;
+            let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
+            let dropped = self.fit.state.effects[index].effect;
+            let needed = self.needed(dropped.parameters.iter().filter(|p| is_free(p)).count(), 1);
+            let form = is_form(&self.fit.state.effects[index]);
+            let accepted = self.is_accepted(dropped.name);
+            if !accepted && loss < needed.max(MATERIAL * largest) {
+                *self = without;
+                continue;
+            }
+            self.named[index].evidence = loss;
+            let values = self.named[index].when_named.clone();
+            let other = (!accepted && !form).then(|| without.with_another(dropped.name, loss));
+            if let Some((other, by)) = other.flatten() {
+                tracing::debug!(of = dropped.name, by, "exchange");
+                let when_named = ActiveEffect {
+                    effect: dropped,
+                    values,
+                };
+                *self = other;
+                self.replaced.push(Replaced { when_named, by });
+            }
+            index += 1;
+        }
+    }
+
+    /// Takes out the effect that noise could best have made, if its size is not
+    /// [`ABOVE_NOISE`]. Near zero frequency the noise of a loop is many times what it
+    /// is on average below 25 Hz, and slow effects seem to explain it.
+    pub(super) fn drop_noise(&mut self, intervals: &Intervals) -> bool {
+        let Intervals { columns, noise, .. } = intervals;
+        if noise.is_empty() {
+            return false;
+        }
+        let over = |effect: usize, shares: &[f64]| {
+            let pinned = pinned(self.machine, shares);
+            over_noise(&self.fitter(), &self.fit, columns, noise, effect, &pinned)
+        };
+        let all = self.fit.state.effects.iter().enumerate();
+        let free = all.filter(|(_, active)| !self.is_accepted(active.effect.name));
+        let mut sizes: Vec<(usize, f64)> = free
+            .map(|(e, _)| (e, over(e, &self.fit.state.shares)))
+            .collect();
+        sizes.retain(|(_, size)| *size < ABOVE_NOISE);
+        sizes.sort_by(|a, b| a.1.total_cmp(&b.1));
+        for (effect, size) in sizes {
+            let Some(without) = self.without(effect) else {
+                continue;
+            };
+            // Known parameters may do its work as far as they go, and no further.
+            let alone = over(effect, &without.fit.state.shares);
+            let name = self.fit.state.effects[effect].effect.name;
+            tracing::debug!(name, size, alone, "size over noise");
+            if alone < ABOVE_NOISE {
+                *self = without;
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Whether the engineer takes an effect as there.
+    fn is_accepted(&self, name: &str) -> bool {
+        self.settings.accepted.iter().any(|a| a == name)
+    }
+
+    /// Without one effect, the others and known parameters fitted again.
+    fn without(&self, index: usize) -> Option<Self> {
+        let mut without = self.clone();
+        let mut state = self.fit.state.clone();
+        for place in state.remove(index) {
+            without.named.remove(place);
+        }
+        let start = self.fitter().at(state).ok()?;
+        without.fit = self.fitter().refine(start, &self.known, 4);
+        without.check = self.checker().at(without.fit.state.clone()).ok()?;
+        Some(without)
+    }
+
+    /// With what the search now takes next, if that is something else than what
+    /// was taken out, which had brought this `loss`; and its name.
+    fn with_another(mut self, taken_out: &str, loss: f64) -> Option<(Self, &'static str)> {
+        let own = self.own_columns();
+        let promises = Promises::new(&self, &own);
+        let others = |effect: &Effect| effect.name != taken_out && self.wanted(effect, &[]);
+        let screenings = promises.screenings(&own, others);
+        let rival = promises.one_by_one(screenings.first()?);
+        if rival.first()?.gain < RIVAL * loss {
+            return None;
+        }
+        let before = self.fit.deviance;
+        let known = self.named.len();
+        let added = self.add_next();
+        let by = self.named.get(known)?.name;
+        let another = added
+            && self.named.len() == known + 1
+            && by != taken_out
+            && before - self.fit.deviance >= loss - BY_CHANCE;
+        another.then_some((self, by))
+    }
+}

@@ -1,0 +1,206 @@
+//! Rounds of screening, refining and adding.
+
+use axis_sim::effects::{ActiveEffect, Effect};
+use rayon::prelude::*;
+
+use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
+use super::form::effects_before_forms;
+use super::free_curve::FreeCurves;
+use super::promise::{Promises, WORTH};
+use super::refined::{Refined, alike, simplest_first, single_before_pair};
+use super::state::Search;
+use super::types::{Named, RunnerUp};
+use crate::estimate::fit::{Columns, Fit, free_parameters};
+use crate::name::gap::is_material;
+use crate::name::library::is_force_in_time;
+use crate::name::screen::Screened;
+
+/// Share of the promised fall of D that a simulation must keep, or other sizes are
+/// tried.
+const KEPT: f64 = 0.8;
+
+impl Search<'_> {
+    /// Adds the effect that explains most of what is left, or two that explain
+    /// together what none does alone; false where none proves itself.
+    pub(super) fn add_next(&mut self) -> bool {
+        let awaited = self.awaited();
+        let own = self.own_columns();
+        let promises = Promises::new(self, &own);
+        let screenings = promises.screenings(&own, |effect| self.wanted(effect, &awaited));
+        let screened = promises.one_by_one(&screenings[0]);
+        let candidates = if awaited.is_empty() {
+            let mut worth = promises.worth_refining(&screened);
+            if self.effects_named() + 2 <= self.settings.most_effects {
+                let most = screened.first().map_or(0.0, |s| s.gain);
+                worth.extend(promises.pairs(&screenings, most));
+            }
+            worth.extend(self.forms(&own).into_iter().map(|form| vec![form]));
+            worth
+        } else {
+            screened.iter().map(|s| vec![s.clone()]).collect()
+        };
+        let mut refined = self.refine(candidates, &own);
+        effects_before_forms(&mut refined);
+        single_before_pair(&mut refined);
+        let fitter = self.fitter();
+        let curves = FreeCurves::new(self, &fitter, &own);
+        // Where the best does not hold on other motion, the next may.
+        let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
+            if awaited.is_empty() && !candidate.is_form() && !curves.are_matched_by(candidate) {
+                return None;
+            }
+            let check = self.checker().at(candidate.fit.state.clone()).ok()?;
+            let held_out = self.check.deviance - check.deviance;
+            let holds = !awaited.is_empty()
+                || self.proves_itself(candidate, held_out)
+                    && self.worsens_none(&check)
+                    && self.is_material(&check);
+            holds.then_some((place, check))
+        });
+        let Some((place, check)) = proven else {
+            let alone = refined
+                .iter()
+                .filter(|r| r.parts.len() == 1 && !r.is_form());
+            self.leftover = alone.map(Refined::runner_up).collect();
+            return false;
+        };
+        self.add(&refined, place, check, &screened);
+        true
+    }
+
+    fn add(&mut self, refined: &[Refined], place: usize, check: Fit, screened: &[Screened]) {
+        let best = &refined[place];
+        let others = refined.iter().enumerate();
+        let others = others.filter(|(i, r)| *i != place && r.parts.len() == 1 && !r.is_form());
+        let others: Vec<RunnerUp> = others.map(|(_, r)| r.runner_up()).collect();
+        for part in &best.parts {
+            self.named.push(Named {
+                name: part.effect.name,
+                evidence: best.gain,
+                held_out: self.check.deviance - check.deviance,
+                alike: match best.is_form() {
+                    true => Vec::new(),
+                    false => alike(part, best, refined, screened),
+                },
+                when_named: Vec::new(),
+                runners_up: others.clone(),
+            });
+        }
+        self.fit = best.fit.clone();
+        self.check = check;
+        self.settle();
+        let new = self.named.len() - best.parts.len();
+        let effects = &self.fit.state.effects[new..];
+        for (named, active) in self.named[new..].iter_mut().zip(effects) {
+            named.when_named.clone_from(&active.values);
+        }
+    }
+
+    /// Candidates of one effect or two, by simulation; the simplest of the best first.
+    fn refine(&self, candidates: Vec<Vec<Screened>>, own: &Columns) -> Vec<Refined> {
+        let fitter = self.fitter();
+        let promised = candidates.iter().map(|parts| parts[0].gain);
+        let least = WORTH * promised.fold(0.0, f64::max);
+        let awaited = self.awaited();
+        let awaited = awaited
+            .iter()
+            .any(|name| Effect::named(name).is_some_and(is_force_in_time));
+        let begin = |parts: Vec<Screened>| {
+            let as_screened = || {
+                let mut state = self.fit.state.clone();
+                state.effects.extend(parts.iter().map(|s| ActiveEffect {
+                    effect: s.effect,
+                    values: s.values.clone(),
+                }));
+                let fit = fitter.at(state).ok()?;
+                // Promised sizes are near enough where an answer grows with its
+                // size.
+                let kept = self.fit.deviance - fit.deviance >= KEPT * parts[0].gain;
+                Some(match kept {
+                    true => fit,
+                    false => fitter.best_size(fit, parts.len()),
+                })
+            };
+            let start = match parts.as_slice() {
+                [force] if is_force_in_time(force.effect) => {
+                    let found = self.force_in_time(own, least);
+                    found.or_else(|| as_screened().filter(|_| awaited))?
+                }
+                _ => as_screened()?,
+            };
+            Some(Refined {
+                parts,
+                fit: fitter.refine(start, own, 2),
+                gain: 0.0,
+            })
+        };
+        let mut refined: Vec<Refined> = candidates.into_par_iter().filter_map(begin).collect();
+        refined.retain(|r| match r.fit.state.effects.last() {
+            Some(last) if r.parts.len() == 1 && is_force_in_time(last.effect) => {
+                awaited || self.acts(last.values[2])
+            }
+            _ => true,
+        });
+        let gain = |fit: &Fit| self.fit.deviance - fit.deviance;
+        // What is far behind after two rounds is not carried further.
+        let best = refined.iter().map(|r| gain(&r.fit)).fold(0.0, f64::max);
+        refined.par_iter_mut().for_each(|r| {
+            if gain(&r.fit) > 0.5 * best - 50.0 {
+                r.fit = fitter.refine(r.fit.clone(), own, 4);
+            }
+            r.gain = gain(&r.fit);
+        });
+        // Those that are near one another are compared where they end, with
+        // derivatives of all effects as they are there, or a simple one that is
+        // not there yet loses to one that contains it.
+        let best = refined.iter().map(|r| r.gain).fold(0.0, f64::max);
+        let near = |r: &Refined| r.gain > 0.8 * best;
+        if refined.iter().filter(|r| near(r)).count() > 1 {
+            refined.par_iter_mut().filter(|r| near(r)).for_each(|r| {
+                r.fit = fitter.refine(r.fit.clone(), &self.known, 8);
+                r.gain = gain(&r.fit);
+            });
+        }
+        refined.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        for r in &refined {
+            let found = r.fit.state.effects.iter().rev().take(r.parts.len());
+            tracing::debug!(
+                name = r.parts.iter().map(|p| p.effect.name).collect::<Vec<_>>().join(" and "),
+                foreseen = r.parts[0].gain,
+                gain = r.gain,
+                screened = ?r.parts.iter().map(|p| &p.values).collect::<Vec<_>>(),
+                found = ?found.rev().map(|a| &a.values).collect::<Vec<_>>(),
+                "refined"
+            );
+        }
+        simplest_first(refined)
+    }
+
+    fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {
+        let added = free_parameters(&best.fit.state).len() - free_parameters(&self.fit.state).len();
+        let needed = self.needed(added, best.parts.len());
+        // Beside what was found, a hundredth of its weight is what the model's
+        // own simplifications may bring.
+        let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
+        tracing::debug!(gain = best.gain, held_out, needed, "on check logs");
+        best.gain >= needed && held_out >= LEAST_HELD_OUT && best.gain >= MATERIAL * largest
+    }
+
+    /// Whether what a fit of the check logs adds is material.
+    fn is_material(&self, check: &Fit) -> bool {
+        let set = &self.check_logs;
+        let after = set.rest(&check.traces);
+        is_material(self.machine, set, &self.check, &after, &self.gap_before).unwrap_or(true)
+    }
+
+    /// Whether no channel of the check logs, fitted or not, is so much further off than
+    /// before that no effect named later could make up for it.
+    fn worsens_none(&self, check: &Fit) -> bool {
+        let before = self.check_logs.rest(&self.check.traces);
+        let after = self.check_logs.rest(&check.traces);
+        let power = |rest: &[Vec<Vec<f64>>], c: usize| -> f64 {
+            rest.iter().flat_map(|log| &log[c]).map(|r| r * r).sum()
+        };
+        (0..self.check_logs.channels.len()).all(|c| power(&after, c) <= WORSE * power(&before, c))
+    }
+}

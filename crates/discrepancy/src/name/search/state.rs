@@ -1,0 +1,152 @@
+//! A search on its way.
+
+use std::sync::Arc;
+
+use axis_sim::Axis;
+use axis_sim::effects::{Effect, Nature};
+
+use super::evidence::needed;
+use super::form::is_form;
+use super::types::{Named, Refused, Replaced, RunnerUp, Settings};
+use crate::answers::LogSet;
+use crate::estimate::fit::{Columns, Fit, Fitter};
+use crate::name::library::Library;
+use crate::noise::{log_noise, noise_on};
+use crate::spectrum::Amplitudes;
+
+/// A search on its way.
+#[derive(Clone)]
+pub(super) struct Search<'a> {
+    pub(super) machine: &'a Axis,
+    pub(super) settings: &'a Settings,
+    pub(super) library: Arc<Library>,
+    pub(super) fit_logs: LogSet,
+    pub(super) check_logs: LogSet,
+    pub(super) known: Columns,
+    pub(super) fit: Fit,
+    pub(super) check: Fit,
+    pub(super) named: Vec<Named>,
+    pub(super) replaced: Vec<Replaced>,
+    pub(super) leftover: Vec<RunnerUp>,
+    pub(super) refused: Option<Refused>,
+    /// Root mean square of each channel's rest on the check logs before anything was named.
+    pub(super) gap_before: Vec<f64>,
+}
+
+impl Search<'_> {
+    pub(super) fn fitter(&self) -> Fitter<'_> {
+        Fitter {
+            machine: self.machine,
+            set: &self.fit_logs,
+        }
+    }
+
+    pub(super) fn checker(&self) -> Fitter<'_> {
+        Fitter {
+            machine: self.machine,
+            set: &self.check_logs,
+        }
+    }
+
+    /// Fall of D that `effects` with so many parameters must bring at once.
+    pub(super) fn needed(&self, parameters: usize, effects: usize) -> f64 {
+        let tried = self.library.candidates.len();
+        let tried = match effects {
+            1 => tried,
+            _ => tried * tried.saturating_sub(1) / 2,
+        };
+        needed(
+            &self.fit_logs.layout,
+            parameters,
+            tried,
+            self.settings.false_alarm,
+        )
+    }
+
+    /// What the engineer takes as there and is not yet: it goes first, whatever
+    /// speaks for it.
+    pub(super) fn awaited(&self) -> Vec<&str> {
+        let active = |name: &str| self.named.iter().any(|n| n.name == name);
+        let accepted = self.settings.accepted.iter().map(String::as_str);
+        accepted.filter(|name| !active(name)).collect()
+    }
+
+    /// Number of effects that are named, their forms not counted.
+    pub(super) fn effects_named(&self) -> usize {
+        let effects = self.fit.state.effects.iter();
+        effects.filter(|active| !is_form(active)).count()
+    }
+
+    /// Derivatives with respect to all parameters of the fit.
+    pub(super) fn own_columns(&self) -> Columns {
+        let effects = self.fitter().effect_columns(&self.fit, 0);
+        self.known.iter().cloned().chain(effects).collect()
+    }
+
+    /// Whether an effect may be named next.
+    pub(super) fn wanted(&self, effect: &Effect, awaited: &[&str]) -> bool {
+        let rejected = self.settings.rejected.iter().any(|r| r == effect.name);
+        // A second harmonic of the same kind may be there.
+        let active = self.named.iter().any(|n| n.name == effect.name);
+        let free = !active || effect.place_of(|n| matches!(n, Nature::Order(_))).is_some();
+        free && !rejected
+            && !self.doubles_a_friction(effect)
+            && (awaited.is_empty() || awaited.contains(&effect.name))
+    }
+
+    /// Noise alone, as of sensors like those of the logs; `None` where these do
+    /// not show it.
+    pub(super) fn noise(&self) -> Option<Amplitudes> {
+        let (machine, set, fit) = (self.machine, &self.fit_logs, &self.fit);
+        let noise = log_noise(machine, set, &fit.state, &fit.traces)?;
+        noise_on(machine, &fit.state, set, &fit.traces, &noise, 0).ok()
+    }
+
+    /// Fits all parameters again, and the defects of the machine as it now is.
+    pub(super) fn settle(&mut self) {
+        let known = self.fitter().known_columns(&self.fit);
+        let (fit, known) = self.fitter().calibrated(self.fit.clone(), known);
+        let mut corrected = self.fit_logs.clone();
+        if corrected.correct_defects(self.machine, &fit.state).is_ok() {
+            let with = Fitter {
+                machine: self.machine,
+                set: &corrected,
+            };
+            // An axis that vibrates by itself does so with another phase in
+            // every simulation, and the difference of two is no defect.
+            if let Ok(better) = with.at(fit.state.clone())
+                && better.deviance < fit.deviance
+            {
+                self.fit = with.refine(better, &known, 4);
+                self.fit_logs = corrected;
+            } else {
+                self.fit = fit;
+            }
+        } else {
+            self.fit = fit;
+        }
+        self.known = known;
+        self.settle_check();
+    }
+
+    fn settle_check(&mut self) {
+        let Ok(check) = self.checker().at(self.fit.state.clone()) else {
+            return;
+        };
+        self.check = check;
+        let mut corrected = self.check_logs.clone();
+        let done = corrected.correct_defects(self.machine, &self.fit.state);
+        if done.is_ok() {
+            let with = Fitter {
+                machine: self.machine,
+                set: &corrected,
+            };
+            if let Ok(better) = with.at(self.fit.state.clone())
+                && better.deviance < self.check.deviance
+            {
+                self.check = better;
+                self.check_logs = corrected;
+            }
+        }
+    }
+}

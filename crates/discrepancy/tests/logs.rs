@@ -1,0 +1,196 @@
+//! Logs from which nothing may be concluded are refused, with what, where and
+//! what would be valid; one that starts in motion is told.
+
+use axis_log::{Channel, Log};
+use axis_sim::Axis;
+use discrepancy::logs::{IntakeError, check_distinct, check_log, from_rest};
+use discrepancy::{LogSet, State};
+
+const PERIOD: f64 = 1e-3;
+
+fn machine(name: &str) -> Axis {
+    let file = format!("{}/../../data/axes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    Axis::read(file.as_ref()).unwrap()
+}
+
+/// A rest, 50 mm out, a rest, back, a rest: half a second each.
+fn reference(t: f64) -> f64 {
+    let ramp = |share: f64| {
+        let s = share.clamp(0.0, 1.0);
+        s * s * (3.0 - 2.0 * s)
+    };
+    0.7 + 0.05 * (ramp(2.0 * t - 1.0) - ramp(2.0 * t - 3.0))
+}
+
+fn log(
+    from: f64,
+    to: f64,
+    reference: impl Fn(f64) -> f64,
+    position: impl Fn(f64) -> f64,
+    iq: impl Fn(f64) -> f64,
+) -> Log {
+    let n = ((to - from) / PERIOD).round() as usize;
+    let t: Vec<f64> = (0..n).map(|k| from + k as f64 * PERIOD).collect();
+    let channel = |name: &str, unit: &str, samples: Vec<f64>| Channel {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        samples,
+    };
+    Log::new(vec![
+        channel("t_s", "s", t.clone()),
+        channel(
+            "position_ref_m",
+            "m",
+            t.iter().map(|&t| reference(t)).collect(),
+        ),
+        channel("position_m", "m", t.iter().map(|&t| position(t)).collect()),
+        channel("iq_a", "A", t.iter().map(|&t| iq(t)).collect()),
+    ])
+    .unwrap()
+}
+
+fn followed(t: f64) -> f64 {
+    reference(t - 2e-3) + 1e-7 * (300.0 * t).sin()
+}
+
+fn current(t: f64) -> f64 {
+    (40.0 * t).sin()
+}
+
+fn refusal(log: &Log) -> String {
+    let error = check_log("drive.csv", log, &machine("liu2025")).unwrap_err();
+    let message = error.to_string();
+    assert!(message.starts_with("drive.csv: "), "{message}");
+    message
+}
+
+#[test]
+fn a_sound_log_gives_its_period() {
+    let sound = log(0.0, 2.5, reference, followed, current);
+    let period = check_log("drive.csv", &sound, &machine("liu2025")).unwrap();
+    assert!((period - PERIOD).abs() < 1e-12);
+    let (left, note) = from_rest("drive.csv", sound.clone(), period, &machine("liu2025")).unwrap();
+    assert_eq!((left.len(), note), (sound.len(), None));
+}
+
+#[test]
+fn a_column_in_millimetres_is_named_with_its_scale() {
+    let message = refusal(&log(0.0, 2.5, reference, |t| 1e3 * followed(t), current));
+    assert!(
+        message.contains("millimetres") && message.contains("scale = 0.001"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_constant_channel_is_named() {
+    let message = refusal(&log(0.0, 2.5, reference, followed, |_| 0.25));
+    assert!(
+        message.contains("\"iq_a\"") && message.contains("same value"),
+        "{message}"
+    );
+}
+
+#[test]
+fn what_leaves_the_stroke_is_told_with_its_time() {
+    // Past 1.25 m, the end of this axis.
+    let far = |t: f64| 0.7 + 20.0 * (reference(t) - 0.7);
+    let message = refusal(&log(0.0, 2.5, far, far, current));
+    assert!(
+        message.contains("outside the axis' stroke") && message.contains("t = 0."),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_table_that_does_not_follow_is_another_axis() {
+    let other = |t: f64| 0.7 + 1e-3 * (5.0 * t).sin();
+    let message = refusal(&log(0.0, 2.5, reference, other, current));
+    assert!(
+        message.contains("not of one axis") && message.contains("t = "),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_motion_too_poor_says_what_it_lacks() {
+    let message = refusal(&log(0.0, 1.25, reference, followed, current));
+    assert!(
+        message.contains("one direction only") && message.contains("the way back"),
+        "{message}"
+    );
+    let shaking = |t: f64| 0.7 + 1e-8 * (30.0 * t).sin();
+    let message = refusal(&log(0.0, 2.5, shaking, shaking, current));
+    assert!(message.contains("less than 0.1 mm"), "{message}");
+}
+
+#[test]
+fn a_check_that_was_fitted_is_refused() {
+    let named = |name: &str, log: Log| (name.to_owned(), log, PERIOD);
+    let one = || log(0.0, 2.5, reference, followed, current);
+    let error = check_distinct(&[named("a.csv", one())], &[named("b.csv", one())]).unwrap_err();
+    assert!(
+        matches!(&error, IntakeError::SameLog { fit, check } if fit == "a.csv" && check == "b.csv")
+    );
+    let other = log(0.0, 2.5, reference, |t| followed(t) + 1e-9, current);
+    check_distinct(&[named("a.csv", one())], &[named("b.csv", other)]).unwrap();
+}
+
+#[test]
+fn a_log_that_starts_in_motion_begins_at_its_first_rest_or_is_refused() {
+    let cut = log(0.7, 2.5, reference, followed, current);
+    let (left, note) = from_rest("drive.csv", cut.clone(), PERIOD, &machine("liu2025")).unwrap();
+    // The first rest begins at 1.0 s, and the loop is given half of 0.2 s.
+    let from = left.time()[0];
+    assert!((from - 1.1).abs() < 0.02, "{from}");
+    let note = note.unwrap();
+    assert!(
+        note.contains("starts in motion") && note.contains("left out"),
+        "{note}"
+    );
+    let moving = log(0.6, 0.9, reference, followed, current);
+    let error = from_rest("drive.csv", moving, PERIOD, &machine("liu2025")).unwrap_err();
+    assert!(error.to_string().contains("record from rest"), "{error}");
+    // A rigid machine can begin anywhere.
+    let (left, note) = from_rest("drive.csv", cut.clone(), PERIOD, &machine("emps")).unwrap();
+    assert_eq!(left.len(), cut.len());
+    assert!(note.unwrap().contains("taken from its first samples"));
+}
+
+#[test]
+fn a_turned_sign_is_refused_with_the_lines_that_mend_it() {
+    let turned = log(0.0, 2.5, reference, |t| -followed(t), current);
+    let message = refusal(&turned);
+    for part in [
+        "but for its sign",
+        "[[log.column]]",
+        "\"position_m\"",
+        "factor = -1",
+    ] {
+        assert!(message.contains(part), "{part}: {message}");
+    }
+}
+
+#[test]
+fn a_long_hole_is_refused_and_a_short_one_has_no_weight() {
+    let sound = log(0.0, 2.5, reference, followed, current);
+    let hole = |samples: usize| {
+        let mut log = sound.clone();
+        log.mark_missing("iq_a", std::iter::once(300..300 + samples))
+            .unwrap();
+        log
+    };
+    let message = refusal(&hole(6));
+    assert!(
+        message.contains("6 samples from t = 0.3000 s") && message.contains("iq_a"),
+        "{message}"
+    );
+    let machine = machine("liu2025");
+    let period = check_log("drive.csv", &hole(5), &machine).unwrap();
+    let set = LogSet::new(vec![("drive.csv".to_owned(), hole(5), period)], &machine).unwrap();
+    let traces = set.simulate(&machine, &State::initial(&machine)).unwrap();
+    let channel = set.channels.iter().position(|c| *c == "iq_a").unwrap();
+    let rest = &set.rest(&traces)[0][channel];
+    assert!(rest[300..305].iter().all(|r| *r == 0.0));
+    assert!(rest[299] != 0.0 && rest[305] != 0.0);
+}
