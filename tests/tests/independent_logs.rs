@@ -5,9 +5,13 @@ use std::path::Path;
 
 use axis_log::{Channel, Log};
 use axis_sim::Axis;
-use discrepancy::{Discovery, LogSet, Settings, Verdict, discovery, search};
+use discrepancy::{Discovery, LogSet, Settings, State, Verdict, discovery, search};
 use independent_axis::cases::named;
-use independent_axis::{Motion, Parameters, Random, Rough, Table, log};
+use independent_axis::{
+    Columns, Hidden, Logger, LoopNoise, Motion, Parameters, Random, Rough, Table, exercises, log,
+    run,
+};
+use nalgebra::Complex;
 
 fn axis() -> Axis {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -61,4 +65,75 @@ fn viscous_friction_is_named_with_its_size() {
     let size = &told.effects[0].parameters[0];
     let [low, high] = size.ci95;
     assert!((low..=high).contains(&5000.0), "{low} to {high}");
+}
+
+/// A log of the second simulator without any noise, nothing hidden, compared with this one.
+fn quiet(motion: &Motion) -> (LogSet, Rest) {
+    let (axis, p, mut random) = (axis(), Parameters::paper(), Random::new(1, 1));
+    let mut samples = Vec::new();
+    let (hidden, none) = (Hidden::default(), LoopNoise::default());
+    run(&p, &hidden, motion, &none, &mut random, |s| {
+        samples.push(*s)
+    })
+    .unwrap();
+    let table = Logger::default().log(&samples, Columns::All, &mut random);
+    let set = LogSet::new(vec![("quiet".to_owned(), as_log(&table), 1e-3)], &axis).unwrap();
+    let rest = set.rest(&set.simulate(&axis, &State::initial(&axis)).unwrap());
+    (set, rest)
+}
+
+/// Series per log and channel.
+type Rest = Vec<Vec<Vec<f64>>>;
+
+/// What a channel shows of the dynamics: the tracking error, or departures from the mean.
+fn dynamics(set: &LogSet, channel: usize) -> Vec<f64> {
+    let (log, measured) = (&set.logs[0], &set.logs[0].measured[channel]);
+    let mean = measured.iter().sum::<f64>() / measured.len() as f64;
+    match set.channels[channel] {
+        "position_m" => {
+            let reference = log.log.channel("position_ref_m").unwrap();
+            reference.iter().zip(measured).map(|(r, p)| r - p).collect()
+        }
+        _ => measured.iter().map(|v| v - mean).collect(),
+    }
+}
+
+/// The search takes simulations for exact to 3e-4 of this.
+#[test]
+fn two_simulations_of_one_machine_differ_by_little() {
+    let (set, rest) = quiet(&motion(0.6, 0.12, 0.1));
+    let rms = |all: &[f64]| (all.iter().map(|v| v * v).sum::<f64>() / all.len() as f64).sqrt();
+    for (c, name) in set.channels.iter().enumerate() {
+        let share = rms(&rest[0][c]) / rms(&dynamics(&set, c));
+        println!("{name}: {share:.1e}");
+        assert!(share < 1e-5, "{name}: {share}");
+    }
+}
+
+/// Intervals take simulations for exact to 1e-4 of this, with any phase, band by band.
+#[test]
+fn under_a_chirp_two_simulations_differ_by_little_in_each_band() {
+    let [(_, motion), ..] = exercises();
+    let (set, rest) = quiet(&motion);
+    let shown = (0..set.channels.len()).map(|c| dynamics(&set, c)).collect();
+    let (rest, shown) = (set.amplitudes(&rest), set.amplitudes(&[shown]));
+    for (band, (edges, _)) in set
+        .layout
+        .bands()
+        .enumerate()
+        .filter(|(_, b)| b.0[1] < 130.0)
+    {
+        for (c, &channel) in set.fitted.iter().enumerate() {
+            let power = |of: &Vec<Vec<_>>| -> f64 {
+                let bins = set.layout.bins_of(band, of);
+                bins.map(|bin: &[Complex<f64>]| bin[c].norm_sqr()).sum()
+            };
+            let name = set.channels[channel];
+            let share = (power(&rest) / power(&shown)).sqrt();
+            println!("{name} {edges:.0?} Hz: {share:.1e}");
+            if ["iq_ref_a", "iq_a", "uq_v"].contains(&name) {
+                assert!(share < 1.5e-4, "{name} {edges:?} Hz: {share}");
+            }
+        }
+    }
 }

@@ -2,49 +2,62 @@
 
 use axis_sim::{Axis, position_in, reference_in};
 
-use super::set::{ANGLE, LogSet, Prepared};
+use super::set::{ANGLE, LogSet, Prepared, Rest};
 
 /// Share of what a channel shows of the dynamics by which two simulations of one machine
-/// differ, with other mesh and integrator: measured 1e-5 to 2e-4 between this one and a
-/// second program (`tests/independent`).
+/// may differ, with other mesh and integrator. Between this one and a second program it is
+/// 1e-8 to 5e-6 with the same laws (`two_simulations_of_one_machine…` in `tests`); a
+/// machine's small laws are less alike than that.
 const INEXACT: f64 = 3e-4;
 
 impl LogSet {
+    /// What its channels show of the dynamics, per log and channel.
+    pub(crate) fn dynamics(&self, machine: &Axis) -> Rest {
+        let all = 0..self.channels.len();
+        let one = |log: &Prepared| {
+            all.clone()
+                .map(|c| dynamics(machine, log, &self.channels, c))
+                .collect()
+        };
+        self.logs.iter().map(one).collect()
+    }
+
     /// By how much a simulation may be off in a channel, RMS.
     pub(crate) fn inexactness(&self, machine: &Axis, channel: usize) -> f64 {
         inexactness(machine, &self.logs, &self.channels, channel)
     }
 }
 
-/// By how much a simulation may be off in a channel, RMS: a share of the tracking error
-/// where it shows a way, and of its departures from its mean elsewhere.
+/// By how much a simulation may be off in a channel, RMS.
 pub(super) fn inexactness(
     machine: &Axis,
     logs: &[Prepared],
     channels: &[&str],
     channel: usize,
 ) -> f64 {
+    let all = logs
+        .iter()
+        .flat_map(|log| dynamics(machine, log, channels, channel));
+    let (squares, samples) = all.fold((0.0, 0usize), |(sum, n), v| (sum + v * v, n + 1));
+    INEXACT * (squares / samples.max(1) as f64).sqrt()
+}
+
+/// What a channel shows of the dynamics: of one that shows a way, the tracking error; of
+/// others, their departures from their mean.
+fn dynamics(machine: &Axis, log: &Prepared, channels: &[&str], channel: usize) -> Vec<f64> {
     let name = channels[channel];
     let of_way = [machine.position_channel(), ANGLE].contains(&name);
-    let dynamics = |log: &Prepared| -> Vec<f64> {
-        let way = || Some((reference_in(&log.log).ok()?, position_in(&log.log).ok()?));
-        match way().filter(|_| of_way) {
-            Some((reference, position)) => {
-                reference.iter().zip(position).map(|(r, p)| r - p).collect()
-            }
-            None => {
-                let samples = &log.measured[channel];
-                let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
-                samples.iter().map(|v| v - mean).collect()
-            }
-        }
-    };
-    let all: Vec<f64> = logs.iter().flat_map(dynamics).collect();
-    let squares: f64 = all.iter().map(|v| v * v).sum();
-    let lever = if name == ANGLE {
-        machine.travel_per_radian()
-    } else {
-        1.0
-    };
-    INEXACT * (squares / all.len().max(1) as f64).sqrt() / lever
+    let way = || Some((reference_in(&log.log).ok()?, position_in(&log.log).ok()?));
+    if let Some((reference, position)) = way().filter(|_| of_way) {
+        let lever = if name == ANGLE {
+            machine.travel_per_radian()
+        } else {
+            1.0
+        };
+        let pairs = reference.iter().zip(position);
+        return pairs.map(|(r, p)| (r - p) / lever).collect();
+    }
+    let samples = &log.measured[channel];
+    let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
+    samples.iter().map(|v| v - mean).collect()
 }

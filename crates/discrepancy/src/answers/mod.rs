@@ -9,7 +9,7 @@ mod state;
 use axis_sim::effects::ActiveEffect;
 use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
 
-pub use self::set::{LogSet, Prepared};
+pub use self::set::{LogSet, Prepared, Rest};
 pub use self::state::State;
 pub(crate) use self::state::is_form_of;
 

@@ -7,6 +7,9 @@ use rayon::prelude::*;
 use super::{Answer, State};
 use crate::spectrum::{Amplitudes, Layout};
 
+/// Series per log, per channel; most often measured minus simulated.
+pub type Rest = Vec<Vec<Vec<f64>>>;
+
 /// A log, ready to be compared with simulations of it.
 #[derive(Clone, Debug)]
 pub struct Prepared {
@@ -105,7 +108,7 @@ impl LogSet {
 
     /// Measured minus simulated, per log and channel; 0 where nothing was measured, so that
     /// what was put there has no weight.
-    pub fn rest(&self, traces: &[Trace]) -> Vec<Vec<Vec<f64>>> {
+    pub fn rest(&self, traces: &[Trace]) -> Rest {
         let channel = |log: &Prepared, trace: &Trace, c: usize| {
             let simulated = self.simulated(trace, c);
             let pairs = log.measured[c].iter().zip(simulated);

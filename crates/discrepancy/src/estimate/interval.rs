@@ -2,11 +2,11 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// What an estimate owes to noise, and to known parameters that are known to a
-/// tolerance only. All in the unit of the parameter.
+/// What an estimate owes to noise, to known parameters that are known to a tolerance
+/// only, and to simulations that are not exact. All in the unit of the parameter.
 #[derive(Clone, Debug)]
 pub struct Spread {
-    /// Standard deviation of what noise makes of it.
+    /// Standard deviation of what noise makes of it, and what simulations may be off by.
     pub of_noise: f64,
     /// By how much it moves at most with each known parameter inside its tolerance.
     pub of_known: Vec<f64>,

@@ -1,7 +1,7 @@
 //! How far noise moves an estimate.
 
 use axis_sim::ReplayError;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::estimate::fit::{Columns, Fit, Fitter, free_parameters};
@@ -20,6 +20,31 @@ const TURNED: u64 = 64;
 /// The 97.5 % point of Student's t with that many degrees of freedom, over that of
 /// the normal distribution.
 const OF_DRAWN: f64 = 2.120 / 1.960;
+
+/// Share of what a channel shows of the dynamics in a band by which a simulation may be off
+/// there. Between this program and a second one (`tests/independent`) it is 1e-6 to 1.2e-4
+/// in currents and voltages where a chirp excites them.
+const INEXACT: f64 = 1e-4;
+
+/// By how much simulations may be off, with one phase all over a log, so that it does not
+/// average out: in each channel and band by a share of what is there, in phase with it and a
+/// quarter turn from it.
+fn inexact(fitter: &Fitter<'_>) -> Vec<Amplitudes> {
+    let set = fitter.set;
+    let whole = set.amplitudes(&set.dynamics(fitter.machine));
+    let (channels, bands) = (set.layout.channels(), set.layout.counts().len());
+    let part = |band: usize, channel: usize, phase: Complex<f64>| {
+        let mut part = whole.clone();
+        set.layout.keep(&mut part, band, channel);
+        let all = part.iter_mut().flatten();
+        all.for_each(|a| *a *= INEXACT * phase);
+        part
+    };
+    let phases = [Complex::new(1.0, 0.0), Complex::new(0.0, 1.0)];
+    let all = (0..bands).flat_map(|b| (0..channels).map(move |c| (b, c)));
+    all.flat_map(|(b, c)| phases.map(|by| part(b, c, by)))
+        .collect()
+}
 
 /// Runs with simulated noise alone, as noisy as the logs show; of a torque balance,
 /// what it leaves, drawn anew. None of a rigid machine, whose sensors are not in its logs.
@@ -41,7 +66,8 @@ pub(crate) fn drawn(fitter: &Fitter<'_>, fit: &Fit) -> Result<Vec<Amplitudes>, R
 }
 
 /// How far parameters, of which the `columns` are the derivatives, may be from the
-/// truth: by the fit's answer to runs with noise, and by the known ones' tolerance.
+/// truth: by the fit's answer to runs with noise, by the known ones' tolerance, and by what
+/// simulations may be off.
 ///
 /// Below 25 Hz the spectrum of noise is steep, sensors shake dry friction loose,
 /// and noise at a standstill is another than in motion: with one spectral matrix a
@@ -68,23 +94,24 @@ pub(crate) fn spreads(
         covariance * along
     };
     let answers: Vec<DVector<f64>> = runs.par_iter().map(answer).collect();
+    let of_simulation: Vec<DVector<f64>> = inexact(fitter).par_iter().map(answer).collect();
     let deviations = known_deviations(fitter.machine);
     let most = tolerances(fitter.machine);
     let one = |i: usize| {
         // An estimate leans on the prior's mean by so much of a known parameter.
         let leans = (0..fit.state.shares.len()).map(|j| covariance[(i, j)] / deviations[j].powi(2));
         let leans: Vec<f64> = leans.collect();
-        let squares = answers.iter().map(|a| a[i] * a[i]).sum::<f64>();
+        let squares_of = |all: &[DVector<f64>]| all.iter().map(|a| a[i] * a[i]).sum::<f64>();
         let of_known: f64 = {
             let pairs = leans.iter().zip(&deviations);
             pairs.map(|(l, deviation)| (l * deviation).powi(2)).sum()
         };
         let of_noise = match answers.len() {
             0 => (covariance[(i, i)] - of_known).max(0.0).sqrt(),
-            n => OF_DRAWN * (squares / n as f64).sqrt(),
+            n => OF_DRAWN * (squares_of(&answers) / n as f64).sqrt(),
         };
         Spread {
-            of_noise,
+            of_noise: of_noise.hypot(squares_of(&of_simulation).sqrt()),
             of_known: leans.iter().zip(&most).map(|(l, m)| l * m).collect(),
         }
     };

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::cost::effort;
 use super::units::channel_unit;
 use crate::answers::LogSet;
-use crate::noise::{Floor, Rest};
+use crate::answers::Rest;
+use crate::noise::Floor;
 
 /// Mean rest of a channel over a variable of the motion, on the check logs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -5,8 +5,8 @@ use axis_sim::{Axis, ReplayError, reference_in};
 use serde::{Deserialize, Serialize};
 
 use super::units::channel_unit;
+use crate::answers::Rest;
 use crate::answers::{LogSet, Prepared, State};
-use crate::noise::Rest;
 
 /// Root mean square and greatest size of a signal, in its SI unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

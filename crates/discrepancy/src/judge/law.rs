@@ -4,8 +4,8 @@ use axis_sim::effects::{ActiveEffect, Measure, OnsetForm};
 use axis_sim::{Axis, Trace};
 
 use super::cost::effort;
+use crate::answers::Rest;
 use crate::answers::{LogSet, State};
-use crate::noise::Rest;
 
 /// Steady friction of an axis over the speed of its load.
 #[derive(Clone, Debug, PartialEq)]

@@ -49,12 +49,13 @@ pub use self::units::ReadUnit;
 pub use self::unknown::{Curve, Unknown};
 use self::unknown::{in_frequency, lack};
 pub use self::words::Answered;
+use crate::answers::Rest;
 use crate::answers::{LogSet, State};
 use crate::estimate::fit::Fitter;
 use crate::estimate::known::{shown, tolerances};
 use crate::name::gap::{ChannelGap, Gap, gap};
 use crate::name::search::{Found, MATERIAL, is_form};
-use crate::noise::{Rest, excess, floors, log_noise};
+use crate::noise::{excess, floors, log_noise};
 
 /// A search's result in words, figures and pictures.
 #[derive(Clone, Debug)]

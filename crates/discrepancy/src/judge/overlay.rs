@@ -1,7 +1,7 @@
 //! Measured beside simulated, for pictures.
 
 use crate::answers::LogSet;
-use crate::noise::Rest;
+use crate::answers::Rest;
 
 /// Measured, model before and after, for pictures: one channel of one log.
 #[derive(Clone, Debug)]

@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 use axis_sim::{Axis, ReplayError};
 
 use crate::answers::LogSet;
+use crate::answers::Rest;
 use crate::estimate::fit::Fit;
-use crate::noise::{Floor, Rest, floors};
+use crate::noise::{Floor, floors};
 
 /// Root-mean-square gap of a channel, in its unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

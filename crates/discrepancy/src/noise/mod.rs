@@ -20,11 +20,8 @@ pub(crate) use self::floor::{Floor, floors};
 use self::level::{noise_at, shows_noise};
 pub use self::sensor::SensorNoise;
 pub(crate) use self::turned::turned;
-use crate::answers::{LogSet, State};
+use crate::answers::{LogSet, Rest, State};
 use crate::spectrum::Amplitudes;
-
-/// Measured minus simulated: per log, per channel.
-pub type Rest = Vec<Vec<Vec<f64>>>;
 
 /// Noise of logs: of the sensors, which the controller sees as well, and of the logger,
 /// which nothing sees but the log.

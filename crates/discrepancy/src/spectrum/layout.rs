@@ -155,6 +155,19 @@ impl Layout {
         bins.filter(move |(b, _)| **b == band).map(|(_, bin)| bin)
     }
 
+    /// Sets all to 0 but a band of a channel.
+    pub(crate) fn keep(&self, amplitudes: &mut Amplitudes, band: usize, channel: usize) {
+        for (bands, bins) in self.bands.iter().zip(amplitudes) {
+            for (b, bin) in bands.iter().zip(bins.chunks_exact_mut(self.channels)) {
+                for (c, value) in bin.iter_mut().enumerate() {
+                    if *b != band || c != channel {
+                        *value = Complex::new(0.0, 0.0);
+                    }
+                }
+            }
+        }
+    }
+
     /// Whether these are amplitudes of logs and channels like those of this layout.
     pub fn holds(&self, amplitudes: &Amplitudes) -> bool {
         let like =

@@ -6,9 +6,8 @@ use axis_sim::{Axis, Probe, ReplayError};
 
 use super::course::{Course, STANDS, courses};
 use super::variable::{Factor, Place, Variable};
-use crate::answers::LogSet;
+use crate::answers::{self, LogSet};
 use crate::estimate::fit::Fit;
-use crate::noise;
 
 /// A curve: where it acts, on what it depends, and its hats' places.
 #[derive(Debug)]
@@ -81,7 +80,7 @@ impl Shape {
         set: &LogSet,
         fit: &Fit,
         values: &[f64],
-    ) -> Result<noise::Rest, ReplayError> {
+    ) -> Result<answers::Rest, ReplayError> {
         let sum = |course: &Course| {
             let mut total = vec![0.0; course.time.len()];
             for (j, by) in values.iter().enumerate() {
