@@ -8,6 +8,7 @@ use super::cost::effort;
 use super::units::channel_unit;
 use crate::answers::LogSet;
 use crate::answers::Rest;
+use crate::name::curves::{angles, slope};
 use crate::noise::Floor;
 
 /// Mean rest of a channel over a variable of the motion, on the check logs.
@@ -126,7 +127,7 @@ fn variable(
     let course = |(log, trace): (usize, &Trace)| {
         let period = set.logs[log].period;
         match over {
-            Variable::MotorAngle => angles(trace, machine.travel_per_radian()),
+            Variable::MotorAngle => angles(trace.position(), machine.travel_per_radian()),
             Variable::Speed => trace.speed.clone(),
             Variable::Position => trace.position().to_vec(),
             Variable::Acceleration => slope(&trace.speed, period),
@@ -147,25 +148,6 @@ fn variable(
     };
     let courses = traces.iter().enumerate().map(course).collect();
     (words.map(str::to_owned), courses)
-}
-
-/// Angles within a turn, where the load moves by `travel` a radian.
-fn angles(trace: &Trace, travel: f64) -> Vec<f64> {
-    let radians = 1.0 / travel;
-    let turned = trace.position().iter().map(|x| x * radians);
-    turned
-        .map(|a| a.rem_euclid(std::f64::consts::TAU))
-        .collect()
-}
-
-/// Central differences.
-fn slope(values: &[f64], period: f64) -> Vec<f64> {
-    let last = values.len().saturating_sub(1);
-    let at = |k: usize| {
-        let (from, to) = (k.saturating_sub(1), (k + 1).min(last));
-        (values[to] - values[from]) / (period * (to - from).max(1) as f64)
-    };
-    (0..values.len()).map(at).collect()
 }
 
 /// Sum of all ways to and fro.

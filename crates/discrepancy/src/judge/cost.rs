@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::units::channel_unit;
 use crate::answers::Rest;
+use crate::answers::effort::efforts;
 use crate::answers::{LogSet, Prepared, State};
 
 /// Root mean square and greatest size of a signal, in its SI unit.
@@ -67,22 +68,11 @@ pub struct Cost {
     pub effort: Option<EffortCost>,
 }
 
-/// Channels that show what the drive gives, the nearest to the torque first.
-const EFFORTS: [&str; 7] = [
-    "torque_n_m",
-    "force_n",
-    "iq_a",
-    "iq_ref_a",
-    "torque_ref_n_m",
-    "force_ref_n",
-    "drive_command_v",
-];
-
 /// Place of the channel that shows what the drive gives, and force on the load per unit of
 /// it: N or N·m.
 pub(super) fn effort(machine: &Axis, set: &LogSet) -> Option<(usize, f64)> {
-    let place = |name: &&str| set.channels.iter().position(|channel| channel == name);
-    let at = EFFORTS.iter().find_map(place)?;
+    let place = |name: &str| set.channels.iter().position(|channel| *channel == name);
+    let at = efforts().find_map(place)?;
     let per_torque = 1.0 / machine.travel_per_radian();
     let force = match set.channels[at] {
         "torque_n_m" => per_torque,

@@ -109,9 +109,8 @@ pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
 }
 
 /// Least by which something must bring a channel of the check logs nearer, RMS, as a share
-/// of the channel's noise: left out, it would raise the RMS of what is left by 1.6 %. What two
-/// simulations of one machine differ by was 0.05 to 0.15 of it, effects of half their typical
-/// size 0.5 and more.
+/// of the channel's noise: left out, it would raise the RMS of what is left by 1.6 %, which
+/// no engineer would look for.
 const MATERIAL: f64 = 0.18;
 
 /// Least by which it must bring that channel nearer, as a share of the gap, RMS, that there
@@ -125,8 +124,8 @@ pub(crate) fn sizes(set: &LogSet, rest: &Rest) -> Vec<f64> {
 }
 
 /// Whether some channel comes nearer than `before`, with `after` left, by what is not small
-/// beside its noise, nor beside the `gap` that there was. With a log of 10 s, D falls by thousands for a gap of 60 nm beneath 20 nm
-/// of noise, which no engineer looks for, and for what simulations differ by.
+/// beside its noise, nor beside the `gap` that there was. D counts evidence, not size: it falls
+/// with the length of the logs, for what is far beneath their noise as well.
 ///
 /// # Errors
 /// [`ReplayError`] where the machine does not run with noise.

@@ -69,8 +69,8 @@ impl Floor {
     }
 }
 
-/// Runs with noise: on a move there and back friction sticks or not, and of one run the RMS
-/// of a position was a fifth off.
+/// Runs with noise: on a move there and back friction sticks or not, and one run alone may
+/// be far from the mean of many.
 const RUNS: u64 = 6;
 
 /// Noise alone in each channel: the loop is simulated with sensors as noisy as its logs

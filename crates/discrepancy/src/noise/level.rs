@@ -5,6 +5,7 @@ use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
 use super::sources::{Powers, variances};
 use super::{LogNoise, Rest, SensorNoise, noise_series};
 use crate::answers::LogSet;
+use crate::answers::effort::COMMANDS;
 use crate::spectrum::Layout;
 
 /// Whether the logs of an axis show the noise of its sensors: not where the loop has no
@@ -173,14 +174,6 @@ struct Levels {
     /// Measured, not commanded.
     current: f64,
 }
-
-/// Commands of actuators, of which an axis has one.
-const COMMANDS: [&str; 4] = [
-    "iq_ref_a",
-    "torque_ref_n_m",
-    "force_ref_n",
-    "drive_command_v",
-];
 
 impl Levels {
     fn of(set: &LogSet, rest: &Rest) -> Self {

@@ -4,6 +4,7 @@ use axis_sim::{Axis, Trace};
 
 use super::variable::Variable;
 use crate::answers::LogSet;
+use crate::answers::effort::of_drive;
 
 /// The motion of one log as simulated.
 pub struct Course {
@@ -31,15 +32,6 @@ impl Course {
     }
 }
 
-/// Channels that show what a drive gives.
-const EFFORTS: [&str; 5] = [
-    "iq_a",
-    "iq_ref_a",
-    "torque_ref_n_m",
-    "force_ref_n",
-    "drive_command_v",
-];
-
 /// Speed below which a direction is not one, m/s.
 pub const STANDS: f64 = 1e-3;
 
@@ -53,13 +45,11 @@ pub fn courses(machine: &Axis, set: &LogSet, traces: &[Trace]) -> Vec<Course> {
 pub fn course(machine: &Axis, set: &LogSet, traces: &[Trace], log: usize) -> Course {
     let trace = &traces[log];
     let position = trace.position().to_vec();
-    let radians = 1.0 / machine.travel_per_radian();
-    let turn = |x: &f64| (x * radians).rem_euclid(std::f64::consts::TAU);
     let period = set.logs[log].period;
-    let effort = EFFORTS.iter().find_map(|name| trace.channel(name));
+    let effort = of_drive().find_map(|name| trace.channel(name));
     Course {
         time: (0..position.len()).map(|k| k as f64 * period).collect(),
-        angle: position.iter().map(turn).collect(),
+        angle: angles(&position, machine.travel_per_radian()),
         acceleration: slope(&trace.speed, period),
         effort: effort.unwrap_or_default().to_vec(),
         speed: trace.speed.clone(),
@@ -67,8 +57,17 @@ pub fn course(machine: &Axis, set: &LogSet, traces: &[Trace], log: usize) -> Cou
     }
 }
 
+/// Angles of the motor within a turn, where the load moves by `travel` a radian.
+pub fn angles(positions: &[f64], travel: f64) -> Vec<f64> {
+    let radians = 1.0 / travel;
+    let turned = positions.iter().map(|x| x * radians);
+    turned
+        .map(|a| a.rem_euclid(std::f64::consts::TAU))
+        .collect()
+}
+
 /// Central differences.
-fn slope(samples: &[f64], period: f64) -> Vec<f64> {
+pub fn slope(samples: &[f64], period: f64) -> Vec<f64> {
     let last = samples.len().saturating_sub(1);
     let at = |k: usize| {
         let (from, to) = (k.saturating_sub(1), (k + 1).min(last));

@@ -8,7 +8,7 @@ mod variable;
 use axis_sim::{Axis, Probe};
 use rayon::prelude::*;
 
-pub use self::course::{Course, STANDS, courses};
+pub use self::course::{Course, STANDS, angles, courses, slope};
 pub use self::rest::{Rest, Solved};
 pub use self::shape::Shape;
 pub use self::variable::{Factor, Place, Variable};

@@ -13,8 +13,9 @@ use crate::estimate::fit::{Columns, Fitter};
 use crate::name::curves::{Rest, Shape};
 use crate::spectrum::Amplitudes;
 
-/// Share of what the best curve explains that an effect must explain. Of effects that were
-/// there it was 0.9 and more, of those that were not and were imitated 0.1 to 0.3.
+/// Share of what the best curve explains that an effect must explain. An effect that is there
+/// does about as well as its curve or better, as it has fewer numbers to be found; half leaves
+/// room for a law whose form differs.
 const SHARE: f64 = 0.5;
 
 /// Fall of D that a curve brings by chance, a knot.

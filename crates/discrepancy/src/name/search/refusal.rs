@@ -9,9 +9,7 @@ use crate::name::gap::{gap, worsened};
 use crate::noise::floors;
 
 /// Share of the gap above the noise, RMS on check motion, that all named effects together
-/// must take away: what leaves more than half of it explains something else. Laws that are
-/// not in the library were imitated to 11 to 28 %; dry friction of another onset than the
-/// library's was named right with 66 to 72 %, before its form was looked at.
+/// must take away: what leaves more than half of it explains something else.
 const LEAST_SHARE: f64 = 0.5;
 
 impl Search<'_> {
