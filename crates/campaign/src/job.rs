@@ -13,8 +13,8 @@ pub trait Job: Sync {
     /// Everything that the rows depend on.
     fn inputs(&self) -> Inputs;
 
-    /// Folder of the results; the shards are in its folder `shards`.
-    fn out(&self) -> &Path;
+    /// Folder that holds the folder `shards`.
+    fn folder(&self) -> &Path;
 
     /// Columns of a row.
     fn columns(&self) -> &'static [Column];
@@ -28,12 +28,29 @@ pub trait Job: Sync {
         1
     }
 
+    /// Makes what cases share, before any of these is made; called from one thread. What is
+    /// made in [`Job::rows`] by the first who needs it could be asked for by a thread that is
+    /// making it, where that thread helps others meanwhile.
+    ///
+    /// # Errors
+    /// Where it cannot be made.
+    fn prepare(&self, cases: &[Range<usize>]) -> Result<(), Failure> {
+        let _ = cases;
+        Ok(())
+    }
+
     /// Makes the rows of some cases, in their order. It may depend on the inputs and the
     /// numbers of the cases alone.
     ///
     /// # Errors
     /// Where a case cannot be made.
     fn rows(&self, cases: Range<usize>) -> Result<Vec<Row>, Failure>;
+
+    /// Whether the shard of a single process stays, so that the next run need not make it
+    /// again; not where the results are as large and up to date by themselves.
+    fn is_kept(&self) -> bool {
+        false
+    }
 
     /// Writes the results.
     ///

@@ -4,8 +4,8 @@
 //! A [`Job`] has cases, numbered from 0; each makes a [`Row`]. [`run_shard`] makes the rows of
 //! one shard and writes them as a Parquet file; [`Merged`] checks that the files of all
 //! shards belong together and gives their rows back in the order of the cases; the job
-//! [finishes](Job::finish) from these. A single process is shard 1/1 and the same merging, so
-//! the number of shards does not change a bit of the results.
+//! [finishes](Job::finish) from these. A single process ([`run_whole`]) is shard 1/1 and the
+//! same merging, so the number of shards does not change a bit of the results.
 //!
 //! - **Whole**: a file of a shard is written aside and renamed.
 //! - **Resumable**: a shard that is there is left alone; one that was killed goes on behind
@@ -42,6 +42,6 @@ pub use job::Job;
 pub use lock::try_lock;
 pub use merge::Merged;
 pub use row::{Column, Kind, Row, Value};
-pub use run::{IfOther, Progress, run_shard};
+pub use run::{IfOther, Progress, forget_whole, run_shard, run_whole};
 pub use script::{Scheduler, Submission};
 pub use shard::{BadShard, Shard, shards_in};

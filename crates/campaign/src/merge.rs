@@ -3,7 +3,8 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use crate::shard_file::{self, ShardFile};
+use crate::run::paths;
+use crate::shard_file::ShardFile;
 use crate::{CampaignError, Job, Row, Shard};
 
 /// The rows of a job, read from the files of its shards as they are asked for.
@@ -29,7 +30,7 @@ impl Merged {
         let mut files = Vec::new();
         let mut first: Option<(Shard, String)> = None;
         for shard in Shard::all(shards) {
-            let path = shard_file::path(job.out(), job.name(), shard);
+            let [path, ..] = paths(job, shard);
             let Some(file) = ShardFile::open_checked(&path)? else {
                 missing.push(shard);
                 continue;
@@ -60,7 +61,7 @@ impl Merged {
             return Err(CampaignError::Missing {
                 shards: missing,
                 count: shards,
-                folder: job.out().join("shards"),
+                folder: job.folder().join("shards"),
             });
         }
         Ok(Self {

@@ -1,7 +1,8 @@
 //! Making one shard.
 
+use std::io::ErrorKind;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -10,7 +11,7 @@ use rayon::prelude::*;
 use crate::journal::Journal;
 use crate::row::{decode, encode};
 use crate::shard_file::{self, Label, ShardFile};
-use crate::{CampaignError, Job, Row, Shard, instruction_set, try_lock};
+use crate::{CampaignError, Failure, Job, Merged, Row, Shard, instruction_set, try_lock};
 
 /// Rows of a row group, and bytes after which one ends before that.
 const GROUP: (usize, usize) = (1 << 16, 1 << 25);
@@ -26,6 +27,45 @@ pub enum IfOther {
 
 /// Told of cases that are there: some found from an earlier run, others made.
 pub type Progress<'a> = &'a (dyn Fn(usize) + Sync);
+
+/// Makes all of a job in this process: its only shard, and the results from it. What other
+/// inputs left of that shard is made anew.
+///
+/// # Errors
+/// As [`run_shard`], and where the results cannot be written.
+pub fn run_whole(job: &dyn Job, each: Progress<'_>) -> Result<(), Failure> {
+    run_shard(job, Shard::WHOLE, IfOther::Replace, each)?;
+    job.finish(&Merged::open(job, 1, true)?)?;
+    if !job.is_kept() {
+        forget_whole(job)?;
+    }
+    Ok(())
+}
+
+/// Removes what [`run_whole`] made beside the results, and the folders that are then empty.
+///
+/// # Errors
+/// A file cannot be removed.
+pub fn forget_whole(job: &dyn Job) -> Result<(), CampaignError> {
+    for path in paths(job, Shard::WHOLE) {
+        match std::fs::remove_file(&path) {
+            Err(e) if e.kind() != ErrorKind::NotFound => {
+                return Err(CampaignError::io("remove", &path)(e));
+            }
+            _ => {}
+        }
+    }
+    // Where something else is in them they stay.
+    let _ = std::fs::remove_dir(job.folder().join("shards"));
+    let _ = std::fs::remove_dir(job.folder());
+    Ok(())
+}
+
+/// The files of a shard: itself, before it is whole, its journal.
+pub(crate) fn paths(job: &dyn Job, shard: Shard) -> [PathBuf; 3] {
+    let files = shard.files(job.name());
+    files.map(|file| job.folder().join("shards").join(file))
+}
 
 /// Makes a shard of a job on the threads of the current rayon pool, and answers its
 /// file. One that is there, from the same inputs, is left alone; what a killed process
@@ -44,7 +84,7 @@ pub fn run_shard(
     if shards > cases.max(1) {
         return Err(CampaignError::TooMany { cases, shards });
     }
-    let path = shard_file::path(job.out(), job.name(), shard);
+    let [path, aside, journal] = paths(job, shard);
     let label = Label {
         job: job.name().to_owned(),
         inputs: job.inputs(),
@@ -52,8 +92,7 @@ pub fn run_shard(
         cases,
         processor: instruction_set(),
     };
-    let folder = job.out().join("shards");
-    let journal = folder.join(format!("{}.journal", shard.stem(job.name())));
+    let folder = job.folder().join("shards");
     let io = |action| CampaignError::io(action, &journal);
     if is_there(&path, &label, other)? {
         each(shard.range(cases).len());
@@ -75,20 +114,20 @@ pub fn run_shard(
             path: journal.clone(),
             difference: "what a killed process made of it has another key".to_owned(),
         })?;
-        Work {
+        let work = Work {
             job,
             label: &label,
             journal: Mutex::new(made),
             path: &journal,
-        }
-        .make(&path, each)?;
+        };
+        work.make([&path, &aside], each)?;
     }
     std::fs::remove_file(&journal).map_err(io("remove"))?;
     Ok(path)
 }
 
 /// Whether the shard is there, from the same inputs.
-fn is_there(path: &std::path::Path, label: &Label, other: IfOther) -> Result<bool, CampaignError> {
+fn is_there(path: &Path, label: &Label, other: IfOther) -> Result<bool, CampaignError> {
     let found = match ShardFile::open_checked(path) {
         Err(_) if other == IfOther::Replace => return Ok(false),
         found => found?,
@@ -111,15 +150,17 @@ struct Work<'a> {
     job: &'a dyn Job,
     label: &'a Label,
     journal: Mutex<Journal>,
-    path: &'a std::path::Path,
+    path: &'a Path,
 }
 
 impl Work<'_> {
-    fn make(&self, path: &std::path::Path, each: Progress<'_>) -> Result<(), CampaignError> {
+    fn make(&self, files: [&Path; 2], each: Progress<'_>) -> Result<(), CampaignError> {
         let all = self.blocks();
         let has = |block: &usize| self.locked(|journal| journal.has(*block));
         let (found, missing): (Vec<usize>, Vec<usize>) = (0..all).partition(has);
         each(found.iter().map(|&block| self.cases(block).len()).sum());
+        let missing_cases: Vec<Range<usize>> = missing.iter().map(|&b| self.cases(b)).collect();
+        self.prepare(&missing_cases)?;
         // One after another, not divided beforehand, so that what is there after a stop are
         // the first ones, and no thread is left with the long ones.
         let next = AtomicUsize::new(0);
@@ -133,8 +174,21 @@ impl Work<'_> {
                 Ok(())
             })?;
         let mut blocks = 0..all;
-        shard_file::write(path, self.label, self.job.columns(), || {
+        shard_file::write(files, self.label, self.job.columns(), || {
             self.group(&mut blocks)
+        })
+    }
+
+    fn prepare(&self, missing: &[Range<usize>]) -> Result<(), CampaignError> {
+        let [Some(first), Some(last)] = [missing.first(), missing.last()] else {
+            return Ok(());
+        };
+        let (first, last) = (first.start, last.end - 1);
+        let prepared = self.job.prepare(missing);
+        prepared.map_err(|source| CampaignError::Case {
+            first,
+            last,
+            source,
         })
     }
 

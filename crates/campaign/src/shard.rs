@@ -50,9 +50,11 @@ impl Shard {
         self.count
     }
 
-    /// Name of its file, without extension.
-    pub(crate) fn stem(self, job: &str) -> String {
-        format!("{job}-{}-of-{}", self.index, self.count)
+    /// What lies in the folder `shards` of it: its file, the file before it is whole, and
+    /// the journal.
+    pub(crate) fn files(self, job: &str) -> [String; 3] {
+        let stem = format!("{job}-{}-of-{}", self.index, self.count);
+        ["parquet", "part", "journal"].map(|kind| format!("{stem}.{kind}"))
     }
 
     /// The shard of a file's name, where it is one of this job.

@@ -5,7 +5,6 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use atomic_write_file::AtomicWriteFile;
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
@@ -33,25 +32,22 @@ pub(crate) struct Label {
     pub(crate) processor: String,
 }
 
-/// Where the file of a shard is.
-pub(crate) fn path(out: &Path, job: &str, shard: Shard) -> PathBuf {
-    let name = format!("{}.parquet", shard.stem(job));
-    out.join("shards").join(name)
-}
-
-/// Writes a shard, whole or not at all: the rows that `groups` gives, a row group each.
+/// Writes a shard to `path`, whole or not at all: the rows that `groups` gives, a row group
+/// each, to the file `aside` in the same folder, which is then renamed. Only who has locked
+/// the shard's journal may do so.
 pub(crate) fn write(
-    path: &Path,
+    [path, aside]: [&Path; 2],
     label: &Label,
     columns: &[Column],
     mut groups: impl FnMut() -> Result<Option<Vec<Row>>, CampaignError>,
 ) -> Result<(), CampaignError> {
-    let io = |action| CampaignError::io(action, path);
-    let mut options = AtomicWriteFile::options();
-    let mut aside = options.read(true).open(path).map_err(io("create"))?;
-    let written = |e: ParquetError| CampaignError::io("write", path)(std::io::Error::other(e));
+    let io = |action| CampaignError::io(action, aside);
+    let mut options = File::options();
+    let options = options.read(true).write(true).create(true).truncate(true);
+    let mut file = options.open(aside).map_err(io("create"))?;
+    let written = |e: ParquetError| CampaignError::io("write", aside)(std::io::Error::other(e));
     let mut writer = SerializedFileWriter::new(
-        aside.as_file_mut(),
+        &mut file,
         Arc::new(parse_message_type(&schema(columns)).map_err(written)?),
         Arc::new(properties(label)?),
     )
@@ -62,10 +58,12 @@ pub(crate) fn write(
         first += rows.len();
     }
     writer.close().map_err(written)?;
-    hashed_file::seal(aside.as_file_mut()).map_err(io("write"))?;
-    // Before the commit, which leaves the file aside behind where flushing fails.
-    aside.sync_all().map_err(io("write"))?;
-    aside.commit().map_err(io("put in place"))
+    hashed_file::seal(&mut file).map_err(io("write"))?;
+    file.sync_all().map_err(io("write"))?;
+    std::fs::rename(aside, path).map_err(CampaignError::io("put in place", path))?;
+    // The name too is to outlive a loss of power, where folders can be flushed.
+    let _ = path.parent().map(|folder| File::open(folder)?.sync_all());
+    Ok(())
 }
 
 fn properties(label: &Label) -> Result<WriterProperties, CampaignError> {

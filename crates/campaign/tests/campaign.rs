@@ -54,7 +54,7 @@ impl Job for Strange {
     fn inputs(&self) -> Inputs {
         Inputs::default().with("seed", self.seed)
     }
-    fn out(&self) -> &Path {
+    fn folder(&self) -> &Path {
         &self.out
     }
     fn columns(&self) -> &'static [Column] {
