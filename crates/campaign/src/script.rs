@@ -34,7 +34,7 @@ pub struct Submission {
     /// Cores of a shard.
     pub cpus: usize,
     /// Longest time of a shard, minutes; the scheduler's own limit where there is none.
-    pub minutes: Option<usize>,
+    pub minutes: Option<u32>,
     /// Further options for the scheduler, like `--partition=long`.
     pub scheduler_options: Vec<String>,
 }

@@ -24,9 +24,10 @@ pub struct Options {
     /// Hand the scripts to the scheduler, rather than only write them
     #[arg(long)]
     submit: bool,
-    /// Longest time of a shard, minutes [default: the scheduler's]
-    #[arg(long, value_name = "MINUTES")]
-    time: Option<usize>,
+    /// Longest time of a shard, minutes, 3 at least [default: the scheduler's]; under Slurm a
+    /// shard goes back to the queue a minute before, and on where it was
+    #[arg(long, value_name = "MINUTES", value_parser = clap::value_parser!(u32).range(3..))]
+    time: Option<u32>,
     /// Cores of a shard
     #[arg(long, value_name = "N", default_value_t = 1)]
     cpus: usize,
