@@ -18,11 +18,13 @@ fn samples_from_shards_are_those_of_one_process() {
         let path = folder.path().join(name);
         path.to_str().unwrap().to_owned()
     });
-    let options = |file| ["sample", "--count", "40000", "--seed", "9", "--file", file];
+    fn options(file: &str) -> [&str; 7] {
+        ["sample", "--count", "40000", "--seed", "9", "--file", file]
+    }
     succeed(&options(&one));
     // Nothing else stays of a single process.
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
-    let shard = |i: &str| [&options(&many)[..], &["--threads", "1", "--shard", i]].concat();
+    let shard = |i: &'static str| [&options(&many)[..], &["--threads", "1", "--shard", i]].concat();
     succeed(&shard("3/3"));
     succeed(&shard("1/3"));
     let merge = [&["merge"][..], &options(&many)].concat();
@@ -51,37 +53,22 @@ fn samples_from_shards_are_those_of_one_process() {
     );
 }
 
-/// A belt of which a case takes milliseconds.
 #[test]
-fn the_robustness_of_an_axis_is_the_same_from_shards() {
+fn networks_from_shards_are_those_of_one_process() {
     let folder = tempfile::tempdir().unwrap();
-    let options = |out: &str| {
-        let out = folder.path().join(out).to_str().unwrap().to_owned();
-        let fixed = [
-            "robustness",
-            "--quick",
-            "--axis",
-            "data/axes/belt.toml",
-            "--out",
-        ];
-        [&fixed.map(str::to_owned)[..], &[out]].concat()
-    };
-    let run = |before: &[&str], out: &str, after: &[&str]| {
-        let options = options(out);
-        let words = options.iter().map(String::as_str);
-        let words: Vec<&str> = (before.iter().copied().chain(words))
-            .chain(after.iter().copied())
-            .collect();
-        succeed(&words)
-    };
-    let said = run(&[], "one", &[]);
-    for shard in ["1/4", "2/4", "3/4", "4/4"] {
-        run(&[], "many", &["--shard", shard]);
+    let [one, many] = ["one", "many"].map(|name| {
+        let path = folder.path().join(name);
+        path.to_str().unwrap().to_owned()
+    });
+    fn options(file: &str) -> [&str; 6] {
+        ["study", "--quick", "--seeds", "2", "--file", file]
     }
-    let merged = run(&["merge"], "many", &[]);
-    let [one, many] = ["one", "many"].map(|out| folder.path().join(out).join("robustness.json"));
-    assert!(read(one) == read(many));
-    assert_eq!(said.replace("/one/", "/many/"), merged);
+    succeed(&options(&one));
+    for shard in ["1/4", "2/4", "3/4", "4/4"] {
+        succeed(&[&options(&many)[..], &["--shard", shard]].concat());
+    }
+    succeed(&[&["merge"][..], &options(&many)].concat());
+    assert!(read(&one) == read(&many));
 }
 
 /// `hq` as its documentation says of `hq submit`: one task after another, each with its id.
