@@ -1,9 +1,10 @@
 //! What every stage is told: axis, machine, folder, seed.
 
-use std::fs::{File, TryLockError};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use axis_sim::Axis;
+use campaign::Inputs;
 use clap::Args;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
@@ -35,6 +36,7 @@ pub struct Common {
 }
 
 /// The options, with the axis files read.
+#[derive(Clone)]
 pub struct Context {
     pub axis: Axis,
     pub machine: Axis,
@@ -90,20 +92,24 @@ impl Context {
         ready(&self.out)?;
         let path = self.out.join("run.lock");
         let failed = || format!("cannot lock {}", path.display());
-        let options = File::options().create(true).append(true).open(&path);
-        let lock = options.into_diagnostic().wrap_err_with(failed)?;
-        match lock.try_lock() {
-            Ok(()) => Ok(Claim { _lock: lock }),
-            Err(TryLockError::WouldBlock) => Err(miette!(
+        let lock = campaign::try_lock(&path)
+            .into_diagnostic()
+            .wrap_err_with(failed)?;
+        let lock = lock.ok_or_else(|| {
+            miette!(
                 "another run is at work in {}; wait for its end, or give another folder with --out",
                 self.out.display()
-            )),
-            // A file system without locks: whoever uses one sees to it.
-            Err(TryLockError::Error(e)) if e.kind() == std::io::ErrorKind::Unsupported => {
-                Ok(Claim { _lock: lock })
-            }
-            Err(TryLockError::Error(e)) => Err(e).into_diagnostic().wrap_err_with(failed),
-        }
+            )
+        })?;
+        Ok(Claim { _lock: lock })
+    }
+
+    /// Everything of these options that results depend on, and the program.
+    pub fn inputs(&self) -> Inputs {
+        crate::program::inputs()
+            .with("axis", &self.axis.fingerprint)
+            .with("machine", &self.machine.fingerprint)
+            .with("seed", self.seed)
     }
 }
 

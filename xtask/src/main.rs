@@ -4,9 +4,11 @@
 mod commands;
 mod context;
 mod diagnostic;
+mod jobs;
 mod output;
 mod page;
 mod paper;
+mod program;
 mod progress;
 mod results;
 mod store;
@@ -18,11 +20,12 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    bench, compensate, discover, discover_matrix, export_drive, identify, independent, layers,
-    learn, log, pipeline, report, robustness, sample, simulate, study, torture, train, validate,
+    bench, campaign, compensate, discover, export_drive, identify, independent, layers, learn, log,
+    merge, pipeline, report, simulate, torture, train, validate,
 };
 use context::Common;
 use diagnostic::Compiler;
+use jobs::JobCommand;
 
 /// Dynamic error of ball-screw axes: simulate, predict, compensate.
 ///
@@ -44,8 +47,8 @@ struct Cli {
 enum Command {
     /// All stages: sample, train, identify, validate, compensate, study, report
     Pipeline(Common),
-    /// Simulate one-cycle samples over a Latin hypercube (Section 4.2)
-    Sample(sample::Options),
+    #[command(flatten)]
+    Job(JobCommand),
     /// Train the cascade-forward network on the samples (Section 4.3)
     Train(Common),
     /// Identify friction on the machine, and the transfer function from the model
@@ -54,12 +57,8 @@ enum Command {
     Validate(Common),
     /// Run the machine under every compensation (Tables 15, 16), or moves under one
     Compensate(compensate::Options),
-    /// Damping, layers, neurons and epochs over several seeds (Tables 7 to 10)
-    Study(Common),
     /// Write summary.json and report.html from the stages' results
     Report(Common),
-    /// What compensation leaves where what is believed is wrong, draw by draw
-    Robustness(Common),
     /// Learn the correction of a move from the log of a repetition
     Learn(learn::Options),
     /// Simulate one motion and write its log
@@ -68,8 +67,10 @@ enum Command {
     Discover(discover::Options),
     /// Look at a log: channels, sampling, noise, and what its mapping should be
     Log(log::Options),
-    /// Hide effects in simulated machines, search for them blind, and score it
-    DiscoverMatrix(discover_matrix::Options),
+    /// Write and submit the scripts that run a job's shards on a cluster (docs/campaigns.md)
+    Campaign(campaign::Options),
+    /// Write a job's results from its shards
+    Merge(merge::Options),
     /// Search logs of a simulator that shares no code with this one, and score it
     Independent(independent::Options),
     /// Write what of the correction a drive or CNC can be given (docs/drive-terms.md)
@@ -108,22 +109,21 @@ fn main() -> ExitCode {
 fn run(command: Command) -> miette::Result<()> {
     match command {
         Command::Pipeline(common) => pipeline::run(&common),
-        Command::Sample(options) => sample::command(&options),
+        Command::Job(job) => job.run(),
         Command::Train(common) => train::command(&common),
         Command::Identify(common) => identify::command(&common),
         Command::Validate(common) => validate::command(&common),
         Command::Compensate(options) => compensate::command(&options),
-        Command::Study(common) => study::command(&common),
         Command::Report(common) => report::command(&common),
         Command::Simulate(options) => simulate::command(&options),
         Command::Discover(options) => discover::command(&options),
         Command::Log(options) => log::command(&options),
-        Command::DiscoverMatrix(options) => discover_matrix::command(&options),
+        Command::Campaign(options) => campaign::command(&options),
+        Command::Merge(options) => merge::command(&options),
         Command::Independent(options) => independent::command(&options),
         Command::ExportDrive(options) => export_drive::command(&options),
         Command::Bench(options) => bench::command(&options),
         Command::Torture(options) => torture::command(&options),
-        Command::Robustness(common) => robustness::command(&common),
         Command::Learn(options) => learn::command(&options),
         Command::Layers => layers::command(),
     }

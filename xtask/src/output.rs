@@ -1,6 +1,6 @@
 //! Writing to the terminal and to files so that failures are told, not thrown.
 
-use std::io::{ErrorKind, Write};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::Path;
 
 use atomic_write_file::AtomicWriteFile;
@@ -16,10 +16,19 @@ pub fn say(line: impl AsRef<str>) -> Result<()> {
 
 /// Writes a file whole: aside first, then renamed.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_whole_by(path, |file| file.write_all(bytes))
+}
+
+/// As [`write_whole`], with a content that is never all in memory.
+pub fn write_whole_by(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<AtomicWriteFile>) -> std::io::Result<()>,
+) -> Result<()> {
     let attempt = || -> std::io::Result<()> {
         std::fs::create_dir_all(path.parent().unwrap_or(path))?;
-        let mut file = AtomicWriteFile::open(path)?;
-        file.write_all(bytes)?;
+        let mut file = BufWriter::new(AtomicWriteFile::open(path)?);
+        write(&mut file)?;
+        let file = file.into_inner()?;
         // Before the commit, which leaves the file aside behind where flushing fails.
         file.sync_all()?;
         file.commit()

@@ -57,9 +57,8 @@ pub enum SampleFileError {
     },
 }
 
-/// Simulates all samples of a plan and writes them, a chunk at a time.
-/// `each` is told how many rows a chunk had. The file appears whole or not at all; a
-/// process that is killed may leave what it wrote aside, `.<name>.<six letters or digits>`.
+/// Simulates all samples of a plan and writes them, a chunk at a time, as [`Writer`] does.
+/// `each` is told how many rows a chunk had.
 ///
 /// # Errors
 /// [`SampleFileError::Io`] where the folder is not writable or the disk full;
@@ -70,21 +69,7 @@ pub fn write(
     fingerprint: &str,
     mut each: impl FnMut(usize),
 ) -> Result<(), SampleFileError> {
-    let failed = |reason| SampleFileError::Io {
-        action: "write",
-        path: path.to_owned(),
-        reason,
-    };
-    let aside = AtomicWriteFile::open(path).map_err(failed)?;
-    let mut out = Hashing {
-        file: BufWriter::new(aside.as_file()),
-        hasher: blake3::Hasher::new(),
-    };
-    out.put(MAGIC).map_err(failed)?;
-    out.put(&SCHEMA.to_le_bytes()).map_err(failed)?;
-    out.put(&(sampler.count() as u64).to_le_bytes())
-        .map_err(failed)?;
-    out.put(&fixed(fingerprint)).map_err(failed)?;
+    let mut writer = Writer::create(path, sampler.count(), fingerprint)?;
     for start in (0..sampler.count()).step_by(CHUNK) {
         let end = (start + CHUNK).min(sampler.count());
         let samples = sampler.rows(start..end).map_err(|reason| {
@@ -94,22 +79,81 @@ pub fn write(
                 reason: Box::new(reason),
             }
         })?;
-        let mut bytes = Vec::with_capacity((end - start) * ROW);
         for (input, increment) in samples.inputs.iter().zip(&samples.increments) {
-            for value in input_row(input).iter().chain([increment]) {
-                bytes.extend_from_slice(&value.to_le_bytes());
-            }
+            writer.put(input, *increment)?;
         }
-        out.put(&bytes).map_err(failed)?;
         each(end - start);
     }
-    let hash = out.hasher.finalize();
-    out.file.write_all(hash.as_bytes()).map_err(failed)?;
-    out.file.flush().map_err(failed)?;
-    drop(out);
-    // Before the commit, which leaves the file aside behind where flushing fails.
-    aside.sync_all().map_err(failed)?;
-    aside.commit().map_err(failed)
+    writer.finish()
+}
+
+/// Writes a sample file row by row. It appears whole or not at all; a process that is
+/// killed may leave what it wrote aside, `.<name>.<six letters or digits>`.
+pub struct Writer {
+    path: PathBuf,
+    out: Hashing<BufWriter<AtomicWriteFile>>,
+}
+
+impl Writer {
+    /// Begins a file of `count` rows, made from the axis with this fingerprint.
+    ///
+    /// # Errors
+    /// [`SampleFileError::Io`].
+    pub fn create(path: &Path, count: usize, fingerprint: &str) -> Result<Self, SampleFileError> {
+        let failed = |reason| failed(path, reason);
+        let aside = AtomicWriteFile::open(path).map_err(failed)?;
+        let mut out = Hashing {
+            file: BufWriter::new(aside),
+            hasher: blake3::Hasher::new(),
+        };
+        let mut header = MAGIC.to_vec();
+        header.extend(SCHEMA.to_le_bytes());
+        header.extend((count as u64).to_le_bytes());
+        header.extend(fixed(fingerprint));
+        out.put(&header).map_err(failed)?;
+        Ok(Self {
+            path: path.to_owned(),
+            out,
+        })
+    }
+
+    /// Adds a row; as many as were told in all.
+    ///
+    /// # Errors
+    /// [`SampleFileError::Io`].
+    pub fn put(&mut self, input: &CycleInput, increment: f64) -> Result<(), SampleFileError> {
+        let mut bytes = [0; ROW];
+        let values = input_row(input);
+        let values = values.iter().chain([&increment]);
+        for (place, value) in bytes.chunks_exact_mut(8).zip(values) {
+            place.copy_from_slice(&value.to_le_bytes());
+        }
+        let put = self.out.put(&bytes);
+        put.map_err(|reason| failed(&self.path, reason))
+    }
+
+    /// Ends the file and puts it in place.
+    ///
+    /// # Errors
+    /// [`SampleFileError::Io`].
+    pub fn finish(mut self) -> Result<(), SampleFileError> {
+        let failed = |reason| failed(&self.path, reason);
+        let hash = self.out.hasher.finalize();
+        (self.out.file).write_all(hash.as_bytes()).map_err(failed)?;
+        let aside = self.out.file.into_inner();
+        let aside = aside.map_err(|e| failed(e.into_error()))?;
+        // Before the commit, which leaves the file aside behind where flushing fails.
+        aside.sync_all().map_err(failed)?;
+        aside.commit().map_err(failed)
+    }
+}
+
+fn failed(path: &Path, reason: std::io::Error) -> SampleFileError {
+    SampleFileError::Io {
+        action: "write",
+        path: path.to_owned(),
+        reason,
+    }
 }
 
 /// Reads a sample file that was made from the axis with this fingerprint.

@@ -4,7 +4,6 @@
 use axis_sim::Axis;
 use cfnn::train::{Dataset, Settings, Trainer};
 use cfnn::{Scaling, Shape};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::sampling::ranges;
@@ -79,22 +78,23 @@ pub fn settings() -> Vec<Setting> {
     all
 }
 
-/// Runs the settings over `seeds` seeds: `samples` to train on, as many unseen
-/// ones to judge by, drawn anew for each seed. `each` is called once a network.
+/// Sets the unseen samples' seed apart from the seen ones'.
+const UNSEEN: u64 = 0x5eed_0000_0000_0000;
+
+/// Trains the network of a setting from a seed: on `samples` samples that are drawn from
+/// it, and judges it by as many unseen ones. Answers its errors, µm.
 ///
 /// As in the paper the network learns the position S(k+1) itself, from
 /// Nguyen–Widrow starting weights.
 ///
 /// # Errors
-/// [`PipelineError`] where the samples cannot be drawn or a training is not valid.
-pub fn study(
+/// [`PipelineError`] where the samples cannot be drawn or the training is not valid.
+pub fn network(
     axis: &Axis,
-    settings: &[Setting],
+    setting: &Setting,
     samples: usize,
-    seeds: u64,
-    first_seed: u64,
-    each: impl Fn() + Sync,
-) -> Result<Vec<StudyRow>, PipelineError> {
+    seed: u64,
+) -> Result<Figures, PipelineError> {
     let draw = |seed| -> Result<SampleSet, PipelineError> {
         let plan = SamplePlan {
             count: samples,
@@ -103,43 +103,13 @@ pub fn study(
         };
         Sampler::new(axis, &plan)?.all()
     };
-    let mut sets = Vec::new();
-    for seed in (0..seeds).map(|i| first_seed.wrapping_add(i)) {
-        sets.push((seed, draw(seed)?, draw(seed ^ UNSEEN)?));
-    }
-    let run = |setting: &Setting| {
-        let errors: Result<Vec<Figures>, PipelineError> = sets
-            .par_iter()
-            .map(|(seed, seen, unseen)| {
-                let figures = one(axis, setting, *seed, seen, unseen);
-                each();
-                figures
-            })
-            .collect();
-        Ok(StudyRow {
-            setting: setting.clone(),
-            errors: errors?,
-        })
-    };
-    settings.iter().map(run).collect()
-}
-
-/// Sets the unseen samples' seed apart from the seen ones'.
-const UNSEEN: u64 = 0x5eed_0000_0000_0000;
-
-fn one(
-    axis: &Axis,
-    setting: &Setting,
-    seed: u64,
-    seen: &SampleSet,
-    unseen: &SampleSet,
-) -> Result<Figures, PipelineError> {
+    let (seen, unseen) = (draw(seed)?, draw(seed ^ UNSEEN)?);
     let shape = Shape {
         inputs: 4,
         hidden: setting.hidden.clone(),
         outputs: 1,
     };
-    let data = Dataset::new(4, 1, rows(seen), positions(seen))?;
+    let data = Dataset::new(4, 1, rows(&seen), positions(&seen))?;
     let ranges = ranges(axis)?;
     let positions_range = ranges.position;
     let output = [(positions_range.least, positions_range.most)];
@@ -156,8 +126,8 @@ fn one(
     let mut trainer = Trainer::new(shape, scaling, &data, options)?;
     trainer.run(|_| {});
     let unseen = SampleSet {
-        inputs: unseen.inputs.clone(),
-        increments: positions(unseen),
+        increments: positions(&unseen),
+        inputs: unseen.inputs,
     };
     test(&trainer.network(), &unseen)
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use axis_sim::{Axis, ClosedLoop, Measured};
 use pipeline::moves::{Moves, NamedMotion};
-use pipeline::robustness::{Goal, make, studies};
+use pipeline::robustness::{Draws, Goal, make, studies};
 use pipeline::strategies::{NONE, Predictors, STRATEGIES, named};
 use trajectories::{Limits, SCurve};
 
@@ -40,11 +40,11 @@ fn noise(seed: u64) -> Box<dyn FnMut(&mut Measured)> {
 #[test]
 fn a_draw_of_every_row_keeps_its_goal() {
     let (axis, machine) = (axis("liu2025.toml"), axis("liu2025-machine.toml"));
-    for row in studies(&axis, &machine, 4711, true).unwrap() {
+    for row in studies(&axis, &machine, 4711, Draws::QUICK).unwrap() {
         let noise = row
             .noise
             .then_some(&noise as pipeline::robustness::Sense<'_>);
-        let point = make(&axis, row.strategy, &row.draws[0], noise).unwrap();
+        let point = make(&axis, row.strategy, &row.draw(0).unwrap(), noise).unwrap();
         for (i, (counted, goal)) in row.moves.iter().enumerate() {
             let left = point.compensated[i].max;
             let kept = match *goal {

@@ -2,19 +2,19 @@
 //! and the score.
 
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::OnceLock;
 
 use axis_sim::Axis;
+use campaign::Job;
 use clap::Args;
-use discover_matrix::hidden::Exercise;
-use discover_matrix::matrix::{Bench, Case, Outcome, Score, Sizes, cases};
+use discover_matrix::matrix::{Case, Outcome, Sizes, cases};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::matrix_job::Matrix;
+use crate::jobs::{JobOptions, Sharding};
 use crate::output::{ready, say, write_whole};
 use crate::page::matrix;
-use crate::progress::bar;
 
 /// Options of the command.
 #[derive(Args)]
@@ -45,10 +45,22 @@ pub struct Options {
     /// Threads, 0 for all cores; results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
+    #[command(flatten)]
+    sharding: Sharding,
 }
 
-/// Runs the command.
-pub fn command(options: &Options) -> Result<()> {
+impl JobOptions for Options {
+    fn job(&self) -> Result<Box<dyn Job>> {
+        Ok(Box::new(job(self)?))
+    }
+
+    fn sharding(&self) -> &Sharding {
+        &self.sharding
+    }
+}
+
+/// The job of these options.
+fn job(options: &Options) -> Result<Matrix> {
     let _ = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build_global();
@@ -84,17 +96,18 @@ pub fn command(options: &Options) -> Result<()> {
     };
     let out = options.out.clone().unwrap_or_else(default);
     ready(&out.join("cases"))?;
-    let outcomes = run(&axis, &cases, &Kept::new(&axis, &out)?)?;
-    let score = Score::new(&outcomes);
-    let page = matrix::page(&axis, options.seed, all, &outcomes, &score);
-    let json = serde_json::to_vec_pretty(&score).into_diagnostic()?;
-    write_whole(&out.join("matrix.json"), &json)?;
-    write_whole(&out.join("matrix.md"), page.as_bytes())?;
-    if let Some(file) = &options.page {
-        write_whole(file, page.as_bytes())?;
-    }
-    say(matrix::figures(&score))?;
-    say(format!("{}", out.join("matrix.md").display()))
+    let kept = Kept::new(&axis, &out);
+    kept.tell_of_others(&cases)?;
+    Ok(Matrix {
+        axis,
+        seed: options.seed,
+        cases,
+        all,
+        kept,
+        out,
+        page: options.page.clone(),
+        benches: OnceLock::new(),
+    })
 }
 
 /// Refuses to write a page over anything but a page of the same seed.
@@ -122,7 +135,7 @@ fn replaceable(page: &Path, seed: u64) -> Result<()> {
 }
 
 /// Outcomes on disk: one file a case, with what they were made by.
-struct Kept {
+pub(super) struct Kept {
     folder: PathBuf,
     made_by: String,
 }
@@ -137,18 +150,24 @@ struct File<O> {
 
 impl Kept {
     /// Outcomes of this program on this axis, in a folder.
-    fn new(axis: &Axis, out: &Path) -> Result<Self> {
-        let program = std::env::current_exe()
-            .and_then(std::fs::read)
-            .into_diagnostic()
-            .wrap_err("cannot read this program, to say which one made the outcomes")?;
-        let mut hash = blake3::Hasher::new();
-        hash.update(blake3::hash(&program).as_bytes());
-        hash.update(axis.fingerprint.as_bytes());
-        Ok(Self {
+    fn new(axis: &Axis, out: &Path) -> Self {
+        let made_by = crate::program::inputs().with("axis", &axis.fingerprint);
+        Self {
             folder: out.join("cases"),
-            made_by: hash.finalize().to_hex().to_string(),
-        })
+            made_by: made_by.key(),
+        }
+    }
+
+    /// Says how many of these cases lie there from another program or axis file.
+    fn tell_of_others(&self, cases: &[Case]) -> Result<()> {
+        let is_other = |case: &&Case| self.file(case).exists() && self.outcome(case).is_none();
+        match cases.iter().filter(is_other).count() {
+            0 => Ok(()),
+            stale => say(format!(
+                "{stale} cases in {} are of another program or axis file, and are run again",
+                self.folder.display()
+            )),
+        }
     }
 
     fn file(&self, case: &Case) -> PathBuf {
@@ -156,14 +175,14 @@ impl Kept {
     }
 
     /// The outcome of a case; `None` where there is none of this program.
-    fn outcome(&self, case: &Case) -> Option<Outcome> {
+    pub(super) fn outcome(&self, case: &Case) -> Option<Outcome> {
         let text = std::fs::read(self.file(case)).ok()?;
         let file: File<Outcome> = serde_json::from_slice(&text).ok()?;
         let current = file.made_by == self.made_by && file.outcome.case.is_same(case);
         current.then_some(file.outcome)
     }
 
-    fn write(&self, case: &Case, outcome: &Outcome) -> Result<()> {
+    pub(super) fn write(&self, case: &Case, outcome: &Outcome) -> Result<()> {
         let file = File {
             made_by: self.made_by.clone(),
             outcome,
@@ -173,57 +192,10 @@ impl Kept {
     }
 }
 
-/// Outcomes of all cases, in their order; those that are `kept` are read.
-fn run(axis: &Axis, cases: &[Case], kept: &Kept) -> Result<Vec<Outcome>> {
-    let is_missing = |case: &&Case| kept.outcome(case).is_none();
-    let missing: Vec<&Case> = cases.iter().filter(is_missing).collect();
-    let stale = missing.iter().filter(|case| kept.file(case).exists());
-    let stale = stale.count();
-    if stale > 0 {
-        say(format!(
-            "{stale} cases in {} are of another program or axis file, and are run again",
-            kept.folder.display()
-        ))?;
-    }
-    let mut exercises: Vec<Exercise> = missing.iter().map(|case| case.exercise).collect();
-    exercises.sort();
-    exercises.dedup();
-    let progress = bar("cases", cases.len() as u64);
-    progress.inc((cases.len() - missing.len()) as u64);
-    let benches: Vec<Bench> = exercises
-        .iter()
-        .map(|kind| Bench::new(axis, *kind).into_diagnostic())
-        .collect::<Result<_>>()
-        .wrap_err("the axis does not run the exercises of the matrix")?;
-    // Cases are taken one after another, not in blocks, so that what is there
-    // after a stop are the first ones.
-    let queue = Mutex::new(missing.into_iter());
-    let next = || {
-        let mut queue = queue
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        queue.next()
-    };
-    (0..rayon::current_num_threads())
-        .into_par_iter()
-        .try_for_each(|_| -> Result<()> {
-            while let Some(case) = next() {
-                let bench = benches.iter().find(|b| b.exercise() == case.exercise);
-                if let Some(bench) = bench {
-                    let outcome = bench.try_case(case);
-                    kept.write(case, &outcome)?;
-                }
-                progress.inc(1);
-            }
-            Ok(())
-        })?;
-    progress.finish_and_clear();
-    Ok(cases.iter().filter_map(|case| kept.outcome(case)).collect())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use discover_matrix::matrix::Score;
 
     fn axis() -> Axis {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/axes/liu2025.toml");
@@ -250,7 +222,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let axis = axis();
         let case = &cases(&axis, &Sizes::SMALL, 1).unwrap()[0];
-        let own = Kept::new(&axis, folder.path()).unwrap();
+        let own = Kept::new(&axis, folder.path());
         own.write(case, &outcome_of(case)).unwrap();
         assert_eq!(own.outcome(case), Some(outcome_of(case)));
         let other = Kept {
@@ -260,7 +232,7 @@ mod tests {
         assert_eq!(other.outcome(case), None);
         let mut changed = axis.clone();
         changed.fingerprint += "x";
-        let changed = Kept::new(&changed, folder.path()).unwrap();
+        let changed = Kept::new(&changed, folder.path());
         assert_eq!(changed.outcome(case), None);
         // What does not say who made it is of no known program.
         let bare = serde_json::to_vec(&outcome_of(case)).unwrap();

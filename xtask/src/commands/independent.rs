@@ -86,7 +86,7 @@ pub fn command(options: &Options) -> Result<()> {
     let default = || Path::new("runs/independent").join(format!("seed-{}", options.seed));
     let out = options.out.clone().unwrap_or_else(default);
     ready(&out)?;
-    let made_by = program()?;
+    let made_by = crate::program::key();
     let mut outcomes = Vec::new();
     for case in cases {
         let file = out.join(case.name).join("outcome.json");
@@ -112,13 +112,6 @@ pub fn command(options: &Options) -> Result<()> {
         "{summary}\n{}",
         out.join("independent.md").display()
     ))
-}
-
-fn program() -> Result<String> {
-    let bytes = std::env::current_exe()
-        .and_then(std::fs::read)
-        .into_diagnostic()?;
-    Ok(blake3::hash(&bytes).to_hex().to_string())
 }
 
 fn kept(file: &Path, made_by: &str, seed: u64) -> Option<Outcome> {

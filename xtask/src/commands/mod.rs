@@ -1,6 +1,7 @@
 //! One file a command.
 
 pub mod bench;
+pub mod campaign;
 pub mod compensate;
 mod compensate_moves;
 pub mod discover;
@@ -11,6 +12,8 @@ pub mod independent;
 pub mod layers;
 pub mod learn;
 pub mod log;
+mod matrix_job;
+pub mod merge;
 pub mod pipeline;
 pub mod report;
 pub mod robustness;

@@ -1,5 +1,7 @@
 //! The rows of the table: what is wrong, under which strategy, and what is asked.
 
+use std::sync::Arc;
+
 use axis_sim::Axis;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -36,8 +38,42 @@ pub struct Study {
     pub noise: bool,
     /// Counted moves: in words, and what is asked.
     pub moves: Vec<(&'static str, Goal)>,
-    /// The draws.
-    pub draws: Vec<Draw>,
+    /// Number of draws.
+    pub draws: usize,
+    /// Makes a draw ready, from its number.
+    draw: Box<dyn Fn(usize) -> Result<Draw, PipelineError> + Send + Sync>,
+}
+
+impl Study {
+    /// Draw `i`, from 0, ready to be made. A draw follows from the seed and its number alone.
+    ///
+    /// # Errors
+    /// [`PipelineError`] where its moves cannot be planned.
+    pub fn draw(&self, i: usize) -> Result<Draw, PipelineError> {
+        (self.draw)(i)
+    }
+}
+
+/// How many are drawn in the rows where chance draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Draws {
+    /// Wrong beliefs; each makes every trajectory.
+    pub beliefs: usize,
+    /// Random programs.
+    pub programs: usize,
+}
+
+impl Draws {
+    /// Those of the table.
+    pub const FULL: Self = Self {
+        beliefs: 50,
+        programs: 12,
+    };
+    /// A few, for trying out.
+    pub const QUICK: Self = Self {
+        beliefs: 2,
+        programs: 2,
+    };
 }
 
 /// Shares by which friction and mass are off.
@@ -46,16 +82,15 @@ const WRONG: [f64; 2] = [0.2, 0.1];
 const ORDINARY: usize = 10;
 
 /// What the rows are made of.
-struct Ground<'a> {
-    axis: &'a Axis,
-    machine: &'a Axis,
+struct Ground {
+    axis: Axis,
+    machine: Axis,
     motions: Vec<NamedMotion>,
     seed: u64,
-    draws: usize,
+    draws: Draws,
 }
 
-/// The rows for an axis and what stands for its machine; `quick` makes fewer draws. What
-/// is believed is right or wrong about the machine, not about the axis file.
+/// The rows for an axis and what stands for its machine. What is believed is right or wrong about the machine, not about the axis file.
 ///
 /// # Errors
 /// [`PipelineError`] where the axis has no trajectories or no plan can be made of it.
@@ -63,34 +98,34 @@ pub fn studies(
     axis: &Axis,
     machine: &Axis,
     seed: u64,
-    quick: bool,
+    draws: Draws,
 ) -> Result<Vec<Study>, PipelineError> {
-    let ground = Ground {
-        axis,
-        machine,
+    let ground = &Arc::new(Ground {
+        axis: axis.clone(),
+        machine: machine.clone(),
         motions: plan_all(axis)?.into_iter().map(Planned::named).collect(),
         seed,
-        draws: if quick { 2 } else { 50 },
-    };
+        draws,
+    });
     let mut rows = vec![
-        ground.right("belief right, no noise", "plan", false, [99.9, 99.9])?,
-        ground.right("belief right", "feedback", true, [99.85, 99.65])?,
+        ground.right("belief right, no noise", "plan", false, [99.9, 99.9]),
+        ground.right("belief right", "feedback", true, [99.85, 99.65]),
         ground.wrong("adaptive", &[80.0, 90.0, 98.9, 99.7], 91.0)?,
         ground.wrong("adaptive_feedback", &[96.0, 99.3, 99.8], 98.0)?,
         ground.repeated()?,
-        ground.slow()?,
-        ground.programs(quick)?,
+        ground.slow(),
+        ground.programs()?,
     ];
     for (machine, goal) in machines(machine)
         .into_iter()
         .zip([0.15, 0.6, 0.2, 0.5, 0.3])
     {
-        rows.push(ground.another(&machine, goal)?);
+        rows.push(ground.another(machine, goal)?);
     }
     Ok(rows)
 }
 
-impl Ground<'_> {
+impl Ground {
     fn random(&self, row: u64, draw: usize) -> ChaCha8Rng {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         random.set_stream(1000 * row + draw as u64);
@@ -115,29 +150,30 @@ impl Ground<'_> {
     }
 
     fn right(
-        &self,
+        self: &Arc<Self>,
         name: &str,
         strategy: &'static str,
         noise: bool,
         [peak, mean]: [f64; 2],
-    ) -> Result<Study, PipelineError> {
-        let draws = (0..self.motions.len()).map(|i| self.draw(self.from(i, 1), 1));
+    ) -> Study {
+        let ground = Arc::clone(self);
         let goal = Goal::Taken {
             peak,
             mean: Some(mean),
             median: None,
         };
-        Ok(Study {
+        Study {
             name: name.to_owned(),
             strategy,
             noise,
             moves: vec![("first move", goal)],
-            draws: draws.collect::<Result<_, _>>()?,
-        })
+            draws: self.motions.len(),
+            draw: Box::new(move |i| ground.draw(ground.from(i, 1), 1)),
+        }
     }
 
     fn wrong(
-        &self,
+        self: &Arc<Self>,
         strategy: &'static str,
         peaks: &[f64],
         median: f64,
@@ -145,17 +181,15 @@ impl Ground<'_> {
         const MOVES: [&str; 4] = ["first move", "after 1 move", "after 2", "after 3"];
         let count = peaks.len();
         let truth = self.machine.drive_model()?;
-        let mut draws = Vec::new();
-        for i in 0..self.draws {
-            let believed = wrong_belief(&truth, WRONG, &mut self.random(1, i))?;
-            for first in 0..self.motions.len() {
-                draws.push(Draw {
-                    believed,
-                    seed: self.seed + i as u64,
-                    ..self.draw(self.from(first, count), count)?
-                });
-            }
-        }
+        let ground = Arc::clone(self);
+        let draw = move |at: usize| {
+            let (i, first) = (at / ground.motions.len(), at % ground.motions.len());
+            Ok(Draw {
+                believed: wrong_belief(&truth, WRONG, &mut ground.random(1, i))?,
+                seed: ground.seed.wrapping_add(i as u64),
+                ..ground.draw(ground.from(first, count), count)?
+            })
+        };
         let goals = peaks.iter().enumerate().map(|(i, &peak)| Goal::Taken {
             peak,
             mean: None,
@@ -166,12 +200,13 @@ impl Ground<'_> {
             strategy,
             noise: true,
             moves: MOVES.into_iter().zip(goals).collect(),
-            draws,
+            draws: self.draws.beliefs * self.motions.len(),
+            draw: Box::new(draw),
         })
     }
 
     /// Friction believed at 1/0.8 of what it is; each move four times.
-    fn repeated(&self) -> Result<Study, PipelineError> {
+    fn repeated(self: &Arc<Self>) -> Result<Study, PipelineError> {
         let mut believed = self.machine.drive_model()?;
         let p = believed.friction.parameters();
         believed.friction = lugre::LuGre::new(lugre::Parameters {
@@ -179,56 +214,59 @@ impl Ground<'_> {
             stiction: p.stiction / 0.8,
             ..p
         })?;
-        let draws = self.motions.iter().map(|motion| {
-            let draw = self.draw(vec![motion.clone(); 4], 1)?;
+        let ground = Arc::clone(self);
+        let draw = move |i: usize| {
+            let draw = ground.draw(vec![ground.motions[i].clone(); 4], 1)?;
             Ok(Draw { believed, ..draw })
-        });
+        };
         Ok(Study {
             name: "friction × 0.8".to_owned(),
             strategy: "learned",
             noise: true,
             moves: vec![("after 3 repetitions", Goal::Left(0.1))],
-            draws: draws.collect::<Result<_, PipelineError>>()?,
+            draws: self.motions.len(),
+            draw: Box::new(draw),
         })
     }
 
-    fn slow(&self) -> Result<Study, PipelineError> {
-        let start = self.axis.stroke.start;
-        let draws = (1..=8).map(|speed| {
-            let speed = 1e-3 * f64::from(speed);
-            self.draw(vec![constant_speed(start, 3.0 * speed, speed)?], 1)
-        });
-        Ok(Study {
+    fn slow(self: &Arc<Self>) -> Study {
+        let ground = Arc::clone(self);
+        let draw = move |i: usize| {
+            let (start, speed) = (ground.axis.stroke.start, 1e-3 * (i + 1) as f64);
+            ground.draw(vec![constant_speed(start, 3.0 * speed, speed)?], 1)
+        };
+        Study {
             name: "constant speed, 1 to 8 mm/s".to_owned(),
             strategy: "feedback",
             noise: true,
             moves: vec![("first move", Goal::Left(0.1))],
-            draws: draws.collect::<Result<_, PipelineError>>()?,
-        })
+            draws: 8,
+            draw: Box::new(draw),
+        }
     }
 
-    fn programs(&self, quick: bool) -> Result<Study, PipelineError> {
+    fn programs(self: &Arc<Self>) -> Result<Study, PipelineError> {
         let truth = self.machine.drive_model()?;
-        let within = self.room();
-        let draw = |i| {
-            let random = &mut self.random(2, i);
+        let ground = Arc::clone(self);
+        let draw = move |i: usize| {
+            let random = &mut ground.random(2, i);
             let believed = wrong_belief(&truth, WRONG, random)?;
-            let mut motions = self.from(i, 3);
+            let mut motions = ground.from(i, 3);
             motions.push(random_program(
                 &format!("program {}", i + 1),
-                within,
+                ground.room(),
                 random,
             )?);
-            let draw = self.draw(motions, 1)?;
+            let draw = ground.draw(motions, 1)?;
             Ok(Draw { believed, ..draw })
         };
-        let count = if quick { 2 } else { 12 };
         Ok(Study {
             name: "random programs, belief wrong".to_owned(),
             strategy: "adaptive_feedback",
             noise: true,
             moves: vec![("after 3 other moves", Goal::Left(0.6))],
-            draws: (0..count).map(draw).collect::<Result<_, PipelineError>>()?,
+            draws: self.draws.programs,
+            draw: Box::new(draw),
         })
     }
 
@@ -239,41 +277,43 @@ impl Ground<'_> {
         [stroke.minimum + 0.3 * length, stroke.minimum + 0.7 * length]
     }
 
-    fn another(&self, machine: &Machine, goal: f64) -> Result<Study, PipelineError> {
+    fn another(self: &Arc<Self>, machine: Machine, goal: f64) -> Result<Study, PipelineError> {
         let truth = self.machine.drive_model()?;
         let peculiar = machine.axis.effects.len() > 1;
         let (row, strategy) = match peculiar {
             true => (4, "learned"),
             false => (3, "adaptive_feedback"),
         };
-        let mut draws = Vec::new();
-        for i in 0..self.motions.len() {
-            let random = &mut self.random(row, i);
+        let ground = Arc::clone(self);
+        let name = format!("{}, belief wrong", machine.name);
+        let draw = move |i: usize| {
+            let random = &mut ground.random(row, i);
             let believed = wrong_belief(&truth, WRONG, random)?;
             let mut motions = match peculiar {
                 true => (0..ORDINARY)
-                    .map(|k| random_program(&format!("ordinary {}", k + 1), self.room(), random))
+                    .map(|k| random_program(&format!("ordinary {}", k + 1), ground.room(), random))
                     .collect::<Result<_, _>>()?,
-                false => self.from(i + 1, 3),
+                false => ground.from(i + 1, 3),
             };
-            motions.extend(self.from(i, 1));
-            let draw = self.draw(motions, 1)?;
-            draws.push(Draw {
+            motions.extend(ground.from(i, 1));
+            let draw = ground.draw(motions, 1)?;
+            Ok(Draw {
                 believed,
                 machine: machine.axis.clone(),
                 ..draw
-            });
-        }
+            })
+        };
         let moves = match peculiar {
             true => "after 10 other programs",
             false => "after 3 other moves",
         };
         Ok(Study {
-            name: format!("{}, belief wrong", machine.name),
+            name,
             strategy,
             noise: true,
             moves: vec![(moves, Goal::Left(goal))],
-            draws,
+            draws: self.motions.len(),
+            draw: Box::new(draw),
         })
     }
 }
