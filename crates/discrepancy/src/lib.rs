@@ -35,6 +35,7 @@
 //! Files, terminals and pictures. It simulates nothing itself.
 
 mod answers;
+pub mod controller;
 mod estimate;
 mod foresight;
 mod judge;

@@ -3,10 +3,12 @@
 pub mod bench;
 pub mod compensate;
 mod compensate_moves;
+mod control_table;
 pub mod discover;
 pub mod discover_matrix;
 pub mod export_drive;
 pub mod identify;
+pub mod identify_control;
 pub mod independent;
 pub mod layers;
 pub mod learn;
