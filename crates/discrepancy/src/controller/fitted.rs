@@ -1,7 +1,6 @@
 //! Structures fitted, and the best of them.
 
 use axis_log::Log;
-use axis_sim::control::Control;
 use axis_sim::{Axis, Replay};
 
 use super::equation::Equation;
