@@ -6,6 +6,7 @@ use axis_log::intake::{Options, prepare};
 use axis_log::{Channel, Log};
 use axis_sim::{Axis, ClosedLoop, Recorder};
 use compensator::NoCompensation;
+use discrepancy::LogSet;
 use discrepancy::controller::{Estimate, Gain, closed_loop, estimate};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -151,4 +152,28 @@ fn a_command_that_acts_two_cycles_late_is_found_by_the_closed_loop() {
     assert!((delay.value / cycles - 1.0).abs() < 0.05, "{delay:?}");
     let kv = replayed.gains.iter().find(|gain| gain.key == "kv").unwrap();
     assert!((kv.value / RACK[0].1 - 1.0).abs() < 0.01, "{kv:?}");
+}
+
+/// What answers a log says whether its gains were estimated; a balance needs none.
+#[test]
+fn a_file_that_says_so_answers_with_an_estimated_controller() {
+    let file = format!("{}/../../data/axes/rack.toml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(file).unwrap();
+    let with = |line: &str| {
+        let text = text.replace("[control]\n", &format!("[control]\n{line}\n"));
+        Axis::parse("rack.toml", &text)
+    };
+    let given = with("gains = \"given\"").unwrap();
+    let estimated = with("gains = \"estimated\"").unwrap();
+    assert!(with("gains = \"guessed\"").is_err());
+    let balanced = estimated.clone().without_control().unwrap();
+    let logs = vec![log(&given, 1, 1, 1e-7, 0)];
+    for (axis, answer) in [
+        (given, "closed-loop-replay"),
+        (estimated, "controller-estimated"),
+        (balanced, "torque-balance"),
+    ] {
+        let set = LogSet::new(logs.clone(), &axis).unwrap();
+        assert_eq!(set.answer_of(&axis), answer);
+    }
 }

@@ -139,3 +139,20 @@ pub fn interpolated(samples: &[f64], along: f64) -> f64 {
     let (i, part) = (along as usize, along.fract());
     (1.0 - part) * samples[i] + part * samples[(i + 1).min(last)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::high_pass;
+
+    /// What wanders as the integral of a constant error does, a ramp, ends at its slope
+    /// over the corner; a constant is gone.
+    #[test]
+    fn a_high_pass_takes_a_constant_and_holds_a_ramp() {
+        assert!(high_pass(&[3.0; 40], 0.1).iter().all(|y| *y == 0.0));
+        let ramp: Vec<f64> = (0..400).map(|k| 0.5 * f64::from(k)).collect();
+        let end = high_pass(&ramp, 0.1)[399];
+        let exact = 0.5 / (1.0 - (-0.1_f64).exp());
+        assert!((end / exact - 1.0).abs() < 1e-12, "{end}");
+        assert_eq!(high_pass(&ramp, 0.0), ramp);
+    }
+}

@@ -131,7 +131,7 @@ pub fn all(
 
 /// A structure by least squares; none where it cannot give these commands.
 fn squares(fit: &Equation<'_>, check: &Equation<'_>, structure: Structure) -> Option<Fitted> {
-    let begin = start(fit, structure.form, structure.from_motor())?;
+    let begin = start(fit, structure.form, structure.reads_motor())?;
     let law = structure.law(fit.axis, begin);
     let squares = fit.solve(&law, &law.start(), None)?;
     let left = check.left(&law, &squares.at)?;

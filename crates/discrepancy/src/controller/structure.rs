@@ -41,7 +41,7 @@ impl Structure {
     }
 
     /// Whether it reads the position from the motor.
-    pub fn from_motor(&self) -> bool {
+    pub fn reads_motor(&self) -> bool {
         self.words.contains(&("feedback", "motor"))
     }
 
