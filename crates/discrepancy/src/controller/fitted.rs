@@ -41,13 +41,10 @@ impl Fitted {
         }
     }
 
+    /// Whether both ended at one minimum.
     fn is_at(&self, other: &Self) -> bool {
-        let pairs = self
-            .squares
-            .at
-            .iter()
-            .zip(&other.squares.at)
-            .zip(&self.law.free);
+        let (here, there) = (&self.squares.at, &other.squares.at);
+        let pairs = here.iter().zip(there).zip(&self.law.free);
         let mut apart = pairs.map(|((a, b), free)| ((a - b) / free.scale).abs());
         self.law.kind.name == other.law.kind.name && apart.all(|by| by < 1e-3)
     }
@@ -77,9 +74,9 @@ impl Fitted {
         }
     }
 
-    /// Whether it has no low pass, or one that instruments tell from none
-    /// by twice its interval: one that is not
-    /// there takes noise of the log out of the command, and its delay goes into the other.
+    /// Whether it has no low pass, or one that is told from none by twice its interval: one
+    /// that is not there takes noise of the log out of the command, and the delay makes up
+    /// for it.
     fn needs_filter(&self) -> bool {
         let solved = self.instrumented.as_ref().unwrap_or(&self.squares);
         let all = self.law.free.iter().enumerate();
