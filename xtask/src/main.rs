@@ -20,8 +20,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    bench, campaign, compensate, discover, export_drive, identify, independent, layers, learn, log,
-    merge, pipeline, report, simulate, torture, train, validate,
+    bench, campaign, compensate, discover, export_drive, identify, identify_control, independent,
+    layers, learn, log, merge, pipeline, report, simulate, torture, train, validate,
 };
 use context::Common;
 use diagnostic::Compiler;
@@ -53,6 +53,8 @@ enum Command {
     Train(Common),
     /// Identify friction on the machine, and the transfer function from the model
     Identify(Common),
+    /// Structure, gains and delay of an unknown controller, from logs
+    IdentifyControl(identify_control::Options),
     /// Model against machine, and both predictors against the machine (Tables 13, 14)
     Validate(Common),
     /// Run the machine under every compensation (Tables 15, 16), or moves under one
@@ -112,6 +114,7 @@ fn run(command: Command) -> miette::Result<()> {
         Command::Job(job) => job.run(),
         Command::Train(common) => train::command(&common),
         Command::Identify(common) => identify::command(&common),
+        Command::IdentifyControl(options) => identify_control::command(&options),
         Command::Validate(common) => validate::command(&common),
         Command::Compensate(options) => compensate::command(&options),
         Command::Report(common) => report::command(&common),

@@ -37,6 +37,8 @@ pub struct Axis {
     pub actuator: Part<dyn Actuator>,
     /// Position and speed control ([`Axis::has_control`]).
     pub control: Part<dyn Control>,
+    /// Whether its gains are estimates from logs: `gains = "estimated"` in the file.
+    pub control_estimated: bool,
     /// Friction between load and guides.
     pub friction: Part<Friction>,
     /// Loads besides it.

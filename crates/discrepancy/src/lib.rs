@@ -28,6 +28,7 @@
 //! - `judge`: [`discovery`] puts what was found into a [`Verdict`], with what it costs, what
 //!   it may be confused with, what no effect explains, and the motion to run next.
 //!
+//! [`controller`] estimates an unknown controller, before any of this.
 //! [`Foresight`] says before any search what it could see and tell apart on a motion;
 //! [`summary`] is for where only a table of errors was measured.
 //!
@@ -35,6 +36,7 @@
 //! Files, terminals and pictures. It simulates nothing itself.
 
 mod answers;
+pub mod controller;
 mod estimate;
 mod foresight;
 mod judge;

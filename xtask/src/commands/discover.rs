@@ -90,7 +90,7 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     notes.iter().try_for_each(say)?;
     say(format!(
         "{}; channels compared: {}",
-        fit.answer(),
+        fit.answer_of(machine),
         fit.channels.join(", ")
     ))?;
 
@@ -143,7 +143,7 @@ const SUMMARY_REPORT: &str = "summary.html";
 
 /// The text of the axis file `from` as it must be in `folder`: it names files relative
 /// to its own.
-fn moved(text: &str, from: &Path, folder: &Path) -> Result<String> {
+pub(super) fn moved(text: &str, from: &Path, folder: &Path) -> Result<String> {
     let whole = |path: &Path| {
         path.canonicalize()
             .into_diagnostic()

@@ -26,6 +26,7 @@ pub(super) fn loop_keys(freedom: Freedom) -> Vec<Key> {
     vec![
         quantity("frequency", &FREQUENCY, FREQUENCIES[0], FREQUENCIES[1]),
         limit.optional(),
+        word("gains", &["given", "estimated"]).optional(),
     ]
 }
 

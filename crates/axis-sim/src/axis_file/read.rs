@@ -104,6 +104,8 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         (false, _) if control.starts_in_motion() => f64::INFINITY,
         _ => FOLLOWING_ERROR_LIMIT,
     });
+    let control_estimated =
+        has_control && control_table.has("gains") && control_table.word("gains")? == "estimated";
     let pace = Pace {
         period,
         steps: substeps_of(period, simulation.step),
@@ -124,6 +126,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         mechanism,
         actuator,
         control,
+        control_estimated,
         friction,
         period,
         following_error_limit,

@@ -75,6 +75,14 @@ impl LogSet {
         self.logs.first().map_or("", |log| log.answer.name())
     }
 
+    /// The same, `controller-estimated` for a replay with gains that were estimated.
+    pub fn answer_of(&self, machine: &Axis) -> &'static str {
+        match machine.control_estimated && !self.replays().is_empty() {
+            true => "controller-estimated",
+            false => self.answer(),
+        }
+    }
+
     /// Whether its logs are answered by torque balance.
     pub fn is_balanced(&self) -> bool {
         !self.balances().is_empty()

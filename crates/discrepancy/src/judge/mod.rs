@@ -207,7 +207,7 @@ pub fn judged(
     let discovery = Discovery {
         schema: 1,
         axis: name,
-        answer: found.fit_logs.answer().to_owned(),
+        answer: found.fit_logs.answer_of(machine).to_owned(),
         notes: notes(machine, found),
         sentence: sentence(
             verdict,

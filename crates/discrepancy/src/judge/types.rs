@@ -178,7 +178,8 @@ pub struct Discovery {
     pub schema: u32,
     /// Name of the axis.
     pub axis: String,
-    /// How the model was compared with the logs: `closed-loop-replay` or `torque-balance`.
+    /// How the model was compared with the logs: `closed-loop-replay`, `torque-balance`, or
+    /// `controller-estimated`, a replay with gains that were estimated from logs.
     #[serde(default = "replayed")]
     pub answer: String,
     /// What must be known of the logs beside the verdict; whoever reads them adds what

@@ -205,6 +205,9 @@ fn answer(answer: &str) -> &'static str {
         "torque-balance" => {
             "Compared by torque balance: measured motion in, the torque that the model needs for it against the one shown."
         }
+        "controller-estimated" => {
+            "Compared by closed-loop replay with a controller that was estimated from logs: the logged reference run through the simulated control and machine, the gains inside their intervals."
+        }
         _ => {
             "Compared by closed-loop replay: the logged reference run through the simulated control and machine."
         }

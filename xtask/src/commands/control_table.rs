@@ -1,0 +1,166 @@
+//! The tables [control] and [tolerances] of an axis file, with an estimated controller.
+
+use axis_sim::Axis;
+use axis_sim::control::{CONTROLS, Control, units_of_gain};
+use axis_sim::part::{Key, Part};
+use discrepancy::controller::{Estimate, Gain};
+use miette::{IntoDiagnostic, Result, miette};
+use toml_edit::{DocumentMut, Item, Table, Value};
+
+/// Half width of an interval, as a share, up to which a gain is written as exact.
+const EXACT: f64 = 1e-3;
+/// Greatest tolerance that an axis file takes.
+const WIDEST: f64 = 0.9;
+
+/// Key with unit, as the file has or takes it, and the unit's factor to SI.
+pub fn spelling(machine: &Axis, control: &Part<dyn Control>, key: &str) -> (String, f64) {
+    let Some(known) = control.kind().keys.iter().find(|k| k.name() == key) else {
+        return (key.to_owned(), 1.0);
+    };
+    let own = control.values().unit(key);
+    let effort = machine.actuator.effort();
+    let units = units_of_gain(&**control, known, effort, &*machine.mechanism);
+    let unit = units.iter().find(|(unit, _)| *unit == own);
+    match unit.or(units.first()) {
+        Some((unit, factor)) => (format!("{key}_{unit}"), *factor),
+        None => (key.to_owned(), 1.0),
+    }
+}
+
+/// The tolerance of a gain, by its interval, as [tolerances] has it; none where it is exact.
+pub fn tolerance(gain: &Gain) -> Option<String> {
+    let half = 0.5 * (gain.ci95[1] - gain.ci95[0]);
+    let share = half / gain.value.abs();
+    (gain.value != 0.0 && share > EXACT).then(|| match share < WIDEST {
+        // Rounded up.
+        true => format!("{} %", (1e4 * share).ceil() / 100.0),
+        false => "unknown".to_owned(),
+    })
+}
+
+/// The axis file's text with the controller in its [control] and the gains' intervals in
+/// [tolerances]; all else as it was.
+pub fn with_control(text: &str, machine: &Axis, found: &Estimate) -> Result<String> {
+    let mut document: DocumentMut = text.parse().into_diagnostic()?;
+    let has_sections = document.contains_key("mechanism");
+    let kind = found.control.kind().name;
+    let is_new = kind != machine.control.kind().name;
+    if is_new && !has_sections {
+        return Err(miette!(
+            "the controller is {kind}, and a file of schema 1 has the kind {} alone; valid: the axis file in schema 2",
+            machine.control.kind().name
+        ));
+    }
+    let control = table(&mut document, "control")?;
+    if is_new {
+        let old = CONTROLS.iter().flat_map(|control| control.keys);
+        for key in old.flat_map(spellings) {
+            control.remove(&key);
+        }
+        set(control, "kind", kind.into());
+    }
+    if !["frequency_hz", "frequency_khz"]
+        .iter()
+        .any(|key| control.contains_key(key))
+    {
+        set(control, "frequency_hz", digits(1.0 / machine.period).into());
+    }
+    for (key, word) in &found.words {
+        set(control, key, (*word).into());
+    }
+    for gain in &found.gains {
+        let (name, factor) = spelling(machine, &found.control, gain.key);
+        set(control, &name, digits(gain.value / factor).into());
+    }
+    set(control, "gains", "estimated".into());
+    write_tolerances(&mut document, found)?;
+    if has_sections && !document.contains_key("simulation") {
+        let step = digits(1e6 * machine.period.min(machine.simulation.step));
+        set(table(&mut document, "simulation")?, "step_us", step.into());
+    }
+    Ok(document.to_string())
+}
+
+/// The gains' own lines in [tolerances]; those of the controller that was there are gone.
+fn write_tolerances(document: &mut DocumentMut, found: &Estimate) -> Result<()> {
+    let known = found.control.kind().known.iter().map(|known| known.name);
+    let known: Vec<&str> = known.collect();
+    if let Some(old) = document.get_mut("tolerances").and_then(Item::as_table_mut) {
+        for known in CONTROLS.iter().flat_map(|control| control.known) {
+            old.remove(known.name);
+        }
+    }
+    for gain in found.gains.iter().filter(|gain| known.contains(&gain.key)) {
+        if let Some(share) = tolerance(gain) {
+            set(table(document, "tolerances")?, gain.key, share.into());
+        }
+    }
+    Ok(())
+}
+
+/// The table of that name, new at the end where there is none.
+fn table<'a>(document: &'a mut DocumentMut, name: &str) -> Result<&'a mut Table> {
+    let entry = document
+        .entry(name)
+        .or_insert_with(|| Item::Table(Table::new()));
+    let found = entry.as_table_mut();
+    found.ok_or_else(|| miette!("{name} is no table; valid: [{name}] on a line of its own"))
+}
+
+/// All ways to write a key.
+fn spellings(key: &Key) -> Vec<String> {
+    let units = key
+        .units()
+        .iter()
+        .map(|(unit, _)| format!("{}_{unit}", key.name()));
+    units.chain([key.name().to_owned()]).collect()
+}
+
+/// Sets a value, a comment behind it kept.
+fn set(table: &mut Table, key: &str, mut value: Value) {
+    if let Some(old) = table.get(key).and_then(Item::as_value) {
+        *value.decor_mut() = old.decor().clone();
+    }
+    table.insert(key, Item::Value(value));
+}
+
+/// Seven digits of a number.
+fn digits(value: f64) -> f64 {
+    format!("{value:.6e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gain(value: f64, half: f64) -> Gain {
+        Gain {
+            key: "kv",
+            value,
+            ci95: [value - half, value + half],
+        }
+    }
+
+    #[test]
+    fn a_tolerance_holds_the_interval() {
+        assert_eq!(tolerance(&gain(20.0, 0.01)), None);
+        assert_eq!(tolerance(&gain(20.0, 0.5)).unwrap(), "2.5 %");
+        assert_eq!(tolerance(&gain(3.0, 0.1)).unwrap(), "3.34 %");
+        assert_eq!(tolerance(&gain(3.0, 30.0)).unwrap(), "unknown");
+        assert_eq!(tolerance(&gain(0.0, 30.0)), None);
+    }
+
+    #[test]
+    fn a_value_keeps_its_comment() {
+        let mut document: DocumentMut = "[control]\nkv_per_s = 20 # as ordered\n".parse().unwrap();
+        set(
+            table(&mut document, "control").unwrap(),
+            "kv_per_s",
+            16.7.into(),
+        );
+        assert_eq!(
+            document.to_string(),
+            "[control]\nkv_per_s = 16.7 # as ordered\n"
+        );
+    }
+}
