@@ -30,7 +30,7 @@ pub use known::Plan;
 
 use crate::error::{require, within};
 use crate::model::{DriveModel, MOST_DELAY};
-use crate::residual::ResidualModel;
+use crate::residual::{Residual, ResidualAt, ResidualModel};
 use crate::{CompensatorError, Correction, Reference};
 use actuator::Inverse;
 use smoothing::{MOST_HALF, Smoothing};
@@ -142,7 +142,7 @@ const WOUND: usize = MOST_DELAY + 2;
 /// Makes the plan of a stream of set points, one a control cycle. No allocation; 26 KB in
 /// `f64`.
 #[derive(Clone, Debug)]
-pub struct Planner<T = f64> {
+pub struct Planner<T = f64, R = ResidualModel<T>> {
     model: DriveModel<T>,
     half: usize,
     /// Cycles by which a command comes late, whole.
@@ -160,7 +160,7 @@ pub struct Planner<T = f64> {
     home: T,
     /// What the drive's integrator holds.
     held: T,
-    residual: Option<ResidualModel<T>>,
+    residual: Option<R>,
     /// Angle of the motor where the load is at 0 and nothing wound up, rad.
     zero_angle: T,
 }
@@ -208,13 +208,30 @@ impl<T: Exponential> Planner<T> {
         Ok(planner)
     }
 
-    /// With what was learned of torque over angle and force over position.
+    /// With what was learned of torque and force that the model does not have.
     #[must_use]
-    pub fn with_residual(mut self, residual: Option<ResidualModel<T>>) -> Self {
-        self.residual = residual;
-        self
+    pub fn with_residual<R: Residual<T>>(self, residual: Option<R>) -> Planner<T, R> {
+        Planner {
+            model: self.model,
+            half: self.half,
+            late: self.late,
+            late_part: self.late_part,
+            smoothing: self.smoothing,
+            inverse: self.inverse,
+            bristle: self.bristle,
+            speed: self.speed,
+            ahead: self.ahead,
+            wound: self.wound,
+            pushed: self.pushed,
+            home: self.home,
+            held: self.held,
+            residual,
+            zero_angle: self.zero_angle,
+        }
     }
+}
 
+impl<T: Exponential, R: Residual<T>> Planner<T, R> {
     /// The model that it plans with.
     pub fn model(&self) -> &DriveModel<T> {
         &self.model
@@ -316,11 +333,14 @@ impl<T: Exponential> Planner<T> {
         let at_motor = acceleration / m.travel;
         let mut force = m.load_inertia * acceleration + friction + section.load + target.force;
         let mut at_angle = T::ZERO;
-        if let Some(residual) = &self.residual {
+        if let Some(residual) = &mut self.residual {
             let wind_up = section.compliance * m.travel * force;
-            let angle = self.zero_angle + r.position / m.travel + wind_up;
-            let direction = m.friction.coulomb_share(bristle);
-            let [torque, besides] = residual.at(angle, r.position, direction);
+            let [torque, besides] = residual.besides(&ResidualAt {
+                motor_angle: self.zero_angle + r.position / m.travel + wind_up,
+                motor_speed: r.velocity / m.travel,
+                position: r.position,
+                direction: m.friction.coulomb_share(bristle),
+            });
             at_angle = torque;
             force += besides;
         }
