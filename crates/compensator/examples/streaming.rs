@@ -138,7 +138,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             };
             let sample = axis.sense(planned.reference, held);
             let asked = feedback.correct(&sample, &planned);
-            let correction = guard.pass(&asked, 0.0);
+            let correction = guard.pass(&asked, feedback.deviations().surprise);
             peak = peak.max((f64::from(planned.reference.position) - axis.position).abs());
             held = axis.cycle(&sample, &correction);
         }

@@ -60,4 +60,8 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> Compensator<T
         self.last = self.feedback.correct(sample, &planned);
         self.last
     }
+
+    fn surprise(&self) -> T {
+        self.deviations().surprise
+    }
 }
