@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 pub use draws::{constant_speed, random_program, wrong_belief};
 pub use machines::{Machine, machines};
 pub use studies::{Goal, Study, studies};
+pub(crate) use studies::{WRONG, room};
 
 use crate::moves::{Moves, NamedMotion};
 use crate::strategies::{NONE, Predictors, STRATEGIES, named};

@@ -41,7 +41,7 @@ pub struct Study {
 }
 
 /// Shares by which friction and mass are off.
-const WRONG: [f64; 2] = [0.2, 0.1];
+pub(crate) const WRONG: [f64; 2] = [0.2, 0.1];
 /// Ordinary moves from which what no parameter holds is learned.
 const ORDINARY: usize = 10;
 
@@ -209,7 +209,7 @@ impl Ground<'_> {
 
     fn programs(&self, quick: bool) -> Result<Study, PipelineError> {
         let truth = self.machine.drive_model()?;
-        let within = self.room();
+        let within = room(self.axis);
         let draw = |i| {
             let random = &mut self.random(2, i);
             let believed = wrong_belief(&truth, WRONG, random)?;
@@ -232,13 +232,6 @@ impl Ground<'_> {
         })
     }
 
-    /// Where moves go: around the middle of the stroke.
-    fn room(&self) -> [f64; 2] {
-        let stroke = &self.axis.stroke;
-        let length = stroke.maximum - stroke.minimum;
-        [stroke.minimum + 0.3 * length, stroke.minimum + 0.7 * length]
-    }
-
     fn another(&self, machine: &Machine, goal: f64) -> Result<Study, PipelineError> {
         let truth = self.machine.drive_model()?;
         let peculiar = machine.axis.effects.len() > 1;
@@ -252,7 +245,9 @@ impl Ground<'_> {
             let believed = wrong_belief(&truth, WRONG, random)?;
             let mut motions = match peculiar {
                 true => (0..ORDINARY)
-                    .map(|k| random_program(&format!("ordinary {}", k + 1), self.room(), random))
+                    .map(|k| {
+                        random_program(&format!("ordinary {}", k + 1), room(self.axis), random)
+                    })
                     .collect::<Result<_, _>>()?,
                 false => self.from(i + 1, 3),
             };
@@ -276,4 +271,11 @@ impl Ground<'_> {
             draws,
         })
     }
+}
+
+/// Where moves go: around the middle of the stroke.
+pub(crate) fn room(axis: &Axis) -> [f64; 2] {
+    let stroke = &axis.stroke;
+    let length = stroke.maximum - stroke.minimum;
+    [stroke.minimum + 0.3 * length, stroke.minimum + 0.7 * length]
 }
