@@ -59,7 +59,7 @@ enum Command {
     /// Write summary.json and report.html from the stages' results
     Report(Common),
     /// What compensation leaves where what is believed is wrong, draw by draw
-    Robustness(Common),
+    Robustness(robustness::Options),
     /// Learn the correction of a move from the log of a repetition
     Learn(learn::Options),
     /// Simulate one motion and write its log
@@ -123,7 +123,7 @@ fn run(command: Command) -> miette::Result<()> {
         Command::ExportDrive(options) => export_drive::command(&options),
         Command::Bench(options) => bench::command(&options),
         Command::Torture(options) => torture::command(&options),
-        Command::Robustness(common) => robustness::command(&common),
+        Command::Robustness(options) => robustness::command(&options),
         Command::Learn(options) => learn::command(&options),
         Command::Layers => layers::command(),
     }

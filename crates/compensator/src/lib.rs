@@ -113,7 +113,7 @@ pub use identify::{
 };
 #[cfg(feature = "alloc")]
 pub use learning::{Advice, Gauss, LearnedMove, LearningSettings, Round};
-pub use model::{Along, Cascade, Drive, DriveModel, Mode, SECTIONS, Section};
+pub use model::{Along, Cascade, Drive, DriveModel, Kinematics, Mode, SECTIONS, Section};
 pub use network::{IncrementModel, NetworkCompensation};
 pub use none::NoCompensation;
 pub use plan::{Plan, PlanSettings, Planned, Planner, Standstill, Target};

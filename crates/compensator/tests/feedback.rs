@@ -42,6 +42,7 @@ fn axis(position: f64) -> (DriveModel, Vec<Mode>) {
         .expect("a law"),
         lever: R,
         along: Along::new([0.0, 1.5], |_| section).expect("a stroke"),
+        kinematics: compensator::Kinematics::default(),
         drive: Drive::Lag {
             gain: K,
             bandwidth: f64::INFINITY,

@@ -13,6 +13,7 @@ pub mod learn;
 pub mod log;
 pub mod pipeline;
 pub mod report;
+mod residuals;
 pub mod robustness;
 pub mod sample;
 pub mod simulate;

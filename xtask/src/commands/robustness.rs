@@ -3,14 +3,19 @@
 use std::path::PathBuf;
 
 use axis_sim::Measured;
+use clap::Args;
 use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use pipeline::robustness::{Draw, Goal, Point, Study, make, studies};
 use rayon::prelude::*;
+use report::{Page, render};
 use serde::{Deserialize, Serialize};
 
+use super::residuals;
 use crate::context::{Common, Context};
 use crate::output::{ready, say, write_whole};
+use crate::page;
+use crate::page::robustness::{Asked, Limit, Robustness, Row};
 use crate::progress::bar;
 
 /// What is kept of a draw: the point, and a hash of what it was made from.
@@ -20,28 +25,24 @@ struct Kept {
     point: Point,
 }
 
-/// A row of robustness.json.
-#[derive(Serialize)]
-struct Row<'a> {
-    what: &'a str,
-    strategy: &'static str,
-    noise: bool,
-    moves: Vec<Asked<'a>>,
-    points: &'a [Point],
-}
-
-/// What was asked of a counted move, and whether all draws keep it.
-#[derive(Serialize)]
-struct Asked<'a> {
-    counted: &'a str,
-    asked: String,
-    worst: String,
-    kept: bool,
+/// Options of `robustness`.
+#[derive(Args)]
+pub struct Options {
+    #[command(flatten)]
+    common: Common,
+    /// Instead of the table: what no parameter holds (cogging, local and asymmetric friction,
+    /// drawn) learned by tables, by a network trained on simulated machines, and as named
+    /// effects, side by side
+    #[arg(long)]
+    residuals: bool,
 }
 
 /// Runs the command.
-pub fn command(common: &Common) -> Result<()> {
-    let context = common.open()?;
+pub fn command(options: &Options) -> Result<()> {
+    let context = options.common.open()?;
+    if options.residuals {
+        return residuals::run(&context);
+    }
     let folder = context.out.join("robustness");
     ready(&folder)?;
     let _claim = context.claim()?;
@@ -68,15 +69,35 @@ pub fn command(common: &Common) -> Result<()> {
         made.push(points);
     }
     progress.finish_and_clear();
-    let table: Vec<Row<'_>> = rows
-        .iter()
-        .zip(&made)
-        .map(|(row, points)| judge(row, points))
-        .collect();
+    let table = Robustness {
+        axis: context.axis.name.clone(),
+        axis_fingerprint: context.axis.fingerprint.clone(),
+        machine: context.machine.name.clone(),
+        machine_fingerprint: context.machine.fingerprint.clone(),
+        seed: context.seed,
+        quick: context.quick,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        rows: rows
+            .iter()
+            .zip(made)
+            .map(|(row, points)| judge(row, points))
+            .collect(),
+    };
     let json = context.out.join("robustness.json");
     write_whole(&json, &serde_json::to_vec_pretty(&table).into_diagnostic()?)?;
-    tell(&table)?;
-    say(format!("each draw is a point in {}", json.display()))
+    let title = format!("Compensation of {}", table.axis);
+    let page = Page::new(title).section(page::robustness::robustness(&table));
+    let page = render(&page)
+        .into_diagnostic()
+        .wrap_err("the page cannot be made")?;
+    let html = context.out.join("robustness.html");
+    write_whole(&html, page.as_bytes())?;
+    tell(&table.rows)?;
+    say(format!(
+        "each draw is a point in {} and {}",
+        json.display(),
+        html.display()
+    ))
 }
 
 /// The point of a draw: the one that lies there, where it was made from the same.
@@ -137,58 +158,66 @@ fn kept_or_made(
     Ok(kept.point)
 }
 
-fn judge<'a>(row: &'a Study, points: &'a [Point]) -> Row<'a> {
-    let moves = row.moves.iter().enumerate().map(|(i, (counted, goal))| {
-        let worst =
-            |of: &dyn Fn(&Point) -> f64| points.iter().map(of).fold(f64::INFINITY, f64::min);
-        let (asked, found, kept) = match *goal {
-            Goal::Left(most) => {
-                let left = -worst(&|p| -p.compensated[i].max);
-                let none = -worst(&|p| -p.none[i].max);
-                let found = format!("{left:.3} µm (none: {none:.0})");
-                (format!("≤ {most} µm"), found, left <= most)
+fn judge(row: &Study, points: Vec<Point>) -> Row {
+    let moves: Vec<Asked> = (row.moves.iter().enumerate())
+        .map(|(i, (counted, goal))| {
+            let worst =
+                |of: &dyn Fn(&Point) -> f64| points.iter().map(of).fold(f64::INFINITY, f64::min);
+            let (asked, found, kept) = match *goal {
+                Goal::Left(most) => {
+                    let left = -worst(&|p| -p.compensated[i].max);
+                    let none = -worst(&|p| -p.none[i].max);
+                    let found = format!("{left:.3} µm (none: {none:.0})");
+                    (format!("≤ {most} µm"), found, left <= most)
+                }
+                Goal::Taken { peak, mean, median } => {
+                    let [of_peak, of_mean] =
+                        [worst(&|p| p.peak_taken(i)), worst(&|p| p.mean_taken(i))];
+                    let mut peaks: Vec<f64> = points.iter().map(|p| p.peak_taken(i)).collect();
+                    peaks.sort_by(f64::total_cmp);
+                    let middle = peaks[peaks.len() / 2];
+                    let asked = match (mean, median) {
+                        (Some(mean), _) => format!("≥ {peak} / {mean} %"),
+                        (None, Some(median)) => format!("≥ {peak} %, median {median} %"),
+                        (None, None) => format!("≥ {peak} %"),
+                    };
+                    let kept = of_peak >= peak
+                        && mean.is_none_or(|mean| of_mean >= mean)
+                        && median.is_none_or(|median| middle >= median);
+                    let found = format!(
+                        "{of_peak:.2} / {of_mean:.2} %, median {middle:.2} / {:.2} %",
+                        {
+                            let mut means: Vec<f64> =
+                                points.iter().map(|p| p.mean_taken(i)).collect();
+                            means.sort_by(f64::total_cmp);
+                            means[means.len() / 2]
+                        }
+                    );
+                    (asked, found, kept)
+                }
+            };
+            Asked {
+                counted: (*counted).to_owned(),
+                asked,
+                goal: match *goal {
+                    Goal::Left(most) => Limit::LeftUm(most),
+                    Goal::Taken { peak, .. } => Limit::LeftPercent(100.0 - peak),
+                },
+                worst: found,
+                kept,
             }
-            Goal::Taken { peak, mean, median } => {
-                let [of_peak, of_mean] = [worst(&|p| p.peak_taken(i)), worst(&|p| p.mean_taken(i))];
-                let mut peaks: Vec<f64> = points.iter().map(|p| p.peak_taken(i)).collect();
-                peaks.sort_by(f64::total_cmp);
-                let middle = peaks[peaks.len() / 2];
-                let asked = match (mean, median) {
-                    (Some(mean), _) => format!("≥ {peak} / {mean} %"),
-                    (None, Some(median)) => format!("≥ {peak} %, median {median} %"),
-                    (None, None) => format!("≥ {peak} %"),
-                };
-                let kept = of_peak >= peak
-                    && mean.is_none_or(|mean| of_mean >= mean)
-                    && median.is_none_or(|median| middle >= median);
-                let found = format!(
-                    "{of_peak:.2} / {of_mean:.2} %, median {middle:.2} / {:.2} %",
-                    {
-                        let mut means: Vec<f64> = points.iter().map(|p| p.mean_taken(i)).collect();
-                        means.sort_by(f64::total_cmp);
-                        means[means.len() / 2]
-                    }
-                );
-                (asked, found, kept)
-            }
-        };
-        Asked {
-            counted,
-            asked,
-            worst: found,
-            kept,
-        }
-    });
+        })
+        .collect();
     Row {
-        what: &row.name,
-        strategy: row.strategy,
+        what: row.name.clone(),
+        strategy: row.strategy.to_owned(),
         noise: row.noise,
-        moves: moves.collect(),
+        moves,
         points,
     }
 }
 
-fn tell(table: &[Row<'_>]) -> Result<()> {
+fn tell(table: &[Row]) -> Result<()> {
     say("| case | strategy | draws | counted | asked | found: worst draw, peak / mean | |")?;
     say("|---|---|---|---|---|---|---|")?;
     for row in table {

@@ -6,7 +6,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::balance::{Balance, torque, wind_up};
 use super::belief::Belief;
-use super::parameter::{AdaptParameter, COUNT};
+use super::parameter::COUNT;
 use super::record::Record;
 use super::weight::weights;
 
@@ -59,8 +59,7 @@ impl Residuals {
 
     /// Deviation of a nuisance, in its unit.
     pub fn nuisance_deviation(belief: &Belief, record: &Record, i: usize) -> f64 {
-        let level = belief.model.travel * belief.value(AdaptParameter::StandingLoad);
-        let wound = belief.value(AdaptParameter::Compliance) * level;
+        let wound = belief.wound();
         let leads = record.points.iter().map(|p| p.lead.abs());
         match i {
             HELD => HELD_DEVIATION,

@@ -4,7 +4,7 @@ use axis_sim::Axis;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::{Draw, Machine, constant_speed, machines, random_program, wrong_belief};
+use super::{Draw, Machine, constant_speed, machines, pre_roll, random_program, wrong_belief};
 use crate::PipelineError;
 use crate::moves::NamedMotion;
 use crate::tracking::{Planned, plan_all};
@@ -45,6 +45,9 @@ pub(crate) const WRONG: [f64; 2] = [0.2, 0.1];
 /// Ordinary moves from which what no parameter holds is learned.
 const ORDINARY: usize = 10;
 
+/// Way of a pre-roll, m.
+const PRE_ROLL: f64 = 1e-3;
+
 /// What the rows are made of.
 struct Ground<'a> {
     axis: &'a Axis,
@@ -76,6 +79,7 @@ pub fn studies(
         ground.right("belief right, no noise", "plan", false, [99.9, 99.9])?,
         ground.right("belief right", "feedback", true, [99.85, 99.65])?,
         ground.wrong("adaptive", &[80.0, 90.0, 98.9, 99.7], 91.0)?,
+        ground.rolled()?,
         ground.wrong("adaptive_feedback", &[96.0, 99.3, 99.8], 98.0)?,
         ground.repeated()?,
         ground.slow()?,
@@ -167,6 +171,39 @@ impl Ground<'_> {
             noise: true,
             moves: MOVES.into_iter().zip(goals).collect(),
             draws,
+        })
+    }
+
+    /// The same beliefs as in [`Ground::wrong`], one trajectory each, after a pre-roll of a
+    /// millimetre that is learned from.
+    fn rolled(&self) -> Result<Study, PipelineError> {
+        let truth = self.machine.drive_model()?;
+        let draw = |i: usize| {
+            let believed = wrong_belief(&truth, WRONG, &mut self.random(1, i))?;
+            let counted = self.from(i, 1);
+            let start = counted[0].motion.at(0.0).position;
+            let motions = std::iter::once(pre_roll(start, PRE_ROLL)?).chain(counted);
+            Ok(Draw {
+                believed,
+                seed: self.seed + i as u64,
+                ..self.draw(motions.collect(), 1)?
+            })
+        };
+        Ok(Study {
+            name: "belief wrong, pre-roll".to_owned(),
+            strategy: "adaptive",
+            noise: true,
+            moves: vec![(
+                "first move",
+                Goal::Taken {
+                    peak: 80.0,
+                    mean: None,
+                    median: Some(91.0),
+                },
+            )],
+            draws: (0..self.draws)
+                .map(draw)
+                .collect::<Result<_, PipelineError>>()?,
         })
     }
 
@@ -274,7 +311,8 @@ impl Ground<'_> {
 }
 
 /// Where moves go: around the middle of the stroke.
-pub(crate) fn room(axis: &Axis) -> [f64; 2] {
+#[must_use]
+pub fn room(axis: &Axis) -> [f64; 2] {
     let stroke = &axis.stroke;
     let length = stroke.maximum - stroke.minimum;
     [stroke.minimum + 0.3 * length, stroke.minimum + 0.7 * length]

@@ -226,6 +226,8 @@ impl Strategy for Ladder {
                 let used = residual.model().is_some();
                 known.insert("residual_used".to_owned(), f64::from(u8::from(used)));
             }
+            let free = adaptation.model().kinematics.free_travel;
+            known.insert("free_travel_um".to_owned(), 1e6 * free);
             for estimate in adaptation.estimates() {
                 let name = estimate.parameter.name().replace(' ', "_");
                 known.insert(format!("{name}_relative"), estimate.relative);
