@@ -100,7 +100,9 @@ fn an_error_of_the_kinematics_is_taken_up_by_the_motor() {
     for (k, p) in with.iter().enumerate().skip(1).take(with.len() - 2) {
         let at = angle(p);
         let load = TRAVEL * (at - start) + kinematics.ahead(at) - kinematics.ahead(start);
-        assert!((load - p.position).abs() < 1e-5 * kinematics.amplitude);
+        // Each of three rounds leaves the share a n/r of what the last has, 2a at first.
+        let left = (kinematics.amplitude * kinematics.order / TRAVEL).powi(3);
+        assert!((load - p.position).abs() < 2.1 * left * kinematics.amplitude);
         let [before, after] = [&with[k - 1], &with[k + 1]].map(angle);
         let speed = (after - before) / (2.0 * T);
         assert!((speed - p.motor_speed).abs() < 1e-3 * 0.5 / TRAVEL * 0.03);

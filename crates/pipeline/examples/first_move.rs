@@ -88,7 +88,7 @@ fn law(of: &LuGre, factors: Factors) -> Result<LuGre, Box<dyn Error>> {
         stiffness: factors[1] * p.stiffness,
         damping: factors[2] * p.damping,
         viscous: factors[3] * p.viscous,
-        ..*p
+        ..p
     })?)
 }
 

@@ -3,7 +3,8 @@
 //! A linear regression with a Gaussian prior, which adds up from move to move.
 //!
 //! A gate keeps it from doing harm: it is used only while it has explained a material part
-//! of the last moves *before* it learned from them.
+//! of the last moves *before* it learned from them, and no stretch of the last one, nor its
+//! slow part, where an axis breaks away and errors peak, would have been worse with it.
 
 use std::vec::Vec;
 
@@ -16,6 +17,11 @@ use super::{ResidualBasis, ResidualTables, Row};
 const LEAST_EXPLAINED: f64 = 0.1;
 /// RMS of what is explained, as a share of the Coulomb level: less is not worth the risk.
 const LEAST_SIZE: f64 = 0.01;
+
+/// Length of a stretch that is judged by itself, s.
+const STRETCH: f64 = 0.05;
+/// Share of the greatest speed below which an axis is slow.
+const SLOW: f64 = 0.1;
 
 /// What the model did not explain at an instant of a log.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -80,9 +86,9 @@ impl<B: ResidualBasis> ResidualLearner<B> {
     pub fn learn(&mut self, log: &[Unexplained], spacing: f64, smoothing: f64) -> f64 {
         self.basis.linearise(self.coefficients.as_slice());
         let sound = |u: &&Unexplained| u.torque.is_finite() && u.motor_angle.is_finite();
+        let log: Vec<&Unexplained> = log.iter().filter(sound).collect();
         let rows: Vec<(Row, f64)> = log
             .iter()
-            .filter(sound)
             .map(|u| (self.basis.row(u, smoothing), u.torque))
             .collect();
         let [mut left, mut whole, mut foreseen] = [0.0; 3];
@@ -100,7 +106,13 @@ impl<B: ResidualBasis> ResidualLearner<B> {
         let count = rows.len() as f64;
         let size = sqrt(foreseen / count);
         let worth = size >= LEAST_SIZE * self.level;
-        self.explained.push(if worth { explained } else { 0.0 });
+        let rests: Vec<[f64; 2]> = rows
+            .iter()
+            .map(|(row, torque)| [torque - row.times(self.coefficients.as_slice()), *torque])
+            .collect();
+        let harmless = slow_is_no_worse(&log, &rests) && peak_is_no_worse(&rests, spacing);
+        self.explained
+            .push(if worth && harmless { explained } else { 0.0 });
         // Neighbours within the Gaussian say the same.
         let same = (2.0 * sqrt(core::f64::consts::PI) * smoothing / spacing).max(1.0);
         self.solve(&rows, same, left.min(whole) / count);
@@ -145,7 +157,7 @@ impl<B: ResidualBasis> ResidualLearner<B> {
     }
 
     /// Share of the power of each move that was explained before learning from it; 0 where
-    /// that was too little to matter.
+    /// that was too little to matter, or would have done harm somewhere.
     #[must_use]
     pub fn explained(&self) -> &[f64] {
         &self.explained
@@ -156,4 +168,29 @@ impl<B: ResidualBasis> ResidualLearner<B> {
     pub fn coefficients(&self) -> &[f64] {
         self.coefficients.as_slice()
     }
+}
+
+/// Whether the slow part of a log has no more power with the residual (each pair: with it, without) than without.
+fn slow_is_no_worse(log: &[&Unexplained], rests: &[[f64; 2]]) -> bool {
+    let speeds = log.iter().map(|u| u.motor_speed.abs());
+    let slow = SLOW * speeds.clone().fold(0.0, f64::max);
+    let pairs = speeds.zip(rests).filter(|(speed, _)| *speed <= slow);
+    let [with, without] = pairs.fold([0.0; 2], |[a, b], (_, [with, without])| {
+        [a + with * with, b + without * without]
+    });
+    with <= without
+}
+
+/// Whether the worst stretch of a log has no more power with the residual than the worst
+/// without.
+fn peak_is_no_worse(rests: &[[f64; 2]], spacing: f64) -> bool {
+    let length = ((STRETCH / spacing) as usize).max(1);
+    let worst = |of: usize| {
+        let powers = rests.chunks(length).map(|stretch| {
+            let squares = stretch.iter().map(|rest| rest[of] * rest[of]);
+            squares.sum::<f64>() / stretch.len() as f64
+        });
+        powers.fold(0.0, f64::max)
+    };
+    worst(0) <= worst(1)
 }
