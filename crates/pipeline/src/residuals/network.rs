@@ -38,7 +38,7 @@ impl Default for NetworkSettings {
             trained: 12,
             spread: 400,
             states: 3000,
-            epochs: 40,
+            epochs: 20,
             speed: 0.3,
             seed: 1,
         }
