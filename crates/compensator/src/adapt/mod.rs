@@ -128,7 +128,6 @@ impl Adaptation {
             information: state.information * self.belief.prior.retention,
             gap: [state.gap[0], state.gap[1] / self.belief.prior.retention],
         };
-        let known_gap = known.gap;
         let fit = known.fit(&record);
         let (torque, [before, after]) = (record.torque, fit.weighed);
         // Written so that NaN is refused too.
@@ -153,7 +152,7 @@ impl Adaptation {
                     let blunt = NOT_LINEAR * self.belief.wound();
                     [0.5 * gap, 0.25 * error * error + blunt * blunt]
                 }
-                None => known_gap,
+                None => state.gap,
             },
         });
         Ok(Learned {

@@ -6,8 +6,9 @@ use nalgebra::{SMatrix, SVector};
 
 use super::balance::{Balance, torque, wind_up};
 use super::belief::Belief;
-use super::parameter::COUNT;
+use super::parameter::{AdaptParameter, COUNT};
 use super::record::Record;
+use super::smooth::Point;
 use super::weight::weights;
 
 /// Unknowns of a record that no model keeps.
@@ -28,6 +29,21 @@ const FINEST: f64 = 1e-4;
 
 /// Weight of each value of the two balances.
 pub(super) type Weights = [Vec<f64>; 2];
+
+/// Share of the Coulomb level from which a transmission lies on one side, and how many points
+/// of a record must lie on either for it to tell the free travel between: from one side alone
+/// it cannot be told from the angle between the two scales.
+const ON_A_SIDE: f64 = 0.1;
+const POINTS: usize = 10;
+
+fn both_sides(belief: &Belief, record: &Record) -> bool {
+    let level = belief.model.travel * belief.value(AdaptParameter::StandingLoad);
+    let side = |sign: f64| {
+        let lies = |p: &&Point| sign * p.transmitted > ON_A_SIDE * level;
+        record.points.iter().filter(lies).count()
+    };
+    side(1.0) >= POINTS && side(-1.0) >= POINTS
+}
 
 /// Residuals of the torque and of the wind-up, and their rates of change.
 #[derive(Clone, Debug)]
@@ -53,7 +69,7 @@ impl Residuals {
         match i {
             HELD => friction,
             OFFSET => record.sees_load,
-            _ => record.sees_load && friction,
+            _ => record.sees_load && friction && both_sides(belief, record),
         }
     }
 
