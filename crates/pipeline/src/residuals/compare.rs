@@ -159,7 +159,9 @@ impl Contest {
             )))),
             Way::Named => {
                 let effects = NamedEffects::new(axis, &self.named)?;
-                Some(AnyLearner::Named(ResidualLearner::of(effects, level)))
+                Some(AnyLearner::Named(Box::new(ResidualLearner::of(
+                    effects, level,
+                ))))
             }
         })
     }

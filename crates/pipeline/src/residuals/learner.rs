@@ -14,7 +14,7 @@ pub enum AnyLearner {
     /// The output layer of a network.
     Network(Box<ResidualLearner<NetworkBasis>>),
     /// Sizes and shapes of effects.
-    Named(ResidualLearner<NamedEffects>),
+    Named(Box<ResidualLearner<NamedEffects>>),
 }
 
 /// What it has learned.
