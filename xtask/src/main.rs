@@ -21,7 +21,7 @@ use clap::{Parser, Subcommand};
 
 use commands::{
     bench, campaign, compensate, discover, export_drive, identify, identify_control, independent,
-    layers, learn, log, merge, pipeline, report, simulate, torture, train, validate,
+    layers, learn, log, merge, pipeline, report, residuals, simulate, torture, train, validate,
 };
 use context::Common;
 use diagnostic::Compiler;
@@ -61,6 +61,8 @@ enum Command {
     Compensate(compensate::Options),
     /// Write summary.json and report.html from the stages' results
     Report(Common),
+    /// Learn what no parameter holds by tables, a network and named effects, side by side
+    Residuals(Common),
     /// Learn the correction of a move from the log of a repetition
     Learn(learn::Options),
     /// Simulate one motion and write its log
@@ -127,6 +129,7 @@ fn run(command: Command) -> miette::Result<()> {
         Command::ExportDrive(options) => export_drive::command(&options),
         Command::Bench(options) => bench::command(&options),
         Command::Torture(options) => torture::command(&options),
+        Command::Residuals(common) => residuals::command(&common),
         Command::Learn(options) => learn::command(&options),
         Command::Layers => layers::command(),
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use compensator::{Along, Cascade, CompensatorError, DriveModel, Section};
+use compensator::{Along, Cascade, CompensatorError, DriveModel, Kinematics, Section};
 
 use crate::axis::{Axis, LoadSensor};
 use crate::effects::{Hooks, ScrewState};
@@ -133,7 +133,14 @@ impl Axis {
         });
         // A load without a sensor is where the motor says that it is.
         cascade.from_motor |= matches!(self.sensors.load, LoadSensor::Missing);
+        let [amplitude, order, phase] = self.mechanism.kinematic_harmonic().unwrap_or_default();
         Ok(DriveModel {
+            kinematics: Kinematics {
+                free_travel: self.mechanism.backlash(),
+                amplitude,
+                order,
+                phase,
+            },
             travel,
             load_inertia: self.mechanism.load_inertia(),
             friction: self.friction.law,

@@ -120,6 +120,7 @@ fn planned() -> (DriveModel, Vec<Mode>) {
         friction: LuGre::new(parameters).expect("a law"),
         lever: R,
         along: Along::new([0.0, 1.5], |_| section).expect("a stroke"),
+        kinematics: compensator::Kinematics::default(),
         drive: Drive::FieldOriented {
             motor,
             gear: 1.0,

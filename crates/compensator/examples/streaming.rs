@@ -41,6 +41,7 @@ fn believed() -> Result<DriveModel, Box<dyn std::error::Error>> {
         friction: LuGre::new(Parameters::LIU_2025)?,
         lever: R,
         along: Along::new([0.0, 1.5], |_| section)?,
+        kinematics: compensator::Kinematics::default(),
         drive: Drive::Lag {
             gain: KT,
             bandwidth: 4000.0,
@@ -72,6 +73,7 @@ fn single(model: &DriveModel) -> Result<DriveModel<f32>, Box<dyn std::error::Err
         friction: LuGre::new(model.friction.parameters().cast())?,
         lever: R as f32,
         along: Along::new([0.0, 1.5], |_| section)?,
+        kinematics: compensator::Kinematics::default(),
         drive: Drive::Lag {
             gain: KT as f32,
             bandwidth: 4000.0,
@@ -138,7 +140,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             };
             let sample = axis.sense(planned.reference, held);
             let asked = feedback.correct(&sample, &planned);
-            let correction = guard.pass(&asked, 0.0);
+            let correction = guard.pass(&asked, feedback.deviations().surprise);
             peak = peak.max((f64::from(planned.reference.position) - axis.position).abs());
             held = axis.cycle(&sample, &correction);
         }

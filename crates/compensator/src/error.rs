@@ -27,6 +27,16 @@ pub enum CompensatorError {
         /// Its outputs.
         outputs: usize,
     },
+    /// A network that gives no residual.
+    #[error(
+        "the network has {inputs} inputs and {outputs} outputs: a residual takes 5 (position, sine and cosine of the motor's angle, its speed, share of the Coulomb level) and gives 2 (torque, force)"
+    )]
+    ResidualShape {
+        /// Inputs of the network given.
+        inputs: usize,
+        /// Its outputs.
+        outputs: usize,
+    },
 }
 
 /// Refuses what lies outside a range; `inside` is false for NaN.

@@ -113,13 +113,17 @@ pub use identify::{
 };
 #[cfg(feature = "alloc")]
 pub use learning::{Advice, Gauss, LearnedMove, LearningSettings, Round};
-pub use model::{Along, Cascade, Drive, DriveModel, Mode, SECTIONS, Section};
+pub use model::{Along, Cascade, Drive, DriveModel, Kinematics, Mode, SECTIONS, Section};
 pub use network::{IncrementModel, NetworkCompensation};
 pub use none::NoCompensation;
 pub use plan::{Plan, PlanSettings, Planned, Planner, Standstill, Target};
-pub use residual::{HARMONICS, KNOTS, ResidualModel};
+pub use residual::{HARMONICS, KNOTS, Residual, ResidualAt, ResidualModel};
+#[cfg(feature = "alloc")]
+pub use residual::{NETWORK_INPUTS, ResidualNetwork};
 #[cfg(feature = "identify")]
-pub use residual::{ResidualLearner, Unexplained};
+pub use residual::{
+    NetworkBasis, ResidualBasis, ResidualLearner, ResidualTables, Row, Unexplained, over_gaussian,
+};
 pub use sample::{Correction, Reference, Sample};
 pub use transfer_function::{MAX_ORDER, TransferFunction, TransferFunctionModel};
 

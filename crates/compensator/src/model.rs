@@ -203,6 +203,79 @@ pub struct Cascade<T = f64> {
     pub from_motor: bool,
 }
 
+/// How the motor runs ahead of the load without any force: free travel, and an error of the
+/// transmission that repeats with the motor's turn. Nothing by default.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Kinematics<T = f64> {
+    /// Free travel between motor and load, m or rad at the load.
+    pub free_travel: T,
+    /// Amplitude by which the load runs ahead of r θ, a sin(n θ + φ), m or rad.
+    pub amplitude: T,
+    /// n, in radians of the error per radian of the motor.
+    pub order: T,
+    /// φ at the motor's angle 0, rad.
+    pub phase: T,
+}
+
+/// Steepness of the side on which a transmission with free travel lies, over the Coulomb
+/// level of the friction behind it: flanks touch under next to no torque, and noise of the
+/// torque is some thousandths of that level.
+const STEEP: f64 = 100.0;
+
+impl<T: Scalar> Kinematics<T> {
+    /// Part of the free travel by which the motor is ahead of the middle, m or rad at the
+    /// load, where the torque through the transmission is the share `transmitted` of the
+    /// Coulomb level: smooth, and never more than half of it.
+    #[must_use]
+    pub fn side(&self, transmitted: T) -> T {
+        // tanh x = e/(e + 2), e = e^{2x} − 1; at ±20 it is 1 to the last digit.
+        let twice = T::TWO * T::of(STEEP) * transmitted;
+        let raised = twice.max(T::of(-40.0)).min(T::of(40.0)).exp_m1();
+        T::HALF * self.free_travel * raised / (raised + T::TWO)
+    }
+
+    /// How far the load runs ahead of r θ at the motor's angle θ (rad), m or rad.
+    #[must_use]
+    pub fn ahead(&self, angle: T) -> T {
+        if self.amplitude == T::ZERO {
+            return T::ZERO;
+        }
+        let (sin, _) = (self.order * angle + self.phase).sin_cos();
+        self.amplitude * sin
+    }
+
+    /// Each value rounded to the nearest number of another scalar.
+    #[must_use]
+    pub fn cast<U: Scalar>(&self) -> Kinematics<U> {
+        let to = |value: T| U::of(value.to_f64());
+        Kinematics {
+            free_travel: to(self.free_travel),
+            amplitude: to(self.amplitude),
+            order: to(self.order),
+            phase: to(self.phase),
+        }
+    }
+
+    fn check(&self) -> Result<(), CompensatorError> {
+        let inside = within(self.free_travel, 0.0, 1e3);
+        require(
+            inside,
+            "free_travel",
+            self.free_travel,
+            "from 0 to 1000 m or rad",
+        )?;
+        let named = [
+            ("amplitude", self.amplitude),
+            ("order", self.order),
+            ("phase", self.phase),
+        ];
+        for (name, value) in named {
+            require(within(value, -1e6, 1e6), name, value, "from -1e6 to 1e6")?;
+        }
+        Ok(())
+    }
+}
+
 /// Everything that a plan is made from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveModel<T = f64> {
@@ -216,6 +289,8 @@ pub struct DriveModel<T = f64> {
     pub lever: T,
     /// What depends on the position.
     pub along: Along<T>,
+    /// How the motor runs ahead without any force.
+    pub kinematics: Kinematics<T>,
     /// The actuator.
     pub drive: Drive<T>,
     /// Time by which its command comes late, s.
@@ -249,6 +324,7 @@ impl<T: Exponential> DriveModel<T> {
         positive("load_inertia", self.load_inertia)?;
         positive("lever", self.lever)?;
         positive("torque_constant", self.torque_constant())?;
+        self.kinematics.check()?;
         let inside = self.effort_limit > T::ZERO;
         require(inside, "effort_limit", self.effort_limit, "above 0")?;
         let cycles = self.delay / self.period;

@@ -34,6 +34,7 @@ fn truth() -> DriveModel {
         .unwrap(),
         lever: TRAVEL,
         along: along.unwrap(),
+        kinematics: compensator::Kinematics::default(),
         drive: Drive::Lag {
             gain: 1.0,
             bandwidth: f64::INFINITY,

@@ -35,6 +35,7 @@ fn model(from_motor: bool) -> DriveModel {
         .unwrap(),
         lever: R,
         along: Along::new([0.0, 1.5], section).unwrap(),
+        kinematics: compensator::Kinematics::default(),
         drive: Drive::Lag {
             gain: 1.641,
             bandwidth: 6000.0,

@@ -3,8 +3,9 @@
 #![cfg(feature = "design")]
 
 use compensator::{
-    Along, Cascade, DesignError, Drive, DriveModel, Feedback, FeedbackDesign, FeedbackSettings,
-    Mode, Planned, Reference, Sample, Section, Variation,
+    Along, Cascade, Compensator, DesignError, Drive, DriveModel, Feedback, FeedbackDesign,
+    FeedbackSettings, Guard, GuardLimits, Guarded, Mode, Plan, PlanSettings, PlanWithFeedback,
+    Planned, Reference, Sample, Section, Status, Target, Trip, Variation,
 };
 use lugre::{LuGre, Parameters};
 use proptest::prelude::*;
@@ -41,6 +42,7 @@ fn axis(position: f64) -> (DriveModel, Vec<Mode>) {
         .expect("a law"),
         lever: R,
         along: Along::new([0.0, 1.5], |_| section).expect("a stroke"),
+        kinematics: compensator::Kinematics::default(),
         drive: Drive::Lag {
             gain: K,
             bandwidth: f64::INFINITY,
@@ -162,6 +164,47 @@ fn a_constant_force_is_cancelled() {
     );
     let held = commands[commands.len() - 1];
     assert!((held - 100.0 * R / K).abs() < 1e-5, "{held}");
+}
+
+/// The watchdog sees what the observer does: noise as designed for is no surprise, a scale
+/// that is suddenly 5 µm off is one, and so is a sample that is no number.
+#[test]
+fn a_guard_sees_the_surprise_of_plan_and_feedback() {
+    let (model, modes) = axis(CASCADE[1]);
+    for (off, tripped) in [(0.0, false), (5e-6, true), (f64::NAN, true)] {
+        let plan = Plan::new(&model, &PlanSettings::default(), |_| Target::default());
+        let inner = PlanWithFeedback::new(plan.expect("a plan"), design().feedback());
+        let limits = GuardLimits {
+            position: 1e-3,
+            effort: LIMIT,
+            surprise: 10.0,
+            patience: 10,
+            fade: 0,
+        };
+        let mut guarded = Guarded::new(inner, Guard::new(limits).expect("limits"));
+        guarded.guard_mut().switch(true);
+        let (mut machine, mut command, mut worst) = (Machine::default(), 0.0, 0.0_f64);
+        for (k, (noisy, _)) in samples(2000).iter().enumerate() {
+            let [position, motor_speed] = machine.seen(&modes);
+            let broken = if k < 1000 { 0.0 } else { off * (k % 2) as f64 };
+            let sample = Sample {
+                position: position + noisy.position + broken,
+                motor_speed: motor_speed + noisy.motor_speed - noisy.reference.velocity / R,
+                iq: command,
+                iq_command: command,
+                ..Sample::default()
+            };
+            command = guarded.correct(&sample).iq;
+            machine.cycle(&modes, command, 0.0);
+            if k < 1000 {
+                worst = worst.max(guarded.surprise());
+            }
+        }
+        // Half the position's noise that it was designed for, as much of the speed's.
+        assert!(worst > 0.1 && worst < 4.0, "{worst}");
+        let status = guarded.guard().status();
+        assert_eq!(status == Status::Tripped(Trip::Surprise), tripped, "{off}");
+    }
 }
 
 /// Without a force nothing is found, and nothing is done.

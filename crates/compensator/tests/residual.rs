@@ -2,7 +2,11 @@
 #![cfg(feature = "identify")]
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
-use compensator::{HARMONICS, ResidualLearner, ResidualModel, Unexplained};
+use cfnn::{Network, Scaling, Shape};
+use compensator::{
+    HARMONICS, NETWORK_INPUTS, NetworkBasis, Residual, ResidualAt, ResidualBasis, ResidualLearner,
+    ResidualModel, Unexplained, over_gaussian,
+};
 use proptest::prelude::*;
 
 const TRAVEL: f64 = 0.01 / std::f64::consts::TAU;
@@ -109,6 +113,131 @@ fn noise_is_not_learned_and_what_stops_helping_is_not_used() {
     // Another machine: the opposite of what was learned.
     changed.learn(&move_at(0.08, &mut noise, 0.005, -1.0), SPACING, SMOOTHING);
     assert!(changed.model().is_none(), "{:?}", changed.explained());
+}
+
+/// Hidden layers of no training, and machines that have a torque of the angle and a force of
+/// the position, in shares of their own.
+fn network_basis() -> NetworkBasis {
+    let shape = Shape {
+        inputs: NETWORK_INPUTS,
+        hidden: vec![24],
+        outputs: 2,
+    };
+    let mut noise = Noise(5);
+    let weights = (0..shape.parameters()).map(|_| 1.5 * noise.next());
+    let ranges = [
+        (0.5, 1.0),
+        (-1.0, 1.0),
+        (-1.0, 1.0),
+        (-70.0, 70.0),
+        (-1.0, 1.0),
+    ];
+    let scaling = Scaling::from_ranges(&ranges, &[(-1.0, 1.0); 2]).unwrap();
+    let network = Network::new(shape.clone(), scaling, weights.collect()).unwrap();
+    let states: Vec<Unexplained> = (0..600)
+        .map(|_| Unexplained {
+            position: 0.75 + 0.08 * noise.next(),
+            motor_angle: 3.0 * noise.next(),
+            motor_speed: 30.0 * noise.next(),
+            direction: noise.next().signum(),
+            torque: 0.0,
+        })
+        .collect();
+    let machines: Vec<_> = (0..60)
+        .map(|_| {
+            let [cogging, force] = [0.02 * noise.next(), 15.0 * noise.next()];
+            states.iter().map(|u| machine(u, cogging, force)).collect()
+        })
+        .collect();
+    NetworkBasis::new(&network, TRAVEL, 0.05, &states, &machines).unwrap()
+}
+
+fn machine(u: &Unexplained, cogging: f64, force: f64) -> [f64; 2] {
+    [
+        cogging * (u.motor_angle + 0.3).sin(),
+        force * u.direction * (1.0 + (u.position - 0.75) / 0.2),
+    ]
+}
+
+/// Of a machine of the family a move or two tell the share of torque and of force, though a log
+/// has only their sum; noise alone is never used.
+#[test]
+fn a_network_of_other_machines_needs_few_moves() {
+    let mut learner = ResidualLearner::of(network_basis(), COULOMB);
+    let mut nothing = learner.clone();
+    let mut noise = Noise(9);
+    let [cogging, force] = [0.03, -20.0];
+    for _ in 0..2 {
+        let mut log = move_at(0.08, &mut noise, 0.004, 0.0);
+        nothing.learn(&log, SPACING, SMOOTHING);
+        assert!(nothing.model().is_none());
+        for u in &mut log {
+            let [mut torque, mut push] = [0.0; 2];
+            over_gaussian(u, TRAVEL, SMOOTHING, |there, weight| {
+                let [t, f] = machine(there, cogging, force);
+                torque += weight * t;
+                push += weight * f;
+            });
+            u.torque += torque + TRAVEL * push;
+        }
+        learner.learn(&log, SPACING, SMOOTHING);
+    }
+    assert!(learner.explained()[1] > 0.8, "{:?}", learner.explained());
+    let mut network = learner.model().cloned().flatten().unwrap();
+    let (mut off, mut size) = ([0.0; 2], [0.0; 2]);
+    for u in move_at(0.1, &mut noise, 0.0, 0.0) {
+        let found = network.besides(&at(&u));
+        let wanted = machine(&u, cogging, force);
+        for i in 0..2 {
+            off[i] += (found[i] - wanted[i]).powi(2);
+            size[i] += wanted[i].powi(2);
+        }
+    }
+    assert!(
+        off[0] < 0.1 * size[0] && off[1] < 0.1 * size[1],
+        "{off:?} of {size:?}"
+    );
+}
+
+fn at(u: &Unexplained) -> ResidualAt {
+    ResidualAt {
+        motor_angle: u.motor_angle,
+        motor_speed: u.motor_speed,
+        position: u.position,
+        direction: u.direction,
+    }
+}
+
+/// What is fitted is what is used: the equation of an instant is the network's own answer.
+#[test]
+fn the_network_is_the_sum_of_its_output_layer() {
+    let mut basis = network_basis();
+    let mut noise = Noise(21);
+    let coefficients: Vec<f64> = (0..basis.size()).map(|_| noise.next()).collect();
+    let mut network = basis.model(&coefficients).unwrap();
+    for u in move_at(0.05, &mut noise, 0.0, 0.0).iter().step_by(50) {
+        let row = basis.row(u, 0.0).times(&coefficients);
+        let [torque, force] = network.besides(&at(u));
+        assert!((row - (torque + TRAVEL * force)).abs() < 1e-12, "{row}");
+    }
+}
+
+/// A harmonic behind a Gaussian is smaller by e^(−(nωσ)²/2).
+#[test]
+fn the_average_over_a_gaussian_is_that_of_a_harmonic() {
+    for turned in [0.0, 0.5, 2.0, 4.0_f64] {
+        let u = Unexplained {
+            motor_angle: 0.7,
+            motor_speed: turned / SMOOTHING,
+            ..Unexplained::default()
+        };
+        let mut mean = 0.0;
+        over_gaussian(&u, TRAVEL, SMOOTHING, |there, weight| {
+            mean += weight * there.motor_angle.cos();
+        });
+        let wanted = (-0.5 * turned * turned).exp() * 0.7_f64.cos();
+        assert!((mean - wanted).abs() < 1e-3, "{turned}: {mean} {wanted}");
+    }
 }
 
 #[test]

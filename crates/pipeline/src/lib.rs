@@ -21,6 +21,7 @@ pub mod identification;
 pub mod learning;
 mod linear_map;
 pub mod moves;
+pub mod residuals;
 pub mod robustness;
 pub mod sample_file;
 pub mod sampling;

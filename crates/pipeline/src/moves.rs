@@ -72,6 +72,38 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
         strategy: &mut dyn Strategy,
         planned: &NamedMotion,
     ) -> Result<MoveRun, PipelineError> {
+        let (errors, samples) = self.run(strategy, planned)?;
+        let learned = strategy.learn(&samples)?;
+        Ok(MoveRun {
+            figures: Figures::of_metres(&errors)?,
+            errors,
+            learned,
+        })
+    }
+
+    /// The same, and the strategy learns nothing from it.
+    ///
+    /// # Errors
+    /// As [`Moves::make`].
+    pub fn try_out(
+        &mut self,
+        strategy: &mut dyn Strategy,
+        planned: &NamedMotion,
+    ) -> Result<MoveRun, PipelineError> {
+        let (errors, _) = self.run(strategy, planned)?;
+        Ok(MoveRun {
+            figures: Figures::of_metres(&errors)?,
+            errors,
+            learned: Learned::new(),
+        })
+    }
+
+    /// Errors and samples of a move.
+    fn run(
+        &mut self,
+        strategy: &mut dyn Strategy,
+        planned: &NamedMotion,
+    ) -> Result<(Vec<f64>, Vec<Sample>), PipelineError> {
         let begin = planned.motion.at(0.0).position;
         let left = self.left.take();
         let (mut state, continued) = match left.filter(|l| (l.end - begin).abs() < SAME_PLACE) {
@@ -109,12 +141,7 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
             what: format!("move {}", planned.name),
             source,
         })?;
-        let learned = strategy.learn(&samples)?;
-        Ok(MoveRun {
-            figures: Figures::of_metres(&errors)?,
-            errors,
-            learned,
-        })
+        Ok((errors, samples))
     }
 }
 

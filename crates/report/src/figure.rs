@@ -15,6 +15,9 @@ pub struct Figure {
     pub x_scale: Scale,
     /// Scale of the vertical axis.
     pub y_scale: Scale,
+    /// Names of the places 0, 1, 2, … of the vertical axis, from the top down; empty where
+    /// it is one of numbers. A narrow drawing shows each up to its first space.
+    pub rows: Vec<String>,
     /// The series, drawn in this order; later ones lie above earlier ones.
     pub series: Vec<Series>,
     /// Text below the figure; empty for none.
@@ -121,6 +124,7 @@ impl Figure {
             y_label: y_label.into(),
             x_scale: Scale::Linear,
             y_scale: Scale::Linear,
+            rows: Vec::new(),
             series: Vec::new(),
             caption: String::new(),
             alt: String::new(),
@@ -142,6 +146,13 @@ impl Figure {
     /// Sets the text for readers who cannot see the figure.
     pub fn alt(mut self, text: impl Into<String>) -> Self {
         self.alt = text.into();
+        self
+    }
+
+    /// Makes the vertical axis one of named rows, from the top down: a point lies in the row
+    /// that its vertical coordinate is nearest to, a little above or below its middle.
+    pub fn rows<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
+        self.rows = names.into_iter().map(Into::into).collect();
         self
     }
 

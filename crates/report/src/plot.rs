@@ -51,9 +51,16 @@ pub(crate) fn is_dashed(series: &Series, index: usize) -> bool {
     series.dashed || (series.colour.is_none() && index >= PALETTE.len())
 }
 
+/// Height of a named row, and of what a drawing has above and below its rows.
+const ROW: f64 = 24.0;
+const AROUND: f64 = 70.0;
+
 /// Draws a checked figure, without title and legend. `id` must be unique in the
 /// page.
-pub(crate) fn draw(figure: &Figure, canvas: Canvas, id: &str) -> String {
+pub(crate) fn draw(figure: &Figure, mut canvas: Canvas, id: &str) -> String {
+    if !figure.rows.is_empty() {
+        canvas.height = AROUND + ROW * figure.rows.len() as f64;
+    }
     let (x, y) = fit(figure, canvas);
     let plots = figure
         .series
@@ -74,10 +81,21 @@ fn fit(figure: &Figure, canvas: Canvas) -> (Fitted, Fitted) {
     };
     // Dots on the frame would be cut in half, so only lines end at the frame.
     let tight = figure.series.iter().all(|s| s.style != Style::Dots);
+    let y = match &figure.rows[..] {
+        [] => Fitted::new(figure.y_scale, all(|s| &s.y), canvas.height / 55.0, false),
+        names => Fitted::rows(names.iter().map(|name| short(name, canvas)).collect()),
+    };
     (
         Fitted::new(figure.x_scale, all(|s| &s.x), canvas.width / 90.0, tight),
-        Fitted::new(figure.y_scale, all(|s| &s.y), canvas.height / 55.0, false),
+        y,
     )
+}
+
+/// The name of a row as far as there is room for it.
+fn short(name: &str, canvas: Canvas) -> String {
+    let narrow = canvas.width <= NARROW.width;
+    let end = if narrow { name.find(' ') } else { None };
+    name[..end.unwrap_or(name.len())].to_owned()
 }
 
 fn layout(figure: &Figure, canvas: Canvas, x: &Fitted, y: &Fitted) -> Layout {

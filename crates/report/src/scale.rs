@@ -15,6 +15,8 @@ pub(crate) struct Fitted {
     pub step: f64,
     /// Decades between labelled ticks of a logarithmic axis.
     pub stride: i32,
+    /// Names of rows from the top down, where it is an axis of these.
+    pub names: Vec<String>,
 }
 
 impl Fitted {
@@ -26,6 +28,18 @@ impl Fitted {
         match scale {
             Scale::Linear => Self::linear(min, max, ticks, tight),
             Scale::Log => Self::log(min, max, ticks, tight),
+        }
+    }
+
+    /// An axis of named rows: row 0 is drawn on top.
+    pub fn rows(names: Vec<String>) -> Self {
+        Self {
+            scale: Scale::Linear,
+            exponent: 0,
+            range: (-0.6, names.len() as f64 - 0.4),
+            step: 1.0,
+            stride: 1,
+            names,
         }
     }
 
@@ -59,6 +73,7 @@ impl Fitted {
             range: (lo, hi),
             step,
             stride: 1,
+            names: Vec::new(),
         }
     }
 
@@ -80,11 +95,15 @@ impl Fitted {
             range: (lo, hi),
             step: 1.0,
             stride: (decades / ticks).ceil().max(1.0) as i32,
+            names: Vec::new(),
         }
     }
 
     /// The drawn value of a value.
     pub fn drawn(&self, value: f64) -> f64 {
+        if !self.names.is_empty() {
+            return (self.names.len() - 1) as f64 - value;
+        }
         scaled(value, self.exponent)
     }
 
@@ -109,6 +128,12 @@ impl Fitted {
 
     /// Label of the tick at a drawn value.
     pub fn tick_label(&self, drawn: f64) -> String {
+        if !self.names.is_empty() {
+            let row = (self.names.len() - 1) as f64 - drawn.round();
+            // Ticks lie on rows; one beyond them has no name.
+            let name = (row >= 0.0).then(|| self.names.get(row as usize)).flatten();
+            return name.cloned().unwrap_or_default();
+        }
         match self.scale {
             Scale::Linear => {
                 let digits = (-(self.step.log10() + 1e-9).floor()).max(0.0) as usize;
@@ -146,6 +171,9 @@ impl Fitted {
     /// Number of characters of the longest tick label.
     pub fn widest_label(&self) -> usize {
         let length = |v: f64| self.tick_label(v).chars().count();
+        if let Some(widest) = self.names.iter().map(|name| name.chars().count()).max() {
+            return widest;
+        }
         match self.scale {
             Scale::Linear => length(self.range.0).max(length(self.range.1)),
             Scale::Log => {

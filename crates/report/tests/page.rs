@@ -293,3 +293,26 @@ fn pages_are_written_whole_or_not_at_all() {
     let error = write_atomic(&absent, &full_page()).unwrap_err().to_string();
     assert!(error.starts_with(&absent.display().to_string()), "{error}");
 }
+
+/// Named rows: each has its name, in a narrow drawing up to the first space, from the top
+/// down, and its points beside it.
+#[test]
+fn rows_have_names() {
+    let figure = Figure::new("Left", "µm", "")
+        .rows(["1 first case", "2 second case"])
+        .log_x()
+        .series(Series::dots("a", vec![0.1, 10.0], vec![0.0, 1.0]));
+    let html = render(&Page::new("").section(Section::new("").figure(figure))).unwrap();
+    assert!(html.contains("1 first case") && html.contains("2 second case"));
+    assert!(html.contains(">1<") && html.contains(">2<"));
+    // A dot is a line of no length, "M x y h0".
+    let heights: Vec<f64> = html
+        .split("h0")
+        .filter_map(|dot| dot.rsplit('M').next()?.split(' ').nth(1)?.parse().ok())
+        .collect();
+    assert_eq!(heights.len(), 4, "{heights:?}");
+    assert!(
+        heights[0] < heights[1] && heights[2] < heights[3],
+        "{heights:?}"
+    );
+}

@@ -18,6 +18,7 @@ mod matrix_job;
 pub mod merge;
 pub mod pipeline;
 pub mod report;
+pub mod residuals;
 pub mod robustness;
 pub mod sample;
 pub mod simulate;

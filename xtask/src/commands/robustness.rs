@@ -1,20 +1,21 @@
 //! `robustness`: what compensation leaves where what is believed is wrong, draw by draw.
 
-use std::cell::RefCell;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use axis_sim::Measured;
-use campaign::{CampaignError, Column, Failure, Inputs, Job, Merged, Value};
+use campaign::{Column, Failure, Inputs, Job, Merged, Value};
 use clap::Args;
 use discover_matrix::hidden::Noise;
-use miette::{IntoDiagnostic, Result};
+use miette::{IntoDiagnostic, Result, WrapErr};
 use pipeline::robustness::{Draws, Goal, Point, Sense, Study, make, studies};
-use serde::ser::{Error as _, Serialize, Serializer};
+use report::{Page, render};
 
 use crate::context::{Claim, Common, Context};
 use crate::jobs::{JobOptions, Sharding, failure};
-use crate::output::{say, write_whole_by};
+use crate::output::{say, write_whole};
+use crate::page;
+use crate::page::robustness::{Asked, Limit, Robustness, Row};
 
 /// Options of `robustness`.
 #[derive(Args)]
@@ -41,7 +42,7 @@ impl JobOptions for Options {
             (None, false) => Draws::FULL,
         };
         let rows = studies(&context.axis, &context.machine, context.seed, draws);
-        Ok(Box::new(Robustness {
+        Ok(Box::new(AllDraws {
             rows: rows.into_diagnostic()?,
             folder: context.out.join("robustness"),
             context,
@@ -59,14 +60,14 @@ impl JobOptions for Options {
 }
 
 /// The table as a job: a case is a draw, those of one row after those of another.
-struct Robustness {
+struct AllDraws {
     context: Context,
     folder: PathBuf,
     draws: Draws,
     rows: Vec<Study>,
 }
 
-impl Robustness {
+impl AllDraws {
     /// Each row with its cases.
     fn ranges(&self) -> impl Iterator<Item = (&Study, Range<usize>)> {
         let mut end = 0;
@@ -90,7 +91,36 @@ impl Robustness {
     }
 }
 
-impl Job for Robustness {
+impl AllDraws {
+    /// Writes the table, and the page that shows each draw.
+    fn write(&self, rows: Vec<Row>) -> Result<()> {
+        let context = &self.context;
+        let table = Robustness {
+            axis: context.axis.name.clone(),
+            axis_fingerprint: context.axis.fingerprint.clone(),
+            machine: context.machine.name.clone(),
+            machine_fingerprint: context.machine.fingerprint.clone(),
+            seed: context.seed,
+            quick: self.draws != Draws::FULL,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            rows,
+        };
+        let json = context.out.join("robustness.json");
+        write_whole(&json, &serde_json::to_vec_pretty(&table).into_diagnostic()?)?;
+        let title = format!("Compensation of {}", table.axis);
+        let page = Page::new(title).section(page::robustness::robustness(&table));
+        let page = render(&page)
+            .into_diagnostic()
+            .wrap_err("the page cannot be made")?;
+        let html = context.out.join("robustness.html");
+        write_whole(&html, page.as_bytes())?;
+        tell(&table.rows)?;
+        let [json, html] = [json.display(), html.display()];
+        say(format!("each draw is a point in {json} and {html}"))
+    }
+}
+
+impl Job for AllDraws {
     fn name(&self) -> &'static str {
         "robustness"
     }
@@ -128,63 +158,40 @@ impl Job for Robustness {
     }
 
     fn finish(&self, merged: &Merged) -> std::result::Result<(), Failure> {
-        let judged = self.ranges().map(|(row, cases)| judge(row, cases, merged));
-        let table = judged.collect::<std::result::Result<Vec<_>, _>>()?;
-        let json = self.context.out.join("robustness.json");
-        let write = |file: &mut _| Ok(serde_json::to_writer_pretty(file, &table)?);
-        write_whole_by(&json, write).map_err(failure)?;
-        tell(&table).map_err(failure)?;
-        say(format!("each draw is a point in {}", json.display())).map_err(failure)
-    }
-}
-
-/// A row of robustness.json.
-#[derive(serde::Serialize)]
-struct Row<'a> {
-    what: &'a str,
-    strategy: &'static str,
-    noise: bool,
-    moves: Vec<Asked<'a>>,
-    points: Points<'a>,
-}
-
-/// What was asked of a counted move, and whether all draws keep it.
-#[derive(serde::Serialize)]
-struct Asked<'a> {
-    counted: &'a str,
-    asked: String,
-    worst: String,
-    kept: bool,
-}
-
-/// The points of a row, which are read again whenever they are asked for.
-struct Points<'a> {
-    merged: &'a Merged,
-    cases: Range<usize>,
-}
-
-impl Points<'_> {
-    fn iter(&self) -> impl Iterator<Item = std::result::Result<Point, Failure>> {
-        let read = |row: std::result::Result<campaign::Row, CampaignError>| {
-            Ok(serde_json::from_str(row?[0].text()?)?)
+        let points = |cases: Range<usize>| -> std::result::Result<Vec<Point>, Failure> {
+            let read = |row: std::result::Result<campaign::Row, _>| {
+                let row: campaign::Row = row.map_err(|e: campaign::CampaignError| e)?;
+                Ok(serde_json::from_str(row[0].text()?)?)
+            };
+            merged.range(cases).map(read).collect()
         };
-        self.merged.range(self.cases.clone()).map(read)
+        let judged = self
+            .ranges()
+            .map(|(row, cases)| Ok(judge(row, points(cases)?)));
+        let rows = judged.collect::<std::result::Result<Vec<_>, Failure>>()?;
+        self.write(rows).map_err(failure)
     }
 }
 
-impl Serialize for Points<'_> {
-    fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
-        // A sequence takes no errors: the first one ends it.
-        let failed = RefCell::new(None);
-        let points = self.iter().map_while(|point| {
-            let note = |e: Failure| *failed.borrow_mut() = Some(e.to_string());
-            point.map_err(note).ok()
-        });
-        let done = to.collect_seq(points)?;
-        match failed.into_inner() {
-            Some(why) => Err(S::Error::custom(why)),
-            None => Ok(done),
+fn judge(row: &Study, points: Vec<Point>) -> Row {
+    let mut counted: Vec<Counted> = row.moves.iter().map(|_| Counted::default()).collect();
+    for point in &points {
+        for (i, counted) in counted.iter_mut().enumerate() {
+            counted.left = counted.left.max(point.compensated[i].max);
+            counted.none = counted.none.max(point.none[i].max);
+            counted.peaks.push(point.peak_taken(i));
+            counted.means.push(point.mean_taken(i));
         }
+    }
+    let moves = row.moves.iter().zip(&mut counted);
+    Row {
+        what: row.name.clone(),
+        strategy: row.strategy.to_owned(),
+        noise: row.noise,
+        moves: moves
+            .map(|((words, goal), counted)| asked(words, goal, counted))
+            .collect(),
+        points,
     }
 }
 
@@ -199,35 +206,7 @@ struct Counted {
     means: Vec<f64>,
 }
 
-fn judge<'a>(
-    row: &'a Study,
-    cases: Range<usize>,
-    merged: &'a Merged,
-) -> std::result::Result<Row<'a>, Failure> {
-    let points = Points { merged, cases };
-    let mut counted: Vec<Counted> = row.moves.iter().map(|_| Counted::default()).collect();
-    for point in points.iter() {
-        let point = point?;
-        for (i, counted) in counted.iter_mut().enumerate() {
-            counted.left = counted.left.max(point.compensated[i].max);
-            counted.none = counted.none.max(point.none[i].max);
-            counted.peaks.push(point.peak_taken(i));
-            counted.means.push(point.mean_taken(i));
-        }
-    }
-    let moves = row.moves.iter().zip(&mut counted);
-    Ok(Row {
-        what: &row.name,
-        strategy: row.strategy,
-        noise: row.noise,
-        moves: moves
-            .map(|((words, goal), counted)| asked(words, goal, counted))
-            .collect(),
-        points,
-    })
-}
-
-fn asked<'a>(words: &'a str, goal: &Goal, counted: &mut Counted) -> Asked<'a> {
+fn asked(words: &str, goal: &Goal, counted: &mut Counted) -> Asked {
     counted.peaks.sort_by(f64::total_cmp);
     counted.means.sort_by(f64::total_cmp);
     let worst = |of: &[f64]| of.first().copied().unwrap_or(f64::NAN);
@@ -257,14 +236,18 @@ fn asked<'a>(words: &'a str, goal: &Goal, counted: &mut Counted) -> Asked<'a> {
         }
     };
     Asked {
-        counted: words,
+        counted: words.to_owned(),
         asked,
+        goal: match *goal {
+            Goal::Left(most) => Limit::LeftUm(most),
+            Goal::Taken { peak, .. } => Limit::LeftPercent(100.0 - peak),
+        },
         worst: found,
         kept,
     }
 }
 
-fn tell(table: &[Row<'_>]) -> Result<()> {
+fn tell(table: &[Row]) -> Result<()> {
     say("| case | strategy | draws | counted | asked | found: worst draw, peak / mean | |")?;
     say("|---|---|---|---|---|---|---|")?;
     for row in table {
@@ -275,7 +258,7 @@ fn tell(table: &[Row<'_>]) -> Result<()> {
                 "| {}{noise} | {} | {} | {} | {} | {} | {kept} |",
                 row.what,
                 row.strategy.replace('_', " "),
-                row.points.cases.len(),
+                row.points.len(),
                 asked.counted,
                 asked.asked,
                 asked.worst,

@@ -5,6 +5,7 @@ pub mod discovery;
 pub mod matrix;
 mod mechanics;
 mod network;
+pub mod robustness;
 mod tracking;
 
 use axis_sim::mechanism::{Freedom, Way};
@@ -18,15 +19,19 @@ use crate::results::Results;
 /// The whole page.
 pub fn page(context: &Context, results: &Results) -> Page {
     let axis = &context.axis;
-    Page::new(format!("Dynamic error of {}", axis.name))
+    let page = Page::new(format!("Dynamic error of {}", axis.name))
         .lead(axis.description.clone())
         .section(overview(context, results))
         .section(tracking::profiles(results))
         .section(tracking::model_and_machine(context, results))
         .section(network::network(results))
         .section(tracking::prediction(results))
-        .section(compensation::compensation(results))
-        .section(mechanics::friction(context, results))
+        .section(compensation::compensation(results));
+    let page = match robustness::Robustness::of(context) {
+        Some(made) => page.section(robustness::robustness(&made)),
+        None => page,
+    };
+    page.section(mechanics::friction(context, results))
         .section(mechanics::vibration(results))
         .section(mechanics::modes(results))
         .section(network::study(results))

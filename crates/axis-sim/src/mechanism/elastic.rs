@@ -16,6 +16,8 @@ pub(super) struct Elastic {
     pub backlash: f64,
     pub reach: Option<Range>,
     pub kinematic_error: Option<KinematicError>,
+    /// Amplitude, order and phase of it.
+    pub harmonic: Option<[f64; 3]>,
 }
 
 impl std::fmt::Debug for Elastic {
@@ -47,6 +49,7 @@ impl Elastic {
             backlash: v.or("backlash", 0.0),
             reach: None,
             kinematic_error: None,
+            harmonic: None,
         })
     }
 
@@ -101,6 +104,10 @@ impl Mechanism for Elastic {
 
     fn kinematic_error(&self) -> Option<KinematicError> {
         self.kinematic_error.clone()
+    }
+
+    fn kinematic_harmonic(&self) -> Option<[f64; 3]> {
+        self.harmonic
     }
 
     /// The same method in short steps: a resonance of 230 Hz is late by 0.2 % of its period in

@@ -49,6 +49,7 @@ fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
         let order = v.or("kinematic_error_order", 2.0);
         let phase = v.or("kinematic_error_phase", 0.0);
         gear.kinematic_error = Some(harmonic(amplitude, order, phase));
+        gear.harmonic = Some([amplitude, order, phase]);
     }
     Ok(Arc::new(gear))
 }

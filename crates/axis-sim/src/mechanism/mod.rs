@@ -169,6 +169,12 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
         None
     }
 
+    /// The same where it is a sin(n θ + φ) of the motor's angle θ: a (m or rad at the load), n
+    /// and φ (rad). What a plan can foresee.
+    fn kinematic_harmonic(&self) -> Option<[f64; 3]> {
+        None
+    }
+
     /// Longest step of its exact way, s, where that differs from the fast one, be it by the
     /// step alone.
     fn exact_step(&self) -> Option<f64> {

@@ -10,7 +10,7 @@
 
 use std::vec::Vec;
 
-use libm::{exp, tanh};
+use libm::exp;
 use lugre::LuGre;
 use nalgebra::SVector;
 
@@ -18,11 +18,10 @@ use super::belief::Belief;
 use super::parameter::{AdaptParameter, COUNT, Theta};
 use super::record::Record;
 use super::residual::{GAP, HELD, OFFSET};
+use crate::Kinematics;
 
 /// Change of a parameter by which sensitivities are found.
 const STEP: f64 = 0.01;
-/// Steepness of the side on which a transmission lies, over the Coulomb level.
-const STEEP: f64 = 10.0;
 
 /// Residuals of one balance, and for each coordinate in it the change of what is predicted.
 #[derive(Clone, Debug, Default)]
@@ -107,9 +106,14 @@ pub(super) fn wind_up<const N: usize>(
     let factor = exp(at[compliance]);
     let level = belief.model.travel * belief.value(AdaptParameter::StandingLoad);
     let points = record.points.iter();
+    // Side of a free travel of 2: 1 is half of it.
+    let two = Kinematics {
+        free_travel: 2.0,
+        ..Kinematics::default()
+    };
     let side = points
         .clone()
-        .map(|p| tanh(STEEP * p.transmitted / level.max(1e-12)));
+        .map(|p| two.side(p.transmitted / level.max(1e-12)));
     let wound = points
         .clone()
         .map(|p| factor * p.compliance * p.transmitted);

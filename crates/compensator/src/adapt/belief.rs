@@ -90,6 +90,17 @@ impl Belief {
         LuGre::new(changed).unwrap_or(self.model.friction)
     }
 
+    /// Half the believed free travel, rad at the motor.
+    pub fn half_gap(&self) -> f64 {
+        0.5 * self.model.kinematics.free_travel / self.model.travel
+    }
+
+    /// Greatest wind-up under the Coulomb level, rad at the motor.
+    pub fn wound(&self) -> f64 {
+        let level = self.model.travel * self.value(AdaptParameter::StandingLoad);
+        self.value(AdaptParameter::Compliance) * level
+    }
+
     /// Force of the standing load at `theta`, N or N·m.
     pub fn standing_load(&self, theta: &Theta) -> f64 {
         let share = theta[AdaptParameter::StandingLoad.index()];

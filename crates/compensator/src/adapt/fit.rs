@@ -6,7 +6,7 @@ use super::information::{gained, inverse};
 use super::known::{ALL, Column, Information, Known};
 use super::parameter::{COUNT, Theta};
 use super::record::Record;
-use super::residual::Residuals;
+use super::residual::{GAP, Residuals};
 
 /// Most Gauss–Newton steps.
 const STEPS: usize = 30;
@@ -37,6 +37,7 @@ impl Known<'_> {
         for i in 0..COUNT {
             at[i] = self.estimate[i];
         }
+        at[GAP] = self.gap[0];
         let free: Vec<usize> = (0..ALL).filter(|&i| self.free(record, i)).collect();
         let start = Residuals::at(self.belief, record, &at, &free);
         let mut weights = start.weights(free.len(), true);

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use super::belief::Belief;
 use super::parameter::{AdaptParameter, COUNT, Theta};
 use super::record::Record;
-use super::residual::{NUISANCES, Residuals};
+use super::residual::{GAP, NUISANCES, Residuals};
 
 /// Parameters and nuisances.
 pub(super) const ALL: usize = COUNT + NUISANCES;
@@ -25,6 +25,8 @@ pub(super) struct Known<'a> {
     /// Estimate that `information` is about.
     pub estimate: Theta,
     pub information: Information,
+    /// Half the free travel that earlier moves told, and its variance; rad at the motor.
+    pub gap: [f64; 2],
 }
 
 impl Known<'_> {
@@ -46,9 +48,17 @@ impl Known<'_> {
             Some(&parameter) => self.belief.prior.of(parameter).deviation,
             None => Residuals::nuisance_deviation(self.belief, record, i),
         };
-        let far = (value.abs() / deviation / GIVES_WAY).max(1.0);
+        let far = ((value - self.mean(i)).abs() / deviation / GIVES_WAY).max(1.0);
         let spread = deviation * far;
         1.0 / (spread * spread)
+    }
+
+    /// Mean of the prior of a coordinate: 0 but for half the free travel that is believed.
+    fn mean(&self, i: usize) -> f64 {
+        match i {
+            GAP => self.belief.half_gap(),
+            _ => 0.0,
+        }
     }
 
     /// Least and greatest value of a coordinate.
@@ -71,11 +81,13 @@ impl Known<'_> {
         for i in 0..ALL {
             // What is not free has no prior either; its row is never used.
             let precision = self.precision(record, i, at[i]).min(1e300);
-            gradient[i] = precision * at[i];
+            gradient[i] = precision * (at[i] - self.mean(i));
             curvature[(i, i)] = precision;
         }
         let away = SVector::<f64, COUNT>::from_fn(|i, _| at[i] - self.estimate[i]);
         let pull = self.information * away;
+        gradient[GAP] += (at[GAP] - self.gap[0]) / self.gap[1];
+        curvature[(GAP, GAP)] += 1.0 / self.gap[1];
         for i in 0..COUNT {
             gradient[i] += pull[i];
             for j in 0..COUNT {
@@ -89,8 +101,14 @@ impl Known<'_> {
     /// Twice the negative logarithm of the probability of `at`, but for a constant. The
     /// prior's precisions are those at `from`.
     pub fn cost(&self, record: &Record, [at, from]: [&Column; 2], free: &[usize]) -> f64 {
-        let prior = |&i: &usize| self.precision(record, i, from[i]) * at[i] * at[i];
+        let prior = |&i: &usize| {
+            let away = at[i] - self.mean(i);
+            self.precision(record, i, from[i]) * away * away
+        };
+        let gap = at[GAP] - self.gap[0];
         let away = SVector::<f64, COUNT>::from_fn(|i, _| at[i] - self.estimate[i]);
-        free.iter().map(prior).sum::<f64>() + away.dot(&(self.information * away))
+        free.iter().map(prior).sum::<f64>()
+            + gap * gap / self.gap[1]
+            + away.dot(&(self.information * away))
     }
 }

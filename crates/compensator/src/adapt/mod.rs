@@ -54,6 +54,11 @@ const MOST_LEFT: f64 = 0.3;
 /// counts as none: earlier moves and the prior pull as well.
 const WORSE: f64 = 1.1;
 const FINEST: f64 = 1e-3;
+/// Share of the wind-up under the Coulomb level that half a free travel is uncertain by
+/// whatever a log says.
+const NOT_LINEAR: f64 = 0.02;
+/// Standard errors of a free travel that a plan takes up.
+const CLEAR: f64 = 3.0;
 
 /// The parameters of a model, adapted from move to move.
 #[derive(Clone, Debug)]
@@ -68,6 +73,8 @@ struct State {
     estimate: Theta,
     information: Information,
     variances: Theta,
+    /// Half the free travel and its variance, rad at the motor; infinite where no move told.
+    gap: [f64; 2],
 }
 
 impl Adaptation {
@@ -95,6 +102,7 @@ impl Adaptation {
             estimate: [0.0; COUNT],
             information: Information::zeros(),
             variances: prior.spreads.map(|s| s.deviation * s.deviation),
+            gap: [belief.half_gap(), f64::INFINITY],
         };
         if !AdaptParameter::ALL.iter().any(|&p| belief.adapts(p)) {
             return Err(AdaptError::Nothing);
@@ -118,6 +126,7 @@ impl Adaptation {
             belief: &self.belief,
             estimate: state.estimate,
             information: state.information * self.belief.prior.retention,
+            gap: [state.gap[0], state.gap[1] / self.belief.prior.retention],
         };
         let fit = known.fit(&record);
         let (torque, [before, after]) = (record.torque, fit.weighed);
@@ -137,6 +146,14 @@ impl Adaptation {
             estimate: fit.estimate,
             information: fit.information,
             variances: fit.variances,
+            gap: match fit.gap {
+                Some([gap, error]) => {
+                    // A transmission is not as linear as its model.
+                    let blunt = NOT_LINEAR * self.belief.wound();
+                    [0.5 * gap, 0.25 * error * error + blunt * blunt]
+                }
+                None => state.gap,
+            },
         });
         Ok(Learned {
             moves: self.moves(),
@@ -152,7 +169,15 @@ impl Adaptation {
 
     /// The model with the present estimates.
     pub fn model(&self) -> DriveModel {
-        self.belief.at(&self.state().estimate)
+        let mut model = self.belief.at(&self.state().estimate);
+        let [half, variance] = self.state().gap;
+        // Less than three standard errors is none; and none is negative.
+        if half > CLEAR * variance.sqrt() {
+            model.kinematics.free_travel = 2.0 * half * model.travel;
+        } else if variance.is_finite() {
+            model.kinematics.free_travel = 0.0;
+        }
+        model
     }
 
     /// Moves learned and not taken back.

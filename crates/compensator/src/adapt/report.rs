@@ -38,7 +38,7 @@ pub struct Learned {
     /// RMS of the motor's torque, N·m.
     pub torque: f64,
     /// Free travel between motor and load that the log seems to show, and its standard
-    /// error, m or rad at the load; none where the load has no sensor of its own. No model
-    /// has it: it is told for maintenance.
+    /// error, m or rad at the load; none where the load has no sensor of its own. The model
+    /// has it where it is above three of them.
     pub free_travel: Option<[f64; 2]>,
 }

@@ -8,6 +8,7 @@ use super::balance::{Balance, torque, wind_up};
 use super::belief::Belief;
 use super::parameter::{AdaptParameter, COUNT};
 use super::record::Record;
+use super::smooth::Point;
 use super::weight::weights;
 
 /// Unknowns of a record that no model keeps.
@@ -28,6 +29,21 @@ const FINEST: f64 = 1e-4;
 
 /// Weight of each value of the two balances.
 pub(super) type Weights = [Vec<f64>; 2];
+
+/// Share of the Coulomb level from which a transmission lies on one side, and how many points
+/// of a record must lie on either for it to tell the free travel between: from one side alone
+/// it cannot be told from the angle between the two scales.
+const ON_A_SIDE: f64 = 0.1;
+const POINTS: usize = 10;
+
+fn both_sides(belief: &Belief, record: &Record) -> bool {
+    let level = belief.model.travel * belief.value(AdaptParameter::StandingLoad);
+    let side = |sign: f64| {
+        let lies = |p: &&Point| sign * p.transmitted > ON_A_SIDE * level;
+        record.points.iter().filter(lies).count()
+    };
+    side(1.0) >= POINTS && side(-1.0) >= POINTS
+}
 
 /// Residuals of the torque and of the wind-up, and their rates of change.
 #[derive(Clone, Debug)]
@@ -53,14 +69,13 @@ impl Residuals {
         match i {
             HELD => friction,
             OFFSET => record.sees_load,
-            _ => record.sees_load && friction,
+            _ => record.sees_load && friction && both_sides(belief, record),
         }
     }
 
     /// Deviation of a nuisance, in its unit.
     pub fn nuisance_deviation(belief: &Belief, record: &Record, i: usize) -> f64 {
-        let level = belief.model.travel * belief.value(AdaptParameter::StandingLoad);
-        let wound = belief.value(AdaptParameter::Compliance) * level;
+        let wound = belief.wound();
         let leads = record.points.iter().map(|p| p.lead.abs());
         match i {
             HELD => HELD_DEVIATION,

@@ -18,6 +18,8 @@ pub(super) struct Node<T> {
     pub l: [States<T>; MOST_MEASURED],
     /// u = −K x̂, the disturbance's cancellation among them.
     pub k: States<T>,
+    /// Deviation of each measurement from what is expected of it, while the model is right: SI.
+    pub expected: [T; MOST_MEASURED],
 }
 
 impl<T: Scalar> Node<T> {
@@ -27,6 +29,7 @@ impl<T: Scalar> Node<T> {
         b: [T::ZERO; MOST_STATES],
         l: [[T::ZERO; MOST_STATES]; MOST_MEASURED],
         k: [T::ZERO; MOST_STATES],
+        expected: [T::ZERO; MOST_MEASURED],
     };
 
     fn cast<U: Scalar>(&self) -> Node<U> {
@@ -35,6 +38,7 @@ impl<T: Scalar> Node<T> {
             b: cast_all(self.b),
             l: self.l.map(cast_all),
             k: cast_all(self.k),
+            expected: cast_all(self.expected),
         }
     }
 }

@@ -69,6 +69,10 @@ pub struct Deviations<T = f64> {
     /// What the measurements were off what was expected of them: position (m), motor speed
     /// (rad/s), q current (A; 0 where it is not measured).
     pub innovation: [T; MOST_MEASURED],
+    /// The same as one number: √(Σ (νᵢ/sᵢ)²/m) over m measurements, sᵢ being the deviation of
+    /// the innovation νᵢ that the Kalman filter reckons with. About 1 while its noise is what it
+    /// was designed for; infinite for a sample that is not finite.
+    pub surprise: T,
     /// Command that the feedback adds to the plan's, in the actuator's unit, as far as the
     /// actuator's limit lets it.
     pub effort: T,
@@ -191,8 +195,12 @@ impl<T: Scalar> Feedback<T> {
         let (low, high, share) = g.around(planned.sticking);
         let mut x = self.expected;
         let mut innovation = [T::ZERO; MOST_MEASURED];
+        let mut surprise = T::ZERO;
         for i in 0..g.measured {
             innovation[i] = deviations[i] - dot(&g.c[i], &self.expected);
+            let spread = low.expected[i] + share * (high.expected[i] - low.expected[i]);
+            let ratio = innovation[i] / spread;
+            surprise += ratio * ratio;
             add(&mut x, &low.l[i], &high.l[i], share, innovation[i]);
         }
         let [at_low, at_high] = [low, high].map(|node| dot(&node.k, &x));
@@ -214,6 +222,7 @@ impl<T: Scalar> Feedback<T> {
             load_speed: dot(&g.load[1], &x),
             force: g.force * x[g.states - 1],
             innovation,
+            surprise: (surprise / T::of(g.measured as f64)).sqrt(),
             effort: effort - planned.effort,
             used: true,
         };
@@ -264,6 +273,7 @@ impl<T: Scalar> Feedback<T> {
         self.before = None;
         self.last.used = false;
         self.last.innovation = [T::ZERO; MOST_MEASURED];
+        self.last.surprise = T::INFINITY;
         let finite = |value: T| if value.is_finite() { value } else { T::ZERO };
         Correction {
             position: finite(planned.correction.position),

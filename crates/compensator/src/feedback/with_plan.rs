@@ -4,19 +4,19 @@ use lugre::Exponential;
 
 use super::{Deviations, Feedback};
 use crate::plan::{Plan, Planned, Target};
-use crate::{Compensator, Correction, Sample};
+use crate::{Compensator, Correction, Residual, ResidualModel, Sample};
 
 /// A [`Plan`] whose deviations a [`Feedback`] takes back.
 #[derive(Clone, Debug)]
-pub struct PlanWithFeedback<F, T = f64> {
-    plan: Plan<F, T>,
+pub struct PlanWithFeedback<F, T = f64, R = ResidualModel<T>> {
+    plan: Plan<F, T, R>,
     feedback: Feedback<T>,
     last: Correction<T>,
 }
 
-impl<T: Exponential, F: FnMut(usize) -> Target<T>> PlanWithFeedback<F, T> {
+impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> PlanWithFeedback<F, T, R> {
     /// `feedback` around `plan`, both of the same axis.
-    pub fn new(plan: Plan<F, T>, feedback: Feedback<T>) -> Self {
+    pub fn new(plan: Plan<F, T, R>, feedback: Feedback<T>) -> Self {
         Self {
             plan,
             feedback,
@@ -46,7 +46,9 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>> PlanWithFeedback<F, T> {
     }
 }
 
-impl<T: Exponential, F: FnMut(usize) -> Target<T>> Compensator<T> for PlanWithFeedback<F, T> {
+impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> Compensator<T>
+    for PlanWithFeedback<F, T, R>
+{
     fn reset(&mut self) {
         self.plan.reset();
         self.feedback.reset();
@@ -57,5 +59,9 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>> Compensator<T> for PlanWithFe
         let planned = self.plan.advance(sample);
         self.last = self.feedback.correct(sample, &planned);
         self.last
+    }
+
+    fn surprise(&self) -> T {
+        self.deviations().surprise
     }
 }

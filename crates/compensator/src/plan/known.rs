@@ -4,12 +4,12 @@ use lugre::Exponential;
 
 use super::{PlanSettings, Planned, Planner, Standstill, Target};
 use crate::model::DriveModel;
-use crate::{Compensator, CompensatorError, Correction, Sample};
+use crate::{Compensator, CompensatorError, Correction, Residual, ResidualModel, Sample};
 
 /// A [`Planner`] that is fed from a motion, as far ahead as it needs.
 #[derive(Clone, Debug)]
-pub struct Plan<F, T = f64> {
-    planner: Planner<T>,
+pub struct Plan<F, T = f64, R = ResidualModel<T>> {
+    planner: Planner<T, R>,
     /// Target of a cycle, counted from the start of the motion; beyond its end, rest.
     targets: F,
     own: T,
@@ -37,18 +37,25 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>> Plan<F, T> {
         })
     }
 
+    /// With what was learned of torque and force that the model does not have.
+    #[must_use]
+    pub fn with_residual<R: Residual<T>>(self, residual: Option<R>) -> Plan<F, T, R> {
+        Plan {
+            planner: self.planner.with_residual(residual),
+            targets: self.targets,
+            own: self.own,
+            cycle: self.cycle,
+            planned: self.planned,
+        }
+    }
+}
+
+impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> Plan<F, T, R> {
     /// Says which part of the command, before this motion, was a compensator's: what is
     /// left is taken as held by the drive's integrator.
     #[must_use]
     pub fn after(mut self, own: &Correction<T>) -> Self {
         self.own = own.iq;
-        self
-    }
-
-    /// With what was learned of torque over angle and force over position.
-    #[must_use]
-    pub fn with_residual(mut self, residual: Option<crate::ResidualModel<T>>) -> Self {
-        self.planner = self.planner.with_residual(residual);
         self
     }
 
@@ -84,7 +91,9 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>> Plan<F, T> {
     }
 }
 
-impl<T: Exponential, F: FnMut(usize) -> Target<T>> Compensator<T> for Plan<F, T> {
+impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> Compensator<T>
+    for Plan<F, T, R>
+{
     fn reset(&mut self) {
         self.cycle = 0;
     }

@@ -5,9 +5,10 @@
 //!
 //! ```text
 //! F   = T_f(ω_ref)/lever + load(x)               LuGre stepped along the reference
-//! s   = Gauss * C (r (m a + F) + J_w a/r)        smooth: its rates enter below
-//! ω_d = v/r + ṡ
-//! T_d = J a/r + r (m a + F) + (J − J_w) s̈
+//! s   = Gauss * (C T_t + b(T_t)/r)               T_t = r (m a + F) + J_w a/r
+//! l   = −(e(θ) − e(θ₀))/r                        what an error of the kinematics asks for
+//! ω_d = v/r + ṡ + l̇
+//! T_d = J a/r + r (m a + F) + (J − J_w) s̈ + J l̈
 //! u   = the command with which the actuator's model has T_d a cycle later
 //! ```
 //!
@@ -16,6 +17,9 @@
 //! ```text
 //! position = (ω_d − f_v v/r)/P      effort = u − what the integrator holds
 //! ```
+//!
+//! b is the side of its free travel on which the transmission lies, e the error of its
+//! kinematics at the motor's angle θ ([`crate::Kinematics`]).
 //!
 //! [`Planner`] takes set points one by one and is [`Planner::look_ahead`] of them late;
 //! [`Plan`] runs it ahead of a motion that is known.
@@ -30,7 +34,7 @@ pub use known::Plan;
 
 use crate::error::{require, within};
 use crate::model::{DriveModel, MOST_DELAY};
-use crate::residual::ResidualModel;
+use crate::residual::{Residual, ResidualAt, ResidualModel};
 use crate::{CompensatorError, Correction, Reference};
 use actuator::Inverse;
 use smoothing::{MOST_HALF, Smoothing};
@@ -123,6 +127,10 @@ struct Ahead<T> {
     rigid: T,
     /// J − J_w, kg·m².
     inertia: T,
+    /// J, kg·m².
+    rotating: T,
+    /// What the kinematics' error asks of the motor, rad.
+    lead: T,
 }
 
 /// A set point with wind-up and torque.
@@ -135,14 +143,14 @@ struct Wound<T> {
 }
 
 /// Set points between the newest and the one whose wind-up is smoothed.
-const AHEAD: usize = MOST_HALF + 1;
+const AHEAD: usize = MOST_HALF + 2;
 /// Those between that and the cycle that is planned.
 const WOUND: usize = MOST_DELAY + 2;
 
 /// Makes the plan of a stream of set points, one a control cycle. No allocation; 26 KB in
 /// `f64`.
 #[derive(Clone, Debug)]
-pub struct Planner<T = f64> {
+pub struct Planner<T = f64, R = ResidualModel<T>> {
     model: DriveModel<T>,
     half: usize,
     /// Cycles by which a command comes late, whole.
@@ -160,9 +168,11 @@ pub struct Planner<T = f64> {
     home: T,
     /// What the drive's integrator holds.
     held: T,
-    residual: Option<ResidualModel<T>>,
+    residual: Option<R>,
     /// Angle of the motor where the load is at 0 and nothing wound up, rad.
     zero_angle: T,
+    /// Error of the kinematics at the start, m or rad at the load.
+    ahead_at_start: T,
 }
 
 impl<T: Exponential> Planner<T> {
@@ -203,18 +213,37 @@ impl<T: Exponential> Planner<T> {
             held: T::ZERO,
             residual: None,
             zero_angle: T::ZERO,
+            ahead_at_start: T::ZERO,
         };
         planner.begin(T::ZERO, &Standstill::default());
         Ok(planner)
     }
 
-    /// With what was learned of torque over angle and force over position.
+    /// With what was learned of torque and force that the model does not have.
     #[must_use]
-    pub fn with_residual(mut self, residual: Option<ResidualModel<T>>) -> Self {
-        self.residual = residual;
-        self
+    pub fn with_residual<R: Residual<T>>(self, residual: Option<R>) -> Planner<T, R> {
+        Planner {
+            model: self.model,
+            half: self.half,
+            late: self.late,
+            late_part: self.late_part,
+            smoothing: self.smoothing,
+            inverse: self.inverse,
+            bristle: self.bristle,
+            speed: self.speed,
+            ahead: self.ahead,
+            wound: self.wound,
+            pushed: self.pushed,
+            home: self.home,
+            held: self.held,
+            residual,
+            zero_angle: self.zero_angle,
+            ahead_at_start: self.ahead_at_start,
+        }
     }
+}
 
+impl<T: Exponential, R: Residual<T>> Planner<T, R> {
     /// The model that it plans with.
     pub fn model(&self) -> &DriveModel<T> {
         &self.model
@@ -246,7 +275,8 @@ impl<T: Exponential> Planner<T> {
         self.speed = T::ZERO;
         let friction = m.friction.torque(self.bristle, T::ZERO) / m.lever;
         let rigid = m.travel * (friction + section.load);
-        let wind_up = section.compliance * rigid;
+        let wind_up = section.compliance * rigid + self.side(rigid);
+        let m = &self.model;
         let ahead = Ahead {
             target: Target::of(Reference {
                 position,
@@ -256,6 +286,8 @@ impl<T: Exponential> Planner<T> {
             sticking: T::ONE,
             rigid,
             inertia: section.rotating - section.lagging,
+            rotating: section.rotating,
+            lead: T::ZERO,
         };
         self.ahead = [ahead; AHEAD];
         self.wound = [Wound {
@@ -268,6 +300,7 @@ impl<T: Exponential> Planner<T> {
         self.inverse.settle(rigid);
         self.home = wind_up;
         self.zero_angle = standstill.motor_angle - position / m.travel - wind_up;
+        self.ahead_at_start = m.kinematics.ahead(standstill.motor_angle);
         self.held = standstill.effort - standstill.own;
         self.pushed = 0;
     }
@@ -277,17 +310,21 @@ impl<T: Exponential> Planner<T> {
     pub fn push(&mut self, target: Target<T>) -> Option<Planned<T>> {
         let (ahead, wind_up) = self.forces(target);
         // Rings: the newest overwrites the oldest.
-        let (length, at) = (self.half + 1, self.pushed);
+        let (length, at) = (self.half + 2, self.pushed);
         self.ahead[at % length] = ahead;
-        let middle = self.ahead[(at + 1) % length];
+        let [before, middle, after] = [1, 2, 3].map(|i| self.ahead[(at + i) % length]);
+        // As smooth as a sine: its neighbours do for its rates.
+        let period = self.model.period;
+        let lead_rate = (after.lead - before.lead) / (T::TWO * period);
+        let lead_second = (after.lead - T::TWO * middle.lead + before.lead) / (period * period);
         let [wind_up, rate, second] = self.smoothing.push(wind_up);
         let reference = &middle.target.reference;
         let shift = &middle.target.shift;
         let velocity = reference.velocity + shift.velocity;
         let newest = Wound {
-            wind_up,
-            motor_speed: velocity / self.model.travel + rate,
-            torque: middle.rigid + middle.inertia * second,
+            wind_up: wind_up + middle.lead,
+            motor_speed: velocity / self.model.travel + rate + lead_rate,
+            torque: middle.rigid + middle.inertia * second + middle.rotating * lead_second,
             ahead: middle,
         };
         let late = self.late_cycles();
@@ -316,26 +353,53 @@ impl<T: Exponential> Planner<T> {
         let at_motor = acceleration / m.travel;
         let mut force = m.load_inertia * acceleration + friction + section.load + target.force;
         let mut at_angle = T::ZERO;
-        if let Some(residual) = &self.residual {
+        if let Some(residual) = &mut self.residual {
             let wind_up = section.compliance * m.travel * force;
-            let angle = self.zero_angle + r.position / m.travel + wind_up;
-            let direction = m.friction.coulomb_share(bristle);
-            let [torque, besides] = residual.at(angle, r.position, direction);
+            let [torque, besides] = residual.besides(&ResidualAt {
+                motor_angle: self.zero_angle + r.position / m.travel + wind_up,
+                motor_speed: r.velocity / m.travel,
+                position: r.position,
+                direction: m.friction.coulomb_share(bristle),
+            });
             at_angle = torque;
             force += besides;
         }
         let rigid = m.travel * force;
+        let transmitted = rigid + section.lagging * at_motor;
+        let wind_up = section.compliance * transmitted + self.side(transmitted);
         let ahead = Ahead {
             target,
             friction,
             sticking: self.sticking(),
             rigid: section.rotating * at_motor + rigid + at_angle,
             inertia: section.rotating - section.lagging,
+            rotating: section.rotating,
+            lead: self.lead(r.position + target.shift.position, wind_up),
         };
-        (
-            ahead,
-            section.compliance * (rigid + section.lagging * at_motor),
-        )
+        (ahead, wind_up)
+    }
+
+    /// Angle by which free travel puts the motor ahead, under a torque through the
+    /// transmission (N·m).
+    fn side(&self, transmitted: T) -> T {
+        let m = &self.model;
+        if m.kinematics.free_travel == T::ZERO {
+            return T::ZERO;
+        }
+        let level = m.travel * m.friction.parameters().coulomb / m.lever;
+        m.kinematics.side(transmitted / level.max(T::MIN_POSITIVE)) / m.travel
+    }
+
+    /// Angle that the error of the kinematics asks of the motor, the load being at `position`.
+    fn lead(&self, position: T, wind_up: T) -> T {
+        let (k, travel) = (&self.model.kinematics, self.model.travel);
+        if k.amplitude == T::ZERO {
+            return T::ZERO;
+        }
+        let angle = self.zero_angle + position / travel + wind_up;
+        let lead = |at: T| (self.ahead_at_start - k.ahead(at)) / travel;
+        // The error is one of the angle with the lead: what is left shrinks by a n/r a round.
+        lead(angle + lead(angle + lead(angle)))
     }
 
     /// χ = 1 − z/z_ss, from 0 to 1.

@@ -9,19 +9,60 @@
 //! a friction that differs between the directions, a spring or a cable chain into g. Both
 //! are linear between knots along the stroke. The planner adds T_res to the torque that it
 //! asks for; [`ResidualLearner`] finds it from logs of ordinary moves.
+//!
+//! Whatever gives a torque and a force besides those of the model is a [`Residual`]; whatever
+//! makes one of coefficients in which it is linear is a `ResidualBasis`, which a
+//! `ResidualLearner` learns behind its gate: [`ResidualModel`] of `ResidualTables`,
+//! `ResidualNetwork` of `NetworkBasis`.
 
 #[cfg(feature = "identify")]
+mod basis;
+#[cfg(feature = "identify")]
 mod learn;
+#[cfg(feature = "alloc")]
+mod network;
+#[cfg(feature = "identify")]
+mod network_basis;
+#[cfg(feature = "identify")]
+mod tables;
 
 use scalar::Scalar;
 
 #[cfg(feature = "identify")]
+pub use basis::{ResidualBasis, Row, over_gaussian};
+#[cfg(feature = "identify")]
 pub use learn::{ResidualLearner, Unexplained};
+#[cfg(feature = "alloc")]
+pub use network::{NETWORK_INPUTS, ResidualNetwork};
+#[cfg(feature = "identify")]
+pub use network_basis::NetworkBasis;
+#[cfg(feature = "identify")]
+pub use tables::ResidualTables;
 
 /// Harmonics of the motor's angle.
 pub const HARMONICS: usize = 24;
 /// Knots along the stroke.
 pub const KNOTS: usize = 193;
+
+/// Where along a motion a residual is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ResidualAt<T = f64> {
+    /// Angle of the motor, rad.
+    pub motor_angle: T,
+    /// Its speed, rad/s.
+    pub motor_speed: T,
+    /// Position of the load, m or rad.
+    pub position: T,
+    /// Share of the Coulomb level that the bristles hold, −1 to 1.
+    pub direction: T,
+}
+
+/// Torque and force that an axis needs besides those of its model.
+pub trait Residual<T: Scalar = f64> {
+    /// Torque at the motor, N·m, and force on the load, N or N·m, both positive where they
+    /// hinder positive motion.
+    fn besides(&mut self, at: &ResidualAt<T>) -> [T; 2];
+}
 
 /// Torque over angle and force over position. 9 KB in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,5 +128,11 @@ impl<T: Scalar> ResidualModel<T> {
             friction: self.friction.map(cast),
             force: self.force.map(cast),
         }
+    }
+}
+
+impl<T: Scalar> Residual<T> for ResidualModel<T> {
+    fn besides(&mut self, at: &ResidualAt<T>) -> [T; 2] {
+        self.at(at.motor_angle, at.position, at.direction)
     }
 }

@@ -81,6 +81,30 @@ pub fn random_program(
     })
 }
 
+/// A pre-roll: `way` (m) forward from `start` and back, at 20 mm/s at most. From its log the
+/// friction of the first move that counts can be learned.
+///
+/// # Errors
+/// [`PipelineError::Trajectory`] where it cannot be planned.
+pub fn pre_roll(start: f64, way: f64) -> Result<NamedMotion, PipelineError> {
+    let failed = |source| PipelineError::Trajectory { index: 0, source };
+    let limits = Limits::new(0.02, 0.2, 5.0).map_err(failed)?;
+    let steps = vec![
+        Step::Move {
+            to: start + way,
+            limits,
+        },
+        Step::Move { to: start, limits },
+        Step::Dwell { duration: 0.05 },
+    ];
+    let program = Program::new(start, steps).map_err(failed)?;
+    Ok(NamedMotion {
+        name: format!("pre-roll of {} mm", axis_sim::SixDigits(1e3 * way)),
+        motion: Arc::new(program),
+        learned: None,
+    })
+}
+
 /// A move over `way` (m) from `start` at the constant speed `speed` (m/s).
 ///
 /// # Errors

@@ -12,9 +12,10 @@ use axis_sim::{Axis, ClosedLoop, Measured};
 use compensator::DriveModel;
 use serde::{Deserialize, Serialize};
 
-pub use draws::{constant_speed, random_program, wrong_belief};
+pub use draws::{constant_speed, pre_roll, random_program, wrong_belief};
 pub use machines::{Machine, machines};
-pub use studies::{Draws, Goal, Study, studies};
+pub(crate) use studies::WRONG;
+pub use studies::{Draws, Goal, Study, room, studies};
 
 use crate::moves::{Moves, NamedMotion};
 use crate::strategies::{NONE, Predictors, STRATEGIES, named};

@@ -6,7 +6,7 @@ use axis_sim::Axis;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::{Draw, Machine, constant_speed, machines, random_program, wrong_belief};
+use super::{Draw, Machine, constant_speed, machines, pre_roll, random_program, wrong_belief};
 use crate::PipelineError;
 use crate::moves::NamedMotion;
 use crate::tracking::{Planned, plan_all};
@@ -77,9 +77,12 @@ impl Draws {
 }
 
 /// Shares by which friction and mass are off.
-const WRONG: [f64; 2] = [0.2, 0.1];
+pub(crate) const WRONG: [f64; 2] = [0.2, 0.1];
 /// Ordinary moves from which what no parameter holds is learned.
 const ORDINARY: usize = 10;
+
+/// Way of a pre-roll, m.
+const PRE_ROLL: f64 = 1e-3;
 
 /// What the rows are made of.
 struct Ground {
@@ -90,7 +93,8 @@ struct Ground {
     draws: Draws,
 }
 
-/// The rows for an axis and what stands for its machine. What is believed is right or wrong about the machine, not about the axis file.
+/// The rows for an axis and what stands for its machine. What is believed is right or wrong
+/// about the machine, not about the axis file.
 ///
 /// # Errors
 /// [`PipelineError`] where the axis has no trajectories or no plan can be made of it.
@@ -111,6 +115,7 @@ pub fn studies(
         ground.right("belief right, no noise", "plan", false, [99.9, 99.9]),
         ground.right("belief right", "feedback", true, [99.85, 99.65]),
         ground.wrong("adaptive", &[80.0, 90.0, 98.9, 99.7], 91.0)?,
+        ground.rolled()?,
         ground.wrong("adaptive_feedback", &[96.0, 99.3, 99.8], 98.0)?,
         ground.repeated()?,
         ground.slow(),
@@ -205,6 +210,39 @@ impl Ground {
         })
     }
 
+    /// The same beliefs as in [`Ground::wrong`], one trajectory each, after a pre-roll of a
+    /// millimetre that is learned from.
+    fn rolled(self: &Arc<Self>) -> Result<Study, PipelineError> {
+        let truth = self.machine.drive_model()?;
+        let ground = Arc::clone(self);
+        let draw = move |i: usize| {
+            let believed = wrong_belief(&truth, WRONG, &mut ground.random(1, i))?;
+            let counted = ground.from(i, 1);
+            let start = counted[0].motion.at(0.0).position;
+            let motions = std::iter::once(pre_roll(start, PRE_ROLL)?).chain(counted);
+            Ok(Draw {
+                believed,
+                seed: ground.seed.wrapping_add(i as u64),
+                ..ground.draw(motions.collect(), 1)?
+            })
+        };
+        Ok(Study {
+            name: "belief wrong, pre-roll".to_owned(),
+            strategy: "adaptive",
+            noise: true,
+            moves: vec![(
+                "first move",
+                Goal::Taken {
+                    peak: 80.0,
+                    mean: None,
+                    median: Some(91.0),
+                },
+            )],
+            draws: self.draws.beliefs,
+            draw: Box::new(draw),
+        })
+    }
+
     /// Friction believed at 1/0.8 of what it is; each move four times.
     fn repeated(self: &Arc<Self>) -> Result<Study, PipelineError> {
         let mut believed = self.machine.drive_model()?;
@@ -247,6 +285,7 @@ impl Ground {
 
     fn programs(self: &Arc<Self>) -> Result<Study, PipelineError> {
         let truth = self.machine.drive_model()?;
+        let within = room(&self.axis);
         let ground = Arc::clone(self);
         let draw = move |i: usize| {
             let random = &mut ground.random(2, i);
@@ -254,7 +293,7 @@ impl Ground {
             let mut motions = ground.from(i, 3);
             motions.push(random_program(
                 &format!("program {}", i + 1),
-                ground.room(),
+                within,
                 random,
             )?);
             let draw = ground.draw(motions, 1)?;
@@ -268,13 +307,6 @@ impl Ground {
             draws: self.draws.programs,
             draw: Box::new(draw),
         })
-    }
-
-    /// Where moves go: around the middle of the stroke.
-    fn room(&self) -> [f64; 2] {
-        let stroke = &self.axis.stroke;
-        let length = stroke.maximum - stroke.minimum;
-        [stroke.minimum + 0.3 * length, stroke.minimum + 0.7 * length]
     }
 
     fn another(self: &Arc<Self>, machine: Machine, goal: f64) -> Result<Study, PipelineError> {
@@ -291,7 +323,9 @@ impl Ground {
             let believed = wrong_belief(&truth, WRONG, random)?;
             let mut motions = match peculiar {
                 true => (0..ORDINARY)
-                    .map(|k| random_program(&format!("ordinary {}", k + 1), ground.room(), random))
+                    .map(|k| {
+                        random_program(&format!("ordinary {}", k + 1), room(&ground.axis), random)
+                    })
                     .collect::<Result<_, _>>()?,
                 false => ground.from(i + 1, 3),
             };
@@ -316,4 +350,12 @@ impl Ground {
             draw: Box::new(draw),
         })
     }
+}
+
+/// Where moves go: around the middle of the stroke.
+#[must_use]
+pub fn room(axis: &Axis) -> [f64; 2] {
+    let stroke = &axis.stroke;
+    let length = stroke.maximum - stroke.minimum;
+    [stroke.minimum + 0.3 * length, stroke.minimum + 0.7 * length]
 }

@@ -11,13 +11,14 @@ use std::sync::Arc;
 use axis_sim::Axis;
 use compensator::{
     AdaptPrior, Adaptation, Compensator, DriveModel, Feedback, FeedbackDesign, FeedbackSettings,
-    LearnedMove, LearningSettings, PlanWithFeedback, ResidualLearner, ResidualModel, Sample,
+    LearnedMove, LearningSettings, PlanWithFeedback, ResidualLearner, Sample,
 };
 use trajectories::Motion;
 
 use super::plan::plan;
 use super::{DesignOnce, Learned, NextMove, Predictors, SharedMotion, Strategy};
 use crate::PipelineError;
+use crate::residuals::{AnyLearner, AnyResidual};
 
 /// Which rungs a strategy has above the plan.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,7 +41,7 @@ pub(super) struct Ladder {
     first_design: DesignOnce,
     rungs: Rungs,
     adaptation: Option<Adaptation>,
-    residual: Option<ResidualLearner>,
+    residual: Option<AnyLearner>,
     /// The feedback, and the model that it was designed for.
     design: Option<(FeedbackDesign, DriveModel)>,
     repeated: Vec<Repeated>,
@@ -53,7 +54,7 @@ struct Repeated {
     motion: SharedMotion,
     /// Believed since its first repetition: what is learned of a move holds beside one
     /// model.
-    frozen: Option<(DriveModel, Option<ResidualModel>)>,
+    frozen: Option<(DriveModel, Option<AnyResidual>)>,
     learned: LearnedMove,
 }
 
@@ -70,7 +71,7 @@ impl Ladder {
         let level = believed.friction.parameters().coulomb * believed.travel / believed.lever;
         let residual = rungs
             .residual
-            .then(|| ResidualLearner::new(stroke, believed.travel, level));
+            .then(|| AnyLearner::Tables(ResidualLearner::new(stroke, believed.travel, level)));
         let mut ladder = Self {
             axis,
             believed,
@@ -87,6 +88,12 @@ impl Ladder {
             ladder.feedback(&believed)?;
         }
         Ok(ladder)
+    }
+
+    /// The same with another learner of what no parameter holds.
+    pub fn with_learner(mut self, learner: Option<AnyLearner>) -> Self {
+        self.residual = learner;
+        self
     }
 
     /// What is believed after all moves so far.
@@ -176,14 +183,14 @@ impl Strategy for Ladder {
     fn compensator(&mut self, next: &NextMove) -> Result<Box<dyn Compensator>, PipelineError> {
         let mut next = next.clone();
         let mut model = self.model();
-        let mut residual = self.residual.as_ref().and_then(|r| r.model().copied());
+        let mut residual = self.residual.as_ref().and_then(AnyLearner::model);
         if self.rungs.repetition {
             let made = self.repeated.len();
             let now = self.repeats(&next.motion)?;
             if now < made || !self.rungs.adaptation {
                 // Beside one model: from its first repetition on where that is adapted.
                 let repeated = &mut self.repeated[now];
-                (model, residual) = *repeated.frozen.get_or_insert((model, residual));
+                (model, residual) = repeated.frozen.get_or_insert((model, residual)).clone();
                 next.learned = Some(Arc::new(repeated.learned.clone()));
             }
             self.now = Some(now);
@@ -214,11 +221,13 @@ impl Strategy for Ladder {
                 .is_some_and(|now| self.repeated[now].frozen.is_some());
             let residual = self.residual.as_mut().filter(|_| !again);
             if let (Some(residual), Ok(rest)) = (residual, adaptation.unexplained(record)) {
-                let explained = residual.learn(&rest.instants, rest.spacing, rest.smoothing);
+                let explained = residual.learn(&rest);
                 known.insert("residual_explained".to_owned(), explained);
                 let used = residual.model().is_some();
                 known.insert("residual_used".to_owned(), f64::from(u8::from(used)));
             }
+            let free = adaptation.model().kinematics.free_travel;
+            known.insert("free_travel_um".to_owned(), 1e6 * free);
             for estimate in adaptation.estimates() {
                 let name = estimate.parameter.name().replace(' ', "_");
                 known.insert(format!("{name}_relative"), estimate.relative);

@@ -30,6 +30,7 @@ use compensator::{Compensator, Correction, LearnedMove, Sample};
 use trajectories::Motion;
 
 use crate::PipelineError;
+use crate::residuals::AnyLearner;
 pub use drive_terms::reversal_start;
 pub use feedforward::Feedforward;
 pub use network::KIND as NETWORK;
@@ -208,6 +209,24 @@ impl StrategyKind {
             learned: None,
         })
     }
+}
+
+/// Plan and feedback adapted between moves, with a learner of one's own for what no parameter
+/// holds.
+///
+/// # Errors
+/// As [`StrategyKind::strategy`].
+pub fn adapted(
+    predictors: &Predictors,
+    learner: Option<AnyLearner>,
+) -> Result<Box<dyn Strategy>, PipelineError> {
+    let rungs = ladder::Rungs {
+        feedback: true,
+        adaptation: true,
+        ..ladder::Rungs::default()
+    };
+    let ladder = ladder::Ladder::new(predictors, rungs)?;
+    Ok(Box::new(ladder.with_learner(learner)))
 }
 
 /// The strategy of that name among `strategies`.

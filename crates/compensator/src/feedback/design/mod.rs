@@ -46,6 +46,8 @@ struct Design {
     /// State feedback, the disturbance's cancellation last; u and states in their own units.
     k: DVector<f64>,
     l: DMatrix<f64>,
+    /// Deviation of each innovation, SI: the root of the diagonal of C P Cᵀ + R.
+    expected: DVector<f64>,
 }
 
 /// A feedback, designed and checked, with all that its margins are computed from.
@@ -161,6 +163,9 @@ impl FeedbackDesign {
                 *to = states(from.iter());
             }
             node.k = states(design.k.iter());
+            for (to, from) in node.expected.iter_mut().zip(design.expected.iter()) {
+                *to = *from;
+            }
         }
         let linear = &self.designs[0].linear;
         let mut c = [[0.0; MOST_STATES]; MOST_MEASURED];
@@ -255,6 +260,7 @@ impl FeedbackDesign {
             .map_err(riccati("observer"))?;
         let pc = &p * c.transpose();
         let s = DMatrix::identity(c.nrows(), c.nrows()) + &c * &pc;
+        let expected = DVector::from_fn(c.nrows(), |i, _| sigmas[i] * s[(i, i)].sqrt());
         let gain = s
             .lu()
             .solve(&pc.transpose())
@@ -265,7 +271,13 @@ impl FeedbackDesign {
             })?
             .transpose();
         let l = DMatrix::from_fn(n + 1, c.nrows(), |i, j| gain[(i, j)] / sigmas[j]);
-        Ok((Design { linear, k, l }, first.max(second)))
+        let design = Design {
+            linear,
+            k,
+            l,
+            expected,
+        };
+        Ok((design, first.max(second)))
     }
 }
 

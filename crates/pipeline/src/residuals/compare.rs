@@ -1,0 +1,210 @@
+//! The comparison: machines drawn, ordinary moves learned from, other moves counted.
+
+use axis_sim::effects::ActiveEffect;
+use axis_sim::{Axis, ClosedLoop, Measured};
+use compensator::{DriveModel, NetworkBasis, ResidualLearner};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::drawn::drawn_machine;
+use super::learner::AnyLearner;
+use super::named::NamedEffects;
+use crate::PipelineError;
+use crate::moves::{Moves, NamedMotion};
+use crate::robustness::{Sense, WRONG, random_program, room, wrong_belief};
+use crate::strategies::{NONE, Predictors, Strategy, adapted};
+use crate::tracking::{Planned, plan_all};
+
+/// Programs of five moves that are learned from.
+pub const PROGRAMS: usize = 10;
+/// After how many of them moves are counted.
+pub const AFTER: [usize; 4] = [1, 2, 4, 10];
+
+/// How what no parameter holds is learned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Way {
+    /// Not at all: the parameters are adapted.
+    Adapted,
+    /// Tables over angle and position.
+    Tables,
+    /// A network from simulated machines, refined on the logs.
+    Network,
+    /// The effects that a search has named.
+    Named,
+}
+
+impl Way {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Adapted, Self::Tables, Self::Network, Self::Named];
+
+    /// In words.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Adapted => "parameters alone",
+            Self::Tables => "tables",
+            Self::Network => "network",
+            Self::Named => "named effects",
+        }
+    }
+}
+
+/// One machine, what is believed of it, and its moves.
+pub struct Contest {
+    believed: DriveModel,
+    machine: Axis,
+    named: Vec<ActiveEffect>,
+    programs: Vec<NamedMotion>,
+    counted: Vec<NamedMotion>,
+    seed: u64,
+}
+
+/// What one way left on one machine.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Compared {
+    /// How it was learned.
+    pub way: Way,
+    /// Without compensation, the counted moves: greatest error, µm.
+    pub none_um: Vec<f64>,
+    /// With it, after each of [`AFTER`]: the same of every counted move, µm.
+    pub left_um: Vec<Vec<f64>>,
+    /// Whether the gate let it be used then.
+    pub used: Vec<bool>,
+}
+
+/// `count` machines like `machine` with drawn effects, wrong beliefs and drawn moves. Counted
+/// are two trajectories of the axis each, in turn.
+///
+/// # Errors
+/// [`PipelineError`] where the axis has no trajectories or no plan can be made of it.
+pub fn contests(
+    axis: &Axis,
+    machine: &Axis,
+    seed: u64,
+    count: usize,
+) -> Result<Vec<Contest>, PipelineError> {
+    let truth = machine.drive_model()?;
+    let motions: Vec<NamedMotion> = plan_all(axis)?.into_iter().map(Planned::named).collect();
+    let contest = |i: usize| {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        random.set_stream(5000 + i as u64);
+        let drawn = drawn_machine(machine, room(axis), &mut random);
+        let believed = wrong_belief(&truth, WRONG, &mut random)?;
+        let programs = (0..PROGRAMS)
+            .map(|k| random_program(&format!("program {}", k + 1), room(axis), &mut random));
+        Ok(Contest {
+            believed,
+            machine: drawn.machine,
+            named: drawn.named,
+            programs: programs.collect::<Result<_, PipelineError>>()?,
+            counted: motions
+                .iter()
+                .cycle()
+                .skip(2 * i)
+                .take(2)
+                .cloned()
+                .collect(),
+            seed: seed + i as u64,
+        })
+    };
+    (0..count).map(contest).collect()
+}
+
+/// Every way on every machine; `sense` gives the sensors' noise, `each` is called once a
+/// machine and way.
+///
+/// # Errors
+/// [`PipelineError`] where a move does not come to its end.
+pub fn compare(
+    axis: &Axis,
+    contests: &[Contest],
+    network: &NetworkBasis,
+    sense: Sense<'_>,
+    each: impl Fn() + Sync,
+) -> Result<Vec<Vec<Compared>>, PipelineError> {
+    let all: Vec<(&Contest, Way)> = contests
+        .iter()
+        .flat_map(|contest| Way::ALL.map(|way| (contest, way)))
+        .collect();
+    let made = all.par_iter().map(|(contest, way)| {
+        let made = contest.make(axis, *way, network, sense);
+        each();
+        made
+    });
+    let made: Vec<Compared> = made.collect::<Result<_, _>>()?;
+    Ok(made.chunks(Way::ALL.len()).map(<[_]>::to_vec).collect())
+}
+
+impl Contest {
+    fn learner(
+        &self,
+        axis: &Axis,
+        way: Way,
+        network: &NetworkBasis,
+    ) -> Result<Option<AnyLearner>, PipelineError> {
+        let b = &self.believed;
+        let level = b.friction.parameters().coulomb * b.travel / b.lever;
+        let stroke = [axis.stroke.minimum, axis.stroke.maximum];
+        Ok(match way {
+            Way::Adapted => None,
+            Way::Tables => Some(AnyLearner::Tables(ResidualLearner::new(
+                stroke, b.travel, level,
+            ))),
+            Way::Network => Some(AnyLearner::Network(Box::new(ResidualLearner::of(
+                network.clone(),
+                level,
+            )))),
+            Way::Named => {
+                let effects = NamedEffects::new(axis, &self.named)?;
+                Some(AnyLearner::Named(Box::new(ResidualLearner::of(
+                    effects, level,
+                ))))
+            }
+        })
+    }
+
+    fn make(
+        &self,
+        axis: &Axis,
+        way: Way,
+        network: &NetworkBasis,
+        sense: Sense<'_>,
+    ) -> Result<Compared, PipelineError> {
+        let closed_loop = ClosedLoop::new(&self.machine)?;
+        let predictors = Predictors {
+            believed: Some(self.believed),
+            ..Predictors::of(axis)
+        };
+        let mut moves = Moves::new(&closed_loop, sense(self.seed));
+        let none_um = self.count(&mut moves, &mut *NONE.strategy(&predictors)?)?;
+        let mut strategy = adapted(&predictors, self.learner(axis, way, network)?)?;
+        let (mut left_um, mut used) = (Vec::new(), Vec::new());
+        for (k, program) in self.programs.iter().enumerate() {
+            let made = moves.make(&mut *strategy, program)?;
+            if AFTER.contains(&(k + 1)) {
+                left_um.push(self.count(&mut moves, &mut *strategy)?);
+                used.push(made.learned.get("residual_used") == Some(&1.0));
+            }
+        }
+        Ok(Compared {
+            way,
+            none_um,
+            left_um,
+            used,
+        })
+    }
+
+    /// Greatest errors of the counted moves, µm; nothing is learned from them.
+    fn count<S: FnMut(&mut Measured)>(
+        &self,
+        moves: &mut Moves<'_, S>,
+        strategy: &mut dyn Strategy,
+    ) -> Result<Vec<f64>, PipelineError> {
+        let peaks = self.counted.iter();
+        let peaks = peaks.map(|motion| Ok(moves.try_out(strategy, motion)?.figures.max));
+        peaks.collect()
+    }
+}
