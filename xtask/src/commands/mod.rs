@@ -5,6 +5,7 @@ pub mod compensate;
 mod compensate_moves;
 pub mod discover;
 pub mod discover_matrix;
+mod discover_matrix2;
 pub mod export_drive;
 pub mod identify;
 pub mod independent;
