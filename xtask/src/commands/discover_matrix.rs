@@ -52,7 +52,7 @@ pub struct Options {
     /// Also write the page of the full matrix here, where no page of another seed is
     #[arg(long, value_name = "FILE", conflicts_with_all = ["quick", "first", "only"])]
     pub(super) page: Option<PathBuf>,
-    /// Run nothing, and tell what was kept (version 2)
+    /// Run nothing, and tell what was kept by any program on these cases (version 2)
     #[arg(long)]
     pub(super) tell: bool,
     /// Threads, 0 for all cores; results do not depend on it
@@ -183,9 +183,15 @@ impl Kept {
 
     /// What this program kept under a name.
     pub(super) fn read<O: DeserializeOwned>(&self, id: &str) -> Option<O> {
+        let (made_by, outcome) = self.read_any(id)?;
+        (made_by == self.made_by).then_some(outcome)
+    }
+
+    /// What any program kept under a name, and the hash of program and axis files.
+    pub(super) fn read_any<O: DeserializeOwned>(&self, id: &str) -> Option<(String, O)> {
         let text = std::fs::read(self.file(id)).ok()?;
         let file: File<O> = serde_json::from_slice(&text).ok()?;
-        (file.made_by == self.made_by).then_some(file.outcome)
+        Some((file.made_by, file.outcome))
     }
 
     /// The outcome of a case; `None` where there is none of this program.

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use axis_sim::Axis;
 use discover_matrix::matrix2::{Bench, Case, Outcome, Plan, cases};
 use indicatif::ProgressBar;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, miette};
 use rayon::prelude::*;
 
 use super::discover_matrix::{Kept, Options, replaceable};
@@ -41,10 +41,16 @@ pub(super) fn command(options: &Options) -> Result<()> {
     let out = options.out.clone().unwrap_or_else(default);
     ready(&out.join("cases"))?;
     let kept = Kept::new(&machines, &out)?;
-    if !options.tell {
+    let outcomes: Vec<Outcome> = if options.tell {
+        let read = |case: &Case| -> Option<Outcome> {
+            let (_, outcome): (String, Outcome) = kept.read_any(&case.id)?;
+            outcome.case.is_same(case).then_some(outcome)
+        };
+        cases.iter().filter_map(read).collect()
+    } else {
         run(&machines, &cases, &kept)?;
-    }
-    let outcomes: Vec<Outcome> = cases.iter().filter_map(|c| outcome(&kept, c)).collect();
+        cases.iter().filter_map(|c| outcome(&kept, c)).collect()
+    };
     let page = matrix2::page(&machines, options.seed, plan.cases(), &outcomes);
     write_whole(&out.join("matrix.md"), page.as_bytes())?;
     if let Some(file) = &options.page {
@@ -87,11 +93,14 @@ fn run_plot(machines: &[Axis], cases: &[&Case], kept: &Kept, progress: &Progress
     };
     let axis = machines.iter().find(|axis| axis.name == setting.machine);
     let axis = axis.ok_or_else(|| miette!("no machine is called {}", setting.machine))?;
-    let bench = Bench::new(axis, setting)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("{} does not run the motions of the matrix", axis.name))?;
+    // Where the search refuses the very motion, it refuses each case of it.
+    let bench = Bench::new(axis, setting).map_err(|error| error.to_string());
     for case in cases {
-        kept.write(&case.id, &bench.try_case(case))?;
+        let outcome = match &bench {
+            Ok(bench) => bench.try_case(case),
+            Err(why) => Outcome::failed(case, why.clone()),
+        };
+        kept.write(&case.id, &outcome)?;
         progress.inc(1);
     }
     Ok(())

@@ -52,13 +52,13 @@ impl Form {
         }
     }
 
-    /// Effects of the library that say what the form is: to name one of them is neither
-    /// right nor wrong.
+    /// Effects of the library that the form is a sum of: to name one of them is neither right
+    /// nor wrong.
     pub fn said_by(self) -> &'static [&'static str] {
         match self {
-            Self::Slip => &["maxwell-slip-hysteresis"],
+            Self::Slip => &["maxwell-slip-hysteresis", "coulomb-friction"],
             Self::Hardening => &["hardening-stiffness"],
-            Self::Frame => &["structural-resonance"],
+            Self::Frame => &["structural-resonance", "payload-mass"],
             Self::Same | Self::Onset | Self::Exponent => &[],
         }
     }

@@ -23,7 +23,7 @@ pub struct Bench {
     pub(super) motions: [Program; 2],
     /// Control cycles of a sample.
     pub(super) every: usize,
-    /// Logs of the clean machine without noise on them.
+    /// Logs of the clean machine on them, without noise where they are replayed.
     pub(super) templates: [LogSet; 2],
     /// Of the first of them; `None` for a torque balance.
     pub(super) foresight: Option<Foresight>,
@@ -52,10 +52,16 @@ impl Bench {
         };
         let every = ((1.0 / (RATE * axis.period)).round() as usize).max(1);
         let period = every as f64 * axis.period;
+        // A balance takes its cut-off from the noise, and of a log without any takes none
+        // that would serve a log with some.
+        let level = match setting.channels {
+            Channels::Balance => 1.0,
+            _ => 0.0,
+        };
         let quiet = Truth {
             effects: Vec::new(),
             shares: Vec::new(),
-            noise: Rough::white(0.0),
+            noise: Rough::white(level),
             wound: 0.0,
             seed: 0,
         };

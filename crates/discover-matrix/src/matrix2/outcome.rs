@@ -33,6 +33,14 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Of a case that cannot be run, and why.
+    pub fn failed(case: &Case, why: String) -> Self {
+        Self {
+            failed: Some(why),
+            ..Self::of(case)
+        }
+    }
+
     /// Of a case that is not run yet.
     pub(super) fn of(case: &Case) -> Self {
         Self {

@@ -201,3 +201,55 @@ impl Beside<'_> {
         own.norm_squared() - solved.map_or(0.0, |x| x.dot(&right))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use axis_sim::effects::Effect;
+
+    use super::*;
+    use crate::hidden::{Exercise, Rough, Truth};
+    use crate::matrix2::{Bench, Setting};
+
+    /// Of a linear response the fall of D goes with the square of its size, and what known
+    /// parameters do costs their tolerance and no more: a payload is a part of the load.
+    #[test]
+    fn a_gain_grows_with_the_square_of_the_size() {
+        let file = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../data/axes/linear-motor.toml"
+        );
+        let axis = Axis::read(file.as_ref()).unwrap();
+        let setting = Setting {
+            machine: axis.name.clone(),
+            exercise: Exercise::ThereAndBack,
+            start: 0.2,
+            tolerance: 0.05,
+            channels: Channels::Balance,
+        };
+        let bench = Bench::new(&axis, &setting).unwrap();
+        let truth = Truth {
+            effects: Vec::new(),
+            shares: Vec::new(),
+            noise: Rough::white(1.0),
+            wound: 0.0,
+            seed: 1,
+        };
+        let [noisy, _] = truth
+            .noise_logs(&bench.axis, &bench.motions[0], bench.every)
+            .unwrap();
+        let sight = Sight::new(&bench.machine, &bench.set(0, &noisy).unwrap()).unwrap();
+        let gain = |name: &str, size: f64| {
+            let active = ActiveEffect {
+                effect: Effect::named(name).unwrap(),
+                values: vec![size],
+            };
+            sight.gain_over_needed(&active) * sight.needed(&active)
+        };
+        let ratio = gain("constant-load", 2.0) / gain("constant-load", 1.0);
+        assert!((ratio - 4.0).abs() < 1e-6, "{ratio}");
+        // The slide's 40 kg are known to 5 % / √3; half of it off is 17 deviations.
+        let most = (20.0 / (40.0 * 0.05 / 3f64.sqrt())).powi(2);
+        let payload = gain("payload-mass", 20.0);
+        assert!(payload > 0.0 && payload <= 1.001 * most, "{payload} {most}");
+    }
+}
