@@ -10,6 +10,7 @@ mod law;
 mod noise;
 mod outside;
 mod rough;
+mod rough_stream;
 mod truth;
 
 pub use exercise::{Exercise, exercise};

@@ -13,6 +13,9 @@ use nalgebra::{DMatrix, DVector};
 use super::case::Channels;
 use super::design::shown;
 
+/// Whitened response to an effect; `None` where the machine does not run with it.
+type White = dyn Fn(&ActiveEffect) -> Option<DVector<f64>> + Send + Sync;
+
 /// What a torque balance of these logs shows.
 pub(super) struct Sight {
     machine: Axis,
@@ -20,7 +23,7 @@ pub(super) struct Sight {
     known: Vec<DVector<f64>>,
     /// Name and whitened columns of each effect.
     library: Vec<(&'static str, Vec<DVector<f64>>)>,
-    white: Box<dyn Fn(&ActiveEffect) -> Option<DVector<f64>> + Send + Sync>,
+    white: Box<White>,
 }
 
 /// Left of an effect beside another, in D, below which the search may take the other.
