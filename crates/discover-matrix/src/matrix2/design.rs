@@ -70,9 +70,9 @@ impl Plan {
 /// # Errors
 /// [`LhsError`] never for sizes above zero.
 pub fn cases(machines: &[Axis], plan: &Plan, seed: u64) -> Result<Vec<Case>, LhsError> {
-    let mut all = Vec::new();
+    let mut all: Vec<(f64, Case)> = Vec::new();
     if machines.is_empty() || plan.plots == 0 {
-        return Ok(all);
+        return Ok(Vec::new());
     }
     let hypercube = LatinHypercube::new(plan.plots, PLOT, seed.wrapping_mul(11))?;
     let mut row = [0.0; PLOT];
@@ -100,12 +100,13 @@ pub fn cases(machines: &[Axis], plan: &Plan, seed: u64) -> Result<Vec<Case>, Lhs
                 seed: (seed.wrapping_mul(1_000_003)).wrapping_add((k * 100_000 + i) as u64),
                 plot,
             };
-            all.push(case(axis, setting, kind, drawn, &row));
+            let place = (number as f64 + 0.5) / n as f64;
+            all.push((place, case(axis, setting, kind, drawn, &row)));
         }
     }
-    // Within a plot in the order of the kinds.
-    all.sort_by_key(|case| case.plot);
-    Ok(all)
+    // Within a plot every kind comes up early.
+    all.sort_by(|(a, one), (b, other)| one.plot.cmp(&other.plot).then(a.total_cmp(b)));
+    Ok(all.into_iter().map(|(_, case)| case).collect())
 }
 
 /// Motion, start, tolerance, channels.

@@ -3,6 +3,10 @@
 use super::outcome::Outcome;
 use crate::matrix::{Kind, Rate, covered};
 
+/// Cases below which nothing is decided: Wilson's interval of one or two is too narrow near
+/// 0 and 1.
+const FEW: usize = 10;
+
 /// What is asked of a rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
@@ -29,8 +33,10 @@ impl Limit {
 
     /// What a rate with its 95 % interval says of it.
     pub fn met(self, rate: &Rate) -> &'static str {
-        if rate.of == 0 {
-            return "not asked";
+        match rate.of {
+            0 => return "not asked",
+            1..FEW => return "open",
+            _ => {}
         }
         let [low, high] = rate.interval();
         let (inside, outside) = match self {

@@ -30,10 +30,9 @@ impl Outcome {
     pub fn wrong_names(&self) -> Vec<&str> {
         let wrong = |n: &&NamedEffect| {
             let alike = n.alike.iter().any(|name| self.hides(name));
-            let form = self.case.form.said_by().contains(&n.name.as_str());
-            !(self.hides(&n.name) || alike || form)
+            !(self.hides(&n.name) || alike)
         };
-        let named = self.named.iter().filter(wrong);
+        let named = self.counted().filter(wrong);
         named.map(|n| n.name.as_str()).collect()
     }
 
@@ -45,9 +44,17 @@ impl Outcome {
         !self.wrong_names().is_empty() || as_model && !silent
     }
 
-    /// Whether the first name is that of what is hidden.
+    /// Whether the first name that counts is that of what is hidden.
     pub fn is_first(&self) -> bool {
-        self.named.first().is_some_and(|n| self.hides(&n.name))
+        self.counted().next().is_some_and(|n| self.hides(&n.name))
+    }
+
+    /// Names that are right or wrong: all but those of what is not hidden and says the form
+    /// of a law.
+    fn counted(&self) -> impl Iterator<Item = &NamedEffect> {
+        let form = |n: &NamedEffect| self.case.form.said_by().contains(&n.name.as_str());
+        let all = self.named.iter();
+        all.filter(move |n| self.hides(&n.name) || !form(n))
     }
 
     /// Whether everything that is hidden is named.
