@@ -34,6 +34,7 @@ impl Limit {
     /// What a rate with its 95 % interval says of it.
     pub fn met(self, rate: &Rate) -> &'static str {
         match rate.of {
+            _ if self == Self::Told => return "",
             0 => return "not asked",
             1..FEW => return "open",
             _ => {}
@@ -43,7 +44,7 @@ impl Limit {
             Self::Most(most) => (high <= most, low > most),
             Self::Least(least) => (low >= least, high < least),
             Self::Within(least, most) => (low >= least && high <= most, high < least || low > most),
-            Self::Told => return "",
+            Self::Told => (false, false),
         };
         match (inside, outside) {
             (true, _) => "met",
