@@ -9,6 +9,7 @@ use campaign::Job;
 use clap::Args;
 use discover_matrix::matrix::{Case, Outcome, Sizes, cases};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::matrix_job::Matrix;
@@ -19,29 +20,41 @@ use crate::page::matrix;
 /// Options of the command.
 #[derive(Args)]
 pub struct Options {
-    /// Axis file: the machine in which effects are hidden
+    /// Axis file: the machine in which effects are hidden (version 1)
     #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
     axis: PathBuf,
+    /// 1: one machine, its truth like the model; 2: several, as hard as reality
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2))]
+    version: u32,
+    /// Axis files of version 2, taken in turn
+    #[arg(long, value_name = "FILE", num_args = 1.., default_values = super::discover_matrix2::MACHINES)]
+    pub(super) machines: Vec<PathBuf>,
+    /// Cases of version 2, rounded up to whole plots [default: 1080]
+    #[arg(long, value_name = "N", conflicts_with = "quick")]
+    pub(super) size: Option<usize>,
     /// Folder for one file a case, matrix.json and matrix.md [default: runs/, the name of
     /// the axis, /discover-matrix/seed-N]; cases found there are not run again, if this
     /// program ran them on this axis file
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// Layout of the cases, noise and known parameters; 1 to 7 served development
     #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
+    pub(super) seed: u64,
     /// Some twenty cases, of every kind
     #[arg(long)]
-    quick: bool,
+    pub(super) quick: bool,
     /// Only the first N cases; every kind comes up early
     #[arg(long, value_name = "N")]
-    first: Option<usize>,
+    pub(super) first: Option<usize>,
     /// Only these cases, by their names (may be repeated)
     #[arg(long, value_name = "CASE", conflicts_with = "first")]
-    only: Vec<String>,
+    pub(super) only: Vec<String>,
     /// Also write the page of the full matrix here, where no page of another seed is
     #[arg(long, value_name = "FILE", conflicts_with_all = ["quick", "first", "only"])]
-    page: Option<PathBuf>,
+    pub(super) page: Option<PathBuf>,
+    /// Run nothing, and tell what was kept by any program on these cases (version 2)
+    #[arg(long)]
+    pub(super) tell: bool,
     /// Threads, 0 for all cores; results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
@@ -49,9 +62,31 @@ pub struct Options {
     sharding: Sharding,
 }
 
+impl Options {
+    /// Leaves the cases that are asked for.
+    pub(super) fn chosen<C>(&self, cases: &mut Vec<C>, id: fn(&C) -> &String) -> Result<()> {
+        cases.truncate(self.first.unwrap_or(cases.len()));
+        let is_there = |name: &&String| cases.iter().any(|c| id(c) == *name);
+        if let Some(name) = self.only.iter().find(|name| !is_there(name)) {
+            return Err(miette!(
+                "there is no case \"{name}\"; cases are named like {}",
+                cases.first().map_or("", |c| id(c))
+            ));
+        }
+        cases.retain(|c| self.only.is_empty() || self.only.contains(id(c)));
+        Ok(())
+    }
+}
+
 impl JobOptions for Options {
     fn job(&self) -> Result<Box<dyn Job>> {
-        Ok(Box::new(job(self)?))
+        let _ = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads)
+            .build_global();
+        match self.version {
+            2 => Ok(Box::new(super::discover_matrix2::job(self)?)),
+            _ => Ok(Box::new(job(self)?)),
+        }
     }
 
     fn sharding(&self) -> &Sharding {
@@ -61,12 +96,12 @@ impl JobOptions for Options {
 
 /// The job of these options.
 fn job(options: &Options) -> Result<Matrix> {
-    let _ = rayon::ThreadPoolBuilder::new()
-        .num_threads(options.threads)
-        .build_global();
+    if options.tell || options.size.is_some() {
+        return Err(miette!("--tell and --size are of --version 2"));
+    }
     let axis = Axis::read(&options.axis).into_diagnostic()?;
     if let Some(page) = &options.page {
-        replaceable(page, options.seed)?;
+        replaceable(page, options.seed, matrix::seed_of)?;
     }
     let sizes = if options.quick {
         Sizes::SMALL
@@ -75,18 +110,7 @@ fn job(options: &Options) -> Result<Matrix> {
     };
     let mut cases = cases(&axis, &sizes, options.seed).into_diagnostic()?;
     let all = cases.len();
-    cases.truncate(options.first.unwrap_or(all));
-    if let Some(name) = options
-        .only
-        .iter()
-        .find(|n| cases.iter().all(|c| c.id != **n))
-    {
-        return Err(miette!(
-            "there is no case \"{name}\"; cases are named like {}",
-            cases.first().map_or("", |c| &c.id)
-        ));
-    }
-    cases.retain(|c| options.only.is_empty() || options.only.contains(&c.id));
+    options.chosen(&mut cases, |c| &c.id)?;
     let name = format!("seed-{}", options.seed);
     let default = || {
         Path::new("runs")
@@ -96,7 +120,7 @@ fn job(options: &Options) -> Result<Matrix> {
     };
     let out = options.out.clone().unwrap_or_else(default);
     ready(&out.join("cases"))?;
-    let kept = Kept::new(&axis, &out);
+    let kept = Kept::new([&axis], &out);
     kept.tell_of_others(&cases)?;
     Ok(Matrix {
         axis,
@@ -111,7 +135,7 @@ fn job(options: &Options) -> Result<Matrix> {
 }
 
 /// Refuses to write a page over anything but a page of the same seed.
-fn replaceable(page: &Path, seed: u64) -> Result<()> {
+pub(super) fn replaceable(page: &Path, seed: u64, seed_of: fn(&str) -> Option<u64>) -> Result<()> {
     let there = match std::fs::read_to_string(page) {
         Ok(text) => text,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(()),
@@ -121,7 +145,7 @@ fn replaceable(page: &Path, seed: u64) -> Result<()> {
                 .wrap_err_with(|| page.display().to_string());
         }
     };
-    match matrix::seed_of(&there) {
+    match seed_of(&there) {
         Some(other) if other == seed => Ok(()),
         Some(other) => Err(miette!(
             "{} is the page of seed {other}, not {seed}; give another file with --page, or remove it",
@@ -136,7 +160,7 @@ fn replaceable(page: &Path, seed: u64) -> Result<()> {
 
 /// Outcomes on disk: one file a case, with what they were made by.
 pub(super) struct Kept {
-    folder: PathBuf,
+    pub(super) folder: PathBuf,
     made_by: String,
 }
 
@@ -149,9 +173,11 @@ struct File<O> {
 }
 
 impl Kept {
-    /// Outcomes of this program on this axis, in a folder.
-    fn new(axis: &Axis, out: &Path) -> Self {
-        let made_by = crate::program::inputs().with("axis", &axis.fingerprint);
+    /// Outcomes of this program on these axes, in a folder.
+    pub(super) fn new<'a>(axes: impl IntoIterator<Item = &'a Axis>, out: &Path) -> Self {
+        let fingerprints = axes.into_iter().map(|axis| axis.fingerprint.as_str());
+        let fingerprints: Vec<&str> = fingerprints.collect();
+        let made_by = crate::program::inputs().with("axis", fingerprints.join(" "));
         Self {
             folder: out.join("cases"),
             made_by: made_by.key(),
@@ -160,7 +186,7 @@ impl Kept {
 
     /// Says how many of these cases lie there from another program or axis file.
     fn tell_of_others(&self, cases: &[Case]) -> Result<()> {
-        let is_other = |case: &&Case| self.file(case).exists() && self.outcome(case).is_none();
+        let is_other = |case: &&Case| self.file(&case.id).exists() && self.outcome(case).is_none();
         match cases.iter().filter(is_other).count() {
             0 => Ok(()),
             stale => say(format!(
@@ -170,25 +196,36 @@ impl Kept {
         }
     }
 
-    fn file(&self, case: &Case) -> PathBuf {
-        self.folder.join(format!("{}.json", case.id))
+    pub(super) fn file(&self, id: &str) -> PathBuf {
+        self.folder.join(format!("{id}.json"))
+    }
+
+    /// What this program kept under a name.
+    pub(super) fn read<O: DeserializeOwned>(&self, id: &str) -> Option<O> {
+        let (made_by, outcome) = self.read_any(id)?;
+        (made_by == self.made_by).then_some(outcome)
+    }
+
+    /// What any program kept under a name, and the hash of program and axis files.
+    pub(super) fn read_any<O: DeserializeOwned>(&self, id: &str) -> Option<(String, O)> {
+        let text = std::fs::read(self.file(id)).ok()?;
+        let file: File<O> = serde_json::from_slice(&text).ok()?;
+        Some((file.made_by, file.outcome))
     }
 
     /// The outcome of a case; `None` where there is none of this program.
     pub(super) fn outcome(&self, case: &Case) -> Option<Outcome> {
-        let text = std::fs::read(self.file(case)).ok()?;
-        let file: File<Outcome> = serde_json::from_slice(&text).ok()?;
-        let current = file.made_by == self.made_by && file.outcome.case.is_same(case);
-        current.then_some(file.outcome)
+        let outcome: Option<Outcome> = self.read(&case.id);
+        outcome.filter(|o| o.case.is_same(case))
     }
 
-    pub(super) fn write(&self, case: &Case, outcome: &Outcome) -> Result<()> {
+    pub(super) fn write(&self, id: &str, outcome: &impl Serialize) -> Result<()> {
         let file = File {
             made_by: self.made_by.clone(),
             outcome,
         };
         let json = serde_json::to_vec_pretty(&file).into_diagnostic()?;
-        write_whole(&self.file(case), &json)
+        write_whole(&self.file(id), &json)
     }
 }
 
@@ -222,8 +259,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let axis = axis();
         let case = &cases(&axis, &Sizes::SMALL, 1).unwrap()[0];
-        let own = Kept::new(&axis, folder.path());
-        own.write(case, &outcome_of(case)).unwrap();
+        let own = Kept::new([&axis], folder.path());
+        own.write(&case.id, &outcome_of(case)).unwrap();
         assert_eq!(own.outcome(case), Some(outcome_of(case)));
         let other = Kept {
             made_by: "another".to_owned(),
@@ -232,11 +269,11 @@ mod tests {
         assert_eq!(other.outcome(case), None);
         let mut changed = axis.clone();
         changed.fingerprint += "x";
-        let changed = Kept::new(&changed, folder.path());
+        let changed = Kept::new([&changed], folder.path());
         assert_eq!(changed.outcome(case), None);
         // What does not say who made it is of no known program.
         let bare = serde_json::to_vec(&outcome_of(case)).unwrap();
-        std::fs::write(own.file(case), bare).unwrap();
+        std::fs::write(own.file(&case.id), bare).unwrap();
         assert_eq!(own.outcome(case), None);
     }
 
@@ -244,11 +281,15 @@ mod tests {
     fn a_page_takes_the_place_of_none_but_its_own() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("page.md");
-        replaceable(&file, 8).unwrap();
+        replaceable(&file, 8, matrix::seed_of).unwrap();
         let page = matrix::page(&axis(), 8, 0, &[], &Score::new(&[]));
         std::fs::write(&file, page).unwrap();
-        replaceable(&file, 8).unwrap();
-        let refused = |seed| replaceable(&file, seed).unwrap_err().to_string();
+        replaceable(&file, 8, matrix::seed_of).unwrap();
+        let refused = |seed| {
+            replaceable(&file, seed, matrix::seed_of)
+                .unwrap_err()
+                .to_string()
+        };
         assert!(refused(1).contains("seed 8, not 1"), "{}", refused(1));
         std::fs::write(&file, "# Notes\n").unwrap();
         assert!(refused(8).contains("no page"), "{}", refused(8));

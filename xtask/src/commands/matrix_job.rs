@@ -37,7 +37,7 @@ impl Matrix {
         let bench = benches.find(|bench| bench.exercise() == case.exercise);
         let bench = bench.ok_or("its motion was not prepared")?;
         let outcome = bench.try_case(case);
-        self.kept.write(case, &outcome).map_err(failure)?;
+        self.kept.write(&case.id, &outcome).map_err(failure)?;
         Ok(outcome)
     }
 

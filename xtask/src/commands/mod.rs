@@ -7,6 +7,7 @@ mod compensate_moves;
 mod control_table;
 pub mod discover;
 pub mod discover_matrix;
+mod discover_matrix2;
 pub mod export_drive;
 pub mod identify;
 pub mod identify_control;

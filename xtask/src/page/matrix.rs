@@ -120,7 +120,7 @@ pub fn figures(score: &Score) -> String {
     text
 }
 
-fn out_of(rate: &Rate) -> String {
+pub(super) fn out_of(rate: &Rate) -> String {
     format!("{} of {}", rate.hits, rate.of)
 }
 
@@ -189,12 +189,17 @@ pub fn page(axis: &Axis, seed: u64, all: usize, outcomes: &[Outcome], score: &Sc
 
 /// The seed that a page says it was made with; `None` of what is no such page.
 pub fn seed_of(page: &str) -> Option<u64> {
-    let after = page.strip_prefix(TITLE)?.split(" Seed ").nth(1)?;
+    seed_in(page, TITLE)
+}
+
+/// The seed that a page with this first line says.
+pub(super) fn seed_in(page: &str, title: &str) -> Option<u64> {
+    let after = page.strip_prefix(title)?.split(" Seed ").nth(1)?;
     after.split('.').next()?.parse().ok()
 }
 
 /// One after another, each with those that were said to be alike.
-fn names(named: &[NamedEffect]) -> String {
+pub(super) fn names(named: &[NamedEffect]) -> String {
     let name = |n: &NamedEffect| match n.alike.as_slice() {
         [] => n.name.clone(),
         alike => format!("{} ({})", n.name, alike.join(", ")),

@@ -3,6 +3,7 @@
 mod compensation;
 pub mod discovery;
 pub mod matrix;
+pub mod matrix2;
 mod mechanics;
 mod network;
 pub mod robustness;

@@ -5,16 +5,26 @@
 //! noise in every sensor that the controller sees as well.
 
 mod exercise;
+mod form;
+mod law;
 mod noise;
 mod outside;
+mod rough;
+mod rough_stream;
+mod truth;
 
 pub use exercise::{Exercise, exercise};
+pub use form::Form;
+pub use law::{Factor, Law, Ranges, Shape, Variable};
+pub(crate) use law::{LAW, LAW_NAME};
 pub use noise::Noise;
 pub use outside::OUTSIDE;
+pub use rough::{Colour, Entry, Rough};
+pub use truth::Truth;
 
 use axis_log::{Channel, Log};
 use axis_sim::effects::{ActiveEffect, EffectChannel};
-use axis_sim::{Axis, ClosedLoop, Recorder, ReplayError, position_in};
+use axis_sim::{Axis, ClosedLoop, Measured, Recorder, ReplayError, Start, position_in};
 use compensator::NoCompensation;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -47,41 +57,65 @@ impl Hidden {
     /// # Errors
     /// [`ReplayError`] where the machine cannot be set up or does not hold.
     pub fn log(&self, axis: &Axis, motion: &impl Motion, every: usize) -> Result<Log, ReplayError> {
-        let mut truth = axis.with_known(&self.shares);
-        // On a finer mesh, where the mechanism has one.
-        let _ = truth.mechanism.change(|values| {
-            if let Some(elements) = values.optional_count("elements") {
-                values.set_count("elements", elements * 13 / 10);
-            }
-        });
-        truth.effects.extend_from_slice(&self.effects);
-
+        let truth = made(axis, &self.shares, &self.effects);
         let sense = self.noise.sensors(self.seed);
-        let mut recorder = Recorder::new(&truth);
-        // Shorter steps than those that a model's defects are corrected by.
-        let step = 0.4 * axis.mechanism.exact_step().unwrap_or(5e-5);
-        ClosedLoop::exact(&truth, step)?
-            .with_seed(self.seed)
-            .run_sensed(motion, &mut NoCompensation, sense, |cycle| {
-                recorder.push(cycle)
-            })
-            .completed()?;
-        let late = self.clock_offset();
-        let log = recorder.log()?;
-        let log = if late == 0.0 {
-            log
-        } else {
-            shifted(&log, late)?
-        };
-        Ok(log.decimate(every)?)
+        let log = recorded(axis, &truth, self.seed, 0.0, motion, sense)?;
+        late(&self.effects, log)?
+            .decimate(every)
+            .map_err(ReplayError::from)
     }
+}
 
-    fn clock_offset(&self) -> f64 {
-        let clock = self
-            .effects
-            .iter()
-            .filter(|a| a.effect.channel == EffectChannel::Clock);
-        clock.map(|a| a.values[0]).sum()
+/// The machine of the truth: known parameters off, effects put in, and a finer mesh.
+fn made(axis: &Axis, shares: &[f64], effects: &[ActiveEffect]) -> Axis {
+    let mut truth = axis.with_known(shares);
+    // On a finer mesh, where the mechanism has one.
+    let _ = truth.mechanism.change(|values| {
+        if let Some(elements) = values.optional_count("elements") {
+            values.set_count("elements", elements * 13 / 10);
+        }
+    });
+    truth.effects.extend_from_slice(effects);
+    truth
+}
+
+/// The log of a motion on it, from rest with its bristles deflected by the share `wound` of
+/// sliding, one sample a control cycle.
+fn recorded(
+    axis: &Axis,
+    truth: &Axis,
+    seed: u64,
+    wound: f64,
+    motion: &impl Motion,
+    sense: impl FnMut(&mut Measured),
+) -> Result<Log, ReplayError> {
+    let mut recorder = Recorder::new(truth);
+    // Shorter steps than those that a model's defects are corrected by.
+    let step = 0.4 * axis.mechanism.exact_step().unwrap_or(5e-5);
+    let closed_loop = ClosedLoop::exact(truth, step)?.with_seed(seed);
+    let mut state = closed_loop.start(&Start {
+        friction: wound,
+        ..Start::at(motion.at(0.0).position)
+    })?;
+    let none = &mut NoCompensation;
+    closed_loop
+        .run_from(&mut state, motion, none, sense, |cycle| {
+            recorder.push(cycle)
+        })
+        .completed()?;
+    Ok(recorder.log()?)
+}
+
+/// The log with its clock off by what the effects say.
+fn late(effects: &[ActiveEffect], log: Log) -> Result<Log, ReplayError> {
+    let clock = effects
+        .iter()
+        .filter(|a| a.effect.channel == EffectChannel::Clock);
+    let late: f64 = clock.map(|a| a.values[0]).sum();
+    if late == 0.0 {
+        Ok(log)
+    } else {
+        shifted(&log, late)
     }
 }
 

@@ -93,21 +93,21 @@ impl From<Noise> for SensorNoise {
 ///
 /// The search draws its noise from another generator by another transformation: with the
 /// same, a seed in common would give it the noise itself.
-struct Normal {
+pub(super) struct Normal {
     random: ChaCha20Rng,
     /// The second of a pair.
     spare: Option<f64>,
 }
 
 impl Normal {
-    fn new(seed: u64) -> Self {
+    pub(super) fn new(seed: u64) -> Self {
         Self {
             random: ChaCha20Rng::seed_from_u64(seed),
             spare: None,
         }
     }
 
-    fn next(&mut self) -> f64 {
+    pub(super) fn next(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;
         }

@@ -8,7 +8,7 @@ use thiserror::Error;
 use trajectories::TrajectoryError;
 
 use super::case::{Case, HiddenEffect};
-use crate::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
+use crate::hidden::{Exercise, Hidden, LAW, Noise, OUTSIDE, exercise};
 
 /// Why a bench cannot be set up.
 #[derive(Debug, Error)]
@@ -93,12 +93,7 @@ impl Bench {
         let times = |by: f64| {
             let mut case = case.clone();
             for hidden in &mut case.hidden {
-                let parameters = named(&hidden.name).map_or(&[][..], |e| e.parameters);
-                let sizes = hidden.values.iter_mut().zip(parameters);
-                for (value, p) in sizes.filter(|(_, p)| p.is_size()) {
-                    let [low, high] = p.bounds(&scales);
-                    *value = (*value * by).clamp(low, high);
-                }
+                *hidden = times_size(hidden, by, &scales);
             }
             case
         };
@@ -106,17 +101,7 @@ impl Bench {
             let supposed = self.supposed(case);
             supposed.map_or(f64::INFINITY, |s| self.foresight.gain_over_needed(&s))
         };
-        // The gain grows with the size, from nothing as long as known parameters make
-        // up for it: bisection of the size's logarithm.
-        let (mut low, mut high) = SCALES;
-        for _ in 0..HALVINGS {
-            let middle = f64::sqrt(low * high);
-            match seen_in(&times(middle)) < visible {
-                true => low = middle,
-                false => high = middle,
-            }
-        }
-        times(high)
+        times(scale_at(SCALES, |by| seen_in(&times(by)) >= visible))
     }
 
     /// What is true of a case; `None` where an effect of it is unknown.
@@ -131,13 +116,38 @@ impl Bench {
     }
 }
 
-/// The effect of that name, in the library or outside of it.
-fn named(name: &str) -> Option<&'static Effect> {
-    let mut all = EFFECTS.iter().chain(&OUTSIDE);
-    all.find(|e| e.name == name).copied()
+/// The least scale at which something is so, to a twelfth halving of the logarithm: the
+/// gain grows with the size, from nothing as long as known parameters make up for it.
+pub(crate) fn scale_at((mut low, mut high): (f64, f64), holds: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = f64::sqrt(low * high);
+        match holds(middle) {
+            true => high = middle,
+            false => low = middle,
+        }
+    }
+    high
 }
 
-pub(super) fn active(hidden: &HiddenEffect) -> Option<ActiveEffect> {
+/// A hidden effect with its sizes so many times as large, inside their bounds.
+pub(crate) fn times_size(hidden: &HiddenEffect, by: f64, scales: &Scales) -> HiddenEffect {
+    let mut hidden = hidden.clone();
+    let parameters = named(&hidden.name).map_or(&[][..], |e| e.parameters);
+    let sizes = hidden.values.iter_mut().zip(parameters);
+    for (value, p) in sizes.filter(|(_, p)| p.is_size()) {
+        let [low, high] = p.bounds(scales);
+        *value = (*value * by).clamp(low, high);
+    }
+    hidden
+}
+
+/// The effect of that name, in the library or outside of it.
+fn named(name: &str) -> Option<&'static Effect> {
+    let mut all = EFFECTS.iter().chain(&OUTSIDE).copied().chain([&LAW]);
+    all.find(|e| e.name == name)
+}
+
+pub(crate) fn active(hidden: &HiddenEffect) -> Option<ActiveEffect> {
     Some(ActiveEffect {
         effect: named(&hidden.name)?,
         values: hidden.values.clone(),

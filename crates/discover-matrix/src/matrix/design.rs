@@ -152,7 +152,7 @@ fn case(axis: &Axis, kind: Kind, index: usize, row: &[f64; DIMENSIONS], seed: u6
 }
 
 /// Values of an effect, `size` times typical; shapes as their nature has them drawn.
-fn values(axis: &Axis, effect: &Effect, size: f64, random: &mut ChaCha8Rng) -> Vec<f64> {
+pub(crate) fn values(axis: &Axis, effect: &Effect, size: f64, random: &mut ChaCha8Rng) -> Vec<f64> {
     let scales = Scales::of(axis);
     let mut between = |[low, high]: [f64; 2]| low + (high - low) * random.random::<f64>();
     let either = |p: &EffectParameter| p.nature == Nature::Size { either_sign: true };

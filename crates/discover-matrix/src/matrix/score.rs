@@ -17,13 +17,30 @@ pub struct Rate {
 }
 
 impl Rate {
-    fn count<T>(all: impl IntoIterator<Item = T>, holds: impl Fn(&T) -> bool) -> Self {
+    pub(crate) fn count<T>(all: impl IntoIterator<Item = T>, holds: impl Fn(&T) -> bool) -> Self {
         let mut rate = Self::default();
         for one in all {
             rate.of += 1;
             rate.hits += usize::from(holds(&one));
         }
         rate
+    }
+
+    /// One more, or none of it: what is asked, and whether it holds.
+    pub(crate) fn one(asked: bool, holds: bool) -> Self {
+        Self {
+            hits: usize::from(asked && holds),
+            of: usize::from(asked),
+        }
+    }
+
+    /// Both together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            hits: self.hits + other.hits,
+            of: self.of + other.of,
+        }
     }
 
     /// Share, 0 of nothing.
@@ -212,7 +229,7 @@ fn size_errors(estimates: &[&Estimate], value: fn(&Estimate) -> f64) -> Vec<f64>
     sizes.map(error).collect()
 }
 
-fn covered(estimates: &[&Estimate]) -> Rate {
+pub(crate) fn covered(estimates: &[&Estimate]) -> Rate {
     Rate::count(estimates, |e| e.ci95[0] <= e.truth && e.truth <= e.ci95[1])
 }
 

@@ -72,7 +72,7 @@ impl Bench {
         outcome.check.clone_from(&told.gap.check.channels);
         outcome.unknown = told.unknown.clone();
         outcome.named = named(&found);
-        outcome.estimates = estimates(&found, &hidden);
+        outcome.estimates = estimates(&found, &hidden.effects, &hidden.shares);
         Ok(())
     }
 
@@ -85,12 +85,9 @@ impl Bench {
         logs: &[LogSet; 2],
         proposal: &Proposal,
     ) -> Result<Option<Split>, SearchError> {
-        let is_hidden = |name: &&str| hidden.effects.iter().any(|h| h.effect.name == *name);
-        let [first, second] = proposal.pair.each_ref().map(|a| a.effect.name);
-        let pair = match (is_hidden(&first), is_hidden(&second)) {
-            (true, false) => [first, second],
-            (false, true) => [second, first],
-            _ => return Ok(None),
+        let is_hidden = |name: &str| hidden.effects.iter().any(|h| h.effect.name == name);
+        let Some(pair) = is_a_rival(proposal, is_hidden) else {
+            return Ok(None);
         };
         let mut again = hidden.clone();
         again.seed = again.seed.wrapping_mul(2) + 7;
@@ -103,7 +100,7 @@ impl Bench {
         let new = ("proposed".to_owned(), log, self.axis.period);
         let both = LogSet::new(old.chain([new]).collect(), &self.machine)?;
         let library = Library::of_effects(&self.machine, &both, |e| {
-            pair.contains(&e.name) || is_hidden(&e.name)
+            pair.contains(&e.name) || is_hidden(e.name)
         })?;
         let (settings, library) = (Settings::default(), Arc::new(library));
         let found = search_with(&self.machine, &both, check, &settings, library, |_| ())?;
@@ -138,8 +135,22 @@ impl Bench {
     }
 }
 
+/// The two effects that a motion is to separate, the hidden one first; `None` where not just
+/// one of them is hidden.
+pub(crate) fn is_a_rival(
+    proposal: &Proposal,
+    is_hidden: impl Fn(&str) -> bool,
+) -> Option<[&'static str; 2]> {
+    let [first, second] = proposal.pair.each_ref().map(|a| a.effect.name);
+    match (is_hidden(first), is_hidden(second)) {
+        (true, false) => Some([first, second]),
+        (false, true) => Some([second, first]),
+        _ => None,
+    }
+}
+
 /// In the order of evidence.
-fn named(found: &Found) -> Vec<NamedEffect> {
+pub(crate) fn named(found: &Found) -> Vec<NamedEffect> {
     let mut named: Vec<&Named> = found.named.iter().filter(|n| !n.is_form()).collect();
     named.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let entry = |n: &Named| NamedEffect {
@@ -151,14 +162,15 @@ fn named(found: &Found) -> Vec<NamedEffect> {
     named.into_iter().map(entry).collect()
 }
 
-/// Parameters of hidden effects that were named, beside their truth.
-fn estimates(found: &Found, hidden: &Hidden) -> Vec<Estimate> {
+/// Parameters of hidden effects that were named, beside their truth; `shares` are those by
+/// which known parameters are off.
+pub(crate) fn estimates(found: &Found, hidden: &[ActiveEffect], shares: &[f64]) -> Vec<Estimate> {
     let free = free_parameters(&found.fit.state);
     let known = found.fit.state.shares.len();
     let mut all = Vec::new();
     for (e, active) in found.fit.state.effects.iter().enumerate() {
         let same = |h: &&ActiveEffect| h.effect.name == active.effect.name;
-        let Some(truth) = hidden.effects.iter().find(same) else {
+        let Some(truth) = hidden.iter().find(same) else {
             continue;
         };
         for (p, spec) in active.effect.parameters.iter().enumerate() {
@@ -167,7 +179,7 @@ fn estimates(found: &Found, hidden: &Hidden) -> Vec<Estimate> {
             };
             let value = active.values[p];
             let half = found.half_width(known + at, value);
-            let given = value + conditional(found, &hidden.shares, known + at);
+            let given = value + conditional(found, shares, known + at);
             let shift = same_phase(active, truth, p);
             all.push(Estimate {
                 effect: active.effect.name.to_owned(),

@@ -1,0 +1,26 @@
+//! A matrix as hard as reality: several machines, laws of another form than the model's,
+//! noise that is coloured, quantised or in the logger, logs with few channels, known
+//! parameters off by up to a fifth, and laws of no library drawn from a grammar.
+//!
+//! [`cases`] lays out a split plot; a [`Bench`] holds what is the same for all cases of a
+//! plot; [`Bench::try_case`] makes a case's logs, searches them blind and keeps what was
+//! hidden beside what was said. [`TARGETS`] count, each over all cases and by each of
+//! [`GROUPS`].
+//!
+//! Nothing that was named is excused by the verdict: a name of an effect that is not there
+//! is wrong ([`Outcome::wrong_names`]).
+
+mod bench;
+mod case;
+mod design;
+mod outcome;
+mod score;
+mod sight;
+mod told;
+mod trial;
+
+pub use bench::Bench;
+pub use case::{Case, Channels, Setting, TOLERANCES, VERSION, VISIBLE};
+pub use design::{Plan, cases};
+pub use outcome::Outcome;
+pub use score::{GROUPS, Group, Limit, TARGETS, Target};

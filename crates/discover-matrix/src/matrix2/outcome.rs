@@ -1,0 +1,59 @@
+//! What came out of a case.
+
+use discrepancy::{Foreseen, Unknown, Verdict};
+use serde::{Deserialize, Serialize};
+
+use super::case::Case;
+use crate::matrix::{Estimate, NamedEffect, Split};
+
+/// What came out of a case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// The case, its sizes scaled.
+    pub case: Case,
+    /// What could be known beforehand, one entry a hidden effect.
+    pub foreseen: Vec<Foreseen>,
+    /// Why there is no verdict, where there is none.
+    pub failed: Option<String>,
+    /// Verdict.
+    pub verdict: Option<Verdict>,
+    /// Effects named, in the order of evidence.
+    pub named: Vec<NamedEffect>,
+    /// Frictions of which it was said that their law has another form; the axis' own by
+    /// `own`.
+    pub forms: Vec<String>,
+    /// Parameters of those that were hidden and named.
+    pub estimates: Vec<Estimate>,
+    /// Share of the gap on check motion that is gone.
+    pub reduction: f64,
+    /// What was found that is in no library.
+    pub unknown: Option<Unknown>,
+    /// The experiment that was proposed, run, and searched with the whole library.
+    pub split: Option<Split>,
+}
+
+impl Outcome {
+    /// Of a case that cannot be run, and why.
+    pub fn failed(case: &Case, why: String) -> Self {
+        Self {
+            failed: Some(why),
+            ..Self::of(case)
+        }
+    }
+
+    /// Of a case that is not run yet.
+    pub(super) fn of(case: &Case) -> Self {
+        Self {
+            case: case.clone(),
+            foreseen: Vec::new(),
+            failed: None,
+            verdict: None,
+            named: Vec::new(),
+            forms: Vec::new(),
+            estimates: Vec::new(),
+            reduction: 0.0,
+            unknown: None,
+            split: None,
+        }
+    }
+}

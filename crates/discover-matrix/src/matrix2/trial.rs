@@ -1,0 +1,121 @@
+//! One case: logs made, searched blind, and what was hidden kept beside what was said.
+
+use axis_sim::ReplayError;
+use discrepancy::{
+    Discovered, Found, LogSet, Proposal, SearchError, Settings, judged, search, search_with,
+};
+
+use super::bench::Bench;
+use super::case::Case;
+use super::outcome::Outcome;
+use crate::hidden::Truth;
+use crate::matrix::{Split, estimates, is_a_rival, named};
+
+impl Bench {
+    /// Runs a case of this bench's plot. What cannot be run is said in
+    /// [`Outcome::failed`].
+    pub fn try_case(&self, case: &Case) -> Outcome {
+        let mut outcome = Outcome::of(case);
+        if let Err(error) = self.run(case, &mut outcome) {
+            outcome.failed = Some(error.to_string());
+        }
+        outcome
+    }
+
+    fn run(&self, case: &Case, outcome: &mut Outcome) -> Result<(), SearchError> {
+        let (case, foreseen) = self.foreseen(case)?;
+        outcome.case = case.clone();
+        let runs: Option<Vec<_>> = foreseen.into_iter().collect();
+        let Some(foreseen) = runs else {
+            outcome.failed = Some("the axis does not run with the hidden effect".to_owned());
+            return Ok(());
+        };
+        outcome.foreseen = foreseen;
+        let truth = self.truth(&case);
+        let logs = [self.logs(&truth, 0)?, self.logs(&truth, 1)?];
+        let [fit, check] = &logs;
+        let settings = Settings {
+            rejected: case.rejected.clone(),
+            ..Settings::default()
+        };
+        let found = match &self.foresight {
+            Some(foresight) => {
+                let library = foresight.library();
+                search_with(&self.machine, fit, check, &settings, library, |_| ())?
+            }
+            None => search(&self.machine, fit, check, &settings, |_| ())?,
+        };
+        let told = judged(&self.machine, fit, check, &found)?;
+        self.keep(&case, &truth, &found, &told, outcome);
+        if let Some(proposal) = &told.proposal {
+            outcome.split = self.split(&case, &truth, &logs, proposal)?;
+        }
+        Ok(())
+    }
+
+    fn keep(
+        &self,
+        case: &Case,
+        truth: &Truth,
+        found: &Found,
+        told: &Discovered,
+        outcome: &mut Outcome,
+    ) {
+        let told = &told.discovery;
+        let hidden = &truth.effects[..case.hidden.len().min(truth.effects.len())];
+        outcome.verdict = Some(told.verdict);
+        outcome.reduction = told.gap.check.reduction;
+        outcome.unknown.clone_from(&told.unknown);
+        outcome.named = named(found);
+        outcome.estimates = estimates(found, hidden, &truth.shares);
+        let own = told.own_form.as_ref().map(|_| "own".to_owned());
+        let formed = told.effects.iter().filter(|e| e.form.is_some());
+        outcome.forms = own
+            .into_iter()
+            .chain(formed.map(|e| e.name.clone()))
+            .collect();
+    }
+
+    fn logs(&self, truth: &Truth, place: usize) -> Result<LogSet, ReplayError> {
+        let mut truth = truth.clone();
+        truth.seed = truth.seed.wrapping_mul(2) + place as u64;
+        let log = truth.log(&self.axis, &self.motions[place], self.every)?;
+        self.set(place, &log)
+    }
+
+    /// Runs the proposed motion on the hidden machine and searches both logs with the whole
+    /// library. `None` where not just one of the two rivals is hidden.
+    fn split(
+        &self,
+        case: &Case,
+        truth: &Truth,
+        [fit, check]: &[LogSet; 2],
+        proposal: &Proposal,
+    ) -> Result<Option<Split>, SearchError> {
+        let is_hidden = |name: &str| case.hidden.iter().any(|h| h.name == name);
+        let Some(pair) = is_a_rival(proposal, is_hidden) else {
+            return Ok(None);
+        };
+        let mut again = truth.clone();
+        again.seed = again.seed.wrapping_mul(2) + 7;
+        let log = again.log(&self.axis, &proposal.program, self.every)?;
+        let log = self.setting.channels.of(&log).map_err(ReplayError::from)?;
+        let period = self.every as f64 * self.axis.period;
+        let old = fit
+            .logs
+            .iter()
+            .map(|l| (l.name.clone(), l.log.clone(), l.period));
+        let both = old.chain([("proposed".to_owned(), log, period)]).collect();
+        let both = LogSet::new(both, &self.machine)?;
+        let settings = Settings {
+            rejected: case.rejected.clone(),
+            ..Settings::default()
+        };
+        let found = search(&self.machine, &both, check, &settings, |_| ())?;
+        Ok(Some(Split {
+            pair: pair.map(str::to_owned),
+            foreseen: proposal.separation,
+            named: named(&found),
+        }))
+    }
+}

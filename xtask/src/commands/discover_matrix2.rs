@@ -1,0 +1,211 @@
+//! `discover-matrix --version 2`: machines as hard as real ones, searched blind, and the
+//! score.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use axis_sim::Axis;
+use campaign::{Column, Failure, Inputs, Job, Merged, Row, Value};
+use discover_matrix::matrix2::{Bench, Case, Outcome, Plan, cases};
+use miette::{IntoDiagnostic, Result};
+
+use super::discover_matrix::{Kept, Options, replaceable};
+use crate::jobs::failure;
+use crate::output::{ready, say, write_whole};
+use crate::page::matrix2;
+
+/// Axis files of machines that are taken where none are given.
+pub(super) const MACHINES: [&str; 3] = [
+    "data/axes/liu2025.toml",
+    "data/axes/joint.toml",
+    "data/axes/linear-motor.toml",
+];
+
+/// The job of these options.
+pub(super) fn job(options: &Options) -> Result<Matrix2> {
+    if let Some(page) = &options.page {
+        replaceable(page, options.seed, matrix2::seed_of)?;
+    }
+    let read = |file: &PathBuf| Axis::read(file).into_diagnostic();
+    let machines: Vec<Axis> = options.machines.iter().map(read).collect::<Result<_>>()?;
+    let plan = match options.size {
+        _ if options.quick => Plan::quick(machines.len()),
+        Some(size) => Plan::of(size),
+        None => Plan::full(),
+    };
+    let mut cases = cases(&machines, &plan, options.seed).into_diagnostic()?;
+    options.chosen(&mut cases, |c| &c.id)?;
+    let name = format!("seed-{}-of-{}", options.seed, plan.cases());
+    let default = || Path::new("runs/discover-matrix-2").join(name);
+    let out = options.out.clone().unwrap_or_else(default);
+    ready(&out.join("cases"))?;
+    let kept = Kept::new(&machines, &out);
+    if options.tell {
+        cases.retain(|case| by_any(&kept, case).is_some());
+    }
+    Ok(Matrix2 {
+        seed: options.seed,
+        all: plan.cases(),
+        each: plan.cases() / plan.plots.max(1),
+        told: options.tell,
+        page: options.page.clone(),
+        machines,
+        cases,
+        kept,
+        out,
+    })
+}
+
+/// The second matrix: a case is a case of it, whose outcome is also kept as a file.
+pub(super) struct Matrix2 {
+    machines: Vec<Axis>,
+    seed: u64,
+    cases: Vec<Case>,
+    /// Cases of the whole matrix, of which `cases` may be a part.
+    all: usize,
+    /// Cases of a plot.
+    each: usize,
+    /// Whether what any program kept is told, and nothing is run.
+    told: bool,
+    kept: Kept,
+    out: PathBuf,
+    page: Option<PathBuf>,
+}
+
+/// What any program kept of a case.
+fn by_any(kept: &Kept, case: &Case) -> Option<Outcome> {
+    let (_, outcome): (String, Outcome) = kept.read_any(&case.id)?;
+    outcome.case.is_same(case).then_some(outcome)
+}
+
+impl Matrix2 {
+    /// What was kept of a case.
+    fn outcome(&self, case: &Case) -> Option<Outcome> {
+        if self.told {
+            return by_any(&self.kept, case);
+        }
+        let outcome: Option<Outcome> = self.kept.read(&case.id);
+        outcome.filter(|o| o.case.is_same(case))
+    }
+
+    /// Outcomes of cases of one plot, which share what is made beforehand.
+    fn plot(&self, cases: &[Case]) -> std::result::Result<Vec<Outcome>, Failure> {
+        let mut bench = None;
+        let mut one = |case: &Case| -> std::result::Result<Outcome, Failure> {
+            if let Some(outcome) = self.outcome(case) {
+                return Ok(outcome);
+            }
+            let mut machines = self.machines.iter();
+            let axis = machines.find(|axis| axis.name == case.setting.machine);
+            let axis = axis.ok_or("a machine of the matrix is not there")?;
+            // Where the search refuses the very motion, it refuses each case of it.
+            let bench = bench.get_or_insert_with(|| {
+                Bench::new(axis, &case.setting).map_err(|error| error.to_string())
+            });
+            let outcome = match bench {
+                Ok(bench) => bench.try_case(case),
+                Err(why) => Outcome::failed(case, why.clone()),
+            };
+            self.kept.write(&case.id, &outcome).map_err(failure)?;
+            Ok(outcome)
+        };
+        cases.iter().map(&mut one).collect()
+    }
+
+    fn write(&self, outcomes: &[Outcome]) -> Result<()> {
+        let page = matrix2::page(&self.machines, self.seed, self.all, outcomes);
+        write_whole(&self.out.join("matrix.md"), page.as_bytes())?;
+        if let Some(file) = &self.page {
+            write_whole(file, page.as_bytes())?;
+        }
+        say(matrix2::figures(outcomes))?;
+        say(self.out.join("matrix.md").display().to_string())
+    }
+}
+
+impl Job for Matrix2 {
+    fn name(&self) -> &'static str {
+        "discover-matrix"
+    }
+
+    fn inputs(&self) -> Inputs {
+        let cases = serde_json::to_string(&self.cases).unwrap_or_default();
+        let axes: Vec<&str> = (self.machines.iter())
+            .map(|axis| axis.fingerprint.as_str())
+            .collect();
+        crate::program::inputs()
+            .with("version", 2)
+            .with("axes", axes.join(" "))
+            .with("seed", self.seed)
+            .with("cases", blake3::hash(cases.as_bytes()).to_hex())
+    }
+
+    fn folder(&self) -> &Path {
+        &self.out
+    }
+
+    fn columns(&self) -> &'static [Column] {
+        const COLUMNS: [Column; 2] = [Column::text("name"), Column::text("outcome")];
+        &COLUMNS
+    }
+
+    fn cases(&self) -> usize {
+        self.cases.len()
+    }
+
+    /// As many as a plot has.
+    fn block(&self) -> usize {
+        self.each
+    }
+
+    fn rows(&self, cases: Range<usize>) -> std::result::Result<Vec<Row>, Failure> {
+        let mut rows = Vec::new();
+        for plot in self.cases[cases].chunk_by(|a, b| a.plot == b.plot) {
+            for (case, outcome) in plot.iter().zip(self.plot(plot)?) {
+                let outcome = serde_json::to_string(&outcome)?;
+                rows.push(vec![Value::Text(case.id.clone()), Value::Text(outcome)]);
+            }
+        }
+        Ok(rows)
+    }
+
+    fn finish(&self, rows: &Merged) -> std::result::Result<(), Failure> {
+        let read = |row: std::result::Result<Row, campaign::CampaignError>| -> std::result::Result<Outcome, Failure> {
+            Ok(serde_json::from_str(row?[1].text()?)?)
+        };
+        let outcomes = rows
+            .rows()
+            .map(read)
+            .collect::<std::result::Result<Vec<_>, _>>()?;
+        self.write(&outcomes).map_err(failure)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn machines() -> Vec<Axis> {
+        let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+        let read = |file: &&str| Axis::read(&root.join(file)).unwrap();
+        MACHINES.iter().map(read).collect()
+    }
+
+    /// Or what is kept would be run again.
+    #[test]
+    fn every_case_comes_back_from_its_file() {
+        let all = cases(&machines(), &Plan::full(), 6).unwrap();
+        assert!(all.len() >= 600);
+        for case in all {
+            let text = serde_json::to_vec_pretty(&case).unwrap();
+            assert_eq!(serde_json::from_slice::<Case>(&text).unwrap(), case);
+        }
+    }
+
+    #[test]
+    fn a_page_says_its_seed() {
+        let page = matrix2::page(&machines(), 202, 1080, &[]);
+        assert_eq!(matrix2::seed_of(&page), Some(202));
+        assert_eq!(matrix2::seed_of("# Notes\n"), None);
+    }
+}
