@@ -5,6 +5,7 @@ mod prepare;
 mod set;
 mod slack;
 mod state;
+mod stored;
 
 use axis_sim::effects::ActiveEffect;
 use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
