@@ -3,6 +3,7 @@
 mod inexact;
 mod prepare;
 mod set;
+mod share;
 mod slack;
 mod state;
 mod stored;

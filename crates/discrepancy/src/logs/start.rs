@@ -39,13 +39,7 @@ pub fn from_rest(
         return Ok((log, Some(words)));
     }
     let rest = (REST_TIME / period).round() as usize;
-    let still = |window: &[f64]| {
-        let ends = window
-            .iter()
-            .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
-        ends.1 - ends.0 <= AT_REST * REST_TIME
-    };
-    let first = reference.windows(rest + 1).position(still);
+    let first = reference.windows(rest + 1).position(is_still);
     // So late that nothing follows is as good as never.
     let left = first.and_then(|k| Some((k, log.skip(k + rest / 2).ok()?)));
     match left {
@@ -61,6 +55,14 @@ pub fn from_rest(
             speed,
         }),
     }
+}
+
+/// Whether the reference rests over [`REST_TIME`].
+pub(super) fn is_still(window: &[f64]) -> bool {
+    let ends = window
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+    ends.1 - ends.0 <= AT_REST * REST_TIME
 }
 
 /// Reference speed below which a log is at rest, m/s.
