@@ -15,6 +15,13 @@ fn machine(name: &str) -> Axis {
     let file = format!("{}/../../data/axes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let mut axis = Axis::read(file.as_ref()).unwrap();
     axis.sensors = axis_sim::Sensors::default();
+    // No log shows in which cycle a slower loop begins.
+    if axis.control.values().optional("position_rate").is_some() {
+        let rate = 1.0 / axis.period;
+        axis.control
+            .change(|v| v.set("position_rate", rate))
+            .unwrap();
+    }
     axis
 }
 
@@ -169,6 +176,26 @@ fn a_log_that_begins_with_its_machine_has_nothing_stored_or_the_same_bits() {
     assert_eq!(own[0].channels, plain.channels);
 }
 
+/// Reference and position tell no command: what the bristles hold is then an unknown.
+#[test]
+fn where_no_command_is_logged_what_bristles_hold_is_found() {
+    let machine = machine("rack");
+    let [earlier, logged] = motions(&machine);
+    let log = cut_out(&machine, &earlier, &logged);
+    let log = only(&log, &["t_s", "position_ref_m", "position_m"]);
+    let state = State::initial(&machine);
+    let mut set = set_of(&machine, &log);
+    let most = |set: &LogSet| {
+        let rest = set.rest(&set.simulate(&machine, &state).unwrap());
+        rest[0][0].iter().fold(0.0_f64, |m, r| m.max(r.abs()))
+    };
+    let free = most(&set);
+    set.find_stored(&machine, &state).unwrap();
+    let found = most(&set);
+    println!("{found:e} m, {free:e} m with free bristles");
+    assert!(found < 0.1 * free, "{found:e} {free:e}");
+}
+
 /// Any zero and many turns; the position anywhere on the stroke.
 #[test]
 fn the_angle_counts_from_anywhere() {
@@ -207,12 +234,9 @@ fn the_angle_counts_from_anywhere() {
 #[test]
 fn a_log_cut_in_motion_begins_with_what_its_first_rest_has_stored() {
     let machine = machine("rack");
-    let [earlier, logged] = motions(&machine);
     let x = machine.stroke.start;
     let whole = program(x, &[(x + 0.05, 0.6), (x + 0.03, 0.3)]);
     let hidden = load(0.6 * break_away(&machine));
-    let log = cut_out(&with(&machine, &[hidden.clone()]), &earlier, &logged);
-    drop(log);
     let far = program(x - 0.01, &[(x, 0.3)]);
     let log = cut_out(&with(&machine, &[hidden.clone()]), &far, &whole);
     let moving = log.skip((0.6 / machine.period) as usize).unwrap();
@@ -226,7 +250,7 @@ fn a_log_cut_in_motion_begins_with_what_its_first_rest_has_stored() {
 fn figures_come_from_logs_that_took_no_part_where_there_can_be_such() {
     let machine = machine("rack");
     let x = machine.stroke.start;
-    let to_and_fro = program(x, &[(x + 0.01, 0.3), (x, 0.3), (x + 0.02, 0.3), (x, 0.3)]);
+    let to_and_fro = program(x, &[(x + 0.02, 0.3), (x, 0.3), (x + 0.01, 0.3), (x, 0.3)]);
     let earlier = program(x, &[(x, 0.1)]);
     let log = cut_out(&machine, &earlier, &to_and_fro);
     let named = |name: &str, log: &Log| (name.to_owned(), log.clone(), machine.period);
@@ -250,5 +274,4 @@ fn figures_come_from_logs_that_took_no_part_where_there_can_be_such() {
     let (check, test) = set_apart(vec![named("a", &short)], &machine);
     assert_eq!((check.len(), test.len()), (1, 0));
     assert_eq!(check[0].1.len(), short.len());
-    let _ = only(&short, &["t_s"]);
 }

@@ -91,9 +91,9 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     let fit = read_all(&options.fit, machine, &mut notes)?;
     let check = read_all(&options.check, machine, &mut notes)?;
     let test = read_all(&options.test, machine, &mut notes)?;
-    let seen: Vec<NamedLog> = fit.iter().chain(&check).cloned().collect();
-    check_distinct(&fit, &check).into_diagnostic()?;
-    check_distinct(&seen, &test).into_diagnostic()?;
+    for (seen, new) in [(&fit, &check), (&fit, &test), (&check, &test)] {
+        check_distinct(seen, new).into_diagnostic()?;
+    }
     let (check, test) = match test.is_empty() {
         true => set_apart(check, machine),
         false => (check, test),

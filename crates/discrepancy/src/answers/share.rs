@@ -33,7 +33,7 @@ impl LogSet {
     ///
     /// # Errors
     /// [`ReplayError`] where the machine does not run.
-    fn find_stored(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
+    pub fn find_stored(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
         if self.shares().iter().all(Option::is_none) {
             return Ok(());
         }

@@ -13,8 +13,7 @@
 
 use axis_log::Log;
 use axis_sim::{
-    Axis, ChannelPart, ClosedLoop, LoggedReference, Replay, Stored, channels, position_in,
-    reference_in,
+    Axis, ChannelPart, ClosedLoop, Replay, Stored, channels, position_in, reference_in,
 };
 use trajectories::Motion;
 
@@ -30,9 +29,11 @@ const STILL: f64 = 1e-7;
 /// Longest part of a rest that is looked at, s.
 const LONGEST: f64 = 2.0;
 
-/// Standard deviations of a mean, of samples taken for independent, beyond which it is not
-/// chance. Noise in a loop has a memory of several samples, which makes means worse.
+/// Standard deviations of a mean beyond which it is not chance.
 const DEVIATIONS: f64 = 8.0;
+
+/// Time over which noise in a loop remembers itself, s: samples nearer than that are one.
+const MEMORY: f64 = 1e-3;
 
 /// Share of the command of a rest by which its beginning must be off for it to have come up
 /// there.
@@ -54,7 +55,10 @@ pub(super) fn storing(replay: Replay, log: &Log, period: f64, closed_loop: &Clos
     };
     let few = ((BEGINNING / period).round() as usize).max(2);
     let stored = match command(log, closed_loop.axis(), rest) {
-        Some(command) => by_command(command, few, replay.reference(), closed_loop),
+        Some(command) => {
+            let position = replay.reference().at(0.0).position;
+            by_command(command, few, MEMORY / period, closed_loop, position)
+        }
         None => by_position(log, rest, few),
     };
     tracing::debug!(?stored, rest, "start of a log");
@@ -102,26 +106,35 @@ fn power(samples: &[f64]) -> f64 {
     samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples.len().max(1) as f64
 }
 
+/// By the commands of a rest, of which the first `few` are its beginning and `memory`
+/// samples on end count as one.
 fn by_command(
     rest: &[f64],
     few: usize,
-    reference: &LoggedReference,
+    memory: f64,
     closed_loop: &ClosedLoop,
+    position: f64,
 ) -> Stored {
-    let position = reference.at(0.0).position;
     let Ok(own) = closed_loop.resting_effort(position) else {
         return Stored::Nothing;
     };
     let (begun, later) = rest.split_at(few);
     let late = &rest[rest.len() / 2..];
     let noise = power(late).sqrt();
-    let chance = |samples: usize| DEVIATIONS * noise / (samples as f64).sqrt();
+    let chance = |samples: usize| {
+        let independent = samples as f64 / memory.max(1.0);
+        DEVIATIONS * noise / independent.max(1.0).sqrt()
+    };
     let (first, level) = (mean(begun), mean(later));
     // What a file with few digits shows is off by its rounding.
     let least = 1e-9 * closed_loop.axis().actuator.limit().min(1e9);
-    let came_up = (first - level).abs();
-    if came_up > chance(few).max(COMES_UP * (level - own).abs()).max(least) {
-        return Stored::Nothing;
+    let changes = (first - level).abs();
+    if changes > chance(few).max(COMES_UP * (level - own).abs()).max(least) {
+        // What an earlier move has left dies away instead.
+        return match (first - own).abs() < (level - own).abs() {
+            true => Stored::Nothing,
+            false => Stored::Effort(first),
+        };
     }
     match (level - own).abs() > chance(later.len()).max(least) {
         true => Stored::Effort(mean(rest)),
