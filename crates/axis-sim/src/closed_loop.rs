@@ -77,6 +77,9 @@ impl Clone for LoopState {
     }
 }
 
+/// Machine and actuator at rest or in even motion, and the command that takes.
+type Settled = (Box<dyn Running>, Box<dyn Actuating>, f64);
+
 impl LoopState {
     /// Machine, as it is now.
     pub fn plant(&self) -> &dyn Running {
@@ -241,10 +244,7 @@ impl ClosedLoop {
     }
 
     /// Machine and actuator settled, and the command that takes, as the sensors show it.
-    fn settled(
-        &self,
-        start: &Start,
-    ) -> Result<(Box<dyn Running>, Box<dyn Actuating>, f64), SetupError> {
+    fn settled(&self, start: &Start) -> Result<Settled, SetupError> {
         let plant = self.plant.clone().start(start)?;
         let mut actuator = self.axis.actuator.start(&self.axis.surroundings())?;
         let seen = *plant.seen();

@@ -140,7 +140,7 @@ fn a_load_that_was_there_for_long_is_held_from_the_first_sample_on() {
         for share in [0.6, -1.3] {
             let hidden = load(share * break_away(&machine));
             let [earlier, logged] = motions(&machine);
-            let axis = with(&machine, &[hidden.clone()]);
+            let axis = with(&machine, std::slice::from_ref(&hidden));
             let log = cut_out(&axis, &earlier, &logged);
             let [stored, nothing] = departures(&machine, &log, vec![hidden]);
             println!("{name}, {share}: {stored:e} m, {nothing:e} m with nothing stored");
@@ -238,7 +238,7 @@ fn a_log_cut_in_motion_begins_with_what_its_first_rest_has_stored() {
     let whole = program(x, &[(x + 0.05, 0.6), (x + 0.03, 0.3)]);
     let hidden = load(0.6 * break_away(&machine));
     let far = program(x - 0.01, &[(x, 0.3)]);
-    let log = cut_out(&with(&machine, &[hidden.clone()]), &far, &whole);
+    let log = cut_out(&with(&machine, std::slice::from_ref(&hidden)), &far, &whole);
     let moving = log.skip((0.6 / machine.period) as usize).unwrap();
     let (left, note) = from_rest("cut.csv", moving, machine.period, &machine).unwrap();
     assert!(note.unwrap().contains("first rest"));
