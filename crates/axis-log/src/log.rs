@@ -159,6 +159,26 @@ impl Log {
         })
     }
 
+    /// The first `instants` of the log, or all of it where it has no more.
+    ///
+    /// # Errors
+    /// [`LogError::Empty`] where none is asked for.
+    pub fn first(&self, instants: usize) -> Result<Self, LogError> {
+        let length = instants.min(self.len());
+        if length == 0 {
+            return Err(LogError::Empty);
+        }
+        let begin = |c: &Channel| Channel {
+            name: c.name.clone(),
+            unit: c.unit.clone(),
+            samples: c.samples[..length].to_vec(),
+        };
+        Ok(Self {
+            channels: self.channels.iter().map(begin).collect(),
+            missing: self.moved(length, Clone::clone),
+        })
+    }
+
     /// The log with every `every`th instant only, from the first one on.
     ///
     /// The samples in between are dropped, not averaged: what lies above half

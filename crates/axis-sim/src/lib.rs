@@ -127,6 +127,6 @@ pub use error::SetupError;
 pub use one_cycle::{CycleInput, OneCycle};
 pub use plant::Start;
 pub use recorder::{CsvRecorder, Recorder};
-pub use replay::{LoggedReference, Probe, Replay, ReplayError, Trace};
+pub use replay::{LoggedReference, Probe, Replay, ReplayError, Stored, Trace};
 pub use six_digits::SixDigits;
 pub use work::MOST_STEPS;

@@ -72,6 +72,7 @@ impl OneCycle {
             acceleration: input.acceleration,
             time: SETTLED,
             friction: 0.0,
+            held: false,
         };
         self.closed_loop.one_cycle(&start, input.iq_command)
     }

@@ -65,6 +65,9 @@ pub struct Start {
     /// At rest, share of the Coulomb deflection that the bristles were left with,
     /// −1 to 1: an axis that came forward and stopped is held back by up to 1.
     pub friction: f64,
+    /// Whether loads that stand from before on act at once, held by drive and bristles.
+    /// Otherwise those of effects come up over 20 ms where the start is at rest.
+    pub held: bool,
 }
 
 impl Start {
@@ -224,9 +227,9 @@ const SETTLING_ROUNDS: usize = 60;
 const STANDING_LOAD_RISE: f64 = 0.02;
 
 impl<S: TimeStepper> Law<S> {
-    /// Whether a motion is one that goes on: rest is where what comes up has not.
-    fn in_motion(start: &Start) -> bool {
-        start.speed != 0.0 || start.acceleration != 0.0
+    /// Whether all loads act at the start: in a motion that goes on, and at a rest under them.
+    fn is_loaded(start: &Start) -> bool {
+        start.held || start.speed != 0.0 || start.acceleration != 0.0
     }
 
     /// A speed of the load in the friction's coordinate, or a force there at the load.
@@ -262,7 +265,7 @@ impl<S: TimeStepper> Law<S> {
                 0.0 => start.friction.clamp(-1.0, 1.0),
                 speed => speed.signum(),
             },
-            pressed: if Self::in_motion(start) { 1.0 } else { 0.0 },
+            pressed: if Self::is_loaded(start) { 1.0 } else { 0.0 },
             transmitted,
             travelled: 0.0,
         }
@@ -270,7 +273,7 @@ impl<S: TimeStepper> Law<S> {
 
     fn settled(&self, start: &Start) -> Settled {
         let mut motion = self.settled_under(start, 0.0);
-        if !(self.feels_transmission && Self::in_motion(start)) {
+        if !(self.feels_transmission && Self::is_loaded(start)) {
             return motion;
         }
         // A load that grows by a share of the force that moves it: each round shrinks what
@@ -297,7 +300,7 @@ impl<S: TimeStepper> Law<S> {
         let own = friction.torque(bristle, start.speed / self.lever) / self.lever;
         let table = Self::table(start, transmitted);
         let mut load = own + self.loads_at(&table);
-        if Self::in_motion(start) {
+        if Self::is_loaded(start) {
             let hooks = &self.assembly.hooks;
             load += hooks.loads_at(&table);
             if !hooks.memories().is_empty() {
@@ -346,7 +349,7 @@ where
             travelled: 0.0,
             force_change: 0.0,
             motor_acceleration: start.acceleration / self.travel,
-            pressed: Self::in_motion(start),
+            pressed: Self::is_loaded(start),
             seen: Seen::default(),
             law: self,
             drive,

@@ -53,15 +53,15 @@ pub use estimate::known::{known_deviations, tolerances};
 pub use foresight::{Foreseen, Foresight, Hypothesis, Imitation};
 pub use judge::{
     Against, Answered, AtScrew, Confidence, Cost, Curve, Discovered, Discovery, DriveFunction,
-    EffectFound, EffortCost, FormFound, FrictionLaw, Gaps, Level, Likeness, NextExperiment,
-    Overlay, ParameterFound, Proposal, REMEDIES, ReadUnit, Recalibrated, RefusedEffects, Remedy,
-    RemedyTold, ReplacedEffect, Shown, Size, Told, TrackingCost, Unknown, Verdict, discovery,
-    judged,
+    EffectFound, EffortCost, Figures, FormFound, FrictionLaw, Gaps, Level, Likeness,
+    NextExperiment, Overlay, ParameterFound, Proposal, REMEDIES, ReadUnit, Recalibrated,
+    RefusedEffects, Remedy, RemedyTold, ReplacedEffect, Shown, Size, Told, TrackingCost, Unknown,
+    Verdict, discovery, judged,
 };
 pub use name::gap::{ChannelGap, Gap};
 pub use name::library::{Library, applicable};
 pub use name::search::{
     Alike, Found, Named, ONE_CLASS, Reason, Refused, Replaced, RunnerUp, SearchError, Settings,
-    SettingsError, search, search_with,
+    SettingsError, Test, search, search_with,
 };
 pub use noise::SensorNoise;

@@ -140,9 +140,9 @@ fn a_check_that_was_fitted_is_refused() {
 fn a_log_that_starts_in_motion_begins_at_its_first_rest_or_is_refused() {
     let cut = log(0.7, 2.5, reference, followed, current);
     let (left, note) = from_rest("drive.csv", cut.clone(), PERIOD, &machine("liu2025")).unwrap();
-    // The first rest begins at 1.0 s, and the loop is given half of 0.2 s.
+    // The first rest is from 1.0 to 1.5 s, and half of 0.2 s of it is kept.
     let from = left.time()[0];
-    assert!((from - 1.1).abs() < 0.02, "{from}");
+    assert!((from - 1.4).abs() < 0.02, "{from}");
     let note = note.unwrap();
     assert!(
         note.contains("starts in motion") && note.contains("left out"),

@@ -9,7 +9,9 @@ use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, OnsetForm, Scales};
 use axis_sim::friction::Place as FrictionPlace;
 use clap::Args;
-use discrepancy::logs::{check_distinct, check_log, cross_checks, exact_channels, from_rest};
+use discrepancy::logs::{
+    NamedLog, check_distinct, check_log, cross_checks, exact_channels, from_rest, set_apart,
+};
 use discrepancy::summary::{MeasuredError, SummaryFound, rank, tried};
 use discrepancy::{Discovery, LogSet, Settings, Verdict, discovery, search};
 use indicatif::ProgressBar;
@@ -34,9 +36,13 @@ pub struct Options {
     /// Logs of other motion, to check on; never fitted to
     #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
     check: Vec<PathBuf>,
+    /// Logs that take no part in any choice, from which the figures are. Without them the
+    /// last check log is taken, or the last part of a single one, where it can be cut
+    #[arg(long, value_name = "LOG", num_args = 1.., requires = "check")]
+    test: Vec<PathBuf>,
     /// Instead of logs: CSV with the columns trajectory, experiment_max_um and
     /// experiment_mean_um (or max_um, mean_um), one row a trajectory of the axis file
-    #[arg(long, value_name = "TABLE", conflicts_with_all = ["fit", "check", "accept", "reject"])]
+    #[arg(long, value_name = "TABLE", conflicts_with_all = ["fit", "check", "test", "accept", "reject"])]
     summary: Option<PathBuf>,
     /// Folder for discovery.json, report.html and axis.toml, or for summary.json and
     /// summary.html [default: runs/, the name of the axis, /discover]
@@ -84,9 +90,17 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     let mut notes = Vec::new();
     let fit = read_all(&options.fit, machine, &mut notes)?;
     let check = read_all(&options.check, machine, &mut notes)?;
-    check_distinct(&fit, &check).into_diagnostic()?;
-    let fit = LogSet::new(fit, machine).into_diagnostic()?;
-    let check = LogSet::new(check, machine).into_diagnostic()?;
+    let test = read_all(&options.test, machine, &mut notes)?;
+    for (seen, new) in [(&fit, &check), (&fit, &test), (&check, &test)] {
+        check_distinct(seen, new).into_diagnostic()?;
+    }
+    let (check, test) = match test.is_empty() {
+        true => set_apart(check, machine),
+        false => (check, test),
+    };
+    let set = |logs| LogSet::new(logs, machine).into_diagnostic();
+    let (fit, check) = (set(fit)?, set(check)?);
+    let test = (!test.is_empty()).then(|| set(test)).transpose()?;
     notes.iter().try_for_each(say)?;
     say(format!(
         "{}; channels compared: {}",
@@ -98,12 +112,15 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     let text = moved(&read_text(&options.axis)?, &options.axis, out)?;
     let progress = ProgressBar::new_spinner();
     progress.enable_steady_tick(std::time::Duration::from_millis(120));
-    let found = search(machine, &fit, &check, &settings, |what| {
+    let mut found = search(machine, &fit, &check, &settings, |what| {
         tracing::debug!("{what}");
         progress.set_message(what.to_owned());
     })
     .into_diagnostic()
     .wrap_err("the axis as its file says does not run these logs")?;
+    if let Some(test) = test {
+        found = found.tested_on(machine, test);
+    }
     let mut discovered = discovery(machine, &fit, &check, &found).into_diagnostic()?;
     discovered.discovery.notes.iter().try_for_each(say)?;
     notes.append(&mut discovered.discovery.notes);
@@ -181,7 +198,7 @@ pub(super) fn read_all(
     paths: &[PathBuf],
     machine: &Axis,
     notes: &mut Vec<String>,
-) -> Result<Vec<(String, Log, f64)>> {
+) -> Result<Vec<NamedLog>> {
     let one = |path: &PathBuf| {
         let name = path.display().to_string();
         let log = read_as_one(path, machine, notes)?;
@@ -282,7 +299,7 @@ fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
             effect.by
         ))?;
     }
-    say("\nRMS gap on check motion        before        after        noise")?;
+    say("\nRMS gap on motion not fitted    before        after        noise")?;
     for c in &discovery.gap.check.channels {
         say(format!(
             "  {:<24} {:>12.4e} {:>12.4e} {:>12.4e}",

@@ -8,7 +8,7 @@ use std::time::Instant;
 use axis_sim::Axis;
 use axis_sim::effects::Effect;
 use clap::Args;
-use discrepancy::logs::check_distinct;
+use discrepancy::logs::{check_distinct, set_apart};
 use discrepancy::{Discovery, EffectFound, LogSet, Settings, Verdict, discovery, search};
 use independent_axis::cases::{CASES, Case, named};
 use independent_axis::{Rough, TrueEffect, Truth, Wanted, write_case};
@@ -163,9 +163,12 @@ fn searched(folder: &Path) -> Result<Discovery> {
     let check = logs(["check-1.csv", "check-2.csv"])?;
     check_distinct(&fit, &check).into_diagnostic()?;
     let fit = LogSet::new(fit, &machine).into_diagnostic()?;
+    let (check, test) = set_apart(check, &machine);
     let check = LogSet::new(check, &machine).into_diagnostic()?;
+    let test = LogSet::new(test, &machine).into_diagnostic()?;
     let say = |what: &str| tracing::debug!("{what}");
     let found = search(&machine, &fit, &check, &Settings::default(), say).into_diagnostic()?;
+    let found = found.tested_on(&machine, test);
     let discovered = discovery(&machine, &fit, &check, &found).into_diagnostic()?;
     Ok(discovered.discovery)
 }

@@ -214,7 +214,7 @@ fn gaps(discovery: &Discovery) -> Section {
         ))
     };
     Section::new("Gap, RMS")
-        .table(table("Check motion, never fitted to", &discovery.gap.check))
+        .table(table("Motion that was not fitted to", &discovery.gap.check))
         .table(table("Fit motion", &discovery.gap.fit))
 }
 
@@ -228,7 +228,7 @@ fn pictures(overlays: &[Overlay]) -> Section {
             .series(series("before", &o.before))
             .series(series("after", &o.after))
     };
-    Section::new("Check motion, channel by channel")
+    Section::new("Motion that was not fitted to, channel by channel")
         .paragraph("Before: known parameters moved inside their tolerance, no effect added.")
         .figure_grid(overlays.iter().map(figure).collect(), 2)
 }

@@ -84,7 +84,8 @@ fn own() -> String {
         let key = match key.kind {
             // The controller's own are in its kind's table.
             Kind::Table(keys) if key.name == "control" => {
-                let own = |k: &Key| ["frequency", "following_error_limit", "gains"].contains(&k.name);
+                let own =
+                    |k: &Key| ["frequency", "following_error_limit", "gains"].contains(&k.name);
                 Key::of_table("control", keys.iter().filter(|k| own(k)).cloned().collect())
             }
             _ => key,

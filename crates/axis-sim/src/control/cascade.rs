@@ -170,6 +170,10 @@ impl Control for Cascade {
         })
     }
 
+    fn integrates(&self) -> bool {
+        self.speed[1] > 0.0
+    }
+
     fn speed_gain(&self) -> Option<f64> {
         Some(self.speed[0])
     }

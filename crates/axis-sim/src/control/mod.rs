@@ -53,6 +53,12 @@ pub trait Control: fmt::Debug + Send + Sync {
         false
     }
 
+    /// Whether an integrator holds what standing loads ask for, so that no error is left at
+    /// rest.
+    fn integrates(&self) -> bool {
+        false
+    }
+
     /// Effort per speed of the motor, as it acts at once: the way by which noise of the
     /// speed comes into the command. None where no speed of the motor is read.
     fn speed_gain(&self) -> Option<f64> {

@@ -56,6 +56,10 @@ impl Control for Pid {
         self.effort
     }
 
+    fn integrates(&self) -> bool {
+        self.integral > 0.0
+    }
+
     fn start(&self, on: &Surroundings) -> Result<Box<dyn Controller>, PartError> {
         Ok(Box::new(State {
             law: *self,

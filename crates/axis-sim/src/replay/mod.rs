@@ -19,7 +19,7 @@ use crate::channels::{ChannelPart, LogChannel, channels, position_in};
 use crate::effects::{ActiveEffect, Hooks, Steepness};
 use crate::plant::Start;
 use crate::work::cycles_of;
-use crate::{ClosedLoop, Measured};
+use crate::{ClosedLoop, Measured, SetupError};
 pub use error::ReplayError;
 use error::check_length;
 pub use reference::LoggedReference;
@@ -57,6 +57,24 @@ pub enum Probe {
     Offset(Arc<[f64]>),
 }
 
+/// What is stored at a log's start: a state of that log, not of the machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Stored {
+    /// Nothing: bristles free, the drive holds the axis' own loads, and loads of effects
+    /// come up over 20 ms.
+    #[default]
+    Nothing,
+    /// All loads have acted for long. The drive holds what the own loads ask for, the
+    /// bristles hold the loads of effects.
+    InBristles,
+    /// All loads have acted for long, and the drive holds the axis with this command, in
+    /// the actuator's unit; the bristles hold what is missing ([`ClosedLoop::holding`]).
+    Effort(f64),
+    /// All loads have acted for long, and the bristles hold this share, −1 to 1, of what
+    /// they can; the drive holds what is missing.
+    Share(f64),
+}
+
 /// One log's reference, ready to be run through any axis.
 #[derive(Clone, Debug)]
 pub struct Replay {
@@ -65,6 +83,7 @@ pub struct Replay {
     /// Position and speed at the log's first samples.
     start: [f64; 2],
     added: Option<Vec<f64>>,
+    stored: Stored,
 }
 
 /// What a log shows of a command that was added to the controller's.
@@ -88,7 +107,20 @@ impl Replay {
             samples: log.len(),
             start: [position[0], speed],
             added: log.channel(ADDED).ok().map(<[f64]>::to_vec),
+            stored: Stored::Nothing,
         })
+    }
+
+    /// The same with this stored at its start. An axis that can begin in motion begins as
+    /// the log's first samples say, whatever is stored.
+    #[must_use]
+    pub fn storing(self, stored: Stored) -> Self {
+        Self { stored, ..self }
+    }
+
+    /// What is stored at its start.
+    pub fn stored(&self) -> Stored {
+        self.stored
     }
 
     /// The reference.
@@ -141,7 +173,7 @@ impl Replay {
         let channels: Vec<LogChannel> = channels(axis).into_iter().filter(compared).collect();
         let mut columns: Vec<Vec<f64>> = vec![Vec::with_capacity(cycles as usize); channels.len()];
         let mut speed: Vec<f64> = Vec::with_capacity(cycles as usize);
-        let mut state = closed_loop.start(&self.begin(axis))?;
+        let mut state = closed_loop.start(&self.begin(closed_loop)?)?;
         let mut added = Added {
             replay: self,
             period,
@@ -171,17 +203,28 @@ impl Replay {
         })
     }
 
-    /// Where an axis begins: at rest at the reference's start, or, where nothing that a
-    /// log does not show decides on how it goes on, in the motion that the log begins with.
-    fn begin(&self, axis: &Axis) -> Start {
+    /// Where an axis begins: at rest at the reference's start with what is stored there, or,
+    /// where nothing that a log does not show decides on how it goes on, in the motion that
+    /// the log begins with.
+    fn begin(&self, closed_loop: &ClosedLoop) -> Result<Start, SetupError> {
         let [position, speed] = self.start;
-        if axis.control.starts_in_motion() {
-            return Start {
+        if closed_loop.axis().control.starts_in_motion() {
+            return Ok(Start {
                 speed,
                 ..Start::at(position)
-            };
+            });
         }
-        Start::at(self.reference.at(0.0).position)
+        let position = self.reference.at(0.0).position;
+        match self.stored {
+            Stored::Nothing => Ok(Start::at(position)),
+            Stored::InBristles => closed_loop.holding(position, None),
+            Stored::Effort(effort) => closed_loop.holding(position, Some(effort)),
+            Stored::Share(friction) => Ok(Start {
+                friction,
+                held: true,
+                ..Start::at(position)
+            }),
+        }
     }
 
     /// Samples at the log's instants of what was recorded every `period`, late by `by`.

@@ -4,8 +4,10 @@ pub mod effort;
 mod inexact;
 mod prepare;
 mod set;
+mod share;
 mod slack;
 mod state;
+mod stored;
 
 use axis_sim::effects::ActiveEffect;
 use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::inexact::inexactness;
 use super::set::{LogSet, Prepared, relative};
 use super::slack::{first_move, taken_up};
+use super::stored::storing;
 use super::{Answer, State};
 use crate::spectrum::Layout;
 
@@ -40,11 +41,17 @@ impl LogSet {
             .map(|channel| channel.name(machine))
             .filter(everywhere)
             .collect();
+        let as_filed = ClosedLoop::new(machine)?;
         let prepare = |(name, log, period): (String, Log, f64)| {
             let channel = |name: &&str| Ok(relative(name, log.channel(name)?));
             Ok(Prepared {
                 taken_up: taken_up(&log, machine),
-                answer: Answer::Replay(Replay::new(&log, period)?),
+                answer: Answer::Replay(storing(
+                    Replay::new(&log, period)?,
+                    &log,
+                    period,
+                    &as_filed,
+                )),
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 measured: channels
                     .iter()

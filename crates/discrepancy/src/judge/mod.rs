@@ -42,7 +42,7 @@ use self::sentence::sentence;
 use self::told::remedies;
 pub use self::told::{Confidence, Level, RemedyTold, Told};
 pub use self::types::{
-    AtScrew, Discovery, EffectFound, Gaps, NextExperiment, ParameterFound, Recalibrated,
+    AtScrew, Discovery, EffectFound, Figures, Gaps, NextExperiment, ParameterFound, Recalibrated,
     RefusedEffects, ReplacedEffect, Verdict,
 };
 pub use self::units::ReadUnit;
@@ -78,7 +78,8 @@ const EXPLAINED: f64 = 0.9;
 /// Share beyond which what is left is of no use to name: a fiftieth of the gap.
 const NEARLY_ALL: f64 = 0.98;
 
-/// Puts a search's result into words and figures.
+/// Puts a search's result into words and figures. These are of the logs that took no part
+/// in the search, where there are such ([`Found::tested_on`]), or else of the check logs.
 ///
 /// # Errors
 /// [`ReplayError`] where a simulation that ran before does not run again.
@@ -116,8 +117,11 @@ pub fn judged(
         let floors = floors(machine, set, full, &after)?;
         gap(set, &before_of(fit_logs)?, &after, &floors)
     };
-    let set = &found.check_logs;
-    let before = before_of(check_logs)?;
+    let (as_filed, set) = match &found.test {
+        Some(test) => (&test.as_filed, &test.fitted),
+        None => (check_logs, &found.check_logs),
+    };
+    let before = before_of(as_filed)?;
     let traces = set.simulate(machine, full)?;
     let after = set.rest(&traces);
     let check_floors = floors(machine, set, full, &after)?;
@@ -161,7 +165,7 @@ pub fn judged(
 
     let checker = Fitter {
         machine,
-        set: check_logs,
+        set: as_filed,
     };
     let base = checker.at(found.base.state.clone())?;
     let at_floor = |gap: &Gap| gap.channels.iter().all(ChannelGap::is_at_floor);
@@ -203,7 +207,7 @@ pub fn judged(
         remedies: remedies(&effects),
     };
     let friction = friction_law(machine, set, full, &traces, &after);
-    let overlays = overlays(check_logs, &check_logs.rest(&base.traces), &after);
+    let overlays = overlays(as_filed, &as_filed.rest(&base.traces), &after);
     let discovery = Discovery {
         schema: 1,
         axis: name,
@@ -233,6 +237,7 @@ pub fn judged(
             .collect(),
         unknown,
         gap: Gaps { fit, check },
+        figures: Figures::of(found, set),
         recalibrated,
         told,
         likenesses: Vec::new(),

@@ -2,13 +2,12 @@
 
 use axis_sim::Axis;
 
-use crate::answers::Prepared;
+use crate::answers::{LogSet, Prepared};
 use crate::name::search::Found;
 
 /// What must be known of the logs.
 pub(super) fn notes(machine: &Axis, found: &Found) -> Vec<String> {
-    let sets = [&found.fit_logs, &found.check_logs];
-    let mut notes: Vec<String> = sets.iter().flat_map(|set| set.notes()).collect();
+    let mut notes: Vec<String> = sets(found).flat_map(|set| set.notes()).collect();
     if !notes.is_empty() {
         notes.push(FLOOR.to_owned());
     }
@@ -23,12 +22,18 @@ const FLOOR: &str = "the noise given of a torque balance is the least that the s
 /// start.
 fn slack_notes(machine: &Axis, found: &Found) -> Vec<String> {
     let effects = [&machine.effects[..], &found.fit.state.effects].concat();
-    let left = [&found.fit_logs, &found.check_logs].map(|set| set.slack_left(&effects));
+    let left = sets(found).map(|set| set.slack_left(&effects));
     let note = |(gap, log): (f64, &Prepared)| {
         format!(
             "{} counts from where its reference has moved by {:.3e} m; of a gap of {gap:.3e} m that takes up a part, and the screw\u{2019}s place in the rest is not known: record a longer first move",
             log.name, log.taken_up
         )
     };
-    left.into_iter().flatten().map(note).collect()
+    left.flatten().map(note).collect()
+}
+
+/// All logs that a result was made from.
+fn sets(found: &Found) -> impl Iterator<Item = &LogSet> {
+    let test = found.test.as_ref().map(|test| &test.fitted);
+    [&found.fit_logs, &found.check_logs].into_iter().chain(test)
 }

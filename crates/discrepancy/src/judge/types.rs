@@ -8,7 +8,9 @@ use super::form::FormFound;
 use super::likeness::Likeness;
 use super::told::Told;
 use super::unknown::Unknown;
+use crate::answers::LogSet;
 use crate::name::gap::Gap;
+use crate::name::search::Found;
 
 /// The verdict on a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -138,8 +140,38 @@ impl RefusedEffects {
 pub struct Gaps {
     /// On the logs that were fitted.
     pub fit: Gap,
-    /// On the logs that were not.
+    /// On logs that were not: those of [`Discovery::figures`].
     pub check: Gap,
+}
+
+/// The logs that the figures of a discovery are of: gap on motion that was not fitted to,
+/// costs, shares of the gap.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Figures {
+    /// Their names.
+    pub logs: Vec<String>,
+    /// Whether they took part in the choice of names, as check logs do.
+    pub took_part: bool,
+}
+
+impl Figures {
+    pub(super) fn of(found: &Found, set: &LogSet) -> Self {
+        Self {
+            logs: set.logs.iter().map(|log| log.name.clone()).collect(),
+            took_part: found.test.is_none(),
+        }
+    }
+
+    /// In a sentence; `None` where the logs are not known, as in older files.
+    pub fn sentence(&self) -> Option<String> {
+        let logs = self.logs.join(", ");
+        (!self.logs.is_empty()).then(|| match self.took_part {
+            true => format!(
+                "Figures are of {logs}, on which what is named was chosen too: a third set of logs would give figures that owe nothing to that choice."
+            ),
+            false => format!("Figures are of {logs}, which took no part in any choice."),
+        })
+    }
 }
 
 /// The motion that would tell apart what these logs cannot.
@@ -204,6 +236,9 @@ pub struct Discovery {
     pub unknown: Option<Unknown>,
     /// Gap before and after.
     pub gap: Gaps,
+    /// Of which logs the figures are.
+    #[serde(default)]
+    pub figures: Figures,
     /// Known parameters.
     pub recalibrated: Vec<Recalibrated>,
     /// What a first screen says beside: costs, confidence, remedies.

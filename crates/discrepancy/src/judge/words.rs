@@ -173,6 +173,7 @@ fn sure(discovery: &Discovery) -> Vec<String> {
             "{gone:.1} % of the gap above the noise is gone on motion that was not fitted to."
         ));
     }
+    lines.extend(discovery.figures.sentence());
     lines.push(answer(&discovery.answer).to_owned());
     let edges = confidence.at_edge.iter().map(|k| {
         let [share, tolerance] = [k.share, k.tolerance].map(|v| 100.0 * v);

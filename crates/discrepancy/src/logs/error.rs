@@ -127,9 +127,9 @@ pub enum IntakeError {
         /// At its start, m/s.
         speed: f64,
     },
-    /// The same samples to fit and to check.
+    /// The same samples to fit and to check, or to test.
     #[error(
-        "{check} holds the same samples as {fit}: a check must be motion that was not fitted to; give another log"
+        "{check} holds the same samples as {fit}: what is checked or tested on must be motion that was used for nothing before; give another log"
     )]
     SameLog {
         /// Given to fit.

@@ -1,10 +1,12 @@
 //! Looking at logs before anything is concluded from them.
 
+mod apart;
 mod checks;
 mod error;
 mod relations;
 mod start;
 
+pub use self::apart::{NamedLog, set_apart};
 pub use self::checks::{check_distinct, check_log};
 pub use self::error::IntakeError;
 pub use self::relations::{cross_checks, exact_channels, relations};

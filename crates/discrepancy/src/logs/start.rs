@@ -8,7 +8,7 @@ use super::error::IntakeError;
 /// A log as a replay can begin it, and what was done for that, in words.
 ///
 /// A ball-screw loop begins at rest: of a log that starts in motion, what lies
-/// before its first rest is left out. A rigid machine begins with the position
+/// before the last 0.1 s of its first rest is left out. A rigid machine begins with the position
 /// and the speed of the log's first samples.
 ///
 /// # Errors
@@ -39,18 +39,19 @@ pub fn from_rest(
         return Ok((log, Some(words)));
     }
     let rest = (REST_TIME / period).round() as usize;
-    let still = |window: &[f64]| {
-        let ends = window
-            .iter()
-            .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
-        ends.1 - ends.0 <= AT_REST * REST_TIME
-    };
-    let first = reference.windows(rest + 1).position(still);
+    let first = reference.windows(rest + 1).position(is_still);
     // So late that nothing follows is as good as never.
-    let left = first.and_then(|k| Some((k, log.skip(k + rest / 2).ok()?)));
+    let left = first.and_then(|k| {
+        // The later in the rest, the better the loop has settled.
+        let middle = k + rest / 2;
+        let steps = reference[middle..].windows(2);
+        let still = steps.take_while(|w| (w[1] - w[0]).abs() <= AT_REST * period);
+        let at = middle.max((middle + still.count()).saturating_sub(rest / 2));
+        Some((at, log.skip(at).ok()?))
+    });
     match left {
-        Some((k, left)) => {
-            let from = log.time()[k + rest / 2];
+        Some((at, left)) => {
+            let from = log.time()[at];
             let words = format!(
                 "{file} starts in motion ({speed:.4} m/s); what lies before its first rest, at t = {from:.3} s, is left out"
             );
@@ -61,6 +62,14 @@ pub fn from_rest(
             speed,
         }),
     }
+}
+
+/// Whether the reference rests over [`REST_TIME`].
+pub(super) fn is_still(window: &[f64]) -> bool {
+    let ends = window
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
+    ends.1 - ends.0 <= AT_REST * REST_TIME
 }
 
 /// Reference speed below which a log is at rest, m/s.

@@ -2,8 +2,8 @@
 
 use crate::judge::told::{Confidence, Level, remedies};
 use crate::judge::{
-    Cost, Discovery, EffectFound, EffortCost, Gaps, ParameterFound, Recalibrated, Size, Told,
-    TrackingCost, Verdict,
+    Cost, Discovery, EffectFound, EffortCost, Figures, Gaps, ParameterFound, Recalibrated, Size,
+    Told, TrackingCost, Verdict,
 };
 use crate::judge::{Curve, Unknown};
 use crate::name::gap::Gap;
@@ -36,6 +36,7 @@ fn discovery(verdict: Verdict, effects: Vec<EffectFound>, known: Vec<Recalibrate
             fit: gap.clone(),
             check: gap,
         },
+        figures: Figures::default(),
         recalibrated: known,
         likenesses: Vec::new(),
         next_experiment: None,

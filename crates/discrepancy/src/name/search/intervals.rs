@@ -87,6 +87,7 @@ impl Search<'_> {
             library: self.library,
             fit_logs: self.fit_logs,
             check_logs: self.check_logs,
+            test: None,
         }
     }
 }

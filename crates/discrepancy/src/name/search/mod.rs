@@ -23,7 +23,7 @@ pub(crate) use self::revise::ABOVE_NOISE;
 use self::state::Search;
 pub use self::types::{
     Alike, Found, Named, ONE_CLASS, Reason, Refused, Replaced, RunnerUp, SearchError, Settings,
-    SettingsError,
+    SettingsError, Test,
 };
 use crate::answers::{LogSet, State};
 use crate::estimate::fit::{Fit, Fitter};
@@ -156,7 +156,7 @@ fn settled(
 ) -> Option<(LogSet, LogSet)> {
     let corrected = |set: &LogSet| {
         let mut set = set.clone();
-        set.correct_defects(machine, &fit.state).ok()?;
+        set.follow(machine, &fit.state).ok()?;
         Some(set)
     };
     let (fitted, checked) = (corrected(fit_logs)?, corrected(check_logs)?);

@@ -107,7 +107,7 @@ impl Search<'_> {
         let known = self.fitter().known_columns(&self.fit);
         let (fit, known) = self.fitter().calibrated(self.fit.clone(), known);
         let mut corrected = self.fit_logs.clone();
-        if corrected.correct_defects(self.machine, &fit.state).is_ok() {
+        if corrected.follow(self.machine, &fit.state).is_ok() {
             let with = Fitter {
                 machine: self.machine,
                 set: &corrected,
@@ -135,7 +135,7 @@ impl Search<'_> {
         };
         self.check = check;
         let mut corrected = self.check_logs.clone();
-        let done = corrected.correct_defects(self.machine, &self.fit.state);
+        let done = corrected.follow(self.machine, &self.fit.state);
         if done.is_ok() {
             let with = Fitter {
                 machine: self.machine,

@@ -240,6 +240,18 @@ pub struct Found {
     pub fit_logs: LogSet,
     /// The logs that were not, likewise.
     pub check_logs: LogSet,
+    /// Logs that took no part, from which the figures are; `None` where these are of the
+    /// check logs.
+    pub test: Option<Test>,
+}
+
+/// Logs that took no part in any choice.
+#[derive(Clone, Debug)]
+pub struct Test {
+    /// With the defects of the machine as its file says.
+    pub as_filed: LogSet,
+    /// With those of the fitted machine.
+    pub fitted: LogSet,
 }
 
 /// Standard deviation by which two simulations of one machine, with other mesh and
@@ -248,6 +260,21 @@ pub struct Found {
 const SIMULATED: f64 = 2e-4;
 
 impl Found {
+    /// With the figures that are reported taken from these logs, which took no part.
+    #[must_use]
+    pub fn tested_on(mut self, machine: &Axis, logs: LogSet) -> Self {
+        let mut fitted = logs.clone();
+        // What does not run in the exact way is compared without it.
+        if fitted.follow(machine, &self.fit.state).is_err() {
+            fitted = logs.clone();
+        }
+        self.test = Some(Test {
+            as_filed: logs,
+            fitted,
+        });
+        self
+    }
+
     /// Half width of the 95 % interval of a parameter of this value, by its place: of
     /// noise, of known parameters, and of the simulation.
     pub fn half_width(&self, index: usize, value: f64) -> f64 {

@@ -1,0 +1,115 @@
+//! What the bristles hold at the start of logs that do not show the drive's command.
+//!
+//! One unknown a log, s in −1 ≤ s ≤ 1, beside the parameters of the machine: nothing but the
+//! first move tells it, and it tells nothing of any other motion. All of that range is
+//! possible, and equally likely.
+
+use axis_sim::{Axis, ReplayError, Stored};
+
+use super::{Answer, LogSet, State};
+
+/// Shares that are tried first.
+const TRIED: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];
+
+/// Halvings of the step beside the best of them: to 1/64 of what the bristles can hold.
+const HALVINGS: usize = 5;
+
+/// Fall of minus twice the log-likelihood below which nothing is said to be stored.
+const BY_CHANCE: f64 = 25.0;
+
+impl LogSet {
+    /// Finds what belongs to the logs and changes with the model: what they have stored where
+    /// they do not show it, and defects.
+    ///
+    /// # Errors
+    /// [`ReplayError`] where the machine does not run at this state.
+    pub(crate) fn follow(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
+        self.find_stored(machine, state)?;
+        self.correct_defects(machine, state)
+    }
+
+    /// Finds what the bristles hold at the start of each log that does not show it, beside
+    /// this state.
+    ///
+    /// # Errors
+    /// [`ReplayError`] where the machine does not run.
+    pub fn find_stored(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
+        if self.shares().iter().all(Option::is_none) {
+            return Ok(());
+        }
+        let misfits = |shares: Vec<f64>| -> Result<Vec<[f64; 2]>, ReplayError> {
+            let set = self.with_shares(&shares);
+            let rest = set.rest(&set.simulate(machine, state)?);
+            let pairs = rest.iter().zip(shares);
+            Ok(pairs.map(|(log, share)| [misfit(log), share]).collect())
+        };
+        let logs = self.logs.len();
+        let free = misfits(vec![0.0; logs])?;
+        let mut best = free.clone();
+        let take = |best: &mut Vec<[f64; 2]>, shares: Vec<f64>| {
+            for (best, tried) in best.iter_mut().zip(misfits(shares)?) {
+                if tried[0] < best[0] {
+                    *best = tried;
+                }
+            }
+            Ok::<(), ReplayError>(())
+        };
+        for share in TRIED {
+            take(&mut best, vec![share; logs])?;
+        }
+        let mut step = 0.25;
+        for _ in 0..HALVINGS {
+            for by in [step, -step] {
+                let beside = best.iter().map(|[_, s]| (s + by).clamp(-1.0, 1.0));
+                let beside = beside.collect();
+                take(&mut best, beside)?;
+            }
+            step *= 0.5;
+        }
+        let kept = best.iter().zip(&free);
+        let kept: Vec<f64> = kept
+            .map(|(best, free)| {
+                if free[0] - best[0] > BY_CHANCE {
+                    best[1]
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        tracing::debug!(?kept, "held by bristles at the start");
+        *self = self.with_shares(&kept);
+        Ok(())
+    }
+
+    /// What the bristles hold at the start of each log, where that is an unknown.
+    fn shares(&self) -> Vec<Option<f64>> {
+        let of = |answer: &Answer| match answer.replay()?.stored() {
+            Stored::Share(share) => Some(share),
+            _ => None,
+        };
+        self.logs.iter().map(|log| of(&log.answer)).collect()
+    }
+
+    fn with_shares(&self, shares: &[f64]) -> Self {
+        let mut set = self.clone();
+        for (log, &share) in set.logs.iter_mut().zip(shares) {
+            if let Answer::Replay(replay) = &log.answer
+                && let Stored::Share(_) = replay.stored()
+            {
+                log.answer = Answer::Replay(replay.clone().storing(Stored::Share(share)));
+            }
+        }
+        set
+    }
+}
+
+/// Minus twice the log-likelihood of channels with white rests of unknown variance, but for
+/// a constant.
+fn misfit(log: &[Vec<f64>]) -> f64 {
+    let channel = |rest: &Vec<f64>| {
+        let n = rest.len().max(1) as f64;
+        let square = rest.iter().map(|r| r * r).sum::<f64>() / n;
+        n * square.max(f64::MIN_POSITIVE).ln()
+    };
+    log.iter().map(channel).sum()
+}
