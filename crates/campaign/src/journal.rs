@@ -139,7 +139,10 @@ mod tests {
     use super::*;
 
     fn open(path: &std::path::Path, key: char, replace: bool) -> Option<Journal> {
-        let file = crate::try_lock(path).unwrap().unwrap();
+        // Not locked: a process that another test begins would hold the lock for a moment.
+        let mut options = File::options();
+        let options = options.read(true).write(true).create(true).truncate(false);
+        let file = options.open(path).unwrap();
         let key: String = std::iter::repeat_n(key, 64).collect();
         Journal::open(file, &key, replace).unwrap()
     }

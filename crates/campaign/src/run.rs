@@ -109,7 +109,8 @@ pub fn run_shard(
     // Whoever had the lock may have made it meanwhile.
     if !is_there(&path, &label, other)? {
         let replace = other == IfOther::Replace;
-        let made = Journal::open(file, &label.inputs.key(), replace).map_err(io("read"))?;
+        let made = Journal::open(file, &label.inputs.key(), replace);
+        let made = made.map_err(|e| io(if has_no_room(&e) { "write" } else { "read" })(e))?;
         let made = made.ok_or_else(|| CampaignError::OtherInputs {
             path: journal.clone(),
             difference: "what a killed process made of it has another key".to_owned(),
@@ -124,6 +125,15 @@ pub fn run_shard(
     }
     std::fs::remove_file(&journal).map_err(io("remove"))?;
     Ok(path)
+}
+
+/// Whether an error is one of writing alone.
+fn has_no_room(error: &std::io::Error) -> bool {
+    use ErrorKind::{FileTooLarge, QuotaExceeded, ReadOnlyFilesystem, StorageFull};
+    matches!(
+        error.kind(),
+        FileTooLarge | QuotaExceeded | ReadOnlyFilesystem | StorageFull
+    )
 }
 
 /// Whether the shard is there, from the same inputs.

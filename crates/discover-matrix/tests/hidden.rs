@@ -164,7 +164,11 @@ fn two_effects_that_nearly_cancel_are_both_named() {
         ["asymmetric-friction", "current-sensor-offset"],
         "{found:?}"
     );
-    assert_eq!(found.verdict, Verdict::Explained, "{found:?}");
+    // Which of the two is a matter of the draw: on 3 s of motion the angle's rest is 0.97 to
+    // 1.30 of its floor (six seeds by each of two generators), and 1.2 counts as a rest.
+    let named = [Verdict::Explained, Verdict::PartlyExplained];
+    assert!(named.contains(&found.verdict), "{found:?}");
+    assert!(found.gap.check.reduction >= 0.9, "{found:?}");
 }
 
 /// Beside the friction at one place and the gain, which are not named yet, viscous

@@ -231,10 +231,7 @@ fn axes_of_every_kind_are_learned() {
             let errors = [&adaptation.model(), &model, &belief]
                 .map(|model| planned(&closed_loop, model, motion, None).0);
             let [adapted, known, believed] = errors;
-            // The kinematic error of the joint's gear is in its logs and in no model: what
-            // adaptation makes of it keeps a fifth of the way to the true model.
-            let share = if name == "joint.toml" { 0.2 } else { 0.03 };
-            let most = (1.1 * known).max(known + share * (believed - known));
+            let most = (1.1 * known).max(known + 0.03 * (believed - known));
             assert!(adapted <= most, "{name}: {errors:?}");
         }
     }

@@ -31,8 +31,8 @@ pub(super) struct Smooth<'a> {
 }
 
 impl Smooth<'_> {
-    /// Position of a load that has no sensor: the motor's, less the wind-up that the torque
-    /// tells.
+    /// Position of a load that has no sensor: the motor's, with the known kinematic error, less
+    /// the wind-up that the torque tells.
     pub fn load(&self, measured: &[f64], angle: &[f64]) -> Vec<f64> {
         let m = self.model;
         let wound = |k: usize| {
@@ -41,8 +41,9 @@ impl Smooth<'_> {
             let inertia = section.rotating - section.lagging;
             section.compliance * (self.balance.of(0, &self.torques, k) - inertia * of_motor)
         };
-        let start = measured[0] - m.travel * (angle[0] - wound(0));
-        let load = |k: usize| start + m.travel * (angle[k] - wound(k));
+        let ahead = |k: usize| m.kinematics.ahead(angle[k]);
+        let start = measured[0] - m.travel * (angle[0] - wound(0)) - ahead(0);
+        let load = |k: usize| start + m.travel * (angle[k] - wound(k)) + ahead(k);
         (0..measured.len()).map(load).collect()
     }
 
