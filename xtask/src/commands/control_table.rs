@@ -1,4 +1,4 @@
-//! The tables [control] and [tolerances] of an axis file, with an estimated controller.
+//! The tables `[control]` and `[tolerances]` of an axis file, with an estimated controller.
 
 use axis_sim::Axis;
 use axis_sim::control::{CONTROLS, Control, units_of_gain};
@@ -27,7 +27,7 @@ pub fn spelling(machine: &Axis, control: &Part<dyn Control>, key: &str) -> (Stri
     }
 }
 
-/// The tolerance of a gain, by its interval, as [tolerances] has it; none where it is exact.
+/// The tolerance of a gain, by its interval, as `[tolerances]` has it; none where it is exact.
 pub fn tolerance(gain: &Gain) -> Option<String> {
     let half = 0.5 * (gain.ci95[1] - gain.ci95[0]);
     let share = half / gain.value.abs();
@@ -38,8 +38,8 @@ pub fn tolerance(gain: &Gain) -> Option<String> {
     })
 }
 
-/// The axis file's text with the controller in its [control] and the gains' intervals in
-/// [tolerances]; all else as it was.
+/// The axis file's text with the controller in its `[control]` and the gains' intervals in
+/// `[tolerances]`; all else as it was.
 pub fn with_control(text: &str, machine: &Axis, found: &Estimate) -> Result<String> {
     let mut document: DocumentMut = text.parse().into_diagnostic()?;
     let has_sections = document.contains_key("mechanism");
@@ -81,7 +81,7 @@ pub fn with_control(text: &str, machine: &Axis, found: &Estimate) -> Result<Stri
     Ok(document.to_string())
 }
 
-/// The gains' own lines in [tolerances]; those of the controller that was there are gone.
+/// The gains' own lines in `[tolerances]`; those of the controller that was there are gone.
 fn write_tolerances(document: &mut DocumentMut, found: &Estimate) -> Result<()> {
     let known = found.control.kind().known.iter().map(|known| known.name);
     let known: Vec<&str> = known.collect();

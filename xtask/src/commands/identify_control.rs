@@ -16,7 +16,7 @@ use crate::output::{ready, say, write_whole};
 /// Options of the command.
 #[derive(Args)]
 pub struct Options {
-    /// Axis file, with or without [control]
+    /// Axis file, with or without `[control]`
     #[arg(long, value_name = "FILE")]
     axis: PathBuf,
     /// Logs to fit to, with reference, position and command
@@ -25,10 +25,10 @@ pub struct Options {
     /// Logs to choose the structure by; never fitted to
     #[arg(long, value_name = "LOG", num_args = 1.., required = true)]
     check: Vec<PathBuf>,
-    /// Axis file to write, with the gains in [control] and their intervals in [tolerances]
+    /// Axis file to write, with the gains in `[control]` and their intervals in `[tolerances]`
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Control frequency, Hz; must be given where the axis file has no [control]
+    /// Control frequency, Hz; must be given where the axis file has no `[control]`
     #[arg(long, value_name = "HZ")]
     frequency_hz: Option<f64>,
     /// Leave out the fit by closed-loop replay, which is shown beside and never written
