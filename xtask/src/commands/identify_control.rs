@@ -36,7 +36,7 @@ pub struct Options {
     no_replay: bool,
 }
 
-/// Longest internal step of a file that had no [simulation], s.
+/// Longest internal step of a file that had no `[simulation]`, s.
 const STEP: f64 = 5e-5;
 
 /// Runs the command.
