@@ -38,13 +38,19 @@ pub struct Common {
 /// The options, with the axis files read.
 #[derive(Clone)]
 pub struct Context {
+    /// The model.
     pub axis: Axis,
+    /// What stands for the measured machine.
     pub machine: Axis,
     /// Whether the machine is another file than the axis.
     pub has_machine: bool,
+    /// Folder for results.
     pub out: PathBuf,
+    /// Seed of everything random.
     pub seed: u64,
+    /// Threads, 0 for all cores.
     pub threads: usize,
+    /// Whether every stage is made small.
     pub quick: bool,
 }
 

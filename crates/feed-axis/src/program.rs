@@ -1,6 +1,21 @@
 //! Which program this is, for results that depend on its code.
 
+use std::sync::OnceLock;
+
 use campaign::Inputs;
+
+/// What the user types to run this program.
+static NAME: OnceLock<&'static str> = OnceLock::new();
+
+/// Says what the user types to run this program; the first call counts.
+pub fn set_name(name: &'static str) {
+    let _ = NAME.set(name);
+}
+
+/// What the user types to run this program, for messages that name a command.
+pub fn name() -> &'static str {
+    NAME.get().copied().unwrap_or("feed-axis")
+}
 
 /// BLAKE3 of the sources from which this program was built.
 const SOURCES: &str = env!("PROGRAM_SOURCES");

@@ -7,7 +7,7 @@ mod common;
 use std::path::Path;
 
 use axis_sim::Axis;
-use common::{refuse, root, succeed};
+use common::{refuse, succeed};
 
 /// A log of a rest, a move, a rest, the way back and a rest at 1 kHz.
 fn lines() -> Vec<String> {
@@ -216,28 +216,6 @@ fn an_effect_that_the_machine_cannot_have_is_not_accepted() {
 fn accepting_and_rejecting_say_that_the_search_is_made_anew() {
     let help = succeed(&["discover", "--help"]);
     assert_eq!(help.matches("Search anew").count(), 2, "{help}");
-}
-
-#[test]
-fn the_scored_page_is_not_taken_by_another_seed() {
-    let folder = tempfile::tempdir().unwrap();
-    let page = folder.path().join("page.md");
-    std::fs::copy(root().join("docs/discovery-matrix.md"), &page).unwrap();
-    let before = std::fs::read(&page).unwrap();
-    let to = page.to_str().unwrap();
-    let said = refuse(&["discover-matrix", "--seed", "1", "--page", to]);
-    assert!(said.contains("page of seed 8, not 1"), "{said}");
-    let said = refuse(&[
-        "discover-matrix",
-        "--seed",
-        "8",
-        "--first",
-        "3",
-        "--page",
-        to,
-    ]);
-    assert!(said.contains("cannot be used with"), "{said}");
-    assert_eq!(std::fs::read(&page).unwrap(), before);
 }
 
 #[test]

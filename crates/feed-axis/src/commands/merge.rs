@@ -4,11 +4,11 @@ use campaign::{Job, Merged, shards_in};
 use clap::Args;
 use miette::{Result, miette};
 
-use crate::jobs::{JobCommand, told};
+use crate::jobs::{Jobs, told};
 
 /// Options of the command.
 #[derive(Args)]
-pub struct Options {
+pub struct Options<J: Jobs> {
     /// Number of shards [default: that of the files that are there]
     #[arg(long, value_name = "N")]
     shards: Option<usize>,
@@ -17,11 +17,11 @@ pub struct Options {
     any_cpu: bool,
     /// The command that made the shards, with the same options
     #[command(subcommand)]
-    job: JobCommand,
+    job: J,
 }
 
 /// Runs the command.
-pub fn command(options: &Options) -> Result<()> {
+pub fn command<J: Jobs>(options: &Options<J>) -> Result<()> {
     let of_job = options.job.options();
     if let Some(shard) = of_job.sharding().shard {
         return Err(miette!(

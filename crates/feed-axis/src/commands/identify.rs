@@ -19,9 +19,13 @@ const TRANSFER: &str = "transfer_functions.json";
 /// One parameter as found, with what it should be.
 #[derive(Serialize, Deserialize)]
 pub struct Found {
+    /// Name, as in the axis file.
     pub name: String,
+    /// Unit of the numbers below.
     pub unit: String,
+    /// The value found.
     pub value: f64,
+    /// Its standard error.
     pub standard_error: f64,
     /// The value in the machine's axis file.
     pub truth: f64,
@@ -41,7 +45,9 @@ pub struct RunPoint {
 /// Friction as identified.
 #[derive(Serialize, Deserialize)]
 pub struct Friction {
+    /// The parameters, with what they should be.
     pub parameters: Vec<Found>,
+    /// The runs that they were fitted to.
     pub runs: Vec<RunPoint>,
     /// T_C, T_S, Ω_S, σ0, σ1, σ2 in SI units.
     pub law: [f64; 6],
@@ -50,12 +56,17 @@ pub struct Friction {
 /// The transfer function as identified.
 #[derive(Serialize, Deserialize)]
 pub struct Transfer {
+    /// Control period, s.
     pub period: f64,
+    /// Direct feed-through, s².
     pub direct: f64,
+    /// Real poles, of z.
     pub poles: Vec<f64>,
+    /// Coefficient of each pole, s².
     pub coefficients: Vec<f64>,
-    /// RMS of what it misses on the motions it was fitted to, and on others, µm.
+    /// RMS of what it misses on the motions it was fitted to, µm.
     pub training_rms_um: f64,
+    /// RMS of what it misses on other motions, µm.
     pub validation_rms_um: f64,
     /// How many candidates were tried.
     pub candidates: usize,

@@ -194,7 +194,7 @@ pub(super) fn moved(text: &str, from: &Path, folder: &Path) -> Result<String> {
 }
 
 /// Reads logs and looks at them; what was done to any goes to `notes`.
-pub(super) fn read_all(
+pub fn read_all(
     paths: &[PathBuf],
     machine: &Axis,
     notes: &mut Vec<String>,
@@ -385,7 +385,8 @@ fn tell_summary(axis: &Axis, found: &SummaryFound, trajectories: usize) -> Resul
     )
 }
 
-pub(super) fn read_summary(path: &Path, axis: &Axis) -> Result<Vec<MeasuredError>> {
+/// Reads a table of measured errors: one row a trajectory, by its number on the axis.
+pub fn read_summary(path: &Path, axis: &Axis) -> Result<Vec<MeasuredError>> {
     let text = read_text(path)?;
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers().into_diagnostic()?.clone();

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::context::Context;
 use crate::output::{ready, remove, sweep, write_whole};
+use crate::program;
 
 /// Layout of manifests and of the JSON files beside them.
 const SCHEMA: u32 = 1;
@@ -158,7 +159,8 @@ impl<'a> Stage<'a> {
         let path = self.path(file);
         let again = || {
             format!(
-                "run `cargo xtask {}` with the same options again",
+                "run `{} {}` with the same options again",
+                program::name(),
                 self.name
             )
         };
@@ -212,23 +214,26 @@ impl<'a> Stage<'a> {
         let path = self.path(MANIFEST);
         let bytes = std::fs::read(&path).map_err(|e| {
             miette!(
-                "no finished results in {} ({e}); run `cargo xtask {}` first",
+                "no finished results in {} ({e}); run `{} {}` first",
                 self.path("").display(),
+                program::name(),
                 self.name
             )
         })?;
         let manifest: Manifest = serde_json::from_slice(&bytes).map_err(|e| {
             miette!(
-                "{} is not a manifest ({e}); run `cargo xtask {}` again",
+                "{} is not a manifest ({e}); run `{} {}` again",
                 path.display(),
+                program::name(),
                 self.name
             )
         })?;
         if manifest.schema != SCHEMA {
             return Err(miette!(
-                "{} has schema {}, this program reads {SCHEMA}; run `cargo xtask {}` again",
+                "{} has schema {}, this program reads {SCHEMA}; run `{} {}` again",
                 path.display(),
                 manifest.schema,
+                program::name(),
                 self.name
             ));
         }
@@ -252,7 +257,7 @@ mod tests {
     use axis_sim::Axis;
 
     fn context(out: &Path) -> Context {
-        let text = include_str!("../../data/axes/liu2025.toml");
+        let text = include_str!("../../../data/axes/liu2025.toml");
         let axis = Axis::parse("liu2025.toml", text).unwrap();
         Context {
             machine: axis.clone(),
@@ -317,7 +322,7 @@ mod tests {
             assert!(!stage.is_current(), "{changed}");
             let read = stage.read_json::<Vec<i32>>("a.json");
             let message = format!("{:?}", read.unwrap_err());
-            assert!(message.contains("cargo xtask some"), "{message}");
+            assert!(message.contains("run `feed-axis some`"), "{message}");
         }
         std::fs::write(stage.path(MANIFEST), &whole).unwrap();
         assert!(stage.is_current());

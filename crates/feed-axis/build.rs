@@ -13,7 +13,7 @@ const SOURCES: [&str; 5] = [
 ];
 
 fn main() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut files = Vec::new();
     for source in SOURCES {
         collect(&root.join(source), &mut files);

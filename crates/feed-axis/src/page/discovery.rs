@@ -322,7 +322,7 @@ fn unknown(unknown: &Unknown) -> Section {
 
 fn next(next: &NextExperiment) -> Section {
     Section::new("Next experiment").paragraph(format!(
-        "{}: it separates {} from {}. A fall of −2 log L by {:.0} between the two is to be expected; 25 decide. The motion is in next-experiment.toml, for cargo xtask simulate --program and for the machine.",
+        "{}: it separates {} from {}. A fall of −2 log L by {:.0} between the two is to be expected; 25 decide. The motion is in next-experiment.toml, for the command simulate (--program) and for the machine.",
         capital(&next.what), next.separates[0], next.separates[1], next.by
     ))
 }

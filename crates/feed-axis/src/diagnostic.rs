@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn file_line_mark_and_cause_are_shown() {
-        let file = include_str!("../../data/axes/liu2025.toml");
+        let file = include_str!("../../../data/axes/liu2025.toml");
         let bad = file.replace("table_mass_kg = 515", "table_mass_kg = -515");
         let line = 1 + bad.lines().position(|l| l.contains("-515")).unwrap();
         let refused = axis_sim::Axis::parse("axis.toml", &bad).unwrap_err();

@@ -11,7 +11,7 @@ use crate::commands::identify::{Friction, Transfer};
 use crate::commands::train::Training;
 use crate::commands::{compensate, identify, study, train, validate};
 use crate::context::Context;
-use crate::paper;
+use crate::{paper, program};
 
 /// Everything that the page shows.
 pub struct Results {
@@ -60,9 +60,10 @@ fn summarise(
         let without = |kind: &&&StrategyKind| find(compensation, t.id, kind.name).is_none();
         if let Some(kind) = STRATEGIES.iter().find(without) {
             return Err(miette!(
-                "trajectory {} was not compensated with \"{}\"; run `cargo xtask compensate`",
+                "trajectory {} was not compensated with \"{}\"; run `{} compensate`",
                 t.id,
-                kind.label
+                kind.label,
+                program::name()
             ));
         }
     }

@@ -7,13 +7,14 @@ use campaign::{Scheduler, Submission};
 use clap::{Args, Parser, ValueEnum};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
-use crate::jobs::JobCommand;
+use crate::jobs::Jobs;
 use crate::output::{ready, say, write_whole};
+use crate::program;
 
 /// Options of the command.
 #[derive(Args)]
 pub struct Options {
-    /// The job: sample, study, robustness or discover-matrix
+    /// The job: a command that has the option --shard, like sample, study or robustness
     job: String,
     /// Number of shards; several for each core, so that none waits long for the last
     #[arg(long, value_name = "N")]
@@ -49,15 +50,15 @@ enum Which {
 
 /// The job's command alone, to read its options.
 #[derive(Parser)]
-#[command(name = "cargo xtask", bin_name = "cargo xtask")]
-struct Alone {
+#[command(name = program::name(), bin_name = program::name())]
+struct Alone<J: Jobs> {
     #[command(subcommand)]
-    job: JobCommand,
+    job: J,
 }
 
-/// Runs the command.
-pub fn command(options: &Options) -> Result<()> {
-    let job = read(options)?;
+/// Runs the command, for one of the program's jobs.
+pub fn command<J: Jobs>(options: &Options) -> Result<()> {
+    let job = read::<J>(options)?;
     let cases = job.cases();
     if !(1..=cases).contains(&options.shards) {
         return Err(miette!(
@@ -101,7 +102,7 @@ pub fn command(options: &Options) -> Result<()> {
 }
 
 /// The job, of its options.
-fn read(options: &Options) -> Result<Box<dyn campaign::Job>> {
+fn read<J: Jobs>(options: &Options) -> Result<Box<dyn campaign::Job>> {
     let own = ["--threads", "--shard"];
     let is_own = |word: &&String| own.iter().any(|o| word.split('=').next() == Some(o));
     if let Some(word) = options.options.iter().find(is_own) {
@@ -109,17 +110,18 @@ fn read(options: &Options) -> Result<Box<dyn campaign::Job>> {
             "{word} is given by the scripts; --cpus sets the threads of a shard"
         ));
     }
-    let words = ["cargo xtask", &options.job].map(str::to_owned);
+    let words = [program::name(), &options.job].map(str::to_owned);
     let words = words.into_iter().chain(options.options.iter().cloned());
-    let alone = Alone::try_parse_from(words).map_err(|e| miette!("{}", e.to_string().trim()))?;
+    let alone =
+        Alone::<J>::try_parse_from(words).map_err(|e| miette!("{}", e.to_string().trim()))?;
     alone.job.options().job()
 }
 
 /// A copy of this program beside the scripts, so that shards which start later run the same
 /// one, whatever is built meanwhile.
 fn copy_of_program(folder: &Path) -> Result<PathBuf> {
-    let copy = folder.join("xtask");
     let program = std::env::current_exe().into_diagnostic()?;
+    let copy = folder.join(program.file_name().unwrap_or_default());
     if program != copy {
         let bytes = std::fs::read(&program).into_diagnostic()?;
         write_whole(&copy, &bytes)?;

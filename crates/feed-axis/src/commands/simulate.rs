@@ -194,7 +194,7 @@ pub(super) fn trajectory(option: &str, number: usize, context: &Context) -> Resu
 }
 
 /// Reads a motion program.
-pub(super) fn program(file: &Path) -> Result<Program> {
+pub fn program(file: &Path) -> Result<Program> {
     toml::from_str(&read_text(file)?)
         .into_diagnostic()
         .wrap_err_with(|| format!("{} is not a motion program", file.display()))

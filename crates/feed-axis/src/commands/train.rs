@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::sample;
 use crate::context::{Common, Context};
 use crate::output::{say, write_whole};
+use crate::program;
 use crate::progress::bar;
 use crate::store::Stage;
 
@@ -26,10 +27,15 @@ const CHECKPOINT_EVERY: usize = 25;
 /// What a training showed.
 #[derive(Serialize, Deserialize)]
 pub struct Training {
+    /// Neurons of each hidden layer.
     pub hidden: Vec<usize>,
+    /// Epochs of the training.
     pub epochs: usize,
+    /// Damping that the training began with (Levenberg-Marquardt).
     pub initial_damping: f64,
+    /// Samples it was trained on.
     pub train_samples: usize,
+    /// Samples it has not seen.
     pub test_samples: usize,
     /// Errors on the unseen samples, µm.
     pub network: Figures,
@@ -39,6 +45,7 @@ pub struct Training {
     pub seen: Figures,
     /// Root mean square over the training samples after each epoch, µm.
     pub rms_um: Vec<f64>,
+    /// Time of the training, s.
     pub seconds: f64,
 }
 
@@ -148,8 +155,9 @@ pub fn load_network(context: &Context) -> Result<Network> {
 pub fn network(bytes: &[u8], path: &Path) -> Result<(Network, String)> {
     let refused = || {
         format!(
-            "{} is not a network that this version reads; run `cargo xtask train` again",
-            path.display()
+            "{} is not a network that this version reads; run `{} train` again",
+            path.display(),
+            program::name()
         )
     };
     let read = network_from_bytes(bytes).into_diagnostic();

@@ -111,7 +111,7 @@ fn a_campaign_of_hyperqueue_runs_its_shards_and_merges_them() {
     let file = folder.path().join("it's some samples");
     let name = file.to_str().unwrap();
     let campaign = |path: &str, scheduler: &str, options: &[&str]| {
-        Command::new(env!("CARGO_BIN_EXE_xtask"))
+        Command::new(env!("CARGO_BIN_EXE_feed-axis"))
             .args([
                 "campaign",
                 "sample",

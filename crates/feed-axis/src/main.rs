@@ -1,0 +1,29 @@
+//! The command `feed-axis`.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use feed_axis::cli::{Global, finish, start};
+use feed_axis::commands::Command;
+use feed_axis::jobs::UserJob;
+
+/// Feed axes: simulate, identify, find what a model lacks, compensate.
+///
+/// Start with `feed-axis pipeline`: it takes the axis of Liu et al. 2025
+/// (Machines 13(5), 433) through every stage and writes a report to
+/// runs/liu2025/report.html. The stages can also be run one by one; each needs
+/// the results of those above it.
+#[derive(Parser)]
+#[command(name = "feed-axis", version)]
+struct Cli {
+    #[command(flatten)]
+    global: Global,
+    #[command(subcommand)]
+    command: Command<UserJob>,
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    start("feed-axis", &cli.global);
+    finish(cli.command.run())
+}
