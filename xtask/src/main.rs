@@ -8,7 +8,7 @@ mod page;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use feed_axis::cli::{Global, finish, start};
+use feed_axis::cli::{Global, finish, parse, start};
 
 use commands::{bench, independent, layers, torture};
 use jobs::Job;
@@ -43,8 +43,8 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    start("cargo xtask", &cli.global);
+    let cli: Cli = parse("cargo xtask");
+    start(&cli.global);
     finish(match &cli.command {
         Command::User(command) => command.run(),
         Command::Independent(options) => independent::command(options),

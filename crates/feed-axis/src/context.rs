@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use axis_sim::Axis;
 use campaign::Inputs;
 use clap::Args;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr};
 
+use crate::exit::busy;
 use crate::output::ready;
 
 /// Options of every stage.
@@ -102,10 +103,10 @@ impl Context {
             .into_diagnostic()
             .wrap_err_with(failed)?;
         let lock = lock.ok_or_else(|| {
-            miette!(
+            busy(format!(
                 "another run is at work in {}; wait for its end, or give another folder with --out",
                 self.out.display()
-            )
+            ))
         })?;
         Ok(Claim { _lock: lock })
     }

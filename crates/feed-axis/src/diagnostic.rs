@@ -1,28 +1,18 @@
 //! How errors look in the terminal: what is wrong, the line of the file where there is one, why, and what helps.
 
 use std::fmt;
-use std::io::IsTerminal;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use miette::{Diagnostic, ReportHandler, SpanContents};
 
 /// Draws errors with the compiler's own renderer.
 pub struct Compiler {
-    colour: bool,
+    /// Whether in colour.
+    pub colour: bool,
 }
 
 /// Lines shown before and after the marked one.
 const CONTEXT: usize = 1;
-
-impl Compiler {
-    /// In colour where a person reads it and has not asked for none (<https://no-color.org>).
-    pub fn for_terminal() -> Self {
-        let unwanted = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-        Self {
-            colour: std::io::stderr().is_terminal() && !unwanted,
-        }
-    }
-}
 
 impl ReportHandler for Compiler {
     fn debug(&self, error: &dyn Diagnostic, f: &mut fmt::Formatter<'_>) -> fmt::Result {

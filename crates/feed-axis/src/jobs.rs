@@ -1,12 +1,15 @@
 //! The commands whose work is a job of independent cases: in one process, or a shard of it.
 
+use std::path::PathBuf;
+
 use campaign::{IfOther, Job, Shard, run_shard, run_whole};
 use clap::{Args, Subcommand};
 use miette::{Result, miette};
+use serde::Serialize;
 
 use crate::commands::{robustness, sample, study};
 use crate::context::Claim;
-use crate::output::say;
+use crate::output::{Worded, print};
 use crate::progress::bar;
 
 /// The jobs of a program: an enum of subcommands, one line a job. Its options say how the
@@ -81,6 +84,15 @@ pub fn whole(job: &dyn Job) -> Result<()> {
     Ok(())
 }
 
+/// A shard that was made.
+#[derive(Serialize)]
+struct Made {
+    job: &'static str,
+    shard: String,
+    cases: usize,
+    file: PathBuf,
+}
+
 /// Makes one shard.
 fn make(job: &dyn Job, shard: Shard) -> Result<()> {
     let cases = shard.range(job.cases()).len();
@@ -90,11 +102,18 @@ fn make(job: &dyn Job, shard: Shard) -> Result<()> {
     });
     let path = made.map_err(|error| told(error.into()))?;
     progress.finish_and_clear();
-    say(format!(
+    let text = format!(
         "{}, shard {shard}: {cases} cases in {}",
         job.name(),
         path.display()
-    ))
+    );
+    let value = Made {
+        job: job.name(),
+        shard: shard.to_string(),
+        cases,
+        file: path,
+    };
+    print(job.name(), &Worded { text, value })
 }
 
 /// A failure with its causes, in one message.

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use feed_axis::cli::{Global, finish, start};
+use feed_axis::cli::{Global, finish, parse, start};
 use feed_axis::commands::Command;
 use feed_axis::jobs::UserJob;
 
@@ -23,7 +23,7 @@ struct Cli {
 }
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    start("feed-axis", &cli.global);
+    let cli: Cli = parse("feed-axis");
+    start(&cli.global);
     finish(cli.command.run())
 }

@@ -3,18 +3,33 @@
 use std::sync::OnceLock;
 
 use campaign::Inputs;
+use clap::Command;
 
-/// What the user types to run this program.
-static NAME: OnceLock<&'static str> = OnceLock::new();
+use crate::exit::Exit;
 
-/// Says what the user types to run this program; the first call counts.
-pub fn set_name(name: &'static str) {
-    let _ = NAME.set(name);
+/// What the user types to run this program, and its whole command line.
+static PROGRAM: OnceLock<(&'static str, fn() -> Command)> = OnceLock::new();
+
+/// Says what the user types to run this program, and what its command line is made by; the
+/// first call counts.
+pub fn set(name: &'static str, command: fn() -> Command) {
+    let _ = PROGRAM.set((name, command));
 }
 
 /// What the user types to run this program, for messages that name a command.
 pub fn name() -> &'static str {
-    NAME.get().copied().unwrap_or("feed-axis")
+    PROGRAM.get().map_or("feed-axis", |(name, _)| name)
+}
+
+/// The command line of this program, with what every help says at its end.
+pub fn command() -> Command {
+    let command = match PROGRAM.get() {
+        Some((_, command)) => command(),
+        None => Command::new(name()),
+    };
+    command
+        .after_long_help(Exit::help())
+        .propagate_version(true)
 }
 
 /// BLAKE3 of the sources from which this program was built.

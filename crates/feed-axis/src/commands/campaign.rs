@@ -6,9 +6,11 @@ use std::process::Command;
 use campaign::{Scheduler, Submission};
 use clap::{Args, Parser, ValueEnum};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use serde::Serialize;
 
+use crate::exit::wrong_use;
 use crate::jobs::Jobs;
-use crate::output::{ready, say, write_whole};
+use crate::output::{Worded, print, ready, write_whole};
 use crate::program;
 
 /// Options of the command.
@@ -61,11 +63,11 @@ pub fn command<J: Jobs>(options: &Options) -> Result<()> {
     let job = read::<J>(options)?;
     let cases = job.cases();
     if !(1..=cases).contains(&options.shards) {
-        return Err(miette!(
+        return Err(wrong_use(format!(
             "{} has {cases} cases with these options: --shards takes 1 to {cases}, not {}",
             job.name(),
             options.shards
-        ));
+        )));
     }
     let folder = std::path::absolute(job.folder()).into_diagnostic()?;
     let folder = folder.join("campaign");
@@ -85,20 +87,42 @@ pub fn command<J: Jobs>(options: &Options) -> Result<()> {
         scheduler_options: options.scheduler_option.clone(),
         folder,
     };
+    let mut files = Vec::new();
     for (name, text) in submission.scripts() {
         let path = submission.folder.join(name);
         write_whole(&path, text.as_bytes())?;
-        say(path.display().to_string())?;
+        files.push(path);
     }
     let script = submission.folder.join("submit.sh");
-    if options.submit {
-        return submit(&script, submission.needs());
+    let mut text: String = files.iter().map(|f| format!("{}\n", f.display())).collect();
+    if !options.submit {
+        text += &format!(
+            "{cases} cases in {} shards; to submit them: bash {}",
+            options.shards,
+            script.display()
+        );
     }
-    say(format!(
-        "{cases} cases in {} shards; to submit them: bash {}",
-        options.shards,
-        script.display()
-    ))
+    let value = Written {
+        cases,
+        shards: options.shards,
+        submit: &script,
+        files,
+    };
+    print("campaign", &Worded { text, value })?;
+    match options.submit {
+        true => submit(&script, submission.needs()),
+        false => Ok(()),
+    }
+}
+
+/// The scripts.
+#[derive(Serialize)]
+struct Written<'a> {
+    cases: usize,
+    shards: usize,
+    /// The script that submits the others.
+    submit: &'a Path,
+    files: Vec<PathBuf>,
 }
 
 /// The job, of its options.
@@ -106,15 +130,21 @@ fn read<J: Jobs>(options: &Options) -> Result<Box<dyn campaign::Job>> {
     let own = ["--threads", "--shard"];
     let is_own = |word: &&String| own.iter().any(|o| word.split('=').next() == Some(o));
     if let Some(word) = options.options.iter().find(is_own) {
-        return Err(miette!(
+        return Err(wrong_use(format!(
             "{word} is given by the scripts; --cpus sets the threads of a shard"
-        ));
+        )));
     }
     let words = [program::name(), &options.job].map(str::to_owned);
     let words = words.into_iter().chain(options.options.iter().cloned());
-    let alone =
-        Alone::<J>::try_parse_from(words).map_err(|e| miette!("{}", e.to_string().trim()))?;
+    let alone = Alone::<J>::try_parse_from(words).map_err(|e| wrong_use(plain(&e)))?;
     alone.job.options().job()
+}
+
+/// What the parser says, without its own "error".
+fn plain(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let text = text.trim();
+    text.strip_prefix("error: ").unwrap_or(text).to_owned()
 }
 
 /// A copy of this program beside the scripts, so that shards which start later run the same

@@ -1,13 +1,19 @@
 //! `compensate`: Tables 15 and 16.
 
+use std::fmt;
+use std::path::PathBuf;
+
 use clap::Args;
 use miette::{IntoDiagnostic, Result};
+use pipeline::Figures;
 use pipeline::compensation::{self, CompensatedRun};
 use pipeline::strategies::{Need, STRATEGIES};
+use serde::Serialize;
 
 use super::{compensate_moves, identify, train, validate};
 use crate::context::{Common, Context};
-use crate::output::say;
+use crate::measured::Errors;
+use crate::output::print;
 use crate::progress::bar;
 use crate::store::Stage;
 
@@ -58,18 +64,58 @@ pub fn run(context: &Context) -> Result<()> {
     progress.finish_and_clear();
     stage.write_json(COMPENSATION, &runs)?;
     stage.finish()?;
-    let unit = context.axis.freedom().unit();
-    say(format!(
-        "compensate: tracking error of the machine (simulated), max / mean in µ{unit}"
-    ))?;
-    for kind in STRATEGIES {
-        say(format!("  {}", kind.label))?;
-        for run in runs.iter().filter(|run| run.strategy == kind.name) {
-            let f = run.run.figures;
-            say(format!("  {:>10} {:>8.3} / {:.4}", run.id, f.max, f.mean))?;
+    let freedom = context.axis.freedom();
+    let run = |run: &CompensatedRun| Run {
+        trajectory: run.id,
+        strategy: run.strategy.clone(),
+        errors: Errors::of(freedom, run.run.figures),
+    };
+    let found = Compensated {
+        unit: freedom.unit(),
+        runs: runs.iter().map(run).collect(),
+        file: stage.path(COMPENSATION),
+    };
+    print("compensate", &found)
+}
+
+/// The machine under every strategy.
+#[derive(Serialize)]
+struct Compensated {
+    #[serde(skip)]
+    unit: &'static str,
+    runs: Vec<Run>,
+    file: PathBuf,
+}
+
+/// One trajectory under one strategy.
+#[derive(Serialize)]
+struct Run {
+    trajectory: usize,
+    strategy: String,
+    #[serde(flatten)]
+    errors: Errors<Figures>,
+}
+
+impl fmt::Display for Compensated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "compensate: tracking error of the machine (simulated), max / mean in µ{}",
+            self.unit
+        )?;
+        for kind in STRATEGIES {
+            writeln!(f, "  {}", kind.label)?;
+            for run in self.runs.iter().filter(|run| run.strategy == kind.name) {
+                let (errors, _) = run.errors.get();
+                writeln!(
+                    f,
+                    "  {:>10} {:>8.3} / {:.4}",
+                    run.trajectory, errors.max, errors.mean
+                )?;
+            }
         }
+        Ok(())
     }
-    Ok(())
 }
 
 /// The results of a finished stage.

@@ -1,21 +1,22 @@
 //! `compensate --strategy`: moves one after the other under one strategy.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use axis_sim::{ClosedLoop, Measured};
 use clap::Args;
 use discover_matrix::hidden::Noise;
-use miette::{IntoDiagnostic, Result, miette};
+use miette::{IntoDiagnostic, Result};
 use pipeline::Figures;
 use pipeline::moves::{MoveRun, Moves, NamedMotion};
 use pipeline::strategies::{Learned, NONE, Predictors, StrategyKind};
 use serde::Serialize;
 
-use super::simulate::{program, trajectory};
+use super::simulate::{factor, program, trajectory};
 use super::validate;
 use crate::context::Context;
-use crate::output::{say, write_whole};
+use crate::output::{print, write_whole};
 use crate::progress::bar;
 use crate::strategy_name::strategy_name;
 
@@ -41,6 +42,7 @@ pub struct Options {
         long,
         value_name = "FACTOR",
         default_value_t = 0.0,
+        value_parser = factor,
         requires = "strategy"
     )]
     noise: f64,
@@ -80,12 +82,6 @@ struct Errors {
 
 /// Makes the moves.
 pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) -> Result<()> {
-    if !(options.noise.is_finite() && options.noise >= 0.0) {
-        return Err(miette!(
-            "--noise {}: give 0 or a factor above it",
-            options.noise
-        ));
-    }
     let motions: Vec<NamedMotion> = options
         .moves
         .iter()
@@ -141,7 +137,12 @@ pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) ->
         let bytes = serde_json::to_vec_pretty(&report).into_diagnostic()?;
         write_whole(path, &bytes)?;
     }
-    tell(context, kind, &report)?;
+    let made = Moved {
+        unit: context.axis.freedom().unit(),
+        label: kind.label,
+        report,
+    };
+    print("compensate", &made)?;
     match none.stopped.or(compensated.stopped) {
         Some(error) => Err(error).into_diagnostic(),
         None => Ok(()),
@@ -174,33 +175,51 @@ fn series<S: FnMut(&mut Measured)>(
     Made { runs, stopped }
 }
 
-fn tell(context: &Context, kind: &StrategyKind, report: &Report<'_>) -> Result<()> {
-    let unit = context.axis.freedom().unit();
-    say(format!(
-        "{} on {} (simulated): tracking error, max / mean in µ{unit}",
-        kind.label, report.machine
-    ))?;
-    say("        none                 compensated            taken away")?;
-    for entry in &report.moves {
-        let (a, b) = (&entry.errors_um.none, &entry.errors_um.compensated);
-        say(format!(
-            "  {:>9.3} / {:<9.4} {:>9.4} / {:<9.5} {:>6.2} / {:.2} %   {}",
-            a.max,
-            a.mean,
-            b.max,
-            b.mean,
-            100.0 * (1.0 - b.max / a.max),
-            100.0 * (1.0 - b.mean / a.mean),
-            entry.name
-        ))?;
-    }
-    if let Some(last) = report.moves.last().filter(|last| !last.learned.is_empty()) {
-        say("  learned:")?;
-        for (name, value) in last.learned {
-            say(format!("    {name:<32} {}", axis_sim::SixDigits(*value)))?;
+/// The moves, with the words of their table.
+#[derive(Serialize)]
+struct Moved<'a> {
+    #[serde(skip)]
+    unit: &'static str,
+    #[serde(skip)]
+    label: &'static str,
+    #[serde(flatten)]
+    report: Report<'a>,
+}
+
+impl fmt::Display for Moved<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (report, unit) = (&self.report, self.unit);
+        writeln!(
+            f,
+            "{} on {} (simulated): tracking error, max / mean in µ{unit}",
+            self.label, report.machine
+        )?;
+        writeln!(
+            f,
+            "        none                 compensated            taken away"
+        )?;
+        for entry in &report.moves {
+            let (a, b) = (&entry.errors_um.none, &entry.errors_um.compensated);
+            writeln!(
+                f,
+                "  {:>9.3} / {:<9.4} {:>9.4} / {:<9.5} {:>6.2} / {:.2} %   {}",
+                a.max,
+                a.mean,
+                b.max,
+                b.mean,
+                100.0 * (1.0 - b.max / a.max),
+                100.0 * (1.0 - b.mean / a.mean),
+                entry.name
+            )?;
         }
+        if let Some(last) = report.moves.last().filter(|last| !last.learned.is_empty()) {
+            writeln!(f, "  learned:")?;
+            for (name, value) in last.learned {
+                writeln!(f, "    {name:<32} {}", axis_sim::SixDigits(*value))?;
+            }
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// A trajectory's number, or a program's file.

@@ -7,21 +7,20 @@ use axis_log::intake::{Options as Intake, prepare};
 use axis_log::quality::Verdict as Agreement;
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, OnsetForm, Scales};
-use axis_sim::friction::Place as FrictionPlace;
 use clap::Args;
 use discrepancy::logs::{
     NamedLog, check_distinct, check_log, cross_checks, exact_channels, from_rest, set_apart,
 };
-use discrepancy::summary::{MeasuredError, SummaryFound, rank, tried};
-use discrepancy::{Discovery, LogSet, Settings, Verdict, discovery, search};
-use indicatif::ProgressBar;
+use discrepancy::summary::{MeasuredError, rank, tried};
+use discrepancy::{LogSet, Settings, discovery, search};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use toml_edit::{DocumentMut, Item, Value};
 
+use super::discover_words::{Files, Found, FoundInSummary, summary_words};
 use crate::context::read_text;
-use crate::output::{ready, remove, say, write_whole};
+use crate::output::{Worded, note, print, ready, remove, write_whole};
 use crate::page;
-use crate::progress::bar;
+use crate::progress::{bar, spinner};
 
 /// Options of the command.
 #[derive(Args)]
@@ -101,17 +100,16 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     let set = |logs| LogSet::new(logs, machine).into_diagnostic();
     let (fit, check) = (set(fit)?, set(check)?);
     let test = (!test.is_empty()).then(|| set(test)).transpose()?;
-    notes.iter().try_for_each(say)?;
-    say(format!(
+    notes.iter().for_each(note);
+    note(format!(
         "{}; channels compared: {}",
         fit.answer_of(machine),
         fit.channels.join(", ")
-    ))?;
+    ));
 
     ready(out)?;
     let text = moved(&read_text(&options.axis)?, &options.axis, out)?;
-    let progress = ProgressBar::new_spinner();
-    progress.enable_steady_tick(std::time::Duration::from_millis(120));
+    let progress = spinner();
     let mut found = search(machine, &fit, &check, &settings, |what| {
         tracing::debug!("{what}");
         progress.set_message(what.to_owned());
@@ -122,7 +120,7 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
         found = found.tested_on(machine, test);
     }
     let mut discovered = discovery(machine, &fit, &check, &found).into_diagnostic()?;
-    discovered.discovery.notes.iter().try_for_each(say)?;
+    discovered.discovery.notes.iter().for_each(note);
     notes.append(&mut discovered.discovery.notes);
     discovered.discovery.notes = notes;
     let discovery = &discovered.discovery;
@@ -148,14 +146,19 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     }
     let html = page::discovery::page(&discovered)?;
     write_whole(&out.join(REPORT), html.as_bytes())?;
-    tell(discovery, &entries(read), out)
+    let found = Found {
+        discovery,
+        added: entries(read),
+        files: Files::of(out, discovery.next_experiment.is_some()),
+    };
+    print("discover", &found)
 }
 
 /// File of the proposed motion.
-const NEXT: &str = "next-experiment.toml";
+pub(super) const NEXT: &str = "next-experiment.toml";
 /// Pages of what logs and of what a table of errors show: in one folder, neither
 /// takes the other's place.
-const REPORT: &str = "report.html";
+pub(super) const REPORT: &str = "report.html";
 const SUMMARY_REPORT: &str = "summary.html";
 
 /// The text of the axis file `from` as it must be in `folder`: it names files relative
@@ -261,75 +264,6 @@ fn entry(active: &ActiveEffect, scales: &Scales, number: fn(f64) -> String) -> S
     text
 }
 
-fn tell(discovery: &Discovery, added: &str, out: &Path) -> Result<()> {
-    say(format!("\n{}", discovery.sentence))?;
-    for answered in discovery.first_screen() {
-        say(format!("\n{}", answered.question))?;
-        for line in &answered.lines {
-            say(format!("  {line}"))?;
-        }
-    }
-    say("\nThe numbers in SI")?;
-    for effect in &discovery.effects {
-        say(format!("{} ({})", effect.name, effect.channel))?;
-        for p in &effect.parameters {
-            say(format!(
-                "  {} = {:.5e} {}   95 %: {:.5e} to {:.5e}{}",
-                p.name,
-                p.value,
-                p.unit,
-                p.ci95[0],
-                p.ci95[1],
-                p.at_screw.as_ref().map_or(String::new(), |s| format!(
-                    "   at the screw {:.4e} {}",
-                    s.value, s.unit
-                ))
-            ))?;
-        }
-    }
-    for effect in &discovery.replaced {
-        let values = effect.when_named.iter();
-        let values: Vec<String> = values
-            .map(|(name, value, unit)| format!("{name} = {value:.4e} {unit}"))
-            .collect();
-        say(format!(
-            "{} ({}) was named on the way; beside the others, {} explains as much in its place",
-            effect.name,
-            values.join(", "),
-            effect.by
-        ))?;
-    }
-    say("\nRMS gap on motion not fitted    before        after        noise")?;
-    for c in &discovery.gap.check.channels {
-        say(format!(
-            "  {:<24} {:>12.4e} {:>12.4e} {:>12.4e}",
-            c.channel, c.before, c.after, c.floor
-        ))?;
-    }
-    if !added.is_empty() {
-        say("\nadded to the axis file, there with all digits:")?;
-        for line in added.trim_start().lines() {
-            say(format!("+ {line}"))?;
-        }
-    }
-    if let Some(next) = &discovery.next_experiment {
-        say(format!(
-            "\nNext experiment: {}. It separates {} from {} (a fall of −2 log L by {:.0} is to be expected; 25 decide):\n  {}",
-            next.what,
-            next.separates[0],
-            next.separates[1],
-            next.by,
-            out.join(NEXT).display()
-        ))?;
-    }
-    if discovery.verdict == Verdict::PartlyExplained || discovery.verdict == Verdict::Unknown {
-        say(
-            "\nWith an effect rejected (--reject NAME) or another accepted (--accept NAME) the search is made anew, with that.",
-        )?;
-    }
-    say(format!("\n{}", out.join(REPORT).display()))
-}
-
 fn from_summary(options: &Options, machine: &Axis, table: &Path, out: &Path) -> Result<()> {
     let axis = machine;
     if axis.trajectories.is_empty() {
@@ -347,42 +281,14 @@ fn from_summary(options: &Options, machine: &Axis, table: &Path, out: &Path) -> 
     write_whole(&out.join("summary.json"), &json)?;
     let html = page::discovery::summary_page(axis, &found)?;
     write_whole(&out.join(SUMMARY_REPORT), html.as_bytes())?;
-    tell_summary(axis, &found, measured.len())?;
-    say(format!("\n{}", out.join(SUMMARY_REPORT).display()))
-}
-
-fn tell_summary(axis: &Axis, found: &SummaryFound, trajectories: usize) -> Result<()> {
-    say(format!(
-        "RMS gap over {} figures, model as its file says: {:.2} %\n",
-        2 * trajectories,
-        100.0 * found.before
-    ))?;
-    let r = axis.travel_per_radian();
-    for (place, closing) in found.ranked.iter().take(8).enumerate() {
-        let values: Vec<String> = closing
-            .parameters
-            .iter()
-            .map(|(n, v, u)| format!("{n} {v:.4e} {u}"))
-            .collect();
-        say(format!(
-            "{}. {:<28} leaves {:>6.2} %   {}",
-            place + 1,
-            closing.name,
-            100.0 * closing.gap,
-            values.join(", ")
-        ))?;
-        if closing.name == "viscous-friction" && axis.friction.at == FrictionPlace::Motor {
-            let total = axis.friction.law.parameters().viscous + closing.parameters[0].1 * r * r;
-            let rpm = std::f64::consts::TAU / 60.0;
-            say(format!(
-                "   with the file's own: σ2 = {:.5} N·m/rpm at the screw",
-                total * rpm
-            ))?;
-        }
-    }
-    say(
-        "\nA table of errors has no noise floor and cannot tell apart effects that close the gap alike; logs can (--fit, --check).",
-    )
+    let text = summary_words(axis, &found, measured.len());
+    let report = out.join(SUMMARY_REPORT);
+    let text = format!("{text}\n{}", report.display());
+    let value = FoundInSummary {
+        found: &found,
+        report,
+    };
+    print("discover", &Worded { text, value })
 }
 
 /// Reads a table of measured errors: one row a trajectory, by its number on the axis.

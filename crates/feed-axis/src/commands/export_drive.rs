@@ -1,5 +1,6 @@
 //! `export-drive`: what of the correction an ordinary drive or CNC can be given.
 
+use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
 use axis_sim::{Axis, SixDigits};
@@ -8,7 +9,7 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use pipeline::drive_terms::{self, Loss, Term, TermTable};
 use serde::Serialize;
 
-use crate::output::{ready, remove, say, sweep, write_whole};
+use crate::output::{Worded, print, ready, remove, sweep, write_whole};
 
 const TERMS: &str = "drive.json";
 const OVER_POSITION: &str = "drive.csv";
@@ -97,7 +98,14 @@ pub fn command(options: &Options) -> Result<()> {
     };
     let bytes = serde_json::to_vec_pretty(&export).into_diagnostic()?;
     write_whole(&options.out.join(TERMS), &bytes)?;
-    tell(&export, &options.out)?;
+    let text = words(&export, &options.out).into_diagnostic()?;
+    print(
+        "export-drive",
+        &Worded {
+            text,
+            value: export,
+        },
+    )?;
     // The terms stand without it; that it is missing is told.
     let failed = || format!("no loss on {}; the terms are written", machine.name);
     losses.map(|_| ()).into_diagnostic().wrap_err_with(failed)
@@ -112,33 +120,41 @@ fn write_table(path: &Path, table: &TermTable) -> Result<()> {
     write_whole(path, text.as_bytes())
 }
 
-fn tell(export: &Export<'_>, out: &Path) -> Result<()> {
-    say(format!("drive terms of {}", export.axis))?;
+/// The export as people read it.
+fn words(export: &Export<'_>, out: &Path) -> std::result::Result<String, fmt::Error> {
+    let mut text = format!("drive terms of {}\n", export.axis);
     for term in &export.terms {
-        say(format!(
+        writeln!(
+            text,
             "  {:<32} {:>12} {}",
             term.name,
             SixDigits(term.drive_value).to_string(),
             term.drive_unit
-        ))?;
+        )?;
     }
     let unit = &export.loss_unit;
-    say(format!(
+    writeln!(
+        text,
         "tracking error on {} (simulated), max / mean in {unit}",
         export.machine
-    ))?;
+    )?;
     if let Some(why) = &export.loss_missing {
-        say(format!("  none: {why}"))?;
+        writeln!(text, "  none: {why}")?;
     } else {
-        say("  trajectory      none              drive terms         plan")?;
+        writeln!(
+            text,
+            "  trajectory      none              drive terms         plan"
+        )?;
     }
     for loss in export.loss {
         let [a, b, c] = [&loss.none, &loss.drive_terms, &loss.plan];
-        say(format!(
+        writeln!(
+            text,
             "  {:>10} {:>8.3} / {:<7.4} {:>8.3} / {:<7.4} {:>8.4} / {:.5}",
             loss.trajectory, a.max, a.mean, b.max, b.mean, c.max, c.mean
-        ))?;
+        )?;
     }
     let files = [&[TERMS], &export.tables[..]].concat().join(", ");
-    say(format!("written to {}: {files}", out.display()))
+    write!(text, "written to {}: {files}", out.display())?;
+    Ok(text)
 }

@@ -1,5 +1,8 @@
 //! `identify`: friction on the machine, transfer function from the model.
 
+use std::fmt;
+
+use axis_sim::friction::FrictionUnits;
 use compensator::TransferFunctionModel;
 use lugre::identify::Estimate;
 use lugre::{LuGre, Parameters};
@@ -9,7 +12,7 @@ use pipeline::transfer::{TransferPlan, identify_transfer};
 use serde::{Deserialize, Serialize};
 
 use crate::context::{Common, Context};
-use crate::output::say;
+use crate::output::print;
 use crate::progress::bar;
 use crate::store::Stage;
 
@@ -96,7 +99,8 @@ pub fn run(context: &Context) -> Result<()> {
     let progress = bar("friction", 2 * friction.speeds.len() as u64 + 1);
     let identified = identify(&context.machine, &friction, || progress.inc(1)).into_diagnostic()?;
     progress.finish_and_clear();
-    stage.write_json(FRICTION, &summarise(&identified, context))?;
+    let found = summarise(&identified, context);
+    stage.write_json(FRICTION, &found)?;
 
     let progress = bar(
         "transfer",
@@ -119,21 +123,46 @@ pub fn run(context: &Context) -> Result<()> {
     progress.finish_and_clear();
     stage.write_json(TRANSFER, &fits)?;
     stage.finish()?;
-    let p = &identified.parameters;
-    let units = context.machine.friction.at.units();
-    let (force, speed, damping, stiffness) =
-        (units.force, units.speed, units.damping, units.stiffness);
-    say(format!(
-        "identify: T_C {:.4} {force}, T_S {:.4} {force}, Ω_S {:.4} {speed}, σ2 {:.5} {damping}, σ0 {:.3} {stiffness}, σ1 {:.3} {damping}; transfer functions of order {} and {}",
-        p.coulomb,
-        p.stiction,
-        p.stribeck_speed,
-        p.viscous,
-        p.stiffness,
-        p.damping,
-        fits[0].poles.len(),
-        fits[1].poles.len()
-    ))
+    let [transfer_function, transfer_function_beside_friction] = &fits;
+    let told = Told {
+        units: context.machine.friction.at.units(),
+        friction: &found,
+        transfer_function,
+        transfer_function_beside_friction,
+    };
+    print("identify", &told)
+}
+
+/// What was identified.
+#[derive(Serialize)]
+struct Told<'a> {
+    #[serde(skip)]
+    units: FrictionUnits,
+    friction: &'a Friction,
+    transfer_function: &'a Transfer,
+    transfer_function_beside_friction: &'a Transfer,
+}
+
+impl fmt::Display for Told<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [
+            coulomb,
+            stiction,
+            stribeck_speed,
+            stiffness_of,
+            damping_of,
+            viscous,
+        ] = self.friction.law;
+        let units = &self.units;
+        let (force, speed, damping, stiffness) =
+            (units.force, units.speed, units.damping, units.stiffness);
+        write!(
+            f,
+            "identify: T_C {coulomb:.4} {force}, T_S {stiction:.4} {force}, Ω_S {stribeck_speed:.4} {speed}, σ2 {viscous:.5} {damping}, σ0 {stiffness_of:.3} {stiffness}, σ1 {damping_of:.3} {damping}; transfer functions of order {} and {}",
+            self.transfer_function.poles.len(),
+            self.transfer_function_beside_friction.poles.len()
+        )
+    }
 }
 
 /// The friction of a finished stage.

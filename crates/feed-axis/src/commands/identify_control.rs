@@ -1,17 +1,19 @@
 //! `identify-control`: structure, gains and delay of an unknown controller, from logs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use axis_sim::Axis;
 use clap::Args;
 use discrepancy::controller::{ClosedLoopGains, Estimate, Gain, closed_loop, estimate};
 use discrepancy::logs::check_distinct;
 use miette::{IntoDiagnostic, Result, miette};
+use serde::Serialize;
 
 use super::control_table::{spelling, tolerance, with_control};
 use super::discover::{moved, read_all};
 use crate::context::read_text;
-use crate::output::{ready, say, write_whole};
+use crate::exit::wrong_use;
+use crate::output::{Worded, note, print, ready, write_whole};
 
 /// Options of the command.
 #[derive(Args)]
@@ -47,30 +49,53 @@ pub fn command(options: &Options) -> Result<()> {
     let fit = read_all(&options.fit, &machine, &mut notes)?;
     let check = read_all(&options.check, &machine, &mut notes)?;
     check_distinct(&fit, &check).into_diagnostic()?;
-    notes.iter().try_for_each(say)?;
+    notes.iter().for_each(note);
     if let Some(frequency) = frequency {
         machine.period = 1.0 / frequency;
         machine.simulation.step = machine.simulation.step.min(STEP);
     }
     let found = estimate(&machine, &fit, &check).into_diagnostic()?;
-    tell(&found, &machine)?;
-    if !options.no_replay {
-        match closed_loop(&machine, &found, &fit) {
-            Ok(replayed) => tell_replayed(&replayed, &found, &machine)?,
-            Err(why) => say(format!("\nno closed-loop replay with these gains: {why}"))?,
+    let mut text = words(&found, &machine);
+    let replayed = match options.no_replay {
+        true => None,
+        false => Some(closed_loop(&machine, &found, &fit)),
+    };
+    match &replayed {
+        Some(Ok(replayed)) => text += &replayed_words(replayed, &found, &machine),
+        Some(Err(why)) => {
+            text += &format!("\nno closed-loop replay with these gains: {why}\n");
         }
+        None => {}
     }
+    let replayed = replayed.and_then(std::result::Result::ok);
     let folder = match options.out.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
         _ => PathBuf::from("."),
     };
     ready(&folder)?;
-    let text = moved(&read_text(&options.axis)?, &options.axis, &folder)?;
-    let text = with_control(&text, &machine, &found)?;
+    let file = moved(&read_text(&options.axis)?, &options.axis, &folder)?;
+    let file = with_control(&file, &machine, &found)?;
     // What is written can be read.
-    Axis::parse(&options.out.display().to_string(), &text)?;
-    write_whole(&options.out, text.as_bytes())?;
-    say(format!("\n{}", options.out.display()))
+    Axis::parse(&options.out.display().to_string(), &file)?;
+    write_whole(&options.out, file.as_bytes())?;
+    text += &format!("\n{}", options.out.display());
+    let gains = |gains: &[Gain]| -> Vec<GainFound> {
+        gains
+            .iter()
+            .map(|gain| GainFound::of(&machine, &found, gain))
+            .collect()
+    };
+    let value = Identified {
+        controller: found.tried.first().map(|best| best.name.to_string()),
+        gains: gains(&found.gains),
+        command_delay_s: Interval::of(&found.delay),
+        explained_fit: found.explained[0],
+        explained_check: found.explained[1],
+        gains_by_replay: replayed.map(|replayed| gains(&replayed.gains)),
+        notes,
+        axis_file: &options.out,
+    };
+    print("identify-control", &Worded { text, value })
 }
 
 /// The control frequency that was asked for, Hz.
@@ -80,37 +105,91 @@ fn frequency(options: &Options, machine: &Axis) -> Result<Option<f64>> {
             "{} has no [control], so nothing says how often the controller runs; valid: --frequency-hz, such as --frequency-hz 1000 (the limit of the command is the actuator's, in [actuator])",
             options.axis.display()
         )),
-        (Some(hz), _) if !(1.0..=1e6).contains(&hz) => Err(miette!(
+        (Some(hz), _) if !(1.0..=1e6).contains(&hz) => Err(wrong_use(format!(
             "--frequency-hz is {hz}; valid: 1 to 1e6, as the drive's documents have it"
-        )),
+        ))),
         (asked, _) => Ok(asked),
     }
 }
 
-fn tell(found: &Estimate, machine: &Axis) -> Result<()> {
+/// What `--format json` says.
+#[derive(Serialize)]
+struct Identified<'a> {
+    /// Structure, in words.
+    controller: Option<String>,
+    gains: Vec<GainFound>,
+    command_delay_s: Interval,
+    /// Share of the command that is explained, on the logs that were fitted to.
+    explained_fit: f64,
+    /// The same, on the logs to choose by.
+    explained_check: f64,
+    /// By closed-loop replay, which rests on the machine's model.
+    gains_by_replay: Option<Vec<GainFound>>,
+    notes: Vec<String>,
+    axis_file: &'a Path,
+}
+
+/// A gain as the axis file has it: its key ends in the unit.
+#[derive(Serialize)]
+struct GainFound {
+    key: String,
+    #[serde(flatten)]
+    value: Interval,
+}
+
+/// A value with its interval.
+#[derive(Serialize)]
+struct Interval {
+    value: f64,
+    ci95: [f64; 2],
+}
+
+impl Interval {
+    fn of(gain: &Gain) -> Self {
+        Self {
+            value: gain.value,
+            ci95: gain.ci95,
+        }
+    }
+}
+
+impl GainFound {
+    fn of(machine: &Axis, found: &Estimate, gain: &Gain) -> Self {
+        let (key, factor) = spelling(machine, &found.control, gain.key);
+        let value = Interval {
+            value: gain.value / factor,
+            ci95: gain.ci95.map(|end| end / factor),
+        };
+        Self { key, value }
+    }
+}
+
+/// The estimate as people read it.
+fn words(found: &Estimate, machine: &Axis) -> String {
+    let mut lines = Vec::new();
     let mut tried = found.tried.iter();
     if let Some(best) = tried.next() {
-        say(format!("controller: {}", best.name))?;
+        lines.push(format!("controller: {}", best.name));
     }
     for gain in &found.gains {
         let tolerance = match tolerance(gain) {
             Some(tolerance) => format!("   tolerance {tolerance}"),
             None => String::new(),
         };
-        say(line(machine, found, gain) + &tolerance)?;
+        lines.push(line(machine, found, gain) + &tolerance);
     }
-    say(late("delay of the logged command", &found.delay))?;
+    lines.push(late("delay of the logged command", &found.delay));
     let [fit, check] = found.explained.map(|share| 100.0 * share);
     let way = match found.instrumented {
         true => "with instruments",
         false => "by least squares",
     };
-    say(format!(
+    lines.push(format!(
         "command explained: {fit:.6} % fitted, {check:.6} % on check logs; {way}"
-    ))?;
+    ));
     let least = found.tried.first().and_then(|best| best.left);
     for other in tried {
-        say(match (other.left, least) {
+        lines.push(match (other.left, least) {
             (Some(left), Some(least)) => format!(
                 "  {} leaves {:.3e} of it on check logs, {:.4} times as much",
                 other.name,
@@ -118,20 +197,20 @@ fn tell(found: &Estimate, machine: &Axis) -> Result<()> {
                 left / least
             ),
             _ => format!("  {} could not be fitted", other.name),
-        })?;
+        });
     }
-    Ok(())
+    lines.join("\n") + "\n"
 }
 
-fn tell_replayed(replayed: &ClosedLoopGains, found: &Estimate, machine: &Axis) -> Result<()> {
-    say("\nby closed-loop replay, which rests on the machine's model (not written):")?;
-    for gain in &replayed.gains {
-        say(line(machine, found, gain))?;
-    }
-    match &replayed.command_delay {
-        Some(delay) => say(late("control-delay", delay)),
-        None => Ok(()),
-    }
+fn replayed_words(replayed: &ClosedLoopGains, found: &Estimate, machine: &Axis) -> String {
+    let head =
+        "\nby closed-loop replay, which rests on the machine's model (not written):".to_owned();
+    let mut lines = vec![head];
+    let gains = replayed.gains.iter();
+    lines.extend(gains.map(|gain| line(machine, found, gain)));
+    let delay = replayed.command_delay.iter();
+    lines.extend(delay.map(|delay| late("control-delay", delay)));
+    lines.join("\n") + "\n"
 }
 
 fn line(machine: &Axis, found: &Estimate, gain: &Gain) -> String {

@@ -8,10 +8,12 @@ use clap::Args;
 use compensator::{Advice, LearnedMove, Round};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use pipeline::learning::StoredCorrection;
+use serde::Serialize;
 use trajectories::Motion;
 
 use crate::context::read_text;
-use crate::output::{say, write_whole};
+use crate::measured::Errors;
+use crate::output::{Worded, print, write_whole};
 
 /// Options of `learn`.
 #[derive(Args)]
@@ -52,14 +54,14 @@ pub fn command(options: &Options) -> Result<()> {
 fn tell(axis: &Axis, round: &Round, file: &Path) -> Result<()> {
     let unit = axis.freedom().unit();
     let micro = |value: f64| SixDigits((1e10 * value).round() / 1e4);
-    say(format!(
+    let error = format!(
         "round {}: tracking error up to {} µ{unit}; of it {} µ{unit} (RMS) can be learned, noise leaves {} µ{unit} there",
         round.rounds,
         micro(round.peak),
         micro(round.learnable),
         micro(round.floor),
-    ))?;
-    say(match round.advice {
+    );
+    let words = match round.advice {
         Advice::Again => format!(
             "{} holds the next correction: make the move again",
             file.display()
@@ -70,7 +72,46 @@ fn tell(axis: &Axis, round: &Round, file: &Path) -> Result<()> {
             "the move has become worse than it was: something has changed. {} starts anew from this log",
             file.display()
         ),
-    })
+    };
+    let value = Learned {
+        rounds: round.rounds,
+        errors: Errors::of(
+            axis.freedom(),
+            Left {
+                max: 1e6 * round.peak,
+                learnable_rms: 1e6 * round.learnable,
+                noise_rms: 1e6 * round.floor,
+            },
+        ),
+        advice: match round.advice {
+            Advice::Again => "again",
+            Advice::Done => "done",
+            Advice::Enough => "enough",
+            Advice::Restarted => "restarted",
+        },
+        correction: file,
+    };
+    let text = format!("{error}\n{words}");
+    print("learn", &Worded { text, value })
+}
+
+/// One round.
+#[derive(Serialize)]
+struct Learned<'a> {
+    rounds: u32,
+    #[serde(flatten)]
+    errors: Errors<Left>,
+    /// What to do next: again, done, enough or restarted.
+    advice: &'static str,
+    correction: &'a Path,
+}
+
+/// The tracking error, and what of it can be learned.
+#[derive(Serialize)]
+struct Left {
+    max: f64,
+    learnable_rms: f64,
+    noise_rms: f64,
 }
 
 fn read(file: &Path) -> Result<StoredCorrection> {

@@ -4,6 +4,7 @@ use campaign::{Job, Merged, shards_in};
 use clap::Args;
 use miette::{Result, miette};
 
+use crate::exit::wrong_use;
 use crate::jobs::{Jobs, told};
 
 /// Options of the command.
@@ -24,9 +25,9 @@ pub struct Options<J: Jobs> {
 pub fn command<J: Jobs>(options: &Options<J>) -> Result<()> {
     let of_job = options.job.options();
     if let Some(shard) = of_job.sharding().shard {
-        return Err(miette!(
+        return Err(wrong_use(format!(
             "merge takes all shards: leave --shard {shard} out; --shards before the name of the job gives their number"
-        ));
+        )));
     }
     let job = of_job.job()?;
     let shards = match options.shards {

@@ -5,6 +5,7 @@ pub(crate) mod compensate;
 mod compensate_moves;
 mod control_table;
 pub mod discover;
+mod discover_words;
 pub(crate) mod export_drive;
 pub mod identify;
 pub(crate) mod identify_control;

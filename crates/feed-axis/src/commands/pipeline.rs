@@ -1,16 +1,24 @@
 //! `pipeline`: every stage in its order; those up to date are left alone.
 
 use miette::Result;
+use serde::Serialize;
 
 use super::{compensate, identify, report, sample, study, train, validate};
 use crate::context::{Common, Context};
-use crate::output::say;
+use crate::output::{Worded, print, print_by_name};
 use crate::store::Stage;
+
+/// A stage that was not run.
+#[derive(Serialize)]
+struct UpToDate {
+    up_to_date: bool,
+}
 
 type Run = fn(&Context) -> Result<()>;
 
 /// Runs the command.
 pub fn run(common: &Common) -> Result<()> {
+    print_by_name();
     let context = common.open()?;
     let _claim = context.claim()?;
     let stages: [(Stage<'_>, &str, Run); 6] = [
@@ -24,7 +32,9 @@ pub fn run(common: &Common) -> Result<()> {
     for (stage, name, run) in &stages {
         if stage.is_current() {
             stage.tidy()?;
-            say(format!("{name}: up to date"))?;
+            let text = format!("{name}: up to date");
+            let value = UpToDate { up_to_date: true };
+            print(name, &Worded { text, value })?;
         } else {
             run(&context)?;
         }

@@ -10,7 +10,7 @@ use pipeline::robustness::room;
 use serde::Serialize;
 
 use crate::context::Common;
-use crate::output::{say, write_whole};
+use crate::output::{Worded, print, write_whole};
 use crate::progress::bar;
 
 /// residuals.json.
@@ -60,17 +60,23 @@ pub fn command(common: &Common) -> Result<()> {
         &path,
         &serde_json::to_vec_pretty(&report).into_diagnostic()?,
     )?;
-    tell(&made)?;
-    say(format!("each move is a number in {}", path.display()))
+    let text = format!(
+        "{}each move is a number in {}",
+        words(&made),
+        path.display()
+    );
+    let value = report;
+    print("residuals", &Worded { text, value })
 }
 
-fn tell(made: &[Vec<Compared>]) -> Result<()> {
+/// The comparison as a table.
+fn words(made: &[Vec<Compared>]) -> String {
     let after: Vec<String> = AFTER.iter().map(|n| format!("after {n}")).collect();
-    say(format!(
-        "| peak left, µm: median / worst | {} |",
-        after.join(" | ")
-    ))?;
-    say(format!("|---|{}", "---|".repeat(AFTER.len())))?;
+    let mut text = format!(
+        "| peak left, µm: median / worst | {} |\n|---|{}\n",
+        after.join(" | "),
+        "---|".repeat(AFTER.len())
+    );
     for (w, way) in Way::ALL.iter().enumerate() {
         let cells = (0..AFTER.len()).map(|i| {
             let of_way = made.iter().map(|machine| &machine[w]);
@@ -88,7 +94,7 @@ fn tell(made: &[Vec<Compared>]) -> Result<()> {
             }
         });
         let cells: Vec<String> = cells.collect();
-        say(format!("| {} | {} |", way.name(), cells.join(" | ")))?;
+        text += &format!("| {} | {} |\n", way.name(), cells.join(" | "));
     }
-    Ok(())
+    text
 }

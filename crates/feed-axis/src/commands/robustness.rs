@@ -13,7 +13,7 @@ use report::{Page, render};
 
 use crate::context::{Claim, Common, Context};
 use crate::jobs::{JobOptions, Sharding, failure};
-use crate::output::{say, write_whole};
+use crate::output::{Worded, print, write_whole};
 use crate::page;
 use crate::page::robustness::{Asked, Limit, Robustness, Row};
 
@@ -114,9 +114,13 @@ impl AllDraws {
             .wrap_err("the page cannot be made")?;
         let html = context.out.join("robustness.html");
         write_whole(&html, page.as_bytes())?;
-        tell(&table.rows)?;
         let [json, html] = [json.display(), html.display()];
-        say(format!("each draw is a point in {json} and {html}"))
+        let text = format!(
+            "{}each draw is a point in {json} and {html}",
+            words(&table.rows)
+        );
+        let value = table;
+        print("robustness", &Worded { text, value })
     }
 }
 
@@ -247,23 +251,26 @@ fn asked(words: &str, goal: &Goal, counted: &mut Counted) -> Asked {
     }
 }
 
-fn tell(table: &[Row]) -> Result<()> {
-    say("| case | strategy | draws | counted | asked | found: worst draw, peak / mean | |")?;
-    say("|---|---|---|---|---|---|---|")?;
+/// The rows as a table.
+fn words(table: &[Row]) -> String {
+    let mut text =
+        "| case | strategy | draws | counted | asked | found: worst draw, peak / mean | |\n\
+        |---|---|---|---|---|---|---|\n"
+            .to_owned();
     for row in table {
         for asked in &row.moves {
             let noise = if row.noise { ", noisy sensors" } else { "" };
             let kept = if asked.kept { "" } else { "missed" };
-            say(format!(
-                "| {}{noise} | {} | {} | {} | {} | {} | {kept} |",
+            text += &format!(
+                "| {}{noise} | {} | {} | {} | {} | {} | {kept} |\n",
                 row.what,
                 row.strategy.replace('_', " "),
                 row.points.len(),
                 asked.counted,
                 asked.asked,
                 asked.worst,
-            ))?;
+            );
         }
     }
-    Ok(())
+    text
 }

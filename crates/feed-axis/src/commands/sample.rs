@@ -9,10 +9,11 @@ use clap::Args;
 use miette::{IntoDiagnostic, Result};
 use pipeline::sample_file;
 use pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity};
+use serde::Serialize;
 
 use crate::context::{Claim, Common, Context};
 use crate::jobs::{JobOptions, Sharding, failure, whole};
-use crate::output::say;
+use crate::output::{Worded, print};
 use crate::store::Stage;
 
 /// Samples to train on.
@@ -214,6 +215,17 @@ fn of_row(row: &Row) -> std::result::Result<(CycleInput, f64), Failure> {
     Ok((input, number(4)?))
 }
 
+/// What was written.
+#[derive(Serialize)]
+struct Written {
+    /// Samples in the file, or to train on.
+    samples: usize,
+    /// Samples of the stage that no training sees.
+    unseen: Option<usize>,
+    /// The file, or the stage's folder.
+    file: PathBuf,
+}
+
 impl Job for Samples {
     fn name(&self) -> &'static str {
         "sample"
@@ -263,17 +275,25 @@ impl Job for Samples {
         if !self.is_stage {
             self.write(rows)?;
             let (file, plan) = &self.sets[0];
-            let said = format!("{} samples in {}", plan.count, file.display());
-            return say(said).map_err(failure);
+            let text = format!("{} samples in {}", plan.count, file.display());
+            let value = Written {
+                samples: plan.count,
+                unseen: None,
+                file: file.clone(),
+            };
+            return print("sample", &Worded { text, value }).map_err(failure);
         }
         let stage = stage(&self.context);
         stage.begin().map_err(failure)?;
         self.write(rows)?;
         stage.finish().map_err(failure)?;
         let [training, _, unseen] = plans(&self.context).map(|plan| plan.count);
-        say(format!(
-            "sample: {training} samples to train on, {unseen} unseen"
-        ))
-        .map_err(failure)
+        let text = format!("sample: {training} samples to train on, {unseen} unseen");
+        let value = Written {
+            samples: training,
+            unseen: Some(unseen),
+            file: stage.path(""),
+        };
+        print("sample", &Worded { text, value }).map_err(failure)
     }
 }

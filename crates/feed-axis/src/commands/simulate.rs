@@ -1,5 +1,6 @@
 //! `simulate`: one motion, its error and its log.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -7,13 +8,17 @@ use atomic_write_file::AtomicWriteFile;
 use axis_sim::{Axis, ClosedLoop, CsvRecorder, Cycle, Measured, Recorder, SixDigits};
 use clap::Args;
 use discover_matrix::hidden::Noise;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr};
+use pipeline::Figures;
 use pipeline::strategies::{Build, NextMove, SharedMotion, StrategyKind};
+use serde::Serialize;
 use trajectories::Program;
 
 use super::{learn, validate};
 use crate::context::{Common, Context, read_text};
-use crate::output::say;
+use crate::exit::wrong_use;
+use crate::measured::Errors;
+use crate::output::print;
 use crate::progress::bar;
 use crate::strategy_name::strategy_name;
 
@@ -43,7 +48,7 @@ pub struct Options {
     /// Noise of every sensor, in multiples of a good linear scale's (10 nm), a
     /// good motor encoder's and current sensor's; 0 for perfect ones. With
     /// noise the axis is simulated the slow, exact way, to stand for a machine
-    #[arg(long, value_name = "FACTOR", default_value_t = 0.0)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 0.0, value_parser = factor)]
     noise: f64,
     /// Where to write the log (CSV, a row each control cycle)
     #[arg(long, value_name = "FILE")]
@@ -52,22 +57,16 @@ pub struct Options {
 
 /// Runs the command: the axis file itself is simulated, not its machine.
 pub fn command(options: &Options) -> Result<()> {
-    if !(options.noise.is_finite() && options.noise >= 0.0) {
-        return Err(miette!(
-            "--noise {}: give 0 or a factor above it",
-            options.noise
-        ));
-    }
     let context = options.common.open()?;
     let motion = motion(options, &context)?;
     let closed_loop = closed_loop(options, &context)?;
     let strategy = options.compensation;
     let predictors = validate::predictors(&context, strategy.needs)?;
     if options.correction.is_some() && matches!(strategy.build, Build::Each(_)) {
-        return Err(miette!(
+        return Err(wrong_use(format!(
             "--correction: {} does not know a motion ahead; give a --compensation that plans, such as plan",
             strategy.label
-        ));
+        )));
     }
     let learned = match &options.correction {
         Some(file) => Some(Arc::new(learn::correction(file, &context.axis, &*motion)?)),
@@ -110,14 +109,57 @@ pub fn command(options: &Options) -> Result<()> {
         log.finish()?;
     }
     outcome.completed().into_diagnostic()?;
-    say(format!(
-        "{} s, {} cycles: tracking error max {} µ{unit}, mean {} µ{unit} (simulated)",
-        SixDigits(motion.duration()),
-        tracking.cycles,
-        SixDigits(1e6 * tracking.most),
-        SixDigits(1e6 * tracking.sum / tracking.cycles as f64),
-        unit = context.axis.freedom().unit()
-    ))
+    let axis = &context.axis;
+    let figures = Figures {
+        max: 1e6 * tracking.most,
+        mean: 1e6 * tracking.sum / tracking.cycles as f64,
+    };
+    print(
+        "simulate",
+        &Simulated {
+            axis: &axis.name,
+            axis_fingerprint: &axis.fingerprint,
+            compensation: strategy.name,
+            duration_s: motion.duration(),
+            cycles: tracking.cycles,
+            tracking_error: Errors::of(axis.freedom(), figures),
+            log: options.log.as_deref(),
+        },
+    )
+}
+
+/// One simulated motion.
+#[derive(Serialize)]
+struct Simulated<'a> {
+    axis: &'a str,
+    axis_fingerprint: &'a str,
+    compensation: &'a str,
+    duration_s: f64,
+    cycles: u64,
+    #[serde(flatten)]
+    tracking_error: Errors<Figures>,
+    log: Option<&'a Path>,
+}
+
+impl fmt::Display for Simulated<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (errors, unit) = self.tracking_error.get();
+        write!(
+            f,
+            "{} s, {} cycles: tracking error max {} {unit}, mean {} {unit} (simulated)",
+            SixDigits(self.duration_s),
+            self.cycles,
+            SixDigits(errors.max),
+            SixDigits(errors.mean)
+        )
+    }
+}
+
+/// Reads a factor of noise.
+pub(super) fn factor(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse::<f64>().ok();
+    let number = number.filter(|factor| factor.is_finite() && *factor >= 0.0);
+    number.ok_or_else(|| "give 0 or a factor above it".to_owned())
 }
 
 fn closed_loop(options: &Options, context: &Context) -> Result<ClosedLoop> {
@@ -189,7 +231,11 @@ pub(super) fn trajectory(option: &str, number: usize, context: &Context) -> Resu
     let spec = number
         .checked_sub(1)
         .and_then(|index| context.axis.trajectories.get(index))
-        .ok_or_else(|| miette!("{option} {number}: the axis file has trajectories 1 to {count}"))?;
+        .ok_or_else(|| {
+            wrong_use(format!(
+                "{option} {number}: the axis file has trajectories 1 to {count}"
+            ))
+        })?;
     Ok(Arc::new(context.axis.plan(spec).into_diagnostic()?))
 }
 

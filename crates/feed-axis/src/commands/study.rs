@@ -11,7 +11,7 @@ use pipeline::study::{Setting, StudyRow, network, settings};
 
 use crate::context::{Claim, Common, Context};
 use crate::jobs::{JobOptions, Sharding, failure, whole};
-use crate::output::{say, write_whole};
+use crate::output::{Worded, print, write_whole};
 use crate::store::Stage;
 
 const STUDY: &str = "study.json";
@@ -178,7 +178,7 @@ impl Job for Networks {
     fn finish(&self, rows: &Merged) -> std::result::Result<(), Failure> {
         let table = self.table(rows)?;
         let networks = format!("{} settings over {} seeds", self.settings.len(), self.seeds);
-        let said = match &self.file {
+        let text = match &self.file {
             Some(file) => {
                 write_whole(file, &serde_json::to_vec_pretty(&table)?).map_err(failure)?;
                 format!("{networks} in {}", file.display())
@@ -194,6 +194,7 @@ impl Job for Networks {
                 format!("study: {networks}")
             }
         };
-        say(said).map_err(failure)
+        let value = table;
+        print("study", &Worded { text, value }).map_err(failure)
     }
 }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::sample;
 use crate::context::{Common, Context};
-use crate::output::{say, write_whole};
+use crate::output::{Worded, print, write_whole};
 use crate::program;
 use crate::progress::bar;
 use crate::store::Stage;
@@ -125,7 +125,7 @@ pub fn run(context: &Context) -> Result<()> {
     write_whole(&stage.path(NETWORK), &bytes)?;
     stage.write_json(TRAINING, &training)?;
     stage.finish()?;
-    say(format!(
+    let text = format!(
         "train: {} epochs in {:.1} s; unseen samples max {:.2e} µ{unit}, mean {:.2e} µ{unit} (linear map {:.2e}, {:.2e})",
         training.epochs,
         training.seconds,
@@ -134,7 +134,9 @@ pub fn run(context: &Context) -> Result<()> {
         training.linear.max,
         training.linear.mean,
         unit = context.axis.freedom().unit()
-    ))
+    );
+    let value = training;
+    print("train", &Worded { text, value })
 }
 
 /// The network of a finished stage.

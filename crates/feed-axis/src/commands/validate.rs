@@ -1,12 +1,18 @@
 //! `validate`: Tables 13 and 14.
 
+use std::fmt;
+use std::path::PathBuf;
+
 use miette::{IntoDiagnostic, Result};
+use pipeline::Figures;
 use pipeline::strategies::{Need, Predictors, TransferModels};
 use pipeline::validation::{self, Validation};
+use serde::Serialize;
 
 use super::{identify, train};
 use crate::context::{Common, Context};
-use crate::output::say;
+use crate::measured::Errors;
+use crate::output::print;
 use crate::progress::bar;
 use crate::store::Stage;
 
@@ -44,17 +50,67 @@ pub fn run(context: &Context) -> Result<()> {
     progress.finish_and_clear();
     stage.write_json(VALIDATION, &found)?;
     stage.finish()?;
-    let unit = context.axis.freedom().unit();
-    say(format!("validate: tracking error, max / mean in µ{unit}"))?;
-    say("  trajectory      model          machine (simulated)")?;
-    for t in &found.trajectories {
-        let (a, b) = (t.model.figures, t.machine.figures);
-        say(format!(
-            "  {:>10} {:>8.3} / {:.4} {:>10.3} / {:.4}",
-            t.id, a.max, a.mean, b.max, b.mean
-        ))?;
+    let freedom = context.axis.freedom();
+    let rows = found.trajectories.iter().map(|t| Row {
+        trajectory: t.id,
+        errors: Errors::of(
+            freedom,
+            Pair {
+                model: t.model.figures,
+                machine: t.machine.figures,
+            },
+        ),
+    });
+    let told = Validated {
+        unit: freedom.unit(),
+        trajectories: rows.collect(),
+        file: stage.path(VALIDATION),
+    };
+    print("validate", &told)
+}
+
+/// Tracking errors of model and machine.
+#[derive(Serialize)]
+struct Validated {
+    #[serde(skip)]
+    unit: &'static str,
+    trajectories: Vec<Row>,
+    file: PathBuf,
+}
+
+#[derive(Serialize)]
+struct Row {
+    trajectory: usize,
+    #[serde(flatten)]
+    errors: Errors<Pair>,
+}
+
+#[derive(Serialize)]
+struct Pair {
+    model: Figures,
+    machine: Figures,
+}
+
+impl fmt::Display for Validated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "validate: tracking error, max / mean in µ{}", self.unit)?;
+        writeln!(f, "  trajectory      model          machine (simulated)")?;
+        for row in &self.trajectories {
+            let (
+                Pair {
+                    model: a,
+                    machine: b,
+                },
+                _,
+            ) = row.errors.get();
+            writeln!(
+                f,
+                "  {:>10} {:>8.3} / {:.4} {:>10.3} / {:.4}",
+                row.trajectory, a.max, a.mean, b.max, b.mean
+            )?;
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// The results of a finished stage.
