@@ -9,6 +9,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use feed_axis::cli::{Global, finish, parse, start};
+use feed_axis::commands::export::drive;
 
 use commands::{bench, independent, layers, torture};
 use jobs::Job;
@@ -32,6 +33,8 @@ struct Cli {
 enum Command {
     #[command(flatten)]
     User(feed_axis::commands::Command<Job>),
+    /// The same as `export drive`
+    ExportDrive(drive::Options),
     /// Search logs of a simulator that shares no code with this one, and score it
     Independent(independent::Options),
     /// Measure the speed of every hot path (docs/performance.md)
@@ -47,6 +50,7 @@ fn main() -> ExitCode {
     start(&cli.global);
     finish(match &cli.command {
         Command::User(command) => command.run(),
+        Command::ExportDrive(options) => drive::command(options),
         Command::Independent(options) => independent::command(options),
         Command::Bench(options) => bench::command(options),
         Command::Torture(options) => torture::command(options),

@@ -2,9 +2,10 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{Parser, Subcommand};
 use feed_axis::cli::{Global, finish, parse, start};
 use feed_axis::commands::Command;
+use feed_axis::commands::manual::{self, Completions, Pages};
 use feed_axis::jobs::UserJob;
 
 /// Feed axes: simulate, identify, find what a model lacks, compensate.
@@ -19,11 +20,25 @@ struct Cli {
     #[command(flatten)]
     global: Global,
     #[command(subcommand)]
-    command: Command<UserJob>,
+    command: Own,
+}
+
+#[derive(Subcommand)]
+enum Own {
+    #[command(flatten)]
+    User(Command<UserJob>),
+    /// Write the completions of a shell to standard output
+    Completions(Completions),
+    /// Write the manual's pages
+    Man(Pages),
 }
 
 fn main() -> ExitCode {
     let cli: Cli = parse("feed-axis");
     start(&cli.global);
-    finish(cli.command.run())
+    finish(match &cli.command {
+        Own::User(command) => command.run(),
+        Own::Completions(options) => manual::completions(options),
+        Own::Man(options) => manual::pages(options),
+    })
 }

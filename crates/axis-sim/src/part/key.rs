@@ -182,8 +182,26 @@ impl Key {
         key(name, Kind::Word(Cow::Owned(words)))
     }
 
-    /// The spellings under which it may stand in a file.
-    pub(crate) fn spellings(&self) -> Vec<String> {
+    /// Whether it may be left out.
+    pub fn is_optional(&self) -> bool {
+        self.optional
+    }
+
+    /// What a number is where it is left out, in SI units; none where it then has no value.
+    pub fn default(&self) -> Option<f64> {
+        self.default
+    }
+
+    /// The keys of a table, or of each of several tables of one name; none of what is no table.
+    pub fn keys(&self) -> &[Key] {
+        match &self.kind {
+            Kind::Table(keys) | Kind::Tables(keys) => keys,
+            _ => &[],
+        }
+    }
+
+    /// The spellings under which it may stand in a file: of a quantity one for each unit.
+    pub fn spellings(&self) -> Vec<String> {
         match &self.kind {
             Kind::Quantity(dimension, _) => dimension.keys(self.name).collect(),
             _ => vec![self.name.to_owned()],
@@ -191,7 +209,7 @@ impl Key {
     }
 
     /// A spelling with the brackets that a table has in a file.
-    pub(crate) fn shown(&self, spelling: &str) -> String {
+    pub fn shown(&self, spelling: &str) -> String {
         match self.kind {
             Kind::Table(_) => format!("[{spelling}]"),
             Kind::Tables(_) => format!("[[{spelling}]]"),
@@ -199,8 +217,9 @@ impl Key {
         }
     }
 
-    /// What would be valid; `unit` is that of the key as it was given, if it was.
-    pub(crate) fn valid(&self, unit: Option<(&str, f64)>) -> String {
+    /// What would be valid, in words; `unit` is that of the key as it was given, if it was,
+    /// with its factor to SI.
+    pub fn valid(&self, unit: Option<(&str, f64)>) -> String {
         match &self.kind {
             Kind::Quantity(dimension, limits) => {
                 let usual = dimension.units.first().copied();

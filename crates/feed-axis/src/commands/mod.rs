@@ -6,12 +6,14 @@ mod compensate_moves;
 mod control_table;
 pub mod discover;
 mod discover_words;
-pub(crate) mod export_drive;
+pub mod export;
 pub mod identify;
 pub(crate) mod identify_control;
 pub(crate) mod learn;
 pub(crate) mod log;
+pub mod manual;
 pub(crate) mod merge;
+pub(crate) mod new;
 pub(crate) mod pipeline;
 pub(crate) mod report;
 pub(crate) mod residuals;
@@ -31,6 +33,8 @@ use crate::jobs::Jobs;
 /// The commands of users, with the jobs of a program.
 #[derive(Subcommand)]
 pub enum Command<J: Jobs> {
+    /// Write a commented axis file to begin with
+    New(new::Options),
     /// All stages: sample, train, identify, validate, compensate, study, report
     Pipeline(Common),
     /// A job of independent cases.
@@ -62,14 +66,16 @@ pub enum Command<J: Jobs> {
     Campaign(campaign::Options),
     /// Write a job's results from its shards
     Merge(merge::Options<J>),
-    /// Write what of the correction a drive or CNC can be given (docs/drive-terms.md)
-    ExportDrive(export_drive::Options),
+    /// Write what other programs and machines can use
+    #[command(subcommand)]
+    Export(export::Export),
 }
 
 impl<J: Jobs> Command<J> {
     /// Runs the command.
     pub fn run(&self) -> Result<()> {
         match self {
+            Self::New(options) => new::command(options),
             Self::Pipeline(common) => pipeline::run(common),
             Self::Job(job) => job.run(),
             Self::Train(common) => train::command(common),
@@ -85,7 +91,7 @@ impl<J: Jobs> Command<J> {
             Self::Log(options) => log::command(options),
             Self::Campaign(options) => campaign::command::<J>(options),
             Self::Merge(options) => merge::command(options),
-            Self::ExportDrive(options) => export_drive::command(options),
+            Self::Export(options) => export::command(options),
         }
     }
 }

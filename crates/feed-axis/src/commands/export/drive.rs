@@ -1,4 +1,4 @@
-//! `export-drive`: what of the correction an ordinary drive or CNC can be given.
+//! `export drive`: what of the correction an ordinary drive or CNC can be given.
 
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ const TERMS: &str = "drive.json";
 const OVER_POSITION: &str = "drive.csv";
 const OVER_TURN: &str = "drive-turn.csv";
 
-/// Options of `export-drive`.
+/// Options of `export drive`.
 #[derive(Args)]
 pub struct Options {
     /// Axis file: what the terms are made from
