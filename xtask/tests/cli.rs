@@ -16,6 +16,7 @@ fn help_names_the_commands_of_users_and_of_developers() {
         "pipeline",
         "sample",
         "merge",
+        "export-drive",
         "discover-matrix",
         "independent",
         "bench",

@@ -27,9 +27,7 @@ pub fn command() -> Command {
         Some((_, command)) => command(),
         None => Command::new(name()),
     };
-    command
-        .after_long_help(Exit::help())
-        .propagate_version(true)
+    command.after_long_help(Exit::help())
 }
 
 /// BLAKE3 of the sources from which this program was built.

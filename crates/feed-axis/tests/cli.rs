@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
-use common::{refuse, root, succeed, text};
+use common::{feed_axis, refuse, root, succeed, text};
 
 #[test]
 fn help_names_every_command() {
@@ -23,7 +23,10 @@ fn help_names_every_command() {
         "report",
         "simulate",
         "discover",
-        "export-drive",
+        "export",
+        "new",
+        "log",
+        "man",
     ] {
         assert!(help.contains(command), "{command}");
         assert!(succeed(&[command, "--help"]).contains("Usage"), "{command}");
@@ -168,6 +171,14 @@ fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
     // Nothing is run twice.
     let again = succeed(&["pipeline", "--quick", "--out", out]);
     assert_eq!(again.matches("up to date").count(), 6, "{again}");
+    // The same as one document, by the stages' names.
+    let again = feed_axis(&["pipeline", "--quick", "--out", out, "--format", "json"]);
+    let again: Value = serde_json::from_slice(&again.stdout).unwrap();
+    assert_eq!(again["study"]["up_to_date"], true);
+    assert_eq!(again["report"]["summary"], summary);
+    let identified = feed_axis(&["identify", "--quick", "--out", out, "--format", "json"]);
+    let identified: Value = serde_json::from_slice(&identified.stdout).unwrap();
+    assert_eq!(identified["friction"]["parameters"][0]["name"], "T_C");
 
     // The same bits on one thread.
     let single = folder.path().join("single");

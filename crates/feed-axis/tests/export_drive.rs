@@ -1,4 +1,4 @@
-//! `export-drive` as a user runs it.
+//! `export drive` as a user runs it.
 
 mod common;
 
@@ -11,7 +11,8 @@ fn terms_tables_and_loss_are_written_with_their_units() {
     let out = folder.path().join("drive");
     let machine = "data/axes/liu2025-machine.toml";
     let said = succeed(&[
-        "export-drive",
+        "export",
+        "drive",
         "--axis",
         machine,
         "--out",
@@ -52,17 +53,18 @@ fn what_cannot_be_done_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("drive");
     let out = out.to_str().unwrap();
-    let message = refuse(&["export-drive", "--axis", "no-such.toml", "--out", out]);
+    let message = refuse(&["export", "drive", "--axis", "no-such.toml", "--out", out]);
     assert!(message.contains("no-such.toml"), "{message}");
-    let message = refuse(&["export-drive"]);
+    let message = refuse(&["export", "drive"]);
     assert!(message.contains("--out"), "{message}");
     let file = folder.path().join("file");
     std::fs::write(&file, "").unwrap();
-    let message = refuse(&["export-drive", "--out", file.to_str().unwrap()]);
+    let message = refuse(&["export", "drive", "--out", file.to_str().unwrap()]);
     assert!(message.contains("--out"), "{message}");
     // No trajectories: the terms all the same.
     let said = succeed(&[
-        "export-drive",
+        "export",
+        "drive",
         "--axis",
         "data/axes/emps.toml",
         "--out",

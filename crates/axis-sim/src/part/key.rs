@@ -29,8 +29,8 @@ pub(crate) enum Kind {
     Number(&'static str, Range),
     /// A whole number.
     Count(u32, u32),
-    /// A text.
-    Text,
+    /// A text, and what is valid.
+    Text(&'static str),
     /// One of a few words.
     Word(Cow<'static, [&'static str]>),
     /// A table.
@@ -70,12 +70,17 @@ pub const fn count(name: &'static str, least: u32, most: u32) -> Key {
 }
 
 pub(crate) const fn text(name: &'static str) -> Key {
-    key(name, Kind::Text)
+    text_of(name, "a text in quotes")
 }
 
 /// One of a few words.
 pub const fn word(name: &'static str, words: &'static [&'static str]) -> Key {
     key(name, Kind::Word(Cow::Borrowed(words)))
+}
+
+/// A text of which not all are valid.
+pub(crate) const fn text_of(name: &'static str, valid: &'static str) -> Key {
+    key(name, Kind::Text(valid))
 }
 
 pub(crate) const fn table(name: &'static str, keys: &'static [Key]) -> Key {
@@ -153,7 +158,7 @@ impl Key {
                     values.set_word(self.name, word);
                 }
             }
-            Kind::Text | Kind::Table(_) | Kind::Tables(_) => {}
+            Kind::Text(_) | Kind::Table(_) | Kind::Tables(_) => {}
         }
     }
 
@@ -232,7 +237,7 @@ impl Key {
             }
             Kind::Count(least, most) if least == most => least.to_string(),
             Kind::Count(least, most) => format!("a whole number from {least} to {most}"),
-            Kind::Text => "a text in quotes".to_owned(),
+            Kind::Text(valid) => (*valid).to_owned(),
             Kind::Word(words) => {
                 let quoted: Vec<String> = words.iter().map(|w| format!("\"{w}\"")).collect();
                 quoted.join(" or ")

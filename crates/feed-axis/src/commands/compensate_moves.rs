@@ -43,6 +43,7 @@ pub struct Options {
         value_name = "FACTOR",
         default_value_t = 0.0,
         value_parser = factor,
+        allow_negative_numbers = true,
         requires = "strategy"
     )]
     noise: f64,

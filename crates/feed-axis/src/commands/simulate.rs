@@ -48,7 +48,7 @@ pub struct Options {
     /// Noise of every sensor, in multiples of a good linear scale's (10 nm), a
     /// good motor encoder's and current sensor's; 0 for perfect ones. With
     /// noise the axis is simulated the slow, exact way, to stand for a machine
-    #[arg(long, value_name = "FACTOR", default_value_t = 0.0, value_parser = factor)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 0.0, value_parser = factor, allow_negative_numbers = true)]
     noise: f64,
     /// Where to write the log (CSV, a row each control cycle)
     #[arg(long, value_name = "FILE")]

@@ -49,7 +49,7 @@ struct Logs {
     #[arg(long, value_name = "FILE")]
     axis: Option<PathBuf>,
     /// Sampling rate of the log, Hz [default: that of its slowest file]
-    #[arg(long, value_name = "HZ")]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     rate: Option<f64>,
 }
 

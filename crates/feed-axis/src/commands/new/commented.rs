@@ -1,7 +1,8 @@
 //! An axis file with a comment behind every key: what is valid, from the kinds' own keys.
 
+use axis_sim::control::units_of_gain;
 use axis_sim::part::{Key, PartKind};
-use axis_sim::{Registry, SixDigits};
+use axis_sim::{Axis, Registry, SixDigits};
 use miette::{IntoDiagnostic, Result};
 use toml_edit::{DocumentMut, Item, Table, Value};
 
@@ -17,6 +18,7 @@ pub fn file(example: &str, name: &str, made_by: &str) -> Result<String> {
     document.insert("name", Item::Value(Value::from(name)));
     let mut file = File {
         registry,
+        axis: Axis::parse("example", example)?,
         text: head(made_by),
     };
     let own = document.iter().filter(|(_, item)| item.is_value());
@@ -44,6 +46,7 @@ fn head(made_by: &str) -> String {
 /// The file so far.
 struct File {
     registry: Registry,
+    axis: Axis,
     text: String,
 }
 
@@ -111,7 +114,7 @@ impl File {
             let key = keys.iter().find(|key| unit(key, spelling).is_some());
             let comment = match (key, *spelling) {
                 (Some(_), "kind") => self.kind_words(path),
-                (Some(key), _) => words(key, spelling),
+                (Some(key), _) => words(key, spelling, &self.units(key, path)),
                 (None, _) => String::new(),
             };
             lines.push((format!("{spelling} = {value}"), comment));
@@ -120,7 +123,7 @@ impl File {
         let left_out = keys
             .iter()
             .filter(|key| key.keys().is_empty() && !given(key));
-        lines.extend(left_out.map(commented_out));
+        lines.extend(left_out.map(|key| commented_out(key, &self.units(key, path))));
         self.write(&lines);
     }
 
@@ -135,7 +138,7 @@ impl File {
         }
         let line = |key: &&Key| match key.name() {
             "kind" => ("# kind =".to_owned(), self.kind_words(&path)),
-            _ => commented_out(key),
+            _ => commented_out(key, &self.units(key, &path)),
         };
         let lines: Vec<_> = values.iter().map(line).collect();
         self.write(&lines);
@@ -154,6 +157,18 @@ impl File {
                 false => format!("{left:<width$}  # {comment}"),
             };
             self.text += &(line + "\n");
+        }
+    }
+
+    /// The units that a key may be given in: of a controller's gain those that go with what
+    /// the example's actuator takes.
+    fn units(&self, key: &Key, path: &str) -> Vec<(&'static str, f64)> {
+        let (control, axis) = (&self.axis.control, &self.axis);
+        let is_gain =
+            path == "control" && control.kind().keys.iter().any(|k| k.name() == key.name());
+        match is_gain {
+            true => units_of_gain(&**control, key, axis.actuator.effort(), &*axis.mechanism),
+            false => key.units().to_vec(),
         }
     }
 
@@ -193,10 +208,10 @@ fn unit(key: &Key, spelling: &str) -> Option<Option<(&'static str, f64)>> {
 }
 
 /// What is valid under a key, in the unit in which it is spelt.
-fn words(key: &Key, spelling: &str) -> String {
+fn words(key: &Key, spelling: &str, units: &[(&'static str, f64)]) -> String {
     let own = unit(key, spelling).flatten();
     let mut text = key.valid(own);
-    let others = key.units().iter().map(|(unit, _)| *unit);
+    let others = units.iter().map(|(unit, _)| *unit);
     let others: Vec<&str> = others.filter(|u| own.is_none_or(|o| o.0 != *u)).collect();
     if !others.is_empty() {
         text += &format!(", or {}", others.join(", "));
@@ -212,13 +227,15 @@ fn words(key: &Key, spelling: &str) -> String {
 }
 
 /// A key that is left out, in its usual unit.
-fn commented_out(key: &Key) -> (String, String) {
-    let spelling = key.spellings().swap_remove(0);
-    let factor = key.units().first().map_or(1.0, |(_, factor)| *factor);
+fn commented_out(key: &Key, units: &[(&'static str, f64)]) -> (String, String) {
+    let (spelling, factor) = match units.first() {
+        Some((unit, factor)) => (format!("{}_{unit}", key.name()), *factor),
+        None => (key.name().to_owned(), 1.0),
+    };
     let left = match key.default() {
         Some(default) => format!("# {spelling} = {}", SixDigits(default / factor)),
         None => format!("# {spelling} ="),
     };
-    let comment = words(key, &spelling);
+    let comment = words(key, &spelling, units);
     (left, comment)
 }

@@ -35,9 +35,9 @@ pub struct Options {
     /// Mechanism, with an actuator, a controller, friction and sensors that go with it
     #[arg(long, value_parser = kinds())]
     kind: String,
-    /// Folder for the file
-    #[arg(long, value_name = "DIR", default_value = ".")]
-    out: PathBuf,
+    /// Folder for the file [default: the one in which the command runs]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Write over a file that is there
     #[arg(long)]
     force: bool,
@@ -66,7 +66,11 @@ pub fn command(options: &Options) -> Result<()> {
             "\"{name}\" is no name of an axis: give one without / and \\, and the folder with --out"
         )));
     }
-    let file = options.out.join(format!("{name}.toml"));
+    let file = PathBuf::from(format!("{name}.toml"));
+    let file = match &options.out {
+        Some(folder) => folder.join(file),
+        None => file,
+    };
     if file.exists() && !options.force {
         return Err(miette!(
             "{} is there already; give another name, or --force to write over it",
