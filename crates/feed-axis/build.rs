@@ -37,7 +37,7 @@ fn main() {
 
 /// The files below a path; of folders those from which the program is built.
 fn collect(path: &Path, files: &mut Vec<PathBuf>) {
-    const NO_PART: [&str; 3] = ["tests", "benches", "examples"];
+    const NO_PART: [&str; 4] = ["tests", "benches", "examples", "README.md"];
     let Ok(entries) = std::fs::read_dir(path) else {
         return files.push(path.to_owned());
     };
