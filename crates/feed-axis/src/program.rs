@@ -7,24 +7,31 @@ use clap::Command;
 
 use crate::exit::Exit;
 
-/// What the user types to run this program, and its whole command line.
-static PROGRAM: OnceLock<(&'static str, fn() -> Command)> = OnceLock::new();
+/// The program that runs.
+struct Program {
+    /// What the user types to run it.
+    name: &'static str,
+    /// Its whole command line.
+    command: fn() -> Command,
+}
+
+static PROGRAM: OnceLock<Program> = OnceLock::new();
 
 /// Says what the user types to run this program, and what its command line is made by; the
 /// first call counts.
 pub fn set(name: &'static str, command: fn() -> Command) {
-    let _ = PROGRAM.set((name, command));
+    let _ = PROGRAM.set(Program { name, command });
 }
 
 /// What the user types to run this program, for messages that name a command.
 pub fn name() -> &'static str {
-    PROGRAM.get().map_or("feed-axis", |(name, _)| name)
+    PROGRAM.get().map_or("feed-axis", |program| program.name)
 }
 
 /// The command line of this program, with what every help says at its end.
 pub fn command() -> Command {
     let command = match PROGRAM.get() {
-        Some((_, command)) => command(),
+        Some(program) => (program.command)(),
         None => Command::new(name()),
     };
     command.after_long_help(Exit::help())

@@ -27,7 +27,10 @@ pub struct Options {
     #[command(subcommand)]
     command: Option<Command>,
     #[command(flatten)]
-    pages: Option<Pages>,
+    logs: Logs,
+    /// Folder for the page of each log
+    #[arg(long, value_name = "DIR", default_value = "runs/logs")]
+    out: PathBuf,
 }
 
 /// What is done with logs.
@@ -63,17 +66,6 @@ struct Inspect {
     report: Option<PathBuf>,
 }
 
-/// Options of `log` by itself.
-#[derive(Args)]
-#[group(id = "pages-of-logs")]
-struct Pages {
-    #[command(flatten)]
-    logs: Logs,
-    /// Folder for the page of each log
-    #[arg(long, value_name = "DIR", default_value = "runs/logs")]
-    out: PathBuf,
-}
-
 /// A log and all that was found.
 struct Seen {
     name: String,
@@ -86,10 +78,9 @@ struct Seen {
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
-    match (&options.command, &options.pages) {
-        (Some(Command::Inspect(options)), _) => inspect(options),
-        (None, Some(options)) => pages(options),
-        (None, None) => Err(wrong_use("log takes files: log inspect FILE")),
+    match &options.command {
+        Some(Command::Inspect(options)) => inspect(options),
+        None => pages(options),
     }
 }
 
@@ -102,7 +93,7 @@ fn inspect(options: &Inspect) -> Result<()> {
 }
 
 /// As before there was `log inspect`: always a page, one for each log.
-fn pages(options: &Pages) -> Result<()> {
+fn pages(options: &Options) -> Result<()> {
     let seen = look_at(&options.logs)?;
     let name = |path: &PathBuf| {
         let stem = |p: &PathBuf| p.file_stem().map(|s| s.to_string_lossy().into_owned());
