@@ -156,7 +156,7 @@ fn a_log_is_shown_with_its_gaps() {
 fn shells_and_the_manual_know_every_command() {
     for shell in ["bash", "zsh", "fish", "powershell"] {
         let script = succeed(&["completions", shell]);
-        for word in ["simulate", "inspect", "--kind"] {
+        for word in ["simulate", "inspect", "kind"] {
             assert!(script.contains(word), "{word} for {shell}");
         }
     }
