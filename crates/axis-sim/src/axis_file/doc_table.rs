@@ -31,7 +31,7 @@ fn rows(path: &str, keys: &[Key], rows: &mut Vec<String>) {
             }
             Kind::Number(_, limits) => (String::new(), interval(limits)),
             Kind::Count(least, most) => (String::new(), format!("whole, {least} to {most}")),
-            Kind::Text => (String::new(), "text".to_owned()),
+            Kind::Text(_) => (String::new(), "text".to_owned()),
             Kind::Word(words) => (String::new(), words.join(" or ")),
             Kind::Table(keys) => {
                 self::rows(&format!("{path}{}.", key.name), keys, rows);

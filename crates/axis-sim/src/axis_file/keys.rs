@@ -9,7 +9,7 @@ use super::layout::{Layout, SHORT_KINDS};
 use crate::actuator::Effort;
 use crate::mechanism::Freedom;
 use crate::part::units::*;
-use crate::part::{Key, count, number, quantity, table, tables, text, word};
+use crate::part::{Key, count, number, quantity, table, tables, text, text_of, word};
 use crate::work::FREQUENCIES;
 
 /// The version of a file's layout: 2 has a section for each part.
@@ -132,6 +132,10 @@ const SENSORS: &[Key] = &[table("load", KIND), table("motor", KIND)];
 
 const EXPERIMENT: &[Key] = &[text("machine"), text("paper_tables")];
 
+/// How far a known parameter may be off.
+pub(super) const SHARE: &str =
+    "a text in quotes: a share such as \"20 %\", from 0.001 % to 90 %, or \"unknown\"";
+
 /// `known_parameters_percent`, and each known parameter of the file's kinds.
 fn tolerances(layout: &Layout) -> Vec<Key> {
     let lists = [
@@ -142,7 +146,7 @@ fn tolerances(layout: &Layout) -> Vec<Key> {
     ];
     let loads = layout.loads.iter().map(|load| load.known);
     let known = lists.into_iter().chain(loads).flatten();
-    let known = known.map(|known| text(known.name));
+    let known = known.map(|known| text_of(known.name, SHARE));
     let default = number("known_parameters_percent", 1e-3, 100.0);
     std::iter::once(default).chain(known).collect()
 }
