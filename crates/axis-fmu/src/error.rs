@@ -53,6 +53,20 @@ pub enum UnitError {
         /// What would be valid.
         valid: String,
     },
+    /// A part of FMI that this does not offer.
+    #[error("not offered: {0}")]
+    Absent(String),
+    /// A state that is not there.
+    #[error("the address of the state is null; valid: that of a state")]
+    NoState,
+    /// Other numbers of values than of variables.
+    #[error("{values} values of {variables} variables; valid: one of each")]
+    Lengths {
+        /// Variables.
+        variables: usize,
+        /// Values.
+        values: usize,
+    },
     /// An axis file that is no TOML table of tables after a parameter was set.
     #[error("the axis file cannot be changed: {0}")]
     Text(String),
