@@ -1,4 +1,4 @@
-"""Checks of exported units with FMPy: fmu.py PROGRAM AXIS..."""
+"""Checks of exported units with FMPy: fmu.py PROGRAM LIBRARY AXIS..."""
 
 import contextlib
 import csv
@@ -16,7 +16,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import FMU3Slave, fmi3LogMessageCallback
 from fmpy.validation import validate_fmu
 
-PROGRAM, AXES = sys.argv[1], sys.argv[2:]
+PROGRAM, LIBRARY, AXES = sys.argv[1], sys.argv[2], sys.argv[3:]
 TOLERANCE = 1e-12  # of the channel's greatest value
 
 
@@ -28,7 +28,7 @@ class Unit:
         self.description = read_model_description(str(fmu))
         self.told = []
         self.references = {v.name: v.valueReference for v in self.description.modelVariables}
-        self.step_size = self.description.coSimulation.fixedInternalStepSize
+        self.step_size = float(self.description.coSimulation.fixedInternalStepSize)
         self.fmu = FMU3Slave(
             guid=self.description.guid,
             unzipDirectory=self.folder,
@@ -161,7 +161,7 @@ def check_restore(fmu, log):
 def check_parameters(fmu, _):
     """One that is set counts, and only before the start; what is out of range is told."""
     unit, plain = Unit(fmu), Unit(fmu)
-    parameter = next(v for v in unit.of_causality("parameter") if "mass" in v.name or "load_inertia" in v.name)
+    parameter = next(v for v in unit.of_causality("parameter") if "mass" in v.name or "inertia" in v.name)
     name, start = parameter.name, float(parameter.start)
     unit.set(name, 0.5 * start)
     reference = unit.of_causality("input")[0]
@@ -292,7 +292,7 @@ def check_instantiation(fmu, _):
 def check_fmpys_own_run(fmu, _):
     """As a user of FMPy runs it, with an early return allowed; event mode is not offered."""
     description = read_model_description(str(fmu))
-    size = description.coSimulation.fixedInternalStepSize
+    size = float(description.coSimulation.fixedInternalStepSize)
     with contextlib.redirect_stdout(io.StringIO()):
         runs = [
             simulate_fmu(str(fmu), stop_time=500 * size, output_interval=10 * size, early_return_allowed=early)
@@ -313,7 +313,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for axis in AXES:
             fmu = Path(folder) / f"{axis}.fmu"
-            run("export", "fmu", "--axis", f"data/axes/{axis}.toml", "--out", str(fmu))
+            run("export", "fmu", "--axis", f"data/axes/{axis}.toml", "--out", str(fmu), "--library", LIBRARY)
             log = log_of(axis, folder)
             for check in checks:
                 said = check(fmu, log)
