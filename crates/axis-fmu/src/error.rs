@@ -9,10 +9,10 @@ use crate::unit::Mode;
 #[derive(Debug, Error)]
 pub enum UnitError {
     /// The axis file, or a parameter that was set, makes no axis.
-    #[error("{0}")]
+    #[error(transparent)]
     Axis(#[from] AxisFileError),
     /// The axis cannot be simulated, or not begin there.
-    #[error("{0}")]
+    #[error(transparent)]
     Setup(#[from] SetupError),
     /// The run had to be given up. An earlier state, a reset or the end are what is left.
     #[error("{0}; reset the unit, or set it to a state that was saved before")]

@@ -44,10 +44,10 @@ pub enum PackageError {
         arch: &'static str,
     },
     /// The archive could not be made.
-    #[error("the archive cannot be made: {0}")]
+    #[error("the archive cannot be made")]
     Archive(#[from] zip::result::ZipError),
     /// Likewise, where bytes were written.
-    #[error("the archive cannot be made: {0}")]
+    #[error("the archive cannot be made")]
     Write(#[from] std::io::Error),
 }
 

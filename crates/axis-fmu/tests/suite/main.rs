@@ -10,22 +10,22 @@ use std::path::{Path, PathBuf};
 use axis_fmu::Unit;
 
 /// Axis file of the project.
-pub fn file(name: &str) -> PathBuf {
+fn file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../data/axes")
         .join(name)
 }
 
-pub fn text(name: &str) -> String {
+fn text(name: &str) -> String {
     std::fs::read_to_string(file(name)).unwrap()
 }
 
-pub fn unit(name: &str) -> Unit {
+fn unit(name: &str) -> Unit {
     Unit::new(name, &text(name)).unwrap()
 }
 
 /// A unit in step mode at the stroke's start.
-pub fn ready(name: &str) -> Unit {
+fn ready(name: &str) -> Unit {
     let mut unit = unit(name);
     unit.enter_initialization(0.0, None).unwrap();
     unit.exit_initialization().unwrap();
@@ -33,17 +33,17 @@ pub fn ready(name: &str) -> Unit {
 }
 
 /// Value reference of a variable.
-pub fn at(unit: &Unit, name: &str) -> u32 {
+fn at(unit: &Unit, name: &str) -> u32 {
     let found = unit.variables().named(name);
     found.unwrap_or_else(|| panic!("{name}")).reference
 }
 
-pub fn get(unit: &mut Unit, name: &str) -> f64 {
+fn get(unit: &mut Unit, name: &str) -> f64 {
     let reference = at(unit, name);
     unit.get(reference).unwrap()
 }
 
-pub fn set(unit: &mut Unit, name: &str, value: f64) {
+fn set(unit: &mut Unit, name: &str, value: f64) {
     let reference = at(unit, name);
     unit.set(reference, value).unwrap();
 }

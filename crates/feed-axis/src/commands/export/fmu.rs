@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use axis_fmu::{Unit, VariableKind};
-use axis_sim::SixDigits;
+use axis_sim::{Axis, SixDigits};
 use clap::Args;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
@@ -62,6 +62,8 @@ impl fmt::Display for Exported<'_> {
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
+    // A file that is no axis is shown with the line at fault.
+    Axis::read(&options.axis)?;
     let text = read_text(&options.axis)?;
     let name = options.axis.display().to_string();
     let (platform, _) = axis_fmu::platform().into_diagnostic()?;
