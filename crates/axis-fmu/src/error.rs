@@ -3,7 +3,7 @@
 use axis_sim::{AxisFileError, RunStopped, SetupError};
 use thiserror::Error;
 
-use crate::unit::Mode;
+use crate::mode::Mode;
 
 /// Why a call of a unit failed.
 #[derive(Debug, Error)]

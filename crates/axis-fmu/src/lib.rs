@@ -31,17 +31,20 @@
 mod description;
 mod error;
 mod measure;
+mod mode;
 mod outputs;
 mod package;
 mod parameters;
+mod run;
 mod unit;
 mod variables;
 
 pub use description::description;
 pub use error::UnitError;
 pub use measure::Measure;
+pub use mode::Mode;
 pub use package::{
     AXIS_FILE, LIBRARY_MARK, MODEL_IDENTIFIER, PackageError, library_file, package, platform,
 };
-pub use unit::{Mode, Unit};
+pub use unit::Unit;
 pub use variables::{Variable, VariableKind, Variables};

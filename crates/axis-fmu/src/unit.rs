@@ -1,15 +1,14 @@
 //! One instance of a unit: its modes and its run.
 
-use std::fmt;
 use std::sync::Arc;
 
-use axis_sim::{Axis, ClosedLoop, Cycle, LoopState, Start};
-use compensator::{Compensator, Correction, Sample};
+use axis_sim::{Axis, ClosedLoop};
 use trajectories::Setpoint;
 
 use crate::error::UnitError;
-use crate::outputs::is_linear_motor;
+use crate::mode::Mode;
 use crate::parameters;
+use crate::run::{Given, Run};
 use crate::variables::{Input, VariableKind, Variables};
 
 /// Share of the control period by which a communication point may be off: what rounding makes
@@ -21,33 +20,6 @@ const STEP_TOLERANCE: f64 = 1e-4;
 
 /// Most control cycles in one communication step.
 const MOST_CYCLES: f64 = 1e9;
-
-/// State of the calling order (FMI 3.0.2, Sections 2.3 and 4.2).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
-    /// Made, or reset.
-    Instantiated,
-    /// Between the two calls of the initialisation.
-    Initialization,
-    /// Ready for steps.
-    Step,
-    /// Ended by the environment.
-    Terminated,
-    /// Given up after an error.
-    Failed,
-}
-
-impl fmt::Display for Mode {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Instantiated => "instantiated",
-            Self::Initialization => "in initialization mode",
-            Self::Step => "in step mode",
-            Self::Terminated => "terminated",
-            Self::Failed => "stopped by an error",
-        })
-    }
-}
 
 /// One instance of a unit. A clone is its saved state.
 #[derive(Clone, Debug)]
@@ -68,30 +40,6 @@ struct File {
     text: String,
     axis: Axis,
     variables: Variables,
-}
-
-/// A run between two communication steps.
-#[derive(Clone, Debug)]
-struct Run {
-    closed_loop: Arc<ClosedLoop>,
-    state: LoopState,
-    /// What the drive did last.
-    cycle: Cycle,
-    cycles: u64,
-}
-
-/// What is added to the controller: the motor's input.
-struct Offset(f64);
-
-impl Compensator for Offset {
-    fn reset(&mut self) {}
-
-    fn correct(&mut self, _: &Sample) -> Correction {
-        Correction {
-            position: 0.0,
-            iq: self.0,
-        }
-    }
 }
 
 impl Unit {
@@ -406,47 +354,5 @@ fn finite(what: &'static str, value: f64) -> Result<(), UnitError> {
             value,
             valid: "a finite number".to_owned(),
         }),
-    }
-}
-
-/// What is given to the loop in a cycle.
-struct Given {
-    reference: Setpoint,
-    /// N·m, or N of a linear motor.
-    motor: f64,
-    /// N or N·m.
-    load: f64,
-}
-
-impl Run {
-    /// At rest at the reference. The drive shows what it would sample there.
-    fn begin(axis: &Axis, given: &Given) -> Result<Self, UnitError> {
-        let closed_loop = ClosedLoop::new(axis)?;
-        let state = closed_loop.start(&Start::at(given.reference.position))?;
-        let mut run = Self {
-            closed_loop: Arc::new(closed_loop),
-            state,
-            cycle: Cycle::default(),
-            cycles: 0,
-        };
-        let mut ahead = run.clone();
-        ahead.cycle(given)?;
-        run.cycle = ahead.cycle;
-        Ok(run)
-    }
-
-    /// One control cycle.
-    fn cycle(&mut self, given: &Given) -> Result<(), UnitError> {
-        let axis = self.closed_loop.axis();
-        let torque = match is_linear_motor(axis) {
-            true => given.motor * axis.travel_per_radian(),
-            false => given.motor,
-        };
-        let mut offset = Offset(torque / axis.torque_constant());
-        let references = [&given.reference; 2];
-        self.state.set_outer_load(given.load);
-        self.cycle = (self.closed_loop).step(&mut self.state, references, &mut offset, |_| ())?;
-        self.cycles += 1;
-        Ok(())
     }
 }

@@ -18,7 +18,6 @@ fn refused(instance: Option<&mut Instance>, name: &str, why: &str) -> i32 {
 macro_rules! absent {
     ($($why:literal { $($name:tt $function:ident($($argument:ident: $type:ty),*);)+ })+) => {$($(
         #[doc = concat!("`", $name, "`: ", $why, ".")]
-        #[allow(clippy::too_many_arguments, reason = "the signature is the standard's")]
         #[ffi_export(rename = $name)]
         pub fn $function(instance: Option<&mut Instance>, $($argument: $type),*) -> i32 {
             let _ = ($($argument,)*);

@@ -33,7 +33,6 @@ pub fn set_debug_logging(
 
 /// `fmi3InstantiateCoSimulation`: none for another unit's token, an axis that cannot be simulated,
 /// or event mode, which there is not.
-#[expect(clippy::too_many_arguments, reason = "the signature is the standard's")]
 #[ffi_export(rename = "fmi3InstantiateCoSimulation")]
 pub fn instantiate_co_simulation(
     _name: Option<char_p::Ref<'_>>,
@@ -85,7 +84,6 @@ pub fn instantiate_model_exchange(
 }
 
 /// `fmi3InstantiateScheduledExecution`: none, and the logger is told.
-#[expect(clippy::too_many_arguments, reason = "the signature is the standard's")]
 #[ffi_export(rename = "fmi3InstantiateScheduledExecution")]
 pub fn instantiate_scheduled_execution(
     _name: Address,
@@ -168,7 +166,6 @@ pub fn reset(instance: Option<&mut Instance>) -> i32 {
 }
 
 /// `fmi3DoStep`. The time that was reached is told also where the step failed.
-#[expect(clippy::too_many_arguments, reason = "the signature is the standard's")]
 #[ffi_export(rename = "fmi3DoStep")]
 pub fn do_step(
     instance: Option<&mut Instance>,
@@ -180,10 +177,9 @@ pub fn do_step(
     early_return: Option<&mut Bool>,
     last_successful_time: Option<&mut f64>,
 ) -> i32 {
-    for flag in [event_handling_needed, terminate_simulation, early_return] {
-        if let Some(flag) = flag {
-            *flag = 0;
-        }
+    let flags = [event_handling_needed, terminate_simulation, early_return];
+    for flag in flags.into_iter().flatten() {
+        *flag = 0;
     }
     call(instance, "fmi3DoStep", |instance| {
         let done = instance.unit.step(point, step);
