@@ -144,6 +144,11 @@ impl Key {
         }
     }
 
+    /// Whether a number stands under it that need not be whole.
+    pub fn is_number(&self) -> bool {
+        matches!(self.kind, Kind::Quantity(..) | Kind::Number(..))
+    }
+
     /// Gives it the least value that it takes, or its first word.
     pub(crate) fn set_least(&self, values: &mut Values) {
         match &self.kind {
