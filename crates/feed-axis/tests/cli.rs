@@ -5,6 +5,7 @@ mod common;
 
 use std::process::{Command, Stdio};
 
+use axis_log::{Mapping, read_log};
 use serde_json::Value;
 
 use common::{feed_axis, refuse, root, succeed, text};
@@ -114,6 +115,16 @@ fn simulate_writes_a_log() {
     assert!(head.starts_with("t_s,position_ref_m"), "{}", &head[..60]);
     let message = refuse(&["simulate", "--trajectory", "9"]);
     assert!(message.contains("1 to 6"), "{message}");
+    let read = |path: &std::path::Path| read_log(path, &Mapping::default(), &[]).unwrap();
+    let expected = read(&log);
+    for name in ["log.parquet", "log.mat"] {
+        let other = folder.path().join(name);
+        let to = other.to_str().unwrap();
+        succeed(&["simulate", "--program", program.to_str().unwrap(), "--log", to]);
+        assert!(read(&other) == expected, "{name}");
+    }
+    let message = refuse(&["simulate", "--trajectory", "1", "--log", "log.txt"]);
+    assert!(message.contains(".csv or .parquet or .mat"), "{message}");
 }
 
 /// Figures for people have six digits at most; a run of years is refused with
