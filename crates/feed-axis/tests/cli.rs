@@ -120,7 +120,13 @@ fn simulate_writes_a_log() {
     for name in ["log.parquet", "log.mat"] {
         let other = folder.path().join(name);
         let to = other.to_str().unwrap();
-        succeed(&["simulate", "--program", program.to_str().unwrap(), "--log", to]);
+        succeed(&[
+            "simulate",
+            "--program",
+            program.to_str().unwrap(),
+            "--log",
+            to,
+        ]);
         assert!(read(&other) == expected, "{name}");
     }
     let message = refuse(&["simulate", "--trajectory", "1", "--log", "log.txt"]);

@@ -111,7 +111,10 @@ fn one_unit(key: &Key) -> Option<Value> {
     if spellings.len() < 2 {
         return None;
     }
-    let given: Vec<Value> = spellings.iter().map(|s| json!({ "required": [s] })).collect();
+    let given: Vec<Value> = spellings
+        .iter()
+        .map(|s| json!({ "required": [s] }))
+        .collect();
     if !key.optional {
         return Some(json!({ "oneOf": given }));
     }

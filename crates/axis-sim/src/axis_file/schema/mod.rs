@@ -44,7 +44,8 @@ impl Registry {
             }
         }
         let has = |table: &str| json!({ "required": [table] });
-        let rigid = json!({ "properties": { "kind": { "const": SHORT_KINDS[1] } }, "required": ["kind"] });
+        let rigid =
+            json!({ "properties": { "kind": { "const": SHORT_KINDS[1] } }, "required": ["kind"] });
         let short = |kind: &str| reference(&format!("schema-1.{kind}"));
         json!({
             "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -102,7 +103,9 @@ impl Registry {
             }
         }
         // Only what is controlled is simulated.
-        rules.push(json!({ "if": { "required": ["control"] }, "then": { "required": ["simulation"] } }));
+        rules.push(
+            json!({ "if": { "required": ["control"] }, "then": { "required": ["simulation"] } }),
+        );
         file["allOf"] = Value::Array(rules);
         file
     }
@@ -202,4 +205,3 @@ fn samples(freedom: Freedom, effort: Effort) -> String {
 fn reference(name: &str) -> Value {
     json!({ "$ref": format!("#/$defs/{name}") })
 }
-

@@ -118,7 +118,10 @@ fn effects(all: &[&'static Effect], defs: &mut Map<String, Value>) -> Value {
                 "" => "a number".to_owned(),
                 _ => what,
             };
-            (p.name.to_owned(), json!({ "type": "number", "description": what }))
+            (
+                p.name.to_owned(),
+                json!({ "type": "number", "description": what }),
+            )
         };
         let numbers: Map<String, Value> = effect.parameters.iter().map(number).collect();
         let mut required: Vec<&str> = effect.parameters.iter().map(|p| p.name).collect();

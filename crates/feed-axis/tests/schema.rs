@@ -1,0 +1,53 @@
+//! The JSON Schemas of the files: current, and true of what the commands write.
+
+mod common;
+
+use axis_sim::mechanism::MECHANISMS;
+use clap::ValueEnum;
+use common::{feed_axis, root, succeed};
+use feed_axis::commands::schema::File;
+use serde_json::Value;
+
+/// A schema as it is committed, for editors that find it there.
+fn committed(name: &str) -> Value {
+    let path = root().join(format!("data/schemas/{name}.json"));
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+#[test]
+fn the_committed_schemas_are_those_of_the_code() {
+    for file in File::value_variants() {
+        let value = file.to_possible_value().unwrap();
+        let name = value.get_name();
+        jsonschema::draft202012::meta::validate(&file.schema()).unwrap();
+        assert!(
+            file.schema() == committed(name),
+            "make it anew: feed-axis schema {name} --out data/schemas/{name}.json"
+        );
+    }
+}
+
+#[test]
+fn the_command_writes_the_schema() {
+    let output = feed_axis(&["schema", "axis"]);
+    let written: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(written, committed("axis"));
+}
+
+/// Of each kind of mechanism.
+#[test]
+fn files_of_new_validate() {
+    let validator = jsonschema::draft202012::new(&committed("axis")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    for kind in MECHANISMS {
+        succeed(&["new", kind.name, "--kind", kind.name, "--out", out]);
+        let text = std::fs::read_to_string(format!("{out}/{}.toml", kind.name)).unwrap();
+        let file: Value = toml::from_str(&text).unwrap();
+        let errors: Vec<String> = validator
+            .iter_errors(&file)
+            .map(|e| format!("{}: {e}", e.instance_path()))
+            .collect();
+        assert!(errors.is_empty(), "{}: {errors:#?}", kind.name);
+    }
+}
