@@ -51,3 +51,22 @@ fn files_of_new_validate() {
         assert!(errors.is_empty(), "{}: {errors:#?}", kind.name);
     }
 }
+
+/// A capture of another program is told with the mapping that it could have.
+#[test]
+fn log_inspect_proposes_a_mapping_and_applies_none() {
+    let file = "crates/axis-log/tests/data/halscope.log";
+    let said = succeed(&["log", "inspect", file]);
+    assert!(said.contains("20 samples at 1000"), "{said}");
+    assert!(said.contains("LinuxCNC halscope"), "{said}");
+    assert!(
+        said.contains("source = \"joint.0.motor-pos-cmd\""),
+        "{said}"
+    );
+    assert!(said.contains("not known by name: pid.x.output"), "{said}");
+    let output = feed_axis(&["log", "inspect", file, "--format", "json"]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let log = &found["logs"][0];
+    assert_eq!(log["channels"].as_array().map(Vec::len), Some(0));
+    assert_eq!(log["imported"][0]["others"][0], "pid.x.output");
+}
