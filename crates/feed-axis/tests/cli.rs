@@ -2,6 +2,7 @@
 //! its figures, what it refuses, and what it leaves alone.
 
 mod common;
+mod schema_of;
 
 use std::process::{Command, Stdio};
 
@@ -9,6 +10,7 @@ use axis_log::{Mapping, read_log};
 use serde_json::Value;
 
 use common::{feed_axis, refuse, root, succeed, text};
+use schema_of::assert_validates;
 
 #[test]
 fn help_names_every_command() {
@@ -233,7 +235,9 @@ fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
 
 fn read(out: &str) -> Value {
     let text = std::fs::read_to_string(format!("{out}/summary.json")).unwrap();
-    serde_json::from_str(&text).unwrap()
+    let summary = serde_json::from_str(&text).unwrap();
+    assert_validates("summary", &summary);
+    summary
 }
 
 /// Columns 3 and 4 of the spec's table: max, mean of the model and of the

@@ -3,6 +3,7 @@
 //! and leave no result behind.
 
 mod common;
+mod schema_of;
 
 use std::path::Path;
 
@@ -95,6 +96,8 @@ fn the_new_axis_file_is_the_machine_for_every_other_command() {
         assert!(digits(number) <= 6, "{number} in {said}");
     }
     assert!(!Path::new(&stale).exists(), "of an earlier search");
+    let discovery = std::fs::read_to_string(format!("{out}/discovery.json")).unwrap();
+    assert_validates("discovery", &serde_json::from_str(&discovery).unwrap());
 
     let axis = format!("{out}/axis.toml");
     let text = std::fs::read_to_string(&axis).unwrap();

@@ -1,18 +1,14 @@
 //! The JSON Schemas of the files: current, and true of what the commands write.
 
 mod common;
+mod schema_of;
 
 use axis_sim::mechanism::MECHANISMS;
 use clap::ValueEnum;
-use common::{feed_axis, root, succeed};
+use common::{feed_axis, refuse, root, succeed};
 use feed_axis::commands::schema::File;
+use schema_of::{assert_validates, committed};
 use serde_json::Value;
-
-/// A schema as it is committed, for editors that find it there.
-fn committed(name: &str) -> Value {
-    let path = root().join(format!("data/schemas/{name}.json"));
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
-}
 
 #[test]
 fn the_committed_schemas_are_those_of_the_code() {
@@ -32,23 +28,25 @@ fn the_command_writes_the_schema() {
     let output = feed_axis(&["schema", "axis"]);
     let written: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(written, committed("axis"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s/discovery.json");
+    succeed(&["schema", "discovery", "--out", path.to_str().unwrap()]);
+    let file = root().join("data/schemas/discovery.json");
+    assert_eq!(std::fs::read(path).unwrap(), std::fs::read(file).unwrap());
+    let message = refuse(&["schema", "log"]);
+    assert!(message.contains("axis, summary, discovery"), "{message}");
 }
 
 /// Of each kind of mechanism.
 #[test]
 fn files_of_new_validate() {
-    let validator = jsonschema::draft202012::new(&committed("axis")).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     for kind in MECHANISMS {
         succeed(&["new", kind.name, "--kind", kind.name, "--out", out]);
         let text = std::fs::read_to_string(format!("{out}/{}.toml", kind.name)).unwrap();
         let file: Value = toml::from_str(&text).unwrap();
-        let errors: Vec<String> = validator
-            .iter_errors(&file)
-            .map(|e| format!("{}: {e}", e.instance_path()))
-            .collect();
-        assert!(errors.is_empty(), "{}: {errors:#?}", kind.name);
+        assert_validates("axis", &file);
     }
 }
 

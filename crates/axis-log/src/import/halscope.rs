@@ -31,7 +31,7 @@ pub(super) const FORMAT: Format = Format {
 const PERIOD: &str = "Sampling period is ";
 
 /// How pins of a joint end, what they are, and their unit on a machine in mm
-/// (<https://linuxcnc.org/docs/html/man/man9/motion.9.html>).
+/// (<https://manpages.ubuntu.com/manpages/noble/man9/motion.9.html>).
 const PINS: &[(&str, &str, &str)] = &[
     (".motor-pos-cmd", "position_ref_m", "mm"),
     (".motor-pos-fb", "position_m", "mm"),
