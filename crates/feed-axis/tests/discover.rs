@@ -9,6 +9,7 @@ use std::path::Path;
 
 use axis_sim::Axis;
 use common::{refuse, succeed};
+use schema_of::assert_validates;
 
 /// A log of a rest, a move, a rest, the way back and a rest at 1 kHz.
 fn lines() -> Vec<String> {
