@@ -12,6 +12,8 @@ use std::path::Path;
 use crate::read_error::{ReadError, ReadProblem};
 use crate::table::Table;
 
+type Opened = Result<Box<dyn Table>, ReadProblem>;
+
 /// A format of another program.
 struct Format {
     /// What it is called.
@@ -19,7 +21,7 @@ struct Format {
     /// Whether the first bytes of a file are of this format.
     is_it: fn(&[u8]) -> bool,
     /// Reads the whole file.
-    open: fn(&[u8]) -> Result<Box<dyn Table>, ReadProblem>,
+    open: fn(&[u8]) -> Opened,
     /// What the columns of these names are.
     columns: fn(&[String]) -> Vec<ProposedColumn>,
     /// What the proposal rests on and leaves open.
@@ -98,7 +100,7 @@ fn proposal(path: &Path) -> Result<Option<Proposal>, ReadProblem> {
 }
 
 /// The file as a table, where it is of another program.
-pub(crate) fn table(bytes: &[u8]) -> Option<Result<Box<dyn Table>, ReadProblem>> {
+pub(crate) fn table(bytes: &[u8]) -> Option<Opened> {
     let format = FORMATS.iter().find(|format| (format.is_it)(bytes))?;
     Some((format.open)(bytes))
 }
