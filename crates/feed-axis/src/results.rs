@@ -68,6 +68,7 @@ fn summarise(
         }
     }
     Ok(Summary {
+        schema: Summary::SCHEMA,
         axis: context.axis.name.clone(),
         axis_fingerprint: context.axis.fingerprint.clone(),
         machine: context.machine.name.clone(),

@@ -2,12 +2,15 @@
 //! its figures, what it refuses, and what it leaves alone.
 
 mod common;
+mod schema_of;
 
 use std::process::{Command, Stdio};
 
+use axis_log::{Mapping, read_log};
 use serde_json::Value;
 
 use common::{feed_axis, refuse, root, succeed, text};
+use schema_of::assert_validates;
 
 #[test]
 fn help_names_every_command() {
@@ -114,6 +117,22 @@ fn simulate_writes_a_log() {
     assert!(head.starts_with("t_s,position_ref_m"), "{}", &head[..60]);
     let message = refuse(&["simulate", "--trajectory", "9"]);
     assert!(message.contains("1 to 6"), "{message}");
+    let read = |path: &std::path::Path| read_log(path, &Mapping::default(), &[]).unwrap();
+    let expected = read(&log);
+    for name in ["log.parquet", "log.mat"] {
+        let other = folder.path().join(name);
+        let to = other.to_str().unwrap();
+        succeed(&[
+            "simulate",
+            "--program",
+            program.to_str().unwrap(),
+            "--log",
+            to,
+        ]);
+        assert!(read(&other) == expected, "{name}");
+    }
+    let message = refuse(&["simulate", "--trajectory", "1", "--log", "log.txt"]);
+    assert!(message.contains(".csv or .parquet or .mat"), "{message}");
 }
 
 /// Figures for people have six digits at most; a run of years is refused with
@@ -216,7 +235,9 @@ fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
 
 fn read(out: &str) -> Value {
     let text = std::fs::read_to_string(format!("{out}/summary.json")).unwrap();
-    serde_json::from_str(&text).unwrap()
+    let summary = serde_json::from_str(&text).unwrap();
+    assert_validates("summary", &summary);
+    summary
 }
 
 /// Columns 3 and 4 of the spec's table: max, mean of the model and of the

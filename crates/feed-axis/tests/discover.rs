@@ -3,11 +3,13 @@
 //! and leave no result behind.
 
 mod common;
+mod schema_of;
 
 use std::path::Path;
 
 use axis_sim::Axis;
 use common::{refuse, succeed};
+use schema_of::assert_validates;
 
 /// A log of a rest, a move, a rest, the way back and a rest at 1 kHz.
 fn lines() -> Vec<String> {
@@ -95,6 +97,8 @@ fn the_new_axis_file_is_the_machine_for_every_other_command() {
         assert!(digits(number) <= 6, "{number} in {said}");
     }
     assert!(!Path::new(&stale).exists(), "of an earlier search");
+    let discovery = std::fs::read_to_string(format!("{out}/discovery.json")).unwrap();
+    assert_validates("discovery", &serde_json::from_str(&discovery).unwrap());
 
     let axis = format!("{out}/axis.toml");
     let text = std::fs::read_to_string(&axis).unwrap();

@@ -42,11 +42,7 @@ fn rows(path: &str, keys: &[Key], rows: &mut Vec<String>) {
                 continue;
             }
         };
-        let left_out = match (key.optional, key.default) {
-            (true, Some(default)) => format!("; {} where left out", SixDigits(default)),
-            (true, None) => "; may be left out".to_owned(),
-            _ => String::new(),
-        };
+        let left_out = key.left_out(1.0);
         rows.push(format!("| `{name}` | {units} | {valid}{left_out} |"));
     }
 }

@@ -9,6 +9,7 @@ mod keys;
 mod layout;
 mod read;
 mod registry;
+mod schema;
 mod slips;
 
 use std::cell::RefCell;

@@ -202,6 +202,16 @@ impl Key {
         self.default
     }
 
+    /// What it means to leave it out, behind [`Key::valid`]: nothing of what must be there.
+    /// `factor` is that of its unit to SI.
+    pub fn left_out(&self, factor: f64) -> String {
+        match (self.optional, self.default) {
+            (true, Some(default)) => format!("; {} where left out", SixDigits(default / factor)),
+            (true, None) => "; may be left out".to_owned(),
+            (false, _) => String::new(),
+        }
+    }
+
     /// The keys of a table, or of each of several tables of one name; none of what is no table.
     pub fn keys(&self) -> &[Key] {
         match &self.kind {

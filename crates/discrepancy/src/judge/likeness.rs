@@ -5,6 +5,7 @@ use axis_sim::Axis;
 use axis_sim::effects::Scales;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::estimate::fit::Fitter;
@@ -14,7 +15,7 @@ use crate::estimate::thin::Thin;
 use crate::name::search::{Found, ONE_CLASS, needed};
 
 /// What the logs can tell of an effect, whether it is there or not.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Likeness {
     /// The effect.
     pub name: String,
@@ -28,7 +29,7 @@ pub struct Likeness {
 }
 
 /// A size of an effect.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Shown {
     /// Parameter.
     pub parameter: String,

@@ -212,7 +212,7 @@ pub fn judged(
     let friction = friction_law(machine, set, full, &traces, &after);
     let overlays = overlays(as_filed, &as_filed.rest(&base.traces), &after);
     let discovery = Discovery {
-        schema: 1,
+        schema: Discovery::SCHEMA,
         axis: name,
         answer: found.fit_logs.answer_of(machine).to_owned(),
         notes: [notes(machine, found), slow.notes(set)].concat(),

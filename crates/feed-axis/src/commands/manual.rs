@@ -74,7 +74,8 @@ fn page(command: Command) -> Result<(String, Vec<u8>)> {
     Ok((man.get_filename(), text))
 }
 
-fn out(text: &[u8]) -> Result<()> {
+/// A text that is no result, to standard output.
+pub(super) fn out(text: &[u8]) -> Result<()> {
     let mut out = std::io::stdout().lock();
     out.write_all(text)
         .and_then(|()| out.flush())

@@ -19,6 +19,7 @@ pub(crate) mod report;
 pub(crate) mod residuals;
 pub(crate) mod robustness;
 pub(crate) mod sample;
+pub mod schema;
 pub mod simulate;
 pub(crate) mod study;
 pub mod train;
@@ -69,6 +70,8 @@ pub enum Command<J: Jobs> {
     /// Write what other programs and machines can use
     #[command(subcommand)]
     Export(export::Export),
+    /// Write the JSON Schema of a file, by which editors complete and check it
+    Schema(schema::Options),
 }
 
 impl<J: Jobs> Command<J> {
@@ -92,6 +95,7 @@ impl<J: Jobs> Command<J> {
             Self::Campaign(options) => campaign::command::<J>(options),
             Self::Merge(options) => merge::command(options),
             Self::Export(options) => export::command(options),
+            Self::Schema(options) => schema::command(options),
         }
     }
 }

@@ -4,11 +4,11 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use atomic_write_file::AtomicWriteFile;
-use axis_sim::{Axis, ClosedLoop, CsvRecorder, Cycle, Measured, Recorder, SixDigits};
+use axis_log::{LogFile, WriteProblem};
+use axis_sim::{Axis, ClosedLoop, Cycle, FlowRecorder, Measured, Recorder, SixDigits};
 use clap::Args;
 use discover_matrix::hidden::Noise;
-use miette::{IntoDiagnostic, Result, WrapErr};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use pipeline::Figures;
 use pipeline::strategies::{Build, NextMove, SharedMotion, StrategyKind};
 use serde::Serialize;
@@ -50,7 +50,7 @@ pub struct Options {
     /// noise the axis is simulated the slow, exact way, to stand for a machine
     #[arg(long, value_name = "FACTOR", default_value_t = 0.0, value_parser = factor, allow_negative_numbers = true)]
     noise: f64,
-    /// Where to write the log (CSV, a row each control cycle)
+    /// Where to write the log, a row each control cycle: .csv, .parquet or .mat (version 5)
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
 }
@@ -80,15 +80,13 @@ pub fn command(options: &Options) -> Result<()> {
     };
     let mut law = law.compensator(&next).into_diagnostic()?;
     let log = options.log.as_deref();
-    let mut log = log
-        .map(|path| LogFile::new(path, &context.axis))
-        .transpose()?;
+    let mut rows = log.map(|path| begun(path, &context.axis)).transpose()?;
     let bar = bar("simulate", closed_loop.cycles(&*motion));
     let mut tracking = Tracking::default();
     let observe = |cycle: &Cycle| {
         tracking.push(cycle.error());
-        if let Some(log) = &mut log {
-            log.rows.push(cycle);
+        if let Some(rows) = &mut rows {
+            rows.push(cycle);
         }
         if tracking.cycles % 4096 == 0 {
             bar.set_position(tracking.cycles);
@@ -105,8 +103,9 @@ pub fn command(options: &Options) -> Result<()> {
     let outcome = closed_loop.run_sensed(&*motion, &mut *law, sense, observe);
     bar.finish_and_clear();
     // What was computed before the run stopped is kept.
-    if let Some(log) = log.filter(|_| tracking.cycles > 0) {
-        log.finish()?;
+    if let Some((path, rows)) = log.zip(rows).filter(|_| tracking.cycles > 0) {
+        let placed = rows.finish().into_diagnostic();
+        placed.wrap_err_with(|| unwritten(path))?;
     }
     outcome.completed().into_diagnostic()?;
     let axis = &context.axis;
@@ -186,32 +185,13 @@ impl Tracking {
 }
 
 /// A log that is written aside while the run goes on, and put in place whole.
-struct LogFile {
-    path: PathBuf,
-    rows: CsvRecorder<AtomicWriteFile>,
-}
-
-impl LogFile {
-    fn new(path: &Path, axis: &Axis) -> Result<Self> {
-        let aside = AtomicWriteFile::open(path);
-        let aside = aside.into_diagnostic().wrap_err_with(|| unwritten(path))?;
-        Ok(Self {
-            path: path.to_owned(),
-            rows: CsvRecorder::new(aside, Recorder::new(axis)),
-        })
-    }
-
-    fn finish(self) -> Result<()> {
-        let place = |file: AtomicWriteFile| {
-            // Before the commit, which leaves the file aside behind where flushing fails.
-            file.sync_all()?;
-            file.commit()
-        };
-        let placed = self.rows.finish().and_then(place);
-        placed
-            .into_diagnostic()
-            .wrap_err_with(|| unwritten(&self.path))
-    }
+fn begun(path: &Path, axis: &Axis) -> Result<FlowRecorder<LogFile>> {
+    let file = LogFile::create(path).map_err(|e| match e.problem {
+        WriteProblem::Extension { .. } => wrong_use(format!("--log {e}")),
+        _ => miette!(e),
+    });
+    let file = file.wrap_err_with(|| unwritten(path))?;
+    Ok(FlowRecorder::to(file, Recorder::new(axis)))
 }
 
 fn unwritten(path: &Path) -> String {

@@ -9,7 +9,7 @@ use axis_log::intake::{Options as Intake, prepare};
 use axis_log::quality::{
     ChannelQuality, Clock, Finding, Law, Relation, channel_quality, clock, cross_check,
 };
-use axis_log::{Log, Mapping};
+use axis_log::{Log, Mapping, Proposal, propose};
 use axis_sim::Axis;
 use clap::{Args, Subcommand};
 use discrepancy::logs::{exact_channels, relations};
@@ -74,6 +74,8 @@ struct Seen {
     done: Vec<String>,
     channels: Vec<ChannelQuality>,
     findings: Vec<Finding>,
+    /// Of each file of another program.
+    proposals: Vec<Proposal>,
 }
 
 /// Runs the command.
@@ -130,7 +132,8 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
         exact: &exact,
         rate_hz,
     };
-    let prepared = prepare(&files(path), mapping, &[], options).into_diagnostic()?;
+    let paths = files(path);
+    let prepared = prepare(&paths, mapping, &[], options).into_diagnostic()?;
     let log = prepared.log;
     let clock = clock(&log).ok_or_else(|| {
         miette!(
@@ -156,8 +159,23 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
         done: prepared.done.iter().map(ToString::to_string).collect(),
         channels: channels.collect::<Result<_, _>>().into_diagnostic()?,
         findings: cross_check(&log, mapping, &relations),
+        proposals: proposals(&paths, mapping)?,
         log,
     })
+}
+
+/// What the mapping of files of other programs could have besides.
+fn proposals(paths: &[PathBuf], mapping: &Mapping) -> Result<Vec<Proposal>> {
+    let mut all = Vec::new();
+    for path in paths {
+        if let Some(mut proposal) = propose(path).into_diagnostic()? {
+            let is_mapped = |name: &str| mapping.columns.iter().any(|map| map.source == name);
+            proposal.columns.retain(|column| !is_mapped(&column.source));
+            proposal.others.retain(|name| !is_mapped(name));
+            all.push(proposal);
+        }
+    }
+    Ok(all)
 }
 
 /// Relations that names and units alone tell.

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use axis_log::Channel;
 use axis_log::quality::{ChannelQuality, Colour, Verdict};
+use axis_log::{Channel, Proposal};
 use serde::Serialize;
 
 use super::Seen;
@@ -32,6 +32,19 @@ struct OneLog<'a> {
     done: &'a [String],
     channels: Vec<OneChannel<'a>>,
     findings: Vec<Found>,
+    /// Files of other programs, and what their mapping could have besides.
+    imported: Vec<Imported<'a>>,
+}
+
+/// A file of another program.
+#[derive(Serialize)]
+struct Imported<'a> {
+    format: &'static str,
+    /// Lines for the axis file; none where all is mapped.
+    proposed: Option<String>,
+    /// Columns of which the name does not tell what they are.
+    others: &'a [String],
+    caution: &'static str,
 }
 
 /// One channel; what has no unit in its name is in the channel's.
@@ -113,6 +126,32 @@ impl<'a> OneLog<'a> {
             done: &seen.done,
             channels: channels.map(|(q, c)| OneChannel::of(seen, q, c)).collect(),
             findings: seen.findings.iter().map(found).collect(),
+            imported: seen.proposals.iter().map(Imported::of).collect(),
+        }
+    }
+}
+
+impl<'a> Imported<'a> {
+    fn of(proposal: &'a Proposal) -> Self {
+        let lines = proposal.lines();
+        Self {
+            format: proposal.format,
+            proposed: (!lines.is_empty()).then_some(lines),
+            others: &proposal.others,
+            caution: proposal.caution,
+        }
+    }
+}
+
+impl fmt::Display for Imported<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: {}", self.format, self.caution)?;
+        if !self.others.is_empty() {
+            writeln!(f, "not known by name: {}", self.others.join(", "))?;
+        }
+        match &self.proposed {
+            Some(lines) => writeln!(f, "  proposed, for the axis file:\n{lines}"),
+            None => Ok(()),
         }
     }
 }
@@ -226,7 +265,9 @@ impl fmt::Display for OneLog<'_> {
                 writeln!(f, "  proposed, for the axis file:\n{lines}")?;
             }
         }
-        Ok(())
+        self.imported
+            .iter()
+            .try_for_each(|file| write!(f, "{file}"))
     }
 }
 

@@ -216,14 +216,7 @@ fn words(key: &Key, spelling: &str, units: &[(&'static str, f64)]) -> String {
     if !others.is_empty() {
         text += &format!(", or {}", others.join(", "));
     }
-    match (key.is_optional(), key.default()) {
-        (true, Some(default)) => {
-            let default = SixDigits(default / own.map_or(1.0, |(_, factor)| factor));
-            format!("{text}; {default} where left out")
-        }
-        (true, None) => text + "; may be left out",
-        (false, _) => text,
-    }
+    text + &key.left_out(own.map_or(1.0, |(_, factor)| factor))
 }
 
 /// A key that is left out, in its usual unit.
