@@ -54,9 +54,10 @@ pub fn friction(context: &Context, results: &Results) -> Section {
     };
     let mut figure = Figure::new(
         "Steady-state friction",
-        format!("speed at {}, {}", units.at, units.speed),
-        format!("friction, {}", units.force),
+        format!("speed at {}", units.at),
+        "friction",
     )
+    .units(units.speed, units.force)
     .series(Series::line(
         "axis file",
         speeds.clone(),
@@ -118,13 +119,14 @@ pub fn vibration(results: &Results) -> Section {
 /// Frequencies against position.
 pub fn modes(results: &Results) -> Section {
     let modes = &results.validation.modes;
-    let x: Vec<f64> = modes.iter().map(|m| 1e3 * m.position_m).collect();
+    let x: Vec<f64> = modes.iter().map(|m| m.position_m).collect();
     let count = modes.first().map_or(0, |m| m.frequencies_hz.len());
     if count == 0 {
         return Section::new("Modes")
             .paragraph("This mechanism moves as one with its motor: it has no natural frequency.");
     }
-    let mut figure = Figure::new("Natural frequencies", "table position, mm", "frequency, Hz")
+    let mut figure = Figure::new("Natural frequencies", "table position", "frequency")
+        .units("m", "Hz")
         .log_y()
         .alt("Natural frequencies of the drive against the table's position");
     for mode in 0..count {

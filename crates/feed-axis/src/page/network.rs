@@ -30,7 +30,8 @@ pub fn network(results: &Results) -> Section {
     );
     let layers: Vec<String> = t.hidden.iter().map(usize::to_string).collect();
     let epochs: Vec<f64> = (1..=t.rms_um.len()).map(|epoch| epoch as f64).collect();
-    let history = Figure::new("Training", "epoch", "RMS error on the training samples, µm")
+    let history = Figure::new("Training", "epoch", "RMS error on the training samples")
+        .units("", "µm")
         .series(Series::line("training samples", epochs, t.rms_um.clone()))
         .log_y()
         .alt("RMS error on the training samples against the epoch, falling");

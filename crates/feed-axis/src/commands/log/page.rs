@@ -42,13 +42,11 @@ fn sections(seen: &Seen, page: Page) -> Page {
     let mut figures = Section::new("Channels");
     for (quality, channel) in seen.channels.iter().zip(&seen.log.channels()[1..]) {
         let (time, samples) = (seen.log.time().to_vec(), channel.samples.clone());
-        let mut figure = Figure::new(
-            &channel.name,
-            "t (s)",
-            format!("{} ({})", channel.name, channel.unit),
-        )
-        .series(Series::line(&channel.name, time, samples))
-        .caption(quality.to_string());
+        let mut figure = Figure::new(&channel.name, "time", &channel.name)
+            .units("s", &channel.unit)
+            .linked(&seen.name)
+            .series(Series::line(&channel.name, time, samples))
+            .caption(quality.to_string());
         // A straight line stands in a gap.
         let marked = seen.log.missing(&channel.name).iter().cloned().flatten();
         let (t, y): (Vec<f64>, Vec<f64>) = marked
