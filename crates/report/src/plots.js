@@ -2,7 +2,7 @@
 // Puts a uPlot canvas in place of each picture that has its points beside it. Pictures stay in
 // the page: print shows them, and so does a browser that does not run this.
 (() => {
-  const PREFIX = { "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
+  const PREFIX = { "-15": "f", "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
   const MINUS = "\u2212";
   const linked = new Map();
   const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -68,7 +68,8 @@
     const exponent = u => (own.log ? 0 : reading(own, size(u.scales[key])));
     const plain = (u, splits, _axis, _space, step) => {
       const unit = 10 ** exponent(u);
-      const digits = Math.min(12, Math.max(0, -Math.floor(Math.log10(step / unit) + 1e-9)));
+      let digits = 0;
+      while (digits < 12 && Math.abs((step / unit) * 10 ** digits - Math.round((step / unit) * 10 ** digits)) > 1e-6) digits++;
       return splits.map(v => {
         const text = (v / unit).toFixed(digits);
         return text.length > 8 ? signed((v / unit).toPrecision(5)) : signed(text);
@@ -97,7 +98,7 @@
       },
       ...(rows.length > 0
         ? { splits: () => rows.map((_, k) => k), values: () => rows.map(short), size: 14 + 6.4 * widest }
-        : { values: own.log ? decades : plain, size: key === "y" ? 56 : 34, space: key === "y" ? 34 : 70 }),
+        : { values: own.log ? decades : plain, size: key === "y" ? 56 : 34, space: key === "y" ? 34 : 56 }),
     };
   };
 
@@ -108,6 +109,8 @@
       label: s.name || " ",
       stroke,
       width: dots ? 0 : 1.5,
+      // Whole pixels would make stairs of slopes.
+      pxAlign: 0,
       dash: s.dash ? [6, 4] : undefined,
       paths: dots ? () => null : s.style === "step" ? uPlot.paths.stepped({ align: 1 }) : uPlot.paths.linear(),
       points: { show: dots, size: 5, fill: stroke, stroke, width: 0 },

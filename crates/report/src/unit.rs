@@ -4,7 +4,7 @@
 /// that people read with it. Of products such as N·s/m and of kg none is common; they stay as
 /// they are.
 const PREFIXED: [(&str, i32, i32); 20] = [
-    ("m", -12, 0),
+    ("m", -15, 0),
     ("m/s", -12, 0),
     ("m/s²", -12, 0),
     ("m/s³", -12, 0),
@@ -27,7 +27,8 @@ const PREFIXED: [(&str, i32, i32); 20] = [
 ];
 
 /// Prefixes by their power of ten (BIPM, The International System of Units, 9th edition, table 7).
-const PREFIXES: [(&str, i32); 8] = [
+const PREFIXES: [(&str, i32); 9] = [
+    ("f", -15),
     ("p", -12),
     ("n", -9),
     ("µ", -6),
@@ -202,7 +203,7 @@ mod tests {
             (2.5e6, "N", "2.50 MN"),
             (1.5e8, "N/m", "150 MN/m"),
             (0.02979, "N·m·s/rad", "0.0298 N·m·s/rad"),
-            (3.2e-14, "m", "0.0320 pm"),
+            (3.2e-14, "m", "32.0 fm"),
             (f64::NAN, "m", "–"),
             (2.0, "", "2.00"),
         ] {
@@ -214,7 +215,7 @@ mod tests {
         /// What is written, read again, is the value to the digits asked for.
         #[test]
         fn the_text_says_the_value(
-            mantissa in 1.0..10.0f64, power in -14i32..10, digits in 2usize..7,
+            mantissa in 1.0..10.0f64, power in -17i32..10, digits in 2usize..7,
             unit in prop::sample::select(vec!["m", "A", "N", "rad/s", "N·s/m", "Hz", ""]),
         ) {
             let value = mantissa * 10f64.powi(power);

@@ -350,9 +350,18 @@ fn pages_are_written_whole_or_not_at_all() {
 fn uplot_is_as_it_was_published() {
     let hash = |bytes: &[u8]| blake3::hash(bytes).to_hex().to_string();
     let files: [(&[u8], &str); 3] = [
-        (include_bytes!("../vendor/uplot/uPlot.iife.min.js"), "ea2d16ff65797375a846049c0f0a17f68b47a2850b9c73f2816ecf040ec9f2ce"),
-        (include_bytes!("../vendor/uplot/uPlot.min.css"), "70ead7542eab83ef6ff4269c1f139e3c40f5f59f98302552320b9f79188abba1"),
-        (include_bytes!("../vendor/uplot/LICENSE"), "80723da02446eaf6792b975295c3447a1492e3ca814b7645e8fbd366156b025a"),
+        (
+            include_bytes!("../vendor/uplot/uPlot.iife.min.js"),
+            "ea2d16ff65797375a846049c0f0a17f68b47a2850b9c73f2816ecf040ec9f2ce",
+        ),
+        (
+            include_bytes!("../vendor/uplot/uPlot.min.css"),
+            "70ead7542eab83ef6ff4269c1f139e3c40f5f59f98302552320b9f79188abba1",
+        ),
+        (
+            include_bytes!("../vendor/uplot/LICENSE"),
+            "80723da02446eaf6792b975295c3447a1492e3ca814b7645e8fbd366156b025a",
+        ),
     ];
     for (bytes, expected) in files {
         assert_eq!(hash(bytes), expected);

@@ -147,7 +147,7 @@ pub fn command(options: &Options) -> Result<()> {
 fn write_page(path: &Path, options: &Options, context: &Context, shown: &Recorder) -> Result<()> {
     let next = match options.compensation.name {
         "none" => {
-            "Run it again with --compensation, such as lugre, drive-terms or plan, and compare the peaks."
+            "Run it again with --compensation, such as plan or drive-terms, and compare the peaks."
         }
         _ => "Run it again with --compensation none to see what the compensation takes away.",
     };

@@ -20,22 +20,51 @@ pub struct RunFolder {
     pub period: f64,
 }
 
-/// A tracking error of both runs.
+/// A tracking error of both runs, µm.
 struct Compared {
     trajectory: usize,
     what: &'static str,
     a: Figures,
     b: Figures,
+    /// What the peaks are uncertain by, of the internal step.
+    uncertain: f64,
+}
+
+/// How the peak of B stands to that of A.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Change {
+    Smaller,
+    Same,
+    Greater,
 }
 
 impl Compared {
     /// How much greater the peak of B is, as a share of that of A.
-    fn change(&self) -> f64 {
+    fn share(&self) -> f64 {
         self.b.max / self.a.max - 1.0
+    }
+
+    /// Beyond a thousandth and beyond what the internal step leaves open.
+    fn change(&self) -> Change {
+        let by = self.b.max - self.a.max;
+        let least = (SAME * self.a.max).max(self.uncertain);
+        match by {
+            by if by > least => Change::Greater,
+            by if by < -least => Change::Smaller,
+            _ => Change::Same,
+        }
+    }
+
+    /// The same in words.
+    fn said(&self) -> String {
+        match self.change() {
+            Change::Same => "same".to_owned(),
+            _ => format!("{:+.1} %", 100.0 * self.share()).replace('-', "\u{2212}"),
+        }
     }
 }
 
-/// Changes below this share of the peak are called none.
+/// Differences below this share of the peak are none.
 const SAME: f64 = 1e-3;
 
 /// The page.
@@ -52,6 +81,7 @@ pub fn page(a: &RunFolder, b: &RunFolder) -> Page {
 /// What both have: the machine alone, and under each strategy.
 fn compared(a: &RunFolder, b: &RunFolder) -> Vec<Compared> {
     let mut all = Vec::new();
+    let uncertain = 2.0 * step_error(a).max(step_error(b));
     for t in &a.summary.trajectories {
         let Some(other) = b.summary.trajectories.iter().find(|o| o.id == t.id) else {
             continue;
@@ -62,6 +92,7 @@ fn compared(a: &RunFolder, b: &RunFolder) -> Vec<Compared> {
             what: "none",
             a: of_a.machine,
             b: of_b.machine,
+            uncertain,
         });
         for kind in STRATEGIES {
             let both = (
@@ -69,12 +100,12 @@ fn compared(a: &RunFolder, b: &RunFolder) -> Vec<Compared> {
                 of_b.compensated.under(kind.name),
             );
             if let (Some(a), Some(b)) = both {
-                let (trajectory, what) = (t.id, kind.label);
                 all.push(Compared {
-                    trajectory,
-                    what,
+                    trajectory: t.id,
+                    what: kind.label,
                     a,
                     b,
+                    uncertain,
                 });
             }
         }
@@ -84,33 +115,32 @@ fn compared(a: &RunFolder, b: &RunFolder) -> Vec<Compared> {
 
 fn answers(a: &RunFolder, b: &RunFolder, all: &[Compared]) -> Vec<(String, Vec<String>)> {
     let answer = |question: &str, lines: Vec<String>| (question.to_owned(), lines);
-    let count = |kept: fn(f64) -> bool| all.iter().filter(|c| kept(c.change())).count();
-    let (less, more) = (count(|c| c < -SAME), count(|c| c > SAME));
+    let count = |change| all.iter().filter(|c| c.change() == change).count();
+    let (less, more) = (count(Change::Smaller), count(Change::Greater));
     let told = |c: &Compared| {
         format!(
-            "Trajectory {}, {}: peak {} in A, {} in B ({:+.1} %).",
+            "Trajectory {}, {}: peak {} in A, {} in B ({}).",
             c.trajectory,
             c.what,
             engineering(c.a.max, "µm", 3),
             engineering(c.b.max, "µm", 3),
-            100.0 * c.change()
+            c.said()
         )
     };
-    let by_change = |x: &&Compared, y: &&Compared| x.change().total_cmp(&y.change());
-    let ends = [all.iter().min_by(by_change), all.iter().max_by(by_change)];
+    let by_share = |x: &&Compared, y: &&Compared| x.share().total_cmp(&y.share());
+    let of = |change| all.iter().filter(move |c| c.change() == change);
+    let ends = [
+        of(Change::Smaller).min_by(by_share),
+        of(Change::Greater).max_by(by_share),
+    ];
     let mut lines: Vec<String> = match all.is_empty() {
         true => vec!["The runs have no trajectory in common.".to_owned()],
         false => vec![format!(
-            "Of {} peaks of the tracking error B has {less} smaller and {more} greater; the others agree to {} %.",
-            all.len(),
-            100.0 * SAME
+            "Of {} peaks of the tracking error, B has {less} smaller and {more} greater; the others are the same.",
+            all.len()
         )],
     };
-    let (least, most) = (
-        ends[0].filter(|c| c.change() < -SAME),
-        ends[1].filter(|c| c.change() > SAME),
-    );
-    lines.extend(least.into_iter().chain(most).map(told));
+    lines.extend(ends.into_iter().flatten().map(told));
     vec![
         answer("What differs", differing(a, b)),
         answer("How much", lines),
@@ -149,16 +179,20 @@ fn differing(a: &RunFolder, b: &RunFolder) -> Vec<String> {
     }
 }
 
+/// How far halving the internal step moves the peaks, µm.
+fn step_error(run: &RunFolder) -> f64 {
+    run.validation.checks.half_step.max
+}
+
 fn sure(a: &RunFolder, b: &RunFolder) -> String {
-    let most = [a, b].map(|run| run.validation.checks.half_step.max);
     let seeds = match a.summary.seed == b.summary.seed {
         true => "the same seed",
         false => "different seeds, so that samples and networks differ by chance too",
     };
     format!(
-        "Both are simulated, with {seeds}. Halving the internal step moves peaks by at most {} in A and {} in B.",
-        engineering(most[0], "µm", 2),
-        engineering(most[1], "µm", 2)
+        "Both are simulated, with {seeds}. Halving the internal step moves peaks by at most {} in A and {} in B; peaks that differ by less than twice that, or by less than a thousandth, are called the same.",
+        engineering(step_error(a), "µm", 2),
+        engineering(step_error(b), "µm", 2)
     )
 }
 
@@ -187,17 +221,17 @@ fn errors(all: &[Compared]) -> Table {
         "Tracking error of the machine (simulated) in both runs",
         heads,
     )
-    .note("Marked: the smaller peak, where they differ by more than a thousandth.");
+    .note("Marked: the smaller peak, where they differ.");
     for c in all {
         let um = |value| Cell::quantity(value, "µm", 4);
         let mark = |better: bool| if better { Mark::Best } else { Mark::Plain };
         table = table.row([
             Cell::text(c.trajectory.to_string()),
             Cell::text(c.what),
-            um(c.a.max).marked(mark(c.change() > SAME)),
-            um(c.b.max).marked(mark(c.change() < -SAME)),
+            um(c.a.max).marked(mark(c.change() == Change::Greater)),
+            um(c.b.max).marked(mark(c.change() == Change::Smaller)),
             um(c.b.max - c.a.max),
-            Cell::text(format!("{:+.1} %", 100.0 * c.change())),
+            Cell::text(c.said()),
             um(c.a.mean),
             um(c.b.mean),
         ]);

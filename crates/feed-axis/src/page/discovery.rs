@@ -206,6 +206,7 @@ fn pictures(overlays: &[Overlay]) -> Section {
             format!("log − model: {}", o.channel),
         )
         .units("s", &unit.name)
+        .linked(o.title.trim_end_matches(&o.channel))
         .series(series("before", &o.before))
         .series(series("after", &o.after))
     };

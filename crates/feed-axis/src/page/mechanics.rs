@@ -11,22 +11,14 @@ use crate::results::Results;
 pub fn friction(context: &Context, results: &Results) -> Section {
     let mut table = Table::new(
         "Friction as identified on the simulated machine",
-        [
-            "Parameter",
-            "unit",
-            "found",
-            "standard error",
-            "true",
-            "off by",
-        ],
+        ["Parameter", "found", "standard error", "true", "off by"],
     );
     for p in &results.friction.parameters {
         table = table.row([
             Cell::text(p.name.clone()),
-            Cell::text(p.unit.clone()),
-            Cell::number(p.value, 5),
-            Cell::scientific(p.standard_error, 1),
-            Cell::number(p.truth, 5),
+            Cell::quantity(p.value, &p.unit, 5),
+            Cell::quantity(p.standard_error, &p.unit, 2),
+            Cell::quantity(p.truth, &p.unit, 5),
             Cell::text(format!("{:+.2} %", 100.0 * (p.value / p.truth - 1.0))),
         ]);
     }

@@ -63,14 +63,19 @@ fn answers(context: &Context, results: &Results) -> Vec<(String, Vec<String>)> {
         return Vec::new();
     };
     let none = worst.errors_um.machine;
+    let less = |left: f64| match left {
+        // Rounded it would say that nothing is left.
+        left if (0.0..0.001).contains(&left) => "over 99.9 %".to_owned(),
+        left => format!("{:.1} %", 100.0 * (1.0 - left)),
+    };
     let left = |kind: &StrategyKind, figures: Figures| {
         format!(
-            "{} leaves {} peak, {} mean: {:.1} % and {:.1} % less.",
-            kind.label,
+            "{} leaves {} peak, {} mean: {} and {} less.",
+            kind.heading,
             said(figures.max),
             said(figures.mean),
-            100.0 * (1.0 - figures.max / none.max),
-            100.0 * (1.0 - figures.mean / none.mean)
+            less(figures.max / none.max),
+            less(figures.mean / none.mean)
         )
     };
     let ran = |kind: &&'static StrategyKind| {
@@ -86,6 +91,13 @@ fn answers(context: &Context, results: &Results) -> Vec<(String, Vec<String>)> {
         .into_iter()
         .flatten()
         .map(|(kind, figures)| left(kind, figures));
+    let machine = match context.has_machine {
+        true => format!(
+            "{}, which differs from the model as its file says",
+            context.machine.name
+        ),
+        false => "the model itself, as if it were right".to_owned(),
+    };
     let checks = &results.validation.checks;
     let next = match (context.quick, best) {
         (true, _) => "Run it without --quick, for figures to quote.".to_owned(),
@@ -113,7 +125,7 @@ fn answers(context: &Context, results: &Results) -> Vec<(String, Vec<String>)> {
         answer(
             "How sure that is",
             vec![
-                "Simulated, not measured: on a machine that differs from its model as the axis files say.".to_owned(),
+                format!("Simulated, not measured: on {machine}, with perfect sensors."),
                 format!(
                     "Halving the internal step moves peaks by at most {}.",
                     engineering(checks.half_step.max, &unit, 2)
@@ -125,7 +137,7 @@ fn answers(context: &Context, results: &Results) -> Vec<(String, Vec<String>)> {
             vec![
                 next,
                 format!(
-                    "With logs of the real axis: {} discover names what the model lacks.",
+                    "{0} robustness shows what is left where what is believed is wrong; with logs of the real axis, {0} discover names what the model lacks.",
                     crate::program::name()
                 ),
             ],

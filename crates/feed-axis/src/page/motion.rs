@@ -164,8 +164,8 @@ const DRIVE: [Shown; 6] = [
         "Current",
         &[("iq_a", "q"), ("iq_ref_a", "q reference"), ("id_a", "d")],
     ),
-    ("Torque of the command", &[("torque_ref_n_m", "command")]),
-    ("Force of the command", &[("force_ref_n", "command")]),
+    ("Torque command", &[("torque_ref_n_m", "command")]),
+    ("Force command", &[("force_ref_n", "command")]),
     (
         "Voltage",
         &[("uq_v", "q"), ("ud_v", "d"), ("drive_command_v", "command")],
@@ -183,9 +183,18 @@ const DRIVE: [Shown; 6] = [
     ),
 ];
 
+/// What the motor gives, and its unit: where its coordinate is the load's, along a line, a force.
+fn effort(ran: &Ran<'_>) -> (&'static str, &'static str) {
+    let direct = ran.axis.travel_per_radian() == 1.0;
+    match ran.axis.freedom() {
+        Freedom::Linear if direct => ("force", "N"),
+        _ => ("torque", "N·m"),
+    }
+}
+
 fn drive(ran: &Ran<'_>) -> Section {
     let torque = ran.cycles.iter().map(|c| c.torque).collect();
-    let torque = over_time("Torque of the motor", "torque", "N·m").series(Series::line(
+    let torque = over_time("Motor torque", "torque", "N·m").series(Series::line(
         "torque",
         times(ran),
         torque,
@@ -242,7 +251,8 @@ fn table(ran: &Ran<'_>, errors: &[f64]) -> Table {
         speed_unit(ran.axis.freedom()),
         &speeds,
     );
-    let table = row(table, "torque of the motor", "N·m", &torques);
+    let (name, unit) = effort(ran);
+    let table = row(table, &format!("motor {name}"), unit, &torques);
     match ran.log.channel("iq_a") {
         Ok(current) => row(table, "q current", "A", current),
         Err(_) => table,
