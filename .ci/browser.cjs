@@ -71,6 +71,24 @@ async function use(page, figure) {
   return shown;
 }
 
+// On the page of a motion: the pointer on the peak of the tracking error says what the table says, which
+// another program has written.
+async function peak(page) {
+  const figure = page.locator("figure", { hasText: /^Figure \d+ Tracking error/ }).first();
+  const cell = page.locator("tr", { hasText: "tracking error" }).locator("td").first();
+  if (!(await page.title()).startsWith("Motion of") || (await cell.count()) === 0) return;
+  await drawn(figure);
+  await figure.evaluate(f => {
+    const u = f.plot;
+    const at = u.data[1].reduce((best, v, k, all) => (Math.abs(v) > Math.abs(all[best]) ? k : best), 0);
+    u.setCursor({ left: u.valToPos(u.data[0][at], "x"), top: 10 });
+  });
+  await page.waitForTimeout(60);
+  const shown = await figure.locator(".u-value").nth(1).textContent();
+  const plain = text => text.replace("\u00a0", " ").replace("\u2212", "");
+  assert.equal(plain(shown), plain(await cell.textContent()), "the pointer's value is the table's");
+}
+
 // Figures that share their axis zoom together.
 async function linked(page, figures) {
   const groups = new Map();
@@ -107,6 +125,7 @@ async function check(browser, file) {
     const folded = await figure.evaluate(f => f.closest("details:not([open])") !== null);
     if (!folded) values.push(await use(desk.page, figure));
   }
+  await peak(desk.page);
   const links = await linked(desk.page, figures);
   await desk.page.evaluate(() => window.scrollTo(0, 0));
   await desk.page.screenshot({ path: picture("light"), fullPage: true });

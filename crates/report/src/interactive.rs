@@ -108,7 +108,7 @@ pub(crate) fn keep(figure: &Figure, canvas: Canvas, detail: Detail) -> Option<Ma
     Some(html! {
         script type="application/json" { (PreEscaped(value.to_string().replace('<', "\\u003c"))) }
         @if kept < all {
-            p.thinned { "Zooms into " (kept) " of " (all) " points; every peak is among them." }
+            p.thinned { "Kept for zooming: " (kept) " of " (all) " points, every peak among them." }
         }
     })
 }

@@ -88,6 +88,9 @@ pub fn command(options: &Options) -> Result<()> {
     let mut log = log
         .map(|path| LogFile::new(path, &context.axis))
         .transpose()?;
+    if let Some(path) = &options.report {
+        check_writable(path)?;
+    }
     let mut shown = options
         .report
         .as_ref()
@@ -142,6 +145,15 @@ pub fn command(options: &Options) -> Result<()> {
             report: options.report.as_deref(),
         },
     )
+}
+
+/// Asks whether the page can be written, before the work that makes it.
+fn check_writable(path: &Path) -> Result<()> {
+    std::fs::create_dir_all(path.parent().unwrap_or(path))
+        .and_then(|()| AtomicWriteFile::open(path))
+        .map(drop)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot write the page {}", path.display()))
 }
 
 fn write_page(path: &Path, options: &Options, context: &Context, shown: &Recorder) -> Result<()> {

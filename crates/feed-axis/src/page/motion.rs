@@ -75,7 +75,7 @@ fn answers(ran: &Ran<'_>, errors: &[f64]) -> Vec<(String, Vec<String>)> {
     let noise = match ran.noise {
         0.0 => "Simulated, not measured; sensors without noise.".to_owned(),
         factor => format!(
-            "Simulated, not measured; sensors with {factor} times the noise of good ones (seed {}).",
+            "Simulated, not measured; sensors with noise, {factor} times that of good ones (seed {}).",
             ran.seed
         ),
     };
