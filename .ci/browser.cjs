@@ -75,7 +75,7 @@ async function use(page, figure) {
 // another program has written.
 async function peak(page) {
   const figure = page.locator("figure", { hasText: /^Figure \d+ Tracking error/ }).first();
-  const cell = page.locator("tr", { hasText: "tracking error" }).locator("td").first();
+  const cell = page.locator("tr:has(th[scope=row])", { hasText: "tracking error" }).locator("td").first();
   if (!(await page.title()).startsWith("Motion of") || (await cell.count()) === 0) return;
   await drawn(figure);
   await figure.evaluate(f => {
