@@ -75,11 +75,15 @@
         return text.length > 8 ? signed((v / unit).toPrecision(5)) : signed(text);
       });
     };
+    // Over less than two decades 2 and 5 are labelled too.
     const decades = (u, splits) => splits.map(v => {
       if (v == null) return "";
-      const power = Math.round(Math.log10(v));
-      if (Math.abs(v / 10 ** power - 1) > 1e-6) return "";
-      return power >= -2 && power <= 4 ? String(Number(v.toPrecision(1))) : "10" + raised(power);
+      const power = Math.floor(Math.log10(v) + 1e-9);
+      const mantissa = Math.round(v / 10 ** power);
+      const few = u.scales[key].max < 100 * u.scales[key].min;
+      if (mantissa !== 1 && !(few && (mantissa === 2 || mantissa === 5))) return "";
+      if (power >= -3 && power <= 4) return String(Number(v.toPrecision(1)));
+      return (mantissa === 1 ? "10" : mantissa + "·10") + raised(power);
     });
     const stroke = name => () => css(name);
     const short = name => (window.innerWidth <= 640 ? name.split(" ")[0] : name);
@@ -97,8 +101,8 @@
         return unit === "" ? own.label : own.label + ", " + unit;
       },
       ...(rows.length > 0
-        ? { splits: () => rows.map((_, k) => k), values: () => rows.map(short), size: 14 + 6.4 * widest }
-        : { values: own.log ? decades : plain, size: key === "y" ? 56 : 34, space: key === "y" ? 34 : 56 }),
+        ? { splits: () => rows.map((_, k) => k), values: () => rows.map(short), size: 20 + 7 * widest }
+        : { filter: own.log ? (_, splits) => splits : undefined, values: own.log ? decades : plain, size: key === "y" ? 56 : 34, space: key === "y" ? 34 : 56 }),
     };
   };
 
@@ -114,7 +118,7 @@
       dash: s.dash ? [6, 4] : undefined,
       paths: dots ? () => null : s.style === "step" ? uPlot.paths.stepped({ align: 1 }) : uPlot.paths.linear(),
       points: { show: dots, size: 5, fill: stroke, stroke, width: 0 },
-      value: (_, v) => (figure.rows.length > 0 ? figure.rows[Math.round(v)] ?? "–" : quantity(figure.y, v)),
+      value: (_, v) => (figure.rows.length > 0 && v != null ? figure.rows[Math.round(v)] ?? "–" : quantity(figure.y, v)),
     };
   };
 

@@ -221,7 +221,7 @@ fn errors(all: &[Compared]) -> Table {
         "Tracking error of the machine (simulated) in both runs",
         heads,
     )
-    .note("Marked: the smaller peak, where they differ.");
+    .note("Marked: the smaller peak, where they differ. Of an axis that turns, read rad for m.");
     for c in all {
         let um = |value| Cell::quantity(value, "µm", 4);
         let mark = |better: bool| if better { Mark::Best } else { Mark::Plain };
