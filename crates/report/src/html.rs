@@ -53,6 +53,9 @@ pub fn render(page: &Page) -> Result<String, ReportError> {
                     (first)
                 }
                 @if page.sections.len() > 1 { (contents(page)) }
+                @if numbers.figures > 0 {
+                    p.hint { "Figures: drag to zoom, double-click to show all, point for values, click a name to hide it." }
+                }
                 main {
                     @for (index, (section, body)) in page.sections.iter().zip(&sections).enumerate() {
                         section id={ "s" (index + 1) } {

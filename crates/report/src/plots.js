@@ -198,6 +198,7 @@
     }).observe(live);
   };
 
+  document.documentElement.classList.add("scripted");
   // A figure is drawn when it comes near the window.
   const watch = new IntersectionObserver(entries => {
     for (const { isIntersecting, target } of entries) {

@@ -1,5 +1,6 @@
 //! The report: results to a page. Order and words are here, looks in `report`.
 
+mod answers;
 pub mod compare;
 mod compensation;
 pub mod discovery;
@@ -10,10 +11,8 @@ pub mod robustness;
 mod tracking;
 
 use axis_sim::mechanism::{Freedom, Way};
-use pipeline::Figures;
-use pipeline::strategies::{NETWORK, NETWORK_LUGRE, STRATEGIES, StrategyKind};
-use pipeline::summary::TrajectorySummary;
-use report::{Block, Cell, KeyValues, Mark, Notice, Page, Section, Table, engineering};
+use pipeline::strategies::{NETWORK, NETWORK_LUGRE, StrategyKind};
+use report::{Block, Cell, KeyValues, Mark, Notice, Page, Section, Table};
 
 use crate::context::Context;
 use crate::paper::Pair;
@@ -24,7 +23,7 @@ pub fn page(context: &Context, results: &Results) -> Page {
     let axis = &context.axis;
     let page = Page::new(format!("Dynamic error of {}", axis.name))
         .lead(axis.description.clone())
-        .first(Block::Answers(answers(context, results)))
+        .first(Block::Answers(answers::answers(context, results)))
         .section(overview(context, results))
         .section(tracking::profiles(results))
         .section(tracking::model_and_machine(context, results))
@@ -50,99 +49,6 @@ fn of_units(section: Section, context: &Context) -> Section {
             "This axis turns: wherever this page has mm or µm, of positions, speeds and errors, read mrad or µrad.",
         ),
     }
-}
-
-/// The compensation of the paper, which the overview is about, and the best of all: on the
-/// trajectory where the machine alone is furthest off.
-fn answers(context: &Context, results: &Results) -> Vec<(String, Vec<String>)> {
-    let unit = format!("µ{}", context.axis.freedom().unit());
-    let said = |value| engineering(value, &unit, 3);
-    let alone = |t: &&TrajectorySummary| t.errors_um.machine.max;
-    let all = results.summary.trajectories.iter();
-    let Some(worst) = all.max_by(|a, b| alone(a).total_cmp(&alone(b))) else {
-        return Vec::new();
-    };
-    let none = worst.errors_um.machine;
-    let less = |left: f64| match left {
-        // Rounded it would say that nothing is left.
-        left if (0.0..0.001).contains(&left) => "over 99.9 %".to_owned(),
-        left => format!("{:.1} %", 100.0 * (1.0 - left)),
-    };
-    let left = |kind: &StrategyKind, figures: Figures| {
-        format!(
-            "{} leaves {} peak, {} mean: {} and {} less.",
-            kind.heading,
-            said(figures.max),
-            said(figures.mean),
-            less(figures.max / none.max),
-            less(figures.mean / none.mean)
-        )
-    };
-    let ran = |kind: &&'static StrategyKind| {
-        let figures = worst.errors_um.compensated.under(kind.name)?;
-        Some((*kind, figures))
-    };
-    let best = STRATEGIES
-        .iter()
-        .filter_map(ran)
-        .min_by(|a, b| a.1.max.total_cmp(&b.1.max));
-    let paper = ran(&&NETWORK_LUGRE);
-    let how_much = [paper, best]
-        .into_iter()
-        .flatten()
-        .map(|(kind, figures)| left(kind, figures));
-    let machine = match context.has_machine {
-        true => format!(
-            "{}, which differs from the model as its file says",
-            context.machine.name
-        ),
-        false => "the model itself, as if it were right".to_owned(),
-    };
-    let checks = &results.validation.checks;
-    let next = match (context.quick, best) {
-        (true, _) => "Run it without --quick, for figures to quote.".to_owned(),
-        (false, Some((kind, _))) => format!(
-            "Look at one motion: {} simulate --trajectory {} --compensation {} --report motion.html.",
-            crate::program::name(),
-            worst.id,
-            kind.name.replace('_', "-")
-        ),
-        (false, None) => "Run compensate: no strategy has results here.".to_owned(),
-    };
-    let answer = |question: &str, lines: Vec<String>| (question.to_owned(), lines);
-    vec![
-        answer(
-            "How far the axis is off",
-            vec![format!(
-                "Without compensation the tracking error is {} peak, {} mean, on trajectory {}, where its peak is greatest of {}.",
-                said(none.max),
-                said(none.mean),
-                worst.id,
-                results.summary.trajectories.len()
-            )],
-        ),
-        answer("How much compensation takes away", how_much.collect()),
-        answer(
-            "How sure that is",
-            vec![
-                format!("Simulated, not measured: on {machine}, with perfect sensors."),
-                format!(
-                    "Halving the internal step moves peaks by at most {}.",
-                    engineering(checks.half_step.max, &unit, 2)
-                ),
-            ],
-        ),
-        answer(
-            "What to do next",
-            vec![
-                next,
-                format!(
-                    "{0} robustness shows what is left where what is believed is wrong; with logs of the real axis, {0} discover names what the model lacks.",
-                    crate::program::name()
-                ),
-            ],
-        ),
-    ]
 }
 
 fn overview(context: &Context, results: &Results) -> Section {
