@@ -241,6 +241,37 @@ impl<'a> Stage<'a> {
     }
 }
 
+/// A JSON result of a finished stage in a run's folder, whatever axis and settings it is of:
+/// checked against the stage's manifest.
+pub fn read_finished<T: DeserializeOwned>(run: &Path, stage: &str, file: &str) -> Result<T> {
+    let folder = run.join(stage);
+    let manifest = folder.join(MANIFEST);
+    let again = format!(
+        "make it with `{} pipeline --out {}`",
+        program::name(),
+        run.display()
+    );
+    let found: Manifest = serde_json::from_slice(&read(&manifest)?)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{} is not a manifest; {again}", manifest.display()))?;
+    let path = folder.join(file);
+    let bytes = read(&path)?;
+    if found.files.get(file) != Some(&hash_of(&bytes)) {
+        return Err(miette!(
+            "{} does not match its manifest (truncated or changed); {again}",
+            path.display()
+        ));
+    }
+    serde_json::from_slice(&bytes)
+        .into_diagnostic()
+        .wrap_err_with(|| {
+            format!(
+                "{} is not what this version writes; {again}",
+                path.display()
+            )
+        })
+}
+
 fn hash_of(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }

@@ -137,6 +137,73 @@ fn simulate_writes_a_log() {
 
 /// Figures for people have six digits at most; a run of years is refused with
 /// the limit, at once, and leaves no log behind.
+/// The points of a figure in a page, the title of which begins so.
+fn figure(html: &str, title: &str) -> Value {
+    let after = html.split(&format!("</b> {title}<")).nth(1).expect(title);
+    let json = after.split("application/json\">").nth(1).unwrap();
+    serde_json::from_str(json.split("</script>").next().unwrap()).unwrap()
+}
+
+/// The greatest magnitude of the first series of a figure.
+fn peak(figure: &Value) -> f64 {
+    let y = &figure["series"][0]["y"];
+    let [start, step] = [0, 1].map(|k| y[k].as_f64().unwrap());
+    let mut sum = 0;
+    let values = y[2].as_array().unwrap().iter().map(|d| {
+        sum += d.as_i64().unwrap();
+        start + step * sum as f64
+    });
+    values.fold(0.0, |most, v| most.max(v.abs()))
+}
+
+/// The page shows the peak that the command prints, in words and in its figure.
+#[test]
+fn simulate_shows_its_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("motion.html");
+    let said = succeed(&[
+        "simulate",
+        "--axis",
+        "data/axes/linear-stage.toml",
+        "--trajectory",
+        "1",
+        "--report",
+        page.to_str().unwrap(),
+    ]);
+    let printed = said.split("max ").nth(1).unwrap();
+    let printed: f64 = printed.split(' ').next().unwrap().parse().unwrap();
+    let html = std::fs::read_to_string(&page).unwrap();
+    assert!(
+        html.contains(&format!("Tracking error: {printed:.0} µm peak")),
+        "{printed}"
+    );
+    let error = figure(&html, "Tracking error");
+    assert_eq!(
+        (&error["x"]["unit"], &error["y"]["unit"]),
+        (&"s".into(), &"m".into())
+    );
+    // Kept on a grid of 65 536 steps over the range.
+    assert!(
+        (1e6 * peak(&error) - printed).abs() < 4e-5 * printed,
+        "{printed}"
+    );
+    for title in ["Position of the load", "Speed of the load", "Force command"] {
+        assert!(peak(&figure(&html, title)) > 0.0, "{title}");
+    }
+}
+
+#[test]
+fn a_comparison_needs_two_finished_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().to_str().unwrap();
+    let message = refuse(&["report", "--compare", run, run]);
+    assert!(message.contains("summary.json"), "{message}");
+    std::fs::write(folder.path().join("summary.json"), "{}").unwrap();
+    let message = refuse(&["report", "--compare", run, run]);
+    assert!(message.contains("pipeline --out"), "{message}");
+    refuse(&["report", "--compare", run]);
+}
+
 #[test]
 fn simulate_rounds_its_figures_and_refuses_a_run_without_end() {
     let said = succeed(&["simulate", "--trajectory", "1"]);
@@ -170,6 +237,23 @@ fn simulate_rounds_its_figures_and_refuses_a_run_without_end() {
     let nowhere = ["--trajectory", "1", "--log", "/dev/null/log.csv"];
     let message = refuse(&[&["simulate"], &nowhere[..]].concat());
     assert!(message.contains("/dev/null/log.csv"), "{message}");
+    let nowhere = ["--trajectory", "1", "--report", "/dev/null/motion.html"];
+    let message = refuse(&[&["simulate"], &nowhere[..]].concat());
+    assert!(message.contains("/dev/null/motion.html"), "{message}");
+}
+
+/// Two runs that are the same: no difference is claimed.
+fn compare(a: &str, b: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let into = folder.path().to_str().unwrap();
+    succeed(&["report", "--compare", a, b, "--out", into]);
+    let page = std::fs::read_to_string(folder.path().join("compare.html")).unwrap();
+    assert!(page.contains("B has 0 smaller and 0 greater"));
+    assert!(page.contains("No setting: axis, seed, size and version are the same."));
+    assert_eq!(peak(&figure(&page, "Trajectory 1, no compensation")), {
+        let whole = std::fs::read_to_string(format!("{a}/report.html")).unwrap();
+        peak(&figure(&whole, "Trajectory 1"))
+    });
 }
 
 /// The whole pipeline, small: its figures against the project's targets, a
@@ -203,6 +287,7 @@ fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
     let single = folder.path().join("single");
     let single = single.to_str().unwrap();
     succeed(&["pipeline", "--quick", "--threads", "1", "--out", single]);
+    compare(out, single);
     let mut other = read(single);
     other["network"]["train_seconds"] = summary["network"]["train_seconds"].clone();
     assert_eq!(other, summary);

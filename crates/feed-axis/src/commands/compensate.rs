@@ -17,7 +17,7 @@ use crate::output::print;
 use crate::progress::bar;
 use crate::store::Stage;
 
-const COMPENSATION: &str = "compensation.json";
+pub(super) const COMPENSATION: &str = "compensation.json";
 
 /// Options of `compensate`.
 #[derive(Args)]

@@ -17,7 +17,7 @@ use crate::progress::bar;
 use crate::store::Stage;
 
 const FRICTION: &str = "friction.json";
-const TRANSFER: &str = "transfer_functions.json";
+pub(super) const TRANSFER: &str = "transfer_functions.json";
 
 /// One parameter as found, with what it should be.
 #[derive(Serialize, Deserialize)]

@@ -51,13 +51,13 @@ pub enum Command<J: Jobs> {
     Validate(Common),
     /// Run the machine under every compensation (Tables 15, 16), or moves under one
     Compensate(compensate::Options),
-    /// Write summary.json and report.html from the stages' results
-    Report(Common),
+    /// Write summary.json and report.html from the stages' results, or compare two runs
+    Report(report::Options),
     /// Learn what no parameter holds by tables, a network and named effects, side by side
     Residuals(Common),
     /// Learn the correction of a move from the log of a repetition
     Learn(learn::Options),
-    /// Simulate one motion and write its log
+    /// Simulate one motion, write its log and show it
     Simulate(simulate::Options),
     /// Name what a model lacks, from logs of the real axis
     Discover(discover::Options),
@@ -86,7 +86,7 @@ impl<J: Jobs> Command<J> {
             Self::IdentifyControl(options) => identify_control::command(options),
             Self::Validate(common) => validate::command(common),
             Self::Compensate(options) => compensate::command(options),
-            Self::Report(common) => report::command(common),
+            Self::Report(options) => report::command(options),
             Self::Residuals(common) => residuals::command(common),
             Self::Learn(options) => learn::command(options),
             Self::Simulate(options) => simulate::command(options),

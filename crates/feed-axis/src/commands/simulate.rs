@@ -18,7 +18,8 @@ use super::{learn, validate};
 use crate::context::{Common, Context, read_text};
 use crate::exit::wrong_use;
 use crate::measured::Errors;
-use crate::output::print;
+use crate::output::{print, write_whole};
+use crate::page::motion::{self as motion_page, Ran};
 use crate::progress::bar;
 use crate::strategy_name::strategy_name;
 
@@ -53,6 +54,10 @@ pub struct Options {
     /// Where to write the log, a row each control cycle: .csv, .parquet or .mat (version 5)
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
+    /// Where to write a page of the motion: position and error, speed, current or torque
+    /// over time, a table of figures
+    #[arg(long, value_name = "OUT.html")]
+    report: Option<PathBuf>,
 }
 
 /// Runs the command: the axis file itself is simulated, not its machine.
@@ -81,12 +86,22 @@ pub fn command(options: &Options) -> Result<()> {
     let mut law = law.compensator(&next).into_diagnostic()?;
     let log = options.log.as_deref();
     let mut rows = log.map(|path| begun(path, &context.axis)).transpose()?;
+    if let Some(path) = &options.report {
+        check_writable(path)?;
+    }
+    let mut shown = options
+        .report
+        .as_ref()
+        .map(|_| Recorder::new(&context.axis));
     let bar = bar("simulate", closed_loop.cycles(&*motion));
     let mut tracking = Tracking::default();
     let observe = |cycle: &Cycle| {
         tracking.push(cycle.error());
         if let Some(rows) = &mut rows {
             rows.push(cycle);
+        }
+        if let Some(shown) = &mut shown {
+            shown.push(cycle);
         }
         if tracking.cycles % 4096 == 0 {
             bar.set_position(tracking.cycles);
@@ -108,6 +123,9 @@ pub fn command(options: &Options) -> Result<()> {
         placed.wrap_err_with(|| unwritten(path))?;
     }
     outcome.completed().into_diagnostic()?;
+    if let (Some(path), Some(shown)) = (&options.report, &shown) {
+        write_page(path, options, &context, shown)?;
+    }
     let axis = &context.axis;
     let figures = Figures {
         max: 1e6 * tracking.most,
@@ -123,8 +141,47 @@ pub fn command(options: &Options) -> Result<()> {
             cycles: tracking.cycles,
             tracking_error: Errors::of(axis.freedom(), figures),
             log: options.log.as_deref(),
+            report: options.report.as_deref(),
         },
     )
+}
+
+/// Asks whether the page can be written, before the work that makes it.
+fn check_writable(path: &Path) -> Result<()> {
+    std::fs::create_dir_all(path.parent().unwrap_or(path))
+        .and_then(|()| AtomicWriteFile::open(path))
+        .map(drop)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot write the page {}", path.display()))
+}
+
+fn write_page(path: &Path, options: &Options, context: &Context, shown: &Recorder) -> Result<()> {
+    let next = match options.compensation.name {
+        "none" => {
+            "Run it again with --compensation, such as plan or drive-terms, and compare the peaks."
+        }
+        _ => "Run it again with --compensation none to see what the compensation takes away.",
+    };
+    let mut next = vec![next.to_owned()];
+    next.extend(options.log.as_ref().map(|log| {
+        format!(
+            "The log is {}; log inspect tells what it holds.",
+            log.display()
+        )
+    }));
+    let page = motion_page::page(&Ran {
+        axis: &context.axis,
+        compensation: options.compensation.label,
+        noise: options.noise,
+        seed: context.seed,
+        cycles: shown.cycles(),
+        log: &shown.log().into_diagnostic()?,
+        next,
+    });
+    let html = ::report::render(&page)
+        .into_diagnostic()
+        .wrap_err("the page of the motion cannot be made")?;
+    write_whole(path, html.as_bytes())
 }
 
 /// One simulated motion.
@@ -138,6 +195,7 @@ struct Simulated<'a> {
     #[serde(flatten)]
     tracking_error: Errors<Figures>,
     log: Option<&'a Path>,
+    report: Option<&'a Path>,
 }
 
 impl fmt::Display for Simulated<'_> {

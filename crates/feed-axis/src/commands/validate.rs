@@ -16,7 +16,7 @@ use crate::output::print;
 use crate::progress::bar;
 use crate::store::Stage;
 
-const VALIDATION: &str = "validation.json";
+pub(super) const VALIDATION: &str = "validation.json";
 
 /// Runs the command.
 pub fn command(common: &Common) -> Result<()> {

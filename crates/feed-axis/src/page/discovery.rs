@@ -3,11 +3,11 @@
 use axis_sim::Axis;
 use discrepancy::summary::SummaryFound;
 use discrepancy::{
-    Against, Answered, Discovered, Discovery, FrictionLaw, Gap, NextExperiment, Overlay, ReadUnit,
-    Unknown, Verdict,
+    Against, Discovered, Discovery, FrictionLaw, Gap, NextExperiment, Overlay, ReadUnit, Unknown,
+    Verdict,
 };
 use miette::{IntoDiagnostic, Result};
-use report::{Block, Cell, Figure, KeyValues, Notice, Page, Section, Series, Table, render};
+use report::{Block, Cell, Figure, Notice, Page, Section, Series, Table, render};
 
 /// The page as HTML.
 pub fn page(discovered: &Discovered) -> Result<String> {
@@ -16,15 +16,14 @@ pub fn page(discovered: &Discovered) -> Result<String> {
         Verdict::Explained | Verdict::NothingMissing => Notice::Good,
         Verdict::PartlyExplained | Verdict::Unknown => Notice::Warn,
     };
-    let verdict = Section::new("Verdict")
-        .notice(kind, discovery.sentence.clone())
-        .key_values(answered(discovery.first_screen()));
-    let verdict = match discovery.notes.as_slice() {
-        [] => verdict,
-        notes => {
-            let notes = notes.iter().map(|n| format!("{n}.")).collect();
-            verdict.folded("What must be known of the logs", vec![Block::List(notes)])
-        }
+    let answers = discovery.first_screen().into_iter();
+    let answers = answers.map(|a| (a.question.to_owned(), a.lines)).collect();
+    let notes = match discovery.notes.as_slice() {
+        [] => None,
+        notes => Some(Block::Folded {
+            summary: "What must be known of the logs".to_owned(),
+            blocks: vec![Block::List(notes.iter().map(|n| format!("{n}.")).collect())],
+        }),
     };
     let further = [
         discovery.unknown.as_ref().map(unknown),
@@ -32,7 +31,9 @@ pub fn page(discovered: &Discovered) -> Result<String> {
     ];
     let page = Page::new(format!("What the model of {} lacks", discovery.axis))
         .lead("Logs replayed through the simulated closed loop; what is left, and which effect explains it.")
-        .section(verdict);
+        .first(Block::Notice(kind, discovery.sentence.clone()))
+        .first(Block::Answers(answers));
+    let page = notes.into_iter().fold(page, Page::first);
     let page = [discovered.friction.as_ref().map(friction)]
         .into_iter()
         .flatten()
@@ -50,16 +51,6 @@ pub fn page(discovered: &Discovered) -> Result<String> {
     render(&page).into_diagnostic()
 }
 
-/// Questions and answers, a line each; a question is written once.
-fn answered(all: Vec<Answered>) -> KeyValues {
-    let lines = all.into_iter().flat_map(|Answered { question, lines }| {
-        let questions = std::iter::once(question).chain(std::iter::repeat(""));
-        questions.zip(lines).collect::<Vec<_>>()
-    });
-    let add = |list: KeyValues, (question, line)| list.entry(question, line);
-    lines.fold(KeyValues::new(""), add)
-}
-
 /// Values in a unit for people.
 fn read(values: &[f64], unit: &ReadUnit) -> Vec<f64> {
     values.iter().map(|v| unit.factor * v).collect()
@@ -68,13 +59,6 @@ fn read(values: &[f64], unit: &ReadUnit) -> Vec<f64> {
 /// The unit for people in which the largest of these is read.
 fn unit_of(values: &[f64], si: &str) -> ReadUnit {
     ReadUnit::of(si, values.iter().fold(0.0, |most, v| most.max(v.abs())))
-}
-
-fn labelled(what: &str, unit: &ReadUnit) -> String {
-    match unit.name.as_str() {
-        "" => what.to_owned(),
-        unit => format!("{what}, {unit}"),
-    }
 }
 
 /// Friction over speed, to both sides, and where it counts from low speed on.
@@ -111,11 +95,7 @@ fn friction_over(law: &FrictionLaw, kept: fn(f64) -> bool, title: &str) -> Figur
         series("in the form found", &law.speed, &law.formed),
         dots,
     ];
-    let figure = Figure::new(
-        title,
-        labelled("speed", &speed_unit),
-        labelled("friction", &force_unit),
-    );
+    let figure = Figure::new(title, "speed", "friction").units(speed_unit.name, force_unit.name);
     let shown = all.into_iter().filter(|series| !series.x.is_empty());
     shown.fold(figure, Figure::series)
 }
@@ -128,12 +108,10 @@ fn effects(discovery: &Discovery) -> Section {
             "shows in",
             "depends on",
             "parameter",
-            "value",
-            "95 % from",
-            "to",
-            "unit",
+            "value and 95 % interval",
             "share of gap",
             "not told apart from",
+            "in SI",
         ],
     );
     for effect in &discovery.effects {
@@ -143,12 +121,12 @@ fn effects(discovery: &Discovery) -> Section {
                 Cell::text(effect.channel.clone()),
                 Cell::text(effect.depends_on.clone()),
                 Cell::text(p.name.clone()),
-                Cell::scientific(p.value, 4),
-                Cell::scientific(p.ci95[0], 4),
-                Cell::scientific(p.ci95[1], 4),
-                Cell::text(p.unit.clone()),
+                Cell::text(
+                    ReadUnit::of_parameter(&p.name, &p.unit, p.value).said_within(p.value, p.ci95),
+                ),
                 Cell::text(format!("{:.1} %", 100.0 * effect.share_of_gap)),
                 Cell::text(effect.indistinguishable_from.join(", ")),
+                Cell::text(format!("{:.5e} {}", p.value, p.unit)),
             ]);
         }
     }
@@ -179,7 +157,7 @@ fn effects(discovery: &Discovery) -> Section {
     }
     let mut replaced = Table::new(
         "What was named on the way",
-        ["Effect", "parameter", "value then", "unit", "replaced by"],
+        ["Effect", "parameter", "value then", "replaced by"],
     )
     .note("Beside the effects that were named later, the other explains as much in its place.");
     for effect in &discovery.replaced {
@@ -187,8 +165,7 @@ fn effects(discovery: &Discovery) -> Section {
             replaced = replaced.row([
                 Cell::text(effect.name.clone()),
                 Cell::text(name.clone()),
-                Cell::scientific(*value, 4),
-                Cell::text(unit.clone()),
+                Cell::text(ReadUnit::of_parameter(name, unit, *value).said(*value)),
                 Cell::text(effect.by.clone()),
             ]);
         }
@@ -223,10 +200,15 @@ fn pictures(overlays: &[Overlay]) -> Section {
         let most = o.before.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         let unit = ReadUnit::of_channel(&o.channel, most);
         let series = |name, rest: &[f64]| Series::line(name, o.time.clone(), read(rest, &unit));
-        let label = format!("log − model: {}", o.channel);
-        Figure::new(o.title.clone(), "time, s", labelled(&label, &unit))
-            .series(series("before", &o.before))
-            .series(series("after", &o.after))
+        Figure::new(
+            o.title.clone(),
+            "time",
+            format!("log − model: {}", o.channel),
+        )
+        .units("s", &unit.name)
+        .linked(o.title.trim_end_matches(&o.channel))
+        .series(series("before", &o.before))
+        .series(series("after", &o.after))
     };
     Section::new("Motion that was not fitted to, channel by channel")
         .paragraph("Before: known parameters moved inside their tolerance, no effect added.")
@@ -241,9 +223,10 @@ fn dependences(all: &[Against]) -> Section {
             |name, means: &[f64]| Series::line(name, read(&a.at, &over), read(means, &unit));
         Figure::new(
             a.effect.clone(),
-            labelled(&a.variable, &over),
-            labelled(&format!("log − model: {}", a.channel), &unit),
+            a.variable.clone(),
+            format!("log − model: {}", a.channel),
         )
+        .units(&over.name, &unit.name)
         .series(series("without it", &a.without))
         .series(series("with it", &a.with))
     };
@@ -259,10 +242,9 @@ fn likenesses(discovery: &Discovery) -> Section {
     )
     .note("Shown from: what the search would name beside noise and known parameters, the response taken for linear; a dash where an effect has several sizes, or where ten times its typical size would not show. In brackets the sine of the largest angle between the two; below 0.15 they are one class.");
     for l in &discovery.likenesses {
-        let shown = l
-            .shown_from
-            .as_ref()
-            .map_or("–".to_owned(), |s| format!("{:.2e} {}", s.value, s.unit));
+        let shown = l.shown_from.as_ref().map_or("–".to_owned(), |s| {
+            ReadUnit::of_parameter(&s.parameter, &s.unit, s.value).said(s.value)
+        });
         let alike = l
             .alike
             .iter()
@@ -291,9 +273,10 @@ fn unknown(unknown: &Unknown) -> Section {
     };
     let figure = Figure::new(
         format!("Against {}", unknown.depends_on),
-        labelled(variable, &over),
-        labelled("missing", &unit),
+        variable,
+        "missing",
     )
+    .units(&over.name, &unit.name)
     .series(Series::line("estimate", at(), edge(0.0)));
     let figure = if curve.within.iter().any(|w| *w > 0.0) {
         figure
@@ -359,7 +342,7 @@ pub fn summary_page(axis: &Axis, found: &SummaryFound) -> Result<String> {
         let values: Vec<String> = c
             .parameters
             .iter()
-            .map(|(n, v, u)| format!("{n} {v:.4e} {u}"))
+            .map(|(n, v, u)| format!("{n} {}", ReadUnit::of_parameter(n, u, *v).said(*v)))
             .collect();
         table = table.row([
             Cell::text(c.name.clone()),

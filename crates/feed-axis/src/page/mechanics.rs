@@ -11,22 +11,14 @@ use crate::results::Results;
 pub fn friction(context: &Context, results: &Results) -> Section {
     let mut table = Table::new(
         "Friction as identified on the simulated machine",
-        [
-            "Parameter",
-            "unit",
-            "found",
-            "standard error",
-            "true",
-            "off by",
-        ],
+        ["Parameter", "found", "standard error", "true", "off by"],
     );
     for p in &results.friction.parameters {
         table = table.row([
             Cell::text(p.name.clone()),
-            Cell::text(p.unit.clone()),
-            Cell::number(p.value, 5),
-            Cell::scientific(p.standard_error, 1),
-            Cell::number(p.truth, 5),
+            Cell::quantity(p.value, &p.unit, 5),
+            Cell::quantity(p.standard_error, &p.unit, 2),
+            Cell::quantity(p.truth, &p.unit, 5),
             Cell::text(format!("{:+.2} %", 100.0 * (p.value / p.truth - 1.0))),
         ]);
     }
@@ -54,9 +46,10 @@ pub fn friction(context: &Context, results: &Results) -> Section {
     };
     let mut figure = Figure::new(
         "Steady-state friction",
-        format!("speed at {}, {}", units.at, units.speed),
-        format!("friction, {}", units.force),
+        format!("speed at {}", units.at),
+        "friction",
     )
+    .units(units.speed, units.force)
     .series(Series::line(
         "axis file",
         speeds.clone(),
@@ -118,13 +111,14 @@ pub fn vibration(results: &Results) -> Section {
 /// Frequencies against position.
 pub fn modes(results: &Results) -> Section {
     let modes = &results.validation.modes;
-    let x: Vec<f64> = modes.iter().map(|m| 1e3 * m.position_m).collect();
+    let x: Vec<f64> = modes.iter().map(|m| m.position_m).collect();
     let count = modes.first().map_or(0, |m| m.frequencies_hz.len());
     if count == 0 {
         return Section::new("Modes")
             .paragraph("This mechanism moves as one with its motor: it has no natural frequency.");
     }
-    let mut figure = Figure::new("Natural frequencies", "table position, mm", "frequency, Hz")
+    let mut figure = Figure::new("Natural frequencies", "table position", "frequency")
+        .units("m", "Hz")
         .log_y()
         .alt("Natural frequencies of the drive against the table's position");
     for mode in 0..count {

@@ -1,15 +1,18 @@
 //! The report: results to a page. Order and words are here, looks in `report`.
 
+mod answers;
+pub mod compare;
 mod compensation;
 pub mod discovery;
 mod mechanics;
+pub mod motion;
 mod network;
 pub mod robustness;
 mod tracking;
 
 use axis_sim::mechanism::{Freedom, Way};
 use pipeline::strategies::{NETWORK, NETWORK_LUGRE, StrategyKind};
-use report::{Cell, KeyValues, Mark, Notice, Page, Section, Table};
+use report::{Block, Cell, KeyValues, Mark, Notice, Page, Section, Table};
 
 use crate::context::Context;
 use crate::paper::Pair;
@@ -20,6 +23,7 @@ pub fn page(context: &Context, results: &Results) -> Page {
     let axis = &context.axis;
     let page = Page::new(format!("Dynamic error of {}", axis.name))
         .lead(axis.description.clone())
+        .first(Block::Answers(answers::answers(context, results)))
         .section(overview(context, results))
         .section(tracking::profiles(results))
         .section(tracking::model_and_machine(context, results))

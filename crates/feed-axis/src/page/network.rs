@@ -3,7 +3,7 @@
 use crate::results::Results;
 use pipeline::Figures;
 use pipeline::study::StudyRow;
-use report::{Cell, Figure, Section, Series, Table};
+use report::{Cell, Figure, Section, Series, Table, engineering};
 
 /// Table 11 and the training history.
 pub fn network(results: &Results) -> Section {
@@ -11,12 +11,12 @@ pub fn network(results: &Results) -> Section {
     let row = |name: &str, figures: Figures| {
         [
             Cell::text(name),
-            Cell::scientific(figures.max, 2),
-            Cell::scientific(figures.mean, 2),
+            Cell::quantity(figures.max, "µm", 3),
+            Cell::quantity(figures.mean, "µm", 3),
         ]
     };
     let mut table = Table::new(
-        "Absolute error of the predicted position after one cycle, µm (Table 11)",
+        "Absolute error of the predicted position after one cycle (Table 11)",
         ["", "max", "mean"],
     )
     .row(row("Best linear map, unseen samples", t.linear))
@@ -30,7 +30,8 @@ pub fn network(results: &Results) -> Section {
     );
     let layers: Vec<String> = t.hidden.iter().map(usize::to_string).collect();
     let epochs: Vec<f64> = (1..=t.rms_um.len()).map(|epoch| epoch as f64).collect();
-    let history = Figure::new("Training", "epoch", "RMS error on the training samples, µm")
+    let history = Figure::new("Training", "epoch", "RMS error on the training samples")
+        .units("", "µm")
         .series(Series::line("training samples", epochs, t.rms_um.clone()))
         .log_y()
         .alt("RMS error on the training samples against the epoch, falling");
@@ -61,7 +62,7 @@ pub fn study(results: &Results) -> Section {
     );
     let seeds = results.study.first().map_or(0, |row| row.errors.len());
     for table in 7..=10 {
-        let caption = format!("Table {table} over {seeds} seeds: absolute error, µm");
+        let caption = format!("Table {table} over {seeds} seeds: absolute error");
         let mut shown = Table::new(
             caption,
             [
@@ -88,12 +89,14 @@ fn study_row(row: &StudyRow, theirs: Option<&[f64; 2]>) -> [Cell; 7] {
     let column = |of: fn(&Figures) -> f64| {
         let mut values: Vec<f64> = row.errors.iter().map(of).collect();
         values.sort_by(f64::total_cmp);
-        let range = format!("{:.1e} to {:.1e}", values[0], values[values.len() - 1]);
-        [Cell::scientific(median(&values), 2), Cell::text(range)]
+        let range = [values[0], values[values.len() - 1]]
+            .map(|v| engineering(v, "µm", 2))
+            .join(" to ");
+        [Cell::quantity(median(&values), "µm", 3), Cell::text(range)]
     };
     let [max, max_range] = column(|f| f.max);
     let [mean, mean_range] = column(|f| f.mean);
-    let paper = |i: usize| theirs.map_or(Cell::Missing, |p| Cell::scientific(1e3 * p[i], 2));
+    let paper = |i: usize| theirs.map_or(Cell::Missing, |p| Cell::quantity(p[i], "mm", 3));
     let label = Cell::text(row.setting.label.clone());
     [label, max, max_range, mean, mean_range, paper(0), paper(1)]
 }

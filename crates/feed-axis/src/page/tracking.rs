@@ -11,7 +11,9 @@ use crate::results::Results;
 /// Figure 10: velocity, acceleration, jerk.
 pub fn profiles(results: &Results) -> Section {
     let figure = |title: &str, unit: &str, of: fn(&Profile) -> &Vec<f64>| {
-        let mut figure = Figure::new(title, "time, s", format!("{title}, {unit}"))
+        let mut figure = Figure::new(title, "time", title.to_lowercase())
+            .units("s", unit)
+            .linked("profile")
             .alt(format!("{title} of each trajectory against time"));
         for t in &results.validation.trajectories {
             let name = format!("trajectory {}", t.id);
@@ -180,6 +182,8 @@ pub fn prediction(results: &Results) -> Section {
 /// An empty figure of tracking errors.
 pub fn figure(t: &ValidatedTrajectory) -> Figure {
     let title = format!("Trajectory {}", t.id);
-    Figure::new(title.clone(), "time, s", "tracking error, µm")
+    Figure::new(title.clone(), "time", "tracking error")
+        .units("s", "µm")
+        .linked(&title)
         .alt(format!("{title}: tracking errors against time"))
 }

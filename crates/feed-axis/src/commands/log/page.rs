@@ -18,9 +18,9 @@ pub fn of_all(seen: &[Seen]) -> Page {
     seen.iter().fold(page, |page, seen| sections(seen, page))
 }
 
-/// A number for a table: four digits, whatever its size.
-fn short(value: f64) -> Cell {
-    Cell::scientific(value, 3)
+/// A value for a table: four digits, whatever its size.
+fn short(value: f64, unit: &str) -> Cell {
+    Cell::quantity(value, unit, 4)
 }
 
 /// The sections of a log.
@@ -42,13 +42,11 @@ fn sections(seen: &Seen, page: Page) -> Page {
     let mut figures = Section::new("Channels");
     for (quality, channel) in seen.channels.iter().zip(&seen.log.channels()[1..]) {
         let (time, samples) = (seen.log.time().to_vec(), channel.samples.clone());
-        let mut figure = Figure::new(
-            &channel.name,
-            "t (s)",
-            format!("{} ({})", channel.name, channel.unit),
-        )
-        .series(Series::line(&channel.name, time, samples))
-        .caption(quality.to_string());
+        let mut figure = Figure::new(&channel.name, "time", &channel.name)
+            .units("s", &channel.unit)
+            .linked(&seen.name)
+            .series(Series::line(&channel.name, time, samples))
+            .caption(quality.to_string());
         // A straight line stands in a gap.
         let marked = seen.log.missing(&channel.name).iter().cloned().flatten();
         let (t, y): (Vec<f64>, Vec<f64>) = marked
@@ -78,23 +76,23 @@ fn table(seen: &Seen) -> Table {
         "missing",
         "noise",
         "step",
-        "held, ms",
-        "filtered from, Hz",
-        "delay, ms",
+        "held",
+        "filtered from",
+        "delay",
     ];
-    let optional = |value: Option<f64>| value.map_or(Cell::Missing, short);
+    let optional = |value: Option<f64>, unit: &str| value.map_or(Cell::Missing, |v| short(v, unit));
     let row = |table: Table, c: &ChannelQuality| {
         table.row([
             Cell::text(&c.name),
             Cell::text(&c.unit),
-            short(c.range[0]),
-            short(c.range[1]),
+            short(c.range[0], &c.unit),
+            short(c.range[1], &c.unit),
             Cell::text(c.missing[0].to_string()),
-            optional(c.noise.map(|n| n.level)),
-            optional(c.quantum.map(|q| q.step)),
-            optional(c.hold.map(|h| 1e3 * h.period)),
-            optional(c.corner),
-            optional(c.delay.as_ref().map(|d| 1e3 * d.seconds)),
+            optional(c.noise.map(|n| n.level), &c.unit),
+            optional(c.quantum.map(|q| q.step), &c.unit),
+            optional(c.hold.map(|h| h.period), "s"),
+            optional(c.corner, "Hz"),
+            optional(c.delay.as_ref().map(|d| d.seconds), "s"),
         ])
     };
     seen.channels
