@@ -1,0 +1,107 @@
+//! The strategies in Rust, in both precisions.
+
+use axis_sim::Axis;
+use cfnn::{FixedNetwork, Network, Scaling, Shape};
+use compensator::{
+    Combined, Compensator, GuardLimits, NetworkCompensation, NoCompensation, TransferFunctionModel,
+};
+use controller_export::{Law, Position};
+use pipeline::strategies::{Predictors, STRATEGIES, named};
+
+use super::Outcome;
+use super::samples::Random;
+
+/// Hidden layers of the paper's network, and its activations.
+pub const HIDDEN: [usize; 3] = [34, 19, 8];
+pub const ACTIVATIONS: usize = 5 + 34 + 19 + 8;
+
+/// What the guard keeps to.
+pub const LIMITS: GuardLimits = GuardLimits {
+    position: 5e-4,
+    effort: 6.0,
+    surprise: 10.0,
+    patience: 20,
+    fade: 1000,
+};
+
+/// A network of the paper's shape: kinematics and a small rest of random weights.
+pub fn network(axis: &Axis) -> Outcome<Network> {
+    let shape = Shape {
+        inputs: 4,
+        hidden: HIDDEN.to_vec(),
+        outputs: 1,
+    };
+    let ranges = [(0.0, 1.5), (-0.333, 0.333), (-5.0, 5.0), (-15.0, 15.0)];
+    let most = 0.333 * axis.period;
+    let scaling = Scaling::from_ranges(&ranges, &[(-most, most)])?;
+    let mut random = Random(7);
+    let mut weights: Vec<f64> = (0..shape.parameters())
+        .map(|_| 0.3 * random.next())
+        .collect();
+    let output = shape.layers()[HIDDEN.len()].first_parameter;
+    for weight in &mut weights[output..] {
+        *weight *= 1e-3;
+    }
+    weights[output + 2] = 1.0;
+    Ok(Network::new(shape, scaling, weights)?)
+}
+
+/// Everything that the strategies are made of.
+pub fn predictors(axis: &Axis) -> Outcome<Predictors> {
+    let model = |direct| {
+        let poles = [0.98, 0.98, 0.95, 0.9, -0.3];
+        let coefficients = [3e-6, -2e-6, 1e-6, 4e-7, -1e-7];
+        TransferFunctionModel::new(axis.period, direct, &poles, &coefficients)
+    };
+    let models = [model(2e-6)?, model(-1e-6)?];
+    Ok(Predictors::new(
+        axis,
+        network(axis)?,
+        models,
+        axis.friction.law,
+    ))
+}
+
+/// The strategy as the simulator runs it.
+pub fn double(predictors: &Predictors, name: &str) -> Outcome<Box<dyn Compensator>> {
+    let kind = named(STRATEGIES, name).ok_or("no such strategy")?;
+    let motion = predictors.axis.plan(&predictors.axis.trajectories[0])?;
+    Ok(kind.compensator(predictors, std::sync::Arc::new(motion))?)
+}
+
+/// The same in single precision, of the numbers that are exported.
+pub fn single(law: &Law<f32>) -> Outcome<Box<dyn Compensator<f32> + '_>> {
+    let first: Box<dyn Compensator<f32> + '_> = match &law.position {
+        Position::Nothing => Box::new(NoCompensation),
+        Position::Transfer(filter) => Box::new(**filter),
+        Position::Network(n) => {
+            let fixed = FixedNetwork::<f32, 4, 1, ACTIVATIONS>::new(
+                &n.hidden,
+                &n.packed,
+                n.input,
+                [n.output],
+            )?;
+            Box::new(NetworkCompensation::new(fixed, n.estimator))
+        }
+    };
+    Ok(match law.friction {
+        Some(friction) => Box::new(Combined::new(Boxed(first), friction)),
+        None => first,
+    })
+}
+
+struct Boxed<'a, T: scalar::Scalar>(Box<dyn Compensator<T> + 'a>);
+
+impl<T: scalar::Scalar> Compensator<T> for Boxed<'_, T> {
+    fn reset(&mut self) {
+        self.0.reset();
+    }
+
+    fn correct(&mut self, sample: &compensator::Sample<T>) -> compensator::Correction<T> {
+        self.0.correct(sample)
+    }
+
+    fn surprise(&self) -> T {
+        self.0.surprise()
+    }
+}
