@@ -64,6 +64,5 @@ fn network<T: Real>(draft: &mut Draft, law: &NetworkLaw<T>) {
     .concat();
     draft.constants += law.packed.len() + 10;
     draft.counts += layers.len();
-    // Beside the activations the sums of a strip, twice.
-    draft.stack = draft.stack.max(activations + 40);
+    draft.stack = draft.stack.max(activations);
 }
