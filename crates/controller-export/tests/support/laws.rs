@@ -105,3 +105,26 @@ impl<T: scalar::Scalar> Compensator<T> for Boxed<'_, T> {
         self.0.surprise()
     }
 }
+
+/// Inputs of a network over its ranges, row by row, and its outputs.
+pub fn network_cases(
+    axis: &Axis,
+    network: &Network,
+    count: usize,
+) -> Outcome<(Vec<f64>, Vec<f64>)> {
+    let mut random = Random(11);
+    let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
+    let mut scratch = network.scratch();
+    let middle = 0.5 * (axis.stroke.minimum + axis.stroke.maximum);
+    for _ in 0..count {
+        let row = [
+            middle + 0.5 * random.next(),
+            0.3 * random.next(),
+            4.0 * random.next(),
+            15.0 * random.next(),
+        ];
+        outputs.push(network.predict_one(&row, &mut scratch)?);
+        inputs.extend(row);
+    }
+    Ok((inputs, outputs))
+}
