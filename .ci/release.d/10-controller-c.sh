@@ -18,7 +18,7 @@ for compiler in gcc clang; do
   have "$compiler" "$compiler" || { skipped "$compiler is not there"; continue; }
   for folder in "$out"/*/; do
     case=$(basename "$folder")
-    "$compiler" "${warnings[@]}" "$folder/${case%-*}.c" "$folder/check.c" -o "$folder/check"
+    "$compiler" "${warnings[@]}" "$folder/${case%-*}.c" "$folder/check.c" -o "$folder/check" -lm
     said "$case" "$compiler" "$(cd "$folder" && ./check)"
   done
 done
@@ -30,7 +30,7 @@ if have arm-none-eabi-gcc gcc-arm-none-eabi libnewlib-arm-none-eabi && have qemu
     -icount shift=0 -semihosting -kernel check-m4)
   for folder in "$out"/*/; do
     case=$(basename "$folder")
-    arm-none-eabi-gcc "${warnings[@]}" "${arm[@]}" "$folder/${case%-*}.c" "$folder/check.c" -o "$folder/check-m4"
+    arm-none-eabi-gcc "${warnings[@]}" "${arm[@]}" "$folder/${case%-*}.c" "$folder/check.c" -o "$folder/check-m4" -lm
     said "$case" cortex-m4f "$(cd "$folder" && "${qemu[@]}")"
   done
 else

@@ -19,11 +19,10 @@ fn main() -> Outcome<()> {
     let cycles = arguments.next().map_or(Ok(20_000), |n| n.parse())?;
     let axis = samples::axis()?;
     let predictors = laws::predictors(&axis)?;
-    let samples = samples::samples(&axis, cycles)?;
     for &name in EXPORTED {
         for precision in [Precision::F64, Precision::F32] {
             let folder = folder.join(format!("{name}-{}", precision.name()));
-            let source = program::write(&folder, &predictors, name, precision, &samples)?;
+            let source = program::write(&folder, &predictors, name, precision, cycles)?;
             println!("{}: {:?}", folder.display(), source.memory);
         }
     }

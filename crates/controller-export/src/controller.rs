@@ -1,11 +1,11 @@
 //! A strategy with everything that its export needs.
 
 use axis_sim::Axis;
-use compensator::{Guard, GuardLimits};
-use pipeline::strategies::Predictors;
+use compensator::{Guard, GuardLimits, Kinematics};
+use pipeline::strategies::{Predictors, believed_feedback};
 
 use crate::ExportError;
-use crate::law::{Law, NetworkLaw, Position};
+use crate::law::{Law, NetworkLaw, PlanLaw, Position};
 
 /// Names of the strategies that can be exported.
 pub const EXPORTED: &[&str] = &[
@@ -15,6 +15,8 @@ pub const EXPORTED: &[&str] = &[
     "transfer_function",
     "transfer_function_lugre",
     "lugre",
+    "plan",
+    "feedback",
 ];
 
 /// Strategies that learn between moves, and what of them runs cycle by cycle.
@@ -113,9 +115,35 @@ fn law(predictors: &Predictors, name: &str) -> Result<Law, ExportError> {
             (filter(model)?, Some(friction()?))
         }
         "lugre" => (Position::Nothing, Some(friction()?)),
+        "plan" | "feedback" => return planned(predictors, name),
         _ => return Err(refused(name)),
     };
-    Ok(Law { position, friction })
+    Ok(Law {
+        position,
+        friction,
+        plan: None,
+    })
+}
+
+/// The plan of what is believed, with the feedback around it or without.
+fn planned(predictors: &Predictors, name: &str) -> Result<Law, ExportError> {
+    let believed = predictors.believed()?;
+    if believed.kinematics != Kinematics::default() {
+        return Err(ExportError::Unsupported {
+            name: name.to_owned(),
+            what: "its model has free travel or a kinematic error of the transmission",
+            valid: "a model without them, or another strategy".to_owned(),
+        });
+    }
+    let feedback = match name {
+        "feedback" => Some(believed_feedback(predictors)?),
+        _ => None,
+    };
+    Ok(Law {
+        position: Position::Nothing,
+        friction: None,
+        plan: Some(PlanLaw::new(&believed, feedback)?),
+    })
 }
 
 fn refused(name: &str) -> ExportError {

@@ -1,7 +1,10 @@
 //! What is exported: the parts of a compensator in one precision.
 
 use cfnn::{Range, Real};
-use compensator::{CompensatorError, FrictionFeedforward, MotionEstimator, TransferFunction};
+use compensator::{
+    CompensatorError, DriveModel, Feedback, FrictionFeedforward, MotionEstimator, PlanSettings,
+    Planner, TransferFunction,
+};
 use lugre::Exponential;
 use pipeline::strategies::NetworkStrategy;
 use scalar::Scalar;
@@ -9,13 +12,43 @@ use scalar::Scalar;
 use crate::ExportError;
 
 /// A compensator that a controller runs cycle by cycle: the sum of a predicted position error
-/// and of what friction asks for.
+/// and of what friction asks for, or a plan.
 #[derive(Clone, Debug)]
 pub struct Law<T = f64> {
     /// What is added to the position.
     pub position: Position<T>,
     /// What is added to the command.
     pub friction: Option<FrictionFeedforward<T>>,
+    /// A plan of the motion ahead, which stands alone.
+    pub plan: Option<PlanLaw<T>>,
+}
+
+/// A plan of the motion ahead, and where there is one the feedback around it.
+#[derive(Clone, Debug)]
+pub struct PlanLaw<T = f64> {
+    /// The planner, relaxed.
+    pub planner: Box<Planner<T>>,
+    /// The feedback, at the start of a motion.
+    pub feedback: Option<Box<Feedback<T>>>,
+}
+
+impl<T: Exponential> PlanLaw<T> {
+    /// For a model, with the settings by default.
+    ///
+    /// # Errors
+    /// [`ExportError::Compensator`] names what no plan can be made from.
+    pub fn new(model: &DriveModel<T>, feedback: Option<Feedback<T>>) -> Result<Self, ExportError> {
+        let planner = Planner::new(model, &PlanSettings::default())?;
+        Ok(Self {
+            planner: Box::new(planner),
+            feedback: feedback.map(Box::new),
+        })
+    }
+
+    fn cast<U: Exponential>(&self) -> Result<PlanLaw<U>, ExportError> {
+        let feedback = self.feedback.as_ref().map(|feedback| feedback.cast());
+        PlanLaw::new(&self.planner.model().cast()?, feedback)
+    }
 }
 
 /// The error of the position that is predicted for the end of a cycle.
@@ -59,6 +92,7 @@ impl<T: Real + Exponential> Law<T> {
         Ok(Law {
             position,
             friction: friction.transpose()?,
+            plan: self.plan.as_ref().map(PlanLaw::cast).transpose()?,
         })
     }
 }

@@ -31,7 +31,7 @@ pub mod onnx;
 
 pub use controller::{Controller, EXPORTED, Units};
 pub use error::ExportError;
-pub use law::{Law, NetworkLaw, Position};
+pub use law::{Law, NetworkLaw, PlanLaw, Position};
 
 /// A text with the name of the file that it belongs in.
 #[derive(Clone, Debug, PartialEq, Eq)]

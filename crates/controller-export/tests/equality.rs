@@ -10,7 +10,7 @@ use support::{Outcome, laws, samples};
 /// Cycles of a comparison: the full number for the strategies that together have every part.
 fn cycles(name: &str) -> usize {
     match name {
-        "network_lugre" | "transfer_function_lugre" => 1_000_000,
+        "network_lugre" | "transfer_function_lugre" | "feedback" => 1_000_000,
         _ => 100_000,
     }
 }
@@ -28,10 +28,9 @@ fn c_is_rust() -> Outcome<()> {
     let predictors = laws::predictors(&axis)?;
     for &name in EXPORTED {
         let cycles = cycles(name);
-        let samples = samples::samples(&axis, cycles)?;
         for precision in [Precision::F64, Precision::F32] {
             let folder = tempfile::tempdir()?;
-            let source = write(folder.path(), &predictors, name, precision, &samples)?;
+            let source = write(folder.path(), &predictors, name, precision, cycles)?;
             for compiler in &compilers {
                 let c = compare(folder.path(), compiler, name, &[])?;
                 println!(

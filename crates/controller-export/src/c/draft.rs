@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::part::Part;
+use super::part::{self, Part};
 use super::{Input, Memory, Precision};
 
 /// A struct of the state: one member of the compensator's own.
@@ -29,6 +29,9 @@ pub(super) struct Draft {
     /// What the offsets of position and command are, as C.
     pub position: Option<&'static str>,
     pub effort: Option<&'static str>,
+    /// For a plan, which steps otherwise: its look-ahead in cycles, and whether a feedback
+    /// stands around it.
+    pub plan: Option<(usize, bool)>,
     /// Numbers in constants and tables, and 32-bit counts.
     pub constants: usize,
     pub counts: usize,
@@ -46,6 +49,7 @@ impl Draft {
             inputs: BTreeSet::new(),
             position: None,
             effort: None,
+            plan: None,
             constants: 0,
             counts: 0,
             stack: 0,
@@ -55,6 +59,13 @@ impl Draft {
     /// Takes in a part of the evaluator.
     pub fn part(&mut self, part: &'static Part) {
         part.join(&mut self.parts);
+    }
+
+    /// Whether a part needs `<math.h>`.
+    pub fn needs_library(&self) -> bool {
+        self.parts
+            .iter()
+            .any(|part| std::ptr::eq(*part, &part::ROOT))
     }
 
     /// Bytes that it takes.

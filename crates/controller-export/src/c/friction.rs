@@ -38,7 +38,7 @@ pub(super) fn add<T: Exponential>(draft: &mut Draft, friction: &FrictionFeedforw
 }
 
 /// A LuGre law as `FRICTION`, and the coefficients of its exponentials.
-fn law<T: Exponential>(draft: &mut Draft, law: &LuGre<T>) {
+pub(super) fn law<T: Exponential>(draft: &mut Draft, law: &LuGre<T>) {
     let c = law.constants();
     let named = [
         ("coulomb", c.coulomb, "T_C, N m"),

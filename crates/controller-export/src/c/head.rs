@@ -39,7 +39,9 @@ pub(super) fn finish(controller: &Controller, draft: Draft, step_time: Option<&s
             .replace("@L@", &controller.units.load)
             .replace("@E@", &controller.units.effort)
     };
-    let source = format!("@TOP@\n#include \"@X@.h\"\n\n{body}");
+    let library = draft.needs_library();
+    let library = if library { "#include <math.h>\n" } else { "" };
+    let source = format!("@TOP@\n{library}#include \"@X@.h\"\n\n{body}");
     CSource {
         header: NamedText {
             name: fill("@X@.h"),
@@ -50,6 +52,7 @@ pub(super) fn finish(controller: &Controller, draft: Draft, step_time: Option<&s
             text: fill(&source),
         },
         memory: draft.memory(),
+        look_ahead: draft.plan.map(|(cycles, _)| cycles),
         inputs: draft.inputs.into_iter().collect(),
         hash,
     }
@@ -83,15 +86,45 @@ fn declarations(draft: &Draft) -> String {
     }
     include_str!("runtime/declarations.h")
         .replace("@INPUTS@", &inputs)
+        .replace("@OUTPUTS@", &outputs(draft))
         .replace("@STATES@", &states)
         .replace("@MEMBERS@", &members)
 }
 
 fn functions(draft: &Draft) -> String {
+    let (keep, restore, step) = match draft.plan {
+        None => ("", "", include_str!("runtime/step_sum.c")),
+        Some(_) => (
+            "    const real own = x->plan.own;\n",
+            "    x->plan.own = own;\n",
+            include_str!("runtime/step_plan.c"),
+        ),
+    };
+    let (feedback, surprise) = match draft.plan {
+        Some((_, true)) => (
+            "        feedback_correct(&x->feedback, in, &p);\n",
+            "x->feedback.surprise",
+        ),
+        _ => ("", "R(0.0)"),
+    };
     include_str!("runtime/functions.c")
+        .replace("@KEEP@", keep)
+        .replace("@RESTORE@", restore)
+        .replace("@STEP@", step)
         .replace("@POSITION@", draft.position.unwrap_or("R(0.0)"))
         .replace("@EFFORT@", draft.effort.unwrap_or("R(0.0)"))
-        .replace("@SURPRISE@", "R(0.0)")
+        .replace("@FEEDBACK@", feedback)
+        .replace("@SURPRISE@", surprise)
+}
+
+/// What a plan gives besides.
+fn outputs(draft: &Draft) -> String {
+    let Some((ahead, _)) = draft.plan else {
+        return String::new();
+    };
+    format!(
+        "    @real@ reference_position;     /* @L@: what to follow in this cycle: the set point of {ahead} cycles ago */\n    @real@ reference_velocity;     /* @L@/s */\n    @real@ reference_acceleration; /* @L@/s^2 */\n    int32_t planned; /* 0 in the first {ahead} cycles after a reset, which have no plan yet */\n"
+    )
 }
 
 /// The comment at the top of both files.
@@ -110,7 +143,7 @@ fn top(controller: &Controller, draft: &Draft, hash: &str, step_time: Option<&st
          \x20* time a step   {time}\n\
          \x20* inputs        {hash} (BLAKE3 of axis, strategy, precision and numbers)\n\
          \x20*\n\
-         \x20* C99, no library, no allocation. Compile with -std=c99 or -ffp-contract=off: contracted\n\
+         \x20* C99, {library}, no allocation. Compile with -std=c99 or -ffp-contract=off: contracted\n\
          \x20* to multiply-add, results are not those of the simulation to the last bit. Never with\n\
          \x20* -ffast-math. Numbers must be IEEE 754 and round after each operation (not x87).\n\
          \x20*/\n",
@@ -121,6 +154,10 @@ fn top(controller: &Controller, draft: &Draft, hash: &str, step_time: Option<&st
         state = memory.state,
         constants = memory.constants,
         stack = memory.stack,
+        library = match draft.needs_library() {
+            true => "of the library sqrt alone",
+            false => "no library",
+        },
         time = plain(step_time.unwrap_or("not measured")),
     )
 }

@@ -14,10 +14,18 @@ pub enum Input {
     NextReferencePosition,
     /// Reference acceleration one cycle ahead.
     NextReferenceAcceleration,
+    /// Position of the newest set point, as far ahead as the plan needs.
+    AheadPosition,
+    /// Its velocity.
+    AheadVelocity,
+    /// Its acceleration.
+    AheadAcceleration,
     /// Measured position of the load.
     Position,
     /// Measured speed of the motor.
     MotorSpeed,
+    /// Measured q current.
+    Current,
     /// Command of the cycle before.
     EffortCommand,
 }
@@ -30,8 +38,12 @@ impl Input {
             Self::ReferenceAcceleration => "reference_acceleration",
             Self::NextReferencePosition => "next_reference_position",
             Self::NextReferenceAcceleration => "next_reference_acceleration",
+            Self::AheadPosition => "ahead_position",
+            Self::AheadVelocity => "ahead_velocity",
+            Self::AheadAcceleration => "ahead_acceleration",
             Self::Position => "position",
             Self::MotorSpeed => "motor_speed",
+            Self::Current => "current",
             Self::EffortCommand => "effort_command",
         }
     }
@@ -43,23 +55,30 @@ impl Input {
             Self::ReferenceAcceleration => "@L@/s^2: reference at this instant",
             Self::NextReferencePosition => "@L@: reference one cycle ahead",
             Self::NextReferenceAcceleration => "@L@/s^2: reference one cycle ahead",
+            Self::AheadPosition => "@L@: newest set point",
+            Self::AheadVelocity => "@L@/s: of the newest set point",
+            Self::AheadAcceleration => "@L@/s^2: of the newest set point",
             Self::Position => "@L@: measured position of the load",
             Self::MotorSpeed => "rad/s: measured speed of the motor",
+            Self::Current => "A: measured q current; not read where the actuator has none",
             Self::EffortCommand => {
                 "@E@: what the actuator was commanded in the cycle before, this correction included"
             }
         }
     }
 
-    /// The same of a sample.
+    /// The same of a sample; the newest set point stands as the next reference.
     pub fn of<T: Scalar>(self, sample: &Sample<T>) -> T {
+        let (now, next) = (&sample.reference, &sample.next_reference);
         match self {
-            Self::ReferenceVelocity => sample.reference.velocity,
-            Self::ReferenceAcceleration => sample.reference.acceleration,
-            Self::NextReferencePosition => sample.next_reference.position,
-            Self::NextReferenceAcceleration => sample.next_reference.acceleration,
+            Self::ReferenceVelocity => now.velocity,
+            Self::ReferenceAcceleration => now.acceleration,
+            Self::NextReferencePosition | Self::AheadPosition => next.position,
+            Self::AheadVelocity => next.velocity,
+            Self::NextReferenceAcceleration | Self::AheadAcceleration => next.acceleration,
             Self::Position => sample.position,
             Self::MotorSpeed => sample.motor_speed,
+            Self::Current => sample.iq,
             Self::EffortCommand => sample.iq_command,
         }
     }

@@ -17,12 +17,14 @@
 
 mod data;
 mod draft;
+mod feedback;
 mod friction;
 mod guard;
 mod head;
 mod input;
 mod network;
 mod part;
+mod plan;
 mod transfer;
 
 use cfnn::Real;
@@ -80,6 +82,8 @@ pub struct CSource {
     pub source: NamedText,
     /// What it takes in memory.
     pub memory: Memory,
+    /// Of a plan: cycles by which its set points must come ahead.
+    pub look_ahead: Option<usize>,
     /// Members of the input, in their order.
     pub inputs: Vec<Input>,
     /// Hash (BLAKE3) of axis, strategy, precision and all its numbers.
@@ -116,6 +120,12 @@ fn drafted<T: Real + Exponential>(
     }
     if let Some(feedforward) = &law.friction {
         friction::add(&mut draft, feedforward);
+    }
+    if let Some(law) = &law.plan {
+        plan::add(&mut draft, &law.planner);
+        if let Some(feedback) = &law.feedback {
+            feedback::add(&mut draft, feedback);
+        }
     }
     guard::add(&mut draft, &controller.limits.cast::<T>());
     draft

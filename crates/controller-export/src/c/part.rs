@@ -64,6 +64,13 @@ part!(ESTIMATOR, "estimator", [REMAINDER, FORWARD]);
 part!(TRANSFER, "transfer", []);
 part!(each DECAYS, "decays", []);
 part!(LUGRE, "lugre", [DECAYS, ABSOLUTE, WITH_SIGN]);
+// The actuator's part stands before it.
+part!(PLAN, "plan", [ALONG, LUGRE, LIMITED]);
 part!(FRICTION, "friction", [LUGRE]);
+part!(each ROOT, "root", []);
+part!(ALONG, "along", [LEAST, GREATEST]);
+part!(FIELD_ORIENTED, "field_oriented", [LIMITED, ROOT]);
+part!(LAG, "lag", [LIMITED]);
+part!(FEEDBACK, "feedback", [FINITE, ROOT]);
 part!(each FADE, "fade", []);
 part!(GUARD, "guard", [ABSOLUTE, LIMITED, FINITE, FADE]);

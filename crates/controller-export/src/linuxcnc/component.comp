@@ -1,17 +1,18 @@
 component @X@ "@AXIS@: offsets of position and command by the strategy @X@.";
 description """
 @TOP@
-Stands between motion and PID, as offset.comp does. The command is held back by one servo period, so that
-the reference a cycle ahead is known: connect everything behind it to the outputs. Functions in the servo
+Stands between motion and PID, as offset.comp does. The command is held back by @HELD@ servo period(s), so
+that the motion that far ahead is known: connect everything behind it to the outputs, and let FERROR allow
+for it. Functions in the servo
 thread: update-feedback before motion-controller, update after it and before the PID.""";
 pin in float pos-cmd-in "Commanded position, machine units: joint.N.motor-pos-cmd.";
-pin out float pos-cmd-out "The same a cycle later, with the offset: to the PID's command.";
+pin out float pos-cmd-out "The same held back, with the offset: to the PID's command.";
 pin in float vel-cmd-in "Commanded velocity, machine units/s: joint.N.vel-cmd.";
-pin out float vel-cmd-out "The same a cycle later: to the PID's command-deriv.";
+pin out float vel-cmd-out "The same held back: to the PID's command-deriv.";
 @ACCELERATION@pin in float pos-fb-in "Measured position of the load, machine units.";
 pin out float pos-fb-out "The same without the offset: to joint.N.motor-pos-fb.";
 pin in bit raw-feedback "TRUE: pos-fb-out is pos-fb-in, so that motion's following error is that of the load.";
-@MOTOR@@COMMAND@pin out float effort-out "Offset of the command, @E@: to be added to the PID's output.";
+@MOTOR@@CURRENT@@COMMAND@pin out float effort-out "Offset of the command, @E@: to be added to the PID's output.";
 pin out float offset-out "Offset of the position, machine units.";
 pin in bit enable-in "Fades the offsets in and out. Rising takes back a trip.";
 pin out bit fault "The guard has tripped, or the thread has another period than the strategy.";
@@ -69,8 +70,8 @@ FUNCTION(update)
     }
 @ASSIGN@    @X@_step(&kept->law, &in, &out);
     kept->offset = out.position;
-    pos_cmd_out = (kept->at[0] + out.position) * units_per_si;
-    vel_cmd_out = kept->at[1] * units_per_si;
+    pos_cmd_out = (@REFERENCE@ + out.position) * units_per_si;
+    vel_cmd_out = @VELOCITY@ * units_per_si;
     offset_out = out.position * units_per_si;
     effort_out = out.effort;
     status_out = in_time ? out.status : 6;

@@ -28,11 +28,19 @@ pub fn export(controller: &Controller) -> Result<Component, ExportError> {
     let code = inlined(&source, &controller.name);
     // Beside the law's state four numbers and two integers.
     let room = (source.memory.state + 4 * 8 + 2 * 4).div_ceil(8) + 1;
+    let (held, reference, velocity) = match source.look_ahead {
+        Some(cycles) => (cycles, "out.reference_position", "out.reference_velocity"),
+        None => (1, "kept->at[0]", "kept->at[1]"),
+    };
     let fill = |text: &str, pins: &Pins| {
         text.replace("@CODE@\n", &code)
             .replace("@ACCELERATION@", pins.acceleration)
             .replace("@MOTOR@", pins.motor)
+            .replace("@CURRENT@", pins.current)
             .replace("@COMMAND@", pins.command)
+            .replace("@REFERENCE@", reference)
+            .replace("@VELOCITY@", velocity)
+            .replace("@HELD@", &held.to_string())
             .replace("@NEXT_ACCELERATION@", pins.next_acceleration)
             .replace("@ASSIGN@", &assignments(&source.inputs))
             .replace("@TOP@", &about(controller, &source.hash))
@@ -61,6 +69,7 @@ pub fn export(controller: &Controller) -> Result<Component, ExportError> {
 struct Pins {
     acceleration: &'static str,
     motor: &'static str,
+    current: &'static str,
     command: &'static str,
     next_acceleration: &'static str,
 }
@@ -70,7 +79,8 @@ impl Pins {
     fn of(inputs: &[Input]) -> (Self, Self) {
         let (mut declared, mut connected) = (Self::default(), Self::default());
         declared.next_acceleration = "0.0";
-        if inputs.contains(&Input::NextReferenceAcceleration) {
+        let accelerations = [Input::NextReferenceAcceleration, Input::AheadAcceleration];
+        if accelerations.iter().any(|input| inputs.contains(input)) {
             declared.next_acceleration = "acc_cmd_in * si";
             declared.acceleration = "pin in float acc-cmd-in \"Commanded acceleration, machine units/s^2: joint.N.acc-cmd.\";\n";
             connected.acceleration = "net x-acc joint.0.acc-cmd => comp.x.acc-cmd-in\n";
@@ -79,6 +89,10 @@ impl Pins {
             declared.motor =
                 "pin in float motor-speed-in \"Measured speed of the motor, rad/s.\";\n";
             connected.motor = "# From the drive: the motor's speed, rad/s.\nnet x-motor => comp.x.motor-speed-in\n";
+        }
+        if inputs.contains(&Input::Current) {
+            declared.current = "pin in float current-in \"Measured q current, A.\";\n";
+            connected.current = "# And its q current, A.\nnet x-current => comp.x.current-in\n";
         }
         if inputs.contains(&Input::EffortCommand) {
             declared.command = "pin in float effort-cmd-in \"Command of the cycle before, offset included, @E@.\";\n";
@@ -115,8 +129,12 @@ fn assignments(inputs: &[Input]) -> String {
             Input::ReferenceAcceleration => "kept->at[2]",
             Input::NextReferencePosition => "next[0]",
             Input::NextReferenceAcceleration => "next[2]",
+            Input::AheadPosition => "next[0]",
+            Input::AheadVelocity => "next[1]",
+            Input::AheadAcceleration => "next[2]",
             Input::Position => "pos_fb_in * si",
             Input::MotorSpeed => "motor_speed_in",
+            Input::Current => "current_in",
             Input::EffortCommand => "effort_cmd_in",
         };
         format!("    in.{} = {from};\n", input.name())

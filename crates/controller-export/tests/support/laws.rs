@@ -3,10 +3,13 @@
 use axis_sim::Axis;
 use cfnn::{FixedNetwork, Network, Scaling, Shape};
 use compensator::{
-    Combined, Compensator, GuardLimits, NetworkCompensation, NoCompensation, TransferFunctionModel,
+    Combined, Compensator, Correction, Feedback, GuardLimits, NetworkCompensation, NoCompensation,
+    Planner, Sample, Standstill, Target, TransferFunctionModel,
 };
-use controller_export::{Law, Position};
+use controller_export::{Law, PlanLaw, Position};
+use lugre::Exponential;
 use pipeline::strategies::{Predictors, STRATEGIES, named};
+use scalar::Scalar;
 
 use super::Outcome;
 use super::samples::Random;
@@ -18,8 +21,8 @@ pub const ACTIVATIONS: usize = 5 + 34 + 19 + 8;
 /// What the guard keeps to.
 pub const LIMITS: GuardLimits = GuardLimits {
     position: 5e-4,
-    effort: 6.0,
-    surprise: 10.0,
+    effort: 60.0,
+    surprise: 1e5,
     patience: 20,
     fade: 1000,
 };
@@ -62,15 +65,111 @@ pub fn predictors(axis: &Axis) -> Outcome<Predictors> {
     ))
 }
 
+/// What is compared: a strategy that knows what its guard let through.
+pub trait Runs<T: Scalar> {
+    /// The next sample is the first of a motion from rest.
+    fn reset(&mut self);
+    /// The correction of a cycle.
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T>;
+    /// What a guard watches.
+    fn surprise(&self) -> T;
+    /// What went to the drive.
+    fn passed(&mut self, _: &Correction<T>) {}
+}
+
+impl<T: Scalar> Runs<T> for Box<dyn Compensator<T> + '_> {
+    fn reset(&mut self) {
+        (**self).reset();
+    }
+
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
+        (**self).correct(sample)
+    }
+
+    fn surprise(&self) -> T {
+        (**self).surprise()
+    }
+}
+
+/// A plan as a controller runs it: the next reference of a sample is the newest set point, and
+/// the motion is held back by the look-ahead.
+pub struct Streaming<T: Exponential> {
+    planner: Planner<T>,
+    feedback: Option<Feedback<T>>,
+    started: bool,
+    own: T,
+}
+
+impl<T: Exponential> Streaming<T> {
+    pub fn new(law: &PlanLaw<T>) -> Self {
+        Self {
+            planner: (*law.planner).clone(),
+            feedback: law.feedback.as_deref().cloned(),
+            started: false,
+            own: T::ZERO,
+        }
+    }
+}
+
+impl<T: Exponential> Runs<T> for Streaming<T> {
+    fn reset(&mut self) {
+        self.started = false;
+        if let Some(feedback) = &mut self.feedback {
+            feedback.reset();
+        }
+    }
+
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
+        let newest = sample.next_reference;
+        if !self.started {
+            let standstill = Standstill {
+                effort: sample.iq_command,
+                own: self.own,
+                motor_angle: sample.motor_angle,
+            };
+            self.planner.begin(newest.position, &standstill);
+            self.started = true;
+        }
+        let Some(planned) = self.planner.push(Target::of(newest)) else {
+            return Correction::default();
+        };
+        let now = Sample {
+            reference: planned.reference,
+            ..*sample
+        };
+        match &mut self.feedback {
+            Some(feedback) => feedback.correct(&now, &planned),
+            None => planned.correction,
+        }
+    }
+
+    fn surprise(&self) -> T {
+        let feedback = self.feedback.as_ref();
+        feedback.map_or(T::ZERO, |f| f.deviations().surprise)
+    }
+
+    fn passed(&mut self, correction: &Correction<T>) {
+        self.own = correction.iq;
+    }
+}
+
 /// The strategy as the simulator runs it.
-pub fn double(predictors: &Predictors, name: &str) -> Outcome<Box<dyn Compensator>> {
+pub fn double(predictors: &Predictors, name: &str, law: &Law) -> Outcome<Box<dyn Runs<f64>>> {
+    if let Some(plan) = &law.plan {
+        return Ok(Box::new(Streaming::new(plan)));
+    }
     let kind = named(STRATEGIES, name).ok_or("no such strategy")?;
     let motion = predictors.axis.plan(&predictors.axis.trajectories[0])?;
-    Ok(kind.compensator(predictors, std::sync::Arc::new(motion))?)
+    Ok(Box::new(
+        kind.compensator(predictors, std::sync::Arc::new(motion))?,
+    ))
 }
 
 /// The same in single precision, of the numbers that are exported.
-pub fn single(law: &Law<f32>) -> Outcome<Box<dyn Compensator<f32> + '_>> {
+pub fn single(law: &Law<f32>) -> Outcome<Box<dyn Runs<f32> + '_>> {
+    if let Some(plan) = &law.plan {
+        return Ok(Box::new(Streaming::new(plan)));
+    }
     let first: Box<dyn Compensator<f32> + '_> = match &law.position {
         Position::Nothing => Box::new(NoCompensation),
         Position::Transfer(filter) => Box::new(**filter),
@@ -84,25 +183,23 @@ pub fn single(law: &Law<f32>) -> Outcome<Box<dyn Compensator<f32> + '_>> {
             Box::new(NetworkCompensation::new(fixed, n.estimator))
         }
     };
-    Ok(match law.friction {
+    let all: Box<dyn Compensator<f32> + '_> = match law.friction {
         Some(friction) => Box::new(Combined::new(Boxed(first), friction)),
         None => first,
-    })
+    };
+    Ok(Box::new(all))
 }
 
-struct Boxed<'a, T: scalar::Scalar>(Box<dyn Compensator<T> + 'a>);
+/// A compensator of any kind as one of the kinds that can be combined.
+struct Boxed<'a>(Box<dyn Compensator<f32> + 'a>);
 
-impl<T: scalar::Scalar> Compensator<T> for Boxed<'_, T> {
+impl Compensator<f32> for Boxed<'_> {
     fn reset(&mut self) {
         self.0.reset();
     }
 
-    fn correct(&mut self, sample: &compensator::Sample<T>) -> compensator::Correction<T> {
+    fn correct(&mut self, sample: &Sample<f32>) -> Correction<f32> {
         self.0.correct(sample)
-    }
-
-    fn surprise(&self) -> T {
-        self.0.surprise()
     }
 }
 

@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::process::Command;
 
-use compensator::{Compensator, Guard, Guarded, Sample, Status, Trip};
+use compensator::{Guard, Sample, Status, Trip};
 use controller_export::Controller;
 use controller_export::c::{self, CSource, Precision};
 use pipeline::strategies::Predictors;
 use scalar::Scalar;
 
-use super::laws::{LIMITS, double, single};
-use super::samples::{Event, event};
+use super::laws::{LIMITS, Runs, double, single};
+use super::samples::{Event, event, samples};
 use super::{Outcome, laws};
 
 /// Writes NAME.c, NAME.h, check.c and cases.bin into a folder.
@@ -19,12 +19,13 @@ pub fn write(
     predictors: &Predictors,
     name: &str,
     precision: Precision,
-    samples: &[Sample],
+    cycles: usize,
 ) -> Outcome<CSource> {
     let controller = Controller::of(predictors, name, LIMITS)?;
     let source = c::export(&controller, precision, None)?;
+    let samples = &samples(&predictors.axis, cycles, source.look_ahead.unwrap_or(1))?;
     let cases = match precision {
-        Precision::F64 => cases(double(predictors, name)?, &source, samples)?,
+        Precision::F64 => cases(double(predictors, name, &controller.law)?, &source, samples)?,
         Precision::F32 => {
             let law = controller.law.cast::<f32>()?;
             cases(single(&law)?, &source, samples)?
@@ -42,12 +43,11 @@ pub fn write(
 
 /// Event and inputs of each cycle, and the corrections that Rust makes.
 fn cases<'a, T: Scalar>(
-    inner: Box<dyn Compensator<T> + 'a>,
+    mut law: Box<dyn Runs<T> + 'a>,
     source: &CSource,
     samples: &[Sample],
 ) -> Outcome<Vec<u8>> {
-    let guard = Guard::new(laws::LIMITS.cast())?;
-    let mut law = Guarded::new(Inner(inner), guard);
+    let mut guard = Guard::new(laws::LIMITS.cast())?;
     let mut bytes = Vec::new();
     let (mut seen, mut corrected) = ([0; 6], 0);
     for (k, sample) in samples.iter().enumerate() {
@@ -55,27 +55,29 @@ fn cases<'a, T: Scalar>(
         let happens = event(k, samples.len(), &mut sample);
         match happens {
             Event::None => {}
-            Event::On => law.guard_mut().switch(true),
-            Event::Off => law.guard_mut().switch(false),
+            Event::On => guard.switch(true),
+            Event::Off => guard.switch(false),
             Event::Reset => law.reset(),
         }
         let sample = sample.cast::<T>();
-        let made = law.correct(&sample);
+        let asked = law.correct(&sample);
+        let made = guard.pass(&asked, law.surprise());
+        law.passed(&made);
         bytes.extend((happens as u32).to_le_bytes());
-        bytes.extend(status(law.guard().status()).to_le_bytes());
+        bytes.extend(status(guard.status()).to_le_bytes());
         for input in &source.inputs {
             push(&mut bytes, input.of(&sample));
         }
         push(&mut bytes, made.position);
         push(&mut bytes, made.iq);
-        let done = status(law.guard().status()) as usize;
+        let done = status(guard.status()) as usize;
         seen[done] += 1;
         corrected += usize::from(made.position != T::ZERO || made.iq != T::ZERO);
     }
     // Nothing would be proved by cycles in which nothing happens.
-    let [off, on, no_number, position, effort, _] = seen;
-    let all = [off, on, no_number, position + effort];
-    if all.contains(&0) || 2 * corrected < samples.len() {
+    let [off, on, no_number, position, effort, surprise] = seen;
+    let all = [off, on, no_number + surprise, position + effort + surprise];
+    if all.contains(&0) || 5 * corrected < samples.len() {
         return Err(format!("cycles that prove little: {seen:?}, {corrected} corrected").into());
     }
     Ok(bytes)
@@ -97,22 +99,6 @@ fn status(status: Status) -> u32 {
         Status::Tripped(Trip::Position) => 3,
         Status::Tripped(Trip::Effort) => 4,
         Status::Tripped(Trip::Surprise) => 5,
-    }
-}
-
-struct Inner<'a, T: Scalar>(Box<dyn Compensator<T> + 'a>);
-
-impl<T: Scalar> Compensator<T> for Inner<'_, T> {
-    fn reset(&mut self) {
-        self.0.reset();
-    }
-
-    fn correct(&mut self, sample: &Sample<T>) -> compensator::Correction<T> {
-        self.0.correct(sample)
-    }
-
-    fn surprise(&self) -> T {
-        self.0.surprise()
     }
 }
 
@@ -155,6 +141,7 @@ pub fn compare(folder: &Path, compiler: &str, name: &str, flags: &[&str]) -> Out
         .arg(folder.join("check.c"))
         .arg("-o")
         .arg(&program)
+        .arg("-lm")
         .output()?;
     if !compiled.status.success() {
         return Err(String::from_utf8_lossy(&compiled.stderr).into());

@@ -64,27 +64,31 @@ pub fn references(axis: &Axis, count: usize) -> Outcome<Vec<Reference>> {
     Ok(all)
 }
 
-/// Samples of `count` cycles: the load follows with an error, sensors are noisy.
-pub fn samples(axis: &Axis, count: usize) -> Outcome<Vec<Sample>> {
-    let references = references(axis, count)?;
+/// Samples of `count` cycles: the load follows with an error, sensors are noisy. The next reference
+/// is that of `ahead` cycles later.
+pub fn samples(axis: &Axis, count: usize, ahead: usize) -> Outcome<Vec<Sample>> {
+    let references = references(axis, count + ahead)?;
     let mut random = Random(2);
     let (mut error, mut before) = (0.0, 0.0);
-    let samples = references.windows(2).map(|pair| {
-        error += 0.01 * (2e-5 * random.next() - error);
-        let speed = pair[0].velocity / axis.travel_per_radian();
-        let command = 0.6 * speed.signum() + 0.03 * speed + 0.2 * random.next();
-        let sample = Sample {
-            reference: pair[0],
-            next_reference: pair[1],
-            position: pair[0].position + error + 1e-7 * random.next(),
-            motor_angle: pair[0].position / axis.travel_per_radian(),
-            motor_speed: speed + 0.05 * random.next(),
-            iq: before,
-            iq_command: command,
-        };
-        before = command;
-        sample
-    });
+    let samples = references[..count]
+        .iter()
+        .zip(&references[ahead..])
+        .map(|pair| {
+            error += 0.01 * (2e-5 * random.next() - error);
+            let speed = pair.0.velocity / axis.travel_per_radian();
+            let command = 0.6 * speed.signum() + 0.03 * speed + 0.2 * random.next();
+            let sample = Sample {
+                reference: *pair.0,
+                next_reference: *pair.1,
+                position: pair.0.position + error + 1e-7 * random.next(),
+                motor_angle: pair.0.position / axis.travel_per_radian(),
+                motor_speed: speed + 0.05 * random.next(),
+                iq: before,
+                iq_command: command,
+            };
+            before = command;
+            sample
+        });
     Ok(samples.collect())
 }
 
@@ -100,7 +104,7 @@ pub fn event(k: usize, count: usize, sample: &mut Sample) -> Event {
     if (part(0.6)..part(0.6) + 40).contains(&k) {
         // A command beyond its limit for longer than a while.
         sample.position += 0.3;
-        sample.reference.velocity *= 400.0;
+        sample.reference.velocity *= 4000.0;
         sample.next_reference.acceleration += 1e4;
     }
     match k {

@@ -17,7 +17,7 @@ typedef struct {
     @real@ position; /* @L@: to the position error, or to the reference of the position loop */
     @real@ effort;   /* @E@: to the command of the speed controller */
     int32_t status;  /* of enum @X@_status */
-} @X@_output;
+@OUTPUTS@} @X@_output;
 
 @STATES@/* The state, the caller's: once for each axis. */
 typedef struct {

@@ -7,9 +7,9 @@ void @X@_init(@X@ *x)
 void @X@_reset(@X@ *x)
 {
     const @X@_guard guard = x->guard;
-    @X@_init(x);
+@KEEP@    @X@_init(x);
     x->guard = guard;
-}
+@RESTORE@}
 
 void @X@_switch(@X@ *x, int on)
 {
@@ -21,10 +21,4 @@ void @X@_switch(@X@ *x, int on)
     }
 }
 
-void @X@_step(@X@ *x, const @X@_input *in, @X@_output *out)
-{
-    const real position = @POSITION@;
-    const real effort = @EFFORT@;
-
-    guard_pass(&x->guard, position, effort, @SURPRISE@, out);
-}
+@STEP@
