@@ -77,7 +77,7 @@ fn cases<'a, T: Scalar>(
     // Nothing would be proved by cycles in which nothing happens.
     let [off, on, no_number, position, effort, surprise] = seen;
     let all = [off, on, no_number + surprise, position + effort + surprise];
-    if all.contains(&0) || 5 * corrected < samples.len() {
+    if all.contains(&0) || 2 * corrected < samples.len() {
         return Err(format!("cycles that prove little: {seen:?}, {corrected} corrected").into());
     }
     Ok(bytes)

@@ -41,8 +41,14 @@ pub fn references(axis: &Axis, count: usize) -> Outcome<Vec<Reference>> {
     let mut all = Vec::with_capacity(count + 1);
     let mut at = axis.stroke.start;
     while all.len() <= count {
-        let stroke = axis.stroke.maximum - axis.stroke.minimum;
-        let to = axis.stroke.minimum + stroke * (0.5 + 0.45 * random.next());
+        // Short, so that the axis accelerates for much of the time.
+        let way = 0.05 * random.next();
+        let inside = axis.stroke.minimum + 0.1..=axis.stroke.maximum - 0.1;
+        let to = if inside.contains(&(at + way)) {
+            at + way
+        } else {
+            at - way
+        };
         let limits = Limits::new(
             0.05 + 0.2 * random.next().abs(),
             0.2 + 0.8 * random.next().abs(),
