@@ -3,15 +3,15 @@
 use std::path::Path;
 use std::process::Command;
 
-use compensator::{Guard, Sample, Status, Trip};
+use compensator::{Guard, GuardLimits, Sample, Status, Trip};
 use controller_export::Controller;
 use controller_export::c::{self, CSource, Precision};
 use pipeline::strategies::Predictors;
 use scalar::Scalar;
 
+use super::Outcome;
 use super::laws::{LIMITS, Runs, double, single};
 use super::samples::{Event, event, samples};
-use super::{Outcome, laws};
 
 /// Writes NAME.c, NAME.h, check.c and cases.bin into a folder.
 pub fn write(
@@ -22,13 +22,33 @@ pub fn write(
     cycles: usize,
 ) -> Outcome<CSource> {
     let controller = Controller::of(predictors, name, LIMITS)?;
-    let source = c::export(&controller, precision, None)?;
+    write_one(folder, predictors, &controller, precision, cycles, true)
+}
+
+/// The same of a controller with limits of its own; `strict` refuses cycles in which too little
+/// happens.
+pub fn write_one(
+    folder: &Path,
+    predictors: &Predictors,
+    controller: &Controller,
+    precision: Precision,
+    cycles: usize,
+    strict: bool,
+) -> Outcome<CSource> {
+    let (name, limits) = (&*controller.name, &controller.limits);
+    let source = c::export(controller, precision, None)?;
     let samples = &samples(&predictors.axis, cycles, source.look_ahead.unwrap_or(1))?;
     let cases = match precision {
-        Precision::F64 => cases(double(predictors, name, &controller.law)?, &source, samples)?,
+        Precision::F64 => cases(
+            double(predictors, name, &controller.law)?,
+            &source,
+            samples,
+            limits,
+            strict,
+        )?,
         Precision::F32 => {
             let law = controller.law.cast::<f32>()?;
-            cases(single(&law)?, &source, samples)?
+            cases(single(&law)?, &source, samples, limits, strict)?
         }
     };
     std::fs::create_dir_all(folder)?;
@@ -46,8 +66,10 @@ fn cases<'a, T: Scalar>(
     mut law: Box<dyn Runs<T> + 'a>,
     source: &CSource,
     samples: &[Sample],
+    limits: &GuardLimits,
+    strict: bool,
 ) -> Outcome<Vec<u8>> {
-    let mut guard = Guard::new(laws::LIMITS.cast())?;
+    let mut guard = Guard::new(limits.cast())?;
     let mut bytes = Vec::new();
     let (mut seen, mut corrected) = ([0; 6], 0);
     for (k, sample) in samples.iter().enumerate() {
@@ -73,6 +95,9 @@ fn cases<'a, T: Scalar>(
         let done = status(guard.status()) as usize;
         seen[done] += 1;
         corrected += usize::from(made.position != T::ZERO || made.iq != T::ZERO);
+    }
+    if !strict {
+        return Ok(bytes);
     }
     // Nothing would be proved by cycles in which nothing happens.
     let [off, on, no_number, position, effort, surprise] = seen;

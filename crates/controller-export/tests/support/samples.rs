@@ -43,7 +43,8 @@ pub fn references(axis: &Axis, count: usize) -> Outcome<Vec<Reference>> {
     while all.len() <= count {
         // Short, so that the axis accelerates for much of the time.
         let way = 0.05 * random.next();
-        let inside = axis.stroke.minimum + 0.1..=axis.stroke.maximum - 0.1;
+        let margin = 0.1 * (axis.stroke.maximum - axis.stroke.minimum);
+        let inside = axis.stroke.minimum + margin..=axis.stroke.maximum - margin;
         let to = if inside.contains(&(at + way)) {
             at + way
         } else {
@@ -110,7 +111,7 @@ pub fn event(k: usize, count: usize, sample: &mut Sample) -> Event {
     if (part(0.6)..part(0.6) + 40).contains(&k) {
         // A command beyond its limit for longer than a while.
         sample.position += 0.3;
-        sample.reference.velocity *= 4000.0;
+        sample.reference.velocity += 400.0;
         sample.next_reference.acceleration += 1e4;
     }
     match k {
