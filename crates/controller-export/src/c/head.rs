@@ -92,11 +92,10 @@ fn declarations(draft: &Draft) -> String {
 }
 
 fn functions(draft: &Draft) -> String {
-    let (keep, restore, step) = match draft.plan {
-        None => ("", "", include_str!("runtime/step_sum.c")),
+    let (init, step) = match draft.plan {
+        None => ("", include_str!("runtime/step_sum.c")),
         Some(_) => (
-            "    const real own = x->plan.own;\n",
-            "    x->plan.own = own;\n",
+            "    x->plan.own = R(0.0);\n",
             include_str!("runtime/step_plan.c"),
         ),
     };
@@ -108,13 +107,26 @@ fn functions(draft: &Draft) -> String {
         _ => ("", "R(0.0)"),
     };
     include_str!("runtime/functions.c")
-        .replace("@KEEP@", keep)
-        .replace("@RESTORE@", restore)
+        .replace("@INIT@", init)
+        .replace("@RESET@", &reset(draft))
         .replace("@STEP@", step)
         .replace("@POSITION@", draft.position.unwrap_or("R(0.0)"))
         .replace("@EFFORT@", draft.effort.unwrap_or("R(0.0)"))
         .replace("@FEEDBACK@", feedback)
         .replace("@SURPRISE@", surprise)
+}
+
+/// What is forgotten before a motion. A plan writes its whole state as it begins.
+fn reset(draft: &Draft) -> String {
+    let states = draft.states.iter().map(|state| state.name);
+    let mut text = String::new();
+    for name in states.filter(|name| *name != "guard") {
+        let _ = match name {
+            "plan" => writeln!(text, "    x->plan.started = 0;"),
+            _ => writeln!(text, "    x->{name} = (@X@_{name}){{0}};"),
+        };
+    }
+    text
 }
 
 /// What a plan gives besides.
@@ -143,9 +155,10 @@ fn top(controller: &Controller, draft: &Draft, hash: &str, step_time: Option<&st
          \x20* time a step   {time}\n\
          \x20* inputs        {hash} (BLAKE3 of axis, strategy, precision and numbers)\n\
          \x20*\n\
-         \x20* C99, {library}, no allocation. Compile with -std=c99 or -ffp-contract=off: contracted\n\
-         \x20* to multiply-add, results are not those of the simulation to the last bit. Never with\n\
-         \x20* -ffast-math. Numbers must be IEEE 754 and round after each operation (not x87).\n\
+         \x20* C99; no allocation; {library}.\n\
+         \x20* Compile with -std=c99 or -ffp-contract=off: contracted to multiply-add, results are not those\n\
+         \x20* of the simulation to the last bit. Never with -ffast-math. Numbers must be IEEE 754 and round\n\
+         \x20* after each operation (not x87).\n\
          \x20*/\n",
         name = controller.name,
         axis = plain(&controller.axis),
@@ -155,8 +168,8 @@ fn top(controller: &Controller, draft: &Draft, hash: &str, step_time: Option<&st
         constants = memory.constants,
         stack = memory.stack,
         library = match draft.needs_library() {
-            true => "of the library sqrt alone",
-            false => "no library",
+            true => "of the library only sqrt (and memset, memcpy where a compiler calls them)",
+            false => "no library (but memset, memcpy where a compiler calls them)",
         },
         time = plain(step_time.unwrap_or("not measured")),
     )

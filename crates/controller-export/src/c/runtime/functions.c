@@ -1,15 +1,13 @@
-void @X@_init(@X@ *x)
-{
-    const @X@ nothing = {0};
-    *x = nothing;
-}
-
 void @X@_reset(@X@ *x)
 {
-    const @X@_guard guard = x->guard;
-@KEEP@    @X@_init(x);
-    x->guard = guard;
-@RESTORE@}
+@RESET@}
+
+void @X@_init(@X@ *x)
+{
+    const @X@_guard off = {0};
+    @X@_reset(x);
+    x->guard = off;
+@INIT@}
 
 void @X@_switch(@X@ *x, int on)
 {
