@@ -22,9 +22,15 @@ fn cycles(name: &str) -> usize {
     }
 }
 
-/// Whether what every compiler here makes of a case has Rust's bits in all cycles.
-fn same_bits(folder: &Path, name: &str, cycles: usize, source: &CSource) -> Outcome<()> {
-    for compiler in compilers() {
+/// Whether what compilers make of a case has Rust's bits in all cycles.
+fn same_bits(
+    folder: &Path,
+    name: &str,
+    cycles: usize,
+    source: &CSource,
+    compilers: &[&str],
+) -> Outcome<()> {
+    for compiler in compilers {
         let c = compare(folder, compiler, name, &[])?;
         println!("{name:<24}{compiler:<6} {c:?} {:?}", source.memory);
         assert_eq!((c.cycles, c.statuses), (cycles, 0), "{name}: {c:?}");
@@ -45,7 +51,7 @@ fn c_is_rust(names: &[&str]) -> Outcome<()> {
         for precision in BOTH {
             let folder = tempfile::tempdir()?;
             let source = write(folder.path(), &predictors, name, precision, cycles(name))?;
-            same_bits(folder.path(), name, cycles(name), &source)?;
+            same_bits(folder.path(), name, cycles(name), &source, &compilers())?;
         }
     }
     Ok(())
@@ -66,8 +72,8 @@ fn plans_are_those_of_rust() -> Outcome<()> {
     c_is_rust(&PLANS)
 }
 
-/// Axes with other actuators, delays, transmissions and sensors. Feedback where a design takes
-/// little time.
+/// Axes with other actuators, delays, transmissions and sensors, by one compiler. Feedback where a
+/// design takes little time.
 #[test]
 fn plans_of_other_axes_are_those_of_rust() -> Outcome<()> {
     let limits = GuardLimits {
@@ -77,6 +83,11 @@ fn plans_of_other_axes_are_those_of_rust() -> Outcome<()> {
         ..laws::LIMITS
     };
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes");
+    let compilers = compilers();
+    if compilers.is_empty() {
+        println!("skipped: neither gcc nor clang");
+        return Ok(());
+    }
     let (mut compared, mut seen) = (0, Vec::new());
     for file in std::fs::read_dir(folder)? {
         let axis = Axis::read(&file?.path())?;
@@ -95,7 +106,7 @@ fn plans_of_other_axes_are_those_of_rust() -> Outcome<()> {
                 let path = folder.path();
                 let source = write_one(path, &predictors, &controller, precision, 20_000, false)?;
                 print!("{:<16}{:<8}", axis.name, precision.name());
-                same_bits(path, name, 20_000, &source)?;
+                same_bits(path, name, 20_000, &source, &compilers[..1])?;
                 compared += 1;
                 let text = &source.source.text;
                 let parts = ["#define LATE 0u", " GAIN = ", " VOLTAGE = "];
