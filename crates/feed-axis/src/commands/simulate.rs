@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use atomic_write_file::AtomicWriteFile;
 use axis_log::{LogFile, WriteProblem};
 use axis_sim::{Axis, ClosedLoop, Cycle, FlowRecorder, Measured, Recorder, SixDigits};
 use clap::Args;
