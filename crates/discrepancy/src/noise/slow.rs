@@ -31,10 +31,6 @@ pub(crate) struct SlowNoise {
 /// Runs with noise whose mean spectrum is that of the noise that is known.
 const RUNS: u64 = 6;
 
-/// Frequency below which a measured current is what its command asks for, Hz: a tenth of
-/// slow current loops' bandwidth.
-const FOLLOWS: f64 = 100.0;
-
 /// Times the noise beside the others that there must be of it.
 const STANDS_OUT: f64 = 1.5;
 
@@ -80,12 +76,13 @@ pub(crate) fn slow_noise(
     let seen = set.layout.spectral_matrices(&set.amplitudes(&rest));
     let of = |c: usize| -> Vec<f64> {
         let bands = set.layout.bands().enumerate();
-        let one = |(b, (edges, _)): (usize, ([f64; 2], f64))| {
-            // The command's answer to what the channel shows, of powers.
+        let one = |(b, _): (usize, _)| {
+            // The command's answer to what the channel shows, of powers. A current is at most
+            // what is asked for.
             let answer = if Some(c) == position {
                 let of = &of_position[b];
                 of[(command, command)].re / of[(c, c)].re.max(f64::MIN_POSITIVE)
-            } else if set.channels[set.fitted[c]] == "iq_a" && edges[1] <= FOLLOWS {
+            } else if set.channels[set.fitted[c]] == "iq_a" {
                 1.0
             } else {
                 return 0.0;
