@@ -10,8 +10,8 @@
 //! d(c) = 1 / (S⁻¹)cc − 1 / (N⁻¹)cc,
 //! ```
 //!
-//! with the matrix N of noise that is known, is the logger's, where the answer to as much
-//! would stand out of the noise of the command.
+//! with the matrix N of noise that is known, is the logger's, where the command shows less than
+//! half of its answer to as much, and that would stand out of the command's noise.
 
 use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
 use nalgebra::{Complex, DMatrix};
@@ -34,8 +34,11 @@ const RUNS: u64 = 6;
 /// Times the noise beside the others that there must be of it.
 const STANDS_OUT: f64 = 1.5;
 
-/// Times the command's own noise that its answer would be at least.
-const WOULD_SHOW: f64 = 3.0;
+/// Share of the command's own noise, which is known to a tenth, that its answer would be at least.
+const WOULD_SHOW: f64 = 0.5;
+
+/// Share of the answer that the command may show by chance.
+const SHOWS: f64 = 0.5;
 
 /// That of these logs, beside simulations of them without noise.
 ///
@@ -89,8 +92,11 @@ pub(crate) fn slow_noise(
             };
             let [all, noise] = [&seen[b], &known[b]].map(|m| beside_others(m, c));
             let added = all - noise;
-            let shows = added * answer >= WOULD_SHOW * known[b][(command, command)].re;
-            if all > STANDS_OUT * noise && shows {
+            let of_command = |m: &Matrix| m[(command, command)].re;
+            let [shown, own] = [of_command(&seen[b]), of_command(&known[b])];
+            let asked = added * answer;
+            let unanswered = asked >= WOULD_SHOW * own && shown - own < SHOWS * asked;
+            if all > STANDS_OUT * noise && unanswered {
                 added
             } else {
                 0.0
