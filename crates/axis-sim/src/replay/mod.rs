@@ -176,14 +176,14 @@ impl Replay {
         // A late clock shows the positions of a while ago.
         let (late, timely): (Vec<LogChannel>, Vec<LogChannel>) =
             (compared.iter()).partition(|c| c.name(axis).starts_with("position_"));
-        let sampled = |channels: &[LogChannel], late: f64| {
+        let speed: fn(&Cycle) -> f64 = |c| c.load_speed;
+        let sampled = |channels: &[LogChannel], beside: Option<fn(&Cycle) -> f64>, late: f64| {
             let instants = Instants::new([period, self.reference.period], late, self.samples);
-            let speed: fn(&Cycle) -> f64 = |c| c.load_speed;
-            let reads = channels.iter().map(|c| c.read).chain([speed]).collect();
+            let reads = channels.iter().map(|c| c.read).chain(beside).collect();
             Sampled::new(reads, instants, cycles as usize)
         };
-        let mut positions = sampled(&late, closed_loop.clock_offset());
-        let mut others = sampled(&timely, 0.0);
+        let mut positions = sampled(&late, None, closed_loop.clock_offset());
+        let mut others = sampled(&timely, Some(speed), 0.0);
         let mut state = closed_loop.start(&self.begin(closed_loop)?)?;
         let mut added = Added {
             replay: self,

@@ -15,6 +15,7 @@
 
 use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
 use nalgebra::{Complex, DMatrix};
+use rayon::prelude::*;
 
 use super::level::{noise_at, shows_noise};
 use super::{LogNoise, Rest, SensorNoise, at_state, noise_series};
@@ -66,14 +67,16 @@ pub(crate) fn slow_noise(
         let run: Rest = noise_series(&closed_loop, set, traces, noise, seed)?;
         Ok(set.layout.spectral_matrices(&set.amplitudes(&run)))
     };
-    let mut known = spectra(&noise, 1)?;
-    for seed in 2..=RUNS {
-        for (sum, run) in known.iter_mut().zip(spectra(&noise, seed)?) {
-            *sum += run;
-        }
-    }
+    let runs = (1..=RUNS).into_par_iter().map(|seed| spectra(&noise, seed));
+    let runs: Vec<Vec<Matrix>> = runs.collect::<Result<_, ReplayError>>()?;
     let share = Complex::new(1.0 / RUNS as f64, 0.0);
-    known.iter_mut().for_each(|sum| *sum *= share);
+    let mean = |b: usize| -> Matrix {
+        let first = &runs[0][b] * share;
+        runs[1..]
+            .iter()
+            .fold(first, |sum, run| sum + &run[b] * share)
+    };
+    let known: Vec<Matrix> = (0..runs[0].len()).map(mean).collect();
     let position = place(&["position_m", "position_rad"]);
     let of_position = spectra(&LogNoise::of_sensors(position_alone(&noise.sensors)), 1)?;
     let seen = set.layout.spectral_matrices(&set.amplitudes(&rest));
@@ -90,17 +93,7 @@ pub(crate) fn slow_noise(
             } else {
                 return 0.0;
             };
-            let [all, noise] = [&seen[b], &known[b]].map(|m| beside_others(m, c));
-            let added = all - noise;
-            let of_command = |m: &Matrix| m[(command, command)].re;
-            let [shown, own] = [of_command(&seen[b]), of_command(&known[b])];
-            let asked = added * answer;
-            let unanswered = asked >= WOULD_SHOW * own && shown - own < SHOWS * asked;
-            if all > STANDS_OUT * noise && unanswered {
-                added
-            } else {
-                0.0
-            }
+            unanswered([&seen[b], &known[b]], [c, command], answer)
         };
         bands.map(one).collect()
     };
@@ -118,6 +111,21 @@ fn position_alone(all: &SensorNoise) -> SensorNoise {
         angle: 0.0,
         speed: 0.0,
         current: 0.0,
+    }
+}
+
+/// Power that a `channel` shows beside the known noise and that the `command` does not answer,
+/// though it would with `answer` times as much; 0 where it does, or where that would not stand
+/// out. Of the spectral matrices that are `seen` and `known`.
+fn unanswered([seen, known]: [&Matrix; 2], [channel, command]: [usize; 2], answer: f64) -> f64 {
+    let [all, noise] = [seen, known].map(|m| beside_others(m, channel));
+    let [shown, own] = [seen, known].map(|m| m[(command, command)].re);
+    let added = all - noise;
+    let asked = added * answer;
+    let is_unanswered = asked >= WOULD_SHOW * own && shown - own < SHOWS * asked;
+    match all > STANDS_OUT * noise && is_unanswered {
+        true => added,
+        false => 0.0,
     }
 }
 
@@ -161,5 +169,68 @@ impl SlowNoise {
             ))
         };
         self.powers.iter().enumerate().filter_map(one).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Complex, DMatrix, DVector};
+
+    use super::{Matrix, SlowNoise, unanswered};
+
+    /// Current, command and voltage.
+    const CHANNELS: [usize; 2] = [0, 1];
+
+    /// Noise of unit power in each, that of the first two in part the same.
+    fn known() -> Matrix {
+        let real = DMatrix::from_row_slice(3, 3, &[1.0, 0.3, 0.0, 0.3, 1.0, 0.0, 0.0, 0.0, 1.0]);
+        real.map(|v| Complex::new(v, 0.0))
+    }
+
+    /// The same with something beside it that shows so much in each channel.
+    fn with(shows: [f64; 3]) -> Matrix {
+        let by = DVector::from_iterator(3, shows.map(|v| Complex::new(v, 0.0)));
+        known() + &by * by.adjoint()
+    }
+
+    fn found(seen: &Matrix, answer: f64) -> f64 {
+        unanswered([seen, &known()], CHANNELS, answer)
+    }
+
+    #[test]
+    fn what_one_channel_shows_and_the_command_does_not_is_the_loggers() {
+        for power in [2.0, 9.0, 1e4] {
+            let of_logger = found(&with([f64::sqrt(power), 0.0, 0.0]), 1.0);
+            assert!((of_logger - power).abs() < 1e-9 * power, "{of_logger}");
+        }
+    }
+
+    #[test]
+    fn what_the_command_answers_is_the_machines_however_large() {
+        for size in [1.0, 3.0, 100.0] {
+            assert_eq!(found(&with([size, size, 0.2 * size]), 1.0), 0.0);
+            // Though the voltages are as quiet as ever.
+            assert_eq!(found(&with([size, size, 0.0]), 1.0), 0.0);
+        }
+    }
+
+    #[test]
+    fn nothing_is_found_in_noise_or_where_the_answer_would_not_show() {
+        assert_eq!(found(&known(), 1.0), 0.0);
+        assert_eq!(found(&with([3.0, 0.0, 0.0]), 0.01), 0.0);
+    }
+
+    #[test]
+    fn it_stands_beside_the_known_noise_of_its_channel() {
+        let slow = SlowNoise {
+            powers: vec![vec![0.0, 4.0], vec![0.0; 2], vec![0.0; 2]],
+        };
+        assert_eq!(slow.beside(0, known()), known());
+        assert_eq!(slow.beside(1, known()) - known(), {
+            let mut only = Matrix::zeros(3, 3);
+            only[(0, 0)] = Complex::new(4.0, 0.0);
+            only
+        });
+        assert_eq!(SlowNoise::default().beside(1, known()), known());
     }
 }
