@@ -4,7 +4,7 @@
     book.py site MDBOOK      builds the book and follows its links
 
 Blocks of a page:
-  ```sh         runs, in one temporary folder a page, where the project's folders are and `cargo xtask`
+  ```sh         runs, in one temporary folder per page, where the project's folders are and `cargo xtask`
                 is the program that was built. A block that fails fails the page.
   ```text       straight behind such a block: what it prints. Every line must be there, in this order;
                 three dots stand for the rest of a line, or alone for any number of lines; spaces count as one.
@@ -108,6 +108,8 @@ def run_page(page, text, work, scratch):
         elif language == "text" and follows and output is not None:
             if not pattern(block).search(output):
                 sys.exit(f"{where}: the page shows\n{block}\nthe command printed\n{output}")
+        elif language in ("bash", "shell", "console"):
+            sys.exit(f"{where}: a block of commands is ```sh, so that it runs")
         elif language.startswith("sh,") and (language != "sh,ignore" or not before.startswith("<!-- not run:")):
             sys.exit(f"{where}: a block that does not run is ```sh,ignore behind <!-- not run: why -->")
         if language != "sh":
