@@ -112,7 +112,7 @@ pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
 /// Least by which something must bring a channel of the check logs nearer, RMS, as a share
 /// of the channel's noise: left out, it would raise the RMS of what is left by 1.6 %, which
 /// no engineer would look for.
-const MATERIAL: f64 = 0.18;
+pub(crate) const MATERIAL: f64 = 0.18;
 
 /// Least by which it must bring that channel nearer, as a share of the gap, RMS, that there
 /// was before anything was named: a thirtieth, a thousandth of its power.
