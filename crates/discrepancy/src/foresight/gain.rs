@@ -3,11 +3,11 @@
 use axis_sim::effects::{ActiveEffect, Effect};
 use nalgebra::{DMatrix, DVector};
 
-use super::Foresight;
+use super::{Foresight, Hypothesis};
 use crate::answers::State;
 use crate::estimate::bounded::bounded;
 use crate::estimate::known::{known_deviations, tolerances};
-use crate::name::gap::MATERIAL;
+use crate::name::gap::MATERIAL_OF_NOISE;
 use crate::name::search::needed;
 use crate::spectrum::Amplitudes;
 
@@ -18,15 +18,14 @@ impl Foresight {
         needed(&self.logs.layout, effect.parameters.len(), tried, 0.01)
     }
 
-    /// What is left of a response beside others and known parameters, which are off by
-    /// these shares.
+    /// What is left of a response beside others and known parameters.
     pub(super) fn beside(
         &self,
-        noise: f64,
+        supposed: &Hypothesis,
         own: &Amplitudes,
         others: &[&Amplitudes],
-        shares: &[f64],
     ) -> Beside {
+        let (noise, shares) = (supposed.noise, &self.shares(supposed)[..]);
         let all: Vec<&Amplitudes> = self.known.iter().chain(others.iter().copied()).collect();
         let columns: Vec<DVector<f64>> = all.iter().map(|c| self.white(c, noise)).collect();
         let off = |own: DVector<f64>| {
@@ -41,17 +40,20 @@ impl Foresight {
         }
         Beside {
             gain,
-            material: self.material(&left) / noise.powi(2),
+            material: self.material(&left, supposed),
             shares: fitted[..shares.len()].to_vec(),
             columns,
         }
     }
 
     /// Power of a rest in the channel that shows it most, over what is material beside noise.
-    fn material(&self, rest: &Amplitudes) -> f64 {
+    fn material(&self, rest: &Amplitudes, supposed: &Hypothesis) -> f64 {
         let powers = self.logs.layout.power(std::slice::from_ref(rest));
-        let over = |(own, noise): (f64, &f64)| own / (MATERIAL.powi(2) * noise);
-        let shares = powers.into_iter().zip(&self.power).map(over);
+        let over = |(c, own): (usize, f64)| {
+            let by = supposed.of_channels.get(c).copied();
+            own / ((MATERIAL_OF_NOISE * by.unwrap_or(supposed.noise)).powi(2) * self.power[c])
+        };
+        let shares = powers.into_iter().enumerate().map(over);
         shares.filter(|share| share.is_finite()).fold(0.0, f64::max)
     }
 

@@ -108,7 +108,7 @@ impl Foresight {
     pub fn gain_over_needed(&self, supposed: &Hypothesis) -> f64 {
         let only = supposed.effects.first().and_then(|active| {
             let response = self.response(active)?;
-            let beside = self.beside(supposed.noise, &response, &[], &self.shares(supposed));
+            let beside = self.beside(supposed, &response, &[]);
             let evidence = beside.gain / self.needed(active.effect);
             Some(evidence.min(beside.material))
         });
@@ -131,7 +131,7 @@ impl Foresight {
         others: &[&Amplitudes],
     ) -> Foreseen {
         let (noise, effect) = (supposed.noise, active.effect);
-        let beside = self.beside(noise, own, others, &self.shares(supposed));
+        let beside = self.beside(supposed, own, others);
         let pinned = pinned(&self.machine, &beside.shares);
         let fitted = Projector::new(&self.machine, &beside.columns, &pinned);
         let seen = fitted.reject(&self.white(own, noise));
