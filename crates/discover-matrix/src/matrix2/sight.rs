@@ -260,6 +260,10 @@ mod tests {
     use crate::hidden::{Exercise, Rough, Truth};
     use crate::matrix2::{Bench, Setting};
 
+    fn mean_square(series: &[f64]) -> f64 {
+        series.iter().map(|v| v * v).sum::<f64>() / series.len() as f64
+    }
+
     /// Of a linear response the fall of D goes with the square of its size, and what known
     /// parameters do costs their tolerance and no more: a payload is a part of the load.
     #[test]
@@ -287,7 +291,14 @@ mod tests {
         let [noisy, _] = truth
             .noise_logs(&bench.axis, &bench.motions[0], bench.every)
             .unwrap();
-        let sight = Sight::new(&bench.machine, &bench.set(0, &noisy).unwrap()).unwrap();
+        let set = bench.set(0, &noisy).unwrap();
+        // The machine is the model: what the balance leaves is small beside the current.
+        let traces = set.simulate(&bench.machine, &State::initial(&bench.machine));
+        let rest = mean_square(&set.rest(&traces.unwrap())[0][0]);
+        let all = mean_square(&set.logs[0].measured[0]);
+        assert!(rest < 1e-3 * all, "{rest} of {all}");
+
+        let sight = Sight::new(&bench.machine, &set).unwrap();
         let gain = |name: &str, size: f64| {
             let active = ActiveEffect {
                 effect: Effect::named(name).unwrap(),
