@@ -115,6 +115,11 @@ impl Balance {
         self.quality.compared_period
     }
 
+    /// Correlation of white noise, as it is compared, over a time (s).
+    pub fn correlation(&self, over: f64) -> f64 {
+        spectrum::correlation(self.quality.cutoff, over)
+    }
+
     /// What was decided for this log, and why.
     pub fn quality(&self) -> &BalanceQuality {
         &self.quality
