@@ -105,9 +105,19 @@ impl Balance {
         &self.compared
     }
 
+    /// Sampling period of the log, s.
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
     /// Period of the compared samples, s.
     pub fn compared_period(&self) -> f64 {
         self.quality.compared_period
+    }
+
+    /// Correlation of white noise, as it is compared, over a time (s).
+    pub fn correlation(&self, over: f64) -> f64 {
+        spectrum::correlation(self.quality.cutoff, over)
     }
 
     /// What was decided for this log, and why.

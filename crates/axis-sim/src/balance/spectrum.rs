@@ -32,6 +32,17 @@ pub(super) fn passed(power: i32, cutoff: f64) -> f64 {
     cutoff.powi(power + 1) * (1.0 - a) * PI / (8.0 * (PI * a).sin())
 }
 
+/// ∫ H² cos 2πfτ df / ∫ H² df with the low-pass H of a balance, by the midpoint rule up to four
+/// times the cut-off, of which 2e-10 passes: the autocorrelation of white noise behind H.
+pub(super) fn correlation(cutoff: f64, over: f64) -> f64 {
+    const STEPS: u32 = 400;
+    let sum = |of: &dyn Fn(f64) -> f64| -> f64 {
+        let places = (0..STEPS).map(|k| 4.0 * (f64::from(k) + 0.5) / f64::from(STEPS));
+        places.map(|x| of(x) / (1.0 + x.powi(8)).powi(2)).sum()
+    };
+    sum(&|x| (TAU * x * cutoff * over).cos()) / sum(&|_| 1.0)
+}
+
 /// Power spectral density of a series' differences, one-sided, and what divides it to give
 /// that of the series.
 struct Differences {
@@ -202,7 +213,28 @@ impl Noise {
 
 #[cfg(test)]
 mod tests {
-    use super::passed;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::super::filter::LowPass;
+    use super::{correlation, passed};
+
+    /// Of 2·10⁵ numbers some 2·10⁴ are independent behind the filter: 0.02 is three deviations.
+    #[test]
+    fn white_noise_behind_the_filter_is_correlated_as_foretold() {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let white = (0..200_000).map(|_| random.random::<f64>() - 0.5);
+        let shown = LowPass::new(0.04).apply(&white.collect::<Vec<f64>>());
+        let product = |lag: usize| -> f64 {
+            let pairs = shown.iter().zip(&shown[lag..]);
+            pairs.map(|(a, b)| a * b).sum()
+        };
+        for lag in [3, 9, 14, 25] {
+            let found = product(lag) / product(0);
+            let foretold = correlation(40.0, lag as f64 * 1e-3);
+            assert!((found - foretold).abs() < 0.02, "{lag}: {found} {foretold}");
+        }
+    }
 
     #[test]
     fn what_passes_is_the_integral() {

@@ -84,7 +84,7 @@ pub(crate) fn floors(
 ) -> Result<Vec<Floor>, ReplayError> {
     let axis = at_state(machine, state);
     if set.is_balanced() {
-        return Ok(vec![of_balances(&set.balances())]);
+        return Ok(vec![of_balances(&set.balances(), best)]);
     }
     if !shows_noise(&axis, set) {
         let samples: usize = set.logs.iter().map(|l| l.log.len()).sum();
@@ -117,12 +117,16 @@ pub(crate) fn floors(
     Ok((0..set.channels.len()).map(of).collect())
 }
 
-/// Noise of a balance's channel: the least that its log leaves possible. Nobody knows what
-/// its controller makes of its sensors' noise, and a floor that is too low never lets a rest
-/// pass for noise.
-fn of_balances(balances: &[&Balance]) -> Floor {
+/// Noise of a balance's channel: the least that its log leaves possible, or, where that is
+/// more, what its rest has from one sample to the next. Nobody knows what its controller makes
+/// of its sensors' noise, nor what a current has above the rate of its log: that comes back
+/// anywhere below it.
+fn of_balances(balances: &[&Balance], rest: &Rest) -> Floor {
     let samples = balances.iter().map(|b| b.quality().samples[0] as f64);
-    let squares = balances.iter().map(|b| b.quality().floor.powi(2));
+    let squares = balances.iter().zip(rest).map(|(b, log)| {
+        let least = b.quality().floor.powi(2);
+        log.iter().map(|r| unlike(b, r)).fold(least, f64::max)
+    });
     let sum: f64 = samples.clone().zip(squares).map(|(n, s)| n * s).sum();
     let independent: f64 = samples.sum();
     let rms = (sum / independent.max(1.0)).sqrt();
@@ -131,4 +135,17 @@ fn of_balances(balances: &[&Balance]) -> Floor {
         most: rms,
         independent,
     }
+}
+
+/// Variance of a rest, were all that is unlike from one sample to the next noise, flat up to the
+/// low-pass: half the mean square of neighbours' differences over 1 − ρ, ρ being such noise's
+/// correlation over a sample. The variance over this is von Neumann's ratio (Ann. Math. Statist.
+/// 12 (1941) 367, doi:10.1214/aoms/1177731677): what a law lacks goes on for many samples.
+fn unlike(balance: &Balance, rest: &[f64]) -> f64 {
+    let (time, period) = (balance.compared().time(), balance.compared_period());
+    let pairs = rest.windows(2).zip(time.windows(2));
+    let neighbours = pairs.filter(|(_, t)| t[1] - t[0] < 1.5 * period);
+    let squares = neighbours.map(|(r, _)| (r[1] - r[0]).powi(2));
+    let (sum, count) = squares.fold((0.0, 0.0), |(sum, n), square| (sum + square, n + 1.0));
+    sum / f64::max(count, 1.0) / (2.0 * (1.0 - balance.correlation(period)))
 }
