@@ -14,7 +14,7 @@ static NAMES: LazyLock<Vec<(String, &StrategyKind)>> = LazyLock::new(|| {
 
 /// Reads the name of a strategy.
 pub fn strategy_name() -> impl TypedValueParser<Value = &'static StrategyKind> {
-    strategy_name_shown(|_| true)
+    strategy_name_shown(None)
 }
 
 /// Reads the name of a strategy; help shows those of `names` alone, so that the command can
@@ -22,15 +22,16 @@ pub fn strategy_name() -> impl TypedValueParser<Value = &'static StrategyKind> {
 pub fn strategy_name_of(
     names: &'static [&'static str],
 ) -> impl TypedValueParser<Value = &'static StrategyKind> {
-    strategy_name_shown(|kind| names.contains(&kind.name))
+    strategy_name_shown(Some(names))
 }
 
 fn strategy_name_shown(
-    shown: impl Fn(&StrategyKind) -> bool,
+    names: Option<&'static [&'static str]>,
 ) -> impl TypedValueParser<Value = &'static StrategyKind> {
     let value = |(name, kind): &'static (String, &StrategyKind)| {
+        let hidden = names.is_some_and(|names| !names.contains(&kind.name));
         let value = PossibleValue::new(name.as_str()).help(kind.summary);
-        value.hide(!shown(kind))
+        value.hide(hidden)
     };
     PossibleValuesParser::new(NAMES.iter().map(value)).try_map(|given| {
         let mut all = NAMES.iter();

@@ -208,7 +208,7 @@ fn plans_are_of_the_axis_file_and_others_are_refused() {
     ] {
         let message = refused(AXIS, &["--strategy", strategy]);
         assert!(message.contains(reason), "{message}");
-        assert!(message.contains("network_lugre, "), "{message}");
+        assert!(message.contains("network-lugre, "), "{message}");
     }
     let message = refused("data/axes/joint.toml", &["--strategy", "plan"]);
     assert!(message.contains("kinematic error"), "{message}");

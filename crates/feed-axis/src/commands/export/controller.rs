@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use compensator::GuardLimits;
-use controller_export::{Controller, EXPORTED, NamedText};
+use controller_export::{Controller, EXPORTED, ExportError, NamedText};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use pipeline::strategies::StrategyKind;
 
@@ -85,7 +85,7 @@ impl Options {
     pub fn controller(&self) -> Result<Guarded> {
         let name = self.strategy.name;
         // Before results are asked for, which would not help.
-        controller_export::exportable(name).map_err(|e| wrong_use(format!("--strategy: {e}")))?;
+        controller_export::exportable(name).map_err(refused)?;
         let context = self.results.open()?;
         let predictors = validate::predictors(&context, self.strategy.needs)?;
         let failed = || format!("no export of {name} for {}", self.results.axis.display());
@@ -113,4 +113,9 @@ impl Options {
         last_first
             .try_for_each(|text| write_whole(&self.out.join(&text.name), text.text.as_bytes()))
     }
+}
+
+/// Names as the option takes them.
+fn refused(error: ExportError) -> miette::Report {
+    wrong_use(format!("--strategy: {error}").replace('_', "-"))
 }

@@ -26,24 +26,23 @@ const NAMES: [&str; 3] = ["--limit-position", "--limit-effort", "--limit-surpris
 /// What the guard keeps to.
 #[derive(Args)]
 #[group(id = "guard-options")]
-#[command(next_help_heading = "Guard")]
 pub struct Options {
     /// Greatest offset of the position, m or rad [default: twice the greatest on the axis
     /// file's trajectories, simulated]
-    #[arg(long = "limit-position", value_name = "SI", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(help_heading = "Guard", long = "limit-position", value_name = "SI", value_parser = positive, allow_negative_numbers = true)]
     position: Option<f64>,
     /// Greatest offset of the command, in the actuator's unit: A, N·m, N, V [default: likewise]
-    #[arg(long = "limit-effort", value_name = "SI", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(help_heading = "Guard", long = "limit-effort", value_name = "SI", value_parser = positive, allow_negative_numbers = true)]
     effort: Option<f64>,
     /// Greatest surprise of a feedback's observer, in standard deviations [default: likewise,
     /// at least 10]
-    #[arg(long = "limit-surprise", value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(help_heading = "Guard", long = "limit-surprise", value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true)]
     surprise: Option<f64>,
     /// Time for which a limit may be exceeded before the guard trips, s
-    #[arg(long, value_name = "S", default_value_t = 0.002, value_parser = time, allow_negative_numbers = true)]
+    #[arg(help_heading = "Guard", long, value_name = "S", default_value_t = 0.002, value_parser = time, allow_negative_numbers = true)]
     patience: f64,
     /// Time in which corrections are faded in and out, s
-    #[arg(long, value_name = "S", default_value_t = 0.1, value_parser = time, allow_negative_numbers = true)]
+    #[arg(help_heading = "Guard", long, value_name = "S", default_value_t = 0.1, value_parser = time, allow_negative_numbers = true)]
     fade: f64,
 }
 
