@@ -1,5 +1,6 @@
 //! The developers' commands, and that the users' are among them.
 
+#[path = "../../crates/feed-axis/tests/common/mod.rs"]
 mod common;
 
 use common::{refuse, root, succeed};

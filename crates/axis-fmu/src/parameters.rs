@@ -1,22 +1,10 @@
 //! Parameters: the numbers of the axis file's parts, by table and key.
 
 use axis_sim::part::Key;
-use axis_sim::{Axis, Registry};
+use axis_sim::{Axis, Registry, TABLES_WITHOUT_PARTS};
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 use crate::error::UnitError;
-
-/// Tables of an axis file that hold no part of the machine, or none that a run may change.
-const NO_PARTS: &[&str] = &[
-    "stroke",
-    "samples",
-    "simulation",
-    "sensors",
-    "experiment",
-    "tolerances",
-    "log",
-    "balance",
-];
 
 /// Of `[control]`, what the unit's step is made of.
 const STEP: &str = "frequency";
@@ -43,7 +31,7 @@ pub(crate) fn parameters(name: &str, text: &str) -> Result<Vec<Parameter>, UnitE
     let mut all = Vec::new();
     for (table, item) in document
         .iter()
-        .filter(|(table, _)| !NO_PARTS.contains(table))
+        .filter(|(table, _)| !TABLES_WITHOUT_PARTS.contains(table))
     {
         let keys = keys.iter().find(|key| key.name() == table);
         let Some((keys, item)) = keys.zip(item.as_table_like()) else {

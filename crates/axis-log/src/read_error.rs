@@ -109,6 +109,12 @@ pub enum ReadProblem {
         /// What the parser says.
         reason: String,
     },
+    /// Not a recording of SINUMERIK Data Recorder that is read.
+    #[error("not readable as a recording of SINUMERIK Data Recorder: {reason}")]
+    DataRecorder {
+        /// What is wrong, with line and column where the text is no such JSON.
+        reason: String,
+    },
     /// Not a MAT file of version 5.
     #[error("not readable as MAT version 5: {reason}")]
     Mat {

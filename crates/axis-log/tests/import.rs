@@ -97,3 +97,98 @@ fn damaged_captures_are_refused_with_their_line() {
         assert!(message.contains(expected), "{message:?} for {text:?}");
     }
 }
+
+fn recording_mapping(extra: &[(&str, &str)]) -> Mapping {
+    let of = |source: &str, channel: &str, unit| ColumnMap::in_unit(source, channel, unit).unwrap();
+    let mm = ColumnUnit {
+        unit: Some("mm"),
+        ..Default::default()
+    };
+    let plain = |(source, channel): &(&str, &str)| of(source, channel, ColumnUnit::default());
+    let cycle = ColumnUnit {
+        factor: Some(0.002),
+        ..Default::default()
+    };
+    let mut columns = vec![
+        of("CYCLE", "t_s", cycle),
+        of("DES_POS|1", "position_ref_m", mm),
+        of("ENC_POS|1", "position_m", mm),
+    ];
+    columns.extend(extra.iter().map(plain));
+    Mapping {
+        columns,
+        sample_rate_hz: None,
+    }
+}
+
+#[test]
+fn a_recording_of_data_recorder_is_read_as_it_is_mapped() {
+    let path = data("sinumerik.json");
+    let proposal = propose(&path).unwrap().unwrap();
+    assert_eq!(proposal.format, "SINUMERIK Data Recorder");
+    let sources: Vec<&str> = proposal.columns.iter().map(|c| &*c.source).collect();
+    assert_eq!(sources, ["DES_POS|1", "ENC_POS|1"]);
+    assert_eq!(proposal.others, ["CYCLE", "CURRENT|1", "HF_EVENT"]);
+    assert!(proposal.caution.contains("CYCLE"));
+    let required = ["position_ref_m", "position_m"];
+    let log = read_log(&path, &recording_mapping(&[]), &required).unwrap();
+    let [command, feedback] = required.map(|name| log.channel(name).unwrap());
+    assert_eq!(log.len(), 20);
+    for k in 0..20 {
+        let time = log.time()[k] - log.time()[0];
+        assert!((time - 2e-3 * k as f64).abs() < 1e-11, "{time}");
+        let there = 0.1 + 0.01 * (0.1 * k as f64).sin();
+        assert!((command[k] - there).abs() < 1e-12, "{k}");
+        assert!(k == 0 || feedback[k] == command[k - 1]);
+    }
+}
+
+/// What a recording may lack is told with what would be valid.
+#[test]
+fn damaged_recordings_are_refused_with_their_place() {
+    let whole = std::fs::read_to_string(data("sinumerik.json")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let message = |text: &str, mapping: &Mapping| {
+        let path = copy(folder.path(), "x.json", text);
+        read_log(&path, mapping, &[]).unwrap_err().to_string()
+    };
+    let mapping = recording_mapping(&[]);
+    let no_errors = "\"ErrorMessages\": []";
+    assert!(whole.contains(no_errors));
+    for (text, expected) in [
+        (whole[..whole.len() / 2].to_owned(), "EOF while parsing"),
+        (
+            whole.replace("SignalListHFData", "SignalListLFData"),
+            "no SignalListHFData",
+        ),
+        (
+            whole.replace("\"Address\": \"CYCLE\"", "\"A\": 1"),
+            "missing field `Address`",
+        ),
+        (
+            whole.replace("[4817083, ", "[4817083, 1.0, "),
+            "row 3 of HFData has 6 values, the header lists 5",
+        ),
+        (whole.replace("HFData\": [[", "other\": [["), "no samples"),
+        (whole.replace("[4817083, ", "[4817082, "), "row 3"),
+        (whole.replace("[4817083, ", "[\"x\", "), "row 3 (\"CYCLE\")"),
+        (
+            whole.replace(no_errors, "\"ErrorMessages\": [\"lost data\"]"),
+            "lost data",
+        ),
+        ("{\"Header\": 1}".to_owned(), "line 1 column"),
+    ] {
+        let message = message(&text, &mapping);
+        assert!(message.contains(expected), "{message:?} for {expected:?}");
+    }
+    // No cycle, no time; a hole and a text only where they are asked for.
+    let bare = message(&whole, &Mapping::default());
+    assert!(
+        bare.contains("map a column to \"t_s\"") && bare.contains("CYCLE"),
+        "{bare}"
+    );
+    let hole = message(&whole, &recording_mapping(&[("CURRENT|1", "current_q_a")]));
+    assert!(hole.contains("row 8 (\"CURRENT|1\"): \"null\""), "{hole}");
+    let text = message(&whole, &recording_mapping(&[("HF_EVENT", "current_q_a")]));
+    assert!(text.contains("row 1 (\"HF_EVENT\")"), "{text}");
+}

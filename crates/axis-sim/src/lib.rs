@@ -116,7 +116,7 @@ pub use axis::{
     Axis, BalanceSettings, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, Range,
     SampleRanges, Sensors, Simulation, Stroke, Tolerances,
 };
-pub use axis_file::{AxisFileError, Registry};
+pub use axis_file::{AxisFileError, Registry, TABLES_WITHOUT_PARTS};
 pub use balance::{Balance, BalanceError, BalanceQuality};
 pub use belief::PositionErrors;
 pub use channels::{CHANNELS, ChannelPart, LogChannel, channels, position_in, reference_in};

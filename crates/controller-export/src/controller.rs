@@ -146,8 +146,23 @@ fn planned(predictors: &Predictors, name: &str) -> Result<Law, ExportError> {
     })
 }
 
+/// Whether the strategy `name` (`-` counts as `_`) is one that a controller can run.
+///
+/// # Errors
+/// [`ExportError::NoStrategy`] and [`ExportError::LearnsBetweenMoves`] name those that are.
+pub fn exportable(name: &str) -> Result<(), ExportError> {
+    let name = name.replace('-', "_");
+    match EXPORTED.contains(&&*name) {
+        true => Ok(()),
+        false => Err(refused(&name)),
+    }
+}
+
 fn refused(name: &str) -> ExportError {
     let (name, valid) = (name.to_owned(), EXPORTED.join(", "));
+    if name == "drive_terms" {
+        return ExportError::ForDrives { name, valid };
+    }
     match LEARNING.iter().find(|(learning, _)| *learning == name) {
         Some((_, instead)) => ExportError::LearnsBetweenMoves {
             name,

@@ -26,6 +26,16 @@ pub enum ExportError {
         /// Names that can be exported.
         valid: String,
     },
+    /// The strategy is for drives that take constants.
+    #[error(
+        "the strategy \"{name}\" is for drives that take constants and tables: `export drive` writes them, and there is no C code of it; valid: {valid}"
+    )]
+    ForDrives {
+        /// The name asked for.
+        name: String,
+        /// Names that can be exported.
+        valid: String,
+    },
     /// Something of the strategy has no counterpart in C.
     #[error("the strategy \"{name}\" of this axis cannot be exported: {what}; valid: {valid}")]
     Unsupported {

@@ -29,7 +29,7 @@ mod law;
 pub mod linuxcnc;
 pub mod onnx;
 
-pub use controller::{Controller, EXPORTED, Units};
+pub use controller::{Controller, EXPORTED, Units, exportable};
 pub use error::ExportError;
 pub use law::{Law, NetworkLaw, PlanLaw, Position};
 

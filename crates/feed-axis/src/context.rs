@@ -8,14 +8,17 @@ use campaign::Inputs;
 use clap::Args;
 use miette::{IntoDiagnostic, Result, WrapErr};
 
-use crate::exit::busy;
+use crate::exit::{busy, wrong_use};
 use crate::output::ready;
+
+/// The axis file that commands take where none is given: the paper's, in the project's folder.
+pub const DEFAULT_AXIS: &str = "data/axes/liu2025.toml";
 
 /// Options of every stage.
 #[derive(Args, Clone)]
 pub struct Common {
     /// Axis file
-    #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
+    #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     pub axis: PathBuf,
     /// Axis file of what stands for the measured machine [default: the one
     /// that the axis file names, or the axis itself]
@@ -58,7 +61,7 @@ pub struct Context {
 impl Common {
     /// Reads the axis files and sets the number of threads.
     pub fn open(&self) -> Result<Context> {
-        let axis = Axis::read(&self.axis)?;
+        let axis = read_axis(&self.axis)?;
         let machine_file = self.machine.clone().or_else(|| {
             let experiment = axis.experiment.as_ref();
             experiment.map(|experiment| experiment.machine.clone())
@@ -118,6 +121,21 @@ impl Context {
             .with("machine", &self.machine.fingerprint)
             .with("seed", self.seed)
     }
+}
+
+/// Reads an axis file.
+///
+/// # Errors
+/// Wrong use, where the default is meant and is not there; what is wrong with the file.
+pub fn read_axis(file: &Path) -> Result<Axis> {
+    if file == Path::new(DEFAULT_AXIS) && !file.exists() {
+        let program = crate::program::name();
+        return Err(wrong_use(format!(
+            "no axis file is given, and {DEFAULT_AXIS}, which is taken then, is not in this folder; \
+             give one with --axis FILE, or write one to begin with: `{program} new NAME --kind KIND`"
+        )));
+    }
+    Ok(Axis::read(file)?)
 }
 
 /// Reads a text file, naming it where that fails.

@@ -50,22 +50,37 @@ pub fn gather(context: &Context) -> Result<Results> {
     })
 }
 
+/// A strategy that has runs, and the first trajectory that it has none for. Strategies that the
+/// axis cannot have are left out for all trajectories.
+fn unfinished(
+    mut ids: impl Iterator<Item = usize> + Clone,
+    runs: &[CompensatedRun],
+) -> Option<(usize, &'static StrategyKind)> {
+    let all = ids.clone();
+    ids.find_map(|id| {
+        let without = |kind: &&&StrategyKind| find(runs, id, kind.name).is_none();
+        let mut missing = STRATEGIES.iter().filter(without);
+        let elsewhere = |kind: &&&StrategyKind| {
+            let mut others = all.clone();
+            others.any(|other| find(runs, other, kind.name).is_some())
+        };
+        missing.find(elsewhere).map(|kind| (id, *kind))
+    })
+}
+
 fn summarise(
     context: &Context,
     validation: &Validation,
     compensation: &[CompensatedRun],
     training: &Training,
 ) -> Result<Summary> {
-    for t in &validation.trajectories {
-        let without = |kind: &&&StrategyKind| find(compensation, t.id, kind.name).is_none();
-        if let Some(kind) = STRATEGIES.iter().find(without) {
-            return Err(miette!(
-                "trajectory {} was not compensated with \"{}\"; run `{} compensate`",
-                t.id,
-                kind.label,
-                program::name()
-            ));
-        }
+    let ids = validation.trajectories.iter().map(|t| t.id);
+    if let Some((id, kind)) = unfinished(ids, compensation) {
+        return Err(miette!(
+            "trajectory {id} was not compensated with \"{}\", others were; run `{} compensate`",
+            kind.label,
+            program::name()
+        ));
     }
     Ok(Summary {
         schema: Summary::SCHEMA,
@@ -88,4 +103,36 @@ fn summarise(
             train_seconds: training.seconds,
         },
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use pipeline::strategies::{NETWORK, NETWORK_LUGRE};
+    use pipeline::tracking::Run;
+
+    use super::*;
+
+    fn ran(id: usize, kind: &StrategyKind) -> CompensatedRun {
+        CompensatedRun {
+            id,
+            strategy: kind.name.to_owned(),
+            run: Run::default(),
+        }
+    }
+
+    /// A strategy that has no run at all is one that the axis cannot have.
+    #[test]
+    fn results_are_unfinished_where_a_strategy_lacks_some_trajectories() {
+        let runs = [
+            ran(1, &NETWORK),
+            ran(1, &NETWORK_LUGRE),
+            ran(2, &NETWORK),
+            ran(2, &NETWORK_LUGRE),
+        ];
+        let told = |runs: &[CompensatedRun]| unfinished(1..=2, runs).map(|(id, k)| (id, k.name));
+        assert_eq!(told(&runs), None);
+        assert_eq!(told(&runs[..3]), Some((2, NETWORK_LUGRE.name)));
+        assert_eq!(told(&runs[1..]), Some((1, NETWORK.name)));
+        assert_eq!(told(&[]), None);
+    }
 }

@@ -14,8 +14,24 @@ static NAMES: LazyLock<Vec<(String, &StrategyKind)>> = LazyLock::new(|| {
 
 /// Reads the name of a strategy.
 pub fn strategy_name() -> impl TypedValueParser<Value = &'static StrategyKind> {
+    strategy_name_shown(None)
+}
+
+/// Reads the name of a strategy; help shows those of `names` alone, so that the command can
+/// refuse each other one with its reason.
+pub fn strategy_name_of(
+    names: &'static [&'static str],
+) -> impl TypedValueParser<Value = &'static StrategyKind> {
+    strategy_name_shown(Some(names))
+}
+
+fn strategy_name_shown(
+    names: Option<&'static [&'static str]>,
+) -> impl TypedValueParser<Value = &'static StrategyKind> {
     let value = |(name, kind): &'static (String, &StrategyKind)| {
-        PossibleValue::new(name.as_str()).help(kind.summary)
+        let hidden = names.is_some_and(|names| !names.contains(&kind.name));
+        let value = PossibleValue::new(name.as_str()).help(kind.summary);
+        value.hide(hidden)
     };
     PossibleValuesParser::new(NAMES.iter().map(value)).try_map(|given| {
         let mut all = NAMES.iter();

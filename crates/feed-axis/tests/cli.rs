@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use axis_log::{Mapping, read_log};
 use serde_json::Value;
 
-use common::{feed_axis, refuse, root, succeed, text};
+use common::{refuse, root, run, succeed, text};
 use schema_of::assert_validates;
 
 #[test]
@@ -275,11 +275,11 @@ fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
     let again = succeed(&["pipeline", "--quick", "--out", out]);
     assert_eq!(again.matches("up to date").count(), 6, "{again}");
     // The same as one document, by the stages' names.
-    let again = feed_axis(&["pipeline", "--quick", "--out", out, "--format", "json"]);
+    let again = run(&["pipeline", "--quick", "--out", out, "--format", "json"]);
     let again: Value = serde_json::from_slice(&again.stdout).unwrap();
     assert_eq!(again["study"]["up_to_date"], true);
     assert_eq!(again["report"]["summary"], summary);
-    let identified = feed_axis(&["identify", "--quick", "--out", out, "--format", "json"]);
+    let identified = run(&["identify", "--quick", "--out", out, "--format", "json"]);
     let identified: Value = serde_json::from_slice(&identified.stdout).unwrap();
     assert_eq!(identified["friction"]["parameters"][0]["name"], "T_C");
 
@@ -316,6 +316,56 @@ fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
     // The pipeline mends what is damaged.
     succeed(&["pipeline", "--quick", "--out", out]);
     assert_eq!(std::fs::read(&samples).unwrap(), whole);
+}
+
+/// An axis that cannot have every strategy: what is left out is named, the others stand in
+/// summary and report.
+#[test]
+fn a_pipeline_finishes_without_a_strategy_that_the_axis_cannot_have() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let out = out.to_str().unwrap();
+    let axis = "data/axes/linear-stage.toml";
+    let said = succeed(&["pipeline", "--quick", "--axis", axis, "--out", out]);
+    assert!(
+        said.contains("feedback: left out, this axis cannot have it"),
+        "{said}"
+    );
+    let trajectories = &read(out)["trajectories"];
+    for trajectory in trajectories.as_array().unwrap() {
+        let compensated = &trajectory["errors_um"]["compensated"];
+        assert!(compensated["plan"]["max"].is_f64(), "{compensated}");
+        assert!(compensated.get("feedback").is_none(), "{compensated}");
+    }
+    let page = std::fs::read_to_string(format!("{out}/report.html")).unwrap();
+    assert!(page.contains(
+        "Left out, as no such compensation can be made for this axis: Plan and state feedback"
+    ));
+    assert!(!page.contains("NaN"));
+}
+
+/// A default that is not there is no default: what to give instead is said.
+#[test]
+fn outside_of_the_project_an_axis_file_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    for arguments in [
+        &["pipeline"][..],
+        &["simulate", "--trajectory", "1"],
+        &["export", "drive", "--out", "drive"],
+        &["export", "c", "--strategy", "plan", "--out", "c"],
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_feed-axis"))
+            .args(arguments)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let message = text(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        for help in ["--axis FILE", "feed-axis new NAME --kind KIND"] {
+            assert!(message.contains(help), "{message}");
+        }
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
 fn read(out: &str) -> Value {

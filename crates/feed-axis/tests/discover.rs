@@ -135,7 +135,7 @@ fn the_new_axis_file_is_the_machine_for_every_other_command() {
     let table = "data/reference/liu2025/table13_model_vs_experiment.csv";
     let said = succeed(&["discover", "--summary", table, "--out", &out]);
     assert!(said.contains("1. viscous-friction"), "{said}");
-    assert!(Path::new(&format!("{out}/summary.html")).exists() && report() == before);
+    assert!(Path::new(&format!("{out}/ranking.html")).exists() && report() == before);
 }
 
 #[test]

@@ -5,7 +5,7 @@ mod schema_of;
 
 use axis_sim::mechanism::MECHANISMS;
 use clap::ValueEnum;
-use common::{feed_axis, refuse, root, succeed};
+use common::{refuse, root, run, succeed};
 use feed_axis::commands::schema::File;
 use schema_of::{assert_validates, committed};
 use serde_json::Value;
@@ -25,7 +25,7 @@ fn the_committed_schemas_are_those_of_the_code() {
 
 #[test]
 fn the_command_writes_the_schema() {
-    let output = feed_axis(&["schema", "axis"]);
+    let output = run(&["schema", "axis"]);
     let written: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(written, committed("axis"));
     let folder = tempfile::tempdir().unwrap();
@@ -62,7 +62,7 @@ fn log_inspect_proposes_a_mapping_and_applies_none() {
         "{said}"
     );
     assert!(said.contains("not known by name: pid.x.output"), "{said}");
-    let output = feed_axis(&["log", "inspect", file, "--format", "json"]);
+    let output = run(&["log", "inspect", file, "--format", "json"]);
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
     let log = &found["logs"][0];
     assert_eq!(log["channels"].as_array().map(Vec::len), Some(0));

@@ -2,18 +2,18 @@
 
 mod common;
 
-use common::{feed_axis, refuse, root, succeed, text};
+use common::{refuse, root, run, succeed, text};
 use serde_json::Value;
 
 /// Standard output of a command that must be done, as JSON.
 fn json(arguments: &[&str]) -> Value {
-    let output = feed_axis(&[arguments, &["--format", "json"]].concat());
+    let output = run(&[arguments, &["--format", "json"]].concat());
     assert!(output.status.success(), "{arguments:?}: {}", text(&output));
     serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {}", text(&output)))
 }
 
 fn code(arguments: &[&str]) -> Option<i32> {
-    feed_axis(arguments).status.code()
+    run(arguments).status.code()
 }
 
 #[test]
@@ -66,19 +66,19 @@ fn a_document_says_what_the_text_says() {
 fn standard_output_carries_results_alone() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let man = feed_axis(&["man", "--out", out]);
+    let man = run(&["man", "--out", out]);
     assert!(man.status.success() && man.stdout.is_empty() && !man.stderr.is_empty());
-    let quiet = feed_axis(&["man", "--out", out, "--quiet"]);
+    let quiet = run(&["man", "--out", out, "--quiet"]);
     assert!(quiet.status.success() && quiet.stderr.is_empty());
     // An error is told however quiet.
-    let failed = feed_axis(&["simulate", "--axis", "no.toml", "--trajectory", "1", "-q"]);
+    let failed = run(&["simulate", "--axis", "no.toml", "--trajectory", "1", "-q"]);
     assert!(text(&failed).contains("no.toml") && failed.stdout.is_empty());
 }
 
 #[test]
 fn colour_is_as_asked() {
     let stderr = |when: &str, arguments: &[&str]| {
-        let output = feed_axis(&[arguments, &["--color", when]].concat());
+        let output = run(&[arguments, &["--color", when]].concat());
         String::from_utf8(output.stderr).unwrap()
     };
     for arguments in [

@@ -14,6 +14,7 @@
 //! Errors are in µm where a name says so, SI otherwise.
 
 pub mod compensation;
+pub mod corrections;
 pub mod drive_terms;
 mod error;
 mod figures;

@@ -6,6 +6,7 @@
 //! nothing is applied by itself.
 
 mod halscope;
+mod sinumerik;
 
 use std::path::Path;
 
@@ -29,7 +30,7 @@ struct Format {
 }
 
 /// All formats, one line each.
-const FORMATS: &[Format] = &[halscope::FORMAT];
+const FORMATS: &[Format] = &[halscope::FORMAT, sinumerik::FORMAT];
 
 /// A column that a mapping could have.
 #[derive(Debug, Clone, PartialEq, Eq)]

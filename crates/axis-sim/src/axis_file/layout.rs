@@ -262,21 +262,24 @@ impl Layout {
     }
 }
 
+/// Tables of an axis file that hold no part of the machine, or none whose numbers a run may
+/// change.
+pub const TABLES_WITHOUT_PARTS: &[&str] = &[
+    "stroke",
+    "samples",
+    "simulation",
+    "sensors",
+    "experiment",
+    "tolerances",
+    "log",
+    "balance",
+];
+
 /// What a file with a section for each part may have.
 fn section_keys() -> Vec<Key> {
     let parts = SECTIONS.iter().map(|(table, ..)| *table);
-    let own = [
-        "stroke",
-        "samples",
-        "simulation",
-        "sensors",
-        "experiment",
-        "tolerances",
-        "log",
-        "balance",
-    ];
     let lists = ["trajectory", "load", "effects"].map(|name| Key::of_tables(name, Vec::new()));
-    let all = parts.chain(own).map(|name| Key::of_table(name, Vec::new()));
+    let all = parts.chain(TABLES_WITHOUT_PARTS.iter().copied()).map(|name| Key::of_table(name, Vec::new()));
     all.chain(lists)
         .chain(["name", "description"].map(text))
         .chain([count("schema", 1, 2)])

@@ -22,6 +22,7 @@ use toml::de::DeTable;
 use crate::axis::Axis;
 use crate::part::Key;
 pub use error::AxisFileError;
+pub use layout::TABLES_WITHOUT_PARTS;
 use error::Source;
 use fields::{Fields, Record};
 pub use registry::Registry;

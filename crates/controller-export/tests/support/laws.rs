@@ -6,7 +6,7 @@ use compensator::{
     Combined, Compensator, Correction, Feedback, GuardLimits, NetworkCompensation, NoCompensation,
     Planner, Sample, Standstill, Target, TransferFunctionModel,
 };
-use controller_export::{Law, PlanLaw, Position};
+use controller_export::{Law, NetworkLaw, PlanLaw, Position};
 use lugre::Exponential;
 use pipeline::strategies::{Predictors, STRATEGIES, named};
 use scalar::Scalar;
@@ -17,6 +17,9 @@ use super::samples::Random;
 /// Hidden layers of the paper's network, and its activations.
 pub const HIDDEN: [usize; 3] = [34, 19, 8];
 pub const ACTIVATIONS: usize = 5 + 34 + 19 + 8;
+/// Hidden layers of the network that `--quick` trains, and its activations.
+pub const QUICK_HIDDEN: [usize; 3] = [14, 8, 4];
+pub const QUICK_ACTIVATIONS: usize = 5 + 14 + 8 + 4;
 
 /// What the guard keeps to.
 pub const LIMITS: GuardLimits = GuardLimits {
@@ -173,21 +176,21 @@ pub fn single(law: &Law<f32>) -> Outcome<Box<dyn Runs<f32> + '_>> {
     let first: Box<dyn Compensator<f32> + '_> = match &law.position {
         Position::Nothing => Box::new(NoCompensation),
         Position::Transfer(filter) => Box::new(**filter),
-        Position::Network(n) => {
-            let fixed = FixedNetwork::<f32, 4, 1, ACTIVATIONS>::new(
-                &n.hidden,
-                &n.packed,
-                n.input,
-                [n.output],
-            )?;
-            Box::new(NetworkCompensation::new(fixed, n.estimator))
-        }
+        Position::Network(n) if n.hidden == QUICK_HIDDEN => fixed::<QUICK_ACTIVATIONS>(n)?,
+        Position::Network(n) => fixed::<ACTIVATIONS>(n)?,
     };
     let all: Box<dyn Compensator<f32> + '_> = match law.friction {
         Some(friction) => Box::new(Combined::new(Boxed(first), friction)),
         None => first,
     };
     Ok(Box::new(all))
+}
+
+/// The network with so many activations.
+fn fixed<const A: usize>(law: &NetworkLaw<f32>) -> Outcome<Box<dyn Compensator<f32> + '_>> {
+    let network =
+        FixedNetwork::<f32, 4, 1, A>::new(&law.hidden, &law.packed, law.input, [law.output])?;
+    Ok(Box::new(NetworkCompensation::new(network, law.estimator)))
 }
 
 /// A compensator of any kind as one of the kinds that can be combined.

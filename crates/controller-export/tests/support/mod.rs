@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test and example uses a part")]
 
 pub mod laws;
+pub mod onnx;
 pub mod program;
 pub mod samples;
 

@@ -35,20 +35,44 @@ pub fn write_one(
     cycles: usize,
     strict: bool,
 ) -> Outcome<CSource> {
+    let source = c::export(controller, precision, None)?;
+    let samples = samples(&predictors.axis, cycles, source.look_ahead.unwrap_or(1))?;
+    let count = samples.len();
+    let course = Course {
+        samples: &samples,
+        happens: &|k, sample| event(k, count, sample),
+        strict,
+    };
+    write_course(folder, predictors, controller, precision, &course)?;
+    Ok(source)
+}
+
+/// Samples, and what happens before each.
+pub struct Course<'a> {
+    pub samples: &'a [Sample],
+    pub happens: &'a dyn Fn(usize, &mut Sample) -> Event,
+    /// Whether too little may not happen.
+    pub strict: bool,
+}
+
+/// The same along a course.
+pub fn write_course(
+    folder: &Path,
+    predictors: &Predictors,
+    controller: &Controller,
+    precision: Precision,
+    course: &Course<'_>,
+) -> Outcome<()> {
     let (name, limits) = (&*controller.name, &controller.limits);
     let source = c::export(controller, precision, None)?;
-    let samples = &samples(&predictors.axis, cycles, source.look_ahead.unwrap_or(1))?;
     let cases = match precision {
-        Precision::F64 => cases(
-            double(predictors, name, &controller.law)?,
-            &source,
-            samples,
-            limits,
-            strict,
-        )?,
+        Precision::F64 => {
+            let law = double(predictors, name, &controller.law)?;
+            cases(law, &source, course, limits)?
+        }
         Precision::F32 => {
             let law = controller.law.cast::<f32>()?;
-            cases(single(&law)?, &source, samples, limits, strict)?
+            cases(single(&law)?, &source, course, limits)?
         }
     };
     std::fs::create_dir_all(folder)?;
@@ -58,23 +82,23 @@ pub fn write_one(
     std::fs::write(folder.join(&source.source.name), &source.source.text)?;
     std::fs::write(folder.join("check.c"), real + &check)?;
     std::fs::write(folder.join("cases.bin"), cases)?;
-    Ok(source)
+    Ok(())
 }
 
 /// Event and inputs of each cycle, and the corrections that Rust makes.
 fn cases<'a, T: Scalar>(
     mut law: Box<dyn Runs<T> + 'a>,
     source: &CSource,
-    samples: &[Sample],
+    course: &Course<'_>,
     limits: &GuardLimits,
-    strict: bool,
 ) -> Outcome<Vec<u8>> {
+    let samples = course.samples;
     let mut guard = Guard::new(limits.cast())?;
     let mut bytes = Vec::new();
     let (mut seen, mut corrected) = ([0; 6], 0);
     for (k, sample) in samples.iter().enumerate() {
         let mut sample = *sample;
-        let happens = event(k, samples.len(), &mut sample);
+        let happens = (course.happens)(k, &mut sample);
         match happens {
             Event::None => {}
             Event::On => guard.switch(true),
@@ -96,7 +120,7 @@ fn cases<'a, T: Scalar>(
         seen[done] += 1;
         corrected += usize::from(made.position != T::ZERO || made.iq != T::ZERO);
     }
-    if !strict {
+    if !course.strict {
         return Ok(bytes);
     }
     // Nothing would be proved by cycles in which nothing happens.

@@ -104,8 +104,13 @@ impl fmt::Display for Compensated {
             self.unit
         )?;
         for kind in STRATEGIES {
+            let mut runs = self.runs.iter().filter(|run| run.strategy == kind.name);
+            let Some(first) = runs.next() else {
+                writeln!(f, "  {}: left out, this axis cannot have it", kind.label)?;
+                continue;
+            };
             writeln!(f, "  {}", kind.label)?;
-            for run in self.runs.iter().filter(|run| run.strategy == kind.name) {
+            for run in [first].into_iter().chain(runs) {
                 let (errors, _) = run.errors.get();
                 writeln!(
                     f,

@@ -17,7 +17,7 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use toml_edit::{DocumentMut, Item, Value};
 
 use super::discover_words::{Files, Found, FoundInSummary, summary_words};
-use crate::context::read_text;
+use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::output::{Worded, note, print, ready, remove, write_whole};
 use crate::page;
 use crate::progress::{bar, spinner};
@@ -26,7 +26,7 @@ use crate::progress::{bar, spinner};
 #[derive(Args)]
 pub struct Options {
     /// Axis file: the model that the logs are compared with
-    #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
+    #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     axis: PathBuf,
     /// Logs to fit to: CSV, Parquet or MAT v5, 100 Hz to 20 kHz; a
     /// log in several files as their paths with + between
@@ -43,8 +43,8 @@ pub struct Options {
     /// experiment_mean_um (or max_um, mean_um), one row a trajectory of the axis file
     #[arg(long, value_name = "TABLE", conflicts_with_all = ["fit", "check", "test", "accept", "reject"])]
     summary: Option<PathBuf>,
-    /// Folder for discovery.json, report.html and axis.toml, or for summary.json and
-    /// summary.html [default: runs/, the name of the axis, /discover]
+    /// Folder for discovery.json, report.html and axis.toml, or for ranking.json and
+    /// ranking.html [default: runs/, the name of the axis, /discover]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Search anew with this effect taken as there from the start (may be repeated)
@@ -67,7 +67,7 @@ pub fn command(options: &Options) -> Result<()> {
     let _ = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build_global();
-    let mut machine = Axis::read(&options.axis)?;
+    let mut machine = read_axis(&options.axis)?;
     if options.balance {
         machine = machine.without_control().into_diagnostic()?;
     }
@@ -156,10 +156,11 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
 
 /// File of the proposed motion.
 pub(super) const NEXT: &str = "next-experiment.toml";
-/// Pages of what logs and of what a table of errors show: in one folder, neither
-/// takes the other's place.
+/// What logs and what a table of errors show: in one folder, neither takes the other's
+/// place, nor that of `pipeline`'s summary.json.
 pub(super) const REPORT: &str = "report.html";
-const SUMMARY_REPORT: &str = "summary.html";
+const RANKING: &str = "ranking.json";
+const RANKING_REPORT: &str = "ranking.html";
 
 /// The text of the axis file `from` as it must be in `folder`: it names files relative
 /// to its own.
@@ -278,11 +279,11 @@ fn from_summary(options: &Options, machine: &Axis, table: &Path, out: &Path) -> 
     let found = rank(axis, &measured, || progress.inc(1)).into_diagnostic()?;
     progress.finish_and_clear();
     let json = serde_json::to_vec_pretty(&found).into_diagnostic()?;
-    write_whole(&out.join("summary.json"), &json)?;
+    write_whole(&out.join(RANKING), &json)?;
     let html = page::discovery::summary_page(axis, &found)?;
-    write_whole(&out.join(SUMMARY_REPORT), html.as_bytes())?;
+    write_whole(&out.join(RANKING_REPORT), html.as_bytes())?;
     let text = summary_words(axis, &found, measured.len());
-    let report = out.join(SUMMARY_REPORT);
+    let report = out.join(RANKING_REPORT);
     let text = format!("{text}\n{}", report.display());
     let value = FoundInSummary {
         found: &found,

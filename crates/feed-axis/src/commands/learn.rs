@@ -11,7 +11,7 @@ use pipeline::learning::StoredCorrection;
 use serde::Serialize;
 use trajectories::Motion;
 
-use crate::context::read_text;
+use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::measured::Errors;
 use crate::output::{Worded, print, write_whole};
 
@@ -19,7 +19,7 @@ use crate::output::{Worded, print, write_whole};
 #[derive(Args)]
 pub struct Options {
     /// Axis file
-    #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
+    #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     axis: PathBuf,
     /// Log of the move as it was made with the correction: time, reference and position
     /// of the load, as `[log]` of the axis file names them
@@ -32,7 +32,7 @@ pub struct Options {
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
-    let axis = Axis::read(&options.axis)?;
+    let axis = read_axis(&options.axis)?;
     let required = [axis.reference_channel(), axis.position_channel()];
     let log = read_log(&options.log, &axis.log, &required).into_diagnostic()?;
     let of_log = || format!("in {}", options.log.display());

@@ -41,8 +41,17 @@ pub fn compensation(results: &Results) -> Section {
             })
     });
     let grid = grid.collect();
-    Section::new("Compensation")
-        .paragraph("On the simulated machine. The compensator sees what a controller samples: reference, table position, motor speed, currents. Network: ΔS = S_ref − S + Ê, Ê predicted for the end of the cycle (Section 4.4). Transfer function: a linear model of the tracking error, driven by the reference and led by the position loop's time constant; beside LuGre, the model of the error that LuGre leaves. LuGre: current for the friction along the reference, with the parameters identified on the machine. A figure is marked where its peak is at or below the paper's.")
+    let left_out = left_out(&results.compensation);
+    let section = Section::new("Compensation")
+        .paragraph("On the simulated machine. The compensator sees what a controller samples: reference, table position, motor speed, currents. Network: ΔS = S_ref − S + Ê, Ê predicted for the end of the cycle (Section 4.4). Transfer function: a linear model of the tracking error, driven by the reference and led by the position loop's time constant; beside LuGre, the model of the error that LuGre leaves. LuGre: current for the friction along the reference, with the parameters identified on the machine. A figure is marked where its peak is at or below the paper's.");
+    let section = match left_out.is_empty() {
+        true => section,
+        false => section.paragraph(format!(
+            "Left out, as no such compensation can be made for this axis: {}.",
+            left_out.join(", ")
+        )),
+    };
+    section
         .table(beside_paper(
             results,
             "Without friction feed-forward, µm (Table 16)",
@@ -56,10 +65,24 @@ pub fn compensation(results: &Results) -> Section {
         .table(more(
             &results.validation.trajectories,
             &results.compensation,
-            &of_table(STRATEGIES, Group::More),
+            &ran(&of_table(STRATEGIES, Group::More), &results.compensation),
         ))
         .table(transfer_models(results))
         .figure_grid(grid, 2)
+}
+
+/// Those of the strategies that have runs.
+fn ran<'a>(strategies: &[&'a StrategyKind], runs: &[CompensatedRun]) -> Vec<&'a StrategyKind> {
+    let has_run = |kind: &&StrategyKind| runs.iter().any(|run| run.strategy == kind.name);
+    strategies.iter().copied().filter(has_run).collect()
+}
+
+/// Headings of the strategies that have none.
+fn left_out(runs: &[CompensatedRun]) -> Vec<&'static str> {
+    let ran = ran(STRATEGIES, runs);
+    let without = |kind: &&&StrategyKind| ran.iter().all(|other| other.name != kind.name);
+    let kinds = STRATEGIES.iter().filter(without);
+    kinds.map(|kind| kind.heading).collect()
 }
 
 /// Strategies beside the servo alone, and each beside the paper's figures for it.

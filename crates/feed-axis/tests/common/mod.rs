@@ -1,14 +1,31 @@
-//! Commands as a user runs them, from the project's folder.
+//! Commands as a user runs them, from the project's folder. The tests of `feed-axis` and of
+//! `xtask` share this file: each runs the program of its own package.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+/// Cargo tells the tests of a package where its own programs are.
+const PROGRAM: &str = match option_env!("CARGO_BIN_EXE_feed-axis") {
+    Some(program) => program,
+    None => env_of_xtask(),
+};
+
+const fn env_of_xtask() -> &'static str {
+    match option_env!("CARGO_BIN_EXE_xtask") {
+        Some(program) => program,
+        None => panic!("a package with neither of the programs"),
+    }
 }
 
-pub fn feed_axis(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_feed-axis"))
+/// The folder of the workspace.
+pub fn root() -> PathBuf {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let has_lock = |folder: &&Path| folder.join("Cargo.lock").is_file();
+    package.ancestors().find(has_lock).unwrap().to_path_buf()
+}
+
+pub fn run(arguments: &[&str]) -> Output {
+    Command::new(PROGRAM)
         .args(arguments)
         .current_dir(root())
         .output()
@@ -21,7 +38,7 @@ pub fn text(output: &Output) -> String {
 }
 
 pub fn succeed(arguments: &[&str]) -> String {
-    let output = feed_axis(arguments);
+    let output = run(arguments);
     assert!(output.status.success(), "{arguments:?}: {}", text(&output));
     text(&output)
 }
@@ -29,7 +46,7 @@ pub fn succeed(arguments: &[&str]) -> String {
 /// The message of a command that must fail without a panic. Its box drawing
 /// and line breaks are taken out.
 pub fn refuse(arguments: &[&str]) -> String {
-    let output = feed_axis(arguments);
+    let output = run(arguments);
     assert!(!output.status.success(), "{arguments:?} was accepted");
     let message = text(&output);
     assert!(!message.contains("panicked"), "{message}");

@@ -9,6 +9,7 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use pipeline::drive_terms::{self, Loss, Term, TermTable};
 use serde::Serialize;
 
+use crate::context::{DEFAULT_AXIS, read_axis};
 use crate::output::{Worded, print, ready, remove, sweep, write_whole};
 
 const TERMS: &str = "drive.json";
@@ -19,7 +20,7 @@ const OVER_TURN: &str = "drive-turn.csv";
 #[derive(Args)]
 pub struct Options {
     /// Axis file: what the terms are made from
-    #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
+    #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     axis: PathBuf,
     /// Axis file of the machine on which the loss is computed [default: the one that the
     /// axis file names, or the axis itself]
@@ -52,7 +53,7 @@ struct Export<'a> {
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
-    let axis = Axis::read(&options.axis)?;
+    let axis = read_axis(&options.axis)?;
     let named = axis.experiment.as_ref().map(|e| e.machine.clone());
     let machine = match options.machine.clone().or(named) {
         Some(file) => Axis::read(&file)?,

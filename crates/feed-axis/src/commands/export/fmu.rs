@@ -4,19 +4,19 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use axis_fmu::{Unit, VariableKind};
-use axis_sim::{Axis, SixDigits};
+use axis_sim::SixDigits;
 use clap::Args;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
 
-use crate::context::read_text;
+use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::output::{print, write_whole};
 
 /// Options of `export fmu`.
 #[derive(Args)]
 pub struct Options {
     /// Axis file, which goes into the unit as it is
-    #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
+    #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     axis: PathBuf,
     /// The unit's file
     #[arg(long, value_name = "FILE.fmu")]
@@ -63,7 +63,7 @@ impl fmt::Display for Exported<'_> {
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
     // A file that is no axis is shown with the line at fault.
-    Axis::read(&options.axis)?;
+    read_axis(&options.axis)?;
     let text = read_text(&options.axis)?;
     let name = options.axis.display().to_string();
     let (platform, _) = axis_fmu::platform().into_diagnostic()?;

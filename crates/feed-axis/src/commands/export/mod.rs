@@ -1,7 +1,12 @@
 //! `export`: what other programs and machines can use, one file a format.
 
+mod c;
+mod controller;
 pub mod drive;
 pub mod fmu;
+mod guard;
+mod linuxcnc;
+mod onnx;
 
 use clap::Subcommand;
 use miette::Result;
@@ -9,6 +14,12 @@ use miette::Result;
 /// What to export, one line a format.
 #[derive(Subcommand)]
 pub enum Export {
+    /// Write a strategy as one C99 file for a controller (docs/controller-export.md)
+    C(c::Options),
+    /// Write a strategy as a LinuxCNC component (docs/controller-export.md)
+    Linuxcnc(linuxcnc::Options),
+    /// Write the trained network as an ONNX file (docs/controller-export.md)
+    Onnx(onnx::Options),
     /// Write what of the correction a drive or CNC can be given (docs/drive-terms.md)
     Drive(drive::Options),
     /// Write the axis as an FMI 3.0 co-simulation unit for other simulators (docs/fmu.md)
@@ -18,6 +29,9 @@ pub enum Export {
 /// Runs the command.
 pub fn command(export: &Export) -> Result<()> {
     match export {
+        Export::C(options) => c::command(options),
+        Export::Linuxcnc(options) => linuxcnc::command(options),
+        Export::Onnx(options) => onnx::command(options),
         Export::Drive(options) => drive::command(options),
         Export::Fmu(options) => fmu::command(options),
     }

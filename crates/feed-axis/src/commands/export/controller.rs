@@ -1,0 +1,121 @@
+//! What the exports for controllers share: the results that they are made of, the strategy,
+//! the folder.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use compensator::GuardLimits;
+use controller_export::{Controller, EXPORTED, ExportError, NamedText};
+use miette::{IntoDiagnostic, Result, WrapErr};
+use pipeline::strategies::StrategyKind;
+
+use super::guard::{self, Guarded};
+use crate::commands::validate;
+use crate::context::{Common, Context, DEFAULT_AXIS};
+use crate::exit::wrong_use;
+use crate::output::{ready, remove, sweep, write_whole};
+use crate::strategy_name::strategy_name_of;
+
+/// Valid limits while those of the export are not known.
+const UNTIL_KNOWN: GuardLimits = GuardLimits {
+    position: 1.0,
+    effort: 1.0,
+    surprise: 1.0,
+    patience: 0,
+    fade: 0,
+};
+
+/// Where the trained network and the identified friction are.
+#[derive(Args)]
+#[group(id = "results-options")]
+pub struct Results {
+    /// Axis file
+    #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
+    pub axis: PathBuf,
+    /// Axis file of the machine that the results are of [default: the one that the axis
+    /// file names, or the axis itself]
+    #[arg(long, value_name = "FILE")]
+    machine: Option<PathBuf>,
+    /// Folder with the results of `train` and `identify`, their --out [default: runs/,
+    /// then the name of the axis]
+    #[arg(long, value_name = "DIR")]
+    run: Option<PathBuf>,
+    /// Seed that the results were made with
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// The results were made with --quick
+    #[arg(long)]
+    quick: bool,
+}
+
+impl Results {
+    /// Reads the axis files.
+    pub fn open(&self) -> Result<Context> {
+        let common = Common {
+            axis: self.axis.clone(),
+            machine: self.machine.clone(),
+            out: self.run.clone(),
+            seed: self.seed,
+            threads: 0,
+            quick: self.quick,
+        };
+        common.open()
+    }
+}
+
+/// What is exported, and what its guard keeps to.
+#[derive(Args)]
+#[group(id = "controller-options")]
+pub struct Options {
+    #[command(flatten)]
+    results: Results,
+    /// Strategy that the controller runs. A network needs `train` first, transfer functions
+    /// and identified friction `identify`; plan and feedback are made of the axis file alone
+    #[arg(long, value_name = "NAME", value_parser = strategy_name_of(EXPORTED))]
+    strategy: &'static StrategyKind,
+    #[command(flatten)]
+    limits: guard::Options,
+    /// Folder for the files
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+impl Options {
+    /// The compensator behind its guard, and what its limits are made of.
+    pub fn controller(&self) -> Result<Guarded> {
+        let name = self.strategy.name;
+        // Before results are asked for, which would not help.
+        controller_export::exportable(name).map_err(refused)?;
+        let context = self.results.open()?;
+        let predictors = validate::predictors(&context, self.strategy.needs)?;
+        let failed = || format!("no export of {name} for {}", self.results.axis.display());
+        let made = Controller::of(&predictors, name, UNTIL_KNOWN).into_diagnostic();
+        let mut controller = made.wrap_err_with(failed)?;
+        let simulated = self.limits.simulated(&context, &predictors, self.strategy);
+        let simulated = simulated.wrap_err_with(failed)?;
+        controller.limits = self.limits.of(simulated, controller.period);
+        Ok(Guarded {
+            controller,
+            is_simulated: simulated.is_some(),
+        })
+    }
+
+    /// Writes texts into the folder, each whole. The first is removed before and written last,
+    /// so that it never stands beside others of another export.
+    pub fn write(&self, texts: &[&NamedText]) -> Result<()> {
+        ready(&self.out)?;
+        let names: Vec<&str> = texts.iter().map(|text| &*text.name).collect();
+        sweep(&self.out, &names)?;
+        if let Some(first) = names.first() {
+            remove(&self.out.join(first))?;
+        }
+        let mut last_first = texts.iter().rev();
+        last_first
+            .try_for_each(|text| write_whole(&self.out.join(&text.name), text.text.as_bytes()))
+    }
+}
+
+/// Names as the option takes them.
+fn refused(error: ExportError) -> miette::Report {
+    wrong_use(format!("--strategy: {error}").replace('_', "-"))
+}

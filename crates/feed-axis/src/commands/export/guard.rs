@@ -1,0 +1,161 @@
+//! The guard of an exported compensator: its limits, as given or found in simulation.
+
+use axis_sim::SixDigits;
+use clap::Args;
+use compensator::GuardLimits;
+use controller_export::Controller;
+use miette::{IntoDiagnostic, Result};
+use pipeline::PipelineError;
+use pipeline::corrections::{Greatest, greatest};
+use pipeline::strategies::{Predictors, StrategyKind};
+use serde::Serialize;
+
+use crate::context::Context;
+use crate::exit::wrong_use;
+use crate::progress::bar;
+
+/// A limit over the greatest correction that was simulated.
+const MARGIN: f64 = 2.0;
+/// Least limits of the offsets, in SI units, for strategies that leave one at 0.
+const LEAST_OFFSET: f64 = 1e-6;
+/// Least limit of the surprise, which is about 1 where the axis is as it was designed for.
+const LEAST_SURPRISE: f64 = 10.0;
+/// The options of the limits.
+const NAMES: [&str; 3] = ["--limit-position", "--limit-effort", "--limit-surprise"];
+
+/// What the guard keeps to.
+#[derive(Args)]
+#[group(id = "guard-options")]
+pub struct Options {
+    /// Greatest offset of the position, m or rad [default: twice the greatest on the axis
+    /// file's trajectories, simulated]
+    #[arg(help_heading = "Guard", long = "limit-position", value_name = "SI", value_parser = positive, allow_negative_numbers = true)]
+    position: Option<f64>,
+    /// Greatest offset of the command, in the actuator's unit: A, N·m, N, V [default: likewise]
+    #[arg(help_heading = "Guard", long = "limit-effort", value_name = "SI", value_parser = positive, allow_negative_numbers = true)]
+    effort: Option<f64>,
+    /// Greatest surprise of a feedback's observer, in standard deviations [default: likewise,
+    /// at least 10]
+    #[arg(help_heading = "Guard", long = "limit-surprise", value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true)]
+    surprise: Option<f64>,
+    /// Time for which a limit may be exceeded before the guard trips, s
+    #[arg(help_heading = "Guard", long, value_name = "S", default_value_t = 0.002, value_parser = time, allow_negative_numbers = true)]
+    patience: f64,
+    /// Time in which corrections are faded in and out, s
+    #[arg(help_heading = "Guard", long, value_name = "S", default_value_t = 0.1, value_parser = time, allow_negative_numbers = true)]
+    fade: f64,
+}
+
+impl Options {
+    /// The greatest corrections in simulation, where a limit is to be made of them.
+    ///
+    /// # Errors
+    /// Wrong use, where the axis file has no trajectory and limits are missing.
+    pub fn simulated(
+        &self,
+        context: &Context,
+        predictors: &Predictors,
+        kind: &StrategyKind,
+    ) -> Result<Option<Greatest>> {
+        let given = [self.position, self.effort, self.surprise];
+        // Without an observer there is no surprise.
+        let asked = if kind.name == "feedback" { 3 } else { 2 };
+        if given[..asked].iter().all(Option::is_some) {
+            return Ok(None);
+        }
+        let progress = bar("limits", context.axis.trajectories.len() as u64);
+        let found = greatest(&context.machine, predictors, kind, || {
+            progress.inc(1);
+        });
+        progress.finish_and_clear();
+        match found {
+            Err(PipelineError::NoTrajectories) => Err(wrong_use(format!(
+                "the axis file has no [[trajectory]] on which the guard's limits could be found; \
+                 give {}",
+                NAMES[..asked].join(" and ")
+            ))),
+            found => found.into_diagnostic().map(Some),
+        }
+    }
+
+    /// The limits for a control period (s).
+    pub fn of(&self, simulated: Option<Greatest>, period: f64) -> GuardLimits {
+        let simulated = simulated.unwrap_or_default();
+        let cycles = |time: f64| (time / period).round() as u32;
+        let of = |given: Option<f64>, greatest: f64, least: f64| {
+            given.unwrap_or((MARGIN * greatest).max(least))
+        };
+        GuardLimits {
+            position: of(self.position, simulated.position, LEAST_OFFSET),
+            effort: of(self.effort, simulated.effort, LEAST_OFFSET),
+            surprise: of(self.surprise, simulated.surprise, LEAST_SURPRISE),
+            patience: cycles(self.patience),
+            fade: cycles(self.fade),
+        }
+    }
+}
+
+/// A compensator with its guard.
+pub struct Guarded {
+    /// The compensator.
+    pub controller: Controller,
+    /// Whether limits are made of simulated corrections.
+    pub is_simulated: bool,
+}
+
+/// What commands tell of a guard, for programs.
+#[derive(Serialize)]
+pub struct Guard {
+    position: f64,
+    effort: f64,
+    surprise: f64,
+    patience_cycles: u32,
+    fade_cycles: u32,
+    /// Whether limits are made of simulated corrections.
+    from_simulation: bool,
+}
+
+impl Guarded {
+    /// The guard, for programs.
+    pub fn guard(&self) -> Guard {
+        let limits = &self.controller.limits;
+        Guard {
+            position: limits.position,
+            effort: limits.effort,
+            surprise: limits.surprise,
+            patience_cycles: limits.patience,
+            fade_cycles: limits.fade,
+            from_simulation: self.is_simulated,
+        }
+    }
+
+    /// Its limits in a line, for people.
+    pub fn words(&self) -> String {
+        let Controller { limits, units, .. } = &self.controller;
+        let mut words = format!(
+            "guard: at most {} µ{} and {} {}",
+            SixDigits(1e6 * limits.position),
+            units.load,
+            SixDigits(limits.effort),
+            units.effort
+        );
+        if self.is_simulated {
+            words += ", twice the greatest on the trajectories (simulated) where not given";
+        }
+        words
+    }
+}
+
+/// A number above 0.
+fn positive(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse::<f64>().ok();
+    let number = number.filter(|limit| limit.is_normal() && *limit > 0.0);
+    number.ok_or_else(|| "give a number above 0".to_owned())
+}
+
+/// A time from 0 to 100 s.
+fn time(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse::<f64>().ok();
+    let number = number.filter(|time| (0.0..=100.0).contains(time));
+    number.ok_or_else(|| "give a time from 0 to 100 s".to_owned())
+}
