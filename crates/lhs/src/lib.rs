@@ -91,4 +91,9 @@ pub use marginals::{
     Cumulative, LogUniform, Marginal, Mixture, Normal, Tabulated, Triangular, Truncated, Uniform,
     map,
 };
-pub use optimise::{Budget, Criterion, History, MAXIMIN_P, optimise};
+pub use optimise::{Budget, Criterion, MAXIMIN_P, OptimisationHistory, optimise};
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -35,7 +35,10 @@ pub fn command(options: &Options) -> Result<()> {
     for package in &workspace.packages {
         let counts = Counts::of(package)?;
         table += &row(package, &counts)?;
-        texts.push(between(&package.folder().join("README.md"), &counts.sentence())?);
+        texts.push(between(
+            &package.folder().join("README.md"),
+            &counts.sentence(package),
+        )?);
     }
     texts.push(between(&root().join("docs/crates.md"), &table)?);
     texts.retain(|(_, before, after)| before != after);
@@ -44,7 +47,10 @@ pub fn command(options: &Options) -> Result<()> {
             write_whole(file, text.as_bytes())?;
         }
     } else if !texts.is_empty() {
-        let files: Vec<String> = texts.iter().map(|text| text.0.display().to_string()).collect();
+        let files: Vec<String> = texts
+            .iter()
+            .map(|text| text.0.display().to_string())
+            .collect();
         return Err(miette!(
             "not as the crates are now (`cargo xtask crates --write` mends it):\n{}",
             files.join("\n")
@@ -81,7 +87,11 @@ impl Counts {
     fn of(package: &Package) -> Result<Self> {
         let default = dependencies(&package.name, None)?;
         if package.features.is_empty() {
-            return Ok(Self { bare: default, default, all: default });
+            return Ok(Self {
+                bare: default,
+                default,
+                all: default,
+            });
         }
         Ok(Self {
             bare: dependencies(&package.name, Some("--no-default-features"))?,
@@ -90,15 +100,17 @@ impl Counts {
         })
     }
 
-    fn sentence(&self) -> String {
+    fn sentence(&self, package: &Package) -> String {
         let Self { bare, default, all } = self;
-        if bare == all {
-            return format!("Crates that it needs, itself not counted: {all}.\n");
-        }
-        format!(
-            "Crates that it needs, itself not counted: {bare} without features, {default} with those \
-             that are on by default, {all} with all.\n"
-        )
+        let counts = if bare == all {
+            all.to_string()
+        } else {
+            format!(
+                "{bare} without features, {default} with those that are on by default, {all} with all"
+            )
+        };
+        let rust = package.rust_version.as_deref().unwrap_or_default();
+        format!("Rust {rust} or later. Crates that it needs, itself not counted: {counts}.\n")
     }
 
     fn cell(&self) -> String {
@@ -127,12 +139,18 @@ fn row(package: &Package, counts: &Counts) -> Result<String> {
     let features = package.features.keys().filter(|name| *name != "default");
     let features: Vec<String> = features.map(|name| format!("`{name}`")).collect();
     let library = read_text(&package.folder().join("src/lib.rs"))?;
-    let bare = library.lines().any(|line| line.starts_with("#![") && line.contains("no_std"));
+    let bare = library
+        .lines()
+        .any(|line| line.starts_with("#![") && line.contains("no_std"));
     Ok(format!(
         "| {} | [{name}](../crates/{name}/README.md) | {} | {} | {} | {} | {} |\n",
         package.metadata.layer.level,
         package.description.as_deref().unwrap_or_default(),
-        if features.is_empty() { "–".to_owned() } else { features.join(", ") },
+        if features.is_empty() {
+            "–".to_owned()
+        } else {
+            features.join(", ")
+        },
         if bare { "yes" } else { "–" },
         package.rust_version.as_deref().unwrap_or_default(),
         counts.cell(),

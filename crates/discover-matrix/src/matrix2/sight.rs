@@ -211,7 +211,7 @@ mod tests {
 
     use super::*;
     use crate::hidden::{Exercise, Rough, Truth};
-    use crate::matrix2::{Bench, Setting};
+    use crate::matrix2::{Bench, CaseSetting};
 
     /// Of a linear response the fall of D goes with the square of its size, and what known
     /// parameters do costs their tolerance and no more: a payload is a part of the load.
@@ -222,7 +222,7 @@ mod tests {
             "/../../data/axes/linear-motor.toml"
         );
         let axis = Axis::read(file.as_ref()).unwrap();
-        let setting = Setting {
+        let setting = CaseSetting {
             machine: axis.name.clone(),
             exercise: Exercise::ThereAndBack,
             start: 0.2,

@@ -56,26 +56,19 @@ impl Found {
         if let Some((_, items)) = &module.content {
             return self.module(items, &below, &path, &self.package.display().to_string());
         }
-        let (beside, within) = (
-            folder.join(format!("{name}.rs")),
-            below.join("mod.rs"),
-        );
+        let (beside, within) = (folder.join(format!("{name}.rs")), below.join("mod.rs"));
         let file = if beside.exists() { beside } else { within };
         self.module(&items(&file)?, &below, &path, &file.display().to_string())
     }
 
     /// `pub use`: types of this crate alone; what is another crate's has its name there.
-    fn import(
-        &mut self,
-        tree: &UseTree,
-        modules: &[&Ident],
-        path: &str,
-        file: &str,
-    ) -> Result<()> {
+    fn import(&mut self, tree: &UseTree, modules: &[&Ident], path: &str, file: &str) -> Result<()> {
         let UseTree::Path(first) = tree else {
             return Ok(());
         };
-        let own = ["crate", "self", "super"].iter().any(|own| first.ident == own);
+        let own = ["crate", "self", "super"]
+            .iter()
+            .any(|own| first.ident == own);
         if own || modules.contains(&&first.ident) {
             self.leaves(&first.tree, path, file)?;
         }
@@ -142,4 +135,36 @@ fn type_name(item: &Item) -> Option<&Ident> {
         _ => return None,
     };
     public(visibility).then_some(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(source: &str) -> Vec<String> {
+        let package = tempfile::tempdir().unwrap();
+        std::fs::create_dir(package.path().join("src")).unwrap();
+        std::fs::write(package.path().join("src/lib.rs"), source).unwrap();
+        let types = types(package.path(), "it").unwrap();
+        types.into_iter().map(|(_, place)| place).collect()
+    }
+
+    #[test]
+    fn public_are_declarations_and_re_exports_on_public_paths() {
+        let inner = "mod inner { pub struct Seen; pub struct Unseen; } pub use inner::{Seen as Shown, LIMIT, run};";
+        assert_eq!(of(inner), ["it::Shown"]);
+        assert_eq!(
+            of("pub mod a { pub enum Kind {} struct Own; }"),
+            ["it::a::Kind"]
+        );
+        assert_eq!(
+            of("pub(crate) struct Own; pub trait Law {} pub type Row = Vec<f64>;"),
+            ["it::Law", "it::Row"]
+        );
+    }
+
+    #[test]
+    fn types_of_other_crates_are_not_counted() {
+        assert!(of("pub use scalar::Scalar; pub use std::ops::{Range};").is_empty());
+    }
 }

@@ -45,7 +45,9 @@ fn keywords(keywords: &[String]) -> Vec<String> {
     let valid = |word: &str| {
         word.len() <= 20
             && word.starts_with(|c: char| c.is_ascii_alphanumeric())
-            && word.chars().all(|c| c.is_ascii_alphanumeric() || "_-+".contains(c))
+            && word
+                .chars()
+                .all(|c| c.is_ascii_alphanumeric() || "_-+".contains(c))
     };
     let wrong = keywords.iter().filter(|word| !valid(word));
     let mut lacks: Vec<String> = wrong
@@ -81,11 +83,15 @@ mod tests {
 
     #[test]
     fn keywords_are_those_that_the_registry_takes() {
-        let of = |words: &[&str]| keywords(&words.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>());
+        let of =
+            |words: &[&str]| keywords(&words.iter().map(|w| (*w).to_owned()).collect::<Vec<_>>());
         assert!(of(&["no-std", "f32", "c++"]).is_empty());
         for wrong in ["servo axis", "-std", "gewindetrieb-simulation", "µm"] {
             assert_eq!(of(&[wrong]).len(), 1, "{wrong}");
         }
-        assert_eq!(of(&["a", "b", "c", "d", "e", "f"]), ["more than 5 keywords"]);
+        assert_eq!(
+            of(&["a", "b", "c", "d", "e", "f"]),
+            ["more than 5 keywords"]
+        );
     }
 }

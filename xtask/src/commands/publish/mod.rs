@@ -65,7 +65,10 @@ fn meet_demands(packages: &[Package]) -> Result<()> {
     if lacks.is_empty() {
         return Ok(());
     }
-    Err(miette!("crates that cannot be published:\n{}", lacks.join("\n")))
+    Err(miette!(
+        "crates that cannot be published:\n{}",
+        lacks.join("\n")
+    ))
 }
 
 /// Makes all packages, each built from its own files where that is asked.
@@ -82,11 +85,16 @@ fn package(packages: &[Package], options: &Options) -> Result<()> {
             command.arg(option);
         }
     }
-    let status = command.status().into_diagnostic().wrap_err("cannot run cargo")?;
+    let status = command
+        .status()
+        .into_diagnostic()
+        .wrap_err("cannot run cargo")?;
     if status.success() {
         return Ok(());
     }
-    Err(miette!("`cargo package` refused a crate: see its message above"))
+    Err(miette!(
+        "`cargo package` refused a crate: see its message above"
+    ))
 }
 
 /// Place in the order, name, version and size of a package.
@@ -94,9 +102,13 @@ fn line(number: usize, package: &Package, made: &Path) -> Result<String> {
     let Package { name, version, .. } = package;
     let file = made.join(format!("{name}-{version}.crate"));
     let about = || format!("no package {}", file.display());
-    let size = std::fs::metadata(&file).into_diagnostic().wrap_err_with(about)?;
+    let size = std::fs::metadata(&file)
+        .into_diagnostic()
+        .wrap_err_with(about)?;
     let kilobytes = size.len() as f64 / 1e3;
-    Ok(format!("{number:>2} {name:<18} {version} {kilobytes:>7.1} kB"))
+    Ok(format!(
+        "{number:>2} {name:<18} {version} {kilobytes:>7.1} kB"
+    ))
 }
 
 /// Whether it may go to no registry.
