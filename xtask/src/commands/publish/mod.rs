@@ -1,9 +1,10 @@
 //! `publish --dry-run`: what publishing all crates would do, in its order, without doing it.
 //!
 //! It asks of each crate what crates.io does ([`demands`]), then lets cargo make and build all
-//! packages: cargo 1.90 or later takes those that are not published yet from each other. It never
-//! publishes; a person does.
+//! packages of a copy ([`copy`]): cargo 1.90 or later takes those that are not published yet from
+//! each other. It never publishes; a person does.
 
+mod copy;
 mod demands;
 
 use std::collections::BTreeMap;
@@ -26,9 +27,6 @@ pub struct Options {
     /// Package without building what was packaged: quick, but a file outside of its crate is not noticed
     #[arg(long)]
     no_verify: bool,
-    /// Package changes that are not committed too
-    #[arg(long)]
-    allow_dirty: bool,
 }
 
 /// Runs the command.
@@ -42,8 +40,9 @@ pub fn command(options: &Options) -> Result<()> {
     let workspace = workspace()?;
     let packages = &workspace.packages;
     meet_demands(packages)?;
-    package(packages, options)?;
-    let made = workspace.target_directory.join("package");
+    let work = workspace.target_directory.join("publish");
+    package(packages, &work, options)?;
+    let made = work.join("target/package");
     for (number, package) in packages.iter().enumerate() {
         say(line(number + 1, package, &made)?)?;
     }
@@ -71,19 +70,20 @@ fn meet_demands(packages: &[Package]) -> Result<()> {
     ))
 }
 
-/// Makes all packages, each built from its own files where that is asked.
-fn package(packages: &[Package], options: &Options) -> Result<()> {
-    let mut command = cargo(&["package", "--locked"]);
+/// Makes all packages in `work`, each built from its own files where that is asked.
+fn package(packages: &[Package], work: &Path, options: &Options) -> Result<()> {
+    let project = work.join("project");
+    copy::make(&project)?;
+    let mut command = cargo(&["package", "--locked", "--no-metadata", "--allow-dirty"]);
+    command
+        .current_dir(&project)
+        .arg("--target-dir")
+        .arg(work.join("target"));
     for package in packages {
         command.args(["-p", &package.name]);
     }
-    for (asked, option) in [
-        (options.no_verify, "--no-verify"),
-        (options.allow_dirty, "--allow-dirty"),
-    ] {
-        if asked {
-            command.arg(option);
-        }
+    if options.no_verify {
+        command.arg("--no-verify");
     }
     let status = command
         .status()
