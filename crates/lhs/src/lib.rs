@@ -66,6 +66,10 @@
 //! # Ok::<(), lhs::LhsError>(())
 //! ```
 //!
+//! # Features
+//! `simd` (on by default) makes designs with the vector instructions that the processor has,
+//! the same bits somewhat faster.
+//!
 //! # What it knows nothing of
 //! What the variables mean, the model that is run at the points, correlated
 //! inputs, constraints between variables, adding points to a finished design.
