@@ -12,10 +12,19 @@ const SOURCES: [&str; 5] = [
     "tests/independent",
 ];
 
+/// The same of a package, which has no workspace around it: the lock file names the other crates and their hashes.
+const PACKAGED: [&str; 4] = ["Cargo.lock", "Cargo.toml", "src", "templates"];
+
 fn main() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let workspace = own.join("../..");
+    let (root, sources) = if workspace.join("xtask").is_dir() {
+        (workspace, &SOURCES[..])
+    } else {
+        (own.to_owned(), &PACKAGED[..])
+    };
     let mut files = Vec::new();
-    for source in SOURCES {
+    for source in sources {
         collect(&root.join(source), &mut files);
     }
     files.sort();

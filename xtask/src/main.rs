@@ -3,6 +3,7 @@
 
 mod commands;
 mod jobs;
+mod packages;
 mod page;
 
 use std::process::ExitCode;
@@ -11,7 +12,7 @@ use clap::{Parser, Subcommand};
 use feed_axis::cli::{Global, finish, parse, start};
 use feed_axis::commands::export::drive;
 
-use commands::{bench, independent, layers, torture};
+use commands::{bench, crates, independent, layers, names, publish, torture};
 use jobs::Job;
 
 /// Dynamic error of ball-screw axes: simulate, predict, compensate.
@@ -43,6 +44,12 @@ enum Command {
     Torture(torture::Options),
     /// Check that every crate depends strictly downward
     Layers,
+    /// Check that no two crates give one name to different public types
+    Names,
+    /// Check, or write, the table of crates (docs/crates.md) and the dependencies that READMEs name
+    Crates(crates::Options),
+    /// Check and package all crates in the order of publishing
+    Publish(publish::Options),
 }
 
 fn main() -> ExitCode {
@@ -55,5 +62,8 @@ fn main() -> ExitCode {
         Command::Bench(options) => bench::command(options),
         Command::Torture(options) => torture::command(options),
         Command::Layers => layers::command(),
+        Command::Names => names::command(),
+        Command::Crates(options) => crates::command(options),
+        Command::Publish(options) => publish::command(options),
     })
 }

@@ -11,6 +11,21 @@ fn every_crate_depends_strictly_downward() {
 }
 
 #[test]
+fn no_two_crates_give_one_name_to_different_types() {
+    assert!(succeed(&["names"]).contains("alone"));
+}
+
+#[test]
+fn pages_name_the_crates_and_what_they_need() {
+    assert!(succeed(&["crates"]).contains("described"));
+}
+
+#[test]
+fn publishing_is_left_to_a_person() {
+    assert!(refuse(&["publish"]).contains("only `publish --dry-run` is possible"));
+}
+
+#[test]
 fn help_names_the_commands_of_users_and_of_developers() {
     let help = succeed(&["--help"]);
     for command in [
@@ -23,6 +38,9 @@ fn help_names_the_commands_of_users_and_of_developers() {
         "bench",
         "torture",
         "layers",
+        "names",
+        "crates",
+        "publish",
     ] {
         assert!(help.contains(command), "{command}");
         let own = succeed(&[command, "--help"]);

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use axis_sim::Axis;
 
-use crate::measure::{BASE, Measure};
+use crate::measure::{BASE, UnitDefinition};
 use crate::package::MODEL_IDENTIFIER;
 use crate::unit::token;
 use crate::variables::{Variable, VariableKind, Variables};
@@ -61,8 +61,8 @@ fn is_output(variable: &Variable) -> bool {
 }
 
 /// The units of variables, each once, in the order in which they come.
-fn measures(variables: &Variables) -> Vec<&Measure> {
-    let mut all: Vec<&Measure> = Vec::new();
+fn measures(variables: &Variables) -> Vec<&UnitDefinition> {
+    let mut all: Vec<&UnitDefinition> = Vec::new();
     for measure in variables.iter().filter_map(|v| v.measure.as_ref()) {
         if !all.iter().any(|known| known.name == measure.name) {
             all.push(measure);
@@ -71,7 +71,7 @@ fn measures(variables: &Variables) -> Vec<&Measure> {
     all
 }
 
-fn unit(measure: &Measure) -> String {
+fn unit(measure: &UnitDefinition) -> String {
     let mut text = format!("<Unit name=\"{}\"><BaseUnit", escaped(&measure.name));
     for (symbol, power) in BASE.iter().zip(measure.powers) {
         if power != 0 {

@@ -3,7 +3,7 @@
 use axis_sim::{AxisFileError, RunStopped, SetupError};
 use thiserror::Error;
 
-use crate::mode::Mode;
+use crate::mode::FmiMode;
 
 /// Why a call of a unit failed.
 #[derive(Debug, Error)]
@@ -23,7 +23,7 @@ pub enum UnitError {
         /// What was called.
         call: &'static str,
         /// The mode that the unit is in.
-        mode: Mode,
+        mode: FmiMode,
         /// When it may be called.
         valid: &'static str,
     },

@@ -41,10 +41,15 @@ mod variables;
 
 pub use description::description;
 pub use error::UnitError;
-pub use measure::Measure;
-pub use mode::Mode;
+pub use measure::UnitDefinition;
+pub use mode::FmiMode;
 pub use package::{
     AXIS_FILE, LIBRARY_MARK, MODEL_IDENTIFIER, PackageError, library_file, package, platform,
 };
 pub use unit::Unit;
 pub use variables::{Variable, VariableKind, Variables};
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -4,7 +4,7 @@
 ///
 /// FMI has the radian among them (FMI 3.0.2, Section 2.4.3).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measure {
+pub struct UnitDefinition {
     /// As people write it, `N.m/rad`.
     pub name: String,
     /// SI units in one of it.
@@ -13,7 +13,7 @@ pub struct Measure {
     pub powers: [i32; 5],
 }
 
-/// Symbols of the base units, in the order of [`Measure::powers`].
+/// Symbols of the base units, in the order of [`UnitDefinition::powers`].
 pub(crate) const BASE: [&str; 5] = ["kg", "m", "s", "A", "rad"];
 
 /// Radians in one degree.
@@ -57,7 +57,7 @@ const SYMBOLS: &[Symbol] = &[
     ("uh",     "uH",     1e-6,              [1, 2, -2, -2, 0]),
 ];
 
-impl Measure {
+impl UnitDefinition {
     /// The unit that the axis file spells so: units side by side multiply, what follows `per`
     /// divides, a number is a power (`n_m_s_per_rad`, `kg_per_m3`). None for an unknown one.
     pub fn spelled(spelling: &str) -> Option<Self> {
@@ -141,7 +141,8 @@ mod tests {
         let units = all.iter().flatten().flat_map(|key| key.units());
         let mut count = 0;
         for (unit, factor) in units {
-            let measure = Measure::spelled(unit).unwrap_or_else(|| panic!("{unit} is unknown"));
+            let measure =
+                UnitDefinition::spelled(unit).unwrap_or_else(|| panic!("{unit} is unknown"));
             assert!(
                 (measure.factor / factor - 1.0).abs() < 1e-12,
                 "{unit}: {measure:?}"
@@ -155,7 +156,7 @@ mod tests {
     fn every_channel_has_a_unit() {
         for channel in CHANNELS {
             for [_, unit] in [channel.linear, channel.rotary] {
-                assert!(Measure::of_channel(unit).is_some(), "{unit}");
+                assert!(UnitDefinition::of_channel(unit).is_some(), "{unit}");
             }
         }
     }
@@ -163,15 +164,18 @@ mod tests {
     /// 1 N·m/(rad/s) is 1 kg·m²/(s·rad); Ω·A = V; H·A/s = V.
     #[test]
     fn powers_follow_the_laws_that_join_units() {
-        let of = |spelling| Measure::spelled(spelling).unwrap().powers;
+        let of = |spelling| UnitDefinition::spelled(spelling).unwrap().powers;
         assert_eq!(of("n_m_s_per_rad"), [1, 2, -1, 0, -1]);
         assert_eq!(of("ohm_a"), of("v"));
         assert_eq!(of("h_a_per_s"), of("v"));
         assert_eq!(of("n_m_per_s"), of("v_a"));
         assert_eq!(of("pa_m2"), of("n"));
         assert_eq!(of("rpm"), of("rad_per_s"));
-        assert_eq!(Measure::spelled("a_per_rpm_s").unwrap().name, "A/(rpm.s)");
-        assert_eq!(Measure::spelled("per_s").unwrap().name, "1/s");
-        assert_eq!(Measure::spelled("furlong"), None);
+        assert_eq!(
+            UnitDefinition::spelled("a_per_rpm_s").unwrap().name,
+            "A/(rpm.s)"
+        );
+        assert_eq!(UnitDefinition::spelled("per_s").unwrap().name, "1/s");
+        assert_eq!(UnitDefinition::spelled("furlong"), None);
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 /// State of the calling order (FMI 3.0.2, Sections 2.3 and 4.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
+pub enum FmiMode {
     /// Made, or reset.
     Instantiated,
     /// Between the two calls of the initialisation.
@@ -17,7 +17,7 @@ pub enum Mode {
     Failed,
 }
 
-impl fmt::Display for Mode {
+impl fmt::Display for FmiMode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Instantiated => "instantiated",

@@ -6,7 +6,7 @@ use axis_sim::{Axis, ClosedLoop};
 use trajectories::Setpoint;
 
 use crate::error::UnitError;
-use crate::mode::Mode;
+use crate::mode::FmiMode;
 use crate::parameters;
 use crate::run::{Given, Run};
 use crate::variables::{Input, VariableKind, Variables};
@@ -25,7 +25,7 @@ const MOST_CYCLES: f64 = 1e9;
 #[derive(Clone, Debug)]
 pub struct Unit {
     file: Arc<File>,
-    mode: Mode,
+    mode: FmiMode,
     /// Of inputs and parameters, by value reference.
     values: Vec<f64>,
     run: Option<Run>,
@@ -52,7 +52,7 @@ impl Unit {
         ClosedLoop::new(&axis)?;
         let variables = Variables::of(&axis, name, text)?;
         Ok(Self {
-            mode: Mode::Instantiated,
+            mode: FmiMode::Instantiated,
             values: variables.starts(),
             run: None,
             span: [0.0, f64::INFINITY],
@@ -76,7 +76,7 @@ impl Unit {
     }
 
     /// Where it is in the calling order.
-    pub fn mode(&self) -> Mode {
+    pub fn mode(&self) -> FmiMode {
         self.mode
     }
 
@@ -100,7 +100,7 @@ impl Unit {
     pub fn enter_initialization(&mut self, start: f64, stop: Option<f64>) -> Result<(), UnitError> {
         self.in_mode(
             "initialization",
-            &[Mode::Instantiated],
+            &[FmiMode::Instantiated],
             "once, after it is made or reset",
         )?;
         finite("start time", start)?;
@@ -113,7 +113,7 @@ impl Unit {
             });
         }
         self.span = [start, stop.unwrap_or(f64::INFINITY)];
-        self.mode = Mode::Initialization;
+        self.mode = FmiMode::Initialization;
         Ok(())
     }
 
@@ -125,11 +125,11 @@ impl Unit {
     pub fn exit_initialization(&mut self) -> Result<(), UnitError> {
         self.in_mode(
             "end of the initialization",
-            &[Mode::Initialization],
+            &[FmiMode::Initialization],
             "after its beginning",
         )?;
         self.settled()?;
-        self.mode = Mode::Step;
+        self.mode = FmiMode::Step;
         Ok(())
     }
 
@@ -140,16 +140,16 @@ impl Unit {
     pub fn terminate(&mut self) -> Result<(), UnitError> {
         self.in_mode(
             "termination",
-            &[Mode::Step, Mode::Failed],
+            &[FmiMode::Step, FmiMode::Failed],
             "once, after the initialization",
         )?;
-        self.mode = Mode::Terminated;
+        self.mode = FmiMode::Terminated;
         Ok(())
     }
 
     /// As it was when it was made, in any mode.
     pub fn reset(&mut self) {
-        self.mode = Mode::Instantiated;
+        self.mode = FmiMode::Instantiated;
         self.values = self.file.variables.starts();
         self.run = None;
         self.span = [0.0, f64::INFINITY];
@@ -157,7 +157,7 @@ impl Unit {
 
     /// Gives the instance up: what is left is to reset it, or to set it to a saved state.
     pub fn fail(&mut self) {
-        self.mode = Mode::Failed;
+        self.mode = FmiMode::Failed;
     }
 
     /// The value of a variable, in its unit. In initialisation mode outputs are those of the axis
@@ -178,7 +178,7 @@ impl Unit {
                     .unwrap_or(f64::NAN));
             }
         };
-        if self.mode == Mode::Initialization {
+        if self.mode == FmiMode::Initialization {
             self.settled()?;
         }
         match &self.run {
@@ -193,12 +193,19 @@ impl Unit {
     /// [`UnitError::Reference`]; [`UnitError::Set`] for what cannot be set, or not any more, and
     /// for what is not finite; [`UnitError::Order`] after the end.
     pub fn set(&mut self, reference: u32, value: f64) -> Result<(), UnitError> {
-        let (set, is_before) = (self.file.variables.get(reference)?, self.mode != Mode::Step);
+        let (set, is_before) = (
+            self.file.variables.get(reference)?,
+            self.mode != FmiMode::Step,
+        );
         let refused = |why: &str| UnitError::Set {
             name: set.name.clone(),
             why: why.to_owned(),
         };
-        let valid = [Mode::Instantiated, Mode::Initialization, Mode::Step];
+        let valid = [
+            FmiMode::Instantiated,
+            FmiMode::Initialization,
+            FmiMode::Step,
+        ];
         self.in_mode(
             "setting a variable",
             &valid,
@@ -233,7 +240,7 @@ impl Unit {
     /// [`UnitError::Order`] unless in step mode; [`UnitError::Time`] for another time, and then
     /// nothing has been done; [`UnitError::Stopped`] where the run had to be given up.
     pub fn step(&mut self, point: f64, step: f64) -> Result<f64, UnitError> {
-        self.in_mode("a step", &[Mode::Step], "after the initialization")?;
+        self.in_mode("a step", &[FmiMode::Step], "after the initialization")?;
         let cycles = self.cycles(point, step)?;
         let given = self.given();
         let Some(run) = &mut self.run else {
@@ -241,7 +248,7 @@ impl Unit {
         };
         for _ in 0..cycles {
             if let Err(stopped) = run.cycle(&given) {
-                self.mode = Mode::Failed;
+                self.mode = FmiMode::Failed;
                 return Err(stopped);
             }
         }
@@ -326,7 +333,7 @@ impl Unit {
     fn in_mode(
         &self,
         call: &'static str,
-        modes: &[Mode],
+        modes: &[FmiMode],
         valid: &'static str,
     ) -> Result<(), UnitError> {
         match modes.contains(&self.mode) {

@@ -4,7 +4,7 @@ use axis_sim::Axis;
 use axis_sim::mechanism::Freedom;
 
 use crate::error::UnitError;
-use crate::measure::Measure;
+use crate::measure::UnitDefinition;
 use crate::outputs::{Source, is_linear_motor, outputs};
 use crate::parameters::parameters;
 
@@ -18,7 +18,7 @@ pub struct Variable {
     /// What it is, for people.
     pub description: String,
     /// Unit of its value; none of a plain number.
-    pub measure: Option<Measure>,
+    pub measure: Option<UnitDefinition>,
     /// What it is to the unit.
     pub kind: VariableKind,
     /// Value before anybody sets it, in its unit; none of what is computed.
@@ -97,7 +97,7 @@ impl Variables {
             let name = format!("{}.{}", parameter.table, parameter.key);
             all.push(&name, &parameter.valid, "", kind, Some(parameter.value));
             if let Some(last) = all.0.last_mut() {
-                last.measure = Measure::spelled(parameter.unit);
+                last.measure = UnitDefinition::spelled(parameter.unit);
             }
         }
         Ok(all)
@@ -115,7 +115,7 @@ impl Variables {
             reference: self.0.len() as u32,
             name: name.to_owned(),
             description: meaning.to_owned(),
-            measure: Measure::of_channel(unit),
+            measure: UnitDefinition::of_channel(unit),
             kind,
             start,
         });

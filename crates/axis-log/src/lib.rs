@@ -127,7 +127,7 @@ mod write;
 pub use channel::Channel;
 pub use csv_in::{read_csv, read_csv_from};
 pub use error::{CsvError, CsvProblem, LogError};
-pub use import::{Proposal, ProposedColumn, propose};
+pub use import::{MappingProposal, ProposedColumn, propose};
 pub use log::{Log, TIME_CHANNEL};
 pub use mapping::{ColumnMap, ColumnUnit, Mapping, MappingError};
 pub use read::read_log;
@@ -136,3 +136,8 @@ pub use unit::{unit_of, unit_suffixes};
 pub use write::{
     CsvSink, LAYOUT, LogFile, LogSink, WriteError, WriteProblem, write, write_csv, write_csv_to,
 };
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

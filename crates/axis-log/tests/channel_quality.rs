@@ -4,7 +4,8 @@ use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use axis_log::quality::{
-    ChannelQuality, Colour, Law, Relation, Verdict, channel_quality, clock, cross_check,
+    ChannelQuality, Colour, CrossCheckVerdict, Relation, RelationLaw, channel_quality, clock,
+    cross_check,
 };
 use axis_log::{Channel, ColumnMap, Log, Mapping, read_log};
 use proptest::prelude::*;
@@ -204,18 +205,18 @@ fn findings(position: f64, angle: f64, zero: f64) -> Vec<axis_log::quality::Find
         ("motor_speed_rad_s", of(|t| speed(t - 5e-3) / TRAVEL)),
     ]);
     let relations = [
-        Relation::new("position_m", "position_ref_m", Law::Same),
+        Relation::new("position_m", "position_ref_m", RelationLaw::Same),
         Relation::new(
             "position_m",
             "motor_angle_rad",
-            Law::Scaled { factor: TRAVEL },
+            RelationLaw::Scaled { factor: TRAVEL },
         ),
         Relation::new(
             "motor_angle_rad",
             "motor_speed_rad_s",
-            Law::Integral { factor: 1.0 },
+            RelationLaw::Integral { factor: 1.0 },
         ),
-        Relation::new("position_m", "not_there_m", Law::Same),
+        Relation::new("position_m", "not_there_m", RelationLaw::Same),
     ];
     cross_check(&log, &mapped(), &relations)
 }
@@ -225,7 +226,7 @@ fn channels_that_agree_are_let_be() {
     let found = findings(1.0, 1.0, 0.0);
     assert_eq!(found.len(), 3);
     for f in found {
-        assert_eq!(f.verdict, Verdict::Agrees, "{f}");
+        assert_eq!(f.verdict, CrossCheckVerdict::Agrees, "{f}");
         assert_eq!(f.repair, None);
     }
 }
@@ -264,7 +265,9 @@ fn degrees_counts_turns_millimetres_and_signs_are_recognised() {
     ];
     for (position, angle, zero, channel, words, scale) in cases {
         let found = findings(position, angle, zero);
-        let wrong = found.iter().filter(|f| f.verdict == Verdict::Contradicts);
+        let wrong = found
+            .iter()
+            .filter(|f| f.verdict == CrossCheckVerdict::Contradicts);
         let told = wrong.filter(|f| f.looks_like.contains(words));
         let repairs: Vec<_> = told.filter_map(|f| f.repair.as_ref()).collect();
         let right = repairs
@@ -279,7 +282,7 @@ fn another_zero_is_told_with_the_offset_that_mends_it() {
     let found = findings(1.0, 1.0, 0.4);
     let wrong: Vec<_> = found
         .iter()
-        .filter(|f| f.verdict == Verdict::Contradicts)
+        .filter(|f| f.verdict == CrossCheckVerdict::Contradicts)
         .collect();
     assert_eq!(wrong.len(), 1, "{found:#?}");
     let repair = wrong[0].repair.as_ref().unwrap();
@@ -296,10 +299,14 @@ fn a_factor_that_no_unit_explains_is_unsure() {
     let found = findings(1.0, 1.37, 0.0);
     let odd: Vec<_> = found
         .iter()
-        .filter(|f| f.verdict == Verdict::Unsure)
+        .filter(|f| f.verdict == CrossCheckVerdict::Unsure)
         .collect();
     assert_eq!(odd.len(), 2, "{found:#?}");
-    assert!(found.iter().all(|f| f.verdict != Verdict::Contradicts));
+    assert!(
+        found
+            .iter()
+            .all(|f| f.verdict != CrossCheckVerdict::Contradicts)
+    );
 }
 
 fn measured(file: &str) -> Option<Log> {
@@ -357,10 +364,14 @@ fn the_emps_stage_has_the_grid_and_the_filter_that_it_is_known_for() {
         return;
     };
     tell(&check);
-    let same = [Relation::new("position_m", "position_ref_m", Law::Same)];
+    let same = [Relation::new(
+        "position_m",
+        "position_ref_m",
+        RelationLaw::Same,
+    )];
     for log in [fit, check] {
         for finding in cross_check(&log, &Mapping::default(), &same) {
-            assert_eq!(finding.verdict, Verdict::Agrees, "{finding}");
+            assert_eq!(finding.verdict, CrossCheckVerdict::Agrees, "{finding}");
         }
     }
 }
@@ -377,11 +388,11 @@ fn the_bench_motor_has_its_encoder_and_its_integral() {
     let integral = [Relation::new(
         "position_rad",
         "velocity_rad_s",
-        Law::Integral { factor: 1.0 },
+        RelationLaw::Integral { factor: 1.0 },
     )];
     for finding in cross_check(&log, &Mapping::default(), &integral) {
         println!("{finding}");
-        assert_eq!(finding.verdict, Verdict::Agrees, "{finding}");
+        assert_eq!(finding.verdict, CrossCheckVerdict::Agrees, "{finding}");
     }
 }
 
@@ -395,12 +406,12 @@ fn the_rig_of_two_motors_has_its_torque_constant() {
         Relation::new(
             "position_rad",
             "velocity_rad_s",
-            Law::Integral { factor: 1.0 },
+            RelationLaw::Integral { factor: 1.0 },
         ),
         Relation::new(
             "torque_measured_n_m",
             "current_a",
-            Law::About {
+            RelationLaw::About {
                 factor: 0.0458,
                 within: 2.0,
             },
@@ -408,6 +419,6 @@ fn the_rig_of_two_motors_has_its_torque_constant() {
     ];
     for finding in cross_check(&log, &Mapping::default(), &relations) {
         println!("{finding}");
-        assert_ne!(finding.verdict, Verdict::Contradicts, "{finding}");
+        assert_ne!(finding.verdict, CrossCheckVerdict::Contradicts, "{finding}");
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use axis_log::intake::{Done, Options, Prepared, prepare};
+use axis_log::intake::{Done, Options, PreparedLog, prepare};
 use axis_log::{ColumnMap, ColumnUnit, Log, Mapping, MappingError, read_log};
 use proptest::prelude::*;
 
@@ -53,7 +53,7 @@ impl Folder {
     }
 }
 
-fn plain(paths: &[PathBuf]) -> Prepared {
+fn plain(paths: &[PathBuf]) -> PreparedLog {
     prepare(paths, &Mapping::default(), &[], Options::default()).unwrap()
 }
 

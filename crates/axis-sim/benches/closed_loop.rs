@@ -86,7 +86,7 @@ fn inputs(axis: &Axis, count: usize) -> Vec<CycleInput> {
     let part = |p: f64, i: usize| (p.sqrt() * (i + 1) as f64).fract();
     let s = axis.samples.expect("the axis file has ranges");
     let within =
-        |range: axis_sim::Range, part: f64| range.least + part * (range.most - range.least);
+        |range: axis_sim::ValueRange, part: f64| range.least + part * (range.most - range.least);
     (0..count)
         .map(|i| CycleInput {
             position: within(s.position, part(2.0, i)),

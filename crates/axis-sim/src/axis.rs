@@ -126,14 +126,14 @@ pub struct Stroke {
 
 /// A closed interval, SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
+pub struct ValueRange {
     /// Lower end.
     pub least: f64,
     /// Upper end.
     pub most: f64,
 }
 
-impl Range {
+impl ValueRange {
     /// Whether `value` lies inside.
     pub fn contains(&self, value: f64) -> bool {
         (self.least..=self.most).contains(&value)
@@ -144,13 +144,13 @@ impl Range {
 #[derive(Clone, Copy, Debug)]
 pub struct SampleRanges {
     /// S(k), m or rad.
-    pub position: Range,
+    pub position: ValueRange,
     /// Ṡ(k), per second.
-    pub speed: Range,
+    pub speed: ValueRange,
     /// S̈(k), per second squared.
-    pub acceleration: Range,
+    pub acceleration: ValueRange,
     /// The actuator's command: I_qr(k), A, in the paper.
-    pub effort: Range,
+    pub effort: ValueRange,
 }
 
 /// One rest-to-rest move.

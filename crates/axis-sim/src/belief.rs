@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use compensator::{Along, Cascade, CompensatorError, DriveModel, Kinematics, Section};
+use compensator::{Along, Cascade, CompensatorError, DriveModel, DriveSection, Kinematics};
 
 use crate::axis::{Axis, LoadSensor};
 use crate::effects::{Hooks, ScrewState};
@@ -116,7 +116,7 @@ impl Axis {
         let most = reach.map_or(self.stroke.maximum, |r| r.most.min(self.stroke.maximum));
         let along = Along::new([least, most], |x| {
             let rotating = self.mechanism.rotating(x);
-            Section {
+            DriveSection {
                 compliance: self.mechanism.compliance(x),
                 rotating: rotating.iter().map(|[inertia, _]| inertia).sum(),
                 lagging: rotating.iter().map(|[inertia, lag]| inertia * lag).sum(),

@@ -113,8 +113,8 @@ mod six_digits;
 mod work;
 
 pub use axis::{
-    Axis, BalanceSettings, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, Range,
-    SampleRanges, Sensors, Simulation, Stroke, Tolerances,
+    Axis, BalanceSettings, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, SampleRanges,
+    Sensors, Simulation, Stroke, Tolerances, ValueRange,
 };
 pub use axis_file::{AxisFileError, Registry, TABLES_WITHOUT_PARTS};
 pub use balance::{Balance, BalanceError, BalanceQuality};
@@ -130,3 +130,8 @@ pub use recorder::{CsvRecorder, FlowRecorder, Recorder};
 pub use replay::{LoggedReference, Probe, Replay, ReplayError, Stored, Trace};
 pub use six_digits::SixDigits;
 pub use work::MOST_STEPS;
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -2,12 +2,12 @@
 
 use std::hint::black_box;
 
-use beam_fem::{Beam, Dof, Material, Mesh, MovingNode, Section, lowest_modes, natural_modes};
+use beam_fem::{Beam, CrossSection, Dof, Material, Mesh, MovingNode, lowest_modes, natural_modes};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
 fn screw(mesh: Mesh) -> Beam {
     let steel = Material::new(206e9, 0.3, 7850.0).expect("valid");
-    let section = Section::solid_circle(0.04, &steel).expect("valid");
+    let section = CrossSection::solid_circle(0.04, &steel).expect("valid");
     Beam::new(section, steel, mesh)
 }
 
@@ -23,7 +23,7 @@ fn uneven(elements: usize) -> Beam {
     let round = screw(mesh);
     let s = &round.section;
     let (y, z) = (0.9 * s.second_moment_y(), s.second_moment_z());
-    let flat = Section::new(s.area(), y, z, y + z, s.shear_coefficient()).expect("valid");
+    let flat = CrossSection::new(s.area(), y, z, y + z, s.shear_coefficient()).expect("valid");
     Beam::new(flat, round.material, round.mesh)
 }
 
@@ -81,7 +81,7 @@ fn modes(c: &mut Criterion) {
 
 fn axis(c: &mut Criterion) {
     let steel = Material::new(206e9, 0.3, 7850.0).expect("valid");
-    let section = Section::solid_circle(0.04, &steel).expect("valid");
+    let section = CrossSection::solid_circle(0.04, &steel).expect("valid");
     c.bench_function("element matrices, 12 x 12", |b| {
         b.iter(|| {
             let l = black_box(0.15);

@@ -3,11 +3,11 @@
 
 use std::time::Instant;
 
-use beam_fem::{Beam, BeamError, Dof, Material, Mesh, MovingNode, Section, lowest_modes};
+use beam_fem::{Beam, BeamError, CrossSection, Dof, Material, Mesh, MovingNode, lowest_modes};
 
 fn screw(mesh: Mesh) -> Result<Beam, BeamError> {
     let steel = Material::new(206e9, 0.3, 7850.0)?;
-    let section = Section::solid_circle(0.040, &steel)?;
+    let section = CrossSection::solid_circle(0.040, &steel)?;
     Ok(Beam::new(section, steel, mesh))
 }
 

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use crate::element::Coefficients;
 use crate::error::check_size;
 use crate::modes::check_square;
-use crate::{BandedMatrices, BeamError, Material, Mesh, Section};
+use crate::{BandedMatrices, BeamError, CrossSection, Material, Mesh};
 
 /// The six degrees of freedom of a node, in the paper's order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +47,7 @@ impl Dof {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beam {
     /// Cross-section.
-    pub section: Section,
+    pub section: CrossSection,
     /// Material.
     pub material: Material,
     /// Nodes along the axis.
@@ -56,7 +56,7 @@ pub struct Beam {
 
 /// Assembled matrices of `M q̈ + K q = F`, each (6N + 6)², rows as [`Dof::at`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Matrices {
+pub struct BeamMatrices {
     /// Mass M, kg, kg·m and kg·m².
     pub mass: DMatrix<f64>,
     /// Stiffness K, N/m, N and N·m.
@@ -65,7 +65,7 @@ pub struct Matrices {
 
 impl Beam {
     /// Puts the parts together.
-    pub fn new(section: Section, material: Material, mesh: Mesh) -> Self {
+    pub fn new(section: CrossSection, material: Material, mesh: Mesh) -> Self {
         Self {
             section,
             material,
@@ -84,7 +84,7 @@ impl Beam {
     /// # Errors
     /// [`BeamError::TooLarge`] for more entries than are sensible to store, from
     /// some 1900 elements on.
-    pub fn assemble(&self) -> Result<Matrices, BeamError> {
+    pub fn assemble(&self) -> Result<BeamMatrices, BeamError> {
         let order = self.order();
         check_size("a dense matrix", order, order)?;
         let mut mass = DMatrix::zeros(order, order);
@@ -99,7 +99,7 @@ impl Beam {
         }
         mass.fill_upper_triangle_with_lower_triangle();
         stiffness.fill_upper_triangle_with_lower_triangle();
-        Ok(Matrices { mass, stiffness })
+        Ok(BeamMatrices { mass, stiffness })
     }
 
     /// M and K of the free beam in banded storage: memory and time
@@ -137,7 +137,7 @@ impl Beam {
     }
 }
 
-impl Matrices {
+impl BeamMatrices {
     /// The matrices with the `fixed` degrees of freedom held at zero: their
     /// rows and columns are left out. The others keep their order.
     ///

@@ -11,19 +11,19 @@
 
 use nalgebra::SMatrix;
 
-use crate::{Material, Section};
+use crate::{CrossSection, Material};
 
 /// A 12 × 12 element matrix; rows u1 v1 w1 θx1 θy1 θz1 u2 … θz2.
 pub type ElementMatrix = SMatrix<f64, 12, 12>;
 
 /// Element stiffness K (N/m, N, N·m), 12 × 12, for a `length` in m above zero.
-pub fn stiffness(section: &Section, material: &Material, length: f64) -> ElementMatrix {
+pub fn stiffness(section: &CrossSection, material: &Material, length: f64) -> ElementMatrix {
     let entries = Coefficients::new(section, material, length).lower();
     full(entries.map(|e| (e.row, e.column, e.stiffness)))
 }
 
 /// Element mass M (kg, kg·m, kg·m²), 12 × 12, for a `length` in m above zero.
-pub fn mass(section: &Section, material: &Material, length: f64) -> ElementMatrix {
+pub fn mass(section: &CrossSection, material: &Material, length: f64) -> ElementMatrix {
     let entries = Coefficients::new(section, material, length).lower();
     full(entries.map(|e| (e.row, e.column, e.mass)))
 }
@@ -31,7 +31,7 @@ pub fn mass(section: &Section, material: &Material, length: f64) -> ElementMatri
 /// Shear parameter b = 12 E I / (κ G A l²) of one bending plane
 /// (Przemieniecki's Φ): bending over shear stiffness of an element.
 pub fn shear_parameter(
-    section: &Section,
+    section: &CrossSection,
     material: &Material,
     second_moment: f64,
     length: f64,
@@ -85,7 +85,7 @@ struct Bending {
 
 impl Coefficients {
     #[inline]
-    pub fn new(section: &Section, material: &Material, l: f64) -> Self {
+    pub fn new(section: &CrossSection, material: &Material, l: f64) -> Self {
         let plane_z = Bending::new(section, material, section.second_moment_z(), l);
         let plane_y = if section.second_moment_y() == section.second_moment_z() {
             plane_z
@@ -124,7 +124,7 @@ impl Coefficients {
 /// (N·m/rad) and mass ρ (I_y + I_z) l (kg·m²). Inertia goes with the polar
 /// moment, stiffness with the torsion constant J.
 #[inline]
-pub fn torsion_rod(section: &Section, material: &Material, length: f64) -> Rod {
+pub fn torsion_rod(section: &CrossSection, material: &Material, length: f64) -> Rod {
     Rod {
         stiffness: material.shear_modulus() * section.torsion_constant() / length,
         mass: material.density() * section.polar_moment() * length,
@@ -145,7 +145,7 @@ impl Rod {
 
 impl Bending {
     #[inline]
-    fn new(section: &Section, material: &Material, i: f64, l: f64) -> Self {
+    fn new(section: &CrossSection, material: &Material, i: f64, l: f64) -> Self {
         let b = shear_parameter(section, material, i, l);
         let ei = material.youngs_modulus() * i / ((1.0 + b) * l);
         let m = material.density() * section.area() * l / ((1.0 + b) * (1.0 + b));

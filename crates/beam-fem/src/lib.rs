@@ -27,12 +27,12 @@
 //! see [`element`] for the sources that it was checked against.
 //!
 //! # What is here
-//! - [`Material`], [`Section`], [`Mesh`] and [`MovingNode`] make a [`Beam`].
+//! - [`Material`], [`CrossSection`], [`Mesh`] and [`MovingNode`] make a [`Beam`].
 //! - [`Beam::assemble`] gives dense matrices, [`Beam::assemble_banded`] banded
 //!   ones at a cost linear in N, [`Beam::torsion`] the twist part alone.
 //! - [`natural_modes`] solves the dense pencil for all modes,
 //!   [`lowest_modes`] the banded one for the lowest, linearly in N.
-//! - [`Matrices::fixed`] and [`BandedMatrices::fixed`] hold degrees of freedom.
+//! - [`BeamMatrices::fixed`] and [`BandedMatrices::fixed`] hold degrees of freedom.
 //! - [`Beam::torsional_compliance_at`] and
 //!   [`Beam::torsional_compliance_at_node`]: how far a nut twists the screw.
 //!
@@ -40,10 +40,10 @@
 //! The free bending frequencies of a steel screw, 40 mm × 1.5 m:
 //!
 //! ```
-//! use beam_fem::{Beam, Material, Mesh, Section, lowest_modes, natural_modes};
+//! use beam_fem::{Beam, CrossSection, Material, Mesh, lowest_modes, natural_modes};
 //!
 //! let steel = Material::new(206e9, 0.3, 7850.0)?;
-//! let round = Section::solid_circle(0.040, &steel)?;
+//! let round = CrossSection::solid_circle(0.040, &steel)?;
 //! let screw = Beam::new(round, steel, Mesh::uniform(1.5, 10)?);
 //!
 //! let matrices = screw.assemble()?;
@@ -84,12 +84,17 @@ mod section;
 mod torsion;
 
 pub use banded::{BandedMatrices, SymmetricBanded};
-pub use beam::{Beam, Dof, Matrices};
+pub use beam::{Beam, BeamMatrices, Dof};
 pub use error::BeamError;
 pub use material::Material;
 pub use mesh::Mesh;
 pub use modes::{Modes, natural_modes};
 pub use moving_node::MovingNode;
 pub use pencil::lowest_modes;
-pub use section::Section;
+pub use section::CrossSection;
 pub use torsion::Tridiagonal;
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

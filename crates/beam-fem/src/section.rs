@@ -6,10 +6,10 @@ use crate::error::positive;
 use crate::{BeamError, Material};
 
 /// A cross-section whose y and z axes are principal and pass through both the
-/// centroid and the shear centre. Made by [`Section::new`] or
-/// [`Section::solid_circle`], which check it, and immutable after that.
+/// centroid and the shear centre. Made by [`CrossSection::new`] or
+/// [`CrossSection::solid_circle`], which check it, and immutable after that.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Section {
+pub struct CrossSection {
     area: f64,
     second_moment_y: f64,
     second_moment_z: f64,
@@ -17,7 +17,7 @@ pub struct Section {
     shear_coefficient: f64,
 }
 
-impl Section {
+impl CrossSection {
     /// Checks and makes a section from A (m²), I_y, I_z, J (m⁴) and κ.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! Laws that hold for any beam and any mesh.
 
-use beam_fem::{Beam, Dof, Material, Mesh, MovingNode, Section, natural_modes};
+use beam_fem::{Beam, CrossSection, Dof, Material, Mesh, MovingNode, natural_modes};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
@@ -10,10 +10,10 @@ fn material() -> impl Strategy<Value = Material> {
 }
 
 /// Sections with unequal I_y and I_z, radii of gyration 2 to 60 mm.
-fn section() -> impl Strategy<Value = Section> {
+fn section() -> impl Strategy<Value = CrossSection> {
     (1e-4..1e-2f64, 2e-3..6e-2f64, 2e-3..6e-2f64, 0.3..1.0f64).prop_map(|(a, ry, rz, kappa)| {
         let (iy, iz) = (a * ry * ry, a * rz * rz);
-        Section::new(a, iy, iz, 0.7 * (iy + iz), kappa).unwrap()
+        CrossSection::new(a, iy, iz, 0.7 * (iy + iz), kappa).unwrap()
     })
 }
 

@@ -1,7 +1,7 @@
 //! Input that must be refused, by name and value.
 
 use beam_fem::{
-    BandedMatrices, Beam, BeamError, Dof, Material, Matrices, Mesh, MovingNode, Section,
+    BandedMatrices, Beam, BeamError, BeamMatrices, CrossSection, Dof, Material, Mesh, MovingNode,
     SymmetricBanded, element, lowest_modes, natural_modes,
 };
 use nalgebra::DMatrix;
@@ -18,11 +18,11 @@ fn materials_and_sections_name_the_field() {
         assert!(message.starts_with("youngs_modulus = "), "{message}");
         let message = Material::new(206e9, 0.3, bad).unwrap_err().to_string();
         assert!(message.starts_with("density = "), "{message}");
-        let message = Section::solid_circle(bad, &steel())
+        let message = CrossSection::solid_circle(bad, &steel())
             .unwrap_err()
             .to_string();
         assert!(message.starts_with("diameter = "), "{message}");
-        let message = Section::new(1.0, 1.0, bad, 1.0, 1.0)
+        let message = CrossSection::new(1.0, 1.0, bad, 1.0, 1.0)
             .unwrap_err()
             .to_string();
         assert!(message.starts_with("second_moment_z = "), "{message}");
@@ -32,7 +32,7 @@ fn materials_and_sections_name_the_field() {
         assert!(message.contains("above -1 and at most 0.5"), "{message}");
     }
     // A diameter whose fourth power is lost makes no section.
-    assert!(Section::solid_circle(1e-100, &steel()).is_err());
+    assert!(CrossSection::solid_circle(1e-100, &steel()).is_err());
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn moving_nodes_stay_on_the_beam() {
 
 #[test]
 fn matrices_must_fit() {
-    let section = Section::solid_circle(0.04, &steel()).unwrap();
+    let section = CrossSection::solid_circle(0.04, &steel()).unwrap();
     let beam = Beam::new(section, steel(), Mesh::uniform(1.5, 2).unwrap());
     let m = beam.assemble().unwrap();
     assert!(m.fixed(&[18]).is_err());
@@ -98,7 +98,7 @@ fn matrices_must_fit() {
 }
 
 fn screw(elements: usize) -> Beam {
-    let section = Section::solid_circle(0.04, &steel()).unwrap();
+    let section = CrossSection::solid_circle(0.04, &steel()).unwrap();
     Beam::new(section, steel(), Mesh::uniform(1.5, elements).unwrap())
 }
 
@@ -111,7 +111,7 @@ fn matrices_of_two_orders_are_not_fixed() {
         (DMatrix::zeros(3, 2), DMatrix::zeros(3, 3)),
         (DMatrix::zeros(0, 0), DMatrix::zeros(1, 1)),
     ] {
-        let error = Matrices { mass, stiffness }.fixed(&[0]).unwrap_err();
+        let error = BeamMatrices { mass, stiffness }.fixed(&[0]).unwrap_err();
         assert!(matches!(error, BeamError::Shape { .. }), "{error}");
     }
     let (small, large) = (screw(1).assemble_banded(), screw(2).assemble_banded());

@@ -3,15 +3,15 @@
 use std::f64::consts::PI;
 
 use beam_fem::{
-    BandedMatrices, Beam, BeamError, Dof, Material, Mesh, Section, SymmetricBanded, lowest_modes,
-    natural_modes,
+    BandedMatrices, Beam, BeamError, CrossSection, Dof, Material, Mesh, SymmetricBanded,
+    lowest_modes, natural_modes,
 };
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
 fn screw(elements: usize) -> Beam {
     let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
-    let section = Section::solid_circle(0.04, &steel).unwrap();
+    let section = CrossSection::solid_circle(0.04, &steel).unwrap();
     Beam::new(section, steel, Mesh::uniform(1.5, elements).unwrap())
 }
 

@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
-use beam_fem::{Beam, Dof, Material, Mesh, Section, lowest_modes};
+use beam_fem::{Beam, CrossSection, Dof, Material, Mesh, lowest_modes};
 use nalgebra::DVector;
 
 fn round(diameter: f64, length: f64, elements: usize) -> Beam {
     let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
-    let section = Section::solid_circle(diameter, &steel).unwrap();
+    let section = CrossSection::solid_circle(diameter, &steel).unwrap();
     Beam::new(section, steel, Mesh::uniform(length, elements).unwrap())
 }
 
@@ -16,7 +16,7 @@ fn round(diameter: f64, length: f64, elements: usize) -> Beam {
 fn slender(length: f64, elements: usize) -> Beam {
     let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
     let (area, i) = (1e-2, 1e-2 * (length / 1e6).powi(2));
-    let section = Section::new(area, i, i, 2.0 * i, 1e9).unwrap();
+    let section = CrossSection::new(area, i, i, 2.0 * i, 1e9).unwrap();
     Beam::new(section, steel, Mesh::uniform(length, elements).unwrap())
 }
 

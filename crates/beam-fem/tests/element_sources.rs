@@ -1,7 +1,7 @@
 //! The element against a second derivation: shape functions found here from
 //! Timoshenko's equations, integrated by Gauss quadrature.
 
-use beam_fem::{Material, Section, element};
+use beam_fem::{CrossSection, Material, element};
 use nalgebra::{Matrix4, SMatrix, Vector4};
 use proptest::prelude::*;
 
@@ -50,7 +50,7 @@ fn bending(p: &Plane, l: f64) -> (Matrix4<f64>, Matrix4<f64>) {
 type Twelve = SMatrix<f64, 12, 12>;
 
 /// K and M of the whole element by quadrature.
-fn by_quadrature(s: &Section, mat: &Material, l: f64) -> (Twelve, Twelve) {
+fn by_quadrature(s: &CrossSection, mat: &Material, l: f64) -> (Twelve, Twelve) {
     let (mut k, mut m) = (Twelve::zeros(), Twelve::zeros());
     let rods = [
         (0, mat.youngs_modulus() * s.area(), mat.density() * s.area()),
@@ -112,7 +112,7 @@ proptest! {
         iy in 1e-9..1e-6f64, iz in 1e-9..1e-6f64, kappa in 0.3..1.0f64, slender in 0.05..50.0f64,
     ) {
         let mat = steel();
-        let s = Section::new(1e-3, iy, iz, iy + iz, kappa).unwrap();
+        let s = CrossSection::new(1e-3, iy, iz, iy + iz, kappa).unwrap();
         let l = slender * (12.0 * iz / 1e-3_f64).sqrt();
         let (k, m) = by_quadrature(&s, &mat, l);
         // The 4 × 4 inverse in the reference loses up to four digits when
@@ -126,7 +126,7 @@ proptest! {
 fn friedman_and_kosmatka_shape_functions_give_the_same_mass() {
     // doi 10.1016/0045-7949(93)90243-7, with Φ = b and ξ = x / l.
     let mat = steel();
-    let s = Section::solid_circle(0.04, &mat).unwrap();
+    let s = CrossSection::solid_circle(0.04, &mat).unwrap();
     let l = 0.15;
     let phi = element::shear_parameter(&s, &mat, s.second_moment_z(), l);
     let mut m = Matrix4::zeros();
@@ -162,7 +162,7 @@ fn friedman_and_kosmatka_shape_functions_give_the_same_mass() {
 /// the last of F given.
 fn rotary(l: f64, first: f64, last: f64) -> [[f64; 3]; 2] {
     let mat = steel();
-    let s = Section::solid_circle(0.04, &mat).unwrap();
+    let s = CrossSection::solid_circle(0.04, &mat).unwrap();
     let i = s.second_moment_z();
     let b = element::shear_parameter(&s, &mat, i, l);
     let r2 = i / (s.area() * l * l);
@@ -205,7 +205,7 @@ fn two_coefficients_as_printed_are_misprints() {
 fn turning_about_an_end_has_the_rigid_inertia() {
     // v = x, θ = 1: ρA l³/3 + ρI l.
     let mat = steel();
-    let s = Section::solid_circle(0.04, &mat).unwrap();
+    let s = CrossSection::solid_circle(0.04, &mat).unwrap();
     let l = 0.15;
     let m = element::mass(&s, &mat, l);
     let dofs = [(1, 0.0), (5, 1.0), (7, l), (11, 1.0)];

@@ -1,7 +1,7 @@
 //! The nut on its way along the screw.
 
 use beam_fem::{
-    Beam, Material, Mesh, MovingNode, Section, Tridiagonal, lowest_modes, natural_modes,
+    Beam, CrossSection, Material, Mesh, MovingNode, Tridiagonal, lowest_modes, natural_modes,
 };
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -11,7 +11,7 @@ const FRACTION: f64 = MovingNode::MIN_FRACTION;
 
 fn screw(mesh: Mesh) -> Beam {
     let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
-    let section = Section::solid_circle(0.04, &steel).unwrap();
+    let section = CrossSection::solid_circle(0.04, &steel).unwrap();
     Beam::new(section, steel, mesh)
 }
 

@@ -45,3 +45,8 @@ pub use row::{Column, Kind, Row, Value};
 pub use run::{IfOther, Progress, forget_whole, run_shard, run_whole};
 pub use script::{Scheduler, Submission};
 pub use shard::{BadShard, Shard, shards_in};
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

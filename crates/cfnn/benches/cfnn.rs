@@ -5,8 +5,8 @@
 
 use std::hint::black_box;
 
-use cfnn::train::{Dataset, Settings, Trainer, nguyen_widrow};
-use cfnn::{FixedNetwork, Network, Predictor, Range, Scaling, Shape};
+use cfnn::train::{Dataset, Trainer, TrainingSettings, nguyen_widrow};
+use cfnn::{FixedNetwork, Network, Predictor, Scaling, ScalingRange, Shape};
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
@@ -44,10 +44,10 @@ fn data() -> Dataset {
 
 fn epoch(c: &mut Criterion) {
     let data = data();
-    let settings = Settings {
+    let settings = TrainingSettings {
         threads: THREADS,
         epochs: usize::MAX,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let scaling = data.scaling().expect("the columns vary");
     let mut trainer = Trainer::new(shape(), scaling, &data, settings).expect("valid settings");
@@ -87,10 +87,10 @@ fn product(c: &mut Criterion) {
 /// block by block, with the tables of products given.
 fn normal_equations(c: &mut Criterion) {
     let data = data();
-    let settings = Settings {
+    let settings = TrainingSettings {
         threads: THREADS,
         max_damping: 1e-6,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let scaling = data.scaling().expect("the columns vary");
     let trainer = || Trainer::new(shape(), scaling.clone(), &data, settings.clone());
@@ -195,14 +195,14 @@ fn prediction(c: &mut Criterion) {
             y
         });
     });
-    let unit = Range::new("input", -1.0, 1.0).expect("a valid range");
+    let unit = ScalingRange::new("input", -1.0, 1.0).expect("a valid range");
     let fixed = FixedNetwork::<f64, 4, 1, 66>::new(&[34, 19, 8], &packed, [unit; 4], [unit])
         .expect("a valid network");
     c.bench_function("prediction f64, FixedNetwork", |b| {
         b.iter(|| fixed.evaluate(black_box(&[0.1, -0.2, 0.3, 0.4])));
     });
     let single: Vec<f32> = packed.iter().map(|&w| w as f32).collect();
-    let unit = Range::new("input", -1.0f32, 1.0).expect("a valid range");
+    let unit = ScalingRange::new("input", -1.0f32, 1.0).expect("a valid range");
     let fixed = FixedNetwork::<f32, 4, 1, 66>::new(&[34, 19, 8], &single, [unit; 4], [unit])
         .expect("a valid network");
     c.bench_function("prediction f32, FixedNetwork", |b| {

@@ -6,7 +6,7 @@
 
 use std::time::Instant;
 
-use cfnn::train::{Dataset, Initialisation, Settings, Trainer};
+use cfnn::train::{Dataset, Initialisation, Trainer, TrainingSettings};
 use cfnn::{Error, Network, Shape};
 
 /// Position, speed, acceleration, current, each from -1 to 1; the increment
@@ -60,9 +60,9 @@ fn main() -> Result<(), Error> {
         hidden: vec![],
         outputs: 1,
     };
-    let start = Settings {
+    let start = TrainingSettings {
         initialisation: Initialisation::LinearStart,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let trainer = Trainer::new(linear, training.scaling()?, &training, start)?;
     let (largest, rms) = errors(&trainer.network(), &unseen)?;
@@ -74,13 +74,13 @@ fn main() -> Result<(), Error> {
         Initialisation::DataAdapted { axis_aligned: 0.5 },
     ] {
         for resolve_output in [false, true] {
-            let settings = Settings {
+            let settings = TrainingSettings {
                 epochs,
                 initial_damping: 0.97,
                 initialisation,
                 resolve_output,
                 min_gradient: 0.0,
-                ..Settings::default()
+                ..TrainingSettings::default()
             };
             let shape = Shape {
                 inputs: 4,

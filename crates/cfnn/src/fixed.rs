@@ -1,7 +1,7 @@
 use crate::error::same_length;
 use crate::forward::forward;
 use crate::pack::count;
-use crate::{Error, Range, Real};
+use crate::{Error, NetworkScalar, ScalingRange};
 
 /// A network that borrows its weights, for use without an allocator.
 ///
@@ -11,13 +11,13 @@ use crate::{Error, Range, Real};
 /// [`FixedNetwork::evaluate`], which cannot fail.
 ///
 /// ```
-/// use cfnn::{FixedNetwork, Range};
+/// use cfnn::{FixedNetwork, ScalingRange};
 /// // y = x + tanh(2 x - 1) on scaled values: one hidden neuron.
 /// // Order: [bias, input] of the hidden neuron, then [bias, input, hidden].
 /// const WEIGHTS: [f64; 5] = [-1.0, 2.0, 0.0, 1.0, 1.0];
 /// let mut packed = [0.0; cfnn::packed_len(1, &[1], 1)];
 /// cfnn::pack(1, &[1], 1, &WEIGHTS, &mut packed)?;
-/// let unit = Range::new("input", -1.0, 1.0)?;
+/// let unit = ScalingRange::new("input", -1.0, 1.0)?;
 /// let network = FixedNetwork::<f64, 1, 1, 3>::new(&[1], &packed, [unit], [unit])?;
 /// let [y] = network.evaluate(&[0.25]);
 /// assert!((y - (0.25 + (-0.5f64).tanh())).abs() < 1e-15);
@@ -27,11 +27,13 @@ use crate::{Error, Range, Real};
 pub struct FixedNetwork<'a, T, const I: usize, const O: usize, const A: usize> {
     hidden: &'a [usize],
     weights: &'a [T],
-    input: [Range<T>; I],
-    output: [Range<T>; O],
+    input: [ScalingRange<T>; I],
+    output: [ScalingRange<T>; O],
 }
 
-impl<'a, T: Real, const I: usize, const O: usize, const A: usize> FixedNetwork<'a, T, I, O, A> {
+impl<'a, T: NetworkScalar, const I: usize, const O: usize, const A: usize>
+    FixedNetwork<'a, T, I, O, A>
+{
     /// A network with the given hidden layer sizes and weights (in the order
     /// that [`crate::pack`] makes), and the scaling of each input and output.
     ///
@@ -41,8 +43,8 @@ impl<'a, T: Real, const I: usize, const O: usize, const A: usize> FixedNetwork<'
     pub fn new(
         hidden: &'a [usize],
         weights: &'a [T],
-        input: [Range<T>; I],
-        output: [Range<T>; O],
+        input: [ScalingRange<T>; I],
+        output: [ScalingRange<T>; O],
     ) -> Result<Self, Error> {
         if I == 0 || O == 0 {
             let what = if I == 0 { "inputs" } else { "outputs" };

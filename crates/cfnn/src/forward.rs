@@ -5,14 +5,14 @@
 //! therefore always a prefix, which is what the cascade links mean, and the
 //! bias needs no special case.
 
-use crate::Real;
+use crate::NetworkScalar;
 use crate::pack::{padded, strip_width};
 
 /// Fills the hidden part of `activations` and writes the scaled outputs.
 ///
 /// `weights` are packed; `activations[0]` must be 1 and the next `inputs` entries the scaled inputs.
 #[inline(always)]
-pub(crate) fn forward<T: Real>(
+pub(crate) fn forward<T: NetworkScalar>(
     inputs: usize,
     hidden: &[usize],
     weights: &[T],
@@ -43,7 +43,7 @@ enum Transfer {
 
 /// `out = Wᵀ input`, with `W` packed in strips.
 #[inline(always)]
-fn affine<T: Real>(weights: &[T], input: &[T], out: &mut [T], transfer: Transfer) {
+fn affine<T: NetworkScalar>(weights: &[T], input: &[T], out: &mut [T], transfer: Transfer) {
     if let [single] = out {
         let sum = dot(weights, input);
         *single = match transfer {
@@ -74,7 +74,7 @@ fn affine<T: Real>(weights: &[T], input: &[T], out: &mut [T], transfer: Transfer
 /// is known, so the compiler needs no remainder, and the next strip's products
 /// overlap with it.
 #[inline(always)]
-fn write<T: Real, const C: usize>(to: &mut [T], mut sums: [T; C], transfer: Transfer) {
+fn write<T: NetworkScalar, const C: usize>(to: &mut [T], mut sums: [T; C], transfer: Transfer) {
     if let Transfer::Tansig = transfer {
         sums = T::tansig_of(sums);
     }
@@ -90,7 +90,7 @@ fn write<T: Real, const C: usize>(to: &mut [T], mut sums: [T; C], transfer: Tran
 
 /// `C` neurons at once, their sums held in registers.
 #[inline(always)]
-fn wide<T: Real, const C: usize>(weights: &[T], input: &[T]) -> [T; C] {
+fn wide<T: NetworkScalar, const C: usize>(weights: &[T], input: &[T]) -> [T; C] {
     let mut sum = [T::ZERO; C];
     for (row, &a) in weights.as_chunks::<C>().0.iter().zip(input) {
         for c in 0..C {
@@ -103,7 +103,7 @@ fn wide<T: Real, const C: usize>(weights: &[T], input: &[T]) -> [T; C] {
 /// The same for few neurons, with a sum for each half of the inputs, since an
 /// addition takes longer than its turn.
 #[inline(always)]
-fn narrow<T: Real, const C: usize>(weights: &[T], input: &[T]) -> [T; C] {
+fn narrow<T: NetworkScalar, const C: usize>(weights: &[T], input: &[T]) -> [T; C] {
     let half = input.len() / 2;
     let (upper, lower) = input.split_at(half);
     let (upper_rows, lower_rows) = weights.as_chunks::<C>().0.split_at(half);
@@ -128,7 +128,7 @@ fn narrow<T: Real, const C: usize>(weights: &[T], input: &[T]) -> [T; C] {
 
 /// Scalar product with eight partial sums, added pairwise.
 #[inline(always)]
-fn dot<T: Real>(a: &[T], b: &[T]) -> T {
+fn dot<T: NetworkScalar>(a: &[T], b: &[T]) -> T {
     let (a_chunks, a_rest) = a.as_chunks::<8>();
     let (b_chunks, b_rest) = b.as_chunks::<8>();
     let mut sum = [T::ZERO; 8];

@@ -40,7 +40,7 @@
 //!
 //! ```
 //! # #[cfg(feature = "train")] {
-//! use cfnn::train::{Dataset, Settings, Trainer};
+//! use cfnn::train::{Dataset, Trainer, TrainingSettings};
 //! use cfnn::{Predictor, Shape};
 //!
 //! // y = x + tanh(3 x) on 200 samples.
@@ -49,7 +49,7 @@
 //! let data = Dataset::new(1, 1, x, y)?;
 //!
 //! let shape = Shape { inputs: 1, hidden: vec![3, 2], outputs: 1 };
-//! let settings = Settings { epochs: 100, ..Settings::default() };
+//! let settings = TrainingSettings { epochs: 100, ..TrainingSettings::default() };
 //! let mut trainer = Trainer::new(shape, data.scaling()?, &data, settings)?;
 //! trainer.run(|report| println!("epoch {}: loss {:.1e}", report.epoch, report.loss));
 //!
@@ -104,9 +104,14 @@ pub use fixed::FixedNetwork;
 #[cfg(feature = "alloc")]
 pub use network::{Network, Predictor, Scratch};
 pub use pack::{pack, packed_len};
-pub use range::Range;
-pub use real::Real;
+pub use range::ScalingRange;
+pub use real::NetworkScalar;
 #[cfg(feature = "alloc")]
 pub use scaling::Scaling;
 #[cfg(feature = "alloc")]
 pub use shape::{Layer, MAX_PARAMETERS, Shape};
+
+/// The README's example, run as a test.
+#[cfg(all(doctest, feature = "alloc"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -6,7 +6,7 @@
 //! next input. A single output neuron stays as it is.
 
 use crate::error::same_length;
-use crate::{Error, Real};
+use crate::{Error, NetworkScalar};
 
 /// Most neurons of a strip: their sums, what is multiplied, and a little more
 /// fit into the sixteen vector registers of plain x86-64.
@@ -71,7 +71,7 @@ pub const fn packed_len(inputs: usize, hidden: &[usize], outputs: usize) -> usiz
 ///
 /// # Errors
 /// [`Error::Length`] where one of the slices does not fit the layer sizes.
-pub fn pack<T: Real>(
+pub fn pack<T: NetworkScalar>(
     inputs: usize,
     hidden: &[usize],
     outputs: usize,
@@ -87,7 +87,7 @@ pub fn pack<T: Real>(
 }
 
 /// [`pack`] for slices known to have the right lengths.
-pub(crate) fn pack_layers<T: Real>(
+pub(crate) fn pack_layers<T: NetworkScalar>(
     inputs: usize,
     hidden: &[usize],
     outputs: usize,
@@ -105,7 +105,7 @@ pub(crate) fn pack_layers<T: Real>(
     }
 }
 
-fn pack_layer<T: Real>(seen: usize, neurons: usize, layer: &[T], into: &mut [T]) {
+fn pack_layer<T: NetworkScalar>(seen: usize, neurons: usize, layer: &[T], into: &mut [T]) {
     if neurons == 1 {
         into.copy_from_slice(layer);
         return;

@@ -1,16 +1,16 @@
-use crate::{Error, Real};
+use crate::{Error, NetworkScalar};
 
 /// One row of the min-max scaling (MATLAB's `mapminmax`): the affine map of
 /// `[minimum, maximum]`, in the caller's unit, onto `[-1, 1]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range<T> {
+pub struct ScalingRange<T> {
     minimum: T,
     maximum: T,
     gain: T,
     half_width: T,
 }
 
-impl<T: Real> Range<T> {
+impl<T: NetworkScalar> ScalingRange<T> {
     /// The range from `minimum` to `maximum`; `what` names it in the error.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use crate::tansig::{tansig_f32, tansig_f64};
 /// The scalar of an evaluation: `f64` or `f32`.
 ///
 /// Training is in `f64` only; `f32` exists for controllers.
-pub trait Real: Scalar {
+pub trait NetworkScalar: Scalar {
     /// The transfer function of the hidden layers,
     /// `2 / (1 + e^{-2x}) - 1 = tanh x`, within 8 units in the last place.
     /// NaN gives NaN.
@@ -16,20 +16,20 @@ pub trait Real: Scalar {
         value
     }
 
-    /// [`Real::tansig`] of each element, with the same bits; several at once
+    /// [`NetworkScalar::tansig`] of each element, with the same bits; several at once
     /// keep the processor's vectors full.
     #[must_use]
     fn tansig_of<const C: usize>(values: [Self; C]) -> [Self; C];
 }
 
-impl Real for f64 {
+impl NetworkScalar for f64 {
     #[inline(always)]
     fn tansig_of<const C: usize>(values: [Self; C]) -> [Self; C] {
         tansig_f64(values)
     }
 }
 
-impl Real for f32 {
+impl NetworkScalar for f32 {
     #[inline(always)]
     fn tansig_of<const C: usize>(values: [Self; C]) -> [Self; C] {
         tansig_f32(values)

@@ -1,14 +1,14 @@
 use alloc::vec::Vec;
 
 use crate::error::{rows_of, same_length};
-use crate::{Error, Range};
+use crate::{Error, ScalingRange};
 
 /// Min-max scaling of all inputs and outputs to `[-1, 1]`, stored with the
 /// network so that it takes and gives the caller's units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scaling {
-    input: Vec<Range<f64>>,
-    output: Vec<Range<f64>>,
+    input: Vec<ScalingRange<f64>>,
+    output: Vec<ScalingRange<f64>>,
 }
 
 impl Scaling {
@@ -20,7 +20,7 @@ impl Scaling {
         let ranges = |what, pairs: &[(f64, f64)]| {
             pairs
                 .iter()
-                .map(|&(low, high)| Range::new(what, low, high))
+                .map(|&(low, high)| ScalingRange::new(what, low, high))
                 .collect::<Result<Vec<_>, _>>()
         };
         Ok(Self {
@@ -59,13 +59,13 @@ impl Scaling {
 
     /// One range for each input.
     #[must_use]
-    pub fn input(&self) -> &[Range<f64>] {
+    pub fn input(&self) -> &[ScalingRange<f64>] {
         &self.input
     }
 
     /// One range for each output.
     #[must_use]
-    pub fn output(&self) -> &[Range<f64>] {
+    pub fn output(&self) -> &[ScalingRange<f64>] {
         &self.output
     }
 }

@@ -4,7 +4,7 @@
 use cfnn::artifact::{
     ArtifactError, checkpoint_from_bytes, checkpoint_to_bytes, network_from_bytes, network_to_bytes,
 };
-use cfnn::train::{Dataset, Settings, Trainer, Validation, nguyen_widrow};
+use cfnn::train::{Dataset, EarlyStopping, Trainer, TrainingSettings, nguyen_widrow};
 use cfnn::{Network, Scaling, Shape};
 use proptest::prelude::*;
 
@@ -29,12 +29,12 @@ fn checkpoint() -> (Dataset, cfnn::train::Checkpoint) {
         hidden: vec![4],
         outputs: 1,
     };
-    let settings = Settings {
-        validation: Some(Validation {
+    let settings = TrainingSettings {
+        validation: Some(EarlyStopping {
             fraction: 0.25,
             patience: 9,
         }),
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let mut trainer = Trainer::new(shape, data.scaling().unwrap(), &data, settings).unwrap();
     trainer.epoch();

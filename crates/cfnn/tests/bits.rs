@@ -4,7 +4,7 @@
 //! `cargo test -p cfnn --no-default-features --test bits -- --nocapture` prints the hash. It was made before the
 //! scalar of an evaluation became that of the other control laws.
 
-use cfnn::{FixedNetwork, Range, Real, pack, packed_len};
+use cfnn::{FixedNetwork, NetworkScalar, ScalingRange, pack, packed_len};
 
 const HIDDEN: [usize; 3] = [34, 19, 8];
 const PARAMETERS: usize = 5 * 34 + 39 * 19 + 58 * 8 + 66;
@@ -34,12 +34,12 @@ impl Random {
 }
 
 /// Twenty thousand evaluations; `of` rounds to the scalar, `wide` is exact.
-fn run<T: Real>(of: impl Fn(f64) -> T, wide: impl Fn(T) -> f64) -> u64 {
+fn run<T: NetworkScalar>(of: impl Fn(f64) -> T, wide: impl Fn(T) -> f64) -> u64 {
     let mut random = Random(1);
     let weights: [T; PARAMETERS] = std::array::from_fn(|_| of(random.next()));
     let mut packed = [of(0.0); packed_len(4, &HIDDEN, 1)];
     pack(4, &HIDDEN, 1, &weights, &mut packed).expect("the right lengths");
-    let range = |end: f64| Range::new("bits", of(-end), of(end)).expect("valid");
+    let range = |end: f64| ScalingRange::new("bits", of(-end), of(end)).expect("valid");
     let input = [1.5, 0.333, 1.0, 15.0].map(range);
     let network =
         FixedNetwork::<T, 4, 1, 66>::new(&HIDDEN, &packed, input, [range(3e-5)]).expect("valid");

@@ -2,7 +2,7 @@
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use cfnn::train::nguyen_widrow;
-use cfnn::{Error, FixedNetwork, Network, Predictor, Range, Scaling, Shape};
+use cfnn::{Error, FixedNetwork, Network, Predictor, Scaling, ScalingRange, Shape};
 use proptest::prelude::*;
 
 /// The definition, sum by sum.
@@ -67,7 +67,7 @@ fn borrowed_network_gives_the_same_bits_and_single_precision_is_near() {
     let scaling = Scaling::from_ranges(&ranges, &[(0.0, 1.5)]).unwrap();
     let network = Network::new(shape, scaling, weights).unwrap();
     let mut predictor = Predictor::<4, 1>::new(network.clone()).unwrap();
-    let range = |(low, high)| Range::new("input", low, high).unwrap();
+    let range = |(low, high)| ScalingRange::new("input", low, high).unwrap();
     let hidden = [34, 19, 8];
     let fixed = FixedNetwork::<f64, 4, 1, 66>::new(
         &hidden,
@@ -77,7 +77,7 @@ fn borrowed_network_gives_the_same_bits_and_single_precision_is_near() {
     )
     .unwrap();
     let single: Vec<f32> = network.packed_weights().iter().map(|&w| w as f32).collect();
-    let range = |(low, high)| Range::new("input", low as f32, high as f32).unwrap();
+    let range = |(low, high)| ScalingRange::new("input", low as f32, high as f32).unwrap();
     let fixed32 = FixedNetwork::<f32, 4, 1, 66>::new(
         &hidden,
         &single,

@@ -1,9 +1,13 @@
 //! Values of any kind, whatever they are: an error that says what is valid, or
 //! a training that ends. Nothing here panics, hangs or fills the memory.
 
-use cfnn::train::{Dataset, Initialisation, Outcome, Settings, Trainer, Validation, nguyen_widrow};
+use cfnn::train::{
+    Dataset, EarlyStopping, Initialisation, Trainer, TrainingOutcome, TrainingSettings,
+    nguyen_widrow,
+};
 use cfnn::{
-    Error, FixedNetwork, Layer, MAX_PARAMETERS, Network, Range, Scaling, Shape, pack, packed_len,
+    Error, FixedNetwork, Layer, MAX_PARAMETERS, Network, Scaling, ScalingRange, Shape, pack,
+    packed_len,
 };
 use proptest::prelude::*;
 
@@ -43,10 +47,10 @@ fn any_finite() -> impl Strategy<Value = f64> {
     any_number().prop_filter("not finite", |v| v.is_finite())
 }
 
-fn any_settings() -> impl Strategy<Value = Settings> {
+fn any_settings() -> impl Strategy<Value = TrainingSettings> {
     let numbers = prop::array::uniform7(any_number());
     (numbers, any_size(), any_size(), any::<bool>()).prop_map(|(v, patience, threads, split)| {
-        Settings {
+        TrainingSettings {
             epochs: 2,
             initial_damping: v[0],
             damping_increase: v[1],
@@ -54,12 +58,12 @@ fn any_settings() -> impl Strategy<Value = Settings> {
             max_damping: v[3],
             goal: v[4],
             min_gradient: v[5],
-            validation: split.then_some(Validation {
+            validation: split.then_some(EarlyStopping {
                 fraction: v[6],
                 patience,
             }),
             threads,
-            ..Settings::default()
+            ..TrainingSettings::default()
         }
     })
 }
@@ -105,8 +109,8 @@ proptest! {
         let done = pack(shape.inputs, &shape.hidden, shape.outputs, &[0.5; 4], &mut packed);
         prop_assert_eq!(done.is_ok(), fits);
         let fixed = FixedNetwork::<f64, 1, 1, 4>::new(
-            &shape.hidden, &packed, [Range::new("in", 0.0, 1.0).unwrap()],
-            [Range::new("out", 0.0, 1.0).unwrap()],
+            &shape.hidden, &packed, [ScalingRange::new("in", 0.0, 1.0).unwrap()],
+            [ScalingRange::new("out", 0.0, 1.0).unwrap()],
         );
         if let Ok(fixed) = fixed {
             prop_assert!(fixed.evaluate(&[0.3])[0].is_finite());
@@ -138,7 +142,7 @@ proptest! {
 
     #[test]
     fn any_range_maps_its_ends_or_is_refused(low in any_number(), high in any_number()) {
-        if let Ok(range) = Range::new("range", low, high) {
+        if let Ok(range) = ScalingRange::new("range", low, high) {
             prop_assert_eq!(range.to_unit(low), -1.0);
             // One rounding of the width, one of the gain.
             prop_assert!((range.to_unit(high) - 1.0).abs() <= 2.0 * f64::EPSILON);
@@ -172,10 +176,10 @@ proptest! {
             Initialisation::LinearStart,
             Initialisation::DataAdapted { axis_aligned: 0.5 },
         ][start];
-        let damping = Settings { resolve_output, initialisation, threads: 1, ..settings.clone() };
+        let damping = TrainingSettings { resolve_output, initialisation, threads: 1, ..settings.clone() };
         prop_assert!(settings.threads <= 1024 || settings.validate().is_err());
         // Few settings are valid: those that are not give way to the usual ones.
-        let chosen = [damping, Settings { epochs: 2, resolve_output, initialisation, threads: 1, ..Settings::default() }];
+        let chosen = [damping, TrainingSettings { epochs: 2, resolve_output, initialisation, threads: 1, ..TrainingSettings::default() }];
         for settings in chosen {
             let Ok(mut trainer) = Trainer::new(shape(&hidden), scaling.clone(), &data, settings) else {
                 continue;
@@ -210,7 +214,7 @@ fn a_training_that_would_fill_the_memory_is_refused() {
     };
     let data = Dataset::new(1, 8000, vec![0.5], vec![0.5; 8000]).unwrap();
     let scaling = Scaling::from_ranges(&[(0.0, 1.0)], &vec![(0.0, 1.0); 8000]).unwrap();
-    let refused = Trainer::new(shape, scaling, &data, Settings::default()).unwrap_err();
+    let refused = Trainer::new(shape, scaling, &data, TrainingSettings::default()).unwrap_err();
     assert!(matches!(refused, Error::TrainingMemory { .. }), "{refused}");
     let refused = Shape {
         inputs: 1 << 40,
@@ -229,10 +233,10 @@ fn a_training_that_would_fill_the_memory_is_refused() {
 /// Samples so far outside the scaling that scaled ones overflow.
 fn overflowing(initialisation: Initialisation) -> Result<Trainer, Error> {
     let scaling = Scaling::from_ranges(&[(0.0, 1e-200)], &[(0.0, 1.0)]).unwrap();
-    let settings = Settings {
+    let settings = TrainingSettings {
         epochs: 1000,
         initialisation,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let data = data(&[0.0, 1e200, 2e200], &[0.0, 0.5, 1.0]);
     Trainer::new(shape(&[2]), scaling, &data, settings)
@@ -241,7 +245,7 @@ fn overflowing(initialisation: Initialisation) -> Result<Trainer, Error> {
 #[test]
 fn a_gradient_that_is_no_number_ends_the_training_at_once() {
     let mut trainer = overflowing(Initialisation::NguyenWidrow).unwrap();
-    assert_eq!(trainer.run(|_| ()), Outcome::NotFinite);
+    assert_eq!(trainer.run(|_| ()), TrainingOutcome::NotFinite);
     assert_eq!(trainer.history().len(), 1);
     assert!(!trainer.history()[0].gradient.is_finite());
     // What it started from is still there to be looked at.
@@ -268,17 +272,17 @@ fn a_validation_loss_that_is_no_number_ends_the_training() {
         .collect();
     let y: Vec<f64> = (0..40).map(|i| f64::from(i % 5)).collect();
     let scaling = Scaling::from_ranges(&[(0.0, 1e-110)], &[(0.0, 4.0)]).unwrap();
-    let outcomes: Vec<Outcome> = (0..8)
+    let outcomes: Vec<TrainingOutcome> = (0..8)
         .map(|seed| {
-            let settings = Settings {
+            let settings = TrainingSettings {
                 epochs: 50,
                 min_gradient: 0.0,
-                validation: Some(Validation {
+                validation: Some(EarlyStopping {
                     fraction: 0.2,
                     patience: 100,
                 }),
                 seed,
-                ..Settings::default()
+                ..TrainingSettings::default()
             };
             let data = data(&x, &y);
             let trainer = Trainer::new(shape(&[2]), scaling.clone(), &data, settings);
@@ -286,7 +290,7 @@ fn a_validation_loss_that_is_no_number_ends_the_training() {
         })
         .collect();
     assert!(
-        outcomes.iter().all(|&o| o == Outcome::NotFinite),
+        outcomes.iter().all(|&o| o == TrainingOutcome::NotFinite),
         "{outcomes:?}"
     );
 }
@@ -294,21 +298,21 @@ fn a_validation_loss_that_is_no_number_ends_the_training() {
 /// Neither grows past its limit by its factor: the trial steps would not end.
 #[test]
 fn dampings_that_would_never_end_are_refused() {
-    let usual = Settings::default();
+    let usual = TrainingSettings::default();
     for settings in [
-        Settings {
+        TrainingSettings {
             initial_damping: 5e-324,
             ..usual.clone()
         },
-        Settings {
+        TrainingSettings {
             damping_increase: 1.0 + f64::EPSILON,
             ..usual.clone()
         },
-        Settings {
+        TrainingSettings {
             max_damping: f64::MAX,
             ..usual.clone()
         },
-        Settings {
+        TrainingSettings {
             threads: 1_000_000,
             ..usual
         },

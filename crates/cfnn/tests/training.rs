@@ -2,7 +2,10 @@
 //! than the data, the settings and the seed.
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
-use cfnn::train::{Dataset, Initialisation, Normalisation, Outcome, Settings, Trainer, Validation};
+use cfnn::train::{
+    Dataset, EarlyStopping, Initialisation, Normalisation, Trainer, TrainingOutcome,
+    TrainingSettings,
+};
 use cfnn::{Error, Shape};
 
 fn uniform(k: usize) -> f64 {
@@ -26,7 +29,7 @@ fn shape(hidden: &[usize]) -> Shape {
     }
 }
 
-fn trainer(hidden: &[usize], data: &Dataset, settings: Settings) -> Trainer {
+fn trainer(hidden: &[usize], data: &Dataset, settings: TrainingSettings) -> Trainer {
     Trainer::new(shape(hidden), data.scaling().unwrap(), data, settings).unwrap()
 }
 
@@ -42,15 +45,15 @@ fn smooth(x: f64, y: f64) -> f64 {
 fn purelin_network_recovers_a_linear_map_to_rounding() {
     let data = data(500, |x, y| 0.7 * x - 2.0 * y + 3.0);
     for settings in [
-        Settings {
+        TrainingSettings {
             epochs: 20,
             min_gradient: 0.0,
-            ..Settings::default()
+            ..TrainingSettings::default()
         },
-        Settings {
+        TrainingSettings {
             epochs: 0,
             initialisation: Initialisation::LinearStart,
-            ..Settings::default()
+            ..TrainingSettings::default()
         },
     ] {
         let mut trainer = trainer(&[], &data, settings);
@@ -70,9 +73,9 @@ fn purelin_network_recovers_a_linear_map_to_rounding() {
 #[test]
 fn linear_start_begins_at_the_linear_map() {
     let data = data(400, |x, y| x - y + 1e-3 * (5.0 * x).tanh());
-    let settings = Settings {
+    let settings = TrainingSettings {
         initialisation: Initialisation::LinearStart,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let start = trainer(&[6, 3], &data, settings.clone()).loss();
     let linear = trainer(&[], &data, settings).loss();
@@ -88,13 +91,13 @@ fn levenberg_marquardt_fits_a_smooth_function() {
         Initialisation::LinearStart,
         Initialisation::DataAdapted { axis_aligned: 0.5 },
     ] {
-        let settings = Settings {
+        let settings = TrainingSettings {
             epochs: 60,
             initialisation,
             // Neurons as steep as the data-adapted ones are hard to move by
             // the joint step alone.
             resolve_output: matches!(initialisation, Initialisation::DataAdapted { .. }),
-            ..Settings::default()
+            ..TrainingSettings::default()
         };
         let mut trainer = trainer(&[8, 5], &data, settings);
         let mut before = trainer.loss();
@@ -115,16 +118,16 @@ fn levenberg_marquardt_fits_a_smooth_function() {
 #[test]
 fn goal_is_met_on_a_realisable_function() {
     let data = data(300, |x, y| x + 0.5 * (2.0 * x - y).tanh());
-    let settings = Settings {
+    let settings = TrainingSettings {
         epochs: 200,
         goal: 1e-18,
         min_gradient: 0.0,
         resolve_output: true,
         normalisation: Normalisation::Mean,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let mut trainer = trainer(&[2], &data, settings);
-    assert_eq!(trainer.run(|_| ()), Outcome::GoalMet);
+    assert_eq!(trainer.run(|_| ()), TrainingOutcome::GoalMet);
     let epochs = trainer.history().len();
     let again = trainer.epoch();
     assert_eq!(again.epoch, epochs);
@@ -135,9 +138,9 @@ fn goal_is_met_on_a_realisable_function() {
 fn resolving_the_output_layer_never_hurts_the_first_step() {
     let data = data(300, smooth);
     let loss = |resolve_output| {
-        let settings = Settings {
+        let settings = TrainingSettings {
             resolve_output,
-            ..Settings::default()
+            ..TrainingSettings::default()
         };
         let mut trainer = trainer(&[5], &data, settings);
         trainer.epoch().loss
@@ -150,11 +153,11 @@ fn bits_do_not_depend_on_the_threads() {
     // 3000 samples and 514 parameters: several blocks, tasks and panels.
     let data = data(3000, smooth);
     let run = |threads| {
-        let settings = Settings {
+        let settings = TrainingSettings {
             epochs: 3,
             threads,
             resolve_output: true,
-            ..Settings::default()
+            ..TrainingSettings::default()
         };
         let mut trainer = trainer(&[17, 9, 5], &data, settings);
         trainer.run(|_| ());
@@ -171,19 +174,19 @@ fn bits_do_not_depend_on_the_threads() {
 #[test]
 fn resumed_training_gives_the_same_bits() {
     let data = data(300, smooth);
-    let settings = |epochs| Settings {
+    let settings = |epochs| TrainingSettings {
         epochs,
-        validation: Some(Validation {
+        validation: Some(EarlyStopping {
             fraction: 0.2,
             patience: 50,
         }),
         seed: 3,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let mut whole = trainer(&[6, 4], &data, settings(12));
     whole.run(|_| ());
     let mut first = trainer(&[6, 4], &data, settings(5));
-    assert_eq!(first.run(|_| ()), Outcome::EpochsDone);
+    assert_eq!(first.run(|_| ()), TrainingOutcome::EpochsDone);
     let mut checkpoint = first.checkpoint();
     checkpoint.settings.epochs = 12;
     let mut second = Trainer::resume(&data, checkpoint.clone()).unwrap();
@@ -206,16 +209,16 @@ fn early_stopping_returns_the_best_network() {
     // Few samples, much noise, many neurons: the validation loss must turn.
     let noise = |x: f64, y: f64| x + (1e4 * (x + 7.3 * y)).sin();
     let data = data(80, noise);
-    let settings = Settings {
+    let settings = TrainingSettings {
         epochs: 200,
-        validation: Some(Validation {
+        validation: Some(EarlyStopping {
             fraction: 0.3,
             patience: 6,
         }),
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let mut trainer = trainer(&[12], &data, settings);
-    assert_eq!(trainer.run(|_| ()), Outcome::ValidationStopped);
+    assert_eq!(trainer.run(|_| ()), TrainingOutcome::ValidationStopped);
     let losses: Vec<f64> = (trainer.history().iter())
         .map(|r| r.validation_loss.unwrap())
         .collect();
@@ -231,41 +234,41 @@ fn early_stopping_returns_the_best_network() {
 fn damping_limit_ends_a_training_that_cannot_go_on() {
     // Too few neurons: the loss has a minimum above zero.
     let data = data(100, |x, y| (3.0 * x).sin() * y);
-    let settings = Settings {
+    let settings = TrainingSettings {
         epochs: 2000,
         min_gradient: 0.0,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let mut trainer = trainer(&[], &data, settings);
-    assert_eq!(trainer.run(|_| ()), Outcome::DampingLimit);
+    assert_eq!(trainer.run(|_| ()), TrainingOutcome::DampingLimit);
 }
 
 #[test]
 fn bad_settings_and_data_are_refused() {
     let data = data(50, smooth);
     let wrong = [
-        Settings {
+        TrainingSettings {
             initial_damping: 0.0,
-            ..Settings::default()
+            ..TrainingSettings::default()
         },
-        Settings {
+        TrainingSettings {
             damping_increase: 1.0,
-            ..Settings::default()
+            ..TrainingSettings::default()
         },
-        Settings {
+        TrainingSettings {
             damping_decrease: f64::NAN,
-            ..Settings::default()
+            ..TrainingSettings::default()
         },
-        Settings {
-            validation: Some(Validation {
+        TrainingSettings {
+            validation: Some(EarlyStopping {
                 fraction: 1.0,
                 patience: 6,
             }),
-            ..Settings::default()
+            ..TrainingSettings::default()
         },
-        Settings {
+        TrainingSettings {
             initialisation: Initialisation::DataAdapted { axis_aligned: 1.5 },
-            ..Settings::default()
+            ..TrainingSettings::default()
         },
     ];
     for settings in wrong {

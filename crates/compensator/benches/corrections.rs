@@ -5,12 +5,12 @@
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
-use cfnn::{FixedNetwork, Network, Range, Scaling, Shape, packed_len};
+use cfnn::{FixedNetwork, Network, Scaling, ScalingRange, Shape, packed_len};
 use compensator::{
-    Along, Cascade, Combined, Compensator, Drive, DriveModel, FeedbackDesign, FeedbackSettings,
-    FrictionFeedforward, Mode, MotionEstimator, NetworkCompensation, NoCompensation, ObserverGains,
-    Plan, PlanSettings, PlanWithFeedback, Planned, Reference, Sample, Section, Target,
-    TransferFunction, TransferFunctionModel,
+    Along, Cascade, Combined, Compensator, Drive, DriveModel, DriveSection, FeedbackDesign,
+    FeedbackSettings, FrictionFeedforward, Mode, MotionEstimator, NetworkCompensation,
+    NoCompensation, ObserverGains, Plan, PlanSettings, PlanWithFeedback, Planned, Reference,
+    Sample, Target, TransferFunction, TransferFunctionModel,
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 use foc_pmsm::{MotorParameters, Pmsm};
@@ -104,7 +104,7 @@ fn planned() -> (DriveModel, Vec<Mode>) {
         .from_torque_constant(1.641),
     )
     .expect("a motor");
-    let section = Section {
+    let section = DriveSection {
         compliance: 1e-3,
         rotating: 0.0085,
         lagging: 0.002,
@@ -232,7 +232,7 @@ fn single(c: &mut Criterion) {
         .iter()
         .map(|&w| w as f32)
         .collect();
-    let range = |low: f64, high: f64| Range::new("bench", low as f32, high as f32);
+    let range = |low: f64, high: f64| ScalingRange::new("bench", low as f32, high as f32);
     let input = RANGES.map(|(low, high)| range(low, high).expect("a valid range"));
     let output = [range(-2e-5, 2e-5).expect("a valid range")];
     let model = FixedNetwork::<f32, 4, 1, 66>::new(&HIDDEN, &packed, input, output)

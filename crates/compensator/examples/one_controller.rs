@@ -7,9 +7,9 @@
 use std::f64::consts::TAU;
 
 use compensator::{
-    Candidates, Combined, Compensator, FrictionFeedforward, IdentifyError, Motion, MotionEstimator,
+    Candidates, Combined, Compensator, FrictionFeedforward, MotionEstimator, MotionRecord,
     NetworkCompensation, NoCompensation, ObserverGains, Reference, Sample, TransferFunction,
-    TransferFunctionFit, identify_transfer_function,
+    TransferFunctionError, TransferFunctionFit, identify_transfer_function,
 };
 use lugre::{LuGre, Parameters};
 
@@ -68,14 +68,15 @@ fn run(friction: &LuGre, law: &mut impl Compensator, duration: f64, speed: f64) 
 fn identify(
     friction: &LuGre,
     mut law: impl Compensator,
-) -> Result<TransferFunctionFit, IdentifyError> {
+) -> Result<TransferFunctionFit, TransferFunctionError> {
     let [training, validation] =
         [(1.0, 0.1), (0.7, 0.06)].map(|(duration, speed)| run(friction, &mut law, duration, speed));
-    let [training, validation] = [&training, &validation].map(|[acceleration, error]| Motion {
-        period: T,
-        acceleration,
-        error,
-    });
+    let [training, validation] =
+        [&training, &validation].map(|[acceleration, error]| MotionRecord {
+            period: T,
+            acceleration,
+            error,
+        });
     identify_transfer_function(&[training], &[validation], &Candidates::for_period(T))
 }
 

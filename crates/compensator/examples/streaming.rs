@@ -9,9 +9,8 @@
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{
-    Along, Cascade, Correction, Drive, DriveModel, FeedbackDesign, FeedbackSettings, Guard,
-    GuardLimits, Mode, PlanSettings, Planner, Reference, Sample, Section, Standstill, Status,
-    Target,
+    Along, Cascade, Correction, Drive, DriveModel, DriveSection, FeedbackDesign, FeedbackSettings,
+    Guard, GuardLimits, Mode, PlanSettings, Planner, Reference, Sample, Standstill, Status, Target,
 };
 use lugre::{LuGre, Parameters};
 use trajectories::{Limits, Motion, SCurve};
@@ -31,9 +30,9 @@ const LIMIT: f64 = 15.0;
 
 /// What is believed of the axis.
 fn believed() -> Result<DriveModel, Box<dyn std::error::Error>> {
-    let section = Section {
+    let section = DriveSection {
         rotating: J,
-        ..Section::default()
+        ..DriveSection::default()
     };
     Ok(DriveModel {
         travel: R,
@@ -62,9 +61,9 @@ fn believed() -> Result<DriveModel, Box<dyn std::error::Error>> {
 
 /// The model in single precision: made in double precision, once.
 fn single(model: &DriveModel) -> Result<DriveModel<f32>, Box<dyn std::error::Error>> {
-    let section = Section {
+    let section = DriveSection {
         rotating: J as f32,
-        ..Section::default()
+        ..DriveSection::default()
     };
     let c = &model.cascade;
     Ok(DriveModel {

@@ -133,7 +133,7 @@ pub struct NoiseGains<T = f64> {
 
 /// The controller's estimate of the table's motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Estimate<T = f64> {
+pub struct MotionEstimate<T = f64> {
     /// Position, m.
     pub position: T,
     /// Speed, m/s.
@@ -213,7 +213,7 @@ impl<T: Scalar> MotionEstimator<T> {
 
     /// Takes in one cycle's sample (position and motor speed only). One that
     /// is not finite leaves estimates that are not, until the next reset.
-    pub fn update(&mut self, sample: &Sample<T>) -> Estimate<T> {
+    pub fn update(&mut self, sample: &Sample<T>) -> MotionEstimate<T> {
         let motor_side_speed = self.travel_per_radian * sample.motor_speed;
         let state = match &self.state {
             None => State {
@@ -226,7 +226,7 @@ impl<T: Scalar> MotionEstimator<T> {
             Some(last) => self.next(last, sample.position, motor_side_speed),
         };
         self.state = Some(state);
-        Estimate {
+        MotionEstimate {
             position: state.position,
             velocity: state.velocity,
             acceleration: state.acceleration,

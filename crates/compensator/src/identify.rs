@@ -17,7 +17,7 @@ use crate::TransferFunctionModel;
 use check::check;
 use triangle::{Solution, Triangle};
 
-pub use error::IdentifyError;
+pub use error::TransferFunctionError;
 
 /// Validation errors closer than this fraction of the best count as equal.
 const TIE: f64 = 0.01;
@@ -26,7 +26,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// One motion from rest without compensation, sampled once a cycle.
 #[derive(Clone, Copy, Debug)]
-pub struct Motion<'a> {
+pub struct MotionRecord<'a> {
     /// Control period, s.
     pub period: f64,
     /// Reference acceleration, m/s².
@@ -111,13 +111,13 @@ pub struct TransferFunctionFit {
 /// training and of the validation motions for each cycle of poles.
 ///
 /// # Errors
-/// [`IdentifyError`] for invalid motions or candidates, or motions that
+/// [`TransferFunctionError`] for invalid motions or candidates, or motions that
 /// determine none.
 pub fn identify_transfer_function(
-    training: &[Motion],
-    validation: &[Motion],
+    training: &[MotionRecord],
+    validation: &[MotionRecord],
     candidates: &Candidates,
-) -> Result<TransferFunctionFit, IdentifyError> {
+) -> Result<TransferFunctionFit, TransferFunctionError> {
     let period = check(training, validation, candidates)?;
     let cycles = candidates.pole_cycles.iter();
     let fits: Vec<_> = cycles
@@ -125,7 +125,7 @@ pub fn identify_transfer_function(
         .collect();
     let floor = ROUNDING * Triangle::of(validation, &[]).rms(&[]);
     let index = choose(fits.iter().map(|(trial, _)| trial), floor);
-    let (chosen, solution) = &fits[index.ok_or(IdentifyError::Undetermined)?];
+    let (chosen, solution) = &fits[index.ok_or(TransferFunctionError::Undetermined)?];
 
     let split = usize::from(chosen.direct);
     let direct = solution.coefficients[..split].iter().sum();
@@ -145,8 +145,8 @@ pub fn identify_transfer_function(
 
 /// All orders on one cycle of poles, without and with direct feed-through.
 fn fit_cycle(
-    training: &[Motion],
-    validation: &[Motion],
+    training: &[MotionRecord],
+    validation: &[MotionRecord],
     cycle: &[f64],
     max_order: usize,
 ) -> Vec<(Trial, Solution)> {

@@ -94,14 +94,14 @@ mod transfer_function;
 
 #[cfg(feature = "identify")]
 pub use adapt::{
-    AdaptError, AdaptParameter, AdaptPrior, Adaptation, Estimated, Learned, Rest, Spread,
+    AdaptError, AdaptParameter, AdaptPrior, Adaptation, Estimated, Learned, PriorSpread, Rest,
 };
 pub use combined::Combined;
 pub use drive_terms::{
     DriveTerms, DriveTermsFeedforward, DriveTermsRow, ReversalPulse, ReversalStart,
 };
 pub use error::CompensatorError;
-pub use estimator::{Estimate, MotionEstimator, NoiseGains, ObserverGains};
+pub use estimator::{MotionEstimate, MotionEstimator, NoiseGains, ObserverGains};
 #[cfg(feature = "design")]
 pub use feedback::{DesignError, FeedbackDesign, FeedbackSettings, Margins, Variation};
 pub use feedback::{
@@ -112,11 +112,12 @@ pub use friction::FrictionFeedforward;
 pub use guard::{Guard, GuardLimits, Guarded, Status, Trip};
 #[cfg(feature = "identify")]
 pub use identify::{
-    Candidates, IdentifyError, Motion, TransferFunctionFit, Trial, identify_transfer_function,
+    Candidates, MotionRecord, TransferFunctionError, TransferFunctionFit, Trial,
+    identify_transfer_function,
 };
 #[cfg(feature = "alloc")]
 pub use learning::{Advice, Gauss, LearnedMove, LearningSettings, Round};
-pub use model::{Along, Cascade, Drive, DriveModel, Kinematics, Mode, SECTIONS, Section};
+pub use model::{Along, Cascade, Drive, DriveModel, DriveSection, Kinematics, Mode, SECTIONS};
 pub use network::{IncrementModel, NetworkCompensation};
 pub use none::NoCompensation;
 pub use plan::{Plan, PlanSettings, Planned, Planner, PlannerConstants, Standstill, Target};
@@ -125,7 +126,8 @@ pub use residual::{HARMONICS, KNOTS, Residual, ResidualAt, ResidualModel};
 pub use residual::{NETWORK_INPUTS, ResidualNetwork};
 #[cfg(feature = "identify")]
 pub use residual::{
-    NetworkBasis, ResidualBasis, ResidualLearner, ResidualTables, Row, Unexplained, over_gaussian,
+    NetworkBasis, ResidualBasis, ResidualLearner, ResidualRow, ResidualTables, Unexplained,
+    over_gaussian,
 };
 pub use sample::{Correction, Reference, Sample};
 pub use transfer_function::{MAX_ORDER, TransferFunction, TransferFunctionModel};
@@ -161,3 +163,8 @@ impl<T: scalar::Scalar, C: Compensator<T> + ?Sized> Compensator<T> for &mut C {
         (**self).surprise()
     }
 }
+
+/// The README's example, run as a test.
+#[cfg(all(doctest, feature = "std"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

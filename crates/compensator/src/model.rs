@@ -22,7 +22,7 @@ pub const SECTIONS: usize = 33;
 
 /// What of an axis depends on the load's position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Section<T = f64> {
+pub struct DriveSection<T = f64> {
     /// Compliance C from motor to load, rad/(N·m) at the motor.
     pub compliance: T,
     /// J, all that turns with the motor, kg·m².
@@ -38,7 +38,7 @@ pub struct Section<T = f64> {
 pub struct Along<T = f64> {
     least: T,
     per_length: T,
-    sections: [Section<T>; SECTIONS],
+    sections: [DriveSection<T>; SECTIONS],
 }
 
 impl<T: Scalar> Along<T> {
@@ -50,12 +50,12 @@ impl<T: Scalar> Along<T> {
     /// section is not finite or has a negative compliance or inertia.
     pub fn new(
         [least, most]: [T; 2],
-        mut at: impl FnMut(T) -> Section<T>,
+        mut at: impl FnMut(T) -> DriveSection<T>,
     ) -> Result<Self, CompensatorError> {
         let inside = least.is_finite() && most.is_finite() && most > least;
         require(inside, "stroke", most, "finite, and above its lower end")?;
         let gaps = T::of((SECTIONS - 1) as f64);
-        let mut sections = [Section::default(); SECTIONS];
+        let mut sections = [DriveSection::default(); SECTIONS];
         for (i, section) in sections.iter_mut().enumerate() {
             *section = at(least + (most - least) * T::of(i as f64) / gaps);
             let s = *section;
@@ -85,7 +85,7 @@ impl<T: Scalar> Along<T> {
 
     /// The sections.
     #[must_use]
-    pub fn sections(&self) -> &[Section<T>; SECTIONS] {
+    pub fn sections(&self) -> &[DriveSection<T>; SECTIONS] {
         &self.sections
     }
 
@@ -103,7 +103,7 @@ impl<T: Scalar> Along<T> {
         Along {
             least: to(self.least),
             per_length: to(self.per_length),
-            sections: self.sections.map(|s| Section {
+            sections: self.sections.map(|s| DriveSection {
                 compliance: to(s.compliance),
                 rotating: to(s.rotating),
                 lagging: to(s.lagging),
@@ -114,7 +114,7 @@ impl<T: Scalar> Along<T> {
 
     /// The section at `position`.
     #[must_use]
-    pub fn at(&self, position: T) -> Section<T> {
+    pub fn at(&self, position: T) -> DriveSection<T> {
         let last = T::of((SECTIONS - 1) as f64);
         // Not a number goes to the lower end.
         let along = ((position - self.least) * self.per_length)
@@ -124,7 +124,7 @@ impl<T: Scalar> Along<T> {
         let share = along - T::of(node as f64);
         let [a, b] = [&self.sections[node], &self.sections[node + 1]];
         let between = |a: T, b: T| a + share * (b - a);
-        Section {
+        DriveSection {
             compliance: between(a.compliance, b.compliance),
             rotating: between(a.rotating, b.rotating),
             lagging: between(a.lagging, b.lagging),
@@ -153,7 +153,7 @@ impl<T: Scalar> Along<T> {
     /// The greatest compliance, rad/(N·m).
     #[must_use]
     pub fn most_compliance(&self) -> T {
-        let of = |most: T, section: &Section<T>| most.max(section.compliance);
+        let of = |most: T, section: &DriveSection<T>| most.max(section.compliance);
         self.sections.iter().fold(T::ZERO, of)
     }
 }

@@ -32,7 +32,9 @@ impl IncrementModel for cfnn::Predictor<4, 1> {
     }
 }
 
-impl<T: cfnn::Real, const A: usize> IncrementModel<T> for cfnn::FixedNetwork<'_, T, 4, 1, A> {
+impl<T: cfnn::NetworkScalar, const A: usize> IncrementModel<T>
+    for cfnn::FixedNetwork<'_, T, 4, 1, A>
+{
     fn increment(&mut self, position: T, speed: T, acceleration: T, iq_command: T) -> T {
         let [increment] = self.evaluate(&[position, speed, acceleration, iq_command]);
         increment

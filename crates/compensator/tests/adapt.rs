@@ -3,7 +3,7 @@
 
 use compensator::{
     AdaptError, AdaptParameter, AdaptPrior, Adaptation, Along, Cascade, Drive, DriveModel,
-    Reference, Sample, Section, Spread,
+    DriveSection, PriorSpread, Reference, Sample,
 };
 use lugre::{LuGre, Parameters};
 
@@ -14,7 +14,7 @@ const STEPS: usize = 100;
 
 /// The axis that is simulated.
 fn truth() -> DriveModel {
-    let along = Along::new([0.0, 1.0], |x| Section {
+    let along = Along::new([0.0, 1.0], |x| DriveSection {
         compliance: 6e-3 + 1e-3 * x,
         rotating: 6e-3,
         lagging: 0.0,
@@ -248,7 +248,7 @@ fn a_load_far_beyond_the_prior_is_believed() {
 fn a_bound_holds_and_is_told() {
     let mut model = truth();
     model.load_inertia = 300.0;
-    let spread = Spread {
+    let spread = PriorSpread {
         deviation: 1.0,
         bound: 1.2,
     };

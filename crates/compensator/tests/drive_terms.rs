@@ -3,8 +3,8 @@
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{
-    Along, Cascade, Compensator, CompensatorError, Correction, Drive, DriveModel, DriveTerms,
-    DriveTermsFeedforward, Reference, ReversalStart, Sample, Section,
+    Along, Cascade, Compensator, CompensatorError, Correction, Drive, DriveModel, DriveSection,
+    DriveTerms, DriveTermsFeedforward, Reference, ReversalStart, Sample,
 };
 use lugre::{LuGre, Parameters};
 use proptest::prelude::*;
@@ -19,7 +19,7 @@ const START: ReversalStart = ReversalStart {
 
 /// A ball screw of about the size of Liu et al. 2025, its load rising by 20 N a metre.
 fn model(from_motor: bool) -> DriveModel {
-    let section = |x: f64| Section {
+    let section = |x: f64| DriveSection {
         compliance: 6e-3 + 1e-4 * x,
         rotating: 8.4e-3,
         lagging: 2e-3,

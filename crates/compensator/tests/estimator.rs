@@ -2,7 +2,7 @@
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use approx::assert_relative_eq;
-use compensator::{CompensatorError, Estimate, MotionEstimator, ObserverGains, Sample};
+use compensator::{CompensatorError, MotionEstimate, MotionEstimator, ObserverGains, Sample};
 use proptest::prelude::*;
 
 const R: f64 = 0.01 / std::f64::consts::TAU;
@@ -14,9 +14,9 @@ fn observe(
     cycles: u32,
     position: impl Fn(f64) -> f64,
     motor_side_speed: impl Fn(f64) -> f64,
-) -> Estimate {
+) -> MotionEstimate {
     let mut estimator = MotionEstimator::new(R, T, gains).unwrap();
-    let mut estimate = Estimate::default();
+    let mut estimate = MotionEstimate::default();
     for k in 0..=cycles {
         let time = f64::from(k) * T;
         estimate = estimator.update(&Sample {

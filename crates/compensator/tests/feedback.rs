@@ -3,9 +3,9 @@
 #![cfg(feature = "design")]
 
 use compensator::{
-    Along, Cascade, Compensator, DesignError, Drive, DriveModel, Feedback, FeedbackDesign,
-    FeedbackSettings, Guard, GuardLimits, Guarded, Mode, Plan, PlanSettings, PlanWithFeedback,
-    Planned, Reference, Sample, Section, Status, Target, Trip, Variation,
+    Along, Cascade, Compensator, DesignError, Drive, DriveModel, DriveSection, Feedback,
+    FeedbackDesign, FeedbackSettings, Guard, GuardLimits, Guarded, Mode, Plan, PlanSettings,
+    PlanWithFeedback, Planned, Reference, Sample, Status, Target, Trip, Variation,
 };
 use lugre::{LuGre, Parameters};
 use proptest::prelude::*;
@@ -23,10 +23,10 @@ const CASCADE: [f64; 2] = [0.647, 29342.0];
 
 /// A two-mass axis whose torque follows its command at once, without friction.
 fn axis(position: f64) -> (DriveModel, Vec<Mode>) {
-    let section = Section {
+    let section = DriveSection {
         compliance: 1.0 / STIFFNESS,
         rotating: MOTOR,
-        ..Section::default()
+        ..DriveSection::default()
     };
     let model = DriveModel {
         travel: R,

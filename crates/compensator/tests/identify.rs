@@ -2,7 +2,8 @@
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{
-    Candidates, IdentifyError, Motion, TransferFunctionModel, identify_transfer_function,
+    Candidates, MotionRecord, TransferFunctionError, TransferFunctionModel,
+    identify_transfer_function,
 };
 use proptest::prelude::*;
 
@@ -39,8 +40,8 @@ fn candidates() -> Candidates {
     }
 }
 
-fn motion<'a>(acceleration: &'a [f64], error: &'a [f64]) -> Motion<'a> {
-    Motion {
+fn motion<'a>(acceleration: &'a [f64], error: &'a [f64]) -> MotionRecord<'a> {
+    MotionRecord {
         period: T,
         acceleration,
         error,
@@ -187,20 +188,21 @@ fn two_alternating_poles() {
 fn unusable_motions_are_refused() {
     let (a, e) = ([1.0, 2.0, 3.0], [1.0, 2.0, 3.0]);
     let good = motion(&a, &e);
-    let identify =
-        |t: &[Motion], v: &[Motion]| identify_transfer_function(t, v, &candidates()).unwrap_err();
+    let identify = |t: &[MotionRecord], v: &[MotionRecord]| {
+        identify_transfer_function(t, v, &candidates()).unwrap_err()
+    };
     assert_eq!(
         identify(&[], &[good]),
-        IdentifyError::Empty("training motion")
+        TransferFunctionError::Empty("training motion")
     );
     assert_eq!(
         identify(&[good], &[]),
-        IdentifyError::Empty("validation motion")
+        TransferFunctionError::Empty("validation motion")
     );
     let length = identify(&[motion(&a, &e[..2])], &[good]);
     assert!(matches!(
         length,
-        IdentifyError::Length {
+        TransferFunctionError::Length {
             set: "training",
             index: 0,
             accelerations: 3,
@@ -211,7 +213,7 @@ fn unusable_motions_are_refused() {
         &[good],
         &[
             good,
-            Motion {
+            MotionRecord {
                 period: 1e-3,
                 ..good
             },
@@ -219,7 +221,7 @@ fn unusable_motions_are_refused() {
     );
     assert!(matches!(
         period,
-        IdentifyError::Period {
+        TransferFunctionError::Period {
             set: "validation",
             index: 1,
             ..
@@ -228,7 +230,7 @@ fn unusable_motions_are_refused() {
     let nan = identify(&[motion(&a, &[0.0, f64::NAN, 0.0])], &[good]);
     assert!(matches!(
         nan,
-        IdentifyError::Value {
+        TransferFunctionError::Value {
             sample: 1,
             what: "error",
             ..
@@ -237,7 +239,7 @@ fn unusable_motions_are_refused() {
     let still = [0.0; 100];
     assert_eq!(
         identify(&[motion(&still, &still)], &[good]),
-        IdentifyError::Undetermined
+        TransferFunctionError::Undetermined
     );
 }
 
@@ -251,18 +253,21 @@ fn unusable_candidates_are_refused() {
         };
         identify_transfer_function(&[motion(&a, &e)], &[motion(&a, &e)], &candidates).unwrap_err()
     };
-    assert_eq!(refused(2, vec![]), IdentifyError::Empty("pole"));
-    assert_eq!(refused(2, vec![vec![]]), IdentifyError::Empty("pole"));
+    assert_eq!(refused(2, vec![]), TransferFunctionError::Empty("pole"));
+    assert_eq!(
+        refused(2, vec![vec![]]),
+        TransferFunctionError::Empty("pole")
+    );
     assert!(matches!(
         refused(0, vec![vec![0.5]]),
-        IdentifyError::Setting(_)
+        TransferFunctionError::Setting(_)
     ));
     assert!(matches!(
         refused(17, vec![vec![0.5]]),
-        IdentifyError::Setting(_)
+        TransferFunctionError::Setting(_)
     ));
     assert!(matches!(
         refused(2, vec![vec![1.0]]),
-        IdentifyError::Setting(_)
+        TransferFunctionError::Setting(_)
     ));
 }

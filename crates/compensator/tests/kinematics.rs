@@ -2,8 +2,8 @@
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{
-    Along, Cascade, Drive, DriveModel, Kinematics, PlanSettings, Planned, Planner, Reference,
-    Section, Standstill, Target,
+    Along, Cascade, Drive, DriveModel, DriveSection, Kinematics, PlanSettings, Planned, Planner,
+    Reference, Standstill, Target,
 };
 use lugre::{LuGre, Parameters};
 use proptest::prelude::*;
@@ -13,10 +13,10 @@ const TRAVEL: f64 = 0.01;
 
 /// A stiff rotary axis behind a gear of 100, with friction.
 fn model(kinematics: Kinematics) -> DriveModel {
-    let section = Section {
+    let section = DriveSection {
         compliance: 0.0,
         rotating: 1e-4,
-        ..Section::default()
+        ..DriveSection::default()
     };
     DriveModel {
         travel: TRAVEL,

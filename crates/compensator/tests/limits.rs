@@ -4,9 +4,9 @@
 #![cfg(feature = "identify")]
 
 use compensator::{
-    Candidates, Combined, Compensator, FrictionFeedforward, IdentifyError, Motion, MotionEstimator,
+    Candidates, Combined, Compensator, FrictionFeedforward, MotionEstimator, MotionRecord,
     NetworkCompensation, NoCompensation, ObserverGains, Reference, Sample, TransferFunction,
-    TransferFunctionModel, identify_transfer_function,
+    TransferFunctionError, TransferFunctionModel, identify_transfer_function,
 };
 use lugre::{LuGre, Parameters};
 use proptest::prelude::*;
@@ -123,7 +123,7 @@ proptest! {
         usual: bool,
     ) {
         let count = a.len().min(e.len());
-        let motion = Motion { period, acceleration: &a[..count], error: &e[..count] };
+        let motion = MotionRecord { period, acceleration: &a[..count], error: &e[..count] };
         let candidates = if usual {
             Candidates { max_order: 3, ..Candidates::for_period(period) }
         } else {
@@ -140,12 +140,12 @@ proptest! {
 #[test]
 fn validation_motions_without_samples_are_refused() {
     let a: Vec<f64> = (0..50).map(|k| f64::from(k % 7) - 3.0).collect();
-    let motion = Motion {
+    let motion = MotionRecord {
         period: 1e-4,
         acceleration: &a,
         error: &a,
     };
-    let empty = Motion {
+    let empty = MotionRecord {
         acceleration: &[],
         error: &[],
         ..motion
@@ -155,10 +155,10 @@ fn validation_motions_without_samples_are_refused() {
         pole_cycles: vec![vec![0.5]],
     };
     let refused = identify_transfer_function(&[motion], &[empty], &candidates).unwrap_err();
-    assert_eq!(refused, IdentifyError::Empty("validation sample"));
+    assert_eq!(refused, TransferFunctionError::Empty("validation sample"));
     // Squares of these would overflow, and the sums say nothing.
     let huge = vec![1e200; 50];
-    let huge = Motion {
+    let huge = MotionRecord {
         error: &huge,
         ..motion
     };

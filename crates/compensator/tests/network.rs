@@ -1,7 +1,7 @@
 //! The network strategy: Eq. (36), shapes, the kinds of models.
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
-use cfnn::{FixedNetwork, Network, Range, Scaling, Shape};
+use cfnn::{FixedNetwork, Network, Scaling, ScalingRange, Shape};
 use compensator::{
     Compensator, CompensatorError, IncrementModel, MotionEstimator, NetworkCompensation,
     ObserverGains, Reference, Sample,
@@ -30,12 +30,12 @@ fn network() -> Network {
 
 #[test]
 fn the_models_agree() {
-    let input = RANGES.map(|(low, high)| Range::new("input", low, high).unwrap());
-    let output = [Range::new("output", -2e-5, 2e-5).unwrap()];
+    let input = RANGES.map(|(low, high)| ScalingRange::new("input", low, high).unwrap());
+    let output = [ScalingRange::new("output", -2e-5, 2e-5).unwrap()];
     let mut fixed = FixedNetwork::<f64, 4, 1, 6>::new(&[1], &WEIGHTS, input, output).unwrap();
 
-    let input = RANGES.map(|(l, h)| Range::new("input", l as f32, h as f32).unwrap());
-    let output = [Range::new("output", -2e-5f32, 2e-5).unwrap()];
+    let input = RANGES.map(|(l, h)| ScalingRange::new("input", l as f32, h as f32).unwrap());
+    let output = [ScalingRange::new("output", -2e-5f32, 2e-5).unwrap()];
     let weights = WEIGHTS.map(|w| w as f32);
     let mut single = FixedNetwork::<f32, 4, 1, 6>::new(&[1], &weights, input, output).unwrap();
 

@@ -3,7 +3,7 @@
 //!
 //! Both take the same numbers: settings and samples are `f32`, and `f64` takes them exactly.
 
-use cfnn::{FixedNetwork, Range, Real, packed_len};
+use cfnn::{FixedNetwork, NetworkScalar, ScalingRange, packed_len};
 use compensator::{
     Combined, Compensator, Correction, FrictionFeedforward, MotionEstimator, NetworkCompensation,
     NoCompensation, ObserverGains, Reference, Sample, TransferFunction, TransferFunctionModel,
@@ -119,13 +119,13 @@ fn weights() -> [f32; WEIGHTS] {
     weights
 }
 
-fn network<S: Real + Exponential>(
+fn network<S: NetworkScalar + Exponential>(
     weights: &[S],
     gains: ObserverGains<f32>,
 ) -> impl Compensator<S> + '_ {
     let range = |end: f32| {
         let end = S::of(f64::from(end));
-        Range::new("test", S::of(0.0) - end, end).unwrap()
+        ScalingRange::new("test", S::of(0.0) - end, end).unwrap()
     };
     let input = [1.5, 0.333, 1.0, 15.0].map(range);
     let model =

@@ -7,7 +7,7 @@ mod support;
 
 use std::path::PathBuf;
 
-use controller_export::{Controller, EXPORTED, linuxcnc};
+use controller_export::{EXPORTED, ExportedController, linuxcnc};
 use support::{Outcome, laws, samples};
 
 fn main() -> Outcome<()> {
@@ -16,7 +16,7 @@ fn main() -> Outcome<()> {
     std::fs::create_dir_all(&folder)?;
     let predictors = laws::predictors(&samples::axis()?)?;
     for &name in EXPORTED {
-        let controller = Controller::of(&predictors, name, laws::LIMITS)?;
+        let controller = ExportedController::of(&predictors, name, laws::LIMITS)?;
         let made = linuxcnc::export(&controller)?;
         for text in [made.component, made.example] {
             std::fs::write(folder.join(&text.name), &text.text)?;

@@ -5,7 +5,7 @@ use compensator::{Guard, GuardLimits, Kinematics};
 use pipeline::strategies::{Predictors, believed_feedback};
 
 use crate::ExportError;
-use crate::law::{Law, NetworkLaw, PlanLaw, Position};
+use crate::law::{ExportedLaw, NetworkLaw, PlanLaw, Position};
 
 /// Names of the strategies that can be exported.
 pub const EXPORTED: &[&str] = &[
@@ -38,7 +38,7 @@ pub struct Units {
 
 /// A compensator to export: the law, its guard, and where it comes from.
 #[derive(Clone, Debug)]
-pub struct Controller {
+pub struct ExportedController {
     /// Name of the strategy: words in lower case, `_` between them.
     pub name: String,
     /// Name of the axis.
@@ -52,12 +52,12 @@ pub struct Controller {
     /// Control period, s.
     pub period: f64,
     /// What is computed.
-    pub law: Law,
+    pub law: ExportedLaw,
     /// What the guard keeps to.
     pub limits: GuardLimits,
 }
 
-impl Controller {
+impl ExportedController {
     /// The strategy `name` (`-` counts as `_`) made of `predictors`, behind a guard with
     /// `limits`.
     ///
@@ -96,7 +96,7 @@ impl Units {
     }
 }
 
-fn law(predictors: &Predictors, name: &str) -> Result<Law, ExportError> {
+fn law(predictors: &Predictors, name: &str) -> Result<ExportedLaw, ExportError> {
     let network = || -> Result<_, ExportError> {
         Ok(Position::Network(NetworkLaw::of(&predictors.network()?)?))
     };
@@ -118,7 +118,7 @@ fn law(predictors: &Predictors, name: &str) -> Result<Law, ExportError> {
         "plan" | "feedback" => return planned(predictors, name),
         _ => return Err(refused(name)),
     };
-    Ok(Law {
+    Ok(ExportedLaw {
         position,
         friction,
         plan: None,
@@ -126,7 +126,7 @@ fn law(predictors: &Predictors, name: &str) -> Result<Law, ExportError> {
 }
 
 /// The plan of what is believed, with the feedback around it or without.
-fn planned(predictors: &Predictors, name: &str) -> Result<Law, ExportError> {
+fn planned(predictors: &Predictors, name: &str) -> Result<ExportedLaw, ExportError> {
     let believed = predictors.believed()?;
     if believed.kinematics != Kinematics::default() {
         return Err(ExportError::Unsupported {
@@ -139,7 +139,7 @@ fn planned(predictors: &Predictors, name: &str) -> Result<Law, ExportError> {
         "feedback" => Some(believed_feedback(predictors)?),
         _ => None,
     };
-    Ok(Law {
+    Ok(ExportedLaw {
         position: Position::Nothing,
         friction: None,
         plan: Some(PlanLaw::new(&believed, feedback)?),

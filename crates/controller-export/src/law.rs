@@ -1,6 +1,6 @@
 //! What is exported: the parts of a compensator in one precision.
 
-use cfnn::{Range, Real};
+use cfnn::{NetworkScalar, ScalingRange};
 use compensator::{
     CompensatorError, DriveModel, Feedback, FrictionFeedforward, MotionEstimator, PlanSettings,
     Planner, TransferFunction,
@@ -14,7 +14,7 @@ use crate::ExportError;
 /// A compensator that a controller runs cycle by cycle: the sum of a predicted position error
 /// and of what friction asks for, or a plan.
 #[derive(Clone, Debug)]
-pub struct Law<T = f64> {
+pub struct ExportedLaw<T = f64> {
     /// What is added to the position.
     pub position: Position<T>,
     /// What is added to the command.
@@ -70,26 +70,26 @@ pub struct NetworkLaw<T = f64> {
     /// Weights in the order that [`cfnn::FixedNetwork`] reads.
     pub packed: Vec<T>,
     /// Ranges of position (m), speed (m/s), acceleration (m/s²) and command (A).
-    pub input: [Range<T>; 4],
+    pub input: [ScalingRange<T>; 4],
     /// Range of the increment of the position, m.
-    pub output: Range<T>,
+    pub output: ScalingRange<T>,
     /// The estimator.
     pub estimator: MotionEstimator<T>,
 }
 
-impl<T: Real + Exponential> Law<T> {
+impl<T: NetworkScalar + Exponential> ExportedLaw<T> {
     /// The same, each number rounded to the nearest of another scalar.
     ///
     /// # Errors
     /// [`ExportError`] where one leaves its range by that: a pole that becomes 1, say.
-    pub fn cast<U: Real + Exponential>(&self) -> Result<Law<U>, ExportError> {
+    pub fn cast<U: NetworkScalar + Exponential>(&self) -> Result<ExportedLaw<U>, ExportError> {
         let position = match &self.position {
             Position::Nothing => Position::Nothing,
             Position::Network(network) => Position::Network(network.cast()?),
             Position::Transfer(filter) => Position::Transfer(Box::new(filter.cast()?)),
         };
         let friction = self.friction.as_ref().map(FrictionFeedforward::cast);
-        Ok(Law {
+        Ok(ExportedLaw {
             position,
             friction: friction.transpose()?,
             plan: self.plan.as_ref().map(PlanLaw::cast).transpose()?,
@@ -106,7 +106,7 @@ impl NetworkLaw {
     pub fn of(strategy: &NetworkStrategy) -> Result<Self, ExportError> {
         let network = strategy.model().network();
         let scaling = network.scaling();
-        let input = <[Range<f64>; 4]>::try_from(scaling.input());
+        let input = <[ScalingRange<f64>; 4]>::try_from(scaling.input());
         let (Ok(input), [output]) = (input, scaling.output()) else {
             return Err(ExportError::Compensator(CompensatorError::NetworkShape {
                 inputs: network.shape().inputs,
@@ -123,8 +123,8 @@ impl NetworkLaw {
     }
 }
 
-impl<T: Real + Exponential> NetworkLaw<T> {
-    fn cast<U: Real>(&self) -> Result<NetworkLaw<U>, ExportError> {
+impl<T: NetworkScalar + Exponential> NetworkLaw<T> {
+    fn cast<U: NetworkScalar>(&self) -> Result<NetworkLaw<U>, ExportError> {
         let [a, b, c, d] = &self.input;
         let input = |range| range_of("input", range);
         Ok(NetworkLaw {
@@ -137,10 +137,10 @@ impl<T: Real + Exponential> NetworkLaw<T> {
     }
 }
 
-fn range_of<T: Real, U: Real>(
+fn range_of<T: NetworkScalar, U: NetworkScalar>(
     what: &'static str,
-    range: &Range<T>,
-) -> Result<Range<U>, cfnn::Error> {
+    range: &ScalingRange<T>,
+) -> Result<ScalingRange<U>, cfnn::Error> {
     let cast = |value: T| U::of(Scalar::to_f64(value));
-    Range::new(what, cast(range.minimum()), cast(range.maximum()))
+    ScalingRange::new(what, cast(range.minimum()), cast(range.maximum()))
 }

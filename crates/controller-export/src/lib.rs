@@ -29,9 +29,9 @@ mod law;
 pub mod linuxcnc;
 pub mod onnx;
 
-pub use controller::{Controller, EXPORTED, Units, exportable};
+pub use controller::{EXPORTED, ExportedController, Units, exportable};
 pub use error::ExportError;
-pub use law::{Law, NetworkLaw, PlanLaw, Position};
+pub use law::{ExportedLaw, NetworkLaw, PlanLaw, Position};
 
 /// A text with the name of the file that it belongs in.
 #[derive(Clone, Debug, PartialEq, Eq)]

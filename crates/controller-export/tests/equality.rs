@@ -7,7 +7,7 @@ use std::path::Path;
 use axis_sim::Axis;
 use compensator::GuardLimits;
 use controller_export::c::{CSource, Precision};
-use controller_export::{Controller, EXPORTED};
+use controller_export::{EXPORTED, ExportedController};
 use pipeline::strategies::Predictors;
 use support::program::{compare, compilers, write, write_one};
 use support::{Outcome, laws, samples};
@@ -94,7 +94,7 @@ fn plans_of_other_axes_are_those_of_rust() -> Outcome<()> {
         let predictors = Predictors::of(&axis);
         let feedback = ["emps", "rotary-table"].contains(&&*axis.name);
         for name in &PLANS[..1 + usize::from(feedback)] {
-            let controller = match Controller::of(&predictors, name, limits) {
+            let controller = match ExportedController::of(&predictors, name, limits) {
                 Ok(controller) => controller,
                 Err(refused) => {
                     println!("{}, {name}: {refused}", axis.name);

@@ -4,7 +4,7 @@ mod support;
 
 use std::collections::BTreeSet;
 
-use controller_export::{Controller, EXPORTED, linuxcnc};
+use controller_export::{EXPORTED, ExportedController, linuxcnc};
 use support::{Outcome, laws, samples};
 
 fn words(text: &str) -> BTreeSet<&str> {
@@ -17,7 +17,7 @@ fn words(text: &str) -> BTreeSet<&str> {
 fn pins_are_no_words_of_the_code() -> Outcome<()> {
     let predictors = laws::predictors(&samples::axis()?)?;
     for &name in EXPORTED {
-        let controller = Controller::of(&predictors, name, laws::LIMITS)?;
+        let controller = ExportedController::of(&predictors, name, laws::LIMITS)?;
         let made = linuxcnc::export(&controller)?;
         let (declared, code) = made.component.text.split_once(";;").ok_or("no ;;")?;
         let code = code.split("FUNCTION").next().ok_or("no code")?;
@@ -46,7 +46,7 @@ fn pins_are_no_words_of_the_code() -> Outcome<()> {
 fn texts_are_filled() -> Outcome<()> {
     let predictors = laws::predictors(&samples::axis()?)?;
     for &name in EXPORTED {
-        let controller = Controller::of(&predictors, name, laws::LIMITS)?;
+        let controller = ExportedController::of(&predictors, name, laws::LIMITS)?;
         let made = linuxcnc::export(&controller)?;
         for text in [&made.component, &made.example] {
             assert!(!text.text.contains('@'), "{}", text.name);

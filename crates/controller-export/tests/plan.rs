@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use compensator::{Correction, Reference, Sample};
 use controller_export::c::{self, Precision};
-use controller_export::{Controller, ExportError};
+use controller_export::{ExportError, ExportedController};
 use pipeline::strategies::{STRATEGIES, named};
 use support::laws::{LIMITS, Runs, Streaming};
 use support::{Outcome, laws, samples};
@@ -18,7 +18,7 @@ use trajectories::Motion;
 fn streaming_is_the_strategy() -> Outcome<()> {
     let axis = samples::axis()?;
     let predictors = laws::predictors(&axis)?;
-    let controller = Controller::of(&predictors, "plan", LIMITS)?;
+    let controller = ExportedController::of(&predictors, "plan", LIMITS)?;
     let ahead = c::export(&controller, Precision::F64, None)?
         .look_ahead
         .ok_or("no plan")?;
@@ -60,7 +60,7 @@ fn streaming_is_the_strategy() -> Outcome<()> {
 #[test]
 fn what_a_controller_cannot_run_is_refused() -> Outcome<()> {
     let predictors = laws::predictors(&samples::axis()?)?;
-    let refused = |name| Controller::of(&predictors, name, LIMITS).expect_err("refused");
+    let refused = |name| ExportedController::of(&predictors, name, LIMITS).expect_err("refused");
     let learning = refused("adaptive-feedback");
     assert!(matches!(
         learning,
@@ -83,7 +83,7 @@ fn a_limit_of_nothing_is_refused() -> Outcome<()> {
         position: 0.0,
         ..LIMITS
     };
-    let refused = Controller::of(&predictors, "lugre", limits).expect_err("refused");
+    let refused = ExportedController::of(&predictors, "lugre", limits).expect_err("refused");
     assert!(refused.to_string().contains("position = 0"), "{refused}");
     Ok(())
 }

@@ -13,3 +13,8 @@
 pub mod hidden;
 pub mod matrix;
 pub mod matrix2;
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

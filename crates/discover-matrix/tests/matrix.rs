@@ -3,7 +3,7 @@
 
 use axis_sim::Axis;
 use discover_matrix::hidden::Exercise;
-use discover_matrix::matrix::{Bench, Case, Kind, Outcome, Score, Sizes, cases};
+use discover_matrix::matrix::{Bench, Case, CaseKind, CaseOutcome, Score, Sizes, cases};
 use discrepancy::{Foreseen, Verdict};
 use rayon::prelude::*;
 
@@ -16,9 +16,9 @@ fn axis() -> Axis {
 }
 
 /// Outcomes of some cases, and what is foreseen of friction with the root of speed.
-fn outcomes() -> (Vec<Outcome>, Foreseen) {
+fn outcomes() -> (Vec<CaseOutcome>, Foreseen) {
     let axis = axis();
-    let of = |kind: Kind, most: usize| -> Vec<Case> {
+    let of = |kind: CaseKind, most: usize| -> Vec<Case> {
         let all = cases(&axis, &Sizes::FULL, SEED).unwrap();
         let own = all
             .into_iter()
@@ -26,10 +26,10 @@ fn outcomes() -> (Vec<Outcome>, Foreseen) {
         own.take(most).collect()
     };
     let mut chosen = [
-        of(Kind::Clean, 1),
-        of(Kind::Single, 3),
-        of(Kind::Pair, 1),
-        of(Kind::LeftOut, 1),
+        of(CaseKind::Clean, 1),
+        of(CaseKind::Single, 3),
+        of(CaseKind::Pair, 1),
+        of(CaseKind::LeftOut, 1),
     ]
     .concat();
     // Stribeck friction of −4431 N and 0.67 m/s, on motion of 0.1 m/s, beside dry friction
@@ -39,7 +39,7 @@ fn outcomes() -> (Vec<Outcome>, Foreseen) {
     assert_eq!(drag.hidden[0].name, "quadratic-drag");
     assert_eq!(drag.exercise, Exercise::ThereAndBack);
     chosen.push(drag);
-    let root = of(Kind::Outside, 1).remove(0);
+    let root = of(CaseKind::Outside, 1).remove(0);
     assert_eq!(root.hidden[0].name, "root-friction");
     let bench = Bench::new(&axis, Exercise::ThereAndBack).unwrap();
     let outcomes = chosen.par_iter().map(|c| bench.try_case(c)).collect();
@@ -88,8 +88,8 @@ fn cases_are_laid_out_alike_from_the_same_seed_and_not_from_another() {
     assert_eq!(of(3), of(3));
     assert_ne!(of(3), of(4));
     let count = |kind| of(3).iter().filter(|c| c.kind == kind).count();
-    assert!(count(Kind::Single) >= 300 && count(Kind::Clean) >= 100);
-    assert_eq!([count(Kind::Pair), count(Kind::Triple)], [60, 20]);
+    assert!(count(CaseKind::Single) >= 300 && count(CaseKind::Clean) >= 100);
+    assert_eq!([count(CaseKind::Pair), count(CaseKind::Triple)], [60, 20]);
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn without_a_way_back_frictions_are_one_class_until_the_proposed_motion_is_run()
         ..Sizes::FULL
     };
     let all = cases(&axis, &sizes, SEED).unwrap().into_iter();
-    let poor = all.filter(|c| c.kind == Kind::Poor && hides(c, "asymmetric-friction"));
+    let poor = all.filter(|c| c.kind == CaseKind::Poor && hides(c, "asymmetric-friction"));
     // The largest: what is small beside noise is not named.
     let size = |c: &Case| {
         c.hidden[0]

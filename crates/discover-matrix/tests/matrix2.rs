@@ -5,9 +5,10 @@ use std::collections::BTreeSet;
 use axis_sim::Axis;
 use axis_sim::effects::{Effect, Scales};
 use discover_matrix::hidden::{Exercise, Form, Rough, Truth};
-use discover_matrix::matrix::{HiddenEffect, Kind};
+use discover_matrix::matrix::{CaseKind, HiddenEffect};
 use discover_matrix::matrix2::{
-    Bench, Case, Channels, Outcome, Plan, Setting, TARGETS, TOLERANCES, VERSION, cases,
+    Bench, Case, CaseOutcome, CaseSetting, Channels, MatrixPlan, TARGETS, TOLERANCES, VERSION,
+    cases,
 };
 use trajectories::{Limits, Program, Step};
 
@@ -22,8 +23,8 @@ fn machines() -> Vec<Axis> {
 
 #[test]
 fn the_whole_matrix_spans_every_factor() {
-    let all = cases(&machines(), &Plan::full(), 3).unwrap();
-    let clean = all.iter().filter(|c| c.kind == Kind::Clean).count();
+    let all = cases(&machines(), &MatrixPlan::full(), 3).unwrap();
+    let clean = all.iter().filter(|c| c.kind == CaseKind::Clean).count();
     assert!(all.len() >= 600 && clean >= 300, "{} {clean}", all.len());
     let ids: BTreeSet<&String> = all.iter().map(|c| &c.id).collect();
     assert_eq!(ids.len(), all.len());
@@ -53,7 +54,7 @@ fn the_whole_matrix_spans_every_factor() {
 #[test]
 fn another_seed_has_other_laws() {
     let laws = |seed| -> BTreeSet<String> {
-        let all = cases(&machines(), &Plan::full(), seed).unwrap();
+        let all = cases(&machines(), &MatrixPlan::full(), seed).unwrap();
         let laws = all.iter().filter_map(|c| c.law.clone());
         laws.map(|law| format!("{law:?}")).collect()
     };
@@ -96,12 +97,12 @@ fn an_onset_of_another_form_leaves_the_level_of_sliding() {
     assert!(most > 0.2 * friction, "{most}");
 }
 
-fn case(kind: Kind, hidden: Vec<HiddenEffect>) -> Case {
+fn case(kind: CaseKind, hidden: Vec<HiddenEffect>) -> Case {
     Case {
         version: VERSION,
         id: kind.name().to_owned(),
         plot: 0,
-        setting: Setting {
+        setting: CaseSetting {
             machine: "joint".to_owned(),
             exercise: Exercise::ThereAndBack,
             start: -0.5,
@@ -129,9 +130,12 @@ fn a_clean_machine_and_one_effect_are_told_and_counted() {
         name: viscous.name.to_owned(),
         values: viscous.typical(&Scales::of(&axis)),
     };
-    let both = [case(Kind::Clean, vec![]), case(Kind::Single, vec![hidden])];
+    let both = [
+        case(CaseKind::Clean, vec![]),
+        case(CaseKind::Single, vec![hidden]),
+    ];
     let bench = Bench::new(&axis, &both[0].setting).unwrap();
-    let outcomes: Vec<Outcome> = both.iter().map(|c| bench.try_case(c)).collect();
+    let outcomes: Vec<CaseOutcome> = both.iter().map(|c| bench.try_case(c)).collect();
     for o in &outcomes {
         println!("{:?} {:?} {:?}", o.case.id, o.verdict, o.named);
     }

@@ -53,7 +53,7 @@ pub use estimate::known::{known_deviations, tolerances};
 pub use foresight::{Foreseen, Foresight, Hypothesis, Imitation};
 pub use judge::{
     Against, Answered, AtScrew, Confidence, Cost, Curve, Discovered, Discovery, DriveFunction,
-    EffectFound, EffortCost, Figures, FormFound, FrictionLaw, Gaps, Level, Likeness,
+    EffectFound, EffortCost, FigureLogs, FormFound, FrictionLaw, Gaps, Level, Likeness,
     NextExperiment, Overlay, ParameterFound, Proposal, REMEDIES, ReadUnit, Recalibrated,
     RefusedEffects, Remedy, RemedyTold, ReplacedEffect, Shown, Size, Told, TrackingCost, Unknown,
     Verdict, discovery, judged,
@@ -61,7 +61,12 @@ pub use judge::{
 pub use name::gap::{ChannelGap, Gap, MATERIAL_OF_NOISE};
 pub use name::library::{Library, applicable};
 pub use name::search::{
-    Alike, Found, Named, ONE_CLASS, Reason, Refused, Replaced, RunnerUp, SearchError, Settings,
-    SettingsError, Test, search, search_with,
+    Alike, Found, Named, ONE_CLASS, RefusalReason, Refused, Replaced, RunnerUp, SearchError,
+    Settings, SettingsError, Test, search, search_with,
 };
 pub use noise::SensorNoise;
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -7,7 +7,7 @@ use axis_log::{Channel, Log};
 use axis_sim::{Axis, ClosedLoop, Recorder};
 use compensator::NoCompensation;
 use discrepancy::LogSet;
-use discrepancy::controller::{Estimate, Gain, closed_loop, estimate};
+use discrepancy::controller::{ControllerEstimate, Gain, closed_loop, estimate};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -50,7 +50,7 @@ fn log(axis: &Axis, trajectory: usize, seed: u64, noise: f64, late: usize) -> (S
     (name, Log::new(channels).unwrap(), axis.period)
 }
 
-fn gain<'a>(found: &'a Estimate, key: &str) -> &'a Gain {
+fn gain<'a>(found: &'a ControllerEstimate, key: &str) -> &'a Gain {
     found.gains.iter().find(|gain| gain.key == key).unwrap()
 }
 

@@ -3,7 +3,7 @@
 
 use axis_log::{Channel, Log};
 use axis_sim::Axis;
-use discrepancy::logs::{IntakeError, check_distinct, check_log, from_rest};
+use discrepancy::logs::{LogSetError, check_distinct, check_log, from_rest};
 use discrepancy::{LogSet, State};
 
 const PERIOD: f64 = 1e-3;
@@ -130,7 +130,7 @@ fn a_check_that_was_fitted_is_refused() {
     let one = || log(0.0, 2.5, reference, followed, current);
     let error = check_distinct(&[named("a.csv", one())], &[named("b.csv", one())]).unwrap_err();
     assert!(
-        matches!(&error, IntakeError::SameLog { fit, check } if fit == "a.csv" && check == "b.csv")
+        matches!(&error, LogSetError::SameLog { fit, check } if fit == "a.csv" && check == "b.csv")
     );
     let other = log(0.0, 2.5, reference, |t| followed(t) + 1e-9, current);
     check_distinct(&[named("a.csv", one())], &[named("b.csv", other)]).unwrap();

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::sync::Arc;
 
-use beam_fem::{Material, Section};
+use beam_fem::{CrossSection, Material};
 use criterion::{Criterion, criterion_group, criterion_main};
 use feed_dynamics::{
     BeltStrands, DriveParameters, ElasticDrive, ElasticDriveParameters, ElasticStepper, FeedDrive,
@@ -14,7 +14,7 @@ use feed_dynamics::{
 fn drive(elements: usize) -> FeedDrive {
     let steel = Material::new(206e9, 0.3, 7850.0).expect("valid");
     FeedDrive::new(DriveParameters {
-        section: Section::solid_circle(0.040, &steel).expect("valid"),
+        section: CrossSection::solid_circle(0.040, &steel).expect("valid"),
         material: steel,
         screw_length: 1.5,
         elements,

@@ -5,14 +5,14 @@
 
 use std::f64::consts::TAU;
 
-use beam_fem::{Material, Section};
+use beam_fem::{CrossSection, Material};
 use feed_dynamics::{DriveParameters, FeedDrive, NutCoupling};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Liu et al. 2025, doi:10.3390/machines13050433, Tables 2 and 3.
     let steel = Material::new(206e9, 0.3, 7850.0)?;
     let drive = FeedDrive::new(DriveParameters {
-        section: Section::solid_circle(0.040, &steel)?,
+        section: CrossSection::solid_circle(0.040, &steel)?,
         material: steel,
         screw_length: 1.5,
         elements: 10,

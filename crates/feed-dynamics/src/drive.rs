@@ -1,6 +1,6 @@
 //! The drive's parameters, checked once.
 
-use beam_fem::{Material, Section};
+use beam_fem::{CrossSection, Material};
 
 use crate::error::{not_negative, positive};
 use crate::{AxialSupport, DriveError, ScrewShaft};
@@ -9,7 +9,7 @@ use crate::{AxialSupport, DriveError, ScrewShaft};
 #[derive(Clone, Debug)]
 pub struct DriveParameters {
     /// Cross-section of the screw.
-    pub section: Section,
+    pub section: CrossSection,
     /// Material of the screw.
     pub material: Material,
     /// Length L of the screw between its ends, m.
@@ -148,7 +148,7 @@ pub(crate) mod tests_support {
     pub(crate) fn drive_with_damping(stiffness_damping: f64) -> FeedDrive {
         let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
         FeedDrive::new(DriveParameters {
-            section: Section::solid_circle(0.040, &steel).unwrap(),
+            section: CrossSection::solid_circle(0.040, &steel).unwrap(),
             material: steel,
             screw_length: 1.5,
             elements: 10,

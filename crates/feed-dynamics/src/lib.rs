@@ -60,12 +60,12 @@
 //! This crate knows nothing of friction laws, motors, controllers or files.
 //!
 //! ```
-//! use beam_fem::{Material, Section};
+//! use beam_fem::{CrossSection, Material};
 //! use feed_dynamics::{DriveParameters, FeedDrive, NutCoupling};
 //!
 //! let steel = Material::new(206e9, 0.3, 7850.0)?;
 //! let drive = FeedDrive::new(DriveParameters {
-//!     section: Section::solid_circle(0.040, &steel)?,
+//!     section: CrossSection::solid_circle(0.040, &steel)?,
 //!     material: steel,
 //!     screw_length: 1.5,
 //!     elements: 10,
@@ -130,7 +130,7 @@ pub use elastic::{
     Side, Stiffness,
 };
 pub use error::DriveError;
-pub use matrices::{Matrices, NutCoupling};
+pub use matrices::{DriveMatrices, NutCoupling};
 pub use modes::DriveModes;
 pub use response::Coordinate;
 pub use rigid::{ForceCourse, RigidDrive, RigidState, RigidStepper};
@@ -138,3 +138,8 @@ pub use stepper::{
     ImplicitState, ImplicitStepper, LoadSearch, ModalState, ModalStepper, NutErrors, Observation,
     Settled, StepReport, TableMotion, TimeStepper, find_load,
 };
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -22,7 +22,7 @@ pub enum NutCoupling {
 ///
 /// Row order: motor, torque sensor, screw nodes 0 to N (rad), table (m).
 #[derive(Clone, Debug)]
-pub struct Matrices {
+pub struct DriveMatrices {
     /// Mass, kg·m² and kg.
     pub mass: DMatrix<f64>,
     /// Damping, N·m·s/rad, N·s/rad and N·s/m.
@@ -94,7 +94,7 @@ impl FeedDrive {
     ///
     /// # Errors
     /// [`DriveError::OffScrew`] where `x` is not on the screw.
-    pub fn matrices(&self, x: f64, coupling: NutCoupling) -> Result<Matrices, DriveError> {
+    pub fn matrices(&self, x: f64, coupling: NutCoupling) -> Result<DriveMatrices, DriveError> {
         self.check_position(x)?;
         let p = self.parameters();
         let chain = self.chain(x, coupling)?;
@@ -112,7 +112,7 @@ impl FeedDrive {
         let stiffness =
             dense(&chain.stiffness, n) + (&b * b.transpose()) * self.contact_stiffness(x);
         let damping = &stiffness * p.stiffness_damping;
-        Ok(Matrices {
+        Ok(DriveMatrices {
             mass,
             damping,
             stiffness,

@@ -11,7 +11,7 @@ pub struct DriveModes {
     pub frequencies: Vec<f64>,
     /// Damping ratios ζ = βω/2 of the same modes; 0 for the rigid motion.
     pub damping_ratios: Vec<f64>,
-    /// Mass-normalised shapes, one a column, rows as in [`crate::Matrices`].
+    /// Mass-normalised shapes, one a column, rows as in [`crate::DriveMatrices`].
     pub shapes: DMatrix<f64>,
 }
 

@@ -8,9 +8,9 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use foc_pmsm::inverter::{Inverter, Rotor};
 use foc_pmsm::svpwm::{Overmodulation, Svpwm};
 use foc_pmsm::{
-    AlphaBeta, Correction, Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState,
-    FocError, Measurement, MotorParameters, OperatingPoint, Pmsm, Reference, Servo, ServoGains,
-    ServoLimits, ServoState,
+    AlphaBeta, Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState, FocError,
+    Measurement, MotorParameters, OperatingPoint, Pmsm, Servo, ServoCorrection, ServoGains,
+    ServoLimits, ServoReference, ServoState,
 };
 use scalar::Scalar;
 
@@ -57,11 +57,11 @@ fn field_weakening<T: Scalar>() -> Result<FieldWeakening<T>, FocError> {
 /// What a drive computes in a cycle, at the currents that its voltage made.
 fn cycles<T: Scalar>(c: &mut Criterion, scalar: &str) -> Result<(), FocError> {
     let (servo, law) = (servo::<T>()?, field_weakening::<T>()?);
-    let reference = Reference {
+    let reference = ServoReference {
         position: T::of(1e-6),
         motor_speed: T::of(0.01),
     };
-    let correction = Correction::default();
+    let correction = ServoCorrection::default();
     let measured = |current| Measurement {
         position: T::ZERO,
         motor_speed: T::of(0.02),

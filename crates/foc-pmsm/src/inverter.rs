@@ -26,7 +26,7 @@ pub struct Inverter<T = f64> {
 
 /// A stretch of a period in which no leg switches.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Segment<T = f64> {
+pub struct SwitchingSegment<T = f64> {
     /// How long it lasts, s; may be 0.
     pub duration: T,
     /// Whether leg a, b, c is on the upper rail.
@@ -124,7 +124,7 @@ impl<T: Scalar> Inverter<T> {
     /// instants of a period, in order; some have no length where legs switch
     /// together or not at all. The sign of each phase current is the one at
     /// the period's start.
-    pub fn switched(&self, duties: Duties<T>, currents: Phases<T>) -> [Segment<T>; 7] {
+    pub fn switched(&self, duties: Duties<T>, currents: Phases<T>) -> [SwitchingSegment<T>; 7] {
         let pulses = [
             self.pulse(duties.a, currents.a),
             self.pulse(duties.b, currents.b),
@@ -160,11 +160,11 @@ impl<T: Scalar> Inverter<T> {
         (on, off)
     }
 
-    fn segment(&self, pulses: &[(T, T); 3], start: T, end: T) -> Segment<T> {
+    fn segment(&self, pulses: &[(T, T); 3], start: T, end: T) -> SwitchingSegment<T> {
         let middle = T::HALF * (start + end);
         let upper = pulses.map(|(on, off)| on < middle && middle < off);
         let level = |k: usize| if upper[k] { self.dc_voltage } else { T::ZERO };
-        Segment {
+        SwitchingSegment {
             duration: end - start,
             upper,
             voltage: Phases {

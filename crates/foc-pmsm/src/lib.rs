@@ -135,5 +135,11 @@ pub use motor::{MotorParameters, Pmsm};
 pub use pi::{AntiWindup, Pi, PiOutput, PiParameters, PiState};
 pub use servo::Servo;
 pub use signals::{
-    Command, Correction, Measurement, OperatingPoint, Reference, Saturated, ServoState,
+    Measurement, OperatingPoint, Saturated, ServoCommand, ServoCorrection, ServoReference,
+    ServoState,
 };
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

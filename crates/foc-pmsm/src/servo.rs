@@ -8,7 +8,8 @@ use crate::gains::{ServoGains, ServoLimits};
 use crate::math::clamp;
 use crate::pi::{AntiWindup, Pi, PiParameters};
 use crate::signals::{
-    Command, Correction, Measurement, OperatingPoint, Reference, Saturated, ServoState,
+    Measurement, OperatingPoint, Saturated, ServoCommand, ServoCorrection, ServoReference,
+    ServoState,
 };
 use scalar::Scalar;
 
@@ -90,9 +91,9 @@ impl<T: Scalar> Servo<T> {
         &self,
         state: &mut ServoState<T>,
         m: &Measurement<T>,
-        r: &Reference<T>,
-        c: &Correction<T>,
-    ) -> Command<T> {
+        r: &ServoReference<T>,
+        c: &ServoCorrection<T>,
+    ) -> ServoCommand<T> {
         let bounds = Bounds {
             id_ref: T::ZERO,
             iq: T::INFINITY,
@@ -110,10 +111,10 @@ impl<T: Scalar> Servo<T> {
         &self,
         state: &mut ServoState<T>,
         m: &Measurement<T>,
-        r: &Reference<T>,
-        c: &Correction<T>,
+        r: &ServoReference<T>,
+        c: &ServoCorrection<T>,
         point: &OperatingPoint<T>,
-    ) -> Command<T> {
+    ) -> ServoCommand<T> {
         let most = self.limits.current;
         let id_ref = clamp(point.id_ref, -most, most);
         let bounds = Bounds {
@@ -132,10 +133,10 @@ impl<T: Scalar> Servo<T> {
         &self,
         state: &mut ServoState<T>,
         m: &Measurement<T>,
-        r: &Reference<T>,
-        c: &Correction<T>,
+        r: &ServoReference<T>,
+        c: &ServoCorrection<T>,
         bounds: &Bounds<T>,
-    ) -> Command<T> {
+    ) -> ServoCommand<T> {
         let error = r.position - m.position + c.position_offset;
         let speed_ref = self.position_loop(error, r.motor_speed + c.speed);
 
@@ -148,7 +149,7 @@ impl<T: Scalar> Servo<T> {
         };
         let error = reference - m.current;
         let (voltage, d, q) = self.currents(state, error, Dq::ZERO, bounds.voltage);
-        Command {
+        ServoCommand {
             speed_ref,
             iq_ref,
             voltage,

@@ -17,7 +17,7 @@ pub struct Measurement<T = f64> {
 
 /// What the load should do at the start of a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Reference<T = f64> {
+pub struct ServoReference<T = f64> {
     /// Position of the load, m.
     pub position: T,
     /// Reference velocity on the motor's side, rad/s: the load's velocity
@@ -27,7 +27,7 @@ pub struct Reference<T = f64> {
 
 /// What a compensation adds to the cascade in this cycle; zero by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Correction<T = f64> {
+pub struct ServoCorrection<T = f64> {
     /// Added to the position error, m.
     pub position_offset: T,
     /// Added to the speed reference, rad/s (motor side).
@@ -84,7 +84,7 @@ pub struct Saturated {
 
 /// What the cascade asks for in this cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Command<T = f64> {
+pub struct ServoCommand<T = f64> {
     /// Speed reference of the motor, rad/s.
     pub speed_ref: T,
     /// q current reference, A, after its limit (the d reference is 0, or

@@ -7,8 +7,8 @@ use axis::{DC_VOLTAGE, PERIOD, gains, limits, motor, servo};
 use foc_pmsm::inverter::{Inverter, Rotor};
 use foc_pmsm::svpwm::{Duties, Overmodulation, Svpwm, sector};
 use foc_pmsm::{
-    AlphaBeta, AntiWindup, Correction, Dq, Measurement, MotorParameters, Phases, Pmsm, Reference,
-    Servo, ServoState,
+    AlphaBeta, AntiWindup, Dq, Measurement, MotorParameters, Phases, Pmsm, Servo, ServoCorrection,
+    ServoReference, ServoState,
 };
 
 /// Numbers drawn without a library, and the FNV-1a sum of what is made of them.
@@ -111,11 +111,11 @@ fn run(bits: &mut Bits, servo: &Servo) {
             motor_speed: bits.draw(-5.0, 5.0),
             current,
         };
-        let r = Reference {
+        let r = ServoReference {
             position: 0.6,
             motor_speed: bits.draw(-5.0, 5.0),
         };
-        let c = Correction {
+        let c = ServoCorrection {
             position_offset: bits.draw(-1e-6, 1e-6),
             speed: bits.draw(-0.1, 0.1),
             iq: bits.draw(-2.0, 2.0),

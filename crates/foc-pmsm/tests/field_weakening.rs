@@ -6,9 +6,9 @@ mod axis;
 use axis::rigid::Rigid;
 use axis::{PERIOD, cast, drawn_current_loop, gains, limits, motor};
 use foc_pmsm::{
-    Command, Correction, Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState,
-    FocError, MotorParameters, OperatingPoint, Pmsm, Reference, Servo, ServoGains, ServoLimits,
-    ServoState,
+    Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState, FocError, MotorParameters,
+    OperatingPoint, Pmsm, Servo, ServoCommand, ServoCorrection, ServoGains, ServoLimits,
+    ServoReference, ServoState,
 };
 use proptest::prelude::*;
 use scalar::Scalar;
@@ -33,7 +33,7 @@ fn spindle(limits: &ServoLimits) -> Servo {
 }
 
 struct Sample {
-    command: Command,
+    command: ServoCommand,
     speed: f64,
     reference: f64,
     current: Dq,
@@ -51,11 +51,11 @@ fn run(top: f64, limits: &ServoLimits, law: Option<FieldWeakening>) -> Vec<Sampl
         let t = f64::from(k) * PERIOD;
         let slow_down = (t - up - 1.0).max(0.0);
         let reference = (500.0 * t).min((top - 500.0 * slow_down).max(100.0).min(top));
-        let r = Reference {
+        let r = ServoReference {
             position: 0.0,
             motor_speed: reference,
         };
-        let (m, c) = (drive.measure(), Correction::default());
+        let (m, c) = (drive.measure(), ServoCorrection::default());
         let command = match &law {
             None => servo.cycle(&mut state, &m, &r, &c),
             Some(law) => {

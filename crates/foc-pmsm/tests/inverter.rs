@@ -3,7 +3,7 @@
 mod axis;
 
 use axis::{DC_VOLTAGE, PERIOD, drawn_dc_voltage, drawn_period, motor};
-use foc_pmsm::inverter::{Inverter, Rotor, Segment};
+use foc_pmsm::inverter::{Inverter, Rotor, SwitchingSegment};
 use foc_pmsm::svpwm::{Duties, Overmodulation, Svpwm};
 use foc_pmsm::{AlphaBeta, Dq, FocError, Phases};
 use proptest::prelude::*;
@@ -16,9 +16,10 @@ fn distance(a: AlphaBeta, b: AlphaBeta) -> f64 {
     (a.alpha - b.alpha).hypot(a.beta - b.beta)
 }
 
-fn mean(segments: &[Segment], period: f64) -> AlphaBeta {
-    let sum =
-        |f: fn(&Segment) -> f64| segments.iter().map(|s| s.duration * f(s)).sum::<f64>() / period;
+fn mean(segments: &[SwitchingSegment], period: f64) -> AlphaBeta {
+    let sum = |f: fn(&SwitchingSegment) -> f64| {
+        segments.iter().map(|s| s.duration * f(s)).sum::<f64>() / period
+    };
     AlphaBeta {
         alpha: sum(|s| s.voltage.alpha),
         beta: sum(|s| s.voltage.beta),

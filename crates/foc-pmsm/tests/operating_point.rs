@@ -4,7 +4,9 @@ mod axis;
 
 use axis::rigid::Rigid;
 use axis::{PERIOD, cast, drawn_gains, drawn_period, gains, limits, log_uniform, motor, servo};
-use foc_pmsm::{Correction, Dq, Measurement, OperatingPoint, Reference, ServoLimits, ServoState};
+use foc_pmsm::{
+    Dq, Measurement, OperatingPoint, ServoCorrection, ServoLimits, ServoReference, ServoState,
+};
 use proptest::prelude::*;
 use scalar::Scalar;
 
@@ -19,13 +21,13 @@ fn point(id_ref: f64, voltage_limit: f64) -> OperatingPoint {
 fn the_d_reference_takes_its_share_of_the_current() {
     let servo = servo();
     let m = Measurement::default();
-    let c = Correction {
+    let c = ServoCorrection {
         iq: 40.0,
-        ..Correction::default()
+        ..ServoCorrection::default()
     };
     let run = |at| {
         let mut state = ServoState::default();
-        servo.cycle_with(&mut state, &m, &Reference::default(), &c, &at)
+        servo.cycle_with(&mut state, &m, &ServoReference::default(), &c, &at)
     };
     // 15² = 9² + 12².
     let weak = run(point(-9.0, f64::INFINITY));
@@ -40,8 +42,8 @@ fn the_d_reference_takes_its_share_of_the_current() {
     let only_d = servo.cycle_with(
         &mut ServoState::default(),
         &m,
-        &Reference::default(),
-        &Correction::default(),
+        &ServoReference::default(),
+        &ServoCorrection::default(),
         &point(-16.0, f64::INFINITY),
     );
     assert!(only_d.saturated.current);
@@ -77,7 +79,7 @@ fn a_sagging_dc_link_is_ridden_through() {
     let mut limited = 0;
     for k in 0..30_000 {
         let t = f64::from(k) * PERIOD;
-        let r = Reference {
+        let r = ServoReference {
             position: velocity * t,
             motor_speed: velocity / drive.radius,
         };
@@ -86,7 +88,7 @@ fn a_sagging_dc_link_is_ridden_through() {
         let dc_voltage = if sag { 320.0 } else { 540.0 };
         let at = OperatingPoint::at_dc_voltage(dc_voltage);
         let m = drive.measure();
-        let command = servo.cycle_with(&mut state, &m, &r, &Correction::default(), &at);
+        let command = servo.cycle_with(&mut state, &m, &r, &ServoCorrection::default(), &at);
         let length = command.voltage.dot(command.voltage).sqrt();
         assert!(length <= at.voltage_limit * (1.0 + 1e-15));
         limited += i32::from(sag && command.saturated.voltage_q);
@@ -108,7 +110,7 @@ fn default_changes_nothing<T: Scalar>(
             motor_speed: T::of(speed),
             current: cast::dq(Dq { d: id, q: iq }),
         };
-        let (r, c) = (Reference::default(), Correction::default());
+        let (r, c) = (ServoReference::default(), ServoCorrection::default());
         let one = servo.cycle(&mut a, &m, &r, &c);
         let two = servo.cycle_with(&mut b, &m, &r, &c, &OperatingPoint::default());
         prop_assert_eq!((one, a), (two, b));
@@ -135,7 +137,7 @@ fn limits_hold<T: Scalar>(
             motor_speed: T::of(speed),
             current: cast::dq(Dq { d, q }),
         };
-        let (r, c) = (Reference::default(), Correction::default());
+        let (r, c) = (ServoReference::default(), ServoCorrection::default());
         let command = servo.cycle_with(&mut state, &m, &r, &c, &at);
         let i = Dq {
             d: id,

@@ -8,8 +8,8 @@ use axis::{
     log_uniform, motor, servo,
 };
 use foc_pmsm::{
-    AntiWindup, Correction, Dq, FocError, Measurement, Reference, Servo, ServoGains, ServoLimits,
-    ServoState,
+    AntiWindup, Dq, FocError, Measurement, Servo, ServoCorrection, ServoGains, ServoLimits,
+    ServoReference, ServoState,
 };
 use proptest::prelude::*;
 
@@ -22,11 +22,11 @@ fn one_cycle_by_hand() {
         motor_speed: 30.0 * RPM,
         current: Dq { d: 0.2, q: 1.5 },
     };
-    let r = Reference {
+    let r = ServoReference {
         position: 0.6,
         motor_speed: 60.0 * RPM,
     };
-    let command = servo().cycle(&mut state, &m, &r, &Correction::default());
+    let command = servo().cycle(&mut state, &m, &r, &ServoCorrection::default());
 
     let speed_ref = 280.2 * 0.01 + 60.0; // rpm: 10 µm of error
     let delta = speed_ref - 30.0;
@@ -52,15 +52,15 @@ fn one_cycle_by_hand() {
 #[test]
 fn corrections_act_where_they_say() {
     let servo = servo();
-    let (m, r) = (Measurement::default(), Reference::default());
-    let run = |c: Correction| servo.cycle(&mut ServoState::default(), &m, &r, &c);
-    let zero = Correction::default();
+    let (m, r) = (Measurement::default(), ServoReference::default());
+    let run = |c: ServoCorrection| servo.cycle(&mut ServoState::default(), &m, &r, &c);
+    let zero = ServoCorrection::default();
     // A position offset is a position error, a speed adds to the reference.
-    let offset = run(Correction {
+    let offset = run(ServoCorrection {
         position_offset: 1e-5,
         ..zero
     });
-    let shifted = Reference {
+    let shifted = ServoReference {
         position: 1e-5,
         ..r
     };
@@ -68,13 +68,13 @@ fn corrections_act_where_they_say() {
         offset,
         servo.cycle(&mut ServoState::default(), &m, &shifted, &zero)
     );
-    assert_eq!(run(Correction { speed: 2.0, ..zero }).speed_ref, 2.0);
+    assert_eq!(run(ServoCorrection { speed: 2.0, ..zero }).speed_ref, 2.0);
     // A current is added before the limit and leaves the integral alone.
     let mut state = ServoState::default();
-    let c = Correction { iq: 4.0, ..zero };
+    let c = ServoCorrection { iq: 4.0, ..zero };
     assert_eq!(servo.cycle(&mut state, &m, &r, &c).iq_ref, 4.0);
     assert_eq!(state.speed.integral, 0.0);
-    let over = run(Correction { iq: 40.0, ..zero });
+    let over = run(ServoCorrection { iq: 40.0, ..zero });
     assert!(over.iq_ref == 15.0 && over.saturated.current);
 }
 
@@ -112,12 +112,12 @@ fn a_settled_state_stays_settled() {
         motor_speed: speed,
         current: i,
     };
-    let r = Reference {
+    let r = ServoReference {
         position: 0.2,
         motor_speed: speed,
     };
     for _ in 0..10 {
-        let command = servo.cycle(&mut state, &m, &r, &Correction::default());
+        let command = servo.cycle(&mut state, &m, &r, &ServoCorrection::default());
         assert_eq!((command.iq_ref, command.voltage), (3.0, u));
         assert_eq!(motor.step(i, command.voltage, speed, PERIOD), i);
     }
@@ -141,11 +141,16 @@ fn a_rigid_drive_follows_a_ramp_without_error() {
         let mut saturated = false;
         for k in 0..30_000 {
             let t = f64::from(k) * PERIOD;
-            let r = Reference {
+            let r = ServoReference {
                 position: velocity * t,
                 motor_speed: velocity / RADIUS,
             };
-            let command = servo.cycle(&mut state, &drive.measure(), &r, &Correction::default());
+            let command = servo.cycle(
+                &mut state,
+                &drive.measure(),
+                &r,
+                &ServoCorrection::default(),
+            );
             assert!(command.iq_ref.abs() <= 15.0);
             saturated |= command.saturated.current;
             drive.advance(command.voltage, load, PERIOD);
@@ -278,7 +283,7 @@ proptest! {
         let mut drive = Rigid {
             motor: inner.motor, inertia, radius, angle: 0.0, speed, current: Dq::ZERO,
         };
-        let r = Reference { position: 0.0, motor_speed: speed };
+        let r = ServoReference { position: 0.0, motor_speed: speed };
         let mut farthest = 0.0_f64;
         // 100 time constants of the position loop.
         let cycles = (100.0 * 80.0 / (inner.bandwidth * inner.period)) as u32;
@@ -286,7 +291,7 @@ proptest! {
         // them: more than the control does where the inertia is huge.
         let rounding = f64::from(cycles) * f64::EPSILON * (speed * inner.period).abs();
         for _ in 0..cycles {
-            let command = servo.cycle(&mut state, &drive.measure(), &r, &Correction::default());
+            let command = servo.cycle(&mut state, &drive.measure(), &r, &ServoCorrection::default());
             drive.advance(command.voltage, load, inner.period);
             // The frame moves with the reference: no distance rounds.
             drive.angle -= speed * inner.period;
@@ -318,14 +323,14 @@ proptest! {
         let m = Measurement { position, motor_speed: speed, current: Dq { d: id, q: iq } };
         let mut state = ServoState::default();
         for _ in 0..cycles {
-            let c = servo.cycle(&mut state, &m, &Reference::default(), &Correction::default());
+            let c = servo.cycle(&mut state, &m, &ServoReference::default(), &ServoCorrection::default());
             prop_assert!(c.iq_ref.abs() <= l.current);
             // √(U² − u_d²) rounds once or twice.
             prop_assert!(c.voltage.dot(c.voltage).sqrt() <= l.voltage * (1.0 + 1e-15));
         }
         let free = ServoLimits { current: f64::INFINITY, voltage: f64::INFINITY };
         let free = Servo::new(gains, free, period).unwrap();
-        let c = free.cycle(&mut ServoState::default(), &m, &Reference::default(), &Correction::default());
+        let c = free.cycle(&mut ServoState::default(), &m, &ServoReference::default(), &ServoCorrection::default());
         prop_assert_eq!(c.saturated, Default::default());
         prop_assert!(c.voltage.q.is_finite());
     }

@@ -8,7 +8,7 @@ use axis::{
     motor,
 };
 use foc_pmsm::svpwm::{Overmodulation, Svpwm};
-use foc_pmsm::{AlphaBeta, Correction, Dq, Pmsm, Reference, ServoState};
+use foc_pmsm::{AlphaBeta, Dq, Pmsm, ServoCorrection, ServoReference, ServoState};
 use proptest::prelude::*;
 use scalar::Scalar;
 
@@ -75,10 +75,10 @@ const STROKE: f64 = 0.5;
 const DURATION: f64 = 6.0;
 
 /// There and back: half a cosine each way, at most 131 mm/s and 0.07 g.
-fn reference<T: Scalar>(t: f64) -> Reference<T> {
+fn reference<T: Scalar>(t: f64) -> ServoReference<T> {
     let turn = core::f64::consts::TAU / DURATION;
     let velocity = 0.5 * STROKE * turn * (turn * t).sin();
-    Reference {
+    ServoReference {
         position: T::of(0.5 * STROKE * (1.0 - (turn * t).cos())),
         motor_speed: T::of(velocity / RADIUS),
     }
@@ -92,7 +92,7 @@ fn run<T: Scalar>() -> Vec<Sample> {
     let cycles = (DURATION / PERIOD) as u32;
     let sample = |k| {
         let (m, r) = (drive.measure(), reference(f64::from(k) * PERIOD));
-        let command = servo.cycle(&mut state, &m, &r, &Correction::default());
+        let command = servo.cycle(&mut state, &m, &r, &ServoCorrection::default());
         let current = cast::widened(drive.current);
         drive.advance(command.voltage, 5.0, PERIOD);
         Sample {

@@ -3,9 +3,9 @@
 use foc_pmsm::inverter::{Inverter, Rotor};
 use foc_pmsm::svpwm::{Duties, Overmodulation, Svpwm, sector};
 use foc_pmsm::{
-    AlphaBeta, AntiWindup, Correction, Dq, FieldWeakening, FieldWeakeningParameters,
-    FieldWeakeningState, Measurement, MotorParameters, OperatingPoint, Phases, Pi, PiParameters,
-    PiState, Pmsm, Reference, Servo, ServoGains, ServoLimits, ServoState,
+    AlphaBeta, AntiWindup, Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState,
+    Measurement, MotorParameters, OperatingPoint, Phases, Pi, PiParameters, PiState, Pmsm, Servo,
+    ServoCorrection, ServoGains, ServoLimits, ServoReference, ServoState,
 };
 use proptest::prelude::*;
 
@@ -89,8 +89,8 @@ proptest! {
         if let Ok(servo) = Servo::new(gains, limits, l.abs()) {
             let mut state = ServoState::settled(m, Dq { d: n, q: a });
             let now = Measurement { position: b, motor_speed: c, current: Dq { d: e, q: f } };
-            let reference = Reference { position: g, motor_speed: h };
-            let correction = Correction { position_offset: k, speed: l, iq: m };
+            let reference = ServoReference { position: g, motor_speed: h };
+            let correction = ServoCorrection { position_offset: k, speed: l, iq: m };
             let _ = servo.cycle(&mut state, &now, &reference, &correction);
             let point = OperatingPoint { id_ref: n, ..OperatingPoint::at_dc_voltage(k) };
             let _ = servo.cycle_with(&mut state, &now, &reference, &correction, &point);

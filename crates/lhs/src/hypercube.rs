@@ -174,13 +174,17 @@ impl LatinHypercube {
     }
 
     /// Fills whole rows, from row `first` on, with the widest vectors that the
-    /// processor has: nothing is fused, so the bits are the same with any.
+    /// processor has (feature `simd`): nothing is fused, so the bits are the same with any.
     fn fill(&self, first: usize, out: &mut [f64]) {
-        pulp::Arch::new().dispatch(Fill {
+        let fill = Fill {
             hypercube: self,
             first,
             out,
-        });
+        };
+        #[cfg(feature = "simd")]
+        pulp::Arch::new().dispatch(fill);
+        #[cfg(not(feature = "simd"))]
+        fill.run();
     }
 
     /// Points of neighbouring rows of a column, from row `first` on, in these cells.
@@ -240,11 +244,19 @@ struct Fill<'a> {
     out: &'a mut [f64],
 }
 
+#[cfg(feature = "simd")]
 impl pulp::WithSimd for Fill<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
+        self.run();
+    }
+}
+
+impl Fill<'_> {
+    #[inline(always)]
+    fn run(self) {
         let dims = self.hypercube.dims();
         let (mut cells, mut points) = ([0; BLOCK], [0.0; BLOCK]);
         for (block, rows) in self.out.chunks_mut(BLOCK * dims).enumerate() {

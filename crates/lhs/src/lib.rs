@@ -66,6 +66,10 @@
 //! # Ok::<(), lhs::LhsError>(())
 //! ```
 //!
+//! # Features
+//! `simd` (on by default) makes designs with the vector instructions that the processor has,
+//! the same bits somewhat faster.
+//!
 //! # What it knows nothing of
 //! What the variables mean, the model that is run at the points, correlated
 //! inputs, constraints between variables, adding points to a finished design.
@@ -91,4 +95,9 @@ pub use marginals::{
     Cumulative, LogUniform, Marginal, Mixture, Normal, Tabulated, Triangular, Truncated, Uniform,
     map,
 };
-pub use optimise::{Budget, Criterion, History, MAXIMIN_P, optimise};
+pub use optimise::{Budget, Criterion, MAXIMIN_P, OptimisationHistory, optimise};
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

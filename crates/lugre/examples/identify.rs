@@ -9,8 +9,8 @@
 use std::f64::consts::PI;
 
 use lugre::identify::{
-    ConstantSpeedRun, Estimate, LeftOut, Motion, PreslidingRecord, identify_presliding,
-    identify_static, identify_static_within,
+    ConstantSpeedRun, LeftOut, MeasuredMotion, ParameterEstimate, PreslidingRecord,
+    identify_presliding, identify_static, identify_static_within,
 };
 use lugre::{LuGre, Parameters};
 use rand::rngs::StdRng;
@@ -67,7 +67,7 @@ fn presliding(law: &LuGre, rng: &mut StdRng) -> (Vec<f64>, Vec<f64>) {
     (speeds, torques)
 }
 
-fn line(name: &str, e: Estimate, truth: f64) {
+fn line(name: &str, e: ParameterEstimate, truth: f64) {
     println!(
         "  {name:4} {:10.6} ± {:.6}   true {truth:10.6}   {:+.2} %",
         e.value,
@@ -122,7 +122,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (speeds, torque) = presliding(&law, &mut rng);
     let record = PreslidingRecord {
         time_step: 1.0 / SAMPLE_RATE,
-        motion: Motion::Speed(&speeds),
+        motion: MeasuredMotion::Speed(&speeds),
         torque: &torque,
     };
     let bristles = identify_presliding(&fit, &record)?;

@@ -77,3 +77,8 @@ mod step;
 pub use exponential::{Decays, Exponential};
 pub use law::{Constants, LuGre};
 pub use parameters::{LugreError, Parameters};
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

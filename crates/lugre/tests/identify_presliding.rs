@@ -7,8 +7,8 @@ use std::f64::consts::PI;
 
 use lugre::Parameters;
 use lugre::identify::{
-    Estimate, IdentifyError, Motion, PreslidingRecord, StaticKnowledge, StaticParameters,
-    identify_presliding,
+    FrictionIdentifyError, MeasuredMotion, ParameterEstimate, PreslidingRecord, StaticKnowledge,
+    StaticParameters, identify_presliding,
 };
 use proptest::prelude::*;
 use rig::{Noise, PAPER};
@@ -60,20 +60,20 @@ impl Test {
     fn by_speed(&self) -> PreslidingRecord<'_> {
         PreslidingRecord {
             time_step: STEP,
-            motion: Motion::Speed(&self.speed),
+            motion: MeasuredMotion::Speed(&self.speed),
             torque: &self.torque,
         }
     }
 
     fn by_displacement(&self) -> PreslidingRecord<'_> {
         PreslidingRecord {
-            motion: Motion::Displacement(&self.displacement),
+            motion: MeasuredMotion::Displacement(&self.displacement),
             ..self.by_speed()
         }
     }
 }
 
-fn within(estimate: Estimate, truth: f64, tolerance: f64) -> bool {
+fn within(estimate: ParameterEstimate, truth: f64, tolerance: f64) -> bool {
     (estimate.value / truth - 1.0).abs() < tolerance
 }
 
@@ -190,7 +190,7 @@ fn a_record_far_below_break_away_is_enough() {
         .collect();
     let record = PreslidingRecord {
         time_step: STEP,
-        motion: Motion::Speed(&speed),
+        motion: MeasuredMotion::Speed(&speed),
         torque: &torque,
     };
     let fit = identify_presliding(STATICS, &record).unwrap_or_else(|e| panic!("{e}"));
@@ -292,7 +292,7 @@ proptest! {
         };
         let record = PreslidingRecord {
             time_step: STEP,
-            motion: Motion::Speed(&speeds),
+            motion: MeasuredMotion::Speed(&speeds),
             torque: &torque,
         };
         let fit = identify_presliding(statics, &record).unwrap_or_else(|e| panic!("{e}"));
@@ -334,13 +334,14 @@ fn a_standstill_is_no_presliding_test() {
         for (kind, speeds) in [white, differenced, quantised, filtered].iter().enumerate() {
             let record = PreslidingRecord {
                 time_step: STEP,
-                motion: Motion::Speed(speeds),
+                motion: MeasuredMotion::Speed(speeds),
                 torque: &torque,
             };
             let error = identify_presliding(STATICS, &record).expect_err("nothing moves");
             let open = matches!(
                 error,
-                IdentifyError::NotIdentifiable { .. } | IdentifyError::NoPreslidingMotion { .. }
+                FrictionIdentifyError::NotIdentifiable { .. }
+                    | FrictionIdentifyError::NoPreslidingMotion { .. }
             );
             assert!(open, "noise {kind}, seed {seed}: {error}");
         }
@@ -353,12 +354,12 @@ fn errors_say_what_is_missing() {
     let n = test.speed.len();
     let still = vec![0.0; n];
     let record = PreslidingRecord {
-        motion: Motion::Speed(&still),
+        motion: MeasuredMotion::Speed(&still),
         ..test.by_speed()
     };
     assert_eq!(
         identify_presliding(STATICS, &record),
-        Err(IdentifyError::NoMotion)
+        Err(FrictionIdentifyError::NoMotion)
     );
 
     // Sliding at one speed from a steady start: nothing shows the bristles.
@@ -370,14 +371,15 @@ fn errors_say_what_is_missing() {
         .collect();
     let record = PreslidingRecord {
         time_step: STEP,
-        motion: Motion::Speed(&sliding),
+        motion: MeasuredMotion::Speed(&sliding),
         torque: &torque,
     };
     let error = identify_presliding(STATICS, &record).expect_err("no pre-sliding");
     assert!(
         matches!(
             error,
-            IdentifyError::NoPreslidingMotion { .. } | IdentifyError::NotIdentifiable { .. }
+            FrictionIdentifyError::NoPreslidingMotion { .. }
+                | FrictionIdentifyError::NotIdentifiable { .. }
         ),
         "{error}"
     );
@@ -393,5 +395,5 @@ fn errors_say_what_is_missing() {
         ..STATICS
     };
     let error = identify_presliding(swapped, &test.by_speed()).expect_err("no law");
-    assert!(matches!(error, IdentifyError::Law(_)), "{error}");
+    assert!(matches!(error, FrictionIdentifyError::Law(_)), "{error}");
 }

@@ -5,7 +5,8 @@
 mod rig;
 
 use lugre::identify::{
-    ConstantSpeedRun, IdentifyError, Reason, StaticFit, identify_static, identify_static_within,
+    ConstantSpeedRun, FrictionIdentifyError, Reason, StaticFit, identify_static,
+    identify_static_within,
 };
 use lugre::{LuGre, Parameters};
 use rig::{Noise, PAPER, QUIET_MM_S, RAD_PER_M, SAMPLE_RATE};
@@ -305,7 +306,7 @@ fn errors_say_what_is_missing() {
     let few = quiet_runs(&[0.5, 1.0, 10.0, 100.0], 200, 1);
     assert!(matches!(
         identify_static(&few),
-        Err(IdentifyError::TooFewSpeeds {
+        Err(FrictionIdentifyError::TooFewSpeeds {
             found: 4,
             needed: 6,
             left_out: 0
@@ -316,8 +317,8 @@ fn errors_say_what_is_missing() {
     assert!(
         matches!(
             error,
-            IdentifyError::NoStribeckEffect { .. }
-                | IdentifyError::OneSideOfStribeckSpeed { side: "below", .. }
+            FrictionIdentifyError::NoStribeckEffect { .. }
+                | FrictionIdentifyError::OneSideOfStribeckSpeed { side: "below", .. }
         ),
         "{error}"
     );
@@ -326,8 +327,8 @@ fn errors_say_what_is_missing() {
     assert!(
         matches!(
             error,
-            IdentifyError::NoStribeckEffect { .. }
-                | IdentifyError::OneSideOfStribeckSpeed { side: "above", .. }
+            FrictionIdentifyError::NoStribeckEffect { .. }
+                | FrictionIdentifyError::OneSideOfStribeckSpeed { side: "above", .. }
         ),
         "{error}"
     );
@@ -341,7 +342,7 @@ fn errors_say_what_is_missing() {
     let short = ConstantSpeedRun::from_record(&[1.0; 10], &[1.0; 10], 1e3);
     assert_eq!(
         short,
-        Err(IdentifyError::TooFewSamples {
+        Err(FrictionIdentifyError::TooFewSamples {
             found: 10,
             needed: 64
         })
@@ -349,7 +350,7 @@ fn errors_say_what_is_missing() {
     let uneven = ConstantSpeedRun::from_record(&[1.0; 100], &[1.0; 90], 1e3);
     assert_eq!(
         uneven,
-        Err(IdentifyError::LengthMismatch {
+        Err(FrictionIdentifyError::LengthMismatch {
             motion: 100,
             torque: 90
         })

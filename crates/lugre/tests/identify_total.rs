@@ -2,7 +2,7 @@
 #![cfg(feature = "identify")]
 
 use lugre::identify::{
-    ConstantSpeedRun, IdentifyError, Motion, PreslidingRecord, StaticParameters,
+    ConstantSpeedRun, FrictionIdentifyError, MeasuredMotion, PreslidingRecord, StaticParameters,
     identify_presliding, identify_static, identify_static_within,
 };
 use proptest::prelude::*;
@@ -101,7 +101,7 @@ proptest! {
         let [coulomb, stiction, stribeck_speed, viscous] =
             if ordinary { [0.7, 0.8, 3.0, 0.01] } else { statics };
         let statics = StaticParameters { coulomb, stiction, stribeck_speed, viscous };
-        let motion = if by_speed { Motion::Speed(&motion) } else { Motion::Displacement(&motion) };
+        let motion = if by_speed { MeasuredMotion::Speed(&motion) } else { MeasuredMotion::Displacement(&motion) };
         let record = PreslidingRecord { time_step, motion, torque: &torque };
         if let Ok(fit) = identify_presliding(statics, &record) {
             prop_assert!(fit.law().is_ok());
@@ -113,7 +113,7 @@ proptest! {
 fn a_limit_that_is_no_number_is_refused() {
     for bad in [f64::NAN, -0.1] {
         let error = identify_static_within(&[], bad).expect_err("no limit");
-        let IdentifyError::BadNumber { quantity, .. } = error else {
+        let FrictionIdentifyError::BadNumber { quantity, .. } = error else {
             panic!("{error}");
         };
         assert_eq!(quantity, "vibration_limit");

@@ -13,7 +13,7 @@ use lugre::{LuGre, Parameters};
 use pipeline::moves::{Moves, NamedMotion};
 use pipeline::robustness::pre_roll;
 use pipeline::strategies::{NONE, Predictors, STRATEGIES, Strategy, named};
-use pipeline::tracking::{Planned, plan_all};
+use pipeline::tracking::{PlannedTrajectory, plan_all};
 
 /// Factors of friction level, σ0, σ1, σ2 and the load's inertia.
 type Factors = [f64; 5];
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let machine = Axis::read("data/axes/liu2025-machine.toml".as_ref())?;
     let motions: Vec<NamedMotion> = plan_all(&machine)?
         .into_iter()
-        .map(Planned::named)
+        .map(PlannedTrajectory::named)
         .collect();
     println!(
         "believed / true              peak left, worst of {}",

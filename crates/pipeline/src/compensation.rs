@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::PipelineError;
 use crate::moves::{Moves, NamedMotion};
 use crate::strategies::{Build, Predictors, STRATEGIES, StrategyKind};
-use crate::tracking::{Planned, Run, plan_all, run_of};
+use crate::tracking::{PlannedTrajectory, Run, plan_all, run_of};
 
 /// One trajectory under one strategy.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -66,7 +66,10 @@ pub fn compensate_with(
         }
     }
     let closed_loop = ClosedLoop::new(machine)?;
-    let motions: Vec<NamedMotion> = plan_all(model)?.into_iter().map(Planned::named).collect();
+    let motions: Vec<NamedMotion> = plan_all(model)?
+        .into_iter()
+        .map(PlannedTrajectory::named)
+        .collect();
     // One after the other where a strategy carries something from move to move.
     let series: Vec<(&StrategyKind, &[NamedMotion], usize)> = suited
         .iter()

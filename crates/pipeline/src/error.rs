@@ -78,7 +78,7 @@ pub enum PipelineError {
     },
     /// Friction parameters cannot be found.
     #[error("friction cannot be identified: {0}")]
-    Identify(#[from] lugre::identify::IdentifyError),
+    Identify(#[from] lugre::identify::FrictionIdentifyError),
     /// Friction parameters make no law.
     #[error("the friction law is not valid: {0}")]
     Friction(#[from] lugre::LugreError),
@@ -87,7 +87,7 @@ pub enum PipelineError {
     Metric(#[from] axis_log::metrics::MetricError),
     /// The transfer function cannot be found.
     #[error("the transfer function cannot be identified: {0}")]
-    Transfer(#[from] compensator::IdentifyError),
+    Transfer(#[from] compensator::TransferFunctionError),
     /// Too few samples for a fit.
     #[error("{found} samples that differ in every input: at least {needed} are needed")]
     TooFewSamples {

@@ -5,8 +5,8 @@ use axis_sim::effects::{Measure, Scales};
 use axis_sim::{Axis, ClosedLoop, Cycle};
 use compensator::NoCompensation;
 use lugre::identify::{
-    ConstantSpeedRun, IdentifyError, Motion as Measured, PreslidingFit, PreslidingRecord,
-    StaticFit, identify_coulomb, identify_presliding, identify_static,
+    ConstantSpeedRun, FrictionIdentifyError, MeasuredMotion as Measured, PreslidingFit,
+    PreslidingRecord, StaticFit, identify_coulomb, identify_presliding, identify_static,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -170,7 +170,7 @@ fn statics(axis: &Axis, runs: &[ConstantSpeedRun]) -> Result<StaticFit, Pipeline
         return Ok(identify_coulomb(runs)?);
     }
     match identify_static(runs) {
-        Err(IdentifyError::NoStribeckEffect { .. }) => Ok(identify_coulomb(runs)?),
+        Err(FrictionIdentifyError::NoStribeckEffect { .. }) => Ok(identify_coulomb(runs)?),
         fit => Ok(fit?),
     }
 }

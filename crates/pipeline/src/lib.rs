@@ -38,3 +38,8 @@ pub mod vibration;
 pub use error::PipelineError;
 pub use figures::Figures;
 pub use linear_map::LinearMap;
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

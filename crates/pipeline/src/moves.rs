@@ -5,7 +5,7 @@ use std::sync::Arc;
 use axis_sim::{ClosedLoop, LoopState, Measured, Outcome, Start};
 use compensator::{Compensator, Correction, LearnedMove, Sample};
 
-use crate::strategies::{Learned, NextMove, SharedMotion, Strategy};
+use crate::strategies::{LearnedValues, NextMove, SharedMotion, Strategy};
 use crate::{Figures, PipelineError};
 
 /// Positions nearer than this count as one, m or rad: the same place in two programs.
@@ -30,7 +30,7 @@ pub struct MoveRun {
     /// Its figures, µm or µrad.
     pub figures: Figures,
     /// What the strategy knew after it.
-    pub learned: Learned,
+    pub learned: LearnedValues,
 }
 
 /// An axis on which moves are made one after the other.
@@ -94,7 +94,7 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
         Ok(MoveRun {
             figures: Figures::of_metres(&errors)?,
             errors,
-            learned: Learned::new(),
+            learned: LearnedValues::new(),
         })
     }
 

@@ -1,6 +1,6 @@
 //! One-cycle samples over a Latin hypercube: Section 4.2.
 
-use axis_sim::{Axis, CycleInput, OneCycle, Range, SampleRanges};
+use axis_sim::{Axis, CycleInput, OneCycle, SampleRanges, ValueRange};
 use lhs::{LatinHypercube, Marginal, Uniform};
 use rayon::prelude::*;
 
@@ -64,7 +64,7 @@ impl Sampler {
     /// [`PipelineError`] where the plan has no sample or the axis cannot be
     /// set up.
     pub fn new(axis: &Axis, plan: &SamplePlan) -> Result<Self, PipelineError> {
-        let uniform = |range: Range| -> Result<Box<dyn Marginal>, PipelineError> {
+        let uniform = |range: ValueRange| -> Result<Box<dyn Marginal>, PipelineError> {
             Ok(Box::new(Uniform::new(range.least, range.most)?))
         };
         let ranges = ranges(axis)?;
@@ -145,7 +145,7 @@ pub fn ranges(axis: &Axis) -> Result<SampleRanges, PipelineError> {
 }
 
 /// The inverse CDF of [`SpeedDensity::NearZero`].
-fn near_zero(range: Range, scale: f64) -> impl Fn(f64) -> f64 + Send + Sync {
+fn near_zero(range: ValueRange, scale: f64) -> impl Fn(f64) -> f64 + Send + Sync {
     let (low, high) = ((range.least / scale).asinh(), (range.most / scale).asinh());
     move |p: f64| {
         let speed = scale * (low + p * (high - low)).sinh();

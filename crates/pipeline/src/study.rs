@@ -2,7 +2,7 @@
 //! epochs change a small network's error, over several seeds.
 
 use axis_sim::Axis;
-use cfnn::train::{Dataset, Settings, Trainer};
+use cfnn::train::{Dataset, Trainer, TrainingSettings};
 use cfnn::{Scaling, Shape};
 use serde::{Deserialize, Serialize};
 
@@ -114,14 +114,14 @@ pub fn network(
     let positions_range = ranges.position;
     let output = [(positions_range.least, positions_range.most)];
     let scaling = Scaling::from_ranges(&input_ranges(&ranges), &output)?;
-    let options = Settings {
+    let options = TrainingSettings {
         epochs: setting.epochs,
         initial_damping: setting.initial_damping,
         // Near the linear map gradients are small; the epochs are to be run.
         min_gradient: 0.0,
         seed,
         threads: 1,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let mut trainer = Trainer::new(shape, scaling, &data, options)?;
     trainer.run(|_| {});

@@ -24,14 +24,14 @@ pub const DISPLAY_EVERY: usize = 10;
 
 /// A trajectory with its number and plan.
 #[derive(Clone, Debug)]
-pub struct Planned {
+pub struct PlannedTrajectory {
     /// Number in the axis file, from 1.
     pub id: usize,
     /// The S-curve.
     pub motion: SCurve,
 }
 
-impl Planned {
+impl PlannedTrajectory {
     /// Under its number.
     pub fn named(self) -> NamedMotion {
         NamedMotion {
@@ -47,7 +47,7 @@ impl Planned {
 /// # Errors
 /// [`PipelineError::NoTrajectories`] where the axis file lists none,
 /// [`PipelineError::Trajectory`] where one cannot be planned.
-pub fn plan_all(axis: &Axis) -> Result<Vec<Planned>, PipelineError> {
+pub fn plan_all(axis: &Axis) -> Result<Vec<PlannedTrajectory>, PipelineError> {
     if axis.trajectories.is_empty() {
         return Err(PipelineError::NoTrajectories);
     }
@@ -56,7 +56,7 @@ pub fn plan_all(axis: &Axis) -> Result<Vec<Planned>, PipelineError> {
         let motion = axis
             .plan(spec)
             .map_err(|source| PipelineError::Trajectory { index: id, source })?;
-        Ok(Planned { id, motion })
+        Ok(PlannedTrajectory { id, motion })
     };
     axis.trajectories.iter().enumerate().map(plan).collect()
 }
@@ -67,7 +67,7 @@ pub fn plan_all(axis: &Axis) -> Result<Vec<Planned>, PipelineError> {
 /// [`PipelineError::Run`] where the run does not come to its end.
 pub fn track(
     closed_loop: &ClosedLoop,
-    planned: &Planned,
+    planned: &PlannedTrajectory,
     compensator: &mut (impl Compensator + ?Sized),
 ) -> Result<Run, PipelineError> {
     let mut errors = Vec::new();
@@ -83,7 +83,7 @@ pub fn track(
 /// As [`track`].
 pub fn follow(
     closed_loop: &ClosedLoop,
-    planned: &Planned,
+    planned: &PlannedTrajectory,
     compensator: &mut (impl Compensator + ?Sized),
     observe: impl FnMut(&Cycle),
 ) -> Result<(), PipelineError> {
@@ -120,7 +120,7 @@ pub struct Profile {
 }
 
 /// The profile of a planned trajectory for a control period (s).
-pub fn profile(planned: &Planned, period: f64) -> Profile {
+pub fn profile(planned: &PlannedTrajectory, period: f64) -> Profile {
     let step = DISPLAY_EVERY as f64 * period;
     let count = (planned.motion.duration() / step * (1.0 + 1e-12)) as usize;
     let mut profile = Profile::default();

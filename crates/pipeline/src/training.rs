@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use axis_sim::SampleRanges;
 use cfnn::train::{
-    Checkpoint, Dataset, EpochReport, Initialisation, Normalisation, Settings, Trainer,
+    Checkpoint, Dataset, EpochReport, Initialisation, Normalisation, Trainer, TrainingSettings,
 };
 use cfnn::{Network, Predictor, Scaling, Shape};
 
@@ -78,7 +78,7 @@ pub fn train(
     let data = Dataset::new(4, 1, rows(samples), residuals)?;
     let own = [(-residual_scale, residual_scale)];
     let scaling = Scaling::from_ranges(&input_ranges(ranges), &own)?;
-    let settings = Settings {
+    let settings = TrainingSettings {
         epochs: plan.epochs,
         initial_damping: plan.initial_damping,
         min_gradient: 0.0,
@@ -88,7 +88,7 @@ pub fn train(
         resolve_output: true,
         seed: plan.seed,
         threads: plan.threads,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let mut trainer = match resume {
         Some(checkpoint) => Trainer::resume(&data, checkpoint)?,

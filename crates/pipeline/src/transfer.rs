@@ -3,7 +3,7 @@
 
 use axis_sim::{Axis, ClosedLoop};
 use compensator::{
-    Candidates, Compensator, Motion as Observed, NoCompensation, TransferFunctionFit,
+    Candidates, Compensator, MotionRecord as Observed, NoCompensation, TransferFunctionFit,
     identify_transfer_function,
 };
 use lhs::LatinHypercube;
@@ -12,7 +12,7 @@ use trajectories::{Limits, SCurve};
 
 use crate::PipelineError;
 use crate::strategies::Feedforward;
-use crate::tracking::{Planned, follow};
+use crate::tracking::{PlannedTrajectory, follow};
 
 /// Which motions the transfer function is identified from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,7 +144,7 @@ fn one(
     motion: SCurve,
     law: &mut dyn Compensator,
 ) -> Result<Record, PipelineError> {
-    let planned = Planned { id: 0, motion };
+    let planned = PlannedTrajectory { id: 0, motion };
     let (mut acceleration, mut error) = (Vec::new(), Vec::new());
     follow(closed_loop, &planned, law, |cycle| {
         acceleration.push(cycle.reference.acceleration);

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use trajectories::Motion;
 
 use crate::strategies::{BothPredictors, Need, Predictors};
-use crate::tracking::{Planned, Profile, Run, follow, plan_all, profile, run_of, track};
+use crate::tracking::{PlannedTrajectory, Profile, Run, follow, plan_all, profile, run_of, track};
 use crate::vibration::{Vibration, vibration};
 use crate::{Figures, PipelineError};
 
@@ -102,7 +102,7 @@ pub fn validate(
     predictors.require(&needs, "the validation")?;
     let loops = [ClosedLoop::new(model)?, ClosedLoop::new(machine)?];
     let planned = plan_all(model)?;
-    let trajectory = |planned: &Planned| {
+    let trajectory = |planned: &PlannedTrajectory| {
         let result = one(&loops, planned, predictors);
         each();
         result
@@ -131,7 +131,7 @@ pub fn runs(model: &Axis) -> usize {
 
 fn one(
     [model, machine]: &[ClosedLoop; 2],
-    planned: &Planned,
+    planned: &PlannedTrajectory,
     predictors: &Predictors,
 ) -> Result<ValidatedTrajectory, PipelineError> {
     let mut watch = Watch::new(predictors)?;
@@ -212,7 +212,7 @@ fn modes(axis: &Axis) -> Result<Vec<ModesAt>, PipelineError> {
 
 fn checks(
     model: &Axis,
-    planned: &[Planned],
+    planned: &[PlannedTrajectory],
     reference: &[ValidatedTrajectory],
     each: &(impl Fn() + Sync),
 ) -> Result<NumericalChecks, PipelineError> {

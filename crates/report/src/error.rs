@@ -6,14 +6,14 @@ use thiserror::Error;
 
 /// Which coordinate of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Axis {
+pub enum PlotAxis {
     /// Horizontal.
     X,
     /// Vertical.
     Y,
 }
 
-impl fmt::Display for Axis {
+impl fmt::Display for PlotAxis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::X => "x",
@@ -105,7 +105,7 @@ pub enum ReportError {
         /// The point.
         point: usize,
         /// Which coordinate.
-        axis: Axis,
+        axis: PlotAxis,
         /// Its value.
         value: f64,
         /// What would be valid.
@@ -116,7 +116,7 @@ pub enum ReportError {
 /// A page that cannot be written.
 #[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum WriteError {
+pub enum PageWriteError {
     /// The page cannot be rendered; no file was touched.
     #[error(transparent)]
     Report(#[from] ReportError),

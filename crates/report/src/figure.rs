@@ -1,6 +1,6 @@
 //! Figures: series of points over two axes.
 
-use crate::error::{Axis, ReportError};
+use crate::error::{PlotAxis, ReportError};
 use crate::unit::Unit;
 
 /// A plot of one or several series.
@@ -237,8 +237,8 @@ impl Figure {
         }
         for series in &self.series {
             self.check_lengths(series)?;
-            self.check_values(series, Axis::X, &series.x, self.x_scale)?;
-            self.check_values(series, Axis::Y, &series.y, self.y_scale)?;
+            self.check_values(series, PlotAxis::X, &series.x, self.x_scale)?;
+            self.check_values(series, PlotAxis::Y, &series.y, self.y_scale)?;
         }
         Ok(())
     }
@@ -265,7 +265,7 @@ impl Figure {
     fn check_values(
         &self,
         series: &Series,
-        axis: Axis,
+        axis: PlotAxis,
         values: &[f64],
         scale: Scale,
     ) -> Result<(), ReportError> {

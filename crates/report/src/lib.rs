@@ -64,10 +64,15 @@ mod table;
 mod unit;
 mod write;
 
-pub use error::{Axis, ReportError, WriteError};
+pub use error::{PageWriteError, PlotAxis, ReportError};
 pub use figure::{Figure, Scale, Series, Style};
 pub use html::render;
 pub use page::{Block, KeyValues, Notice, Page, Section};
 pub use table::{Cell, ColumnGroup, Mark, Table};
 pub use unit::engineering;
 pub use write::write_atomic;
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use atomic_write_file::AtomicWriteFile;
 
-use crate::error::WriteError;
+use crate::error::PageWriteError;
 use crate::html::render;
 use crate::page::Page;
 
@@ -18,13 +18,13 @@ use crate::page::Page;
 /// that name.
 ///
 /// # Errors
-/// [`WriteError::Report`] where the page cannot be rendered, [`WriteError::Io`]
+/// [`PageWriteError::Report`] where the page cannot be rendered, [`PageWriteError::Io`]
 /// where the folder is missing or not writable or the disk is full.
-pub fn write_atomic(path: impl AsRef<Path>, page: &Page) -> Result<(), WriteError> {
+pub fn write_atomic(path: impl AsRef<Path>, page: &Page) -> Result<(), PageWriteError> {
     let path = path.as_ref();
     let text = render(page)?;
     let io = |action| {
-        move |source| WriteError::Io {
+        move |source| PageWriteError::Io {
             path: path.display().to_string(),
             action,
             source,

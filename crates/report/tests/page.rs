@@ -1,8 +1,8 @@
 //! The whole page: well formed, self-contained, escaped, deterministic.
 
 use report::{
-    Block, Cell, Figure, KeyValues, Mark, Notice, Page, ReportError, Section, Series, Table,
-    WriteError, render, write_atomic,
+    Block, Cell, Figure, KeyValues, Mark, Notice, Page, PageWriteError, ReportError, Section,
+    Series, Table, render, write_atomic,
 };
 
 fn ramp(n: usize) -> Vec<f64> {
@@ -336,7 +336,7 @@ fn pages_are_written_whole_or_not_at_all() {
     let bad = Page::new("p").section(Section::new("s").figure(Figure::new("f", "x", "y")));
     assert!(matches!(
         write_atomic(&path, &bad),
-        Err(WriteError::Report(_))
+        Err(PageWriteError::Report(_))
     ));
     assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);

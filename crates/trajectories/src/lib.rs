@@ -87,3 +87,8 @@ pub use real::Real;
 pub use scurve::{SCurve, Segment};
 pub use step::Step;
 pub use sweep::Sweep;
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

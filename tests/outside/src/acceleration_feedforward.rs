@@ -1,7 +1,7 @@
 //! `acceleration_feedforward`: the command that the known inertia asks for.
 
 use compensator::{Compensator, Correction, Sample};
-use pipeline::strategies::{Build, StrategyKind, Table};
+use pipeline::strategies::{Build, ReportTable, StrategyKind};
 
 /// Feed-forward of the reference's acceleration: J a / (r K), with J the inertia of all
 /// that moves, seen at the motor (kg·m²), r the load's travel per radian (m/rad) and K
@@ -11,7 +11,7 @@ pub static ACCELERATION_FEEDFORWARD: StrategyKind = StrategyKind {
     label: "acceleration feed-forward",
     heading: "Acceleration feed-forward, known inertia",
     summary: "the command that the axis file's inertia asks for",
-    table: Table::More,
+    table: ReportTable::More,
     needs: &[],
     build: Build::Each(|predictors| {
         let axis = &predictors.axis;

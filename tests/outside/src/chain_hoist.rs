@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use axis_sim::Range;
+use axis_sim::ValueRange;
 use axis_sim::mechanism::{Mechanism, Way};
 use axis_sim::part::units::{FORCE, INERTIA, LENGTH, MASS, TIME};
 use axis_sim::part::{Known, PartError, PartKind, Role, Values, number, quantity};
@@ -52,7 +52,7 @@ impl Stiffness for Chain {
 #[derive(Debug)]
 struct ChainHoist {
     drive: ElasticDrive,
-    reach: Range,
+    reach: ValueRange,
 }
 
 fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
@@ -71,7 +71,7 @@ fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
     .map_err(|e| PartError::together(e, "other parameters"))?;
     Ok(Arc::new(ChainHoist {
         drive,
-        reach: Range {
+        reach: ValueRange {
             least: free_length - LONGEST,
             most: free_length - SHORTEST,
         },
@@ -95,7 +95,7 @@ impl Mechanism for ChainHoist {
         Some(self.drive.parameters().stiffness.at(0.0))
     }
 
-    fn reach(&self) -> Option<Range> {
+    fn reach(&self) -> Option<ValueRange> {
         Some(self.reach)
     }
 

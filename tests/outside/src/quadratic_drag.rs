@@ -2,7 +2,7 @@
 
 use axis_sim::SetupError;
 use axis_sim::effects::{
-    Changes, Effect, EffectChannel, EffectParameter, Measure, Nature, Variable,
+    Changes, Effect, EffectChannel, EffectParameter, EffectVariable, Measure, Nature,
 };
 
 /// Air or fluid that the load pushes aside, F = c v |v|.
@@ -11,7 +11,7 @@ pub static QUADRATIC_DRAG: Effect = Effect {
     summary: "force against motion that grows with the square of the speed",
     channel: EffectChannel::Torque,
     depends_on: "speed",
-    shown_over: Variable::Speed,
+    shown_over: EffectVariable::Speed,
     parameters: &[EffectParameter {
         name: "coefficient",
         measure: Measure::Other("N*s^2/m^2"),

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use axis_sim::Axis;
 use campaign::Job;
 use clap::Args;
-use discover_matrix::matrix::{Case, Outcome, Sizes, cases};
+use discover_matrix::matrix::{Case, CaseOutcome, Sizes, cases};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -214,8 +214,8 @@ impl Kept {
     }
 
     /// The outcome of a case; `None` where there is none of this program.
-    pub(super) fn outcome(&self, case: &Case) -> Option<Outcome> {
-        let outcome: Option<Outcome> = self.read(&case.id);
+    pub(super) fn outcome(&self, case: &Case) -> Option<CaseOutcome> {
+        let outcome: Option<CaseOutcome> = self.read(&case.id);
         outcome.filter(|o| o.case.is_same(case))
     }
 
@@ -239,8 +239,8 @@ mod tests {
         Axis::read(file.as_ref()).unwrap()
     }
 
-    fn outcome_of(case: &Case) -> Outcome {
-        Outcome {
+    fn outcome_of(case: &Case) -> CaseOutcome {
+        CaseOutcome {
             case: case.clone(),
             foreseen: Vec::new(),
             failed: None,

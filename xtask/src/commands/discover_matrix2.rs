@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use axis_sim::Axis;
 use campaign::{Column, Failure, Inputs, Job, Merged, Row, Value};
-use discover_matrix::matrix2::{Bench, Case, Outcome, Plan, cases};
+use discover_matrix::matrix2::{Bench, Case, CaseOutcome, MatrixPlan, cases};
 use miette::{IntoDiagnostic, Result};
 
 use super::discover_matrix::{Kept, Options, replaceable};
@@ -29,9 +29,9 @@ pub(super) fn job(options: &Options) -> Result<Matrix2> {
     let read = |file: &PathBuf| Axis::read(file).into_diagnostic();
     let machines: Vec<Axis> = options.machines.iter().map(read).collect::<Result<_>>()?;
     let plan = match options.size {
-        _ if options.quick => Plan::quick(machines.len()),
-        Some(size) => Plan::of(size),
-        None => Plan::full(),
+        _ if options.quick => MatrixPlan::quick(machines.len()),
+        Some(size) => MatrixPlan::of(size),
+        None => MatrixPlan::full(),
     };
     let mut cases = cases(&machines, &plan, options.seed).into_diagnostic()?;
     options.chosen(&mut cases, |c| &c.id)?;
@@ -73,25 +73,25 @@ pub(super) struct Matrix2 {
 }
 
 /// What any program kept of a case.
-fn by_any(kept: &Kept, case: &Case) -> Option<Outcome> {
-    let (_, outcome): (String, Outcome) = kept.read_any(&case.id)?;
+fn by_any(kept: &Kept, case: &Case) -> Option<CaseOutcome> {
+    let (_, outcome): (String, CaseOutcome) = kept.read_any(&case.id)?;
     outcome.case.is_same(case).then_some(outcome)
 }
 
 impl Matrix2 {
     /// What was kept of a case.
-    fn outcome(&self, case: &Case) -> Option<Outcome> {
+    fn outcome(&self, case: &Case) -> Option<CaseOutcome> {
         if self.told {
             return by_any(&self.kept, case);
         }
-        let outcome: Option<Outcome> = self.kept.read(&case.id);
+        let outcome: Option<CaseOutcome> = self.kept.read(&case.id);
         outcome.filter(|o| o.case.is_same(case))
     }
 
     /// Outcomes of cases of one plot, which share what is made beforehand.
-    fn plot(&self, cases: &[Case]) -> std::result::Result<Vec<Outcome>, Failure> {
+    fn plot(&self, cases: &[Case]) -> std::result::Result<Vec<CaseOutcome>, Failure> {
         let mut bench = None;
-        let mut one = |case: &Case| -> std::result::Result<Outcome, Failure> {
+        let mut one = |case: &Case| -> std::result::Result<CaseOutcome, Failure> {
             if let Some(outcome) = self.outcome(case) {
                 return Ok(outcome);
             }
@@ -104,7 +104,7 @@ impl Matrix2 {
             });
             let outcome = match bench {
                 Ok(bench) => bench.try_case(case),
-                Err(why) => Outcome::failed(case, why.clone()),
+                Err(why) => CaseOutcome::failed(case, why.clone()),
             };
             self.kept.write(&case.id, &outcome).map_err(failure)?;
             Ok(outcome)
@@ -112,7 +112,7 @@ impl Matrix2 {
         cases.iter().map(&mut one).collect()
     }
 
-    fn write(&self, outcomes: &[Outcome]) -> Result<()> {
+    fn write(&self, outcomes: &[CaseOutcome]) -> Result<()> {
         let page = matrix2::page(&self.machines, self.seed, self.all, outcomes);
         write_whole(&self.out.join("matrix.md"), page.as_bytes())?;
         if let Some(file) = &self.page {
@@ -170,7 +170,7 @@ impl Job for Matrix2 {
     }
 
     fn finish(&self, rows: &Merged) -> std::result::Result<(), Failure> {
-        let read = |row: std::result::Result<Row, campaign::CampaignError>| -> std::result::Result<Outcome, Failure> {
+        let read = |row: std::result::Result<Row, campaign::CampaignError>| -> std::result::Result<CaseOutcome, Failure> {
             Ok(serde_json::from_str(row?[1].text()?)?)
         };
         let outcomes = rows
@@ -194,7 +194,7 @@ mod tests {
     /// Or what is kept would be run again.
     #[test]
     fn every_case_comes_back_from_its_file() {
-        let all = cases(&machines(), &Plan::full(), 6).unwrap();
+        let all = cases(&machines(), &MatrixPlan::full(), 6).unwrap();
         assert!(all.len() >= 600);
         for case in all {
             let text = serde_json::to_vec_pretty(&case).unwrap();

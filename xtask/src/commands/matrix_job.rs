@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use axis_sim::Axis;
 use campaign::{Column, Failure, Inputs, Job, Merged, Row, Value};
 use discover_matrix::hidden::Exercise;
-use discover_matrix::matrix::{Bench, Case, Outcome, Score};
+use discover_matrix::matrix::{Bench, Case, CaseOutcome, Score};
 
 use super::discover_matrix::Kept;
 use crate::page::matrix;
@@ -29,7 +29,7 @@ pub(super) struct Matrix {
 }
 
 impl Matrix {
-    fn outcome(&self, case: &Case) -> Result<Outcome, Failure> {
+    fn outcome(&self, case: &Case) -> Result<CaseOutcome, Failure> {
         if let Some(outcome) = self.kept.outcome(case) {
             return Ok(outcome);
         }
@@ -41,7 +41,7 @@ impl Matrix {
         Ok(outcome)
     }
 
-    fn write(&self, outcomes: &[Outcome]) -> miette::Result<()> {
+    fn write(&self, outcomes: &[CaseOutcome]) -> miette::Result<()> {
         let score = Score::new(outcomes);
         let page = matrix::page(&self.axis, self.seed, self.all, outcomes, &score);
         let json = serde_json::to_vec_pretty(&score).map_err(|e| miette::miette!("{e}"))?;
@@ -107,7 +107,7 @@ impl Job for Matrix {
     }
 
     fn finish(&self, rows: &Merged) -> Result<(), Failure> {
-        let read = |row: Result<Row, campaign::CampaignError>| -> Result<Outcome, Failure> {
+        let read = |row: Result<Row, campaign::CampaignError>| -> Result<CaseOutcome, Failure> {
             Ok(serde_json::from_str(row?[1].text()?)?)
         };
         let outcomes = rows.rows().map(read).collect::<Result<Vec<_>, _>>()?;

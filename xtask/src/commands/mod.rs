@@ -1,9 +1,12 @@
 //! One file a command.
 
 pub mod bench;
+pub mod crates;
 pub mod discover_matrix;
 mod discover_matrix2;
 pub mod independent;
 pub mod layers;
 mod matrix_job;
+pub mod names;
+pub mod publish;
 pub mod torture;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use axis_sim::Axis;
-use discover_matrix::matrix::{NamedEffect, Outcome, Rate, Score};
+use discover_matrix::matrix::{CaseOutcome, NamedEffect, Rate, Score};
 
 /// The figures, one a line, as a table in Markdown.
 pub fn figures(score: &Score) -> String {
@@ -136,7 +136,7 @@ fn both(errors: Option<[f64; 2]>) -> String {
 const TITLE: &str = "# Hidden effects, searched blind";
 
 /// The whole page.
-pub fn page(axis: &Axis, seed: u64, all: usize, outcomes: &[Outcome], score: &Score) -> String {
+pub fn page(axis: &Axis, seed: u64, all: usize, outcomes: &[CaseOutcome], score: &Score) -> String {
     let mut text = format!(
         "{TITLE}\n\nMachine: {}. Seed {seed}. {} of {all} cases run.\n\
         `cargo xtask discover-matrix --seed {seed} --page FILE` makes this page; docs/theory/discrepancy.md says how cases\n\
@@ -160,7 +160,7 @@ pub fn page(axis: &Axis, seed: u64, all: usize, outcomes: &[Outcome], score: &Sc
             out_of(&of.coverage)
         );
     }
-    let mut sorted: Vec<&Outcome> = outcomes.iter().collect();
+    let mut sorted: Vec<&CaseOutcome> = outcomes.iter().collect();
     sorted.sort_by(|a, b| a.case.id.cmp(&b.case.id));
     let _ = writeln!(text, "\n## What counts against it\n");
     let mut none = true;
@@ -214,7 +214,7 @@ fn join(all: Vec<String>) -> String {
     }
 }
 
-fn row(outcome: &Outcome) -> String {
+fn row(outcome: &CaseOutcome) -> String {
     let case = &outcome.case;
     let hidden = case.hidden.iter().map(|h| {
         let values: Vec<String> = h.values.iter().map(|v| format!("{v:.3e}")).collect();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use axis_sim::Axis;
-use discover_matrix::matrix2::{GROUPS, Group, Limit, Outcome, TARGETS, Target};
+use discover_matrix::matrix2::{CaseOutcome, GROUPS, Group, Limit, ScoreTarget, TARGETS};
 
 use super::matrix::{names, out_of, seed_in};
 
@@ -16,7 +16,7 @@ const SEEN: &str = "Cases and laws of seed 101 were seen while the matrix was wr
     counting was final; no other. The search was not changed for either.";
 
 /// All figures, one a line, as a table in Markdown.
-pub fn figures(outcomes: &[Outcome]) -> String {
+pub fn figures(outcomes: &[CaseOutcome]) -> String {
     let mut text = String::from(
         "| figure | value | 95 % interval | target | by the interval |\n|---|---|---|---|---|\n",
     );
@@ -42,7 +42,7 @@ pub fn figures(outcomes: &[Outcome]) -> String {
 }
 
 /// The whole page.
-pub fn page(machines: &[Axis], seed: u64, all: usize, outcomes: &[Outcome]) -> String {
+pub fn page(machines: &[Axis], seed: u64, all: usize, outcomes: &[CaseOutcome]) -> String {
     let machines: Vec<&str> = machines.iter().map(|axis| axis.name.as_str()).collect();
     let mut text = format!(
         "{TITLE}\n\nMachines: {}. Seed {seed}. {} of {all} cases run.\n\
@@ -82,13 +82,13 @@ pub fn seed_of(page: &str) -> Option<u64> {
 }
 
 /// Figures of which something is asked.
-fn asked() -> impl Iterator<Item = &'static Target> {
+fn asked() -> impl Iterator<Item = &'static ScoreTarget> {
     TARGETS.iter().filter(|t| t.limit != Limit::Told)
 }
 
 /// The figures of each part of a group.
-fn by(group: &Group, outcomes: &[Outcome]) -> String {
-    let mut parts: BTreeMap<String, Vec<&Outcome>> = BTreeMap::new();
+fn by(group: &Group, outcomes: &[CaseOutcome]) -> String {
+    let mut parts: BTreeMap<String, Vec<&CaseOutcome>> = BTreeMap::new();
     for outcome in outcomes {
         parts.entry((group.of)(outcome)).or_default().push(outcome);
     }
@@ -107,7 +107,7 @@ fn by(group: &Group, outcomes: &[Outcome]) -> String {
     text
 }
 
-fn cell(target: &Target, outcomes: &[&Outcome]) -> String {
+fn cell(target: &ScoreTarget, outcomes: &[&CaseOutcome]) -> String {
     let rate = target.rate(outcomes.iter().copied());
     if rate.of == 0 {
         return "–".to_owned();
@@ -117,9 +117,9 @@ fn cell(target: &Target, outcomes: &[&Outcome]) -> String {
 }
 
 /// The cases that count against a figure.
-fn against(target: &Target, outcomes: &[Outcome]) -> String {
+fn against(target: &ScoreTarget, outcomes: &[CaseOutcome]) -> String {
     let mut text = format!("## Against: {} ({})\n\n", target.name, target.limit.words());
-    let mut hurt: Vec<&Outcome> = outcomes.iter().filter(|o| target.is_hurt_by(o)).collect();
+    let mut hurt: Vec<&CaseOutcome> = outcomes.iter().filter(|o| target.is_hurt_by(o)).collect();
     if hurt.is_empty() {
         return text + "No case.\n";
     }
@@ -132,7 +132,7 @@ fn against(target: &Target, outcomes: &[Outcome]) -> String {
     text
 }
 
-fn row(outcome: &Outcome) -> String {
+fn row(outcome: &CaseOutcome) -> String {
     let (case, setting) = (&outcome.case, &outcome.case.setting);
     let hidden = case.hidden.iter().enumerate().map(|(i, h)| {
         let law = case.law.as_ref().map(|law| law.name());

@@ -1,6 +1,6 @@
 //! Hostile orders and values are refused, and leave the unit as it was.
 
-use axis_fmu::{Mode, Unit, UnitError};
+use axis_fmu::{FmiMode, Unit, UnitError};
 
 use crate::{at, get, ready, set, unit};
 
@@ -43,7 +43,7 @@ fn the_order_is_that_of_the_standard() {
     }
     assert_eq!(unit.get(position).unwrap(), 0.6);
     unit.reset();
-    assert_eq!(unit.mode(), Mode::Instantiated);
+    assert_eq!(unit.mode(), FmiMode::Instantiated);
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn steps_are_multiples_of_the_period_from_where_the_unit_is() {
         assert!(words(unit.step(point, PERIOD)).contains("where the unit is, 0 s"));
     }
     // Nothing was done, and times may be rounded.
-    assert_eq!((unit.time(), unit.mode()), (0.0, Mode::Step));
+    assert_eq!((unit.time(), unit.mode()), (0.0, FmiMode::Step));
     let mut time = 0.0;
     for _ in 0..1000 {
         unit.step(time, (time + PERIOD) - time).unwrap();
@@ -116,7 +116,7 @@ fn a_run_that_stopped_can_be_taken_back() {
     set(&mut unit, "position_ref_m", 1.2);
     let refused = words(unit.step(0.0, PERIOD));
     assert!(refused.contains("following_error_limit"), "{refused}");
-    assert_eq!(unit.mode(), Mode::Failed);
+    assert_eq!(unit.mode(), FmiMode::Failed);
     assert!(words(unit.step(0.0, PERIOD)).contains("stopped by an error"));
     unit = saved;
     unit.step(0.0, PERIOD).unwrap();

@@ -45,7 +45,7 @@ pub struct ProposedColumn {
 
 /// What a file of another program is, and what its mapping could be.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Proposal {
+pub struct MappingProposal {
     /// Name of the format.
     pub format: &'static str,
     /// Columns of which the name tells what they are.
@@ -56,7 +56,7 @@ pub struct Proposal {
     pub caution: &'static str,
 }
 
-impl Proposal {
+impl MappingProposal {
     /// As lines of an axis file.
     pub fn lines(&self) -> String {
         let one = |column: &ProposedColumn| {
@@ -74,7 +74,7 @@ impl Proposal {
 ///
 /// # Errors
 /// A [`ReadError`]: the file cannot be read, or is damaged.
-pub fn propose(path: impl AsRef<Path>) -> Result<Option<Proposal>, ReadError> {
+pub fn propose(path: impl AsRef<Path>) -> Result<Option<MappingProposal>, ReadError> {
     let path = path.as_ref();
     proposal(path).map_err(|problem| ReadError {
         file: path.display().to_string(),
@@ -82,7 +82,7 @@ pub fn propose(path: impl AsRef<Path>) -> Result<Option<Proposal>, ReadError> {
     })
 }
 
-fn proposal(path: &Path) -> Result<Option<Proposal>, ReadProblem> {
+fn proposal(path: &Path) -> Result<Option<MappingProposal>, ReadProblem> {
     let bytes = crate::read::whole(path)?;
     let Some(format) = FORMATS.iter().find(|format| (format.is_it)(&bytes)) else {
         return Ok(None);
@@ -92,7 +92,7 @@ fn proposal(path: &Path) -> Result<Option<Proposal>, ReadProblem> {
     let told = |name: &String| {
         columns.iter().any(|column| column.source == *name) || crate::unit_of(name).is_some()
     };
-    Ok(Some(Proposal {
+    Ok(Some(MappingProposal {
         format: format.name,
         others: names.iter().filter(|name| !told(name)).cloned().collect(),
         columns,

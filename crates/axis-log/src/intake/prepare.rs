@@ -23,7 +23,7 @@ pub struct Options<'a> {
 
 /// A log, and what was done to it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Prepared {
+pub struct PreparedLog {
     /// The log.
     pub log: Log,
     /// What was done, in its order.
@@ -53,7 +53,7 @@ pub fn prepare<P: AsRef<Path>>(
     mapping: &Mapping,
     required: &[&str],
     options: Options<'_>,
-) -> Result<Prepared, IntakeError> {
+) -> Result<PreparedLog, IntakeError> {
     let mut done = Vec::new();
     let alone: &[&str] = if paths.len() == 1 { required } else { &[] };
     let mut parts = Vec::with_capacity(paths.len());
@@ -84,7 +84,7 @@ pub fn prepare<P: AsRef<Path>>(
         Ok(log)
     });
     match log {
-        Ok(log) => Ok(Prepared { log, done }),
+        Ok(log) => Ok(PreparedLog { log, done }),
         Err(problem) => Err(IntakeError::Log { file, problem }),
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::hold::{Hold, Saturation, hold, saturation};
-use super::noise::{Colour, Noise, noise};
+use super::noise::{ChannelNoise, Colour, noise};
 use super::outliers::outliers;
 use super::quantum::{Quantum, quantum};
 use crate::log::Log;
@@ -67,7 +67,7 @@ pub struct ChannelQuality {
     /// Limits that it runs into.
     pub saturation: Vec<Saturation>,
     /// Noise.
-    pub noise: Option<Noise>,
+    pub noise: Option<ChannelNoise>,
     /// Frequency in Hz from which on its spectrum falls off as behind a filter.
     pub corner: Option<f64>,
     /// Its delay against another channel, where one was given and they correlate.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::fmt;
 
 use super::clock;
-use super::relation::{Law, Relation};
+use super::relation::{Relation, RelationLaw};
 use crate::log::{Log, TIME_CHANNEL};
 use crate::mapping::{ColumnMap, Mapping};
 use crate::numeric::align::{Fit, Free, align, integral};
@@ -12,7 +12,7 @@ use crate::source_unit::slipped_unit;
 
 /// What a cross-check says of a channel's mapping.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum CrossCheckVerdict {
     /// The channels agree.
     Agrees,
     /// They do not, and why is not sure, or not that they should: to be looked at.
@@ -27,7 +27,7 @@ pub struct Finding {
     /// What was checked.
     pub relation: Relation,
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: CrossCheckVerdict,
     /// What the channel looks like, in words.
     pub looks_like: String,
     /// Channel over what it should be, as found; 1 where they agree.
@@ -76,12 +76,12 @@ pub fn cross_check(log: &Log, mapping: &Mapping, relations: &[Relation]) -> Vec<
 fn check(log: &Log, mapping: &Mapping, relation: &Relation, period: f64) -> Option<Finding> {
     let y = log.channel(&relation.channel).ok()?;
     let x = log.channel(&relation.from).ok()?;
-    let integrated = matches!(relation.law, Law::Integral { .. });
+    let integrated = matches!(relation.law, RelationLaw::Integral { .. });
     let by = relation.factor() * if integrated { period } else { 1.0 };
     let x: Vec<f64> = if integrated { integral(x) } else { x.to_vec() };
     let x: Vec<f64> = x.iter().map(|v| v * by).collect();
     let delay = match relation.law {
-        Law::Follows => Some(((LONGEST / period).round() as usize).max(2)),
+        RelationLaw::Follows => Some(((LONGEST / period).round() as usize).max(2)),
         _ => None,
     };
     let fit = align(
@@ -106,11 +106,11 @@ fn check(log: &Log, mapping: &Mapping, relation: &Relation, period: f64) -> Opti
     })
 }
 
-type Judged = (Verdict, String, Option<ColumnMap>);
+type Judged = (CrossCheckVerdict, String, Option<ColumnMap>);
 
 fn judge(relation: &Relation, fit: &Fit, x: &[f64], mapping: &Mapping) -> Judged {
     let (related, near) = match relation.law {
-        Law::Follows | Law::About { .. } => (FOLLOWS, LOOSE),
+        RelationLaw::Follows | RelationLaw::About { .. } => (FOLLOWS, LOOSE),
         _ => (RELATED, NEAR),
     };
     if fit.correlation < related {
@@ -119,12 +119,16 @@ fn judge(relation: &Relation, fit: &Fit, x: &[f64], mapping: &Mapping) -> Judged
             relation.from, fit.correlation
         );
         // A torque has friction and inertia beside current: no relation is no slip.
-        return (Verdict::Unsure, words, None);
+        return (CrossCheckVerdict::Unsure, words, None);
     }
-    if let Law::About { within, .. } = relation.law
+    if let RelationLaw::About { within, .. } = relation.law
         && (1.0 / within..=within).contains(&fit.factor)
     {
-        return (Verdict::Agrees, "as it should be".to_owned(), None);
+        return (
+            CrossCheckVerdict::Agrees,
+            "as it should be".to_owned(),
+            None,
+        );
     }
     if (fit.factor - 1.0).abs() <= near {
         return zero(relation, fit, x, mapping);
@@ -134,8 +138,12 @@ fn judge(relation: &Relation, fit: &Fit, x: &[f64], mapping: &Mapping) -> Judged
 
 /// The factor is right; the zero may not be.
 fn zero(relation: &Relation, fit: &Fit, x: &[f64], mapping: &Mapping) -> Judged {
-    let agrees = (Verdict::Agrees, "as it should be".to_owned(), None);
-    if relation.law != Law::Same {
+    let agrees = (
+        CrossCheckVerdict::Agrees,
+        "as it should be".to_owned(),
+        None,
+    );
+    if relation.law != RelationLaw::Same {
         return agrees;
     }
     let (low, high) = x
@@ -153,7 +161,7 @@ fn zero(relation: &Relation, fit: &Fit, x: &[f64], mapping: &Mapping) -> Judged 
         ..map
     };
     let words = format!("{} counted from another zero, {off:.6} off", relation.from);
-    (Verdict::Contradicts, words, Some(repair))
+    (CrossCheckVerdict::Contradicts, words, Some(repair))
 }
 
 /// The factor is wrong: by which unit or sign.
@@ -181,7 +189,7 @@ fn slip(relation: &Relation, factor: f64, near: f64, mapping: &Mapping) -> Judge
             ..map
         };
         return (
-            Verdict::Contradicts,
+            CrossCheckVerdict::Contradicts,
             "right but for its sign".to_owned(),
             Some(repair),
         );
@@ -222,7 +230,7 @@ fn slip(relation: &Relation, factor: f64, near: f64, mapping: &Mapping) -> Judge
             let scale = map.scale / exact * factor.signum();
             let offset = map.offset / exact * factor.signum();
             (
-                Verdict::Contradicts,
+                CrossCheckVerdict::Contradicts,
                 words,
                 Some(ColumnMap {
                     scale,
@@ -239,7 +247,7 @@ fn slip(relation: &Relation, factor: f64, near: f64, mapping: &Mapping) -> Judge
                 ..map
             };
             let words = format!("{factor:.5} times what it should be, which no unit explains");
-            (Verdict::Unsure, words, Some(repair))
+            (CrossCheckVerdict::Unsure, words, Some(repair))
         }
     }
 }
@@ -292,7 +300,7 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let r = &self.relation;
         let way = match r.law {
-            Law::Integral { .. } => "the integral of ",
+            RelationLaw::Integral { .. } => "the integral of ",
             _ => "",
         };
         write!(

@@ -12,12 +12,12 @@ mod sampling;
 mod unit_slip;
 
 pub use channel::{ChannelQuality, Clock, Delay, channel_quality, clock};
-pub use crosscheck::{Finding, Verdict, cross_check};
+pub use crosscheck::{CrossCheckVerdict, Finding, cross_check};
 pub use hold::{Hold, Saturation};
-pub use noise::{Colour, Noise};
+pub use noise::{ChannelNoise, Colour};
 pub use outliers::{Outlier, outliers};
 pub use quantum::Quantum;
-pub use relation::{Law, Relation};
+pub use relation::{Relation, RelationLaw};
 pub use sampling::{
     MAX_JITTER, MAX_RATE_HZ, MIN_RATE_HZ, MIN_SAMPLES, Sampling, SamplingError, check_sampling,
 };

@@ -4,7 +4,7 @@ use crate::numeric::welch::density;
 
 /// Noise of a channel, from the upper half of its spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Noise {
+pub struct ChannelNoise {
     /// Standard deviation of white noise with that density, in the channel's unit.
     pub level: f64,
     /// How the density goes.
@@ -36,7 +36,7 @@ const FALL: f64 = 10.0;
 /// The corner is where the density is half that of an even stretch of at least a third of
 /// an octave below it, after which it falls by ten times within two octaves; motion, whose
 /// density falls from the lowest frequency on, has none.
-pub(super) fn noise(samples: &[f64], period: f64) -> (Option<Noise>, Option<f64>) {
+pub(super) fn noise(samples: &[f64], period: f64) -> (Option<ChannelNoise>, Option<f64>) {
     let Some(density) = density(samples) else {
         return (None, None);
     };
@@ -57,7 +57,7 @@ pub(super) fn noise(samples: &[f64], period: f64) -> (Option<Noise>, Option<f64>
     // One-sided, over half the rate: the variance of white noise is half its density.
     let level = (0.5 * mean(0.5, TOP)).sqrt();
     let corner = corner(&p).map(|bin| bin / bins as f64 / (2.0 * period));
-    (Some(Noise { level, colour }), corner)
+    (Some(ChannelNoise { level, colour }), corner)
 }
 
 /// Bands of a sixth of an octave: middle bin and mean density.

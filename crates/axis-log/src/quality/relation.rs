@@ -2,7 +2,7 @@
 
 /// How a channel should follow from another.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Law {
+pub enum RelationLaw {
     /// It is the other, but for what a loop leaves: factor 1, offset 0.
     Same,
     /// It is `factor` times the other, in their units; its zero may be anywhere.
@@ -35,12 +35,12 @@ pub struct Relation {
     /// The one that it should follow from.
     pub from: String,
     /// How.
-    pub law: Law,
+    pub law: RelationLaw,
 }
 
 impl Relation {
     /// A relation of channels by these names.
-    pub fn new(channel: impl Into<String>, from: impl Into<String>, law: Law) -> Self {
+    pub fn new(channel: impl Into<String>, from: impl Into<String>, law: RelationLaw) -> Self {
         Self {
             channel: channel.into(),
             from: from.into(),
@@ -50,8 +50,10 @@ impl Relation {
 
     pub(super) fn factor(&self) -> f64 {
         match self.law {
-            Law::Same | Law::Follows => 1.0,
-            Law::Scaled { factor } | Law::Integral { factor } | Law::About { factor, .. } => factor,
+            RelationLaw::Same | RelationLaw::Follows => 1.0,
+            RelationLaw::Scaled { factor }
+            | RelationLaw::Integral { factor }
+            | RelationLaw::About { factor, .. } => factor,
         }
     }
 }

@@ -5,14 +5,14 @@ use super::layout::Layout;
 use super::registry::Registry;
 use crate::SixDigits;
 use crate::actuator::Effort;
-use crate::axis::Range;
+use crate::axis::ValueRange;
 use crate::effects::{EFFECTS, EffectParameter};
 use crate::mechanism::Freedom;
 use crate::part::{Key, Kind, PartKind, named};
 
 const PAGE: &str = include_str!("../../../../docs/theory/axis-sim.md");
 
-fn interval(limits: &Range) -> String {
+fn interval(limits: &ValueRange) -> String {
     format!("{} to {}", SixDigits(limits.least), SixDigits(limits.most))
 }
 
@@ -111,7 +111,7 @@ fn effects() -> String {
             let [least, most] = p.bounds;
             let (kind, range) = (
                 if p.is_size() { "size" } else { "shape" },
-                Range { least, most },
+                ValueRange { least, most },
             );
             let unit = p.measure.unit(Freedom::Linear);
             let text = format!("`{}` {} {unit}", p.name, interval(&range));

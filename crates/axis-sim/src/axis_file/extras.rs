@@ -8,7 +8,7 @@ use super::error::AxisFileError;
 use super::fields::Fields;
 use super::keys::SHARE;
 use crate::SixDigits;
-use crate::axis::{Axis, BalanceSettings, Range, Stroke, Tolerances};
+use crate::axis::{Axis, BalanceSettings, Stroke, Tolerances, ValueRange};
 use crate::effects::{ActiveEffect, Effect, EffectParameter, Scales};
 use crate::mechanism::Freedom;
 use crate::part::{Key, Known};
@@ -166,7 +166,7 @@ pub(super) fn check_step(f: &Fields<'_>, period: f64, step: f64) -> Result<(), A
 /// `[stroke]`, inside a mechanism's reach where it has one.
 pub(super) fn stroke(
     f: &Fields<'_>,
-    reach: Option<Range>,
+    reach: Option<ValueRange>,
     freedom: Freedom,
 ) -> Result<Stroke, AxisFileError> {
     let unit = freedom.unit();
@@ -178,7 +178,7 @@ pub(super) fn stroke(
     let between =
         |least, most| format!("{} {unit} to {} {unit}", SixDigits(least), SixDigits(most));
     let own = between(stroke.minimum, stroke.maximum);
-    let inside = |r: &Range| {
+    let inside = |r: &ValueRange| {
         let slack = |end: f64| 1e-12 * end.abs();
         stroke.minimum >= r.least - slack(r.least) && stroke.maximum <= r.most + slack(r.most)
     };

@@ -13,12 +13,12 @@ use super::registry::Registry;
 use crate::SixDigits;
 use crate::actuator::{Actuator, Effort};
 use crate::axis::{
-    Axis, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, Range, SampleRanges, Sensors,
-    Simulation, Stroke, Tolerances,
+    Axis, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, SampleRanges, Sensors,
+    Simulation, Stroke, Tolerances, ValueRange,
 };
 use crate::closed_loop::ClosedLoop;
 use crate::control::{Control, absent, gain_fits, gain_turns};
-use crate::friction::Place;
+use crate::friction::FrictionPlace;
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism, Way};
 use crate::part::{Key, Part, PartKind, Values};
@@ -77,7 +77,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
     let freedom = mechanism.freedom();
     root.count("schema")?;
     let friction = part(&root, &layout, Section::Friction, layout.friction)?;
-    if let Place::Load(of) = friction.at
+    if let FrictionPlace::Load(of) = friction.at
         && of != freedom
     {
         let what = format!(
@@ -88,8 +88,8 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
             freedom.unit()
         );
         let fits = names(&registry.frictions, |friction| match friction.at {
-            Place::Motor => true,
-            Place::Load(of) => of == freedom,
+            FrictionPlace::Motor => true,
+            FrictionPlace::Load(of) => of == freedom,
         });
         return Err(root.table("friction")?.refuse_table(what, &fits));
     }
@@ -328,7 +328,7 @@ fn sample_ranges(f: &Fields<'_>, axis: &Axis) -> Result<SampleRanges, AxisFileEr
     let range = |[low, high]: [&str; 2]| {
         let (least, most) = (f.number(low)?, f.number(high)?);
         if least < most {
-            return Ok(Range { least, most });
+            return Ok(ValueRange { least, most });
         }
         let (a, b) = (SixDigits(least), SixDigits(most));
         let what = format!("has {low} = {a}, not below {high} = {b} (SI)");
@@ -340,7 +340,7 @@ fn sample_ranges(f: &Fields<'_>, axis: &Axis) -> Result<SampleRanges, AxisFileEr
         acceleration: range(["acceleration_min", "acceleration_max"])?,
         effort: range(effort_names(axis.actuator.effort()))?,
     };
-    let inside = |reach: Range| {
+    let inside = |reach: ValueRange| {
         reach.contains(ranges.position.least) && reach.contains(ranges.position.most)
     };
     if let Some(reach) = axis.mechanism.reach()
@@ -362,10 +362,10 @@ fn implied_ranges(axis: &Axis) -> Option<SampleRanges> {
         let all = axis.trajectories.iter().map(|t| of(&t.limits));
         all.fold(0.0, f64::max)
     };
-    let both_ways = |most: f64| Range { least: -most, most };
+    let both_ways = |most: f64| ValueRange { least: -most, most };
     let (speed, acceleration) = (most(Limits::velocity), most(Limits::acceleration));
     (speed > 0.0).then(|| SampleRanges {
-        position: Range {
+        position: ValueRange {
             least: axis.stroke.minimum,
             most: axis.stroke.maximum,
         },

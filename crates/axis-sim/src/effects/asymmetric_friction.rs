@@ -1,6 +1,6 @@
 //! `asymmetric-friction`: dry friction that differs between the directions.
 
-use super::{Effect, EffectChannel, Measure, Variable, size};
+use super::{Effect, EffectChannel, EffectVariable, Measure, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,7 +8,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction that differs between the directions",
     channel: EffectChannel::Torque,
     depends_on: "sign of speed",
-    shown_over: Variable::Speed,
+    shown_over: EffectVariable::Speed,
     parameters: &[
         size("forward", Measure::Force, 60.0, 5e3),
         size("backward", Measure::Force, 20.0, 5e3),

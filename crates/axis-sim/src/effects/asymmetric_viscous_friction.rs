@@ -1,6 +1,6 @@
 //! `asymmetric-viscous-friction`: viscous friction that differs between the directions.
 
-use super::{Effect, EffectChannel, Measure, Variable, size};
+use super::{Effect, EffectChannel, EffectVariable, Measure, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,7 +8,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "viscous friction that differs between the directions",
     channel: EffectChannel::Torque,
     depends_on: "speed and its sign",
-    shown_over: Variable::Speed,
+    shown_over: EffectVariable::Speed,
     parameters: &[
         size("forward", Measure::Damping, 4000.0, 1e5),
         size("backward", Measure::Damping, 2000.0, 1e5),

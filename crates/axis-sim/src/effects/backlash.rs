@@ -1,6 +1,6 @@
 //! `backlash`: free travel between screw and nut.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, positive};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, positive};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "free travel between screw and nut",
     channel: EffectChannel::Kinematics,
     depends_on: "sign of nut force",
-    shown_over: Variable::Acceleration,
+    shown_over: EffectVariable::Acceleration,
     parameters: &[positive("gap", Measure::Way, 4e-6, 1e-3)],
-    needs: &[Need::Role(Role::Backlash)],
+    needs: &[EffectNeed::Role(Role::Backlash)],
     install,
 };
 

@@ -1,6 +1,6 @@
 //! `clock-offset`: time by which the table's channel is late against the motor's.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,9 +8,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "time by which the table's channel is late against the motor's",
     channel: EffectChannel::Clock,
     depends_on: "speed",
-    shown_over: Variable::Speed,
+    shown_over: EffectVariable::Speed,
     parameters: &[signed("time", Measure::Time, 2e-5, 5e-3)],
-    needs: &[Need::MotorEncoder],
+    needs: &[EffectNeed::MotorEncoder],
     install,
 };
 

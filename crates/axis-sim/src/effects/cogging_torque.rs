@@ -1,6 +1,6 @@
 //! `cogging-torque`: torque that repeats with the motor's turn, at any current.
 
-use super::{Effect, EffectChannel, Measure, Nature, PHASE, Variable, shape, size};
+use super::{Effect, EffectChannel, EffectVariable, Measure, Nature, PHASE, shape, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,7 +8,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "torque that repeats with the motor's turn, at any current",
     channel: EffectChannel::Torque,
     depends_on: "motor angle",
-    shown_over: Variable::MotorAngle,
+    shown_over: EffectVariable::MotorAngle,
     parameters: &[
         size("amplitude", Measure::MotorTorque, 0.05, 2.0),
         shape(

@@ -1,6 +1,6 @@
 //! `constant-load`: a force of constant size and direction, as of gravity.
 
-use super::{Effect, EffectChannel, Measure, Variable, signed};
+use super::{Effect, EffectChannel, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,7 +8,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "a force of constant size and direction, as of gravity",
     channel: EffectChannel::Torque,
     depends_on: "nothing",
-    shown_over: Variable::Time,
+    shown_over: EffectVariable::Time,
     parameters: &[signed("force", Measure::Force, 40.0, 1e4)],
     needs: &[],
     install,

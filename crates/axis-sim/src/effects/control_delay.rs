@@ -1,6 +1,6 @@
 //! `control-delay`: time by which the current reference comes late.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, positive};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, positive};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "time by which the current reference comes late",
     channel: EffectChannel::Controller,
     depends_on: "change of the current reference",
-    shown_over: Variable::Current,
+    shown_over: EffectVariable::Current,
     parameters: &[positive("time", Measure::Time, 1e-4, 5e-3)],
-    needs: &[Need::Role(Role::CommandDelay)],
+    needs: &[EffectNeed::Role(Role::CommandDelay)],
     install,
 };
 

@@ -1,6 +1,6 @@
 //! `controller-gain`: gain of the position controller.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "gain of the position controller",
     channel: EffectChannel::Controller,
     depends_on: "position error",
-    shown_over: Variable::Position,
+    shown_over: EffectVariable::Position,
     parameters: &[signed("relative_change", Measure::Ratio, 0.05, 0.8)],
-    needs: &[Need::Role(Role::PositionGain)],
+    needs: &[EffectNeed::Role(Role::PositionGain)],
     install,
 };
 

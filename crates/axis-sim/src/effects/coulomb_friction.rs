@@ -1,6 +1,6 @@
 //! `coulomb-friction`: dry friction of one size in both directions.
 
-use super::{Effect, EffectChannel, Measure, Variable, size};
+use super::{Effect, EffectChannel, EffectVariable, Measure, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,7 +8,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction of one size in both directions",
     channel: EffectChannel::Torque,
     depends_on: "sign of speed",
-    shown_over: Variable::Speed,
+    shown_over: EffectVariable::Speed,
     parameters: &[size("force", Measure::Force, 60.0, 5e3)],
     needs: &[],
     install,

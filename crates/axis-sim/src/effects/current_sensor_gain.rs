@@ -6,7 +6,7 @@
 //! much. On errors of a drive's current sensors: Song et al., Energies 18 (2025) 1367,
 //! doi:10.3390/en18061367; here the scales of all phases are off alike.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -14,9 +14,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "share by which the current sensors show too much",
     channel: EffectChannel::Torque,
     depends_on: "current",
-    shown_over: Variable::Current,
+    shown_over: EffectVariable::Current,
     parameters: &[signed("relative_change", Measure::Ratio, 0.03, 0.3)],
-    needs: &[Need::Currents],
+    needs: &[EffectNeed::Currents],
     install,
 };
 

@@ -1,6 +1,6 @@
 //! `current-sensor-offset`: what the current sensor shows at no current.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,9 +8,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "what the current sensor shows at no current",
     channel: EffectChannel::Torque,
     depends_on: "nothing",
-    shown_over: Variable::Time,
+    shown_over: EffectVariable::Time,
     parameters: &[signed("current", Measure::Current, 0.05, 2.0)],
-    needs: &[Need::Currents],
+    needs: &[EffectNeed::Currents],
     install,
 };
 

@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Effect, EffectChannel, Measure, Nature, PHASE, Variable, shape, size};
+use super::{Effect, EffectChannel, EffectVariable, Measure, Nature, PHASE, shape, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -13,7 +13,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "a force that repeats in time, as with the machine's cycle",
     channel: EffectChannel::Torque,
     depends_on: "time",
-    shown_over: Variable::Time,
+    shown_over: EffectVariable::Time,
     parameters: &[
         size("amplitude", Measure::Force, 60.0, 1e4),
         shape(

@@ -1,6 +1,6 @@
 //! `encoder-eccentricity`: reading error of the motor's encoder, once per turn.
 
-use super::{Effect, EffectChannel, Measure, Need, PHASE, Variable, size};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, PHASE, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,9 +8,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "reading error of the motor's encoder, once per turn",
     channel: EffectChannel::Kinematics,
     depends_on: "motor angle",
-    shown_over: Variable::MotorAngle,
+    shown_over: EffectVariable::MotorAngle,
     parameters: &[size("amplitude", Measure::MotorAngle, 1e-3, 0.1), PHASE],
-    needs: &[Need::MotorEncoder],
+    needs: &[EffectNeed::MotorEncoder],
     install,
 };
 

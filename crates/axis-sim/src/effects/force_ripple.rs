@@ -7,7 +7,7 @@
 //! orders of a turn a linear motor does not have; what grows with the current is
 //! `torque-ripple`. At the start of a log it comes up over 20 ms.
 
-use super::{Effect, EffectChannel, Measure, Need, PHASE, Variable, size};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, PHASE, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -15,9 +15,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "force that repeats with a linear motor's pole pitch, at any current",
     channel: EffectChannel::Torque,
     depends_on: "position",
-    shown_over: Variable::Position,
+    shown_over: EffectVariable::Position,
     parameters: &[size("amplitude", Measure::Force, 60.0, 5e3), PHASE],
-    needs: &[Need::LinearMotor],
+    needs: &[EffectNeed::LinearMotor],
     install,
 };
 

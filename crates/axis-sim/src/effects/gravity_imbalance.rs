@@ -4,7 +4,7 @@
 //! pendulum. At the start of a log it comes up over 20 ms. On a motor's shaft the same is
 //! `cogging-torque` of order 1.
 
-use super::{Effect, EffectChannel, Measure, Need, PHASE, Variable, size};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, PHASE, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -12,9 +12,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "gravity on a load that turns and is out of balance",
     channel: EffectChannel::Torque,
     depends_on: "position",
-    shown_over: Variable::Position,
+    shown_over: EffectVariable::Position,
     parameters: &[size("torque", Measure::Force, 60.0, 1e4), PHASE],
-    needs: &[Need::Turning],
+    needs: &[EffectNeed::Turning],
     install,
 };
 

@@ -16,7 +16,7 @@
 //! F is the course of the last step continued to the end of this one
 //! ([`super::ScrewState::transmitted`]): one step late alone would put energy in.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, positive};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, positive};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -24,9 +24,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "stiffness of the transmission that grows with the force through it",
     channel: EffectChannel::Kinematics,
     depends_on: "nut force",
-    shown_over: Variable::Acceleration,
+    shown_over: EffectVariable::Acceleration,
     parameters: &[positive("relative_increase", Measure::Ratio, 2.0, 8.0)],
-    needs: &[Need::Transmission],
+    needs: &[EffectNeed::Transmission],
     install,
 };
 

@@ -1,6 +1,6 @@
 //! `inverter-dead-time`: voltage that each phase loses against its current.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, size};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, size};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "voltage that each phase loses against its current",
     channel: EffectChannel::Voltage,
     depends_on: "sign of phase currents",
-    shown_over: Variable::Current,
+    shown_over: EffectVariable::Current,
     parameters: &[size("phase_voltage", Measure::Voltage, 2.0, 50.0)],
-    needs: &[Need::Role(Role::DeadTimeVoltage)],
+    needs: &[EffectNeed::Role(Role::DeadTimeVoltage)],
     install,
 };
 

@@ -5,7 +5,9 @@
 //! 90–97, doi:10.1115/1.1334379), of a belt or pinion its number of teeth. Once per turn
 //! it is `periodic-lead-error`, so the search begins at n = 2.
 
-use super::{Changes, Effect, EffectChannel, Measure, Nature, Need, PHASE, Variable, shape, size};
+use super::{
+    Changes, Effect, EffectChannel, EffectNeed, EffectVariable, Measure, Nature, PHASE, shape, size,
+};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -13,7 +15,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "travel error that repeats several times in the motor's turn",
     channel: EffectChannel::Kinematics,
     depends_on: "motor angle",
-    shown_over: Variable::MotorAngle,
+    shown_over: EffectVariable::MotorAngle,
     parameters: &[
         size("amplitude", Measure::Way, 2e-6, 1e-3),
         shape(
@@ -25,7 +27,7 @@ pub(super) const EFFECT: Effect = Effect {
         ),
         PHASE,
     ],
-    needs: &[Need::Transmission],
+    needs: &[EffectNeed::Transmission],
     install,
 };
 

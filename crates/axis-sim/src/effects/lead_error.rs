@@ -1,6 +1,6 @@
 //! `lead-error`: travel per turn.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,9 +8,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "travel per turn",
     channel: EffectChannel::Kinematics,
     depends_on: "position",
-    shown_over: Variable::Position,
+    shown_over: EffectVariable::Position,
     parameters: &[signed("slope", Measure::Ratio, 1e-4, 5e-3)],
-    needs: &[Need::Transmission],
+    needs: &[EffectNeed::Transmission],
     install,
 };
 

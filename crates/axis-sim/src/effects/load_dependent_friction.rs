@@ -7,7 +7,7 @@
 //!
 //! F is that of the step's start ([`super::TableState::transmitted`]).
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, size};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -15,9 +15,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction in proportion to the force through the transmission",
     channel: EffectChannel::Torque,
     depends_on: "transmitted force and sign of speed",
-    shown_over: Variable::Acceleration,
+    shown_over: EffectVariable::Acceleration,
     parameters: &[size("ratio", Measure::Ratio, 0.05, 0.5)],
-    needs: &[Need::Transmission],
+    needs: &[EffectNeed::Transmission],
     install,
 };
 

@@ -14,7 +14,9 @@
 //! attraction without lag: it does not depend on the rate, and is exact for any step in
 //! which the load does not turn back.
 
-use super::{Effect, EffectChannel, Measure, MemoryLaw, Nature, TableStep, Variable, shape, size};
+use super::{
+    Effect, EffectChannel, EffectVariable, Measure, MemoryLaw, Nature, TableStep, shape, size,
+};
 use crate::error::SetupError;
 use crate::plant::Start;
 
@@ -33,7 +35,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction with a memory of its reversals",
     channel: EffectChannel::Torque,
     depends_on: "displacement after a reversal",
-    shown_over: Variable::Time,
+    shown_over: EffectVariable::Time,
     parameters: &[
         size("force", Measure::Force, 60.0, 5e3),
         shape(

@@ -66,7 +66,7 @@ pub(crate) use install::install;
 pub(crate) use memory::Memory;
 pub use memory::{MemoryLaw, TableStep};
 pub use onset::{ONSET_FORM, ONSET_KNOTS, OnsetForm};
-pub use parameter::{EffectParameter, Measure, Nature, Need, Scales};
+pub use parameter::{EffectNeed, EffectParameter, Measure, Nature, Scales};
 use parameter::{PHASE, positive, shape, signed, size};
 
 use crate::axis::Axis;
@@ -102,7 +102,7 @@ impl EffectChannel {
 
 /// What of a motion an effect is best shown over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Variable {
+pub enum EffectVariable {
     /// Speed of the load.
     Speed,
     /// Position of the load.
@@ -131,11 +131,11 @@ pub struct Effect {
     /// What it depends on, in words.
     pub depends_on: &'static str,
     /// What of the motion stands for that.
-    pub shown_over: Variable,
+    pub shown_over: EffectVariable,
     /// Its numbers.
     pub parameters: &'static [EffectParameter],
     /// What an axis must have for it.
-    pub needs: &'static [Need],
+    pub needs: &'static [EffectNeed],
     /// Changes an axis; `values` are in the order of `parameters`.
     ///
     /// An effect made elsewhere, outside of [`EFFECTS`], can be put into

@@ -1,6 +1,6 @@
 //! `motor-inertia`: inertia on the motor's shaft.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, size};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, size};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "inertia on the motor's shaft",
     channel: EffectChannel::Torque,
     depends_on: "acceleration",
-    shown_over: Variable::Acceleration,
+    shown_over: EffectVariable::Acceleration,
     parameters: &[size("inertia", Measure::MotorInertia, 4e-4, 0.05)],
-    needs: &[Need::Role(Role::MotorInertia)],
+    needs: &[EffectNeed::Role(Role::MotorInertia)],
     install,
 };
 

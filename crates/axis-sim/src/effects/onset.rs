@@ -16,7 +16,7 @@
 
 use super::changes::Hooks;
 use super::{
-    ActiveEffect, EFFECTS, Effect, EffectChannel, EffectParameter, Measure, Nature, Variable,
+    ActiveEffect, EFFECTS, Effect, EffectChannel, EffectParameter, EffectVariable, Measure, Nature,
 };
 use crate::error::SetupError;
 use crate::part::PartError;
@@ -45,7 +45,7 @@ pub static ONSET_FORM: Effect = Effect {
     summary: "onset of a dry friction that differs from a bristle\u{2019}s",
     channel: EffectChannel::Torque,
     depends_on: "low speed",
-    shown_over: Variable::Speed,
+    shown_over: EffectVariable::Speed,
     // Place of the effect and its values; knots; p and c_1 to c_5.
     parameters: &[
         HELD, HELD, HELD, HELD, HELD, HELD, HELD, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT, SHARE, SHARE,

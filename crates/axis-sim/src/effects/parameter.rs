@@ -345,7 +345,7 @@ pub(super) const PHASE: EffectParameter = shape(
 
 /// What an axis must have for an effect to act on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Need {
+pub enum EffectNeed {
     /// A parameter of that role.
     Role(Role),
     /// A transmission between motor and load.
@@ -362,7 +362,7 @@ pub enum Need {
     LinearMotor,
 }
 
-impl Need {
+impl EffectNeed {
     /// In words.
     pub fn name(self) -> &'static str {
         match self {

@@ -1,6 +1,6 @@
 //! `payload-mass`: mass on the table.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, size};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, size};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "mass on the table",
     channel: EffectChannel::Torque,
     depends_on: "acceleration",
-    shown_over: Variable::Acceleration,
+    shown_over: EffectVariable::Acceleration,
     parameters: &[size("mass", Measure::Inertia, 30.0, 1e3)],
-    needs: &[Need::Role(Role::LoadInertia)],
+    needs: &[EffectNeed::Role(Role::LoadInertia)],
     install,
 };
 

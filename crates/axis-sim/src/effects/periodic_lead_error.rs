@@ -1,7 +1,7 @@
 //! `periodic-lead-error`: travel error that repeats with the screw's turn; of another order it is
 //! `kinematic-error-harmonic`.
 
-use super::{Effect, EffectChannel, Measure, Need, PHASE, Variable, size};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, PHASE, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "travel error that repeats with the screw's turn",
     channel: EffectChannel::Kinematics,
     depends_on: "screw angle",
-    shown_over: Variable::MotorAngle,
+    shown_over: EffectVariable::MotorAngle,
     parameters: &[size("amplitude", Measure::Way, 2e-6, 1e-3), PHASE],
-    needs: &[Need::Transmission],
+    needs: &[EffectNeed::Transmission],
     install,
 };
 

@@ -1,6 +1,6 @@
 //! `position-dependent-friction`: dry friction that is higher over a stretch of the travel.
 
-use super::{Effect, EffectChannel, Measure, Nature, Variable, shape, size};
+use super::{Effect, EffectChannel, EffectVariable, Measure, Nature, shape, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,7 +8,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction that is higher over a stretch of the travel",
     channel: EffectChannel::Torque,
     depends_on: "position",
-    shown_over: Variable::Position,
+    shown_over: EffectVariable::Position,
     parameters: &[
         size("peak", Measure::Force, 60.0, 5e3),
         shape(

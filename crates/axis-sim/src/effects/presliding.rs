@@ -1,6 +1,6 @@
 //! `presliding`: stiffness of the contact before it slides.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, size};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, size};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "stiffness of the contact before it slides",
     channel: EffectChannel::Torque,
     depends_on: "displacement after a reversal",
-    shown_over: Variable::Time,
+    shown_over: EffectVariable::Time,
     parameters: &[size("stiffness", Measure::Stiffness, 1.5e6, 5e7)],
-    needs: &[Need::Role(Role::BristleStiffness)],
+    needs: &[EffectNeed::Role(Role::BristleStiffness)],
     install,
 };
 

@@ -1,6 +1,6 @@
 //! `process-force`: a force during a part of the time.
 
-use super::{Effect, EffectChannel, Measure, Nature, Variable, shape, signed};
+use super::{Effect, EffectChannel, EffectVariable, Measure, Nature, shape, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,7 +8,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "a force during a part of the time",
     channel: EffectChannel::Torque,
     depends_on: "time",
-    shown_over: Variable::Time,
+    shown_over: EffectVariable::Time,
     parameters: &[
         signed("force", Measure::Force, 60.0, 1e4),
         shape(

@@ -1,6 +1,6 @@
 //! `speed-controller-gain`: gain of the speed controller.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "gain of the speed controller",
     channel: EffectChannel::Controller,
     depends_on: "speed error",
-    shown_over: Variable::Speed,
+    shown_over: EffectVariable::Speed,
     parameters: &[signed("relative_change", Measure::Ratio, 0.05, 0.8)],
-    needs: &[Need::Role(Role::SpeedGain)],
+    needs: &[EffectNeed::Role(Role::SpeedGain)],
     install,
 };
 

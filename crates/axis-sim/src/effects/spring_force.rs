@@ -3,7 +3,7 @@
 //! `k (y − y₀)` against positive motion, y₀ where motions start: `constant-load` has what
 //! acts there. It takes what it gives back. At the start of a log it comes up over 20 ms.
 
-use super::{Effect, EffectChannel, Measure, Variable, signed};
+use super::{Effect, EffectChannel, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -11,7 +11,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "a force that grows along the stroke, as of a spring or a cable chain",
     channel: EffectChannel::Torque,
     depends_on: "position",
-    shown_over: Variable::Position,
+    shown_over: EffectVariable::Position,
     parameters: &[signed("stiffness", Measure::SpringRate, 600.0, 1e5)],
     needs: &[],
     install,

@@ -1,6 +1,6 @@
 //! `stator-resistance`: resistance of the winding.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "resistance of the winding",
     channel: EffectChannel::Voltage,
     depends_on: "current",
-    shown_over: Variable::Current,
+    shown_over: EffectVariable::Current,
     parameters: &[signed("relative_change", Measure::Ratio, 0.15, 0.8)],
-    needs: &[Need::Role(Role::Resistance)],
+    needs: &[EffectNeed::Role(Role::Resistance)],
     install,
 };
 

@@ -1,6 +1,6 @@
 //! `stribeck-friction`: dry friction that falls with speed.
 
-use super::{Effect, EffectChannel, Measure, Nature, Variable, shape, size};
+use super::{Effect, EffectChannel, EffectVariable, Measure, Nature, shape, size};
 use crate::error::SetupError;
 
 /// Upper end of the range that the survey of Armstrong-Hélouvry, Dupont and Canudas
@@ -14,7 +14,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction that falls with speed",
     channel: EffectChannel::Torque,
     depends_on: "low speed",
-    shown_over: Variable::Speed,
+    shown_over: EffectVariable::Speed,
     parameters: &[
         size("force", Measure::Force, 60.0, 5e3),
         shape(

@@ -15,7 +15,9 @@
 
 use std::f64::consts::TAU;
 
-use super::{Effect, EffectChannel, Measure, MemoryLaw, Nature, TableStep, Variable, shape, size};
+use super::{
+    Effect, EffectChannel, EffectVariable, Measure, MemoryLaw, Nature, TableStep, shape, size,
+};
 use crate::error::SetupError;
 use crate::plant::Start;
 
@@ -24,7 +26,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "a body on the load that swings by itself",
     channel: EffectChannel::Torque,
     depends_on: "acceleration, near one frequency",
-    shown_over: Variable::Acceleration,
+    shown_over: EffectVariable::Acceleration,
     parameters: &[
         size("mass", Measure::Inertia, 20.0, 1e3),
         shape(

@@ -1,6 +1,6 @@
 //! `thermal-expansion`: growth of the screw with time.
 
-use super::{Effect, EffectChannel, Measure, Nature, Need, Variable, shape, signed};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, Nature, shape, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,7 +8,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "growth of the screw with time",
     channel: EffectChannel::Kinematics,
     depends_on: "time and position",
-    shown_over: Variable::Position,
+    shown_over: EffectVariable::Position,
     parameters: &[
         signed("strain", Measure::Ratio, 4e-5, 2e-3),
         shape(
@@ -19,7 +19,7 @@ pub(super) const EFFECT: Effect = Effect {
             [0.2, 1e3],
         ),
     ],
-    needs: &[Need::Transmission],
+    needs: &[EffectNeed::Transmission],
     install,
 };
 

@@ -1,6 +1,6 @@
 //! `torque-constant`: torque per current.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "torque per current",
     channel: EffectChannel::Torque,
     depends_on: "current",
-    shown_over: Variable::Current,
+    shown_over: EffectVariable::Current,
     parameters: &[signed("relative_change", Measure::Ratio, 0.05, 0.5)],
-    needs: &[Need::Role(Role::TorqueConstant)],
+    needs: &[EffectNeed::Role(Role::TorqueConstant)],
     install,
 };
 

@@ -1,6 +1,6 @@
 //! `torque-ripple`: torque that repeats at six times the electrical turn, in proportion to it.
 
-use super::{Effect, EffectChannel, Measure, Need, PHASE, Variable, size};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, PHASE, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,9 +8,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "torque that repeats at six times the electrical turn, in proportion to it",
     channel: EffectChannel::Torque,
     depends_on: "motor angle and current",
-    shown_over: Variable::MotorAngle,
+    shown_over: EffectVariable::MotorAngle,
     parameters: &[size("relative_amplitude", Measure::Ratio, 0.03, 0.5), PHASE],
-    needs: &[Need::Poles],
+    needs: &[EffectNeed::Poles],
     install,
 };
 

@@ -1,6 +1,6 @@
 //! `transmission-stiffness`: stiffness of screw and nut.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "stiffness of screw and nut",
     channel: EffectChannel::Kinematics,
     depends_on: "nut force",
-    shown_over: Variable::Acceleration,
+    shown_over: EffectVariable::Acceleration,
     parameters: &[signed("relative_change", Measure::Ratio, -0.2, 0.8)],
-    needs: &[Need::Role(Role::TransmissionStiffness)],
+    needs: &[EffectNeed::Role(Role::TransmissionStiffness)],
     install,
 };
 

@@ -1,6 +1,6 @@
 //! `velocity-feedforward`: share of the reference velocity that is fed forward.
 
-use super::{Effect, EffectChannel, Measure, Need, Variable, signed};
+use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 use crate::part::Role;
 
@@ -9,9 +9,9 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "share of the reference velocity that is fed forward",
     channel: EffectChannel::Controller,
     depends_on: "reference velocity",
-    shown_over: Variable::Speed,
+    shown_over: EffectVariable::Speed,
     parameters: &[signed("relative_change", Measure::Ratio, 0.002, 0.5)],
-    needs: &[Need::Role(Role::VelocityFeedforward)],
+    needs: &[EffectNeed::Role(Role::VelocityFeedforward)],
     install,
 };
 

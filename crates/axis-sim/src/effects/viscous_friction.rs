@@ -1,6 +1,6 @@
 //! `viscous-friction`: friction proportional to speed.
 
-use super::{Effect, EffectChannel, Measure, Variable, size};
+use super::{Effect, EffectChannel, EffectVariable, Measure, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -8,7 +8,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "friction proportional to speed",
     channel: EffectChannel::Torque,
     depends_on: "speed",
-    shown_over: Variable::Speed,
+    shown_over: EffectVariable::Speed,
     parameters: &[size("coefficient", Measure::Damping, 4000.0, 1e5)],
     needs: &[],
     install,

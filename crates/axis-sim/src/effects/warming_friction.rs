@@ -9,7 +9,7 @@
 //! On the paper's axis D is some 20 m, three minutes at 0.1 m/s. A log of a few motions
 //! shows no more than its slope F/D, hence one start for D.
 
-use super::{Effect, EffectChannel, Measure, Nature, Variable, shape, size};
+use super::{Effect, EffectChannel, EffectVariable, Measure, Nature, shape, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -17,7 +17,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction that falls with the way travelled, as of warming",
     channel: EffectChannel::Torque,
     depends_on: "way travelled and sign of speed",
-    shown_over: Variable::Way,
+    shown_over: EffectVariable::Way,
     parameters: &[
         size("force", Measure::Force, 120.0, 5e3),
         shape(

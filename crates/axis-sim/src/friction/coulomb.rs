@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use lugre::Parameters;
 
-use super::{Friction, Place};
+use super::{Friction, FrictionPlace};
 use crate::mechanism::Freedom;
 use crate::part::units::{ANGLE, FORCE, LENGTH, LINEAR_DAMPING, ROTARY_DAMPING, TORQUE};
 use crate::part::{Known, PartError, PartKind, Values, quantity};
@@ -49,6 +49,6 @@ fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {
         damping: 0.0,
         viscous: v.number("viscous")?,
     };
-    let friction = Friction::new(parameters, 1.0 / presliding, Place::Load(freedom))?;
+    let friction = Friction::new(parameters, 1.0 / presliding, FrictionPlace::Load(freedom))?;
     Ok(Arc::new(friction))
 }

@@ -1,7 +1,7 @@
 //! `lugre` and `lugre-rotary`: LuGre friction in the load's own units.
 
 use super::lugre_at_motor::{KNOWN, build};
-use super::{Friction, Place};
+use super::{Friction, FrictionPlace};
 use crate::mechanism::Freedom;
 use crate::part::units::{
     ANGULAR_SPEED, FORCE, LINEAR_DAMPING, ROTARY_DAMPING, SPEED, STIFFNESS, TORQUE, TORSION,
@@ -20,7 +20,7 @@ pub(super) static LINEAR: PartKind<Friction> = PartKind {
         quantity("viscous", &LINEAR_DAMPING, 0.0, 1e9),
     ],
     known: KNOWN,
-    build: |v| build(v, Place::Load(Freedom::Linear)),
+    build: |v| build(v, FrictionPlace::Load(Freedom::Linear)),
 };
 
 pub(super) static ROTARY: PartKind<Friction> = PartKind {
@@ -35,5 +35,5 @@ pub(super) static ROTARY: PartKind<Friction> = PartKind {
         quantity("viscous", &ROTARY_DAMPING, 0.0, 1e9),
     ],
     known: KNOWN,
-    build: |v| build(v, Place::Load(Freedom::Rotary)),
+    build: |v| build(v, FrictionPlace::Load(Freedom::Rotary)),
 };

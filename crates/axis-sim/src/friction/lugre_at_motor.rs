@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use lugre::Parameters;
 
-use super::{Friction, Place};
+use super::{Friction, FrictionPlace};
 use crate::part::units::{BRISTLE_STIFFNESS, ROTARY_DAMPING, ROTATION, TORQUE};
 use crate::part::{Known, PartError, PartKind, Role, Values, quantity};
 
@@ -21,7 +21,7 @@ pub(super) static KIND: PartKind<Friction> = PartKind {
         quantity("viscous", &ROTARY_DAMPING, 0.0, 1e5),
     ],
     known: KNOWN,
-    build: |v| build(v, Place::Motor),
+    build: |v| build(v, FrictionPlace::Motor),
 };
 
 /// The known parameters of every LuGre friction. Each of the two levels may be off by its own
@@ -41,7 +41,7 @@ pub(super) const KNOWN: &[Known] = &[
     Known::key("bristle_damping"),
 ];
 
-pub(super) fn build(v: &Values, at: Place) -> Result<Arc<Friction>, PartError> {
+pub(super) fn build(v: &Values, at: FrictionPlace) -> Result<Arc<Friction>, PartError> {
     let parameters = Parameters {
         coulomb: v.number("coulomb")?,
         stiction: v.number("stiction")?,

@@ -27,7 +27,7 @@ pub struct Friction {
     /// The law, in its own coordinate.
     pub law: LuGre,
     /// The coordinate.
-    pub at: Place,
+    pub at: FrictionPlace,
     /// Unit element that effects act through: Coulomb level 1, the same
     /// pre-sliding distance.
     pub unit: LuGre,
@@ -35,7 +35,7 @@ pub struct Friction {
 
 /// The coordinate of a friction law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FrictionPlace {
     /// The motor's shaft: N·m over rad/s; the force on the load is that divided by r.
     Motor,
     /// The load: N over m/s, or N·m over rad/s.
@@ -57,7 +57,7 @@ pub struct FrictionUnits {
     pub stiffness: &'static str,
 }
 
-impl Place {
+impl FrictionPlace {
     /// The units of a law in this coordinate.
     pub fn units(self) -> FrictionUnits {
         let rotary = |at| FrictionUnits {
@@ -86,12 +86,16 @@ impl Friction {
     /// `travel` a radian of the motor.
     pub fn lever(&self, travel: f64) -> f64 {
         match self.at {
-            Place::Motor => travel,
-            Place::Load(_) => 1.0,
+            FrictionPlace::Motor => travel,
+            FrictionPlace::Load(_) => 1.0,
         }
     }
 
-    fn new(parameters: Parameters, unit_stiffness: f64, at: Place) -> Result<Self, PartError> {
+    fn new(
+        parameters: Parameters,
+        unit_stiffness: f64,
+        at: FrictionPlace,
+    ) -> Result<Self, PartError> {
         let valid = "stiction at least as great as coulomb";
         let law = LuGre::new(parameters).map_err(|e| PartError::together(e, valid))?;
         let unit = Parameters {

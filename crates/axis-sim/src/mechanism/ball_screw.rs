@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use beam_fem::{Material, Section};
+use beam_fem::{CrossSection, Material};
 use compensator::Mode;
 use feed_dynamics::{
     AxialSupport, DriveError, DriveParameters, FeedDrive, ImplicitStepper, ModalStepper, Mounting,
@@ -10,7 +10,7 @@ use feed_dynamics::{
 };
 
 use super::{Mechanism, Way};
-use crate::axis::Range;
+use crate::axis::ValueRange;
 use crate::part::units::{DENSITY, INERTIA, LENGTH, MASS, PRESSURE, STIFFNESS, TIME, TORSION};
 use crate::part::{Known, PartError, PartKind, Role, Values, count, number, quantity, word};
 use crate::plant::{Assembly, Plant};
@@ -68,7 +68,7 @@ fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
         v.number("density")?,
     )
     .map_err(|e| PartError::together(e, "another material"))?;
-    let section = Section::solid_circle(v.number("diameter")?, &material)
+    let section = CrossSection::solid_circle(v.number("diameter")?, &material)
         .map_err(|e| PartError::together(e, "another section"))?;
     let drive = FeedDrive::new(DriveParameters {
         section,
@@ -172,8 +172,8 @@ impl Mechanism for BallScrew {
         self.backlash
     }
 
-    fn reach(&self) -> Option<Range> {
-        Some(Range {
+    fn reach(&self) -> Option<ValueRange> {
+        Some(ValueRange {
             least: 0.0,
             most: self.drive.parameters().screw_length,
         })

@@ -6,7 +6,7 @@ use feed_dynamics::{BeltStrands, InSeries, Stiffness};
 
 use super::Mechanism;
 use super::elastic::Elastic;
-use crate::axis::Range;
+use crate::axis::ValueRange;
 use crate::part::units::{FORCE, INERTIA, LENGTH, MASS, TIME, TORSION};
 use crate::part::{Known, PartError, PartKind, Role, Values, number, quantity};
 
@@ -58,7 +58,7 @@ fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
     let mut belt = Elastic::new(v, inertias, radius / ratio, stiffness)?;
     // Both strands keep a length: at least a thousandth of them together.
     let least = 1e-3 * together;
-    belt.reach = Some(Range {
+    belt.reach = Some(ValueRange {
         least: least - zero,
         most: together - least - zero,
     });

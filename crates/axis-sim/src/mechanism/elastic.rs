@@ -5,7 +5,7 @@ use std::sync::Arc;
 use feed_dynamics::{DriveError, ElasticDrive, ElasticDriveParameters, ElasticStepper, Stiffness};
 
 use super::{Freedom, KinematicError, Mechanism, Way};
-use crate::axis::Range;
+use crate::axis::ValueRange;
 use crate::part::{PartError, Values};
 use crate::plant::{Assembly, Plant};
 
@@ -14,7 +14,7 @@ pub(super) struct Elastic {
     pub drive: ElasticDrive,
     pub freedom: Freedom,
     pub backlash: f64,
-    pub reach: Option<Range>,
+    pub reach: Option<ValueRange>,
     pub kinematic_error: Option<KinematicError>,
     /// Amplitude, order and phase of it.
     pub harmonic: Option<[f64; 3]>,
@@ -94,7 +94,7 @@ impl Mechanism for Elastic {
         self.backlash
     }
 
-    fn reach(&self) -> Option<Range> {
+    fn reach(&self) -> Option<ValueRange> {
         self.reach
     }
 

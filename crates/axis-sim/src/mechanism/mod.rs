@@ -15,7 +15,7 @@ use std::sync::Arc;
 use compensator::Mode;
 use feed_dynamics::DriveError;
 
-use crate::axis::Range;
+use crate::axis::ValueRange;
 use crate::effects::ScrewState;
 use crate::part::PartKind;
 use crate::plant::{Assembly, Plant};
@@ -91,7 +91,7 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
     }
 
     /// Where the load can be at all, besides the stroke.
-    fn reach(&self) -> Option<Range> {
+    fn reach(&self) -> Option<ValueRange> {
         None
     }
 

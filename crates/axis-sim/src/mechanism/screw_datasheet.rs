@@ -7,7 +7,7 @@ use feed_dynamics::{InSeries, Mounting, ScrewShaft, Stiffness};
 
 use super::Mechanism;
 use super::elastic::Elastic;
-use crate::axis::Range;
+use crate::axis::ValueRange;
 use crate::part::units::{DENSITY, INERTIA, LENGTH, MASS, PRESSURE, STIFFNESS, TIME};
 use crate::part::{Known, PartError, PartKind, Role, Values, quantity, word};
 
@@ -64,7 +64,7 @@ fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
     let inertias = [v.number("motor_inertia")? + screw, v.number("table_mass")?];
     let stiffness = Arc::new(InSeries(parts.to_vec()));
     let mut drive = Elastic::new(v, inertias, v.number("lead")? / TAU, stiffness)?;
-    drive.reach = Some(Range {
+    drive.reach = Some(ValueRange {
         least: 0.0,
         most: length,
     });

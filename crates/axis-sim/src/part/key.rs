@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::units::Dimension;
 use super::{Role, Values};
 use crate::SixDigits;
-use crate::axis::Range;
+use crate::axis::ValueRange;
 
 /// One key of a table of the axis file: made by [`quantity`], [`number`],
 /// [`count`] or [`word`].
@@ -24,9 +24,9 @@ pub struct Key {
 #[derive(Clone, Debug)]
 pub(crate) enum Kind {
     /// A number with a unit, which ends the key; the limits are SI.
-    Quantity(&'static Dimension, Range),
+    Quantity(&'static Dimension, ValueRange),
     /// A number whose unit, if it has one, is always the same.
-    Number(&'static str, Range),
+    Number(&'static str, ValueRange),
     /// A whole number.
     Count(u32, u32),
     /// A text, and what is valid.
@@ -56,12 +56,12 @@ pub const fn quantity(
     least: f64,
     most: f64,
 ) -> Key {
-    key(name, Kind::Quantity(dimension, Range { least, most }))
+    key(name, Kind::Quantity(dimension, ValueRange { least, most }))
 }
 
 /// A number without a unit, from `least` to `most`.
 pub const fn number(name: &'static str, least: f64, most: f64) -> Key {
-    key(name, Kind::Number("", Range { least, most }))
+    key(name, Kind::Number("", ValueRange { least, most }))
 }
 
 /// A whole number from `least` to `most`.
@@ -91,7 +91,7 @@ pub(crate) const fn tables(name: &'static str, keys: &'static [Key]) -> Key {
     key(name, Kind::Tables(Cow::Borrowed(keys)))
 }
 
-impl Range {
+impl ValueRange {
     /// Whether `value` lies inside, but for the rounding of its conversion to SI.
     pub(crate) fn takes(&self, value: f64) -> bool {
         let slack = |end: f64| 1e-12 * end.abs();
@@ -184,7 +184,7 @@ impl Key {
         bounds: [f64; 2],
     ) -> Self {
         let [least, most] = bounds;
-        key(name, Kind::Number(unit, Range { least, most }))
+        key(name, Kind::Number(unit, ValueRange { least, most }))
     }
 
     /// A key whose value is one of `words`.

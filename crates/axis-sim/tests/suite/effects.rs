@@ -1,6 +1,6 @@
 //! Effects vanish at their null value, to the bit, and do something elsewhere.
 
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Nature, Need, Scales};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectNeed, Nature, Scales};
 use axis_sim::{Axis, LoggedReference, Replay, Trace};
 use trajectories::Motion;
 
@@ -208,7 +208,7 @@ fn an_effect_tells_whether_it_applies() {
     let replay = Replay::new(&log, 1e-3).unwrap();
     for effect in EFFECTS.iter().copied() {
         // A ball screw has all but what needs a load that turns, or a linear motor.
-        let others = [Need::Turning, Need::LinearMotor];
+        let others = [EffectNeed::Turning, EffectNeed::LinearMotor];
         let elsewhere = others.iter().any(|need| effect.needs.contains(need));
         assert_eq!(effect.applies_to(&ball_screw).is_err(), elsewhere);
         // One mass under force and P-P control has no transmission, currents or encoder

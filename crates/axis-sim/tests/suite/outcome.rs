@@ -1,6 +1,6 @@
 //! How runs end that do not come to their end.
 
-use axis_sim::effects::{ActiveEffect, Changes, Effect, EffectChannel, Variable};
+use axis_sim::effects::{ActiveEffect, Changes, Effect, EffectChannel, EffectVariable};
 use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, ClosedLoop, Cycle, FOLLOWING_ERROR_LIMIT, Outcome, SetupError, StopReason};
 use compensator::{Compensator, Correction, NoCompensation, Sample};
@@ -294,7 +294,7 @@ const fn outside(install: fn(&[f64], &mut Changes<'_>) -> Result<(), SetupError>
         summary: "",
         channel: EffectChannel::Torque,
         depends_on: "",
-        shown_over: Variable::Time,
+        shown_over: EffectVariable::Time,
         parameters: &[],
         needs: &[],
         install,

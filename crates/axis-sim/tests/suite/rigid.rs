@@ -1,7 +1,7 @@
 //! The rigid machine against a slow, obvious integration of the same equations.
 
 use axis_log::{Channel, Log};
-use axis_sim::effects::{ActiveEffect, Changes, Effect, EffectChannel, Variable};
+use axis_sim::effects::{ActiveEffect, Changes, Effect, EffectChannel, EffectVariable};
 use axis_sim::friction::FRICTIONS;
 use axis_sim::part::{Part, Values, named};
 use axis_sim::{Axis, Replay, ReplayError, RunStopped, SetupError, StopReason};
@@ -139,7 +139,7 @@ static RUNAWAY: Effect = Effect {
     summary: "",
     channel: EffectChannel::Torque,
     depends_on: "",
-    shown_over: Variable::Time,
+    shown_over: EffectVariable::Time,
     parameters: &[],
     needs: &[],
     install: runaway,

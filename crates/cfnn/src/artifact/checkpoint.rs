@@ -7,7 +7,7 @@ use super::frame::Format;
 use super::{ArtifactError, NetworkV1, decode, encode};
 use crate::error::{all_finite, same_length};
 use crate::train::{
-    Best, Checkpoint, EpochReport, Initialisation, Normalisation, Settings, Validation,
+    Best, Checkpoint, EarlyStopping, EpochReport, Initialisation, Normalisation, TrainingSettings,
 };
 use crate::{Error, Network};
 
@@ -87,7 +87,7 @@ impl TryFrom<CheckpointV1> for Checkpoint {
     type Error = Error;
 
     fn try_from(stored: CheckpointV1) -> Result<Self, Error> {
-        let settings = Settings::try_from(stored.settings)?;
+        let settings = TrainingSettings::try_from(stored.settings)?;
         let current = Network::try_from(stored.current)?;
         if let Some((weights, _, _)) = &stored.best {
             same_length("best weights", weights.len(), current.weights().len())?;
@@ -115,8 +115,8 @@ impl TryFrom<CheckpointV1> for Checkpoint {
     }
 }
 
-impl From<&Settings> for SettingsV1 {
-    fn from(s: &Settings) -> Self {
+impl From<&TrainingSettings> for SettingsV1 {
+    fn from(s: &TrainingSettings) -> Self {
         Self {
             epochs: s.epochs as u64,
             initial_damping: s.initial_damping,
@@ -142,7 +142,7 @@ impl From<&Settings> for SettingsV1 {
     }
 }
 
-impl TryFrom<SettingsV1> for Settings {
+impl TryFrom<SettingsV1> for TrainingSettings {
     type Error = Error;
 
     fn try_from(s: SettingsV1) -> Result<Self, Error> {
@@ -159,7 +159,7 @@ impl TryFrom<SettingsV1> for Settings {
             max_damping: s.max_damping,
             goal: s.goal,
             min_gradient: s.min_gradient,
-            validation: s.validation.map(|(fraction, patience)| Validation {
+            validation: s.validation.map(|(fraction, patience)| EarlyStopping {
                 fraction,
                 patience: size(patience),
             }),

@@ -119,7 +119,7 @@ struct WithProvenance<'a, T> {
 impl From<&Network> for NetworkV1 {
     fn from(network: &Network) -> Self {
         let shape = network.shape();
-        let ends = |ranges: &[crate::Range<f64>]| {
+        let ends = |ranges: &[crate::ScalingRange<f64>]| {
             ranges.iter().map(|r| (r.minimum(), r.maximum())).collect()
         };
         Self {

@@ -8,7 +8,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 
 use super::dataset::{BLOCK, SampleBlock};
 use crate::simd::{Kernel, Vectors};
-use crate::{Layer, Real, Shape};
+use crate::{Layer, NetworkScalar, Shape};
 
 /// Rows of delta products that are formed together.
 pub(super) const LANES: usize = 8;

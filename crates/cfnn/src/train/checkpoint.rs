@@ -1,7 +1,7 @@
 use std::vec::Vec;
 
 use super::report::{EpochReport, History};
-use super::settings::Settings;
+use super::settings::TrainingSettings;
 use crate::{Network, Scaling, Shape};
 
 /// Everything from which a training goes on bit for bit, the data apart.
@@ -9,7 +9,7 @@ use crate::{Network, Scaling, Shape};
 pub struct Checkpoint {
     /// The settings. `threads` may be changed freely and `epochs` raised
     /// before resuming; any other change makes it a different training.
-    pub settings: Settings,
+    pub settings: TrainingSettings,
     /// The network at the last epoch.
     pub(crate) current: Network,
     /// Damping for the next epoch.

@@ -23,17 +23,17 @@
 //! linear map leaves a residual of 1e-4, all gradients are small.
 //!
 //! ```
-//! use cfnn::train::{Dataset, Initialisation, Outcome, Settings, Trainer};
+//! use cfnn::train::{Dataset, Initialisation, TrainingOutcome, Trainer, TrainingSettings};
 //! use cfnn::Shape;
 //! let x: Vec<f64> = (0..100).map(|i| f64::from(i) / 50.0 - 1.0).collect();
 //! let y = x.iter().map(|x| 2.0 * x + 1e-4 * (9.0 * x).tanh()).collect();
 //! let data = Dataset::new(1, 1, x, y)?;
-//! let settings = Settings {
+//! let settings = TrainingSettings {
 //!     epochs: 100,
 //!     initialisation: Initialisation::LinearStart,
 //!     resolve_output: true,
 //!     min_gradient: 0.0,
-//!     ..Settings::default()
+//!     ..TrainingSettings::default()
 //! };
 //! let shape = Shape { inputs: 1, hidden: vec![6, 3], outputs: 1 };
 //! let mut trainer = Trainer::new(shape, data.scaling()?, &data, settings)?;
@@ -42,7 +42,7 @@
 //! // Between epochs the state can be kept, and training resumed from it.
 //! let mut trainer = Trainer::resume(&data, trainer.checkpoint())?;
 //! let outcome = trainer.run(|_| ());
-//! assert_ne!(outcome, Outcome::GoalMet); // the goal is 0
+//! assert_ne!(outcome, TrainingOutcome::GoalMet); // the goal is 0
 //! assert!(trainer.loss() < 1e-6 * linear);
 //! # Ok::<(), cfnn::Error>(())
 //! ```
@@ -68,6 +68,6 @@ pub use checkpoint::Checkpoint;
 pub use dataset::Dataset;
 pub use engine::MAX_TRAINING_BYTES;
 pub use initial::nguyen_widrow;
-pub use report::{EpochReport, History, Outcome};
-pub use settings::{Initialisation, Normalisation, Settings, Validation};
+pub use report::{EpochReport, History, TrainingOutcome};
+pub use settings::{EarlyStopping, Initialisation, Normalisation, TrainingSettings};
 pub use trainer::Trainer;

@@ -3,7 +3,7 @@ use std::vec::Vec;
 /// Why a training ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Outcome {
+pub enum TrainingOutcome {
     /// The number of epochs asked for is done.
     EpochsDone,
     /// The loss reached the goal.
@@ -29,7 +29,7 @@ pub struct EpochReport {
     pub loss: f64,
     /// The same over the validation samples, where there are any.
     pub validation_loss: Option<f64>,
-    /// Norm of the gradient before the step (see `Settings::min_gradient`).
+    /// Norm of the gradient before the step (see `TrainingSettings::min_gradient`).
     pub gradient: f64,
     /// Damping that the next epoch starts with.
     pub damping: f64,

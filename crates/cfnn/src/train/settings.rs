@@ -21,7 +21,7 @@ pub enum Initialisation {
     /// slopes from the spacing of the samples around them, at scales from a
     /// neuron's share of the samples up to all of them. So neurons are dense
     /// and steep where the samples are. Meant for use with
-    /// [`Settings::resolve_output`]; the joint step alone moves steep neurons
+    /// [`TrainingSettings::resolve_output`]; the joint step alone moves steep neurons
     /// slowly. Later hidden layers as
     /// [`Initialisation::NguyenWidrow`]; output layer fitted by least squares.
     DataAdapted {
@@ -44,7 +44,7 @@ pub enum Normalisation {
 
 /// Early stopping on samples set apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Validation {
+pub struct EarlyStopping {
     /// Share of the samples set apart, above 0 and below 1; drawn from the
     /// seed.
     pub fraction: f64,
@@ -56,7 +56,7 @@ pub struct Validation {
 /// Settings of a training. The defaults are MATLAB's `trainlm` ones, with its
 /// validation switched off.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
+pub struct TrainingSettings {
     /// Number of epochs after which to stop.
     pub epochs: usize,
     /// Initial damping μ (the paper's u, there called learning rate), in the
@@ -76,7 +76,7 @@ pub struct Settings {
     /// the number of residuals under [`Normalisation::Mean`]).
     pub min_gradient: f64,
     /// Early stopping, or none.
-    pub validation: Option<Validation>,
+    pub validation: Option<EarlyStopping>,
     /// What the damping is added to.
     pub normalisation: Normalisation,
     /// Starting weights.
@@ -91,7 +91,7 @@ pub struct Settings {
     pub threads: usize,
 }
 
-impl Default for Settings {
+impl Default for TrainingSettings {
     fn default() -> Self {
         Self {
             epochs: 1000,
@@ -111,7 +111,7 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl TrainingSettings {
     /// Checks every field.
     ///
     /// # Errors

@@ -3,13 +3,13 @@ use std::vec::Vec;
 use rand::RngExt;
 
 use super::initial::generator;
-use super::settings::Settings;
+use super::settings::TrainingSettings;
 use crate::Error;
 
 /// Training and validation samples, each in rising order.
 pub(super) fn split(
     samples: usize,
-    settings: &Settings,
+    settings: &TrainingSettings,
 ) -> Result<(Vec<usize>, Vec<usize>), Error> {
     let mut order: Vec<usize> = (0..samples).collect();
     let Some(validation) = settings.validation else {

@@ -4,8 +4,8 @@ use super::checkpoint::{Best, Checkpoint};
 use super::dataset::{Dataset, SampleBlock, blocks};
 use super::engine::Engine;
 use super::initial::{adapt_first_layer, nguyen_widrow};
-use super::report::{EpochReport, History, Outcome};
-use super::settings::{Initialisation, MIN_DAMPING, Normalisation, Settings};
+use super::report::{EpochReport, History, TrainingOutcome};
+use super::settings::{Initialisation, MIN_DAMPING, Normalisation, TrainingSettings};
 use super::split::split;
 use crate::error::{all_finite, same_length};
 use crate::{Error, Network, Scaling, Shape};
@@ -18,7 +18,7 @@ const MODERATE: f64 = 1e-4;
 /// A training in progress: the caller asks for one epoch after the other.
 #[derive(Debug)]
 pub struct Trainer {
-    settings: Settings,
+    settings: TrainingSettings,
     shape: Shape,
     scaling: Scaling,
     training: Vec<SampleBlock>,
@@ -31,7 +31,7 @@ pub struct Trainer {
     damping: f64,
     best: Option<Best>,
     history: History,
-    outcome: Option<Outcome>,
+    outcome: Option<TrainingOutcome>,
     fingerprint: u64,
 }
 
@@ -39,7 +39,7 @@ impl Trainer {
     /// Prepares a training from new starting weights.
     ///
     /// # Errors
-    /// What [`Settings::validate`] and [`Shape::validate`] refuse,
+    /// What [`TrainingSettings::validate`] and [`Shape::validate`] refuse,
     /// [`Error::TrainingMemory`], [`Error::Length`] where shape, scaling and
     /// data do not fit, or where the validation split leaves one side empty,
     /// [`Error::NotFinite`] where starting weights fitted to the data overflow;
@@ -48,7 +48,7 @@ impl Trainer {
         shape: Shape,
         scaling: Scaling,
         data: &Dataset,
-        settings: Settings,
+        settings: TrainingSettings,
     ) -> Result<Self, Error> {
         let weights = nguyen_widrow(&shape, settings.seed)?;
         let network = Network::new(shape, scaling, weights)?;
@@ -84,7 +84,7 @@ impl Trainer {
     fn prepare(
         network: Network,
         data: &Dataset,
-        settings: Settings,
+        settings: TrainingSettings,
         fingerprint: u64,
     ) -> Result<Self, Error> {
         settings.validate()?;
@@ -201,13 +201,13 @@ impl Trainer {
     }
 
     /// Runs until the training ends, telling each epoch to `each`.
-    pub fn run(&mut self, mut each: impl FnMut(&EpochReport)) -> Outcome {
+    pub fn run(&mut self, mut each: impl FnMut(&EpochReport)) -> TrainingOutcome {
         loop {
             if let Some(outcome) = self.outcome {
                 return outcome;
             }
             if self.history.len() >= self.settings.epochs {
-                return Outcome::EpochsDone;
+                return TrainingOutcome::EpochsDone;
             }
             each(&self.epoch());
         }
@@ -263,24 +263,24 @@ impl Trainer {
     }
 
     /// Why the training has ended, judged by its last report.
-    fn judge(&self) -> Option<Outcome> {
+    fn judge(&self) -> Option<TrainingOutcome> {
         let settings = &self.settings;
         let last = self.history.last()?;
         let patience = settings.validation.map_or(usize::MAX, |v| v.patience);
         let validation_loss = last.validation_loss.unwrap_or(0.0);
         let numbers = [last.gradient, last.loss, validation_loss];
         if !numbers.iter().all(|v| v.is_finite()) {
-            Some(Outcome::NotFinite)
+            Some(TrainingOutcome::NotFinite)
         } else if last.gradient <= settings.min_gradient {
-            Some(Outcome::GradientSmall)
+            Some(TrainingOutcome::GradientSmall)
         } else if last.damping > settings.max_damping {
-            Some(Outcome::DampingLimit)
+            Some(TrainingOutcome::DampingLimit)
         } else if last.loss <= settings.goal {
-            Some(Outcome::GoalMet)
+            Some(TrainingOutcome::GoalMet)
         } else if self.best.as_ref().is_some_and(|b| b.age >= patience) {
-            Some(Outcome::ValidationStopped)
+            Some(TrainingOutcome::ValidationStopped)
         } else if self.history.len() >= settings.epochs {
-            Some(Outcome::EpochsDone)
+            Some(TrainingOutcome::EpochsDone)
         } else {
             None
         }
@@ -288,7 +288,7 @@ impl Trainer {
 
     /// Why the training has ended; none while it goes on.
     #[must_use]
-    pub fn outcome(&self) -> Option<Outcome> {
+    pub fn outcome(&self) -> Option<TrainingOutcome> {
         self.outcome
     }
 

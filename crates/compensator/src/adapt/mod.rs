@@ -42,7 +42,7 @@ use crate::{DriveModel, Sample};
 use belief::Belief;
 pub use error::AdaptError;
 use known::{Information, Known};
-pub use parameter::{AdaptParameter, AdaptPrior, Spread};
+pub use parameter::{AdaptParameter, AdaptPrior, PriorSpread};
 use parameter::{COUNT, Theta};
 use record::Record;
 pub use report::{Estimated, Learned};

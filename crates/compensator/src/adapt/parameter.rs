@@ -73,7 +73,7 @@ impl AdaptParameter {
 
 /// What is held possible of one parameter before anything is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spread {
+pub struct PriorSpread {
     /// Standard deviation of its relative error; 0 holds it fixed. Larger errors are
     /// believed where the data insist: beyond two deviations the prior gives way.
     pub deviation: f64,
@@ -86,7 +86,7 @@ pub struct Spread {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdaptPrior {
     /// In the order of [`AdaptParameter::ALL`].
-    pub spreads: [Spread; COUNT],
+    pub spreads: [PriorSpread; COUNT],
     /// Share of what was known that is kept from move to move, from 0 (each move anew)
     /// to 1 (the machine never changes).
     pub retention: f64,
@@ -110,7 +110,7 @@ impl Default for AdaptPrior {
                 AdaptParameter::StandingLoad => (0.01, 2.0),
                 _ => (0.2, 3.0),
             };
-            Spread { deviation, bound }
+            PriorSpread { deviation, bound }
         };
         Self {
             spreads: AdaptParameter::ALL.map(spread),
@@ -122,13 +122,13 @@ impl Default for AdaptPrior {
 
 impl AdaptPrior {
     /// The spread of a parameter.
-    pub fn of(&self, parameter: AdaptParameter) -> Spread {
+    pub fn of(&self, parameter: AdaptParameter) -> PriorSpread {
         self.spreads[parameter.index()]
     }
 
     /// The same with another spread of one parameter.
     #[must_use]
-    pub fn with(mut self, parameter: AdaptParameter, spread: Spread) -> Self {
+    pub fn with(mut self, parameter: AdaptParameter, spread: PriorSpread) -> Self {
         self.spreads[parameter.index()] = spread;
         self
     }

@@ -25,7 +25,7 @@ pub use pulse::{ReversalPulse, ReversalStart};
 
 use crate::CompensatorError;
 use crate::error::{require, within};
-use crate::model::{Along, DriveModel, SECTIONS, Section};
+use crate::model::{Along, DriveModel, DriveSection, SECTIONS};
 
 /// Numbers that an ordinary drive takes. SI units; torques and inertias at the motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -253,7 +253,7 @@ impl<T: Exponential> DriveTerms<T> {
     }
 
     /// r m + J_w/r: torque that winds the transmission up, per acceleration.
-    fn winding(&self, section: &Section<T>) -> T {
+    fn winding(&self, section: &DriveSection<T>) -> T {
         self.travel * self.load_inertia + section.lagging / self.travel
     }
 }

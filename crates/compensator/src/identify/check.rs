@@ -2,7 +2,7 @@
 
 use std::vec::Vec;
 
-use super::{Candidates, IdentifyError, Motion};
+use super::{Candidates, MotionRecord, TransferFunctionError};
 use crate::error::require;
 use crate::{MAX_ORDER, TransferFunctionModel};
 
@@ -11,19 +11,19 @@ const LARGEST: f64 = 1e100;
 
 /// Returns the period that all motions share.
 pub(super) fn check(
-    training: &[Motion],
-    validation: &[Motion],
+    training: &[MotionRecord],
+    validation: &[MotionRecord],
     candidates: &Candidates,
-) -> Result<f64, IdentifyError> {
+) -> Result<f64, TransferFunctionError> {
     let first = training
         .first()
-        .ok_or(IdentifyError::Empty("training motion"))?
+        .ok_or(TransferFunctionError::Empty("training motion"))?
         .period;
     if validation.is_empty() {
-        return Err(IdentifyError::Empty("validation motion"));
+        return Err(TransferFunctionError::Empty("validation motion"));
     }
     if candidates.pole_cycles.is_empty() || candidates.pole_cycles.iter().any(Vec::is_empty) {
-        return Err(IdentifyError::Empty("pole"));
+        return Err(TransferFunctionError::Empty("pole"));
     }
     let order = candidates.max_order;
     let inside = (1..=MAX_ORDER).contains(&order);
@@ -37,7 +37,7 @@ pub(super) fn check(
         }
     }
     if validation.iter().all(|motion| motion.error.is_empty()) {
-        return Err(IdentifyError::Empty("validation sample"));
+        return Err(TransferFunctionError::Empty("validation sample"));
     }
     Ok(first)
 }
@@ -45,12 +45,12 @@ pub(super) fn check(
 fn check_motion(
     set: &'static str,
     index: usize,
-    motion: &Motion,
+    motion: &MotionRecord,
     first: f64,
-) -> Result<(), IdentifyError> {
+) -> Result<(), TransferFunctionError> {
     let period = motion.period;
     if period != first {
-        return Err(IdentifyError::Period {
+        return Err(TransferFunctionError::Period {
             set,
             index,
             period,
@@ -59,7 +59,7 @@ fn check_motion(
     }
     let (accelerations, errors) = (motion.acceleration.len(), motion.error.len());
     if accelerations != errors {
-        return Err(IdentifyError::Length {
+        return Err(TransferFunctionError::Length {
             set,
             index,
             accelerations,
@@ -74,7 +74,7 @@ fn check_motion(
         // Written so that NaN is caught too.
         let inside = |value: &f64| value.abs() <= LARGEST;
         if let Some(sample) = values.iter().position(|value| !inside(value)) {
-            return Err(IdentifyError::Value {
+            return Err(TransferFunctionError::Value {
                 set,
                 index,
                 sample,

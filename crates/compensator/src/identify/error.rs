@@ -7,7 +7,7 @@ use crate::CompensatorError;
 /// Why no model could be identified.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
-pub enum IdentifyError {
+pub enum TransferFunctionError {
     /// A candidate, or the period, is not valid.
     #[error(transparent)]
     Setting(#[from] CompensatorError),

@@ -4,7 +4,7 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Motion;
+use super::MotionRecord;
 use crate::transfer_function::Sections;
 
 /// Rows that are folded into the triangle at a time; a multiple of 8.
@@ -30,7 +30,7 @@ pub(super) struct Solution {
 
 impl Triangle {
     /// Filters the accelerations of all motions, each from rest.
-    pub fn of(motions: &[Motion], poles: &[f64]) -> Self {
+    pub fn of(motions: &[MotionRecord], poles: &[f64]) -> Self {
         let columns = poles.len() + 2;
         let gains: Vec<f64> = poles.iter().map(|p| (1.0 - p * p).sqrt()).collect();
         let mut r = DMatrix::zeros(columns, columns);

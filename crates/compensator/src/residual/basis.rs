@@ -29,7 +29,7 @@ pub trait ResidualBasis {
 
     /// What the coefficients do to the torque at an instant of a log whose signals have
     /// passed a Gaussian of the deviation `smoothing` (s).
-    fn row(&mut self, at: &Unexplained, smoothing: f64) -> Row;
+    fn row(&mut self, at: &Unexplained, smoothing: f64) -> ResidualRow;
 
     /// The residual of these coefficients.
     fn model(&self, coefficients: &[f64]) -> Self::Model;
@@ -37,14 +37,14 @@ pub trait ResidualBasis {
 
 /// One equation: torque at the motor = fixed + Σ values · coefficients.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Row {
+pub struct ResidualRow {
     /// Coefficients that matter, by their number, and what they do, N·m each.
     pub values: Vec<(usize, f64)>,
     /// Torque that no coefficient changes, N·m.
     pub fixed: f64,
 }
 
-impl Row {
+impl ResidualRow {
     /// The torque, N·m.
     #[must_use]
     pub fn times(&self, coefficients: &[f64]) -> f64 {

@@ -11,7 +11,7 @@ use std::vec::Vec;
 use libm::sqrt;
 use nalgebra::{DMatrix, DVector};
 
-use super::{ResidualBasis, ResidualTables, Row};
+use super::{ResidualBasis, ResidualRow, ResidualTables};
 
 /// Part of the power of a move not learned from that must be explained for use.
 const LEAST_EXPLAINED: f64 = 0.1;
@@ -87,7 +87,7 @@ impl<B: ResidualBasis> ResidualLearner<B> {
         self.basis.linearise(self.coefficients.as_slice());
         let sound = |u: &&Unexplained| u.torque.is_finite() && u.motor_angle.is_finite();
         let log: Vec<&Unexplained> = log.iter().filter(sound).collect();
-        let rows: Vec<(Row, f64)> = log
+        let rows: Vec<(ResidualRow, f64)> = log
             .iter()
             .map(|u| (self.basis.row(u, smoothing), u.torque))
             .collect();
@@ -121,7 +121,7 @@ impl<B: ResidualBasis> ResidualLearner<B> {
 
     /// Adds the rows, `same` of which count as one; their noise is what the fit leaves,
     /// found in a few rounds from `noise` on, N²·m².
-    fn solve(&mut self, rows: &[(Row, f64)], same: f64, mut noise: f64) {
+    fn solve(&mut self, rows: &[(ResidualRow, f64)], same: f64, mut noise: f64) {
         let mut found = None;
         for _ in 0..3 {
             let weight = 1.0 / (same * noise.max(1e-30));

@@ -29,7 +29,7 @@ mod tables;
 use scalar::Scalar;
 
 #[cfg(feature = "identify")]
-pub use basis::{ResidualBasis, Row, over_gaussian};
+pub use basis::{ResidualBasis, ResidualRow, over_gaussian};
 #[cfg(feature = "identify")]
 pub use learn::{ResidualLearner, Unexplained};
 #[cfg(feature = "alloc")]

@@ -14,7 +14,7 @@ use cfnn::{Network, Scaling, Scratch, Shape};
 use nalgebra::{DMatrix, DVector};
 
 use super::network::ResidualNetwork;
-use super::{ResidualAt, ResidualBasis, Row, Unexplained, over_gaussian};
+use super::{ResidualAt, ResidualBasis, ResidualRow, Unexplained, over_gaussian};
 use crate::CompensatorError;
 use crate::error::{require, within};
 
@@ -210,7 +210,7 @@ impl ResidualBasis for NetworkBasis {
         (self.precision.clone(), self.mean.clone())
     }
 
-    fn row(&mut self, at: &Unexplained, smoothing: f64) -> Row {
+    fn row(&mut self, at: &Unexplained, smoothing: f64) -> ResidualRow {
         let count = self.seen.values.len();
         let mut sums = vec![0.0; count];
         over_gaussian(at, self.travel, smoothing, |there, weight| {
@@ -220,7 +220,7 @@ impl ResidualBasis for NetworkBasis {
         });
         // A force on the load is as much torque at the motor, in this unit.
         let once = sums.iter().chain(&sums).map(|sum| self.unit * sum);
-        Row {
+        ResidualRow {
             values: once.enumerate().collect(),
             fixed: 0.0,
         }

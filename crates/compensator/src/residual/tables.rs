@@ -6,7 +6,7 @@ use std::vec::Vec;
 use libm::exp;
 use nalgebra::{DMatrix, DVector};
 
-use super::{HARMONICS, KNOTS, ResidualBasis, ResidualModel, Row, Unexplained};
+use super::{HARMONICS, KNOTS, ResidualBasis, ResidualModel, ResidualRow, Unexplained};
 
 const SIZE: usize = 2 * HARMONICS + 2 * KNOTS;
 /// Amplitudes that are expected, as a share of the Coulomb level.
@@ -73,7 +73,7 @@ impl ResidualBasis for ResidualTables {
         (normal, DVector::zeros(SIZE))
     }
 
-    fn row(&mut self, at: &Unexplained, smoothing: f64) -> Row {
+    fn row(&mut self, at: &Unexplained, smoothing: f64) -> ResidualRow {
         let mut values = Vec::with_capacity(2 * HARMONICS + 4);
         for n in 1..=HARMONICS {
             let order = n as f64;
@@ -90,7 +90,7 @@ impl ResidualBasis for ResidualTables {
             values.push((place, by * (1.0 - share)));
             values.push((place + 1, by * share));
         }
-        Row { values, fixed: 0.0 }
+        ResidualRow { values, fixed: 0.0 }
     }
 
     fn model(&self, coefficients: &[f64]) -> Box<ResidualModel> {

@@ -5,10 +5,14 @@ use std::fmt::Write;
 use super::draft::Draft;
 use super::part::Part;
 use super::{CSource, Precision};
-use crate::{Controller, NamedText};
+use crate::{ExportedController, NamedText};
 
 /// Puts the texts together.
-pub(super) fn finish(controller: &Controller, draft: Draft, step_time: Option<&str>) -> CSource {
+pub(super) fn finish(
+    controller: &ExportedController,
+    draft: Draft,
+    step_time: Option<&str>,
+) -> CSource {
     let code = draft
         .parts
         .iter()
@@ -140,7 +144,12 @@ fn outputs(draft: &Draft) -> String {
 }
 
 /// The comment at the top of both files.
-fn top(controller: &Controller, draft: &Draft, hash: &str, step_time: Option<&str>) -> String {
+fn top(
+    controller: &ExportedController,
+    draft: &Draft,
+    hash: &str,
+    step_time: Option<&str>,
+) -> String {
     let memory = draft.memory();
     let precision = draft.precision.name();
     // Two ends of a comment in a text of the user's would let the rest become code.

@@ -27,12 +27,12 @@ mod part;
 mod plan;
 mod transfer;
 
-use cfnn::Real;
+use cfnn::NetworkScalar;
 use lugre::Exponential;
 
 pub use input::Input;
 
-use crate::{Controller, ExportError, Law, NamedText, Position};
+use crate::{ExportError, ExportedController, ExportedLaw, NamedText, Position};
 use draft::Draft;
 
 /// The floating-point type of the C code.
@@ -96,7 +96,7 @@ pub struct CSource {
 /// # Errors
 /// [`ExportError`] where a number leaves its range in this precision.
 pub fn export(
-    controller: &Controller,
+    controller: &ExportedController,
     precision: Precision,
     step_time: Option<&str>,
 ) -> Result<CSource, ExportError> {
@@ -107,10 +107,10 @@ pub fn export(
     Ok(head::finish(controller, draft, step_time))
 }
 
-fn drafted<T: Real + Exponential>(
-    controller: &Controller,
+fn drafted<T: NetworkScalar + Exponential>(
+    controller: &ExportedController,
     precision: Precision,
-    law: &Law<T>,
+    law: &ExportedLaw<T>,
 ) -> Draft {
     let mut draft = Draft::new(precision);
     match &law.position {

@@ -1,13 +1,13 @@
 //! The network strategy.
 
-use cfnn::Real;
+use cfnn::NetworkScalar;
 
 use super::data::{constant, counts, table};
 use super::draft::{Draft, State};
 use super::{Input, part};
 use crate::NetworkLaw;
 
-pub(super) fn add<T: Real>(draft: &mut Draft, law: &NetworkLaw<T>) {
+pub(super) fn add<T: NetworkScalar>(draft: &mut Draft, law: &NetworkLaw<T>) {
     estimator(draft, law);
     network(draft, law);
     draft.part(&part::ESTIMATOR);
@@ -26,7 +26,7 @@ pub(super) fn add<T: Real>(draft: &mut Draft, law: &NetworkLaw<T>) {
     });
 }
 
-fn estimator<T: Real>(draft: &mut Draft, law: &NetworkLaw<T>) {
+fn estimator<T: NetworkScalar>(draft: &mut Draft, law: &NetworkLaw<T>) {
     let (e, gains) = (&law.estimator, law.estimator.gains());
     let period = e.period();
     let drift = gains.drift / period;
@@ -42,7 +42,7 @@ fn estimator<T: Real>(draft: &mut Draft, law: &NetworkLaw<T>) {
     draft.constants += 5;
 }
 
-fn network<T: Real>(draft: &mut Draft, law: &NetworkLaw<T>) {
+fn network<T: NetworkScalar>(draft: &mut Draft, law: &NetworkLaw<T>) {
     let mut layers = law.hidden.clone();
     layers.push(1);
     let activations = 5 + law.hidden.iter().sum::<usize>();

@@ -7,7 +7,7 @@
 //! offset of the command is a pin of its own.
 
 use crate::c::{self, Input, Precision};
-use crate::{Controller, ExportError, NamedText};
+use crate::{ExportError, ExportedController, NamedText};
 
 /// A component and an example of its use.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub struct Component {
 ///
 /// # Errors
 /// As [`c::export`].
-pub fn export(controller: &Controller) -> Result<Component, ExportError> {
+pub fn export(controller: &ExportedController) -> Result<Component, ExportError> {
     let source = c::export(controller, Precision::F64, None)?;
     let code = inlined(&source, &controller.name);
     // Beside the law's state four numbers and two integers.
@@ -142,7 +142,7 @@ fn assignments(inputs: &[Input]) -> String {
     inputs.iter().map(line).collect()
 }
 
-fn about(controller: &Controller, hash: &str) -> String {
+fn about(controller: &ExportedController, hash: &str) -> String {
     format!(
         "Compensator \"{}\" of the axis \"{}\" ({}).\nControl period {:?} s; inputs {hash}.",
         controller.name,

@@ -1,9 +1,10 @@
 //! The graph of a network.
 
-use cfnn::{Network, Range};
+use cfnn::{Network, ScalingRange};
 
 use super::proto::{
-    Attribute, DOUBLE, Dimension, Graph, INTEGER, Node, Shape, Tensor, TensorType, Type, ValueInfo,
+    Attribute, DOUBLE, Graph, INTEGER, Node, Tensor, TensorDimension, TensorShape, TensorType,
+    Type, ValueInfo,
 };
 
 /// A graph that grows node by node.
@@ -49,9 +50,9 @@ impl Builder {
     }
 
     /// (x − minimum) gain − 1, as the network does it.
-    fn scale(&mut self, ranges: &[Range<f64>]) {
-        let least: Vec<f64> = ranges.iter().map(Range::minimum).collect();
-        let gain: Vec<f64> = ranges.iter().map(Range::gain).collect();
+    fn scale(&mut self, ranges: &[ScalingRange<f64>]) {
+        let least: Vec<f64> = ranges.iter().map(ScalingRange::minimum).collect();
+        let gain: Vec<f64> = ranges.iter().map(ScalingRange::gain).collect();
         let width = ranges.len();
         self.constant("input_minimum", &[width], &least);
         self.constant("input_gain", &[width], &gain);
@@ -62,9 +63,9 @@ impl Builder {
     }
 
     /// (ŷ + 1) half width + minimum.
-    fn unscale(&mut self, sum: &str, ranges: &[Range<f64>]) {
-        let least: Vec<f64> = ranges.iter().map(Range::minimum).collect();
-        let half: Vec<f64> = ranges.iter().map(Range::half_width).collect();
+    fn unscale(&mut self, sum: &str, ranges: &[ScalingRange<f64>]) {
+        let least: Vec<f64> = ranges.iter().map(ScalingRange::minimum).collect();
+        let half: Vec<f64> = ranges.iter().map(ScalingRange::half_width).collect();
         self.constant("output_minimum", &[least.len()], &least);
         self.constant("output_half_width", &[half.len()], &half);
         self.node("Add", &[sum, "one"], "above_least");
@@ -121,17 +122,17 @@ impl Builder {
 
 /// A table of any number of rows.
 fn value(name: &str, columns: usize, meaning: &str) -> ValueInfo {
-    let rows = Dimension {
+    let rows = TensorDimension {
         dim_value: None,
         dim_param: Some("samples".to_owned()),
     };
-    let columns = Dimension {
+    let columns = TensorDimension {
         dim_value: Some(columns as i64),
         dim_param: None,
     };
     let tensor = TensorType {
         elem_type: Some(DOUBLE),
-        shape: Some(Shape {
+        shape: Some(TensorShape {
             dim: vec![rows, columns],
         }),
     };

@@ -18,7 +18,7 @@ use prost::Message;
 
 use crate::{ExportError, Units};
 use graph::Builder;
-use proto::{Entry, Model, OperatorSet};
+use proto::{Model, OperatorSet, StringEntry};
 
 /// The version of ONNX' operators that is used.
 pub const OPSET: i64 = 17;
@@ -27,7 +27,7 @@ const IR_VERSION: i64 = 8;
 
 /// A column of the input or of the output.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Column {
+pub struct NetworkSignal {
     /// Its name: a word.
     pub name: String,
     /// Its SI unit.
@@ -40,9 +40,9 @@ pub struct Description {
     /// What it computes, in a line.
     pub summary: String,
     /// Its inputs, in their order.
-    pub inputs: Vec<Column>,
+    pub inputs: Vec<NetworkSignal>,
     /// Its outputs.
-    pub outputs: Vec<Column>,
+    pub outputs: Vec<NetworkSignal>,
     /// More names and values for the metadata.
     pub metadata: Vec<(String, String)>,
 }
@@ -57,7 +57,7 @@ pub fn one_cycle(predictors: &Predictors) -> Result<Vec<u8>, ExportError> {
         by: "an export as ONNX".to_owned(),
     })?;
     let (axis, units) = (&predictors.axis, Units::of(&predictors.axis));
-    let column = |name: &str, unit: String| Column {
+    let column = |name: &str, unit: String| NetworkSignal {
         name: name.to_owned(),
         unit,
     };
@@ -108,7 +108,7 @@ pub fn export(network: &Network, description: &Description) -> Result<Vec<u8>, E
             return Err(length.into());
         }
     }
-    let list = |columns: &[Column]| {
+    let list = |columns: &[NetworkSignal]| {
         let each = columns.iter().map(|c| format!("{} {}", c.name, c.unit));
         each.collect::<Vec<_>>().join(", ")
     };
@@ -128,7 +128,7 @@ pub fn export(network: &Network, description: &Description) -> Result<Vec<u8>, E
             version: Some(OPSET),
         }],
         metadata_props: all
-            .map(|(key, value)| Entry {
+            .map(|(key, value)| StringEntry {
                 key: Some(key),
                 value: Some(value),
             })

@@ -26,7 +26,7 @@ pub struct Model {
     pub opset_import: Vec<OperatorSet>,
     /// Names and values.
     #[prost(message, repeated, tag = "14")]
-    pub metadata_props: Vec<Entry>,
+    pub metadata_props: Vec<StringEntry>,
 }
 
 /// A set of operators.
@@ -42,7 +42,7 @@ pub struct OperatorSet {
 
 /// A name and a value.
 #[derive(Clone, PartialEq, Message)]
-pub struct Entry {
+pub struct StringEntry {
     /// The name.
     #[prost(string, optional, tag = "1")]
     pub key: Option<String>,
@@ -158,20 +158,20 @@ pub struct TensorType {
     pub elem_type: Option<i32>,
     /// Its lengths.
     #[prost(message, optional, tag = "2")]
-    pub shape: Option<Shape>,
+    pub shape: Option<TensorShape>,
 }
 
 /// Lengths of a tensor.
 #[derive(Clone, PartialEq, Message)]
-pub struct Shape {
+pub struct TensorShape {
     /// One after the other.
     #[prost(message, repeated, tag = "1")]
-    pub dim: Vec<Dimension>,
+    pub dim: Vec<TensorDimension>,
 }
 
 /// A length: a number or a name.
 #[derive(Clone, PartialEq, Message)]
-pub struct Dimension {
+pub struct TensorDimension {
     /// The number.
     #[prost(int64, optional, tag = "1")]
     pub dim_value: Option<i64>,

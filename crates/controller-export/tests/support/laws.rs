@@ -6,7 +6,7 @@ use compensator::{
     Combined, Compensator, Correction, Feedback, GuardLimits, NetworkCompensation, NoCompensation,
     Planner, Sample, Standstill, Target, TransferFunctionModel,
 };
-use controller_export::{Law, NetworkLaw, PlanLaw, Position};
+use controller_export::{ExportedLaw, NetworkLaw, PlanLaw, Position};
 use lugre::Exponential;
 use pipeline::strategies::{Predictors, STRATEGIES, named};
 use scalar::Scalar;
@@ -157,7 +157,11 @@ impl<T: Exponential> Runs<T> for Streaming<T> {
 }
 
 /// The strategy as the simulator runs it.
-pub fn double(predictors: &Predictors, name: &str, law: &Law) -> Outcome<Box<dyn Runs<f64>>> {
+pub fn double(
+    predictors: &Predictors,
+    name: &str,
+    law: &ExportedLaw,
+) -> Outcome<Box<dyn Runs<f64>>> {
     if let Some(plan) = &law.plan {
         return Ok(Box::new(Streaming::new(plan)));
     }
@@ -169,7 +173,7 @@ pub fn double(predictors: &Predictors, name: &str, law: &Law) -> Outcome<Box<dyn
 }
 
 /// The same in single precision, of the numbers that are exported.
-pub fn single(law: &Law<f32>) -> Outcome<Box<dyn Runs<f32> + '_>> {
+pub fn single(law: &ExportedLaw<f32>) -> Outcome<Box<dyn Runs<f32> + '_>> {
     if let Some(plan) = &law.plan {
         return Ok(Box::new(Streaming::new(plan)));
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use compensator::{Guard, GuardLimits, Sample, Status, Trip};
-use controller_export::Controller;
+use controller_export::ExportedController;
 use controller_export::c::{self, CSource, Precision};
 use pipeline::strategies::Predictors;
 use scalar::Scalar;
@@ -21,7 +21,7 @@ pub fn write(
     precision: Precision,
     cycles: usize,
 ) -> Outcome<CSource> {
-    let controller = Controller::of(predictors, name, LIMITS)?;
+    let controller = ExportedController::of(predictors, name, LIMITS)?;
     write_one(folder, predictors, &controller, precision, cycles, true)
 }
 
@@ -30,7 +30,7 @@ pub fn write(
 pub fn write_one(
     folder: &Path,
     predictors: &Predictors,
-    controller: &Controller,
+    controller: &ExportedController,
     precision: Precision,
     cycles: usize,
     strict: bool,

@@ -7,8 +7,8 @@
 use axis_sim::Axis;
 use axis_sim::SetupError;
 use axis_sim::effects::{
-    ActiveEffect, Changes, Effect, EffectChannel, EffectParameter, Measure, Nature, Scales,
-    Steepness, Variable,
+    ActiveEffect, Changes, Effect, EffectChannel, EffectParameter, EffectVariable, Measure, Nature,
+    Scales, Steepness,
 };
 use serde::{Deserialize, Serialize};
 
@@ -165,7 +165,7 @@ const fn form(
         summary,
         channel: EffectChannel::Torque,
         depends_on: "low speed",
-        shown_over: Variable::Speed,
+        shown_over: EffectVariable::Speed,
         parameters,
         needs: &[],
         install,

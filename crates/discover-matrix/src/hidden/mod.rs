@@ -15,11 +15,11 @@ mod truth;
 
 pub use exercise::{Exercise, exercise};
 pub use form::Form;
-pub use law::{Factor, Law, Ranges, Shape, Variable};
+pub use law::{Factor, Law, LawShape, LawVariable, Ranges};
 pub(crate) use law::{LAW, LAW_NAME};
 pub use noise::Noise;
 pub use outside::OUTSIDE;
-pub use rough::{Colour, Entry, Rough};
+pub use rough::{Entry, NoiseColour, Rough};
 pub use truth::Truth;
 
 use axis_log::{Channel, Log};

@@ -1,8 +1,8 @@
 //! Effects that are in no library: what a search must not give a wrong name.
 
 use axis_sim::effects::{
-    Changes, Effect, EffectChannel, EffectParameter, Measure, MemoryLaw, Nature, Steepness,
-    TableStep, Variable,
+    Changes, Effect, EffectChannel, EffectParameter, EffectVariable, Measure, MemoryLaw, Nature,
+    Steepness, TableStep,
 };
 use axis_sim::{SetupError, Start};
 
@@ -21,7 +21,7 @@ pub const OUTSIDE: [&Effect; 8] = [
 const ROOT_FRICTION: Effect = outside(
     "root-friction",
     "friction with the root of speed",
-    ("speed", Variable::Speed),
+    ("speed", EffectVariable::Speed),
     &[size("coefficient", Measure::Other("N*s^0.5/m^0.5"), 200.0)],
     |v, to| {
         let c = v[0];
@@ -33,7 +33,7 @@ const ROOT_FRICTION: Effect = outside(
 const QUADRATIC_DRAG: Effect = outside(
     "quadratic-drag",
     "drag with the square of speed",
-    ("speed", Variable::Speed),
+    ("speed", EffectVariable::Speed),
     &[size("coefficient", Measure::Other("N*s^2/m^2"), 6e3)],
     |v, to| {
         let c = v[0];
@@ -45,7 +45,7 @@ const QUADRATIC_DRAG: Effect = outside(
 const POSITION_DAMPING: Effect = outside(
     "position-damping",
     "viscous friction that grows along the stroke",
-    ("position and speed", Variable::Speed),
+    ("position and speed", EffectVariable::Speed),
     &[
         size("slope", Measure::Other("N*s/m^2"), 1e4),
         place("zero", 0.7),
@@ -60,7 +60,7 @@ const POSITION_DAMPING: Effect = outside(
 const FADING_FRICTION: Effect = outside(
     "fading-friction",
     "dry friction that fades as it warms",
-    ("time", Variable::Time),
+    ("time", EffectVariable::Time),
     &[
         size("force", Measure::Force, 60.0),
         shape(
@@ -80,7 +80,7 @@ const FADING_FRICTION: Effect = outside(
 const END_CUSHION: Effect = outside(
     "end-cushion",
     "a cushion that the table runs into, with the square of its depth",
-    ("position", Variable::Position),
+    ("position", EffectVariable::Position),
     &[
         size("stiffness", Measure::Other("N/m^2"), 1e4),
         place("begin", 0.65),
@@ -95,7 +95,7 @@ const END_CUSHION: Effect = outside(
 const WAVE_LOAD: Effect = outside(
     "wave-load",
     "a load that repeats along the stroke, as of a cable chain",
-    ("position", Variable::Position),
+    ("position", EffectVariable::Position),
     &[
         size("amplitude", Measure::Force, 30.0),
         shape("pitch", Measure::Way, Nature::Width([0.15, 0.4]), 0.045),
@@ -112,7 +112,7 @@ const WAVE_LOAD: Effect = outside(
 const SATURATING_TORQUE: Effect = outside(
     "saturating-torque",
     "a motor whose torque falls behind its current",
-    ("current", Variable::Current),
+    ("current", EffectVariable::Current),
     &[size("cubic", Measure::Other("1/(N*m)^2"), 2e-3)],
     |v, to| {
         let c = v[0];
@@ -124,7 +124,7 @@ const SATURATING_TORQUE: Effect = outside(
 const CREEPING_LOAD: Effect = outside(
     "creeping-load",
     "a spring that creeps after the table, as of a hose or a seal",
-    ("time", Variable::Time),
+    ("time", EffectVariable::Time),
     &[
         size("stiffness", Measure::SpringRate, 3e3),
         shape(
@@ -197,7 +197,7 @@ const fn place(name: &'static str, typical: f64) -> EffectParameter {
 const fn outside(
     name: &'static str,
     summary: &'static str,
-    (depends_on, shown_over): (&'static str, Variable),
+    (depends_on, shown_over): (&'static str, EffectVariable),
     parameters: &'static [EffectParameter],
     install: fn(&[f64], &mut Changes<'_>) -> Result<(), SetupError>,
 ) -> Effect {

@@ -12,7 +12,7 @@ use super::rough_stream::Stream;
 /// What is added to white noise in the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Colour {
+pub enum NoiseColour {
     /// White noise.
     White,
     /// First-order filtered noise and a line at one frequency.
@@ -39,7 +39,7 @@ pub struct Rough {
     /// White noise in the loop, as a multiple of that of good sensors ([`Noise::good`]).
     pub level: f64,
     /// What comes beside it.
-    pub colour: Colour,
+    pub colour: NoiseColour,
     /// Where that enters; outliers enter in the logger.
     pub entry: Entry,
     /// Standard deviation of what comes beside, or its resolution, as a multiple of the
@@ -60,7 +60,7 @@ impl Rough {
     pub fn white(level: f64) -> Self {
         Self {
             level,
-            colour: Colour::White,
+            colour: NoiseColour::White,
             entry: Entry::Loop,
             share: 0.0,
             corner: 100.0,
@@ -73,19 +73,19 @@ impl Rough {
     /// In tables: what comes beside the white noise, and where.
     pub fn name(&self) -> &'static str {
         match (self.colour, self.entry) {
-            (Colour::White, Entry::Loop) => "white, loop",
-            (Colour::White, Entry::Logger) => "white, logger",
-            (Colour::Coloured, Entry::Loop) => "coloured, loop",
-            (Colour::Coloured, Entry::Logger) => "coloured, logger",
-            (Colour::Quantised, Entry::Loop) => "quantised, loop",
-            (Colour::Quantised, Entry::Logger) => "quantised, logger",
-            (Colour::Outliers, _) => "outliers, logger",
+            (NoiseColour::White, Entry::Loop) => "white, loop",
+            (NoiseColour::White, Entry::Logger) => "white, logger",
+            (NoiseColour::Coloured, Entry::Loop) => "coloured, loop",
+            (NoiseColour::Coloured, Entry::Logger) => "coloured, logger",
+            (NoiseColour::Quantised, Entry::Loop) => "quantised, loop",
+            (NoiseColour::Quantised, Entry::Logger) => "quantised, logger",
+            (NoiseColour::Outliers, _) => "outliers, logger",
         }
     }
 
     fn has(&self, entry: Entry) -> bool {
         let own = match self.colour {
-            Colour::Outliers => Entry::Logger,
+            NoiseColour::Outliers => Entry::Logger,
             _ => self.entry,
         };
         own == entry
@@ -149,7 +149,7 @@ impl Rough {
         };
         let log = Log::new(log.channels().iter().enumerate().map(one).collect())?;
         match self.colour {
-            Colour::Outliers => mended(&log, &base),
+            NoiseColour::Outliers => mended(&log, &base),
             _ => Ok(log),
         }
     }
@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn coloured_noise_has_the_covariance_of_a_filter_and_a_line() {
         let rough = Rough {
-            colour: Colour::Coloured,
+            colour: NoiseColour::Coloured,
             share: 1.0,
             corner: 20.0,
             line: 61.0,
@@ -249,7 +249,7 @@ mod tests {
     #[test]
     fn steps_are_no_more_than_half_a_resolution_off() {
         let rough = Rough {
-            colour: Colour::Quantised,
+            colour: NoiseColour::Quantised,
             share: 0.3,
             ..Rough::white(1.0)
         };
@@ -265,7 +265,7 @@ mod tests {
     #[test]
     fn outliers_are_as_rare_as_asked_and_are_taken_out() {
         let rough = Rough {
-            colour: Colour::Outliers,
+            colour: NoiseColour::Outliers,
             rare: 1e-3,
             far: 300.0,
             ..Rough::white(1.0)

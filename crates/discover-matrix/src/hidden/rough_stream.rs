@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha20Rng;
 
 use super::noise::Normal;
-use super::rough::{Colour, Rough};
+use super::rough::{NoiseColour, Rough};
 
 /// What one channel gets.
 pub(super) struct Stream {
@@ -26,7 +26,7 @@ impl Stream {
         use std::f64::consts::TAU;
         let mut uniform = ChaCha20Rng::seed_from_u64(seed ^ 0x756e_6966);
         let times = match rough.colour {
-            Colour::Outliers => rough.far,
+            NoiseColour::Outliers => rough.far,
             _ => rough.share,
         };
         Self {
@@ -44,11 +44,11 @@ impl Stream {
     /// What is shown of a value.
     pub(super) fn show(&mut self, value: f64) -> f64 {
         match self.rough.colour {
-            Colour::White => value + self.size * self.normal.next(),
-            Colour::Coloured => value + self.size * self.coloured(),
-            Colour::Quantised if self.size > 0.0 => self.size * (value / self.size).round(),
-            Colour::Quantised => value,
-            Colour::Outliers => {
+            NoiseColour::White => value + self.size * self.normal.next(),
+            NoiseColour::Coloured => value + self.size * self.coloured(),
+            NoiseColour::Quantised if self.size > 0.0 => self.size * (value / self.size).round(),
+            NoiseColour::Quantised => value,
+            NoiseColour::Outliers => {
                 let out = self.uniform.random::<f64>() < self.rough.rare;
                 let sign = if self.uniform.random::<f64>() < 0.5 {
                     -1.0

@@ -7,7 +7,7 @@ use crate::hidden::Exercise;
 /// What kind of question a case asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
+pub enum CaseKind {
     /// Nothing hidden.
     Clean,
     /// One effect of the library.
@@ -24,7 +24,7 @@ pub enum Kind {
     Poor,
 }
 
-impl Kind {
+impl CaseKind {
     /// In file names and tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -54,7 +54,7 @@ pub struct Case {
     /// Name of the case.
     pub id: String,
     /// What kind.
-    pub kind: Kind,
+    pub kind: CaseKind,
     /// What is hidden.
     pub hidden: Vec<HiddenEffect>,
     /// Motion.

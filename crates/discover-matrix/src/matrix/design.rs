@@ -7,7 +7,7 @@ use lhs::{LatinHypercube, LhsError};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::case::{Case, HiddenEffect, Kind};
+use super::case::{Case, CaseKind, HiddenEffect};
 use crate::hidden::{Exercise, OUTSIDE};
 
 /// How many cases of each kind.
@@ -60,13 +60,13 @@ impl Sizes {
 /// [`LhsError`] never for sizes above zero; none of a kind is allowed.
 pub fn cases(axis: &Axis, sizes: &Sizes, seed: u64) -> Result<Vec<Case>, LhsError> {
     let kinds = [
-        (Kind::Single, sizes.singles),
-        (Kind::Clean, sizes.clean),
-        (Kind::Pair, sizes.pairs),
-        (Kind::Triple, sizes.triples),
-        (Kind::Outside, sizes.outside),
-        (Kind::LeftOut, sizes.left_out),
-        (Kind::Poor, sizes.poor),
+        (CaseKind::Single, sizes.singles),
+        (CaseKind::Clean, sizes.clean),
+        (CaseKind::Pair, sizes.pairs),
+        (CaseKind::Triple, sizes.triples),
+        (CaseKind::Outside, sizes.outside),
+        (CaseKind::LeftOut, sizes.left_out),
+        (CaseKind::Poor, sizes.poor),
     ];
     let mut placed: Vec<(f64, Case)> = Vec::new();
     for (k, (kind, n)) in kinds.into_iter().enumerate() {
@@ -93,22 +93,22 @@ pub fn cases(axis: &Axis, sizes: &Sizes, seed: u64) -> Result<Vec<Case>, LhsErro
 /// Effect, motion, noise, and the size of up to three effects.
 const DIMENSIONS: usize = 6;
 
-fn case(axis: &Axis, kind: Kind, index: usize, row: &[f64; DIMENSIONS], seed: u64) -> Case {
+fn case(axis: &Axis, kind: CaseKind, index: usize, row: &[f64; DIMENSIONS], seed: u64) -> Case {
     let mut random = ChaCha8Rng::seed_from_u64(seed ^ 0x6361_7365);
     let pick = |share: f64, n: usize| ((share * n as f64) as usize).min(n - 1);
     let exercise = match kind {
-        Kind::Poor => Exercise::OneWay,
+        CaseKind::Poor => Exercise::OneWay,
         _ => Exercise::RICH[pick(row[1], Exercise::RICH.len())],
     };
     let library: Vec<&'static Effect> = applicable(axis).collect();
     let effects: Vec<&'static Effect> = match kind {
-        Kind::Clean => Vec::new(),
-        Kind::Single => vec![library[pick(row[0], library.len())]],
-        Kind::LeftOut | Kind::Poor => vec![library[index % library.len()]],
-        Kind::Outside => vec![OUTSIDE[pick(row[0], OUTSIDE.len())]],
-        Kind::Pair | Kind::Triple => {
+        CaseKind::Clean => Vec::new(),
+        CaseKind::Single => vec![library[pick(row[0], library.len())]],
+        CaseKind::LeftOut | CaseKind::Poor => vec![library[index % library.len()]],
+        CaseKind::Outside => vec![OUTSIDE[pick(row[0], OUTSIDE.len())]],
+        CaseKind::Pair | CaseKind::Triple => {
             let mut chosen = vec![library[pick(row[0], library.len())]];
-            let wanted = if kind == Kind::Pair { 2 } else { 3 };
+            let wanted = if kind == CaseKind::Pair { 2 } else { 3 };
             while chosen.len() < wanted {
                 let next = library[pick(random.random(), library.len())];
                 if chosen.iter().all(|e| e.name != next.name) {
@@ -125,7 +125,7 @@ fn case(axis: &Axis, kind: Kind, index: usize, row: &[f64; DIMENSIONS], seed: u6
             let size = match kind {
                 // An effect that is taken out should be one that would be seen;
                 // what is hard to tell is scaled to where it is.
-                Kind::LeftOut | Kind::Poor => 1.0,
+                CaseKind::LeftOut | CaseKind::Poor => 1.0,
                 _ => 0.25 * 8f64.powf(row[3 + i]),
             };
             HiddenEffect {
@@ -135,7 +135,7 @@ fn case(axis: &Axis, kind: Kind, index: usize, row: &[f64; DIMENSIONS], seed: u6
         })
         .collect();
     let rejected = match kind {
-        Kind::LeftOut => effects.iter().map(|e| e.name.to_owned()).collect(),
+        CaseKind::LeftOut => effects.iter().map(|e| e.name.to_owned()).collect(),
         _ => Vec::new(),
     };
     Case {
@@ -147,7 +147,7 @@ fn case(axis: &Axis, kind: Kind, index: usize, row: &[f64; DIMENSIONS], seed: u6
         known_off: 0.01,
         rejected,
         seed,
-        visible: (kind == Kind::Poor).then(|| 4.0 * 10f64.powf(row[3])),
+        visible: (kind == CaseKind::Poor).then(|| 4.0 * 10f64.powf(row[3])),
     }
 }
 

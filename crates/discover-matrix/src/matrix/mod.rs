@@ -17,10 +17,10 @@ mod trial;
 
 pub use bench::{Bench, BenchError};
 pub(crate) use bench::{active, scale_at, times_size};
-pub use case::{Case, HiddenEffect, Kind};
+pub use case::{Case, CaseKind, HiddenEffect};
 pub(crate) use design::values;
 pub use design::{Sizes, cases};
-pub use outcome::{Estimate, NamedEffect, Outcome, Split};
+pub use outcome::{CaseOutcome, NamedEffect, ScoredEstimate, Split};
 pub(crate) use score::covered;
 pub use score::{OfEffect, Rate, Score};
 pub(crate) use trial::{estimates, is_a_rival, named};

@@ -7,7 +7,7 @@ use super::case::Case;
 
 /// An estimate beside the truth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Estimate {
+pub struct ScoredEstimate {
     /// Effect.
     pub effect: String,
     /// Parameter.
@@ -61,7 +61,7 @@ impl Split {
 
 /// What came out of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Outcome {
+pub struct CaseOutcome {
     /// The case.
     pub case: Case,
     /// What could be known beforehand, one entry a hidden effect.
@@ -73,7 +73,7 @@ pub struct Outcome {
     /// Effects named, in the order in which they were found.
     pub named: Vec<NamedEffect>,
     /// Parameters of those that were hidden.
-    pub estimates: Vec<Estimate>,
+    pub estimates: Vec<ScoredEstimate>,
     /// Share of the gap on check motion that is gone.
     pub reduction: f64,
     /// The gap on check motion, channel by channel.

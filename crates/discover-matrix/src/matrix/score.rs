@@ -4,8 +4,8 @@ use axis_sim::effects::EFFECTS;
 use discrepancy::Verdict;
 use serde::{Deserialize, Serialize};
 
-use super::case::Kind;
-use super::outcome::{Estimate, Outcome};
+use super::case::CaseKind;
+use super::outcome::{CaseOutcome, ScoredEstimate};
 
 /// So many of so many.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -81,12 +81,12 @@ pub struct OfEffect {
 }
 
 impl OfEffect {
-    fn new(effect: &str, all: &[&Outcome]) -> Self {
-        let hides = |o: &&&Outcome| o.case.hidden.iter().any(|h| h.name == effect);
-        let own: Vec<&Outcome> = all.iter().filter(hides).copied().collect();
+    fn new(effect: &str, all: &[&CaseOutcome]) -> Self {
+        let hides = |o: &&&CaseOutcome| o.case.hidden.iter().any(|h| h.name == effect);
+        let own: Vec<&CaseOutcome> = all.iter().filter(hides).copied().collect();
         let seen = || own.iter().filter(|o| o.is_detectable());
         let right = own.iter().filter(|o| o.first_is_right());
-        let estimates: Vec<&Estimate> = right.flat_map(|o| &o.estimates).collect();
+        let estimates: Vec<&ScoredEstimate> = right.flat_map(|o| &o.estimates).collect();
         let errors = size_errors(&estimates, |e| e.given_known);
         Self {
             effect: effect.to_owned(),
@@ -156,23 +156,23 @@ pub struct Score {
 
 impl Score {
     /// Of these outcomes.
-    pub fn new(outcomes: &[Outcome]) -> Self {
-        let ran: Vec<&Outcome> = outcomes.iter().filter(|o| o.failed.is_none()).collect();
-        let of = |kind: Kind| ran.iter().copied().filter(move |o| o.case.kind == kind);
+    pub fn new(outcomes: &[CaseOutcome]) -> Self {
+        let ran: Vec<&CaseOutcome> = outcomes.iter().filter(|o| o.failed.is_none()).collect();
+        let of = |kind: CaseKind| ran.iter().copied().filter(move |o| o.case.kind == kind);
         let seen_of = |kind| of(kind).filter(|o| o.is_detectable());
         let several = |kind| {
             let told = seen_of(kind).filter(|o| o.is_separable());
             Rate::count(told, |o| o.all_are_named())
         };
-        let singles: Vec<&Outcome> = of(Kind::Single).collect();
-        let seen: Vec<&Outcome> = seen_of(Kind::Single).collect();
-        let right: Vec<&Outcome> = seen
+        let singles: Vec<&CaseOutcome> = of(CaseKind::Single).collect();
+        let seen: Vec<&CaseOutcome> = seen_of(CaseKind::Single).collect();
+        let right: Vec<&CaseOutcome> = seen
             .iter()
             .copied()
             .filter(|o| o.first_is_right())
             .collect();
         let named = singles.iter().filter(|o| o.first_is_right());
-        let estimates: Vec<&Estimate> = named.flat_map(|o| &o.estimates).collect();
+        let estimates: Vec<&ScoredEstimate> = named.flat_map(|o| &o.estimates).collect();
         let errors = |value| quantiles(size_errors(&estimates, value), [0.5, 0.9]);
         let reductions = quantiles(right.iter().map(|o| o.reduction).collect(), [0.5]);
         let hides = |name: &str| {
@@ -182,7 +182,7 @@ impl Score {
         let effects = EFFECTS.iter().filter(|e| hides(e.name));
         let library = ran.iter().filter(|o| o.is_of_library());
         Self {
-            false_alarms: Rate::count(of(Kind::Clean), |o| o.is_false_alarm()),
+            false_alarms: Rate::count(of(CaseKind::Clean), |o| o.is_false_alarm()),
             detectable: Rate::count(&singles, |o| o.is_detectable()),
             separable: Rate::count(&seen, |o| o.is_separable()),
             right_first: Rate::count(seen.iter().filter(|o| o.is_separable()), |o| {
@@ -195,14 +195,15 @@ impl Score {
             silence: Rate::count(singles.iter().filter(|o| !o.is_detectable()), |o| {
                 o.named.is_empty() || o.is_in_class()
             }),
-            both_of_pair: several(Kind::Pair),
-            all_of_triple: several(Kind::Triple),
-            outside: Rate::count(seen_of(Kind::Outside).filter(|o| !o.is_imitated()), |o| {
-                o.is_honest()
-            }),
-            imitated: Rate::count(seen_of(Kind::Outside), |o| o.is_imitated()),
-            left_out: Rate::count(seen_of(Kind::LeftOut), |o| o.is_honest()),
-            poor: Rate::count(seen_of(Kind::Poor), |o| o.is_in_class()),
+            both_of_pair: several(CaseKind::Pair),
+            all_of_triple: several(CaseKind::Triple),
+            outside: Rate::count(
+                seen_of(CaseKind::Outside).filter(|o| !o.is_imitated()),
+                |o| o.is_honest(),
+            ),
+            imitated: Rate::count(seen_of(CaseKind::Outside), |o| o.is_imitated()),
+            left_out: Rate::count(seen_of(CaseKind::LeftOut), |o| o.is_honest()),
+            poor: Rate::count(seen_of(CaseKind::Poor), |o| o.is_in_class()),
             proposed: Rate::count(ran.iter().filter(|o| o.leaves_a_class()), |o| {
                 o.split.is_some()
             }),
@@ -223,13 +224,13 @@ impl Score {
 }
 
 /// Relative errors of sizes.
-fn size_errors(estimates: &[&Estimate], value: fn(&Estimate) -> f64) -> Vec<f64> {
+fn size_errors(estimates: &[&ScoredEstimate], value: fn(&ScoredEstimate) -> f64) -> Vec<f64> {
     let sizes = estimates.iter().filter(|e| e.size);
-    let error = |e: &&Estimate| ((value(e) - e.truth) / e.truth).abs();
+    let error = |e: &&ScoredEstimate| ((value(e) - e.truth) / e.truth).abs();
     sizes.map(error).collect()
 }
 
-pub(crate) fn covered(estimates: &[&Estimate]) -> Rate {
+pub(crate) fn covered(estimates: &[&ScoredEstimate]) -> Rate {
     Rate::count(estimates, |e| e.ci95[0] <= e.truth && e.truth <= e.ci95[1])
 }
 

@@ -2,10 +2,10 @@
 
 use discrepancy::{Foreseen, Verdict};
 
-use super::case::Kind;
-use super::outcome::Outcome;
+use super::case::CaseKind;
+use super::outcome::CaseOutcome;
 
-impl Outcome {
+impl CaseOutcome {
     /// Whether all that is hidden can be seen, by what was known beforehand.
     pub fn is_detectable(&self) -> bool {
         self.foreseen.iter().all(|f| f.detectable)
@@ -18,13 +18,13 @@ impl Outcome {
 
     /// Whether all that is hidden is in the library that is searched.
     pub(super) fn is_of_library(&self) -> bool {
-        use Kind::{Pair, Poor, Single, Triple};
+        use CaseKind::{Pair, Poor, Single, Triple};
         matches!(self.case.kind, Single | Pair | Triple | Poor)
     }
 
     /// Whether something was said of a clean machine.
     pub(super) fn is_false_alarm(&self) -> bool {
-        self.case.kind == Kind::Clean && self.verdict != Some(Verdict::NothingMissing)
+        self.case.kind == CaseKind::Clean && self.verdict != Some(Verdict::NothingMissing)
     }
 
     pub(super) fn first_is_right(&self) -> bool {
@@ -82,9 +82,9 @@ impl Outcome {
         }
         let kind = self.case.kind;
         let (seen, told) = (self.is_detectable(), self.is_separable());
-        let alone = matches!(kind, Kind::Single | Kind::Poor);
-        let several = matches!(kind, Kind::Pair | Kind::Triple);
-        let absent = kind == Kind::LeftOut || kind == Kind::Outside && !self.is_imitated();
+        let alone = matches!(kind, CaseKind::Single | CaseKind::Poor);
+        let several = matches!(kind, CaseKind::Pair | CaseKind::Triple);
+        let absent = kind == CaseKind::LeftOut || kind == CaseKind::Outside && !self.is_imitated();
         let all = [
             (self.is_false_alarm(), "false alarm"),
             (
@@ -92,7 +92,7 @@ impl Outcome {
                 "neither first nor in the class of the first",
             ),
             (
-                kind == Kind::Single && seen && told && !self.first_is_right(),
+                kind == CaseKind::Single && seen && told && !self.first_is_right(),
                 "told from all others, and not first",
             ),
             (

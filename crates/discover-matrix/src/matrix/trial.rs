@@ -11,12 +11,12 @@ use discrepancy::{
 
 use super::bench::{Bench, active};
 use super::case::Case;
-use super::outcome::{Estimate, NamedEffect, Outcome, Split};
+use super::outcome::{CaseOutcome, NamedEffect, ScoredEstimate, Split};
 use crate::hidden::{Hidden, Noise, exercise};
 
 impl Bench {
     /// Runs a case of this bench's motion.
-    pub fn try_case(&self, case: &Case) -> Outcome {
+    pub fn try_case(&self, case: &Case) -> CaseOutcome {
         let case = &self.scaled(case);
         let foreseen = self.foresee(case);
         let runs = foreseen.iter().all(Option::is_some);
@@ -27,7 +27,7 @@ impl Bench {
             class: Vec::new(),
             imitation: None,
         };
-        let mut outcome = Outcome {
+        let mut outcome = CaseOutcome {
             case: case.clone(),
             foreseen: foreseen
                 .into_iter()
@@ -52,7 +52,7 @@ impl Bench {
         outcome
     }
 
-    fn run(&self, case: &Case, outcome: &mut Outcome) -> Result<(), SearchError> {
+    fn run(&self, case: &Case, outcome: &mut CaseOutcome) -> Result<(), SearchError> {
         let hidden = self.hidden(case);
         let logs = [self.logs(&hidden, false)?, self.logs(&hidden, true)?];
         let [fit, check] = &logs;
@@ -164,7 +164,11 @@ pub(crate) fn named(found: &Found) -> Vec<NamedEffect> {
 
 /// Parameters of hidden effects that were named, beside their truth; `shares` are those by
 /// which known parameters are off.
-pub(crate) fn estimates(found: &Found, hidden: &[ActiveEffect], shares: &[f64]) -> Vec<Estimate> {
+pub(crate) fn estimates(
+    found: &Found,
+    hidden: &[ActiveEffect],
+    shares: &[f64],
+) -> Vec<ScoredEstimate> {
     let free = free_parameters(&found.fit.state);
     let known = found.fit.state.shares.len();
     let mut all = Vec::new();
@@ -181,7 +185,7 @@ pub(crate) fn estimates(found: &Found, hidden: &[ActiveEffect], shares: &[f64]) 
             let half = found.half_width(known + at, value);
             let given = value + conditional(found, shares, known + at);
             let shift = same_phase(active, truth, p);
-            all.push(Estimate {
+            all.push(ScoredEstimate {
                 effect: active.effect.name.to_owned(),
                 parameter: spec.name.to_owned(),
                 size: spec.is_size(),

@@ -6,7 +6,7 @@ use axis_sim::{Axis, ReplayError};
 use discrepancy::{Foreseen, Foresight, Hypothesis, LogSet, State};
 use trajectories::Program;
 
-use super::case::{Case, Channels, Setting};
+use super::case::{Case, CaseSetting, Channels};
 use super::design::{shares, started};
 use super::sight::Sight;
 use crate::hidden::{Noise, Rough, Truth, exercise};
@@ -14,7 +14,7 @@ use crate::matrix::{BenchError, active, scale_at, times_size};
 
 /// What is the same for all cases of a plot.
 pub struct Bench {
-    pub(super) setting: Setting,
+    pub(super) setting: CaseSetting,
     /// The machine with its control.
     pub(super) axis: Axis,
     /// What the search is given: the same, without control for a torque balance.
@@ -43,7 +43,7 @@ impl Bench {
     ///
     /// # Errors
     /// [`BenchError`] where the axis does not run the motion.
-    pub fn new(axis: &Axis, setting: &Setting) -> Result<Self, BenchError> {
+    pub fn new(axis: &Axis, setting: &CaseSetting) -> Result<Self, BenchError> {
         let axis = started(axis, setting);
         let motions = [
             exercise(&axis, setting.exercise, false)?,
@@ -92,7 +92,7 @@ impl Bench {
     }
 
     /// What its cases have in common.
-    pub fn setting(&self) -> &Setting {
+    pub fn setting(&self) -> &CaseSetting {
         &self.setting
     }
 

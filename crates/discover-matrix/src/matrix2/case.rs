@@ -4,7 +4,7 @@ use axis_log::{Log, LogError};
 use serde::{Deserialize, Serialize};
 
 use crate::hidden::{Exercise, Form, Law, Rough};
-use crate::matrix::{HiddenEffect, Kind};
+use crate::matrix::{CaseKind, HiddenEffect};
 
 /// Layout of what is kept of a case.
 pub const VERSION: u32 = 2;
@@ -66,7 +66,7 @@ const EFFORTS: [&str; 4] = ["iq_a", "torque_ref_n_m", "force_ref_n", "drive_comm
 
 /// What cases of one plot have in common: they share what the library does on the motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Setting {
+pub struct CaseSetting {
     /// Name of the machine's axis.
     pub machine: String,
     /// Motion.
@@ -89,9 +89,9 @@ pub struct Case {
     /// Plot that it stands in.
     pub plot: usize,
     /// What it shares with the others there.
-    pub setting: Setting,
+    pub setting: CaseSetting,
     /// What kind of question it asks.
-    pub kind: Kind,
+    pub kind: CaseKind,
     /// What is hidden, before its sizes are scaled.
     pub hidden: Vec<HiddenEffect>,
     /// Where something outside of the library is hidden, the law.

@@ -12,37 +12,42 @@ use lhs::{LatinHypercube, LhsError};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::case::{Case, Channels, Setting, TOLERANCES, VERSION, VISIBLE};
-use crate::hidden::{Colour, Entry, Exercise, Form, LAW_NAME, Law, Ranges, Rough, exercise};
-use crate::matrix::{HiddenEffect, Kind, values};
+use super::case::{Case, CaseSetting, Channels, TOLERANCES, VERSION, VISIBLE};
+use crate::hidden::{Entry, Exercise, Form, LAW_NAME, Law, NoiseColour, Ranges, Rough, exercise};
+use crate::matrix::{CaseKind, HiddenEffect, values};
 
 /// How many plots, and how many cases of each kind in one.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct MatrixPlan {
     /// Plots.
     pub plots: usize,
     /// Cases of a plot.
-    pub each: Vec<(Kind, usize)>,
+    pub each: Vec<(CaseKind, usize)>,
 }
 
-impl Plan {
+impl MatrixPlan {
     /// The whole matrix: 1080 cases, 360 of them clean.
     pub fn full() -> Self {
         Self {
             plots: 90,
             each: vec![
-                (Kind::Clean, 4),
-                (Kind::Single, 4),
-                (Kind::Outside, 2),
-                (Kind::Pair, 1),
-                (Kind::LeftOut, 1),
+                (CaseKind::Clean, 4),
+                (CaseKind::Single, 4),
+                (CaseKind::Outside, 2),
+                (CaseKind::Pair, 1),
+                (CaseKind::LeftOut, 1),
             ],
         }
     }
 
     /// A look: a plot a machine, four cases in each.
     pub fn quick(machines: usize) -> Self {
-        let kinds = [Kind::Clean, Kind::Single, Kind::Outside, Kind::LeftOut];
+        let kinds = [
+            CaseKind::Clean,
+            CaseKind::Single,
+            CaseKind::Outside,
+            CaseKind::LeftOut,
+        ];
         Self {
             plots: machines,
             each: kinds.map(|kind| (kind, 1)).to_vec(),
@@ -69,7 +74,7 @@ impl Plan {
 ///
 /// # Errors
 /// [`LhsError`] never for sizes above zero.
-pub fn cases(machines: &[Axis], plan: &Plan, seed: u64) -> Result<Vec<Case>, LhsError> {
+pub fn cases(machines: &[Axis], plan: &MatrixPlan, seed: u64) -> Result<Vec<Case>, LhsError> {
     let mut all: Vec<(f64, Case)> = Vec::new();
     if machines.is_empty() || plan.plots == 0 {
         return Ok(Vec::new());
@@ -124,11 +129,11 @@ fn between(low: f64, high: f64, share: f64) -> f64 {
     low * (high / low).powf(share)
 }
 
-fn setting(axis: &Axis, row: &[f64; PLOT]) -> Setting {
+fn setting(axis: &Axis, row: &[f64; PLOT]) -> CaseSetting {
     let (stroke, motion) = (&axis.stroke, Scales::of(axis).motion);
     // A twentieth of the motion off either end.
     let room = stroke.maximum - stroke.minimum - 1.1 * motion;
-    Setting {
+    CaseSetting {
         machine: axis.name.clone(),
         exercise: Exercise::RICH[pick(row[0], Exercise::RICH.len())],
         start: stroke.minimum + 0.05 * motion + row[1] * room.max(0.0),
@@ -143,7 +148,13 @@ struct Drawn {
     plot: usize,
 }
 
-fn case(axis: &Axis, setting: &Setting, kind: Kind, drawn: Drawn, row: &[f64; CASE]) -> Case {
+fn case(
+    axis: &Axis,
+    setting: &CaseSetting,
+    kind: CaseKind,
+    drawn: Drawn,
+    row: &[f64; CASE],
+) -> Case {
     let mut random = ChaCha8Rng::seed_from_u64(drawn.seed ^ 0x6361_7365);
     let axis = &started(axis, setting);
     let library = shown(axis, setting.channels);
@@ -153,8 +164,8 @@ fn case(axis: &Axis, setting: &Setting, kind: Kind, drawn: Drawn, row: &[f64; CA
     };
     let (mut hidden, mut law) = (Vec::new(), None);
     match kind {
-        Kind::Clean => {}
-        Kind::Outside => {
+        CaseKind::Clean => {}
+        CaseKind::Outside => {
             let drawn = Law::draw(axis, &ranges(axis, setting), [row[0], row[1], row[2]]);
             hidden.push(HiddenEffect {
                 name: LAW_NAME.to_owned(),
@@ -164,7 +175,7 @@ fn case(axis: &Axis, setting: &Setting, kind: Kind, drawn: Drawn, row: &[f64; CA
         }
         _ => hidden.push(hide(library[pick(row[0], library.len())])),
     }
-    if matches!(kind, Kind::Pair | Kind::Triple) {
+    if matches!(kind, CaseKind::Pair | CaseKind::Triple) {
         let others: Vec<&Effect> = (library.iter().copied())
             .filter(|e| e.name != hidden[0].name)
             .collect();
@@ -178,7 +189,7 @@ fn case(axis: &Axis, setting: &Setting, kind: Kind, drawn: Drawn, row: &[f64; CA
         setting: setting.clone(),
         kind,
         rejected: match kind {
-            Kind::LeftOut => vec![hidden[0].name.clone()],
+            CaseKind::LeftOut => vec![hidden[0].name.clone()],
             _ => Vec::new(),
         },
         visible: [row[3], row[4]][..hidden.len()]
@@ -201,7 +212,7 @@ fn case(axis: &Axis, setting: &Setting, kind: Kind, drawn: Drawn, row: &[f64; CA
 }
 
 /// The axis with its motions where the setting has them, and its tolerances.
-pub(super) fn started(axis: &Axis, setting: &Setting) -> Axis {
+pub(super) fn started(axis: &Axis, setting: &CaseSetting) -> Axis {
     let mut axis = axis.clone();
     axis.stroke.start = setting.start;
     axis.tolerances = axis_sim::Tolerances::all(setting.tolerance);
@@ -229,14 +240,14 @@ fn form(axis: &Axis, share: f64) -> Form {
 }
 
 /// Kinds of noise, a line each.
-const NOISES: [(Colour, Entry); 7] = [
-    (Colour::White, Entry::Loop),
-    (Colour::White, Entry::Logger),
-    (Colour::Coloured, Entry::Loop),
-    (Colour::Coloured, Entry::Logger),
-    (Colour::Quantised, Entry::Loop),
-    (Colour::Quantised, Entry::Logger),
-    (Colour::Outliers, Entry::Logger),
+const NOISES: [(NoiseColour, Entry); 7] = [
+    (NoiseColour::White, Entry::Loop),
+    (NoiseColour::White, Entry::Logger),
+    (NoiseColour::Coloured, Entry::Loop),
+    (NoiseColour::Coloured, Entry::Logger),
+    (NoiseColour::Quantised, Entry::Loop),
+    (NoiseColour::Quantised, Entry::Logger),
+    (NoiseColour::Outliers, Entry::Logger),
 ];
 
 fn noise(at: [f64; 7]) -> Rough {
@@ -248,7 +259,7 @@ fn noise(at: [f64; 7]) -> Rough {
         entry,
         share: match colour {
             _ if alone => 0.0,
-            Colour::Quantised => between(1.0, 20.0, at[2]),
+            NoiseColour::Quantised => between(1.0, 20.0, at[2]),
             _ => between(0.5, 3.0, at[2]),
         },
         corner: between(10.0, 200.0, at[3]),
@@ -259,7 +270,7 @@ fn noise(at: [f64; 7]) -> Rough {
 }
 
 /// What the motion of a setting spans.
-fn ranges(axis: &Axis, setting: &Setting) -> Ranges {
+fn ranges(axis: &Axis, setting: &CaseSetting) -> Ranges {
     use trajectories::Motion;
     let Ok(motion) = exercise(axis, setting.exercise, false) else {
         return Ranges {

@@ -8,7 +8,7 @@
 //! [`GROUPS`].
 //!
 //! Nothing that was named is excused by the verdict: a name of an effect that is not there
-//! is wrong ([`Outcome::wrong_names`]).
+//! is wrong ([`CaseOutcome::wrong_names`]).
 
 mod bench;
 mod case;
@@ -20,7 +20,7 @@ mod told;
 mod trial;
 
 pub use bench::Bench;
-pub use case::{Case, Channels, Setting, TOLERANCES, VERSION, VISIBLE};
-pub use design::{Plan, cases};
-pub use outcome::Outcome;
-pub use score::{GROUPS, Group, Limit, TARGETS, Target};
+pub use case::{Case, CaseSetting, Channels, TOLERANCES, VERSION, VISIBLE};
+pub use design::{MatrixPlan, cases};
+pub use outcome::CaseOutcome;
+pub use score::{GROUPS, Group, Limit, ScoreTarget, TARGETS};

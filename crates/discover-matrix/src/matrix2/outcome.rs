@@ -4,11 +4,11 @@ use discrepancy::{Foreseen, Unknown, Verdict};
 use serde::{Deserialize, Serialize};
 
 use super::case::Case;
-use crate::matrix::{Estimate, NamedEffect, Split};
+use crate::matrix::{NamedEffect, ScoredEstimate, Split};
 
 /// What came out of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Outcome {
+pub struct CaseOutcome {
     /// The case, its sizes scaled.
     pub case: Case,
     /// What could be known beforehand, one entry a hidden effect.
@@ -23,7 +23,7 @@ pub struct Outcome {
     /// `own`.
     pub forms: Vec<String>,
     /// Parameters of those that were hidden and named.
-    pub estimates: Vec<Estimate>,
+    pub estimates: Vec<ScoredEstimate>,
     /// Share of the gap on check motion that is gone.
     pub reduction: f64,
     /// What was found that is in no library.
@@ -32,7 +32,7 @@ pub struct Outcome {
     pub split: Option<Split>,
 }
 
-impl Outcome {
+impl CaseOutcome {
     /// Of a case that cannot be run, and why.
     pub fn failed(case: &Case, why: String) -> Self {
         Self {

@@ -1,7 +1,7 @@
 //! Counting: targets and groups, a line each.
 
-use super::outcome::Outcome;
-use crate::matrix::{Kind, Rate, covered};
+use super::outcome::CaseOutcome;
+use crate::matrix::{CaseKind, Rate, covered};
 
 /// Cases below which nothing is decided: Wilson's interval of one or two is too narrow near
 /// 0 and 1.
@@ -65,69 +65,69 @@ impl Limit {
 
 /// A figure of the matrix.
 #[derive(Clone, Copy)]
-pub struct Target {
+pub struct ScoreTarget {
     /// In tables.
     pub name: &'static str,
     /// What is asked of it.
     pub limit: Limit,
     /// What a case counts for.
-    count: fn(&Outcome) -> Rate,
+    count: fn(&CaseOutcome) -> Rate,
 }
 
-impl Target {
+impl ScoreTarget {
     /// Over these outcomes.
-    pub fn rate<'a>(&self, outcomes: impl IntoIterator<Item = &'a Outcome>) -> Rate {
+    pub fn rate<'a>(&self, outcomes: impl IntoIterator<Item = &'a CaseOutcome>) -> Rate {
         let of = outcomes.into_iter().map(self.count);
         of.fold(Rate::default(), Rate::and)
     }
 
     /// Whether a case counts against it.
-    pub fn is_hurt_by(&self, outcome: &Outcome) -> bool {
+    pub fn is_hurt_by(&self, outcome: &CaseOutcome) -> bool {
         self.limit.is_hurt(&(self.count)(outcome))
     }
 }
 
-const fn target(name: &'static str, limit: Limit, count: fn(&Outcome) -> Rate) -> Target {
-    Target { name, limit, count }
+const fn target(name: &'static str, limit: Limit, count: fn(&CaseOutcome) -> Rate) -> ScoreTarget {
+    ScoreTarget { name, limit, count }
 }
 
-fn is(o: &Outcome, kind: Kind) -> bool {
+fn is(o: &CaseOutcome, kind: CaseKind) -> bool {
     o.case.kind == kind && o.failed.is_none()
 }
 
 /// Laws outside the library that can be seen and that it cannot imitate.
-fn is_law(o: &Outcome) -> bool {
-    is(o, Kind::Outside) && o.is_seen() && !o.is_imitated()
+fn is_law(o: &CaseOutcome) -> bool {
+    is(o, CaseKind::Outside) && o.is_seen() && !o.is_imitated()
 }
 
 /// Effects taken out of it, likewise.
-fn is_taken_out(o: &Outcome) -> bool {
-    is(o, Kind::LeftOut) && o.is_seen() && !o.is_imitated()
+fn is_taken_out(o: &CaseOutcome) -> bool {
+    is(o, CaseKind::LeftOut) && o.is_seen() && !o.is_imitated()
 }
 
 /// All figures; those with a limit first.
 #[rustfmt::skip]
-pub const TARGETS: &[Target] = &[
+pub const TARGETS: &[ScoreTarget] = &[
     target("clean machines: false alarms", Limit::Most(0.01),
-        |o| Rate::one(is(o, Kind::Clean), o.is_false_alarm())),
+        |o| Rate::one(is(o, CaseKind::Clean), o.is_false_alarm())),
     target("all cases: a wrong name", Limit::Most(0.02),
         |o| Rate::one(o.failed.is_none(), !o.wrong_names().is_empty())),
     target("one hidden, seen and told apart: named first", Limit::Least(0.95),
-        |o| Rate::one(is(o, Kind::Single) && o.is_seen() && o.is_told_apart(), o.is_first())),
+        |o| Rate::one(is(o, CaseKind::Single) && o.is_seen() && o.is_told_apart(), o.is_first())),
     target("law outside the library, seen, not imitated: unknown, right variable", Limit::Least(0.8),
         |o| Rate::one(is_law(o), o.is_unknown_of_right_variable())),
     target("95 % intervals that hold the truth", Limit::Within(0.92, 0.98),
         |o| covered(&o.estimates.iter().filter(|_| o.is_of_library()).collect::<Vec<_>>())),
     target("one hidden: seen", Limit::Told,
-        |o| Rate::one(is(o, Kind::Single), o.is_seen())),
+        |o| Rate::one(is(o, CaseKind::Single), o.is_seen())),
     target("of these, told apart", Limit::Told,
-        |o| Rate::one(is(o, Kind::Single) && o.is_seen(), o.is_told_apart())),
+        |o| Rate::one(is(o, CaseKind::Single) && o.is_seen(), o.is_told_apart())),
     target("one hidden, seen: named first", Limit::Told,
-        |o| Rate::one(is(o, Kind::Single) && o.is_seen(), o.is_first())),
+        |o| Rate::one(is(o, CaseKind::Single) && o.is_seen(), o.is_first())),
     target("two hidden, seen and told apart: both named", Limit::Told,
-        |o| Rate::one(is(o, Kind::Pair) && o.is_seen() && o.is_told_apart(), o.are_all_named())),
+        |o| Rate::one(is(o, CaseKind::Pair) && o.is_seen() && o.is_told_apart(), o.are_all_named())),
     target("law, seen: imitated by the library", Limit::Told,
-        |o| Rate::one(is(o, Kind::Outside) && o.is_seen(), o.is_imitated())),
+        |o| Rate::one(is(o, CaseKind::Outside) && o.is_seen(), o.is_imitated())),
     target("law, seen, not imitated: right variable, whatever the verdict", Limit::Told,
         |o| Rate::one(is_law(o), o.has_right_variable())),
     target("law, seen, not imitated: no wrong name", Limit::Told,
@@ -146,7 +146,7 @@ pub struct Group {
     /// What it is by.
     pub name: &'static str,
     /// Which part a case is in.
-    pub of: fn(&Outcome) -> String,
+    pub of: fn(&CaseOutcome) -> String,
 }
 
 /// All of them.

@@ -258,7 +258,7 @@ mod tests {
 
     use super::*;
     use crate::hidden::{Exercise, Rough, Truth};
-    use crate::matrix2::{Bench, Setting};
+    use crate::matrix2::{Bench, CaseSetting};
 
     fn mean_square(series: &[f64]) -> f64 {
         series.iter().map(|v| v * v).sum::<f64>() / series.len() as f64
@@ -273,7 +273,7 @@ mod tests {
             "/../../data/axes/linear-motor.toml"
         );
         let axis = Axis::read(file.as_ref()).unwrap();
-        let setting = Setting {
+        let setting = CaseSetting {
             machine: axis.name.clone(),
             exercise: Exercise::ThereAndBack,
             start: 0.2,

@@ -3,11 +3,11 @@
 use axis_sim::effects::Effect;
 use discrepancy::{Foreseen, Verdict};
 
-use super::outcome::Outcome;
-use crate::hidden::{Form, Variable};
-use crate::matrix::{Kind, NamedEffect};
+use super::outcome::CaseOutcome;
+use crate::hidden::{Form, LawVariable};
+use crate::matrix::{CaseKind, NamedEffect};
 
-impl Outcome {
+impl CaseOutcome {
     /// Whether all that is hidden can be seen, by what was known beforehand.
     pub fn is_seen(&self) -> bool {
         self.failed.is_none() && self.foreseen.iter().all(|f| f.detectable)
@@ -87,25 +87,25 @@ impl Outcome {
             .hidden
             .iter()
             .filter_map(|h| Effect::named(&h.name));
-        let all = of_law.chain(effects.map(|e| Variable::of(e.shown_over)));
-        all.map(Variable::words).collect()
+        let all = of_law.chain(effects.map(|e| LawVariable::of(e.shown_over)));
+        all.map(LawVariable::words).collect()
     }
 
     fn words() -> [&'static str; 6] {
         [
-            Variable::Speed,
-            Variable::Position,
-            Variable::Angle,
-            Variable::Acceleration,
-            Variable::Time,
-            Variable::Current,
+            LawVariable::Speed,
+            LawVariable::Position,
+            LawVariable::Angle,
+            LawVariable::Acceleration,
+            LawVariable::Time,
+            LawVariable::Current,
         ]
-        .map(Variable::words)
+        .map(LawVariable::words)
     }
 
     /// Whether something of the library is hidden.
     pub(super) fn is_of_library(&self) -> bool {
-        matches!(self.case.kind, Kind::Single | Kind::Pair)
+        matches!(self.case.kind, CaseKind::Single | CaseKind::Pair)
     }
 
     fn hides(&self, name: &str) -> bool {

@@ -7,22 +7,22 @@ use discrepancy::{
 
 use super::bench::Bench;
 use super::case::Case;
-use super::outcome::Outcome;
+use super::outcome::CaseOutcome;
 use crate::hidden::Truth;
 use crate::matrix::{Split, estimates, is_a_rival, named};
 
 impl Bench {
     /// Runs a case of this bench's plot. What cannot be run is said in
-    /// [`Outcome::failed`].
-    pub fn try_case(&self, case: &Case) -> Outcome {
-        let mut outcome = Outcome::of(case);
+    /// [`CaseOutcome::failed`].
+    pub fn try_case(&self, case: &Case) -> CaseOutcome {
+        let mut outcome = CaseOutcome::of(case);
         if let Err(error) = self.run(case, &mut outcome) {
             outcome.failed = Some(error.to_string());
         }
         outcome
     }
 
-    fn run(&self, case: &Case, outcome: &mut Outcome) -> Result<(), SearchError> {
+    fn run(&self, case: &Case, outcome: &mut CaseOutcome) -> Result<(), SearchError> {
         let (case, foreseen) = self.foreseen(case)?;
         outcome.case = case.clone();
         let runs: Option<Vec<_>> = foreseen.into_iter().collect();
@@ -59,7 +59,7 @@ impl Bench {
         truth: &Truth,
         found: &Found,
         told: &Discovered,
-        outcome: &mut Outcome,
+        outcome: &mut CaseOutcome,
     ) {
         let told = &told.discovery;
         let hidden = &truth.effects[..case.hidden.len().min(truth.effects.len())];

@@ -1,7 +1,7 @@
 //! Gaps between motor and load, of which nobody knows at a log's start how they are taken up.
 
 use axis_log::Log;
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Need, Scales};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectNeed, Scales};
 use axis_sim::part::Role;
 use axis_sim::{Axis, reference_in};
 
@@ -21,7 +21,7 @@ impl LogSet {
 
 /// Whether an effect is a gap between motor and load.
 fn is_gap(effect: &Effect) -> bool {
-    effect.needs.contains(&Need::Role(Role::Backlash))
+    effect.needs.contains(&EffectNeed::Role(Role::Backlash))
 }
 
 /// Largest gap that is taken up before a log counts, m: the largest that an axis file may

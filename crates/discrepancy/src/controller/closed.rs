@@ -4,7 +4,7 @@
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, Scales};
 
-use super::{ControllerError, Estimate, Gain, Logs};
+use super::{ControllerError, ControllerEstimate, Gain, Logs};
 use crate::answers::{LogSet, State};
 use crate::estimate::fit::Fitter;
 
@@ -33,7 +33,7 @@ const REACH: f64 = 0.5;
 /// [`ControllerError::Replay`] where the loop does not run with these gains.
 pub fn closed_loop(
     machine: &Axis,
-    estimate: &Estimate,
+    estimate: &ControllerEstimate,
     fit: &Logs,
 ) -> Result<ClosedLoopGains, ControllerError> {
     let mut axis = machine.clone();

@@ -80,7 +80,7 @@ pub struct Tried {
 
 /// A controller as estimated.
 #[derive(Clone, Debug)]
-pub struct Estimate {
+pub struct ControllerEstimate {
     /// The control, with the estimated gains.
     pub control: Part<dyn Control>,
     /// The words that go with its structure: key and word.
@@ -107,7 +107,11 @@ pub type Logs = [(String, Log, f64)];
 ///
 /// # Errors
 /// [`ControllerError`]: a channel is missing, or no structure can be fitted.
-pub fn estimate(machine: &Axis, fit: &Logs, check: &Logs) -> Result<Estimate, ControllerError> {
+pub fn estimate(
+    machine: &Axis,
+    fit: &Logs,
+    check: &Logs,
+) -> Result<ControllerEstimate, ControllerError> {
     let see = |logs: &Logs| -> Result<Vec<Seen>, ControllerError> {
         logs.iter().map(|log| Seen::of(machine, log)).collect()
     };
@@ -131,7 +135,7 @@ pub fn estimate(machine: &Axis, fit: &Logs, check: &Logs) -> Result<Estimate, Co
     let Some(delay) = gains.pop() else {
         return Err(ControllerError::NoneFits);
     };
-    Ok(Estimate {
+    Ok(ControllerEstimate {
         control: best.law.control(&solved.at)?,
         words: best.structure.words.clone(),
         gains,

@@ -1,6 +1,6 @@
 //! A channel's rest with and without an effect, against what that depends on.
 
-use axis_sim::effects::{Effect, EffectChannel, Measure, Variable};
+use axis_sim::effects::{Effect, EffectChannel, EffectVariable, Measure};
 use axis_sim::{Axis, Trace};
 use serde::{Deserialize, Serialize};
 
@@ -117,34 +117,34 @@ fn variable(
     machine: &Axis,
     set: &LogSet,
     traces: &[Trace],
-    over: Variable,
+    over: EffectVariable,
 ) -> ([String; 2], Vec<Vec<f64>>) {
     let shown = |trace: &Trace| trace.channel("iq_a").is_some();
     let over = match over {
-        Variable::Current if !traces.iter().all(shown) => Variable::Time,
+        EffectVariable::Current if !traces.iter().all(shown) => EffectVariable::Time,
         over => over,
     };
     let course = |(log, trace): (usize, &Trace)| {
         let period = set.logs[log].period;
         match over {
-            Variable::MotorAngle => angles(trace.position(), machine.travel_per_radian()),
-            Variable::Speed => trace.speed.clone(),
-            Variable::Position => trace.position().to_vec(),
-            Variable::Acceleration => slope(&trace.speed, period),
-            Variable::Current => trace.channel("iq_a").unwrap_or_default().to_vec(),
-            Variable::Way => way(trace.position()),
-            Variable::Time => (0..trace.speed.len()).map(|k| k as f64 * period).collect(),
+            EffectVariable::MotorAngle => angles(trace.position(), machine.travel_per_radian()),
+            EffectVariable::Speed => trace.speed.clone(),
+            EffectVariable::Position => trace.position().to_vec(),
+            EffectVariable::Acceleration => slope(&trace.speed, period),
+            EffectVariable::Current => trace.channel("iq_a").unwrap_or_default().to_vec(),
+            EffectVariable::Way => way(trace.position()),
+            EffectVariable::Time => (0..trace.speed.len()).map(|k| k as f64 * period).collect(),
         }
     };
     let of = |measure: Measure| measure.unit(machine.freedom());
     let words = match over {
-        Variable::MotorAngle => ["motor angle in its turn", "rad"],
-        Variable::Speed => ["speed", of(Measure::Speed)],
-        Variable::Position => ["position", of(Measure::Travel)],
-        Variable::Acceleration => ["acceleration", of(Measure::Acceleration)],
-        Variable::Current => ["current iq", "A"],
-        Variable::Way => ["way travelled", of(Measure::Travel)],
-        Variable::Time => ["time", "s"],
+        EffectVariable::MotorAngle => ["motor angle in its turn", "rad"],
+        EffectVariable::Speed => ["speed", of(Measure::Speed)],
+        EffectVariable::Position => ["position", of(Measure::Travel)],
+        EffectVariable::Acceleration => ["acceleration", of(Measure::Acceleration)],
+        EffectVariable::Current => ["current iq", "A"],
+        EffectVariable::Way => ["way travelled", of(Measure::Travel)],
+        EffectVariable::Time => ["time", "s"],
     };
     let courses = traces.iter().enumerate().map(course).collect();
     (words.map(str::to_owned), courses)

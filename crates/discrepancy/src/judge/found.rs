@@ -7,7 +7,7 @@ use super::form::FormFound;
 use super::types::{AtScrew, EffectFound, ParameterFound, RefusedEffects, ReplacedEffect};
 use crate::answers::is_form_of;
 use crate::estimate::fit::free_parameters;
-use crate::name::search::{Found, Named, Reason, Refused, Replaced};
+use crate::name::search::{Found, Named, RefusalReason, Refused, Replaced};
 
 pub(super) fn effect_found(
     machine: &Axis,
@@ -87,12 +87,12 @@ pub(super) fn refused_effects(refused: &Refused) -> RefusedEffects {
     RefusedEffects {
         effects: refused.effects.iter().map(|n| n.name.to_owned()).collect(),
         channels: match &refused.reason {
-            Reason::Worse(channels) => channels.iter().map(|&c| c.to_owned()).collect(),
-            Reason::Little(_) => Vec::new(),
+            RefusalReason::Worse(channels) => channels.iter().map(|&c| c.to_owned()).collect(),
+            RefusalReason::Little(_) => Vec::new(),
         },
         takes_away: match refused.reason {
-            Reason::Little(share) => Some(share),
-            Reason::Worse(_) => None,
+            RefusalReason::Little(share) => Some(share),
+            RefusalReason::Worse(_) => None,
         },
     }
 }

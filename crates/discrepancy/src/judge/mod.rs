@@ -42,8 +42,8 @@ use self::sentence::sentence;
 use self::told::remedies;
 pub use self::told::{Confidence, Level, RemedyTold, Told};
 pub use self::types::{
-    AtScrew, Discovery, EffectFound, Figures, Gaps, NextExperiment, ParameterFound, Recalibrated,
-    RefusedEffects, ReplacedEffect, Verdict,
+    AtScrew, Discovery, EffectFound, FigureLogs, Gaps, NextExperiment, ParameterFound,
+    Recalibrated, RefusedEffects, ReplacedEffect, Verdict,
 };
 pub use self::units::ReadUnit;
 pub use self::unknown::{Curve, Unknown};
@@ -240,7 +240,7 @@ pub fn judged(
             .collect(),
         unknown,
         gap: Gaps { fit, check },
-        figures: Figures::of(found, set),
+        figures: FigureLogs::of(found, set),
         recalibrated,
         told,
         likenesses: Vec::new(),

@@ -148,14 +148,15 @@ pub struct Gaps {
 /// The logs that the figures of a discovery are of: gap on motion that was not fitted to,
 /// costs, shares of the gap.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct Figures {
+#[schemars(rename = "Figures")]
+pub struct FigureLogs {
     /// Their names.
     pub logs: Vec<String>,
     /// Whether they took part in the choice of names, as check logs do.
     pub took_part: bool,
 }
 
-impl Figures {
+impl FigureLogs {
     pub(super) fn of(found: &Found, set: &LogSet) -> Self {
         Self {
             logs: set.logs.iter().map(|log| log.name.clone()).collect(),
@@ -241,7 +242,7 @@ pub struct Discovery {
     pub gap: Gaps,
     /// Of which logs the figures are.
     #[serde(default)]
-    pub figures: Figures,
+    pub figures: FigureLogs,
     /// Known parameters.
     pub recalibrated: Vec<Recalibrated>,
     /// What a first screen says beside: costs, confidence, remedies.

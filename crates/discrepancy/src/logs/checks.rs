@@ -5,7 +5,7 @@ use axis_log::intake::SHORT_GAP;
 use axis_log::quality::{check_sampling, constant_channels, unit_slip};
 use axis_sim::{Axis, Balance, ReplayError, position_in, reference_in};
 
-use super::error::IntakeError;
+use super::error::LogSetError;
 use super::relations::agree;
 
 /// Channels that are compared: a constant one is not connected.
@@ -27,9 +27,9 @@ const COMPARED: [&str; 11] = [
 ///
 /// # Errors
 /// The first thing found that would make a verdict worthless.
-pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, IntakeError> {
+pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, LogSetError> {
     let file = || file.to_owned();
-    let sampling = check_sampling(log).map_err(|reason| IntakeError::Sampling {
+    let sampling = check_sampling(log).map_err(|reason| LogSetError::Sampling {
         file: file(),
         reason,
     })?;
@@ -40,7 +40,7 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, IntakeErr
         return Ok(sampling.period);
     };
     if let Some(slip) = unit_slip(reference, position) {
-        return Err(IntakeError::Unit {
+        return Err(LogSetError::Unit {
             file: file(),
             factor: slip.factor,
             guess: slip.guess,
@@ -51,7 +51,7 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, IntakeErr
         .into_iter()
         .find(|name| COMPARED.contains(&name.as_str()))
     {
-        return Err(IntakeError::Constant {
+        return Err(LogSetError::Constant {
             file: file(),
             channel,
         });
@@ -65,7 +65,7 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, IntakeErr
 }
 
 /// Dry friction and a standing load look alike where the axis goes one way only.
-fn moves_both_ways(file: &str, reference: &[f64]) -> Result<(), IntakeError> {
+fn moves_both_ways(file: &str, reference: &[f64]) -> Result<(), LogSetError> {
     let step = |w: &[f64]| w[1] - w[0];
     let moved = |sign: f64| {
         reference
@@ -81,20 +81,20 @@ fn moves_both_ways(file: &str, reference: &[f64]) -> Result<(), IntakeError> {
         (false, false) => "the reference moves by less than 0.1 mm",
         _ => "the axis moves in one direction only, so dry friction and a standing load look alike",
     };
-    Err(IntakeError::Poor {
+    Err(LogSetError::Poor {
         file: file.to_owned(),
         missing,
     })
 }
 
-fn no_holes(file: &str, log: &Log) -> Result<(), IntakeError> {
+fn no_holes(file: &str, log: &Log) -> Result<(), LogSetError> {
     for channel in log.channels() {
         let long = log
             .missing(&channel.name)
             .iter()
             .find(|r| r.len() > SHORT_GAP);
         if let Some(run) = long {
-            return Err(IntakeError::Hole {
+            return Err(LogSetError::Hole {
                 file: file.to_owned(),
                 channel: channel.name.clone(),
                 samples: run.len(),
@@ -112,10 +112,10 @@ fn check_balanced(
     log: &Log,
     period: f64,
     machine: &Axis,
-) -> Result<f64, IntakeError> {
+) -> Result<f64, LogSetError> {
     let balance = match Balance::new(log, period, machine) {
         Ok(balance) => balance,
-        Err(ReplayError::Balance(reason)) => return Err(IntakeError::Balance { file, reason }),
+        Err(ReplayError::Balance(reason)) => return Err(LogSetError::Balance { file, reason }),
         // What else there may be is of the axis, and is said where that is set up.
         Err(_) => return Ok(period),
     };
@@ -127,13 +127,13 @@ fn check_balanced(
         .find(|name| constant.iter().any(|c| c == name))
     {
         let channel = channel.to_owned();
-        return Err(IntakeError::Constant { file, channel });
+        return Err(LogSetError::Constant { file, channel });
     }
     on_stroke(&file, log, machine)?;
     Ok(period)
 }
 
-fn on_stroke(file: &str, log: &Log, machine: &Axis) -> Result<(), IntakeError> {
+fn on_stroke(file: &str, log: &Log, machine: &Axis) -> Result<(), LogSetError> {
     let stroke = &machine.stroke;
     let channels: [(&'static str, _); 2] = [
         ("reference", reference_in(log)),
@@ -143,7 +143,7 @@ fn on_stroke(file: &str, log: &Log, machine: &Axis) -> Result<(), IntakeError> {
         let samples = samples.unwrap_or_default();
         let outside = |x: &f64| !(stroke.minimum - 1e-6..=stroke.maximum + 1e-6).contains(x);
         if let Some(k) = samples.iter().position(outside) {
-            return Err(IntakeError::OffStroke {
+            return Err(LogSetError::OffStroke {
                 file: file.to_owned(),
                 channel,
                 position: samples[k],
@@ -156,7 +156,7 @@ fn on_stroke(file: &str, log: &Log, machine: &Axis) -> Result<(), IntakeError> {
     Ok(())
 }
 
-fn follows(file: &str, log: &Log, reference: &[f64], position: &[f64]) -> Result<(), IntakeError> {
+fn follows(file: &str, log: &Log, reference: &[f64], position: &[f64]) -> Result<(), LogSetError> {
     let (low, high) = reference
         .iter()
         .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
@@ -166,7 +166,7 @@ fn follows(file: &str, log: &Log, reference: &[f64], position: &[f64]) -> Result
         .max_by(|a, b| error(a).total_cmp(&error(b)))
         .unwrap_or(0);
     if travel > 0.0 && error(&worst) > 0.1 * travel {
-        return Err(IntakeError::NotFollowing {
+        return Err(LogSetError::NotFollowing {
             file: file.to_owned(),
             time: log.time()[worst],
             error: reference[worst] - position[worst],
@@ -179,11 +179,11 @@ fn follows(file: &str, log: &Log, reference: &[f64], position: &[f64]) -> Result
 /// Refuses a check log that is one of the fit logs.
 ///
 /// # Errors
-/// [`IntakeError::SameLog`].
+/// [`LogSetError::SameLog`].
 pub fn check_distinct(
     fit: &[(String, Log, f64)],
     check: &[(String, Log, f64)],
-) -> Result<(), IntakeError> {
+) -> Result<(), LogSetError> {
     let same = |a: &Log, b: &Log| {
         a.len() == b.len()
             && position_in(a)
@@ -193,7 +193,7 @@ pub fn check_distinct(
     for (fit_name, fit_log, _) in fit {
         for (check_name, check_log, _) in check {
             if same(fit_log, check_log) {
-                return Err(IntakeError::SameLog {
+                return Err(LogSetError::SameLog {
                     fit: fit_name.clone(),
                     check: check_name.clone(),
                 });

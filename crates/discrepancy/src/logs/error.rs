@@ -10,7 +10,7 @@ use super::start::REST_TIME;
 /// Why a log cannot be used. The message names the file first.
 #[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum IntakeError {
+pub enum LogSetError {
     /// Samples that are not uniform in time.
     #[error("{file}: {reason}")]
     Sampling {

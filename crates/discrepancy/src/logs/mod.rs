@@ -8,6 +8,6 @@ mod start;
 
 pub use self::apart::{NamedLog, set_apart};
 pub use self::checks::{check_distinct, check_log};
-pub use self::error::IntakeError;
+pub use self::error::LogSetError;
 pub use self::relations::{cross_checks, exact_channels, relations};
 pub use self::start::from_rest;

@@ -3,7 +3,7 @@
 use axis_log::Log;
 use axis_sim::{Axis, reference_in};
 
-use super::error::IntakeError;
+use super::error::LogSetError;
 
 /// A log as a replay can begin it, and what was done for that, in words.
 ///
@@ -12,13 +12,13 @@ use super::error::IntakeError;
 /// and the speed of the log's first samples.
 ///
 /// # Errors
-/// [`IntakeError::NeverRests`].
+/// [`LogSetError::NeverRests`].
 pub fn from_rest(
     file: &str,
     log: Log,
     period: f64,
     machine: &Axis,
-) -> Result<(Log, Option<String>), IntakeError> {
+) -> Result<(Log, Option<String>), LogSetError> {
     // A torque balance begins with the measured motion.
     let reference = reference_in(&log).ok().filter(|_| machine.has_control());
     let Some(reference) = reference else {
@@ -57,7 +57,7 @@ pub fn from_rest(
             );
             Ok((left, Some(words)))
         }
-        None => Err(IntakeError::NeverRests {
+        None => Err(LogSetError::NeverRests {
             file: file.to_owned(),
             speed,
         }),

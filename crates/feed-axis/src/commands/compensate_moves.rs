@@ -10,7 +10,7 @@ use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result};
 use pipeline::Figures;
 use pipeline::moves::{MoveRun, Moves, NamedMotion};
-use pipeline::strategies::{Learned, NONE, Predictors, StrategyKind};
+use pipeline::strategies::{LearnedValues, NONE, Predictors, StrategyKind};
 use serde::Serialize;
 
 use super::simulate::{factor, program, trajectory};
@@ -72,7 +72,7 @@ struct Entry<'a> {
     #[serde(rename = "move")]
     name: &'a str,
     errors_um: Errors,
-    learned: &'a Learned,
+    learned: &'a LearnedValues,
 }
 
 #[derive(Serialize)]

@@ -3,7 +3,7 @@
 use axis_sim::Axis;
 use axis_sim::control::{CONTROLS, Control, units_of_gain};
 use axis_sim::part::{Key, Part};
-use discrepancy::controller::{Estimate, Gain};
+use discrepancy::controller::{ControllerEstimate, Gain};
 use miette::{IntoDiagnostic, Result, miette};
 use toml_edit::{DocumentMut, Item, Table, Value};
 
@@ -40,7 +40,7 @@ pub fn tolerance(gain: &Gain) -> Option<String> {
 
 /// The axis file's text with the controller in its `[control]` and the gains' intervals in
 /// `[tolerances]`; all else as it was.
-pub fn with_control(text: &str, machine: &Axis, found: &Estimate) -> Result<String> {
+pub fn with_control(text: &str, machine: &Axis, found: &ControllerEstimate) -> Result<String> {
     let mut document: DocumentMut = text.parse().into_diagnostic()?;
     let has_sections = document.contains_key("mechanism");
     let kind = found.control.kind().name;
@@ -82,7 +82,7 @@ pub fn with_control(text: &str, machine: &Axis, found: &Estimate) -> Result<Stri
 }
 
 /// The gains' own lines in `[tolerances]`; those of the controller that was there are gone.
-fn write_tolerances(document: &mut DocumentMut, found: &Estimate) -> Result<()> {
+fn write_tolerances(document: &mut DocumentMut, found: &ControllerEstimate) -> Result<()> {
     let known = found.control.kind().known.iter().map(|known| known.name);
     let known: Vec<&str> = known.collect();
     if let Some(old) = document.get_mut("tolerances").and_then(Item::as_table_mut) {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use axis_log::Log;
 use axis_log::intake::{Options as Intake, prepare};
-use axis_log::quality::Verdict as Agreement;
+use axis_log::quality::CrossCheckVerdict as Agreement;
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, OnsetForm, Scales};
 use clap::Args;

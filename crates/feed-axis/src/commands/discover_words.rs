@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use axis_sim::Axis;
-use axis_sim::friction::Place as FrictionPlace;
+use axis_sim::friction::FrictionPlace;
 use discrepancy::summary::SummaryFound;
 use discrepancy::{Discovery, Verdict};
 use serde::Serialize;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use axis_sim::friction::FrictionUnits;
 use compensator::TransferFunctionModel;
-use lugre::identify::Estimate;
+use lugre::identify::ParameterEstimate;
 use lugre::{LuGre, Parameters};
 use miette::{IntoDiagnostic, Result};
 use pipeline::identification::{IdentificationPlan, Identified, identify};
@@ -202,7 +202,7 @@ fn summarise(identified: &Identified, context: &Context) -> Friction {
     let truth = context.machine.friction.law.parameters();
     let units = context.machine.friction.at.units();
     let (statics, presliding) = (&identified.statics, &identified.presliding);
-    let found = |name: &str, unit: &str, estimate: Estimate, truth: f64| Found {
+    let found = |name: &str, unit: &str, estimate: ParameterEstimate, truth: f64| Found {
         name: name.to_owned(),
         unit: unit.to_owned(),
         value: estimate.value,

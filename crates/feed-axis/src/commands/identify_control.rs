@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use axis_sim::Axis;
 use clap::Args;
-use discrepancy::controller::{ClosedLoopGains, Estimate, Gain, closed_loop, estimate};
+use discrepancy::controller::{ClosedLoopGains, ControllerEstimate, Gain, closed_loop, estimate};
 use discrepancy::logs::check_distinct;
 use miette::{IntoDiagnostic, Result, miette};
 use serde::Serialize;
@@ -154,7 +154,7 @@ impl Interval {
 }
 
 impl GainFound {
-    fn of(machine: &Axis, found: &Estimate, gain: &Gain) -> Self {
+    fn of(machine: &Axis, found: &ControllerEstimate, gain: &Gain) -> Self {
         let (key, factor) = spelling(machine, &found.control, gain.key);
         let value = Interval {
             value: gain.value / factor,
@@ -165,7 +165,7 @@ impl GainFound {
 }
 
 /// The estimate as people read it.
-fn words(found: &Estimate, machine: &Axis) -> String {
+fn words(found: &ControllerEstimate, machine: &Axis) -> String {
     let mut lines = Vec::new();
     let mut tried = found.tried.iter();
     if let Some(best) = tried.next() {
@@ -202,7 +202,11 @@ fn words(found: &Estimate, machine: &Axis) -> String {
     lines.join("\n") + "\n"
 }
 
-fn replayed_words(replayed: &ClosedLoopGains, found: &Estimate, machine: &Axis) -> String {
+fn replayed_words(
+    replayed: &ClosedLoopGains,
+    found: &ControllerEstimate,
+    machine: &Axis,
+) -> String {
     let head =
         "\nby closed-loop replay, which rests on the machine's model (not written):".to_owned();
     let mut lines = vec![head];
@@ -213,7 +217,7 @@ fn replayed_words(replayed: &ClosedLoopGains, found: &Estimate, machine: &Axis) 
     lines.join("\n") + "\n"
 }
 
-fn line(machine: &Axis, found: &Estimate, gain: &Gain) -> String {
+fn line(machine: &Axis, found: &ControllerEstimate, gain: &Gain) -> String {
     let (name, factor) = spelling(machine, &found.control, gain.key);
     let value = gain.value / factor;
     let [low, high] = gain.ci95.map(|end| end / factor);

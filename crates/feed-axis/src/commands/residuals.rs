@@ -4,7 +4,7 @@ use axis_sim::Measured;
 use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result};
 use pipeline::residuals::{
-    AFTER, Compared, NetworkSettings, Way, compare, contests, trained_basis,
+    AFTER, Compared, NetworkSettings, ResidualMethod, compare, contests, trained_basis,
 };
 use pipeline::robustness::room;
 use serde::Serialize;
@@ -40,7 +40,10 @@ pub fn command(common: &Common) -> Result<()> {
         ..NetworkSettings::default()
     };
     let network = trained_basis(axis, room(axis), &settings).into_diagnostic()?;
-    let progress = bar("residuals", (contests.len() * Way::ALL.len()) as u64);
+    let progress = bar(
+        "residuals",
+        (contests.len() * ResidualMethod::ALL.len()) as u64,
+    );
     let noise = Noise::good(machine);
     let sense = |seed: u64| -> Box<dyn FnMut(&mut Measured)> { Box::new(noise.sensors(seed)) };
     let made = compare(axis, &contests, &network, &sense, || progress.inc(1)).into_diagnostic()?;
@@ -77,7 +80,7 @@ fn words(made: &[Vec<Compared>]) -> String {
         after.join(" | "),
         "---|".repeat(AFTER.len())
     );
-    for (w, way) in Way::ALL.iter().enumerate() {
+    for (w, way) in ResidualMethod::ALL.iter().enumerate() {
         let cells = (0..AFTER.len()).map(|i| {
             let of_way = made.iter().map(|machine| &machine[w]);
             let mut left: Vec<f64> = of_way.clone().flat_map(|c| c.left_um[i].clone()).collect();
@@ -86,7 +89,7 @@ fn words(made: &[Vec<Compared>]) -> String {
             let worst = left.last().copied().unwrap_or(0.0);
             let middle = left.get(left.len() / 2).copied().unwrap_or(0.0);
             match way {
-                Way::Adapted => format!("{middle:.2} / {worst:.2}"),
+                ResidualMethod::Adapted => format!("{middle:.2} / {worst:.2}"),
                 _ => format!(
                     "{middle:.2} / {worst:.2} (used on {used} of {})",
                     made.len()

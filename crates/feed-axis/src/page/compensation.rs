@@ -1,7 +1,7 @@
 //! Figure 13, Tables 15 and 16.
 
 use pipeline::compensation::{CompensatedRun, find};
-use pipeline::strategies::{STRATEGIES, StrategyKind, Table as Group, of_table};
+use pipeline::strategies::{ReportTable as Group, STRATEGIES, StrategyKind, of_table};
 use pipeline::tracking::Run;
 use pipeline::validation::ValidatedTrajectory;
 use report::{Cell, Section, Series, Table};

@@ -20,7 +20,7 @@ mod settled;
 mod stepping;
 mod stiffness;
 
-use beam_fem::{Material, Section};
+use beam_fem::{CrossSection, Material};
 use feed_dynamics::{DriveParameters, FeedDrive, NutCoupling};
 
 const COUPLINGS: [NutCoupling; 2] = [NutCoupling::ShapeFunctions, NutCoupling::MovingNode];
@@ -29,7 +29,7 @@ const COUPLINGS: [NutCoupling; 2] = [NutCoupling::ShapeFunctions, NutCoupling::M
 fn paper() -> DriveParameters {
     let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
     DriveParameters {
-        section: Section::solid_circle(0.040, &steel).unwrap(),
+        section: CrossSection::solid_circle(0.040, &steel).unwrap(),
         material: steel,
         screw_length: 1.5,
         elements: 10,

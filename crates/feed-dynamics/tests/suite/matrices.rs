@@ -1,6 +1,6 @@
 //! Laws that M(x) and K(x) must obey at every x and for every drive.
 
-use feed_dynamics::{DriveParameters, FeedDrive, Matrices, NutCoupling};
+use feed_dynamics::{DriveMatrices, DriveParameters, FeedDrive, NutCoupling};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use proptest::prelude::*;
 
@@ -45,7 +45,7 @@ fn rigid(drive: &FeedDrive) -> DVector<f64> {
     q
 }
 
-fn matrices(drive: &FeedDrive, part: f64, coupling: NutCoupling) -> Matrices {
+fn matrices(drive: &FeedDrive, part: f64, coupling: NutCoupling) -> DriveMatrices {
     let x = part * drive.parameters().screw_length;
     drive.matrices(x, coupling).unwrap()
 }

@@ -1,6 +1,6 @@
 //! Natural modes against closed forms and against x.
 
-use beam_fem::{Material, Section};
+use beam_fem::{CrossSection, Material};
 use feed_dynamics::{DriveParameters, FeedDrive, NutCoupling};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -15,7 +15,7 @@ fn stiff_chain_leaves_two_masses() {
     // 1e-5 of the nut's, the fixed-free wind-up included: 3.2e-6 as measured.
     let steel = Material::new(206e13, 0.3, 7850.0).unwrap();
     let drive = FeedDrive::new(DriveParameters {
-        section: Section::solid_circle(0.040, &steel).unwrap(),
+        section: CrossSection::solid_circle(0.040, &steel).unwrap(),
         material: steel,
         motor_coupling_stiffness: 2800e4,
         screw_coupling_stiffness: 2800e4,

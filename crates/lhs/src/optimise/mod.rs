@@ -42,7 +42,7 @@ pub struct Budget {
 
 /// What an optimisation did.
 #[derive(Debug, Clone, PartialEq)]
-pub struct History {
+pub struct OptimisationHistory {
     /// The criterion used.
     pub criterion: Criterion,
     /// Its value at the start by the full formula: CD², or φ_p.
@@ -86,7 +86,7 @@ pub fn optimise(
     criterion: Criterion,
     budget: Budget,
     seed: u64,
-) -> (Design, History) {
+) -> (Design, OptimisationHistory) {
     let initial = evaluate(&design, criterion);
     improve(design, initial, criterion, budget, seed)
 }
@@ -98,7 +98,7 @@ fn improve(
     criterion: Criterion,
     budget: Budget,
     seed: u64,
-) -> (Design, History) {
+) -> (Design, OptimisationHistory) {
     let mut search = Search {
         rng: stream(seed, Purpose::Optimiser, 0),
         n: design.len(),
@@ -121,7 +121,7 @@ fn improve(
     let found = search.best_of(&design);
     let value = evaluate(&found, criterion);
     let kept = value < initial && !lost_distance(&design, &found, criterion);
-    let history = History {
+    let history = OptimisationHistory {
         criterion,
         initial,
         best: if kept { value } else { initial },
@@ -143,7 +143,7 @@ impl LatinHypercube {
         &self,
         criterion: Criterion,
         budget: Budget,
-    ) -> Result<(Design, History), LhsError> {
+    ) -> Result<(Design, OptimisationHistory), LhsError> {
         let valued = |design| {
             let value = evaluate(&design, criterion);
             (design, value)

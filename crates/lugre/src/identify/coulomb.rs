@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector, SMatrix};
 
-use super::error::IdentifyError;
-use super::estimate::Estimate;
-use super::least_squares::Outcome;
+use super::error::FrictionIdentifyError;
+use super::estimate::ParameterEstimate;
+use super::least_squares::FitOutcome;
 use super::record::ConstantSpeedRun;
 use super::static_fit::StaticFit;
 use super::statics::{VIBRATION_LIMIT, check_runs, distinct_speeds, select};
@@ -16,21 +16,21 @@ const NEEDED: usize = 4;
 /// those that vibrate by more than [`VIBRATION_LIMIT`] are left out and listed.
 ///
 /// For a contact in which no Stribeck effect is seen
-/// ([`IdentifyError::NoStribeckEffect`]). `T_S` is `T_C` then, and `Ω_S`, which means
+/// ([`FrictionIdentifyError::NoStribeckEffect`]). `T_S` is `T_C` then, and `Ω_S`, which means
 /// nothing, the slowest speed. The offset is fitted where at least two runs go either way,
 /// `σ2` is not negative. Runs without a standard error weigh as the least certain.
 ///
 /// # Errors
-/// [`IdentifyError`]: a number is not finite or beyond 1e100, a standard error not
+/// [`FrictionIdentifyError`]: a number is not finite or beyond 1e100, a standard error not
 /// positive, a vibration negative or NaN; fewer than 4 different speeds are left; `T_C` is
 /// not above zero.
-pub fn identify_coulomb(runs: &[ConstantSpeedRun]) -> Result<StaticFit, IdentifyError> {
+pub fn identify_coulomb(runs: &[ConstantSpeedRun]) -> Result<StaticFit, FrictionIdentifyError> {
     check_runs(runs)?;
     let (used, left_out) = select(runs, VIBRATION_LIMIT);
     let kept: Vec<ConstantSpeedRun> = used.iter().map(|&i| runs[i]).collect();
     let speeds = distinct_speeds(&kept);
     let Some(&slowest) = speeds.first().filter(|_| speeds.len() >= NEEDED) else {
-        return Err(IdentifyError::TooFewSpeeds {
+        return Err(FrictionIdentifyError::TooFewSpeeds {
             found: speeds.len(),
             needed: NEEDED,
             left_out: left_out.len(),
@@ -44,7 +44,7 @@ pub fn identify_coulomb(runs: &[ConstantSpeedRun]) -> Result<StaticFit, Identify
         Some(fit) if fit.x[1] < 0.0 => solve(&kept, &errors, [true, false, offset]),
         fit => fit,
     };
-    let open = |value| IdentifyError::NotIdentifiable {
+    let open = |value| FrictionIdentifyError::NotIdentifiable {
         parameter: "coulomb",
         value,
         standard_error: f64::INFINITY,
@@ -54,7 +54,7 @@ pub fn identify_coulomb(runs: &[ConstantSpeedRun]) -> Result<StaticFit, Identify
     if coulomb.is_nan() || coulomb <= 0.0 {
         return Err(open(coulomb));
     }
-    let estimate = |i: usize, value: f64| Estimate {
+    let estimate = |i: usize, value: f64| ParameterEstimate {
         value,
         standard_error: fit.covariance[(i, i)].max(0.0).sqrt(),
     };
@@ -67,7 +67,7 @@ pub fn identify_coulomb(runs: &[ConstantSpeedRun]) -> Result<StaticFit, Identify
     Ok(StaticFit {
         coulomb: estimate(0, coulomb),
         stiction: estimate(0, coulomb),
-        stribeck_speed: Estimate {
+        stribeck_speed: ParameterEstimate {
             value: slowest,
             standard_error: 0.0,
         },
@@ -80,7 +80,7 @@ pub fn identify_coulomb(runs: &[ConstantSpeedRun]) -> Result<StaticFit, Identify
         error_scale: fit.error_scale,
         used,
         left_out,
-        outcome: Outcome::Converged,
+        outcome: FitOutcome::Converged,
     })
 }
 

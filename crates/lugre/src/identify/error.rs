@@ -7,7 +7,7 @@ use crate::parameters::LugreError;
 /// Why no parameters were identified: what is wrong, or missing, in the data.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
-pub enum IdentifyError {
+pub enum FrictionIdentifyError {
     /// A number is NaN, infinite or beyond 1e100, or negative where that has no
     /// meaning.
     #[error("`{quantity}` of entry {index} is {value}, but must be {valid}")]
@@ -117,10 +117,13 @@ pub(super) fn is_measurable(value: f64) -> bool {
 }
 
 /// Refuses NaN, infinities and what squares beyond all numbers.
-pub(super) fn check_finite(quantity: &'static str, values: &[f64]) -> Result<(), IdentifyError> {
+pub(super) fn check_finite(
+    quantity: &'static str,
+    values: &[f64],
+) -> Result<(), FrictionIdentifyError> {
     match values.iter().position(|&v| !is_measurable(v)) {
         None => Ok(()),
-        Some(index) => Err(IdentifyError::BadNumber {
+        Some(index) => Err(FrictionIdentifyError::BadNumber {
             quantity,
             index,
             value: values[index],
@@ -130,11 +133,14 @@ pub(super) fn check_finite(quantity: &'static str, values: &[f64]) -> Result<(),
 }
 
 /// Refuses a scalar that is not finite and positive.
-pub(super) fn check_positive(quantity: &'static str, value: f64) -> Result<(), IdentifyError> {
+pub(super) fn check_positive(
+    quantity: &'static str,
+    value: f64,
+) -> Result<(), FrictionIdentifyError> {
     if value.is_finite() && value > 0.0 {
         Ok(())
     } else {
-        Err(IdentifyError::BadNumber {
+        Err(FrictionIdentifyError::BadNumber {
             quantity,
             index: 0,
             value,

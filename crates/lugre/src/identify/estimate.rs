@@ -2,7 +2,7 @@
 
 /// A value with its standard error, both in the unit of the quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
+pub struct ParameterEstimate {
     /// The estimate.
     pub value: f64,
     /// Its standard error: one standard deviation of the estimate over
@@ -10,7 +10,7 @@ pub struct Estimate {
     pub standard_error: f64,
 }
 
-impl Estimate {
+impl ParameterEstimate {
     /// Whether `truth` lies within `value ± sigmas · standard_error`.
     #[must_use]
     pub fn covers(&self, truth: f64, sigmas: f64) -> bool {

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 /// How a fit ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Outcome {
+pub enum FitOutcome {
     /// The step or the predicted gain vanished.
     Converged,
     /// The limit of iterations came first: judge the result with care.
@@ -33,7 +33,7 @@ pub(super) struct Minimum<const N: usize> {
     pub jacobian: Vec<Vec<f64>>,
     /// `(JᵀJ)⁻¹` over the free parameters, zero elsewhere; `None` if singular.
     pub inverse: Option<SMatrix<f64, N, N>>,
-    pub outcome: Outcome,
+    pub outcome: FitOutcome,
 }
 
 const ITERATIONS: usize = 100;
@@ -46,7 +46,7 @@ impl<const N: usize> Problem<'_, N> {
         let mut r = self.at(&x);
         let mut cost = square(&r);
         let mut damping = 1e-3;
-        let mut outcome = Outcome::IterationLimit;
+        let mut outcome = FitOutcome::IterationLimit;
         let mut jacobian = self.jacobian(&x);
         for _ in 0..ITERATIONS {
             let Some(step) = self.step(&x, &r, &jacobian, damping) else {
@@ -68,12 +68,12 @@ impl<const N: usize> Problem<'_, N> {
                 jacobian = self.jacobian(&x);
                 damping = (damping * 0.1).max(1e-12);
                 if done {
-                    outcome = Outcome::Converged;
+                    outcome = FitOutcome::Converged;
                     break;
                 }
             } else if small {
                 // No smaller step can lower the cost beyond rounding.
-                outcome = Outcome::Converged;
+                outcome = FitOutcome::Converged;
                 break;
             } else {
                 damping *= 10.0;

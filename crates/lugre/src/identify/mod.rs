@@ -26,10 +26,10 @@ mod statics;
 mod trial;
 
 pub use coulomb::identify_coulomb;
-pub use error::IdentifyError;
-pub use estimate::Estimate;
-pub use least_squares::Outcome;
-pub use presliding::{Motion, PreslidingFit, PreslidingRecord, identify_presliding};
+pub use error::FrictionIdentifyError;
+pub use estimate::ParameterEstimate;
+pub use least_squares::FitOutcome;
+pub use presliding::{MeasuredMotion, PreslidingFit, PreslidingRecord, identify_presliding};
 pub use record::ConstantSpeedRun;
 pub use static_fit::{LeftOut, Reason, StaticFit, StaticKnowledge, StaticParameters};
 pub use statics::{VIBRATION_LIMIT, identify_static, identify_static_within};

@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix4, SMatrix};
 
-use super::error::{IdentifyError, check_finite, check_positive};
-use super::estimate::Estimate;
-use super::least_squares::{Minimum, Outcome, Problem, dot, square};
+use super::error::{FrictionIdentifyError, check_finite, check_positive};
+use super::estimate::ParameterEstimate;
+use super::least_squares::{FitOutcome, Minimum, Problem, dot, square};
 use super::static_fit::StaticKnowledge;
 use super::trial::{Trial, Unknowns};
 use crate::law::LuGre;
@@ -12,7 +12,7 @@ use crate::parameters::LugreError;
 
 /// How the motion at the friction's location was measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Motion<'a> {
+pub enum MeasuredMotion<'a> {
     /// Speed at each sample, rad/s; taken as linear in between.
     Speed(&'a [f64]),
     /// Displacement at each sample, rad, from any origin; speeds are central
@@ -26,7 +26,7 @@ pub struct PreslidingRecord<'a> {
     /// Time between samples, s.
     pub time_step: f64,
     /// The motion, one value a sample.
-    pub motion: Motion<'a>,
+    pub motion: MeasuredMotion<'a>,
     /// The friction torque, N·m, one value a sample.
     pub torque: &'a [f64],
 }
@@ -35,13 +35,13 @@ pub struct PreslidingRecord<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PreslidingFit {
     /// `σ0`, N·m/rad.
-    pub stiffness: Estimate,
+    pub stiffness: ParameterEstimate,
     /// `σ1`, N·m·s/rad; not negative.
-    pub damping: Estimate,
+    pub damping: ParameterEstimate,
     /// Bristle torque `σ0 z` at the first sample, N·m.
-    pub initial_bristle_torque: Estimate,
+    pub initial_bristle_torque: ParameterEstimate,
     /// Constant torque offset, N·m.
-    pub torque_offset: Estimate,
+    pub torque_offset: ParameterEstimate,
     /// Covariance of the four estimates above, in that order, with the
     /// uncertainty of the static parameters carried over.
     pub covariance: [[f64; 4]; 4],
@@ -56,7 +56,7 @@ pub struct PreslidingFit {
     /// All samples.
     pub samples: usize,
     /// How the fit ended.
-    pub outcome: Outcome,
+    pub outcome: FitOutcome,
     /// The static parameters that were used.
     pub statics: StaticKnowledge,
 }
@@ -89,18 +89,18 @@ impl PreslidingFit {
 /// linear in them; Levenberg–Marquardt follows.
 ///
 /// # Errors
-/// [`IdentifyError`]: channels of unequal length, fewer than 32 samples, a
+/// [`FrictionIdentifyError`]: channels of unequal length, fewer than 32 samples, a
 /// number that is not finite, static parameters that make no law, no motion,
 /// no samples in the pre-sliding range, or `σ0` left open by the data.
 pub fn identify_presliding(
     statics: impl Into<StaticKnowledge>,
     record: &PreslidingRecord<'_>,
-) -> Result<PreslidingFit, IdentifyError> {
+) -> Result<PreslidingFit, FrictionIdentifyError> {
     let statics = statics.into();
     check(&statics, record)?;
     let speeds = match record.motion {
-        Motion::Speed(speeds) => speeds.to_vec(),
-        Motion::Displacement(x) => central_speeds(x, record.time_step),
+        MeasuredMotion::Speed(speeds) => speeds.to_vec(),
+        MeasuredMotion::Displacement(x) => central_speeds(x, record.time_step),
     };
     check_finite("speed", &speeds)?;
     let trial = Trial {
@@ -110,12 +110,12 @@ pub fn identify_presliding(
         statics: statics.parameters,
         prior: noise_level(record.torque) / statics.parameters.stiction,
     };
-    let start = trial.search().ok_or(IdentifyError::NoMotion)?;
+    let start = trial.search().ok_or(FrictionIdentifyError::NoMotion)?;
     let minimum = refine(&trial, start);
     let found = trial.presliding_samples(&minimum.x);
     const NEEDED: usize = 8;
     if found < NEEDED {
-        return Err(IdentifyError::NoPreslidingMotion {
+        return Err(FrictionIdentifyError::NoPreslidingMotion {
             found,
             needed: NEEDED,
         });
@@ -123,21 +123,24 @@ pub fn identify_presliding(
     report(&trial, &statics, minimum, found)
 }
 
-fn check(statics: &StaticKnowledge, record: &PreslidingRecord<'_>) -> Result<(), IdentifyError> {
+fn check(
+    statics: &StaticKnowledge,
+    record: &PreslidingRecord<'_>,
+) -> Result<(), FrictionIdentifyError> {
     const NEEDED: usize = 32;
     check_positive("time_step", record.time_step)?;
     let (name, motion) = match record.motion {
-        Motion::Speed(w) => ("speed", w),
-        Motion::Displacement(x) => ("displacement", x),
+        MeasuredMotion::Speed(w) => ("speed", w),
+        MeasuredMotion::Displacement(x) => ("displacement", x),
     };
     if motion.len() != record.torque.len() {
-        return Err(IdentifyError::LengthMismatch {
+        return Err(FrictionIdentifyError::LengthMismatch {
             motion: motion.len(),
             torque: record.torque.len(),
         });
     }
     if motion.len() < NEEDED {
-        return Err(IdentifyError::TooFewSamples {
+        return Err(FrictionIdentifyError::TooFewSamples {
             found: motion.len(),
             needed: NEEDED,
         });
@@ -219,10 +222,10 @@ fn report(
     statics: &StaticKnowledge,
     minimum: Minimum<4>,
     presliding_samples: usize,
-) -> Result<PreslidingFit, IdentifyError> {
+) -> Result<PreslidingFit, FrictionIdentifyError> {
     let [log_stiffness, damping, bristle_torque, offset] = minimum.x;
     let stiffness = log_stiffness.exp();
-    let open = |standard_error| IdentifyError::NotIdentifiable {
+    let open = |standard_error| FrictionIdentifyError::NotIdentifiable {
         parameter: "stiffness",
         value: stiffness,
         standard_error,
@@ -238,7 +241,7 @@ fn report(
         c[(0, i)] *= stiffness;
         c[(i, 0)] *= stiffness;
     }
-    let estimate = |i: usize, value: f64| Estimate {
+    let estimate = |i: usize, value: f64| ParameterEstimate {
         value,
         standard_error: c[(i, i)].max(0.0).sqrt(),
     };

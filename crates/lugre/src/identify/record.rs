@@ -1,6 +1,6 @@
 //! From a sampled record at constant speed to the numbers that a fit needs.
 
-use super::error::{IdentifyError, check_finite, check_positive};
+use super::error::{FrictionIdentifyError, check_finite, check_positive};
 use super::series::Series;
 
 /// One run at (nominally) constant speed, at the friction's location.
@@ -53,23 +53,23 @@ impl ConstantSpeedRun {
     /// sample rate or 500 Hz.
     ///
     /// # Errors
-    /// [`IdentifyError`] when the channels differ in length, are shorter than
+    /// [`FrictionIdentifyError`] when the channels differ in length, are shorter than
     /// 64 samples, hold a number that is not finite or beyond 1e100, or when
     /// `sample_rate` is not positive.
     pub fn from_record(
         speeds: &[f64],
         torques: &[f64],
         sample_rate: f64,
-    ) -> Result<Self, IdentifyError> {
+    ) -> Result<Self, FrictionIdentifyError> {
         check_positive("sample_rate", sample_rate)?;
         if speeds.len() != torques.len() {
-            return Err(IdentifyError::LengthMismatch {
+            return Err(FrictionIdentifyError::LengthMismatch {
                 motion: speeds.len(),
                 torque: torques.len(),
             });
         }
         if speeds.len() < FEWEST {
-            return Err(IdentifyError::TooFewSamples {
+            return Err(FrictionIdentifyError::TooFewSamples {
                 found: speeds.len(),
                 needed: FEWEST,
             });

@@ -3,8 +3,8 @@
 use nalgebra::SMatrix;
 
 use super::curve::Curve;
-use super::error::IdentifyError;
-use super::estimate::Estimate;
+use super::error::FrictionIdentifyError;
+use super::estimate::ParameterEstimate;
 use super::least_squares::{Minimum, square};
 use super::static_fit::{LeftOut, StaticFit};
 
@@ -15,19 +15,21 @@ pub(super) fn report(
     minimum: Minimum<5>,
     used: Vec<usize>,
     left_out: Vec<LeftOut>,
-) -> Result<StaticFit, IdentifyError> {
+) -> Result<StaticFit, FrictionIdentifyError> {
     let [coulomb, rise, stribeck, viscous, offset] = minimum.x;
     let chi_squared = square(&minimum.residuals);
     let degrees_of_freedom = curve.degrees_of_freedom();
     let error_scale = error_scale(chi_squared, degrees_of_freedom);
-    let inverse = minimum.inverse.ok_or(IdentifyError::NoStribeckEffect {
-        rise,
-        standard_error: f64::INFINITY,
-    })?;
+    let inverse = minimum
+        .inverse
+        .ok_or(FrictionIdentifyError::NoStribeckEffect {
+            rise,
+            standard_error: f64::INFINITY,
+        })?;
     let mut to_stiction = SMatrix::<f64, 5, 5>::identity();
     to_stiction[(1, 0)] = 1.0;
     let c = to_stiction * inverse * to_stiction.transpose() * (error_scale * error_scale);
-    let estimate = |i: usize, value: f64| Estimate {
+    let estimate = |i: usize, value: f64| ParameterEstimate {
         value,
         standard_error: c[(i, i)].max(0.0).sqrt(),
     };

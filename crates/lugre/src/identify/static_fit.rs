@@ -1,7 +1,7 @@
 //! What constant speeds tell: the static parameters, and what they rest on.
 
-use super::estimate::Estimate;
-use super::least_squares::Outcome;
+use super::estimate::ParameterEstimate;
+use super::least_squares::FitOutcome;
 use crate::parameters::Parameters;
 
 /// The four parameters that constant speeds show, units as in [`Parameters`].
@@ -108,16 +108,16 @@ pub struct LeftOut {
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticFit {
     /// `T_C`, N·m.
-    pub coulomb: Estimate,
+    pub coulomb: ParameterEstimate,
     /// `T_S`, N·m.
-    pub stiction: Estimate,
+    pub stiction: ParameterEstimate,
     /// `Ω_S`, rad/s.
-    pub stribeck_speed: Estimate,
+    pub stribeck_speed: ParameterEstimate,
     /// `σ2`, N·m·s/rad; not negative.
-    pub viscous: Estimate,
+    pub viscous: ParameterEstimate,
     /// A torque that does not change with the direction (sensor offset,
     /// gravity), N·m; fixed at 0 unless at least two runs go either way.
-    pub torque_offset: Estimate,
+    pub torque_offset: ParameterEstimate,
     /// Covariance of (`T_C`, `T_S`, `Ω_S`, `σ2`, offset).
     pub covariance: [[f64; 5]; 5],
     /// RMS of the torque residuals, N·m.
@@ -135,7 +135,7 @@ pub struct StaticFit {
     /// The other runs.
     pub left_out: Vec<LeftOut>,
     /// How the fit ended.
-    pub outcome: Outcome,
+    pub outcome: FitOutcome,
 }
 
 impl StaticFit {

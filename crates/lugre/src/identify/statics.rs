@@ -1,7 +1,7 @@
 //! `T_C`, `T_S`, `Ω_S` and `σ2` from constant-speed runs.
 
 use super::curve::Curve;
-use super::error::{IdentifyError, LARGEST, MAGNITUDE, is_measurable};
+use super::error::{FrictionIdentifyError, LARGEST, MAGNITUDE, is_measurable};
 use super::record::ConstantSpeedRun;
 use super::report::report;
 use super::static_fit::{LeftOut, Reason, StaticFit};
@@ -19,7 +19,7 @@ pub const VIBRATION_LIMIT: f64 = 0.1;
 ///
 /// # Errors
 /// As [`identify_static_within`].
-pub fn identify_static(runs: &[ConstantSpeedRun]) -> Result<StaticFit, IdentifyError> {
+pub fn identify_static(runs: &[ConstantSpeedRun]) -> Result<StaticFit, FrictionIdentifyError> {
     identify_static_within(runs, VIBRATION_LIMIT)
 }
 
@@ -36,17 +36,17 @@ pub fn identify_static(runs: &[ConstantSpeedRun]) -> Result<StaticFit, IdentifyE
 /// by saying nothing.
 ///
 /// # Errors
-/// [`IdentifyError`]: a number is not finite or beyond 1e100, a standard error
+/// [`FrictionIdentifyError`]: a number is not finite or beyond 1e100, a standard error
 /// not positive, a vibration or `vibration_limit` negative or NaN; fewer than 6 different speeds are left; fewer than 2 on either
 /// side of `Ω_S`; friction does not fall with speed significantly (3 standard
 /// errors).
 pub fn identify_static_within(
     runs: &[ConstantSpeedRun],
     vibration_limit: f64,
-) -> Result<StaticFit, IdentifyError> {
+) -> Result<StaticFit, FrictionIdentifyError> {
     check_runs(runs)?;
     if vibration_limit.is_nan() || vibration_limit < 0.0 {
-        return Err(IdentifyError::BadNumber {
+        return Err(FrictionIdentifyError::BadNumber {
             quantity: "vibration_limit",
             index: 0,
             value: vibration_limit,
@@ -57,7 +57,7 @@ pub fn identify_static_within(
     let kept: Vec<ConstantSpeedRun> = used.iter().map(|&i| runs[i]).collect();
     require_speeds(&kept, left_out.len())?;
     let mut curve = Curve::new(&kept);
-    let minimum = curve.fit().ok_or(IdentifyError::NoStribeckEffect {
+    let minimum = curve.fit().ok_or(FrictionIdentifyError::NoStribeckEffect {
         rise: 0.0,
         standard_error: f64::INFINITY,
     })?;
@@ -69,16 +69,16 @@ pub fn identify_static_within(
     if rise > 3.0 * standard_error {
         Ok(fit)
     } else {
-        Err(IdentifyError::NoStribeckEffect {
+        Err(FrictionIdentifyError::NoStribeckEffect {
             rise,
             standard_error,
         })
     }
 }
 
-pub(super) fn check_runs(runs: &[ConstantSpeedRun]) -> Result<(), IdentifyError> {
+pub(super) fn check_runs(runs: &[ConstantSpeedRun]) -> Result<(), FrictionIdentifyError> {
     const POSITIVE: &str = "greater than 0 and at most 1e100 (none where it is not known)";
-    let bad = |index, quantity, value, valid| IdentifyError::BadNumber {
+    let bad = |index, quantity, value, valid| FrictionIdentifyError::BadNumber {
         quantity,
         index,
         value,
@@ -134,25 +134,28 @@ pub(super) fn distinct_speeds(runs: &[ConstantSpeedRun]) -> Vec<f64> {
     speeds
 }
 
-fn require_speeds(kept: &[ConstantSpeedRun], left_out: usize) -> Result<(), IdentifyError> {
+fn require_speeds(kept: &[ConstantSpeedRun], left_out: usize) -> Result<(), FrictionIdentifyError> {
     const NEEDED: usize = 6;
     let found = distinct_speeds(kept).len();
     if found >= NEEDED {
         return Ok(());
     }
-    Err(IdentifyError::TooFewSpeeds {
+    Err(FrictionIdentifyError::TooFewSpeeds {
         found,
         needed: NEEDED,
         left_out,
     })
 }
 
-fn require_both_sides(kept: &[ConstantSpeedRun], stribeck: f64) -> Result<(), IdentifyError> {
+fn require_both_sides(
+    kept: &[ConstantSpeedRun],
+    stribeck: f64,
+) -> Result<(), FrictionIdentifyError> {
     let speeds = distinct_speeds(kept);
     let below = speeds.iter().filter(|&&s| s < stribeck).count();
     for (side, found) in [("below", below), ("above", speeds.len() - below)] {
         if found < 2 {
-            return Err(IdentifyError::OneSideOfStribeckSpeed {
+            return Err(FrictionIdentifyError::OneSideOfStribeckSpeed {
                 side,
                 found,
                 stribeck_speed: stribeck,

@@ -15,7 +15,7 @@ use crate::PipelineError;
 use crate::moves::{Moves, NamedMotion};
 use crate::robustness::{Sense, WRONG, random_program, room, wrong_belief};
 use crate::strategies::{NONE, Predictors, Strategy, adapted};
-use crate::tracking::{Planned, plan_all};
+use crate::tracking::{PlannedTrajectory, plan_all};
 
 /// Programs of five moves that are learned from.
 pub const PROGRAMS: usize = 10;
@@ -25,7 +25,7 @@ pub const AFTER: [usize; 4] = [1, 2, 4, 10];
 /// How what no parameter holds is learned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Way {
+pub enum ResidualMethod {
     /// Not at all: the parameters are adapted.
     Adapted,
     /// Tables over angle and position.
@@ -36,7 +36,7 @@ pub enum Way {
     Named,
 }
 
-impl Way {
+impl ResidualMethod {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Adapted, Self::Tables, Self::Network, Self::Named];
 
@@ -66,7 +66,7 @@ pub struct Contest {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Compared {
     /// How it was learned.
-    pub way: Way,
+    pub way: ResidualMethod,
     /// Without compensation, the counted moves: greatest error, µm.
     pub none_um: Vec<f64>,
     /// With it, after each of [`AFTER`]: the same of every counted move, µm.
@@ -87,7 +87,10 @@ pub fn contests(
     count: usize,
 ) -> Result<Vec<Contest>, PipelineError> {
     let truth = machine.drive_model()?;
-    let motions: Vec<NamedMotion> = plan_all(axis)?.into_iter().map(Planned::named).collect();
+    let motions: Vec<NamedMotion> = plan_all(axis)?
+        .into_iter()
+        .map(PlannedTrajectory::named)
+        .collect();
     let contest = |i: usize| {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(5000 + i as u64);
@@ -125,9 +128,9 @@ pub fn compare(
     sense: Sense<'_>,
     each: impl Fn() + Sync,
 ) -> Result<Vec<Vec<Compared>>, PipelineError> {
-    let all: Vec<(&Contest, Way)> = contests
+    let all: Vec<(&Contest, ResidualMethod)> = contests
         .iter()
-        .flat_map(|contest| Way::ALL.map(|way| (contest, way)))
+        .flat_map(|contest| ResidualMethod::ALL.map(|way| (contest, way)))
         .collect();
     let made = all.par_iter().map(|(contest, way)| {
         let made = contest.make(axis, *way, network, sense);
@@ -135,29 +138,32 @@ pub fn compare(
         made
     });
     let made: Vec<Compared> = made.collect::<Result<_, _>>()?;
-    Ok(made.chunks(Way::ALL.len()).map(<[_]>::to_vec).collect())
+    Ok(made
+        .chunks(ResidualMethod::ALL.len())
+        .map(<[_]>::to_vec)
+        .collect())
 }
 
 impl Contest {
     fn learner(
         &self,
         axis: &Axis,
-        way: Way,
+        way: ResidualMethod,
         network: &NetworkBasis,
     ) -> Result<Option<AnyLearner>, PipelineError> {
         let b = &self.believed;
         let level = b.friction.parameters().coulomb * b.travel / b.lever;
         let stroke = [axis.stroke.minimum, axis.stroke.maximum];
         Ok(match way {
-            Way::Adapted => None,
-            Way::Tables => Some(AnyLearner::Tables(ResidualLearner::new(
+            ResidualMethod::Adapted => None,
+            ResidualMethod::Tables => Some(AnyLearner::Tables(ResidualLearner::new(
                 stroke, b.travel, level,
             ))),
-            Way::Network => Some(AnyLearner::Network(Box::new(ResidualLearner::of(
+            ResidualMethod::Network => Some(AnyLearner::Network(Box::new(ResidualLearner::of(
                 network.clone(),
                 level,
             )))),
-            Way::Named => {
+            ResidualMethod::Named => {
                 let effects = NamedEffects::new(axis, &self.named)?;
                 Some(AnyLearner::Named(Box::new(ResidualLearner::of(
                     effects, level,
@@ -169,7 +175,7 @@ impl Contest {
     fn make(
         &self,
         axis: &Axis,
-        way: Way,
+        way: ResidualMethod,
         network: &NetworkBasis,
         sense: Sense<'_>,
     ) -> Result<Compared, PipelineError> {

@@ -3,7 +3,7 @@
 
 use axis_sim::effects::{ActiveEffect, Nature};
 use axis_sim::{Axis, EffectForces};
-use compensator::{Residual, ResidualAt, ResidualBasis, Row, Unexplained, over_gaussian};
+use compensator::{Residual, ResidualAt, ResidualBasis, ResidualRow, Unexplained, over_gaussian};
 use nalgebra::{DMatrix, DVector};
 
 use crate::PipelineError;
@@ -138,7 +138,7 @@ impl ResidualBasis for NamedEffects {
         }
     }
 
-    fn row(&mut self, at: &Unexplained, smoothing: f64) -> Row {
+    fn row(&mut self, at: &Unexplained, smoothing: f64) -> ResidualRow {
         let own = self.torque(&self.forces, at, smoothing);
         let mut fixed = own;
         let changed = self.changed.iter().enumerate();
@@ -148,7 +148,7 @@ impl ResidualBasis for NamedEffects {
             (i, slope)
         });
         let values = values.collect();
-        Row { values, fixed }
+        ResidualRow { values, fixed }
     }
 
     fn model(&self, coefficients: &[f64]) -> NamedResidual {

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use axis_sim::{Axis, EffectForces};
-use cfnn::train::{Dataset, Initialisation, Settings, Trainer};
+use cfnn::train::{Dataset, Initialisation, Trainer, TrainingSettings};
 use cfnn::{Scaling, Shape};
 use compensator::{NETWORK_INPUTS, NetworkBasis, Unexplained};
 use rand::{RngExt, SeedableRng};
@@ -96,13 +96,13 @@ pub fn trained_basis(
         hidden: settings.hidden.clone(),
         outputs,
     };
-    let training = Settings {
+    let training = TrainingSettings {
         epochs: settings.epochs,
         initialisation: Initialisation::DataAdapted { axis_aligned: 0.5 },
         resolve_output: true,
         min_gradient: 0.0,
         seed: settings.seed,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let mut trainer = Trainer::new(shape, scaling, &data, training)?;
     trainer.run(|report| {

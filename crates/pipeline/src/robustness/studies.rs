@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use super::{Draw, Machine, constant_speed, machines, pre_roll, random_program, wrong_belief};
 use crate::PipelineError;
 use crate::moves::NamedMotion;
-use crate::tracking::{Planned, plan_all};
+use crate::tracking::{PlannedTrajectory, plan_all};
 
 /// What is asked of a counted move, in the worst of all draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,7 +107,10 @@ pub fn studies(
     let ground = &Arc::new(Ground {
         axis: axis.clone(),
         machine: machine.clone(),
-        motions: plan_all(axis)?.into_iter().map(Planned::named).collect(),
+        motions: plan_all(axis)?
+            .into_iter()
+            .map(PlannedTrajectory::named)
+            .collect(),
         seed,
         draws,
     });

@@ -4,7 +4,7 @@
 use axis_sim::Axis;
 use compensator::{Compensator, DriveTerms, DriveTermsFeedforward, ReversalStart, Sample};
 
-use super::{Build, Learned, NextMove, Strategy, StrategyKind, Table};
+use super::{Build, LearnedValues, NextMove, ReportTable, Strategy, StrategyKind};
 use crate::PipelineError;
 
 pub(super) static KIND: StrategyKind = StrategyKind {
@@ -12,7 +12,7 @@ pub(super) static KIND: StrategyKind = StrategyKind {
     label: "drive terms",
     heading: "Drive terms",
     summary: "feed-forward gains, a reversal pulse and a table, as an ordinary drive has them",
-    table: Table::More,
+    table: ReportTable::More,
     needs: &[],
     build: Build::Carrying(|predictors| {
         let start = reversal_start(&predictors.axis);
@@ -44,10 +44,10 @@ impl Strategy for Applied {
     }
 
     /// Nothing is learned; the drive's state after the move is kept for the next.
-    fn learn(&mut self, record: &[Sample]) -> Result<Learned, PipelineError> {
+    fn learn(&mut self, record: &[Sample]) -> Result<LearnedValues, PipelineError> {
         for sample in record {
             self.0.correct(sample);
         }
-        Ok(Learned::new())
+        Ok(LearnedValues::new())
     }
 }

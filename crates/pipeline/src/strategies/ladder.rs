@@ -16,7 +16,7 @@ use compensator::{
 use trajectories::Motion;
 
 use super::plan::plan;
-use super::{DesignOnce, Learned, NextMove, Predictors, SharedMotion, Strategy};
+use super::{DesignOnce, LearnedValues, NextMove, Predictors, SharedMotion, Strategy};
 use crate::PipelineError;
 use crate::residuals::{AnyLearner, AnyResidual};
 
@@ -213,8 +213,8 @@ impl Strategy for Ladder {
         Ok(Box::new(PlanWithFeedback::new(plan, feedback)))
     }
 
-    fn learn(&mut self, record: &[Sample]) -> Result<Learned, PipelineError> {
-        let mut known = Learned::new();
+    fn learn(&mut self, record: &[Sample]) -> Result<LearnedValues, PipelineError> {
+        let mut known = LearnedValues::new();
         if let Some(adaptation) = &mut self.adaptation {
             // A log that cannot be learned from leaves everything as it was.
             let refused = adaptation.learn(record).err();

@@ -71,7 +71,7 @@ pub struct StrategyKind {
     /// One line for people.
     pub summary: &'static str,
     /// The table that shows it.
-    pub table: Table,
+    pub table: ReportTable,
     /// What must have been found before it can be made.
     pub needs: &'static [Need],
     /// How it is made.
@@ -99,8 +99,8 @@ pub trait Strategy {
     ///
     /// # Errors
     /// [`PipelineError`] where the record cannot be learned from.
-    fn learn(&mut self, _record: &[Sample]) -> Result<Learned, PipelineError> {
-        Ok(Learned::default())
+    fn learn(&mut self, _record: &[Sample]) -> Result<LearnedValues, PipelineError> {
+        Ok(LearnedValues::default())
     }
 }
 
@@ -121,7 +121,7 @@ pub type SharedMotion = Arc<dyn Motion + Send + Sync>;
 
 /// What a strategy has learned, by name: relative errors of the axis file's parameters,
 /// and what else it tells, in the unit that the name ends in.
-pub type Learned = BTreeMap<String, f64>;
+pub type LearnedValues = BTreeMap<String, f64>;
 
 /// Each move alike.
 struct EachAlike {
@@ -137,7 +137,7 @@ impl Strategy for EachAlike {
 
 /// The table of a report that shows a strategy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Table {
+pub enum ReportTable {
     /// Table 16 of the paper: without friction feed-forward.
     WithoutFrictionFeedforward,
     /// Table 15 of the paper: with friction feed-forward.
@@ -236,7 +236,7 @@ pub fn named<'a>(strategies: &[&'a StrategyKind], name: &str) -> Option<&'a Stra
 }
 
 /// The strategies of a table among `strategies`, in their order.
-pub fn of_table<'a>(strategies: &[&'a StrategyKind], table: Table) -> Vec<&'a StrategyKind> {
+pub fn of_table<'a>(strategies: &[&'a StrategyKind], table: ReportTable) -> Vec<&'a StrategyKind> {
     let strategies = strategies.iter().copied();
     strategies.filter(|kind| kind.table == table).collect()
 }

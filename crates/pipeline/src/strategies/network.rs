@@ -1,6 +1,6 @@
 //! `network`: the tracking error that the network predicts for the end of the cycle.
 
-use super::{Build, Need, StrategyKind, Table};
+use super::{Build, Need, ReportTable, StrategyKind};
 
 /// The network alone.
 pub static KIND: StrategyKind = StrategyKind {
@@ -8,7 +8,7 @@ pub static KIND: StrategyKind = StrategyKind {
     label: "network",
     heading: "Network",
     summary: "the network's predicted error",
-    table: Table::WithoutFrictionFeedforward,
+    table: ReportTable::WithoutFrictionFeedforward,
     needs: &[Need::Network],
     build: Build::Each(|predictors| Ok(Box::new(predictors.network()?))),
 };

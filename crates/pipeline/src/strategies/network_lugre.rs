@@ -2,7 +2,7 @@
 
 use compensator::Combined;
 
-use super::{Build, Need, StrategyKind, Table};
+use super::{Build, Need, ReportTable, StrategyKind};
 
 /// The network with LuGre feed-forward.
 pub static KIND: StrategyKind = StrategyKind {
@@ -10,7 +10,7 @@ pub static KIND: StrategyKind = StrategyKind {
     label: "network + LuGre",
     heading: "Network + LuGre",
     summary: "the network, and LuGre feed-forward with the identified parameters",
-    table: Table::WithFrictionFeedforward,
+    table: ReportTable::WithFrictionFeedforward,
     needs: &[Need::Network, Need::IdentifiedFriction],
     build: Build::Each(|predictors| {
         let friction = predictors.friction(predictors.identified()?)?;

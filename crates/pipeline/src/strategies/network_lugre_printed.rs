@@ -2,14 +2,14 @@
 
 use compensator::Combined;
 
-use super::{Build, Need, StrategyKind, Table};
+use super::{Build, Need, ReportTable, StrategyKind};
 
 pub(super) static KIND: StrategyKind = StrategyKind {
     name: "network_lugre_printed",
     label: "network + LuGre as in the axis file",
     heading: "Network + LuGre, the axis file's own parameters",
     summary: "the network, and LuGre feed-forward with the axis file's own parameters",
-    table: Table::More,
+    table: ReportTable::More,
     needs: &[Need::Network],
     build: Build::Each(|predictors| {
         let friction = predictors.friction(predictors.axis.friction.law)?;

@@ -2,7 +2,7 @@
 
 use compensator::NoCompensation;
 
-use super::{Build, StrategyKind, Table};
+use super::{Build, ReportTable, StrategyKind};
 
 /// The servo alone, which no list of strategies holds: what they are compared with.
 pub static KIND: StrategyKind = StrategyKind {
@@ -10,7 +10,7 @@ pub static KIND: StrategyKind = StrategyKind {
     label: "none",
     heading: "None",
     summary: "the servo alone",
-    table: Table::More,
+    table: ReportTable::More,
     needs: &[],
     build: Build::Each(|_| Ok(Box::new(NoCompensation))),
 };

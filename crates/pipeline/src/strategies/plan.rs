@@ -2,7 +2,7 @@
 
 use compensator::{Compensator, DriveModel, Plan, PlanSettings, Reference, Target};
 
-use super::{Build, NextMove, Strategy, StrategyKind, Table};
+use super::{Build, NextMove, ReportTable, Strategy, StrategyKind};
 use crate::PipelineError;
 
 pub(super) static KIND: StrategyKind = StrategyKind {
@@ -10,7 +10,7 @@ pub(super) static KIND: StrategyKind = StrategyKind {
     label: "plan",
     heading: "Plan",
     summary: "inertia, friction and wind-up along the motion ahead, the current loop inverted",
-    table: Table::More,
+    table: ReportTable::More,
     needs: &[],
     build: Build::Carrying(|predictors| {
         Ok(Box::new(Planning {

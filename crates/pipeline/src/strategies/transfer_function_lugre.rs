@@ -3,14 +3,14 @@
 
 use compensator::Combined;
 
-use super::{Build, Need, StrategyKind, Table};
+use super::{Build, Need, ReportTable, StrategyKind};
 
 pub(super) static KIND: StrategyKind = StrategyKind {
     name: "transfer_function_lugre",
     label: "transfer function + LuGre",
     heading: "Transfer function + LuGre",
     summary: "the transfer function, and LuGre feed-forward with the identified parameters",
-    table: Table::WithFrictionFeedforward,
+    table: ReportTable::WithFrictionFeedforward,
     needs: &[Need::TransferFunctions, Need::IdentifiedFriction],
     build: Build::Each(|predictors| {
         let model = predictors.transfer()?.with_feedforward;

@@ -5,7 +5,7 @@ use outside::ACCELERATION_FEEDFORWARD;
 use pipeline::PipelineError;
 use pipeline::compensation::{compensate, compensate_with, find, runs};
 use pipeline::sampling::{SamplePlan, Sampler, SpeedDensity, ranges};
-use pipeline::strategies::{NONE, Need, Predictors, STRATEGIES, Table, of_table};
+use pipeline::strategies::{NONE, Need, Predictors, ReportTable, STRATEGIES, of_table};
 use pipeline::summary::{self, Compensated};
 use pipeline::training::{NetworkPlan, train};
 use pipeline::validation::validate;
@@ -63,7 +63,7 @@ fn it_appears_in_summary_and_tables_beside_the_others() {
     );
     let again: Compensated = serde_json::from_str(&serde_json::to_string(all).unwrap()).unwrap();
     assert_eq!(&again, all);
-    let more: Vec<_> = of_table(&strategies, Table::More);
+    let more: Vec<_> = of_table(&strategies, ReportTable::More);
     assert_eq!(more.last().unwrap().label, "acceleration feed-forward");
 }
 

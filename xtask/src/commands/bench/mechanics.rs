@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use beam_fem::{Beam, Dof, Material, Mesh, Section, lowest_modes};
+use beam_fem::{Beam, CrossSection, Dof, Material, Mesh, lowest_modes};
 use miette::{IntoDiagnostic, Result};
 use trajectories::{Limits, Motion, SCurve, Setpoint};
 
@@ -60,7 +60,7 @@ fn motions(plan: &Plan) -> Result<Vec<Row>> {
 
 fn beam(elements: usize) -> Result<Beam> {
     let steel = Material::new(206e9, 0.3, 7850.0).into_diagnostic()?;
-    let section = Section::solid_circle(0.04, &steel).into_diagnostic()?;
+    let section = CrossSection::solid_circle(0.04, &steel).into_diagnostic()?;
     let mesh = Mesh::uniform(1.5, elements).into_diagnostic()?;
     Ok(Beam::new(section, steel, mesh))
 }

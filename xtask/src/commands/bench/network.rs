@@ -2,8 +2,8 @@
 
 use std::hint::black_box;
 
-use cfnn::train::{Dataset, Settings, Trainer, nguyen_widrow};
-use cfnn::{FixedNetwork, Network, Predictor, Range, Scaling, Shape};
+use cfnn::train::{Dataset, Trainer, TrainingSettings, nguyen_widrow};
+use cfnn::{FixedNetwork, Network, Predictor, Scaling, ScalingRange, Shape};
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, Par};
 use miette::{IntoDiagnostic, Result};
@@ -43,10 +43,10 @@ fn data(samples: usize) -> Result<Dataset> {
 fn epoch(plan: &Plan) -> Result<Row> {
     let samples = plan.size(5000, 250);
     let data = data(samples)?;
-    let settings = Settings {
+    let settings = TrainingSettings {
         threads: plan.threads,
         epochs: usize::MAX,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let scaling = data.scaling().into_diagnostic()?;
     let mut trainer = Trainer::new(shape(), scaling, &data, settings).into_diagnostic()?;
@@ -100,7 +100,7 @@ fn predictions(plan: &Plan) -> Result<Vec<Row>> {
     let weights = nguyen_widrow(&shape(), 1).into_diagnostic()?;
     let network = Network::new(shape(), scaling, weights).into_diagnostic()?;
     let single: Vec<f32> = network.packed_weights().iter().map(|&w| w as f32).collect();
-    let unit = Range::new("bench", -1.0f32, 1.0).into_diagnostic()?;
+    let unit = ScalingRange::new("bench", -1.0f32, 1.0).into_diagnostic()?;
     let fixed = FixedNetwork::<f32, 4, 1, 66>::new(&HIDDEN, &single, [unit; 4], [unit])
         .into_diagnostic()?;
     let plainly = network.clone();

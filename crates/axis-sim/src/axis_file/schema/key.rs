@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::axis::Range;
+use crate::axis::ValueRange;
 use crate::part::{Key, Kind};
 
 /// Significant digits of a limit: the reader takes what is 1e-12 of it beyond, and a limit in
@@ -72,7 +72,7 @@ pub(super) fn properties(key: &Key) -> Vec<(String, Value)> {
     }
 }
 
-fn number(key: &Key, unit: Option<(&str, f64)>, limits: &Range) -> Value {
+fn number(key: &Key, unit: Option<(&str, f64)>, limits: &ValueRange) -> Value {
     let factor = unit.map_or(1.0, |(_, factor)| factor);
     let mut number = json!({
         "type": "number",

@@ -3,13 +3,13 @@
 use std::f64::consts::{PI, TAU};
 
 use axis_sim::effects::{
-    Changes, Effect, EffectChannel, EffectParameter, Measure, MemoryLaw, Nature, Steepness,
-    TableStep, Variable as Shown,
+    Changes, Effect, EffectChannel, EffectParameter, EffectVariable as Shown, Measure, MemoryLaw,
+    Nature, Steepness, TableStep,
 };
 use axis_sim::{SetupError, Start};
 
 use super::Factor;
-use super::grammar::{Shape, Variable};
+use super::grammar::{LawShape, LawVariable};
 
 /// The name of every law among effects.
 pub(crate) const LAW_NAME: &str = "law";
@@ -77,8 +77,8 @@ impl Product {
                 return None;
             };
             let factor = Factor {
-                variable: *Variable::ALL.get(index(variable)?)?,
-                shape: *Shape::ALL.get(index(shape)?)?,
+                variable: *LawVariable::ALL.get(index(variable)?)?,
+                shape: *LawShape::ALL.get(index(shape)?)?,
                 number,
             };
             Some((factor, [middle, half]))
@@ -93,20 +93,20 @@ impl Product {
         )
     }
 
-    fn has(&self, variable: Variable) -> bool {
+    fn has(&self, variable: LawVariable) -> bool {
         self.0.iter().any(|(f, _)| f.variable == variable)
     }
 
     fn at(&self, p: &Point) -> f64 {
         let one = |(f, [middle, half]): &(Factor, [f64; 2])| {
             let x = match f.variable {
-                Variable::Speed => p.speed,
-                Variable::Position => p.position,
-                Variable::Angle => return f.shape.at(in_turn(p.position / half), f.number),
-                Variable::Acceleration => p.acceleration,
-                Variable::Time => p.time,
-                Variable::Current => p.torque,
-                Variable::Force => p.force,
+                LawVariable::Speed => p.speed,
+                LawVariable::Position => p.position,
+                LawVariable::Angle => return f.shape.at(in_turn(p.position / half), f.number),
+                LawVariable::Acceleration => p.acceleration,
+                LawVariable::Time => p.time,
+                LawVariable::Current => p.torque,
+                LawVariable::Force => p.force,
             };
             f.shape.at((x - middle) / half, f.number)
         };
@@ -114,7 +114,7 @@ impl Product {
     }
 
     /// Most by which it changes with one variable; shapes are 2 at most near their range.
-    fn steepest(&self, variable: Variable) -> f64 {
+    fn steepest(&self, variable: LawVariable) -> f64 {
         let own = self.0.iter().filter(|(f, _)| f.variable == variable);
         own.map(|(f, [_, half])| 2.0 * f.shape.steepest() / half)
             .sum()
@@ -133,7 +133,7 @@ fn in_turn(angle: f64) -> f64 {
 fn install(values: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
     let size = values.first().copied().unwrap_or(0.0);
     let law = Product::new(values);
-    if law.has(Variable::Current) {
+    if law.has(LawVariable::Current) {
         let travel = to.travel_per_radian();
         to.torque(move |angle, torque| {
             let at = Point {
@@ -147,17 +147,18 @@ fn install(values: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
     }
     let size_of = size.abs();
     let mut steepness = Steepness {
-        speed: size_of * law.steepest(Variable::Speed),
-        position: size_of * (law.steepest(Variable::Position) + law.steepest(Variable::Angle) / PI),
+        speed: size_of * law.steepest(LawVariable::Speed),
+        position: size_of
+            * (law.steepest(LawVariable::Position) + law.steepest(LawVariable::Angle) / PI),
         ..Steepness::default()
     };
-    if law.has(Variable::Acceleration) {
-        steepness.speed += size_of * law.steepest(Variable::Acceleration) / LAG;
+    if law.has(LawVariable::Acceleration) {
+        steepness.speed += size_of * law.steepest(LawVariable::Acceleration) / LAG;
         to.load_with_memory(steepness, Remembered { size, law });
         return Ok(());
     }
-    if law.has(Variable::Force) {
-        steepness.transmitted = size_of * law.steepest(Variable::Force);
+    if law.has(LawVariable::Force) {
+        steepness.transmitted = size_of * law.steepest(LawVariable::Force);
     }
     to.load_within(steepness, move |t| {
         let at = Point {

@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use axis_sim::effects::Variable as Shown;
+use axis_sim::effects::EffectVariable as Shown;
 use serde::{Deserialize, Serialize};
 
 /// What a law depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Variable {
+pub enum LawVariable {
     /// Speed of the load.
     Speed,
     /// Position of the load.
@@ -25,7 +25,7 @@ pub enum Variable {
     Force,
 }
 
-impl Variable {
+impl LawVariable {
     pub(super) const ALL: [Self; 7] = [
         Self::Speed,
         Self::Position,
@@ -65,7 +65,7 @@ impl Variable {
 /// A shape over x from −1 to 1, p the number that it is drawn with (0 to 1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Shape {
+pub enum LawShape {
     /// x
     Line,
     /// |x| − 1/2
@@ -86,7 +86,7 @@ pub enum Shape {
     Bump,
 }
 
-impl Shape {
+impl LawShape {
     pub(super) const ALL: [Self; 9] = [
         Self::Line,
         Self::Size,
@@ -130,32 +130,35 @@ impl Shape {
 }
 
 /// A shape over a variable.
-pub(super) type Term = (Variable, Shape);
+pub(super) type Term = (LawVariable, LawShape);
 
 /// Shapes that are drawn over a variable alone: a line each. Left out is what an effect of
 /// the library is: viscous, dry and one-sided friction, springs and gravity, a force that
 /// repeats or lasts, cogging, a mass, a torque constant.
-pub(super) const SHAPES: &[(Variable, &[Shape])] = {
-    use Shape::{Bump, Cube, Line, Root, Signed, Size, Square, Wave};
+pub(super) const SHAPES: &[(LawVariable, &[LawShape])] = {
+    use LawShape::{Bump, Cube, Line, Root, Signed, Size, Square, Wave};
     &[
-        (Variable::Speed, &[Signed, Cube, Wave, Square, Root, Bump]),
         (
-            Variable::Position,
+            LawVariable::Speed,
+            &[Signed, Cube, Wave, Square, Root, Bump],
+        ),
+        (
+            LawVariable::Position,
             &[Size, Square, Cube, Wave, Bump, Signed],
         ),
-        (Variable::Angle, &[Size, Square, Bump]),
-        (Variable::Acceleration, &[Signed, Size, Cube]),
-        (Variable::Time, &[Line, Square, Cube, Size]),
-        (Variable::Current, &[Signed, Cube, Size, Square]),
-        (Variable::Force, &[Signed, Square, Size]),
+        (LawVariable::Angle, &[Size, Square, Bump]),
+        (LawVariable::Acceleration, &[Signed, Size, Cube]),
+        (LawVariable::Time, &[Line, Square, Cube, Size]),
+        (LawVariable::Current, &[Signed, Cube, Size, Square]),
+        (LawVariable::Force, &[Signed, Square, Size]),
     ]
 };
 
 /// Products that are drawn, a line each. Left out is what the library has: friction that
 /// changes along the stroke or as it warms, losses in proportion to a force, torque ripple.
 pub(super) const PRODUCTS: &[[Term; 2]] = {
-    use Shape::{Bump, Line, Sign, Signed, Size, Square, Wave};
-    use Variable::{Acceleration, Angle, Current, Position, Speed, Time};
+    use LawShape::{Bump, Line, Sign, Signed, Size, Square, Wave};
+    use LawVariable::{Acceleration, Angle, Current, Position, Speed, Time};
     &[
         [(Speed, Line), (Position, Line)],
         [(Speed, Line), (Position, Wave)],
@@ -184,7 +187,7 @@ mod tests {
     #[test]
     fn even_shapes_push_no_way_in_the_mean() {
         let n = 20_000;
-        for shape in [Shape::Size, Shape::Square, Shape::Bump] {
+        for shape in [LawShape::Size, LawShape::Square, LawShape::Bump] {
             for p in [0.0, 0.4, 1.0] {
                 let x = |k: i32| (f64::from(k) + 0.5) / 1e4 - 1.0;
                 let mean = (0..n).map(|k| shape.at(x(k), p)).sum::<f64>() / f64::from(n);
@@ -195,7 +198,7 @@ mod tests {
 
     #[test]
     fn no_shape_is_steeper_than_said() {
-        for shape in Shape::ALL {
+        for shape in LawShape::ALL {
             for p in [0.0, 0.3, 1.0] {
                 for k in -1000..1000 {
                     let x = f64::from(k) * 1e-3;
@@ -209,20 +212,20 @@ mod tests {
     /// What a shape alone over a variable may not be, as the library has it.
     #[test]
     fn no_law_is_an_effect_of_the_library() {
-        let has = |v: Variable, s: Shape| {
+        let has = |v: LawVariable, s: LawShape| {
             let mut own = SHAPES.iter().filter(|(variable, _)| *variable == v);
             own.any(|(_, all)| all.contains(&s))
         };
         for (v, s) in [
-            (Variable::Speed, Shape::Line),
-            (Variable::Speed, Shape::Sign),
-            (Variable::Speed, Shape::Size),
-            (Variable::Position, Shape::Line),
-            (Variable::Time, Shape::Wave),
-            (Variable::Angle, Shape::Wave),
-            (Variable::Acceleration, Shape::Line),
-            (Variable::Current, Shape::Line),
-            (Variable::Force, Shape::Line),
+            (LawVariable::Speed, LawShape::Line),
+            (LawVariable::Speed, LawShape::Sign),
+            (LawVariable::Speed, LawShape::Size),
+            (LawVariable::Position, LawShape::Line),
+            (LawVariable::Time, LawShape::Wave),
+            (LawVariable::Angle, LawShape::Wave),
+            (LawVariable::Acceleration, LawShape::Line),
+            (LawVariable::Current, LawShape::Line),
+            (LawVariable::Force, LawShape::Line),
         ] {
             assert!(!has(v, s), "{v:?} {s:?}");
         }

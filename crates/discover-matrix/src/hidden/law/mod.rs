@@ -13,16 +13,16 @@ use axis_sim::effects::{ActiveEffect, Measure, Scales};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use effect::{LAW, LAW_NAME};
+pub use grammar::{LawShape, LawVariable};
 use grammar::{PRODUCTS, SHAPES, Term};
-pub use grammar::{Shape, Variable};
 
 /// One factor of a law: a variable, a shape over it, and the number that shapes it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
     /// Of what.
-    pub variable: Variable,
+    pub variable: LawVariable,
     /// In which shape.
-    pub shape: Shape,
+    pub shape: LawShape,
     /// From 0 to 1.
     pub number: f64,
 }
@@ -92,7 +92,7 @@ impl Law {
     }
 
     /// What it depends on.
-    pub fn variables(&self) -> Vec<Variable> {
+    pub fn variables(&self) -> Vec<LawVariable> {
         self.factors.iter().map(|f| f.variable).collect()
     }
 
@@ -109,8 +109,8 @@ impl Law {
     pub fn active(&self, size: f64) -> ActiveEffect {
         let mut values = vec![size];
         for (f, [middle, half]) in self.factors.iter().zip(&self.ranges) {
-            let variable = Variable::ALL.iter().position(|v| *v == f.variable);
-            let shape = Shape::ALL.iter().position(|s| *s == f.shape);
+            let variable = LawVariable::ALL.iter().position(|v| *v == f.variable);
+            let shape = LawShape::ALL.iter().position(|s| *s == f.shape);
             let [variable, shape] = [variable, shape].map(|at| at.unwrap_or(0) as f64);
             values.extend([variable, shape, f.number, *middle, *half]);
         }
@@ -122,18 +122,18 @@ impl Law {
     }
 
     fn is_at_motor(&self) -> bool {
-        let current = |f: &Factor| f.variable == Variable::Current;
+        let current = |f: &Factor| f.variable == LawVariable::Current;
         self.factors.iter().any(current)
     }
 }
 
 /// Whether an axis has the variable.
-fn exists(axis: &Axis, variable: Variable) -> bool {
-    variable != Variable::Force || axis.mechanism.stiffness().is_some()
+fn exists(axis: &Axis, variable: LawVariable) -> bool {
+    variable != LawVariable::Force || axis.mechanism.stiffness().is_some()
 }
 
 /// Middle and half of the range of a variable on a motion.
-fn range(axis: &Axis, on: &Ranges, variable: Variable) -> [f64; 2] {
+fn range(axis: &Axis, on: &Ranges, variable: LawVariable) -> [f64; 2] {
     let travel = axis.travel_per_radian();
     // What the motion asks for, and dry friction.
     let friction = axis.friction.law.parameters().coulomb / axis.friction.lever(travel);
@@ -141,16 +141,16 @@ fn range(axis: &Axis, on: &Ranges, variable: Variable) -> [f64; 2] {
     let inertia = axis.mechanism.total_inertia();
     let torque = friction * travel + inertia * on.acceleration / travel;
     match variable {
-        Variable::Speed => [0.0, on.speed],
-        Variable::Position => {
+        LawVariable::Speed => [0.0, on.speed],
+        LawVariable::Position => {
             let [low, high] = on.position;
             [0.5 * (low + high), 0.5 * (high - low)]
         }
         // Position over this is the motor's angle.
-        Variable::Angle => [0.0, travel],
-        Variable::Acceleration => [0.0, on.acceleration],
-        Variable::Time => [0.5 * on.duration, 0.5 * on.duration],
-        Variable::Current => [0.0, torque],
-        Variable::Force => [0.0, force],
+        LawVariable::Angle => [0.0, travel],
+        LawVariable::Acceleration => [0.0, on.acceleration],
+        LawVariable::Time => [0.5 * on.duration, 0.5 * on.duration],
+        LawVariable::Current => [0.0, torque],
+        LawVariable::Force => [0.0, force],
     }
 }

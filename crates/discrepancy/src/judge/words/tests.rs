@@ -2,7 +2,7 @@
 
 use crate::judge::told::{Confidence, Level, remedies};
 use crate::judge::{
-    Cost, Discovery, EffectFound, EffortCost, Figures, Gaps, ParameterFound, Recalibrated, Size,
+    Cost, Discovery, EffectFound, EffortCost, FigureLogs, Gaps, ParameterFound, Recalibrated, Size,
     Told, TrackingCost, Verdict,
 };
 use crate::judge::{Curve, Unknown};
@@ -36,7 +36,7 @@ fn discovery(verdict: Verdict, effects: Vec<EffectFound>, known: Vec<Recalibrate
             fit: gap.clone(),
             check: gap,
         },
-        figures: Figures::default(),
+        figures: FigureLogs::default(),
         recalibrated: known,
         likenesses: Vec::new(),
         next_experiment: None,

@@ -57,16 +57,18 @@ impl Shape {
     }
 
     /// Whether it is over what an effect is shown over, or over a product with it.
-    pub fn is_over(&self, variable: effects::Variable) -> bool {
+    pub fn is_over(&self, variable: effects::EffectVariable) -> bool {
         match variable {
-            effects::Variable::Speed => {
+            effects::EffectVariable::Speed => {
                 self.variable == Variable::Speed || self.factor != Factor::One
             }
-            effects::Variable::Position => self.variable == Variable::Position,
-            effects::Variable::MotorAngle => self.variable == Variable::Angle,
-            effects::Variable::Acceleration => self.variable == Variable::Acceleration,
-            effects::Variable::Current => self.variable == Variable::Effort,
-            effects::Variable::Way | effects::Variable::Time => self.variable == Variable::Time,
+            effects::EffectVariable::Position => self.variable == Variable::Position,
+            effects::EffectVariable::MotorAngle => self.variable == Variable::Angle,
+            effects::EffectVariable::Acceleration => self.variable == Variable::Acceleration,
+            effects::EffectVariable::Current => self.variable == Variable::Effort,
+            effects::EffectVariable::Way | effects::EffectVariable::Time => {
+                self.variable == Variable::Time
+            }
         }
     }
 

@@ -22,8 +22,8 @@ pub(crate) use self::form::is_form;
 pub(crate) use self::revise::ABOVE_NOISE;
 use self::state::Search;
 pub use self::types::{
-    Alike, Found, Named, ONE_CLASS, Reason, Refused, Replaced, RunnerUp, SearchError, Settings,
-    SettingsError, Test,
+    Alike, Found, Named, ONE_CLASS, RefusalReason, Refused, Replaced, RunnerUp, SearchError,
+    Settings, SettingsError, Test,
 };
 use crate::answers::{LogSet, State};
 use crate::estimate::fit::{Fit, Fitter};

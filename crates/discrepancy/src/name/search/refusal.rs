@@ -3,7 +3,7 @@
 use axis_sim::ReplayError;
 
 use super::state::Search;
-use super::types::{Reason, Refused, RunnerUp};
+use super::types::{RefusalReason, Refused, RunnerUp};
 use crate::answers::{LogSet, State};
 use crate::name::gap::{gap, worsened};
 use crate::noise::floors;
@@ -35,16 +35,16 @@ impl Search<'_> {
         for before in &befores {
             if let Some(channels) = worsened(set, before, &after, &floors) {
                 tracing::debug!(?channels, "check motion is further off");
-                return Ok(Some(self.refusal(Reason::Worse(channels))));
+                return Ok(Some(self.refusal(RefusalReason::Worse(channels))));
             }
         }
         let [_, calibrated] = &befores;
         let share = gap(set, calibrated, &after, &floors).reduction;
         let is_little = share < LEAST_SHARE && !self.settings_ask_for_all();
-        Ok(is_little.then(|| self.refusal(Reason::Little(share))))
+        Ok(is_little.then(|| self.refusal(RefusalReason::Little(share))))
     }
 
-    fn refusal(&self, reason: Reason) -> Refused {
+    fn refusal(&self, reason: RefusalReason) -> Refused {
         let effects = self.named.iter().filter(|named| !named.is_form());
         Refused {
             effects: effects.cloned().collect(),

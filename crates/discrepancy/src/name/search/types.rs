@@ -197,12 +197,12 @@ pub struct Refused {
     /// The effects.
     pub effects: Vec<Named>,
     /// Why not.
-    pub reason: Reason,
+    pub reason: RefusalReason,
 }
 
 /// Why effects are not given.
 #[derive(Clone, Debug)]
-pub enum Reason {
+pub enum RefusalReason {
     /// Check motion was further off than without them in these channels; in none, where it
     /// was so in total only.
     Worse(Vec<&'static str>),

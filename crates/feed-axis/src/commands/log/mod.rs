@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use axis_log::intake::{Options as Intake, prepare};
 use axis_log::quality::{
-    ChannelQuality, Clock, Finding, Law, Relation, channel_quality, clock, cross_check,
+    ChannelQuality, Clock, Finding, Relation, RelationLaw, channel_quality, clock, cross_check,
 };
-use axis_log::{Log, Mapping, Proposal, propose};
+use axis_log::{Log, Mapping, MappingProposal, propose};
 use axis_sim::Axis;
 use clap::{Args, Subcommand};
 use discrepancy::logs::{exact_channels, relations};
@@ -75,7 +75,7 @@ struct Seen {
     channels: Vec<ChannelQuality>,
     findings: Vec<Finding>,
     /// Of each file of another program.
-    proposals: Vec<Proposal>,
+    proposals: Vec<MappingProposal>,
 }
 
 /// Runs the command.
@@ -147,7 +147,9 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
     };
     let against = |name: &str| {
         let with = relations.iter().find(|r| {
-            r.channel == name && matches!(r.law, Law::Same | Law::Follows) && log.has(&r.from)
+            r.channel == name
+                && matches!(r.law, RelationLaw::Same | RelationLaw::Follows)
+                && log.has(&r.from)
         });
         with.map(|r| r.from.as_str())
     };
@@ -165,7 +167,7 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
 }
 
 /// What the mapping of files of other programs could have besides.
-fn proposals(paths: &[PathBuf], mapping: &Mapping) -> Result<Vec<Proposal>> {
+fn proposals(paths: &[PathBuf], mapping: &Mapping) -> Result<Vec<MappingProposal>> {
     let mut all = Vec::new();
     for path in paths {
         if let Some(mut proposal) = propose(path).into_diagnostic()? {
@@ -180,14 +182,14 @@ fn proposals(paths: &[PathBuf], mapping: &Mapping) -> Result<Vec<Proposal>> {
 
 /// Relations that names and units alone tell.
 fn by_name(log: &Log) -> Vec<Relation> {
-    let one = Law::Integral { factor: 1.0 };
+    let one = RelationLaw::Integral { factor: 1.0 };
     let all = [
-        Relation::new("position_m", "position_ref_m", Law::Same),
-        Relation::new("position_rad", "position_ref_rad", Law::Same),
+        Relation::new("position_m", "position_ref_m", RelationLaw::Same),
+        Relation::new("position_rad", "position_ref_rad", RelationLaw::Same),
         Relation::new("position_m", "velocity_m_s", one),
         Relation::new("position_rad", "velocity_rad_s", one),
         Relation::new("motor_angle_rad", "motor_speed_rad_s", one),
-        Relation::new("iq_a", "iq_ref_a", Law::Follows),
+        Relation::new("iq_a", "iq_ref_a", RelationLaw::Follows),
     ];
     let there = |r: &Relation| log.has(&r.channel) && log.has(&r.from);
     all.into_iter().filter(there).collect()

@@ -1,6 +1,6 @@
 //! The page of logs.
 
-use axis_log::quality::{ChannelQuality, Verdict};
+use axis_log::quality::{ChannelQuality, CrossCheckVerdict};
 use report::{Cell, Figure, Notice, Page, Section, Series, Table};
 
 use super::Seen;
@@ -31,8 +31,8 @@ fn sections(seen: &Seen, page: Page) -> Page {
     }
     for f in &seen.findings {
         let kind = match f.verdict {
-            Verdict::Agrees => Notice::Good,
-            Verdict::Unsure | Verdict::Contradicts => Notice::Warn,
+            CrossCheckVerdict::Agrees => Notice::Good,
+            CrossCheckVerdict::Unsure | CrossCheckVerdict::Contradicts => Notice::Warn,
         };
         let lines = f.lines().map_or(String::new(), |l| {
             format!(" Proposed: {}", l.replace('\n', "  "))

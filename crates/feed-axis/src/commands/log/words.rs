@@ -3,8 +3,8 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use axis_log::quality::{ChannelQuality, Colour, Verdict};
-use axis_log::{Channel, Proposal};
+use axis_log::quality::{ChannelQuality, Colour, CrossCheckVerdict};
+use axis_log::{Channel, MappingProposal};
 use serde::Serialize;
 
 use super::Seen;
@@ -108,9 +108,9 @@ impl<'a> OneLog<'a> {
         let channels = seen.channels.iter().zip(&seen.log.channels()[1..]);
         let found = |finding: &axis_log::quality::Finding| Found {
             verdict: match finding.verdict {
-                Verdict::Agrees => "agrees",
-                Verdict::Unsure => "unsure",
-                Verdict::Contradicts => "contradicts",
+                CrossCheckVerdict::Agrees => "agrees",
+                CrossCheckVerdict::Unsure => "unsure",
+                CrossCheckVerdict::Contradicts => "contradicts",
             },
             what: finding.to_string(),
             proposed: finding.lines(),
@@ -132,7 +132,7 @@ impl<'a> OneLog<'a> {
 }
 
 impl<'a> Imported<'a> {
-    fn of(proposal: &'a Proposal) -> Self {
+    fn of(proposal: &'a MappingProposal) -> Self {
         let lines = proposal.lines();
         Self {
             format: proposal.format,

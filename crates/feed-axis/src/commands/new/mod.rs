@@ -18,12 +18,12 @@ use crate::program;
 /// An example of each kind of mechanism.
 const EXAMPLES: [&str; 8] = [
     include_str!("../../../templates/ball-screw.toml"),
-    include_str!("../../../../../data/axes/screw-datasheet.toml"),
-    include_str!("../../../../../data/axes/rack.toml"),
-    include_str!("../../../../../data/axes/belt.toml"),
-    include_str!("../../../../../data/axes/joint.toml"),
-    include_str!("../../../../../data/axes/linear-motor.toml"),
-    include_str!("../../../../../data/axes/rotary-table.toml"),
+    include_str!("../../../templates/screw-datasheet.toml"),
+    include_str!("../../../templates/rack.toml"),
+    include_str!("../../../templates/belt.toml"),
+    include_str!("../../../templates/joint.toml"),
+    include_str!("../../../templates/linear-motor.toml"),
+    include_str!("../../../templates/rotary-table.toml"),
     include_str!("../../../templates/rigid-mass.toml"),
 ];
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use cfnn::artifact::{checkpoint_from_bytes, checkpoint_to_bytes, network_to_bytes};
-use cfnn::train::{Dataset, Settings, Trainer};
+use cfnn::train::{Dataset, Trainer, TrainingSettings};
 use cfnn::{Network, Shape};
 use miette::{IntoDiagnostic, Result, WrapErr};
 
@@ -59,10 +59,10 @@ fn trainer() -> std::result::Result<Trainer, cfnn::Error> {
         hidden: vec![2, 2],
         outputs: 1,
     };
-    let settings = Settings {
+    let settings = TrainingSettings {
         epochs: 3,
         threads: 1,
-        ..Settings::default()
+        ..TrainingSettings::default()
     };
     let mut trainer = Trainer::new(shape, data.scaling()?, &data, settings)?;
     trainer.run(|_| {});

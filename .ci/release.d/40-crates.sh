@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# The crates as another project gets them: made into packages and built from these, each feature
+# alone, with the oldest Rust that they promise, and their interface beside the last release's.
+set -euo pipefail
+source .ci/release.d/lib.bash
+export CARGO_INCREMENTAL=0
+export PATH="$PWD/target/tools/bin:$PATH"
+
+# cargo_tool NAME VERSION: whether the subcommand is there, or can be built.
+cargo_tool() {
+  command -v "$1" >/dev/null && return 0
+  cargo install "$1" --version "$2" --locked --root target/tools --target-dir target/tools-build --quiet
+}
+
+crates=()
+for folder in crates/*/; do
+  crates+=(-p "$(basename "$folder")")
+done
+
+echo "-- packages, in the order of publishing"
+cargo run --quiet --locked -p xtask -- publish --dry-run
+
+echo "-- each feature alone"
+# One package at a time, its tests' dependencies not built: nothing else turns a feature on.
+if cargo_tool cargo-hack 0.6.46; then
+  cargo hack check --quiet --locked --each-feature "${crates[@]}"
+else
+  skipped "cargo-hack could not be built: features were not checked alone"
+fi
+
+echo "-- the oldest Rust"
+oldest=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
+if command -v rustup >/dev/null &&
+  { rustup toolchain list | grep -q "^$oldest" || rustup toolchain install "$oldest" --profile minimal; } >/dev/null 2>&1; then
+  # A folder of its own: what another compiler made is of no use.
+  CARGO_TARGET_DIR=target/oldest-rust cargo "+$oldest" check --quiet --locked --all-features "${crates[@]}"
+  printf 'Rust %s builds all crates\n' "$oldest"
+else
+  skipped "Rust $oldest could not be installed: it was not tried"
+fi
+
+echo "-- the interface beside the last release's"
+last=$(git describe --tags --abbrev=0 --match 'v*' 2>/dev/null || true)
+if [ -z "$last" ]; then
+  skipped "no release is tagged (v…): there is no interface to compare with"
+elif cargo_tool cargo-semver-checks 0.51.0; then
+  cargo semver-checks check-release "${crates[@]}" --baseline-rev "$last" --all-features
+else
+  skipped "cargo-semver-checks could not be built: the interface was not compared with $last"
+fi
