@@ -26,7 +26,11 @@ impl PyBeam {
         let made = || -> Result<Beam, BeamError> {
             let material = Material::new(youngs_modulus_pa, poisson_ratio, density_kg_m3)?;
             let section = Section::solid_circle(diameter_m, &material)?;
-            Ok(Beam::new(section, material, Mesh::uniform(length_m, elements)?))
+            Ok(Beam::new(
+                section,
+                material,
+                Mesh::uniform(length_m, elements)?,
+            ))
         };
         let beam = made().map_err(raise::<ParameterError>)?;
         Ok(Self(beam, [length_m, diameter_m]))

@@ -16,7 +16,13 @@ use crate::network::PyNetwork;
 
 /// What a controller knows at the start of a control cycle. SI units, at the load; rad for m
 /// on an axis that turns.
-#[pyclass(module = "feed_axis", name = "Sample", get_all, set_all, from_py_object)]
+#[pyclass(
+    module = "feed_axis",
+    name = "Sample",
+    get_all,
+    set_all,
+    from_py_object
+)]
 #[derive(Clone, Default)]
 pub(crate) struct PySample {
     /// Reference now, m, m/s, m/s².
@@ -100,7 +106,13 @@ impl PySample {
 }
 
 /// What is added to the controller in a cycle.
-#[pyclass(module = "feed_axis", name = "Correction", get_all, frozen, from_py_object)]
+#[pyclass(
+    module = "feed_axis",
+    name = "Correction",
+    get_all,
+    frozen,
+    from_py_object
+)]
 #[derive(Clone, Default)]
 pub(crate) struct PyCorrection {
     /// Added to the position error, m or rad.

@@ -52,7 +52,11 @@ pub(crate) fn discover(
         let one = |(i, log)| log_of(log, &format!("{kind} {}", i + 1), &machine, &mut notes);
         logs.iter().enumerate().map(one).collect()
     };
-    let logs = [read("fit", &fit)?, read("check", &check)?, read("test", &test)?];
+    let logs = [
+        read("fit", &fit)?,
+        read("check", &check)?,
+        read("test", &test)?,
+    ];
     let (text, machine) = (axis.text.clone(), Arc::new(machine));
     let (discovery, text) = long(py, progress, move |hook| {
         let (mut found, effects) = searched(&machine, logs, &settings, hook)?;

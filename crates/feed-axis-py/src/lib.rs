@@ -62,11 +62,11 @@ mod _feed_axis {
         SimulationError, StrategyError,
     };
     #[pymodule_export]
-    use crate::motion::{Move, Program, PySCurve};
-    #[pymodule_export]
     use crate::identify::TransferFunctions;
     #[pymodule_export]
     use crate::lugre_law::PyLuGre;
+    #[pymodule_export]
+    use crate::motion::{Move, Program, PySCurve};
     #[pymodule_export]
     use crate::network::{PyNetwork, Samples};
     #[pymodule_export]

@@ -162,11 +162,7 @@ impl Program {
 /// Most samples of a motion that are given at once.
 const MOST_SAMPLES: f64 = 1e8;
 
-fn sampled<'py>(
-    py: Python<'py>,
-    motion: &dyn Motion,
-    period: f64,
-) -> PyResult<Bound<'py, PyDict>> {
+fn sampled<'py>(py: Python<'py>, motion: &dyn Motion, period: f64) -> PyResult<Bound<'py, PyDict>> {
     let count = motion.duration() / period;
     if !(period > 0.0 && count < MOST_SAMPLES) {
         return Err(MotionError::new_err(format!(

@@ -124,9 +124,7 @@ impl PyNetwork {
             let done = self.network.evaluate(&input, &mut scratch, output);
             done.map_err(raise::<NetworkError>)?;
         }
-        predicted
-            .into_pyarray(py)
-            .reshape([x.shape()[0], outputs])
+        predicted.into_pyarray(py).reshape([x.shape()[0], outputs])
     }
 
     /// Maximum and mean absolute error on one-cycle samples, µm or µrad.

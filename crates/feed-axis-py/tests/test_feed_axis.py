@@ -3,7 +3,6 @@
 import csv
 import threading
 from pathlib import Path
-from typing import Any
 
 import feed_axis as fa
 import numpy as np
@@ -205,18 +204,22 @@ def test_one_cycle_training_beats_its_start(axis: fa.Axis) -> None:
     assert net.test(axis.sample(200, seed=2))[1] < 1e-3  # µm
 
 
-def logs(axis: fa.Axis) -> list[Any]:
-    distances = [(0.1, 0.2, 1.0, 20.0), (-0.15, 0.1, 0.5, 10.0)]
-    runs = []
-    for seed, (distance, speed, acceleration, jerk) in enumerate(distances):
-        move = fa.Move(
-            distance_m=distance,
-            speed_m_s=speed,
-            acceleration_m_s2=acceleration,
-            jerk_m_s3=jerk,
-        )
-        runs.append(axis.simulate(move, noise=1.0, seed=seed))
-    return runs
+def there_and_back(distance_mm: float, speed_mm_s: float) -> fa.Program:
+    limits = f"velocity_mm_s = {speed_mm_s}, acceleration_mm_s2 = 1000.0, jerk_mm_s3 = 20000.0"
+    steps = [
+        "dwell = { duration_s = 0.3 }",
+        f"move_by = {{ by_mm = {distance_mm}, {limits} }}",
+        "dwell = { duration_s = 0.3 }",
+        f"move_by = {{ by_mm = {-distance_mm}, {limits} }}",
+        "dwell = { duration_s = 0.3 }",
+    ]
+    text = "start_mm = 600.0\n" + "".join(f"[[steps]]\n{step}\n" for step in steps)
+    return fa.Program.from_toml(text)
+
+
+def logs(axis: fa.Axis) -> list[fa.Run]:
+    motions = [there_and_back(100.0, 200.0), there_and_back(-150.0, 100.0)]
+    return [axis.simulate(m, noise=1.0, seed=seed) for seed, m in enumerate(motions)]
 
 
 def test_hidden_viscous_friction_is_found_in_frames(axis: fa.Axis) -> None:

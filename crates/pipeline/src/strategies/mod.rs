@@ -92,7 +92,10 @@ pub trait Strategy {
     ///
     /// # Errors
     /// [`PipelineError`] where there is none for this axis or motion.
-    fn compensator(&mut self, next: &NextMove) -> Result<Box<dyn Compensator + Send>, PipelineError>;
+    fn compensator(
+        &mut self,
+        next: &NextMove,
+    ) -> Result<Box<dyn Compensator + Send>, PipelineError>;
 
     /// Learns from what a controller logged in the move that is over; what it knows now.
     ///
