@@ -4,12 +4,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use axis_sim::{Axis, channels};
+use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping, PyType};
 use toml::Table;
 
 use crate::dict::{dict_of, table_of};
-use crate::errors::{AxisError, raise};
+use crate::errors::{AxisError, ParameterError, raise};
 use crate::motion::Move;
 
 /// A feed axis: mechanism, motor, control, sensors, friction and loads, checked once.
@@ -109,6 +110,21 @@ impl PyAxis {
     #[getter]
     fn trajectories(&self) -> Vec<Move> {
         self.axis.trajectories.iter().map(Move::of).collect()
+    }
+
+    /// Natural frequencies with the load at a position (m or rad; where motions start, if it is
+    /// left out), rigid motion left out, Hz.
+    #[pyo3(signature = (position = None))]
+    fn frequencies_hz<'py>(
+        &self,
+        py: Python<'py>,
+        position: Option<f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let position = position.unwrap_or(self.axis.stroke.start);
+        let modes = self.axis.mechanism.modes(position);
+        let modes = modes.map_err(raise::<ParameterError>)?;
+        let hertz: Vec<f64> = modes.iter().map(|w| w / std::f64::consts::TAU).collect();
+        Ok(hertz.into_pyarray(py))
     }
 
     /// Hash of all values: the same for files that differ in comments, units or order only.

@@ -3,17 +3,17 @@
 use std::sync::Arc;
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, OnsetForm};
-use discrepancy::logs::{NamedLog, check_distinct, set_apart};
-use discrepancy::{LogSet, Settings, discovery, search};
+use axis_sim::effects::Scales;
+use discrepancy::logs::NamedLog;
+use discrepancy::{Evidence, Found, Settings};
 use pyo3::prelude::*;
-use toml::{Table, Value};
+use toml::Table;
 
 use crate::axis::PyAxis;
 use crate::discovery::Discovery;
 use crate::errors::{AxisError, LogError, SearchError, raise};
 use crate::log::log_of;
-use crate::long::{Hook, long};
+use crate::long::long;
 
 /// Finds what an axis' model lacks beside measured logs.
 ///
@@ -57,66 +57,37 @@ pub(crate) fn discover(
         read("check", &check)?,
         read("test", &test)?,
     ];
+    let [fit, check, test] = logs;
     let (text, machine) = (axis.text.clone(), Arc::new(machine));
     let (discovery, text) = long(py, progress, move |hook| {
-        let (mut found, effects) = searched(&machine, logs, &settings, hook)?;
-        notes.append(&mut found.notes);
-        found.notes = notes;
-        Ok((found, with_effects(text, &effects)?))
+        let evidence = Evidence::new(&machine, fit, check, test).map_err(raise::<LogError>)?;
+        let mut stage = 0;
+        let tell = |what: &str| {
+            stage += 1;
+            hook.stage(what, stage);
+        };
+        let searched = evidence.discover(&machine, &settings, tell);
+        let (found, told) = searched.map_err(raise::<SearchError>)?;
+        let mut told = told.discovery;
+        notes.append(&mut told.notes);
+        told.notes = notes;
+        Ok((told, with_effects(text, &machine, &found)?))
     })?;
     Discovery::new(discovery, text)
 }
 
-/// The search, as the command makes it.
-fn searched(
-    machine: &Axis,
-    [fit, check, test]: [Vec<NamedLog>; 3],
-    settings: &Settings,
-    hook: &Hook,
-) -> PyResult<(discrepancy::Discovery, Vec<ActiveEffect>)> {
-    for (seen, new) in [(&fit, &check), (&fit, &test), (&check, &test)] {
-        check_distinct(seen, new).map_err(raise::<LogError>)?;
-    }
-    let (check, test) = match test.is_empty() {
-        true => set_apart(check, machine),
-        false => (check, test),
-    };
-    let set = |logs| LogSet::new(logs, machine).map_err(raise::<LogError>);
-    let (fit, check) = (set(fit)?, set(check)?);
-    let test = (!test.is_empty()).then(|| set(test)).transpose()?;
-    let mut stage = 0;
-    let mut found = search(machine, &fit, &check, settings, |what| {
-        stage += 1;
-        hook.stage(what, stage);
-    })
-    .map_err(raise::<SearchError>)?;
-    if let Some(test) = test {
-        found = found.tested_on(machine, test);
-    }
-    hook.stage("verdict", stage + 1);
-    let told = discovery(machine, &fit, &check, &found).map_err(raise::<SearchError>)?;
-    let effects = found.fit.state.effects.into_iter();
-    // A form of the axis' own friction has no entry in a file.
-    let effects = effects.filter(|active| OnsetForm::of(active).is_none());
-    Ok((told.discovery, effects.collect()))
-}
-
-/// The text of an axis file with these effects added.
-fn with_effects(text: String, effects: &[ActiveEffect]) -> PyResult<String> {
-    if effects.is_empty() {
-        return Ok(text);
-    }
+/// The text of an axis file with the effects that were found.
+fn with_effects(mut text: String, machine: &Axis, found: &Found) -> PyResult<String> {
     let mut table: Table = text.parse().map_err(raise::<AxisError>)?;
-    let all = table.entry("effects").or_insert(Value::Array(Vec::new()));
-    if let Value::Array(all) = all {
-        for active in effects {
-            let mut entry = Table::new();
-            entry.insert("name".to_owned(), active.effect.name.into());
-            for (parameter, value) in active.effect.parameters.iter().zip(&active.values) {
-                entry.insert(parameter.name.to_owned(), (*value).into());
-            }
-            all.push(Value::Table(entry));
+    // A list in line takes no further table: written anew, it is tables or, empty, nothing.
+    if let Some(effects) = table.get("effects") {
+        if effects.as_array().is_some_and(Vec::is_empty) {
+            table.remove("effects");
         }
+        text = table.to_string();
     }
-    Ok(table.to_string())
+    let scales = Scales::of(machine);
+    let effects = found.effects_for_file();
+    text.extend(effects.map(|active| active.entry(&scales, |value| format!("{value:e}"))));
+    Ok(text)
 }

@@ -5,6 +5,7 @@ use pyo3::types::PyModule;
 
 use crate::axis::PyAxis;
 use crate::errors::{SearchError, raise};
+use crate::html::table;
 use crate::motion::Program;
 
 /// A number of an effect, with its 95 % interval.
@@ -186,6 +187,25 @@ impl Discovery {
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let text = serde_json::to_string(&self.found).map_err(raise::<SearchError>)?;
         PyModule::import(py, "json")?.call_method1("loads", (text,))
+    }
+
+    fn _repr_html_(&self) -> String {
+        let rows = self.effects.iter().flat_map(|effect| {
+            let row = |p: &Parameter| {
+                let interval = format!("{:.5e} to {:.5e}", p.interval.0, p.interval.1);
+                let value = format!("{:.5e}", p.value);
+                vec![
+                    effect.name.clone(),
+                    p.name.clone(),
+                    value,
+                    interval,
+                    p.unit.clone(),
+                ]
+            };
+            effect.parameters.iter().map(row)
+        });
+        let heads = ["effect", "parameter", "value", "95 % interval", "unit"];
+        table(&self.found.sentence, &heads, &rows.collect::<Vec<_>>())
     }
 
     fn __repr__(&self) -> String {

@@ -13,7 +13,7 @@
 //! - `compensation`, `identify`: corrections, cycle by cycle and on whole moves.
 //! - `network`: one-cycle samples, training and prediction.
 //! - `lugre_law`, `beam`, `design`: the parts for themselves.
-//! - `dict`: conversion. `errors`: exceptions. `long`: long work.
+//! - `dict`: conversion. `errors`: exceptions. `html`: tables of notebooks. `long`: long work.
 //!
 //! # Long work
 //! It runs on a thread of its own, without Python's lock; the calling thread looks for
@@ -30,6 +30,7 @@ mod dict;
 mod discover;
 mod discovery;
 mod errors;
+mod html;
 mod identify;
 mod log;
 mod long;

@@ -1,11 +1,11 @@
 //! Logs from files, frames, runs and arrays.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use axis_log::intake::{Options, prepare};
+use axis_log::intake::{Options, files, prepare};
 use axis_log::{Channel, Log, TIME_CHANNEL};
 use axis_sim::Axis;
-use discrepancy::logs::{NamedLog, check_log, exact_channels, from_rest};
+use discrepancy::logs::{NamedLog, admit, exact_channels, needed_channels};
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -14,7 +14,7 @@ use crate::errors::{LogError, raise};
 
 /// A log as a caller gives it, and what was done to it, in words.
 ///
-/// A path is read as the axis' `[log]` maps its columns. A pandas or polars frame, a Run, or a
+/// A path is read as the axis' `[log]` maps its columns, several with `+` between them as one log. A pandas or polars frame, a Run, or a
 /// dict of arrays has its columns named as channels, `t_s` among them.
 pub(crate) fn log_of(
     given: &Bound<'_, PyAny>,
@@ -26,24 +26,17 @@ pub(crate) fn log_of(
         Ok(path) => (path.display().to_string(), read(&path, axis, notes)?),
         Err(_) => (name.to_owned(), columns(given)?),
     };
-    let period = check_log(&name, &log, axis).map_err(raise::<LogError>)?;
-    let (log, note) = from_rest(&name, log, period, axis).map_err(raise::<LogError>)?;
-    notes.extend(note);
-    Ok((name, log, period))
+    admit(name, log, axis, notes).map_err(raise::<LogError>)
 }
 
-fn read(path: &PathBuf, axis: &Axis, notes: &mut Vec<String>) -> PyResult<Log> {
-    // A torque balance says itself what it needs.
-    let needed: &[&str] = match axis.has_control() {
-        true => &[axis.reference_channel(), axis.position_channel()],
-        false => &[],
-    };
+fn read(path: &Path, axis: &Axis, notes: &mut Vec<String>) -> PyResult<Log> {
+    let needed = needed_channels(axis);
     let exact = exact_channels(axis);
     let options = Options {
         exact: &exact,
         rate_hz: None,
     };
-    let prepared = prepare(&[path], &axis.log, needed, options).map_err(raise::<LogError>)?;
+    let prepared = prepare(&files(path), &axis.log, &needed, options).map_err(raise::<LogError>)?;
     notes.extend(prepared.done.iter().map(ToString::to_string));
     Ok(prepared.log)
 }

@@ -11,17 +11,13 @@ use numpy::{
     PyUntypedArrayMethods,
 };
 use pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity, ranges};
-use pipeline::training::{NetworkPlan, test, train};
+use pipeline::training::{INITIAL_DAMPING, NetworkPlan, test, train};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
 use crate::axis::PyAxis;
 use crate::errors::{NetworkError, raise};
 use crate::long::long;
-
-/// Speed below which `near_zero` samples are even, as a share of the greatest speed: about
-/// the Stribeck speed on the paper's axis.
-const NEAR_ZERO: f64 = 0.01;
 
 /// Rows that are simulated between two looks at the hook.
 const ROWS: usize = 256;
@@ -186,11 +182,8 @@ impl PyAxis {
     ) -> PyResult<Samples> {
         let axis = self.axis.clone();
         let samples = long(py, progress, move |hook| {
-            let most = ranges(&axis).map_err(raise::<NetworkError>)?.speed.most;
             let density = match near_zero {
-                true => SpeedDensity::NearZero {
-                    scale: NEAR_ZERO * most,
-                },
+                true => SpeedDensity::NEAR_ZERO,
                 false => SpeedDensity::Uniform,
             };
             let plan = SamplePlan {
@@ -231,8 +224,7 @@ impl PyAxis {
             let plan = NetworkPlan {
                 hidden,
                 epochs,
-                // The paper's.
-                initial_damping: 0.97,
+                initial_damping: INITIAL_DAMPING,
                 seed,
                 threads,
             };

@@ -1,10 +1,12 @@
 //! What a run leaves: channels as arrays.
 
 use axis_sim::{Axis, Cycle, LogChannel, channels};
-use numpy::{IntoPyArray, PyArray1};
+use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+
+use crate::html::table;
 
 /// The samples of a run, a column a channel.
 pub(crate) struct Columns {
@@ -157,6 +159,20 @@ impl Run {
         py.import("polars")?
             .getattr("DataFrame")?
             .call1((self.dict(py)?,))
+    }
+
+    fn _repr_html_(&self, py: Python<'_>) -> String {
+        let rows = self.channels.iter().map(|(name, unit, samples)| {
+            let samples = samples.bind(py).readonly();
+            let ends = (samples.as_array().iter())
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &x| {
+                    (least.min(x), most.max(x))
+                });
+            let (least, most) = (format!("{:.5e}", ends.0), format!("{:.5e}", ends.1));
+            vec![(*name).to_owned(), least, most, (*unit).to_owned()]
+        });
+        let heads = ["channel", "least", "greatest", "unit"];
+        table(&self.__repr__(), &heads, &rows.collect::<Vec<_>>())
     }
 
     fn __repr__(&self) -> String {

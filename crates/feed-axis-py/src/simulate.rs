@@ -2,7 +2,7 @@
 
 use axis_sim::{ClosedLoop, Cycle, Measured};
 use compensator::{Compensator, NoCompensation};
-use discover_matrix::hidden::Noise;
+use discover_matrix::hidden::{MACHINE_STEP, Noise};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -11,9 +11,6 @@ use crate::errors::{SimulationError, raise};
 use crate::long::{Hook, long};
 use crate::motion::AnyMotion;
 use crate::run::{Columns, Run};
-
-/// Internal step of a run that stands for a machine, s; as `simulate --noise` has it.
-const EXACT_STEP: f64 = 2e-5;
 
 /// Cycles from one look at the hook to the next.
 const LOOK_EVERY: u64 = 512;
@@ -46,7 +43,7 @@ impl PyAxis {
         let axis = self.axis.clone();
         let columns = long(py, progress, move |hook| {
             let closed_loop = match noise > 0.0 {
-                true => ClosedLoop::exact(&axis, EXACT_STEP),
+                true => ClosedLoop::exact(&axis, MACHINE_STEP),
                 false => ClosedLoop::new(&axis),
             };
             let closed_loop = closed_loop.map_err(raise::<SimulationError>)?;

@@ -27,5 +27,5 @@ mod repair;
 
 pub use done::{Done, FileDelay};
 pub use error::IntakeError;
-pub use prepare::{Options, Prepared, prepare};
+pub use prepare::{Options, Prepared, files, prepare};
 pub use repair::SHORT_GAP;
