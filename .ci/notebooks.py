@@ -16,7 +16,7 @@ MOST_SECONDS_PER_CELL = 300
 
 def run(path: Path, keep: Path | None) -> None:
     """Runs one notebook in its folder."""
-    notebook = nbformat.read(path, as_version=4)
+    notebook = nbformat.read(path, as_version=4)  # type: ignore[no-untyped-call]
     nbformat.validate(notebook)
     if any(cell.get("outputs") for cell in notebook.cells):
         raise SystemExit(f"{path}: has outputs; clear them before it is committed")
@@ -25,7 +25,7 @@ def run(path: Path, keep: Path | None) -> None:
     NotebookClient(notebook, timeout=MOST_SECONDS_PER_CELL, resources=resources).execute()
     if keep is not None:
         keep.mkdir(parents=True, exist_ok=True)
-        nbformat.write(notebook, keep / path.name)
+        nbformat.write(notebook, keep / path.name)  # type: ignore[no-untyped-call]
     print(f"{path.name}: {time.monotonic() - started:.0f} s", flush=True)
 
 

@@ -5,6 +5,7 @@ is not known beforehand, as in a search.
 """
 
 import sys
+from typing import NoReturn
 
 import feed_axis as fa
 from tqdm import tqdm
@@ -14,7 +15,7 @@ class Bar:
     """A bar for each kind of work that is told."""
 
     def __init__(self) -> None:
-        self.bar: tqdm[int] | None = None
+        self.bar: tqdm[NoReturn] | None = None
         self.what = ""
 
     def __call__(self, what: str, done: int, total: int | None) -> None:

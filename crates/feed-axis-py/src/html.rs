@@ -7,7 +7,9 @@ pub(crate) fn table(words: &str, heads: &[&str], rows: &[Vec<String>]) -> String
         return words;
     }
     let head = line("th", heads.iter().copied());
-    let rows = rows.iter().map(|row| line("td", row.iter().map(String::as_str)));
+    let rows = rows
+        .iter()
+        .map(|row| line("td", row.iter().map(String::as_str)));
     format!("{words}<table>{head}{}</table>", rows.collect::<String>())
 }
 

@@ -10,8 +10,8 @@
 //! - `axis`, `motion`, `simulate`, `run`: an axis from a file or a dict, along a motion, to
 //!   arrays.
 //! - `log`, `discover`, `discovery`: what a model lacks, from files, frames or arrays.
-//! - `compensation`, `identify`: corrections, cycle by cycle and on whole moves.
-//! - `network`: one-cycle samples, training and prediction.
+//! - `compensation`, `sample`, `identify`: corrections, cycle by cycle and on whole moves.
+//! - `network`, `one_cycle`: training and prediction; samples of one control cycle.
 //! - `lugre_law`, `beam`, `design`: the parts for themselves.
 //! - `dict`: conversion. `errors`: exceptions. `html`: tables of notebooks. `long`: long work.
 //!
@@ -37,7 +37,9 @@ mod long;
 mod lugre_law;
 mod motion;
 mod network;
+mod one_cycle;
 mod run;
+mod sample;
 mod simulate;
 
 use pyo3::prelude::*;
@@ -50,7 +52,7 @@ mod _feed_axis {
     #[pymodule_export]
     use crate::beam::PyBeam;
     #[pymodule_export]
-    use crate::compensation::{PyCompensator, PyCorrection, PySample};
+    use crate::compensation::PyCompensator;
     #[pymodule_export]
     use crate::design::latin_hypercube;
     #[pymodule_export]
@@ -69,9 +71,13 @@ mod _feed_axis {
     #[pymodule_export]
     use crate::motion::{Move, Program, PySCurve};
     #[pymodule_export]
-    use crate::network::{PyNetwork, Samples};
+    use crate::network::PyNetwork;
+    #[pymodule_export]
+    use crate::one_cycle::Samples;
     #[pymodule_export]
     use crate::run::Run;
+    #[pymodule_export]
+    use crate::sample::{PyCorrection, PySample};
 
     use pyo3::prelude::*;
 

@@ -29,8 +29,9 @@ def test_every_axis_of_the_project_comes_back_from_its_dict(root: Path) -> None:
 def test_the_table_swings_on_the_nut(axis: fa.Axis) -> None:
     # The table on the nut at 62 Hz (the specification of the axis), the motor against the
     # screw, and two of the screw's torsion (docs/theory/feed-dynamics.md), to the last digit.
-    expected = [62.80, 139.04, 1039.12, 1229.87]
-    assert np.abs(axis.frequencies_hz(0.6)[:4] - expected).max() < 0.0051
+    expected = np.array([62.80, 139.04, 1039.12, 1229.87])
+    found = axis.frequencies_hz(0.6)[:4]
+    assert np.allclose(found, expected, rtol=0, atol=0.0051)
     assert np.array_equal(axis.frequencies_hz(), axis.frequencies_hz(axis.stroke[2]))
     with pytest.raises(fa.ParameterError, match="1.5"):
         axis.frequencies_hz(2.0)
