@@ -10,6 +10,38 @@ import polars as pl
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self
 
+__all__ = [
+    "STRATEGIES",
+    "Axis",
+    "AxisError",
+    "Beam",
+    "Compensator",
+    "Correction",
+    "Discovery",
+    "Effect",
+    "FeedAxisError",
+    "LogError",
+    "LuGre",
+    "MotionError",
+    "Move",
+    "Network",
+    "NetworkError",
+    "Parameter",
+    "ParameterError",
+    "Program",
+    "Run",
+    "SCurve",
+    "Sample",
+    "Samples",
+    "SearchError",
+    "SimulationError",
+    "StrategyError",
+    "TransferFunctions",
+    "__version__",
+    "discover",
+    "latin_hypercube",
+]
+
 __version__: Final[str]
 STRATEGIES: Final[dict[str, str]]
 
