@@ -10,7 +10,6 @@ from pathlib import Path
 
 import nbformat
 from nbclient import NotebookClient
-from traitlets.config import Config
 
 MOST_SECONDS_PER_CELL = 300
 
@@ -23,12 +22,7 @@ def run(path: Path, keep: Path | None) -> None:
         raise SystemExit(f"{path}: has outputs; clear them before it is committed")
     started = time.monotonic()
     resources = {"metadata": {"path": str(path.parent)}}
-    # Not over TCP, which anyone on the machine could listen to.
-    config = Config({"KernelManager": {"transport": "ipc"}})
-    client = NotebookClient(
-        notebook, timeout=MOST_SECONDS_PER_CELL, resources=resources, config=config
-    )
-    client.execute()
+    NotebookClient(notebook, timeout=MOST_SECONDS_PER_CELL, resources=resources).execute()
     if keep is not None:
         keep.mkdir(parents=True, exist_ok=True)
         nbformat.write(notebook, keep / path.name)  # type: ignore[no-untyped-call]

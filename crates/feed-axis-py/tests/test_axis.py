@@ -41,7 +41,8 @@ def test_an_s_curve_takes_the_time_of_its_closed_form() -> None:
     curve = fa.SCurve(0.6, 0.9, speed_m_s=0.1, acceleration_m_s2=0.225, jerk_m_s3=1.2)
     assert abs(curve.duration_s - (0.3 / 0.1 + 0.1 / 0.225 + 0.225 / 1.2)) < 1e-12
     samples = curve.sample(1e-3)
-    assert abs(np.trapezoid(samples["speed_m_s"], samples["t_s"]) - 0.3) < 1e-4
+    way = np.sum(samples["speed_m_s"]) * 1e-3  # rest at both ends: the rule of trapezia
+    assert abs(way - 0.3) < 1e-4
 
 
 def test_a_program_comes_back_from_its_text(tmp_path: Path) -> None:
