@@ -84,9 +84,9 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     };
     settings.check(machine).into_diagnostic()?;
     let mut notes = Vec::new();
-    let mut read = |paths| read_all(paths, machine, &mut notes);
-    let (fit, check) = (read(&options.fit)?, read(&options.check)?);
-    let test = read(&options.test)?;
+    let mut logs = |paths: &[PathBuf]| read_all(paths, machine, &mut notes);
+    let (fit, check) = (logs(&options.fit)?, logs(&options.check)?);
+    let test = logs(&options.test)?;
     let evidence = Evidence::new(machine, fit, check, test).into_diagnostic()?;
     notes.iter().for_each(note);
     note(format!(
