@@ -24,7 +24,7 @@ pub(crate) struct Strategy {
 
 /// What `simulate` may be given.
 pub(crate) enum Recipe {
-    Strategy(Strategy),
+    Strategy(Box<Strategy>),
     Function(Py<PyAny>),
 }
 
@@ -32,7 +32,8 @@ impl Recipe {
     /// The compensator of one run along a motion.
     pub(crate) fn make(self, motion: &SharedMotion) -> PyResult<Box<dyn Compensator>> {
         match self {
-            Self::Strategy(Strategy { kind, predictors }) => {
+            Self::Strategy(strategy) => {
+                let Strategy { kind, predictors } = *strategy;
                 let made = kind.compensator(&predictors, motion.clone());
                 Ok(made.map_err(raise::<StrategyError>)?)
             }
@@ -51,7 +52,7 @@ pub(crate) enum Given<'py> {
 impl Given<'_> {
     pub(crate) fn recipe(self) -> PyResult<Recipe> {
         Ok(match self {
-            Self::Made(made) => Recipe::Strategy(made.strategy.clone()),
+            Self::Made(made) => Recipe::Strategy(Box::new(made.strategy.clone())),
             Self::Function(function) if function.is_callable() => {
                 Recipe::Function(function.unbind())
             }

@@ -75,7 +75,7 @@ impl PyAxis {
 }
 
 fn tell(hook: &Hook, seen: u64, total: u64) {
-    if seen % LOOK_EVERY == 0 || seen == total {
+    if seen.is_multiple_of(LOOK_EVERY) || seen == total {
         hook.done("simulate", seen, total);
     }
 }
