@@ -28,6 +28,8 @@
 //! - `judge`: [`discovery`] puts what was found into a [`Verdict`], with what it costs, what
 //!   it may be confused with, what no effect explains, and the motion to run next.
 //!
+//! [`Evidence`] goes all this way for logs that were looked at, as the command `discover` does.
+//!
 //! [`controller`] estimates an unknown controller, before any of this.
 //! [`Foresight`] says before any search what it could see and tell apart on a motion;
 //! [`summary`] is for where only a table of errors was measured.
@@ -38,6 +40,7 @@
 mod answers;
 pub mod controller;
 mod estimate;
+mod evidence;
 mod foresight;
 mod judge;
 pub mod logs;
@@ -50,6 +53,7 @@ pub use answers::{Answer, LogSet, Prepared, State};
 pub use estimate::fit::{Fit, Fitter, free_parameters};
 pub use estimate::interval::Spread;
 pub use estimate::known::{known_deviations, tolerances};
+pub use evidence::{Evidence, EvidenceError};
 pub use foresight::{Foreseen, Foresight, Hypothesis, Imitation};
 pub use judge::{
     Against, Answered, AtScrew, Confidence, Cost, Curve, Discovered, Discovery, DriveFunction,

@@ -29,6 +29,12 @@ pub enum SpeedDensity {
     },
 }
 
+impl SpeedDensity {
+    /// Dense below 3 mm/s: where the friction of the paper's axis falls, whose Stribeck speed is
+    /// 4.3 mm/s.
+    pub const NEAR_ZERO: Self = Self::NearZero { scale: 3e-3 };
+}
+
 /// Which samples to draw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SamplePlan {

@@ -12,6 +12,9 @@ use crate::linear_map::{LinearMap, input_row};
 use crate::sampling::SampleSet;
 use crate::{Figures, PipelineError};
 
+/// Initial damping u of the paper's trainings.
+pub const INITIAL_DAMPING: f64 = 0.97;
+
 /// Which network, and how it is trained.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetworkPlan {

@@ -8,8 +8,7 @@ use std::time::Instant;
 use axis_sim::Axis;
 use axis_sim::effects::Effect;
 use clap::Args;
-use discrepancy::logs::{check_distinct, set_apart};
-use discrepancy::{Discovery, EffectFound, LogSet, Settings, Verdict, discovery, search};
+use discrepancy::{Discovery, EffectFound, Evidence, Settings, Verdict};
 use independent_axis::cases::{CASES, Case, named};
 use independent_axis::{Rough, TrueEffect, Truth, Wanted, write_case};
 use miette::{IntoDiagnostic, Result};
@@ -161,15 +160,10 @@ fn searched(folder: &Path) -> Result<Discovery> {
     };
     let fit = logs(["fit-1.csv", "fit-2.csv"])?;
     let check = logs(["check-1.csv", "check-2.csv"])?;
-    check_distinct(&fit, &check).into_diagnostic()?;
-    let fit = LogSet::new(fit, &machine).into_diagnostic()?;
-    let (check, test) = set_apart(check, &machine);
-    let check = LogSet::new(check, &machine).into_diagnostic()?;
-    let test = LogSet::new(test, &machine).into_diagnostic()?;
+    let evidence = Evidence::new(&machine, fit, check, Vec::new()).into_diagnostic()?;
     let say = |what: &str| tracing::debug!("{what}");
-    let found = search(&machine, &fit, &check, &Settings::default(), say).into_diagnostic()?;
-    let found = found.tested_on(&machine, test);
-    let discovered = discovery(&machine, &fit, &check, &found).into_diagnostic()?;
+    let searched = evidence.discover(&machine, &Settings::default(), say);
+    let (_, discovered) = searched.into_diagnostic()?;
     Ok(discovered.discovery)
 }
 

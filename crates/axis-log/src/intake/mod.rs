@@ -27,5 +27,5 @@ mod repair;
 
 pub use done::{Done, FileDelay};
 pub use error::IntakeError;
-pub use prepare::{Options, PreparedLog, prepare};
+pub use prepare::{Options, PreparedLog, files, prepare};
 pub use repair::SHORT_GAP;

@@ -1,6 +1,6 @@
 //! Files to a log.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::done::Done;
 use super::error::IntakeError;
@@ -28,6 +28,14 @@ pub struct PreparedLog {
     pub log: Log,
     /// What was done, in its order.
     pub done: Vec<Done>,
+}
+
+/// The files of a path that joins them with `+`, unless there is a file of that very name.
+pub fn files(path: &Path) -> Vec<PathBuf> {
+    match path.to_str() {
+        Some(text) if !path.exists() => text.split('+').map(PathBuf::from).collect(),
+        _ => vec![path.to_owned()],
+    }
 }
 
 /// Reads files as one log. [The module](super) tells the steps.

@@ -29,6 +29,7 @@ mod current_sensor_gain;
 mod current_sensor_offset;
 mod cyclic_load;
 mod encoder_eccentricity;
+mod entry;
 mod force_ripple;
 mod gravity_imbalance;
 mod hardening_stiffness;

@@ -30,6 +30,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trajectories::Motion;
 
+/// Greatest internal step of a run that stands for a machine, s.
+pub const MACHINE_STEP: f64 = 2e-5;
+
 /// A machine with effects hidden in it.
 #[derive(Clone, Debug)]
 pub struct Hidden {

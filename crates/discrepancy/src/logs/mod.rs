@@ -1,11 +1,13 @@
 //! Looking at logs before anything is concluded from them.
 
+mod admit;
 mod apart;
 mod checks;
 mod error;
 mod relations;
 mod start;
 
+pub use self::admit::{admit, needed_channels};
 pub use self::apart::{NamedLog, set_apart};
 pub use self::checks::{check_distinct, check_log};
 pub use self::error::LogSetError;

@@ -3,16 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use axis_log::Log;
-use axis_log::intake::{Options as Intake, prepare};
+use axis_log::intake::{Options as Intake, files, prepare};
 use axis_log::quality::CrossCheckVerdict as Agreement;
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, OnsetForm, Scales};
+use axis_sim::effects::Scales;
 use clap::Args;
-use discrepancy::logs::{
-    NamedLog, check_distinct, check_log, cross_checks, exact_channels, from_rest, set_apart,
-};
+use discrepancy::logs::{NamedLog, admit, exact_channels, needed_channels};
 use discrepancy::summary::{MeasuredError, rank, tried};
-use discrepancy::{LogSet, Settings, discovery, search};
+use discrepancy::{Evidence, Settings};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use toml_edit::{DocumentMut, Item, Value};
 
@@ -87,39 +85,27 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     };
     settings.check(machine).into_diagnostic()?;
     let mut notes = Vec::new();
-    let fit = read_all(&options.fit, machine, &mut notes)?;
-    let check = read_all(&options.check, machine, &mut notes)?;
-    let test = read_all(&options.test, machine, &mut notes)?;
-    for (seen, new) in [(&fit, &check), (&fit, &test), (&check, &test)] {
-        check_distinct(seen, new).into_diagnostic()?;
-    }
-    let (check, test) = match test.is_empty() {
-        true => set_apart(check, machine),
-        false => (check, test),
-    };
-    let set = |logs| LogSet::new(logs, machine).into_diagnostic();
-    let (fit, check) = (set(fit)?, set(check)?);
-    let test = (!test.is_empty()).then(|| set(test)).transpose()?;
+    let mut logs = |paths: &[PathBuf]| read_all(paths, machine, &mut notes);
+    let (fit, check) = (logs(&options.fit)?, logs(&options.check)?);
+    let test = logs(&options.test)?;
+    let evidence = Evidence::new(machine, fit, check, test).into_diagnostic()?;
     notes.iter().for_each(note);
     note(format!(
         "{}; channels compared: {}",
-        fit.answer_of(machine),
-        fit.channels.join(", ")
+        evidence.fit.answer_of(machine),
+        evidence.fit.channels.join(", ")
     ));
 
     ready(out)?;
     let text = moved(&read_text(&options.axis)?, &options.axis, out)?;
     let progress = spinner();
-    let mut found = search(machine, &fit, &check, &settings, |what| {
+    let say = |what: &str| {
         tracing::debug!("{what}");
         progress.set_message(what.to_owned());
-    })
-    .into_diagnostic()
-    .wrap_err("the axis as its file says does not run these logs")?;
-    if let Some(test) = test {
-        found = found.tested_on(machine, test);
-    }
-    let mut discovered = discovery(machine, &fit, &check, &found).into_diagnostic()?;
+    };
+    let (found, mut discovered) = (evidence.discover(machine, &settings, say))
+        .into_diagnostic()
+        .wrap_err("the axis as its file says does not run these logs")?;
     discovered.discovery.notes.iter().for_each(note);
     notes.append(&mut discovered.discovery.notes);
     discovered.discovery.notes = notes;
@@ -128,10 +114,9 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
 
     let scales = Scales::of(machine);
     let entries = |number: fn(f64) -> String| -> String {
-        let all = found.fit.state.effects.iter();
-        let effects = all.filter(|active| OnsetForm::of(active).is_none());
+        let effects = found.effects_for_file();
         effects
-            .map(|active| entry(active, &scales, number))
+            .map(|active| active.entry(&scales, number))
             .collect()
     };
     let json = serde_json::to_vec_pretty(discovery).into_diagnostic()?;
@@ -204,42 +189,23 @@ pub fn read_all(
     notes: &mut Vec<String>,
 ) -> Result<Vec<NamedLog>> {
     let one = |path: &PathBuf| {
-        let name = path.display().to_string();
         let log = read_as_one(path, machine, notes)?;
-        let period = check_log(&name, &log, machine).into_diagnostic()?;
-        let unsure = cross_checks(&log, machine).into_iter();
-        let unsure = unsure.filter(|f| f.verdict == Agreement::Unsure);
-        notes.extend(unsure.map(|f| format!("{name}: to be looked at: {f}")));
-        let (log, note) = from_rest(&name, log, period, machine).into_diagnostic()?;
-        notes.extend(note);
-        Ok((name, log, period))
+        admit(path.display().to_string(), log, machine, notes).into_diagnostic()
     };
     paths.iter().map(one).collect()
 }
 
 /// One log of a file, or of several with `+` between them.
 fn read_as_one(path: &Path, machine: &Axis, notes: &mut Vec<String>) -> Result<Log> {
-    // A torque balance says itself what it needs.
-    let needed: &[&str] = match machine.has_control() {
-        true => &[machine.reference_channel(), machine.position_channel()],
-        false => &[],
-    };
+    let needed = needed_channels(machine);
     let exact = exact_channels(machine);
     let options = Intake {
         exact: &exact,
         rate_hz: None,
     };
-    let prepared = prepare(&files(path), &machine.log, needed, options).into_diagnostic()?;
+    let prepared = prepare(&files(path), &machine.log, &needed, options).into_diagnostic()?;
     notes.extend(prepared.done.iter().map(ToString::to_string));
     Ok(prepared.log)
-}
-
-/// The files of a path that joins them with `+`, unless there is a file of that very name.
-pub(super) fn files(path: &Path) -> Vec<PathBuf> {
-    match path.to_str() {
-        Some(text) if !path.exists() => text.split('+').map(PathBuf::from).collect(),
-        _ => vec![path.to_owned()],
-    }
 }
 
 /// A number for a file: all of it.
@@ -250,19 +216,6 @@ fn whole(value: f64) -> String {
 /// A number for people: six digits of it.
 fn read(value: f64) -> String {
     format!("{value:.5e}")
-}
-
-/// An effect as an axis file has it.
-fn entry(active: &ActiveEffect, scales: &Scales, number: fn(f64) -> String) -> String {
-    let mut text = format!("\n[[effects]]\nname = \"{}\"\n", active.effect.name);
-    for (p, value) in active.effect.parameters.iter().zip(&active.values) {
-        let unit = match p.unit(scales) {
-            "" => String::new(),
-            unit => format!("    # {unit}"),
-        };
-        text += &format!("{} = {}{unit}\n", p.name, number(*value));
-    }
-    text
 }
 
 fn from_summary(options: &Options, machine: &Axis, table: &Path, out: &Path) -> Result<()> {

@@ -115,7 +115,7 @@ fn plans(context: &Context) -> [SamplePlan; 3] {
         SamplePlan {
             count: training,
             seed: context.seed,
-            density: SpeedDensity::NearZero { scale: 3e-3 },
+            density: SpeedDensity::NEAR_ZERO,
         },
         SamplePlan {
             count: training,

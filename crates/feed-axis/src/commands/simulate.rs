@@ -8,7 +8,7 @@ use atomic_write_file::AtomicWriteFile;
 use axis_log::{LogFile, WriteProblem};
 use axis_sim::{Axis, ClosedLoop, Cycle, FlowRecorder, Measured, Recorder, SixDigits};
 use clap::Args;
-use discover_matrix::hidden::Noise;
+use discover_matrix::hidden::{MACHINE_STEP, Noise};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use pipeline::Figures;
 use pipeline::strategies::{Build, NextMove, SharedMotion, StrategyKind};
@@ -222,7 +222,7 @@ pub(super) fn factor(text: &str) -> std::result::Result<f64, String> {
 
 fn closed_loop(options: &Options, context: &Context) -> Result<ClosedLoop> {
     if options.noise > 0.0 {
-        return ClosedLoop::exact(&context.axis, 2e-5).into_diagnostic();
+        return ClosedLoop::exact(&context.axis, MACHINE_STEP).into_diagnostic();
     }
     ClosedLoop::new(&context.axis).into_diagnostic()
 }

@@ -7,7 +7,7 @@ use cfnn::artifact::{
     checkpoint_from_bytes, checkpoint_to_bytes, network_from_bytes, network_to_bytes,
 };
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use pipeline::training::{NetworkPlan, Trained, test, train};
+use pipeline::training::{INITIAL_DAMPING, NetworkPlan, Trained, test, train};
 use pipeline::{Figures, LinearMap};
 use serde::{Deserialize, Serialize};
 
@@ -186,7 +186,7 @@ fn plan(context: &Context) -> NetworkPlan {
     NetworkPlan {
         hidden,
         epochs,
-        initial_damping: 0.97,
+        initial_damping: INITIAL_DAMPING,
         seed: context.seed,
         threads: context.threads,
     }

@@ -35,7 +35,10 @@ pub fn reversal_start(axis: &Axis) -> ReversalStart {
 struct Applied(DriveTermsFeedforward);
 
 impl Strategy for Applied {
-    fn compensator(&mut self, next: &NextMove) -> Result<Box<dyn Compensator>, PipelineError> {
+    fn compensator(
+        &mut self,
+        next: &NextMove,
+    ) -> Result<Box<dyn Compensator + Send>, PipelineError> {
         self.0 = match &next.continued {
             Some(_) => self.0.carried_on(),
             None => DriveTermsFeedforward::new(*self.0.terms()),

@@ -190,7 +190,10 @@ fn same(a: &dyn Motion, b: &dyn Motion) -> bool {
 }
 
 impl Strategy for Ladder {
-    fn compensator(&mut self, next: &NextMove) -> Result<Box<dyn Compensator>, PipelineError> {
+    fn compensator(
+        &mut self,
+        next: &NextMove,
+    ) -> Result<Box<dyn Compensator + Send>, PipelineError> {
         let mut next = next.clone();
         let mut model = self.model();
         let mut residual = self.residual.as_ref().and_then(AnyLearner::model);

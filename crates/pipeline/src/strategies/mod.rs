@@ -82,7 +82,7 @@ pub struct StrategyKind {
 #[derive(Clone, Copy, Debug)]
 pub enum Build {
     /// One compensator after the other, each move alike.
-    Each(fn(&Predictors) -> Result<Box<dyn Compensator>, PipelineError>),
+    Each(fn(&Predictors) -> Result<Box<dyn Compensator + Send>, PipelineError>),
     /// A strategy that knows each motion ahead, or learns from move to move.
     Carrying(fn(&Predictors) -> Result<Box<dyn Strategy>, PipelineError>),
 }
@@ -93,7 +93,10 @@ pub trait Strategy {
     ///
     /// # Errors
     /// [`PipelineError`] where there is none for this axis or motion.
-    fn compensator(&mut self, next: &NextMove) -> Result<Box<dyn Compensator>, PipelineError>;
+    fn compensator(
+        &mut self,
+        next: &NextMove,
+    ) -> Result<Box<dyn Compensator + Send>, PipelineError>;
 
     /// Learns from what a controller logged in the move that is over; what it knows now.
     ///
@@ -126,11 +129,11 @@ pub type LearnedValues = BTreeMap<String, f64>;
 /// Each move alike.
 struct EachAlike {
     predictors: Predictors,
-    build: fn(&Predictors) -> Result<Box<dyn Compensator>, PipelineError>,
+    build: fn(&Predictors) -> Result<Box<dyn Compensator + Send>, PipelineError>,
 }
 
 impl Strategy for EachAlike {
-    fn compensator(&mut self, _: &NextMove) -> Result<Box<dyn Compensator>, PipelineError> {
+    fn compensator(&mut self, _: &NextMove) -> Result<Box<dyn Compensator + Send>, PipelineError> {
         (self.build)(&self.predictors)
     }
 }
@@ -203,7 +206,7 @@ impl StrategyKind {
         &self,
         predictors: &Predictors,
         motion: SharedMotion,
-    ) -> Result<Box<dyn Compensator>, PipelineError> {
+    ) -> Result<Box<dyn Compensator + Send>, PipelineError> {
         self.strategy(predictors)?.compensator(&NextMove {
             motion,
             continued: None,

@@ -24,7 +24,10 @@ struct Planning {
 }
 
 impl Strategy for Planning {
-    fn compensator(&mut self, next: &NextMove) -> Result<Box<dyn Compensator>, PipelineError> {
+    fn compensator(
+        &mut self,
+        next: &NextMove,
+    ) -> Result<Box<dyn Compensator + Send>, PipelineError> {
         Ok(Box::new(plan(&self.model, next)?))
     }
 }

@@ -7,6 +7,7 @@ use axis_sim::{Axis, ReplayError};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
+use super::form::is_form;
 use crate::answers::LogSet;
 use crate::estimate::fit::{Columns, Fit};
 use crate::estimate::interval::Spread;
@@ -273,6 +274,13 @@ impl Found {
             fitted,
         });
         self
+    }
+
+    /// The effects that an axis file can have. A form of a friction that is there already
+    /// has no entry in one.
+    pub fn effects_for_file(&self) -> impl Iterator<Item = &ActiveEffect> {
+        let all = self.fit.state.effects.iter();
+        all.filter(|active| !is_form(active))
     }
 
     /// Half width of the 95 % interval of a parameter of this value, by its place: of

@@ -5,7 +5,7 @@ mod words;
 
 use std::path::{Path, PathBuf};
 
-use axis_log::intake::{Options as Intake, prepare};
+use axis_log::intake::{Options as Intake, files, prepare};
 use axis_log::quality::{
     ChannelQuality, Clock, Finding, Relation, RelationLaw, channel_quality, clock, cross_check,
 };
@@ -16,7 +16,6 @@ use discrepancy::logs::{exact_channels, relations};
 use miette::{IntoDiagnostic, Result, miette};
 use report::{Page, render};
 
-use super::discover::files;
 use crate::exit::wrong_use;
 use crate::output::{print, write_whole};
 

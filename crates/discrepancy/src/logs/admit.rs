@@ -1,0 +1,40 @@
+//! A log as it is taken into a search, or refused.
+
+use axis_log::Log;
+use axis_log::quality::Verdict;
+use axis_sim::Axis;
+
+use super::apart::NamedLog;
+use super::checks::check_log;
+use super::error::IntakeError;
+use super::relations::cross_checks;
+use super::start::from_rest;
+
+/// The channels without which logs cannot be compared with this machine. None for a torque
+/// balance, which says itself what it needs.
+pub fn needed_channels(machine: &Axis) -> Vec<&'static str> {
+    match machine.has_control() {
+        true => vec![machine.reference_channel(), machine.position_channel()],
+        false => Vec::new(),
+    }
+}
+
+/// Looks at a log and takes it from its first rest on. What must be known of it goes to
+/// `notes`: channels that agree only nearly, and what was cut away.
+///
+/// # Errors
+/// [`IntakeError`] as [`check_log`] and [`from_rest`] give it.
+pub fn admit(
+    name: String,
+    log: Log,
+    machine: &Axis,
+    notes: &mut Vec<String>,
+) -> Result<NamedLog, IntakeError> {
+    let period = check_log(&name, &log, machine)?;
+    let findings = cross_checks(&log, machine).into_iter();
+    let unsure = findings.filter(|finding| finding.verdict == Verdict::Unsure);
+    notes.extend(unsure.map(|finding| format!("{name}: to be looked at: {finding}")));
+    let (log, note) = from_rest(&name, log, period, machine)?;
+    notes.extend(note);
+    Ok((name, log, period))
+}

@@ -1,0 +1,180 @@
+//! Compensators: cycle by cycle, and on simulated moves.
+
+use std::sync::{Mutex, PoisonError};
+
+use compensator::{Compensator, Correction, Sample};
+use pipeline::strategies::{Predictors, STRATEGIES, SharedMotion, StrategyKind, named};
+use pyo3::prelude::*;
+
+use crate::axis::PyAxis;
+use crate::errors::{StrategyError, raise};
+use crate::identify::TransferFunctions;
+use crate::long::Hook;
+use crate::lugre_law::PyLuGre;
+use crate::motion::AnyMotion;
+use crate::network::PyNetwork;
+use crate::sample::{PyCorrection, PySample};
+
+/// How a compensator is made for a motion.
+#[derive(Clone)]
+pub(crate) struct Strategy {
+    kind: &'static StrategyKind,
+    predictors: Predictors,
+}
+
+/// What `simulate` may be given.
+pub(crate) enum Recipe {
+    Strategy(Box<Strategy>),
+    Function(Py<PyAny>),
+}
+
+impl Recipe {
+    /// The compensator of one run along a motion.
+    pub(crate) fn make(self, motion: &SharedMotion) -> PyResult<Box<dyn Compensator>> {
+        match self {
+            Self::Strategy(strategy) => {
+                let Strategy { kind, predictors } = *strategy;
+                let made = kind.compensator(&predictors, motion.clone());
+                Ok(made.map_err(raise::<StrategyError>)?)
+            }
+            Self::Function(function) => Ok(Box::new(Function(function))),
+        }
+    }
+}
+
+/// A compensation as a caller gives it.
+#[derive(FromPyObject)]
+pub(crate) enum Given<'py> {
+    Made(PyRef<'py, PyCompensator>),
+    Function(Bound<'py, PyAny>),
+}
+
+impl Given<'_> {
+    pub(crate) fn recipe(self) -> PyResult<Recipe> {
+        Ok(match self {
+            Self::Made(made) => Recipe::Strategy(Box::new(made.strategy.clone())),
+            Self::Function(function) if function.is_callable() => {
+                Recipe::Function(function.unbind())
+            }
+            Self::Function(other) => {
+                return Err(pyo3::exceptions::PyTypeError::new_err(format!(
+                    "compensation is a {}; valid: a Compensator, or a function from Sample to Correction",
+                    other.get_type().name()?
+                )));
+            }
+        })
+    }
+}
+
+/// A Python function as a compensator.
+struct Function(Py<PyAny>);
+
+impl Compensator for Function {
+    fn reset(&mut self) {}
+
+    fn correct(&mut self, sample: &Sample) -> Correction {
+        let called = Python::attach(|py| -> PyResult<PyCorrection> {
+            let given = self.0.call1(py, (PySample::of(sample),))?;
+            Ok(given.extract(py)?)
+        });
+        match called {
+            Ok(correction) => Correction {
+                position: correction.position_m,
+                iq: correction.iq_a,
+            },
+            Err(raised) => Hook::fail(raised),
+        }
+    }
+}
+
+/// A compensation strategy on an axis.
+#[pyclass(module = "feed_axis", name = "Compensator", frozen)]
+pub(crate) struct PyCompensator {
+    strategy: Strategy,
+    axis: PyAxis,
+    /// At work, cycle by cycle; made by `start`.
+    running: Mutex<Option<Box<dyn Compensator + Send>>>,
+}
+
+#[pymethods]
+impl PyCompensator {
+    /// The strategy of that name (`feed_axis.STRATEGIES`) for an axis, with what it needs.
+    #[new]
+    #[pyo3(signature = (axis, strategy, *, network = None, transfer = None, friction = None, motion = None))]
+    fn new(
+        axis: PyRef<'_, PyAxis>,
+        strategy: &str,
+        network: Option<PyRef<'_, PyNetwork>>,
+        transfer: Option<PyRef<'_, TransferFunctions>>,
+        friction: Option<PyRef<'_, PyLuGre>>,
+        motion: Option<AnyMotion<'_>>,
+    ) -> PyResult<Self> {
+        let Some(kind) = named(STRATEGIES, strategy) else {
+            let names: Vec<_> = STRATEGIES.iter().map(|kind| kind.name).collect();
+            return Err(StrategyError::new_err(format!(
+                "there is no strategy {strategy:?}; valid: {}",
+                names.join(", ")
+            )));
+        };
+        let mut predictors = Predictors::of(&axis.axis);
+        predictors.network = network.map(|network| network.network.clone());
+        predictors.transfer = transfer.map(|transfer| transfer.0.clone());
+        predictors.identified = friction.map(|friction| friction.0);
+        // Refused here, so that no run can be for what is missing.
+        kind.strategy(&predictors).map_err(raise::<StrategyError>)?;
+        let made = Self {
+            strategy: Strategy { kind, predictors },
+            axis: axis.clone(),
+            running: Mutex::new(None),
+        };
+        if let Some(motion) = motion {
+            made.start(motion)?;
+        }
+        Ok(made)
+    }
+
+    /// Begins a motion from rest: the next `update` is its first cycle.
+    fn start(&self, motion: AnyMotion<'_>) -> PyResult<()> {
+        let Strategy { kind, predictors } = &self.strategy;
+        let made = kind.compensator(predictors, motion.on(&self.axis.axis)?);
+        let mut made = made.map_err(raise::<StrategyError>)?;
+        made.reset();
+        *self.running.lock().unwrap_or_else(PoisonError::into_inner) = Some(made);
+        Ok(())
+    }
+
+    /// The correction for the cycle that begins with this sample.
+    fn update(&self, sample: PySample) -> PyResult<PyCorrection> {
+        let mut running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
+        let law = running.as_mut().ok_or_else(|| {
+            StrategyError::new_err(
+                "no motion was begun: give one to start(motion), or to the constructor",
+            )
+        })?;
+        let correction = law.correct(&sample.sample());
+        Ok(PyCorrection {
+            position_m: correction.position,
+            iq_a: correction.iq,
+        })
+    }
+
+    /// Name of the strategy.
+    #[getter]
+    fn strategy(&self) -> &'static str {
+        self.strategy.kind.name
+    }
+
+    fn __repr__(&self) -> String {
+        let kind = self.strategy.kind;
+        format!(
+            "Compensator({:?} on {:?}: {})",
+            kind.name, self.axis.axis.name, kind.summary
+        )
+    }
+}
+
+/// The strategies by name, each in a line.
+pub(crate) fn strategies() -> Vec<(&'static str, &'static str)> {
+    let all = STRATEGIES.iter();
+    all.map(|kind| (kind.name, kind.summary)).collect()
+}

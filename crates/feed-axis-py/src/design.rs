@@ -1,0 +1,34 @@
+//! Latin hypercubes.
+
+use lhs::{LatinHypercube, LhsError, Marginal, Uniform, map};
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+
+use crate::errors::{ParameterError, raise};
+
+/// `n` points between bounds (least, greatest) of each variable: each of the n intervals of
+/// each variable holds exactly one. An array of a row a point.
+#[pyfunction]
+#[pyo3(signature = (n, bounds, *, seed = 1, centred = false))]
+pub(crate) fn latin_hypercube<'py>(
+    py: Python<'py>,
+    n: usize,
+    bounds: Vec<(f64, f64)>,
+    seed: u64,
+    centred: bool,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let dims = bounds.len();
+    let drawn = py.detach(|| -> Result<Vec<f64>, LhsError> {
+        let hypercube = LatinHypercube::new(n, dims, seed)?;
+        let hypercube = match centred {
+            true => hypercube.centred(),
+            false => hypercube,
+        };
+        let marginals = bounds.iter().map(|&(a, b)| Uniform::new(a, b));
+        let marginals = marginals.collect::<Result<Vec<_>, _>>()?;
+        let marginals: Vec<&dyn Marginal> = marginals.iter().map(|m| m as &dyn Marginal).collect();
+        Ok(map(&hypercube.design()?, &marginals)?.into_values())
+    });
+    let drawn = drawn.map_err(raise::<ParameterError>)?;
+    drawn.into_pyarray(py).reshape([n, dims])
+}

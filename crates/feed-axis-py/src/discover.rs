@@ -1,0 +1,93 @@
+//! What a model lacks, from logs.
+
+use std::sync::Arc;
+
+use axis_sim::Axis;
+use axis_sim::effects::Scales;
+use discrepancy::logs::NamedLog;
+use discrepancy::{Evidence, Found, Settings};
+use pyo3::prelude::*;
+use toml::Table;
+
+use crate::axis::PyAxis;
+use crate::discovery::Discovery;
+use crate::errors::{AxisError, LogError, SearchError, raise};
+use crate::log::log_of;
+use crate::long::long;
+
+/// Finds what an axis' model lacks beside measured logs.
+///
+/// `fit` are logs to fit to, `check` logs of other motion on which what is named must prove
+/// itself, `test` logs that take no part in any choice, for the figures. Each log is a path, a
+/// pandas or polars frame, a Run, or a dict of arrays with channels as names.
+/// `progress(what, stage, None)`.
+///
+/// Ctrl-C raises at once; the search itself ends at its next stage.
+#[pyfunction]
+#[pyo3(signature = (axis, fit, check, *, test = Vec::new(), accept = Vec::new(), reject = Vec::new(), balance = false, progress = None))]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn discover(
+    py: Python<'_>,
+    axis: PyRef<'_, PyAxis>,
+    fit: Vec<Bound<'_, PyAny>>,
+    check: Vec<Bound<'_, PyAny>>,
+    test: Vec<Bound<'_, PyAny>>,
+    accept: Vec<String>,
+    reject: Vec<String>,
+    balance: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Discovery> {
+    let mut machine = (*axis.axis).clone();
+    if balance {
+        machine = machine.without_control().map_err(raise::<AxisError>)?;
+    }
+    let settings = Settings {
+        accepted: accept,
+        rejected: reject,
+        ..Settings::default()
+    };
+    settings.check(&machine).map_err(raise::<SearchError>)?;
+    let mut notes = Vec::new();
+    let mut read = |kind: &str, logs: &[Bound<'_, PyAny>]| -> PyResult<Vec<NamedLog>> {
+        let one = |(i, log)| log_of(log, &format!("{kind} {}", i + 1), &machine, &mut notes);
+        logs.iter().enumerate().map(one).collect()
+    };
+    let logs = [
+        read("fit", &fit)?,
+        read("check", &check)?,
+        read("test", &test)?,
+    ];
+    let [fit, check, test] = logs;
+    let (text, machine) = (axis.text.clone(), Arc::new(machine));
+    let (discovery, text) = long(py, progress, move |hook| {
+        let evidence = Evidence::new(&machine, fit, check, test).map_err(raise::<LogError>)?;
+        let mut stage = 0;
+        let tell = |what: &str| {
+            stage += 1;
+            hook.stage(what, stage);
+        };
+        let searched = evidence.discover(&machine, &settings, tell);
+        let (found, told) = searched.map_err(raise::<SearchError>)?;
+        let mut told = told.discovery;
+        notes.append(&mut told.notes);
+        told.notes = notes;
+        Ok((told, with_effects(text, &machine, &found)?))
+    })?;
+    Discovery::new(discovery, text)
+}
+
+/// The text of an axis file with the effects that were found.
+fn with_effects(mut text: String, machine: &Axis, found: &Found) -> PyResult<String> {
+    let mut table: Table = text.parse().map_err(raise::<AxisError>)?;
+    // A list in line takes no further table: written anew, it is tables or, empty, nothing.
+    if let Some(effects) = table.get("effects") {
+        if effects.as_array().is_some_and(Vec::is_empty) {
+            table.remove("effects");
+        }
+        text = table.to_string();
+    }
+    let scales = Scales::of(machine);
+    let effects = found.effects_for_file();
+    text.extend(effects.map(|active| active.entry(&scales, |value| format!("{value:e}"))));
+    Ok(text)
+}

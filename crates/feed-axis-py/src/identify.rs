@@ -1,0 +1,94 @@
+//! Friction and transfer functions, identified on a simulated axis.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use lugre::LuGre;
+use pipeline::identification::{IdentificationPlan, identify};
+use pipeline::strategies::TransferModels;
+use pipeline::transfer::{TransferPlan, identify_transfer};
+use pyo3::prelude::*;
+
+use crate::axis::PyAxis;
+use crate::errors::{StrategyError, raise};
+use crate::long::{Hook, long};
+use crate::lugre_law::PyLuGre;
+
+/// Linear models of an axis' tracking error, without and with friction feed-forward.
+#[pyclass(module = "feed_axis", frozen)]
+pub(crate) struct TransferFunctions(pub(crate) TransferModels);
+
+#[pymethods]
+impl TransferFunctions {
+    fn __repr__(&self) -> &'static str {
+        "TransferFunctions(of the tracking error, without and with friction feed-forward)"
+    }
+}
+
+/// Counts what is done, from any thread.
+fn counting<'a>(hook: &'a Hook, what: &'a str, total: u64) -> impl Fn() + Sync + 'a {
+    let done = AtomicU64::new(0);
+    let hook = std::sync::Mutex::new(hook.clone());
+    move || {
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        let hook = hook.lock().map(|hook| hook.clone());
+        if let Ok(hook) = hook {
+            hook.done(what, done, total);
+        }
+    }
+}
+
+#[pymethods]
+impl PyAxis {
+    /// Identifies the friction of this axis from simulated experiments: constant speeds and
+    /// pre-sliding, with noise on the torque as a share of it.
+    #[pyo3(signature = (*, torque_noise = 0.01, seed = 0, progress = None))]
+    fn identify_friction(
+        &self,
+        py: Python<'_>,
+        torque_noise: f64,
+        seed: u64,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyLuGre> {
+        let axis = self.axis.clone();
+        let law = long(py, progress, move |hook| {
+            let plan = IdentificationPlan {
+                torque_noise,
+                seed,
+                ..IdentificationPlan::of(&axis)
+            };
+            let total = 2 * plan.speeds.len() as u64;
+            let found = identify(&axis, &plan, counting(hook, "friction runs", total));
+            let found = found.map_err(raise::<StrategyError>)?;
+            LuGre::new(found.parameters).map_err(raise::<StrategyError>)
+        })?;
+        Ok(PyLuGre(law))
+    }
+
+    /// Identifies transfer functions of this axis' tracking error from simulated moves.
+    #[pyo3(signature = (*, seed = 0, progress = None))]
+    fn identify_transfer(
+        &self,
+        py: Python<'_>,
+        seed: u64,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<TransferFunctions> {
+        let axis = self.axis.clone();
+        let models = long(py, progress, move |hook| {
+            let plan = TransferPlan {
+                seed,
+                ..TransferPlan::default()
+            };
+            let total = 2 * (plan.training + plan.validation) as u64;
+            let count = counting(hook, "moves", total);
+            let fit = |feedforward| {
+                let fit = identify_transfer(&axis, &plan, feedforward, &count);
+                Ok::<_, PyErr>(fit.map_err(raise::<StrategyError>)?.model)
+            };
+            Ok(TransferModels {
+                alone: fit(false)?,
+                with_feedforward: fit(true)?,
+            })
+        })?;
+        Ok(TransferFunctions(models))
+    }
+}

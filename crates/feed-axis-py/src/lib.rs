@@ -1,0 +1,94 @@
+//! The Python module `feed_axis`: feed axes simulated, what a model lacks found in logs,
+//! and compensated, from Python.
+//!
+//! # The problem
+//! The library speaks Rust: types, slices, results. Python's users have NumPy arrays, data
+//! frames, exceptions and Ctrl-C. This crate converts between the two and does nothing else:
+//! every equation, and every word of an error, is that of the crate below it.
+//!
+//! # Rooms
+//! - `axis`, `motion`, `simulate`, `run`: an axis from a file or a dict, along a motion, to
+//!   arrays.
+//! - `log`, `discover`, `discovery`: what a model lacks, from files, frames or arrays.
+//! - `compensation`, `sample`, `identify`: corrections, cycle by cycle and on whole moves.
+//! - `network`, `one_cycle`: training and prediction; samples of one control cycle.
+//! - `lugre_law`, `beam`, `design`: the parts for themselves.
+//! - `dict`: conversion. `errors`: exceptions. `html`: tables of notebooks. `long`: long work.
+//!
+//! # Long work
+//! It runs on a thread of its own, without Python's lock; the calling thread looks for
+//! signals and tells progress meanwhile (`long`).
+//!
+//! # Units
+//! SI, as in the axis file's channels: the last part of a name is its unit (`position_m`).
+
+mod axis;
+mod beam;
+mod compensation;
+mod design;
+mod dict;
+mod discover;
+mod discovery;
+mod errors;
+mod html;
+mod identify;
+mod log;
+mod long;
+mod lugre_law;
+mod motion;
+mod network;
+mod one_cycle;
+mod run;
+mod sample;
+mod simulate;
+
+use pyo3::prelude::*;
+
+/// Feed axes simulated, what a model lacks found in logs, and compensated.
+#[pymodule]
+mod _feed_axis {
+    #[pymodule_export]
+    use crate::axis::PyAxis;
+    #[pymodule_export]
+    use crate::beam::PyBeam;
+    #[pymodule_export]
+    use crate::compensation::PyCompensator;
+    #[pymodule_export]
+    use crate::design::latin_hypercube;
+    #[pymodule_export]
+    use crate::discover::discover;
+    #[pymodule_export]
+    use crate::discovery::{Discovery, Effect, Parameter};
+    #[pymodule_export]
+    use crate::errors::{
+        AxisError, FeedAxisError, LogError, MotionError, NetworkError, ParameterError, SearchError,
+        SimulationError, StrategyError,
+    };
+    #[pymodule_export]
+    use crate::identify::TransferFunctions;
+    #[pymodule_export]
+    use crate::lugre_law::PyLuGre;
+    #[pymodule_export]
+    use crate::motion::{Move, Program, PySCurve};
+    #[pymodule_export]
+    use crate::network::PyNetwork;
+    #[pymodule_export]
+    use crate::one_cycle::Samples;
+    #[pymodule_export]
+    use crate::run::Run;
+    #[pymodule_export]
+    use crate::sample::{PyCorrection, PySample};
+
+    use pyo3::prelude::*;
+
+    /// The strategies' names, each with a line of words.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let all = pyo3::types::PyDict::new(module.py());
+        for (name, words) in crate::compensation::strategies() {
+            all.set_item(name, words)?;
+        }
+        module.add("STRATEGIES", all)?;
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

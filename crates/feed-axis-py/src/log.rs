@@ -1,0 +1,73 @@
+//! Logs from files, frames, runs and arrays.
+
+use std::path::{Path, PathBuf};
+
+use axis_log::intake::{Options, files, prepare};
+use axis_log::{Channel, Log, TIME_CHANNEL};
+use axis_sim::Axis;
+use discrepancy::logs::{NamedLog, admit, exact_channels, needed_channels};
+use numpy::{AllowTypeChange, PyArrayLike1};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+
+use crate::errors::{LogError, raise};
+
+/// A log as a caller gives it, and what was done to it, in words.
+///
+/// A path is read as the axis' `[log]` maps its columns, several with `+` between them as one log. A pandas or polars frame, a Run, or a
+/// dict of arrays has its columns named as channels, `t_s` among them.
+pub(crate) fn log_of(
+    given: &Bound<'_, PyAny>,
+    name: &str,
+    axis: &Axis,
+    notes: &mut Vec<String>,
+) -> PyResult<NamedLog> {
+    let (name, log) = match given.extract::<PathBuf>() {
+        Ok(path) => (path.display().to_string(), read(&path, axis, notes)?),
+        Err(_) => (name.to_owned(), columns(given)?),
+    };
+    admit(name, log, axis, notes).map_err(raise::<LogError>)
+}
+
+fn read(path: &Path, axis: &Axis, notes: &mut Vec<String>) -> PyResult<Log> {
+    let needed = needed_channels(axis);
+    let exact = exact_channels(axis);
+    let options = Options {
+        exact: &exact,
+        rate_hz: None,
+    };
+    let prepared = prepare(&files(path), &axis.log, &needed, options).map_err(raise::<LogError>)?;
+    notes.extend(prepared.done.iter().map(ToString::to_string));
+    Ok(prepared.log)
+}
+
+/// The columns of a frame, a mapping or a Run.
+fn columns(given: &Bound<'_, PyAny>) -> PyResult<Log> {
+    let names = match given.getattr_opt("columns")? {
+        Some(columns) => columns,
+        None if given.hasattr("keys")? => given.call_method0("keys")?,
+        None => {
+            return Err(PyTypeError::new_err(format!(
+                "a {} is no log; valid: a path, a pandas or polars DataFrame, a Run, a dict of arrays",
+                given.get_type().name()?
+            )));
+        }
+    };
+    let mut names: Vec<String> = (names.try_iter()?)
+        .map(|name| name?.extract())
+        .collect::<PyResult<_>>()?;
+    // Time stands first in a log.
+    names.sort_by_key(|name| name != TIME_CHANNEL);
+    let channels = names.into_iter().map(|name| {
+        let column: Bound<'_, PyAny> = given.get_item(&name)?;
+        let samples = given
+            .py()
+            .import("numpy")?
+            .call_method1("asarray", (column, "float64"))?;
+        let samples: PyArrayLike1<'_, f64, AllowTypeChange> = samples.extract()?;
+        let samples = samples.as_array().to_vec();
+        Channel::new(name, samples).map_err(raise::<LogError>)
+    });
+    let channels = channels.collect::<PyResult<_>>()?;
+    Log::new(channels).map_err(raise::<LogError>)
+}

@@ -1,0 +1,118 @@
+//! One-cycle samples of an axis, and the predictor that is trained on them.
+
+use axis_sim::CycleInput;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity, ranges};
+use pipeline::training::{INITIAL_DAMPING, NetworkPlan, train};
+use pyo3::prelude::*;
+
+use crate::axis::PyAxis;
+use crate::errors::{NetworkError, raise};
+use crate::long::long;
+use crate::network::PyNetwork;
+
+/// Rows that are simulated between two looks at the hook.
+const ROWS: usize = 256;
+
+/// One-cycle samples: state and command at the start of a cycle, and how far the load went.
+#[pyclass(module = "feed_axis", frozen)]
+pub(crate) struct Samples(pub(crate) SampleSet);
+
+#[pymethods]
+impl Samples {
+    fn __len__(&self) -> usize {
+        self.0.inputs.len()
+    }
+
+    /// Position (m), speed (m/s), acceleration (m/s²) and commanded current (A), a row a sample.
+    #[getter]
+    fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let row = |i: &CycleInput| [i.position, i.speed, i.acceleration, i.iq_command];
+        let rows: Vec<f64> = self.0.inputs.iter().flat_map(row).collect();
+        rows.into_pyarray(py).reshape([self.0.inputs.len(), 4])
+    }
+
+    /// How far the load went in the cycle, m.
+    #[getter]
+    fn increments_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.0.increments.clone().into_pyarray(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Samples({} cycles, simulated)", self.0.inputs.len())
+    }
+}
+
+#[pymethods]
+impl PyAxis {
+    /// Draws one-cycle samples over a Latin hypercube of the axis' sample ranges; `near_zero`
+    /// has speeds the denser, the nearer to zero, where friction is.
+    #[pyo3(signature = (count, *, seed = 1, near_zero = false, progress = None))]
+    fn sample(
+        &self,
+        py: Python<'_>,
+        count: usize,
+        seed: u64,
+        near_zero: bool,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Samples> {
+        let axis = self.axis.clone();
+        let samples = long(py, progress, move |hook| {
+            let density = match near_zero {
+                true => SpeedDensity::NEAR_ZERO,
+                false => SpeedDensity::Uniform,
+            };
+            let plan = SamplePlan {
+                count,
+                seed,
+                density,
+            };
+            let sampler = Sampler::new(&axis, &plan).map_err(raise::<NetworkError>)?;
+            let mut all = SampleSet::default();
+            for first in (0..count).step_by(ROWS) {
+                let last = (first + ROWS).min(count);
+                let rows = sampler.rows(first..last);
+                let rows = rows.map_err(raise::<NetworkError>)?;
+                all.inputs.extend(rows.inputs);
+                all.increments.extend(rows.increments);
+                hook.done("sample", last as u64, count as u64);
+            }
+            Ok(all)
+        })?;
+        Ok(Samples(samples))
+    }
+
+    /// Trains the one-cycle predictor: what the best linear map of the samples leaves.
+    #[pyo3(signature = (samples, *, hidden = vec![34, 19, 8], epochs = 500, seed = 1, threads = 0, progress = None))]
+    #[allow(clippy::too_many_arguments)]
+    fn train(
+        &self,
+        py: Python<'_>,
+        samples: PyRef<'_, Samples>,
+        hidden: Vec<usize>,
+        epochs: usize,
+        seed: u64,
+        threads: usize,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyNetwork> {
+        let (axis, samples) = (self.axis.clone(), samples.0.clone());
+        long(py, progress, move |hook| {
+            let plan = NetworkPlan {
+                hidden,
+                epochs,
+                initial_damping: INITIAL_DAMPING,
+                seed,
+                threads,
+            };
+            let ranges = ranges(&axis).map_err(raise::<NetworkError>)?;
+            let trained = train(&ranges, &samples, &plan, None, |report, _| {
+                hook.done("train", report.epoch as u64, epochs as u64);
+            });
+            let trained = trained.map_err(raise::<NetworkError>)?;
+            Ok(PyNetwork {
+                losses: trained.history.iter().map(|r| r.loss).collect(),
+                network: trained.network,
+            })
+        })
+    }
+}

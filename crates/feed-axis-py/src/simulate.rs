@@ -1,0 +1,81 @@
+//! An axis along a motion.
+
+use axis_sim::{ClosedLoop, Cycle, Measured};
+use compensator::{Compensator, NoCompensation};
+use discover_matrix::hidden::{MACHINE_STEP, Noise};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::axis::PyAxis;
+use crate::errors::{SimulationError, raise};
+use crate::long::{Hook, long};
+use crate::motion::AnyMotion;
+use crate::run::{Columns, Run};
+
+/// Cycles from one look at the hook to the next.
+const LOOK_EVERY: u64 = 512;
+
+#[pymethods]
+impl PyAxis {
+    /// Follows a motion in closed loop.
+    ///
+    /// `compensation` is a Compensator, or a function that is called with each cycle's Sample
+    /// and gives a Correction. `noise` is that of every sensor, in multiples of good ones; with
+    /// it the axis is simulated the slow, exact way, to stand for a machine.
+    /// `progress(what, done, total)` is called every 50 ms or so.
+    #[pyo3(signature = (motion, *, compensation = None, noise = 0.0, seed = 1, progress = None))]
+    fn simulate(
+        &self,
+        py: Python<'_>,
+        motion: AnyMotion<'_>,
+        compensation: Option<crate::compensation::Given<'_>>,
+        noise: f64,
+        seed: u64,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Run> {
+        if !(noise.is_finite() && noise >= 0.0) {
+            return Err(PyValueError::new_err(format!(
+                "noise is {noise}, but must be 0 or a finite factor above it"
+            )));
+        }
+        let motion = motion.on(&self.axis)?;
+        let law = compensation.map(|given| given.recipe()).transpose()?;
+        let axis = self.axis.clone();
+        let columns = long(py, progress, move |hook| {
+            let closed_loop = match noise > 0.0 {
+                true => ClosedLoop::exact(&axis, MACHINE_STEP),
+                false => ClosedLoop::new(&axis),
+            };
+            let closed_loop = closed_loop.map_err(raise::<SimulationError>)?;
+            let mut law: Box<dyn Compensator> = match law {
+                Some(law) => law.make(&motion)?,
+                None => Box::new(NoCompensation),
+            };
+            let mut sensors = Noise::good(&axis).scaled(noise).sensors(seed);
+            let sense = |seen: &mut Measured| {
+                if noise > 0.0 {
+                    sensors(seen);
+                }
+            };
+            let total = closed_loop.cycles(&*motion);
+            // A motion that is refused as too long must not take its memory first.
+            let mut columns = Columns::of(&axis, total.min(1 << 22) as usize);
+            let mut seen = 0;
+            let observe = |cycle: &Cycle| {
+                columns.push(cycle);
+                seen += 1;
+                tell(hook, seen, total);
+            };
+            let outcome = closed_loop.run_sensed(&*motion, &mut *law, sense, observe);
+            outcome.completed().map_err(raise::<SimulationError>)?;
+            Ok(columns)
+        })?;
+        Ok(Run::new(py, &self.axis, columns))
+    }
+}
+
+fn tell(hook: &Hook, seen: u64, total: u64) {
+    if seen.is_multiple_of(LOOK_EVERY) || seen == total {
+        hook.done("simulate", seen, total);
+    }
+}

@@ -1,0 +1,69 @@
+"""Axes and motions: the same from a file and from a dict, numbers known elsewhere."""
+
+from pathlib import Path
+
+import feed_axis as fa
+import numpy as np
+import pytest
+
+
+def test_a_dict_gives_the_same_axis(axis: fa.Axis) -> None:
+    values = axis.to_dict()
+    assert fa.Axis.from_dict(values).fingerprint == axis.fingerprint
+    values["drive"]["table_mass_kg"] = 600
+    assert fa.Axis.from_dict(values).fingerprint != axis.fingerprint
+    values["drive"]["table_mass_kg"] = object()
+    with pytest.raises(TypeError, match="table_mass_kg"):
+        fa.Axis.from_dict(values)
+
+
+def test_every_axis_of_the_project_comes_back_from_its_dict(root: Path) -> None:
+    paths = sorted((root / "data/axes").glob("*.toml"))
+    assert len(paths) > 10
+    for path in paths:
+        axis = fa.Axis.load(path)
+        again = fa.Axis.from_dict(axis.to_dict())
+        assert again.fingerprint == axis.fingerprint, path
+
+
+def test_the_table_swings_on_the_nut(axis: fa.Axis) -> None:
+    # The table on the nut at 62 Hz (the specification of the axis), the motor against the
+    # screw, and two of the screw's torsion (docs/theory/feed-dynamics.md), to the last digit.
+    expected = np.array([62.80, 139.04, 1039.12, 1229.87])
+    found = axis.frequencies_hz(0.6)[:4]
+    assert np.allclose(found, expected, rtol=0, atol=0.0051)
+    assert np.array_equal(axis.frequencies_hz(), axis.frequencies_hz(axis.stroke[2]))
+    with pytest.raises(fa.ParameterError, match="1.5"):
+        axis.frequencies_hz(2.0)
+
+
+def test_an_s_curve_takes_the_time_of_its_closed_form() -> None:
+    curve = fa.SCurve(0.6, 0.9, speed_m_s=0.1, acceleration_m_s2=0.225, jerk_m_s3=1.2)
+    assert abs(curve.duration_s - (0.3 / 0.1 + 0.1 / 0.225 + 0.225 / 1.2)) < 1e-12
+    samples = curve.sample(1e-3)
+    way = np.sum(samples["speed_m_s"]) * 1e-3  # rest at both ends: the rule of trapezia
+    assert abs(way - 0.3) < 1e-4
+
+
+def test_a_program_comes_back_from_its_text(tmp_path: Path) -> None:
+    text = 'start_mm = 600.0\n[[steps]]\ndwell = { duration_s = 0.25 }\n'
+    program = fa.Program.from_toml(text)
+    assert program.duration_s == 0.25
+    path = tmp_path / "program.toml"
+    path.write_text(program.to_toml())
+    again = fa.Program.load(path).sample(0.05)
+    assert again["t_s"].size == 6 and np.all(again["position_m"] == 0.6)
+
+
+def test_errors_have_the_library_s_words(axis: fa.Axis, tmp_path: Path) -> None:
+    text = axis.to_toml()
+    with pytest.raises(fa.AxisError, match="did you mean `lead_mm`"):
+        fa.Axis.from_toml(text.replace("lead_mm", "laed_mm"))
+    with pytest.raises(fa.AxisError, match="none.toml"):
+        fa.Axis.load(tmp_path / "none.toml")
+    with pytest.raises(fa.MotionError, match="velocity is -1 m/s"):
+        fa.Move(distance_m=1, speed_m_s=-1, acceleration_m_s2=1, jerk_m_s3=1)
+    with pytest.raises(fa.MotionError, match="period_s"):
+        fa.Program.from_toml("start_mm = 0.0\nsteps = []").sample(0.0)
+    assert issubclass(fa.AxisError, fa.FeedAxisError)
+    assert issubclass(fa.FeedAxisError, ValueError)

@@ -1,0 +1,93 @@
+"""What a model lacks, from logs as frames, runs, files and arrays."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import feed_axis as fa
+import numpy as np
+import pytest
+
+
+def there_and_back(distance_mm: float, speed_mm_s: float) -> fa.Program:
+    limits = f"velocity_mm_s = {speed_mm_s}, acceleration_mm_s2 = 1000.0, jerk_mm_s3 = 20000.0"
+    steps = [
+        "dwell = { duration_s = 0.3 }",
+        f"move_by = {{ by_mm = {distance_mm}, {limits} }}",
+        "dwell = { duration_s = 0.3 }",
+        f"move_by = {{ by_mm = {-distance_mm}, {limits} }}",
+        "dwell = { duration_s = 0.3 }",
+    ]
+    text = "start_mm = 600.0\n" + "".join(f"[[steps]]\n{step}\n" for step in steps)
+    return fa.Program.from_toml(text)
+
+
+@pytest.fixture(scope="module")
+def machine(axis: fa.Axis) -> fa.Axis:
+    """The axis with viscous friction that its model does not have."""
+    values = axis.to_dict()
+    values["effects"] = [{"name": "viscous-friction", "coefficient": 1000.0}]
+    return fa.Axis.from_dict(values)
+
+
+@pytest.fixture(scope="module")
+def logs(machine: fa.Axis) -> Iterator[list[fa.Run]]:
+    motions = [there_and_back(100.0, 200.0), there_and_back(-150.0, 100.0)]
+    yield [machine.simulate(m, noise=1.0, seed=seed) for seed, m in enumerate(motions)]
+
+
+def test_hidden_viscous_friction_is_found_in_frames(
+    axis: fa.Axis, machine: fa.Axis, logs: list[fa.Run]
+) -> None:
+    pytest.importorskip("pandas")
+    pytest.importorskip("polars")
+    stages: list[str] = []
+    found = fa.discover(
+        axis,
+        fit=[logs[0].to_pandas()],
+        check=[logs[1].to_polars()],
+        progress=lambda what, done, total: stages.append(what),
+    )
+    assert found.verdict == "explained" and found.names == ["viscous-friction"]
+    assert found.interval is not None and found.size is not None
+    assert found.interval[0] < 1000.0 < found.interval[1]
+    assert "screening all effects" in stages and stages[-1] == "verdict"
+    assert "viscous-friction" in found._repr_html_() and found.sentence in found.words
+    assert found.to_dict()["effects"][0]["name"] == "viscous-friction"
+    # The model with what was found follows the machine.
+    again = found.axis.simulate(axis.trajectories[0])
+    there = machine.simulate(axis.trajectories[0])
+    assert abs(again.max_error - there.max_error) < 0.2e-6
+    # With it in the model nothing is missing: on runs in place of frames.
+    nothing = fa.discover(found.axis, fit=[logs[0]], check=[logs[1]])
+    assert nothing.verdict == "nothing-missing" and nothing.size is None
+
+
+def test_a_log_says_what_is_wrong_with_it(
+    axis: fa.Axis, logs: list[fa.Run], tmp_path: Path
+) -> None:
+    with pytest.raises(fa.LogError, match="unit"):
+        fa.discover(axis, fit=[{"t_s": [0.0, 1.0], "speed": [0.0, 1.0]}], check=[])
+    with pytest.raises(TypeError, match="a int is no log"):
+        fa.discover(axis, fit=[3], check=[])  # type: ignore[list-item]
+    with pytest.raises(fa.LogError, match="none.csv"):
+        fa.discover(axis, fit=[tmp_path / "none.csv"], check=[])
+    columns = {name: logs[0][name] for name in logs[0]}
+    columns["position_m"] = 1e3 * columns["position_m"]
+    with pytest.raises(fa.LogError, match="fit 1"):
+        fa.discover(axis, fit=[columns], check=[logs[1]])
+    with pytest.raises(fa.LogError, match="check 1 holds the same samples as fit 1"):
+        fa.discover(axis, fit=[logs[0]], check=[logs[0]])
+    with pytest.raises(fa.SearchError, match="perpetual-motion"):
+        fa.discover(axis, fit=[logs[0]], check=[logs[1]], reject=["perpetual-motion"])
+
+
+def test_a_file_and_its_frame_are_one_log(
+    axis: fa.Axis, logs: list[fa.Run], tmp_path: Path
+) -> None:
+    pandas = pytest.importorskip("pandas")
+    path = tmp_path / "log.csv"
+    logs[0].to_pandas().to_csv(path, index=False)
+    frame = pandas.read_csv(path)
+    assert np.array_equal(frame["position_m"].to_numpy(), logs[0]["position_m"])
+    with pytest.raises(fa.LogError, match="holds the same samples as .*log.csv"):
+        fa.discover(axis, fit=[path], check=[frame])
