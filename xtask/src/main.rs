@@ -77,6 +77,8 @@ enum Command {
     Merge(merge::Options),
     /// Search logs of a simulator that shares no code with this one, and score it
     Independent(independent::Options),
+    /// Write cases of the second matrix as folders, for other programs to search (docs/peers.md)
+    PeersCases(commands::peers_cases::Options),
     /// Write what of the correction a drive or CNC can be given (docs/drive-terms.md)
     ExportDrive(export_drive::Options),
     /// Measure the speed of every hot path (docs/performance.md)
@@ -126,6 +128,7 @@ fn run(command: Command) -> miette::Result<()> {
         Command::Campaign(options) => campaign::command(&options),
         Command::Merge(options) => merge::command(&options),
         Command::Independent(options) => independent::command(&options),
+        Command::PeersCases(options) => commands::peers_cases::command(&options),
         Command::ExportDrive(options) => export_drive::command(&options),
         Command::Bench(options) => bench::command(&options),
         Command::Torture(options) => torture::command(&options),

@@ -17,6 +17,7 @@ pub mod learn;
 pub mod log;
 mod matrix_job;
 pub mod merge;
+pub mod peers_cases;
 pub mod pipeline;
 pub mod report;
 pub mod residuals;

@@ -1,0 +1,120 @@
+//! Cases on which the search is set beside regressions over a library of terms.
+
+use std::collections::BTreeMap;
+
+use axis_sim::Axis;
+use lhs::LhsError;
+
+use super::case::Case;
+use super::design::{Plan, cases};
+use crate::matrix::Kind;
+
+/// What a regression of the motor's torque on terms could say of a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reach {
+    /// Nothing is hidden: it should say nothing.
+    Clean,
+    /// What is hidden is a sum of terms with one coefficient each, of position, speed,
+    /// acceleration and torque at the same instant ([`IN_TERMS`]).
+    InTerms,
+    /// What is hidden is no such sum: it acts between the channels, in the controller or in
+    /// time, has a memory, or is a law of no library.
+    Beyond,
+}
+
+impl Reach {
+    /// In files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Clean => "clean",
+            Self::InTerms => "in terms",
+            Self::Beyond => "beyond terms",
+        }
+    }
+
+    /// Of a case with at most one thing hidden.
+    pub fn of(case: &Case) -> Self {
+        let in_terms = |name: &str| IN_TERMS.contains(&name);
+        match case.hidden.as_slice() {
+            [] => Self::Clean,
+            all if all.iter().all(|h| in_terms(&h.name)) => Self::InTerms,
+            _ => Self::Beyond,
+        }
+    }
+}
+
+/// Effects that are linear in terms which a regression can be given beforehand; of a bump and
+/// of Stribeck's fall the place, the width and the speed stand on a grid.
+pub const IN_TERMS: [&str; 18] = [
+    "asymmetric-friction",
+    "asymmetric-viscous-friction",
+    "cogging-torque",
+    "constant-load",
+    "coulomb-friction",
+    "current-sensor-gain",
+    "current-sensor-offset",
+    "force-ripple",
+    "gravity-imbalance",
+    "load-dependent-friction",
+    "motor-inertia",
+    "payload-mass",
+    "position-dependent-friction",
+    "spring-force",
+    "stribeck-friction",
+    "torque-constant",
+    "torque-ripple",
+    "viscous-friction",
+];
+
+/// Cases of a plot: a clean one, two in terms, one beyond.
+const EACH: usize = 4;
+
+/// Single effects drawn a plot, to choose from.
+const DRAWN: usize = 16;
+
+/// At least so many cases, in whole plots of four: one is clean, two hide an effect that terms
+/// can say, one hides what they cannot, by turns an effect of the library and a law of none.
+/// Among what the matrix draws, the effect that was taken least often is taken, the first
+/// drawn of these; nothing is chosen by its size, form or noise.
+///
+/// # Errors
+/// [`LhsError`] never for sizes above zero.
+pub fn peer_cases(machines: &[Axis], count: usize, seed: u64) -> Result<Vec<Case>, LhsError> {
+    let plots = count.div_ceil(EACH);
+    let plan = Plan {
+        plots,
+        each: vec![(Kind::Clean, 1), (Kind::Single, DRAWN), (Kind::Outside, 1)],
+    };
+    let all = cases(machines, &plan, seed)?;
+    let mut taken = BTreeMap::new();
+    let chosen = all.chunk_by(|a, b| a.plot == b.plot).flat_map(|plot| {
+        let turn = plot[0].plot / machines.len().max(1);
+        chosen(plot, turn % 2 == 1, &mut taken)
+    });
+    Ok(chosen.collect())
+}
+
+/// Those of a plot.
+fn chosen(plot: &[Case], law: bool, taken: &mut BTreeMap<String, usize>) -> Vec<Case> {
+    let mut chosen: Vec<Case> = of_kind(plot, Kind::Clean).take(1).cloned().collect();
+    let mut rare = |reach: Reach, chosen: &[Case]| {
+        let free = of_kind(plot, Kind::Single).filter(|c| Reach::of(c) == reach);
+        let free = free.filter(|c| chosen.iter().all(|o| o.hidden != c.hidden));
+        let times = |c: &&Case| taken.get(&c.hidden[0].name).copied().unwrap_or(0);
+        let case = free.min_by_key(times)?;
+        *taken.entry(case.hidden[0].name.clone()).or_default() += 1;
+        Some(case.clone())
+    };
+    for _ in 0..EACH - 2 {
+        chosen.extend(rare(Reach::InTerms, &chosen));
+    }
+    match law {
+        true => chosen.extend(of_kind(plot, Kind::Outside).take(1).cloned()),
+        false => chosen.extend(rare(Reach::Beyond, &chosen)),
+    }
+    chosen
+}
+
+fn of_kind(plot: &[Case], kind: Kind) -> impl Iterator<Item = &Case> {
+    plot.iter().filter(move |c| c.kind == kind)
+}
