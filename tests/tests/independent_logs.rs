@@ -110,7 +110,7 @@ fn two_simulations_of_one_machine_differ_by_little() {
     }
 }
 
-/// Intervals take simulations for exact to 1e-4 of this, with any phase, band by band.
+/// Intervals take simulations for exact to 1.5e-4 of this, with any phase, band by band.
 #[test]
 fn under_a_chirp_two_simulations_differ_by_little_in_each_band() {
     let [(_, motion), ..] = exercises();

@@ -1,111 +1,25 @@
-//! The commands whose work is a job of independent cases: in one process, or a shard of it.
+//! The jobs of this program: those of users, and the matrix.
 
-use campaign::{IfOther, Job, Shard, run_shard, run_whole};
-use clap::{Args, Subcommand};
-use miette::{Result, miette};
+use clap::Subcommand;
+use feed_axis::jobs::{JobOptions, Jobs, UserJob};
 
-use crate::commands::{discover_matrix, robustness, sample, study};
-use crate::context::Claim;
-use crate::output::say;
-use crate::progress::bar;
+use crate::commands::discover_matrix;
 
-/// One line a job. Its options say how the job is made of them.
+/// One line a job.
 #[derive(Subcommand)]
-pub enum JobCommand {
-    /// Simulate one-cycle samples over a Latin hypercube (Section 4.2)
-    Sample(sample::Options),
-    /// Damping, layers, neurons and epochs over several seeds (Tables 7 to 10)
-    Study(study::Options),
-    /// What compensation leaves where what is believed is wrong, draw by draw
-    Robustness(robustness::Options),
+pub enum Job {
+    /// A job of users.
+    #[command(flatten)]
+    User(UserJob),
     /// Hide effects in simulated machines, search for them blind, and score it
     DiscoverMatrix(discover_matrix::Options),
 }
 
-impl JobCommand {
-    /// The options of the job.
-    pub fn options(&self) -> &dyn JobOptions {
+impl Jobs for Job {
+    fn options(&self) -> &dyn JobOptions {
         match self {
-            Self::Sample(options) => options,
-            Self::Study(options) => options,
-            Self::Robustness(options) => options,
+            Self::User(job) => job.options(),
             Self::DiscoverMatrix(options) => options,
         }
     }
-
-    /// Runs the command: a shard where one was asked for, else all.
-    pub fn run(&self) -> Result<()> {
-        let options = self.options();
-        let job = options.job()?;
-        match options.sharding().shard {
-            Some(shard) => make(&*job, shard),
-            None => {
-                let _claim = options.claim()?;
-                whole(&*job)
-            }
-        }
-    }
-}
-
-/// Options of which a job is made.
-pub trait JobOptions {
-    /// The job.
-    fn job(&self) -> Result<Box<dyn Job>>;
-
-    /// Whether only a shard of it is to be made.
-    fn sharding(&self) -> &Sharding;
-
-    /// The right to write its results, where a run's folder takes them.
-    fn claim(&self) -> Result<Option<Claim>> {
-        Ok(None)
-    }
-}
-
-/// Which part of a job is made.
-#[derive(Args, Clone)]
-pub struct Sharding {
-    /// Only make shard I of N (from 1) and write it to the folder `shards`, for
-    /// `cargo xtask merge` (docs/campaigns.md); one that is there is left alone
-    #[arg(long, value_name = "I/N")]
-    pub shard: Option<Shard>,
-}
-
-/// Makes all of a job in this process.
-pub fn whole(job: &dyn Job) -> Result<()> {
-    let progress = bar(job.name(), job.cases() as u64);
-    run_whole(job, &|cases| progress.inc(cases as u64)).map_err(told)?;
-    progress.finish_and_clear();
-    Ok(())
-}
-
-/// Makes one shard.
-fn make(job: &dyn Job, shard: Shard) -> Result<()> {
-    let cases = shard.range(job.cases()).len();
-    let progress = bar(job.name(), cases as u64);
-    let made = run_shard(job, shard, IfOther::Refuse, &|cases| {
-        progress.inc(cases as u64)
-    });
-    let path = made.map_err(|error| told(error.into()))?;
-    progress.finish_and_clear();
-    say(format!(
-        "{}, shard {shard}: {cases} cases in {}",
-        job.name(),
-        path.display()
-    ))
-}
-
-/// A failure with its causes, in one message.
-pub fn told(failure: campaign::Failure) -> miette::Report {
-    let mut text = failure.to_string();
-    let mut next = failure.source();
-    while let Some(cause) = next {
-        text = format!("{text}: {cause}");
-        next = cause.source();
-    }
-    miette!("{text}")
-}
-
-/// A message as the failure of a job.
-pub fn failure(report: impl Into<miette::Report>) -> campaign::Failure {
-    report.into().into()
 }

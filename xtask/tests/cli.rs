@@ -1,13 +1,8 @@
-//! The commands as a user runs them: the whole pipeline in its small version,
-//! its figures, what it refuses, and what it leaves alone.
+//! The developers' commands, and that the users' are among them.
 
 mod common;
 
-use std::process::{Command, Stdio};
-
-use serde_json::Value;
-
-use common::{refuse, root, succeed, text};
+use common::{refuse, root, succeed};
 
 #[test]
 fn every_crate_depends_strictly_downward() {
@@ -15,272 +10,58 @@ fn every_crate_depends_strictly_downward() {
 }
 
 #[test]
-fn help_names_every_command() {
+fn help_names_the_commands_of_users_and_of_developers() {
     let help = succeed(&["--help"]);
     for command in [
         "pipeline",
         "sample",
-        "train",
-        "identify",
-        "validate",
-        "compensate",
-        "study",
-        "report",
-        "simulate",
-        "discover",
-        "discover-matrix",
+        "merge",
         "export-drive",
+        "discover-matrix",
+        "independent",
         "bench",
         "torture",
         "layers",
     ] {
         assert!(help.contains(command), "{command}");
-        assert!(succeed(&[command, "--help"]).contains("Usage"), "{command}");
-    }
-}
-
-#[test]
-fn a_bad_axis_file_is_refused_with_its_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let good = std::fs::read_to_string(root().join("data/axes/liu2025.toml")).unwrap();
-    let bad = folder.path().join("bad.toml");
-    for (from, to, said) in [
-        ("lead_mm = 10", "lead_inch = 0.4", "lead_inch"),
-        (
-            "table_mass_kg = 515",
-            "table_mass_kg = -515",
-            "table_mass_kg",
-        ),
-        ("dc_link_v = 540", "dc_link_v = nan", "dc_link_v"),
-        ("[motor]", "[motor]\nwarp = 9", "warp"),
-    ] {
-        let content = good.replace(from, to);
-        std::fs::write(&bad, &content).unwrap();
-        let line = 1 + content.lines().position(|l| l.contains(said)).unwrap();
-        let message = refuse(&["sample", "--axis", bad.to_str().unwrap()]);
+        let own = succeed(&[command, "--help"]);
         assert!(
-            message.contains(said) && message.contains(&format!("bad.toml:{line}")),
-            "{message}"
+            own.contains(&format!("Usage: cargo xtask {command}")),
+            "{own}"
         );
-        assert!(message.contains("valid"), "{message}");
     }
-    let message = refuse(&["sample", "--axis", "no/such.toml"]);
-    assert!(message.contains("no/such.toml"), "{message}");
 }
 
+/// A message that names a command names the program that the user runs.
 #[test]
-fn a_folder_that_cannot_be_written_is_told() {
-    let message = refuse(&["sample", "--quick", "--out", "/dev/null/results"]);
-    assert!(message.contains("/dev/null/results"), "{message}");
-}
-
-/// Standard output that takes nothing: an error, no panic. `/dev/full` stands
-/// for a full disk and, unlike a closed pipe, without a race.
-#[test]
-#[cfg(target_os = "linux")]
-fn standard_output_that_fails_is_told() {
-    let full = std::fs::OpenOptions::new()
-        .write(true)
-        .open("/dev/full")
-        .unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_xtask"))
-        .arg("layers")
-        .current_dir(root())
-        .stdout(Stdio::from(full))
-        .stderr(Stdio::piped())
-        .output()
-        .unwrap();
-    let message = text(&output);
-    assert!(
-        !output.status.success() && !message.contains("panicked"),
-        "{message}"
-    );
-    assert!(message.contains("standard output"), "{message}");
-}
-
-#[test]
-fn simulate_writes_a_log() {
+fn messages_name_this_program() {
     let folder = tempfile::tempdir().unwrap();
-    let log = folder.path().join("log.csv");
-    let program = folder.path().join("program.toml");
-    std::fs::write(
-        &program,
-        "start_mm = 600.0\n[[steps]]\nsine = { amplitude_mm = 1.0, frequency_hz = 5.0, cycles = 2 }\n",
-    )
-    .unwrap();
-    let said = succeed(&[
-        "simulate",
-        "--program",
-        program.to_str().unwrap(),
-        "--log",
-        log.to_str().unwrap(),
-    ]);
-    assert!(said.contains("tracking error"), "{said}");
-    let head = std::fs::read_to_string(&log).unwrap();
-    assert!(head.starts_with("t_s,position_ref_m"), "{}", &head[..60]);
-    let message = refuse(&["simulate", "--trajectory", "9"]);
-    assert!(message.contains("1 to 6"), "{message}");
-}
-
-/// Figures for people have six digits at most; a run of years is refused with
-/// the limit, at once, and leaves no log behind.
-#[test]
-fn simulate_rounds_its_figures_and_refuses_a_run_without_end() {
-    let said = succeed(&["simulate", "--trajectory", "1"]);
-    assert!(said.contains("3.63194 s, 36320 cycles"), "{said}");
-    assert!(said.contains("max 54.453 µm, mean 5.34919 µm"), "{said}");
-
-    let folder = tempfile::tempdir().unwrap();
-    let (log, program) = (
-        folder.path().join("log.csv"),
-        folder.path().join("program.toml"),
-    );
-    std::fs::write(
-        &program,
-        "start_mm = 600.0\n[[steps]]\ndwell = { duration_s = 1e7 }\n",
-    )
-    .unwrap();
-    let arguments = [
-        "--program",
-        program.to_str().unwrap(),
-        "--log",
-        log.to_str().unwrap(),
-    ];
-    let message = refuse(&[&["simulate"], &arguments[..]].concat());
-    assert!(
-        message.contains("1e11 internal steps, more than 1e10"),
-        "{message}"
-    );
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
-
-    // Told before anything is computed.
-    let nowhere = ["--trajectory", "1", "--log", "/dev/null/log.csv"];
-    let message = refuse(&[&["simulate"], &nowhere[..]].concat());
-    assert!(message.contains("/dev/null/log.csv"), "{message}");
-}
-
-/// The whole pipeline, small: its figures against the project's targets, a
-/// second run that does nothing, another number of threads with the same
-/// figures, and damaged or foreign results refused.
-#[test]
-fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("run");
-    let out = out.to_str().unwrap();
-    succeed(&["pipeline", "--quick", "--out", out]);
-    let summary = read(out);
-    check_figures(&summary);
-    let page = std::fs::read_to_string(format!("{out}/report.html")).unwrap();
-    assert!(page.len() > 100_000 && !page.contains("NaN"));
-    assert!(!page.contains("src=\"http") && !page.contains("href=\"http"));
-
-    // Nothing is run twice.
-    let again = succeed(&["pipeline", "--quick", "--out", out]);
-    assert_eq!(again.matches("up to date").count(), 6, "{again}");
-
-    // The same bits on one thread.
-    let single = folder.path().join("single");
-    let single = single.to_str().unwrap();
-    succeed(&["pipeline", "--quick", "--threads", "1", "--out", single]);
-    let mut other = read(single);
-    other["network"]["train_seconds"] = summary["network"]["train_seconds"].clone();
-    assert_eq!(other, summary);
-
-    // A flipped bit, a cut file, another axis: refused by the stages that follow.
-    let network = format!("{out}/train/network.cfnn");
-    let whole = std::fs::read(&network).unwrap();
-    let mut flipped = whole.clone();
-    flipped[whole.len() / 2] ^= 1;
-    std::fs::write(&network, flipped).unwrap();
-    let message = refuse(&["compensate", "--quick", "--out", out]);
-    assert!(
-        message.contains("network.cfnn") && message.contains("xtask train"),
-        "{message}"
-    );
-    std::fs::write(&network, &whole).unwrap();
-    let samples = format!("{out}/sample/training.samples");
-    let whole = std::fs::read(&samples).unwrap();
-    std::fs::write(&samples, &whole[..whole.len() - 7]).unwrap();
+    let out = folder.path().to_str().unwrap();
     let message = refuse(&["train", "--quick", "--out", out]);
-    assert!(message.contains("training.samples"), "{message}");
-    let other = "data/axes/liu2025-machine.toml";
-    let message = refuse(&["compensate", "--quick", "--out", out, "--axis", other]);
-    assert!(message.contains("another axis file"), "{message}");
-
-    // The pipeline mends what is damaged.
-    succeed(&["pipeline", "--quick", "--out", out]);
-    assert_eq!(std::fs::read(&samples).unwrap(), whole);
+    assert!(
+        message.contains("run `cargo xtask sample` first"),
+        "{message}"
+    );
 }
 
-fn read(out: &str) -> Value {
-    let text = std::fs::read_to_string(format!("{out}/summary.json")).unwrap();
-    serde_json::from_str(&text).unwrap()
-}
-
-/// Columns 3 and 4 of the spec's table: max, mean of the model and of the
-/// machine, µm, from an independent program.
-const CONVERGED: [[f64; 4]; 6] = [
-    [54.453, 5.3491, 55.889, 6.5557],
-    [57.671, 5.3559, 59.204, 6.6828],
-    [50.888, 3.0319, 52.220, 5.0092],
-    [50.888, 3.5094, 52.220, 5.3596],
-    [50.888, 4.2488, 52.220, 6.3426],
-    [50.888, 4.4928, 52.220, 7.0091],
-];
-/// Peaks of the paper's Table 15, prediction model with LuGre, µm.
-const PAPER_PEAKS: [f64; 6] = [17.07, 15.32, 17.19, 19.07, 11.88, 12.79];
-
-fn check_figures(summary: &Value) {
-    let trajectories = summary["trajectories"].as_array().unwrap();
-    assert_eq!(trajectories.len(), 6);
-    let (mut best_peak, mut best_mean) = (0.0_f64, 0.0_f64);
-    for (i, t) in trajectories.iter().enumerate() {
-        let errors = &t["errors_um"];
-        let figure = |path: &str| {
-            let value = path.split('/').fold(errors, |value, key| &value[key]);
-            value
-                .as_f64()
-                .unwrap_or_else(|| panic!("{path} in {errors}"))
-        };
-        let near = |path: &str, truth: f64, by: f64| {
-            let value = figure(path);
-            assert!(
-                (value - truth).abs() <= by,
-                "trajectory {}: {path} = {value}, not {truth}",
-                i + 1
-            );
-        };
-        let [model_max, model_mean, machine_max, machine_mean] = CONVERGED[i];
-        near("model/max", model_max, 0.02);
-        near("model/mean", model_mean, 0.005);
-        near("machine/max", machine_max, 0.02);
-        near("machine/mean", machine_mean, 0.005);
-        // One cycle ahead there is next to nothing to miss.
-        near("predicted/network/max", machine_max, 0.1);
-        // A linear model sees the inertia's error but not the break-away peak.
-        let linear = figure("predicted/transfer_function/max") / machine_max;
-        assert!(
-            (0.2..1.0).contains(&linear),
-            "transfer function predicts {linear} of the peak"
-        );
-
-        let alone = figure("compensated/network/max");
-        assert!((27.0..=36.0).contains(&alone), "network alone {alone}");
-        let both = figure("compensated/network_lugre/max");
-        assert!(both <= PAPER_PEAKS[i], "network and LuGre {both}");
-        best_peak = best_peak.max(1.0 - both / machine_max);
-        best_mean = best_mean.max(1.0 - figure("compensated/network_lugre/mean") / machine_mean);
-        // A linear model of the error does better than none, and with LuGre than LuGre alone.
-        assert!(figure("compensated/transfer_function/max") < machine_max);
-        assert!(
-            figure("compensated/transfer_function_lugre/max") < figure("compensated/lugre/max")
-        );
-    }
-    assert!(best_peak >= 0.767, "best peak reduction {best_peak}");
-    assert!(best_mean >= 0.637, "best mean reduction {best_mean}");
-    let network = &summary["network"];
-    let value = |key: &str| network[key].as_f64().unwrap();
-    // Even the small network beats the linear map; the full one by far more.
-    assert!(value("max_abs_error_um") < value("linear_max_abs_error_um"));
-    assert!(value("mean_abs_error_um") < value("linear_mean_abs_error_um"));
+#[test]
+fn the_scored_page_is_not_taken_by_another_seed() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("page.md");
+    std::fs::copy(root().join("docs/discovery-matrix.md"), &page).unwrap();
+    let before = std::fs::read(&page).unwrap();
+    let to = page.to_str().unwrap();
+    let said = refuse(&["discover-matrix", "--seed", "1", "--page", to]);
+    assert!(said.contains("page of seed 8, not 1"), "{said}");
+    let said = refuse(&[
+        "discover-matrix",
+        "--seed",
+        "8",
+        "--first",
+        "3",
+        "--page",
+        to,
+    ]);
+    assert!(said.contains("cannot be used with"), "{said}");
+    assert_eq!(std::fs::read(&page).unwrap(), before);
 }

@@ -1,5 +1,5 @@
-//! Sampled, named channels of a machine axis: the log; CSV, Parquet and MAT in,
-//! CSV out; whether a log can be trusted; and the error metrics taken from it.
+//! Sampled, named channels of a machine axis: the log; CSV, Parquet and MAT in
+//! and out; whether a log can be trusted; and the error metrics taken from it.
 //!
 //! # The problem
 //!
@@ -22,8 +22,8 @@
 //! max |e|,    (1/N) Σ |e_k|,    sqrt( (1/N) Σ e_k² ).
 //! ```
 //!
-//! [`write_csv`] followed by [`read_csv`] gives back the same bits, and a
-//! reader never sees half a file: the text goes to a temporary file in the same
+//! [`write()`] followed by [`read_log`] gives back the same bits, and a
+//! reader never sees half a file: it goes to a temporary file in the same
 //! folder, which then takes the final name.
 //!
 //! Drives export their own names and units. [`read_log`] reads CSV, Parquet and
@@ -84,8 +84,8 @@
 //!
 //! # Features
 //!
-//! `parquet` and `mat` make [`read_log`] read those formats; without them it reads
-//! CSV, and says of the others which feature is missing.
+//! `parquet` and `mat` make [`read_log`] read and [`write()`] write those formats; without
+//! them there is CSV, and of the others it is said which feature is missing.
 //!
 //! # What it knows nothing of
 //!
@@ -96,10 +96,10 @@
 
 mod channel;
 mod csv_in;
-mod csv_out;
 mod csv_table;
 mod csv_text;
 mod error;
+mod import;
 pub mod intake;
 mod log;
 mod mapping;
@@ -122,13 +122,17 @@ mod table;
 #[cfg(feature = "parquet")]
 mod thrift;
 mod unit;
+mod write;
 
 pub use channel::Channel;
 pub use csv_in::{read_csv, read_csv_from};
-pub use csv_out::{write_csv, write_csv_to};
 pub use error::{CsvError, CsvProblem, LogError};
+pub use import::{Proposal, ProposedColumn, propose};
 pub use log::{Log, TIME_CHANNEL};
 pub use mapping::{ColumnMap, ColumnUnit, Mapping, MappingError};
 pub use read::read_log;
 pub use read_error::{Place, ReadError, ReadProblem};
 pub use unit::{unit_of, unit_suffixes};
+pub use write::{
+    CsvSink, LAYOUT, LogFile, LogSink, WriteError, WriteProblem, write, write_csv, write_csv_to,
+};

@@ -38,6 +38,10 @@ use crate::table::{Holes, Table};
 ///   sparse arrays, text, cells and structs. Version 7.3 is HDF5 and refused with that
 ///   hint.
 ///
+/// - **Files of other programs** that are recognised by their content, whatever their
+///   extension: [`propose`](crate::propose) says which they are and what their mapping
+///   could be.
+///
 /// A file is read whole, and numbers take 8 bytes each beside it. What a binary file
 /// claims beyond nine times its own size and 64 MB is refused before memory is asked
 /// for, as are more than 4096 columns.
@@ -75,18 +79,24 @@ pub(crate) fn read(
     holes: Holes,
 ) -> Result<Vec<Channel>, ReadProblem> {
     mapping.check()?;
+    let bytes = whole(path);
+    if let Ok(bytes) = &bytes
+        && let Some(table) = crate::import::table(bytes)
+    {
+        return channels(table?, mapping, required, holes);
+    }
     let found = path.extension().unwrap_or_default().to_string_lossy();
     match found.to_ascii_lowercase().as_str() {
-        "csv" => channels(CsvTable::open(&whole(path)?)?, mapping, required, holes),
+        "csv" => channels(CsvTable::open(&bytes?)?, mapping, required, holes),
         #[cfg(feature = "parquet")]
-        "parquet" => channels(ParquetTable::open(whole(path)?)?, mapping, required, holes),
+        "parquet" => channels(ParquetTable::open(bytes?)?, mapping, required, holes),
         #[cfg(not(feature = "parquet"))]
         "parquet" => Err(ReadProblem::LeftOut {
             format: "Parquet",
             feature: "parquet",
         }),
         #[cfg(feature = "mat")]
-        "mat" => channels(MatTable::open(&whole(path)?)?, mapping, required, holes),
+        "mat" => channels(MatTable::open(&bytes?)?, mapping, required, holes),
         #[cfg(not(feature = "mat"))]
         "mat" => Err(ReadProblem::LeftOut {
             format: "MAT",
@@ -98,7 +108,7 @@ pub(crate) fn read(
     }
 }
 
-fn whole(path: &Path) -> Result<Vec<u8>, ReadProblem> {
+pub(crate) fn whole(path: &Path) -> Result<Vec<u8>, ReadProblem> {
     std::fs::read(path).map_err(|source| ReadProblem::Io {
         action: "read it",
         source,

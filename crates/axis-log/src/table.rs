@@ -25,6 +25,24 @@ pub(crate) trait Table {
     }
 }
 
+impl Table for Box<dyn Table> {
+    fn heads(&self) -> &[Head] {
+        (**self).heads()
+    }
+
+    fn unreadable(&self) -> usize {
+        (**self).unreadable()
+    }
+
+    fn read(&mut self, wanted: &[usize], holes: Holes) -> Result<Vec<Vec<f64>>, ReadProblem> {
+        (**self).read(wanted, holes)
+    }
+
+    fn place(&self, row: usize, column: usize) -> Place {
+        (**self).place(row, column)
+    }
+}
+
 /// What is done about values that are missing.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Holes {

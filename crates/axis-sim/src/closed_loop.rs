@@ -91,6 +91,13 @@ impl LoopState {
         &*self.actuator
     }
 
+    /// Lets a force from outside act on the load from the next cycle on, N or N·m, positive
+    /// against positive motion, beside friction and loads: constant until it is set again, 0
+    /// at the start.
+    pub fn set_outer_load(&mut self, force: f64) {
+        self.plant.set_outer_load(force);
+    }
+
     /// The same state at time 0, for the next motion.
     #[must_use]
     pub fn at_rest(mut self) -> Self {

@@ -33,7 +33,7 @@
 //!   ([`ClosedLoop::step`]). How a run ended is its [`Outcome`]; what it left is a
 //!   [`LoopState`], from which the next may begin.
 //! - [`CHANNELS`]: the channels of logs; [`Recorder`]: cycles to an [`axis_log::Log`];
-//!   [`CsvRecorder`]: straight to CSV, in bounded memory.
+//!   [`FlowRecorder`]: to a file while the run goes on, [`CsvRecorder`] to CSV text.
 //! - [`OneCycle`]: a single cycle from a given motion, S(k+1) − S(k): the
 //!   samples that a network learns from.
 //! - [`effects`]: what a model may lack, as changes of parameters by their role and hooks
@@ -126,7 +126,7 @@ pub use effect_forces::EffectForces;
 pub use error::SetupError;
 pub use one_cycle::{CycleInput, OneCycle};
 pub use plant::Start;
-pub use recorder::{CsvRecorder, Recorder};
+pub use recorder::{CsvRecorder, FlowRecorder, Recorder};
 pub use replay::{LoggedReference, Probe, Replay, ReplayError, Stored, Trace};
 pub use six_digits::SixDigits;
 pub use work::MOST_STEPS;

@@ -40,6 +40,11 @@ pub trait Running: fmt::Debug + Send + Sync {
     /// What can be seen of it.
     fn seen(&self) -> &Seen;
 
+    /// Lets a force from outside act on the load from now on, N or N·m, positive against
+    /// positive motion, beside friction and loads: constant until it is set again, 0 at the
+    /// start.
+    fn set_outer_load(&mut self, force: f64);
+
     /// A copy.
     fn copy(&self) -> Box<dyn Running>;
 
@@ -183,6 +188,8 @@ struct State<S: TimeStepper> {
     memory: Memory,
     /// Way that the load has travelled since the motion began, m or rad.
     travelled: f64,
+    /// Force from outside, N or N·m.
+    outer_load: f64,
     /// Change of the transmission's force over the last step, N or N·m.
     force_change: f64,
     /// Motor acceleration over the last step, rad/s².
@@ -347,6 +354,7 @@ where
             unit_bristle,
             memory: self.assembly.hooks.memories().settled(start).0,
             travelled: 0.0,
+            outer_load: 0.0,
             force_change: 0.0,
             motor_acceleration: start.acceleration / self.travel,
             pressed: Self::is_loaded(start),
@@ -438,13 +446,14 @@ where
             }
             let (z0, u0, w0) = (self.bristle, self.unit_bristle, law.by_lever(start.speed));
             let (origin, travelled, memory) = (self.origin, self.travelled, &mut self.memory);
+            let outer_load = self.outer_load;
             let pressed = (time / rise).min(1.0);
             let (mut z1, mut u1, mut end_load) = (z0, u0, 0.0);
             let report = stepper.step_through(&mut self.drive, torque, &errors, |table| {
                 let w1 = law.by_lever(table.speed);
                 let (z, own) = friction.law.step_torque(z0, w0, w1, h);
                 z1 = z;
-                let mut load = law.by_lever(own);
+                let mut load = law.by_lever(own) + outer_load;
                 if has_loads {
                     let mut bristle = 0.0;
                     if law.moves_bristle {
@@ -502,6 +511,10 @@ where
 
     fn seen(&self) -> &Seen {
         &self.seen
+    }
+
+    fn set_outer_load(&mut self, force: f64) {
+        self.outer_load = force;
     }
 
     fn copy(&self) -> Box<dyn Running> {

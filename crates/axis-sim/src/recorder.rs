@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use axis_log::{Channel, Log, LogError, write_csv_to};
+use axis_log::{Channel, CsvSink, Log, LogError, LogSink};
 
 use crate::axis::Axis;
 use crate::channels::{LogChannel, channels};
@@ -64,31 +64,41 @@ impl Recorder {
 /// Cycles that are held before they are written.
 const BLOCK: usize = 4096;
 
-/// Writes the cycles of a run as the CSV text of their log while it goes on:
-/// what it holds does not grow with the run.
+/// Writes the cycles of a run to a [`LogSink`], such as a [`LogFile`](axis_log::LogFile), while
+/// it goes on: what it holds itself does not grow with the run.
 ///
-/// The text is that of [`Recorder::log`] written by [`axis_log::write_csv_to`].
+/// What comes out is [`Recorder::log`] as the sink writes it.
 #[derive(Debug)]
-pub struct CsvRecorder<W> {
-    writer: W,
+pub struct FlowRecorder<S> {
+    sink: Box<S>,
     block: Recorder,
-    rows: u64,
+    is_begun: bool,
     failed: Option<io::Error>,
 }
+
+/// Cycles to CSV text, that of [`axis_log::write_csv_to`].
+pub type CsvRecorder<W> = FlowRecorder<CsvSink<W>>;
 
 impl<W: Write> CsvRecorder<W> {
     /// Writes what `recorder` would collect to `writer`, in large pieces.
     pub fn new(writer: W, recorder: Recorder) -> Self {
+        Self::to(CsvSink::new(writer), recorder)
+    }
+}
+
+impl<S: LogSink> FlowRecorder<S> {
+    /// Writes what `recorder` would collect to `sink`.
+    pub fn to(sink: S, recorder: Recorder) -> Self {
         Self {
-            writer,
+            sink: Box::new(sink),
             block: recorder,
-            rows: 0,
+            is_begun: false,
             failed: None,
         }
     }
 
     /// Adds a cycle. After an error nothing more is written;
-    /// [`CsvRecorder::finish`] tells it.
+    /// [`FlowRecorder::finish`] tells it.
     pub fn push(&mut self, cycle: &Cycle) {
         if self.failed.is_some() {
             return;
@@ -99,34 +109,25 @@ impl<W: Write> CsvRecorder<W> {
         }
     }
 
-    /// Writes what is left, and gives the writer back.
+    /// Writes what is left, and ends the sink: CSV text gives its writer back.
     ///
     /// # Errors
-    /// The writer's; [`io::ErrorKind::InvalidData`] where there was no cycle,
+    /// The sink's; [`io::ErrorKind::InvalidData`] where there was no cycle,
     /// or one that is not finite.
-    pub fn finish(mut self) -> io::Result<W> {
+    pub fn finish(mut self) -> io::Result<S::End> {
         if let Some(error) = self.failed {
             return Err(error);
         }
-        if self.rows == 0 || !self.block.cycles.is_empty() {
+        if !self.is_begun || !self.block.cycles.is_empty() {
             self.write_block()?;
         }
-        self.writer.flush()?;
-        Ok(self.writer)
+        self.sink.finish()
     }
 
     fn write_block(&mut self) -> io::Result<()> {
         let invalid = |error| io::Error::new(io::ErrorKind::InvalidData, error);
-        let mut text = Vec::new();
-        write_csv_to(&mut text, &self.block.log().map_err(invalid)?)?;
-        // The names stand once, at the top.
-        let header = text.iter().position(|&byte| byte == b'\n');
-        let from = match header {
-            Some(end) if self.rows > 0 => end + 1,
-            _ => 0,
-        };
-        self.writer.write_all(&text[from..])?;
-        self.rows += self.block.cycles.len() as u64;
+        self.sink.write(&self.block.log().map_err(invalid)?)?;
+        self.is_begun = true;
         self.block.cycles.clear();
         Ok(())
     }

@@ -51,6 +51,11 @@ impl<T: Real> Range<T> {
         self.half_width
     }
 
+    /// Scaled units per unit of the caller: the inverse of the half width, rounded by itself.
+    pub fn gain(&self) -> T {
+        self.gain
+    }
+
     /// From the caller's unit to the scaled one; values outside the range are
     /// extrapolated, not clipped.
     #[inline(always)]

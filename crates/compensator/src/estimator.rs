@@ -180,6 +180,31 @@ impl<T: Scalar> MotionEstimator<T> {
         })
     }
 
+    /// r, travel per radian, m/rad.
+    pub fn travel_per_radian(&self) -> T {
+        self.travel_per_radian
+    }
+
+    /// Control period, s.
+    pub fn period(&self) -> T {
+        self.period
+    }
+
+    /// Its gains.
+    pub fn gains(&self) -> &ObserverGains<T> {
+        &self.gains
+    }
+
+    /// The same before its first sample, each number rounded to the nearest of another scalar.
+    ///
+    /// # Errors
+    /// [`CompensatorError::Setting`] where one leaves its range by that.
+    pub fn cast<U: Scalar>(&self) -> Result<MotionEstimator<U>, CompensatorError> {
+        let cast = |value: T| U::of(value.to_f64());
+        let (travel, period) = (cast(self.travel_per_radian), cast(self.period));
+        MotionEstimator::new(travel, period, self.gains.cast())
+    }
+
     /// Forgets everything; the next sample starts the observer there, with no
     /// wind-up rate and no acceleration.
     pub fn reset(&mut self) {

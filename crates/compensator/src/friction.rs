@@ -45,6 +45,43 @@ impl<T: Exponential> FrictionFeedforward<T> {
             speed: T::ZERO,
         })
     }
+
+    /// The friction law.
+    pub fn law(&self) -> &LuGre<T> {
+        &self.law
+    }
+
+    /// The law's coordinate per travel, rad/m.
+    pub fn per_travel(&self) -> T {
+        self.per_travel
+    }
+
+    /// Command per friction of the law, A/(N·m).
+    pub fn per_torque(&self) -> T {
+        self.per_torque
+    }
+
+    /// Control period, s.
+    pub fn period(&self) -> T {
+        self.period
+    }
+
+    /// The same at the start of a motion, each number rounded to the nearest of another
+    /// scalar.
+    ///
+    /// # Errors
+    /// [`lugre::LugreError`] where a parameter leaves its range by that.
+    pub fn cast<U: Exponential>(&self) -> Result<FrictionFeedforward<U>, lugre::LugreError> {
+        let cast = |value: T| U::of(value.to_f64());
+        Ok(FrictionFeedforward {
+            law: LuGre::new(self.law.parameters().cast())?,
+            per_travel: cast(self.per_travel),
+            per_torque: cast(self.per_torque),
+            period: cast(self.period),
+            bristle: U::ZERO,
+            speed: U::ZERO,
+        })
+    }
 }
 
 impl<T: Exponential> Compensator<T> for FrictionFeedforward<T> {

@@ -29,6 +29,21 @@ pub struct GuardLimits<T = f64> {
     pub fade: u32,
 }
 
+impl<T: Scalar> GuardLimits<T> {
+    /// Each limit rounded to the nearest number of another scalar.
+    #[must_use]
+    pub fn cast<U: Scalar>(&self) -> GuardLimits<U> {
+        let cast = |value: T| U::of(value.to_f64());
+        GuardLimits {
+            position: cast(self.position),
+            effort: cast(self.effort),
+            surprise: cast(self.surprise),
+            patience: self.patience,
+            fade: self.fade,
+        }
+    }
+}
+
 /// Why a guard has tripped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trip {
@@ -77,6 +92,11 @@ pub struct Guard<T = f64> {
 }
 
 impl<T: Scalar> Guard<T> {
+    /// What it keeps to.
+    pub fn limits(&self) -> &GuardLimits<T> {
+        &self.limits
+    }
+
     /// Switched off; [`Guard::switch`] fades in.
     ///
     /// # Errors

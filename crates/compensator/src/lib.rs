@@ -104,7 +104,10 @@ pub use error::CompensatorError;
 pub use estimator::{Estimate, MotionEstimator, NoiseGains, ObserverGains};
 #[cfg(feature = "design")]
 pub use feedback::{DesignError, FeedbackDesign, FeedbackSettings, Margins, Variation};
-pub use feedback::{Deviations, Feedback, MOST_MEASURED, MOST_STATES, PlanWithFeedback};
+pub use feedback::{
+    Deviations, Feedback, Gains as FeedbackGains, MOST_MEASURED, MOST_STATES, Node as FeedbackNode,
+    PlanWithFeedback, States,
+};
 pub use friction::FrictionFeedforward;
 pub use guard::{Guard, GuardLimits, Guarded, Status, Trip};
 #[cfg(feature = "identify")]
@@ -116,7 +119,7 @@ pub use learning::{Advice, Gauss, LearnedMove, LearningSettings, Round};
 pub use model::{Along, Cascade, Drive, DriveModel, Kinematics, Mode, SECTIONS, Section};
 pub use network::{IncrementModel, NetworkCompensation};
 pub use none::NoCompensation;
-pub use plan::{Plan, PlanSettings, Planned, Planner, Standstill, Target};
+pub use plan::{Plan, PlanSettings, Planned, Planner, PlannerConstants, Standstill, Target};
 pub use residual::{HARMONICS, KNOTS, Residual, ResidualAt, ResidualModel};
 #[cfg(feature = "alloc")]
 pub use residual::{NETWORK_INPUTS, ResidualNetwork};

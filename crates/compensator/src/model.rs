@@ -10,7 +10,7 @@
 //! motor, and J_w = Σ Jᵢ κᵢ the part of J that lags the motor by a share κᵢ of the wind-up.
 //! `docs/theory/compensator.md` derives both.
 
-use foc_pmsm::Pmsm;
+use foc_pmsm::{MotorParameters, Pmsm};
 use lugre::{Exponential, LuGre};
 use scalar::Scalar;
 
@@ -75,6 +75,18 @@ impl<T: Scalar> Along<T> {
             per_length: gaps / (most - least),
             sections,
         })
+    }
+
+    /// Position of the first section, and sections per length.
+    #[must_use]
+    pub fn grid(&self) -> [T; 2] {
+        [self.least, self.per_length]
+    }
+
+    /// The sections.
+    #[must_use]
+    pub fn sections(&self) -> &[Section<T>; SECTIONS] {
+        &self.sections
     }
 
     /// The positions of its first and its last section.
@@ -183,6 +195,58 @@ pub enum Drive<T = f64> {
         /// Greatest length of the voltage, V.
         voltage: T,
     },
+}
+
+impl<T: Scalar> Drive<T> {
+    /// Each value rounded; none where the motor's leave their ranges by that.
+    fn cast<U: Scalar>(&self) -> Option<Drive<U>> {
+        let to = |value: T| U::of(value.to_f64());
+        Some(match self {
+            Self::Lag { gain, bandwidth } => Drive::Lag {
+                gain: to(*gain),
+                bandwidth: to(*bandwidth),
+            },
+            Self::FieldOriented {
+                motor,
+                gear,
+                d,
+                q,
+                voltage,
+            } => {
+                let p = motor.parameters();
+                let parameters = MotorParameters {
+                    pole_pairs: p.pole_pairs,
+                    resistance: to(p.resistance),
+                    inductance_d: to(p.inductance_d),
+                    inductance_q: to(p.inductance_q),
+                    flux_linkage: to(p.flux_linkage),
+                };
+                Drive::FieldOriented {
+                    motor: Pmsm::new(parameters).ok()?,
+                    gear: to(*gear),
+                    d: d.map(to),
+                    q: q.map(to),
+                    voltage: to(*voltage),
+                }
+            }
+        })
+    }
+}
+
+impl<T: Scalar> Cascade<T> {
+    /// Each value rounded to the nearest number of another scalar.
+    #[must_use]
+    pub fn cast<U: Scalar>(&self) -> Cascade<U> {
+        let to = |value: T| U::of(value.to_f64());
+        Cascade {
+            position: to(self.position),
+            velocity_feedforward: to(self.velocity_feedforward),
+            acceleration_feedforward: to(self.acceleration_feedforward),
+            speed: to(self.speed),
+            speed_integral: to(self.speed_integral),
+            from_motor: self.from_motor,
+        }
+    }
 }
 
 /// The drive's own position and speed loop, as far as corrections pass through it.
@@ -304,6 +368,37 @@ pub struct DriveModel<T = f64> {
 }
 
 impl<T: Exponential> DriveModel<T> {
+    /// The same model, each number rounded to the nearest of another scalar.
+    ///
+    /// # Errors
+    /// [`CompensatorError::Setting`] where friction or motor leave their ranges by that.
+    pub fn cast<U: Exponential>(&self) -> Result<DriveModel<U>, CompensatorError> {
+        let to = |value: T| U::of(value.to_f64());
+        let outside = |name, value: T| CompensatorError::Setting {
+            name,
+            value: value.to_f64(),
+            valid: "within its range in the other precision",
+        };
+        let friction = self.friction.parameters();
+        Ok(DriveModel {
+            travel: to(self.travel),
+            load_inertia: to(self.load_inertia),
+            friction: LuGre::new(friction.cast())
+                .map_err(|_| outside("friction", friction.coulomb))?,
+            lever: to(self.lever),
+            along: self.along.cast(),
+            kinematics: self.kinematics.cast(),
+            drive: self
+                .drive
+                .cast()
+                .ok_or_else(|| outside("motor", self.effort_limit))?,
+            delay: to(self.delay),
+            effort_limit: to(self.effort_limit),
+            cascade: self.cascade.cast(),
+            period: to(self.period),
+        })
+    }
+
     /// Torque per command at rest, N·m per unit of the command.
     #[must_use]
     pub fn torque_constant(&self) -> T {

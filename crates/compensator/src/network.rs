@@ -70,6 +70,16 @@ impl<M: IncrementModel<T>, T: Scalar> NetworkCompensation<M, T> {
         Self { model, estimator }
     }
 
+    /// The model of one cycle.
+    pub fn model(&self) -> &M {
+        &self.model
+    }
+
+    /// The estimator of its inputs.
+    pub fn estimator(&self) -> &MotionEstimator<T> {
+        &self.estimator
+    }
+
     /// Ê(k+1), m: the tracking error predicted for the end of the cycle that
     /// begins with `sample`.
     ///

@@ -111,6 +111,12 @@ impl<T: Scalar> TransferFunctionModel<T> {
         &self.coefficients[..self.order]
     }
 
+    /// cᵢ √(1 − pᵢ²), s²: what each section's value is weighed with.
+    pub fn weights(&self) -> impl Iterator<Item = T> + '_ {
+        let pairs = self.coefficients().iter().zip(&self.gains);
+        pairs.map(|(&c, &gain)| c * gain)
+    }
+
     /// Error at constant acceleration, per acceleration, s².
     ///
     /// At constant velocity the model's error is always zero.
@@ -228,6 +234,19 @@ impl<T: Scalar> TransferFunction<T> {
     /// The model.
     pub fn model(&self) -> &TransferFunctionModel<T> {
         &self.model
+    }
+
+    /// The lead time τ, s.
+    pub fn lead_time(&self) -> T {
+        self.lead
+    }
+
+    /// The same at the start of a motion, each number rounded to the nearest of another scalar.
+    ///
+    /// # Errors
+    /// As [`TransferFunctionModel::cast`].
+    pub fn cast<U: Scalar>(&self) -> Result<TransferFunction<U>, CompensatorError> {
+        TransferFunction::with_lead(self.model.cast()?, U::of(self.lead.to_f64()))
     }
 
     /// ê(k+1), m: the error that the model expects at the end of the cycle

@@ -53,6 +53,10 @@ pub trait Exponential: Scalar {
     /// [`DEFLECTIONS`](Self::DEFLECTIONS) for the error of parameters outside.
     const VALID_STIFFNESS: &'static str;
 
+    /// The coefficients behind the functions below, for code that is generated from them.
+    #[must_use]
+    fn decays() -> Decays<Self>;
+
     /// `e^{−u}` of `u ≥ 0`, 0 below the least normal number; NaN for NaN.
     #[must_use]
     fn exp_minus(self) -> Self;
@@ -64,6 +68,17 @@ pub trait Exponential: Scalar {
     /// `(1 − e^{−a}) / a` of `a ≥ 0`, continued to 1 at `a = 0`; NaN for NaN.
     #[must_use]
     fn mean_decay(self) -> Self;
+}
+
+/// Coefficients of the decaying exponentials in one precision.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Decays<T: 'static> {
+    /// Those of `Q(a)` up to 0.125, the constant one first.
+    pub short: &'static [T],
+    /// Those of `Q(a)` up to 0.7.
+    pub long: &'static [T],
+    /// `2^{−j/64}`.
+    pub fractions: &'static [T; 64],
 }
 
 macro_rules! exponential {
@@ -79,6 +94,10 @@ macro_rules! exponential {
                 stringify!($greatest),
                 " rad"
             );
+
+            fn decays() -> Decays<Self> {
+                $module::DECAYS
+            }
 
             #[inline(always)]
             fn exp_minus(self) -> Self {
@@ -111,6 +130,12 @@ macro_rules! decays {
 
         /// Below it the long polynomial serves; above it `1 − e^{−a}` cancels nothing.
         const LONG: $t = 0.7;
+
+        pub(super) const DECAYS: super::Decays<$t> = super::Decays {
+            short: &Q_SHORT,
+            long: &Q_LONG,
+            fractions: &FRACTIONS,
+        };
 
         /// `1 − e^{−a}` for `a ≥ 0` (also infinite), in `[0, 1]`; NaN for NaN.
         #[inline(always)]

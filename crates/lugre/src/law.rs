@@ -40,6 +40,33 @@ pub struct LuGre<T = f64> {
     coulomb_decay: T,
 }
 
+/// What a step computes with ([`LuGre::constants`]). Units are those of a rotary contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Constants<T = f64> {
+    /// `T_C`, N·m.
+    pub coulomb: T,
+    /// `T_S`, N·m.
+    pub stiction: T,
+    /// `σ1`, N·m·s/rad.
+    pub damping: T,
+    /// `σ2`, N·m·s/rad.
+    pub viscous: T,
+    /// `σ0` of the bristles, N·m/rad; 0 where they carry nothing.
+    pub stiffness: T,
+    /// `1/σ0`, rad/(N·m); 0 where they carry nothing.
+    pub compliance: T,
+    /// `T_S − T_C`, N·m.
+    pub rise: T,
+    /// `1/Ω_S`, s/rad.
+    pub per_stribeck_speed: T,
+    /// [`LuGre::flat_above`], rad/s.
+    pub flat_above: T,
+    /// `T_C/σ0`, rad.
+    pub coulomb_bristle: T,
+    /// `σ0/T_C`, 1/rad; 0 where the bristles carry nothing.
+    pub coulomb_decay: T,
+}
+
 impl<T: Exponential> LuGre<T> {
     /// Validates the parameters and prepares what the hot path needs.
     ///
@@ -72,6 +99,25 @@ impl<T: Exponential> LuGre<T> {
     #[must_use]
     pub fn parameters(&self) -> Parameters<T> {
         self.parameters
+    }
+
+    /// Every number that a step computes with, for code that is generated from a law: the
+    /// six parameters' share in it, and what [`LuGre::new`] has made of them.
+    #[must_use]
+    pub fn constants(&self) -> Constants<T> {
+        Constants {
+            coulomb: self.parameters.coulomb,
+            stiction: self.parameters.stiction,
+            damping: self.parameters.damping,
+            viscous: self.parameters.viscous,
+            stiffness: self.stiffness,
+            compliance: self.compliance,
+            rise: self.rise,
+            per_stribeck_speed: self.per_stribeck_speed,
+            flat_above: self.flat_above,
+            coulomb_bristle: self.coulomb_bristle,
+            coulomb_decay: self.coulomb_decay,
+        }
     }
 
     /// `G(ω)`, equation (2), N·m; between `T_C` and `T_S`.

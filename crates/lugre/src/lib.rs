@@ -74,6 +74,6 @@ mod passivity;
 mod sliding;
 mod step;
 
-pub use exponential::Exponential;
-pub use law::LuGre;
+pub use exponential::{Decays, Exponential};
+pub use law::{Constants, LuGre};
 pub use parameters::{LugreError, Parameters};

@@ -1,12 +1,13 @@
 //! Maximum and mean of an error, the two figures of the paper's tables.
 
 use axis_log::metrics::ErrorSummary;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::PipelineError;
 
 /// Maximum and mean of an absolute error, µm.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Figures {
     /// Greatest absolute error, µm.
     pub max: f64,

@@ -48,7 +48,7 @@ pub enum SampleFileError {
         reason: Box<crate::PipelineError>,
     },
     /// The content is not what a whole sample file holds.
-    #[error("the sample file {path} is refused: {what}; make it anew with `cargo xtask sample`")]
+    #[error("the sample file {path} is refused: {what}; make it anew with the command sample")]
     Refused {
         /// The file.
         path: PathBuf,

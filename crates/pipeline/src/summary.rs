@@ -1,7 +1,9 @@
 //! The figures of a whole pipeline in one small structure.
 
+use std::borrow::Cow;
 use std::fmt;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -10,8 +12,11 @@ use crate::compensation::CompensatedRun;
 use crate::validation::{ValidatedTrajectory, Validation};
 
 /// What `summary.json` holds.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Summary {
+    /// Version of this file's layout, [`Summary::SCHEMA`]. It rises where a field goes or
+    /// changes its meaning; new fields do not raise it.
+    pub schema: u32,
     /// Name of the axis.
     pub axis: String,
     /// Hash of the axis' parameters.
@@ -30,8 +35,13 @@ pub struct Summary {
     pub network: NetworkSummary,
 }
 
+impl Summary {
+    /// Version of the layout that this program writes.
+    pub const SCHEMA: u32 = 1;
+}
+
 /// Figures of one trajectory.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TrajectorySummary {
     /// Number in the axis file, from 1.
     pub id: usize,
@@ -42,7 +52,7 @@ pub struct TrajectorySummary {
 }
 
 /// Maximum and mean absolute tracking errors, µm.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ErrorsUm {
     /// The model, without compensation.
     pub model: Figures,
@@ -55,7 +65,7 @@ pub struct ErrorsUm {
 }
 
 /// The machine's error as predicted.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Predicted {
     /// By the network, one cycle ahead.
     pub network: Figures,
@@ -87,6 +97,20 @@ impl Compensated {
     /// All of them.
     pub fn iter(&self) -> impl Iterator<Item = (&str, Figures)> {
         self.0.iter().map(|(name, f)| (name.as_str(), *f))
+    }
+}
+
+impl JsonSchema for Compensated {
+    fn schema_name() -> Cow<'static, str> {
+        "Compensated".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": "object",
+            "description": "The machine with compensation, by the names of the strategies.",
+            "additionalProperties": generator.subschema_for::<Figures>(),
+        })
     }
 }
 
@@ -138,7 +162,7 @@ pub fn trajectories(validation: &Validation, runs: &[CompensatedRun]) -> Vec<Tra
 }
 
 /// The network and the linear map that it is measured against.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NetworkSummary {
     /// Neurons of each hidden layer.
     pub hidden: Vec<usize>,

@@ -1,16 +1,26 @@
 //! Figures: series of points over two axes.
 
 use crate::error::{Axis, ReportError};
+use crate::unit::Unit;
 
 /// A plot of one or several series.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// What the figure shows.
     pub title: String,
-    /// Label of the horizontal axis, with its unit: `t (s)`.
+    /// Label of the horizontal axis; with its unit, `t (s)`, where `x_unit` does not name it.
     pub x_label: String,
-    /// Label of the vertical axis, with its unit.
+    /// Label of the vertical axis, likewise.
     pub y_label: String,
+    /// Unit of the horizontal coordinates, with or without SI prefix: `s`, `µm`. Where it is
+    /// known, ticks and the value under the pointer take the prefix that reads best. Empty
+    /// where the label says all.
+    pub x_unit: String,
+    /// Unit of the vertical coordinates, likewise.
+    pub y_unit: String,
+    /// Figures of one page with the same name here share their horizontal axis: a zoom of one
+    /// is a zoom of all, and the pointer shows in all. Empty for none.
+    pub linked: String,
     /// Scale of the horizontal axis.
     pub x_scale: Scale,
     /// Scale of the vertical axis.
@@ -122,6 +132,9 @@ impl Figure {
             title: title.into(),
             x_label: x_label.into(),
             y_label: y_label.into(),
+            x_unit: String::new(),
+            y_unit: String::new(),
+            linked: String::new(),
             x_scale: Scale::Linear,
             y_scale: Scale::Linear,
             rows: Vec::new(),
@@ -134,6 +147,25 @@ impl Figure {
     /// Adds a series.
     pub fn series(mut self, series: Series) -> Self {
         self.series.push(series);
+        self
+    }
+
+    /// Names the units of the coordinates as they are given.
+    ///
+    /// ```
+    /// use report::Figure;
+    /// let figure = Figure::new("Error", "time", "tracking error").units("s", "µm");
+    /// assert_eq!(figure.y_unit, "µm");
+    /// ```
+    pub fn units(mut self, x: impl Into<String>, y: impl Into<String>) -> Self {
+        self.x_unit = x.into();
+        self.y_unit = y.into();
+        self
+    }
+
+    /// Shares the horizontal axis with the figures of that name.
+    pub fn linked(mut self, name: impl Into<String>) -> Self {
+        self.linked = name.into();
         self
     }
 
@@ -166,6 +198,21 @@ impl Figure {
     pub fn log_y(mut self) -> Self {
         self.y_scale = Scale::Log;
         self
+    }
+
+    /// The same figure with coordinates in units without prefix.
+    pub(crate) fn in_base_units(&self) -> Self {
+        let mut figure = self.clone();
+        let [x, y] = [&self.x_unit, &self.y_unit].map(|text| Unit::parse(text));
+        for series in &mut figure.series {
+            for (unit, values) in [(&x, &mut series.x), (&y, &mut series.y)] {
+                if unit.exponent != 0 {
+                    values.iter_mut().for_each(|v| *v = unit.to_base(*v));
+                }
+            }
+        }
+        (figure.x_unit, figure.y_unit) = (x.base, y.base);
+        figure
     }
 
     pub(crate) fn alt_text(&self) -> String {

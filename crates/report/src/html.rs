@@ -4,21 +4,31 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::error::ReportError;
 use crate::figure::{Figure, Series, Style};
+use crate::interactive::{self, Detail};
 use crate::page::{Block, KeyValues, Notice, Page};
 use crate::plot;
 use crate::scale::superscript;
 use crate::table::{Cell, Mark, Table};
+use crate::unit::engineering;
 
 const STYLE: &str = include_str!("style.css");
 
-/// The page as one HTML text: style and plots inline, no script, nothing
-/// fetched, the same bytes for the same page.
+/// What the browser may do with the page: nothing comes from or goes to any address.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
+
+/// The page as one HTML text: style, plots and the script that makes them
+/// interactive inline, nothing fetched, the same bytes for the same page.
 ///
 /// # Errors
 /// The first [`ReportError`] in reading order: a number that is not finite, a
 /// table or series whose lengths disagree, a series without points.
 pub fn render(page: &Page) -> Result<String, ReportError> {
-    let mut numbers = Numbers::default();
+    let mut numbers = Numbers {
+        figures: 0,
+        tables: 0,
+        detail: Detail::of(page),
+    };
+    let first = numbers.blocks(&page.first)?;
     let sections = page
         .sections
         .iter()
@@ -30,16 +40,22 @@ pub fn render(page: &Page) -> Result<String, ReportError> {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
                 meta name="color-scheme" content="light dark";
                 title { (page.title) }
                 style { (PreEscaped(STYLE)) }
+                @if numbers.figures > 0 { style { (PreEscaped(interactive::STYLE)) } }
             }
             body {
                 header {
                     h1 { (page.title) }
                     @if !page.lead.is_empty() { p.lead { (page.lead) } }
+                    (first)
                 }
                 @if page.sections.len() > 1 { (contents(page)) }
+                @if numbers.figures > 0 {
+                    p.hint { "Figures: drag to zoom, double-click to show all, point for values, click a name to hide it." }
+                }
                 main {
                     @for (index, (section, body)) in page.sections.iter().zip(&sections).enumerate() {
                         section id={ "s" (index + 1) } {
@@ -48,6 +64,7 @@ pub fn render(page: &Page) -> Result<String, ReportError> {
                         }
                     }
                 }
+                @if numbers.figures > 0 { (interactive::script()) }
             }
         }
     };
@@ -66,11 +83,11 @@ fn contents(page: &Page) -> Markup {
     }
 }
 
-/// Running numbers of figures and tables.
-#[derive(Default)]
+/// Running numbers of figures and tables, and how finely figures are kept.
 struct Numbers {
     figures: usize,
     tables: usize,
+    detail: Detail,
 }
 
 impl Numbers {
@@ -92,6 +109,7 @@ impl Numbers {
             Block::Figure(figure) => self.figure(figure, true)?,
             Block::FigureGrid { figures, columns } => self.grid(figures, *columns)?,
             Block::KeyValues(list) => key_values(list),
+            Block::Answers(all) => answers(all),
             Block::Folded { summary, blocks } => {
                 let body = self.blocks(blocks)?;
                 html! { details { summary { (summary) } (body) } }
@@ -115,17 +133,23 @@ impl Numbers {
         figure.check()?;
         self.figures += 1;
         let number = self.figures;
+        let figure = &figure.in_base_units();
         let narrow = plot::draw(figure, plot::NARROW, &format!("c{number}n"));
+        let canvas = if full_width { plot::WIDE } else { plot::NARROW };
+        let kept = interactive::keep(figure, canvas, self.detail);
         Ok(html! {
             figure {
                 div.title { b { "Figure " (number) } " " (figure.title) }
                 (legend(&figure.series))
-                @if full_width {
-                    div.wide { (PreEscaped(plot::draw(figure, plot::WIDE, &format!("c{number}w")))) }
-                    div.narrow { (PreEscaped(narrow)) }
-                } @else {
-                    div { (PreEscaped(narrow)) }
+                div.drawing {
+                    @if full_width {
+                        div.wide { (PreEscaped(plot::draw(figure, plot::WIDE, &format!("c{number}w")))) }
+                        div.narrow { (PreEscaped(narrow)) }
+                    } @else {
+                        div { (PreEscaped(narrow)) }
+                    }
                 }
+                @if let Some(kept) = kept { (kept) }
                 @if !figure.caption.is_empty() { figcaption { (figure.caption) } }
             }
         })
@@ -182,6 +206,19 @@ fn key_values(list: &KeyValues) -> Markup {
     }
 }
 
+fn answers(all: &[(String, Vec<String>)]) -> Markup {
+    html! {
+        dl.answers {
+            @for (question, lines) in all {
+                div {
+                    dt { (question) }
+                    dd { @for line in lines { p { (line) } } }
+                }
+            }
+        }
+    }
+}
+
 fn legend(series: &[Series]) -> Markup {
     html! {
         @if series.iter().any(|s| !s.name.is_empty()) {
@@ -230,7 +267,7 @@ fn numeric(table: &Table, column: usize) -> bool {
     table
         .rows
         .iter()
-        .any(|row| matches!(row[column], Cell::Number { .. } | Cell::Scientific { .. }))
+        .any(|row| class(&row[column]).is_some_and(|_| row[column] != Cell::Missing))
 }
 
 fn table_row(row: &[Cell]) -> Markup {
@@ -251,11 +288,13 @@ fn class(cell: &Cell) -> Option<&'static str> {
     match cell {
         Cell::Text(_) => None,
         Cell::Missing => Some("n"),
-        Cell::Number { mark, .. } | Cell::Scientific { mark, .. } => Some(match mark {
-            Mark::Plain => "n",
-            Mark::Best => "n best",
-            Mark::Failing => "n failing",
-        }),
+        Cell::Number { mark, .. } | Cell::Scientific { mark, .. } | Cell::Quantity { mark, .. } => {
+            Some(match mark {
+                Mark::Plain => "n",
+                Mark::Best => "n best",
+                Mark::Failing => "n failing",
+            })
+        }
     }
 }
 
@@ -265,11 +304,17 @@ fn content(cell: &Cell) -> Markup {
         Cell::Missing => html! { "–" },
         Cell::Number { value, digits, .. } => html! { (fixed(*value, *digits)) },
         Cell::Scientific { value, digits, .. } => html! { (scientific(*value, *digits)) },
+        Cell::Quantity {
+            value,
+            unit,
+            digits,
+            ..
+        } => html! { (engineering(*value, unit, *digits)) },
     }
 }
 
 /// A number with a typographic minus, and without one on a rounded zero.
-fn fixed(value: f64, digits: usize) -> String {
+pub(crate) fn fixed(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     match text.strip_prefix('-') {
         Some(rest) if rest.bytes().any(|b| (b'1'..=b'9').contains(&b)) => format!("\u{2212}{rest}"),
@@ -278,7 +323,8 @@ fn fixed(value: f64, digits: usize) -> String {
     }
 }
 
-fn scientific(value: f64, digits: usize) -> String {
+/// A number as mantissa and power of ten.
+pub(crate) fn scientific(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$e}");
     // Rust always writes the exponent; were it absent, the text stands as it is.
     match text.split_once('e').map(|(m, e)| (m, e.parse::<i32>())) {

@@ -4,8 +4,8 @@
 //!
 //! A [`Page`] is a list of [`Section`]s, a section a list of [`Block`]s: text,
 //! notices, [`Table`]s, [`Figure`]s, [`KeyValues`]. [`render`] maps a page to
-//! one HTML text with its style and its plots (SVG) inline: no script, no
-//! request to any address, the same text for the same page.
+//! one HTML text with its style, its plots (SVG) and the script that makes them
+//! zoom (uPlot) inline: no request to any address, the same text for the same page.
 //!
 //! A plot maps data `(x, y)` to a canvas of `W × H` pixels through
 //!
@@ -34,32 +34,34 @@
 //!     .section(
 //!         Section::new("Result")
 //!             .notice(Notice::Good, "The peak is below 60 µm.")
-//!             .figure(Figure::new("Error", "t (s)", "e (µm)").series(Series::line("run 1", t, e)))
+//!             .figure(Figure::new("Error", "time", "error").units("s", "µm").series(Series::line("run 1", t, e)))
 //!             .table(
 //!                 Table::new("Peaks", ["run", "max (µm)"])
 //!                     .row([Cell::text("1"), Cell::number(50.0, 2)]),
 //!             ),
 //!     );
 //! let html = render(&page)?;
-//! assert!(html.starts_with("<!DOCTYPE html>") && html.len() < 100_000);
+//! assert!(html.starts_with("<!DOCTYPE html>") && html.len() < 300_000);
 //! # Ok::<(), report::ReportError>(())
 //! ```
 //!
 //! # What it knows nothing of
 //!
-//! Axes, simulations, units: labels and numbers come from the caller, already
-//! in the unit to be shown. It reads no files.
+//! Axes, simulations: labels, numbers and their units come from the caller. Of units
+//! it knows which take an SI prefix ([`engineering`]). It reads no files.
 #![forbid(unsafe_code)]
 
 mod decimate;
 mod error;
 mod figure;
 mod html;
+mod interactive;
 mod page;
 mod plot;
 mod scale;
 mod svg;
 mod table;
+mod unit;
 mod write;
 
 pub use error::{Axis, ReportError, WriteError};
@@ -67,4 +69,5 @@ pub use figure::{Figure, Scale, Series, Style};
 pub use html::render;
 pub use page::{Block, KeyValues, Notice, Page, Section};
 pub use table::{Cell, ColumnGroup, Mark, Table};
+pub use unit::engineering;
 pub use write::write_atomic;

@@ -10,6 +10,8 @@ pub struct Page {
     pub title: String,
     /// One or two sentences below the title; empty for none.
     pub lead: String,
+    /// What stands above the table of contents: the result in short.
+    pub first: Vec<Block>,
     /// The sections, in order. The table of contents lists them.
     pub sections: Vec<Section>,
 }
@@ -20,6 +22,7 @@ impl Page {
         Self {
             title: title.into(),
             lead: String::new(),
+            first: Vec::new(),
             sections: Vec::new(),
         }
     }
@@ -27,6 +30,12 @@ impl Page {
     /// Sets the sentences below the title.
     pub fn lead(mut self, text: impl Into<String>) -> Self {
         self.lead = text.into();
+        self
+    }
+
+    /// Adds a block above the table of contents.
+    pub fn first(mut self, block: Block) -> Self {
+        self.first.push(block);
         self
     }
 
@@ -71,6 +80,8 @@ pub enum Block {
     },
     /// Names and values: settings, seed, versions.
     KeyValues(KeyValues),
+    /// Questions, each with the lines that answer it.
+    Answers(Vec<(String, Vec<String>)>),
     /// Content behind a line that unfolds.
     Folded {
         /// The line that is always shown.

@@ -10,6 +10,7 @@ use crate::decimate;
 use crate::figure::{Figure, Scale, Series, Style};
 use crate::scale::Fitted;
 use crate::svg;
+use crate::unit::Unit;
 
 /// Okabe and Ito's colours, safe for colour-blind readers
 /// (<https://jfly.uni-koeln.de/color/>), in an order that tells neighbours
@@ -42,7 +43,12 @@ pub(crate) const NARROW: Canvas = Canvas {
 
 /// Colour of series number `index` of its figure.
 pub(crate) fn colour(series: &Series, index: usize) -> &'static str {
-    PALETTE[series.colour.unwrap_or(index) % PALETTE.len()]
+    PALETTE[place(series, index)]
+}
+
+/// Its place in the palette.
+pub(crate) fn place(series: &Series, index: usize) -> usize {
+    series.colour.unwrap_or(index) % PALETTE.len()
 }
 
 /// Whether series number `index` is dashed: on request, and from the eighth on
@@ -55,8 +61,8 @@ pub(crate) fn is_dashed(series: &Series, index: usize) -> bool {
 const ROW: f64 = 24.0;
 const AROUND: f64 = 70.0;
 
-/// Draws a checked figure, without title and legend. `id` must be unique in the
-/// page.
+/// Draws a checked figure in units without prefix, without title and legend. `id` must be
+/// unique in the page.
 pub(crate) fn draw(figure: &Figure, mut canvas: Canvas, id: &str) -> String {
     if !figure.rows.is_empty() {
         canvas.height = AROUND + ROW * figure.rows.len() as f64;
@@ -72,7 +78,8 @@ pub(crate) fn draw(figure: &Figure, mut canvas: Canvas, id: &str) -> String {
     svg::write(&scene, &figure.alt_text(), id)
 }
 
-fn fit(figure: &Figure, canvas: Canvas) -> (Fitted, Fitted) {
+/// Both axes, fitted to the series.
+pub(crate) fn fit(figure: &Figure, canvas: Canvas) -> (Fitted, Fitted) {
     let all = |pick: fn(&Series) -> &Vec<f64>| {
         figure
             .series
@@ -82,13 +89,15 @@ fn fit(figure: &Figure, canvas: Canvas) -> (Fitted, Fitted) {
     // Dots on the frame would be cut in half, so only lines end at the frame.
     let tight = figure.series.iter().all(|s| s.style != Style::Dots);
     let y = match &figure.rows[..] {
-        [] => Fitted::new(figure.y_scale, all(|s| &s.y), canvas.height / 55.0, false),
+        [] => {
+            let (unit, ticks) = (Unit::parse(&figure.y_unit), canvas.height / 55.0);
+            Fitted::new(figure.y_scale, unit, all(|s| &s.y), ticks, false)
+        }
         names => Fitted::rows(names.iter().map(|name| short(name, canvas)).collect()),
     };
-    (
-        Fitted::new(figure.x_scale, all(|s| &s.x), canvas.width / 90.0, tight),
-        y,
-    )
+    let (unit, ticks) = (Unit::parse(&figure.x_unit), canvas.width / 90.0);
+    let x = Fitted::new(figure.x_scale, unit, all(|s| &s.x), ticks, tight);
+    (x, y)
 }
 
 /// The name of a row as far as there is room for it.
@@ -152,13 +161,14 @@ fn with_labels(layout: Layout, figure: &Figure, canvas: Canvas, x: &Fitted, y: &
         .with_force_margins_y(10.0, bottom)
 }
 
+/// The points of a series on a canvas.
+pub(crate) fn pixels(series: &Series, canvas: Canvas, x: &Fitted, y: &Fitted) -> Vec<(f64, f64)> {
+    let place = |(&a, &b)| (x.fraction(a) * canvas.width, y.fraction(b) * canvas.height);
+    series.x.iter().zip(&series.y).map(place).collect()
+}
+
 fn plot(series: &Series, index: usize, canvas: Canvas, x: &Fitted, y: &Fitted) -> Plot {
-    let pixels: Vec<(f64, f64)> = series
-        .x
-        .iter()
-        .zip(&series.y)
-        .map(|(&a, &b)| (x.fraction(a) * canvas.width, y.fraction(b) * canvas.height))
-        .collect();
+    let pixels = pixels(series, canvas, x, y);
     let point = |k: usize| (x.drawn(series.x[k]), y.drawn(series.y[k]));
     // A line through one point would not be seen.
     if series.style == Style::Dots || series.x.len() == 1 {

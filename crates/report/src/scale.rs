@@ -1,12 +1,15 @@
 //! Range, ticks and tick labels of an axis.
 
 use crate::figure::Scale;
+use crate::unit::{Unit, scaled};
 
 /// An axis fitted to its data. What is drawn is `value · 10^-exponent`: drawing
 /// then works on numbers near one, whatever the unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Fitted {
     pub scale: Scale,
+    /// Unit of the values.
+    pub unit: Unit,
     /// Power of ten taken out of the values.
     pub exponent: i32,
     /// Ends of the axis, drawn values.
@@ -23,11 +26,17 @@ impl Fitted {
     /// Fits an axis with about `ticks` ticks to values that are finite (and
     /// positive where `scale` is logarithmic). `tight` ends it at the data,
     /// otherwise it ends at ticks.
-    pub fn new(scale: Scale, values: impl Iterator<Item = f64>, ticks: f64, tight: bool) -> Self {
+    pub fn new(
+        scale: Scale,
+        unit: Unit,
+        values: impl Iterator<Item = f64>,
+        ticks: f64,
+        tight: bool,
+    ) -> Self {
         let (min, max) = values.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
         match scale {
-            Scale::Linear => Self::linear(min, max, ticks, tight),
-            Scale::Log => Self::log(min, max, ticks, tight),
+            Scale::Linear => Self::linear(unit, min, max, ticks, tight),
+            Scale::Log => Self::log(unit, min, max, ticks, tight),
         }
     }
 
@@ -35,6 +44,7 @@ impl Fitted {
     pub fn rows(names: Vec<String>) -> Self {
         Self {
             scale: Scale::Linear,
+            unit: Unit::parse(""),
             exponent: 0,
             range: (-0.6, names.len() as f64 - 0.4),
             step: 1.0,
@@ -43,9 +53,11 @@ impl Fitted {
         }
     }
 
-    fn linear(min: f64, max: f64, ticks: f64, tight: bool) -> Self {
+    fn linear(unit: Unit, min: f64, max: f64, ticks: f64, tight: bool) -> Self {
         let greatest = min.abs().max(max.abs());
-        let exponent = if greatest == 0.0 || (1e-2..1e5).contains(&greatest) {
+        let exponent = if unit.is_prefixed() {
+            unit.reading(greatest)
+        } else if greatest == 0.0 || (1e-2..1e5).contains(&greatest) {
             0
         } else {
             (greatest.log10() / 3.0).floor() as i32 * 3
@@ -69,6 +81,7 @@ impl Fitted {
         }
         Self {
             scale: Scale::Linear,
+            unit,
             exponent,
             range: (lo, hi),
             step,
@@ -77,7 +90,7 @@ impl Fitted {
         }
     }
 
-    fn log(min: f64, max: f64, ticks: f64, tight: bool) -> Self {
+    fn log(unit: Unit, min: f64, max: f64, ticks: f64, tight: bool) -> Self {
         let exponent = min.log10().floor() as i32;
         let (mut lo, mut hi) = (scaled(min, exponent), scaled(max, exponent));
         if hi / lo < 1.0 + 1e-9 {
@@ -91,6 +104,7 @@ impl Fitted {
         let decades = (hi / lo).log10();
         Self {
             scale: Scale::Log,
+            unit,
             exponent,
             range: (lo, hi),
             step: 1.0,
@@ -107,6 +121,14 @@ impl Fitted {
         scaled(value, self.exponent)
     }
 
+    /// The value of a drawn value.
+    pub fn undrawn(&self, drawn: f64) -> f64 {
+        if !self.names.is_empty() {
+            return (self.names.len() - 1) as f64 - drawn;
+        }
+        scaled(drawn, -self.exponent)
+    }
+
     /// Place of a value between the ends of the axis, 0 to 1.
     pub fn fraction(&self, value: f64) -> f64 {
         let f = |v: f64| match self.scale {
@@ -117,12 +139,20 @@ impl Fitted {
         (f(self.drawn(value)) - lo) / (hi - lo)
     }
 
-    /// What the axis label must add: the power of ten, where one is taken out of
-    /// the tick labels.
+    /// What the axis label must add: the unit with its prefix, or the power of ten where one
+    /// is taken out of the tick labels.
     pub fn label_suffix(&self) -> String {
+        let named = |unit: String| match unit.as_str() {
+            "" => unit,
+            _ => format!(", {unit}"),
+        };
         match self.scale {
-            Scale::Linear if self.exponent != 0 => format!(" (×10{})", superscript(self.exponent)),
-            _ => String::new(),
+            Scale::Linear if self.unit.is_prefixed() => named(self.unit.with(self.exponent)),
+            Scale::Linear if self.exponent != 0 => {
+                let unit = named(self.unit.with(0));
+                format!("{unit} (×10{})", superscript(self.exponent))
+            }
+            _ => named(self.unit.with(0)),
         }
     }
 
@@ -188,12 +218,6 @@ impl Fitted {
     }
 }
 
-/// `value · 10^-exponent`, in two steps so that the power cannot overflow.
-fn scaled(value: f64, exponent: i32) -> f64 {
-    let half = exponent / 2;
-    value / 10f64.powi(half) / 10f64.powi(exponent - half)
-}
-
 /// The least of 1, 2, 5 times a power of ten that is not below `rough`.
 fn nice_step(rough: f64) -> f64 {
     let base = 10f64.powf(rough.log10().floor());
@@ -254,7 +278,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn fit(scale: Scale, values: &[f64]) -> Fitted {
-        Fitted::new(scale, values.iter().copied(), 6.0, false)
+        Fitted::new(scale, Unit::parse(""), values.iter().copied(), 6.0, false)
     }
 
     #[test]
@@ -283,6 +307,20 @@ mod tests {
     }
 
     #[test]
+    fn a_prefix_takes_the_place_of_the_power_of_ten() {
+        let axis = |unit, values: &[f64]| {
+            let values = values.iter().copied();
+            Fitted::new(Scale::Linear, Unit::parse(unit), values, 6.0, false)
+        };
+        let error = axis("m", &[-5.4e-5, 5.4e-5]);
+        assert_eq!(error.label_suffix(), ", µm");
+        assert_eq!(error.tick_label(error.drawn(4e-5)), "40");
+        assert_eq!(axis("m/s", &[0.0, 0.25]).label_suffix(), ", mm/s");
+        let viscous = axis("N·s/m", &[0.0, 2e6]);
+        assert_eq!(viscous.label_suffix(), ", N·s/m (×10⁶)");
+    }
+
+    #[test]
     fn decades_are_labelled_as_powers_where_there_are_many() {
         let wide = fit(Scale::Log, &[3e-9, 0.5]);
         assert_eq!((wide.exponent, wide.range), (-9, (1.0, 1e9)));
@@ -301,7 +339,7 @@ mod tests {
             values in prop::collection::vec(prop::num::f64::NORMAL | prop::num::f64::ZERO, 1..20),
             tight in any::<bool>(),
         ) {
-            let axis = Fitted::new(Scale::Linear, values.iter().copied(), 6.0, tight);
+            let axis = Fitted::new(Scale::Linear, Unit::parse(""), values.iter().copied(), 6.0, tight);
             for v in &values {
                 let f = axis.fraction(*v);
                 prop_assert!((-1e-9..=1.0 + 1e-9).contains(&f), "{v} at {f} of {axis:?}");
@@ -313,7 +351,7 @@ mod tests {
             exponents in prop::collection::vec(-149.0..149.0f64, 1..20), tight in any::<bool>(),
         ) {
             let values: Vec<f64> = exponents.iter().map(|e| 10f64.powf(*e)).collect();
-            let axis = Fitted::new(Scale::Log, values.iter().copied(), 6.0, tight);
+            let axis = Fitted::new(Scale::Log, Unit::parse(""), values.iter().copied(), 6.0, tight);
             for v in &values {
                 let f = axis.fraction(*v);
                 prop_assert!((-1e-9..=1.0 + 1e-9).contains(&f), "{v} at {f} of {axis:?}");

@@ -53,6 +53,17 @@ pub enum Cell {
         /// Emphasis.
         mark: Mark,
     },
+    /// A finite number with its unit, as [`engineering`](crate::engineering) writes it, set right.
+    Quantity {
+        /// The number.
+        value: f64,
+        /// Its unit, with or without SI prefix.
+        unit: String,
+        /// Significant digits.
+        digits: usize,
+        /// Emphasis.
+        mark: Mark,
+    },
     /// No value: shown as a dash.
     Missing,
 }
@@ -94,9 +105,22 @@ impl Cell {
         }
     }
 
+    /// A number with its unit, to `digits` significant digits: `12.3 µm`.
+    pub fn quantity(value: f64, unit: impl Into<String>, digits: usize) -> Self {
+        Self::Quantity {
+            value,
+            unit: unit.into(),
+            digits,
+            mark: Mark::Plain,
+        }
+    }
+
     /// The same cell with emphasis; text and missing cells take none.
     pub fn marked(mut self, with: Mark) -> Self {
-        if let Self::Number { mark, .. } | Self::Scientific { mark, .. } = &mut self {
+        if let Self::Number { mark, .. }
+        | Self::Scientific { mark, .. }
+        | Self::Quantity { mark, .. } = &mut self
+        {
             *mark = with;
         }
         self
@@ -174,7 +198,9 @@ impl Table {
     fn check_values(&self, row: usize, cells: &[Cell]) -> Result<(), ReportError> {
         for (column, cell) in cells.iter().enumerate() {
             match *cell {
-                Cell::Number { value, .. } | Cell::Scientific { value, .. }
+                Cell::Number { value, .. }
+                | Cell::Scientific { value, .. }
+                | Cell::Quantity { value, .. }
                     if !value.is_finite() =>
                 {
                     return Err(ReportError::TableValue {

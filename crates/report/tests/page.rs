@@ -55,7 +55,21 @@ fn full_page() -> Page {
         )
 }
 
-/// Opening and closing tags must nest; comments and scripts must not occur.
+/// The page without its scripts and the points that they draw, and these.
+fn apart(html: &str) -> (String, Vec<&str>) {
+    let mut rest = String::new();
+    let mut scripts = Vec::new();
+    let mut pieces = html.split("<script");
+    rest.push_str(pieces.next().unwrap());
+    for piece in pieces {
+        let (script, after) = piece.split_once("</script>").expect("a script ends");
+        scripts.push(script);
+        rest.push_str(after);
+    }
+    (rest, scripts)
+}
+
+/// Opening and closing tags must nest; comments must not occur.
 fn assert_well_formed(html: &str) {
     const VOID: [&str; 2] = ["meta", "br"];
     let body = html.strip_prefix("<!DOCTYPE html>").expect("doctype");
@@ -81,8 +95,16 @@ fn assert_well_formed(html: &str) {
 
 #[test]
 fn the_page_is_well_formed_and_escaped() {
-    let html = render(&full_page()).unwrap();
+    let page = render(&full_page()).unwrap();
+    let (html, scripts) = apart(&page);
     assert_well_formed(&html);
+    // The points of three figures, and the one that draws them.
+    assert_eq!(scripts.len(), 4);
+    for points in &scripts[..3] {
+        let json = points.strip_prefix(" type=\"application/json\">").unwrap();
+        let value: serde_json::Value = serde_json::from_str(json).unwrap();
+        assert!(value["series"].is_array());
+    }
     assert!(!html.contains("alert('x')</script>"));
     assert!(html.contains("&lt;script&gt;"));
     assert!(!html.contains("\" onload="));
@@ -92,9 +114,23 @@ fn the_page_is_well_formed_and_escaped() {
 
 #[test]
 fn the_page_refers_to_nothing_outside() {
-    let html = render(&full_page()).unwrap();
+    let page = render(&full_page()).unwrap();
+    let (html, scripts) = apart(&page);
     for word in ["http:", "https:", "//", "src=", "@import", "<link", "data:"] {
         assert!(!html.contains(word), "{word}");
+    }
+    // Nor can it: a browser is told to fetch nothing.
+    assert!(html.contains("default-src &#39;none&#39;") || html.contains("default-src 'none'"));
+    let drawing = scripts.last().unwrap();
+    for word in [
+        "fetch(",
+        "XMLHttpRequest",
+        "WebSocket",
+        "import(",
+        "eval(",
+        "innerHTML",
+    ] {
+        assert!(!drawing.contains(word), "{word}");
     }
     for reference in html
         .split("url(")
@@ -152,7 +188,8 @@ fn a_long_series_stays_small_and_keeps_its_spike() {
         let page = Page::new("p").section(Section::new("s").figure_grid(vec![figure], 1));
         render(&page).unwrap()
     };
-    let html = draw(y);
+    let page = draw(y);
+    let (html, scripts) = apart(&page);
     // The line is the last path; its points go up to the spike and back: the
     // plot is about 220 px high, and the axis ends close above the spike.
     let path = html.rsplit(" d=\"").next().unwrap();
@@ -165,8 +202,10 @@ fn a_long_series_stays_small_and_keeps_its_spike() {
         .filter_map(|step| step.rfind('-').map(|at| step[at..].parse::<f64>().unwrap()))
         .sum();
     assert!(climbs < -150.0, "{climbs}");
-    // About 420 columns of at most two points of at most 10 bytes, and the frame.
+    // About 420 columns of at most two points of at most 10 bytes, the frame and the styles.
     assert!(html.len() < 25_000, "{}", html.len());
+    // Sixteen times as many columns are kept for zooming, nearly all of them flat.
+    assert!(scripts[0].len() < 100_000, "{}", scripts[0].len());
 }
 
 #[test]
@@ -197,7 +236,11 @@ fn forty_noisy_figures_stay_below_five_megabytes() {
 fn numbers_that_are_none_are_refused_by_name() {
     let refused = |section| render(&Page::new("p").section(section)).unwrap_err();
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        for cell in [Cell::number(value, 2), Cell::scientific(value, 2)] {
+        for cell in [
+            Cell::number(value, 2),
+            Cell::scientific(value, 2),
+            Cell::quantity(value, "m", 2),
+        ] {
             let error = refused(Section::new("s").table(table().row([Cell::text("x"), cell])));
             let text = error.to_string();
             assert!(
@@ -258,10 +301,18 @@ fn figures_are_shown_as_written() {
         Cell::scientific(-1.7e-5, 1),
         Cell::scientific(2.0, 1),
         Cell::Missing,
+        Cell::quantity(-1.234e-5, "m", 3),
     ];
-    let table = Table::new("t", ["", "a", "b", "c", "d", "e"]).row(row);
+    let table = Table::new("t", ["", "a", "b", "c", "d", "e", "f"]).row(row);
     let html = render(&Page::new("p").section(Section::new("s").table(table))).unwrap();
-    for shown in ["0.00", "\u{2212}1234.5", "\u{2212}1.7·10⁻⁵", "2.0", "–"] {
+    for shown in [
+        "0.00",
+        "\u{2212}1234.5",
+        "\u{2212}1.7·10⁻⁵",
+        "2.0",
+        "–",
+        "\u{2212}12.3 µm",
+    ] {
         assert!(
             html.contains(&format!("<td class=\"n\">{shown}</td>")),
             "{shown}"
@@ -292,6 +343,64 @@ fn pages_are_written_whole_or_not_at_all() {
     let absent = folder.path().join("absent").join("report.html");
     let error = write_atomic(&absent, &full_page()).unwrap_err().to_string();
     assert!(error.starts_with(&absent.display().to_string()), "{error}");
+}
+
+/// The vendored files are those of the npm package uplot 1.6.32 (vendor/uplot/README.md).
+#[test]
+fn uplot_is_as_it_was_published() {
+    let hash = |bytes: &[u8]| blake3::hash(bytes).to_hex().to_string();
+    let files: [(&[u8], &str); 3] = [
+        (
+            include_bytes!("../vendor/uplot/uPlot.iife.min.js"),
+            "ea2d16ff65797375a846049c0f0a17f68b47a2850b9c73f2816ecf040ec9f2ce",
+        ),
+        (
+            include_bytes!("../vendor/uplot/uPlot.min.css"),
+            "70ead7542eab83ef6ff4269c1f139e3c40f5f59f98302552320b9f79188abba1",
+        ),
+        (
+            include_bytes!("../vendor/uplot/LICENSE"),
+            "80723da02446eaf6792b975295c3447a1492e3ca814b7645e8fbd366156b025a",
+        ),
+    ];
+    for (bytes, expected) in files {
+        assert_eq!(hash(bytes), expected);
+    }
+}
+
+/// The result in short stands above the table of contents.
+#[test]
+fn answers_come_first() {
+    let answers = vec![("How much?".to_owned(), vec!["12.3 µm <b>".to_owned()])];
+    let page = Page::new("p")
+        .first(Block::Answers(answers))
+        .section(Section::new("one"))
+        .section(Section::new("two"));
+    let html = render(&page).unwrap();
+    assert_well_formed(&html);
+    let at = |text| html.find(text).unwrap();
+    assert!(at("How much?") < at("12.3 µm &lt;b&gt;") && at("12.3 µm") < at("<nav"));
+    // Without a figure there is nothing to draw.
+    assert!(!html.contains("<script"));
+}
+
+/// Units of pictures, and of the points kept: SI without prefix, read with one.
+#[test]
+fn figures_take_prefixes() {
+    let figure = Figure::new("f", "time", "error")
+        .units("ms", "µm")
+        .series(Series::line("", vec![0.0, 2000.0], vec![0.0, 5.0]));
+    let html = render(&Page::new("").section(Section::new("").figure(figure))).unwrap();
+    assert!(html.contains(">time, s</text>") && html.contains(">error, µm</text>"));
+    let (_, scripts) = apart(&html);
+    let json = scripts[0].split_once('>').unwrap().1;
+    let value: serde_json::Value = serde_json::from_str(json).unwrap();
+    assert_eq!(value["x"]["unit"], "s");
+    assert_eq!(value["y"]["unit"], "m");
+    let [start, step, last] = [0, 1, 2].map(|k| value["series"][0]["y"][k].clone());
+    let number = |v: &serde_json::Value| v.as_f64().unwrap();
+    let end = number(&start) + number(&step) * number(&last[1]);
+    assert!((end - 5e-6).abs() < 1e-12, "{end}");
 }
 
 /// Named rows: each has its name, in a narrow drawing up to the first space, from the top

@@ -13,9 +13,9 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::matrix_job::Matrix;
-use crate::jobs::{JobOptions, Sharding};
-use crate::output::{ready, say, write_whole};
 use crate::page::matrix;
+use feed_axis::jobs::{JobOptions, Sharding};
+use feed_axis::output::{ready, say, write_whole};
 
 /// Options of the command.
 #[derive(Args)]
@@ -177,7 +177,7 @@ impl Kept {
     pub(super) fn new<'a>(axes: impl IntoIterator<Item = &'a Axis>, out: &Path) -> Self {
         let fingerprints = axes.into_iter().map(|axis| axis.fingerprint.as_str());
         let fingerprints: Vec<&str> = fingerprints.collect();
-        let made_by = crate::program::inputs().with("axis", fingerprints.join(" "));
+        let made_by = feed_axis::program::inputs().with("axis", fingerprints.join(" "));
         Self {
             folder: out.join("cases"),
             made_by: made_by.key(),

@@ -10,9 +10,9 @@ use discover_matrix::matrix2::{Bench, Case, Outcome, Plan, cases};
 use miette::{IntoDiagnostic, Result};
 
 use super::discover_matrix::{Kept, Options, replaceable};
-use crate::jobs::failure;
-use crate::output::{ready, say, write_whole};
 use crate::page::matrix2;
+use feed_axis::jobs::failure;
+use feed_axis::output::{ready, say, write_whole};
 
 /// Axis files of machines that are taken where none are given.
 pub(super) const MACHINES: [&str; 3] = [
@@ -133,7 +133,7 @@ impl Job for Matrix2 {
         let axes: Vec<&str> = (self.machines.iter())
             .map(|axis| axis.fingerprint.as_str())
             .collect();
-        crate::program::inputs()
+        feed_axis::program::inputs()
             .with("version", 2)
             .with("axes", axes.join(" "))
             .with("seed", self.seed)

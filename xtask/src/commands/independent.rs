@@ -15,8 +15,8 @@ use independent_axis::{Rough, TrueEffect, Truth, Wanted, write_case};
 use miette::{IntoDiagnostic, Result};
 use serde::{Deserialize, Serialize};
 
-use super::discover::read_all;
-use crate::output::{ready, say, write_whole};
+use feed_axis::commands::discover::read_all;
+use feed_axis::output::{ready, say, write_whole};
 
 /// Options of the command.
 #[derive(Args)]
@@ -86,7 +86,7 @@ pub fn command(options: &Options) -> Result<()> {
     let default = || Path::new("runs/independent").join(format!("seed-{}", options.seed));
     let out = options.out.clone().unwrap_or_else(default);
     ready(&out)?;
-    let made_by = crate::program::key();
+    let made_by = feed_axis::program::key();
     let mut outcomes = Vec::new();
     for case in cases {
         let file = out.join(case.name).join("outcome.json");

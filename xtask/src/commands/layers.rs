@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use toml::{Table, Value};
 
-use crate::context::read_text;
-use crate::output::say;
+use feed_axis::context::read_text;
+use feed_axis::output::say;
 
 /// Runs the command.
 pub fn command() -> Result<()> {

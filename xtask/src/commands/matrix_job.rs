@@ -10,9 +10,9 @@ use discover_matrix::hidden::Exercise;
 use discover_matrix::matrix::{Bench, Case, Outcome, Score};
 
 use super::discover_matrix::Kept;
-use crate::jobs::failure;
-use crate::output::{say, write_whole};
 use crate::page::matrix;
+use feed_axis::jobs::failure;
+use feed_axis::output::{say, write_whole};
 
 /// The matrix of an axis: a case is a case of it, whose outcome is also kept as a file.
 pub(super) struct Matrix {
@@ -63,7 +63,7 @@ impl Job for Matrix {
     fn inputs(&self) -> Inputs {
         let cases = serde_json::to_string(&self.cases).unwrap_or_default();
         let cases = blake3::hash(cases.as_bytes()).to_hex();
-        crate::program::inputs()
+        feed_axis::program::inputs()
             .with("axis", &self.axis.fingerprint)
             .with("seed", self.seed)
             .with("cases", cases)

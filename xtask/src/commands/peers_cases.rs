@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 use toml_edit::{DocumentMut, Item, Table, value};
 
 use super::discover_matrix2::MACHINES;
-use crate::context::read_text;
-use crate::output::{ready, say, write_whole};
+use feed_axis::context::read_text;
+use feed_axis::output::{ready, say, write_whole};
 
 /// Options of the command.
 #[derive(Args)]
@@ -165,7 +165,7 @@ fn write_plot(out: &Path, text: &str, axis: &Axis, plot: &[Case]) -> Result<()> 
 }
 
 fn made_by(axis: &Axis) -> String {
-    let inputs = crate::program::inputs();
+    let inputs = feed_axis::program::inputs();
     inputs.with("axis", axis.fingerprint.as_str()).key()
 }
 
@@ -332,7 +332,7 @@ mod tests {
         let folder = out.path().join(&case.id);
         // Logs, bit for bit, and no channel more than the case shows.
         for (name, log) in SHOWN.iter().zip(&given.logs) {
-            let back = read_csv(folder.join(name)).unwrap();
+            let back = read_csv(folder.join(name), &[]).unwrap();
             assert_eq!(back.channels().len(), 3);
             for channel in log.channels() {
                 assert_eq!(back.channel(&channel.name).unwrap(), channel.samples);

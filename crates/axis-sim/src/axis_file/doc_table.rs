@@ -31,7 +31,7 @@ fn rows(path: &str, keys: &[Key], rows: &mut Vec<String>) {
             }
             Kind::Number(_, limits) => (String::new(), interval(limits)),
             Kind::Count(least, most) => (String::new(), format!("whole, {least} to {most}")),
-            Kind::Text => (String::new(), "text".to_owned()),
+            Kind::Text(_) => (String::new(), "text".to_owned()),
             Kind::Word(words) => (String::new(), words.join(" or ")),
             Kind::Table(keys) => {
                 self::rows(&format!("{path}{}.", key.name), keys, rows);
@@ -42,11 +42,7 @@ fn rows(path: &str, keys: &[Key], rows: &mut Vec<String>) {
                 continue;
             }
         };
-        let left_out = match (key.optional, key.default) {
-            (true, Some(default)) => format!("; {} where left out", SixDigits(default)),
-            (true, None) => "; may be left out".to_owned(),
-            _ => String::new(),
-        };
+        let left_out = key.left_out(1.0);
         rows.push(format!("| `{name}` | {units} | {valid}{left_out} |"));
     }
 }

@@ -15,6 +15,13 @@ pub(super) struct Source {
 }
 
 impl Source {
+    pub(super) fn of(name: &str, content: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            content: content.to_owned(),
+        }
+    }
+
     pub(super) fn text(&self, span: Range<usize>) -> &str {
         self.content.get(span).unwrap_or_default()
     }

@@ -6,6 +6,7 @@ use axis_log::{ColumnMap, ColumnUnit, Mapping};
 
 use super::error::AxisFileError;
 use super::fields::Fields;
+use super::keys::SHARE;
 use crate::SixDigits;
 use crate::axis::{Axis, BalanceSettings, Range, Stroke, Tolerances};
 use crate::effects::{ActiveEffect, Effect, EffectParameter, Scales};
@@ -93,8 +94,7 @@ fn share(f: &Fields<'_>, name: &str) -> Result<f64, AxisFileError> {
     let valid = |share: &f64| (1e-5..=Tolerances::UNKNOWN).contains(share);
     share.filter(valid).ok_or_else(|| {
         let what = format!("is \"{text}\"");
-        let valid = "a share such as \"20 %\", from 0.001 % to 90 %, or \"unknown\"";
-        f.refuse_value(name, what, valid.to_owned())
+        f.refuse_value(name, what, SHARE.to_owned())
     })
 }
 

@@ -9,7 +9,7 @@ use super::layout::{Layout, SHORT_KINDS};
 use crate::actuator::Effort;
 use crate::mechanism::Freedom;
 use crate::part::units::*;
-use crate::part::{Key, count, number, quantity, table, tables, text, word};
+use crate::part::{Key, count, number, quantity, table, tables, text, text_of, word};
 use crate::work::FREQUENCIES;
 
 /// The version of a file's layout: 2 has a section for each part.
@@ -35,10 +35,10 @@ pub(super) fn keys(layout: &Layout, freedom: Freedom, effort: Effort) -> Vec<Key
     let mut keys = vec![
         count("schema", schema(layout), schema(layout)),
         text("name"),
-        text("description"),
+        text("description").optional(),
     ];
     if !layout.has_sections() {
-        keys.push(word("kind", &SHORT_KINDS));
+        keys.push(word("kind", &SHORT_KINDS).optional());
     }
     keys.extend(layout.tables(&[("control", loop_keys(freedom))]));
     let simulation = match layout.has_sections() {
@@ -47,16 +47,19 @@ pub(super) fn keys(layout: &Layout, freedom: Freedom, effort: Effort) -> Vec<Key
     };
     keys.extend([
         Key::of_table("stroke", stroke(freedom)),
-        Key::of_table("samples", samples(freedom, effort)),
-        table("simulation", simulation),
-        table("sensors", SENSORS),
-        table("experiment", EXPERIMENT),
-        Key::of_table("tolerances", tolerances(layout)),
-        table("log", LOG),
-        Key::of_table("balance", balance(freedom)),
-        Key::of_tables("trajectory", trajectory(freedom)),
-        tables("load", KIND),
-        tables("effects", ENTRY),
+        Key::of_table("samples", samples(freedom, effort)).optional(),
+        match layout.has_sections() {
+            true => table("simulation", simulation).optional(),
+            false => table("simulation", simulation),
+        },
+        table("sensors", SENSORS).optional(),
+        table("experiment", EXPERIMENT).optional(),
+        Key::of_table("tolerances", tolerances(layout)).optional(),
+        table("log", LOG).optional(),
+        Key::of_table("balance", balance(freedom)).optional(),
+        Key::of_tables("trajectory", trajectory(freedom)).optional(),
+        tables("load", KIND).optional(),
+        tables("effects", ENTRY).optional(),
     ]);
     keys
 }
@@ -120,17 +123,25 @@ pub(super) fn effort_names(effort: Effort) -> [&'static str; 2] {
 const STEP: Key = quantity("step", &TIME, 1e-8, 0.01);
 
 const COUPLINGS: &[Key] = &[
-    word("nut_coupling", &["shape-functions", "moving-node"]),
+    // A body without a nut has none.
+    word("nut_coupling", &["shape-functions", "moving-node"]).optional(),
     STEP,
 ];
 
-const WAYS: &[Key] = &[word("way", &["fast", "exact"]), STEP];
+const WAYS: &[Key] = &[word("way", &["fast", "exact"]).optional(), STEP];
 
 const KIND: &[Key] = &[text("kind")];
 
-const SENSORS: &[Key] = &[table("load", KIND), table("motor", KIND)];
+const SENSORS: &[Key] = &[
+    table("load", KIND).optional(),
+    table("motor", KIND).optional(),
+];
 
-const EXPERIMENT: &[Key] = &[text("machine"), text("paper_tables")];
+const EXPERIMENT: &[Key] = &[text("machine"), text("paper_tables").optional()];
+
+/// How far a known parameter may be off.
+pub(super) const SHARE: &str =
+    "a text in quotes: a share such as \"20 %\", from 0.001 % to 90 %, or \"unknown\"";
 
 /// `known_parameters_percent`, and each known parameter of the file's kinds.
 fn tolerances(layout: &Layout) -> Vec<Key> {
@@ -142,14 +153,14 @@ fn tolerances(layout: &Layout) -> Vec<Key> {
     ];
     let loads = layout.loads.iter().map(|load| load.known);
     let known = lists.into_iter().chain(loads).flatten();
-    let known = known.map(|known| text(known.name));
-    let default = number("known_parameters_percent", 1e-3, 100.0);
+    let known = known.map(|known| text_of(known.name, SHARE).optional());
+    let default = number("known_parameters_percent", 1e-3, 100.0).optional();
     std::iter::once(default).chain(known).collect()
 }
 
 const LOG: &[Key] = &[
-    quantity("sample_rate", &FREQUENCY, 1e-3, 1e8),
-    tables("column", COLUMN),
+    quantity("sample_rate", &FREQUENCY, 1e-3, 1e8).optional(),
+    tables("column", COLUMN).optional(),
 ];
 
 /// What is left out is taken from the log.
@@ -165,12 +176,12 @@ fn balance(freedom: Freedom) -> Vec<Key> {
 const COLUMN: &[Key] = &[
     text("source"),
     text("channel"),
-    text("unit"),
-    number("counts_per_turn", 1e-6, 1e12),
-    number("factor", -1e12, 1e12),
-    number("scale", -1e12, 1e12),
-    number("offset", -1e12, 1e12),
-    number("delay_ms", -1e7, 1e7),
+    text("unit").optional(),
+    number("counts_per_turn", 1e-6, 1e12).optional(),
+    number("factor", -1e12, 1e12).optional(),
+    number("scale", -1e12, 1e12).optional(),
+    number("offset", -1e12, 1e12).optional(),
+    number("delay_ms", -1e7, 1e7).optional(),
 ];
 
 fn trajectory(freedom: Freedom) -> Vec<Key> {

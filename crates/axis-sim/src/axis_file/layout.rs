@@ -128,7 +128,6 @@ pub(super) struct Layout {
 
 impl Layout {
     /// A file with a section for each part.
-    #[cfg(test)]
     pub fn sections(
         mechanism: &'static PartKind<dyn Mechanism>,
         actuator: &'static PartKind<dyn Actuator>,
@@ -146,6 +145,31 @@ impl Layout {
         }
     }
 
+    /// A file of the first schema, by its kind; none where the registry lacks one of its parts.
+    pub fn short(
+        kind: &str,
+        registry: &Registry,
+        loads: Vec<&'static PartKind<dyn Load>>,
+    ) -> Option<Self> {
+        let (kinds, places) = match kind == SHORT_KINDS[1] {
+            true => (["rigid-mass", "force-gain", "p-p", "coulomb"], RIGID_MASS),
+            false => (
+                ["ball-screw", "pmsm-foc", "p-pi", "lugre-at-motor"],
+                BALL_SCREW,
+            ),
+        };
+        let [mechanism, actuator, control, friction] = kinds;
+        Some(Self {
+            mechanism: named(&registry.mechanisms, mechanism)?,
+            actuator: named(&registry.actuators, actuator)?,
+            control: named(&registry.controls, control)?,
+            friction: named(&registry.frictions, friction)?,
+            loads,
+            sections: false,
+            places,
+        })
+    }
+
     /// Whether each part has a section, which names its kind.
     pub fn has_sections(&self) -> bool {
         self.sections
@@ -161,26 +185,8 @@ impl Layout {
             .any(|(table, ..)| *table != "control" && *table != "friction" && root.has(table))
         {
             let rigid = root.has("kind") && root.word("kind")? == SHORT_KINDS[1];
-            let (kinds, places) = match rigid {
-                true => (["rigid-mass", "force-gain", "p-p", "coulomb"], RIGID_MASS),
-                false => (
-                    ["ball-screw", "pmsm-foc", "p-pi", "lugre-at-motor"],
-                    BALL_SCREW,
-                ),
-            };
-            let [mechanism, actuator, control, friction] = kinds;
-            let found = || {
-                Some(Self {
-                    mechanism: named(&registry.mechanisms, mechanism)?,
-                    actuator: named(&registry.actuators, actuator)?,
-                    control: named(&registry.controls, control)?,
-                    friction: named(&registry.frictions, friction)?,
-                    loads: loads.clone(),
-                    sections: false,
-                    places,
-                })
-            };
-            return found().ok_or_else(|| {
+            let found = Self::short(SHORT_KINDS[usize::from(rigid)], registry, loads);
+            return found.ok_or_else(|| {
                 let what = "has kinds that are not registered".to_owned();
                 root.refuse_table(what, "a file with a section for each part")
             });
@@ -234,7 +240,16 @@ impl Layout {
             if self.has_sections() {
                 keys.insert(0, kind());
             }
-            Key::of_table(name, keys)
+            // Without control a log is answered by a balance of torques; a table of the first
+            // schema may be left out with its keys.
+            let may_miss = match self.has_sections() {
+                true => name == "control",
+                false => keys.iter().all(Key::is_optional),
+            };
+            match may_miss {
+                true => Key::of_table(name, keys).optional(),
+                false => Key::of_table(name, keys),
+            }
         };
         names.into_iter().map(table).collect()
     }

@@ -9,6 +9,7 @@ mod keys;
 mod layout;
 mod read;
 mod registry;
+mod schema;
 mod slips;
 
 use std::cell::RefCell;
@@ -19,6 +20,7 @@ use std::rc::Rc;
 use toml::de::DeTable;
 
 use crate::axis::Axis;
+use crate::part::Key;
 pub use error::AxisFileError;
 use error::Source;
 use fields::{Fields, Record};
@@ -42,6 +44,20 @@ fn content(path: &Path) -> Result<String, AxisFileError> {
         path: path.to_owned(),
         reason,
     })
+}
+
+impl Registry {
+    /// All keys that an axis file may have whose parts are of the kinds that `content`
+    /// names, table by table, with their units and limits; of `[sensors]`, `[[load]]` and
+    /// `[[effects]]` the key that names the kind alone. `name` stands for the text in messages.
+    ///
+    /// # Errors
+    /// As [`Axis::read`], of what tells the kinds.
+    pub fn keys(&self, name: &str, content: &str) -> Result<Vec<Key>, AxisFileError> {
+        let source = Source::of(name, content);
+        let table = DeTable::parse(content).map_err(|e| AxisFileError::syntax(&source, &e))?;
+        read::keys_of(Fields::root(&source, &table, Record::default()), self)
+    }
 }
 
 impl Axis {
@@ -81,10 +97,7 @@ impl Axis {
         content: &str,
         registry: &Registry,
     ) -> Result<Self, AxisFileError> {
-        let source = Source {
-            name: name.to_owned(),
-            content: content.to_owned(),
-        };
+        let source = Source::of(name, content);
         let table = DeTable::parse(content).map_err(|e| AxisFileError::syntax(&source, &e))?;
         let record: Record = Rc::new(RefCell::new(Vec::new()));
         let mut axis = read::axis(Fields::root(&source, &table, record.clone()), registry)?;

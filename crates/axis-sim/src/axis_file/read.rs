@@ -11,7 +11,7 @@ use super::keys::{effort_names, keys};
 use super::layout::{Layout, Section, kind_of, kinds_key};
 use super::registry::Registry;
 use crate::SixDigits;
-use crate::actuator::Effort;
+use crate::actuator::{Actuator, Effort};
 use crate::axis::{
     Axis, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, Range, SampleRanges, Sensors,
     Simulation, Stroke, Tolerances,
@@ -35,15 +35,46 @@ const PERIOD: f64 = 1e-3;
 /// Step of an exact way at which a whole file runs, s.
 const EXACT_STEP: f64 = 1e-5;
 
-pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFileError> {
+/// What the rest of a file depends on, read first.
+struct First<'a> {
+    layout: Layout,
+    /// With the keys that such a file may have.
+    root: Fields<'a>,
+    mechanism: Part<dyn Mechanism>,
+    actuator: Part<dyn Actuator>,
+}
+
+fn first<'a>(root: Fields<'a>, registry: &Registry) -> Result<First<'a>, AxisFileError> {
     let layout = Layout::of(&root, registry)?;
     // A mistyped table is named before what it would have held is missed; what is in the
     // tables depends on how the load moves and on what the actuator takes.
     let root = root.with_keys(keys(&layout, Freedom::Linear, Effort::Current))?;
     let mechanism = part(&root, &layout, Section::Mechanism, layout.mechanism)?;
-    let freedom = mechanism.freedom();
     let actuator = part(&root, &layout, Section::Actuator, layout.actuator)?;
-    let root = root.with_keys(keys(&layout, freedom, actuator.effort()))?;
+    let root = root.with_keys(keys(&layout, mechanism.freedom(), actuator.effort()))?;
+    Ok(First {
+        layout,
+        root,
+        mechanism,
+        actuator,
+    })
+}
+
+/// All keys that a file with these parts may have.
+pub(super) fn keys_of(root: Fields<'_>, registry: &Registry) -> Result<Vec<Key>, AxisFileError> {
+    let first = first(root, registry)?;
+    let (freedom, effort) = (first.mechanism.freedom(), first.actuator.effort());
+    Ok(keys(&first.layout, freedom, effort))
+}
+
+pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFileError> {
+    let First {
+        layout,
+        root,
+        mechanism,
+        actuator,
+    } = first(root, registry)?;
+    let freedom = mechanism.freedom();
     root.count("schema")?;
     let friction = part(&root, &layout, Section::Friction, layout.friction)?;
     if let Place::Load(of) = friction.at

@@ -29,8 +29,8 @@ pub(crate) enum Kind {
     Number(&'static str, Range),
     /// A whole number.
     Count(u32, u32),
-    /// A text.
-    Text,
+    /// A text, and what is valid.
+    Text(&'static str),
     /// One of a few words.
     Word(Cow<'static, [&'static str]>),
     /// A table.
@@ -70,12 +70,17 @@ pub const fn count(name: &'static str, least: u32, most: u32) -> Key {
 }
 
 pub(crate) const fn text(name: &'static str) -> Key {
-    key(name, Kind::Text)
+    text_of(name, "a text in quotes")
 }
 
 /// One of a few words.
 pub const fn word(name: &'static str, words: &'static [&'static str]) -> Key {
     key(name, Kind::Word(Cow::Borrowed(words)))
+}
+
+/// A text of which not all are valid.
+pub(crate) const fn text_of(name: &'static str, valid: &'static str) -> Key {
+    key(name, Kind::Text(valid))
 }
 
 pub(crate) const fn table(name: &'static str, keys: &'static [Key]) -> Key {
@@ -139,6 +144,11 @@ impl Key {
         }
     }
 
+    /// Whether a number stands under it that need not be whole.
+    pub fn is_number(&self) -> bool {
+        matches!(self.kind, Kind::Quantity(..) | Kind::Number(..))
+    }
+
     /// Gives it the least value that it takes, or its first word.
     pub(crate) fn set_least(&self, values: &mut Values) {
         match &self.kind {
@@ -153,7 +163,7 @@ impl Key {
                     values.set_word(self.name, word);
                 }
             }
-            Kind::Text | Kind::Table(_) | Kind::Tables(_) => {}
+            Kind::Text(_) | Kind::Table(_) | Kind::Tables(_) => {}
         }
     }
 
@@ -182,8 +192,36 @@ impl Key {
         key(name, Kind::Word(Cow::Owned(words)))
     }
 
-    /// The spellings under which it may stand in a file.
-    pub(crate) fn spellings(&self) -> Vec<String> {
+    /// Whether it may be left out.
+    pub fn is_optional(&self) -> bool {
+        self.optional
+    }
+
+    /// What a number is where it is left out, in SI units; none where it then has no value.
+    pub fn default(&self) -> Option<f64> {
+        self.default
+    }
+
+    /// What it means to leave it out, behind [`Key::valid`]: nothing of what must be there.
+    /// `factor` is that of its unit to SI.
+    pub fn left_out(&self, factor: f64) -> String {
+        match (self.optional, self.default) {
+            (true, Some(default)) => format!("; {} where left out", SixDigits(default / factor)),
+            (true, None) => "; may be left out".to_owned(),
+            (false, _) => String::new(),
+        }
+    }
+
+    /// The keys of a table, or of each of several tables of one name; none of what is no table.
+    pub fn keys(&self) -> &[Key] {
+        match &self.kind {
+            Kind::Table(keys) | Kind::Tables(keys) => keys,
+            _ => &[],
+        }
+    }
+
+    /// The spellings under which it may stand in a file: of a quantity one for each unit.
+    pub fn spellings(&self) -> Vec<String> {
         match &self.kind {
             Kind::Quantity(dimension, _) => dimension.keys(self.name).collect(),
             _ => vec![self.name.to_owned()],
@@ -191,7 +229,7 @@ impl Key {
     }
 
     /// A spelling with the brackets that a table has in a file.
-    pub(crate) fn shown(&self, spelling: &str) -> String {
+    pub fn shown(&self, spelling: &str) -> String {
         match self.kind {
             Kind::Table(_) => format!("[{spelling}]"),
             Kind::Tables(_) => format!("[[{spelling}]]"),
@@ -199,8 +237,9 @@ impl Key {
         }
     }
 
-    /// What would be valid; `unit` is that of the key as it was given, if it was.
-    pub(crate) fn valid(&self, unit: Option<(&str, f64)>) -> String {
+    /// What would be valid, in words; `unit` is that of the key as it was given, if it was,
+    /// with its factor to SI.
+    pub fn valid(&self, unit: Option<(&str, f64)>) -> String {
         match &self.kind {
             Kind::Quantity(dimension, limits) => {
                 let usual = dimension.units.first().copied();
@@ -213,7 +252,7 @@ impl Key {
             }
             Kind::Count(least, most) if least == most => least.to_string(),
             Kind::Count(least, most) => format!("a whole number from {least} to {most}"),
-            Kind::Text => "a text in quotes".to_owned(),
+            Kind::Text(valid) => (*valid).to_owned(),
             Kind::Word(words) => {
                 let quoted: Vec<String> = words.iter().map(|w| format!("\"{w}\"")).collect();
                 quoted.join(" or ")

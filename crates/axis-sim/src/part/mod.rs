@@ -12,7 +12,7 @@ pub mod units;
 mod values;
 
 pub use key::{Key, count, number, quantity, word};
-pub(crate) use key::{Kind, table, tables, text};
+pub(crate) use key::{Kind, table, tables, text, text_of};
 pub use values::Values;
 
 use std::fmt;

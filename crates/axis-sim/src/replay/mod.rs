@@ -7,6 +7,7 @@
 
 mod error;
 mod reference;
+mod sampled;
 
 use std::sync::Arc;
 
@@ -19,10 +20,11 @@ use crate::channels::{ChannelPart, LogChannel, channels, position_in};
 use crate::effects::{ActiveEffect, Hooks, Steepness};
 use crate::plant::Start;
 use crate::work::cycles_of;
-use crate::{ClosedLoop, Measured, SetupError};
+use crate::{ClosedLoop, Cycle, Measured, SetupError};
 pub use error::ReplayError;
 use error::check_length;
 pub use reference::LoggedReference;
+use sampled::{Instants, Sampled};
 
 /// Simulated channels at the instants of a log, named as in logs.
 #[derive(Clone, Debug, Default)]
@@ -170,9 +172,18 @@ impl Replay {
         let cycles = cycles_of(self.reference.duration(), period);
         check_length(cycles, closed_loop.steps(&self.reference) / cycles)?;
         let compared = |c: &LogChannel| matches!(c.part, ChannelPart::Sensed | ChannelPart::Made);
-        let channels: Vec<LogChannel> = channels(axis).into_iter().filter(compared).collect();
-        let mut columns: Vec<Vec<f64>> = vec![Vec::with_capacity(cycles as usize); channels.len()];
-        let mut speed: Vec<f64> = Vec::with_capacity(cycles as usize);
+        let compared: Vec<LogChannel> = channels(axis).into_iter().filter(compared).collect();
+        // A late clock shows the positions of a while ago.
+        let (late, timely): (Vec<LogChannel>, Vec<LogChannel>) =
+            (compared.iter()).partition(|c| c.name(axis).starts_with("position_"));
+        let speed: fn(&Cycle) -> f64 = |c| c.load_speed;
+        let sampled = |channels: &[LogChannel], beside: Option<fn(&Cycle) -> f64>, late: f64| {
+            let instants = Instants::new([period, self.reference.period], late, self.samples);
+            let reads = channels.iter().map(|c| c.read).chain(beside).collect();
+            Sampled::new(reads, instants, cycles as usize)
+        };
+        let mut positions = sampled(&late, None, closed_loop.clock_offset());
+        let mut others = sampled(&timely, Some(speed), 0.0);
         let mut state = closed_loop.start(&self.begin(closed_loop)?)?;
         let mut added = Added {
             replay: self,
@@ -181,26 +192,19 @@ impl Replay {
         };
         closed_loop
             .run_from(&mut state, &self.reference, &mut added, sense, |c| {
-                for (column, channel) in columns.iter_mut().zip(&channels) {
-                    column.push((channel.read)(c));
-                }
-                speed.push(c.load_speed);
+                positions.take(c);
+                others.take(c);
             })
             .completed()?;
-        let late = closed_loop.clock_offset();
-        let channel = |(channel, samples): (&LogChannel, Vec<f64>)| {
-            let name = channel.name(axis);
-            let by = if name.starts_with("position_") {
-                late
-            } else {
-                0.0
-            };
-            (name, self.resample(samples, period, by))
+        let named = |channels: Vec<LogChannel>, columns: Vec<Vec<f64>>| {
+            let names = channels.into_iter().map(|c| c.name(axis));
+            names.zip(columns).collect::<Vec<_>>()
         };
-        Ok(Trace {
-            channels: channels.iter().zip(columns).map(channel).collect(),
-            speed: self.resample(speed, period, 0.0),
-        })
+        let mut others = others.columns();
+        let speed = others.pop().unwrap_or_default();
+        let mut channels = named(late, positions.columns());
+        channels.extend(named(timely, others));
+        Ok(Trace { channels, speed })
     }
 
     /// Where an axis begins: at rest at the reference's start with what is stored there, or,
@@ -225,27 +229,6 @@ impl Replay {
                 ..Start::at(position)
             }),
         }
-    }
-
-    /// Samples at the log's instants of what was recorded every `period`, late by `by`.
-    fn resample(&self, mut samples: Vec<f64>, period: f64, by: f64) -> Vec<f64> {
-        if by == 0.0 && period == self.reference.period && samples.len() >= self.samples {
-            samples.truncate(self.samples);
-            return samples;
-        }
-        let last = (samples.len() - 1) as f64;
-        let at = |k: usize| {
-            let along = ((k as f64 * self.reference.period - by) / period).clamp(0.0, last);
-            let near = along.round();
-            if (along - near).abs() < 1e-6 {
-                return samples[near as usize];
-            }
-            let i = along as usize;
-            let part = along - i as f64;
-            let next = samples[(i + 1).min(samples.len() - 1)];
-            (1.0 - part) * samples[i] + part * next
-        };
-        (0..self.samples).map(at).collect()
     }
 
     fn attach(&self, hooks: &mut Hooks, probe: &Probe) {

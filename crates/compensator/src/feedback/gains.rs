@@ -6,13 +6,14 @@ use super::{MOST_MEASURED, MOST_STATES, NODES};
 use crate::model::Cascade;
 
 /// A vector of all states there is room for; those beyond the model's are 0.
-pub(super) type States<T> = [T; MOST_STATES];
+pub type States<T> = [T; MOST_STATES];
 
 /// Model and gains at one χ. Matrices by columns, so that a product is a sum of columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Node<T> {
-    /// x(k+1) = A x + b u.
+pub struct Node<T = f64> {
+    /// x(k+1) = A x + b u: A,
     pub a: [States<T>; MOST_STATES],
+    /// and b.
     pub b: States<T>,
     /// x̂ = x̄ + L (y − C x̄), one column a measurement.
     pub l: [States<T>; MOST_MEASURED],
@@ -24,7 +25,7 @@ pub(super) struct Node<T> {
 
 impl<T: Scalar> Node<T> {
     #[cfg(feature = "design")]
-    pub const ZERO: Self = Self {
+    pub(super) const ZERO: Self = Self {
         a: [[T::ZERO; MOST_STATES]; MOST_STATES],
         b: [T::ZERO; MOST_STATES],
         l: [[T::ZERO; MOST_STATES]; MOST_MEASURED],
@@ -45,12 +46,14 @@ impl<T: Scalar> Node<T> {
 
 /// All that a feedback's cycle needs and does not change.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Gains<T> {
-    /// States and measurements that are in use.
+pub struct Gains<T = f64> {
+    /// States that are in use.
     pub states: usize,
+    /// Measurements that are in use.
     pub measured: usize,
     /// χ of the nodes, rising from 0 to 1.
     pub sticking: [T; NODES],
+    /// The nodes.
     pub nodes: [Node<T>; NODES],
     /// Rows of y = C x, SI.
     pub c: [States<T>; MOST_MEASURED],
@@ -60,16 +63,17 @@ pub(super) struct Gains<T> {
     pub force: T,
     /// Greatest command; u is in units of it.
     pub limit: T,
+    /// Travel of the load per radian of the motor, m/rad.
     pub travel: T,
     /// Whether the motor's speed is a difference of angles.
     pub differences: bool,
+    /// The drive's loops.
     pub cascade: Cascade<T>,
 }
 
 impl<T: Scalar> Gains<T> {
     /// Each number rounded to the nearest of another scalar.
     pub fn cast<U: Scalar>(&self) -> Gains<U> {
-        let c = &self.cascade;
         Gains {
             states: self.states,
             measured: self.measured,
@@ -81,14 +85,7 @@ impl<T: Scalar> Gains<T> {
             limit: cast(self.limit),
             travel: cast(self.travel),
             differences: self.differences,
-            cascade: Cascade {
-                position: cast(c.position),
-                velocity_feedforward: cast(c.velocity_feedforward),
-                acceleration_feedforward: cast(c.acceleration_feedforward),
-                speed: cast(c.speed),
-                speed_integral: cast(c.speed_integral),
-                from_motor: c.from_motor,
-            },
+            cascade: self.cascade.cast(),
         }
     }
 

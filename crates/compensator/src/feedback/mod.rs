@@ -39,7 +39,8 @@ use crate::plan::Planned;
 use crate::{Correction, Sample};
 #[cfg(feature = "design")]
 pub use design::{DesignError, FeedbackDesign, FeedbackSettings, Margins, Variation};
-use gains::{Gains, States, add, dot};
+pub use gains::{Gains, Node, States};
+use gains::{add, dot};
 pub use with_plan::PlanWithFeedback;
 
 /// Most states of a feedback's model.
@@ -47,7 +48,7 @@ pub const MOST_STATES: usize = 12;
 /// Most measurements: position, motor speed, q current.
 pub const MOST_MEASURED: usize = 3;
 /// Values of χ at which gains are held.
-const NODES: usize = 7;
+pub const NODES: usize = 7;
 /// Share of a cycle's difference between what the drive commanded and what it was asked for
 /// that is taken as lasting. Slow against filters in the drive's command, quick against an
 /// integrator that sees the speed between two executions of a slower position loop.
@@ -141,6 +142,11 @@ impl<T: Scalar> Feedback<T> {
             speed: U::ZERO,
             last: Deviations::default(),
         }
+    }
+
+    /// Model and gains, for code that is generated from them.
+    pub fn gains(&self) -> &Gains<T> {
+        &self.gains
     }
 
     /// Forgets everything: the next sample is the first of a motion from rest.

@@ -44,6 +44,11 @@ impl<T: Exponential> Inverse<T> {
         }
     }
 
+    /// Share of the torque that a lag keeps over a cycle.
+    pub fn kept(&self) -> T {
+        self.kept
+    }
+
     /// At rest with a torque (N·m) that it has held for ever.
     pub fn settle(&mut self, torque: T) {
         self.torque = torque;

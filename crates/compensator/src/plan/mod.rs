@@ -243,7 +243,33 @@ impl<T: Exponential> Planner<T> {
     }
 }
 
+/// What a planner computes with besides its model ([`Planner::constants`]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannerConstants<'a, T = f64> {
+    /// Set points from the smoothed one to either end of the Gaussian.
+    pub half: usize,
+    /// Whole cycles by which a command comes late.
+    pub late: usize,
+    /// The part of a cycle more.
+    pub late_part: T,
+    /// Weights of value, rate (1/s) and second rate (1/s²), 2 `half` + 1 each, oldest first.
+    pub weights: [&'a [T]; 3],
+    /// Share of the torque that the actuator's lag keeps over a cycle.
+    pub kept: T,
+}
+
 impl<T: Exponential, R: Residual<T>> Planner<T, R> {
+    /// What it computes with besides its model, for code that is generated from it.
+    pub fn constants(&self) -> PlannerConstants<'_, T> {
+        PlannerConstants {
+            half: self.half,
+            late: self.late,
+            late_part: self.late_part,
+            weights: self.smoothing.weights(),
+            kept: self.inverse.kept(),
+        }
+    }
+
     /// The model that it plans with.
     pub fn model(&self) -> &DriveModel<T> {
         &self.model

@@ -53,6 +53,12 @@ impl<T: Scalar> Smoothing<T> {
         }
     }
 
+    /// Of value, rate and second rate, oldest sample first.
+    pub fn weights(&self) -> [&[T]; 3] {
+        let length = 2 * self.half + 1;
+        [0, 1, 2].map(|i| &self.weights[i][..length])
+    }
+
     /// As if `value` had come for ever.
     pub fn settle(&mut self, value: T) {
         self.samples = [value; 2 * WINDOW];

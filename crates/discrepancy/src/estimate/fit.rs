@@ -9,6 +9,7 @@ use crate::answers::{LogSet, State};
 use crate::estimate::bounded::{bounded, inverse_of};
 use crate::estimate::gauss_newton::Descent;
 use crate::estimate::known::{known_deviations, tolerances};
+use crate::estimate::thin::products;
 use crate::spectrum::Amplitudes;
 
 /// A fitted model.
@@ -86,18 +87,20 @@ impl Fitter<'_> {
         pairs.map(|(s, deviation)| (s / deviation).powi(2)).sum()
     }
 
-    /// Derivatives with respect to the known parameters.
+    /// Derivatives with respect to the known parameters, to one side: by steps so small that
+    /// what they neglect is a thousandth.
     pub fn known_columns(&self, fit: &Fit) -> Columns {
         let tolerances = tolerances(self.machine);
         let column = |i: usize| {
             // Of what is hardly known a small step, as of what is.
-            let step = 0.2 * tolerances[i].min(0.05);
-            let at = |by: f64| {
+            let step = 0.04 * tolerances[i].min(0.05);
+            let to = |by: f64| {
                 let mut state = fit.state.clone();
                 state.shares[i] += by;
-                state
+                self.slope(fit, &state, by)
             };
-            self.quotient(fit, [at(step), at(-step)], 2.0 * step)
+            let slope = to(step).or_else(|| to(-step));
+            slope.unwrap_or_else(|| self.nothing(fit))
         };
         (0..fit.state.shares.len())
             .into_par_iter()
@@ -124,6 +127,29 @@ impl Fitter<'_> {
         new.map(column).collect()
     }
 
+    /// The same to one side, which costs half and is near enough for a step of a fit.
+    fn effect_slopes(&self, fit: &Fit, given: usize) -> Columns {
+        let scales = Scales::of(self.machine);
+        let column = |(e, p): (usize, usize)| {
+            let active = &fit.state.effects[e];
+            let steps = steps_of(&active.effect.parameters[p], active.values[p], &scales);
+            let [up, down] = steps.map(|by: f64| 0.2 * by);
+            let by = if up >= -down { up } else { down };
+            let mut state = fit.state.clone();
+            state.effects[e].values[p] += by;
+            let slope = self.slope(fit, &state, by);
+            slope.unwrap_or_else(|| self.nothing(fit))
+        };
+        let free = free_parameters(&fit.state);
+        free.into_par_iter().skip(given).map(column).collect()
+    }
+
+    /// A difference quotient; `None` where the simulation does not run.
+    fn slope(&self, fit: &Fit, moved: &State, by: f64) -> Option<Amplitudes> {
+        let traces = self.set.simulate(self.machine, moved).ok()?;
+        Some(self.set.difference(&traces, &fit.traces, by))
+    }
+
     fn quotient(&self, fit: &Fit, states: [State; 2], width: f64) -> Amplitudes {
         let run = |state: &State| self.set.simulate(self.machine, state);
         match (run(&states[0]), run(&states[1])) {
@@ -138,12 +164,10 @@ impl Fitter<'_> {
         fit.rest.iter().map(zeros).collect()
     }
 
-    /// A difference quotient; a simulation that does not run has none.
-    pub fn column(&self, fit: &Fit, moved: State, step: f64) -> Amplitudes {
-        match self.set.simulate(self.machine, &moved) {
-            Ok(traces) => self.set.difference(&traces, &fit.traces, step),
-            Err(_) => self.nothing(fit),
-        }
+    /// A difference quotient; nothing where the simulation does not run.
+    pub fn column(&self, fit: &Fit, moved: &State, step: f64) -> Amplitudes {
+        let slope = self.slope(fit, moved, step);
+        slope.unwrap_or_else(|| self.nothing(fit))
     }
 
     /// Gauss–Newton from `fit`, with re-simulation in every round. Derivatives
@@ -155,7 +179,7 @@ impl Fitter<'_> {
     pub fn refine(&self, fit: Fit, given: &Columns, rounds: usize) -> Fit {
         let of_effects = given.len() - fit.state.shares.len();
         let step = |fit: &Fit| {
-            let new = self.effect_columns(fit, of_effects);
+            let new = self.effect_slopes(fit, of_effects);
             let columns: Columns = given.iter().cloned().chain(new).collect();
             let Solved { step, promised, .. } = self.solve(fit, &columns);
             (promised >= ENOUGH).then_some((step, columns))
@@ -174,16 +198,19 @@ impl Fitter<'_> {
         })
     }
 
-    /// The known parameters fitted, and their derivatives where that ends: these
-    /// are made anew until it gets no further.
+    /// The known parameters fitted, and their derivatives where that ends. `known` are those
+    /// where it begins, and are made anew where it has left their range.
     pub fn calibrated(&self, mut fit: Fit, mut known: Columns) -> (Fit, Columns) {
         for _ in 0..3 {
-            let before = fit.deviance;
+            let (before, from) = (fit.deviance, fit.state.shares.clone());
             fit = self.refine(fit, &known, 8);
-            if before - fit.deviance < 10.0 {
+            let moved = farthest(&from, &fit.state.shares);
+            if moved > SAME {
+                known = self.known_columns(&fit);
+            }
+            if moved < FAR || before - fit.deviance < 10.0 {
                 break;
             }
-            known = self.known_columns(&fit);
         }
         (fit, known)
     }
@@ -241,7 +268,7 @@ impl Fitter<'_> {
         for (i, column) in columns.iter().enumerate() {
             jacobian.set_column(i, &layout.whiten(&whitener, column));
         }
-        let mut normal = jacobian.tr_mul(&jacobian);
+        let mut normal = products(&jacobian);
         let mut right = jacobian.tr_mul(&rest);
         for (i, deviation) in known_deviations(self.machine).into_iter().enumerate() {
             let weight = deviation.powi(-2);
@@ -272,6 +299,19 @@ pub struct Solved {
     pub promised: f64,
     /// Of all parameters.
     pub covariance: DMatrix<f64>,
+}
+
+/// Change of a known parameter, as a share of it, over which its derivatives are the same to
+/// far better than a hundredth.
+const SAME: f64 = 1e-3;
+
+/// Change over which they are near enough to fit by.
+const FAR: f64 = 0.02;
+
+/// The largest of the changes from one state to another.
+fn farthest(from: &[f64], to: &[f64]) -> f64 {
+    let changes = from.iter().zip(to).map(|(a, b)| (a - b).abs());
+    changes.fold(0.0, f64::max)
 }
 
 /// Fall of D that is not worth another round.

@@ -8,3 +8,4 @@ pub mod known;
 pub mod linear;
 pub mod projector;
 pub mod spread;
+pub mod thin;

@@ -4,6 +4,7 @@ use axis_sim::Axis;
 use nalgebra::{DMatrix, DVector};
 
 use crate::estimate::known::known_deviations;
+use crate::estimate::thin::products;
 
 /// Takes out what the fit's own parameters can do.
 ///
@@ -37,7 +38,7 @@ impl Projector {
                 0.0
             }
         });
-        let mut normal = columns.tr_mul(&columns);
+        let mut normal = products(&columns);
         for i in 0..n {
             if i >= known {
                 normal[(i, i)] += 1e-9 * normal[(i, i)] + 1e-300;

@@ -2,6 +2,7 @@
 
 use axis_sim::effects::Measure;
 use axis_sim::{Axis, ReplayError, reference_in};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::units::channel_unit;
@@ -10,7 +11,7 @@ use crate::answers::effort::efforts;
 use crate::answers::{LogSet, Prepared, State};
 
 /// Root mean square and greatest size of a signal, in its SI unit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Size {
     /// Root mean square.
     pub rms: f64,
@@ -30,7 +31,7 @@ impl Size {
 }
 
 /// Tracking error, reference minus position, on check motion.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TrackingCost {
     /// SI unit: m or rad.
     pub unit: String,
@@ -43,7 +44,7 @@ pub struct TrackingCost {
 }
 
 /// What the drive gives because of an effect, on check motion.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EffortCost {
     /// Channel of logs that shows what the drive gives.
     pub channel: String,
@@ -60,7 +61,7 @@ pub struct EffortCost {
 }
 
 /// What an effect, or all of them together, costs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Cost {
     /// `None` where no position is compared, as in a torque balance.
     pub tracking: Option<TrackingCost>,

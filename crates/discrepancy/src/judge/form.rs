@@ -2,11 +2,12 @@
 
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Measure, OnsetForm};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How a friction comes on and falls with speed, where that is not as in the model: the
 /// curve is its steady force over that of sliding.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FormFound {
     /// The friction whose form it is, in words.
     pub of: String,

@@ -5,15 +5,17 @@ use axis_sim::Axis;
 use axis_sim::effects::Scales;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::estimate::fit::Fitter;
 use crate::estimate::known::pinned;
 use crate::estimate::projector::Projector;
+use crate::estimate::thin::Thin;
 use crate::name::search::{Found, ONE_CLASS, needed};
 
 /// What the logs can tell of an effect, whether it is there or not.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Likeness {
     /// The effect.
     pub name: String,
@@ -27,7 +29,7 @@ pub struct Likeness {
 }
 
 /// A size of an effect.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Shown {
     /// Parameter.
     pub parameter: String,
@@ -40,7 +42,7 @@ pub struct Shown {
 /// What a candidate can do, known parameters fitted out.
 struct Reach {
     place: usize,
-    /// Orthonormal columns.
+    /// Orthonormal columns, or 0.
     basis: DMatrix<f64>,
     /// D of its smallest response at typical size.
     least: f64,
@@ -60,23 +62,19 @@ pub(super) fn likenesses(machine: &Axis, found: &Found) -> Vec<Likeness> {
     let projector = Projector::new(machine, &known, &pinned(machine, shares));
     let library = &found.library.candidates;
     let scales = Scales::of(machine);
-    let reach = |place: usize| -> Option<Reach> {
+    let reach = |place: usize| {
         let columns = library[place].columns.iter();
         let seen: Vec<DVector<f64>> = columns
             .map(|c| projector.reject(&layout.whiten(&whitener, c)))
             .collect();
-        let matrix = DMatrix::from_columns(&seen);
         let least = seen.iter().map(DVector::norm_squared);
-        Some(Reach {
+        Reach {
             place,
             least: least.fold(f64::MAX, f64::min),
-            basis: matrix.svd(true, false).u?,
-        })
+            basis: Thin::of(&seen).basis,
+        }
     };
-    let all: Vec<Reach> = (0..library.len())
-        .into_par_iter()
-        .filter_map(reach)
-        .collect();
+    let all: Vec<Reach> = (0..library.len()).into_par_iter().map(reach).collect();
     let mut names: Vec<&str> = library.iter().map(|c| c.effect.name).collect();
     names.dedup();
     let of = |name: &str| -> Vec<&Reach> {
@@ -117,8 +115,11 @@ pub(super) fn likenesses(machine: &Axis, found: &Found) -> Vec<Likeness> {
 }
 
 /// Sine of the largest angle between what one can do and the nearest that
-/// another can.
+/// another can: the root of the largest eigenvalue of BᵀB − CᵀC, with the one's basis B and
+/// its products C with the other's.
 fn largest_sine(own: &Reach, other: &Reach) -> f64 {
-    let left = &own.basis - &other.basis * other.basis.tr_mul(&own.basis);
-    left.singular_values().max().min(1.0)
+    let common = other.basis.tr_mul(&own.basis);
+    let own = own.basis.tr_mul(&own.basis);
+    let left = (own - common.tr_mul(&common)).symmetric_eigenvalues();
+    left.max().clamp(0.0, 1.0).sqrt()
 }

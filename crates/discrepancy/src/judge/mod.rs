@@ -55,7 +55,7 @@ use crate::estimate::fit::Fitter;
 use crate::estimate::known::{shown, tolerances};
 use crate::name::gap::{ChannelGap, Gap, gap};
 use crate::name::search::{Found, MATERIAL, is_form};
-use crate::noise::{excess, floors, log_noise};
+use crate::noise::{Floor, SlowNoise, excess, floors, log_noise, slow_noise};
 
 /// A search's result in words, figures and pictures.
 #[derive(Clone, Debug)]
@@ -113,8 +113,10 @@ pub fn judged(
     };
     let fit = {
         let set = &found.fit_logs;
-        let after = set.rest(&set.simulate(machine, full)?);
-        let floors = floors(machine, set, full, &after)?;
+        let traces = set.simulate(machine, full)?;
+        let after = set.rest(&traces);
+        let slow = slow_noise(machine, set, full, &traces)?;
+        let floors = with_slow(set, &slow, floors(machine, set, full, &after)?);
         gap(set, &before_of(fit_logs)?, &after, &floors)
     };
     let (as_filed, set) = match &found.test {
@@ -124,7 +126,8 @@ pub fn judged(
     let before = before_of(as_filed)?;
     let traces = set.simulate(machine, full)?;
     let after = set.rest(&traces);
-    let check_floors = floors(machine, set, full, &after)?;
+    let slow = slow_noise(machine, set, full, &traces)?;
+    let check_floors = with_slow(set, &slow, floors(machine, set, full, &after)?);
     let check = gap(set, &before, &after, &check_floors);
 
     let mut effects = Vec::new();
@@ -174,7 +177,7 @@ pub fn judged(
         Some(unknown) => Some(unknown),
         // Beside effects that leave next to nothing, a rest without a curve is small change.
         None if check.reduction >= NEARLY_ALL && !effects.is_empty() => None,
-        None => excess(machine, set, full, &traces)?.map(in_frequency),
+        None => excess(machine, set, full, &traces, &slow)?.map(in_frequency),
     };
     let nearly_all = check.reduction >= NEARLY_ALL && !effects.is_empty();
     let rest_significant = !(at_floor(&check) || nearly_all) || unknown.is_some();
@@ -209,10 +212,10 @@ pub fn judged(
     let friction = friction_law(machine, set, full, &traces, &after);
     let overlays = overlays(as_filed, &as_filed.rest(&base.traces), &after);
     let discovery = Discovery {
-        schema: 1,
+        schema: Discovery::SCHEMA,
         axis: name,
         answer: found.fit_logs.answer_of(machine).to_owned(),
-        notes: notes(machine, found),
+        notes: [notes(machine, found), slow.notes(set)].concat(),
         sentence: sentence(
             verdict,
             &effects,
@@ -250,4 +253,11 @@ pub fn judged(
         friction,
         proposal,
     })
+}
+
+/// Floors with the logger's slow noise.
+fn with_slow(set: &LogSet, slow: &SlowNoise, floors: Vec<Floor>) -> Vec<Floor> {
+    let all = floors.into_iter().enumerate();
+    all.map(|(c, floor)| floor.beside(slow.rms(set, c)))
+        .collect()
 }

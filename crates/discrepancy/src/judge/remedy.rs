@@ -3,10 +3,11 @@
 //! One line an effect. What the functions are called in the controls of several makers is
 //! in `docs/drive-terms.md`.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What can be done against an effect.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum DriveFunction {
     /// A torque with the sign of the motion, with a pulse after reversals.

@@ -1,6 +1,7 @@
 //! What the first screen of a report needs beside the numbers: costs, confidence, remedies.
 
 use axis_sim::effects::{Effect, EffectParameter};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::cost::Cost;
@@ -8,7 +9,9 @@ use super::remedy::{DriveFunction, Remedy};
 use super::types::{EffectFound, Recalibrated, Verdict};
 
 /// How far a verdict can be relied on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Level {
     /// A hint.
@@ -37,7 +40,7 @@ impl Level {
 }
 
 /// What the confidence in a verdict rests on.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Confidence {
     /// In what was named, or in that nothing is missing: high for a gap that is explained or
     /// is none, medium where a rest is left, low where nothing explains it; a step lower for
@@ -52,7 +55,7 @@ pub struct Confidence {
 }
 
 /// What the first screen says beside the numbers of a discovery.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Told {
     /// What all that was named costs together on check motion.
     pub cost: Cost,
@@ -65,7 +68,7 @@ pub struct Told {
 }
 
 /// What compensates an effect.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RemedyTold {
     /// The effect.
     pub effect: String,

@@ -1,5 +1,6 @@
 //! What `discovery.json` holds.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use trajectories::Program;
 
@@ -13,7 +14,7 @@ use crate::name::gap::Gap;
 use crate::name::search::Found;
 
 /// The verdict on a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// Named effects remove at least 90 % of the gap above the floor on check
@@ -40,7 +41,7 @@ impl Verdict {
 }
 
 /// A parameter of an effect with its 95 % interval.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ParameterFound {
     /// Name.
     pub name: String,
@@ -57,7 +58,7 @@ pub struct ParameterFound {
 }
 
 /// A number at the table as it is at the screw.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct AtScrew {
     /// Estimate.
     pub value: f64,
@@ -66,7 +67,7 @@ pub struct AtScrew {
 }
 
 /// An effect that was named.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct EffectFound {
     /// Name, as in the axis file.
     pub name: String,
@@ -91,7 +92,7 @@ pub struct EffectFound {
 }
 
 /// An effect that was named on the way.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ReplacedEffect {
     /// Name.
     pub name: String,
@@ -103,7 +104,7 @@ pub struct ReplacedEffect {
 
 /// Effects that explain something of the fitted logs, and are not given: with them check
 /// motion is further off, or they take away too little of its gap.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RefusedEffects {
     /// Names.
     pub effects: Vec<String>,
@@ -136,7 +137,7 @@ impl RefusedEffects {
 }
 
 /// Gap on both sets of logs.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Gaps {
     /// On the logs that were fitted.
     pub fit: Gap,
@@ -146,7 +147,7 @@ pub struct Gaps {
 
 /// The logs that the figures of a discovery are of: gap on motion that was not fitted to,
 /// costs, shares of the gap.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Figures {
     /// Their names.
     pub logs: Vec<String>,
@@ -175,7 +176,7 @@ impl Figures {
 }
 
 /// The motion that would tell apart what these logs cannot.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct NextExperiment {
     /// What it is, in words.
     pub what: String,
@@ -184,11 +185,12 @@ pub struct NextExperiment {
     /// Fall of −2 log L to be expected between the two; 25 and more decide.
     pub by: f64,
     /// The motion, as a program file has it (`simulate --program`).
+    #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
     pub program: Program,
 }
 
 /// A known parameter that was moved inside its tolerance.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Recalibrated {
     /// Name.
     pub name: String,
@@ -204,9 +206,10 @@ fn replayed() -> String {
 }
 
 /// What `discovery.json` holds.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Discovery {
-    /// Layout of this file.
+    /// Version of this file's layout, [`Discovery::SCHEMA`]. It rises where a field goes or
+    /// changes its meaning; new fields do not raise it.
     pub schema: u32,
     /// Name of the axis.
     pub axis: String,
@@ -248,6 +251,11 @@ pub struct Discovery {
     pub likenesses: Vec<Likeness>,
     /// What to run next, where effects look alike.
     pub next_experiment: Option<NextExperiment>,
+}
+
+impl Discovery {
+    /// Version of the layout that this program writes.
+    pub const SCHEMA: u32 = 1;
 }
 
 impl NextExperiment {

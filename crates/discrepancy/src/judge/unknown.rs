@@ -9,6 +9,7 @@
 //! and a short term that does as much, where there is one. Terms are empirical.
 
 use axis_sim::{Axis, ReplayError};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::term::term;
@@ -19,7 +20,7 @@ use crate::name::search::{Found, needed};
 use crate::noise::Excess;
 
 /// Something that is in the logs, and neither in the model nor in the library.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Unknown {
     /// Where it acts.
     pub channel: String,
@@ -36,7 +37,7 @@ pub struct Unknown {
 }
 
 /// A curve over a variable of the motion.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Curve {
     /// Variable with its unit.
     pub variable: String,

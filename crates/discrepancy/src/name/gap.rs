@@ -1,5 +1,6 @@
 //! The gap between model and logs, channel by channel.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use axis_sim::{Axis, ReplayError};
@@ -10,7 +11,7 @@ use crate::estimate::fit::Fit;
 use crate::noise::{Floor, floors};
 
 /// Root-mean-square gap of a channel, in its unit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ChannelGap {
     /// Name with unit.
     pub channel: String,
@@ -32,7 +33,7 @@ impl ChannelGap {
 }
 
 /// Gap on a set of logs.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Gap {
     /// One entry a channel.
     pub channels: Vec<ChannelGap>,

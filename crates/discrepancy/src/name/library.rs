@@ -219,7 +219,7 @@ pub fn responses(
             effect,
             values: tried,
         });
-        fitter.column(fit, state, SHARE)
+        fitter.column(fit, &state, SHARE)
     };
     match phase {
         Some(_) => sizes

@@ -4,7 +4,7 @@ use axis_sim::{Axis, ReplayError, Trace};
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 
-use super::{log_noise, noise_on};
+use super::{SlowNoise, log_noise, noise_on};
 use crate::answers::{LogSet, State};
 use crate::spectrum::Layout;
 
@@ -41,7 +41,7 @@ const UNLIKE_FIRST: f64 = 2.0;
 const SPREAD: f64 = 2.0;
 
 /// Compares the spectrum of a ball-screw loop's rest with that of noise alone,
-/// simulated with sensors as noisy as the logs show.
+/// simulated with sensors as noisy as the logs show, and slow noise of the logger.
 ///
 /// With λ the eigenvalues of the one relative to the other, the divergence of a
 /// band per bin is Σ (λ − 1 − ln λ) over those above 1, that of Kullback and
@@ -56,6 +56,7 @@ pub(crate) fn excess(
     set: &LogSet,
     state: &State,
     traces: &[Trace],
+    slow: &SlowNoise,
 ) -> Result<Option<Excess>, ReplayError> {
     let Some(noise) = log_noise(machine, set, state, traces) else {
         return Ok(None);
@@ -71,7 +72,7 @@ pub(crate) fn excess(
     for count in RUNS {
         let more = (runs.len() as u64..count).into_par_iter().map(run);
         runs.extend(more.collect::<Result<Vec<_>, ReplayError>>()?);
-        excess = beside(&seen, &runs, layout);
+        excess = beside(&seen, &runs, layout, slow);
         if excess.is_none() {
             break;
         }
@@ -84,6 +85,7 @@ fn beside(
     seen: &[DMatrix<Complex<f64>>],
     runs: &[Vec<DMatrix<Complex<f64>>>],
     layout: &Layout,
+    slow: &SlowNoise,
 ) -> Option<Excess> {
     let mean_but = |band: usize, but: Option<usize>| {
         let kept = runs.iter().enumerate().filter(|(k, _)| Some(*k) != but);
@@ -95,7 +97,7 @@ fn beside(
     let mut bands = Vec::new();
     let mut worst = (1.0, None);
     for (i, (edges, values)) in layout.bands().enumerate() {
-        let ratios = relative_to(&seen[i], mean_but(i, None));
+        let ratios = relative_to(&seen[i], slow.beside(i, mean_but(i, None)));
         let own = divergence(&ratios);
         let most = ratios.iter().copied().fold(0.0, f64::max);
         let of_noise = runs.iter().enumerate();

@@ -59,8 +59,8 @@ impl Floor {
         }
     }
 
-    /// With what a simulation may be off by besides, RMS.
-    fn beside(self, inexact: f64) -> Self {
+    /// With this besides, RMS: what a simulation may be off by, or slow noise of a logger.
+    pub(crate) fn beside(self, inexact: f64) -> Self {
         Self {
             rms: self.rms.hypot(inexact),
             most: self.most.hypot(inexact),

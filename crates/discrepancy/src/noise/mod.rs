@@ -4,6 +4,7 @@ mod excess;
 mod floor;
 mod level;
 mod sensor;
+mod slow;
 mod sources;
 mod turned;
 
@@ -19,6 +20,7 @@ pub(crate) use self::excess::{Excess, excess};
 pub(crate) use self::floor::{Floor, floors};
 use self::level::{noise_at, shows_noise};
 pub use self::sensor::SensorNoise;
+pub(crate) use self::slow::{SlowNoise, slow_noise};
 pub(crate) use self::turned::turned;
 use crate::answers::{LogSet, Rest, State};
 use crate::spectrum::Amplitudes;

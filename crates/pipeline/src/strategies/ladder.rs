@@ -154,6 +154,16 @@ impl Ladder {
     }
 }
 
+/// The state feedback around a plan of what is believed.
+///
+/// # Errors
+/// [`PipelineError`] where the axis has none within the margins.
+pub fn believed_feedback(predictors: &Predictors) -> Result<Feedback, PipelineError> {
+    let mut ladder = Ladder::new(predictors, Rungs::default())?;
+    let believed = ladder.believed;
+    ladder.feedback(&believed)
+}
+
 /// Whether a feedback designed for one model holds for another: well inside the shares of
 /// mass and friction that its margins are asked for.
 fn near(model: &DriveModel, designed: &DriveModel) -> bool {

@@ -33,6 +33,7 @@ use crate::PipelineError;
 use crate::residuals::AnyLearner;
 pub use drive_terms::reversal_start;
 pub use feedforward::Feedforward;
+pub use ladder::believed_feedback;
 pub use network::KIND as NETWORK;
 pub use network_lugre::KIND as NETWORK_LUGRE;
 pub use none::KIND as NONE;

@@ -14,7 +14,7 @@ use clap::Args;
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 
-use crate::output::{say, write_whole};
+use feed_axis::output::{say, write_whole};
 
 /// Options of `bench`.
 #[derive(Args)]

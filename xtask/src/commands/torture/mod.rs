@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use miette::{IntoDiagnostic, Result, miette};
 
-use crate::output::say;
+use feed_axis::output::say;
 
 /// Options of `torture`.
 #[derive(Args)]

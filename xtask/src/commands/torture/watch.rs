@@ -12,8 +12,8 @@ use miette::{IntoDiagnostic, Result, miette};
 use super::kinds::{Kind, all};
 use super::worker::{PROGRESS, Progress, again, keep, noted};
 use super::{Options, tell};
-use crate::output::say;
-use crate::progress::bar;
+use feed_axis::output::say;
+use feed_axis::progress::bar;
 
 /// Inputs that one process judges.
 const BLOCK: u64 = 20_000;
@@ -71,7 +71,7 @@ fn block(
     bar: &ProgressBar,
 ) -> Result<u64> {
     let record = options.out.join(PROGRESS);
-    crate::output::remove(&record)?;
+    feed_axis::output::remove(&record)?;
     let mut child = start(options, index, count)?;
     let mut at = (u64::MAX, 0.0);
     let ended: Result<Option<ExitStatus>> = loop {

@@ -71,7 +71,7 @@ pub fn run(options: &Options) -> Result<()> {
 fn one(kind: &dyn Kind, input: &Input, desk: &Path) -> Result<Verdict> {
     let path = desk.join(&input.file);
     // A file that is emptied and written again is flushed to the disk by some systems.
-    crate::output::remove(&path)?;
+    feed_axis::output::remove(&path)?;
     std::fs::write(&path, &input.bytes)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot write {}", path.display()))?;

@@ -1,7 +1,7 @@
 //! What candidates explain of a rest, alone and in pairs.
 
 use axis_sim::effects::Effect;
-use nalgebra::{Complex, DMatrix, DVector, Dyn, SVD};
+use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::response::{Response, responses_in};
@@ -9,6 +9,7 @@ use super::screened::Screened;
 use crate::estimate::fit::{Columns, Fit, Fitter};
 use crate::estimate::known::pinned;
 use crate::estimate::projector::Projector;
+use crate::estimate::thin::{Thin, products};
 use crate::name::library::{Candidate, values_at};
 use crate::spectrum::Amplitudes;
 
@@ -68,10 +69,8 @@ impl Screening {
         if columns.is_empty() {
             return Vec::new();
         }
-        let matrix = DMatrix::from_columns(&columns);
-        // As a product of two matrices, which is far faster than `tr_mul`.
-        let transposed = matrix.transpose();
-        let (normal, right) = (&transposed * &matrix, &transposed * &self.rest);
+        let right = DVector::from_fn(columns.len(), |i, _| columns[i].dot(&self.rest));
+        let normal = products(&DMatrix::from_columns(&columns));
         let mut first = 0;
         let places: Vec<Vec<usize>> = (self.responses.iter())
             .map(|r| {
@@ -105,7 +104,7 @@ impl Screening {
         });
         let part = |gain: f64, (i, solution): &(usize, Vec<f64>)| {
             let response = &self.responses[*i];
-            self.with(response, decomposed(response), solution, gain)
+            self.with(response, Thin::of(&response.columns), solution, gain)
         };
         (found.iter().take(PAIRS))
             .map(|(gain, a, b)| [part(*gain, a), part(*gain, b)])
@@ -113,22 +112,19 @@ impl Screening {
     }
 
     fn alone(&self, response: &Response) -> Screened {
-        let svd = decomposed(response);
-        let largest = svd.singular_values.max();
-        let solution = svd
-            .solve(&self.rest, 1e-6 * largest.max(1e-300))
-            .unwrap_or_else(|_| DVector::zeros(response.columns.len()));
-        let mut screened = self.with(response, svd, solution.as_slice(), 0.0);
+        let thin = Thin::of(&response.columns);
+        let solution = thin.solve(&self.rest);
+        let mut screened = self.with(response, thin, solution.as_slice(), 0.0);
         let does = &screened.fingerprint;
         screened.gain = self.gain_of(2.0 * self.rest.dot(does) - does.norm_squared());
         screened
     }
 
-    fn with(&self, response: &Response, svd: Decomposed, solution: &[f64], gain: f64) -> Screened {
-        let rows = self.rest.len();
-        let matrix = DMatrix::from_columns(&response.columns);
-        let fingerprint = matrix * DVector::from_column_slice(solution);
-        let columns = response.columns.len();
+    fn with(&self, response: &Response, thin: Thin, solution: &[f64], gain: f64) -> Screened {
+        let mut fingerprint = DVector::zeros(self.rest.len());
+        for (column, &by) in response.columns.iter().zip(solution) {
+            fingerprint.axpy(by, column, 1.0);
+        }
         Screened {
             gain,
             values: values_at(
@@ -140,9 +136,9 @@ impl Screening {
             scales: response.scales,
             candidate: response.candidate,
             fingerprint,
-            basis: svd.u.unwrap_or_else(|| DMatrix::zeros(rows, 1)),
-            strengths: svd.singular_values,
-            sizes: svd.v_t.unwrap_or_else(|| DMatrix::zeros(columns, columns)),
+            basis: thin.basis,
+            strengths: thin.strengths,
+            sizes: thin.parts,
             effect: response.effect,
         }
     }
@@ -152,12 +148,6 @@ impl Screening {
         let share = (explained / self.rest.norm_squared()).clamp(0.0, 0.999_999);
         -(self.rest.len() as f64) * (1.0 - share).ln()
     }
-}
-
-type Decomposed = SVD<f64, Dyn, Dyn>;
-
-fn decomposed(response: &Response) -> Decomposed {
-    DMatrix::from_columns(&response.columns).svd(true, true)
 }
 
 /// Most pairs of effects that a screening gives.

@@ -10,7 +10,7 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use super::{Input, Kind, Verdict, fault, refused};
 use crate::commands::torture::mutate;
 use crate::commands::torture::random::Source;
-use crate::commands::train;
+use feed_axis::commands::train;
 
 /// Bytes of the frame before the payload, and of the hash behind it.
 const HEADER: usize = 24;

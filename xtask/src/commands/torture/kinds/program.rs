@@ -5,9 +5,9 @@ use std::path::Path;
 use trajectories::Motion;
 
 use super::{Input, Kind, Verdict, fault, refused};
-use crate::commands::simulate;
 use crate::commands::torture::random::Source;
 use crate::commands::torture::{grammar, mutate};
+use feed_axis::commands::simulate;
 
 const BASE: &str = "start_mm = 600
 [[steps]]

@@ -10,12 +10,12 @@ use pipeline::Figures;
 use super::artifact::some_network;
 use super::axis::small_screw;
 use super::{Input, Kind, Verdict, fault};
-use crate::commands::identify::{self, Friction, Transfer};
 use crate::commands::torture::random::Source;
 use crate::commands::torture::{message, mutate};
-use crate::commands::train::{self, Training};
-use crate::context::Context;
-use crate::output::write_whole;
+use feed_axis::commands::identify::{self, Friction, Transfer};
+use feed_axis::commands::train::{self, Training};
+use feed_axis::context::Context;
+use feed_axis::output::write_whole;
 
 /// Files of the two stages, below the run's folder.
 const FILES: [&str; 6] = [
@@ -179,7 +179,7 @@ impl Kind for StageFolder {
         let mut all = FILES.iter().zip(&self.bases);
         let base = all.find(|(file, _)| input.file.ends_with(*file));
         let path = desk.join(&input.file);
-        crate::output::remove(&path)?;
+        feed_axis::output::remove(&path)?;
         base.map_or(Ok(()), |(_, bytes)| std::fs::write(path, bytes))
             .into_diagnostic()
     }

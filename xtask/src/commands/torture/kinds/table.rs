@@ -7,9 +7,9 @@ use miette::Result;
 
 use super::axis::small_screw;
 use super::{Input, Kind, Verdict, fault, refused};
-use crate::commands::discover;
 use crate::commands::torture::mutate;
 use crate::commands::torture::random::Source;
+use feed_axis::commands::discover;
 
 const BASE: &str = "trajectory,experiment_max_um,experiment_mean_um,note
 1,55.89,6.56,a

@@ -13,7 +13,7 @@ use miette::{IntoDiagnostic, Result};
 
 use super::{Bench, Tally, wait};
 use crate::commands::torture::random::Source;
-use crate::progress::bar;
+use feed_axis::progress::bar;
 
 /// Kills up to `most` runs until the time is over.
 pub fn all(bench: &Bench, most: u64, until: Instant) -> Result<Vec<Tally>> {

@@ -13,7 +13,7 @@ use miette::{IntoDiagnostic, Result, miette};
 
 use super::kinds::small_screw;
 use super::{Options, tell};
-use crate::output::write_whole;
+use feed_axis::output::write_whole;
 use folder::Snapshot;
 
 /// A pipeline small enough to be run a thousand times.
@@ -65,7 +65,7 @@ pub fn torture(options: &Options, until: Instant) -> Result<u64> {
     faults
         .iter()
         .take(10)
-        .try_for_each(|fault| crate::output::say(fault.as_str()))?;
+        .try_for_each(|fault| feed_axis::output::say(fault.as_str()))?;
     Ok(faults.len() as u64)
 }
 

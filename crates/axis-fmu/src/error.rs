@@ -1,0 +1,73 @@
+//! What a unit refuses.
+
+use axis_sim::{AxisFileError, RunStopped, SetupError};
+use thiserror::Error;
+
+use crate::mode::Mode;
+
+/// Why a call of a unit failed.
+#[derive(Debug, Error)]
+pub enum UnitError {
+    /// The axis file, or a parameter that was set, makes no axis.
+    #[error(transparent)]
+    Axis(#[from] AxisFileError),
+    /// The axis cannot be simulated, or not begin there.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The run had to be given up. An earlier state, a reset or the end are what is left.
+    #[error("{0}; reset the unit, or set it to a state that was saved before")]
+    Stopped(#[from] RunStopped),
+    /// A call that its mode does not allow.
+    #[error("{call}: the unit is {mode}; valid: {valid}")]
+    Order {
+        /// What was called.
+        call: &'static str,
+        /// The mode that the unit is in.
+        mode: Mode,
+        /// When it may be called.
+        valid: &'static str,
+    },
+    /// A value reference that no variable has.
+    #[error("no variable has the value reference {reference}; valid: 0 to {last}")]
+    Reference {
+        /// The reference.
+        reference: u32,
+        /// The last that is valid.
+        last: u32,
+    },
+    /// A variable that cannot be set, or not now.
+    #[error("{name} cannot be set: {why}")]
+    Set {
+        /// The variable.
+        name: String,
+        /// Why, and when or what would be valid.
+        why: String,
+    },
+    /// A time that is not a number, or not where the unit is.
+    #[error("{what} of {value} s; valid: {valid}")]
+    Time {
+        /// Which time.
+        what: &'static str,
+        /// Its value, s.
+        value: f64,
+        /// What would be valid.
+        valid: String,
+    },
+    /// A part of FMI that this does not offer.
+    #[error("not offered: {0}")]
+    Absent(String),
+    /// A state that is not there.
+    #[error("the address of the state is null; valid: that of a state")]
+    NoState,
+    /// Other numbers of values than of variables.
+    #[error("{values} values of {variables} variables; valid: one of each")]
+    Lengths {
+        /// Variables.
+        variables: usize,
+        /// Values.
+        values: usize,
+    },
+    /// An axis file that is no TOML table of tables after a parameter was set.
+    #[error("the axis file cannot be changed: {0}")]
+    Text(String),
+}

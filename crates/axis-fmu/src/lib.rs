@@ -1,0 +1,50 @@
+//! An axis as a unit of the Functional Mock-up Interface, so that other programs simulate it
+//! beside their own models: FMI 3.0, co-simulation (Modelica Association, *Functional Mock-up
+//! Interface Specification 3.0.2*, <https://fmi-standard.org/docs/3.0.2/>).
+//!
+//! - [`Unit`]: one instance. It takes set points and a force, makes control cycles with
+//!   [`axis_sim::ClosedLoop::step`], and shows what machine and drive do. It refuses whatever
+//!   comes in the wrong order.
+//! - [`Variables`]: its inputs, outputs and parameters, made of the axis file.
+//! - [`package`]: the file, a ZIP archive of description, library and axis file.
+//!
+//! The interface in C is another crate, `feed-axis-fmu`: a library that serves every axis, as it
+//! reads the axis file from the unit's resources.
+//!
+//! ```
+//! use axis_fmu::Unit;
+//!
+//! let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
+//! let mut unit = Unit::new("liu2025.toml", &std::fs::read_to_string(file)?)?;
+//! let named = |name: &str| unit.variables().named(name).map(|v| v.reference);
+//! let (set, position) = (named("position_ref_m").unwrap(), named("machine.position_m").unwrap());
+//! unit.enter_initialization(0.0, None)?;
+//! unit.set(set, 0.6)?; // m
+//! unit.exit_initialization()?;
+//! unit.set(set, 0.6 + 1e-4)?; // a step of 0.1 mm
+//! unit.step(0.0, 0.2)?; // s: 2000 control cycles
+//! let moved = unit.get(position)? - 0.6;
+//! assert!((moved - 1e-4).abs() < 0.5e-4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod description;
+mod error;
+mod measure;
+mod mode;
+mod outputs;
+mod package;
+mod parameters;
+mod run;
+mod unit;
+mod variables;
+
+pub use description::description;
+pub use error::UnitError;
+pub use measure::Measure;
+pub use mode::Mode;
+pub use package::{
+    AXIS_FILE, LIBRARY_MARK, MODEL_IDENTIFIER, PackageError, library_file, package, platform,
+};
+pub use unit::Unit;
+pub use variables::{Variable, VariableKind, Variables};

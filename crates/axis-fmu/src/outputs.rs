@@ -1,0 +1,114 @@
+//! Outputs: what the machine does at the communication point, and what the drive saw last.
+
+use axis_sim::mechanism::Freedom;
+use axis_sim::{Axis, Cycle, LogChannel, LoopState, channels};
+
+/// Where an output is read.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Source {
+    /// The machine, now.
+    Machine(fn(&LoopState) -> f64),
+    /// What the drive sampled and commanded in its last cycle.
+    Drive(fn(&Cycle) -> f64),
+}
+
+impl Source {
+    pub(crate) fn read(self, state: &LoopState, cycle: &Cycle) -> f64 {
+        match self {
+            Self::Machine(read) => read(state),
+            Self::Drive(read) => read(cycle),
+        }
+    }
+}
+
+/// An output: name, unit, meaning, and where it is read.
+pub(crate) struct Output {
+    pub name: String,
+    pub unit: &'static str,
+    pub meaning: &'static str,
+    pub source: Source,
+}
+
+/// Name, unit, meaning, how it is read.
+type Line = (
+    &'static str,
+    &'static str,
+    &'static str,
+    fn(&LoopState) -> f64,
+);
+
+#[rustfmt::skip]
+const LINEAR: &[Line] = &[
+    ("position_m", "m", "position of the load", |s| s.plant().seen().position),
+    ("speed_m_s", "m/s", "speed of the load", |s| s.plant().seen().speed),
+    ("transmission_force_n", "N", "force of the transmission on the load", |s| s.plant().seen().transmission_force),
+    ("resistance_n", "N", "friction and loads, positive against positive motion", |s| s.plant().seen().load),
+];
+
+#[rustfmt::skip]
+const ROTARY: &[Line] = &[
+    ("position_rad", "rad", "position of the load", |s| s.plant().seen().position),
+    ("speed_rad_s", "rad/s", "speed of the load", |s| s.plant().seen().speed),
+    ("transmission_torque_n_m", "N·m", "torque of the transmission on the load", |s| s.plant().seen().transmission_force),
+    ("resistance_n_m", "N·m", "friction and loads, positive against positive motion", |s| s.plant().seen().load),
+];
+
+#[rustfmt::skip]
+const MOTOR: &[Line] = &[
+    ("motor_angle_rad", "rad", "angle of the motor", |s| s.plant().seen().motor_angle),
+    ("motor_speed_rad_s", "rad/s", "speed of the motor", |s| s.plant().seen().motor_speed),
+    ("motor_torque_n_m", "N·m", "torque of the motor", |s| s.plant().seen().torque),
+];
+
+#[rustfmt::skip]
+const FORCE: &[Line] = &[
+    ("motor_force_n", "N", "force of the motor", |s| s.plant().seen().torque),
+];
+
+#[rustfmt::skip]
+const CURRENTS: &[Line] = &[
+    ("iq_a", "A", "q current of the motor", |s| s.actuator().electrical().current.q),
+    ("id_a", "A", "d current of the motor", |s| s.actuator().electrical().current.d),
+];
+
+/// The outputs of an axis.
+pub(crate) fn outputs(axis: &Axis) -> Vec<Output> {
+    let load = match axis.freedom() {
+        Freedom::Linear => LINEAR,
+        Freedom::Rotary => ROTARY,
+    };
+    let motor = if is_linear_motor(axis) { FORCE } else { MOTOR };
+    let currents = if axis.actuator.has_currents() {
+        CURRENTS
+    } else {
+        &[]
+    };
+    let machine = [load, motor, currents].concat().into_iter();
+    let machine = machine.map(|(name, unit, meaning, read)| Output {
+        name: format!("machine.{name}"),
+        unit,
+        meaning,
+        source: Source::Machine(read),
+    });
+    let drive = channels(axis).into_iter().filter(|c| !is_reference(c));
+    let drive = drive.map(|channel| {
+        let [name, unit] = channel.of_freedom(axis.freedom());
+        Output {
+            name: format!("drive.{name}"),
+            unit,
+            meaning: "in the drive's last control cycle, as in a log",
+            source: Source::Drive(channel.read),
+        }
+    });
+    machine.chain(drive).collect()
+}
+
+/// Whether motor and load are one and move along a line: its torque is a force.
+pub(crate) fn is_linear_motor(axis: &Axis) -> bool {
+    axis.freedom() == Freedom::Linear && !axis.mechanism.has_motor_encoder()
+}
+
+/// Whether a channel only repeats an input.
+fn is_reference(channel: &LogChannel) -> bool {
+    channel.part == axis_sim::ChannelPart::Given && channel.linear[0] != "t_s"
+}

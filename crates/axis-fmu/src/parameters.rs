@@ -1,0 +1,100 @@
+//! Parameters: the numbers of the axis file's parts, by table and key.
+
+use axis_sim::part::Key;
+use axis_sim::{Axis, Registry};
+use toml_edit::{DocumentMut, Item, TableLike, Value};
+
+use crate::error::UnitError;
+
+/// Tables of an axis file that hold no part of the machine, or none that a run may change.
+const NO_PARTS: &[&str] = &[
+    "stroke",
+    "samples",
+    "simulation",
+    "sensors",
+    "experiment",
+    "tolerances",
+    "log",
+    "balance",
+];
+
+/// Of `[control]`, what the unit's step is made of.
+const STEP: &str = "frequency";
+
+/// A number of the axis file.
+pub(crate) struct Parameter {
+    pub table: String,
+    pub key: String,
+    /// In the key's unit, as the file has it.
+    pub value: f64,
+    /// The unit that ends the key; empty where it has none.
+    pub unit: &'static str,
+    /// What is valid, in words.
+    pub valid: String,
+}
+
+/// The numbers of all parts that stand in tables of their own, in the order of the file.
+///
+/// # Errors
+/// As [`Axis::parse`].
+pub(crate) fn parameters(name: &str, text: &str) -> Result<Vec<Parameter>, UnitError> {
+    let keys = Registry::default().keys(name, text)?;
+    let document = document(text)?;
+    let mut all = Vec::new();
+    for (table, item) in document
+        .iter()
+        .filter(|(table, _)| !NO_PARTS.contains(table))
+    {
+        let keys = keys.iter().find(|key| key.name() == table);
+        let Some((keys, item)) = keys.zip(item.as_table_like()) else {
+            continue;
+        };
+        all.extend(of_table(table, item, keys.keys()));
+    }
+    Ok(all)
+}
+
+fn of_table(table: &str, item: &dyn TableLike, keys: &[Key]) -> Vec<Parameter> {
+    let numbers = item.iter().filter_map(|(spelling, item)| {
+        let value = item.as_float().or(item.as_integer().map(|i| i as f64))?;
+        let spelled = |key: &&Key| key.is_number() && key.spellings().iter().any(|s| s == spelling);
+        let key = keys.iter().find(spelled)?;
+        if (table, key.name()) == ("control", STEP) {
+            return None;
+        }
+        let end = spelling.strip_prefix(key.name())?.trim_start_matches('_');
+        let unit = key.units().iter().find(|(unit, _)| *unit == end).copied();
+        Some(Parameter {
+            table: table.to_owned(),
+            key: spelling.to_owned(),
+            value,
+            unit: unit.map_or("", |(unit, _)| unit),
+            valid: key.valid(unit),
+        })
+    });
+    numbers.collect()
+}
+
+/// The axis of `text` with other numbers: table, key, number in the key's unit.
+///
+/// # Errors
+/// As [`Axis::parse`]: the words of the axis file's checks.
+pub(crate) fn with<'a>(
+    name: &str,
+    text: &str,
+    changed: impl Iterator<Item = (&'a str, &'a str, f64)>,
+) -> Result<Axis, UnitError> {
+    let mut document = document(text)?;
+    for (table, key, number) in changed {
+        let table = document.get_mut(table).and_then(Item::as_table_like_mut);
+        if let Some(item) = table.and_then(|table| table.get_mut(key)) {
+            *item = Item::Value(Value::from(number));
+        }
+    }
+    Ok(Axis::parse(name, &document.to_string())?)
+}
+
+fn document(text: &str) -> Result<DocumentMut, UnitError> {
+    let read = text.parse::<DocumentMut>();
+    read.map_err(|error| UnitError::Text(error.to_string()))
+}

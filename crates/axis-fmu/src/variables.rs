@@ -1,0 +1,180 @@
+//! The variables of a unit: one table, made of the axis.
+
+use axis_sim::Axis;
+use axis_sim::mechanism::Freedom;
+
+use crate::error::UnitError;
+use crate::measure::Measure;
+use crate::outputs::{Source, is_linear_motor, outputs};
+use crate::parameters::parameters;
+
+/// A variable of a unit; all are 64-bit floating-point numbers.
+#[derive(Clone, Debug)]
+pub struct Variable {
+    /// Value reference: its place in the table.
+    pub reference: u32,
+    /// Name.
+    pub name: String,
+    /// What it is, for people.
+    pub description: String,
+    /// Unit of its value; none of a plain number.
+    pub measure: Option<Measure>,
+    /// What it is to the unit.
+    pub kind: VariableKind,
+    /// Value before anybody sets it, in its unit; none of what is computed.
+    pub start: Option<f64>,
+}
+
+/// What a variable is to the unit.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum VariableKind {
+    /// Time, s.
+    Time,
+    /// Set by the environment, held over each control cycle.
+    Input(Input),
+    /// Computed by the unit.
+    Output(Output),
+    /// A number of the axis file, set before the initialisation ends.
+    Parameter {
+        /// Table of the axis file.
+        table: String,
+        /// Key in it, with its unit.
+        key: String,
+    },
+}
+
+/// An input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Input {
+    /// Reference of the position, m or rad.
+    Position,
+    /// Of the speed, m/s or rad/s.
+    Velocity,
+    /// Of the acceleration, m/s² or rad/s².
+    Acceleration,
+    /// Torque (N·m) or force (N) of the motor that is added to the controller's.
+    Motor,
+    /// Force on the load, N or N·m, positive against positive motion.
+    Load,
+}
+
+/// How an output is read.
+#[derive(Clone, Copy, Debug)]
+pub struct Output(pub(crate) Source);
+
+impl Output {
+    /// Whether it changes with control cycles alone, and not in between.
+    pub fn is_sampled(&self) -> bool {
+        matches!(self.0, Source::Drive(_))
+    }
+}
+
+/// All variables of a unit, by their value references.
+#[derive(Clone, Debug)]
+pub struct Variables(Vec<Variable>);
+
+impl Variables {
+    /// The variables of an axis, made of its file's text; `name` stands for it in messages.
+    ///
+    /// # Errors
+    /// [`UnitError::Axis`], [`UnitError::Text`] where the text is no axis file.
+    pub fn of(axis: &Axis, name: &str, text: &str) -> Result<Self, UnitError> {
+        let mut all = Self(Vec::new());
+        all.push("time", "", "s", VariableKind::Time, None);
+        for (name, meaning, unit, input, start) in inputs(axis) {
+            all.push(name, meaning, unit, VariableKind::Input(input), Some(start));
+        }
+        for output in outputs(axis) {
+            let kind = VariableKind::Output(Output(output.source));
+            all.push(&output.name, output.meaning, output.unit, kind, None);
+        }
+        for parameter in parameters(name, text)? {
+            let kind = VariableKind::Parameter {
+                table: parameter.table.clone(),
+                key: parameter.key.clone(),
+            };
+            let name = format!("{}.{}", parameter.table, parameter.key);
+            all.push(&name, &parameter.valid, "", kind, Some(parameter.value));
+            if let Some(last) = all.0.last_mut() {
+                last.measure = Measure::spelled(parameter.unit);
+            }
+        }
+        Ok(all)
+    }
+
+    fn push(
+        &mut self,
+        name: &str,
+        meaning: &str,
+        unit: &str,
+        kind: VariableKind,
+        start: Option<f64>,
+    ) {
+        self.0.push(Variable {
+            reference: self.0.len() as u32,
+            name: name.to_owned(),
+            description: meaning.to_owned(),
+            measure: Measure::of_channel(unit),
+            kind,
+            start,
+        });
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> std::slice::Iter<'_, Variable> {
+        self.0.iter()
+    }
+
+    /// The variable of that name.
+    pub fn named(&self, name: &str) -> Option<&Variable> {
+        self.iter().find(|variable| variable.name == name)
+    }
+
+    /// The variable with that value reference.
+    ///
+    /// # Errors
+    /// [`UnitError::Reference`] where there is none.
+    pub fn get(&self, reference: u32) -> Result<&Variable, UnitError> {
+        let last = self.0.len().saturating_sub(1) as u32;
+        let found = self.0.get(reference as usize);
+        found.ok_or(UnitError::Reference { reference, last })
+    }
+
+    /// Start values, by value reference.
+    pub(crate) fn starts(&self) -> Vec<f64> {
+        self.iter()
+            .map(|variable| variable.start.unwrap_or(0.0))
+            .collect()
+    }
+}
+
+/// Name, meaning, unit, input, start.
+type Line = (&'static str, &'static str, &'static str, Input, f64);
+
+#[rustfmt::skip]
+fn inputs(axis: &Axis) -> [Line; 5] {
+    use Input::{Acceleration, Load, Motor, Position, Velocity};
+    const LOAD: &str = "on the load from outside, positive against positive motion";
+    let (at, motor) = (axis.stroke.start, "added to what the controller asks of the motor");
+    let motor = match is_linear_motor(axis) {
+        true => ("force_offset_n", motor, "N", Motor, 0.0),
+        false => ("torque_offset_n_m", motor, "N·m", Motor, 0.0),
+    };
+    match axis.freedom() {
+        Freedom::Linear => [
+            ("position_ref_m", "reference of the position", "m", Position, at),
+            ("velocity_ref_m_s", "reference of the speed", "m/s", Velocity, 0.0),
+            ("acceleration_ref_m_s2", "reference of the acceleration", "m/s²", Acceleration, 0.0),
+            motor,
+            ("load_force_n", LOAD, "N", Load, 0.0),
+        ],
+        Freedom::Rotary => [
+            ("position_ref_rad", "reference of the position", "rad", Position, at),
+            ("velocity_ref_rad_s", "reference of the speed", "rad/s", Velocity, 0.0),
+            ("acceleration_ref_rad_s2", "reference of the acceleration", "rad/s²", Acceleration, 0.0),
+            motor,
+            ("load_torque_n_m", LOAD, "N·m", Load, 0.0),
+        ],
+    }
+}

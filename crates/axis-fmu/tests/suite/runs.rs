@@ -1,0 +1,210 @@
+//! A unit is the closed loop, and obeys its laws.
+
+use axis_fmu::{Unit, VariableKind};
+use axis_sim::{ClosedLoop, Recorder, channels};
+use compensator::NoCompensation;
+use trajectories::Motion;
+
+use crate::{get, ready, set, text, unit};
+
+const PERIOD: f64 = 1e-4;
+
+/// The files of the project that can be simulated in a closed loop.
+const FILES: &[&str] = &[
+    "liu2025.toml",
+    "belt.toml",
+    "rotary-table.toml",
+    "linear-motor.toml",
+];
+
+/// Sets the references and makes one control cycle.
+fn follow(unit: &mut Unit, motion: &dyn Motion, k: u32) {
+    let period = unit.axis().period;
+    let now = motion.at(f64::from(k) * period);
+    let inputs = unit
+        .variables()
+        .iter()
+        .filter(|v| matches!(v.kind, VariableKind::Input(_)));
+    let three: Vec<u32> = inputs.take(3).map(|v| v.reference).collect();
+    for (reference, value) in three
+        .iter()
+        .zip([now.position, now.velocity, now.acceleration])
+    {
+        unit.set(*reference, value).unwrap();
+    }
+    unit.step(f64::from(k) * period, period).unwrap();
+}
+
+#[test]
+fn a_run_is_the_closed_loops_to_the_bit() {
+    for name in FILES {
+        let mut unit = ready(name);
+        let axis = unit.axis().clone();
+        let motion = axis.plan(&axis.trajectories[0]).unwrap();
+        let mut log = Recorder::new(&axis);
+        let closed_loop = ClosedLoop::new(&axis).unwrap();
+        closed_loop.run(&motion, &mut NoCompensation, |cycle| log.push(cycle));
+        let outputs: Vec<_> = unit.variables().iter().cloned().collect();
+        for (k, cycle) in (0..).zip(log.cycles().iter().take(3000)) {
+            follow(&mut unit, &motion, k);
+            let mut compared = 0;
+            for channel in channels(&axis) {
+                let name = format!("drive.{}", channel.name(&axis));
+                if let Some(output) = outputs.iter().find(|output| output.name == name) {
+                    let [a, b] = [unit.get(output.reference).unwrap(), (channel.read)(cycle)];
+                    assert!(
+                        a.to_bits() == b.to_bits(),
+                        "{name} in cycle {k}: {a} and {b}"
+                    );
+                    compared += 1;
+                }
+            }
+            assert!(compared >= 4);
+        }
+    }
+}
+
+/// What the machine does at a communication point, the drive samples in the next cycle.
+#[test]
+fn the_machine_is_a_cycle_ahead_of_the_drive() {
+    let mut unit = ready("liu2025.toml");
+    let axis = unit.axis().clone();
+    let motion = axis.plan(&axis.trajectories[0]).unwrap();
+    let mut machine = get(&mut unit, "machine.position_m");
+    for k in 0..500 {
+        follow(&mut unit, &motion, k);
+        assert_eq!(get(&mut unit, "drive.position_m"), machine);
+        machine = get(&mut unit, "machine.position_m");
+    }
+    assert!(machine > 0.6);
+}
+
+/// Communication steps of many cycles hold the inputs, as many of one cycle do.
+#[test]
+fn long_steps_are_many_short_ones() {
+    let [mut short, mut long] = [ready("liu2025.toml"), ready("liu2025.toml")];
+    for unit in [&mut short, &mut long] {
+        set(unit, "position_ref_m", 0.6001);
+    }
+    for k in 0..50 {
+        short.step(f64::from(k) * PERIOD, PERIOD).unwrap();
+    }
+    assert!((long.step(0.0, 50.0 * PERIOD).unwrap() - 50.0 * PERIOD).abs() < 1e-15);
+    for variable in long.variables().clone().iter() {
+        let reference = variable.reference;
+        assert_eq!(long.get(reference).unwrap(), short.get(reference).unwrap());
+    }
+}
+
+/// Torque of the motor once an even motion has settled under a load, N·m.
+fn torque_at_speed(name: &str, load: f64) -> f64 {
+    let mut unit = ready(name);
+    let (speed, period) = (0.05, unit.axis().period);
+    let start = unit.axis().stroke.start;
+    set(&mut unit, "velocity_ref_m_s", speed);
+    set(&mut unit, "load_force_n", load);
+    let cycles = (2.0 / period) as u32;
+    for k in 0..cycles {
+        let time = f64::from(k) * period;
+        set(&mut unit, "position_ref_m", start + speed * time);
+        unit.step(time, period).unwrap();
+    }
+    get(&mut unit, "machine.motor_torque_n_m")
+}
+
+/// In even motion the motor's power beside friction's is the load's: ΔT ω = F v, so
+/// ΔT = F r, r the travel per radian.
+#[test]
+fn the_motor_bears_the_load() {
+    let force = 300.0;
+    let travel = unit("liu2025.toml").axis().travel_per_radian();
+    let more = torque_at_speed("liu2025.toml", force) - torque_at_speed("liu2025.toml", 0.0);
+    assert!((more / (force * travel) - 1.0).abs() < 1e-4, "{more} N·m");
+}
+
+/// A torque that is added and the load that it bears leave the axis where it is: at rest the
+/// controller has nothing to do.
+#[test]
+fn an_offset_of_the_motor_bears_a_load() {
+    let travel = unit("liu2025.toml").axis().travel_per_radian();
+    let way = |offset: f64| {
+        let mut unit = ready("liu2025.toml");
+        set(&mut unit, "load_force_n", 300.0);
+        set(&mut unit, "torque_offset_n_m", offset);
+        for k in 0..2000 {
+            unit.step(f64::from(k) * PERIOD, PERIOD).unwrap();
+        }
+        (
+            get(&mut unit, "drive.iq_ref_a"),
+            get(&mut unit, "drive.iq_feedforward_a"),
+        )
+    };
+    let (asked, added) = way(300.0 * travel);
+    assert!(
+        added > 0.0 && (asked - added).abs() < 0.1 * added,
+        "{asked} A, {added} A"
+    );
+    let (_, none) = way(0.0);
+    assert_eq!(none, 0.0);
+}
+
+/// States: what is restored goes on as it did, also in another instance, also with another
+/// sensor's noise on the way.
+#[test]
+fn a_restored_state_goes_on_to_the_bit() {
+    for name in FILES {
+        let mut unit = ready(name);
+        let axis = unit.axis().clone();
+        let motion = axis.plan(&axis.trajectories[0]).unwrap();
+        for k in 0..200 {
+            follow(&mut unit, &motion, k);
+        }
+        let saved = unit.clone();
+        let outputs = |unit: &mut Unit| -> Vec<u64> {
+            let all = unit.variables().clone();
+            all.iter()
+                .map(|v| unit.get(v.reference).unwrap().to_bits())
+                .collect()
+        };
+        let go_on = |unit: &mut Unit| {
+            (200..400).for_each(|k| follow(unit, &motion, k));
+            outputs(unit)
+        };
+        let first = go_on(&mut unit);
+        let mut restored = saved;
+        assert_eq!(first, go_on(&mut restored), "{name}");
+        // And a reset begins as it began.
+        unit.reset();
+        let mut fresh = crate::unit(name);
+        for unit in [&mut unit, &mut fresh] {
+            unit.enter_initialization(0.0, None).unwrap();
+            unit.exit_initialization().unwrap();
+            (0..20).for_each(|k| follow(unit, &motion, k));
+        }
+        assert_eq!(outputs(&mut unit), outputs(&mut fresh), "{name}");
+    }
+}
+
+/// Every axis file that has a control makes a unit; without one it says so.
+#[test]
+fn every_axis_makes_a_unit() {
+    let mut made = 0;
+    for entry in std::fs::read_dir(crate::file("")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let axis = axis_sim::Axis::parse(&name, &text(&name)).unwrap();
+        match Unit::new(&name, &text(&name)) {
+            Ok(mut unit) => {
+                unit.enter_initialization(0.0, None).unwrap();
+                unit.exit_initialization().unwrap();
+                let period = axis.period;
+                unit.step(0.0, 10.0 * period).unwrap();
+                made += 1;
+            }
+            Err(error) => {
+                assert!(!axis.has_control(), "{name}: {error}");
+                assert!(error.to_string().contains("control"), "{error}");
+            }
+        }
+    }
+    assert!(made >= 10);
+}

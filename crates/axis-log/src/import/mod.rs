@@ -1,0 +1,106 @@
+//! Files of other programs, recognised by what is in them.
+//!
+//! A format is one file and one line of [`FORMATS`]. It gives its columns as the program names
+//! them; a mapping makes channels of them, as of any file. What a mapping could be it proposes
+//! ([`propose`]), since a program's names tell what was logged and not always in which unit:
+//! nothing is applied by itself.
+
+mod halscope;
+
+use std::path::Path;
+
+use crate::read_error::{ReadError, ReadProblem};
+use crate::table::Table;
+
+type Opened = Result<Box<dyn Table>, ReadProblem>;
+
+/// A format of another program.
+struct Format {
+    /// What it is called.
+    name: &'static str,
+    /// Whether the first bytes of a file are of this format.
+    is_it: fn(&[u8]) -> bool,
+    /// Reads the whole file.
+    open: fn(&[u8]) -> Opened,
+    /// What the columns of these names are.
+    columns: fn(&[String]) -> Vec<ProposedColumn>,
+    /// What the proposal rests on and leaves open.
+    caution: &'static str,
+}
+
+/// All formats, one line each.
+const FORMATS: &[Format] = &[halscope::FORMAT];
+
+/// A column that a mapping could have.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ProposedColumn {
+    /// Name of the column in the file.
+    pub source: String,
+    /// The channel that it seems to be.
+    pub channel: &'static str,
+    /// The unit that it is usually in.
+    pub unit: &'static str,
+}
+
+/// What a file of another program is, and what its mapping could be.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Proposal {
+    /// Name of the format.
+    pub format: &'static str,
+    /// Columns of which the name tells what they are.
+    pub columns: Vec<ProposedColumn>,
+    /// Columns of which it does not.
+    pub others: Vec<String>,
+    /// What it rests on and leaves open.
+    pub caution: &'static str,
+}
+
+impl Proposal {
+    /// As lines of an axis file.
+    pub fn lines(&self) -> String {
+        let one = |column: &ProposedColumn| {
+            format!(
+                "[[log.column]]\nsource = {:?}\nchannel = \"{}\"\nunit = \"{}\"\n",
+                column.source, column.channel, column.unit
+            )
+        };
+        self.columns.iter().map(one).collect()
+    }
+}
+
+/// What a file is, by its content, and what mapping it could have; `None` where it is of no
+/// format that is known here, as CSV, Parquet and MAT are not.
+///
+/// # Errors
+/// A [`ReadError`]: the file cannot be read, or is damaged.
+pub fn propose(path: impl AsRef<Path>) -> Result<Option<Proposal>, ReadError> {
+    let path = path.as_ref();
+    proposal(path).map_err(|problem| ReadError {
+        file: path.display().to_string(),
+        problem,
+    })
+}
+
+fn proposal(path: &Path) -> Result<Option<Proposal>, ReadProblem> {
+    let bytes = crate::read::whole(path)?;
+    let Some(format) = FORMATS.iter().find(|format| (format.is_it)(&bytes)) else {
+        return Ok(None);
+    };
+    let names = (format.open)(&bytes)?.names();
+    let columns = (format.columns)(&names);
+    let told = |name: &String| {
+        columns.iter().any(|column| column.source == *name) || crate::unit_of(name).is_some()
+    };
+    Ok(Some(Proposal {
+        format: format.name,
+        others: names.iter().filter(|name| !told(name)).cloned().collect(),
+        columns,
+        caution: format.caution,
+    }))
+}
+
+/// The file as a table, where it is of another program.
+pub(crate) fn table(bytes: &[u8]) -> Option<Opened> {
+    let format = FORMATS.iter().find(|format| (format.is_it)(bytes))?;
+    Some((format.open)(bytes))
+}

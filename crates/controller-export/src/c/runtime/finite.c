@@ -1,0 +1,4 @@
+static int is_finite(real x)
+{
+    return x - x == R(0.0);
+}

@@ -1,0 +1,227 @@
+//! The strategies in Rust, in both precisions.
+
+use axis_sim::Axis;
+use cfnn::{FixedNetwork, Network, Scaling, Shape};
+use compensator::{
+    Combined, Compensator, Correction, Feedback, GuardLimits, NetworkCompensation, NoCompensation,
+    Planner, Sample, Standstill, Target, TransferFunctionModel,
+};
+use controller_export::{Law, PlanLaw, Position};
+use lugre::Exponential;
+use pipeline::strategies::{Predictors, STRATEGIES, named};
+use scalar::Scalar;
+
+use super::Outcome;
+use super::samples::Random;
+
+/// Hidden layers of the paper's network, and its activations.
+pub const HIDDEN: [usize; 3] = [34, 19, 8];
+pub const ACTIVATIONS: usize = 5 + 34 + 19 + 8;
+
+/// What the guard keeps to.
+pub const LIMITS: GuardLimits = GuardLimits {
+    position: 5e-4,
+    effort: 60.0,
+    surprise: 1e5,
+    patience: 20,
+    fade: 1000,
+};
+
+/// A network of the paper's shape: kinematics and a small rest of random weights.
+pub fn network(axis: &Axis) -> Outcome<Network> {
+    let shape = Shape {
+        inputs: 4,
+        hidden: HIDDEN.to_vec(),
+        outputs: 1,
+    };
+    let ranges = [(0.0, 1.5), (-0.333, 0.333), (-5.0, 5.0), (-15.0, 15.0)];
+    let most = 0.333 * axis.period;
+    let scaling = Scaling::from_ranges(&ranges, &[(-most, most)])?;
+    let mut random = Random(7);
+    let mut weights: Vec<f64> = (0..shape.parameters())
+        .map(|_| 0.3 * random.next())
+        .collect();
+    let output = shape.layers()[HIDDEN.len()].first_parameter;
+    for weight in &mut weights[output..] {
+        *weight *= 1e-3;
+    }
+    weights[output + 2] = 1.0;
+    Ok(Network::new(shape, scaling, weights)?)
+}
+
+/// Everything that the strategies are made of.
+pub fn predictors(axis: &Axis) -> Outcome<Predictors> {
+    let model = |direct| {
+        let poles = [0.98, 0.98, 0.95, 0.9, -0.3];
+        let coefficients = [3e-6, -2e-6, 1e-6, 4e-7, -1e-7];
+        TransferFunctionModel::new(axis.period, direct, &poles, &coefficients)
+    };
+    let models = [model(2e-6)?, model(-1e-6)?];
+    Ok(Predictors::new(
+        axis,
+        network(axis)?,
+        models,
+        axis.friction.law,
+    ))
+}
+
+/// What is compared: a strategy that knows what its guard let through.
+pub trait Runs<T: Scalar> {
+    /// The next sample is the first of a motion from rest.
+    fn reset(&mut self);
+    /// The correction of a cycle.
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T>;
+    /// What a guard watches.
+    fn surprise(&self) -> T;
+    /// What went to the drive.
+    fn passed(&mut self, _: &Correction<T>) {}
+}
+
+impl<T: Scalar> Runs<T> for Box<dyn Compensator<T> + '_> {
+    fn reset(&mut self) {
+        (**self).reset();
+    }
+
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
+        (**self).correct(sample)
+    }
+
+    fn surprise(&self) -> T {
+        (**self).surprise()
+    }
+}
+
+/// A plan as a controller runs it: the next reference of a sample is the newest set point, and
+/// the motion is held back by the look-ahead.
+pub struct Streaming<T: Exponential> {
+    planner: Planner<T>,
+    feedback: Option<Feedback<T>>,
+    started: bool,
+    own: T,
+}
+
+impl<T: Exponential> Streaming<T> {
+    pub fn new(law: &PlanLaw<T>) -> Self {
+        Self {
+            planner: (*law.planner).clone(),
+            feedback: law.feedback.as_deref().cloned(),
+            started: false,
+            own: T::ZERO,
+        }
+    }
+}
+
+impl<T: Exponential> Runs<T> for Streaming<T> {
+    fn reset(&mut self) {
+        self.started = false;
+        if let Some(feedback) = &mut self.feedback {
+            feedback.reset();
+        }
+    }
+
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
+        let newest = sample.next_reference;
+        if !self.started {
+            let standstill = Standstill {
+                effort: sample.iq_command,
+                own: self.own,
+                motor_angle: sample.motor_angle,
+            };
+            self.planner.begin(newest.position, &standstill);
+            self.started = true;
+        }
+        let Some(planned) = self.planner.push(Target::of(newest)) else {
+            return Correction::default();
+        };
+        let now = Sample {
+            reference: planned.reference,
+            ..*sample
+        };
+        match &mut self.feedback {
+            Some(feedback) => feedback.correct(&now, &planned),
+            None => planned.correction,
+        }
+    }
+
+    fn surprise(&self) -> T {
+        let feedback = self.feedback.as_ref();
+        feedback.map_or(T::ZERO, |f| f.deviations().surprise)
+    }
+
+    fn passed(&mut self, correction: &Correction<T>) {
+        self.own = correction.iq;
+    }
+}
+
+/// The strategy as the simulator runs it.
+pub fn double(predictors: &Predictors, name: &str, law: &Law) -> Outcome<Box<dyn Runs<f64>>> {
+    if let Some(plan) = &law.plan {
+        return Ok(Box::new(Streaming::new(plan)));
+    }
+    let kind = named(STRATEGIES, name).ok_or("no such strategy")?;
+    let motion = predictors.axis.plan(&predictors.axis.trajectories[0])?;
+    Ok(Box::new(
+        kind.compensator(predictors, std::sync::Arc::new(motion))?,
+    ))
+}
+
+/// The same in single precision, of the numbers that are exported.
+pub fn single(law: &Law<f32>) -> Outcome<Box<dyn Runs<f32> + '_>> {
+    if let Some(plan) = &law.plan {
+        return Ok(Box::new(Streaming::new(plan)));
+    }
+    let first: Box<dyn Compensator<f32> + '_> = match &law.position {
+        Position::Nothing => Box::new(NoCompensation),
+        Position::Transfer(filter) => Box::new(**filter),
+        Position::Network(n) => {
+            let fixed = FixedNetwork::<f32, 4, 1, ACTIVATIONS>::new(
+                &n.hidden,
+                &n.packed,
+                n.input,
+                [n.output],
+            )?;
+            Box::new(NetworkCompensation::new(fixed, n.estimator))
+        }
+    };
+    let all: Box<dyn Compensator<f32> + '_> = match law.friction {
+        Some(friction) => Box::new(Combined::new(Boxed(first), friction)),
+        None => first,
+    };
+    Ok(Box::new(all))
+}
+
+/// A compensator of any kind as one of the kinds that can be combined.
+struct Boxed<'a>(Box<dyn Compensator<f32> + 'a>);
+
+impl Compensator<f32> for Boxed<'_> {
+    fn reset(&mut self) {
+        self.0.reset();
+    }
+
+    fn correct(&mut self, sample: &Sample<f32>) -> Correction<f32> {
+        self.0.correct(sample)
+    }
+}
+
+/// Inputs of a network over its ranges, row by row, and its outputs.
+pub fn network_cases(
+    axis: &Axis,
+    network: &Network,
+    count: usize,
+) -> Outcome<(Vec<f64>, Vec<f64>)> {
+    let mut random = Random(11);
+    let (mut inputs, mut outputs) = (Vec::new(), Vec::new());
+    let mut scratch = network.scratch();
+    let middle = 0.5 * (axis.stroke.minimum + axis.stroke.maximum);
+    for _ in 0..count {
+        let row = [
+            middle + 0.5 * random.next(),
+            0.3 * random.next(),
+            4.0 * random.next(),
+            15.0 * random.next(),
+        ];
+        outputs.push(network.predict_one(&row, &mut scratch)?);
+        inputs.extend(row);
+    }
+    Ok((inputs, outputs))
+}

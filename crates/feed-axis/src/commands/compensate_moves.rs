@@ -1,0 +1,237 @@
+//! `compensate --strategy`: moves one after the other under one strategy.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use axis_sim::{ClosedLoop, Measured};
+use clap::Args;
+use discover_matrix::hidden::Noise;
+use miette::{IntoDiagnostic, Result};
+use pipeline::Figures;
+use pipeline::moves::{MoveRun, Moves, NamedMotion};
+use pipeline::strategies::{Learned, NONE, Predictors, StrategyKind};
+use serde::Serialize;
+
+use super::simulate::{factor, program, trajectory};
+use super::validate;
+use crate::context::Context;
+use crate::output::{print, write_whole};
+use crate::progress::bar;
+use crate::strategy_name::strategy_name;
+
+/// Options for moves under one strategy.
+// A group by itself: clap names groups after their type, and the command's own options
+// have that name.
+#[derive(Args)]
+#[group(id = "moves-options")]
+pub struct Options {
+    /// Make moves under this strategy, which keeps what it learns from move to move,
+    /// instead of every trajectory under every strategy. The axis file is what the
+    /// strategy believes, the machine's is what moves
+    #[arg(long, value_name = "NAME", value_parser = strategy_name(), requires = "moves")]
+    pub strategy: Option<&'static StrategyKind>,
+    /// Moves in their order: a trajectory's number in the axis file, or the file of a
+    /// motion program. A move that begins where the last has ended goes on from the
+    /// state that the axis was left in; before any other it is settled anew
+    #[arg(long, value_name = "MOVE", num_args = 1.., requires = "strategy")]
+    moves: Vec<String>,
+    /// Noise of every sensor, in multiples of a good linear scale's (10 nm), motor
+    /// encoder's (2 µrad; its speed 0.01 rad/s) and current sensor's (5 mA of 15 A)
+    #[arg(
+        long,
+        value_name = "FACTOR",
+        default_value_t = 0.0,
+        value_parser = factor,
+        allow_negative_numbers = true,
+        requires = "strategy"
+    )]
+    noise: f64,
+    /// Where to write the moves' errors, and what was learned, as JSON
+    #[arg(long, value_name = "FILE", requires = "strategy")]
+    json: Option<PathBuf>,
+}
+
+/// What `--json` writes.
+#[derive(Serialize)]
+struct Report<'a> {
+    axis: &'a str,
+    axis_fingerprint: &'a str,
+    /// What stands for the machine. Simulated, never measured.
+    machine: &'a str,
+    machine_fingerprint: &'a str,
+    strategy: &'a str,
+    noise: f64,
+    seed: u64,
+    version: &'a str,
+    moves: Vec<Entry<'a>>,
+}
+
+#[derive(Serialize)]
+struct Entry<'a> {
+    #[serde(rename = "move")]
+    name: &'a str,
+    errors_um: Errors,
+    learned: &'a Learned,
+}
+
+#[derive(Serialize)]
+struct Errors {
+    none: Figures,
+    compensated: Figures,
+}
+
+/// Makes the moves.
+pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) -> Result<()> {
+    let motions: Vec<NamedMotion> = options
+        .moves
+        .iter()
+        .map(|name| motion(name, context))
+        .collect::<Result<_>>()?;
+    let predictors = validate::predictors(context, kind.needs)?;
+    // Refused before anything is computed.
+    kind.strategy(&predictors).into_diagnostic()?;
+    let closed_loop = ClosedLoop::new(&context.machine).into_diagnostic()?;
+    let progress = bar("compensate", 2 * motions.len() as u64);
+    let made = |kind| -> Made {
+        let sensors = Noise::good(&context.machine).scaled(options.noise);
+        let mut sensors = sensors.sensors(context.seed);
+        let sense = |seen: &mut Measured| {
+            if options.noise > 0.0 {
+                sensors(seen);
+            }
+        };
+        series(
+            kind,
+            &predictors,
+            Moves::new(&closed_loop, sense),
+            &motions,
+            || {
+                progress.inc(1);
+            },
+        )
+    };
+    let (none, compensated) = rayon::join(|| made(&NONE), || made(kind));
+    progress.finish_and_clear();
+    let pairs = none.runs.iter().zip(&compensated.runs);
+    let entries = pairs.zip(&motions).map(|((none, with), motion)| Entry {
+        name: &motion.name,
+        errors_um: Errors {
+            none: none.figures,
+            compensated: with.figures,
+        },
+        learned: &with.learned,
+    });
+    let report = Report {
+        axis: &context.axis.name,
+        axis_fingerprint: &context.axis.fingerprint,
+        machine: &context.machine.name,
+        machine_fingerprint: &context.machine.fingerprint,
+        strategy: kind.name,
+        noise: options.noise,
+        seed: context.seed,
+        version: env!("CARGO_PKG_VERSION"),
+        moves: entries.collect(),
+    };
+    // What was computed before a move stopped is kept.
+    if let Some(path) = &options.json {
+        let bytes = serde_json::to_vec_pretty(&report).into_diagnostic()?;
+        write_whole(path, &bytes)?;
+    }
+    let made = Moved {
+        unit: context.axis.freedom().unit(),
+        label: kind.label,
+        report,
+    };
+    print("compensate", &made)?;
+    match none.stopped.or(compensated.stopped) {
+        Some(error) => Err(error).into_diagnostic(),
+        None => Ok(()),
+    }
+}
+
+/// The moves up to the first that did not come to its end.
+struct Made {
+    runs: Vec<MoveRun>,
+    stopped: Option<pipeline::PipelineError>,
+}
+
+fn series<S: FnMut(&mut Measured)>(
+    kind: &StrategyKind,
+    predictors: &Predictors,
+    mut moves: Moves<'_, S>,
+    motions: &[NamedMotion],
+    each: impl Fn(),
+) -> Made {
+    let mut runs = Vec::new();
+    let mut attempt = || {
+        let mut strategy = kind.strategy(predictors)?;
+        for motion in motions {
+            runs.push(moves.make(&mut *strategy, motion)?);
+            each();
+        }
+        Ok(())
+    };
+    let stopped = attempt().err();
+    Made { runs, stopped }
+}
+
+/// The moves, with the words of their table.
+#[derive(Serialize)]
+struct Moved<'a> {
+    #[serde(skip)]
+    unit: &'static str,
+    #[serde(skip)]
+    label: &'static str,
+    #[serde(flatten)]
+    report: Report<'a>,
+}
+
+impl fmt::Display for Moved<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (report, unit) = (&self.report, self.unit);
+        writeln!(
+            f,
+            "{} on {} (simulated): tracking error, max / mean in µ{unit}",
+            self.label, report.machine
+        )?;
+        writeln!(
+            f,
+            "        none                 compensated            taken away"
+        )?;
+        for entry in &report.moves {
+            let (a, b) = (&entry.errors_um.none, &entry.errors_um.compensated);
+            writeln!(
+                f,
+                "  {:>9.3} / {:<9.4} {:>9.4} / {:<9.5} {:>6.2} / {:.2} %   {}",
+                a.max,
+                a.mean,
+                b.max,
+                b.mean,
+                100.0 * (1.0 - b.max / a.max),
+                100.0 * (1.0 - b.mean / a.mean),
+                entry.name
+            )?;
+        }
+        if let Some(last) = report.moves.last().filter(|last| !last.learned.is_empty()) {
+            writeln!(f, "  learned:")?;
+            for (name, value) in last.learned {
+                writeln!(f, "    {name:<32} {}", axis_sim::SixDigits(*value))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A trajectory's number, or a program's file.
+fn motion(name: &str, context: &Context) -> Result<NamedMotion> {
+    let motion = match name.parse::<usize>() {
+        Ok(number) => trajectory("--moves", number, context)?,
+        Err(_) => Arc::new(program(Path::new(name))?),
+    };
+    Ok(NamedMotion {
+        name: name.to_owned(),
+        motion,
+        learned: None,
+    })
+}

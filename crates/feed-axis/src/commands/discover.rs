@@ -1,0 +1,358 @@
+//! `discover`: what a model lacks, from logs or from a table of errors.
+
+use std::path::{Path, PathBuf};
+
+use axis_log::Log;
+use axis_log::intake::{Options as Intake, prepare};
+use axis_log::quality::Verdict as Agreement;
+use axis_sim::Axis;
+use axis_sim::effects::{ActiveEffect, OnsetForm, Scales};
+use clap::Args;
+use discrepancy::logs::{
+    NamedLog, check_distinct, check_log, cross_checks, exact_channels, from_rest, set_apart,
+};
+use discrepancy::summary::{MeasuredError, rank, tried};
+use discrepancy::{LogSet, Settings, discovery, search};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use toml_edit::{DocumentMut, Item, Value};
+
+use super::discover_words::{Files, Found, FoundInSummary, summary_words};
+use crate::context::read_text;
+use crate::output::{Worded, note, print, ready, remove, write_whole};
+use crate::page;
+use crate::progress::{bar, spinner};
+
+/// Options of the command.
+#[derive(Args)]
+pub struct Options {
+    /// Axis file: the model that the logs are compared with
+    #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
+    axis: PathBuf,
+    /// Logs to fit to: CSV, Parquet or MAT v5, 100 Hz to 20 kHz; a
+    /// log in several files as their paths with + between
+    #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
+    fit: Vec<PathBuf>,
+    /// Logs of other motion, to check on; never fitted to
+    #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
+    check: Vec<PathBuf>,
+    /// Logs that take no part in any choice, from which the figures are. Without them the
+    /// last check log is taken, or the last part of a single one, where it can be cut
+    #[arg(long, value_name = "LOG", num_args = 1.., requires = "check")]
+    test: Vec<PathBuf>,
+    /// Instead of logs: CSV with the columns trajectory, experiment_max_um and
+    /// experiment_mean_um (or max_um, mean_um), one row a trajectory of the axis file
+    #[arg(long, value_name = "TABLE", conflicts_with_all = ["fit", "check", "test", "accept", "reject"])]
+    summary: Option<PathBuf>,
+    /// Folder for discovery.json, report.html and axis.toml, or for summary.json and
+    /// summary.html [default: runs/, the name of the axis, /discover]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Search anew with this effect taken as there from the start (may be repeated)
+    #[arg(long, value_name = "NAME")]
+    accept: Vec<String>,
+    /// Search anew, and never name this effect (may be repeated)
+    #[arg(long, value_name = "NAME")]
+    reject: Vec<String>,
+    /// Compare by torque balance, as if the axis file had no `[control]`: measured motion in,
+    /// the torque that the model needs for it out
+    #[arg(long, conflicts_with = "summary")]
+    balance: bool,
+    /// Threads, 0 for all cores; results do not depend on it
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
+}
+
+/// Runs the command.
+pub fn command(options: &Options) -> Result<()> {
+    let _ = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads)
+        .build_global();
+    let mut machine = Axis::read(&options.axis)?;
+    if options.balance {
+        machine = machine.without_control().into_diagnostic()?;
+    }
+    let default = || Path::new("runs").join(&machine.name).join("discover");
+    let out = options.out.clone().unwrap_or_else(default);
+    match &options.summary {
+        Some(table) => from_summary(options, &machine, table, &out),
+        None => from_logs(options, &machine, &out),
+    }
+}
+
+fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
+    let settings = Settings {
+        accepted: options.accept.clone(),
+        rejected: options.reject.clone(),
+        ..Settings::default()
+    };
+    settings.check(machine).into_diagnostic()?;
+    let mut notes = Vec::new();
+    let fit = read_all(&options.fit, machine, &mut notes)?;
+    let check = read_all(&options.check, machine, &mut notes)?;
+    let test = read_all(&options.test, machine, &mut notes)?;
+    for (seen, new) in [(&fit, &check), (&fit, &test), (&check, &test)] {
+        check_distinct(seen, new).into_diagnostic()?;
+    }
+    let (check, test) = match test.is_empty() {
+        true => set_apart(check, machine),
+        false => (check, test),
+    };
+    let set = |logs| LogSet::new(logs, machine).into_diagnostic();
+    let (fit, check) = (set(fit)?, set(check)?);
+    let test = (!test.is_empty()).then(|| set(test)).transpose()?;
+    notes.iter().for_each(note);
+    note(format!(
+        "{}; channels compared: {}",
+        fit.answer_of(machine),
+        fit.channels.join(", ")
+    ));
+
+    ready(out)?;
+    let text = moved(&read_text(&options.axis)?, &options.axis, out)?;
+    let progress = spinner();
+    let mut found = search(machine, &fit, &check, &settings, |what| {
+        tracing::debug!("{what}");
+        progress.set_message(what.to_owned());
+    })
+    .into_diagnostic()
+    .wrap_err("the axis as its file says does not run these logs")?;
+    if let Some(test) = test {
+        found = found.tested_on(machine, test);
+    }
+    let mut discovered = discovery(machine, &fit, &check, &found).into_diagnostic()?;
+    discovered.discovery.notes.iter().for_each(note);
+    notes.append(&mut discovered.discovery.notes);
+    discovered.discovery.notes = notes;
+    let discovery = &discovered.discovery;
+    progress.finish_and_clear();
+
+    let scales = Scales::of(machine);
+    let entries = |number: fn(f64) -> String| -> String {
+        let all = found.fit.state.effects.iter();
+        let effects = all.filter(|active| OnsetForm::of(active).is_none());
+        effects
+            .map(|active| entry(active, &scales, number))
+            .collect()
+    };
+    let json = serde_json::to_vec_pretty(discovery).into_diagnostic()?;
+    write_whole(&out.join("discovery.json"), &json)?;
+    write_whole(&out.join("axis.toml"), (text + &entries(whole)).as_bytes())?;
+    match &discovery.next_experiment {
+        Some(next) => {
+            let program = toml::to_string(&next.program).into_diagnostic()?;
+            write_whole(&out.join(NEXT), program.as_bytes())?;
+        }
+        None => remove(&out.join(NEXT))?,
+    }
+    let html = page::discovery::page(&discovered)?;
+    write_whole(&out.join(REPORT), html.as_bytes())?;
+    let found = Found {
+        discovery,
+        added: entries(read),
+        files: Files::of(out, discovery.next_experiment.is_some()),
+    };
+    print("discover", &found)
+}
+
+/// File of the proposed motion.
+pub(super) const NEXT: &str = "next-experiment.toml";
+/// Pages of what logs and of what a table of errors show: in one folder, neither
+/// takes the other's place.
+pub(super) const REPORT: &str = "report.html";
+const SUMMARY_REPORT: &str = "summary.html";
+
+/// The text of the axis file `from` as it must be in `folder`: it names files relative
+/// to its own.
+pub(super) fn moved(text: &str, from: &Path, folder: &Path) -> Result<String> {
+    let whole = |path: &Path| {
+        path.canonicalize()
+            .into_diagnostic()
+            .wrap_err_with(|| format!("cannot find {}", path.display()))
+    };
+    let mut document: DocumentMut = text.parse().into_diagnostic()?;
+    let Some(experiment) = document
+        .get_mut("experiment")
+        .and_then(Item::as_table_like_mut)
+    else {
+        return Ok(text.to_owned());
+    };
+    let from = whole(&from.with_file_name("."))?;
+    let folder = whole(folder)?;
+    for key in ["machine", "paper_tables"] {
+        let Some(value) = experiment.get_mut(key).and_then(Item::as_value_mut) else {
+            continue;
+        };
+        let Some(named) = value.as_str().map(Path::new).filter(|p| p.is_relative()) else {
+            continue;
+        };
+        let file = from.join(named);
+        let file = file.canonicalize().unwrap_or(file);
+        if let Some(path) = pathdiff::diff_paths(file, &folder) {
+            let decor = value.decor().clone();
+            *value = Value::from(path.display().to_string());
+            *value.decor_mut() = decor;
+        }
+    }
+    Ok(document.to_string())
+}
+
+/// Reads logs and looks at them; what was done to any goes to `notes`.
+pub fn read_all(
+    paths: &[PathBuf],
+    machine: &Axis,
+    notes: &mut Vec<String>,
+) -> Result<Vec<NamedLog>> {
+    let one = |path: &PathBuf| {
+        let name = path.display().to_string();
+        let log = read_as_one(path, machine, notes)?;
+        let period = check_log(&name, &log, machine).into_diagnostic()?;
+        let unsure = cross_checks(&log, machine).into_iter();
+        let unsure = unsure.filter(|f| f.verdict == Agreement::Unsure);
+        notes.extend(unsure.map(|f| format!("{name}: to be looked at: {f}")));
+        let (log, note) = from_rest(&name, log, period, machine).into_diagnostic()?;
+        notes.extend(note);
+        Ok((name, log, period))
+    };
+    paths.iter().map(one).collect()
+}
+
+/// One log of a file, or of several with `+` between them.
+fn read_as_one(path: &Path, machine: &Axis, notes: &mut Vec<String>) -> Result<Log> {
+    // A torque balance says itself what it needs.
+    let needed: &[&str] = match machine.has_control() {
+        true => &[machine.reference_channel(), machine.position_channel()],
+        false => &[],
+    };
+    let exact = exact_channels(machine);
+    let options = Intake {
+        exact: &exact,
+        rate_hz: None,
+    };
+    let prepared = prepare(&files(path), &machine.log, needed, options).into_diagnostic()?;
+    notes.extend(prepared.done.iter().map(ToString::to_string));
+    Ok(prepared.log)
+}
+
+/// The files of a path that joins them with `+`, unless there is a file of that very name.
+pub(super) fn files(path: &Path) -> Vec<PathBuf> {
+    match path.to_str() {
+        Some(text) if !path.exists() => text.split('+').map(PathBuf::from).collect(),
+        _ => vec![path.to_owned()],
+    }
+}
+
+/// A number for a file: all of it.
+fn whole(value: f64) -> String {
+    format!("{value:e}")
+}
+
+/// A number for people: six digits of it.
+fn read(value: f64) -> String {
+    format!("{value:.5e}")
+}
+
+/// An effect as an axis file has it.
+fn entry(active: &ActiveEffect, scales: &Scales, number: fn(f64) -> String) -> String {
+    let mut text = format!("\n[[effects]]\nname = \"{}\"\n", active.effect.name);
+    for (p, value) in active.effect.parameters.iter().zip(&active.values) {
+        let unit = match p.unit(scales) {
+            "" => String::new(),
+            unit => format!("    # {unit}"),
+        };
+        text += &format!("{} = {}{unit}\n", p.name, number(*value));
+    }
+    text
+}
+
+fn from_summary(options: &Options, machine: &Axis, table: &Path, out: &Path) -> Result<()> {
+    let axis = machine;
+    if axis.trajectories.is_empty() {
+        return Err(miette!(
+            "{} lists no [[trajectory]]; a table of errors is compared with what the axis does on them",
+            options.axis.display()
+        ));
+    }
+    let measured = read_summary(table, axis)?;
+    ready(out)?;
+    let progress = bar("effects", tried(axis) as u64);
+    let found = rank(axis, &measured, || progress.inc(1)).into_diagnostic()?;
+    progress.finish_and_clear();
+    let json = serde_json::to_vec_pretty(&found).into_diagnostic()?;
+    write_whole(&out.join("summary.json"), &json)?;
+    let html = page::discovery::summary_page(axis, &found)?;
+    write_whole(&out.join(SUMMARY_REPORT), html.as_bytes())?;
+    let text = summary_words(axis, &found, measured.len());
+    let report = out.join(SUMMARY_REPORT);
+    let text = format!("{text}\n{}", report.display());
+    let value = FoundInSummary {
+        found: &found,
+        report,
+    };
+    print("discover", &Worded { text, value })
+}
+
+/// Reads a table of measured errors: one row a trajectory, by its number on the axis.
+pub fn read_summary(path: &Path, axis: &Axis) -> Result<Vec<MeasuredError>> {
+    let text = read_text(path)?;
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().into_diagnostic()?.clone();
+    let column = |names: [&str; 2]| {
+        let at = header.iter().position(|h| names.contains(&h.trim()));
+        at.ok_or_else(|| {
+            let found: Vec<&str> = header.iter().collect();
+            miette!(
+                "{}: no column {}; it has {}",
+                path.display(),
+                names.join(" or "),
+                found.join(", ")
+            )
+        })
+    };
+    let [number, max, mean] = [
+        column(["trajectory", "number"])?,
+        column(["experiment_max_um", "max_um"])?,
+        column(["experiment_mean_um", "mean_um"])?,
+    ];
+    let mut rows = Vec::new();
+    for (i, record) in reader.records().enumerate() {
+        let record = record
+            .into_diagnostic()
+            .wrap_err_with(|| path.display().to_string())?;
+        let value = |c: usize| -> Result<f64> {
+            let text = record.get(c).unwrap_or("").trim();
+            let number = text
+                .parse::<f64>()
+                .ok()
+                // Above zero in metres too.
+                .filter(|v| v.is_finite() && 1e-6 * v > 0.0);
+            number.ok_or_else(|| {
+                miette!(
+                    "{}, line {}: \"{text}\" is not a number above zero",
+                    path.display(),
+                    i + 2
+                )
+            })
+        };
+        let trajectory = value(number)?;
+        if trajectory.fract() != 0.0 || trajectory > axis.trajectories.len() as f64 {
+            return Err(miette!(
+                "{}, line {}: there is no trajectory {trajectory}; the axis file has 1 to {}",
+                path.display(),
+                i + 2,
+                axis.trajectories.len()
+            ));
+        }
+        rows.push(MeasuredError {
+            trajectory: trajectory as usize,
+            max: 1e-6 * value(max)?,
+            mean: 1e-6 * value(mean)?,
+        });
+    }
+    if rows.is_empty() {
+        return Err(miette!(
+            "{} has no rows; give at least one trajectory",
+            path.display()
+        ));
+    }
+    Ok(rows)
+}

@@ -1,0 +1,160 @@
+//! `export drive`: what of the correction an ordinary drive or CNC can be given.
+
+use std::fmt::{self, Write};
+use std::path::{Path, PathBuf};
+
+use axis_sim::{Axis, SixDigits};
+use clap::Args;
+use miette::{IntoDiagnostic, Result, WrapErr};
+use pipeline::drive_terms::{self, Loss, Term, TermTable};
+use serde::Serialize;
+
+use crate::output::{Worded, print, ready, remove, sweep, write_whole};
+
+const TERMS: &str = "drive.json";
+const OVER_POSITION: &str = "drive.csv";
+const OVER_TURN: &str = "drive-turn.csv";
+
+/// Options of `export drive`.
+#[derive(Args)]
+pub struct Options {
+    /// Axis file: what the terms are made from
+    #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
+    axis: PathBuf,
+    /// Axis file of the machine on which the loss is computed [default: the one that the
+    /// axis file names, or the axis itself]
+    #[arg(long, value_name = "FILE")]
+    machine: Option<PathBuf>,
+    /// Folder for drive.json, drive.csv (over the position) and, where the axis has cogging
+    /// or periodic lead errors, drive-turn.csv (over the motor's turn)
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// What drive.json holds.
+#[derive(Serialize)]
+struct Export<'a> {
+    axis: &'a str,
+    axis_fingerprint: &'a str,
+    /// What stands for the machine. Simulated, never measured.
+    machine: &'a str,
+    machine_fingerprint: &'a str,
+    version: &'a str,
+    /// Where the position loop is closed.
+    position_from: &'a str,
+    terms: Vec<Term>,
+    tables: Vec<&'a str>,
+    loss_unit: String,
+    loss: &'a [Loss],
+    /// Why there is no loss, where there is none.
+    loss_missing: Option<String>,
+}
+
+/// Runs the command.
+pub fn command(options: &Options) -> Result<()> {
+    let axis = Axis::read(&options.axis)?;
+    let named = axis.experiment.as_ref().map(|e| e.machine.clone());
+    let machine = match options.machine.clone().or(named) {
+        Some(file) => Axis::read(&file)?,
+        None => axis.clone(),
+    };
+    let of_axis = || format!("no drive terms of {}", options.axis.display());
+    let of = drive_terms::of_axis(&axis).into_diagnostic();
+    let of = of.wrap_err_with(of_axis)?;
+    let errors = axis.position_errors().into_diagnostic();
+    let errors = errors.wrap_err_with(of_axis)?;
+    ready(&options.out)?;
+    sweep(&options.out, &[TERMS, OVER_POSITION, OVER_TURN])?;
+    let mut tables = vec![OVER_POSITION];
+    let position = drive_terms::over_position(&axis, &of, &errors);
+    write_table(&options.out.join(OVER_POSITION), &position)?;
+    match drive_terms::over_turn(&axis, &errors) {
+        Some(table) => {
+            write_table(&options.out.join(OVER_TURN), &table)?;
+            tables.push(OVER_TURN);
+        }
+        None => remove(&options.out.join(OVER_TURN))?,
+    }
+    let losses = drive_terms::losses(&axis, &machine);
+    let (loss, missing) = match &losses {
+        Ok(loss) if loss.is_empty() => {
+            (&[][..], Some("the axis file has no [[trajectory]]".into()))
+        }
+        Ok(loss) => (&loss[..], None),
+        Err(error) => (&[][..], Some(error.to_string())),
+    };
+    let export = Export {
+        axis: &axis.name,
+        axis_fingerprint: &axis.fingerprint,
+        machine: &machine.name,
+        machine_fingerprint: &machine.fingerprint,
+        version: env!("CARGO_PKG_VERSION"),
+        position_from: if of.from_motor() { "motor" } else { "load" },
+        terms: drive_terms::terms(&axis, &of),
+        tables,
+        loss_unit: format!("µ{}", axis.freedom().unit()),
+        loss,
+        loss_missing: missing,
+    };
+    let bytes = serde_json::to_vec_pretty(&export).into_diagnostic()?;
+    write_whole(&options.out.join(TERMS), &bytes)?;
+    let text = words(&export, &options.out).into_diagnostic()?;
+    print(
+        "export-drive",
+        &Worded {
+            text,
+            value: export,
+        },
+    )?;
+    // The terms stand without it; that it is missing is told.
+    let failed = || format!("no loss on {}; the terms are written", machine.name);
+    losses.map(|_| ()).into_diagnostic().wrap_err_with(failed)
+}
+
+fn write_table(path: &Path, table: &TermTable) -> Result<()> {
+    let mut text = table.headings.join(",") + "\n";
+    for row in &table.rows {
+        let cells: Vec<String> = row.iter().map(f64::to_string).collect();
+        text += &(cells.join(",") + "\n");
+    }
+    write_whole(path, text.as_bytes())
+}
+
+/// The export as people read it.
+fn words(export: &Export<'_>, out: &Path) -> std::result::Result<String, fmt::Error> {
+    let mut text = format!("drive terms of {}\n", export.axis);
+    for term in &export.terms {
+        writeln!(
+            text,
+            "  {:<32} {:>12} {}",
+            term.name,
+            SixDigits(term.drive_value).to_string(),
+            term.drive_unit
+        )?;
+    }
+    let unit = &export.loss_unit;
+    writeln!(
+        text,
+        "tracking error on {} (simulated), max / mean in {unit}",
+        export.machine
+    )?;
+    if let Some(why) = &export.loss_missing {
+        writeln!(text, "  none: {why}")?;
+    } else {
+        writeln!(
+            text,
+            "  trajectory      none              drive terms         plan"
+        )?;
+    }
+    for loss in export.loss {
+        let [a, b, c] = [&loss.none, &loss.drive_terms, &loss.plan];
+        writeln!(
+            text,
+            "  {:>10} {:>8.3} / {:<7.4} {:>8.3} / {:<7.4} {:>8.4} / {:.5}",
+            loss.trajectory, a.max, a.mean, b.max, b.mean, c.max, c.mean
+        )?;
+    }
+    let files = [&[TERMS], &export.tables[..]].concat().join(", ");
+    write!(text, "written to {}: {files}", out.display())?;
+    Ok(text)
+}

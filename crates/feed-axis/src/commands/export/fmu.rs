@@ -1,0 +1,122 @@
+//! `export fmu`: the axis as a unit that other simulators take up.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use axis_fmu::{Unit, VariableKind};
+use axis_sim::{Axis, SixDigits};
+use clap::Args;
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use serde::Serialize;
+
+use crate::context::read_text;
+use crate::output::{print, write_whole};
+
+/// Options of `export fmu`.
+#[derive(Args)]
+pub struct Options {
+    /// Axis file, which goes into the unit as it is
+    #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
+    axis: PathBuf,
+    /// The unit's file
+    #[arg(long, value_name = "FILE.fmu")]
+    out: PathBuf,
+    /// Library of units, of the same version [default: the one beside this program]
+    #[arg(long, value_name = "FILE")]
+    library: Option<PathBuf>,
+}
+
+/// What was written.
+#[derive(Serialize)]
+struct Exported<'a> {
+    axis: &'a str,
+    axis_fingerprint: &'a str,
+    fmi_version: &'static str,
+    interface: &'static str,
+    platform: String,
+    step_s: f64,
+    inputs: usize,
+    outputs: usize,
+    parameters: usize,
+    bytes: usize,
+    out: &'a Path,
+}
+
+impl fmt::Display for Exported<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "FMI {} co-simulation unit of {} for {}: {} inputs, {} outputs, {} parameters, \
+             steps of multiples of {} s\nwritten to {}",
+            self.fmi_version,
+            self.axis,
+            self.platform,
+            self.inputs,
+            self.outputs,
+            self.parameters,
+            SixDigits(self.step_s),
+            self.out.display()
+        )
+    }
+}
+
+/// Runs the command.
+pub fn command(options: &Options) -> Result<()> {
+    // A file that is no axis is shown with the line at fault.
+    Axis::read(&options.axis)?;
+    let text = read_text(&options.axis)?;
+    let name = options.axis.display().to_string();
+    let (platform, _) = axis_fmu::platform().into_diagnostic()?;
+    // First, so that what is wrong with the axis is told before what is missing beside it.
+    let failed = || format!("no unit of {name}");
+    let unit = Unit::new(&name, &text);
+    let unit = unit.into_diagnostic().wrap_err_with(failed)?;
+    let file = library(options)?;
+    let library = std::fs::read(&file).into_diagnostic();
+    let library = library.wrap_err_with(|| format!("cannot read {}", file.display()))?;
+    let package = axis_fmu::package(&name, &text, &library);
+    let bytes = package
+        .into_diagnostic()
+        .wrap_err_with(|| format!("no unit of {name} with {}", file.display()))?;
+    write_whole(&options.out, &bytes)?;
+    let count = |is: fn(&VariableKind) -> bool| {
+        let all = unit.variables().iter();
+        all.filter(|variable| is(&variable.kind)).count()
+    };
+    print(
+        "export-fmu",
+        &Exported {
+            axis: &unit.axis().name,
+            axis_fingerprint: &unit.axis().fingerprint,
+            fmi_version: "3.0",
+            interface: "co-simulation",
+            platform,
+            step_s: unit.axis().period,
+            inputs: count(|kind| matches!(kind, VariableKind::Input(_))),
+            outputs: count(|kind| matches!(kind, VariableKind::Output(_))),
+            parameters: count(|kind| matches!(kind, VariableKind::Parameter { .. })),
+            bytes: bytes.len(),
+            out: &options.out,
+        },
+    )
+}
+
+/// The library: as given, or beside this program.
+fn library(options: &Options) -> Result<PathBuf> {
+    if let Some(file) = &options.library {
+        return Ok(file.clone());
+    }
+    let name = axis_fmu::library_file().into_diagnostic()?;
+    let program = std::env::current_exe().into_diagnostic()?;
+    let file = program.with_file_name(name);
+    match file.is_file() {
+        true => Ok(file),
+        false => Err(miette!(
+            "there is no library of units at {}: make it with `cargo build --release -p \
+             feed-axis-fmu` from the sources of this version, and put it there or give it with \
+             --library target/release/{}",
+            file.display(),
+            file.file_name().unwrap_or_default().to_string_lossy()
+        )),
+    }
+}

@@ -1,0 +1,194 @@
+//! `log`: what a drive's log holds, how good it is, and what its mapping should be.
+
+mod page;
+mod words;
+
+use std::path::{Path, PathBuf};
+
+use axis_log::intake::{Options as Intake, prepare};
+use axis_log::quality::{
+    ChannelQuality, Clock, Finding, Law, Relation, channel_quality, clock, cross_check,
+};
+use axis_log::{Log, Mapping, Proposal, propose};
+use axis_sim::Axis;
+use clap::{Args, Subcommand};
+use discrepancy::logs::{exact_channels, relations};
+use miette::{IntoDiagnostic, Result, miette};
+use report::{Page, render};
+
+use super::discover::files;
+use crate::exit::wrong_use;
+use crate::output::{print, write_whole};
+
+/// Options of `log`: those of `log inspect`, or with a folder for a page of each log.
+#[derive(Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub struct Options {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    logs: Logs,
+    /// Folder for the page of each log
+    #[arg(long, value_name = "DIR", default_value = "runs/logs")]
+    out: PathBuf,
+}
+
+/// What is done with logs.
+#[derive(Subcommand)]
+enum Command {
+    /// Channels, rates, gaps, units, levels and noise of logs, with a picture; changes nothing
+    Inspect(Inspect),
+}
+
+/// Which logs, and what is known of them.
+// A group by itself: clap names groups after their type.
+#[derive(Args)]
+#[group(id = "logs-of-a-machine")]
+struct Logs {
+    /// Logs: CSV, Parquet or MAT v5; several files of one log with + between
+    #[arg(required = true, value_name = "FILE")]
+    logs: Vec<PathBuf>,
+    /// Axis file: its `[log]` maps columns, its sizes tell what channels should be of each other
+    #[arg(long, value_name = "FILE")]
+    axis: Option<PathBuf>,
+    /// Sampling rate of the log, Hz [default: that of its slowest file]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    rate: Option<f64>,
+}
+
+/// Options of `log inspect`.
+#[derive(Args)]
+struct Inspect {
+    #[command(flatten)]
+    logs: Logs,
+    /// Write one page of all logs: each channel over time, its gaps marked
+    #[arg(long, value_name = "OUT.html")]
+    report: Option<PathBuf>,
+}
+
+/// A log and all that was found.
+struct Seen {
+    name: String,
+    log: Log,
+    clock: Clock,
+    done: Vec<String>,
+    channels: Vec<ChannelQuality>,
+    findings: Vec<Finding>,
+    /// Of each file of another program.
+    proposals: Vec<Proposal>,
+}
+
+/// Runs the command.
+pub fn command(options: &Options) -> Result<()> {
+    match &options.command {
+        Some(Command::Inspect(options)) => inspect(options),
+        None => pages(options),
+    }
+}
+
+fn inspect(options: &Inspect) -> Result<()> {
+    let seen = look_at(&options.logs)?;
+    if let Some(path) = &options.report {
+        write_page(path, &page::of_all(&seen))?;
+    }
+    print("log", &words::Inspected::of(&seen, options.report.iter()))
+}
+
+/// As before there was `log inspect`: always a page, one for each log.
+fn pages(options: &Options) -> Result<()> {
+    let seen = look_at(&options.logs)?;
+    let name = |path: &PathBuf| {
+        let stem = |p: &PathBuf| p.file_stem().map(|s| s.to_string_lossy().into_owned());
+        let stems: Vec<String> = files(path).iter().filter_map(stem).collect();
+        options.out.join(stems.join("+") + ".html")
+    };
+    let paths: Vec<PathBuf> = options.logs.logs.iter().map(name).collect();
+    for (seen, path) in seen.iter().zip(&paths) {
+        write_page(path, &page::of_one(seen))?;
+    }
+    print("log", &words::Inspected::of(&seen, paths.iter()))
+}
+
+fn write_page(path: &Path, page: &Page) -> Result<()> {
+    write_whole(path, render(page).into_diagnostic()?.as_bytes())
+}
+
+fn look_at(logs: &Logs) -> Result<Vec<Seen>> {
+    if let Some(rate) = logs.rate.filter(|rate| !(rate.is_finite() && *rate > 0.0)) {
+        return Err(wrong_use(format!(
+            "--rate {rate}: give a number above 0, in Hz"
+        )));
+    }
+    let axis = logs.axis.as_deref().map(Axis::read).transpose()?;
+    let look = |path: &PathBuf| look(path, axis.as_ref(), logs.rate);
+    logs.logs.iter().map(look).collect()
+}
+
+fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> {
+    let none = Mapping::default();
+    let mapping = axis.map_or(&none, |a| &a.log);
+    let exact = axis.map(exact_channels).unwrap_or_default();
+    let options = Intake {
+        exact: &exact,
+        rate_hz,
+    };
+    let paths = files(path);
+    let prepared = prepare(&paths, mapping, &[], options).into_diagnostic()?;
+    let log = prepared.log;
+    let clock = clock(&log).ok_or_else(|| {
+        miette!(
+            "{}: a single sample; at least two are needed",
+            path.display()
+        )
+    })?;
+    let relations = match axis {
+        Some(axis) => relations(&log, axis),
+        None => by_name(&log),
+    };
+    let against = |name: &str| {
+        let with = relations.iter().find(|r| {
+            r.channel == name && matches!(r.law, Law::Same | Law::Follows) && log.has(&r.from)
+        });
+        with.map(|r| r.from.as_str())
+    };
+    let names = log.channels()[1..].iter().map(|c| c.name.as_str());
+    let channels = names.map(|name| channel_quality(&log, name, against(name)));
+    Ok(Seen {
+        name: path.display().to_string(),
+        clock,
+        done: prepared.done.iter().map(ToString::to_string).collect(),
+        channels: channels.collect::<Result<_, _>>().into_diagnostic()?,
+        findings: cross_check(&log, mapping, &relations),
+        proposals: proposals(&paths, mapping)?,
+        log,
+    })
+}
+
+/// What the mapping of files of other programs could have besides.
+fn proposals(paths: &[PathBuf], mapping: &Mapping) -> Result<Vec<Proposal>> {
+    let mut all = Vec::new();
+    for path in paths {
+        if let Some(mut proposal) = propose(path).into_diagnostic()? {
+            let is_mapped = |name: &str| mapping.columns.iter().any(|map| map.source == name);
+            proposal.columns.retain(|column| !is_mapped(&column.source));
+            proposal.others.retain(|name| !is_mapped(name));
+            all.push(proposal);
+        }
+    }
+    Ok(all)
+}
+
+/// Relations that names and units alone tell.
+fn by_name(log: &Log) -> Vec<Relation> {
+    let one = Law::Integral { factor: 1.0 };
+    let all = [
+        Relation::new("position_m", "position_ref_m", Law::Same),
+        Relation::new("position_rad", "position_ref_rad", Law::Same),
+        Relation::new("position_m", "velocity_m_s", one),
+        Relation::new("position_rad", "velocity_rad_s", one),
+        Relation::new("motor_angle_rad", "motor_speed_rad_s", one),
+        Relation::new("iq_a", "iq_ref_a", Law::Follows),
+    ];
+    let there = |r: &Relation| log.has(&r.channel) && log.has(&r.from);
+    all.into_iter().filter(there).collect()
+}

@@ -1,0 +1,101 @@
+//! The page of logs.
+
+use axis_log::quality::{ChannelQuality, Verdict};
+use report::{Cell, Figure, Notice, Page, Section, Series, Table};
+
+use super::Seen;
+use super::words::heading;
+
+/// The page of one log.
+pub fn of_one(seen: &Seen) -> Page {
+    sections(seen, Page::new(format!("Log {}", seen.name)))
+}
+
+/// One page of all logs.
+pub fn of_all(seen: &[Seen]) -> Page {
+    let names: Vec<&str> = seen.iter().map(|seen| seen.name.as_str()).collect();
+    let page = Page::new(format!("Logs {}", names.join(", ")));
+    seen.iter().fold(page, |page, seen| sections(seen, page))
+}
+
+/// A value for a table: four digits, whatever its size.
+fn short(value: f64, unit: &str) -> Cell {
+    Cell::quantity(value, unit, 4)
+}
+
+/// The sections of a log.
+fn sections(seen: &Seen, page: Page) -> Page {
+    let mut checks = Section::new("What was done, and what channels say of each other");
+    for line in &seen.done {
+        checks = checks.notice(Notice::Info, line);
+    }
+    for f in &seen.findings {
+        let kind = match f.verdict {
+            Verdict::Agrees => Notice::Good,
+            Verdict::Unsure | Verdict::Contradicts => Notice::Warn,
+        };
+        let lines = f.lines().map_or(String::new(), |l| {
+            format!(" Proposed: {}", l.replace('\n', "  "))
+        });
+        checks = checks.notice(kind, format!("{f}.{lines}"));
+    }
+    let mut figures = Section::new("Channels");
+    for (quality, channel) in seen.channels.iter().zip(&seen.log.channels()[1..]) {
+        let (time, samples) = (seen.log.time().to_vec(), channel.samples.clone());
+        let mut figure = Figure::new(&channel.name, "time", &channel.name)
+            .units("s", &channel.unit)
+            .linked(&seen.name)
+            .series(Series::line(&channel.name, time, samples))
+            .caption(quality.to_string());
+        // A straight line stands in a gap.
+        let marked = seen.log.missing(&channel.name).iter().cloned().flatten();
+        let (t, y): (Vec<f64>, Vec<f64>) = marked
+            .map(|k| (seen.log.time()[k], channel.samples[k]))
+            .unzip();
+        if !t.is_empty() {
+            figure = figure.series(Series::dots("gap: not measured", t, y));
+        }
+        figures = figures.figure(figure);
+    }
+    let title = format!("Log {}: table of channels", seen.name);
+    page.section(
+        Section::new(title)
+            .paragraph(heading(seen))
+            .table(table(seen)),
+    )
+    .section(checks)
+    .section(figures)
+}
+
+fn table(seen: &Seen) -> Table {
+    let heads = [
+        "channel",
+        "unit",
+        "least",
+        "greatest",
+        "missing",
+        "noise",
+        "step",
+        "held",
+        "filtered from",
+        "delay",
+    ];
+    let optional = |value: Option<f64>, unit: &str| value.map_or(Cell::Missing, |v| short(v, unit));
+    let row = |table: Table, c: &ChannelQuality| {
+        table.row([
+            Cell::text(&c.name),
+            Cell::text(&c.unit),
+            short(c.range[0], &c.unit),
+            short(c.range[1], &c.unit),
+            Cell::text(c.missing[0].to_string()),
+            optional(c.noise.map(|n| n.level), &c.unit),
+            optional(c.quantum.map(|q| q.step), &c.unit),
+            optional(c.hold.map(|h| h.period), "s"),
+            optional(c.corner, "Hz"),
+            optional(c.delay.as_ref().map(|d| d.seconds), "s"),
+        ])
+    };
+    seen.channels
+        .iter()
+        .fold(Table::new("Channels as they were read", heads), row)
+}

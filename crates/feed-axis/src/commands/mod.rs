@@ -1,0 +1,101 @@
+//! One file a command.
+
+pub(crate) mod campaign;
+pub(crate) mod compensate;
+mod compensate_moves;
+mod control_table;
+pub mod discover;
+mod discover_words;
+pub mod export;
+pub mod identify;
+pub(crate) mod identify_control;
+pub(crate) mod learn;
+pub(crate) mod log;
+pub mod manual;
+pub(crate) mod merge;
+pub(crate) mod new;
+pub(crate) mod pipeline;
+pub(crate) mod report;
+pub(crate) mod residuals;
+pub(crate) mod robustness;
+pub(crate) mod sample;
+pub mod schema;
+pub mod simulate;
+pub(crate) mod study;
+pub mod train;
+pub(crate) mod validate;
+
+use clap::Subcommand;
+use miette::Result;
+
+use crate::context::Common;
+use crate::jobs::Jobs;
+
+/// The commands of users, with the jobs of a program.
+#[derive(Subcommand)]
+pub enum Command<J: Jobs> {
+    /// Write a commented axis file to begin with
+    New(new::Options),
+    /// All stages: sample, train, identify, validate, compensate, study, report
+    Pipeline(Common),
+    /// A job of independent cases.
+    #[command(flatten)]
+    Job(J),
+    /// Train the cascade-forward network on the samples (Section 4.3)
+    Train(Common),
+    /// Identify friction on the machine, and the transfer function from the model
+    Identify(Common),
+    /// Structure, gains and delay of an unknown controller, from logs
+    IdentifyControl(identify_control::Options),
+    /// Model against machine, and both predictors against the machine (Tables 13, 14)
+    Validate(Common),
+    /// Run the machine under every compensation (Tables 15, 16), or moves under one
+    Compensate(compensate::Options),
+    /// Write summary.json and report.html from the stages' results, or compare two runs
+    Report(report::Options),
+    /// Learn what no parameter holds by tables, a network and named effects, side by side
+    Residuals(Common),
+    /// Learn the correction of a move from the log of a repetition
+    Learn(learn::Options),
+    /// Simulate one motion, write its log and show it
+    Simulate(simulate::Options),
+    /// Name what a model lacks, from logs of the real axis
+    Discover(discover::Options),
+    /// Look at a log: channels, sampling, noise, and what its mapping should be
+    Log(log::Options),
+    /// Write and submit the scripts that run a job's shards on a cluster (docs/campaigns.md)
+    Campaign(campaign::Options),
+    /// Write a job's results from its shards
+    Merge(merge::Options<J>),
+    /// Write what other programs and machines can use
+    #[command(subcommand)]
+    Export(export::Export),
+    /// Write the JSON Schema of a file, by which editors complete and check it
+    Schema(schema::Options),
+}
+
+impl<J: Jobs> Command<J> {
+    /// Runs the command.
+    pub fn run(&self) -> Result<()> {
+        match self {
+            Self::New(options) => new::command(options),
+            Self::Pipeline(common) => pipeline::run(common),
+            Self::Job(job) => job.run(),
+            Self::Train(common) => train::command(common),
+            Self::Identify(common) => identify::command(common),
+            Self::IdentifyControl(options) => identify_control::command(options),
+            Self::Validate(common) => validate::command(common),
+            Self::Compensate(options) => compensate::command(options),
+            Self::Report(options) => report::command(options),
+            Self::Residuals(common) => residuals::command(common),
+            Self::Learn(options) => learn::command(options),
+            Self::Simulate(options) => simulate::command(options),
+            Self::Discover(options) => discover::command(options),
+            Self::Log(options) => log::command(options),
+            Self::Campaign(options) => campaign::command::<J>(options),
+            Self::Merge(options) => merge::command(options),
+            Self::Export(options) => export::command(options),
+            Self::Schema(options) => schema::command(options),
+        }
+    }
+}

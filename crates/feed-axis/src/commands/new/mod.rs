@@ -1,0 +1,152 @@
+//! `new`: a commented axis file to begin with.
+
+mod commented;
+
+use std::path::PathBuf;
+
+use axis_sim::Axis;
+use axis_sim::mechanism::MECHANISMS;
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use serde::Serialize;
+
+use crate::exit::wrong_use;
+use crate::output::{Worded, print, write_whole};
+use crate::program;
+
+/// An example of each kind of mechanism.
+const EXAMPLES: [&str; 8] = [
+    include_str!("../../../templates/ball-screw.toml"),
+    include_str!("../../../../../data/axes/screw-datasheet.toml"),
+    include_str!("../../../../../data/axes/rack.toml"),
+    include_str!("../../../../../data/axes/belt.toml"),
+    include_str!("../../../../../data/axes/joint.toml"),
+    include_str!("../../../../../data/axes/linear-motor.toml"),
+    include_str!("../../../../../data/axes/rotary-table.toml"),
+    include_str!("../../../templates/rigid-mass.toml"),
+];
+
+/// Options of `new`.
+#[derive(Args)]
+pub struct Options {
+    /// Name of the axis; the file is NAME.toml
+    name: String,
+    /// Mechanism, with an actuator, a controller, friction and sensors that go with it
+    #[arg(long, value_parser = kinds())]
+    kind: String,
+    /// Folder for the file [default: the one in which the command runs]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write over a file that is there
+    #[arg(long)]
+    force: bool,
+}
+
+/// The kinds of mechanism, with what each is.
+fn kinds() -> PossibleValuesParser {
+    let value = |name: &'static str, summary: &'static str| PossibleValue::new(name).help(summary);
+    PossibleValuesParser::new(MECHANISMS.iter().map(|kind| value(kind.name, kind.summary)))
+}
+
+/// What was written.
+#[derive(Serialize)]
+struct Written<'a> {
+    file: PathBuf,
+    kind: &'a str,
+    trajectories: usize,
+}
+
+/// Runs the command.
+pub fn command(options: &Options) -> Result<()> {
+    let name = &options.name;
+    let is_name = !name.is_empty() && !name.contains(['/', '\\', '\0', '\n']) && name != "..";
+    if !is_name {
+        return Err(wrong_use(format!(
+            "\"{name}\" is no name of an axis: give one without / and \\, and the folder with --out"
+        )));
+    }
+    let file = PathBuf::from(format!("{name}.toml"));
+    let file = match &options.out {
+        Some(folder) => folder.join(file),
+        None => file,
+    };
+    if file.exists() && !options.force {
+        return Err(miette!(
+            "{} is there already; give another name, or --force to write over it",
+            file.display()
+        ));
+    }
+    let (text, axis) = text(name, &options.kind)?;
+    write_whole(&file, text.as_bytes())?;
+    let words = format!(
+        "{}: {}, {} trajectories; next: {} simulate --axis {0} --trajectory 1",
+        file.display(),
+        options.kind,
+        axis.trajectories.len(),
+        program::name()
+    );
+    let value = Written {
+        file,
+        kind: &options.kind,
+        trajectories: axis.trajectories.len(),
+    };
+    print("new", &Worded { text: words, value })
+}
+
+/// The text of an axis file, which is read back.
+fn text(name: &str, kind: &str) -> Result<(String, Axis)> {
+    let example = example(kind)?;
+    let made_by = format!("{} new {name} --kind {kind}", program::name());
+    let text = commented::file(example, name, &made_by)?;
+    let axis = Axis::parse(name, &text)
+        .into_diagnostic()
+        .wrap_err("the example of this kind is damaged")?;
+    Ok((text, axis))
+}
+
+/// The example of a kind.
+fn example(kind: &str) -> Result<&'static str> {
+    for example in EXAMPLES {
+        let axis = Axis::parse("example", example)?;
+        if axis.mechanism.kind().name == kind {
+            return Ok(example);
+        }
+    }
+    Err(miette!("there is no example of the mechanism {kind}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The comments change no value, and no key of the kind is left untold.
+    #[test]
+    fn every_kind_has_a_file_that_means_what_its_example_means() {
+        for kind in MECHANISMS {
+            let (text, axis) = text("mine", kind.name).unwrap();
+            let example = Axis::parse("example", example(kind.name).unwrap()).unwrap();
+            assert_eq!(axis.fingerprint, example.fingerprint, "{text}");
+            assert_eq!(axis.name, "mine");
+            for key in kind.keys {
+                let told = |line: &str| {
+                    let line = line.trim_start_matches("# ");
+                    let name = line.split(" =").next().unwrap();
+                    key.spellings().iter().any(|spelling| spelling == name) && line.contains("  #")
+                };
+                assert!(text.lines().any(told), "{} in\n{text}", key.name());
+            }
+        }
+    }
+
+    /// What is commented out may stay so, and the unit in a comment is that of the key.
+    #[test]
+    fn a_limit_is_told_in_the_unit_of_its_key() {
+        let (text, _) = text("mine", "belt").unwrap();
+        let line = |start: &str| text.lines().find(|line| line.starts_with(start)).unwrap();
+        let pulley = line("pulley_diameter_mm = ");
+        assert!(pulley.contains("from 1 to 10000, in mm"), "{pulley}");
+        let backlash = line("# backlash_mm = 0 ");
+        assert!(backlash.contains("0 where left out"), "{backlash}");
+    }
+}

@@ -1,0 +1,118 @@
+//! `report`: summary.json and report.html from the stages' results, or two runs compared.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use miette::{IntoDiagnostic, Result, WrapErr};
+use pipeline::summary::Summary;
+use serde::Serialize;
+
+use super::{compensate, identify, validate};
+use crate::context::{Common, Context, read_text};
+use crate::output::{Worded, print, ready, sweep, write_whole};
+use crate::page::compare::RunFolder;
+use crate::store::read_finished;
+use crate::{page, program, results};
+
+const SUMMARY: &str = "summary.json";
+const REPORT: &str = "report.html";
+
+/// What was written.
+#[derive(Serialize)]
+struct Written<'a> {
+    summary: &'a Summary,
+    files: [&'a PathBuf; 2],
+}
+
+/// Two runs that were compared.
+#[derive(Serialize)]
+struct Compared<'a> {
+    a: &'a Path,
+    b: &'a Path,
+    file: &'a Path,
+}
+
+fn compare(a: &Path, b: &Path, out: Option<&Path>) -> Result<()> {
+    let [first, second] = [run_folder(a)?, run_folder(b)?];
+    let out = out.unwrap_or(Path::new("runs/compare"));
+    ready(out)?;
+    let file = out.join(COMPARED);
+    let html = ::report::render(&page::compare::page(&first, &second))
+        .into_diagnostic()
+        .wrap_err("the comparison cannot be made")?;
+    write_whole(&file, html.as_bytes())?;
+    let text = format!("report: {}", file.display());
+    let value = Compared { a, b, file: &file };
+    print("report", &Worded { text, value })
+}
+
+/// The results of a finished run, as its stages vouch for them.
+fn run_folder(folder: &Path) -> Result<RunFolder> {
+    let path = folder.join(SUMMARY);
+    let summary = serde_json::from_str(&read_text(&path)?)
+        .into_diagnostic()
+        .wrap_err_with(|| {
+            format!(
+                "{} is no summary of a run; make it with `{} pipeline --out {}`",
+                path.display(),
+                program::name(),
+                folder.display()
+            )
+        })?;
+    let fits: [identify::Transfer; 2] = read_finished(folder, "identify", identify::TRANSFER)?;
+    Ok(RunFolder {
+        name: folder.display().to_string(),
+        summary,
+        validation: read_finished(folder, "validate", validate::VALIDATION)?,
+        compensation: read_finished(folder, "compensate", compensate::COMPENSATION)?,
+        period: fits[0].period,
+    })
+}
+
+/// Page of two runs.
+const COMPARED: &str = "compare.html";
+
+/// Options of `report`.
+#[derive(Args)]
+pub struct Options {
+    #[command(flatten)]
+    common: Common,
+    /// Compare the finished runs in the folders A and B (--out of `pipeline`) on a page
+    /// compare.html, in --out [default: runs/compare]
+    #[arg(long, num_args = 2, value_names = ["A", "B"], conflicts_with_all = ["axis", "machine", "seed", "quick"])]
+    compare: Vec<PathBuf>,
+}
+
+/// Runs the command.
+pub fn command(options: &Options) -> Result<()> {
+    if let [a, b] = options.compare.as_slice() {
+        return compare(a, b, options.common.out.as_deref());
+    }
+    let context = options.common.open()?;
+    let _claim = context.claim()?;
+    run(&context)
+}
+
+/// Writes both files.
+pub fn run(context: &Context) -> Result<()> {
+    let results = results::gather(context)?;
+    sweep(&context.out, &[SUMMARY, REPORT])?;
+    let json = serde_json::to_vec_pretty(&results.summary).into_diagnostic()?;
+    let summary_path = context.out.join(SUMMARY);
+    write_whole(&summary_path, &json)?;
+    let report_path = context.out.join(REPORT);
+    let html = ::report::render(&page::page(context, &results))
+        .into_diagnostic()
+        .wrap_err("the report cannot be made")?;
+    write_whole(&report_path, html.as_bytes())?;
+    let text = format!(
+        "report: {} and {}",
+        summary_path.display(),
+        report_path.display()
+    );
+    let value = Written {
+        summary: &results.summary,
+        files: [&summary_path, &report_path],
+    };
+    print("report", &Worded { text, value })
+}

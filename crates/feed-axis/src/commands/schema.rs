@@ -1,0 +1,61 @@
+//! `schema`: the JSON Schema of a file, for editors and other programs.
+
+use std::path::PathBuf;
+
+use axis_sim::Registry;
+use clap::{Args, ValueEnum};
+use discrepancy::Discovery;
+use miette::{IntoDiagnostic, Result};
+use pipeline::summary::Summary;
+use schemars::generate::SchemaSettings;
+use serde_json::Value;
+
+use super::manual;
+use crate::output::{note, write_whole};
+
+/// Options of `schema`.
+#[derive(Args)]
+pub struct Options {
+    /// The file
+    of: File,
+    /// Where to write it [default: standard output]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// The files that have a schema, one line each.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum File {
+    /// The axis file, TOML
+    Axis,
+    /// summary.json of `report` and `pipeline`
+    Summary,
+    /// discovery.json of `discover`
+    Discovery,
+}
+
+impl File {
+    /// Its JSON Schema, draft 2020-12.
+    pub fn schema(self) -> Value {
+        let settings = SchemaSettings::draft2020_12().for_serialize();
+        let generator = settings.into_generator();
+        match self {
+            Self::Axis => Registry::default().json_schema(),
+            Self::Summary => generator.into_root_schema_for::<Summary>().to_value(),
+            Self::Discovery => generator.into_root_schema_for::<Discovery>().to_value(),
+        }
+    }
+}
+
+/// Runs the command.
+pub fn command(options: &Options) -> Result<()> {
+    let text = serde_json::to_string_pretty(&options.of.schema()).into_diagnostic()? + "\n";
+    match &options.out {
+        Some(path) => {
+            write_whole(path, text.as_bytes())?;
+            note(format!("{} written", path.display()));
+            Ok(())
+        }
+        None => manual::out(text.as_bytes()),
+    }
+}

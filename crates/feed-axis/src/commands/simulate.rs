@@ -1,0 +1,332 @@
+//! `simulate`: one motion, its error and its log.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use atomic_write_file::AtomicWriteFile;
+use axis_log::{LogFile, WriteProblem};
+use axis_sim::{Axis, ClosedLoop, Cycle, FlowRecorder, Measured, Recorder, SixDigits};
+use clap::Args;
+use discover_matrix::hidden::Noise;
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use pipeline::Figures;
+use pipeline::strategies::{Build, NextMove, SharedMotion, StrategyKind};
+use serde::Serialize;
+use trajectories::Program;
+
+use super::{learn, validate};
+use crate::context::{Common, Context, read_text};
+use crate::exit::wrong_use;
+use crate::measured::Errors;
+use crate::output::{print, write_whole};
+use crate::page::motion::{self as motion_page, Ran};
+use crate::progress::bar;
+use crate::strategy_name::strategy_name;
+
+/// Options of `simulate`.
+#[derive(Args)]
+pub struct Options {
+    #[command(flatten)]
+    common: Common,
+    /// Trajectory of the axis file, from 1
+    #[arg(
+        long,
+        value_name = "N",
+        conflicts_with = "program",
+        required_unless_present = "program"
+    )]
+    trajectory: Option<usize>,
+    /// Motion program (TOML; see docs/theory/trajectories.md)
+    #[arg(long, value_name = "FILE")]
+    program: Option<PathBuf>,
+    /// Compensation; a network needs `train` first, transfer functions and identified
+    /// friction `identify`
+    #[arg(long, value_parser = strategy_name(), default_value = "none")]
+    compensation: &'static StrategyKind,
+    /// Correction of this move as `learn` has written it, for a compensation that plans
+    #[arg(long, value_name = "FILE")]
+    correction: Option<PathBuf>,
+    /// Noise of every sensor, in multiples of a good linear scale's (10 nm), a
+    /// good motor encoder's and current sensor's; 0 for perfect ones. With
+    /// noise the axis is simulated the slow, exact way, to stand for a machine
+    #[arg(long, value_name = "FACTOR", default_value_t = 0.0, value_parser = factor, allow_negative_numbers = true)]
+    noise: f64,
+    /// Where to write the log, a row each control cycle: .csv, .parquet or .mat (version 5)
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
+    /// Where to write a page of the motion: position and error, speed, current or torque
+    /// over time, a table of figures
+    #[arg(long, value_name = "OUT.html")]
+    report: Option<PathBuf>,
+}
+
+/// Runs the command: the axis file itself is simulated, not its machine.
+pub fn command(options: &Options) -> Result<()> {
+    let context = options.common.open()?;
+    let motion = motion(options, &context)?;
+    let closed_loop = closed_loop(options, &context)?;
+    let strategy = options.compensation;
+    let predictors = validate::predictors(&context, strategy.needs)?;
+    if options.correction.is_some() && matches!(strategy.build, Build::Each(_)) {
+        return Err(wrong_use(format!(
+            "--correction: {} does not know a motion ahead; give a --compensation that plans, such as plan",
+            strategy.label
+        )));
+    }
+    let learned = match &options.correction {
+        Some(file) => Some(Arc::new(learn::correction(file, &context.axis, &*motion)?)),
+        None => None,
+    };
+    let mut law = strategy.strategy(&predictors).into_diagnostic()?;
+    let next = NextMove {
+        motion: motion.clone(),
+        continued: None,
+        learned,
+    };
+    let mut law = law.compensator(&next).into_diagnostic()?;
+    let log = options.log.as_deref();
+    let mut rows = log.map(|path| begun(path, &context.axis)).transpose()?;
+    if let Some(path) = &options.report {
+        check_writable(path)?;
+    }
+    let mut shown = options
+        .report
+        .as_ref()
+        .map(|_| Recorder::new(&context.axis));
+    let bar = bar("simulate", closed_loop.cycles(&*motion));
+    let mut tracking = Tracking::default();
+    let observe = |cycle: &Cycle| {
+        tracking.push(cycle.error());
+        if let Some(rows) = &mut rows {
+            rows.push(cycle);
+        }
+        if let Some(shown) = &mut shown {
+            shown.push(cycle);
+        }
+        if tracking.cycles % 4096 == 0 {
+            bar.set_position(tracking.cycles);
+        }
+    };
+    let mut sensors = Noise::good(&context.axis)
+        .scaled(options.noise)
+        .sensors(context.seed);
+    let sense = |seen: &mut Measured| {
+        if options.noise > 0.0 {
+            sensors(seen);
+        }
+    };
+    let outcome = closed_loop.run_sensed(&*motion, &mut *law, sense, observe);
+    bar.finish_and_clear();
+    // What was computed before the run stopped is kept.
+    if let Some((path, rows)) = log.zip(rows).filter(|_| tracking.cycles > 0) {
+        let placed = rows.finish().into_diagnostic();
+        placed.wrap_err_with(|| unwritten(path))?;
+    }
+    outcome.completed().into_diagnostic()?;
+    if let (Some(path), Some(shown)) = (&options.report, &shown) {
+        write_page(path, options, &context, shown)?;
+    }
+    let axis = &context.axis;
+    let figures = Figures {
+        max: 1e6 * tracking.most,
+        mean: 1e6 * tracking.sum / tracking.cycles as f64,
+    };
+    print(
+        "simulate",
+        &Simulated {
+            axis: &axis.name,
+            axis_fingerprint: &axis.fingerprint,
+            compensation: strategy.name,
+            duration_s: motion.duration(),
+            cycles: tracking.cycles,
+            tracking_error: Errors::of(axis.freedom(), figures),
+            log: options.log.as_deref(),
+            report: options.report.as_deref(),
+        },
+    )
+}
+
+/// Asks whether the page can be written, before the work that makes it.
+fn check_writable(path: &Path) -> Result<()> {
+    std::fs::create_dir_all(path.parent().unwrap_or(path))
+        .and_then(|()| AtomicWriteFile::open(path))
+        .map(drop)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot write the page {}", path.display()))
+}
+
+fn write_page(path: &Path, options: &Options, context: &Context, shown: &Recorder) -> Result<()> {
+    let next = match options.compensation.name {
+        "none" => {
+            "Run it again with --compensation, such as plan or drive-terms, and compare the peaks."
+        }
+        _ => "Run it again with --compensation none to see what the compensation takes away.",
+    };
+    let mut next = vec![next.to_owned()];
+    next.extend(options.log.as_ref().map(|log| {
+        format!(
+            "The log is {}; log inspect tells what it holds.",
+            log.display()
+        )
+    }));
+    let page = motion_page::page(&Ran {
+        axis: &context.axis,
+        compensation: options.compensation.label,
+        noise: options.noise,
+        seed: context.seed,
+        cycles: shown.cycles(),
+        log: &shown.log().into_diagnostic()?,
+        next,
+    });
+    let html = ::report::render(&page)
+        .into_diagnostic()
+        .wrap_err("the page of the motion cannot be made")?;
+    write_whole(path, html.as_bytes())
+}
+
+/// One simulated motion.
+#[derive(Serialize)]
+struct Simulated<'a> {
+    axis: &'a str,
+    axis_fingerprint: &'a str,
+    compensation: &'a str,
+    duration_s: f64,
+    cycles: u64,
+    #[serde(flatten)]
+    tracking_error: Errors<Figures>,
+    log: Option<&'a Path>,
+    report: Option<&'a Path>,
+}
+
+impl fmt::Display for Simulated<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (errors, unit) = self.tracking_error.get();
+        write!(
+            f,
+            "{} s, {} cycles: tracking error max {} {unit}, mean {} {unit} (simulated)",
+            SixDigits(self.duration_s),
+            self.cycles,
+            SixDigits(errors.max),
+            SixDigits(errors.mean)
+        )
+    }
+}
+
+/// Reads a factor of noise.
+pub(super) fn factor(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse::<f64>().ok();
+    let number = number.filter(|factor| factor.is_finite() && *factor >= 0.0);
+    number.ok_or_else(|| "give 0 or a factor above it".to_owned())
+}
+
+fn closed_loop(options: &Options, context: &Context) -> Result<ClosedLoop> {
+    if options.noise > 0.0 {
+        return ClosedLoop::exact(&context.axis, 2e-5).into_diagnostic();
+    }
+    ClosedLoop::new(&context.axis).into_diagnostic()
+}
+
+/// The tracking error so far, m.
+#[derive(Default)]
+struct Tracking {
+    cycles: u64,
+    most: f64,
+    sum: f64,
+}
+
+impl Tracking {
+    fn push(&mut self, error: f64) {
+        self.cycles += 1;
+        self.most = self.most.max(error.abs());
+        self.sum += error.abs();
+    }
+}
+
+/// A log that is written aside while the run goes on, and put in place whole.
+fn begun(path: &Path, axis: &Axis) -> Result<FlowRecorder<LogFile>> {
+    let file = LogFile::create(path).map_err(|e| match e.problem {
+        WriteProblem::Extension { .. } => wrong_use(format!("--log {e}")),
+        _ => miette!(e),
+    });
+    let file = file.wrap_err_with(|| unwritten(path))?;
+    Ok(FlowRecorder::to(file, Recorder::new(axis)))
+}
+
+fn unwritten(path: &Path) -> String {
+    format!("cannot write the log {}", path.display())
+}
+
+fn motion(options: &Options, context: &Context) -> Result<SharedMotion> {
+    if let Some(file) = &options.program {
+        return Ok(Arc::new(program(file)?));
+    }
+    trajectory("--trajectory", options.trajectory.unwrap_or(0), context)
+}
+
+/// The motion of a trajectory's number, asked for by an option.
+pub(super) fn trajectory(option: &str, number: usize, context: &Context) -> Result<SharedMotion> {
+    let count = context.axis.trajectories.len();
+    let spec = number
+        .checked_sub(1)
+        .and_then(|index| context.axis.trajectories.get(index))
+        .ok_or_else(|| {
+            wrong_use(format!(
+                "{option} {number}: the axis file has trajectories 1 to {count}"
+            ))
+        })?;
+    Ok(Arc::new(context.axis.plan(spec).into_diagnostic()?))
+}
+
+/// Reads a motion program.
+pub fn program(file: &Path) -> Result<Program> {
+    toml::from_str(&read_text(file)?)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("{} is not a motion program", file.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::{Command, CommandFactory, FromArgMatches, Parser};
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        options: Options,
+    }
+
+    fn parse(value: &str) -> std::result::Result<&'static StrategyKind, String> {
+        let command: Command = Line::command();
+        let line = ["simulate", "--trajectory", "1", "--compensation", value];
+        let matches = command
+            .try_get_matches_from(line)
+            .map_err(|e| e.to_string())?;
+        let line = Line::from_arg_matches(&matches).map_err(|e| e.to_string())?;
+        Ok(line.options.compensation)
+    }
+
+    /// The names that scripts give and results carry.
+    #[test]
+    fn compensations_have_the_names_of_results_with_dashes() {
+        for (value, name) in [
+            ("none", "none"),
+            ("network", "network"),
+            ("network-lugre", "network_lugre"),
+            ("transfer-function", "transfer_function"),
+            ("transfer-function-lugre", "transfer_function_lugre"),
+            ("lugre", "lugre"),
+            ("network-lugre-printed", "network_lugre_printed"),
+            ("drive-terms", "drive_terms"),
+            ("plan", "plan"),
+        ] {
+            assert_eq!(parse(value).unwrap().name, name);
+        }
+        let message = parse("lurge").unwrap_err();
+        assert!(
+            message.contains("none, network, network-lugre") && message.contains("'lugre'"),
+            "{message}"
+        );
+    }
+}

@@ -1,0 +1,22 @@
+//! The commands of the project, one file each, which parse, call one library function
+//! and write. Nothing here knows physics.
+//!
+//! Two programs are made of them: `feed-axis`, for users, and `cargo xtask`, which adds
+//! what concerns developers alone. Each has its own list of jobs ([`jobs::Jobs`]).
+
+pub mod cli;
+pub mod commands;
+pub mod context;
+mod diagnostic;
+pub mod exit;
+pub mod jobs;
+mod measured;
+pub mod output;
+mod page;
+mod paper;
+pub mod program;
+pub mod progress;
+mod results;
+pub mod store;
+mod strategy_name;
+pub mod terminal;

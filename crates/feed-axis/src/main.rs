@@ -1,0 +1,44 @@
+//! The command `feed-axis`.
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use feed_axis::cli::{Global, finish, parse, start};
+use feed_axis::commands::Command;
+use feed_axis::commands::manual::{self, Completions, Pages};
+use feed_axis::jobs::UserJob;
+
+/// Feed axes: simulate, identify, find what a model lacks, compensate.
+///
+/// Start with `feed-axis pipeline`: it takes the axis of Liu et al. 2025
+/// (Machines 13(5), 433) through every stage and writes a report to
+/// runs/liu2025/report.html. The stages can also be run one by one; each needs
+/// the results of those above it.
+#[derive(Parser)]
+#[command(name = "feed-axis", version)]
+struct Cli {
+    #[command(flatten)]
+    global: Global,
+    #[command(subcommand)]
+    command: Own,
+}
+
+#[derive(Subcommand)]
+enum Own {
+    #[command(flatten)]
+    User(Command<UserJob>),
+    /// Write the completions of a shell to standard output
+    Completions(Completions),
+    /// Write the manual's pages
+    Man(Pages),
+}
+
+fn main() -> ExitCode {
+    let cli: Cli = parse("feed-axis");
+    start(&cli.global);
+    finish(match &cli.command {
+        Own::User(command) => command.run(),
+        Own::Completions(options) => manual::completions(options),
+        Own::Man(options) => manual::pages(options),
+    })
+}

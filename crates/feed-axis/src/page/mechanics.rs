@@ -1,0 +1,129 @@
+//! Friction, self-excited vibration, modes.
+
+use lugre::LuGre;
+use pipeline::vibration::Vibration;
+use report::{Cell, Figure, Section, Series, Table};
+
+use crate::context::Context;
+use crate::results::Results;
+
+/// Identification: parameters and curve.
+pub fn friction(context: &Context, results: &Results) -> Section {
+    let mut table = Table::new(
+        "Friction as identified on the simulated machine",
+        ["Parameter", "found", "standard error", "true", "off by"],
+    );
+    for p in &results.friction.parameters {
+        table = table.row([
+            Cell::text(p.name.clone()),
+            Cell::quantity(p.value, &p.unit, 5),
+            Cell::quantity(p.standard_error, &p.unit, 2),
+            Cell::quantity(p.truth, &p.unit, 5),
+            Cell::text(format!("{:+.2} %", 100.0 * (p.value / p.truth - 1.0))),
+        ]);
+    }
+    let runs = |name: &str, left_out: bool| {
+        let forward = results.friction.runs.iter().filter(|run| run.speed > 0.0);
+        let (x, y): (Vec<f64>, Vec<f64>) = forward
+            .filter(|run| run.left_out.is_some() == left_out)
+            .map(|run| (run.speed, run.torque))
+            .unzip();
+        (!x.is_empty()).then(|| Series::dots(name, x, y))
+    };
+    // A little beyond the runs, evenly on the logarithmic axis.
+    let run_speeds = || results.friction.runs.iter().map(|run| run.speed.abs());
+    let slowest = 0.8 * run_speeds().fold(f64::MAX, f64::min);
+    let fastest = 1.06 * run_speeds().fold(f64::MIN_POSITIVE, f64::max);
+    let speeds: Vec<f64> = (0..=200)
+        .map(|i| slowest * (fastest / slowest).powf(f64::from(i) / 200.0))
+        .collect();
+    let units = context.machine.friction.at.units();
+    let curve = |law: &LuGre| {
+        speeds
+            .iter()
+            .map(|&w| law.steady_state(w))
+            .collect::<Vec<f64>>()
+    };
+    let mut figure = Figure::new(
+        "Steady-state friction",
+        format!("speed at {}", units.at),
+        "friction",
+    )
+    .units(units.speed, units.force)
+    .series(Series::line(
+        "axis file",
+        speeds.clone(),
+        curve(&context.axis.friction.law),
+    ))
+    .series(Series::line(
+        "machine",
+        speeds.clone(),
+        curve(&context.machine.friction.law),
+    ))
+    .series(Series::line("identified", speeds.clone(), curve(&results.friction_law)).dashed())
+    .log_x()
+    .alt("Steady-state friction torque against speed");
+    let dots = [
+        runs("runs used", false),
+        runs("runs left out: they vibrate", true),
+    ];
+    for series in dots.into_iter().flatten() {
+        figure = figure.series(series);
+    }
+    Section::new("Friction")
+        .paragraph("Constant-speed runs both ways and a pre-sliding test, with 1 % noise on the torque. Runs in which the axis vibrates by itself are recognised by their own speed and left out: their mean torque is not a point of the curve.")
+        .table(table)
+        .figure(figure)
+}
+
+/// Constant-speed runs.
+pub fn vibration(results: &Results) -> Section {
+    let mut table = Table::new(
+        "Tracking error at constant speed, last second of four",
+        [
+            "Speed, mm/s",
+            "peak to peak, µm",
+            "frequency, Hz",
+            "peak to peak, µm",
+            "frequency, Hz",
+        ],
+    )
+    .group("", 1)
+    .group("Model", 2)
+    .group("Machine (simulated)", 2);
+    let cells = |v: &Vibration| {
+        [
+            Cell::number(v.peak_to_peak_um, 2),
+            v.frequency_hz
+                .map_or(Cell::text("quiet"), |f| Cell::number(f, 1)),
+        ]
+    };
+    let v = &results.validation;
+    for (a, b) in v.vibration_model.iter().zip(&v.vibration_machine) {
+        let speed = [Cell::number(a.speed_mm_s, 0)];
+        table = table.row(speed.into_iter().chain(cells(a)).chain(cells(b)));
+    }
+    Section::new("Self-excited vibration")
+        .paragraph("Where friction falls with speed it feeds the table's vibration on the nut's stiffness.")
+        .table(table)
+}
+
+/// Frequencies against position.
+pub fn modes(results: &Results) -> Section {
+    let modes = &results.validation.modes;
+    let x: Vec<f64> = modes.iter().map(|m| m.position_m).collect();
+    let count = modes.first().map_or(0, |m| m.frequencies_hz.len());
+    if count == 0 {
+        return Section::new("Modes")
+            .paragraph("This mechanism moves as one with its motor: it has no natural frequency.");
+    }
+    let mut figure = Figure::new("Natural frequencies", "table position", "frequency")
+        .units("m", "Hz")
+        .log_y()
+        .alt("Natural frequencies of the drive against the table's position");
+    for mode in 0..count {
+        let y = modes.iter().map(|m| m.frequencies_hz[mode]).collect();
+        figure = figure.series(Series::line(format!("mode {}", mode + 1), x.clone(), y));
+    }
+    Section::new("Modes").figure(figure)
+}

@@ -1,0 +1,189 @@
+//! Figures 10 to 12, Tables 13 and 14.
+
+use pipeline::tracking::Profile;
+use pipeline::validation::ValidatedTrajectory;
+use report::{Cell, Figure, Section, Series, Table};
+
+use super::{pair, printed, times};
+use crate::context::Context;
+use crate::results::Results;
+
+/// Figure 10: velocity, acceleration, jerk.
+pub fn profiles(results: &Results) -> Section {
+    let figure = |title: &str, unit: &str, of: fn(&Profile) -> &Vec<f64>| {
+        let mut figure = Figure::new(title, "time", title.to_lowercase())
+            .units("s", unit)
+            .linked("profile")
+            .alt(format!("{title} of each trajectory against time"));
+        for t in &results.validation.trajectories {
+            let name = format!("trajectory {}", t.id);
+            figure = figure.series(Series::line(
+                name,
+                t.profile.time_s.clone(),
+                of(&t.profile).clone(),
+            ));
+        }
+        figure
+    };
+    Section::new("Trajectories")
+        .paragraph("Seven-segment, jerk-limited S-curves (the paper's Fig. 10, Table 12).")
+        .figure_grid(
+            vec![
+                figure("Velocity", "mm/s", |p| &p.velocity_mm_s),
+                figure("Acceleration", "mm/s²", |p| &p.acceleration_mm_s2),
+                figure("Jerk", "mm/s³", |p| &p.jerk_mm_s3),
+            ],
+            3,
+        )
+}
+
+/// Figure 11 and Table 13.
+pub fn model_and_machine(context: &Context, results: &Results) -> Section {
+    let mut table = Table::new(
+        "Tracking error without compensation, µm (Table 13)",
+        [
+            "Trajectory",
+            "max",
+            "mean",
+            "max",
+            "mean",
+            "max",
+            "mean",
+            "max",
+            "mean",
+        ],
+    )
+    .group("", 1)
+    .group("Model", 2)
+    .group("Paper's model", 2)
+    .group("Machine (simulated)", 2)
+    .group("Paper's experiment", 2);
+    for (i, t) in results.validation.trajectories.iter().enumerate() {
+        let paper = results.paper.as_ref().and_then(|p| p.trajectories.get(i));
+        table = table.row(
+            [Cell::text(t.id.to_string())]
+                .into_iter()
+                .chain(pair(t.model.figures))
+                .chain(printed(paper.map(|p| p.model)))
+                .chain(pair(t.machine.figures))
+                .chain(printed(paper.map(|p| p.experiment))),
+        );
+    }
+    let grid = results.validation.trajectories.iter().map(|t| {
+        let time = times(t.model.error_um.len(), context.axis.period);
+        let deviation = t
+            .machine
+            .error_um
+            .iter()
+            .zip(&t.model.error_um)
+            .map(|(a, b)| a - b);
+        figure(t)
+            .series(Series::line(
+                "machine",
+                time.clone(),
+                t.machine.error_um.clone(),
+            ))
+            .series(Series::line("model", time.clone(), t.model.error_um.clone()).dashed())
+            .series(Series::line("machine − model", time, deviation.collect()))
+    });
+    Section::new("Model and machine")
+        .paragraph("Error = reference − table position at the sampling instants, from the start to the end of the motion (the paper's Fig. 11).")
+        .table(table)
+        .figure_grid(grid.collect(), 2)
+}
+
+/// Figure 12 and Table 14.
+pub fn prediction(results: &Results) -> Section {
+    let mut table = Table::new(
+        "The machine's tracking error as predicted, µm (Table 14)",
+        [
+            "Trajectory",
+            "max",
+            "mean",
+            "max",
+            "mean",
+            "max",
+            "mean",
+            "max",
+            "mean",
+            "max",
+            "mean",
+        ],
+    )
+    .group("", 1)
+    .group("Machine (simulated)", 2)
+    .group("Network", 2)
+    .group("Paper's network", 2)
+    .group("Transfer function", 2)
+    .group("Paper's transfer f.", 2);
+    let mut missed = Table::new(
+        "What the predictions miss of the machine's error, µm",
+        ["Trajectory", "max", "mean", "max", "mean"],
+    )
+    .group("", 1)
+    .group("Network", 2)
+    .group("Transfer function", 2);
+    for (i, t) in results.validation.trajectories.iter().enumerate() {
+        let paper = results.paper.as_ref().and_then(|p| p.trajectories.get(i));
+        table = table.row(
+            [Cell::text(t.id.to_string())]
+                .into_iter()
+                .chain(pair(t.machine.figures))
+                .chain(pair(t.network.figures))
+                .chain(printed(paper.map(|p| p.predicted_network)))
+                .chain(pair(t.transfer_function.figures))
+                .chain(printed(paper.map(|p| p.predicted_transfer))),
+        );
+        missed = missed.row([
+            Cell::text(t.id.to_string()),
+            Cell::number(t.network_deviation.max, 4),
+            Cell::number(t.network_deviation.mean, 5),
+            Cell::number(t.transfer_function_deviation.max, 2),
+            Cell::number(t.transfer_function_deviation.mean, 3),
+        ]);
+    }
+    let grid = results.validation.trajectories.iter().map(|t| {
+        let time = |run: &[f64]| times(run.len(), results.transfer[0].period);
+        let miss: Vec<f64> = (t.machine.error_um.iter().zip(&t.transfer_function.error_um))
+            .map(|(a, b)| a - b)
+            .collect();
+        figure(t)
+            .series(Series::line(
+                "machine",
+                time(&t.machine.error_um),
+                t.machine.error_um.clone(),
+            ))
+            .series(
+                Series::line(
+                    "network",
+                    time(&t.network.error_um),
+                    t.network.error_um.clone(),
+                )
+                .dashed(),
+            )
+            .series(Series::line(
+                "transfer function",
+                time(&t.transfer_function.error_um),
+                t.transfer_function.error_um.clone(),
+            ))
+            .series(Series::line(
+                "machine − transfer function",
+                time(&miss),
+                miss,
+            ))
+    });
+    Section::new("Prediction")
+        .paragraph("The network predicts one cycle ahead from what the controller samples of the machine, the transfer function from the reference alone; the two are not equals. The network's deviation does not show at this scale: over one cycle the motion is almost pure kinematics.")
+        .table(table)
+        .table(missed)
+        .figure_grid(grid.collect(), 2)
+}
+
+/// An empty figure of tracking errors.
+pub fn figure(t: &ValidatedTrajectory) -> Figure {
+    let title = format!("Trajectory {}", t.id);
+    Figure::new(title.clone(), "time", "tracking error")
+        .units("s", "µm")
+        .linked(&title)
+        .alt(format!("{title}: tracking errors against time"))
+}

@@ -1,0 +1,74 @@
+//! `export drive` as a user runs it.
+
+mod common;
+
+use common::{refuse, succeed};
+use serde_json::Value;
+
+#[test]
+fn terms_tables_and_loss_are_written_with_their_units() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("drive");
+    let machine = "data/axes/liu2025-machine.toml";
+    let said = succeed(&[
+        "export",
+        "drive",
+        "--axis",
+        machine,
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert!(
+        said.contains("kg·cm²") && said.contains("N·m/(1000 rpm)"),
+        "{said}"
+    );
+    let json: Value =
+        serde_json::from_slice(&std::fs::read(out.join("drive.json")).unwrap()).unwrap();
+    let terms = json["terms"].as_array().unwrap();
+    assert_eq!(terms.len(), 24);
+    for term in terms {
+        for key in ["name", "unit", "drive_unit", "meaning"] {
+            assert!(term[key].as_str().is_some_and(|s| !s.is_empty()), "{term}");
+        }
+        assert!(
+            term["value"].is_f64() && term["drive_value"].is_f64(),
+            "{term}"
+        );
+    }
+    let loss = json["loss"].as_array().unwrap();
+    assert_eq!((loss.len(), json["loss_unit"].as_str()), (6, Some("µm")));
+    let max = |l: &Value, of: &str| l[of]["max"].as_f64().unwrap();
+    assert!(loss.iter().all(|l| max(l, "none") > max(l, "drive_terms")));
+    assert!(loss.iter().all(|l| max(l, "drive_terms") > max(l, "plan")));
+    let csv = std::fs::read_to_string(out.join("drive.csv")).unwrap();
+    assert!(
+        csv.lines().count() == 34 && csv.starts_with("position (m),"),
+        "{csv}"
+    );
+    assert!(!out.join("drive-turn.csv").exists());
+}
+
+#[test]
+fn what_cannot_be_done_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("drive");
+    let out = out.to_str().unwrap();
+    let message = refuse(&["export", "drive", "--axis", "no-such.toml", "--out", out]);
+    assert!(message.contains("no-such.toml"), "{message}");
+    let message = refuse(&["export", "drive"]);
+    assert!(message.contains("--out"), "{message}");
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").unwrap();
+    let message = refuse(&["export", "drive", "--out", file.to_str().unwrap()]);
+    assert!(message.contains("--out"), "{message}");
+    // No trajectories: the terms all the same.
+    let said = succeed(&[
+        "export",
+        "drive",
+        "--axis",
+        "data/axes/emps.toml",
+        "--out",
+        out,
+    ]);
+    assert!(said.contains("no [[trajectory]]"), "{said}");
+}

@@ -1,0 +1,65 @@
+//! `export fmu` as a user runs it; what the unit does is checked by axis-fmu and `.ci/fmu`.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use common::{refuse, succeed};
+use serde_json::Value;
+
+/// A file that the command takes for the library: it holds its mark.
+fn library(folder: &Path) -> PathBuf {
+    let file = folder.join("library.so");
+    std::fs::write(&file, axis_fmu::LIBRARY_MARK).unwrap();
+    file
+}
+
+fn export<'a>(axis: &'a str, out: &'a Path, library: &'a Path) -> Vec<&'a str> {
+    let [out, library] = [out, library].map(|path| path.to_str().unwrap());
+    let to = ["--out", out, "--library", library];
+    [&["export", "fmu", "--axis", axis][..], &to].concat()
+}
+
+#[test]
+fn a_unit_is_written_whole_and_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let (out, library) = (folder.path().join("belt.fmu"), library(folder.path()));
+    let export = export("data/axes/belt.toml", &out, &library);
+    let said = succeed(&export);
+    assert!(
+        said.contains("FMI 3.0") && said.contains("0.000125 s"),
+        "{said}"
+    );
+    let first = std::fs::read(&out).unwrap();
+    let told = succeed(&[&export[..], &["--format", "json"]].concat());
+    let told: Value = serde_json::from_str(&told).unwrap();
+    assert_eq!(
+        (told["inputs"].as_u64(), told["bytes"].as_u64()),
+        (Some(5), Some(first.len() as u64))
+    );
+    assert_eq!(std::fs::read(&out).unwrap(), first);
+    // Nothing is left aside.
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+}
+
+#[test]
+fn what_cannot_be_exported_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let (out, library) = (folder.path().join("x.fmu"), library(folder.path()));
+    let message = refuse(&export("data/axes/lugre-bench.toml", &out, &library));
+    assert!(message.contains("[control]"), "{message}");
+    let message = refuse(&export("no-such.toml", &out, &library));
+    assert!(message.contains("no-such.toml"), "{message}");
+    let message = refuse(&export("data/axes/belt.toml", &out, Path::new("/bin/sh")));
+    assert!(
+        message.contains("cargo build --release -p feed-axis-fmu"),
+        "{message}"
+    );
+    let message = refuse(&export(
+        "data/axes/belt.toml",
+        &out,
+        Path::new("no-such.so"),
+    ));
+    assert!(message.contains("no-such.so"), "{message}");
+    assert!(!out.exists());
+}

@@ -1,0 +1,70 @@
+//! The JSON Schemas of the files: current, and true of what the commands write.
+
+mod common;
+mod schema_of;
+
+use axis_sim::mechanism::MECHANISMS;
+use clap::ValueEnum;
+use common::{feed_axis, refuse, root, succeed};
+use feed_axis::commands::schema::File;
+use schema_of::{assert_validates, committed};
+use serde_json::Value;
+
+#[test]
+fn the_committed_schemas_are_those_of_the_code() {
+    for file in File::value_variants() {
+        let value = file.to_possible_value().unwrap();
+        let name = value.get_name();
+        jsonschema::draft202012::meta::validate(&file.schema()).unwrap();
+        assert!(
+            file.schema() == committed(name),
+            "make it anew: feed-axis schema {name} --out data/schemas/{name}.json"
+        );
+    }
+}
+
+#[test]
+fn the_command_writes_the_schema() {
+    let output = feed_axis(&["schema", "axis"]);
+    let written: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(written, committed("axis"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s/discovery.json");
+    succeed(&["schema", "discovery", "--out", path.to_str().unwrap()]);
+    let file = root().join("data/schemas/discovery.json");
+    assert_eq!(std::fs::read(path).unwrap(), std::fs::read(file).unwrap());
+    let message = refuse(&["schema", "log"]);
+    assert!(message.contains("axis, summary, discovery"), "{message}");
+}
+
+/// Of each kind of mechanism.
+#[test]
+fn files_of_new_validate() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    for kind in MECHANISMS {
+        succeed(&["new", kind.name, "--kind", kind.name, "--out", out]);
+        let text = std::fs::read_to_string(format!("{out}/{}.toml", kind.name)).unwrap();
+        let file: Value = toml::from_str(&text).unwrap();
+        assert_validates("axis", &file);
+    }
+}
+
+/// A capture of another program is told with the mapping that it could have.
+#[test]
+fn log_inspect_proposes_a_mapping_and_applies_none() {
+    let file = "crates/axis-log/tests/data/halscope.log";
+    let said = succeed(&["log", "inspect", file]);
+    assert!(said.contains("20 samples at 1000"), "{said}");
+    assert!(said.contains("LinuxCNC halscope"), "{said}");
+    assert!(
+        said.contains("source = \"joint.0.motor-pos-cmd\""),
+        "{said}"
+    );
+    assert!(said.contains("not known by name: pid.x.output"), "{said}");
+    let output = feed_axis(&["log", "inspect", file, "--format", "json"]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let log = &found["logs"][0];
+    assert_eq!(log["channels"].as_array().map(Vec::len), Some(0));
+    assert_eq!(log["imported"][0]["others"][0], "pid.x.output");
+}
