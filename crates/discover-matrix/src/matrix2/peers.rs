@@ -118,3 +118,56 @@ fn chosen(plot: &[Case], law: bool, taken: &mut BTreeMap<String, usize>) -> Vec<
 fn of_kind(plot: &[Case], kind: Kind) -> impl Iterator<Item = &Case> {
     plot.iter().filter(move |c| c.kind == kind)
 }
+
+#[cfg(test)]
+mod tests {
+    use axis_sim::effects::Effect;
+
+    use super::*;
+
+    fn machines() -> Vec<Axis> {
+        let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/");
+        let files = ["liu2025.toml", "joint.toml", "linear-motor.toml"];
+        let read = |file: &str| Axis::read(root.to_owned() + file).unwrap();
+        files.map(read).to_vec()
+    }
+
+    #[test]
+    fn effects_in_terms_are_of_the_library() {
+        for name in IN_TERMS {
+            assert!(Effect::named(name).is_some(), "{name}");
+        }
+    }
+
+    /// Or shares of right names would be of another mixture than the page says.
+    #[test]
+    fn each_plot_asks_every_kind_of_question() {
+        let all = peer_cases(&machines(), 40, 5).unwrap();
+        assert_eq!(all.len(), 40);
+        for (k, plot) in all.chunk_by(|a, b| a.plot == b.plot).enumerate() {
+            let reach: Vec<Reach> = plot.iter().map(Reach::of).collect();
+            let terms = Reach::InTerms;
+            assert_eq!(reach, [Reach::Clean, terms, terms, Reach::Beyond]);
+            assert_ne!(plot[1].hidden, plot[2].hidden);
+            let law = (k / 3) % 2 == 1;
+            assert_eq!(plot[3].law.is_some(), law, "{k}");
+        }
+    }
+
+    #[test]
+    fn effects_come_up_before_any_is_taken_thrice() {
+        let all = peer_cases(&machines(), 40, 5).unwrap();
+        let of = |name: &str| all.iter().filter(|c| c.hidden.iter().any(|h| h.name == name));
+        let most = IN_TERMS.iter().map(|name| of(name).count()).max();
+        assert!(most <= Some(3), "{most:?}");
+        let kinds = IN_TERMS.iter().filter(|name| of(name).count() > 0).count();
+        assert!(kinds >= 12, "{kinds}");
+    }
+
+    #[test]
+    fn a_seed_gives_the_same_cases_again() {
+        let cases = |seed| peer_cases(&machines(), 8, seed).unwrap();
+        assert_eq!(cases(5), cases(5));
+        assert_ne!(cases(5), cases(6));
+    }
+}
