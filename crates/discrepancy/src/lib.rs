@@ -58,7 +58,7 @@ pub use judge::{
     RefusedEffects, Remedy, RemedyTold, ReplacedEffect, Shown, Size, Told, TrackingCost, Unknown,
     Verdict, discovery, judged,
 };
-pub use name::gap::{ChannelGap, Gap};
+pub use name::gap::{ChannelGap, Gap, MATERIAL_OF_NOISE};
 pub use name::library::{Library, applicable};
 pub use name::search::{
     Alike, Found, Named, ONE_CLASS, Reason, Refused, Replaced, RunnerUp, SearchError, Settings,

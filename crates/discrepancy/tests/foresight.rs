@@ -54,6 +54,7 @@ fn supposed(machine: &Axis, name: &str, by: f64) -> Hypothesis {
         effects: vec![ActiveEffect { effect, values }],
         shares: Vec::new(),
         noise: 1.0,
+        of_channels: Vec::new(),
         rejected: Vec::new(),
     }
 }
@@ -87,6 +88,15 @@ fn what_is_foreseen_follows_size_noise_and_what_the_search_has() {
         4.0 * louder.gain >= full.gain * (1.0 - 1e-9),
         "{louder:?} {full:?}"
     );
+
+    // Where a channel's noise is far above what hides it, the evidence is the same, and none
+    // of it material.
+    let beneath = one(&Hypothesis {
+        of_channels: vec![1e6; set.channels.len()],
+        ..load.clone()
+    });
+    assert_eq!(beneath.gain, full.gain);
+    assert!(!beneath.detectable);
 
     // Shares that are missing are 0.
     let shares = vec![0.0; machine.known().len()];

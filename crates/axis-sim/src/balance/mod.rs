@@ -105,6 +105,11 @@ impl Balance {
         &self.compared
     }
 
+    /// Sampling period of the log, s.
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
     /// Period of the compared samples, s.
     pub fn compared_period(&self) -> f64 {
         self.quality.compared_period

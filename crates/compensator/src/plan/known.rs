@@ -77,11 +77,12 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> Plan<F, T, R>
                 self.planner.push((self.targets)(k));
             }
         }
-        let newest = (self.targets)(self.cycle + ahead);
+        let newest = (self.targets)(self.cycle.saturating_add(ahead));
         if let Some(planned) = self.planner.push(newest) {
             self.planned = planned;
         }
-        self.cycle += 1;
+        // Beyond the motion's end all cycles are at rest, so the count may stay where it is full.
+        self.cycle = self.cycle.saturating_add(1);
         self.planned
     }
 

@@ -163,6 +163,10 @@ pub struct Planner<T = f64, R = ResidualModel<T>> {
     speed: T,
     ahead: [Ahead<T>; AHEAD],
     wound: [Wound<T>; WOUND],
+    /// Where the rings are written next.
+    ahead_at: usize,
+    wound_at: usize,
+    /// Set points since the start, as far as the look-ahead counts them.
     pushed: usize,
     /// Wind-up at the start, rad.
     home: T,
@@ -208,6 +212,8 @@ impl<T: Exponential> Planner<T> {
             speed: T::ZERO,
             ahead: [Ahead::default(); AHEAD],
             wound: [Wound::default(); WOUND],
+            ahead_at: 0,
+            wound_at: 0,
             pushed: 0,
             home: T::ZERO,
             held: T::ZERO,
@@ -233,6 +239,8 @@ impl<T: Exponential> Planner<T> {
             speed: self.speed,
             ahead: self.ahead,
             wound: self.wound,
+            ahead_at: self.ahead_at,
+            wound_at: self.wound_at,
             pushed: self.pushed,
             home: self.home,
             held: self.held,
@@ -328,7 +336,7 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
         self.zero_angle = standstill.motor_angle - position / m.travel - wind_up;
         self.ahead_at_start = m.kinematics.ahead(standstill.motor_angle);
         self.held = standstill.effort - standstill.own;
-        self.pushed = 0;
+        (self.ahead_at, self.wound_at, self.pushed) = (0, 0, 0);
     }
 
     /// Takes the next set point. From the [`Planner::look_ahead`]th after the first on it
@@ -336,8 +344,9 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
     pub fn push(&mut self, target: Target<T>) -> Option<Planned<T>> {
         let (ahead, wind_up) = self.forces(target);
         // Rings: the newest overwrites the oldest.
-        let (length, at) = (self.half + 2, self.pushed);
-        self.ahead[at % length] = ahead;
+        let (length, at) = (self.half + 2, self.ahead_at);
+        self.ahead[at] = ahead;
+        self.ahead_at = (at + 1) % length;
         let [before, middle, after] = [1, 2, 3].map(|i| self.ahead[(at + i) % length]);
         // As smooth as a sine: its neighbours do for its rates.
         let period = self.model.period;
@@ -354,13 +363,15 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
             ahead: middle,
         };
         let late = self.late_cycles();
-        let length = late + 2;
-        self.wound[at % length] = newest;
-        self.pushed += 1;
-        (at >= self.look_ahead()).then(|| {
-            let ago = |i: usize| self.wound[(at + length - i) % length];
-            self.cycle(&ago(late + 1), [&ago(1), &newest])
-        })
+        let (length, at) = (late + 2, self.wound_at);
+        self.wound[at] = newest;
+        self.wound_at = (at + 1) % length;
+        if self.pushed < self.look_ahead() {
+            self.pushed += 1;
+            return None;
+        }
+        let ago = |i: usize| self.wound[(at + length - i) % length];
+        Some(self.cycle(&ago(late + 1), [&ago(1), &newest]))
     }
 
     /// Force and raw wind-up at a set point.

@@ -111,6 +111,7 @@ impl Bench {
             effects: effects.collect::<Option<_>>()?,
             shares: self.hidden(case).shares,
             noise: case.noise,
+            of_channels: Vec::new(),
             rejected: case.rejected.clone(),
         })
     }

@@ -32,6 +32,9 @@ pub struct Bench {
 /// Sizes between which one is sought, as multiples of the typical.
 const SCALES: (f64, f64) = (1e-5, 30.0);
 
+/// Rest of each log and channel.
+type Rest = Vec<Vec<Vec<f64>>>;
+
 /// Rate of the logs, Hz.
 const RATE: f64 = 1000.0;
 
@@ -129,21 +132,18 @@ impl Bench {
             .noise_logs(&self.axis, &self.motions[0], self.every)?;
         match &self.foresight {
             Some(foresight) => {
-                let loud = self.loudness(&case, &noise)?;
-                let only = |effect: ActiveEffect| Hypothesis {
-                    effects: vec![effect],
+                let (loud, of_channels) = self.loudness(&case, &noise)?;
+                let supposed = |effects: Vec<ActiveEffect>| Hypothesis {
+                    effects,
                     shares: shares(&self.axis, &case),
                     noise: loud,
+                    of_channels: of_channels.clone(),
                     rejected: case.rejected.clone(),
                 };
-                let sized = self.sized(&case, |e| foresight.gain_over_needed(&only(e)));
+                let gain = |effect| foresight.gain_over_needed(&supposed(vec![effect]));
+                let sized = self.sized(&case, gain);
+                let all = supposed(sized.iter().filter_map(active).collect());
                 case.hidden = sized;
-                let all = Hypothesis {
-                    effects: case.hidden.iter().filter_map(active).collect(),
-                    shares: shares(&self.axis, &case),
-                    noise: loud,
-                    rejected: case.rejected.clone(),
-                };
                 Ok((case, foresight.foresee(&all)))
             }
             None => {
@@ -174,40 +174,57 @@ impl Bench {
     }
 
     /// The case's noise as a multiple of that of good sensors: white noise of that multiple
-    /// in the loop hides what the case hides as well as its own noise does.
-    fn loudness(&self, case: &Case, [noisy, quiet]: &[Log; 2]) -> Result<f64, ReplayError> {
-        let layout = &self.templates[0].layout;
+    /// in the loop hides what the case hides as well as its own noise does; and of each
+    /// channel that is fitted, RMS.
+    fn loudness(
+        &self,
+        case: &Case,
+        [noisy, quiet]: &[Log; 2],
+    ) -> Result<(f64, Vec<f64>), ReplayError> {
+        let template = &self.templates[0];
+        let layout = &template.layout;
         let white = Truth {
             noise: Rough::white(1.0),
             ..self.truth(case)
         };
         let [of_good, _] = white.noise_logs(&self.axis, &self.motions[0], self.every)?;
         let state = State::initial(&self.machine);
-        let nominal = self.templates[0].simulate(&self.machine, &state)?;
+        let nominal = template.simulate(&self.machine, &state)?;
         let quiet = self.set(0, quiet)?.rest(&nominal);
-        let whitener = |log: &Log| -> Result<_, ReplayError> {
+        let noise = |log: &Log| -> Result<Rest, ReplayError> {
             let mut rest = self.set(0, log)?.rest(&nominal);
             let channels = rest
                 .iter_mut()
                 .zip(&quiet)
                 .flat_map(|(a, b)| a.iter_mut().zip(b));
             channels.for_each(|(a, b)| a.iter_mut().zip(b).for_each(|(a, b)| *a -= b));
-            let amplitudes = self.templates[0].amplitudes(&rest);
-            Ok(layout.whitener(&layout.spectral_matrices(&amplitudes)))
+            Ok(rest)
         };
-        let (own, good) = (whitener(noisy)?, whitener(&of_good)?);
+        let (own, good) = (noise(noisy)?, noise(&of_good)?);
         let mut with = state;
         with.effects = case.hidden.iter().filter_map(active).collect();
-        let traces = self.templates[0].simulate(&self.machine, &with)?;
-        let change = self.templates[0].difference(&traces, &nominal, 1.0);
-        let [in_own, in_good] = [own, good].map(|w| layout.whiten(&w, &change).norm_squared());
+        let traces = template.simulate(&self.machine, &with)?;
+        let change = template.difference(&traces, &nominal, 1.0);
+        let [in_own, in_good] = [&own, &good].map(|noise| {
+            let matrices = layout.spectral_matrices(&template.amplitudes(noise));
+            let whitened = layout.whiten(&layout.whitener(&matrices), &change);
+            whitened.norm_squared()
+        });
         let loud = (in_good / in_own).sqrt();
-        Ok(if loud.is_finite() && loud > 0.0 {
-            loud
-        } else {
-            case.noise.level
-        })
+        let of_channel = |&c: &usize| (mean_square(&own, c) / mean_square(&good, c)).sqrt();
+        let loud = match loud.is_finite() && loud > 0.0 {
+            true => loud,
+            false => case.noise.level,
+        };
+        Ok((loud, template.fitted.iter().map(of_channel).collect()))
     }
+}
+
+/// Of a channel, over all logs.
+fn mean_square(rest: &Rest, channel: usize) -> f64 {
+    let samples = rest.iter().flat_map(|log| &log[channel]);
+    let (sum, count) = samples.fold((0.0, 0), |(sum, n), r| (sum + r * r, n + 1));
+    sum / f64::from(count.max(1))
 }
 
 fn unset(error: axis_sim::part::PartError) -> ReplayError {

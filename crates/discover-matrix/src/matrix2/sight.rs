@@ -7,23 +7,34 @@
 
 use axis_sim::effects::{ActiveEffect, Nature, Scales};
 use axis_sim::{Axis, ReplayError};
-use discrepancy::{Fitter, Foreseen, Imitation, LogSet, ONE_CLASS, State, known_deviations};
-use nalgebra::{DMatrix, DVector};
+use discrepancy::{
+    Fitter, Foreseen, Imitation, LogSet, MATERIAL_OF_NOISE, ONE_CLASS, State, known_deviations,
+};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::case::Channels;
 use super::design::shown;
 
-/// Whitened response to an effect; `None` where the machine does not run with it.
-type White = dyn Fn(&ActiveEffect) -> Option<DVector<f64>> + Send + Sync;
+/// A response, whitened and as it is.
+#[derive(Clone)]
+struct Response {
+    white: DVector<f64>,
+    plain: DVector<f64>,
+}
+
+/// Response to an effect; `None` where the machine does not run with it.
+type Responding = dyn Fn(&ActiveEffect) -> Option<Response> + Send + Sync;
 
 /// What a torque balance of these logs shows.
 pub(super) struct Sight {
     machine: Axis,
     set: LogSet,
-    known: Vec<DVector<f64>>,
-    /// Name and whitened columns of each effect.
-    library: Vec<(&'static str, Vec<DVector<f64>>)>,
-    white: Box<White>,
+    known: Vec<Response>,
+    /// Name and columns of each effect.
+    library: Vec<(&'static str, Vec<Response>)>,
+    response: Box<Responding>,
+    /// Of the balance of the clean machine.
+    noise: f64,
 }
 
 /// Left of an effect beside another, in D, below which the search may take the other.
@@ -39,17 +50,21 @@ impl Sight {
         let nominal = fitter.at(State::initial(machine))?;
         let layout = set.layout.clone();
         let whitener = layout.whitener(&layout.spectral_matrices(&nominal.rest));
+        let noise = plain(&nominal.rest).norm_squared();
+        let response = move |amplitudes: &Vec<Vec<Complex<f64>>>| Response {
+            white: layout.whiten(&whitener, amplitudes),
+            plain: plain(amplitudes),
+        };
         let known = fitter.known_columns(&nominal);
-        let known = known.iter().map(|c| layout.whiten(&whitener, c)).collect();
+        let known = known.iter().map(&response).collect();
         let (own, logs) = (machine.clone(), set.clone());
-        let white = move |active: &ActiveEffect| {
+        let response = move |active: &ActiveEffect| {
             let mut state = State::initial(&own);
             state.effects.push(active.clone());
             let traces = logs.simulate(&own, &state).ok()?;
-            let change = logs.difference(&traces, &nominal.traces, 1.0);
-            Some(layout.whiten(&whitener, &change))
+            Some(response(&logs.difference(&traces, &nominal.traces, 1.0)))
         };
-        let columns = |active: &ActiveEffect| alone(active).iter().filter_map(&white).collect();
+        let columns = |active: &ActiveEffect| alone(active).iter().filter_map(&response).collect();
         let scales = Scales::of(machine);
         let library = shown(machine, Channels::Balance);
         let library = library.into_iter().map(|effect| {
@@ -61,16 +76,24 @@ impl Sight {
             machine: machine.clone(),
             set: set.clone(),
             known,
-            white: Box::new(white),
+            noise,
+            response: Box::new(response),
         })
     }
 
-    /// Expected fall of D of an effect alone, over what naming it takes.
+    /// Expected fall of D of an effect alone, over what naming it takes, or, where that is
+    /// less, the power that it has in the balance, over what is material.
     pub(super) fn gain_over_needed(&self, active: &ActiveEffect) -> f64 {
-        let Some(own) = (self.white)(active) else {
+        let Some(own) = (self.response)(active) else {
             return f64::INFINITY;
         };
-        self.beside(&[]).left(&own) / self.needed(active)
+        let left = self.beside(&[]).left(&own);
+        (left.gain / self.needed(active)).min(self.material(&left))
+    }
+
+    /// Power that is left over what is material.
+    fn material(&self, left: &Left) -> f64 {
+        left.power / (MATERIAL_OF_NOISE.powi(2) * self.noise)
     }
 
     /// What can be known of each of these effects.
@@ -79,11 +102,11 @@ impl Sight {
         all: &[ActiveEffect],
         rejected: &[String],
     ) -> Vec<Option<Foreseen>> {
-        let responses: Vec<Option<DVector<f64>>> = all.iter().map(|a| (self.white)(a)).collect();
+        let responses: Vec<Option<Response>> = all.iter().map(|a| (self.response)(a)).collect();
         let one = |i: usize| {
             let own = responses[i].as_ref()?;
             let others = (0..all.len()).filter(|j| *j != i);
-            let others: Vec<&DVector<f64>> = others.filter_map(|j| responses[j].as_ref()).collect();
+            let others: Vec<&Response> = others.filter_map(|j| responses[j].as_ref()).collect();
             Some(self.judge(&all[i], own, &others, rejected))
         };
         (0..all.len()).map(one).collect()
@@ -92,16 +115,17 @@ impl Sight {
     fn judge(
         &self,
         active: &ActiveEffect,
-        own: &DVector<f64>,
-        others: &[&DVector<f64>],
+        own: &Response,
+        others: &[&Response],
         rejected: &[String],
     ) -> Foreseen {
         let name = active.effect.name;
-        let (gain, needed) = (self.beside(others).left(own), self.needed(active));
+        let (left, needed) = (self.beside(others).left(own), self.needed(active));
+        let gain = left.gain;
         let is_other = |n: &str| n != name && !rejected.iter().any(|r| r == n);
-        let left_by = |columns: &[DVector<f64>]| {
-            let beside: Vec<&DVector<f64>> = others.iter().copied().chain(columns).collect();
-            self.beside(&beside).left(own)
+        let left_by = |columns: &[Response]| {
+            let beside: Vec<&Response> = others.iter().copied().chain(columns).collect();
+            self.beside(&beside).left(own).gain
         };
         let alike = |left: f64| left < TELLS_APART || left < ONE_CLASS * ONE_CLASS * gain;
         let others_of = || self.library.iter().filter(|(n, _)| is_other(n));
@@ -110,21 +134,21 @@ impl Sight {
         Foreseen {
             gain,
             above_noise: gain.max(0.0).sqrt(),
-            detectable: gain >= 2.0 * needed,
+            detectable: gain >= 2.0 * needed && self.material(&left) >= 2.0,
             class: class.map(|(n, _)| (*n).to_owned()).collect(),
             imitation: absent.then(|| self.imitation(own, rejected, needed)),
         }
     }
 
     /// Effects that leave the least, taken one after another.
-    fn imitation(&self, own: &DVector<f64>, rejected: &[String], needed: f64) -> Imitation {
-        let (mut by, mut taken): (Vec<String>, Vec<DVector<f64>>) = (Vec::new(), Vec::new());
-        let mut left = self.beside(&[]).left(own);
+    fn imitation(&self, own: &Response, rejected: &[String], needed: f64) -> Imitation {
+        let (mut by, mut taken): (Vec<String>, Vec<Response>) = (Vec::new(), Vec::new());
+        let mut left = self.beside(&[]).left(own).gain;
         while by.len() < MOST && left >= 2.0 * needed {
             let free = self.library.iter().filter(|(n, _)| is_known(n, rejected));
-            let with = |columns: &[DVector<f64>]| {
-                let beside: Vec<&DVector<f64>> = taken.iter().chain(columns).collect();
-                self.beside(&beside).left(own)
+            let with = |columns: &[Response]| {
+                let beside: Vec<&Response> = taken.iter().chain(columns).collect();
+                self.beside(&beside).left(own).gain
             };
             let scored = free.map(|(n, columns)| (with(columns), *n, columns));
             let Some((least, name, columns)) = scored.min_by(|a, b| a.0.total_cmp(&b.0)) else {
@@ -152,19 +176,26 @@ impl Sight {
         (2.0 * quantile).max(0.005 * self.set.layout.size() as f64)
     }
 
-    fn beside<'a>(&'a self, others: &[&'a DVector<f64>]) -> Beside<'a> {
-        let columns: Vec<&DVector<f64>> = self.known.iter().chain(others.iter().copied()).collect();
+    fn beside<'a>(&'a self, others: &[&'a Response]) -> Beside<'a> {
+        let columns: Vec<&Response> = self.known.iter().chain(others.iter().copied()).collect();
         let deviations = known_deviations(&self.machine);
         let normal = DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
+            let [one, other] = [i, j].map(|k| &columns[k].white);
             let own = match deviations.get(i) {
                 _ if i != j => 0.0,
                 Some(deviation) => deviation.powi(-2),
-                None => 1e-9 * columns[i].norm_squared() + f64::MIN_POSITIVE,
+                None => 1e-9 * one.norm_squared() + f64::MIN_POSITIVE,
             };
-            columns[i].dot(columns[j]) + own
+            one.dot(other) + own
         });
         Beside { columns, normal }
     }
+}
+
+/// Amplitudes as a vector of real numbers.
+fn plain(amplitudes: &[Vec<Complex<f64>>]) -> DVector<f64> {
+    let all = amplitudes.iter().flatten().flat_map(|a| [a.re, a.im]);
+    DVector::from_vec(all.collect())
 }
 
 fn is_known(name: &str, rejected: &[String]) -> bool {
@@ -192,16 +223,32 @@ fn alone(active: &ActiveEffect) -> Vec<ActiveEffect> {
 
 /// Least squares on columns, the known parameters' with their priors.
 struct Beside<'a> {
-    columns: Vec<&'a DVector<f64>>,
+    columns: Vec<&'a Response>,
     normal: DMatrix<f64>,
 }
 
+/// What columns leave of a response.
+struct Left {
+    /// In D.
+    gain: f64,
+    /// Of its amplitudes as they are.
+    power: f64,
+}
+
 impl Beside<'_> {
-    /// What they leave of a response, in D.
-    fn left(&self, own: &DVector<f64>) -> f64 {
-        let right = DVector::from_fn(self.columns.len(), |i, _| self.columns[i].dot(own));
+    fn left(&self, own: &Response) -> Left {
+        let of = |i: usize| self.columns[i].white.dot(&own.white);
+        let right = DVector::from_fn(self.columns.len(), |i, _| of(i));
         let solved = self.normal.clone().cholesky().map(|c| c.solve(&right));
-        own.norm_squared() - solved.map_or(0.0, |x| x.dot(&right))
+        let by = solved.unwrap_or_else(|| DVector::zeros(right.len()));
+        let mut plain = own.plain.clone();
+        for (column, by) in self.columns.iter().zip(by.iter()) {
+            plain.axpy(-by, &column.plain, 1.0);
+        }
+        Left {
+            gain: own.white.norm_squared() - by.dot(&right),
+            power: plain.norm_squared(),
+        }
     }
 }
 
@@ -212,6 +259,10 @@ mod tests {
     use super::*;
     use crate::hidden::{Exercise, Rough, Truth};
     use crate::matrix2::{Bench, Setting};
+
+    fn mean_square(series: &[f64]) -> f64 {
+        series.iter().map(|v| v * v).sum::<f64>() / series.len() as f64
+    }
 
     /// Of a linear response the fall of D goes with the square of its size, and what known
     /// parameters do costs their tolerance and no more: a payload is a part of the load.
@@ -240,13 +291,21 @@ mod tests {
         let [noisy, _] = truth
             .noise_logs(&bench.axis, &bench.motions[0], bench.every)
             .unwrap();
-        let sight = Sight::new(&bench.machine, &bench.set(0, &noisy).unwrap()).unwrap();
+        let set = bench.set(0, &noisy).unwrap();
+        // The machine is the model: what the balance leaves is small beside the current.
+        let traces = set.simulate(&bench.machine, &State::initial(&bench.machine));
+        let rest = mean_square(&set.rest(&traces.unwrap())[0][0]);
+        let all = mean_square(&set.logs[0].measured[0]);
+        assert!(rest < 1e-3 * all, "{rest} of {all}");
+
+        let sight = Sight::new(&bench.machine, &set).unwrap();
         let gain = |name: &str, size: f64| {
             let active = ActiveEffect {
                 effect: Effect::named(name).unwrap(),
                 values: vec![size],
             };
-            sight.gain_over_needed(&active) * sight.needed(&active)
+            let own = (sight.response)(&active).unwrap();
+            sight.beside(&[]).left(&own).gain
         };
         let ratio = gain("constant-load", 2.0) / gain("constant-load", 1.0);
         assert!((ratio - 4.0).abs() < 1e-6, "{ratio}");

@@ -131,8 +131,13 @@ impl LogSet {
     /// # Errors
     /// As [`LogSet::new`].
     pub fn again(&self, logs: Vec<Log>, machine: &Axis) -> Result<Self, ReplayError> {
-        let named =
-            |(log, as_before): (Log, &Prepared)| (as_before.name.clone(), log, as_before.period);
+        let named = |(log, as_before): (Log, &Prepared)| {
+            let period = match &as_before.answer {
+                Answer::Balance(balance) => balance.period(),
+                Answer::Replay(_) => as_before.period,
+            };
+            (as_before.name.clone(), log, period)
+        };
         let same = logs.len() == self.logs.len()
             && logs.iter().zip(&self.logs).all(|(log, before)| {
                 let reference = |log: &Log| reference_in(log).map(<[f64]>::to_vec).ok();

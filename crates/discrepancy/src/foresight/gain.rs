@@ -3,10 +3,11 @@
 use axis_sim::effects::{ActiveEffect, Effect};
 use nalgebra::{DMatrix, DVector};
 
-use super::Foresight;
+use super::{Foresight, Hypothesis};
 use crate::answers::State;
 use crate::estimate::bounded::bounded;
 use crate::estimate::known::{known_deviations, tolerances};
+use crate::name::gap::MATERIAL_OF_NOISE;
 use crate::name::search::needed;
 use crate::spectrum::Amplitudes;
 
@@ -17,29 +18,48 @@ impl Foresight {
         needed(&self.logs.layout, effect.parameters.len(), tried, 0.01)
     }
 
-    /// Expected fall of D of a response beside others; the shares at which known
-    /// parameters make up for most of it, and all columns beside it.
-    pub(super) fn gain_of(
+    /// What is left of a response beside others and known parameters.
+    pub(super) fn beside(
         &self,
-        noise: f64,
-        own: &DVector<f64>,
-        others: &[&DVector<f64>],
-        shares: &[f64],
-    ) -> (f64, Vec<f64>, Vec<DVector<f64>>) {
-        let mut columns: Vec<DVector<f64>> =
-            self.known.iter().map(|c| self.white(c, noise)).collect();
-        let off = columns
-            .iter()
-            .zip(shares)
-            .fold(DVector::zeros(own.len()), |sum, (c, &s)| sum + c * s);
-        columns.extend(others.iter().map(|&v| v.clone()));
-        let (gain, fitted) = self.gain(&columns, &(own + off), shares);
-        (gain, fitted, columns)
+        supposed: &Hypothesis,
+        own: &Amplitudes,
+        others: &[&Amplitudes],
+    ) -> Beside {
+        let (noise, shares) = (supposed.noise, &self.shares(supposed)[..]);
+        let all: Vec<&Amplitudes> = self.known.iter().chain(others.iter().copied()).collect();
+        let columns: Vec<DVector<f64>> = all.iter().map(|c| self.white(c, noise)).collect();
+        let off = |own: DVector<f64>| {
+            let pairs = columns.iter().zip(shares);
+            pairs.fold(own, |sum, (c, &s)| sum + c * s)
+        };
+        let (gain, fitted) = self.gain(&columns, &off(self.white(own, noise)), shares);
+        let mut left = own.clone();
+        for (i, column) in all.into_iter().enumerate() {
+            let by = shares.get(i).copied().unwrap_or(0.0) - fitted[i];
+            add(&mut left, column, by);
+        }
+        Beside {
+            gain,
+            material: self.material(&left, supposed),
+            shares: fitted[..shares.len()].to_vec(),
+            columns,
+        }
+    }
+
+    /// Power of a rest in the channel that shows it most, over what is material beside noise.
+    fn material(&self, rest: &Amplitudes, supposed: &Hypothesis) -> f64 {
+        let powers = self.logs.layout.power(std::slice::from_ref(rest));
+        let over = |(c, own): (usize, f64)| {
+            let by = supposed.of_channels.get(c).copied();
+            own / ((MATERIAL_OF_NOISE * by.unwrap_or(supposed.noise)).powi(2) * self.power[c])
+        };
+        let shares = powers.into_iter().enumerate().map(over);
+        shares.filter(|share| share.is_finite()).fold(0.0, f64::max)
     }
 
     /// D of what the columns leave of a change, the first of them known
     /// parameters' and kept inside their tolerance, less D of the truth, at whose
-    /// shares nothing is left; and the shares at which that is.
+    /// shares nothing is left; and the columns' factors at which that is.
     fn gain(
         &self,
         columns: &[DVector<f64>],
@@ -66,23 +86,36 @@ impl Foresight {
         let pairs = shares.iter().zip(&deviations);
         let price: f64 = pairs.map(|(s, deviation)| (s / deviation).powi(2)).sum();
         let left = change.norm_squared() - 2.0 * x.dot(&right) + x.dot(&(&normal * &x));
-        (left - price, x.rows(0, known).iter().copied().collect())
+        (left - price, x.iter().copied().collect())
     }
 
     pub(super) fn white(&self, amplitudes: &Amplitudes, noise: f64) -> DVector<f64> {
         self.logs.layout.whiten(&self.whitener, amplitudes) / noise
     }
 
-    /// What an effect does to the nominal machine's logs, beside noise; `None` where that
-    /// does not run, or the noise is no number above 0.
-    pub(super) fn response(&self, effect: &ActiveEffect, noise: f64) -> Option<DVector<f64>> {
-        if !(noise > 0.0 && noise.is_finite()) {
-            return None;
-        }
+    /// What an effect does to the nominal machine's logs; `None` where that does not run.
+    pub(super) fn response(&self, effect: &ActiveEffect) -> Option<Amplitudes> {
         let mut state = State::initial(&self.machine);
         state.effects.push(effect.clone());
         let traces = self.logs.simulate(&self.machine, &state).ok()?;
-        let change = self.logs.difference(&traces, &self.nominal.traces, 1.0);
-        Some(self.white(&change, noise))
+        Some(self.logs.difference(&traces, &self.nominal.traces, 1.0))
+    }
+}
+
+/// What is left of a response beside others.
+pub(super) struct Beside {
+    /// Expected fall of D.
+    pub(super) gain: f64,
+    /// Its power in the channel that shows it most, over what the search calls material.
+    pub(super) material: f64,
+    /// Shares at which known parameters make up for most of it.
+    pub(super) shares: Vec<f64>,
+    /// Known parameters and the others, whitened.
+    pub(super) columns: Vec<DVector<f64>>,
+}
+
+fn add(sum: &mut Amplitudes, column: &Amplitudes, by: f64) {
+    for (sum, column) in sum.iter_mut().zip(column) {
+        sum.iter_mut().zip(column).for_each(|(s, c)| *s += *c * by);
     }
 }

@@ -36,6 +36,8 @@ pub struct Foresight {
     whitener: Whitener,
     /// That noise, whitened: several runs.
     noise: Vec<DVector<f64>>,
+    /// Its mean power in each channel.
+    power: Vec<f64>,
 }
 
 /// Runs of noise.
@@ -63,6 +65,7 @@ impl Foresight {
         let whitener = layout.whitener(&layout.spectral_matrices(&run(0)?));
         let noise = (1..=RUNS).into_par_iter().map(run);
         let noise: Vec<Amplitudes> = noise.collect::<Result<_, ReplayError>>()?;
+        let power = layout.power(&noise);
         let noise = noise.iter().map(|n| layout.whiten(&whitener, n)).collect();
         Ok(Self {
             machine: machine.clone(),
@@ -72,6 +75,7 @@ impl Foresight {
             library,
             whitener,
             noise,
+            power,
         })
     }
 
@@ -84,30 +88,32 @@ impl Foresight {
     /// What can be known of each effect that is supposed; `None` for one that does not
     /// run on the nominal machine, and where the noise is no number above 0.
     pub fn foresee(&self, supposed: &Hypothesis) -> Vec<Option<Foreseen>> {
-        let responses: Vec<Option<DVector<f64>>> = supposed
-            .effects
-            .par_iter()
-            .map(|effect| self.response(effect, supposed.noise))
-            .collect();
+        let effects = &supposed.effects;
+        let responses: Vec<Option<Amplitudes>> = match is_above_zero(supposed.noise) {
+            true => effects.par_iter().map(|e| self.response(e)).collect(),
+            false => effects.iter().map(|_| None).collect(),
+        };
         let one = |i: usize| {
             let own = responses[i].as_ref()?;
             let others = (0..responses.len()).filter(|&j| j != i);
-            let others: Vec<&DVector<f64>> = others.filter_map(|j| responses[j].as_ref()).collect();
-            Some(self.judge(supposed, &supposed.effects[i], own, &others))
+            let others: Vec<&Amplitudes> = others.filter_map(|j| responses[j].as_ref()).collect();
+            Some(self.judge(supposed, &effects[i], own, &others))
         };
         (0..responses.len()).map(one).collect()
     }
 
     /// Expected fall of D of the first effect that is supposed, alone, over what naming it
-    /// takes; infinite where there is none, or none that runs.
+    /// takes, or, where that is less, the power by which it brings a channel nearer, over what
+    /// is material; infinite where there is none, or none that runs.
     pub fn gain_over_needed(&self, supposed: &Hypothesis) -> f64 {
         let only = supposed.effects.first().and_then(|active| {
-            let response = self.response(active, supposed.noise)?;
-            let shares = self.shares(supposed);
-            let (gain, ..) = self.gain_of(supposed.noise, &response, &[], &shares);
-            Some(gain / self.needed(active.effect))
+            let response = self.response(active)?;
+            let beside = self.beside(supposed, &response, &[]);
+            let evidence = beside.gain / self.needed(active.effect);
+            Some(evidence.min(beside.material))
         });
-        only.unwrap_or(f64::INFINITY)
+        only.filter(|_| is_above_zero(supposed.noise))
+            .unwrap_or(f64::INFINITY)
     }
 
     /// One share a known parameter.
@@ -121,23 +127,23 @@ impl Foresight {
         &self,
         supposed: &Hypothesis,
         active: &ActiveEffect,
-        own: &DVector<f64>,
-        others: &[&DVector<f64>],
+        own: &Amplitudes,
+        others: &[&Amplitudes],
     ) -> Foreseen {
         let (noise, effect) = (supposed.noise, active.effect);
-        let shares = self.shares(supposed);
-        let (gain, fitted_shares, columns) = self.gain_of(noise, own, others, &shares);
-        let pinned = pinned(&self.machine, &fitted_shares);
-        let fitted = Projector::new(&self.machine, &columns, &pinned);
-        let seen = fitted.reject(own);
+        let beside = self.beside(supposed, own, others);
+        let pinned = pinned(&self.machine, &beside.shares);
+        let fitted = Projector::new(&self.machine, &beside.columns, &pinned);
+        let seen = fitted.reject(&self.white(own, noise));
         let needed = self.needed(effect);
         let through = |column: &Amplitudes| fitted.reject(&self.white(column, noise));
         let above_noise = size_over_noise(&seen, &self.noise);
         let seen_above = above_noise >= 2f64.sqrt() * ABOVE_NOISE;
+        let enough = beside.gain >= 2.0 * needed && beside.material >= 2.0;
         Foreseen {
-            gain,
+            gain: beside.gain,
             above_noise,
-            detectable: gain >= 2.0 * needed && seen_above,
+            detectable: enough && seen_above,
             class: self.class_of(effect, &seen, through),
             imitation: self.imitation_of(effect, &seen, through, &supposed.rejected),
         }
@@ -186,4 +192,8 @@ impl Foresight {
             }
         })
     }
+}
+
+fn is_above_zero(noise: f64) -> bool {
+    noise > 0.0 && noise.is_finite()
 }

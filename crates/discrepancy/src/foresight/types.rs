@@ -13,6 +13,9 @@ pub struct Hypothesis {
     pub shares: Vec<f64>,
     /// Noise of its sensors, as a multiple above 0 of that of the [`super::Foresight`].
     pub noise: f64,
+    /// Noise of each channel that is fitted, RMS, likewise: what is too small beside it is
+    /// not named. Empty where that is as `noise` says.
+    pub of_channels: Vec<f64>,
     /// Names of effects that the search may not name.
     pub rejected: Vec<String>,
 }
@@ -25,8 +28,8 @@ pub struct Foreseen {
     pub gain: f64,
     /// Its size in deviations, of what a fit makes of noise.
     pub above_noise: f64,
-    /// Whether the gain is at least twice what the search asks for, and the size by as
-    /// much more.
+    /// Whether the gain is at least twice what the search asks for, and the size and what
+    /// it does to a channel beside its noise by as much more.
     pub detectable: bool,
     /// Effects of the library that do nearly the same on this log: the sine of
     /// their angle is below [`crate::ONE_CLASS`], or too little is left beside them.

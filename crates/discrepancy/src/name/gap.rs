@@ -112,7 +112,7 @@ pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
 /// Least by which something must bring a channel of the check logs nearer, RMS, as a share
 /// of the channel's noise: left out, it would raise the RMS of what is left by 1.6 %, which
 /// no engineer would look for.
-const MATERIAL: f64 = 0.18;
+pub const MATERIAL_OF_NOISE: f64 = 0.18;
 
 /// Least by which it must bring that channel nearer, as a share of the gap, RMS, that there
 /// was before anything was named: a thirtieth, a thousandth of its power.
@@ -146,7 +146,7 @@ pub(crate) fn is_material(
     };
     let least = |c: usize| {
         let of_gap = OF_GAP * gap.get(c).copied().unwrap_or(0.0);
-        (MATERIAL * floors[c].rms).max(of_gap)
+        (MATERIAL_OF_NOISE * floors[c].rms).max(of_gap)
     };
     let most = (0..set.channels.len()).map(|c| nearer(c) / least(c).max(f64::MIN_POSITIVE));
     let most = most.fold(0.0, f64::max);

@@ -175,6 +175,18 @@ impl Layout {
         amplitudes.len() == self.bands.len() && self.bands.iter().zip(amplitudes).all(like)
     }
 
+    /// Power of each channel, the mean of these runs.
+    pub(crate) fn power(&self, runs: &[Amplitudes]) -> Vec<f64> {
+        let mut power = vec![0.0; self.channels];
+        let bins = runs.iter().flatten();
+        for bin in bins.flat_map(|log| log.chunks_exact(self.channels)) {
+            for (sum, value) in power.iter_mut().zip(bin) {
+                *sum += value.norm_sqr() / runs.len() as f64;
+            }
+        }
+        power
+    }
+
     /// Number of real numbers in the amplitudes.
     pub fn size(&self) -> usize {
         let bins: usize = self.counts.iter().sum();
