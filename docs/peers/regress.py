@@ -14,6 +14,10 @@ RELATIVE_DEVIATION = 0.1
 WORTH = 0.01
 THRESHOLDS = (0.02, 0.05, 0.1, 0.2, 0.4)
 MODELS = 20
+# SINDy-PI: weights of the regulariser as shares of that at which nothing is left where a column
+# is the sought one, and the least coefficient of normalised columns.
+PI_WEIGHTS = (0.01, 0.03, 0.1, 0.3)
+PI_LEAST = 0.02
 INCLUSION = 0.9
 
 
@@ -127,32 +131,30 @@ def sindy(fit, check, names, own):
 
 
 def sindy_pi(fit, check, names, own):
-    """SINDy-PI: the implicit form 0 = f(force, a, v, ...), solved for each of the machine's own
-    terms and the residual; the one of least relative check error is taken and written for
-    the residual. PySINDy's own regulariser (l1, weight per sample), refitted without bias.
+    """SINDy-PI: the implicit form 0 = f(residual, a, v, ...), solved for the residual and for
+    each of the machine's own terms (PySINDy's l1 regulariser, normalised columns).
+
+    A relation in which the residual stands is written for the residual and refitted by least
+    squares, without bias; of these the one with fewest terms is taken whose check error is
+    within WORTH of the least. "Nothing" is among them.
     """
     scale = np.sqrt(np.mean(fit**2, axis=0))
     scale[scale == 0.0] = 1.0
-    theta, other = fit / scale, check / scale
-    tried = []
-    for weight in (0.01, 0.03, 0.1, 0.3):
+    theta = fit / scale
+    tried = [(rms(check[:, 0]), [], np.zeros(0), np.zeros((0, 0)))]
+    for weight in PI_WEIGHTS:
         for left in range(own + 1):
-            opt = ps.SINDyPI(reg_weight_lam=weight * np.sqrt(len(theta)), regularizer="l1", model_subset=[left], tol=1e-4)
+            opt = ps.SINDyPI(reg_weight_lam=2.0 * weight * len(theta), regularizer="l1", model_subset=[left], tol=1e-4)
             with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
                 warnings.simplefilter("ignore")
                 opt.fit(theta, theta)
             c = np.asarray(opt.coef_)[left]
-            inside = [k for k in np.flatnonzero(np.abs(c) > 0.02) if k != left]
-            if not inside:
+            relation = {left, *np.flatnonzero(np.abs(c) > PI_LEAST)}
+            if 0 not in relation or len(relation) == 1:
                 continue
-            refit, _, _ = fitted(theta[:, inside], theta[:, left])
-            error = rms(other[:, left] - other[:, inside] @ refit) / rms(other[:, left])
-            if left == 0 or 0 in inside:
-                tried.append((error, left, inside))
-    if not tried:
-        return Terms([], [], [])
+            inside = sorted(relation - {0})
+            c, covariance, _ = fitted(fit[:, inside], fit[:, 0])
+            tried.append((rms(check[:, 0] - check[:, inside] @ c), inside, c, covariance))
     least = min(t[0] for t in tried)
-    _, left, inside = min((t for t in tried if t[0] <= (1.0 + WORTH) * least), key=lambda t: len(t[2]))
-    inside = [k for k in [left, *inside] if k != 0]
-    c, covariance, _ = fitted(fit[:, inside], fit[:, 0])
-    return Terms([names[k - 1] for k in inside], c, np.sqrt(np.diag(covariance)))
+    _, inside, c, covariance = min((t for t in tried if t[0] <= (1.0 + WORTH) * least), key=lambda t: len(t[1]))
+    return Terms([names[k - 1] for k in inside], c, np.sqrt(np.maximum(np.diag(covariance), 0.0)))

@@ -14,7 +14,9 @@ CHI2 = (6.63, 9.21, 11.34)
 def sizes(terms):
     """Coefficient of each group: the amplitude of a pair."""
     together = groups(terms.names)
-    value = {g: float(np.hypot.reduce([terms.value[terms.names[k]] for k in ks])) if len(ks) > 1 else terms.value[g] for g, ks in together.items()}
+    one = lambda ks: [terms.value[terms.names[k]] for k in ks]
+    # The sign of a single term is kept.
+    value = {g: float(one(ks)[0] if len(ks) == 1 else np.hypot.reduce(one(ks))) for g, ks in together.items()}
     deviation = {g: float(max(terms.deviation[terms.names[k]] for k in ks)) for g, ks in together.items()}
     return value, deviation
 
