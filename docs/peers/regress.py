@@ -18,6 +18,10 @@ MODELS = 20
 # is the sought one, and the least coefficient of normalised columns.
 PI_WEIGHTS = (0.01, 0.03, 0.1, 0.3)
 PI_LEAST = 0.02
+# Candidates that SINDy-PI solves for beside the residual.
+PI_LEFTS = 3
+# Share of a candidate that the machine's own columns must leave, or it is one of them.
+LEFT = 0.02
 INCLUSION = 0.9
 
 
@@ -101,60 +105,78 @@ def idim(fit, check, names, own):
     return Terms([names[k] for k in inside], c, np.sqrt(np.diag(covariance)), covariance[:own, :own])
 
 
-def sindy(fit, check, names, own):
-    """E-SINDy: STLSQ on bagged rows; a term stays whose inclusion probability is 90 %.
+def without_own(fit, check, own):
+    """The residual and candidates with the machine's own columns fitted out of each: what a
+    threshold or a regulariser then does leaves these as free as IDIM-LS does.
 
-    Columns and residual are normalised, so that the threshold is a share of the residual;
-    of the thresholds the one with fewest terms is taken whose check error is within WORTH of
-    the least. Coefficients are those of least squares on what stays.
+    Candidates of which that leaves nothing but a numerical rest are null.
     """
-    y, w = fit[:, 0], fit[:, 1:]
-    scale, size = np.sqrt(np.mean(w**2, axis=0)), rms(y)
+    y, told, more = fit[:, :1], fit[:, 1 : 1 + own], fit[:, 1 + own :]
+    by, *_ = np.linalg.lstsq(told, np.column_stack([y, more]), rcond=None)
+    rest = np.column_stack([y, more]) - told @ by
+    scale = np.sqrt(np.mean(rest**2, axis=0))
+    before = np.sqrt(np.mean(np.column_stack([y, more]) ** 2, axis=0))
+    empty = scale <= LEFT * before
+    empty[0] = False
+    rest[:, empty], scale[empty] = 0.0, 1.0
     scale[scale == 0.0] = 1.0
-    np.random.seed(0)
+    return rest / scale
+
+
+def with_own(candidates, fit, check, names, own):
+    """Of sets of candidates the best: each term must take WORTH of the check log's error
+    away. The machine's own terms are in all; no candidate is a set too.
+    """
     tried = []
+    for chosen in {(), *candidates}:
+        inside = [*range(1, 1 + own), *chosen]
+        c, covariance, _ = fitted(fit[:, inside], fit[:, 0])
+        error = np.log(rms(check[:, 0] - check[:, inside] @ c))
+        cost = WORTH * len(groups([names[k - 1] for k in chosen]))
+        tried.append((error + cost, inside, c, covariance))
+    _, inside, c, covariance = min(tried, key=lambda t: (t[0], t[1]))
+    deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    return Terms([names[k - 1] for k in inside], c, deviation, covariance[:own, :own])
+
+
+def sindy(fit, check, names, own):
+    """E-SINDy: STLSQ on bagged rows; a term stays whose inclusion probability is INCLUSION.
+
+    Columns and residual are normalised, so that the threshold is a share of the residual.
+    Coefficients are those of least squares on what stays.
+    """
+    rest = without_own(fit, check, own)
+    np.random.seed(0)
+    candidates = []
     for threshold in THRESHOLDS:
-        opt = ps.EnsembleOptimizer(ps.STLSQ(threshold=threshold, alpha=1e-3 * len(y), max_iter=50), bagging=True, n_models=MODELS)
+        stlsq = ps.STLSQ(threshold=threshold, alpha=1e-3 * len(rest), max_iter=50)
+        opt = ps.EnsembleOptimizer(stlsq, bagging=True, n_models=MODELS)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            opt.fit(w / scale, (y / size)[:, None])
+            opt.fit(rest[:, 1:], rest[:, :1])
         included = np.mean([c[0] != 0.0 for c in opt.coef_list], axis=0)
-        inside = [k for k in range(len(names)) if included[k] >= INCLUSION]
-        c, covariance, _ = fitted(w[:, inside], y) if inside else (np.zeros(0), np.zeros((0, 0)), y)
-        error = rms(check[:, 0] - check[:, 1:][:, inside] @ c)
-        bagged = [o[0][inside] * size / scale[inside] for o in opt.coef_list]
-        tried.append((error, inside, c, covariance, np.std(bagged, axis=0)))
-    least = min(t[0] for t in tried)
-    _, inside, c, covariance, bagged = min((t for t in tried if t[0] <= (1.0 + WORTH) * least), key=lambda t: len(t[1]))
-    deviation = np.maximum(np.sqrt(np.maximum(np.diag(covariance), 0.0)), bagged)
-    return Terms([names[k] for k in inside], c, deviation)
+        candidates.append(tuple(1 + own + np.flatnonzero(included >= INCLUSION)))
+    return with_own(candidates, fit, check, names, own)
 
 
 def sindy_pi(fit, check, names, own):
-    """SINDy-PI: the implicit form 0 = f(residual, a, v, ...), solved for the residual and for
-    each of the machine's own terms (PySINDy's l1 regulariser, normalised columns).
+    """SINDy-PI: the implicit form 0 = f(residual, candidates), solved for the residual and for
+    each candidate that is like it (PySINDy's l1 regulariser, normalised columns).
 
     A relation in which the residual stands is written for the residual and refitted by least
-    squares, without bias; of these the one with fewest terms is taken whose check error is
-    within WORTH of the least. "Nothing" is among them.
+    squares, without bias.
     """
-    scale = np.sqrt(np.mean(fit**2, axis=0))
-    scale[scale == 0.0] = 1.0
-    theta = fit / scale
-    tried = [(rms(check[:, 0]), [], np.zeros(0), np.zeros((0, 0)))]
+    theta = without_own(fit, check, own)
+    alike = np.abs(theta[:, 1:].T @ theta[:, 0])
+    lefts = [0, *(1 + np.argsort(-alike)[:PI_LEFTS])]
+    candidates = []
     for weight in PI_WEIGHTS:
-        for left in range(own + 1):
-            opt = ps.SINDyPI(reg_weight_lam=2.0 * weight * len(theta), regularizer="l1", model_subset=[left], tol=1e-4)
+        for left in lefts:
+            opt = ps.SINDyPI(reg_weight_lam=2.0 * weight * len(theta), regularizer="l1", model_subset=[int(left)], tol=1e-4)
             with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
                 warnings.simplefilter("ignore")
                 opt.fit(theta, theta)
-            c = np.asarray(opt.coef_)[left]
-            relation = {left, *np.flatnonzero(np.abs(c) > PI_LEAST)}
-            if 0 not in relation or len(relation) == 1:
-                continue
-            inside = sorted(relation - {0})
-            c, covariance, _ = fitted(fit[:, inside], fit[:, 0])
-            tried.append((rms(check[:, 0] - check[:, inside] @ c), inside, c, covariance))
-    least = min(t[0] for t in tried)
-    _, inside, c, covariance = min((t for t in tried if t[0] <= (1.0 + WORTH) * least), key=lambda t: len(t[1]))
-    return Terms([names[k - 1] for k in inside], c, np.sqrt(np.maximum(np.diag(covariance), 0.0)))
+            relation = {left, *np.flatnonzero(np.abs(np.asarray(opt.coef_)[left]) > PI_LEAST)}
+            if 0 in relation:
+                candidates.append(tuple(own + k for k in sorted(relation - {0})))
+    return with_own(candidates, fit, check, names, own)

@@ -45,7 +45,7 @@ def named(terms, told, tolerance, stiction):
     found, gain = [], common_gain(terms, told)
     beyond = lambda t, base: abs(value[t]) > tolerance * abs(base) + BEYOND * deviation[t]
     own = [t for t in told if t in value and beyond(t, told[t])]
-    if gain is not None and abs(gain) > tolerance and own:
+    if gain is not None and abs(gain) > tolerance and len(own) > 1:
         found.append(("gain", GAIN))
         value["gain"], own = gain, []
     found += [(t, EFFECTS[t]) for t in own]
