@@ -35,15 +35,17 @@ def common_gain(terms, told):
     return share if agrees else None
 
 
-def named(terms, told, tolerance, stiction):
-    """Names as a list of (effects, estimates): what terms that survive say.
+def named(terms, told, tolerance, machine):
+    """Names as a list of (term, effects), and coefficients: what terms that survive say.
 
     An own parameter within the tolerance that was told, give or take BEYOND standard
-    deviations, is a recalibration and no name.
+    deviations, is a recalibration and no name. The gain of the effort is itself known to that
+    tolerance alone, and a parameter over it to about twice of it.
     """
+    own_off = (1.0 + tolerance) / (1.0 - tolerance) - 1.0
     value, deviation = sizes(terms)
     found, gain = [], common_gain(terms, told)
-    beyond = lambda t, base: abs(value[t]) > tolerance * abs(base) + BEYOND * deviation[t]
+    beyond = lambda t, base: abs(value[t]) > own_off * abs(base) + BEYOND * deviation[t]
     own = [t for t in told if t in value and beyond(t, told[t])]
     if gain is not None and abs(gain) > tolerance and len(own) > 1:
         found.append(("gain", GAIN))
@@ -51,7 +53,7 @@ def named(terms, told, tolerance, stiction):
     found += [(t, EFFECTS[t]) for t in own]
     for term in value:
         kind = term.split()[0]
-        if term in told or term == "gain" or (kind == "stribeck" and not beyond(term, stiction)):
+        if term in told or term == "gain" or (kind == "stribeck" and not beyond(term, machine.stiction)):
             continue
         effects = EFFECTS.get(kind, frozenset())
         if kind in ("bump", "stribeck", "gravity", "turn") and any(e == effects for _, e in found):
