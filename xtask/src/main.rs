@@ -12,7 +12,7 @@ use clap::{Parser, Subcommand};
 use feed_axis::cli::{Global, finish, parse, start};
 use feed_axis::commands::export::drive;
 
-use commands::{bench, crates, independent, layers, names, publish, torture};
+use commands::{bench, crates, independent, layers, names, peers_cases, publish, torture};
 use jobs::Job;
 
 /// Dynamic error of ball-screw axes: simulate, predict, compensate.
@@ -38,6 +38,8 @@ enum Command {
     ExportDrive(drive::Options),
     /// Search logs of a simulator that shares no code with this one, and score it
     Independent(independent::Options),
+    /// Write cases of the second matrix as folders, for other programs to search (docs/peers.md)
+    PeersCases(peers_cases::Options),
     /// Measure the speed of every hot path (docs/performance.md)
     Bench(bench::Options),
     /// Try damaged inputs and disturbed runs, and judge what comes of them
@@ -59,6 +61,7 @@ fn main() -> ExitCode {
         Command::User(command) => command.run(),
         Command::ExportDrive(options) => drive::command(options),
         Command::Independent(options) => independent::command(options),
+        Command::PeersCases(options) => peers_cases::command(options),
         Command::Bench(options) => bench::command(options),
         Command::Torture(options) => torture::command(options),
         Command::Layers => layers::command(),

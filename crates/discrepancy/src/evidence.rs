@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use crate::answers::LogSet;
 use crate::judge::{Discovered, discovery};
-use crate::logs::{IntakeError, NamedLog, check_distinct, set_apart};
+use crate::logs::{LogSetError, NamedLog, check_distinct, set_apart};
 use crate::name::search::{Found, SearchError, Settings, search};
 
 /// The logs of one search.
@@ -26,7 +26,7 @@ pub struct Evidence {
 pub enum EvidenceError {
     /// The same samples in two places.
     #[error(transparent)]
-    Intake(#[from] IntakeError),
+    Intake(#[from] LogSetError),
     /// A log that cannot be compared with this machine, or a machine that does not run.
     #[error(transparent)]
     Replay(#[from] ReplayError),

@@ -1,6 +1,6 @@
 //! Timoshenko beams.
 
-use beam_fem::{Beam, BeamError, Dof, Material, Mesh, Section, lowest_modes};
+use beam_fem::{Beam, BeamError, CrossSection, Dof, Material, Mesh, lowest_modes};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
@@ -25,7 +25,7 @@ impl PyBeam {
     ) -> PyResult<Self> {
         let made = || -> Result<Beam, BeamError> {
             let material = Material::new(youngs_modulus_pa, poisson_ratio, density_kg_m3)?;
-            let section = Section::solid_circle(diameter_m, &material)?;
+            let section = CrossSection::solid_circle(diameter_m, &material)?;
             Ok(Beam::new(
                 section,
                 material,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use cfnn::artifact::{network_from_bytes, network_to_bytes};
-use cfnn::train::{Dataset, Settings, Trainer};
+use cfnn::train::{Dataset, Trainer, TrainingSettings};
 use cfnn::{Network, Shape};
 use numpy::{
     AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods,
@@ -54,11 +54,11 @@ impl PyNetwork {
             hidden,
             outputs,
         };
-        let settings = Settings {
+        let settings = TrainingSettings {
             epochs,
             seed,
             threads,
-            ..Settings::default()
+            ..TrainingSettings::default()
         };
         long(py, progress, move |hook| {
             let scaling = data.scaling().map_err(raise::<NetworkError>)?;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use axis_sim::ClosedLoop;
 use common::{refuse, root, run, succeed, text};
 use compensator::{Compensator, Correction, GuardLimits, Sample};
-use controller_export::Controller;
+use controller_export::ExportedController;
 use controller_export::c::{self, Precision};
 use feed_axis::commands::{identify, train};
 use feed_axis::context::{Common, Context};
@@ -112,7 +112,7 @@ fn a_trained_network_leaves_as_c_as_a_component_and_as_onnx() {
         ];
         let told = exported("c", run, &[&to[..], &[out.to_str().unwrap()]].concat());
         let limits = limits(&told["guard"]);
-        let controller = Controller::of(&predictors, "network_lugre", limits).unwrap();
+        let controller = ExportedController::of(&predictors, "network_lugre", limits).unwrap();
         let code = c::export(&controller, precision, None).unwrap();
         for made in [&code.header, &code.source] {
             let file = std::fs::read_to_string(out.join(&made.name)).unwrap();
@@ -143,7 +143,7 @@ fn a_trained_network_leaves_as_c_as_a_component_and_as_onnx() {
 fn same_bits(
     folder: &Path,
     predictors: &Predictors,
-    controller: &Controller,
+    controller: &ExportedController,
     precision: Precision,
     samples: &[Sample],
 ) {

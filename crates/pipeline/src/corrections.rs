@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::PipelineError;
 use crate::strategies::{Predictors, StrategyKind};
-use crate::tracking::{Planned, follow, plan_all};
+use crate::tracking::{PlannedTrajectory, follow, plan_all};
 
 /// The greatest magnitudes along some motions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,7 +45,7 @@ pub fn greatest(
 ) -> Result<Greatest, PipelineError> {
     let planned = plan_all(&predictors.axis)?;
     let closed_loop = ClosedLoop::new(machine)?;
-    let one = |planned: &Planned| {
+    let one = |planned: &PlannedTrajectory| {
         let motion = Arc::new(planned.motion.clone());
         let mut compensator = kind.compensator(predictors, motion)?;
         let mut watched = Watched {

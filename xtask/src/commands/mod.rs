@@ -8,5 +8,6 @@ pub mod independent;
 pub mod layers;
 mod matrix_job;
 pub mod names;
+pub mod peers_cases;
 pub mod publish;
 pub mod torture;

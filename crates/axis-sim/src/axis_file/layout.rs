@@ -279,7 +279,9 @@ pub const TABLES_WITHOUT_PARTS: &[&str] = &[
 fn section_keys() -> Vec<Key> {
     let parts = SECTIONS.iter().map(|(table, ..)| *table);
     let lists = ["trajectory", "load", "effects"].map(|name| Key::of_tables(name, Vec::new()));
-    let all = parts.chain(TABLES_WITHOUT_PARTS.iter().copied()).map(|name| Key::of_table(name, Vec::new()));
+    let all = parts
+        .chain(TABLES_WITHOUT_PARTS.iter().copied())
+        .map(|name| Key::of_table(name, Vec::new()));
     all.chain(lists)
         .chain(["name", "description"].map(text))
         .chain([count("schema", 1, 2)])

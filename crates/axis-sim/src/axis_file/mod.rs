@@ -22,9 +22,9 @@ use toml::de::DeTable;
 use crate::axis::Axis;
 use crate::part::Key;
 pub use error::AxisFileError;
-pub use layout::TABLES_WITHOUT_PARTS;
 use error::Source;
 use fields::{Fields, Record};
+pub use layout::TABLES_WITHOUT_PARTS;
 pub use registry::Registry;
 
 /// Size beyond which a file is no axis file, bytes.

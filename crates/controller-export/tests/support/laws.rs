@@ -167,9 +167,8 @@ pub fn double(
     }
     let kind = named(STRATEGIES, name).ok_or("no such strategy")?;
     let motion = predictors.axis.plan(&predictors.axis.trajectories[0])?;
-    Ok(Box::new(
-        kind.compensator(predictors, std::sync::Arc::new(motion))?,
-    ))
+    let made: Box<dyn Compensator> = kind.compensator(predictors, std::sync::Arc::new(motion))?;
+    Ok(Box::new(made))
 }
 
 /// The same in single precision, of the numbers that are exported.

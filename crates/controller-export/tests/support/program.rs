@@ -59,7 +59,7 @@ pub struct Course<'a> {
 pub fn write_course(
     folder: &Path,
     predictors: &Predictors,
-    controller: &Controller,
+    controller: &ExportedController,
     precision: Precision,
     course: &Course<'_>,
 ) -> Outcome<()> {

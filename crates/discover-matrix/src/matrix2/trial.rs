@@ -1,8 +1,10 @@
 //! One case: logs made, searched blind, and what was hidden kept beside what was said.
 
+use axis_log::Log;
 use axis_sim::ReplayError;
 use discrepancy::{
-    Discovered, Found, LogSet, Proposal, SearchError, Settings, judged, search, search_with,
+    Discovered, Foreseen, Found, LogSet, Proposal, SearchError, Settings, judged, search,
+    search_with,
 };
 
 use super::bench::Bench;
@@ -11,7 +13,42 @@ use super::outcome::CaseOutcome;
 use crate::hidden::Truth;
 use crate::matrix::{Split, estimates, is_a_rival, named};
 
+/// A case as it is given to whoever is to find what is hidden, beside the truth.
+#[derive(Clone, Debug)]
+pub struct Given {
+    /// The case, its sizes scaled.
+    pub case: Case,
+    /// What can be known of each hidden effect beforehand; `None` of one that does not run on
+    /// the machine as its file says.
+    pub foreseen: Vec<Option<Foreseen>>,
+    /// Shares by which known parameters are off, in the order of [`axis_sim::Axis::known`].
+    pub shares: Vec<f64>,
+    /// Logs to fit to and to check on, with the channels that the case shows.
+    pub logs: [Log; 2],
+    /// Time between their samples, s.
+    pub period: f64,
+}
+
 impl Bench {
+    /// The logs of a case of this bench's plot, as [`Bench::try_case`] searches them.
+    ///
+    /// # Errors
+    /// [`ReplayError`] where the machine does not run.
+    pub fn given(&self, case: &Case) -> Result<Given, ReplayError> {
+        let (case, foreseen) = self.foreseen(case)?;
+        let truth = self.truth(&case);
+        let shown = |place: usize| -> Result<Log, ReplayError> {
+            Ok(self.setting.channels.of(&self.log(&truth, place)?)?)
+        };
+        Ok(Given {
+            logs: [shown(0)?, shown(1)?],
+            shares: truth.shares,
+            period: self.every as f64 * self.axis.period,
+            case,
+            foreseen,
+        })
+    }
+
     /// Runs a case of this bench's plot. What cannot be run is said in
     /// [`CaseOutcome::failed`].
     pub fn try_case(&self, case: &Case) -> CaseOutcome {
@@ -77,10 +114,14 @@ impl Bench {
     }
 
     fn logs(&self, truth: &Truth, place: usize) -> Result<LogSet, ReplayError> {
+        self.set(place, &self.log(truth, place)?)
+    }
+
+    /// With all channels.
+    fn log(&self, truth: &Truth, place: usize) -> Result<Log, ReplayError> {
         let mut truth = truth.clone();
         truth.seed = truth.seed.wrapping_mul(2) + place as u64;
-        let log = truth.log(&self.axis, &self.motions[place], self.every)?;
-        self.set(place, &log)
+        truth.log(&self.axis, &self.motions[place], self.every)
     }
 
     /// Runs the proposed motion on the hidden machine and searches both logs with the whole

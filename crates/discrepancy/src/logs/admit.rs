@@ -1,12 +1,12 @@
 //! A log as it is taken into a search, or refused.
 
 use axis_log::Log;
-use axis_log::quality::Verdict;
+use axis_log::quality::CrossCheckVerdict;
 use axis_sim::Axis;
 
 use super::apart::NamedLog;
 use super::checks::check_log;
-use super::error::IntakeError;
+use super::error::LogSetError;
 use super::relations::cross_checks;
 use super::start::from_rest;
 
@@ -23,16 +23,16 @@ pub fn needed_channels(machine: &Axis) -> Vec<&'static str> {
 /// `notes`: channels that agree only nearly, and what was cut away.
 ///
 /// # Errors
-/// [`IntakeError`] as [`check_log`] and [`from_rest`] give it.
+/// [`LogSetError`] as [`check_log`] and [`from_rest`] give it.
 pub fn admit(
     name: String,
     log: Log,
     machine: &Axis,
     notes: &mut Vec<String>,
-) -> Result<NamedLog, IntakeError> {
+) -> Result<NamedLog, LogSetError> {
     let period = check_log(&name, &log, machine)?;
     let findings = cross_checks(&log, machine).into_iter();
-    let unsure = findings.filter(|finding| finding.verdict == Verdict::Unsure);
+    let unsure = findings.filter(|finding| finding.verdict == CrossCheckVerdict::Unsure);
     notes.extend(unsure.map(|finding| format!("{name}: to be looked at: {finding}")));
     let (log, note) = from_rest(&name, log, period, machine)?;
     notes.extend(note);

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use axis_log::Log;
 use axis_log::intake::{Options as Intake, files, prepare};
-use axis_log::quality::CrossCheckVerdict as Agreement;
 use axis_sim::Axis;
 use axis_sim::effects::Scales;
 use clap::Args;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use compensator::GuardLimits;
-use controller_export::{Controller, EXPORTED, ExportError, NamedText};
+use controller_export::{EXPORTED, ExportError, ExportedController, NamedText};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use pipeline::strategies::StrategyKind;
 
@@ -89,7 +89,7 @@ impl Options {
         let context = self.results.open()?;
         let predictors = validate::predictors(&context, self.strategy.needs)?;
         let failed = || format!("no export of {name} for {}", self.results.axis.display());
-        let made = Controller::of(&predictors, name, UNTIL_KNOWN).into_diagnostic();
+        let made = ExportedController::of(&predictors, name, UNTIL_KNOWN).into_diagnostic();
         let mut controller = made.wrap_err_with(failed)?;
         let simulated = self.limits.simulated(&context, &predictors, self.strategy);
         let simulated = simulated.wrap_err_with(failed)?;

@@ -3,7 +3,7 @@
 use axis_sim::SixDigits;
 use clap::Args;
 use compensator::GuardLimits;
-use controller_export::Controller;
+use controller_export::ExportedController;
 use miette::{IntoDiagnostic, Result};
 use pipeline::PipelineError;
 use pipeline::corrections::{Greatest, greatest};
@@ -98,7 +98,7 @@ impl Options {
 /// A compensator with its guard.
 pub struct Guarded {
     /// The compensator.
-    pub controller: Controller,
+    pub controller: ExportedController,
     /// Whether limits are made of simulated corrections.
     pub is_simulated: bool,
 }
@@ -131,7 +131,7 @@ impl Guarded {
 
     /// Its limits in a line, for people.
     pub fn words(&self) -> String {
-        let Controller { limits, units, .. } = &self.controller;
+        let ExportedController { limits, units, .. } = &self.controller;
         let mut words = format!(
             "guard: at most {} µ{} and {} {}",
             SixDigits(1e6 * limits.position),
