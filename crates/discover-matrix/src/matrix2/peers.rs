@@ -132,7 +132,7 @@ mod tests {
     fn machines() -> Vec<Axis> {
         let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/");
         let files = ["liu2025.toml", "joint.toml", "linear-motor.toml"];
-        let read = |file: &str| Axis::read(root.to_owned() + file).unwrap();
+        let read = |file: &str| Axis::read((root.to_owned() + file).as_ref()).unwrap();
         files.map(read).to_vec()
     }
 
@@ -161,13 +161,11 @@ mod tests {
     #[test]
     fn effects_come_up_before_any_is_taken_thrice() {
         let all = peer_cases(&machines(), 40, 5).unwrap();
-        let of = |name: &str| {
-            all.iter()
-                .filter(|c| c.hidden.iter().any(|h| h.name == name))
-        };
-        let most = IN_TERMS.iter().map(|name| of(name).count()).max();
+        let hides = |case: &&Case, name: &str| case.hidden.iter().any(|h| h.name == name);
+        let count = |name: &&str| all.iter().filter(|c| hides(c, name)).count();
+        let most = IN_TERMS.iter().map(|name| count(name)).max();
         assert!(most <= Some(3), "{most:?}");
-        let kinds = IN_TERMS.iter().filter(|name| of(name).count() > 0).count();
+        let kinds = IN_TERMS.iter().filter(|name| count(name) > 0).count();
         assert!(kinds >= 12, "{kinds}");
     }
 
