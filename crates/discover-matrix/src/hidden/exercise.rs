@@ -1,7 +1,8 @@
 //! Motions that logs are taken on.
 
-use axis_sim::Axis;
 use axis_sim::effects::{Measure, Scales};
+use axis_sim::{Axis, ClosedLoop, Cycle};
+use compensator::NoCompensation;
 use serde::{Deserialize, Serialize};
 use trajectories::{Limits, Program, Step, TrajectoryError};
 
@@ -40,6 +41,42 @@ impl Exercise {
 /// # Errors
 /// [`TrajectoryError`] where it does not fit the axis.
 pub fn exercise(axis: &Axis, kind: Exercise, check: bool) -> Result<Program, TrajectoryError> {
+    let (mut chirp, mut program) = (1.0, program(axis, kind, check, 1.0)?);
+    // A loop that follows the chirp needs a multiple of the force that a slow one does.
+    while kind == Exercise::WithChirp && chirp > LEAST_CHIRP && effort(axis, &program) > OF_LIMIT {
+        chirp *= 0.5;
+        program = self::program(axis, kind, check, chirp)?;
+    }
+    Ok(program)
+}
+
+/// Greatest effort that an exercise asks for, as a share of the actuator's limit: at the limit
+/// the least change of a parameter changes when it is left again, and the rest of the log.
+const OF_LIMIT: f64 = 0.8;
+
+/// Share of the chirp below which it is left as it is.
+const LEAST_CHIRP: f64 = 0.02;
+
+/// Greatest effort on a motion, as a share of the actuator's limit; 0 where the axis does not
+/// run, which whoever simulates it is told.
+fn effort(axis: &Axis, program: &Program) -> f64 {
+    let mut most = 0.0_f64;
+    let run = ClosedLoop::new(axis).map(|looped| {
+        let mut seen = |cycle: &Cycle| most = most.max(cycle.command.effort.abs());
+        looped.without_noise().run(program, &mut NoCompensation, &mut seen)
+    });
+    match run {
+        Ok(_) => most / axis.actuator.limit(),
+        Err(_) => 0.0,
+    }
+}
+
+fn program(
+    axis: &Axis,
+    kind: Exercise,
+    check: bool,
+    chirp: f64,
+) -> Result<Program, TrajectoryError> {
     let start = axis.stroke.start;
     let (length, share) = if check { (0.85, 0.8) } else { (1.0, 1.0) };
     let scales = Scales::of(axis);
@@ -72,8 +109,8 @@ pub fn exercise(axis: &Axis, kind: Exercise, check: bool) -> Result<Program, Tra
         steps.extend([to(start + length, 0.25)?, rest, to(start, 0.25)?, rest]);
     }
     if kind == Exercise::WithChirp {
-        let amplitude = if check { 2.5e-5 } else { 3e-5 };
-        let chirp = trajectories::Chirp {
+        let amplitude = chirp * if check { 2.5e-5 } else { 3e-5 };
+        let sweep = trajectories::Chirp {
             amplitude: amplitude * scales.ratio(Measure::Acceleration),
             from_frequency: 2.0,
             to_frequency: 90.0,
@@ -81,7 +118,7 @@ pub fn exercise(axis: &Axis, kind: Exercise, check: bool) -> Result<Program, Tra
             ramp: 0.1,
             sweep: trajectories::Sweep::default(),
         };
-        steps.extend([Step::Chirp(chirp), rest]);
+        steps.extend([Step::Chirp(sweep), rest]);
     }
     Program::new(start, steps)
 }
