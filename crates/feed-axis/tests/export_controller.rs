@@ -67,7 +67,7 @@ fn limits(guard: &Value) -> GuardLimits {
 fn simulated(context: &Context, predictors: &Predictors) -> Vec<Sample> {
     let axis = &context.axis;
     let motion = axis.plan(&axis.trajectories[0]).unwrap();
-    let law = NETWORK_LUGRE.compensator(predictors, std::sync::Arc::new(motion.clone()));
+    let law = NETWORK_LUGRE.compensator(predictors, std::sync::Arc::new(motion));
     let mut kept = Kept(law.unwrap(), Vec::new());
     let closed_loop = ClosedLoop::new(&context.machine).unwrap();
     let outcome = closed_loop.run(&motion, &mut kept, |_| {});

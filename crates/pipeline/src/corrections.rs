@@ -46,7 +46,7 @@ pub fn greatest(
     let planned = plan_all(&predictors.axis)?;
     let closed_loop = ClosedLoop::new(machine)?;
     let one = |planned: &PlannedTrajectory| {
-        let motion = Arc::new(planned.motion.clone());
+        let motion = Arc::new(planned.motion);
         let mut compensator = kind.compensator(predictors, motion)?;
         let mut watched = Watched {
             inner: &mut *compensator,

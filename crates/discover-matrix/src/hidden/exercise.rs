@@ -63,7 +63,9 @@ fn effort(axis: &Axis, program: &Program) -> f64 {
     let mut most = 0.0_f64;
     let run = ClosedLoop::new(axis).map(|looped| {
         let mut seen = |cycle: &Cycle| most = most.max(cycle.command.effort.abs());
-        looped.without_noise().run(program, &mut NoCompensation, &mut seen)
+        looped
+            .without_noise()
+            .run(program, &mut NoCompensation, &mut seen)
     });
     match run {
         Ok(_) => most / axis.actuator.limit(),

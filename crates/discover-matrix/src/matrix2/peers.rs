@@ -163,7 +163,7 @@ mod tests {
         let all = peer_cases(&machines(), 40, 5).unwrap();
         let hides = |case: &&Case, name: &str| case.hidden.iter().any(|h| h.name == name);
         let count = |name: &&str| all.iter().filter(|c| hides(c, name)).count();
-        let most = IN_TERMS.iter().map(|name| count(name)).max();
+        let most = IN_TERMS.iter().map(&count).max();
         assert!(most <= Some(3), "{most:?}");
         let kinds = IN_TERMS.iter().filter(|name| count(name) > 0).count();
         assert!(kinds >= 12, "{kinds}");
