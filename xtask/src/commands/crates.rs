@@ -143,7 +143,7 @@ fn row(package: &Package, counts: &Counts) -> Result<String> {
         .lines()
         .any(|line| line.starts_with("#![") && line.contains("no_std"));
     Ok(format!(
-        "| {} | [{name}](../crates/{name}/README.md) | {} | {} | {} | {} | {} |\n",
+        "| {} | `{name}` | {} | {} | {} | {} | {} |\n",
         package.metadata.layer.level,
         package.description.as_deref().unwrap_or_default(),
         if features.is_empty() {
