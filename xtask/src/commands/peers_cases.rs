@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use axis_log::write_csv;
 use axis_sim::Axis;
 use axis_sim::effects::{Effect, Scales};
-use axis_sim::mechanism::Freedom;
 use clap::Args;
 use discover_matrix::matrix2::{Bench, Case, Channels, Given, Reach, peer_cases};
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -197,7 +196,7 @@ fn write_case(folder: &Path, text: &str, axis: &Axis, given: &Given) -> Result<(
         write_csv(folder.join(name), log).into_diagnostic()?;
     }
     let setting = &given.case.setting;
-    let told_axis = told_axis(text, axis, setting.start, setting.tolerance)?;
+    let told_axis = told_axis(text, setting.tolerance)?;
     write_whole(&folder.join("axis.toml"), told_axis.as_bytes())?;
     let told = Told {
         machine: axis.name.clone(),
@@ -220,24 +219,11 @@ fn write_case(folder: &Path, text: &str, axis: &Axis, given: &Given) -> Result<(
     write_whole(&folder.join(TRUTH), &json)
 }
 
-/// The axis file with the case's start and tolerance; it names no file beside it.
-fn told_axis(text: &str, axis: &Axis, start: f64, tolerance: f64) -> Result<String> {
+/// The axis file with the case's tolerance; it names no file beside it. Where a motion starts
+/// is in its log, and the file's own trajectories may not fit on the stroke from there.
+fn told_axis(text: &str, tolerance: f64) -> Result<String> {
     let mut document: DocumentMut = text.parse().into_diagnostic()?;
     document.remove("experiment");
-    let stroke = document
-        .entry("stroke")
-        .or_insert(Item::Table(Table::new()));
-    if let Some(stroke) = stroke.as_table_like_mut() {
-        let old: Vec<String> = stroke.iter().map(|(key, _)| key.to_owned()).collect();
-        for key in old.iter().filter(|key| key.starts_with("start")) {
-            stroke.remove(key);
-        }
-        let key = match axis.freedom() {
-            Freedom::Linear => "start_m",
-            Freedom::Rotary => "start_rad",
-        };
-        stroke.insert(key, value(start));
-    }
     let mut tolerances = Table::new();
     tolerances.insert("known_parameters_percent", value(100.0 * tolerance));
     document.insert("tolerances", Item::Table(tolerances));
@@ -340,7 +326,6 @@ mod tests {
         }
         // The axis as the bench tells it to the search.
         let told = Axis::read(&folder.join("axis.toml")).unwrap();
-        assert!((told.stroke.start - case.setting.start).abs() < 1e-12);
         assert_eq!(
             told.tolerances,
             axis_sim::Tolerances::all(case.setting.tolerance)
