@@ -124,3 +124,32 @@ fn program(
     }
     Program::new(start, steps)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At an actuator's limit a log says little of anything else; the paper's axis follows a
+    /// chirp so little that it has the whole.
+    #[test]
+    fn no_exercise_drives_an_actuator_into_its_limit() {
+        for (name, whole) in [("liu2025", true), ("joint", true), ("linear-motor", false)] {
+            let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/");
+            let axis = Axis::read(format!("{root}{name}.toml").as_ref()).unwrap();
+            for kind in [
+                Exercise::ThereAndBack,
+                Exercise::SlowAndFast,
+                Exercise::WithChirp,
+            ] {
+                for check in [false, true] {
+                    let made = exercise(&axis, kind, check).unwrap();
+                    let share = effort(&axis, &made);
+                    assert!(share > 0.0 && share <= OF_LIMIT, "{name} {kind:?}: {share}");
+                }
+            }
+            let all = program(&axis, Exercise::WithChirp, false, 1.0).unwrap();
+            let is_whole = exercise(&axis, Exercise::WithChirp, false).unwrap() == all;
+            assert_eq!(is_whole, whole, "{name}");
+        }
+    }
+}

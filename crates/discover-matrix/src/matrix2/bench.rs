@@ -221,7 +221,7 @@ impl Bench {
 }
 
 /// Of a channel, over all logs.
-fn mean_square(rest: &Rest, channel: usize) -> f64 {
+pub(super) fn mean_square(rest: &Rest, channel: usize) -> f64 {
     let samples = rest.iter().flat_map(|log| &log[channel]);
     let (sum, count) = samples.fold((0.0, 0), |(sum, n), r| (sum + r * r, n + 1));
     sum / f64::from(count.max(1))

@@ -256,13 +256,10 @@ impl Beside<'_> {
 mod tests {
     use axis_sim::effects::Effect;
 
+    use super::super::bench::mean_square;
     use super::*;
     use crate::hidden::{Exercise, Rough, Truth};
     use crate::matrix2::{Bench, CaseSetting};
-
-    fn mean_square(series: &[f64]) -> f64 {
-        series.iter().map(|v| v * v).sum::<f64>() / series.len() as f64
-    }
 
     /// Of a linear response the fall of D goes with the square of its size, and what known
     /// parameters do costs their tolerance and no more: a payload is a part of the load.
@@ -294,8 +291,8 @@ mod tests {
         let set = bench.set(0, &noisy).unwrap();
         // The machine is the model: what the balance leaves is small beside the current.
         let traces = set.simulate(&bench.machine, &State::initial(&bench.machine));
-        let rest = mean_square(&set.rest(&traces.unwrap())[0][0]);
-        let all = mean_square(&set.logs[0].measured[0]);
+        let rest = mean_square(&set.rest(&traces.unwrap()), 0);
+        let all = mean_square(&vec![set.logs[0].measured.clone()], 0);
         assert!(rest < 1e-3 * all, "{rest} of {all}");
 
         let sight = Sight::new(&bench.machine, &set).unwrap();
