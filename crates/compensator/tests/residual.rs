@@ -117,6 +117,28 @@ fn noise_is_not_learned_and_what_stops_helping_is_not_used() {
 
 /// Hidden layers of no training, and machines that have a torque of the angle and a force of
 /// the position, in shares of their own.
+/// What a friction law leaves while bristles are loaded is neither learned nor judged by: moves
+/// that all begin at one place would put it there.
+#[test]
+fn what_is_left_while_bristles_are_loaded_does_not_count() {
+    let (mut all, mut sliding) = (learner(), learner());
+    let mut noise = Noise(5);
+    for speed in [0.03, 0.05, 0.08, 0.06] {
+        let log = move_at(speed, &mut noise, 0.004, 1.0);
+        let mut loaded: Vec<Unexplained> = log[..60].to_vec();
+        for (k, u) in loaded.iter_mut().enumerate() {
+            u.direction = 0.015 * k as f64;
+            u.torque += 0.4;
+        }
+        loaded.extend_from_slice(&log);
+        let shares = [(&mut all, &loaded), (&mut sliding, &log)]
+            .map(|(learner, log)| learner.learn(log, SPACING, SMOOTHING));
+        assert_eq!(shares[0], shares[1]);
+    }
+    assert_eq!(all.coefficients(), sliding.coefficients());
+    assert!(all.model().is_some());
+}
+
 fn network_basis() -> NetworkBasis {
     let shape = Shape {
         inputs: NETWORK_INPUTS,

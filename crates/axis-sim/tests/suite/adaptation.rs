@@ -9,7 +9,7 @@ use axis_sim::effects::{ActiveEffect, Effect};
 use axis_sim::{Axis, ClosedLoop, Cycle, Measured};
 use compensator::{
     AdaptParameter, AdaptPrior, Adaptation, Compensator, Correction, DriveModel, NoCompensation,
-    Plan, PlanSettings, Reference, Sample, Target,
+    Plan, PlanSettings, Reference, Residual, ResidualAt, Sample, Target,
 };
 use lugre::{LuGre, Parameters};
 use rand::{RngExt, SeedableRng};
@@ -209,6 +209,43 @@ fn what_was_learned_holds_for_a_program() {
     adaptation.learn(&log).unwrap();
     let (most, _) = planned(&closed_loop, &adaptation.model(), &program, Some(10));
     assert!(most < 1.05 * known, "{most} {known}");
+}
+
+/// Friction that grows along the way looks like another level and like mass to parameters alone;
+/// beside what is known of it, mass, level and viscosity are as without it.
+#[test]
+fn parameters_beside_a_residual_are_those_without_it() {
+    /// The truth's own law, in the residual's terms.
+    struct Bump;
+    impl Residual for Bump {
+        fn besides(&mut self, at: &ResidualAt) -> [f64; 2] {
+            let along = (at.position - 0.85) / 0.1;
+            [0.0, 120.0 * (-0.5 * along * along).exp() * at.direction]
+        }
+    }
+    let mut axis = axis(MACHINE);
+    let belief = axis.drive_model().unwrap();
+    axis.effects.push(ActiveEffect {
+        effect: Effect::named("position-dependent-friction").unwrap(),
+        values: vec![120.0, 0.85, 0.1],
+    });
+    let closed_loop = ClosedLoop::new(&axis).unwrap();
+    let motion = &motions(&axis)[0];
+    let (_, log) = planned(&closed_loop, &belief, motion, Some(3));
+    let [mut alone, mut beside] =
+        [(); 2].map(|()| Adaptation::new(&belief, &AdaptPrior::default()).unwrap());
+    alone.learn(&log).unwrap();
+    beside.learn_beside(&log, &mut Bump).unwrap();
+    let worst = |adaptation: &Adaptation| {
+        let estimates = adaptation.estimates().into_iter();
+        let asked = estimates.filter(|e| {
+            use AdaptParameter::{FrictionLevel, LoadInertia, Viscosity};
+            [FrictionLevel, LoadInertia, Viscosity].contains(&e.parameter)
+        });
+        asked.map(|e| e.relative.abs()).fold(0.0, f64::max)
+    };
+    let [alone, beside] = [&alone, &beside].map(worst);
+    assert!(alone > 0.05 && beside < 0.005, "{alone} {beside}");
 }
 
 /// Drives without a current sensor, axes without a sensor at the load, coarse sensors:

@@ -38,7 +38,7 @@ use std::vec::Vec;
 use libm::{exp, expm1};
 
 use crate::error::{require, within};
-use crate::{DriveModel, Sample};
+use crate::{DriveModel, Residual, Sample};
 use belief::Belief;
 pub use error::AdaptError;
 use known::{Information, Known};
@@ -120,8 +120,26 @@ impl Adaptation {
     /// # Errors
     /// [`AdaptError`] says what the log lacks.
     pub fn learn(&mut self, log: &[Sample]) -> Result<Learned, AdaptError> {
+        self.learn_from(log, &[])
+    }
+
+    /// The same where `residual` acts beside the model: what it takes of the torque says
+    /// nothing of the parameters.
+    ///
+    /// # Errors
+    /// As [`Adaptation::learn`].
+    pub fn learn_beside(
+        &mut self,
+        log: &[Sample],
+        residual: &mut impl Residual,
+    ) -> Result<Learned, AdaptError> {
+        let besides = self.besides(log, residual)?;
+        self.learn_from(log, &besides)
+    }
+
+    fn learn_from(&mut self, log: &[Sample], besides: &[[f64; 2]]) -> Result<Learned, AdaptError> {
         let state = self.state();
-        let record = Record::new(&self.belief, log)?;
+        let record = Record::new(&self.belief, log, self.belief.smoothing(), besides)?;
         let known = Known {
             belief: &self.belief,
             estimate: state.estimate,

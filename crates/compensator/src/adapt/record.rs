@@ -46,13 +46,16 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// Of a log of the axis that is believed.
-    pub fn new(belief: &Belief, log: &[Sample]) -> Result<Self, AdaptError> {
-        Self::smoothed(belief, log, belief.smoothing())
-    }
-
-    /// The same behind a Gaussian of the deviation `smoothing` (s).
-    pub fn smoothed(belief: &Belief, log: &[Sample], smoothing: f64) -> Result<Self, AdaptError> {
+    /// Of a log of the axis that is believed, behind a Gaussian of the deviation `smoothing`
+    /// (s). `besides` is what something that the model does not have took of the torque at
+    /// each sample: at the motor, and on the load (both N·m at the motor). Empty where there is
+    /// no such thing.
+    pub fn new(
+        belief: &Belief,
+        log: &[Sample],
+        smoothing: f64,
+        besides: &[[f64; 2]],
+    ) -> Result<Self, AdaptError> {
         let model = &belief.model;
         let period = model.period;
         // Few samples a deviation make no Gaussian.
@@ -66,6 +69,7 @@ impl Record {
         let at_start = standing(model, &log[..cycles(AT_START) as usize]);
         let rest = rests(log, at_start).then_some(at_start);
         let torque = torques(model, log);
+        let besides = [0, 1].map(|at| -> Vec<f64> { besides.iter().map(|b| b[at]).collect() });
         let angle: Vec<f64> = log.iter().map(|s| s.motor_angle).collect();
         let elastic = model.along.most_compliance() > 0.0;
         let measured: Vec<f64> = log.iter().map(|s| s.position).collect();
@@ -73,6 +77,7 @@ impl Record {
         let smooth = Smooth {
             model,
             torques: balance.pad(&torque, rest),
+            besides: besides.each_ref().map(|taken| balance.pad(taken, rest)),
             angles: balance.pad(&angle, rest),
             balance: &balance,
         };
@@ -112,7 +117,8 @@ impl Record {
         let steps = Kernel::new(0.0, period);
         let ahead = steps.pad(&reference, rest.map(|_| 1));
         let speed = |k: usize| (steps.of(1, &ahead, k) + velocity.of(1, &beside, k)) / model.lever;
-        let holding = mean(&torque[..at_start]);
+        let taken = |of: &Vec<f64>| of.get(..at_start).map_or(0.0, mean);
+        let holding = mean(&torque[..at_start]) - besides.iter().map(taken).sum::<f64>();
         let load = model.along.at(position[0]).load;
         let squares: Vec<f64> = torque.iter().map(|t| t * t).collect();
         Ok(Self {

@@ -18,6 +18,8 @@ pub(super) struct Point {
     pub lead: f64,
     /// Torque through the transmission.
     pub transmitted: f64,
+    /// Torque that something besides the model took, in `left` no more.
+    pub besides: f64,
     /// Compliance of the model there, rad/(N·m).
     pub compliance: f64,
 }
@@ -27,6 +29,9 @@ pub(super) struct Smooth<'a> {
     pub model: &'a DriveModel,
     pub balance: &'a Kernel,
     pub torques: Vec<f64>,
+    /// What something besides the model took, at the motor and on the load; empty where there
+    /// is no such thing.
+    pub besides: [Vec<f64>; 2],
     pub angles: Vec<f64>,
 }
 
@@ -39,7 +44,8 @@ impl Smooth<'_> {
             let section = m.along.at(measured[k]);
             let of_motor = self.balance.of(2, &self.angles, k);
             let inertia = section.rotating - section.lagging;
-            section.compliance * (self.balance.of(0, &self.torques, k) - inertia * of_motor)
+            let torque = self.balance.of(0, &self.torques, k) - self.taken(0, k);
+            section.compliance * (torque - inertia * of_motor)
         };
         let ahead = |k: usize| m.kinematics.ahead(angle[k]);
         let start = measured[0] - m.travel * (angle[0] - wound(0)) - ahead(0);
@@ -59,15 +65,25 @@ impl Smooth<'_> {
             false => acceleration / m.travel,
         };
         let inertia = section.rotating - section.lagging;
-        let transmitted = of(0, &self.torques) - inertia * of_motor;
+        let besides = [0, 1].map(|at| self.taken(at, sample));
+        let transmitted = of(0, &self.torques) - besides[0] - inertia * of_motor;
         let of_rotation = section.lagging * acceleration / m.travel;
         Point {
             sample,
-            left: transmitted - of_rotation - m.travel * section.load,
+            left: transmitted - besides[1] - of_rotation - m.travel * section.load,
             acceleration,
             lead: of(0, &self.angles) - x / m.travel,
             transmitted,
             compliance: section.compliance,
+            besides: besides[0] + besides[1],
+        }
+    }
+
+    /// Torque taken besides the model at a sample: at the motor (0) or on the load (1).
+    fn taken(&self, at: usize, sample: usize) -> f64 {
+        match self.besides[at].is_empty() {
+            true => 0.0,
+            false => self.balance.of(0, &self.besides[at], sample),
         }
     }
 }

@@ -8,10 +8,12 @@ use super::known::Column;
 use super::record::Record;
 use super::residual::Residuals;
 use super::{AdaptError, AdaptPrior, Adaptation};
-use crate::{Sample, Unexplained};
+use crate::{Residual, ResidualAt, Sample, Unexplained};
 
-/// Deviation of the Gaussian over the log, s: short, as cogging varies quickly.
-const SMOOTHING: f64 = 1e-3;
+/// Deviation of the Gaussian over the log, s: short, as cogging varies quickly; and not so
+/// short that modes beyond the first, which no `DriveModel` has, pass it. Near them (from some
+/// 100 Hz on) inertia is not what it is, and cogging seems to turn its sign.
+const SMOOTHING: f64 = 2.5e-3;
 
 /// The torque that a log needed besides the model's.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,23 +32,37 @@ impl Adaptation {
     /// # Errors
     /// As [`Adaptation::learn`], where the log is too short or not usable.
     pub fn unexplained(&self, log: &[Sample]) -> Result<Rest, AdaptError> {
-        let belief = Belief {
-            model: self.model(),
-            prior: AdaptPrior::default(),
-        };
-        let record = Record::smoothed(&belief, log, SMOOTHING)?;
+        self.unexplained_of(log, &[])
+    }
+
+    /// The same where `residual` is held to act beside the model: what it takes is part of
+    /// what the model leaves, and not of what holds the bristles where the log begins.
+    ///
+    /// # Errors
+    /// As [`Adaptation::learn`].
+    pub fn unexplained_beside(
+        &self,
+        log: &[Sample],
+        residual: &mut impl Residual,
+    ) -> Result<Rest, AdaptError> {
+        let besides = self.besides(log, residual)?;
+        self.unexplained_of(log, &besides)
+    }
+
+    fn unexplained_of(&self, log: &[Sample], besides: &[[f64; 2]]) -> Result<Rest, AdaptError> {
+        let belief = self.now();
+        let record = Record::new(&belief, log, SMOOTHING, besides)?;
         let residuals = Residuals::at(&belief, &record, &Column::zeros(), &[]);
-        let model = &belief.model;
-        let shares = shares(&belief, &record);
+        let along = along(&belief, &record, log);
         let points = record.points.iter().zip(residuals.torque());
         let instants = points.map(|(point, &torque)| {
-            let sample = &log[point.sample];
+            let at = along[point.sample];
             Unexplained {
-                position: sample.position,
-                motor_angle: sample.motor_angle,
-                motor_speed: record.speeds[point.sample] * model.lever / model.travel,
-                direction: shares[point.sample],
-                torque,
+                position: at.position,
+                motor_angle: at.motor_angle,
+                motor_speed: at.motor_speed,
+                direction: at.direction,
+                torque: torque + point.besides,
             }
         });
         let instants: Vec<Unexplained> = instants.collect();
@@ -58,17 +74,49 @@ impl Adaptation {
             smoothing: SMOOTHING.max(record.period),
         })
     }
+
+    /// Torque that a residual takes at each sample of a log: at the motor, and on the load
+    /// (both N·m at the motor).
+    pub(super) fn besides(
+        &self,
+        log: &[Sample],
+        residual: &mut impl Residual,
+    ) -> Result<Vec<[f64; 2]>, AdaptError> {
+        let belief = self.now();
+        let record = Record::new(&belief, log, SMOOTHING, &[])?;
+        let travel = belief.model.travel;
+        let taken = along(&belief, &record, log).into_iter().map(|at| {
+            let [torque, force] = residual.besides(&at);
+            [torque, travel * force]
+        });
+        Ok(taken.collect())
+    }
+
+    /// The present model as a belief.
+    fn now(&self) -> Belief {
+        Belief {
+            model: self.model(),
+            prior: AdaptPrior::default(),
+        }
+    }
 }
 
-/// Share of the Coulomb level that the bristles hold at each sample, from relaxed on.
-fn shares(belief: &Belief, record: &Record) -> Vec<f64> {
-    let law = &belief.model.friction;
+/// Where a residual is asked for, at each sample of a log. The bristles begin as at a start
+/// that has relaxed.
+fn along(belief: &Belief, record: &Record, log: &[Sample]) -> Vec<ResidualAt> {
+    let model = &belief.model;
+    let law = &model.friction;
     let mut bristle = 0.0;
     let mut before = 0.0;
-    let each = record.speeds.iter().map(|&speed| {
+    let samples = log.iter().zip(&record.speeds).map(|(sample, &speed)| {
         bristle = law.step(bristle, before, speed, record.period);
         before = speed;
-        law.coulomb_share(bristle)
+        ResidualAt {
+            motor_angle: sample.motor_angle,
+            motor_speed: speed * model.lever / model.travel,
+            position: sample.position,
+            direction: law.coulomb_share(bristle),
+        }
     });
-    each.collect()
+    samples.collect()
 }

@@ -18,6 +18,8 @@ const LEAST_EXPLAINED: f64 = 0.1;
 /// RMS of what is explained, as a share of the Coulomb level: less is not worth the risk.
 const LEAST_SIZE: f64 = 0.01;
 
+/// Share of the Coulomb level that bristles hold at least where an axis slides.
+const SLIDES: f64 = 0.95;
 /// Length of a stretch that is judged by itself, s.
 const STRETCH: f64 = 0.05;
 /// Share of the greatest speed below which an axis is slow.
@@ -84,39 +86,66 @@ impl<B: ResidualBasis> ResidualLearner<B> {
     /// by a Gaussian of the deviation `smoothing` (s). The share of its power that was
     /// explained before learning from it.
     pub fn learn(&mut self, log: &[Unexplained], spacing: f64, smoothing: f64) -> f64 {
+        let explained = self.judge(log, log, spacing, smoothing);
+        self.fit(log, spacing, smoothing);
+        explained
+    }
+
+    /// Judges the residual by a move that neither it nor the parameters have learned from;
+    /// otherwise as [`ResidualLearner::learn`], of which it is the first half. `beside` is what
+    /// parameters that were found beside the residual leave of the move, `alone` what the
+    /// residual must be better than: what parameters that were found without it leave, at
+    /// the same instants. The share of the power of the latter that is explained.
+    pub fn judge(
+        &mut self,
+        beside: &[Unexplained],
+        alone: &[Unexplained],
+        spacing: f64,
+        smoothing: f64,
+    ) -> f64 {
         self.basis.linearise(self.coefficients.as_slice());
-        let sound = |u: &&Unexplained| u.torque.is_finite() && u.motor_angle.is_finite();
-        let log: Vec<&Unexplained> = log.iter().filter(sound).collect();
-        let rows: Vec<(ResidualRow, f64)> = log
-            .iter()
-            .map(|u| (self.basis.row(u, smoothing), u.torque))
-            .collect();
-        let [mut left, mut whole, mut foreseen] = [0.0; 3];
-        for (row, torque) in &rows {
-            let part = row.times(self.coefficients.as_slice());
-            let rest = torque - part;
-            foreseen += part * part;
-            left += rest * rest;
-            whole += torque * torque;
-        }
+        let both = beside.iter().zip(alone);
+        let both = both.filter(|(beside, alone)| sound(beside) && sound(alone));
+        let mut foreseen = 0.0;
+        let (log, rests): (Vec<&Unexplained>, Vec<[f64; 2]>) = both
+            .map(|(u, alone)| {
+                let row = self.basis.row(u, smoothing);
+                let part = row.times(self.coefficients.as_slice());
+                foreseen += part * part;
+                (u, [u.torque - part, alone.torque])
+            })
+            .unzip();
+        let [left, whole] = powers(&rests);
         let explained = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
-        if rows.is_empty() || !explained.is_finite() {
+        if rests.is_empty() || !explained.is_finite() {
             return 0.0;
         }
-        let count = rows.len() as f64;
-        let size = sqrt(foreseen / count);
+        let size = sqrt(foreseen / rests.len() as f64);
         let worth = size >= LEAST_SIZE * self.level;
-        let rests: Vec<[f64; 2]> = rows
-            .iter()
-            .map(|(row, torque)| [torque - row.times(self.coefficients.as_slice()), *torque])
-            .collect();
         let harmless = slow_is_no_worse(&log, &rests) && peak_is_no_worse(&rests, spacing);
         self.explained
             .push(if worth && harmless { explained } else { 0.0 });
+        explained
+    }
+
+    /// Fits the residual to what the parameters leave of a move, besides all moves before;
+    /// otherwise as [`ResidualLearner::learn`], of which it is the second half.
+    pub fn fit(&mut self, log: &[Unexplained], spacing: f64, smoothing: f64) {
+        self.basis.linearise(self.coefficients.as_slice());
+        let log = log.iter().filter(|u| sound(u));
+        let rows: Vec<(ResidualRow, f64)> = log
+            .map(|u| (self.basis.row(u, smoothing), u.torque))
+            .collect();
+        if rows.is_empty() {
+            return;
+        }
+        let rests = rows
+            .iter()
+            .map(|(row, torque)| [torque - row.times(self.coefficients.as_slice()), *torque]);
+        let [left, whole] = powers(&rests.collect::<Vec<_>>());
         // Neighbours within the Gaussian say the same.
         let same = (2.0 * sqrt(core::f64::consts::PI) * smoothing / spacing).max(1.0);
-        self.solve(&rows, same, left.min(whole) / count);
-        explained
+        self.solve(&rows, same, left.min(whole) / rows.len() as f64);
     }
 
     /// Adds the rows, `same` of which count as one; their noise is what the fit leaves,
@@ -156,6 +185,12 @@ impl<B: ResidualBasis> ResidualLearner<B> {
         (newest > LEAST_EXPLAINED && mean > 0.0).then_some(&self.model)
     }
 
+    /// The model as it is learned, whether or not it may be used.
+    #[must_use]
+    pub fn latest(&self) -> &B::Model {
+        &self.model
+    }
+
     /// Share of the power of each move that was explained before learning from it; 0 where
     /// that was too little to matter, or would have done harm somewhere.
     #[must_use]
@@ -168,6 +203,20 @@ impl<B: ResidualBasis> ResidualLearner<B> {
     pub fn coefficients(&self) -> &[f64] {
         self.coefficients.as_slice()
     }
+}
+
+/// Whether an instant of a log can be learned from. While bristles are being loaded, an error
+/// of the friction law is far more than what repeats with angle and position; and moves that
+/// begin at one place would put it there.
+fn sound(at: &Unexplained) -> bool {
+    at.torque.is_finite() && at.motor_angle.is_finite() && at.direction.abs() >= SLIDES
+}
+
+/// Sums of squares with the residual and without.
+fn powers(rests: &[[f64; 2]]) -> [f64; 2] {
+    rests.iter().fold([0.0; 2], |[a, b], [with, without]| {
+        [a + with * with, b + without * without]
+    })
 }
 
 /// Whether the slow part of a log has no more power with the residual (each pair: with it, without) than without.

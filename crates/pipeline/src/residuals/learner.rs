@@ -29,13 +29,35 @@ pub enum AnyResidual {
 }
 
 impl AnyLearner {
-    /// Learns from what a move left unexplained; the share that was explained before.
-    pub fn learn(&mut self, rest: &Rest) -> f64 {
+    /// Judges it by what is left of a move that nothing has learned from, by parameters beside
+    /// it and by parameters `alone`: the share of the latter that it explains.
+    pub fn judge(&mut self, beside: &Rest, alone: &Rest) -> f64 {
+        let (spacing, smoothing) = (beside.spacing, beside.smoothing);
+        let (beside, alone) = (&beside.instants, &alone.instants);
+        match self {
+            Self::Tables(learner) => learner.judge(beside, alone, spacing, smoothing),
+            Self::Network(learner) => learner.judge(beside, alone, spacing, smoothing),
+            Self::Named(learner) => learner.judge(beside, alone, spacing, smoothing),
+        }
+    }
+
+    /// Fits it to what the parameters beside it leave of a move.
+    pub fn fit(&mut self, rest: &Rest) {
         let (log, spacing, smoothing) = (&rest.instants, rest.spacing, rest.smoothing);
         match self {
-            Self::Tables(learner) => learner.learn(log, spacing, smoothing),
-            Self::Network(learner) => learner.learn(log, spacing, smoothing),
-            Self::Named(learner) => learner.learn(log, spacing, smoothing),
+            Self::Tables(learner) => learner.fit(log, spacing, smoothing),
+            Self::Network(learner) => learner.fit(log, spacing, smoothing),
+            Self::Named(learner) => learner.fit(log, spacing, smoothing),
+        }
+    }
+
+    /// What is learned, whether or not the gate lets it be used.
+    #[must_use]
+    pub fn latest(&self) -> Option<AnyResidual> {
+        match self {
+            Self::Tables(learner) => Some(AnyResidual::Tables(learner.latest().clone())),
+            Self::Network(learner) => learner.latest().clone().map(AnyResidual::Network),
+            Self::Named(learner) => Some(AnyResidual::Named(learner.latest().clone())),
         }
     }
 

@@ -10,8 +10,9 @@ use std::sync::Arc;
 
 use axis_sim::Axis;
 use compensator::{
-    AdaptPrior, Adaptation, Compensator, DriveModel, Feedback, FeedbackDesign, FeedbackSettings,
-    LearnedMove, LearningSettings, PlanWithFeedback, ResidualLearner, Sample,
+    AdaptError, AdaptPrior, Adaptation, Compensator, DriveModel, Feedback, FeedbackDesign,
+    FeedbackSettings, LearnedMove, LearningSettings, PlanWithFeedback, ResidualLearner, Rest,
+    Sample,
 };
 use trajectories::Motion;
 
@@ -41,12 +42,18 @@ pub(super) struct Ladder {
     first_design: DesignOnce,
     rungs: Rungs,
     adaptation: Option<Adaptation>,
-    residual: Option<AnyLearner>,
+    residual: Option<Beside>,
     /// The feedback, and the model that it was designed for.
     design: Option<(FeedbackDesign, DriveModel)>,
     repeated: Vec<Repeated>,
     /// Which of them runs now.
     now: Option<usize>,
+}
+
+/// What no parameter holds, and the parameters beside it.
+struct Beside {
+    learner: AnyLearner,
+    adaptation: Adaptation,
 }
 
 /// A move that has been made before.
@@ -69,20 +76,19 @@ impl Ladder {
         };
         let stroke = [axis.stroke.minimum, axis.stroke.maximum];
         let level = believed.friction.parameters().coulomb * believed.travel / believed.lever;
-        let residual = rungs
-            .residual
-            .then(|| AnyLearner::Tables(ResidualLearner::new(stroke, believed.travel, level)));
+        let tables = || AnyLearner::Tables(ResidualLearner::new(stroke, believed.travel, level));
         let mut ladder = Self {
             axis,
             believed,
             first_design: predictors.design.clone(),
             rungs,
             adaptation,
-            residual,
+            residual: None,
             design: None,
             repeated: Vec::new(),
             now: None,
-        };
+        }
+        .with_learner(rungs.residual.then(tables));
         if rungs.feedback {
             // Refused before anything is computed.
             ladder.feedback(&believed)?;
@@ -92,14 +98,20 @@ impl Ladder {
 
     /// The same with another learner of what no parameter holds.
     pub fn with_learner(mut self, learner: Option<AnyLearner>) -> Self {
-        self.residual = learner;
+        let beside = learner.zip(self.adaptation.clone());
+        self.residual = beside.map(|(learner, adaptation)| Beside {
+            learner,
+            adaptation,
+        });
         self
     }
 
-    /// What is believed after all moves so far.
-    fn model(&self) -> DriveModel {
+    /// What is believed after all moves so far: parameters, and what none of them holds.
+    fn model(&self) -> (DriveModel, Option<AnyResidual>) {
+        let beside = self.residual.as_ref();
+        let used = beside.and_then(|b| Some((b.adaptation.model(), Some(b.learner.model()?))));
         let adapted = self.adaptation.as_ref().map(Adaptation::model);
-        adapted.unwrap_or(self.believed)
+        used.unwrap_or((adapted.unwrap_or(self.believed), None))
     }
 
     /// The feedback for a model. It is designed anew where the model has left what the margins
@@ -189,14 +201,45 @@ fn same(a: &dyn Motion, b: &dyn Motion) -> bool {
         })
 }
 
+impl Beside {
+    /// Learns from a move; what the residual explained of it before, where that could be told.
+    /// `alone` are the parameters without it, which have not learned of the move yet.
+    fn learn(&mut self, record: &[Sample], alone: &Adaptation) -> Option<f64> {
+        // A log that cannot be learned from leaves everything as it was.
+        let mut latest = self.learner.latest();
+        let before = self.unexplained(record, latest.as_mut()).ok()?;
+        let explained = self
+            .learner
+            .judge(&before, &alone.unexplained(record).ok()?);
+        let learned = match &mut latest {
+            Some(residual) => self.adaptation.learn_beside(record, residual),
+            None => self.adaptation.learn(record),
+        };
+        learned.ok()?;
+        let rest = self.unexplained(record, latest.as_mut()).ok()?;
+        self.learner.fit(&rest);
+        Some(explained)
+    }
+
+    fn unexplained(
+        &self,
+        record: &[Sample],
+        residual: Option<&mut AnyResidual>,
+    ) -> Result<Rest, AdaptError> {
+        match residual {
+            Some(residual) => self.adaptation.unexplained_beside(record, residual),
+            None => self.adaptation.unexplained(record),
+        }
+    }
+}
+
 impl Strategy for Ladder {
     fn compensator(
         &mut self,
         next: &NextMove,
     ) -> Result<Box<dyn Compensator + Send>, PipelineError> {
         let mut next = next.clone();
-        let mut model = self.model();
-        let mut residual = self.residual.as_ref().and_then(AnyLearner::model);
+        let (mut model, mut residual) = self.model();
         if self.rungs.repetition {
             let made = self.repeated.len();
             let now = self.repeats(&next.motion)?;
@@ -220,6 +263,19 @@ impl Strategy for Ladder {
         let mut known = LearnedValues::new();
         if let Some(adaptation) = &mut self.adaptation {
             // A log that cannot be learned from leaves everything as it was.
+            // What repeats with a move is not what repeats with angle and position.
+            let again = self
+                .now
+                .is_some_and(|now| self.repeated[now].frozen.is_some());
+            let mut residual = self.residual.as_mut().filter(|_| !again);
+            // Judged before anything is learned of the move.
+            if let Some(beside) = &mut residual {
+                if let Some(explained) = beside.learn(record, adaptation) {
+                    known.insert("residual_explained".to_owned(), explained);
+                }
+                let used = beside.learner.model().is_some();
+                known.insert("residual_used".to_owned(), f64::from(u8::from(used)));
+            }
             let refused = adaptation.learn(record).err();
             known.insert(
                 "moves_refused".to_owned(),
@@ -228,20 +284,11 @@ impl Strategy for Ladder {
             if let Some(refused) = refused {
                 tracing::warn!("nothing learned of this move: {refused}");
             }
-            // What repeats with a move is not what repeats with angle and position.
-            let again = self
-                .now
-                .is_some_and(|now| self.repeated[now].frozen.is_some());
-            let residual = self.residual.as_mut().filter(|_| !again);
-            if let (Some(residual), Ok(rest)) = (residual, adaptation.unexplained(record)) {
-                let explained = residual.learn(&rest);
-                known.insert("residual_explained".to_owned(), explained);
-                let used = residual.model().is_some();
-                known.insert("residual_used".to_owned(), f64::from(u8::from(used)));
-            }
-            let free = adaptation.model().kinematics.free_travel;
+            let used = residual.filter(|beside| beside.learner.model().is_some());
+            let told = used.map_or(&*adaptation, |beside| &beside.adaptation);
+            let free = told.model().kinematics.free_travel;
             known.insert("free_travel_um".to_owned(), 1e6 * free);
-            for estimate in adaptation.estimates() {
+            for estimate in told.estimates() {
                 let name = estimate.parameter.name().replace(' ', "_");
                 known.insert(format!("{name}_relative"), estimate.relative);
                 known.insert(format!("{name}_standard_error"), estimate.standard_error);
