@@ -161,6 +161,15 @@ impl LogSet {
         series.iter().enumerate().map(one).collect()
     }
 
+    /// Simulated series per log and channel.
+    pub(crate) fn simulated_all(&self, traces: &[Trace]) -> Rest {
+        let one = |trace: &Trace| {
+            let channels = 0..self.channels.len();
+            channels.map(|c| self.simulated(trace, c)).collect()
+        };
+        traces.iter().map(one).collect()
+    }
+
     /// Whether a channel has no zero of its own.
     pub(crate) fn counts_from_its_mean(&self, channel: usize) -> bool {
         self.channels[channel] == ANGLE

@@ -55,7 +55,9 @@ use crate::estimate::fit::Fitter;
 use crate::estimate::known::{shown, tolerances};
 use crate::name::gap::{ChannelGap, Gap, gap};
 use crate::name::search::{Found, MATERIAL, is_form};
-use crate::noise::{Floor, SlowNoise, excess, floors, log_noise, slow_noise};
+use crate::noise::{
+    Excess, Floor, SlowNoise, excess, floors, follows_motion, log_noise, slow_noise,
+};
 
 /// A search's result in words, figures and pictures.
 #[derive(Clone, Debug)]
@@ -173,19 +175,33 @@ pub fn judged(
     let base = checker.at(found.base.state.clone())?;
     let at_floor = |gap: &Gap| gap.channels.iter().all(ChannelGap::is_at_floor);
     let largest = found.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
-    let unknown = match lack(machine, found, MATERIAL * largest)? {
-        Some(unknown) => Some(unknown),
-        // Beside effects that leave next to nothing, a rest without a curve is small change.
-        None if check.reduction >= NEARLY_ALL && !effects.is_empty() => None,
-        None => excess(machine, set, full, &traces, &slow)?.map(in_frequency),
-    };
     let nearly_all = check.reduction >= NEARLY_ALL && !effects.is_empty();
-    let rest_significant = !(at_floor(&check) || nearly_all) || unknown.is_some();
+    let lack = lack(machine, found, MATERIAL * largest)?;
+    let excess = match lack {
+        // Beside effects that leave next to nothing, a rest without a curve is small change.
+        None if !nearly_all => excess(machine, set, full, &traces, &slow)?,
+        _ => None,
+    };
+    // A rest that is neither a curve over the motion nor follows it is noise, whatever its colour.
+    let follows = |band| {
+        if set.is_balanced() {
+            return true;
+        }
+        let fit = (&found.fit_logs, found.fit.traces.as_slice());
+        follows_motion(fit, (set, &traces), band)
+    };
+    let following = excess.as_ref().and_then(|excess| excess.only(follows));
+    let is_small = check.may_be_coloured();
+    let coloured = excess.clone().filter(|_| following.is_none() && is_small);
+    let is_noise = at_floor(&check) || coloured.is_some();
+    let frequency = if is_small { following } else { excess };
+    let unknown = lack.or_else(|| frequency.map(in_frequency));
+    let rest_significant = !(is_noise || nearly_all) || unknown.is_some();
     let verdict = match (effects.is_empty(), rest_significant) {
         _ if found.refused.is_some() => Verdict::Unknown,
         (true, false) => Verdict::NothingMissing,
         (true, true) => Verdict::Unknown,
-        (false, false) if check.reduction >= EXPLAINED => Verdict::Explained,
+        (false, false) if is_noise || check.reduction >= EXPLAINED => Verdict::Explained,
         (false, _) => Verdict::PartlyExplained,
     };
     let proposal = match log_noise(machine, &found.fit_logs, full, &found.fit.traces) {
@@ -215,7 +231,11 @@ pub fn judged(
         schema: Discovery::SCHEMA,
         axis: name,
         answer: found.fit_logs.answer_of(machine).to_owned(),
-        notes: [notes(machine, found), slow.notes(set)].concat(),
+        notes: {
+            let coloured = coloured.iter().map(Excess::note);
+            let known = [notes(machine, found), slow.notes(set)].concat();
+            known.into_iter().chain(coloured).collect()
+        },
         sentence: sentence(
             verdict,
             &effects,

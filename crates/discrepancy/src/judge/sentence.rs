@@ -32,7 +32,7 @@ pub(super) fn sentence(
     let forms: String = forms.map(FormFound::sentence).collect();
     let it = if names.len() == 1 { "it" } else { "them" };
     let names = names.join("; ");
-    let gone = 100.0 * check.reduction;
+    let gone = check.gone();
     let place = unknown.map_or(String::new(), |u| {
         let formula = u
             .formula
@@ -47,11 +47,9 @@ pub(super) fn sentence(
         Verdict::NothingMissing => format!(
             "Nothing is missing: the model and the logs agree to the noise, with known parameters inside their tolerance.{forms}"
         ),
-        Verdict::Explained => format!(
-            "The model lacks {names}. With {it}, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to.{forms}"
-        ),
+        Verdict::Explained => format!("The model lacks {names}. With {it}, {gone}.{forms}"),
         Verdict::PartlyExplained => format!(
-            "Partly explained: with {names}, {gone:.1} % of the gap above the noise is gone on motion that it was not fitted to, and a rest remains that is not named.{place} What is named may stand for something that is not in the library.{forms}"
+            "Partly explained: with {names}, {gone}, and a rest remains that is not named.{place} What is named may stand for something that is not in the library.{forms}"
         ),
         Verdict::Unknown => {
             let refused = refused.map_or(String::new(), RefusedEffects::sentence);

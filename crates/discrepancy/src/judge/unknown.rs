@@ -141,7 +141,8 @@ const ABOVE: f64 = 8.0;
 
 /// What is known of a rest that shows in no curve over the motion.
 pub fn in_frequency(excess: Excess) -> Unknown {
-    let ([low, high], _) = excess.bands[excess.worst];
+    let (worst, fall) = excess.out[0];
+    let ([low, high], _) = excess.bands[worst];
     let middles = excess
         .bands
         .iter()
@@ -158,6 +159,6 @@ pub fn in_frequency(excess: Excess) -> Unknown {
             within: vec![0.0; values.len()],
             value: values,
         },
-        evidence: [0.0, excess.fall],
+        evidence: [0.0, fall],
     }
 }

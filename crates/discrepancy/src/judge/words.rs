@@ -168,10 +168,10 @@ fn sure(discovery: &Discovery) -> Vec<String> {
         verdict(discovery.verdict)
     )];
     if !discovery.effects.is_empty() {
-        let gone = 100.0 * discovery.gap.check.reduction;
-        lines.push(format!(
-            "{gone:.1} % of the gap above the noise is gone on motion that was not fitted to."
-        ));
+        let gone = discovery.gap.check.gone();
+        let mut letters = gone.chars();
+        let first = letters.next().into_iter().flat_map(char::to_uppercase);
+        lines.push(format!("{}.", first.chain(letters).collect::<String>()));
     }
     lines.extend(discovery.figures.sentence());
     lines.push(answer(&discovery.answer).to_owned());

@@ -26,6 +26,11 @@ pub struct ChannelGap {
 }
 
 impl ChannelGap {
+    /// Whether it stood out of its noise before.
+    fn stood_out(&self) -> bool {
+        self.before > REST * self.floor
+    }
+
     /// Whether what is left is noise.
     pub(crate) fn is_at_floor(&self) -> bool {
         self.after <= (REST * self.floor).max(OF_RUNS * self.floor_most)
@@ -42,8 +47,38 @@ pub struct Gap {
     pub reduction: f64,
 }
 
+impl Gap {
+    /// Whether any channel stood out of its noise before.
+    #[must_use]
+    pub fn stands_out(&self) -> bool {
+        self.channels.iter().any(ChannelGap::stood_out)
+    }
+
+    /// Whether what is left may be noise of another colour than that of the floors.
+    pub(crate) fn may_be_coloured(&self) -> bool {
+        let mut channels = self.channels.iter();
+        channels.all(|c| c.after <= COLOURED * c.floor)
+    }
+
+    /// What is gone of it, in words.
+    #[must_use]
+    pub fn gone(&self) -> String {
+        match self.stands_out() {
+            true => format!(
+                "{:.1} % of the gap above the noise is gone on motion that it was not fitted to",
+                100.0 * self.reduction
+            ),
+            false => "no channel stood out of its noise by more than a fifth: the evidence is that of all samples together, on motion that it was not fitted to as well".to_owned(),
+        }
+    }
+}
+
 /// A channel's rest is significant beyond this multiple of its floor.
 const REST: f64 = 1.2;
+
+/// Multiple of the floor, as it is told from high frequencies, beyond which nobody would call a
+/// rest noise.
+const COLOURED: f64 = 2.0;
 
 /// And beyond this multiple of the noisiest of the runs.
 const OF_RUNS: f64 = 1.1;
@@ -94,7 +129,7 @@ pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
             rms * rms - floor * floor
         }
     };
-    let shares = channels.iter().filter(|c| c.before > REST * c.floor);
+    let shares = channels.iter().filter(|c| c.stood_out());
     let ratios: Vec<f64> = shares
         .map(|c| above(c.after, c.floor) / above(c.before, c.floor))
         .collect();

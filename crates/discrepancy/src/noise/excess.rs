@@ -14,10 +14,26 @@ pub struct Excess {
     /// Edges of all bands, Hz, and power in the direction between the channels
     /// that is the furthest above the noise, as a multiple of it.
     pub bands: Vec<([f64; 2], f64)>,
-    /// The worst of them.
-    pub worst: usize,
-    /// Fall of D, were it given a spectrum of its own.
-    pub fall: f64,
+    /// Those that stand out, the worst first, and the fall of D, were the rest there given a
+    /// spectrum of its own.
+    pub out: Vec<(usize, f64)>,
+}
+
+impl Excess {
+    /// The same of the bands that stand out with these edges (Hz); none where none is left.
+    pub(crate) fn only(&self, mut keep: impl FnMut([f64; 2]) -> bool) -> Option<Self> {
+        let mut only = self.clone();
+        only.out.retain(|(band, _)| keep(self.bands[*band].0));
+        (!only.out.is_empty()).then_some(only)
+    }
+
+    /// What must be known of it where it does not follow the motion.
+    pub(crate) fn note(&self) -> String {
+        let ([low, high], times) = self.bands[self.out[0].0];
+        format!(
+            "from {low:.0} to {high:.0} Hz the rest has up to {times:.1} times the power of the noise that the sensors show at high frequency, and does not follow the motion; it is taken for noise"
+        )
+    }
 }
 
 /// Noise runs of which the spectrum is the mean: a few, and more where a band stands
@@ -95,7 +111,7 @@ fn beside(
         kept.into_iter().fold(zeros, |sum, r| sum + r * share)
     };
     let mut bands = Vec::new();
-    let mut worst = (1.0, None);
+    let mut out = Vec::new();
     for (i, (edges, values)) in layout.bands().enumerate() {
         let ratios = relative_to(&seen[i], slow.beside(i, mean_but(i, None)));
         let own = divergence(&ratios);
@@ -113,12 +129,14 @@ fn beside(
             most,
             "rest beside noise"
         );
-        if own / allowed > worst.0 {
-            worst = (own / allowed, Some((i, 2.0 * values * own)));
+        if own > allowed {
+            out.push((own / allowed, (i, 2.0 * values * own)));
         }
         bands.push((edges, most));
     }
-    worst.1.map(|(worst, fall)| Excess { bands, worst, fall })
+    out.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let out: Vec<(usize, f64)> = out.into_iter().map(|(_, band)| band).collect();
+    (!out.is_empty()).then_some(Excess { bands, out })
 }
 
 /// Σ (λ − 1 − ln λ) over those above 1.

@@ -3,6 +3,7 @@
 mod excess;
 mod floor;
 mod level;
+mod motion;
 mod sensor;
 mod slow;
 mod sources;
@@ -19,6 +20,7 @@ use rayon::prelude::*;
 pub(crate) use self::excess::{Excess, excess};
 pub(crate) use self::floor::{Floor, floors};
 use self::level::{noise_at, shows_noise};
+pub(crate) use self::motion::follows_motion;
 pub use self::sensor::SensorNoise;
 pub(crate) use self::slow::{SlowNoise, slow_noise};
 pub(crate) use self::turned::turned;

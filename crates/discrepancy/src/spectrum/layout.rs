@@ -155,6 +155,20 @@ impl Layout {
         bins.filter(move |(b, _)| **b == band).map(|(_, bin)| bin)
     }
 
+    /// Frequency (Hz) and channels of each bin, logs one after another.
+    pub fn bins<'a>(
+        &'a self,
+        amplitudes: &'a Amplitudes,
+    ) -> impl Iterator<Item = (f64, &'a [Complex<f64>])> {
+        let widths = self.logs.iter().zip(&self.periods);
+        let widths = widths.map(|((_, n), period)| 1.0 / (*n as f64 * period));
+        let logs = widths.zip(amplitudes);
+        logs.flat_map(|(width, bins)| {
+            let bins = bins.chunks_exact(self.channels).enumerate();
+            bins.map(move |(k, bin)| (k as f64 * width, bin))
+        })
+    }
+
     /// Sets all to 0 but a band of a channel.
     pub(crate) fn keep(&self, amplitudes: &mut Amplitudes, band: usize, channel: usize) {
         for (bands, bins) in self.bands.iter().zip(amplitudes) {

@@ -185,10 +185,13 @@ fn gaps(discovery: &Discovery) -> Section {
                 Cell::text(unit.said(c.floor)),
             ]);
         }
-        table.note(format!(
-            "{:.1} % of the gap above the noise is gone.",
-            100.0 * gap.reduction
-        ))
+        table.note(match gap.stands_out() {
+            true => format!(
+                "{:.1} % of the gap above the noise is gone.",
+                100.0 * gap.reduction
+            ),
+            false => "No channel stood out of its noise by more than a fifth.".to_owned(),
+        })
     };
     Section::new("Gap, RMS")
         .table(table("Motion that was not fitted to", &discovery.gap.check))

@@ -6,11 +6,17 @@ use crate::judge::{
     Told, TrackingCost, Verdict,
 };
 use crate::judge::{Curve, Unknown};
-use crate::name::gap::Gap;
+use crate::name::gap::{ChannelGap, Gap};
 
 fn discovery(verdict: Verdict, effects: Vec<EffectFound>, known: Vec<Recalibrated>) -> Discovery {
     let gap = Gap {
-        channels: Vec::new(),
+        channels: vec![ChannelGap {
+            channel: "position_m".to_owned(),
+            before: 4e-6,
+            after: 1.6e-8,
+            floor: 1e-8,
+            floor_most: 1.1e-8,
+        }],
         reduction: 0.997,
     };
     Discovery {
@@ -119,6 +125,9 @@ fn an_effect_is_told_with_its_cost_confidence_and_remedy() {
     let sure = lines(&made, "How sure");
     assert_eq!(sure[0], "Confidence: high (the gap is explained).");
     assert!(sure[1].starts_with("99.7 % of the gap"));
+    let mut small = made.clone();
+    small.gap.check.channels[0].before = 1.1e-8;
+    assert!(lines(&small, "How sure")[1].starts_with("No channel stood out"));
     assert!(lines(&made, "What else").is_empty());
     let next = lines(&made, "What to do next");
     assert!(

@@ -6,7 +6,7 @@ use super::state::Search;
 use super::types::{RefusalReason, Refused, RunnerUp};
 use crate::answers::{LogSet, State};
 use crate::name::gap::{gap, worsened};
-use crate::noise::floors;
+use crate::noise::{floors, follows_motion};
 
 /// Share of the gap above the noise, RMS on check motion, that all named effects together
 /// must take away: what leaves more than half of it explains something else.
@@ -39,9 +39,25 @@ impl Search<'_> {
             }
         }
         let [_, calibrated] = &befores;
-        let share = gap(set, calibrated, &after, &floors).reduction;
+        let of_gap = gap(set, calibrated, &after, &floors);
+        tracing::debug!(?of_gap, "of the gap on check motion");
+        let share = of_gap.reduction;
         let is_little = share < LEAST_SHARE && !self.settings_ask_for_all();
-        Ok(is_little.then(|| self.refusal(RefusalReason::Little(share))))
+        // Where no channel of a replay stood out of its noise, evidence alone speaks; and what is
+        // left is no gap where it is noise of another colour. In a balance noise of the motion
+        // passes through the model, and looks like evidence.
+        let is_gap = || !of_gap.may_be_coloured() || self.rest_follows_motion();
+        let is_left = set.is_balanced() || of_gap.stands_out() && is_gap();
+        let refused = is_little && is_left;
+        Ok(refused.then(|| self.refusal(RefusalReason::Little(share))))
+    }
+
+    /// Whether what is left follows the motion, in any band.
+    fn rest_follows_motion(&self) -> bool {
+        let fit = (&self.fit_logs, self.fit.traces.as_slice());
+        let check = (&self.check_logs, self.check.traces.as_slice());
+        let mut bands = self.check_logs.layout.bands();
+        bands.any(|(edges, _)| follows_motion(fit, check, edges))
     }
 
     fn refusal(&self, reason: RefusalReason) -> Refused {
