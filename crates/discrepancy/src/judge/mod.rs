@@ -182,26 +182,26 @@ pub fn judged(
         None if !nearly_all => excess(machine, set, full, &traces, &slow)?,
         _ => None,
     };
-    // A rest that is neither a curve over the motion nor follows it is noise, whatever its colour.
+    // A rest that is neither a curve over the motion nor follows it is noise, whatever its
+    // colour; but it may be what an imitation leaves of a gap.
+    let may_be_noise = !set.is_balanced()
+        && check.may_be_coloured()
+        && (effects.is_empty() || !check.stands_out());
     let follows = |band| {
-        if set.is_balanced() {
-            return true;
-        }
         let fit = (&found.fit_logs, found.fit.traces.as_slice());
-        follows_motion(fit, (set, &traces), band)
+        !may_be_noise || follows_motion(fit, (set, &traces), band)
     };
     let following = excess.as_ref().and_then(|excess| excess.only(follows));
-    let is_small = check.may_be_coloured();
-    let coloured = excess.clone().filter(|_| following.is_none() && is_small);
+    let coloured = excess.filter(|_| following.is_none());
+    let unknown = lack.or_else(|| following.map(in_frequency));
     let is_noise = at_floor(&check) || coloured.is_some();
-    let frequency = if is_small { following } else { excess };
-    let unknown = lack.or_else(|| frequency.map(in_frequency));
     let rest_significant = !(is_noise || nearly_all) || unknown.is_some();
     let verdict = match (effects.is_empty(), rest_significant) {
         _ if found.refused.is_some() => Verdict::Unknown,
         (true, false) => Verdict::NothingMissing,
         (true, true) => Verdict::Unknown,
-        (false, false) if is_noise || check.reduction >= EXPLAINED => Verdict::Explained,
+        // No share of a gap can be asked for where none stood out.
+        (false, false) if check.reduction >= EXPLAINED || !check.stands_out() => Verdict::Explained,
         (false, _) => Verdict::PartlyExplained,
     };
     let proposal = match log_noise(machine, &found.fit_logs, full, &found.fit.traces) {
