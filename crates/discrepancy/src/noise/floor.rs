@@ -190,7 +190,13 @@ mod tests {
     #[test]
     fn what_goes_on_for_many_samples_counts_for_nothing() {
         let (noise, time) = noise(0.0);
-        let sign = |k: usize| if (k / 100) % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = |k: usize| {
+            if (k / 100).is_multiple_of(2) {
+                1.0
+            } else {
+                -1.0
+            }
+        };
         let pairs = noise.iter().enumerate();
         let rest: Vec<f64> = pairs.map(|(k, n)| 30.0 * sign(k) + n).collect();
         let found = unlike(&rest, &time, PERIOD, 0.0);
