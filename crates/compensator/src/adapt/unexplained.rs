@@ -11,8 +11,8 @@ use super::{AdaptError, AdaptPrior, Adaptation};
 use crate::{Residual, ResidualAt, Sample, Unexplained};
 
 /// Deviation of the Gaussian over the log, s: short, as cogging varies quickly; and not so
-/// short that modes beyond the first, which no `DriveModel` has, pass it. Near them (from some
-/// 100 Hz on) inertia is not what it is, and cogging seems to turn its sign.
+/// short that modes beyond the first, which no `DriveModel` has, pass it. Near them (from
+/// some 80 Hz on, on the paper's axis) the torque that a motion needs is not the model's.
 const SMOOTHING: f64 = 2.5e-3;
 
 /// The torque that a log needed besides the model's.

@@ -224,9 +224,7 @@ fn slow_is_no_worse(log: &[&Unexplained], rests: &[[f64; 2]]) -> bool {
     let speeds = log.iter().map(|u| u.motor_speed.abs());
     let slow = SLOW * speeds.clone().fold(0.0, f64::max);
     let pairs = speeds.zip(rests).filter(|(speed, _)| *speed <= slow);
-    let [with, without] = pairs.fold([0.0; 2], |[a, b], (_, [with, without])| {
-        [a + with * with, b + without * without]
-    });
+    let [with, without] = powers(&pairs.map(|(_, rest)| *rest).collect::<Vec<_>>());
     with <= without
 }
 

@@ -56,7 +56,7 @@ use crate::estimate::known::{shown, tolerances};
 use crate::name::gap::{ChannelGap, Gap, gap};
 use crate::name::search::{Found, MATERIAL, is_form};
 use crate::noise::{
-    Excess, Floor, SlowNoise, excess, floors, follows_motion, log_noise, slow_noise,
+    Excess, Floor, MotionAndRest, SlowNoise, excess, floors, log_noise, slow_noise,
 };
 
 /// A search's result in words, figures and pictures.
@@ -187,11 +187,14 @@ pub fn judged(
     let may_be_noise = !set.is_balanced()
         && check.may_be_coloured()
         && (effects.is_empty() || !check.stands_out());
-    let follows = |band| {
+    let following = excess.as_ref().and_then(|excess| {
+        if !may_be_noise {
+            return Some(excess.clone());
+        }
         let fit = (&found.fit_logs, found.fit.traces.as_slice());
-        !may_be_noise || follows_motion(fit, (set, &traces), band)
-    };
-    let following = excess.as_ref().and_then(|excess| excess.only(follows));
+        let rest = MotionAndRest::new(fit, (set, &traces));
+        excess.only(|band| rest.follows(band))
+    });
     let coloured = excess.filter(|_| following.is_none());
     let unknown = lack.or_else(|| following.map(in_frequency));
     let is_noise = at_floor(&check) || coloured.is_some();

@@ -47,7 +47,13 @@ pub(super) fn sentence(
         Verdict::NothingMissing => format!(
             "Nothing is missing: the model and the logs agree to the noise, with known parameters inside their tolerance.{forms}"
         ),
-        Verdict::Explained => format!("The model lacks {names}. With {it}, {gone}.{forms}"),
+        Verdict::Explained if check.stands_out() => {
+            format!("The model lacks {names}. With {it}, {gone}.{forms}")
+        }
+        Verdict::Explained => format!("The model lacks {names}. {gone}.{forms}"),
+        Verdict::PartlyExplained if !check.stands_out() => format!(
+            "Partly explained, by {names}. {gone}. A rest remains that is not named.{place} What is named may stand for something that is not in the library.{forms}"
+        ),
         Verdict::PartlyExplained => format!(
             "Partly explained: with {names}, {gone}, and a rest remains that is not named.{place} What is named may stand for something that is not in the library.{forms}"
         ),

@@ -168,10 +168,7 @@ fn sure(discovery: &Discovery) -> Vec<String> {
         verdict(discovery.verdict)
     )];
     if !discovery.effects.is_empty() {
-        let gone = discovery.gap.check.gone();
-        let mut letters = gone.chars();
-        let first = letters.next().into_iter().flat_map(char::to_uppercase);
-        lines.push(format!("{}.", first.chain(letters).collect::<String>()));
+        lines.push(format!("{}.", discovery.gap.check.gone()));
     }
     lines.extend(discovery.figures.sentence());
     lines.push(answer(&discovery.answer).to_owned());

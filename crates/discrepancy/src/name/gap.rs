@@ -60,7 +60,7 @@ impl Gap {
         channels.all(|c| c.after <= COLOURED * c.floor)
     }
 
-    /// What is gone of it, in words.
+    /// What is gone of it, as the beginning of a sentence.
     #[must_use]
     pub fn gone(&self) -> String {
         match self.stands_out() {
@@ -68,7 +68,7 @@ impl Gap {
                 "{:.1} % of the gap above the noise is gone on motion that it was not fitted to",
                 100.0 * self.reduction
             ),
-            false => "no channel stood out of its noise by more than a fifth: the evidence is that of all samples together, on motion that it was not fitted to as well".to_owned(),
+            false => "No channel stood out of its noise by more than a fifth: the evidence is that of all samples together, on motion that it was not fitted to as well".to_owned(),
         }
     }
 }

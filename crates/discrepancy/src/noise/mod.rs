@@ -20,7 +20,7 @@ use rayon::prelude::*;
 pub(crate) use self::excess::{Excess, excess};
 pub(crate) use self::floor::{Floor, floors};
 use self::level::{noise_at, shows_noise};
-pub(crate) use self::motion::follows_motion;
+pub(crate) use self::motion::MotionAndRest;
 pub use self::sensor::SensorNoise;
 pub(crate) use self::slow::{SlowNoise, slow_noise};
 pub(crate) use self::turned::turned;

@@ -15,7 +15,6 @@ use axis_sim::Trace;
 use nalgebra::{Complex, DMatrix};
 
 use crate::answers::LogSet;
-use crate::spectrum::Amplitudes;
 
 /// Share of the power in a band, on logs that the filters were not found on, from which a rest
 /// follows the motion. Filters found in noise foretell less than nothing: on simulated logs of a
@@ -28,12 +27,49 @@ const FINEST: f64 = 1e-6;
 /// Logs and their simulations.
 pub(crate) type Simulated<'a> = (&'a LogSet, &'a [Trace]);
 
-/// Whether what a model leaves in a band (`[low, high]`, Hz) follows the motion: filters found
-/// on one set of logs foretell it on another. Where a set has too few bins to tell, it does.
-pub(crate) fn follows_motion(fit: Simulated, check: Simulated, band: [f64; 2]) -> bool {
-    let share = foretold(&equations(fit, band), &equations(check, band));
-    tracing::debug!(?band, share, "of the rest follows the motion");
-    share.is_none_or(|share| share >= FOLLOWS)
+/// Motion and rest of logs that filters are found on, and of others.
+pub(crate) struct MotionAndRest {
+    fit: Vec<Bin>,
+    check: Vec<Bin>,
+}
+
+/// Channels of motion and of rest at a frequency, Hz.
+struct Bin {
+    frequency: f64,
+    motion: Vec<Complex<f64>>,
+    rest: Vec<Complex<f64>>,
+}
+
+impl MotionAndRest {
+    /// Of logs and their simulations.
+    pub(crate) fn new(fit: Simulated, check: Simulated) -> Self {
+        Self {
+            fit: bins(fit),
+            check: bins(check),
+        }
+    }
+
+    /// Whether the rest in a band (`[low, high]`, Hz) follows the motion: filters found on the
+    /// one set of logs foretell it on the other. Where a set has too few bins to tell, it does.
+    pub(crate) fn follows(&self, band: [f64; 2]) -> bool {
+        let share = foretold(&equations(&self.fit, band), &equations(&self.check, band));
+        tracing::debug!(?band, share, "of the rest follows the motion");
+        share.is_none_or(|share| share >= FOLLOWS)
+    }
+}
+
+/// All bins but those at zero frequency.
+fn bins((set, traces): Simulated) -> Vec<Bin> {
+    let motion = set.amplitudes(&set.simulated_all(traces));
+    let rest = set.amplitudes(&set.rest(traces));
+    let both = set.layout.bins(&motion).zip(set.layout.bins(&rest));
+    let both = both.filter(|((frequency, _), _)| *frequency > 0.0);
+    let bin = both.map(|((frequency, motion), (_, rest))| Bin {
+        frequency,
+        motion: motion.to_vec(),
+        rest: rest.to_vec(),
+    });
+    bin.collect()
 }
 
 /// Motion and rest in a band: a row a bin; each column of the rest has unit power.
@@ -42,36 +78,24 @@ struct Equations {
     rest: DMatrix<Complex<f64>>,
 }
 
-fn equations((set, traces): Simulated, [low, high]: [f64; 2]) -> Equations {
-    let rest = set.amplitudes(&set.rest(traces));
-    let motion = set.amplitudes(&set.simulated_all(traces));
+fn equations(bins: &[Bin], [low, high]: [f64; 2]) -> Equations {
     let middle = 0.5 * (low + high);
-    let channels = set.layout.channels();
-    let [motion, rest] = [motion, rest].map(|of| rows(set, &of, [low, high]));
-    let count = rest.len();
-    let power = |c: usize| {
-        rest.iter()
-            .map(|(_, bin)| bin[c].norm_sqr())
-            .sum::<f64>()
-            .sqrt()
-    };
-    let powers: Vec<f64> = (0..channels)
-        .map(|c| power(c).max(f64::MIN_POSITIVE))
+    let inside = bins.iter();
+    let inside: Vec<&Bin> = inside
+        .filter(|bin| (low..high).contains(&bin.frequency))
+        .collect();
+    let channels = inside.first().map_or(0, |bin| bin.rest.len());
+    let power = |c: usize| inside.iter().map(|b| b.rest[c].norm_sqr()).sum::<f64>();
+    let sizes: Vec<f64> = (0..channels)
+        .map(|c| power(c).sqrt().max(f64::MIN_POSITIVE))
         .collect();
     Equations {
-        motion: DMatrix::from_fn(count, 3 * channels, |k, i| {
-            let (frequency, bin) = &motion[k];
-            bin[i % channels] * Complex::new(0.0, frequency / middle).powu((i / channels) as u32)
+        motion: DMatrix::from_fn(inside.len(), 3 * channels, |k, i| {
+            let turn = Complex::new(0.0, inside[k].frequency / middle);
+            inside[k].motion[i % channels] * turn.powu((i / channels) as u32)
         }),
-        rest: DMatrix::from_fn(count, channels, |k, c| rest[k].1[c] / powers[c]),
+        rest: DMatrix::from_fn(inside.len(), channels, |k, c| inside[k].rest[c] / sizes[c]),
     }
-}
-
-/// Frequency and channels of each bin of a band but that at zero frequency.
-fn rows(set: &LogSet, of: &Amplitudes, [low, high]: [f64; 2]) -> Vec<(f64, Vec<Complex<f64>>)> {
-    let bins = set.layout.bins(of);
-    let inside = bins.filter(|(f, _)| *f > 0.0 && (low..high).contains(f));
-    inside.map(|(f, bin)| (f, bin.to_vec())).collect()
 }
 
 /// Share of the power of one rest that filters found on the other foretell, the greatest of all

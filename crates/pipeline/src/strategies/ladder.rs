@@ -262,7 +262,6 @@ impl Strategy for Ladder {
     fn learn(&mut self, record: &[Sample]) -> Result<LearnedValues, PipelineError> {
         let mut known = LearnedValues::new();
         if let Some(adaptation) = &mut self.adaptation {
-            // A log that cannot be learned from leaves everything as it was.
             // What repeats with a move is not what repeats with angle and position.
             let again = self
                 .now
@@ -276,6 +275,7 @@ impl Strategy for Ladder {
                 let used = beside.learner.model().is_some();
                 known.insert("residual_used".to_owned(), f64::from(u8::from(used)));
             }
+            // A log that cannot be learned from leaves everything as it was.
             let refused = adaptation.learn(record).err();
             known.insert(
                 "moves_refused".to_owned(),

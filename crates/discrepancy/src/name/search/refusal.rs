@@ -6,7 +6,7 @@ use super::state::Search;
 use super::types::{RefusalReason, Refused, RunnerUp};
 use crate::answers::{LogSet, State};
 use crate::name::gap::{gap, worsened};
-use crate::noise::{floors, follows_motion};
+use crate::noise::{MotionAndRest, floors};
 
 /// Share of the gap above the noise, RMS on check motion, that all named effects together
 /// must take away: what leaves more than half of it explains something else.
@@ -56,8 +56,9 @@ impl Search<'_> {
     fn rest_follows_motion(&self) -> bool {
         let fit = (&self.fit_logs, self.fit.traces.as_slice());
         let check = (&self.check_logs, self.check.traces.as_slice());
+        let rest = MotionAndRest::new(fit, check);
         let mut bands = self.check_logs.layout.bands();
-        bands.any(|(edges, _)| follows_motion(fit, check, edges))
+        bands.any(|(edges, _)| rest.follows(edges))
     }
 
     fn refusal(&self, reason: RefusalReason) -> Refused {
