@@ -10,6 +10,7 @@ use discover_matrix::matrix2::{
     Bench, Case, CaseOutcome, CaseSetting, Channels, MatrixPlan, TARGETS, TOLERANCES, VERSION,
     cases,
 };
+use discrepancy::Verdict;
 use trajectories::{Limits, Program, Step};
 
 fn axis(name: &str) -> Axis {
@@ -161,4 +162,29 @@ fn a_clean_machine_and_one_effect_are_told_and_counted() {
         (gain / smaller / 10.0 - 1.0).abs() < 0.2,
         "{gain} {smaller}"
     );
+}
+
+/// Cases of seed 404 on a robot joint. From a file that is off by up to 20 % a fit of D alone
+/// ended 10 600 above the truth, and a gravity imbalance was named; asymmetric friction beneath
+/// noise that only the logger has was refused, as its gap stands out of nothing; and of a
+/// quantised command the mean over a rest is not what the drive held.
+#[test]
+fn fits_reach_the_truth_from_files_that_are_far_off() {
+    let all = cases(&machines(), &MatrixPlan::of(600), 404).unwrap();
+    let tried = |id: &str| {
+        let case = all.iter().find(|c| c.id == id).unwrap();
+        let bench = Bench::new(&axis(&case.setting.machine), &case.setting).unwrap();
+        let outcome = bench.try_case(case);
+        let d = outcome.deviance.unwrap();
+        println!("{id} {:?} {:?} {d:?}", outcome.verdict, outcome.named);
+        // As many numbers as are fitted bring that by chance.
+        assert!(d.found - d.truth < 25.0, "{id}: {d:?}");
+        outcome
+    };
+    let clean = tried("p01-clean-1");
+    assert_eq!(clean.verdict, Some(Verdict::NothingMissing));
+    let d = clean.deviance.unwrap();
+    assert!(d.as_filed - d.truth > 20_000.0, "{d:?}");
+    assert!(tried("p01-single-0").is_first());
+    assert!(tried("p04-clean-2").wrong_names().is_empty());
 }

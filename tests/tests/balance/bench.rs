@@ -46,8 +46,7 @@ fn inertia_alone_lacks_dry_and_viscous_friction() {
     assert!(off(inertia(&told), 1.84e-4) < 0.06, "{:?}", inertia(&told));
     let dry = [0, 1].map(|p| told.value("asymmetric-friction", p).0);
     let dry = 0.5 * (dry[0] + dry[1]);
-    let viscous = [0, 1].map(|p| told.value("asymmetric-viscous-friction", p).0);
-    let viscous = 0.5 * (viscous[0] + viscous[1]);
+    let viscous = told.value("viscous-friction", 0).0;
     // It comes on with speed, below 1 rad/s.
     let form = told.effect("asymmetric-friction").form.as_ref().unwrap();
     assert!(form.below < 1.0, "{form:?}");

@@ -22,7 +22,7 @@ use crate::error::SetupError;
 use crate::part::PartError;
 
 /// Knots of speed.
-pub const ONSET_KNOTS: usize = 6;
+pub const ONSET_KNOTS: usize = 9;
 
 /// Numbers of an effect that can have a form.
 const MOST_NUMBERS: usize = 6;
@@ -46,10 +46,10 @@ pub static ONSET_FORM: Effect = Effect {
     channel: EffectChannel::Torque,
     depends_on: "low speed",
     shown_over: EffectVariable::Speed,
-    // Place of the effect and its values; knots; p and c_1 to c_5.
+    // Place of the effect and its values; knots; p and c_1 to c_8.
     parameters: &[
-        HELD, HELD, HELD, HELD, HELD, HELD, HELD, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT, SHARE, SHARE,
-        SHARE, SHARE, SHARE, SHARE,
+        HELD, HELD, HELD, HELD, HELD, HELD, HELD, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT,
+        KNOT, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE,
     ],
     needs: &[],
     install,

@@ -34,6 +34,10 @@ pub struct NamedEffect {
     pub name: String,
     /// Effects that it said these logs cannot tell from it.
     pub alike: Vec<String>,
+    /// Its parameters, in the order of the effect's.
+    pub values: Vec<f64>,
+    /// Fall of D that it brings, on the fit logs and, when it was named, on the check logs.
+    pub evidence: [f64; 2],
 }
 
 /// What a proposed experiment did for a class: the search once more, with its log
@@ -97,6 +101,8 @@ mod tests {
                 .map(|(name, alike)| NamedEffect {
                     name: (*name).to_owned(),
                     alike: alike.iter().map(|a| (*a).to_owned()).collect(),
+                    values: Vec::new(),
+                    evidence: [0.0; 2],
                 })
                 .collect(),
         };

@@ -151,13 +151,16 @@ pub(crate) fn is_a_rival(
 
 /// In the order of evidence.
 pub(crate) fn named(found: &Found) -> Vec<NamedEffect> {
-    let mut named: Vec<&Named> = found.named.iter().filter(|n| !n.is_form()).collect();
-    named.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-    let entry = |n: &Named| NamedEffect {
+    let all = found.named.iter().zip(&found.fit.state.effects);
+    let mut named: Vec<(&Named, &ActiveEffect)> = all.filter(|(n, _)| !n.is_form()).collect();
+    named.sort_by(|(a, _), (b, _)| b.evidence.total_cmp(&a.evidence));
+    let entry = |(n, active): (&Named, &ActiveEffect)| NamedEffect {
         name: n.name.to_owned(),
         alike: (n.alike.iter())
             .map(|a| a.fitted.effect.name.to_owned())
             .collect(),
+        values: active.values.clone(),
+        evidence: [n.evidence, n.held_out],
     };
     named.into_iter().map(entry).collect()
 }

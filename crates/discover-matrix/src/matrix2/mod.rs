@@ -23,7 +23,7 @@ mod trial;
 pub use bench::Bench;
 pub use case::{Case, CaseSetting, Channels, TOLERANCES, VERSION, VISIBLE};
 pub use design::{MatrixPlan, cases};
-pub use outcome::CaseOutcome;
+pub use outcome::{CaseOutcome, Deviance};
 pub use peers::{IN_TERMS, Reach, peer_cases};
 pub use score::{GROUPS, Group, Limit, ScoreTarget, TARGETS};
 pub use trial::Given;

@@ -28,6 +28,8 @@ pub struct CaseOutcome {
     pub reduction: f64,
     /// What was found that is in no library.
     pub unknown: Option<Unknown>,
+    /// D of the fitted logs: with the truth, and with what was found.
+    pub deviance: Option<Deviance>,
     /// The experiment that was proposed, run, and searched with the whole library.
     pub split: Option<Split>,
 }
@@ -53,7 +55,24 @@ impl CaseOutcome {
             estimates: Vec::new(),
             reduction: 0.0,
             unknown: None,
+            deviance: None,
             split: None,
         }
     }
+}
+
+/// D of the fitted logs, with their departures of known parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Deviance {
+    /// Of the machine as its file says.
+    pub as_filed: f64,
+    /// Of its known parameters fitted.
+    pub calibrated: f64,
+    /// Of what was found.
+    pub found: f64,
+    /// Of the truth, fitted from there: where it is far below what was found, the search did
+    /// not come there; where it is not, these logs speak for something else as well.
+    pub truth: f64,
+    /// Fall that naming an effect takes.
+    pub needed: f64,
 }

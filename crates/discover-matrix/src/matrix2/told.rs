@@ -3,14 +3,18 @@
 use axis_sim::effects::Effect;
 use discrepancy::{Foreseen, Verdict};
 
-use super::outcome::CaseOutcome;
+use super::outcome::{CaseOutcome, Deviance};
 use crate::hidden::{Form, LawVariable};
 use crate::matrix::{CaseKind, NamedEffect};
 
 impl CaseOutcome {
-    /// Whether all that is hidden can be seen, by what was known beforehand.
+    /// Whether all that is hidden can be seen: by what was known beforehand, which is linear
+    /// about the file's values, and by the truth's explaining the fitted logs better than known
+    /// parameters inside their tolerance do.
     pub fn is_seen(&self) -> bool {
-        self.failed.is_none() && self.foreseen.iter().all(|f| f.detectable)
+        let better = |d: Deviance| d.calibrated - d.truth >= d.needed;
+        let foreseen = self.foreseen.iter().all(|f| f.detectable);
+        self.failed.is_none() && foreseen && self.deviance.is_none_or(better)
     }
 
     /// Whether each of it can be told from every other effect, likewise.

@@ -3,13 +3,13 @@
 use axis_log::Log;
 use axis_sim::ReplayError;
 use discrepancy::{
-    Discovered, Foreseen, Found, LogSet, Proposal, SearchError, Settings, judged, search,
-    search_with,
+    Discovered, Fitter, Foreseen, Found, LogSet, Proposal, SearchError, Settings, State, judged,
+    search, search_with,
 };
 
 use super::bench::Bench;
 use super::case::Case;
-use super::outcome::CaseOutcome;
+use super::outcome::{CaseOutcome, Deviance};
 use crate::hidden::Truth;
 use crate::matrix::{Split, estimates, is_a_rival, named};
 
@@ -84,6 +84,7 @@ impl Bench {
         };
         let told = judged(&self.machine, fit, check, &found)?;
         self.keep(&case, &truth, &found, &told, outcome);
+        outcome.deviance = self.deviance(&truth, &found);
         if let Some(proposal) = &told.proposal {
             outcome.split = self.split(&case, &truth, &logs, proposal)?;
         }
@@ -111,6 +112,32 @@ impl Bench {
             .into_iter()
             .chain(formed.map(|e| e.name.clone()))
             .collect();
+    }
+
+    /// `None` where a machine does not run.
+    fn deviance(&self, truth: &Truth, found: &Found) -> Option<Deviance> {
+        let fitter = Fitter {
+            machine: &self.machine,
+            set: &found.fit_logs,
+        };
+        let nominal = State::initial(&self.machine);
+        let of = |shares: &[f64]| {
+            let mut state = nominal.clone();
+            state.shares.copy_from_slice(shares);
+            fitter.at(state).ok()
+        };
+        let shares = truth.shares.iter().copied().chain(std::iter::repeat(0.0));
+        let shares = shares.take(nominal.shares.len()).collect();
+        let effects = truth.effects.clone();
+        let truth = fitter.at(State { shares, effects }).ok()?;
+        let known = fitter.known_columns(&truth);
+        Some(Deviance {
+            as_filed: of(&nominal.shares)?.deviance,
+            calibrated: of(&found.base.state.shares)?.deviance,
+            found: found.fit.deviance,
+            truth: fitter.refine(truth, &known, 4).deviance,
+            needed: found.needed(),
+        })
     }
 
     fn logs(&self, truth: &Truth, place: usize) -> Result<LogSet, ReplayError> {

@@ -1,11 +1,13 @@
-//! What the bristles hold at the start of logs that do not show the drive's command.
+//! What is held at the start of a log.
 //!
-//! One unknown a log, s in −1 ≤ s ≤ 1, beside the parameters of the machine: nothing but the
-//! first move tells it, and it tells nothing of any other motion. All of that range is
-//! possible, and equally likely.
+//! Where the drive's command is not shown, one unknown a log, s in −1 ≤ s ≤ 1, beside the
+//! parameters of the machine: nothing but the first move tells it, and it tells nothing of any
+//! other motion. All of that range is possible, and equally likely. Where the command is shown,
+//! its mean over the rest has an error where its noise is slow, and the first move tells that.
 
 use axis_sim::{Axis, ReplayError, Stored};
 
+use super::stored::noise_of_effort;
 use super::{Answer, LogSet, State};
 
 /// Shares that are tried first.
@@ -17,6 +19,14 @@ const HALVINGS: usize = 5;
 /// Fall of minus twice the log-likelihood below which nothing is said to be stored.
 const BY_CHANCE: f64 = 25.0;
 
+/// Step by which a held effort is first moved, and most by which it is moved at once, as
+/// shares of the command's noise.
+const STEP: f64 = 0.1;
+const REACH: f64 = 0.5;
+
+/// Fall of minus twice the log-likelihood below which it stays: one number by chance.
+const MOVED: f64 = 10.0;
+
 impl LogSet {
     /// Finds what belongs to the logs and changes with the model: what they have stored where
     /// they do not show it, and defects.
@@ -25,6 +35,7 @@ impl LogSet {
     /// [`ReplayError`] where the machine does not run at this state.
     pub(crate) fn follow(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
         self.find_stored(machine, state)?;
+        self.find_effort(machine, state)?;
         self.correct_defects(machine, state)
     }
 
@@ -79,6 +90,66 @@ impl LogSet {
         tracing::debug!(?kept, "held by bristles at the start");
         *self = self.with_shares(&kept);
         Ok(())
+    }
+
+    /// Moves what the drive holds at the start of each log, where that is the mean of a noisy
+    /// command, to where the log is most likely beside this state: by a parabola through three
+    /// points, by no more than [`REACH`].
+    ///
+    /// # Errors
+    /// [`ReplayError`] where the machine does not run.
+    fn find_effort(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
+        let noise = self
+            .logs
+            .iter()
+            .map(|log| match log.answer.replay()?.stored() {
+                Stored::Effort(_) => noise_of_effort(&log.log, log.period, machine),
+                _ => None,
+            });
+        let noise: Vec<Option<f64>> = noise.collect();
+        if noise.iter().all(|n| n.is_none_or(|n| n <= 0.0)) {
+            return Ok(());
+        }
+        let misfits = |moves: &[f64]| -> Result<Vec<f64>, ReplayError> {
+            let set = self.with_efforts_moved(moves);
+            let rest = set.rest(&set.simulate(machine, state)?);
+            Ok(rest.iter().map(|log| misfit(log)).collect())
+        };
+        let steps: Vec<f64> = noise.iter().map(|n| STEP * n.unwrap_or(0.0)).collect();
+        let times = |by: f64| steps.iter().map(|step| by * step).collect::<Vec<f64>>();
+        let [below, here, above] = [-1.0, 0.0, 1.0].map(times).map(|m| misfits(&m));
+        let (below, here, above) = (below?, here?, above?);
+        let vertex = |i: usize| {
+            let (slope, bend) = (above[i] - below[i], above[i] + below[i] - 2.0 * here[i]);
+            let most = REACH / STEP;
+            let by = match bend > 0.0 {
+                true => -0.5 * slope / bend,
+                false => -slope.signum(),
+            };
+            by.clamp(-most, most) * steps[i]
+        };
+        let moves: Vec<f64> = (0..steps.len()).map(vertex).collect();
+        let there = misfits(&moves)?;
+        let gains = here.iter().zip(&there).map(|(a, b)| a - b > MOVED);
+        let kept = gains
+            .zip(moves)
+            .map(|(better, by)| if better { by } else { 0.0 });
+        let kept: Vec<f64> = kept.collect();
+        tracing::debug!(?kept, ?noise, "effort at the start, moved by");
+        *self = self.with_efforts_moved(&kept);
+        Ok(())
+    }
+
+    fn with_efforts_moved(&self, moves: &[f64]) -> Self {
+        let mut set = self.clone();
+        for (log, by) in set.logs.iter_mut().zip(moves) {
+            if let Answer::Replay(replay) = &log.answer
+                && let Stored::Effort(effort) = replay.stored()
+            {
+                log.answer = Answer::Replay(replay.clone().storing(Stored::Effort(effort + by)));
+            }
+        }
+        set
     }
 
     /// What the bristles hold at the start of each log, where that is an unknown.

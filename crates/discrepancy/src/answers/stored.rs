@@ -67,6 +67,24 @@ pub(super) fn storing(replay: Replay, log: &Log, period: f64, closed_loop: &Clos
     replay.storing(stored)
 }
 
+/// Noise of the command in the rest that a log begins with, RMS, or one step of a coarser
+/// command, in the actuator's unit; `None` where it has no such rest, or does not show the
+/// command.
+pub(super) fn noise_of_effort(log: &Log, period: f64, machine: &Axis) -> Option<f64> {
+    let rest = first_rest(log, period)?;
+    let whole = command(log, machine, log.len().max(rest));
+    let command = whole.or_else(|| command(log, machine, rest))?;
+    let noise = power(&command[rest / 2..rest]).sqrt();
+    let changes = command.windows(2).map(|w| (w[1] - w[0]).abs());
+    let least = 1e-9 * machine.actuator.limit().min(1e9);
+    let step = changes.filter(|by| *by > least).fold(f64::MAX, f64::min);
+    Some(if step < f64::MAX {
+        noise.max(step)
+    } else {
+        noise
+    })
+}
+
 /// Samples until the reference first moves, where they are enough.
 fn first_rest(log: &Log, period: f64) -> Option<usize> {
     let reference = reference_in(log).ok()?;

@@ -52,9 +52,17 @@ impl MotionAndRest {
     /// Whether the rest in a band (`[low, high]`, Hz) follows the motion: filters found on the
     /// one set of logs foretell it on the other. Where a set has too few bins to tell, it does.
     pub(crate) fn follows(&self, band: [f64; 2]) -> bool {
-        let share = foretold(&equations(&self.fit, band), &equations(&self.check, band));
-        tracing::debug!(?band, share, "of the rest follows the motion");
-        share.is_none_or(|share| share >= FOLLOWS)
+        self.follows_in(band, |_| true)
+    }
+
+    /// The same of some of the channels, by their places among those that are fitted.
+    pub(crate) fn follows_in(&self, band: [f64; 2], wanted: impl Fn(usize) -> bool) -> bool {
+        let shares = foretold(&equations(&self.fit, band), &equations(&self.check, band));
+        tracing::debug!(?band, ?shares, "of the rest follows the motion");
+        shares.is_none_or(|shares| {
+            let mut wanted = shares.iter().enumerate().filter(|(c, _)| wanted(*c));
+            wanted.any(|(_, share)| *share >= FOLLOWS)
+        })
     }
 }
 
@@ -98,9 +106,9 @@ fn equations(bins: &[Bin], [low, high]: [f64; 2]) -> Equations {
     }
 }
 
-/// Share of the power of one rest that filters found on the other foretell, the greatest of all
-/// channels; none where there are fewer bins than coefficients.
-fn foretold(fit: &Equations, check: &Equations) -> Option<f64> {
+/// Share of the power of one rest that filters found on the other foretell, one a channel; none
+/// where there are fewer bins than coefficients.
+fn foretold(fit: &Equations, check: &Equations) -> Option<Vec<f64>> {
     let unknowns = fit.motion.ncols();
     if fit.rest.nrows() <= unknowns || check.rest.nrows() == 0 {
         return None;
@@ -120,7 +128,7 @@ fn foretold(fit: &Equations, check: &Equations) -> Option<f64> {
     let left = &check.rest - scaled(&check.motion) * filters;
     let shares = left.column_iter().zip(check.rest.column_iter());
     let shares = shares.map(|(left, all)| 1.0 - left.norm_squared() / all.norm_squared());
-    shares.reduce(f64::max)
+    Some(shares.collect())
 }
 
 #[cfg(test)]
@@ -160,7 +168,8 @@ mod tests {
         let mut follow = |share: f64| {
             let pairs = (0..200).filter(|_| {
                 let [fit, check] = [(); 2].map(|()| equations(share, &mut random));
-                foretold(&fit, &check).unwrap() >= FOLLOWS
+                let shares = foretold(&fit, &check).unwrap();
+                shares.iter().any(|share| *share >= FOLLOWS)
             });
             pairs.count()
         };

@@ -16,6 +16,11 @@ pub(super) const WORSE: f64 = 2.0;
 /// Least fall of D on logs that were not fitted.
 pub(super) const LEAST_HELD_OUT: f64 = 10.0;
 
+/// Share of the fall of D on the fitted logs, log for log of the same length, that there must
+/// be on those that were not: other motion may ask less of an effect, but what does next to
+/// nothing there was fitted to one log.
+pub(super) const HELD_OUT: f64 = 0.1;
+
 /// Share of the rest's whitened power, that is of noise, that something must
 /// have to be material: a fourteenth of the noise in amplitude. Sensor noise in
 /// the loop shakes dry friction and backlash a little loose, which a replay

@@ -16,8 +16,9 @@ use crate::estimate::fit::Columns;
 use crate::name::library::{Candidate, responses};
 use crate::name::screen::{Screened, Screening};
 
-/// Knots of speed as shares of the greatest speed.
-const KNOTS: [f64; ONSET_KNOTS] = [1e-4, 4e-4, 1.6e-3, 6e-3, 2.5e-2, 1e-1];
+/// Knots of speed as shares of the greatest speed: of the onset, then of the fall after
+/// break-away, whose speed may be a hundredth of the greatest or a tenth.
+const KNOTS: [f64; ONSET_KNOTS] = [1e-4, 4e-4, 1.6e-3, 5e-3, 1.2e-2, 2.5e-2, 5e-2, 0.12, 0.3];
 
 /// Share of what a form explains that an effect of the library must explain to be taken
 /// instead: it says more, with fewer numbers.
@@ -36,7 +37,7 @@ pub(crate) fn is_form(active: &ActiveEffect) -> bool {
 pub(super) fn own_friction(axis: &Axis) -> Option<ActiveEffect> {
     let friction = &axis.friction;
     let level = friction.law.parameters().coulomb / friction.lever(axis.travel_per_radian());
-    let effect = Effect::named("coulomb-friction")?;
+    let effect = Effect::named(PLAIN)?;
     (level > 0.0).then(|| ActiveEffect {
         effect,
         values: vec![level],
@@ -44,6 +45,26 @@ pub(super) fn own_friction(axis: &Axis) -> Option<ActiveEffect> {
 }
 
 impl Search<'_> {
+    /// The axis' own dry friction with a memory in place of a bristle, as two effects of those
+    /// that were `screened`: slip of its level, and the bristle's taken away. Neither is worth
+    /// much alone.
+    pub(super) fn own_with_memory(&self, screened: &[Screened]) -> Vec<Vec<Screened>> {
+        let find = |name: &str| screened.iter().find(|s| s.effect.name == name);
+        let (own, slip, dry) = (own_friction(self.machine), find(WITH_MEMORY), find(PLAIN));
+        let (Some(own), Some(slip), Some(dry)) = (own, slip, dry) else {
+            return Vec::new();
+        };
+        let level = own.values[0];
+        let pair = |distance: &f64| {
+            let mut pair = vec![slip.clone(), dry.clone()];
+            pair[0].values = vec![level, *distance];
+            pair[1].values = vec![-level];
+            pair
+        };
+        let typical = slip.effect.parameters[1].typical(&slip.scales);
+        [0.3, 1.0].map(|by| pair(&(by * typical))).to_vec()
+    }
+
     /// Forms that are not there yet, beside the derivatives of the fit's own parameters.
     pub(super) fn forms(&self, own: &Columns) -> Vec<Screened> {
         let speeds = self.fit.traces.iter().flat_map(|t| &t.speed);
@@ -88,7 +109,23 @@ impl Refined {
     /// memory is dry friction whose onset has one.
     fn is_of_another_form(&self) -> bool {
         let with_memory = |p: &Screened| p.effect.name == WITH_MEMORY;
-        self.is_form() || self.parts.len() == 1 && self.parts.iter().any(with_memory)
+        let plain = |p: &Screened| p.effect.name == PLAIN;
+        let others = self.parts.iter().filter(|p| !with_memory(p));
+        self.is_form() || self.parts.iter().any(with_memory) && others.into_iter().all(plain)
+    }
+}
+
+impl Refined {
+    /// Whether it takes sliding friction away and adds a fall from rest to it: together another
+    /// course of the axis' own friction over speed, and no two effects.
+    pub(super) fn bends_own_friction(&self) -> bool {
+        let effects = &self.fit.state.effects;
+        let new = &effects[effects.len() - self.parts.len()..];
+        let is_friction = |a: &ActiveEffect| a.effect.name == FALL || DRY.contains(&a.effect.name);
+        let falls = |a: &ActiveEffect| a.effect.name == FALL && a.values[0] > 0.0;
+        let dry = effects.iter().filter(|a| DRY.contains(&a.effect.name));
+        let level: f64 = dry.flat_map(|a| &a.values).sum();
+        new.iter().any(is_friction) && effects.iter().any(falls) && level < 0.0
     }
 }
 
@@ -96,12 +133,20 @@ impl Search<'_> {
     /// Whether an effect is dry friction in another form beside one that is there: the two
     /// would share what is one friction.
     pub(super) fn doubles_a_friction(&self, effect: &Effect) -> bool {
-        let plain = ["coulomb-friction", "asymmetric-friction"];
         let mut named = self.named.iter();
-        effect.name == WITH_MEMORY && named.any(|n| plain.contains(&n.name))
-            || plain.contains(&effect.name) && self.named.iter().any(|n| n.name == WITH_MEMORY)
+        effect.name == WITH_MEMORY && named.any(|n| DRY.contains(&n.name))
+            || DRY.contains(&effect.name) && self.named.iter().any(|n| n.name == WITH_MEMORY)
     }
 }
+
+/// Dry friction.
+const PLAIN: &str = "coulomb-friction";
+
+/// Dry friction of one level, or of one a direction.
+const DRY: [&str; 2] = [PLAIN, "asymmetric-friction"];
+
+/// Dry friction that falls with speed.
+const FALL: &str = "stribeck-friction";
 
 /// Dry friction with a memory.
 const WITH_MEMORY: &str = "maxwell-slip-hysteresis";

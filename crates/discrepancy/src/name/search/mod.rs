@@ -20,13 +20,13 @@ use axis_sim::{Axis, ReplayError};
 pub use self::evidence::{MATERIAL, needed};
 pub(crate) use self::form::is_form;
 pub(crate) use self::revise::ABOVE_NOISE;
-use self::state::Search;
+use self::state::{Search, steady_noise};
 pub use self::types::{
     Alike, Found, Named, ONE_CLASS, RefusalReason, Refused, Replaced, RunnerUp, SearchError,
     Settings, SettingsError, Test,
 };
 use crate::answers::{LogSet, State};
-use crate::estimate::fit::{Fit, Fitter};
+use crate::estimate::fit::{Columns, Fit, Fitter};
 use crate::name::gap::sizes;
 use crate::name::library::Library;
 
@@ -89,7 +89,7 @@ fn searched(
     let start = fitter.at(State::initial(machine))?;
     let nominal = library.as_ref().map(|l| l.known.clone());
     let nominal = nominal.unwrap_or_else(|| fitter.known_columns(&start));
-    let (base, known) = fitter.calibrated(start, nominal);
+    let (base, known) = calibrated(&fitter, start, nominal);
     // Defects of the machine with its parameters as they were fitted.
     let settled = settled(machine, fit_logs, check_logs, &base);
     let as_filed = check_logs;
@@ -114,6 +114,7 @@ fn searched(
         library,
         gap_before: sizes(&check_logs, &check_logs.rest(&check.traces)),
         check,
+        steady: steady_noise(&fitter, &base),
         fit: base.clone(),
         known,
         named: Vec::new(),
@@ -146,6 +147,33 @@ fn searched(
     }
     Ok(search.finish(base, intervals))
 }
+
+/// The known parameters fitted: from the file's values, and where these may be far off, from
+/// where least squares lead as well.
+fn calibrated(fitter: &Fitter<'_>, start: Fit, nominal: Columns) -> (Fit, Columns) {
+    let direct = || fitter.calibrated(start.clone(), nominal.clone());
+    let Some(noise) = steady_noise(fitter, &start) else {
+        return direct();
+    };
+    let by_squares = || {
+        let near = fitter.by_least_squares(start.clone(), nominal.clone(), &noise, ANEW);
+        let known = fitter.known_columns(&near);
+        fitter.calibrated(near, known)
+    };
+    let (one, other) = rayon::join(direct, by_squares);
+    tracing::debug!(
+        direct = one.0.deviance,
+        by_squares = other.0.deviance,
+        "known parameters"
+    );
+    match other.0.deviance < one.0.deviance {
+        true => other,
+        false => one,
+    }
+}
+
+/// Times that derivatives are made anew on the way of least squares.
+const ANEW: usize = 6;
 
 /// The logs with the defects of a fitted machine, where it is one that runs.
 fn settled(

@@ -4,6 +4,7 @@ use axis_sim::effects::Effect;
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 
+use super::evidence::enough;
 use super::state::Search;
 use crate::estimate::fit::Columns;
 use crate::estimate::linear::{Problem, Products, Room};
@@ -129,6 +130,12 @@ impl<'a> Promises<'a> {
         let mut all: Vec<Promise> = all.into_par_iter().filter_map(promised).collect();
         all.retain(|p| p.fall >= least);
         all.sort_by(|a, b| b.fall.total_cmp(&a.fall));
+        // The simplest of those that promise about as much come first.
+        let about = enough(all.first().map_or(0.0, |p| p.fall));
+        let near = all.iter().take_while(|p| p.fall >= about).count();
+        let parameters =
+            |p: &Promise| -> usize { p.parts.iter().map(|s| s.effect.parameters.len()).sum() };
+        all[..near].sort_by_key(parameters);
         all.into_iter().take(PAIRS).map(|p| p.parts).collect()
     }
 

@@ -24,6 +24,23 @@ impl Refined {
     }
 }
 
+/// Effects that no axis file has a parameter for, and of which there cannot be less than none:
+/// a mass that swings, a friction that remembers or grows with the load.
+const NEVER_BELOW_NONE: [&str; 3] = [
+    "structural-resonance",
+    "maxwell-slip-hysteresis",
+    "load-dependent-friction",
+];
+
+impl Refined {
+    /// Whether it is less than none of something.
+    pub(super) fn is_below_none(&self) -> bool {
+        let new = self.fit.state.effects.iter().rev().take(self.parts.len());
+        let mut never = new.filter(|a| NEVER_BELOW_NONE.contains(&a.effect.name));
+        never.any(|a| a.values[0] < 0.0)
+    }
+}
+
 /// Effects that do nearly the same as the best, or explain as much: the logs
 /// cannot tell. What can do more is not among them, unless these logs would not
 /// show the more.

@@ -5,7 +5,7 @@ use axis_sim::ReplayError;
 use super::state::Search;
 use super::types::{RefusalReason, Refused, RunnerUp};
 use crate::answers::{LogSet, State};
-use crate::name::gap::{gap, worsened};
+use crate::name::gap::{Gap, gap, worsened};
 use crate::noise::{MotionAndRest, floors};
 
 /// Share of the gap above the noise, RMS on check motion, that all named effects together
@@ -46,19 +46,24 @@ impl Search<'_> {
         // Where no channel of a replay stood out of its noise, evidence alone speaks; and what is
         // left is no gap where it is noise of another colour. In a balance noise of the motion
         // passes through the model, and looks like evidence.
-        let is_gap = || !of_gap.may_be_coloured() || self.rest_follows_motion();
+        let is_gap = || !of_gap.may_be_coloured() || self.rest_follows_motion(&of_gap);
         let is_left = set.is_balanced() || of_gap.stands_out() && is_gap();
         let refused = is_little && is_left;
         Ok(refused.then(|| self.refusal(RefusalReason::Little(share))))
     }
 
-    /// Whether what is left follows the motion, in any band.
-    fn rest_follows_motion(&self) -> bool {
+    /// Whether what is left follows the motion, in any band of a channel that stands out of
+    /// its noise.
+    fn rest_follows_motion(&self, of_gap: &Gap) -> bool {
         let fit = (&self.fit_logs, self.fit.traces.as_slice());
         let check = (&self.check_logs, self.check.traces.as_slice());
         let rest = MotionAndRest::new(fit, check);
         let mut bands = self.check_logs.layout.bands();
-        bands.any(|(edges, _)| rest.follows(edges))
+        let stands_out = |c: usize| {
+            let channel = of_gap.channels.get(self.check_logs.fitted[c]);
+            channel.is_none_or(|c| !c.is_at_floor())
+        };
+        bands.any(|(edges, _)| rest.follows_in(edges, stands_out))
     }
 
     fn refusal(&self, reason: RefusalReason) -> Refused {

@@ -13,7 +13,8 @@ use super::form::is_form;
 use super::intervals::Intervals;
 use super::promise::Promises;
 use super::state::Search;
-use super::types::Replaced;
+use super::types::{Named, Replaced};
+use crate::answers::is_form_of;
 use crate::estimate::fit::is_free;
 use crate::estimate::known::pinned;
 use crate::estimate::spread::over_noise;
@@ -21,6 +22,16 @@ use crate::estimate::spread::over_noise;
 /// Share of what an effect brings that another must promise in its place before
 /// that is tried.
 const RIVAL: f64 = 0.5;
+
+/// Fall of D that one further number brings by chance in one of a hundred cases, as χ² with
+/// one degree of freedom.
+const BY_ONE_NUMBER: f64 = 6.6;
+
+/// Effects of two levels, and those of one.
+const ONE_OF_TWO: [(&str, &str); 2] = [
+    ("asymmetric-friction", "coulomb-friction"),
+    ("asymmetric-viscous-friction", "viscous-friction"),
+];
 
 /// Least size of an effect, in deviations of noise: what it passes in one of a
 /// thousand draws, with deviations from sixteen runs.
@@ -47,6 +58,12 @@ impl Search<'_> {
                 continue;
             }
             self.named[index].evidence = loss;
+            let simpler = (!accepted).then(|| self.simplified(index, loss));
+            if let Some(simpler) = simpler.flatten() {
+                *self = simpler;
+                index += 1;
+                continue;
+            }
             let values = self.named[index].when_named.clone();
             let other = (!accepted && !form).then(|| without.with_another(dropped.name, loss));
             if let Some((other, by)) = other.flatten() {
@@ -113,6 +130,45 @@ impl Search<'_> {
         without.fit = self.fitter().refine(start, &self.known, 4);
         without.check = self.checker().at(without.fit.state.clone()).ok()?;
         Some(without)
+    }
+
+    /// With an effect that does not differ between the directions in the place of one that
+    /// does and brings this `loss`, where that explains as much. Not where a form is of it.
+    fn simplified(&self, index: usize, loss: f64) -> Option<Self> {
+        let effects = &self.fit.state.effects;
+        let active = &effects[index];
+        let (_, simple) = ONE_OF_TWO
+            .iter()
+            .find(|(two, _)| *two == active.effect.name)?;
+        let effect = Effect::named(simple)?;
+        let is_there = effects.iter().any(|a| a.effect.name == effect.name);
+        if is_there || effects.iter().any(|a| is_form_of(a, active)) {
+            return None;
+        }
+        let mean = active.values.iter().sum::<f64>() / active.values.len() as f64;
+        let mut state = self.fit.state.clone();
+        state.effects[index] = ActiveEffect {
+            effect,
+            values: vec![mean],
+        };
+        let mut simpler = self.clone();
+        let start = self.fitter().at(state).ok()?;
+        simpler.fit = self.fitter().refine(start, &self.known, 8);
+        let lost = simpler.fit.deviance - self.fit.deviance;
+        tracing::debug!(of = active.effect.name, lost, loss, "simplified");
+        if lost >= BY_ONE_NUMBER {
+            return None;
+        }
+        simpler.check = self.checker().at(simpler.fit.state.clone()).ok()?;
+        let named = &mut simpler.named[index];
+        named.alike.retain(|a| a.fitted.effect.name != effect.name);
+        *named = Named {
+            name: effect.name,
+            evidence: loss - lost,
+            when_named: vec![mean],
+            ..named.clone()
+        };
+        Some(simpler)
     }
 
     /// With what the search now takes next, if that is something else than what

@@ -3,7 +3,7 @@
 use axis_sim::effects::{ActiveEffect, Effect};
 use rayon::prelude::*;
 
-use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
+use super::evidence::{HELD_OUT, LEAST_HELD_OUT, MATERIAL, WORSE};
 use super::form::effects_before_forms;
 use super::free_curve::FreeCurves;
 use super::promise::{Promises, WORTH};
@@ -19,6 +19,9 @@ use crate::name::screen::Screened;
 /// tried.
 const KEPT: f64 = 0.8;
 
+/// Candidates of which it is tried whether least squares lead further.
+const LED_FURTHER: usize = 4;
+
 impl Search<'_> {
     /// Adds the effect that explains most of what is left, or two that explain
     /// together what none does alone; false where none proves itself.
@@ -33,6 +36,7 @@ impl Search<'_> {
             if self.effects_named() + 2 <= self.settings.most_effects {
                 let most = screened.first().map_or(0.0, |s| s.gain);
                 worth.extend(promises.pairs(&screenings, most));
+                worth.extend(self.own_with_memory(&screened));
             }
             worth.extend(self.forms(&own).into_iter().map(|form| vec![form]));
             worth
@@ -46,7 +50,9 @@ impl Search<'_> {
         let curves = FreeCurves::new(self, &fitter, &own);
         // Where the best does not hold on other motion, the next may.
         let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
-            if awaited.is_empty() && !candidate.is_form() && !curves.are_matched_by(candidate) {
+            let is_effect = awaited.is_empty() && !candidate.is_form();
+            let is_nothing = candidate.is_below_none() || candidate.bends_own_friction();
+            if is_effect && (is_nothing || !curves.are_matched_by(candidate)) {
                 return None;
             }
             let check = self.checker().at(candidate.fit.state.clone()).ok()?;
@@ -135,6 +141,17 @@ impl Search<'_> {
             })
         };
         let mut refined: Vec<Refined> = candidates.into_par_iter().filter_map(begin).collect();
+        // Where known parameters may be far off, they have made up for what is not named yet,
+        // and D may be flat from there on.
+        if let Some(noise) = &self.steady {
+            let gain = |r: &Refined| self.fit.deviance - r.fit.deviance;
+            refined.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
+            refined.par_iter_mut().take(LED_FURTHER).for_each(|r| {
+                let near = fitter.by_least_squares(r.fit.clone(), self.known.clone(), noise, 0);
+                let near = fitter.refine(near, own, 2);
+                r.fit = r.fit.clone().better(near);
+            });
+        }
         refined.retain(|r| match r.fit.state.effects.last() {
             Some(last) if r.parts.len() == 1 && is_force_in_time(last.effect) => {
                 awaited || self.acts(last.values[2])
@@ -183,7 +200,9 @@ impl Search<'_> {
         // own simplifications may bring.
         let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
         tracing::debug!(gain = best.gain, held_out, needed, "on check logs");
-        best.gain >= needed && held_out >= LEAST_HELD_OUT && best.gain >= MATERIAL * largest
+        let sizes = [&self.check_logs, &self.fit_logs].map(|set| set.layout.size() as f64);
+        let least = LEAST_HELD_OUT.max(HELD_OUT * best.gain * (sizes[0] / sizes[1]).min(1.0));
+        best.gain >= needed && held_out >= least && best.gain >= MATERIAL * largest
     }
 
     /// Whether what a fit of the check logs adds is material.

@@ -10,6 +10,7 @@ use super::form::is_form;
 use super::types::{Named, Refused, Replaced, RunnerUp, Settings};
 use crate::answers::LogSet;
 use crate::estimate::fit::{Columns, Fit, Fitter};
+use crate::estimate::known::tolerances;
 use crate::name::library::Library;
 use crate::noise::{log_noise, noise_on};
 use crate::spectrum::Amplitudes;
@@ -31,6 +32,27 @@ pub(super) struct Search<'a> {
     pub(super) refused: Option<Refused>,
     /// Root mean square of each channel's rest on the check logs before anything was named.
     pub(super) gap_before: Vec<f64>,
+    /// What weighs the rest where a fit begins far off; `None` where it does not.
+    pub(super) steady: Option<Arc<Amplitudes>>,
+}
+
+/// Tolerance of a known parameter beyond which what is linear about the file's values may lead
+/// astray.
+const WIDE: f64 = 0.02;
+
+/// Noise alone, as the logs of a fit show it, where a known parameter may be far off.
+pub(super) fn steady_noise(fitter: &Fitter<'_>, fit: &Fit) -> Option<Arc<Amplitudes>> {
+    let (machine, set) = (fitter.machine, fitter.set);
+    let wide = tolerances(machine).into_iter().any(|t| t > WIDE);
+    let noise = wide.then(|| noise_of(machine, set, fit))??;
+    Some(Arc::new(noise))
+}
+
+/// Noise alone, as of sensors like those of the logs; `None` where these do not show it.
+fn noise_of(machine: &Axis, set: &LogSet, fit: &Fit) -> Option<Amplitudes> {
+    let (state, traces) = (&fit.state, &fit.traces);
+    let noise = log_noise(machine, set, state, traces)?;
+    noise_on(machine, state, set, traces, &noise, 0).ok()
 }
 
 impl Search<'_> {
@@ -97,15 +119,23 @@ impl Search<'_> {
     /// Noise alone, as of sensors like those of the logs; `None` where these do
     /// not show it.
     pub(super) fn noise(&self) -> Option<Amplitudes> {
-        let (machine, set, fit) = (self.machine, &self.fit_logs, &self.fit);
-        let noise = log_noise(machine, set, &fit.state, &fit.traces)?;
-        noise_on(machine, &fit.state, set, &fit.traces, &noise, 0).ok()
+        noise_of(self.machine, &self.fit_logs, &self.fit)
     }
 
     /// Fits all parameters again, and the defects of the machine as it now is.
     pub(super) fn settle(&mut self) {
-        let known = self.fitter().known_columns(&self.fit);
-        let (fit, known) = self.fitter().calibrated(self.fit.clone(), known);
+        let fitter = self.fitter();
+        let known = fitter.known_columns(&self.fit);
+        let near = self.steady.as_ref().map(|noise| {
+            let near = fitter.by_least_squares(self.fit.clone(), known.clone(), noise, 2);
+            let known = fitter.known_columns(&near);
+            fitter.calibrated(near, known)
+        });
+        let (fit, known) = fitter.calibrated(self.fit.clone(), known);
+        let (fit, known) = match near {
+            Some((near, known)) if near.deviance < fit.deviance => (near, known),
+            _ => (fit, known),
+        };
         let mut corrected = self.fit_logs.clone();
         if corrected.follow(self.machine, &fit.state).is_ok() {
             let with = Fitter {

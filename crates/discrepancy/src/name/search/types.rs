@@ -7,6 +7,7 @@ use axis_sim::{Axis, ReplayError};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
+use super::evidence::needed;
 use super::form::is_form;
 use crate::answers::LogSet;
 use crate::estimate::fit::{Columns, Fit};
@@ -261,6 +262,13 @@ pub struct Test {
 const SIMULATED: f64 = 2e-4;
 
 impl Found {
+    /// Fall of D that naming an effect of one number took.
+    pub fn needed(&self) -> f64 {
+        let tried = self.library.candidates.len();
+        let false_alarm = Settings::default().false_alarm;
+        needed(&self.fit_logs.layout, 1, tried, false_alarm)
+    }
+
     /// With the figures that are reported taken from these logs, which took no part.
     #[must_use]
     pub fn tested_on(mut self, machine: &Axis, logs: LogSet) -> Self {
