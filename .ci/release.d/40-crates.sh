@@ -12,10 +12,27 @@ cargo_tool() {
   cargo install "$1" --version "$2" --locked --root target/tools --target-dir target/tools-build --quiet
 }
 
-crates=()
+crates=() names=()
 for folder in crates/*/; do
-  crates+=(-p "$(basename "$folder")")
+  names+=("$(basename "$folder")")
+  crates+=(-p "${names[-1]}")
 done
+last=$(git describe --tags --abbrev=0 --match 'v*' 2>/dev/null || true)
+
+echo "-- names that are free"
+# Before the first release any crate of a name is another's, and cargo would take it for ours.
+# Asked from a folder outside the workspace, where a name means the registry's crate.
+on_registry() { (cd / && cargo info --quiet --registry crates-io "$1") >/dev/null 2>&1; }
+if [ -n "$last" ]; then
+  echo "$last is released: the names are taken, by this project"
+elif on_registry serde; then
+  for name in "${names[@]}"; do
+    ! on_registry "$name" || { echo "error: crates.io has another crate named $name: rename ours" >&2; exit 1; }
+  done
+  echo "crates.io has none of ${#names[@]} names"
+else
+  skipped "crates.io was not reached: names were not looked up"
+fi
 
 echo "-- packages, in the order of publishing"
 cargo run --quiet --locked -p xtask -- publish --dry-run
@@ -40,7 +57,6 @@ else
 fi
 
 echo "-- the interface beside the last release's"
-last=$(git describe --tags --abbrev=0 --match 'v*' 2>/dev/null || true)
 if [ -z "$last" ]; then
   skipped "no release is tagged (v…): there is no interface to compare with"
 elif cargo_tool cargo-semver-checks 0.51.0; then

@@ -1,7 +1,7 @@
 //! Friction identified on the whole simulated axis, against the truth.
 
+use axis_pipeline::identification::{IdentificationPlan, Identified, identify};
 use axis_sim::Axis;
-use pipeline::identification::{IdentificationPlan, Identified, identify};
 
 fn axis(name: &str) -> Axis {
     let file = format!("{}/../data/axes/{name}.toml", env!("CARGO_MANIFEST_DIR"));

@@ -1,4 +1,4 @@
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::tansig::{tansig_f32, tansig_f64};
 

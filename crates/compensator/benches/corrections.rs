@@ -5,6 +5,7 @@
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
+use axis_scalar::Scalar;
 use cfnn::{FixedNetwork, Network, Scaling, ScalingRange, Shape, packed_len};
 use compensator::{
     Along, Cascade, Combined, Compensator, Drive, DriveModel, DriveSection, FeedbackDesign,
@@ -15,7 +16,6 @@ use compensator::{
 use criterion::{Criterion, criterion_group, criterion_main};
 use foc_pmsm::{MotorParameters, Pmsm};
 use lugre::{Exponential, LuGre, Parameters};
-use scalar::Scalar;
 
 const T: f64 = 1e-4; // control period, s
 const R: f64 = 0.01 / TAU; // travel per radian, m

@@ -1,6 +1,6 @@
 //! Two strategies at once.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::{Compensator, Correction, Sample};
 

@@ -1,6 +1,6 @@
 //! What can be wrong with a strategy's settings.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 use thiserror::Error;
 
 /// Why a strategy could not be made.

@@ -16,7 +16,7 @@
 //!
 //! The poles of the observer are the roots of z² − (2 − α − β) z + (1 − α).
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::error::{self, require};
 use crate::remainder::remainder;

@@ -9,7 +9,7 @@
 //! where the compensator is surprised by what it observes for as long. The drive's own
 //! loops then have the axis alone.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::error::{require, within};
 use crate::{Compensator, CompensatorError, Correction, Sample};

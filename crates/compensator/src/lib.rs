@@ -136,7 +136,7 @@ pub use transfer_function::{MAX_ORDER, TransferFunction, TransferFunctionModel};
 ///
 /// `T` is the scalar that it computes in: `f64` where none is named, as in
 /// `dyn Compensator`, or `f32`.
-pub trait Compensator<T: scalar::Scalar = f64> {
+pub trait Compensator<T: axis_scalar::Scalar = f64> {
     /// Forgets everything; the next sample is the first of a motion from rest.
     fn reset(&mut self);
 
@@ -150,7 +150,7 @@ pub trait Compensator<T: scalar::Scalar = f64> {
     }
 }
 
-impl<T: scalar::Scalar, C: Compensator<T> + ?Sized> Compensator<T> for &mut C {
+impl<T: axis_scalar::Scalar, C: Compensator<T> + ?Sized> Compensator<T> for &mut C {
     fn reset(&mut self) {
         (**self).reset();
     }

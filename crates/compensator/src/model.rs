@@ -10,9 +10,9 @@
 //! motor, and J_w = Σ Jᵢ κᵢ the part of J that lags the motor by a share κᵢ of the wind-up.
 //! `docs/theory/compensator.md` derives both.
 
+use axis_scalar::Scalar;
 use foc_pmsm::{MotorParameters, Pmsm};
 use lugre::{Exponential, LuGre};
-use scalar::Scalar;
 
 use crate::CompensatorError;
 use crate::error::{self, require, within};

@@ -1,6 +1,6 @@
 //! The error at the end of the cycle, from a model of one cycle.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::remainder::remainder;
 use crate::{Compensator, Correction, MotionEstimator, Sample};

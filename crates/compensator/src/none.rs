@@ -1,6 +1,6 @@
 //! No compensation: the servo as it is.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::{Compensator, Correction, Sample};
 

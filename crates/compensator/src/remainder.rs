@@ -1,6 +1,6 @@
 //! What is left between two positions and a way.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// `to − (from + way)` for positions (m) that lie a few µm apart.
 ///

@@ -1,6 +1,6 @@
 //! What a controller knows in a cycle, and what it adds.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// The reference motion at one instant. SI units, table side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

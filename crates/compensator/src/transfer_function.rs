@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::error::{self, require, within};
 use crate::{Compensator, CompensatorError, Correction, Sample};

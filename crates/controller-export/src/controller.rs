@@ -1,8 +1,8 @@
 //! A strategy with everything that its export needs.
 
+use axis_pipeline::strategies::{Predictors, believed_feedback};
 use axis_sim::Axis;
 use compensator::{Guard, GuardLimits, Kinematics};
-use pipeline::strategies::{Predictors, believed_feedback};
 
 use crate::ExportError;
 use crate::law::{ExportedLaw, NetworkLaw, PlanLaw, Position};

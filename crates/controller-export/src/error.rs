@@ -48,7 +48,7 @@ pub enum ExportError {
     },
     /// The strategy cannot be made of the predictors.
     #[error("nothing can be exported: {0}")]
-    Pipeline(#[from] pipeline::PipelineError),
+    Pipeline(#[from] axis_pipeline::PipelineError),
     /// A setting of the compensator or of its guard is not valid in this precision.
     #[error("nothing can be exported: {0}")]
     Compensator(#[from] compensator::CompensatorError),

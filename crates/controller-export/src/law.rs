@@ -1,13 +1,13 @@
 //! What is exported: the parts of a compensator in one precision.
 
+use axis_pipeline::strategies::NetworkStrategy;
+use axis_scalar::Scalar;
 use cfnn::{NetworkScalar, ScalingRange};
 use compensator::{
     CompensatorError, DriveModel, Feedback, FrictionFeedforward, MotionEstimator, PlanSettings,
     Planner, TransferFunction,
 };
 use lugre::Exponential;
-use pipeline::strategies::NetworkStrategy;
-use scalar::Scalar;
 
 use crate::ExportError;
 

@@ -20,7 +20,7 @@
 //!
 //! # What this crate does not know
 //! Files, terminals, options: functions return named texts and bytes. How strategies are found
-//! (`pipeline`), and any physics: no equation stands here that the crates below do not have.
+//! (`axis-pipeline`), and any physics: no equation stands here that the crates below do not have.
 
 pub mod c;
 mod controller;

@@ -4,11 +4,11 @@ mod support;
 
 use std::path::Path;
 
+use axis_pipeline::strategies::Predictors;
 use axis_sim::Axis;
 use compensator::GuardLimits;
 use controller_export::c::{CSource, Precision};
 use controller_export::{EXPORTED, ExportedController};
-use pipeline::strategies::Predictors;
 use support::program::{compare, compilers, write, write_one};
 use support::{Outcome, laws, samples};
 

@@ -4,10 +4,10 @@ mod support;
 
 use std::sync::Arc;
 
+use axis_pipeline::strategies::{STRATEGIES, named};
 use compensator::{Correction, Reference, Sample};
 use controller_export::c::{self, Precision};
 use controller_export::{ExportError, ExportedController};
-use pipeline::strategies::{STRATEGIES, named};
 use support::laws::{LIMITS, Runs, Streaming};
 use support::{Outcome, laws, samples};
 use trajectories::Motion;

@@ -2,8 +2,8 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use axis_pipeline::strategies::{Predictors, STRATEGIES, SharedMotion, StrategyKind, named};
 use compensator::{Compensator, Correction, Sample};
-use pipeline::strategies::{Predictors, STRATEGIES, SharedMotion, StrategyKind, named};
 use pyo3::prelude::*;
 
 use crate::axis::PyAxis;

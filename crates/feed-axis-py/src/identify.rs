@@ -2,10 +2,10 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use axis_pipeline::identification::{IdentificationPlan, identify};
+use axis_pipeline::strategies::TransferModels;
+use axis_pipeline::transfer::{TransferPlan, identify_transfer};
 use lugre::LuGre;
-use pipeline::identification::{IdentificationPlan, identify};
-use pipeline::strategies::TransferModels;
-use pipeline::transfer::{TransferPlan, identify_transfer};
 use pyo3::prelude::*;
 
 use crate::axis::PyAxis;

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use axis_pipeline::strategies::SharedMotion;
 use axis_sim::{Axis, MoveSpec};
 use numpy::IntoPyArray;
-use pipeline::strategies::SharedMotion;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 use trajectories::{Limits, Motion, SCurve};

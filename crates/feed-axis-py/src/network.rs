@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use axis_pipeline::training::test;
 use cfnn::artifact::{network_from_bytes, network_to_bytes};
 use cfnn::train::{Dataset, Trainer, TrainingSettings};
 use cfnn::{Network, Shape};
@@ -9,7 +10,6 @@ use numpy::{
     AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods,
     PyUntypedArrayMethods,
 };
-use pipeline::training::test;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 

@@ -1,9 +1,9 @@
 //! One-cycle samples of an axis, and the predictor that is trained on them.
 
+use axis_pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity, ranges};
+use axis_pipeline::training::{INITIAL_DAMPING, NetworkPlan, train};
 use axis_sim::CycleInput;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
-use pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity, ranges};
-use pipeline::training::{INITIAL_DAMPING, NetworkPlan, train};
 use pyo3::prelude::*;
 
 use crate::axis::PyAxis;

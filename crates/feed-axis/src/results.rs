@@ -1,11 +1,11 @@
 //! Results of all stages together: what the report shows.
 
+use axis_pipeline::compensation::{CompensatedRun, find};
+use axis_pipeline::strategies::{STRATEGIES, StrategyKind};
+use axis_pipeline::study::StudyRow;
+use axis_pipeline::summary::{self, NetworkSummary, Summary};
+use axis_pipeline::validation::Validation;
 use miette::{Result, miette};
-use pipeline::compensation::{CompensatedRun, find};
-use pipeline::strategies::{STRATEGIES, StrategyKind};
-use pipeline::study::StudyRow;
-use pipeline::summary::{self, NetworkSummary, Summary};
-use pipeline::validation::Validation;
 
 use crate::commands::identify::{Friction, Transfer};
 use crate::commands::train::Training;
@@ -107,8 +107,8 @@ fn summarise(
 
 #[cfg(test)]
 mod tests {
-    use pipeline::strategies::{NETWORK, NETWORK_LUGRE};
-    use pipeline::tracking::Run;
+    use axis_pipeline::strategies::{NETWORK, NETWORK_LUGRE};
+    use axis_pipeline::tracking::Run;
 
     use super::*;
 

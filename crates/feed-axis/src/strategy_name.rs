@@ -2,8 +2,8 @@
 
 use std::sync::LazyLock;
 
+use axis_pipeline::strategies::{NONE, STRATEGIES, StrategyKind};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use pipeline::strategies::{NONE, STRATEGIES, StrategyKind};
 
 /// The strategies by their names on the command line.
 static NAMES: LazyLock<Vec<(String, &StrategyKind)>> = LazyLock::new(|| {

@@ -6,6 +6,7 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::strategies::{NETWORK_LUGRE, Predictors};
 use axis_sim::ClosedLoop;
 use common::{refuse, root, run, succeed, text};
 use compensator::{Compensator, Correction, GuardLimits, Sample};
@@ -13,7 +14,6 @@ use controller_export::ExportedController;
 use controller_export::c::{self, Precision};
 use feed_axis::commands::{identify, train};
 use feed_axis::context::{Common, Context};
-use pipeline::strategies::{NETWORK_LUGRE, Predictors};
 use prost::Message;
 use serde_json::Value;
 use support::program::{Course, compare, compilers, write_course};

@@ -2,6 +2,7 @@
 //! integration step. Inputs change from call to call through the state, as in
 //! a simulation: the times are latencies, not throughputs.
 
+use axis_scalar::Scalar;
 use core::f64::consts::PI;
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -12,7 +13,6 @@ use foc_pmsm::{
     Measurement, MotorParameters, OperatingPoint, Pmsm, Servo, ServoCorrection, ServoGains,
     ServoLimits, ServoReference, ServoState,
 };
-use scalar::Scalar;
 
 const RPM: f64 = PI / 30.0;
 const PERIOD: f64 = 1e-4;

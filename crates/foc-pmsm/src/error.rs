@@ -1,6 +1,6 @@
 //! What can be wrong with the parameters of a motor, controller or inverter.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// Why a law could not be built. Nothing after construction can fail.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! φ₁(Z) = Σ Zᵏ/(k+1)! of a 2×2 matrix, for the exact step at constant speed.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 type Matrix<T> = [[T; 2]; 2];
 

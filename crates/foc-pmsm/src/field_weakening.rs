@@ -4,7 +4,7 @@
 use crate::error::{FocError, check, positive};
 use crate::frames::Dq;
 use crate::math::clamp;
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// The constants of [`FieldWeakening`]. Plain data; [`FieldWeakening::new`]
 /// validates them.

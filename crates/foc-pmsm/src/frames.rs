@@ -2,8 +2,8 @@
 //! the transforms between them, amplitude-invariant: a balanced set of peak
 //! value X is a vector of length X in each frame.
 
+use axis_scalar::Scalar;
 use core::ops::{Add, Mul, Neg, Sub};
-use scalar::Scalar;
 
 /// 1/√3.
 pub(crate) const FRAC_1_SQRT_3: f64 = 0.577_350_269_189_625_8;

@@ -1,7 +1,7 @@
 //! The constants of the cascade.
 
 use crate::error::{FocError, limit, not_negative};
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// The gains of the cascade. Plain data; [`crate::Servo::new`] validates them:
 /// all finite and 0 or more. Symbols of Liu et al. 2025, Table 4

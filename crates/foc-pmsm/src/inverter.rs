@@ -8,8 +8,8 @@ use crate::frames::{AlphaBeta, Phases};
 use crate::math::clamp;
 use crate::motor::Pmsm;
 use crate::svpwm::Duties;
+use axis_scalar::Scalar;
 use core::cmp::Ordering;
-use scalar::Scalar;
 
 /// A validated inverter. Immutable, without memory.
 ///

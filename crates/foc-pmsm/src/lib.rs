@@ -39,7 +39,7 @@
 //! caller's. After construction nothing fails, panics or allocates; a NaN
 //! passes through to the outputs.
 //!
-//! All types are generic over [`scalar::Scalar`], `f64` unless said otherwise.
+//! All types are generic over [`axis_scalar::Scalar`], `f64` unless said otherwise.
 //! In `f32` nothing is computed in `f64`, which many controllers have in
 //! software only; the sine and cosine of the Park transform are the crate's
 //! own there.

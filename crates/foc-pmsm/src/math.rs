@@ -1,6 +1,6 @@
 //! The functions that [`Scalar`] lacks.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// `x` between two bounds; what is not a number passes, which `min` and `max`
 /// would hide.

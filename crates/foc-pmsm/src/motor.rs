@@ -3,7 +3,7 @@
 use crate::error::{FocError, not_negative, positive};
 use crate::exact::exponential_increment;
 use crate::frames::Dq;
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// The motor's constants. Plain data; [`Pmsm::new`] validates them.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! A sampled PI controller with a limited output.
 
 use crate::error::{FocError, check, limit, not_negative, positive};
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// The constants of a [`Pi`]. Plain data; [`Pi::new`] validates them.
 #[derive(Debug, Clone, Copy, PartialEq)]

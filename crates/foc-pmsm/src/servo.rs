@@ -11,7 +11,7 @@ use crate::signals::{
     Measurement, OperatingPoint, Saturated, ServoCommand, ServoCorrection, ServoReference,
     ServoState,
 };
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// A validated cascade. Immutable; [`ServoState`] is the caller's.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 
 use crate::frames::{Dq, FRAC_1_SQRT_3};
 use crate::pi::PiState;
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// What the controller samples at the start of a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -9,8 +9,8 @@
 use crate::error::{FocError, check, positive};
 use crate::frames::{AlphaBeta, FRAC_1_SQRT_3, Phases};
 use crate::math::clamp;
+use axis_scalar::Scalar;
 use core::f64::consts::FRAC_2_PI;
-use scalar::Scalar;
 
 /// The mean fraction of a period that each leg is on the upper rail: always
 /// within \[0, 1\], or NaN where [`Svpwm`] was asked for a vector that is not

@@ -5,13 +5,13 @@ mod axis;
 
 use axis::rigid::Rigid;
 use axis::{PERIOD, cast, drawn_current_loop, gains, limits, motor};
+use axis_scalar::Scalar;
 use foc_pmsm::{
     Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState, FocError, MotorParameters,
     OperatingPoint, Pmsm, Servo, ServoCommand, ServoCorrection, ServoGains, ServoLimits,
     ServoReference, ServoState,
 };
 use proptest::prelude::*;
-use scalar::Scalar;
 
 fn parameters() -> FieldWeakeningParameters {
     FieldWeakeningParameters {

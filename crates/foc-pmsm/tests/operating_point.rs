@@ -4,11 +4,11 @@ mod axis;
 
 use axis::rigid::Rigid;
 use axis::{PERIOD, cast, drawn_gains, drawn_period, gains, limits, log_uniform, motor, servo};
+use axis_scalar::Scalar;
 use foc_pmsm::{
     Dq, Measurement, OperatingPoint, ServoCorrection, ServoLimits, ServoReference, ServoState,
 };
 use proptest::prelude::*;
-use scalar::Scalar;
 
 fn point(id_ref: f64, voltage_limit: f64) -> OperatingPoint {
     OperatingPoint {

@@ -7,10 +7,10 @@ use axis::{
     PERIOD, cast, drawn_current_loop, drawn_dc_voltage, drawn_motor, gains, limits, log_uniform,
     motor,
 };
+use axis_scalar::Scalar;
 use foc_pmsm::svpwm::{Overmodulation, Svpwm};
 use foc_pmsm::{AlphaBeta, Dq, Pmsm, ServoCorrection, ServoReference, ServoState};
 use proptest::prelude::*;
-use scalar::Scalar;
 
 const EPSILON: f64 = f32::EPSILON as f64;
 

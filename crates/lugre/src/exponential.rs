@@ -35,7 +35,7 @@ mod single;
 #[cfg(test)]
 mod tests;
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// A scalar that the law can be computed in, `f64` or `f32`: decaying
 /// exponentials made for its precision, and the range of its laws.

@@ -1,6 +1,6 @@
 //! The six numbers of the law, and which of them make a law.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 use thiserror::Error;
 
 use crate::exponential::Exponential;

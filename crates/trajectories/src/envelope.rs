@@ -1,6 +1,6 @@
 //! The smooth rise and fall of an oscillation's amplitude.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// Greatest |w'|, |w''|, |w'''| and |w''''| of [`rise`] over 0 ≤ x ≤ 1.
 pub(crate) const RISE_DERIVATIVE_BOUNDS: [f64; 4] = [1.875, 5.773_502_691_896_258, 60.0, 360.0];

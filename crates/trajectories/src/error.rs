@@ -1,6 +1,6 @@
 //! Why a motion was refused.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::maximum;
 

@@ -1,6 +1,6 @@
 //! How far a motion goes in each quantity, for checks against an axis.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// Bounds on a motion over its whole time.
 ///

@@ -1,6 +1,6 @@
 //! The three bounds a move must obey.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::error::check;
 use crate::{TrajectoryError, maximum};

@@ -1,6 +1,6 @@
 //! What every motion of this crate offers: a duration, and a setpoint at any time.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// Reference state of an axis at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,6 +1,6 @@
 //! The closed-form time-optimal timing of a rest-to-rest move.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::Limits;
 

@@ -1,6 +1,6 @@
 //! What motions need of their scalar beyond arithmetic.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// A scalar that motions can be planned and sampled in: `f64` or `f32`.
 pub trait Real: Scalar {

@@ -1,6 +1,6 @@
 //! The steps a motion program is made of.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::{Chirp, Limits, Sine, TrajectoryError};
 

@@ -1,7 +1,7 @@
 //! `acceleration_feedforward`: the command that the known inertia asks for.
 
+use axis_pipeline::strategies::{Build, ReportTable, StrategyKind};
 use compensator::{Compensator, Correction, Sample};
-use pipeline::strategies::{Build, ReportTable, StrategyKind};
 
 /// Feed-forward of the reference's acceleration: J a / (r K), with J the inertia of all
 /// that moves, seen at the motor (kg·m²), r the load's travel per radian (m/rad) and K

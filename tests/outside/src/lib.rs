@@ -29,8 +29,8 @@ mod chain_hoist;
 mod motor_power;
 mod quadratic_drag;
 
+use axis_pipeline::strategies::{STRATEGIES, StrategyKind};
 use axis_sim::{Axis, Recorder, Registry};
-use pipeline::strategies::{STRATEGIES, StrategyKind};
 
 pub use acceleration_feedforward::ACCELERATION_FEEDFORWARD;
 pub use chain_hoist::CHAIN_HOIST;

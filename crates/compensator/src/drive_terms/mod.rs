@@ -17,8 +17,8 @@
 mod apply;
 mod pulse;
 
+use axis_scalar::Scalar;
 use lugre::Exponential;
-use scalar::Scalar;
 
 pub use apply::DriveTermsFeedforward;
 pub use pulse::{ReversalPulse, ReversalStart};

@@ -1,7 +1,7 @@
 //! The pulse after a change of direction, fitted to a friction law.
 
+use axis_scalar::Scalar;
 use lugre::LuGre;
-use scalar::Scalar;
 
 use crate::CompensatorError;
 use crate::error::{require, within};

@@ -1,6 +1,6 @@
 //! What a feedback runs on: model and gains at a few shares of sticking bristles.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use super::{MOST_MEASURED, MOST_STATES, NODES};
 use crate::model::Cascade;

@@ -33,7 +33,7 @@ mod design;
 mod gains;
 mod with_plan;
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::plan::Planned;
 use crate::{Correction, Sample};

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// A Gaussian of a deviation in samples, cut off at four of them. Beyond the record's ends
 /// its first and last values go on.

@@ -20,7 +20,7 @@ mod gauss;
 
 use alloc::vec::Vec;
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 use crate::error::{self, require, within};
 use crate::{CompensatorError, Reference};

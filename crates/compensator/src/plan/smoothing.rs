@@ -1,6 +1,6 @@
 //! A zero-phase Gaussian over a stream: value, rate and second rate at its middle.
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// Most control periods from the middle to either end.
 pub(super) const MOST_HALF: usize = 192;

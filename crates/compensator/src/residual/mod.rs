@@ -26,7 +26,7 @@ mod network_basis;
 #[cfg(feature = "identify")]
 mod tables;
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 #[cfg(feature = "identify")]
 pub use basis::{ResidualBasis, ResidualRow, over_gaussian};

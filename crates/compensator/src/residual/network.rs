@@ -37,7 +37,7 @@ impl ResidualNetwork {
 
     /// What it asks its network.
     pub(super) fn inputs(at: &ResidualAt) -> [f64; NETWORK_INPUTS] {
-        let (sin, cos) = scalar::Scalar::sin_cos(at.motor_angle);
+        let (sin, cos) = axis_scalar::Scalar::sin_cos(at.motor_angle);
         [at.position, sin, cos, at.motor_speed, at.direction]
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// A number as C reads it back to the bit: the shortest decimal that does. An infinite limit
 /// becomes the greatest number.

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
+use axis_scalar::Scalar;
 use compensator::{Feedback, FeedbackGains, FeedbackNode};
-use scalar::Scalar;
 
 use super::data::{constant, literal, table};
 use super::draft::{Draft, State};

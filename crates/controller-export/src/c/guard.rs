@@ -1,7 +1,7 @@
 //! The guard around everything.
 
+use axis_scalar::Scalar;
 use compensator::GuardLimits;
-use scalar::Scalar;
 
 use super::data::constant;
 use super::draft::{Draft, State};

@@ -1,7 +1,7 @@
 //! What a step is given.
 
+use axis_scalar::Scalar;
 use compensator::Sample;
-use scalar::Scalar;
 
 /// A member of the input of a step. Only those that a strategy reads are in its struct.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
+use axis_scalar::Scalar;
 use compensator::{Along, Drive, DriveModel, Planner, PlannerConstants, SECTIONS};
 use lugre::Exponential;
-use scalar::Scalar;
 
 use super::data::{constant, literal, table};
 use super::draft::{Draft, State};

@@ -1,7 +1,7 @@
 //! The linear model of the tracking error.
 
+use axis_scalar::Scalar;
 use compensator::TransferFunction;
-use scalar::Scalar;
 
 use super::data::{constant, table};
 use super::draft::{Draft, State};

@@ -11,9 +11,9 @@
 mod graph;
 pub mod proto;
 
+use axis_pipeline::PipelineError;
+use axis_pipeline::strategies::{Need, Predictors};
 use cfnn::Network;
-use pipeline::PipelineError;
-use pipeline::strategies::{Need, Predictors};
 use prost::Message;
 
 use crate::{ExportError, Units};

@@ -1,5 +1,7 @@
 //! The strategies in Rust, in both precisions.
 
+use axis_pipeline::strategies::{Predictors, STRATEGIES, named};
+use axis_scalar::Scalar;
 use axis_sim::Axis;
 use cfnn::{FixedNetwork, Network, Scaling, Shape};
 use compensator::{
@@ -8,8 +10,6 @@ use compensator::{
 };
 use controller_export::{ExportedLaw, NetworkLaw, PlanLaw, Position};
 use lugre::Exponential;
-use pipeline::strategies::{Predictors, STRATEGIES, named};
-use scalar::Scalar;
 
 use super::Outcome;
 use super::samples::Random;

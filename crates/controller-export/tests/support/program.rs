@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::process::Command;
 
+use axis_pipeline::strategies::Predictors;
+use axis_scalar::Scalar;
 use compensator::{Guard, GuardLimits, Sample, Status, Trip};
 use controller_export::ExportedController;
 use controller_export::c::{self, CSource, Precision};
-use pipeline::strategies::Predictors;
-use scalar::Scalar;
 
 use super::Outcome;
 use super::laws::{LIMITS, Runs, double, single};

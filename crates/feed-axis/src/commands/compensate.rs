@@ -3,11 +3,11 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use axis_pipeline::Figures;
+use axis_pipeline::compensation::{self, CompensatedRun};
+use axis_pipeline::strategies::{Need, STRATEGIES};
 use clap::Args;
 use miette::{IntoDiagnostic, Result};
-use pipeline::Figures;
-use pipeline::compensation::{self, CompensatedRun};
-use pipeline::strategies::{Need, STRATEGIES};
 use serde::Serialize;
 
 use super::{compensate_moves, identify, train, validate};
@@ -130,7 +130,7 @@ pub fn load(context: &Context) -> Result<Vec<CompensatedRun>> {
 
 #[cfg(test)]
 mod tests {
-    use pipeline::strategies::named;
+    use axis_pipeline::strategies::named;
 
     use super::*;
 

@@ -4,13 +4,13 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use axis_pipeline::Figures;
+use axis_pipeline::moves::{MoveRun, Moves, NamedMotion};
+use axis_pipeline::strategies::{LearnedValues, NONE, Predictors, StrategyKind};
 use axis_sim::{ClosedLoop, Measured};
 use clap::Args;
 use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result};
-use pipeline::Figures;
-use pipeline::moves::{MoveRun, Moves, NamedMotion};
-use pipeline::strategies::{LearnedValues, NONE, Predictors, StrategyKind};
 use serde::Serialize;
 
 use super::simulate::{factor, program, trajectory};
@@ -153,7 +153,7 @@ pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) ->
 /// The moves up to the first that did not come to its end.
 struct Made {
     runs: Vec<MoveRun>,
-    stopped: Option<pipeline::PipelineError>,
+    stopped: Option<axis_pipeline::PipelineError>,
 }
 
 fn series<S: FnMut(&mut Measured)>(

@@ -2,13 +2,13 @@
 
 use std::fmt;
 
+use axis_pipeline::identification::{IdentificationPlan, Identified, identify};
+use axis_pipeline::transfer::{TransferPlan, identify_transfer};
 use axis_sim::friction::FrictionUnits;
 use compensator::TransferFunctionModel;
 use lugre::identify::ParameterEstimate;
 use lugre::{LuGre, Parameters};
 use miette::{IntoDiagnostic, Result};
-use pipeline::identification::{IdentificationPlan, Identified, identify};
-use pipeline::transfer::{TransferPlan, identify_transfer};
 use serde::{Deserialize, Serialize};
 
 use crate::context::{Common, Context};

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use axis_log::read_log;
+use axis_pipeline::learning::StoredCorrection;
 use axis_sim::{Axis, SixDigits};
 use clap::Args;
 use compensator::{Advice, LearnedMove, Round};
 use miette::{IntoDiagnostic, Result, WrapErr};
-use pipeline::learning::StoredCorrection;
 use serde::Serialize;
 use trajectories::Motion;
 

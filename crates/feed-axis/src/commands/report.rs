@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::summary::Summary;
 use clap::Args;
 use miette::{IntoDiagnostic, Result, WrapErr};
-use pipeline::summary::Summary;
 use serde::Serialize;
 
 use super::{compensate, identify, validate};
@@ -37,7 +37,7 @@ fn compare(a: &Path, b: &Path, out: Option<&Path>) -> Result<()> {
     let out = out.unwrap_or(Path::new("runs/compare"));
     ready(out)?;
     let file = out.join(COMPARED);
-    let html = ::report::render(&page::compare::page(&first, &second))
+    let html = axis_report::render(&page::compare::page(&first, &second))
         .into_diagnostic()
         .wrap_err("the comparison cannot be made")?;
     write_whole(&file, html.as_bytes())?;
@@ -101,7 +101,7 @@ pub fn run(context: &Context) -> Result<()> {
     let summary_path = context.out.join(SUMMARY);
     write_whole(&summary_path, &json)?;
     let report_path = context.out.join(REPORT);
-    let html = ::report::render(&page::page(context, &results))
+    let html = axis_report::render(&page::page(context, &results))
         .into_diagnostic()
         .wrap_err("the report cannot be made")?;
     write_whole(&report_path, html.as_bytes())?;

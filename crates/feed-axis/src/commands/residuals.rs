@@ -1,12 +1,12 @@
 //! `residuals`: what no parameter holds, learned in three ways, side by side.
 
+use axis_pipeline::residuals::{
+    AFTER, Compared, NetworkSettings, ResidualMethod, compare, contests, trained_basis,
+};
+use axis_pipeline::robustness::room;
 use axis_sim::Measured;
 use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result};
-use pipeline::residuals::{
-    AFTER, Compared, NetworkSettings, ResidualMethod, compare, contests, trained_basis,
-};
-use pipeline::robustness::room;
 use serde::Serialize;
 
 use crate::context::Common;

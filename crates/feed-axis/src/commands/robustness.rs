@@ -3,13 +3,13 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::robustness::{Draws, Goal, Point, Sense, Study, make, studies};
+use axis_report::{Page, render};
 use axis_sim::Measured;
 use campaign::{Column, Failure, Inputs, Job, Merged, Value};
 use clap::Args;
 use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr};
-use pipeline::robustness::{Draws, Goal, Point, Sense, Study, make, studies};
-use report::{Page, render};
 
 use crate::context::{Claim, Common, Context};
 use crate::jobs::{JobOptions, Sharding, failure};

@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::sample_file;
+use axis_pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity};
 use axis_sim::CycleInput;
 use campaign::{Column, Failure, Inputs, Job, Merged, Row, Value};
 use clap::Args;
 use miette::{IntoDiagnostic, Result};
-use pipeline::sample_file;
-use pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity};
 use serde::Serialize;
 
 use crate::context::{Claim, Common, Context};

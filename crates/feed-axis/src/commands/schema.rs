@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use axis_pipeline::summary::Summary;
 use axis_sim::Registry;
 use clap::{Args, ValueEnum};
 use discrepancy::Discovery;
 use miette::{IntoDiagnostic, Result};
-use pipeline::summary::Summary;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
 

@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use atomic_write_file::AtomicWriteFile;
 use axis_log::{LogFile, WriteProblem};
+use axis_pipeline::Figures;
+use axis_pipeline::strategies::{Build, NextMove, SharedMotion, StrategyKind};
 use axis_sim::{Axis, ClosedLoop, Cycle, FlowRecorder, Measured, Recorder, SixDigits};
 use clap::Args;
 use discover_matrix::hidden::{MACHINE_STEP, Noise};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use pipeline::Figures;
-use pipeline::strategies::{Build, NextMove, SharedMotion, StrategyKind};
 use serde::Serialize;
 use trajectories::Program;
 
@@ -179,7 +179,7 @@ fn write_page(path: &Path, options: &Options, context: &Context, shown: &Recorde
         log: &shown.log().into_diagnostic()?,
         next,
     });
-    let html = ::report::render(&page)
+    let html = axis_report::render(&page)
         .into_diagnostic()
         .wrap_err("the page of the motion cannot be made")?;
     write_whole(path, html.as_bytes())

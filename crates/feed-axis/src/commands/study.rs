@@ -3,11 +3,11 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::Figures;
+use axis_pipeline::study::{Setting, StudyRow, network, settings};
 use campaign::{Column, Failure, Inputs, Job, Merged, Row, Value};
 use clap::Args;
 use miette::Result;
-use pipeline::Figures;
-use pipeline::study::{Setting, StudyRow, network, settings};
 
 use crate::context::{Claim, Common, Context};
 use crate::jobs::{JobOptions, Sharding, failure, whole};

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use axis_pipeline::training::{INITIAL_DAMPING, NetworkPlan, Trained, test, train};
+use axis_pipeline::{Figures, LinearMap};
 use cfnn::Network;
 use cfnn::artifact::{
     checkpoint_from_bytes, checkpoint_to_bytes, network_from_bytes, network_to_bytes,
 };
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use pipeline::training::{INITIAL_DAMPING, NetworkPlan, Trained, test, train};
-use pipeline::{Figures, LinearMap};
 use serde::{Deserialize, Serialize};
 
 use super::sample;
@@ -85,7 +85,7 @@ pub fn run(context: &Context) -> Result<()> {
 
     let mut unsaved = false;
     let trained = train(
-        &pipeline::sampling::ranges(&context.axis).into_diagnostic()?,
+        &axis_pipeline::sampling::ranges(&context.axis).into_diagnostic()?,
         &seen,
         &plan,
         checkpoint,

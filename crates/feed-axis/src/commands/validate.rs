@@ -3,10 +3,10 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use axis_pipeline::Figures;
+use axis_pipeline::strategies::{Need, Predictors, TransferModels};
+use axis_pipeline::validation::{self, Validation};
 use miette::{IntoDiagnostic, Result};
-use pipeline::Figures;
-use pipeline::strategies::{Need, Predictors, TransferModels};
-use pipeline::validation::{self, Validation};
 use serde::Serialize;
 
 use super::{identify, train};

@@ -1,9 +1,9 @@
 //! The first screen of the pipeline's report: how far off, how much less, how sure, what next.
 
-use pipeline::Figures;
-use pipeline::strategies::{NETWORK_LUGRE, STRATEGIES, StrategyKind};
-use pipeline::summary::TrajectorySummary;
-use report::engineering;
+use axis_pipeline::Figures;
+use axis_pipeline::strategies::{NETWORK_LUGRE, STRATEGIES, StrategyKind};
+use axis_pipeline::summary::TrajectorySummary;
+use axis_report::engineering;
 
 use crate::context::Context;
 use crate::program;

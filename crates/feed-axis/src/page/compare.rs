@@ -1,11 +1,11 @@
 //! Two runs side by side: settings, tracking errors with their differences, the same figures overlaid.
 
-use pipeline::Figures;
-use pipeline::compensation::{CompensatedRun, find};
-use pipeline::strategies::STRATEGIES;
-use pipeline::summary::Summary;
-use pipeline::validation::Validation;
-use report::{Block, Cell, Figure, Mark, Page, Section, Series, Table, engineering};
+use axis_pipeline::Figures;
+use axis_pipeline::compensation::{CompensatedRun, find};
+use axis_pipeline::strategies::STRATEGIES;
+use axis_pipeline::summary::Summary;
+use axis_pipeline::validation::Validation;
+use axis_report::{Block, Cell, Figure, Mark, Page, Section, Series, Table, engineering};
 
 use super::times;
 

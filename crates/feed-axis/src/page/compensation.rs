@@ -1,10 +1,10 @@
 //! Figure 13, Tables 15 and 16.
 
-use pipeline::compensation::{CompensatedRun, find};
-use pipeline::strategies::{ReportTable as Group, STRATEGIES, StrategyKind, of_table};
-use pipeline::tracking::Run;
-use pipeline::validation::ValidatedTrajectory;
-use report::{Cell, Section, Series, Table};
+use axis_pipeline::compensation::{CompensatedRun, find};
+use axis_pipeline::strategies::{ReportTable as Group, STRATEGIES, StrategyKind, of_table};
+use axis_pipeline::tracking::Run;
+use axis_pipeline::validation::ValidatedTrajectory;
+use axis_report::{Cell, Section, Series, Table};
 
 use super::{best_if, pair, printed, times, tracking};
 use crate::paper::{Pair, Row};
@@ -198,10 +198,10 @@ fn transfer_models(results: &Results) -> Table {
 
 #[cfg(test)]
 mod tests {
-    use pipeline::Figures;
-    use pipeline::strategies::NONE;
-    use pipeline::tracking::Profile;
-    use report::{Page, render};
+    use axis_pipeline::Figures;
+    use axis_pipeline::strategies::NONE;
+    use axis_pipeline::tracking::Profile;
+    use axis_report::{Page, render};
 
     use super::*;
 

@@ -1,5 +1,6 @@
 //! The page of a discovery: verdict, effects, gap, pictures.
 
+use axis_report::{Block, Cell, Figure, Notice, Page, Section, Series, Table, render};
 use axis_sim::Axis;
 use discrepancy::summary::SummaryFound;
 use discrepancy::{
@@ -7,7 +8,6 @@ use discrepancy::{
     Verdict,
 };
 use miette::{IntoDiagnostic, Result};
-use report::{Block, Cell, Figure, Notice, Page, Section, Series, Table, render};
 
 /// The page as HTML.
 pub fn page(discovered: &Discovered) -> Result<String> {

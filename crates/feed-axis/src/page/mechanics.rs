@@ -1,8 +1,8 @@
 //! Friction, self-excited vibration, modes.
 
+use axis_pipeline::vibration::Vibration;
+use axis_report::{Cell, Figure, Section, Series, Table};
 use lugre::LuGre;
-use pipeline::vibration::Vibration;
-use report::{Cell, Figure, Section, Series, Table};
 
 use crate::context::Context;
 use crate::results::Results;

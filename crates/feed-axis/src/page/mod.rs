@@ -1,4 +1,4 @@
-//! The report: results to a page. Order and words are here, looks in `report`.
+//! The report: results to a page. Order and words are here, looks in `axis-report`.
 
 mod answers;
 pub mod compare;
@@ -10,9 +10,9 @@ mod network;
 pub mod robustness;
 mod tracking;
 
+use axis_pipeline::strategies::{NETWORK, NETWORK_LUGRE, StrategyKind};
+use axis_report::{Block, Cell, KeyValues, Mark, Notice, Page, Section, Table};
 use axis_sim::mechanism::{Freedom, Way};
-use pipeline::strategies::{NETWORK, NETWORK_LUGRE, StrategyKind};
-use report::{Block, Cell, KeyValues, Mark, Notice, Page, Section, Table};
 
 use crate::context::Context;
 use crate::paper::Pair;
@@ -152,7 +152,7 @@ fn settings(context: &Context, results: &Results) -> Section {
 }
 
 /// Maximum and mean as two cells.
-fn pair(figures: pipeline::Figures) -> [Cell; 2] {
+fn pair(figures: axis_pipeline::Figures) -> [Cell; 2] {
     [Cell::number(figures.max, 2), Cell::number(figures.mean, 3)]
 }
 
@@ -179,6 +179,6 @@ fn best_if(condition: bool, cells: [Cell; 2]) -> [Cell; 2] {
 
 /// Instants of thinned samples, s.
 fn times(count: usize, period: f64) -> Vec<f64> {
-    let step = pipeline::tracking::DISPLAY_EVERY as f64 * period;
+    let step = axis_pipeline::tracking::DISPLAY_EVERY as f64 * period;
     (0..count).map(|k| k as f64 * step).collect()
 }

@@ -1,9 +1,9 @@
 //! The page of one simulated motion: position and error, speed, what drives it.
 
 use axis_log::Log;
+use axis_report::{Block, Cell, Figure, KeyValues, Page, Section, Series, Table, engineering};
 use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, Cycle};
-use report::{Block, Cell, Figure, KeyValues, Page, Section, Series, Table, engineering};
 
 /// What was run.
 pub struct Ran<'a> {

@@ -1,9 +1,9 @@
 //! Tables 7 to 11.
 
 use crate::results::Results;
-use pipeline::Figures;
-use pipeline::study::StudyRow;
-use report::{Cell, Figure, Section, Series, Table, engineering};
+use axis_pipeline::Figures;
+use axis_pipeline::study::StudyRow;
+use axis_report::{Cell, Figure, Section, Series, Table, engineering};
 
 /// Table 11 and the training history.
 pub fn network(results: &Results) -> Section {

@@ -1,7 +1,7 @@
 //! What compensation leaves where the belief is wrong: every draw a point.
 
-use pipeline::robustness::Point;
-use report::{Cell, Figure, Mark, Section, Series, Table};
+use axis_pipeline::robustness::Point;
+use axis_report::{Cell, Figure, Mark, Section, Series, Table};
 use serde::{Deserialize, Serialize};
 
 use crate::context::Context;
@@ -186,8 +186,8 @@ fn table<'a>(strips: impl Iterator<Item = &'a Strip<'a>>) -> Table {
 
 #[cfg(test)]
 mod tests {
-    use pipeline::Figures;
-    use report::{Page, render};
+    use axis_pipeline::Figures;
+    use axis_report::{Page, render};
 
     use super::*;
 

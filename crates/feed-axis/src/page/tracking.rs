@@ -1,8 +1,8 @@
 //! Figures 10 to 12, Tables 13 and 14.
 
-use pipeline::tracking::Profile;
-use pipeline::validation::ValidatedTrajectory;
-use report::{Cell, Figure, Section, Series, Table};
+use axis_pipeline::tracking::Profile;
+use axis_pipeline::validation::ValidatedTrajectory;
+use axis_report::{Cell, Figure, Section, Series, Table};
 
 use super::{pair, printed, times};
 use crate::context::Context;

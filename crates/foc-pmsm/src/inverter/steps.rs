@@ -4,7 +4,7 @@ use super::{Inverter, Rotor};
 use crate::frames::{AlphaBeta, Dq, Phases};
 use crate::motor::Pmsm;
 use crate::svpwm::Duties;
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 /// Integration steps of a whole period. The rotor turns through a sixteenth
 /// of the period's angle in one: at 840 rad/s electrical and 100 µs, 0.3°.

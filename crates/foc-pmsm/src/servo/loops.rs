@@ -3,7 +3,7 @@
 use super::Servo;
 use crate::frames::Dq;
 use crate::signals::ServoState;
-use scalar::Scalar;
+use axis_scalar::Scalar;
 
 impl<T: Scalar> Servo<T> {
     /// What the current limit I leaves for the q current, A, beside `id`

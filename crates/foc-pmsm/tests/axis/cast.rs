@@ -1,8 +1,8 @@
 //! Drives drawn in `f64`, in either scalar.
 
 use super::CurrentLoop;
+use axis_scalar::Scalar;
 use foc_pmsm::{Dq, FocError, MotorParameters, Pmsm, Servo, ServoGains, ServoLimits};
-use scalar::Scalar;
 
 pub fn dq<T: Scalar>(x: Dq) -> Dq<T> {
     Dq {

@@ -1,7 +1,7 @@
 //! A motor with all that it moves on one rigid shaft.
 
+use axis_scalar::Scalar;
 use foc_pmsm::{Dq, Measurement, Pmsm};
-use scalar::Scalar;
 
 pub const RADIUS: f64 = 0.01 / core::f64::consts::TAU;
 /// A table of 515 kg, and 0.005 kg·m² of rotor and screw.

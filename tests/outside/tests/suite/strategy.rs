@@ -1,14 +1,14 @@
 //! The outside strategy beside those of the library.
 
+use axis_pipeline::PipelineError;
+use axis_pipeline::compensation::{compensate, compensate_with, find, runs};
+use axis_pipeline::sampling::{SamplePlan, Sampler, SpeedDensity, ranges};
+use axis_pipeline::strategies::{NONE, Need, Predictors, ReportTable, STRATEGIES, of_table};
+use axis_pipeline::summary::{self, Compensated};
+use axis_pipeline::training::{NetworkPlan, train};
+use axis_pipeline::validation::validate;
 use compensator::TransferFunctionModel;
 use outside::ACCELERATION_FEEDFORWARD;
-use pipeline::PipelineError;
-use pipeline::compensation::{compensate, compensate_with, find, runs};
-use pipeline::sampling::{SamplePlan, Sampler, SpeedDensity, ranges};
-use pipeline::strategies::{NONE, Need, Predictors, ReportTable, STRATEGIES, of_table};
-use pipeline::summary::{self, Compensated};
-use pipeline::training::{NetworkPlan, train};
-use pipeline::validation::validate;
 
 use crate::read;
 

@@ -2,11 +2,11 @@
 
 use std::hint::black_box;
 
+use axis_pipeline::sample_file;
+use axis_pipeline::sampling::{SamplePlan, Sampler, SpeedDensity};
 use axis_sim::{Axis, ClosedLoop};
 use compensator::NoCompensation;
 use miette::{IntoDiagnostic, Result};
-use pipeline::sample_file;
-use pipeline::sampling::{SamplePlan, Sampler, SpeedDensity};
 use rayon::prelude::*;
 use trajectories::{Motion, SCurve};
 

@@ -165,6 +165,6 @@ mod tests {
 
     #[test]
     fn types_of_other_crates_are_not_counted() {
-        assert!(of("pub use scalar::Scalar; pub use std::ops::{Range};").is_empty());
+        assert!(of("pub use axis_scalar::Scalar; pub use std::ops::{Range};").is_empty());
     }
 }

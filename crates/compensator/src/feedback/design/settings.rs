@@ -184,7 +184,7 @@ impl FeedbackSettings {
         // Motor's acceleration by the greatest torque, over a cycle.
         let speed = greatest * rigid.motor * rigid.motor * h;
         Noise {
-            force: self.wandering * greatest / model.travel * scalar::Scalar::sqrt(h),
+            force: self.wandering * greatest / model.travel * axis_scalar::Scalar::sqrt(h),
             command: self.command,
             position: self.position * model.travel * speed * h,
             speed: self.speed * speed,

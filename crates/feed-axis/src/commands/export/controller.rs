@@ -3,11 +3,11 @@
 
 use std::path::PathBuf;
 
+use axis_pipeline::strategies::StrategyKind;
 use clap::Args;
 use compensator::GuardLimits;
 use controller_export::{EXPORTED, ExportError, ExportedController, NamedText};
 use miette::{IntoDiagnostic, Result, WrapErr};
-use pipeline::strategies::StrategyKind;
 
 use super::guard::{self, Guarded};
 use crate::commands::validate;

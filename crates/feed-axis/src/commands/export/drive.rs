@@ -3,10 +3,10 @@
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::drive_terms::{self, Loss, Term, TermTable};
 use axis_sim::{Axis, SixDigits};
 use clap::Args;
 use miette::{IntoDiagnostic, Result, WrapErr};
-use pipeline::drive_terms::{self, Loss, Term, TermTable};
 use serde::Serialize;
 
 use crate::context::{DEFAULT_AXIS, read_axis};

@@ -1,13 +1,13 @@
 //! The guard of an exported compensator: its limits, as given or found in simulation.
 
+use axis_pipeline::PipelineError;
+use axis_pipeline::corrections::{Greatest, greatest};
+use axis_pipeline::strategies::{Predictors, StrategyKind};
 use axis_sim::SixDigits;
 use clap::Args;
 use compensator::GuardLimits;
 use controller_export::ExportedController;
 use miette::{IntoDiagnostic, Result};
-use pipeline::PipelineError;
-use pipeline::corrections::{Greatest, greatest};
-use pipeline::strategies::{Predictors, StrategyKind};
 use serde::Serialize;
 
 use crate::context::Context;

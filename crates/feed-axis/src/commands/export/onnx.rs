@@ -3,10 +3,10 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::strategies::Need;
 use clap::Args;
 use controller_export::onnx;
 use miette::{IntoDiagnostic, Result};
-use pipeline::strategies::Need;
 use serde::Serialize;
 
 use super::controller;

@@ -10,11 +10,11 @@ use axis_log::quality::{
     ChannelQuality, Clock, Finding, Relation, RelationLaw, channel_quality, clock, cross_check,
 };
 use axis_log::{Log, Mapping, MappingProposal, propose};
+use axis_report::{Page, render};
 use axis_sim::Axis;
 use clap::{Args, Subcommand};
 use discrepancy::logs::{exact_channels, relations};
 use miette::{IntoDiagnostic, Result, miette};
-use report::{Page, render};
 
 use crate::exit::wrong_use;
 use crate::output::{print, write_whole};

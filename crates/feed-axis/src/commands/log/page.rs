@@ -1,7 +1,7 @@
 //! The page of logs.
 
 use axis_log::quality::{ChannelQuality, CrossCheckVerdict};
-use report::{Cell, Figure, Notice, Page, Section, Series, Table};
+use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table};
 
 use super::Seen;
 use super::words::heading;

@@ -4,9 +4,9 @@ use std::cell::Cell;
 use std::path::Path;
 
 use axis_log::{Channel, Log};
+use axis_pipeline::sampling::{SamplePlan, Sampler, SpeedDensity};
 use axis_sim::{Axis, ClosedLoop, Cycle, Replay};
 use compensator::NoCompensation;
-use pipeline::sampling::{SamplePlan, Sampler, SpeedDensity};
 use trajectories::{Motion, Setpoint};
 
 use super::{Input, Kind, Verdict, fault, refused};

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use axis_pipeline::sample_file;
+use axis_pipeline::sampling::{SamplePlan, Sampler, SpeedDensity};
 use axis_sim::Axis;
 use miette::{IntoDiagnostic, Result};
-use pipeline::sample_file;
-use pipeline::sampling::{SamplePlan, Sampler, SpeedDensity};
 
 use super::axis::small_screw;
 use super::{Input, Kind, Verdict, fault, refused};

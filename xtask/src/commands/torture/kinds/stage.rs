@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::Figures;
 use axis_sim::Axis;
 use cfnn::artifact::network_to_bytes;
 use miette::{IntoDiagnostic, Result};
-use pipeline::Figures;
 
 use super::artifact::some_network;
 use super::axis::small_screw;

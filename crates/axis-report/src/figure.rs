@@ -153,7 +153,7 @@ impl Figure {
     /// Names the units of the coordinates as they are given.
     ///
     /// ```
-    /// use report::Figure;
+    /// use axis_report::Figure;
     /// let figure = Figure::new("Error", "time", "tracking error").units("s", "µm");
     /// assert_eq!(figure.y_unit, "µm");
     /// ```

@@ -3,10 +3,10 @@
 
 use std::sync::Arc;
 
+use axis_pipeline::moves::{Moves, NamedMotion};
+use axis_pipeline::robustness::{Draws, Goal, make, studies};
+use axis_pipeline::strategies::{NONE, Predictors, STRATEGIES, named};
 use axis_sim::{Axis, ClosedLoop, Measured};
-use pipeline::moves::{Moves, NamedMotion};
-use pipeline::robustness::{Draws, Goal, make, studies};
-use pipeline::strategies::{NONE, Predictors, STRATEGIES, named};
 use trajectories::{Limits, SCurve};
 
 fn axis(name: &str) -> Axis {
@@ -43,7 +43,7 @@ fn a_draw_of_every_row_keeps_its_goal() {
     for row in studies(&axis, &machine, 4711, Draws::QUICK).unwrap() {
         let noise = row
             .noise
-            .then_some(&noise as pipeline::robustness::Sense<'_>);
+            .then_some(&noise as axis_pipeline::robustness::Sense<'_>);
         let point = make(&axis, row.strategy, &row.draw(0).unwrap(), noise).unwrap();
         for (i, (counted, goal)) in row.moves.iter().enumerate() {
             let left = point.compensated[i].max;

@@ -2,18 +2,18 @@
 //! share of the peak that is left for each parameter that is believed wrong, the least that
 //! any plan can leave, and what a short move before takes away.
 //!
-//! `cargo run --release -p pipeline --example first_move`, from the project's folder.
+//! `cargo run --release -p axis-pipeline --example first_move`, from the project's folder.
 //! Simulated, without noise; the axis of Liu et al. 2025 with the machine's viscous friction.
 
 use std::error::Error;
 
+use axis_pipeline::moves::{Moves, NamedMotion};
+use axis_pipeline::robustness::pre_roll;
+use axis_pipeline::strategies::{NONE, Predictors, STRATEGIES, Strategy, named};
+use axis_pipeline::tracking::{PlannedTrajectory, plan_all};
 use axis_sim::{Axis, ClosedLoop, Measured};
 use compensator::DriveModel;
 use lugre::{LuGre, Parameters};
-use pipeline::moves::{Moves, NamedMotion};
-use pipeline::robustness::pre_roll;
-use pipeline::strategies::{NONE, Predictors, STRATEGIES, Strategy, named};
-use pipeline::tracking::{PlannedTrajectory, plan_all};
 
 /// Factors of friction level, σ0, σ1, σ2 and the load's inertia.
 type Factors = [f64; 5];

@@ -25,7 +25,7 @@
 //! # Example
 //!
 //! ```
-//! use report::{Cell, Figure, Notice, Page, Section, Series, Table, render};
+//! use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table, render};
 //!
 //! let t: Vec<f64> = (0..36_000).map(|k| f64::from(k) * 1e-4).collect();
 //! let e: Vec<f64> = t.iter().map(|t| 50.0 * (3.0 * t).sin()).collect();
@@ -42,7 +42,7 @@
 //!     );
 //! let html = render(&page)?;
 //! assert!(html.starts_with("<!DOCTYPE html>") && html.len() < 300_000);
-//! # Ok::<(), report::ReportError>(())
+//! # Ok::<(), axis_report::ReportError>(())
 //! ```
 //!
 //! # What it knows nothing of

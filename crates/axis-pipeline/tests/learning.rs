@@ -1,11 +1,11 @@
 //! Learning from repetition, on logs as a controller would write them.
 
 use axis_log::Log;
+use axis_pipeline::learning::{LearningError, StoredCorrection};
+use axis_pipeline::strategies::{NextMove, Predictors, STRATEGIES, SharedMotion, named};
 use axis_sim::{Axis, ClosedLoop, Recorder};
 use compensator::{Advice, Compensator};
 use lugre::{LuGre, Parameters};
-use pipeline::learning::{LearningError, StoredCorrection};
-use pipeline::strategies::{NextMove, Predictors, STRATEGIES, SharedMotion, named};
 use std::sync::Arc;
 
 fn machine() -> Axis {

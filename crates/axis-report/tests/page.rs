@@ -1,6 +1,6 @@
 //! The whole page: well formed, self-contained, escaped, deterministic.
 
-use report::{
+use axis_report::{
     Block, Cell, Figure, KeyValues, Mark, Notice, Page, PageWriteError, ReportError, Section,
     Series, Table, render, write_atomic,
 };

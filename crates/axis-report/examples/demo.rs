@@ -1,8 +1,8 @@
-//! A page with every kind of block and figure: `cargo run -p report --example demo -- demo.html`.
+//! A page with every kind of block and figure: `cargo run -p axis-report --example demo -- demo.html`.
 
 use std::error::Error;
 
-use report::{
+use axis_report::{
     Block, Cell, Figure, KeyValues, Mark, Notice, Page, Section, Series, Table, write_atomic,
 };
 

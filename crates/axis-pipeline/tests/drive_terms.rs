@@ -5,12 +5,12 @@ use std::f64::consts::{PI, TAU};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use axis_pipeline::drive_terms::{losses, of_axis, over_position, over_turn, terms};
+use axis_pipeline::moves::{Moves, NamedMotion};
+use axis_pipeline::strategies::{Predictors, STRATEGIES, named, reversal_start};
 use axis_sim::effects::{ActiveEffect, Effect};
 use axis_sim::{Axis, ClosedLoop, Measured};
 use compensator::{DriveTerms, DriveTermsFeedforward, ReversalPulse};
-use pipeline::drive_terms::{losses, of_axis, over_position, over_turn, terms};
-use pipeline::moves::{Moves, NamedMotion};
-use pipeline::strategies::{Predictors, STRATEGIES, named, reversal_start};
 use trajectories::{Limits, SCurve};
 
 fn axis(name: &str) -> Axis {
@@ -126,9 +126,14 @@ fn better_than_friction_alone() {
     let mut predictors = Predictors::of(&machine);
     predictors.identified = Some(machine.friction.law);
     let kinds = ["lugre", "drive_terms"].map(|name| named(STRATEGIES, name).unwrap());
-    let runs =
-        pipeline::compensation::compensate_with(&machine, &machine, &predictors, &kinds, || ())
-            .unwrap();
+    let runs = axis_pipeline::compensation::compensate_with(
+        &machine,
+        &machine,
+        &predictors,
+        &kinds,
+        || (),
+    )
+    .unwrap();
     for pair in runs.chunks(2) {
         let [lugre, terms] = [&pair[0].run.figures, &pair[1].run.figures];
         assert!(terms.max < 0.6 * lugre.max && terms.mean < 0.5 * lugre.mean);
@@ -146,7 +151,7 @@ fn error_under(machine: &Axis, terms: DriveTerms) -> [f64; 2] {
         let mut law = DriveTermsFeedforward::new(terms);
         let run = closed_loop.run(&motion, &mut law, |cycle| errors.push(cycle.error()));
         run.completed().unwrap();
-        let figures = pipeline::Figures::of_metres(&errors).unwrap();
+        let figures = axis_pipeline::Figures::of_metres(&errors).unwrap();
         most = most.max(figures.max);
         mean = mean.max(figures.mean);
     }
@@ -216,7 +221,7 @@ fn moves_go_on_from_each_other() {
     let motions = [motion(0.6, 0.9), motion(0.9, 1.2), motion(1.2, 0.6)];
     let closed_loop = ClosedLoop::new(&machine).unwrap();
     let run = |name: &str| -> Vec<f64> {
-        let kind = named(STRATEGIES, name).unwrap_or(&pipeline::strategies::NONE);
+        let kind = named(STRATEGIES, name).unwrap_or(&axis_pipeline::strategies::NONE);
         let mut strategy = kind.strategy(&Predictors::of(&machine)).unwrap();
         let mut moves = Moves::new(&closed_loop, |_: &mut Measured| ());
         let make = |m| moves.make(&mut *strategy, m).unwrap().figures.max;

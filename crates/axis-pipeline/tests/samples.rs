@@ -1,10 +1,10 @@
 //! Samples and their file.
 
+use axis_pipeline::LinearMap;
+use axis_pipeline::sample_file::{SampleFileError, read, write};
+use axis_pipeline::sampling::{SamplePlan, Sampler, SpeedDensity, ranges};
+use axis_pipeline::training::{NetworkPlan, residuals, train};
 use axis_sim::Axis;
-use pipeline::LinearMap;
-use pipeline::sample_file::{SampleFileError, read, write};
-use pipeline::sampling::{SamplePlan, Sampler, SpeedDensity, ranges};
-use pipeline::training::{NetworkPlan, residuals, train};
 
 fn axis() -> Axis {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");

@@ -105,7 +105,7 @@ impl Unit {
 /// that of `value`, with or without prefix; it may be empty.
 ///
 /// ```
-/// use report::engineering;
+/// use axis_report::engineering;
 /// assert_eq!(engineering(1.234e-5, "m", 3), "12.3 µm");
 /// assert_eq!(engineering(0.0082, "A", 2), "8.2 mA");
 /// assert_eq!(engineering(55.89, "µm", 3), "55.9 µm");

@@ -1,11 +1,11 @@
 //! Samples, a small network, and its error beside the best linear map's.
 //!
-//! `cargo run --release -p pipeline --example one_cycle_network`
+//! `cargo run --release -p axis-pipeline --example one_cycle_network`
 
+use axis_pipeline::LinearMap;
+use axis_pipeline::sampling::{SamplePlan, Sampler, SpeedDensity};
+use axis_pipeline::training::{NetworkPlan, test, train};
 use axis_sim::Axis;
-use pipeline::LinearMap;
-use pipeline::sampling::{SamplePlan, Sampler, SpeedDensity};
-use pipeline::training::{NetworkPlan, test, train};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         threads: 0,
     };
     let trained = train(
-        &pipeline::sampling::ranges(&axis)?,
+        &axis_pipeline::sampling::ranges(&axis)?,
         &seen,
         &plan,
         None,

@@ -7,7 +7,7 @@
 //! `f32`, where those of `libm` would be in `f64`; so is its cube root still.
 //!
 //! ```
-//! use scalar::Scalar;
+//! use axis_scalar::Scalar;
 //!
 //! fn stopping_distance<T: Scalar>(speed: T, deceleration: T) -> T {
 //!     T::HALF * speed * speed / deceleration
