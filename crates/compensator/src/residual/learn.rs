@@ -13,8 +13,13 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{ResidualBasis, ResidualRow, ResidualTables};
 
-/// Part of the power of a move not learned from that must be explained for use.
-const LEAST_EXPLAINED: f64 = 0.1;
+/// Part of the power of a move not learned from that must be explained for use, and of the
+/// power of its changes. A peak hangs on a few milliseconds of a move: what explains less than
+/// half may add to it there.
+const LEAST_EXPLAINED: f64 = 0.5;
+/// Over how long changes are taken, s. A servo takes slow torque away by itself: what follows
+/// that alone explains power and leaves the peak.
+const CHANGE: f64 = 0.01;
 /// RMS of what is explained, as a share of the Coulomb level: less is not worth the risk.
 const LEAST_SIZE: f64 = 0.01;
 
@@ -52,7 +57,8 @@ pub struct ResidualLearner<B: ResidualBasis = ResidualTables> {
     /// Prior and moves: normal matrix and right side, in units of the noise.
     normal: DMatrix<f64>,
     right: DVector<f64>,
-    /// Share of the power of each move that the model explained before it saw it.
+    /// Share of the power of each move, and of its changes, the lesser, that the model
+    /// explained before it saw it.
     explained: Vec<f64>,
 }
 
@@ -104,27 +110,29 @@ impl<B: ResidualBasis> ResidualLearner<B> {
         smoothing: f64,
     ) -> f64 {
         self.basis.linearise(self.coefficients.as_slice());
-        let both = beside.iter().zip(alone);
-        let both = both.filter(|(beside, alone)| sound(beside) && sound(alone));
+        let both = beside.iter().zip(alone).enumerate();
+        let both = both.filter(|(_, (beside, alone))| sound(beside) && sound(alone));
         let mut foreseen = 0.0;
+        let mut instants = Vec::new();
         let (log, rests): (Vec<&Unexplained>, Vec<[f64; 2]>) = both
-            .map(|(u, alone)| {
+            .map(|(i, (u, alone))| {
                 let row = self.basis.row(u, smoothing);
                 let part = row.times(self.coefficients.as_slice());
                 foreseen += part * part;
+                instants.push(i);
                 (u, [u.torque - part, alone.torque])
             })
             .unzip();
-        let [left, whole] = powers(&rests);
-        let explained = if whole > 0.0 { 1.0 - left / whole } else { 0.0 };
+        let explained = share(powers(&rests));
         if rests.is_empty() || !explained.is_finite() {
             return 0.0;
         }
         let size = sqrt(foreseen / rests.len() as f64);
         let worth = size >= LEAST_SIZE * self.level;
         let harmless = slow_is_no_worse(&log, &rests) && peak_is_no_worse(&rests, spacing);
+        let counted = explained.min(share(powers(&changes(&rests, &instants, spacing))));
         self.explained
-            .push(if worth && harmless { explained } else { 0.0 });
+            .push(if worth && harmless { counted } else { 0.0 });
         explained
     }
 
@@ -191,8 +199,9 @@ impl<B: ResidualBasis> ResidualLearner<B> {
         &self.model
     }
 
-    /// Share of the power of each move that was explained before learning from it; 0 where
-    /// that was too little to matter, or would have done harm somewhere.
+    /// Share of the power of each move, and of its changes over 10 ms, the lesser of both, that
+    /// was explained before learning from it; 0 where that was too little to matter, or would
+    /// have done harm somewhere.
     #[must_use]
     pub fn explained(&self) -> &[f64] {
         &self.explained
@@ -217,6 +226,24 @@ fn powers(rests: &[[f64; 2]]) -> [f64; 2] {
     rests.iter().fold([0.0; 2], |[a, b], [with, without]| {
         [a + with * with, b + without * without]
     })
+}
+
+/// Share of a power that is gone: of the sums of squares with the residual and without.
+fn share([with, without]: [f64; 2]) -> f64 {
+    if without > 0.0 {
+        1.0 - with / without
+    } else {
+        0.0
+    }
+}
+
+/// Changes of the rests over [`CHANGE`], between samples `instants` of a log that are so far apart.
+fn changes(rests: &[[f64; 2]], instants: &[usize], spacing: f64) -> Vec<[f64; 2]> {
+    let apart = ((CHANGE / spacing) as usize).max(1);
+    let pairs = (apart..rests.len()).filter(|i| instants[*i] - instants[i - apart] == apart);
+    pairs
+        .map(|i| [0, 1].map(|of| rests[i][of] - rests[i - apart][of]))
+        .collect()
 }
 
 /// Whether the slow part of a log has no more power with the residual (each pair: with it, without) than without.
