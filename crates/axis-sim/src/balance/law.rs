@@ -13,6 +13,9 @@ pub(super) struct Motions {
     pub motor: Course,
     /// Whether the load's is the motor's times the travel per radian, and nothing else.
     pub load_is_derived: bool,
+    /// Where one of the two was measured: force at the load per wind-up between them, N/m or
+    /// N·m/rad.
+    pub stiffness: Option<f64>,
 }
 
 /// Rounds in which a torque is found of which the ripple depends on itself.
@@ -37,9 +40,21 @@ pub(super) fn torque(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> V
         .sum();
     let inertia = axis.mechanism.total_inertia() - mass * r * r - lagging;
     let forces = forces(axis, hooks, load, h);
+    // The wind-up under the force that is transmitted sets the end that was not measured apart.
+    let apart = motions.stiffness.map(|stiffness| {
+        let transmitted = forces.iter().zip(&load.acceleration);
+        let wind_up: Vec<f64> = transmitted
+            .map(|(force, a)| (force + mass * a) / stiffness)
+            .collect();
+        derivative(&derivative(&wind_up, h), h)
+    });
     let one = |(k, force): (usize, f64)| {
-        let of_load = load.acceleration[k];
-        let rotation = inertia * motor.acceleration[k] + lagging * of_load / r;
+        let apart = apart.as_ref().map_or(0.0, |a| a[k]);
+        let [of_load, of_motor] = match motions.load_is_derived {
+            true => [load.acceleration[k] - apart, motor.acceleration[k]],
+            false => [load.acceleration[k], motor.acceleration[k] + apart / r],
+        };
+        let rotation = inertia * of_motor + lagging * of_load / r;
         let all = rotation + r * (mass * of_load + force);
         own(hooks, motor.position[k], all)
     };
@@ -90,8 +105,8 @@ fn forces(axis: &Axis, hooks: &Hooks, load: &Course, h: f64) -> Vec<f64> {
     let lever = friction.lever(axis.travel_per_radian());
     let has_loads = hooks.has_loads() || !axis.loads.is_empty();
     let speed = |k: usize| load.speed[k] / lever;
+    let own = self::friction(axis, load, h);
     let mut before = load.speed.first().map_or(0.0, |v| v / lever);
-    let mut bristle = friction.law.steady_bristle(before);
     let mut unit = friction.unit.steady_bristle(before);
     let start = Start {
         speed: load.speed.first().copied().unwrap_or(0.0),
@@ -102,9 +117,7 @@ fn forces(axis: &Axis, hooks: &Hooks, load: &Course, h: f64) -> Vec<f64> {
     let (mut transmitted, mut travelled) = (0.0, 0.0);
     let one = |k: usize| {
         let now = speed(k);
-        let (z, own) = friction.law.step_torque(bristle, before, now, h);
-        bristle = z;
-        let mut force = own / lever;
+        let mut force = own[k];
         if has_loads {
             unit = friction.unit.step(unit, before, now, h);
             let at = TableState {
@@ -133,6 +146,21 @@ fn forces(axis: &Axis, hooks: &Hooks, load: &Course, h: f64) -> Vec<f64> {
         force
     };
     (0..load.speed.len()).map(one).collect()
+}
+
+/// Force of the axis' own friction along a course, N or N·m.
+pub(super) fn friction(axis: &Axis, load: &Course, h: f64) -> Vec<f64> {
+    let friction = axis.friction.share();
+    let lever = friction.lever(axis.travel_per_radian());
+    let mut before = load.speed.first().map_or(0.0, |v| v / lever);
+    let mut bristle = friction.law.steady_bristle(before);
+    let one = |v: &f64| {
+        let now = v / lever;
+        let (z, own) = friction.law.step_torque(bristle, before, now, h);
+        (bristle, before) = (z, now);
+        own / lever
+    };
+    load.speed.iter().map(one).collect()
 }
 
 /// The actuator's own torque where what acts at `angle` with the hooks' is `all`.

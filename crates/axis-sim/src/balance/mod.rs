@@ -23,6 +23,7 @@ mod motion;
 mod prepared;
 mod quality;
 mod spectrum;
+mod unsure;
 
 use axis_log::Log;
 

@@ -98,7 +98,20 @@ impl Measured {
 
     /// Low-passed at `cutoff` (Hz), and differentiated.
     pub fn course(&self, period: f64, cutoff: f64) -> Course {
-        let smooth = LowPass::new(cutoff * period).apply(&self.samples);
+        self.smoothed(&self.samples, period, cutoff)
+    }
+
+    /// What of a course this channel shows.
+    pub(super) fn shown<'a>(&self, course: &'a Course) -> &'a [f64] {
+        match self.source {
+            Source::Position => &course.position,
+            Source::Speed => &course.speed,
+        }
+    }
+
+    /// The course that samples like those of this channel show, low-passed at `cutoff` (Hz).
+    pub(super) fn smoothed(&self, samples: &[f64], period: f64, cutoff: f64) -> Course {
+        let smooth = LowPass::new(cutoff * period).apply(samples);
         let [position, speed] = match self.source {
             Source::Position => {
                 let speed = derivative(&smooth, period);

@@ -10,6 +10,7 @@ use super::law::Motions;
 use super::motion::{Course, Measured, Whose};
 use super::quality::{BalanceQuality, TOLERATED};
 use super::spectrum::{least_noise, passed};
+use super::unsure::Remeasured;
 use crate::axis::Axis;
 use crate::replay::ReplayError;
 
@@ -34,6 +35,14 @@ const DEVIATIONS: f64 = 3.0;
 /// Periods of the cut-off at either end of a log that are left out: in two, what a filter
 /// makes of an end has decayed to a hundredth.
 const EDGE: f64 = 2.0;
+
+/// Periods of the cut-off about a sample in which friction has to be known.
+const NEAR: f64 = 0.5;
+
+/// Share of the samples that is left at least, however little is known of friction, and how many
+/// are left in any case.
+const MOST_SURE: f64 = 0.5;
+const MOST_SURE_OF: usize = LEAST + LEAST / 4;
 
 /// Fewest samples that are compared.
 const LEAST: usize = 32;
@@ -99,7 +108,24 @@ impl Balance {
             .balance
             .slowest
             .map_or(told, |slowest| slowest.max(told));
-        let (kept, all) = moving(&motions.load, period, cutoff, every, standstill);
+        let (moving, all) = moving(&motions.load, period, cutoff, every, standstill);
+        let filter = LowPass::new(cutoff * period);
+        let logged = log.channel(channel.name)?;
+        let noise = &measured[0].noise;
+        let of_motion = noise.least_acceleration(cutoff) * inertia(axis, measured[0].whose);
+        let of_torque = least_noise(logged, period) * passed(0, cutoff);
+        let floor = (of_torque + (channel.per_torque(axis) * of_motion).powi(2)).sqrt();
+        let remeasured = Remeasured {
+            axis,
+            measured: &measured[0],
+            load: &motions.load,
+            period,
+            cutoff: motion_cutoff,
+        };
+        let per_force = channel.per_torque(axis) * axis.travel_per_radian();
+        let unsure = remeasured.unsure(&filter);
+        let near = (NEAR / (cutoff * period)).ceil() as usize;
+        let kept = sure(&moving, &unsure, near, floor / per_force);
         if kept.len() < LEAST {
             let error = BalanceError::Standstill {
                 kept: kept.len(),
@@ -109,15 +135,10 @@ impl Balance {
             };
             return Err(error.into());
         }
-        let filter = LowPass::new(cutoff * period);
-        let logged = log.channel(channel.name)?;
         let shown = filter.apply(logged);
         let pick = |series: &[f64]| -> Vec<f64> { kept.iter().map(|&k| series[k]).collect() };
         let position = pick(&motions.load.position);
         let speed = pick(&motions.load.speed);
-        let noise = &measured[0].noise;
-        let of_motion = noise.least_acceleration(cutoff) * inertia(axis, measured[0].whose);
-        let of_torque = least_noise(logged, period) * passed(0, cutoff);
         let quality = BalanceQuality {
             channel: channel.name,
             motion: measured.iter().map(|m| m.name).collect(),
@@ -129,7 +150,8 @@ impl Balance {
             standstill,
             compared_period,
             samples: [kept.len(), all],
-            floor: (of_torque + (channel.per_torque(axis) * of_motion).powi(2)).sqrt(),
+            unsure: moving.len() - kept.len(),
+            floor,
         };
         let compared = Log::new(vec![
             Channel::new("t_s", pick(log.time()))?,
@@ -159,6 +181,18 @@ fn rigid_below(axis: &Axis, motions: usize) -> f64 {
     modes.sort_by(f64::total_cmp);
     let first = modes.get(motions.saturating_sub(1)).copied();
     first.map_or(f64::INFINITY, |w| RIGID * w / std::f64::consts::TAU)
+}
+
+/// Force at the load per wind-up of the transmission, N/m or N·m/rad: that of the two-mass drive
+/// with this axis' inertias and first natural frequency; `None` of a stiff one.
+fn stiffness(axis: &Axis) -> Option<f64> {
+    let r = axis.travel_per_radian();
+    let load = axis.mechanism.load_inertia();
+    let motor = axis.mechanism.total_inertia() / (r * r) - load;
+    let reduced = motor * load / (motor + load);
+    let frequency = rigid_below(axis, 1) / RIGID * std::f64::consts::TAU;
+    let stiffness = frequency * frequency * reduced;
+    (stiffness.is_finite() && stiffness > 0.0).then_some(stiffness)
 }
 
 /// Motor torque per acceleration of what was measured.
@@ -204,7 +238,24 @@ fn motions(axis: &Axis, measured: &[Measured], period: f64, cutoff: f64) -> Moti
         load,
         motor,
         load_is_derived,
+        stiffness: (measured.len() == 1).then(|| stiffness(axis)).flatten(),
     }
+}
+
+/// Of the samples at which the load moves, those about which friction is `unsure` (at the load, by
+/// sample of the log) by less than noise of that size alone, `near` to either side; where
+/// that would leave too few, the surest.
+fn sure(moving: &[usize], unsure: &[f64], near: usize, noise: f64) -> Vec<usize> {
+    let about = |k: &usize| {
+        let window = &unsure[k.saturating_sub(near)..(k + near + 1).min(unsure.len())];
+        window.iter().copied().fold(0.0, f64::max)
+    };
+    let mut sorted: Vec<f64> = moving.iter().map(about).collect();
+    sorted.sort_by(f64::total_cmp);
+    let least = ((MOST_SURE * moving.len() as f64) as usize).max(MOST_SURE_OF);
+    let limit = sorted.get(least).map_or(f64::INFINITY, |of| of.max(noise));
+    let kept = moving.iter().filter(|k| about(k) <= limit);
+    kept.copied().collect()
 }
 
 /// Every so manyth sample at which the load moves, and how many there are with those at

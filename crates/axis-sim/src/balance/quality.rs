@@ -20,6 +20,8 @@ pub struct BalanceQuality {
     pub compared_period: f64,
     /// Samples compared, and how many there were at that rate.
     pub samples: [usize; 2],
+    /// Samples left out because friction hangs there on a motion finer than what was measured.
+    pub unsure: usize,
     /// Noise alone in the compared channel, RMS in its unit: the least that the upper
     /// spectra of torque and motion leave possible.
     pub floor: f64,
@@ -35,13 +37,14 @@ impl BalanceQuality {
             false => "",
         };
         format!(
-            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz (motion at {:.3} Hz); noise of the acceleration takes {drawn:.2e} % from an inertia{beware}; {:.1} % of the samples are left out, where the speed is below {:.2e} (what its sensor tells from rest, or the axis file's slowest) or at the ends",
+            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz (motion at {:.3} Hz); noise of the acceleration takes {drawn:.2e} % from an inertia{beware}; {:.1} % of the samples are left out, where the speed is below {:.2e} (what its sensor tells from rest, or the axis file's slowest), at the ends, or (as many as {}) where friction hangs on a motion finer than the sensor shows",
             self.channel,
             self.motion.join(" and "),
             self.cutoff,
             self.motion_cutoff,
             100.0 * (all - kept) as f64 / all.max(1) as f64,
             self.standstill,
+            self.unsure,
         )
     }
 }

@@ -164,6 +164,11 @@ impl Noise {
         density * TAU.powi(2 * order) * passed(2 * order, cutoff)
     }
 
+    /// The source's own noise from sample to sample, RMS, least estimate.
+    pub fn deviation(&self, period: f64) -> f64 {
+        (0.5 * self.density[0] / period).sqrt()
+    }
+
     /// Least estimate of the acceleration's noise behind a low-pass, RMS, m/s² or rad/s².
     pub fn least_acceleration(&self, frequency: f64) -> f64 {
         self.acceleration(frequency, self.density[0]).sqrt()

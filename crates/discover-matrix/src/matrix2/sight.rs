@@ -62,7 +62,9 @@ impl Sight {
             let mut state = State::initial(&own);
             state.effects.push(active.clone());
             let traces = logs.simulate(&own, &state).ok()?;
-            Some(response(&logs.difference(&traces, &nominal.traces, 1.0)))
+            let response = response(&logs.difference(&traces, &nominal.traces, 1.0));
+            // A law may run away before the machine is stopped.
+            (response.plain.iter().all(|v| v.is_finite())).then_some(response)
         };
         let columns = |active: &ActiveEffect| alone(active).iter().filter_map(&response).collect();
         let scales = Scales::of(machine);

@@ -1,0 +1,64 @@
+//! Where friction hangs on what a measured motion does not tell.
+//!
+//! Close to a reversal, and where an axis sticks and slips, friction depends on a motion that is
+//! finer than the noise of its sensor, or faster than the low-pass. How much shows where the
+//! motion is measured once more: with the same noise added, behind the same low-pass, friction
+//! comes out otherwise where it hangs on these, and the same elsewhere (simulation and
+//! extrapolation: Cook, Stefanski, J. Am. Stat. Assoc. 89 (1994) 1314,
+//! doi:10.1080/01621459.1994.10476871).
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::filter::LowPass;
+use super::law::friction;
+use super::motion::{Course, Measured, Whose};
+use crate::axis::Axis;
+
+/// Times that the motion is measured once more.
+const TIMES: u64 = 8;
+
+/// A motion that is measured once more by the sensor that showed it.
+pub(super) struct Remeasured<'a> {
+    pub axis: &'a Axis,
+    pub measured: &'a Measured,
+    /// The load's course as it was found.
+    pub load: &'a Course,
+    /// Of the samples, s.
+    pub period: f64,
+    /// Of the motion's low-pass, Hz.
+    pub cutoff: f64,
+}
+
+impl Remeasured<'_> {
+    /// By how much that changes the friction at the load, RMS, sample by sample, behind the
+    /// `filter` of the comparison, N or N·m.
+    pub fn unsure(&self, filter: &LowPass) -> Vec<f64> {
+        let once = friction(self.axis, self.load, self.period);
+        let mut squares = vec![0.0; once.len()];
+        for seed in 0..TIMES {
+            let twice = friction(self.axis, &self.again(seed), self.period);
+            let change: Vec<f64> = twice.iter().zip(&once).map(|(b, a)| b - a).collect();
+            for (sum, by) in squares.iter_mut().zip(filter.apply(&change)) {
+                *sum += by * by / TIMES as f64;
+            }
+        }
+        squares.into_iter().map(f64::sqrt).collect()
+    }
+
+    fn again(&self, seed: u64) -> Course {
+        let at_the_load = match self.measured.whose {
+            Whose::Load => 1.0,
+            Whose::Motor => self.axis.travel_per_radian(),
+        };
+        let deviation = at_the_load * self.measured.noise.deviation(self.period);
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let noisy = |x: &f64| {
+            let unit: f64 = StandardNormal.sample(&mut random);
+            x + deviation * unit
+        };
+        let shown: Vec<f64> = self.measured.shown(self.load).iter().map(noisy).collect();
+        self.measured.smoothed(&shown, self.period, self.cutoff)
+    }
+}
