@@ -109,6 +109,15 @@ impl Balance {
             .slowest
             .map_or(told, |slowest| slowest.max(told));
         let (moving, all) = moving(&motions.load, period, cutoff, every, standstill);
+        if moving.len() < LEAST {
+            let error = BalanceError::Standstill {
+                kept: moving.len(),
+                samples: all,
+                least: LEAST,
+                speed: standstill,
+            };
+            return Err(error.into());
+        }
         let filter = LowPass::new(cutoff * period);
         let logged = log.channel(channel.name)?;
         let noise = &measured[0].noise;
@@ -126,15 +135,6 @@ impl Balance {
         let unsure = remeasured.unsure(&filter);
         let near = (NEAR / (cutoff * period)).ceil() as usize;
         let kept = sure(&moving, &unsure, near, floor / per_force);
-        if kept.len() < LEAST {
-            let error = BalanceError::Standstill {
-                kept: kept.len(),
-                samples: all,
-                least: LEAST,
-                speed: standstill,
-            };
-            return Err(error.into());
-        }
         let shown = filter.apply(logged);
         let pick = |series: &[f64]| -> Vec<f64> { kept.iter().map(|&k| series[k]).collect() };
         let position = pick(&motions.load.position);
@@ -175,12 +175,20 @@ impl Balance {
 /// The frequency, Hz, below which one measured motion stands for that of motor and load:
 /// well below the first mode. Of two, each has its own inertia, up to the second.
 fn rigid_below(axis: &Axis, motions: usize) -> f64 {
+    RIGID * natural_frequency(axis, motions) / std::f64::consts::TAU
+}
+
+/// Natural frequency of the axis in the middle of its stroke, rad/s, the first being 1; infinite
+/// where there are fewer.
+fn natural_frequency(axis: &Axis, place: usize) -> f64 {
     let at = 0.5 * (axis.stroke.minimum + axis.stroke.maximum);
     let mut modes = axis.mechanism.modes(at).unwrap_or_default();
     modes.retain(|w| *w > 0.0);
     modes.sort_by(f64::total_cmp);
-    let first = modes.get(motions.saturating_sub(1)).copied();
-    first.map_or(f64::INFINITY, |w| RIGID * w / std::f64::consts::TAU)
+    modes
+        .get(place.saturating_sub(1))
+        .copied()
+        .unwrap_or(f64::INFINITY)
 }
 
 /// Force at the load per wind-up of the transmission, N/m or N·m/rad: that of the two-mass drive
@@ -190,8 +198,7 @@ fn stiffness(axis: &Axis) -> Option<f64> {
     let load = axis.mechanism.load_inertia();
     let motor = axis.mechanism.total_inertia() / (r * r) - load;
     let reduced = motor * load / (motor + load);
-    let frequency = rigid_below(axis, 1) / RIGID * std::f64::consts::TAU;
-    let stiffness = frequency * frequency * reduced;
+    let stiffness = natural_frequency(axis, 1).powi(2) * reduced;
     (stiffness.is_finite() && stiffness > 0.0).then_some(stiffness)
 }
 

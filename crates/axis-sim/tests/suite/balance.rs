@@ -5,6 +5,9 @@ use axis_log::{Channel, Log};
 use axis_sim::effects::{ActiveEffect, Effect};
 use axis_sim::{Axis, Balance, BalanceError, ClosedLoop, Recorder, ReplayError, Sensors};
 use compensator::NoCompensation;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 
 use crate::{axis, text};
 
@@ -126,20 +129,28 @@ fn bench_log(inertia: f64) -> Log {
     log_of(&[("position_rad", position), ("torque_n_m", torque)])
 }
 
-/// Where friction hangs on what the motion does not tell, nothing is compared: about reversals, and
-/// there alone.
+/// Where friction hangs on what the motion does not tell, nothing is compared: where an axis breaks
+/// away and where it comes to rest, and there alone.
 #[test]
-fn reversals_that_the_sensor_does_not_resolve_are_left_out() {
+fn what_friction_does_beneath_a_sensors_noise_is_left_out() {
     let mut axis = axis("liu2025.toml");
     axis.sensors = Sensors::default();
     let log = without(&simulated(&axis), &["motor_angle_rad"]);
-    let noise = |k: usize| 2e-8 * (1e4 * (k as f64).sin()).sin();
-    let position = log.channel("position_m").unwrap();
-    let noisy: Vec<f64> = (position.iter().enumerate().map(|(k, x)| x + noise(k))).collect();
-    let channels = ["t_s", "position_m", "iq_a"].map(|name| match name {
-        "position_m" => Channel::new(name, noisy.clone()).unwrap(),
-        _ => Channel::new(name, log.channel(name).unwrap().to_vec()).unwrap(),
-    });
+    // As good sensors have it: 10 nm and 5 mA.
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let mut noisy = |name: &str, deviation: f64| {
+        let noise = |x: &f64| {
+            let n: f64 = StandardNormal.sample(&mut random);
+            x + deviation * n
+        };
+        let samples = log.channel(name).unwrap().iter().map(noise);
+        Channel::new(name, samples.collect()).unwrap()
+    };
+    let channels = [
+        noisy("t_s", 0.0),
+        noisy("position_m", 1e-8),
+        noisy("iq_a", 5e-3),
+    ];
     let log = Log::new(channels.into()).unwrap();
     let balance = Balance::new(&log, axis.period, &axis).unwrap();
     let quality = balance.quality();
@@ -149,8 +160,14 @@ fn reversals_that_the_sensor_does_not_resolve_are_left_out() {
         quality.unsure, quality.samples
     );
     assert!(quality.unsure > 0);
-    // With these samples, 1.5e-3 of the current is left.
-    assert!(share < 1e-4, "{share}");
+    // They lie where the axis starts and stops, and nowhere between.
+    let (time, period) = (balance.compared().time(), balance.compared_period());
+    let even = |t: &[f64]| t[1] - t[0] < 1.5 * period;
+    assert!(time.windows(2).all(even));
+    let [compared, _] = quality.samples;
+    assert!(10 * quality.unsure < compared);
+    // With these samples, 1.65e-3 of the current is left.
+    assert!(share < 6e-4, "{share}");
 }
 
 #[test]
