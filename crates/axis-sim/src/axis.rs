@@ -192,9 +192,10 @@ impl Tolerances {
         }
     }
 
-    /// Whether they let a parameter be off at all.
-    fn free(&self, known: &Known) -> bool {
-        !known.is_exact() || self.by_name.contains_key(known.name)
+    fn of_known(&self, known: &Known) -> f64 {
+        let own = self.by_name.get(known.name).copied();
+        let usual = known.beside().map(|(share, _)| share);
+        own.or(usual).unwrap_or(self.default)
     }
 
     /// Of one parameter.
@@ -306,8 +307,41 @@ impl Axis {
     /// exact by itself ([`Known::exact`]) is among them where the tolerances name it.
     pub fn known(&self) -> Vec<&'static str> {
         let all = self.may_be_known().into_iter();
-        let is_free = |known: &&Known| self.tolerances.free(known);
-        all.filter(is_free).map(|known| known.name).collect()
+        let free = all.filter(|known| self.lets_be_off(known));
+        free.map(|known| known.name).collect()
+    }
+
+    /// How far each of [`Axis::known`] may be off, as a share of its value.
+    pub fn known_tolerances(&self) -> Vec<f64> {
+        let all = self.may_be_known().into_iter();
+        let free = all.filter(|known| self.lets_be_off(known));
+        free.map(|known| self.tolerances.of_known(known)).collect()
+    }
+
+    /// Whether a parameter may be off at all.
+    fn lets_be_off(&self, known: &Known) -> bool {
+        let named = self.tolerances.by_name.contains_key(known.name);
+        named
+            || !known.is_exact()
+                && known.beside().is_none_or(|(share, role)| {
+                    let of_role = self.keys_of(role);
+                    of_role
+                        .into_iter()
+                        .all(|key| self.tolerances.of(key) < share)
+                })
+    }
+
+    /// Names of the parameters of that role.
+    fn keys_of(&self, role: Role) -> Vec<&'static str> {
+        let parts = [
+            self.mechanism.kind().keys,
+            self.actuator.kind().keys,
+            self.control.kind().keys,
+            self.friction.kind().keys,
+        ];
+        let keys = parts.into_iter().flatten();
+        let of_role = keys.filter(|key| key.role == Some(role));
+        of_role.map(|key| key.name).collect()
     }
 
     /// As [`Axis::known`], with all that are exact unless the tolerances name them.
@@ -326,13 +360,14 @@ impl Axis {
     #[must_use]
     pub fn with_known(&self, shares: &[f64]) -> Self {
         let mut axis = self.clone();
-        let (mut shares, tolerances) = (shares.iter(), &self.tolerances);
-        off(&mut axis.mechanism, tolerances, &mut shares);
-        off(&mut axis.actuator, tolerances, &mut shares);
-        off(&mut axis.control, tolerances, &mut shares);
-        off(&mut axis.friction, tolerances, &mut shares);
+        let free = |known: &Known| self.lets_be_off(known);
+        let mut shares = shares.iter();
+        off(&mut axis.mechanism, &free, &mut shares);
+        off(&mut axis.actuator, &free, &mut shares);
+        off(&mut axis.control, &free, &mut shares);
+        off(&mut axis.friction, &free, &mut shares);
         for load in &mut axis.loads {
-            off(load, tolerances, &mut shares);
+            off(load, &free, &mut shares);
         }
         axis
     }
@@ -361,11 +396,10 @@ impl Axis {
 /// Changes the known parameters of a part by the next shares.
 fn off<'a, P: ?Sized>(
     part: &mut Part<P>,
-    tolerances: &Tolerances,
+    is_free: &impl Fn(&Known) -> bool,
     shares: &mut impl Iterator<Item = &'a f64>,
 ) {
-    let known = part.known().filter(|known| tolerances.free(known));
-    let known: Vec<&Known> = known.collect();
+    let known: Vec<&Known> = part.known().filter(|known| is_free(known)).collect();
     for (known, share) in known.into_iter().zip(shares) {
         if *share != 0.0 {
             // What would make no part is passed over: the part stays as it was.

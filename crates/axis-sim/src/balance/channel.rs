@@ -92,6 +92,11 @@ impl TorqueChannel {
         }
     }
 
+    /// Whether it is what a controller asks for, or follows that at once.
+    pub fn is_controlled(&self) -> bool {
+        matches!(self.shows, Shows::Current | Shows::Command)
+    }
+
     /// Whether the current's sensor has a say in it: a measured current, or a command that
     /// a current loop makes one of.
     pub fn is_current(&self, axis: &Axis) -> bool {

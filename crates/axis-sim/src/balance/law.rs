@@ -1,5 +1,7 @@
 //! The motor torque that a model needs for a motion.
 
+use lugre::LuGre;
+
 use super::filter::derivative;
 use super::motion::Course;
 use crate::axis::Axis;
@@ -149,14 +151,33 @@ fn forces(axis: &Axis, hooks: &Hooks, load: &Course, h: f64) -> Vec<f64> {
 }
 
 /// Force of the axis' own friction along a course, N or N·m.
-pub(super) fn friction(axis: &Axis, load: &Course, h: f64) -> Vec<f64> {
+fn friction(axis: &Axis, load: &Course, h: f64) -> Vec<f64> {
     let friction = axis.friction.share();
     let lever = friction.lever(axis.travel_per_radian());
+    let first = load.speed.first().map_or(0.0, |v| v / lever);
+    friction_from(
+        &friction.law,
+        friction.law.steady_bristle(first),
+        lever,
+        load,
+        h,
+    )
+}
+
+/// Force of a friction law along a course from a bristle on; the law's coordinate is the load's
+/// by `lever`.
+pub(super) fn friction_from(
+    law: &LuGre,
+    bristle: f64,
+    lever: f64,
+    load: &Course,
+    h: f64,
+) -> Vec<f64> {
     let mut before = load.speed.first().map_or(0.0, |v| v / lever);
-    let mut bristle = friction.law.steady_bristle(before);
+    let mut bristle = bristle;
     let one = |v: &f64| {
         let now = v / lever;
-        let (z, own) = friction.law.step_torque(bristle, before, now, h);
+        let (z, own) = law.step_torque(bristle, before, now, h);
         (bristle, before) = (z, now);
         own / lever
     };

@@ -28,6 +28,7 @@ mod unsure;
 use axis_log::Log;
 
 use crate::axis::Axis;
+use crate::control::absent::sampled_inertia;
 use crate::effects::ActiveEffect;
 use crate::replay::{Probe, ReplayError, Trace};
 use channel::TorqueChannel;
@@ -74,7 +75,13 @@ impl Balance {
             true => hooks.sensors.current_offset,
             false => 0.0,
         };
-        let needed = torque(&axis, &hooks, &self.motions, self.period);
+        let mut needed = torque(&axis, &hooks, &self.motions, self.period);
+        if self.channel.is_controlled() {
+            let more = sampled_inertia(&axis.control) - 1.0;
+            let inertia = more * axis.mechanism.total_inertia();
+            let pairs = needed.iter_mut().zip(&self.motions.motor.acceleration);
+            pairs.for_each(|(torque, a)| *torque += inertia * a);
+        }
         let [early, lag] = self.channel.ahead(&axis, self.period);
         // T + τ Ṫ makes the torque T of an actuator with the time constant τ.
         let rates = derivative(&needed, self.period);

@@ -7,17 +7,29 @@
 //! extrapolation: Cook, Stefanski, J. Am. Stat. Assoc. 89 (1994) 1314,
 //! doi:10.1080/01621459.1994.10476871).
 
-use rand::SeedableRng;
+use lugre::{LuGre, Parameters};
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::filter::LowPass;
-use super::law::friction;
+use super::law::friction_from;
 use super::motion::{Course, Measured, Whose};
 use crate::axis::Axis;
 
 /// Times that the motion is measured once more.
 const TIMES: u64 = 8;
+
+/// Factors on the bristles' stiffness, in turn.
+const STIFFER: [f64; 2] = [2.0, 0.5];
+
+/// The law with bristles so many times as stiff.
+fn contact(law: &LuGre, stiffer: f64) -> LuGre {
+    let own = law.parameters();
+    let stiffness = stiffer * own.stiffness;
+    // A law that is none with this stiffness is left as it is.
+    LuGre::new(Parameters { stiffness, ..own }).unwrap_or(*law)
+}
 
 /// A motion that is measured once more by the sensor that showed it.
 pub(super) struct Remeasured<'a> {
@@ -35,10 +47,20 @@ impl Remeasured<'_> {
     /// By how much that changes the friction at the load, RMS, sample by sample, behind the
     /// `filter` of the comparison, N or N·m.
     pub fn unsure(&self, filter: &LowPass) -> Vec<f64> {
-        let once = friction(self.axis, self.load, self.period);
+        let friction = self.axis.friction.share();
+        let lever = friction.lever(self.axis.travel_per_radian());
+        let first = self.load.speed.first().map_or(0.0, |v| v / lever);
+        let settled = friction.law.steady_bristle(first);
+        let along = |law: &LuGre, bristle, course: &Course| {
+            friction_from(law, bristle, lever, course, self.period)
+        };
+        let once = along(&friction.law, settled, self.load);
         let mut squares = vec![0.0; once.len()];
         for seed in 0..TIMES {
-            let twice = friction(self.axis, &self.again(seed), self.period);
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
+            let law = contact(&friction.law, STIFFER[seed as usize % STIFFER.len()]);
+            let bristle = law.bristle_limit() * random.random_range(-1.0..1.0);
+            let twice = along(&law, bristle, &self.again(&mut random));
             let change: Vec<f64> = twice.iter().zip(&once).map(|(b, a)| b - a).collect();
             for (sum, by) in squares.iter_mut().zip(filter.apply(&change)) {
                 *sum += by * by / TIMES as f64;
@@ -47,15 +69,14 @@ impl Remeasured<'_> {
         squares.into_iter().map(f64::sqrt).collect()
     }
 
-    fn again(&self, seed: u64) -> Course {
+    fn again(&self, random: &mut ChaCha8Rng) -> Course {
         let at_the_load = match self.measured.whose {
             Whose::Load => 1.0,
             Whose::Motor => self.axis.travel_per_radian(),
         };
         let deviation = at_the_load * self.measured.noise.deviation(self.period);
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
         let noisy = |x: &f64| {
-            let unit: f64 = StandardNormal.sample(&mut random);
+            let unit: f64 = StandardNormal.sample(random);
             x + deviation * unit
         };
         let shown: Vec<f64> = self.measured.shown(self.load).iter().map(noisy).collect();

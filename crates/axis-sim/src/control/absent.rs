@@ -4,16 +4,38 @@ use std::sync::Arc;
 
 use super::{Control, Controller};
 use crate::actuator::Surroundings;
-use crate::part::{PartError, PartKind};
+use crate::part::{Known, Part, PartError, PartKind, Role, Values};
 
 /// What an axis has whose file leaves `[control]` out. No file can name it.
 pub(crate) static KIND: PartKind<dyn Control> = PartKind {
     name: "none",
     summary: "no controller that is known",
     keys: &[],
-    known: &[],
+    known: &[Known::by(SAMPLED_INERTIA, |values, by| {
+        values.set(SAMPLED_INERTIA, by * of(values));
+    })
+    .within(0.1, Role::LoadInertia)],
     build: |_| Ok(Arc::new(Absent)),
 };
+
+/// The torque of acceleration as a logged command or current shows it, as a share of its mean.
+///
+/// A position controller that is slower than the speed controller below it gives this one a
+/// staircase. With the gain k_p from speed to torque the torque begins each of its periods T up
+/// to k_p a T / 2 above the mean (a being the acceleration), and a log that is taken in step with
+/// it shows that one sample, as if the axis had so much more inertia J. Of a loop that crosses
+/// over at ω = k_p / J that is the share ω T / 2; ω T is 0.2 at most in a drive that is well
+/// damped.
+const SAMPLED_INERTIA: &str = "sampled_inertia";
+
+fn of(values: &Values) -> f64 {
+    values.optional(SAMPLED_INERTIA).unwrap_or(1.0)
+}
+
+/// That share for a control; 1 where it is known.
+pub(crate) fn sampled_inertia(control: &Part<dyn Control>) -> f64 {
+    of(control.values())
+}
 
 /// Why nothing that needs a loop can be made of such an axis.
 pub(crate) const WHAT: &str = "this axis has no [control]: its controller is not known, so its closed loop cannot be simulated";

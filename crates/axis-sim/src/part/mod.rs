@@ -111,6 +111,7 @@ pub struct Known {
     pub name: &'static str,
     scale: Option<fn(&mut Values, f64)>,
     exact: bool,
+    beside: Option<(f64, Role)>,
 }
 
 impl Known {
@@ -120,6 +121,7 @@ impl Known {
             name,
             scale: None,
             exact: false,
+            beside: None,
         }
     }
 
@@ -143,7 +145,23 @@ impl Known {
             name,
             scale: Some(scale),
             exact: false,
+            beside: None,
         }
+    }
+
+    /// Off by up to this share unless `[tolerances]` names it, whatever these say of all others;
+    /// but exact where parameters of that role may be off by as much, which then take what it
+    /// would do.
+    pub const fn within(self, share: f64, beside: Role) -> Self {
+        Self {
+            beside: Some((share, beside)),
+            ..self
+        }
+    }
+
+    /// Its own tolerance, and whose do as much ([`Known::within`]).
+    pub fn beside(&self) -> Option<(f64, Role)> {
+        self.beside
     }
 
     /// Whether these values have it: a parameter that is 0 has no share to be off by.

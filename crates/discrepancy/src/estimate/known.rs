@@ -9,8 +9,7 @@ pub fn shown(name: &str) -> String {
 
 /// How far each known parameter may be off, as a share, in the order of [`Axis::known`].
 pub fn tolerances(axis: &Axis) -> Vec<f64> {
-    let names = axis.known().into_iter();
-    names.map(|name| axis.tolerances.of(name)).collect()
+    axis.known_tolerances()
 }
 
 /// Standard deviation of a known parameter's departure: that of a uniform

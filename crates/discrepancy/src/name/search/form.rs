@@ -130,6 +130,26 @@ impl Refined {
 }
 
 impl Search<'_> {
+    /// Whether a candidate leaves the axis less than no dry friction, or a break-away below
+    /// sliding friction: no contact does that, but an onset of another form may look like it.
+    pub(super) fn leaves_no_friction(&self, candidate: &Refined) -> bool {
+        let effects = &candidate.fit.state.effects;
+        let new = &effects[effects.len() - candidate.parts.len()..];
+        let friction = &self.machine.friction;
+        let (own, lever) = (
+            friction.law.parameters(),
+            friction.lever(self.machine.travel_per_radian()),
+        );
+        let of = |name: &str| -> f64 {
+            let there = effects.iter().filter(|a| a.effect.name == name);
+            there.map(|a| a.values[0]).sum()
+        };
+        let level = own.coulomb / lever + of(PLAIN);
+        let fall = (own.stiction - own.coulomb) / lever + of(FALL);
+        let has = |name: &str| new.iter().any(|a| a.effect.name == name);
+        has(PLAIN) && !has(WITH_MEMORY) && level < 0.0 || has(FALL) && fall < 0.0
+    }
+
     /// Whether an effect is dry friction in another form beside one that is there: the two
     /// would share what is one friction.
     pub(super) fn doubles_a_friction(&self, effect: &Effect) -> bool {

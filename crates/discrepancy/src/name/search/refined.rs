@@ -43,7 +43,8 @@ impl Refined {
 
 /// Effects that do nearly the same as the best, or explain as much: the logs
 /// cannot tell. What can do more is not among them, unless these logs would not
-/// show the more.
+/// show the more, or show it and not clearly enough to take it. `refined` are those that were
+/// not tried before it: what was tried did not hold on other motion.
 pub(super) fn alike(
     own: &Screened,
     best: &Refined,
@@ -52,23 +53,26 @@ pub(super) fn alike(
 ) -> Vec<Alike> {
     let pair = best.parts.iter().map(|p| p.effect.name);
     let pair: Vec<&str> = pair.collect();
+    let fitted = |other: &Screened| {
+        refined.iter().find(|r| match r.parts.as_slice() {
+            [one] => one.effect.name == other.effect.name,
+            _ => false,
+        })
+    };
     let others = all
         .iter()
         .filter(|other| !pair.contains(&other.effect.name))
         .filter(|other| {
             let more = other.basis.ncols() > own.basis.ncols();
-            !(more && other.more_is_shown(own, best.gain, EQUAL))
+            let explains_more = fitted(other).is_some_and(|r| r.gain > best.gain + EQUAL);
+            explains_more || !(more && other.more_is_shown(own, best.gain, EQUAL))
         });
     let mut all: Vec<Alike> = others
         .filter_map(|other| {
-            let same = |r: &&Refined| match r.parts.as_slice() {
-                [one] => one.effect.name == other.effect.name,
-                _ => false,
-            };
-            let fitted = refined.iter().find(same);
-            let equal = fitted.is_some_and(|r| (r.gain - best.gain).abs() < EQUAL);
-            let sine = sine(&own.fingerprint, &other.basis);
+            let fitted = fitted(other);
             let more = other.basis.ncols() > own.basis.ncols();
+            let equal = fitted.is_some_and(|r| r.gain > best.gain - EQUAL);
+            let sine = sine(&own.fingerprint, &other.basis);
             let nearest = || ActiveEffect {
                 effect: other.effect,
                 // A fit drives what the logs do not show wherever noise points.

@@ -51,7 +51,9 @@ impl Search<'_> {
         // Where the best does not hold on other motion, the next may.
         let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
             let is_effect = awaited.is_empty() && !candidate.is_form();
-            let is_nothing = candidate.is_below_none() || candidate.bends_own_friction();
+            let is_nothing = candidate.is_below_none()
+                || candidate.bends_own_friction()
+                || self.leaves_no_friction(candidate);
             if is_effect && (is_nothing || !curves.are_matched_by(candidate)) {
                 return None;
             }
@@ -86,7 +88,7 @@ impl Search<'_> {
                 held_out: self.check.deviance - check.deviance,
                 alike: match best.is_form() {
                     true => Vec::new(),
-                    false => alike(part, best, refined, screened),
+                    false => alike(part, best, &refined[place..], screened),
                 },
                 when_named: Vec::new(),
                 runners_up: others.clone(),
