@@ -118,6 +118,8 @@ pub const TARGETS: &[ScoreTarget] = &[
         |o| Rate::one(is_law(o), o.is_unknown_of_right_variable())),
     target("95 % intervals that hold the truth", Limit::Within(0.92, 0.98),
         |o| covered(&o.estimates.iter().filter(|_| o.is_of_library()).collect::<Vec<_>>())),
+    target("cases in which the library does not imitate what it lacks: a wrong name", Limit::Told,
+        |o| Rate::one(o.failed.is_none() && !o.is_imitated(), !o.wrong_names().is_empty())),
     target("one hidden: seen", Limit::Told,
         |o| Rate::one(is(o, CaseKind::Single), o.is_seen())),
     target("of these, told apart", Limit::Told,

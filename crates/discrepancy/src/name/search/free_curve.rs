@@ -28,8 +28,17 @@ const TOLD: usize = 4;
 pub(super) struct FreeCurves<'a> {
     search: &'a Search<'a>,
     rest: Rest<'a>,
-    /// The best: of which shape, by how much D falls beyond chance.
-    best: Vec<(&'a Shape, f64)>,
+    best: Vec<Best<'a>>,
+}
+
+/// One of the curves that explain most.
+struct Best<'a> {
+    shape: &'a Shape,
+    /// By how much D falls beyond chance: as the linearised model of the fitted logs has it, and
+    /// no more than by simulation of the check logs.
+    gain: f64,
+    /// By how much D of the check logs falls, by simulation.
+    told: f64,
 }
 
 impl<'a> FreeCurves<'a> {
@@ -49,15 +58,21 @@ impl<'a> FreeCurves<'a> {
         let told = |(shape, gain, values): (&'a Shape, f64, DVector<f64>)| {
             let (set, fit) = (&search.check_logs, &search.check);
             let told = shape.told(search.machine, set, fit, values.as_slice());
-            (shape, gain.min(told))
+            Best {
+                shape,
+                gain: gain.min(told),
+                told,
+            }
         };
         let best = all.into_iter().map(told).collect();
         Self { search, rest, best }
     }
 
     /// Whether what was refined explains about as much as the best curve over what it
-    /// depends on, or more.
-    pub(super) fn are_matched_by(&self, refined: &Refined) -> bool {
+    /// depends on, or more: in the linearised model, as the curves are solved, or by what is
+    /// simulated on the check logs, where D of the effect falls by `held_out`. Of a gap that is
+    /// large the linearised model is a poor one, of both.
+    pub(super) fn are_matched_by(&self, refined: &Refined, held_out: f64) -> bool {
         let pair = self.search.fit.rest.iter().zip(&refined.fit.rest);
         let does: Amplitudes = pair
             .map(|(before, after)| before.iter().zip(after).map(|(b, a)| b - a).collect())
@@ -67,10 +82,12 @@ impl<'a> FreeCurves<'a> {
             let mut parts = refined.parts.iter();
             parts.any(|part| shape.is_over(part.effect.shown_over))
         };
-        let of_its_own = self.best.iter().filter(|(shape, _)| stands_for(shape));
-        let curve = of_its_own.map(|(_, gain)| *gain).fold(0.0, f64::max);
+        let of_its_own = self.best.iter().filter(|best| stands_for(best.shape));
+        let [curve, told] = of_its_own.fold([0.0_f64; 2], |[gain, told], best| {
+            [gain.max(best.gain), told.max(best.told)]
+        });
         let name = refined.parts.first().map_or("", |p| p.effect.name);
-        tracing::debug!(name, gain, curve, "beside a free curve");
-        gain >= SHARE * curve
+        tracing::debug!(name, gain, curve, held_out, told, "beside a free curve");
+        gain >= SHARE * curve || held_out >= told
     }
 }

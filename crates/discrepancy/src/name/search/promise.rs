@@ -108,7 +108,8 @@ impl<'a> Promises<'a> {
             effects.iter().partition(|s| is_force_in_time(s.effect));
         let settings = self.search.settings;
         let best = others.first().map_or(0.0, |s| s.gain);
-        let least = (PROMISING * self.search.needed(1, 1)).max(WORTH * best);
+        let enough = self.search.needed(1, 1).max(self.search.material());
+        let least = (PROMISING * enough).max(WORTH * best);
         let few = others.into_iter().take(settings.refined);
         let few = few.filter(|s| s.gain >= least).chain(force);
         few.map(|s| vec![s.clone()]).collect()

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::evidence::{HELD_OUT, LEAST_HELD_OUT, MATERIAL, WORSE};
 use super::form::effects_before_forms;
 use super::free_curve::FreeCurves;
-use super::promise::{Promises, WORTH};
+use super::promise::{PROMISING, Promises, WORTH};
 use super::refined::{Refined, alike, simplest_first, single_before_pair};
 use super::state::Search;
 use super::types::{Named, RunnerUp};
@@ -54,11 +54,14 @@ impl Search<'_> {
             let is_nothing = candidate.is_below_none()
                 || candidate.bends_own_friction()
                 || self.leaves_no_friction(candidate);
-            if is_effect && (is_nothing || !curves.are_matched_by(candidate)) {
+            if is_effect && is_nothing {
                 return None;
             }
             let check = self.checker().at(candidate.fit.state.clone()).ok()?;
             let held_out = self.check.deviance - check.deviance;
+            if is_effect && !curves.are_matched_by(candidate, held_out) {
+                return None;
+            }
             let holds = !awaited.is_empty()
                 || self.proves_itself(candidate, held_out)
                     && self.worsens_none(&check)
@@ -109,8 +112,8 @@ impl Search<'_> {
         let fitter = self.fitter();
         let promised = candidates.iter().map(|parts| parts[0].gain);
         let least = WORTH * promised.fold(0.0, f64::max);
-        let awaited = self.awaited();
-        let awaited = awaited
+        let asked = self.awaited();
+        let awaited = asked
             .iter()
             .any(|name| Effect::named(name).is_some_and(is_force_in_time));
         let begin = |parts: Vec<Screened>| {
@@ -161,10 +164,15 @@ impl Search<'_> {
             _ => true,
         });
         let gain = |fit: &Fit| self.fit.deviance - fit.deviance;
-        // What is far behind after two rounds is not carried further.
+        // What is far behind after two rounds, or far from enough, is not carried further.
         let best = refined.iter().map(|r| gain(&r.fit)).fold(0.0, f64::max);
+        let too_little = match asked.is_empty() {
+            true => PROMISING * self.needed(1, 1).max(self.material()),
+            false => 0.0,
+        };
         refined.par_iter_mut().for_each(|r| {
-            if gain(&r.fit) > 0.5 * best - 50.0 {
+            let of_it = gain(&r.fit);
+            if of_it > 0.5 * best - 50.0 && of_it > too_little {
                 r.fit = fitter.refine(r.fit.clone(), own, 4);
             }
             r.gain = gain(&r.fit);
@@ -173,7 +181,7 @@ impl Search<'_> {
         // derivatives of all effects as they are there, or a simple one that is
         // not there yet loses to one that contains it.
         let best = refined.iter().map(|r| r.gain).fold(0.0, f64::max);
-        let near = |r: &Refined| r.gain > 0.8 * best;
+        let near = |r: &Refined| r.gain > 0.8 * best && r.gain > too_little;
         if refined.iter().filter(|r| near(r)).count() > 1 {
             refined.par_iter_mut().filter(|r| near(r)).for_each(|r| {
                 r.fit = fitter.refine(r.fit.clone(), &self.known, 8);
@@ -198,13 +206,17 @@ impl Search<'_> {
     fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {
         let added = free_parameters(&best.fit.state).len() - free_parameters(&self.fit.state).len();
         let needed = self.needed(added, best.parts.len());
-        // Beside what was found, a hundredth of its weight is what the model's
-        // own simplifications may bring.
-        let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
         tracing::debug!(gain = best.gain, held_out, needed, "on check logs");
         let sizes = [&self.check_logs, &self.fit_logs].map(|set| set.layout.size() as f64);
         let least = LEAST_HELD_OUT.max(HELD_OUT * best.gain * (sizes[0] / sizes[1]).min(1.0));
-        best.gain >= needed && held_out >= least && best.gain >= MATERIAL * largest
+        best.gain >= needed && held_out >= least && best.gain >= self.material()
+    }
+
+    /// Beside what was found, a hundredth of its weight is what the model's own simplifications
+    /// may bring.
+    pub(super) fn material(&self) -> f64 {
+        let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
+        MATERIAL * largest
     }
 
     /// Whether what a fit of the check logs adds is material.
