@@ -41,6 +41,10 @@ impl Refined {
     }
 }
 
+/// Share of what an effect explains by which another must explain more to speak against it:
+/// friction of two directions always explains a little more than friction of one.
+const CLEARLY: f64 = 0.05;
+
 /// Effects that do nearly the same as the best, or explain as much: the logs
 /// cannot tell. What can do more is not among them, unless these logs would not
 /// show the more, or show it and not clearly enough to take it. `refined` are those that were
@@ -59,19 +63,23 @@ pub(super) fn alike(
             _ => false,
         })
     };
+    let explains_more = |other: &Screened| {
+        let clearly = EQUAL.max(CLEARLY * best.gain);
+        fitted(other).is_some_and(|r| r.gain > best.gain + clearly)
+    };
     let others = all
         .iter()
         .filter(|other| !pair.contains(&other.effect.name))
         .filter(|other| {
             let more = other.basis.ncols() > own.basis.ncols();
-            let explains_more = fitted(other).is_some_and(|r| r.gain > best.gain + EQUAL);
-            explains_more || !(more && other.more_is_shown(own, best.gain, EQUAL))
+            explains_more(other) || !(more && other.more_is_shown(own, best.gain, EQUAL))
         });
     let mut all: Vec<Alike> = others
         .filter_map(|other| {
             let fitted = fitted(other);
             let more = other.basis.ncols() > own.basis.ncols();
-            let equal = fitted.is_some_and(|r| r.gain > best.gain - EQUAL);
+            let equal =
+                fitted.is_some_and(|r| (r.gain - best.gain).abs() < EQUAL) || explains_more(other);
             let sine = sine(&own.fingerprint, &other.basis);
             let nearest = || ActiveEffect {
                 effect: other.effect,
