@@ -130,24 +130,32 @@ impl Refined {
 }
 
 impl Search<'_> {
-    /// Whether a candidate leaves the axis less than no dry friction, or a break-away below
-    /// sliding friction: no contact does that, but an onset of another form may look like it.
+    /// Whether a candidate leaves the axis less than no dry friction, sliding or at break-away, in
+    /// one direction: no contact does that, but an onset of another form may look like it.
+    /// Break-away below sliding friction does occur, as on plastic guideways, but not where the
+    /// axis file tells of a fall.
     pub(super) fn leaves_no_friction(&self, candidate: &Refined) -> bool {
         let effects = &candidate.fit.state.effects;
         let new = &effects[effects.len() - candidate.parts.len()..];
+        let has = |name: &str| new.iter().any(|a| a.effect.name == name);
         let friction = &self.machine.friction;
-        let (own, lever) = (
-            friction.law.parameters(),
-            friction.lever(self.machine.travel_per_radian()),
-        );
+        let lever = friction.lever(self.machine.travel_per_radian());
+        let own = friction.law.parameters();
+        // The lesser of the directions, where an effect tells them apart.
         let of = |name: &str| -> f64 {
             let there = effects.iter().filter(|a| a.effect.name == name);
-            there.map(|a| a.values[0]).sum()
+            let values = |a: &ActiveEffect| match name == BY_DIRECTION {
+                true => a.values[0].min(a.values[1]),
+                false => a.values[0],
+            };
+            there.map(values).sum()
         };
-        let level = own.coulomb / lever + of(PLAIN);
-        let fall = (own.stiction - own.coulomb) / lever + of(FALL);
-        let has = |name: &str| new.iter().any(|a| a.effect.name == name);
-        has(PLAIN) && !has(WITH_MEMORY) && level < 0.0 || has(FALL) && fall < 0.0
+        let sliding = own.coulomb / lever + of(PLAIN) + of(BY_DIRECTION) + of(WITH_MEMORY);
+        let own_fall = (own.stiction - own.coulomb) / lever;
+        let fall = own_fall + of(FALL);
+        let rises = own_fall > 0.0 && fall < 0.0;
+        (has(PLAIN) || has(BY_DIRECTION)) && sliding < 0.0
+            || has(FALL) && (rises || sliding + fall < 0.0)
     }
 
     /// Whether an effect is dry friction in another form beside one that is there: the two
@@ -163,7 +171,10 @@ impl Search<'_> {
 const PLAIN: &str = "coulomb-friction";
 
 /// Dry friction of one level, or of one a direction.
-const DRY: [&str; 2] = [PLAIN, "asymmetric-friction"];
+const DRY: [&str; 2] = [PLAIN, BY_DIRECTION];
+
+/// Dry friction of one level a direction.
+const BY_DIRECTION: &str = "asymmetric-friction";
 
 /// Dry friction that falls with speed.
 const FALL: &str = "stribeck-friction";
