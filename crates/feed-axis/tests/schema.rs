@@ -27,7 +27,10 @@ fn the_committed_schemas_are_those_of_the_code() {
 fn the_command_writes_the_schema() {
     let output = run(&["schema", "axis"]);
     let written: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert!(written == committed("axis"), "as in the folder data/schemas");
+    assert!(
+        written == committed("axis"),
+        "as in the folder data/schemas"
+    );
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("s/discovery.json");
     succeed(&["schema", "discovery", "--out", path.to_str().unwrap()]);
