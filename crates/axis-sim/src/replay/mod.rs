@@ -267,15 +267,14 @@ impl Compensator for Added<'_> {
     }
 
     fn correct(&mut self, _: &Sample) -> Correction {
+        let Some(added) = &self.replay.added else {
+            return Correction::default();
+        };
         let at = self.cycle as f64 * self.period / self.replay.reference.period;
         self.cycle += 1;
-        let added = self.replay.added.as_ref();
         Correction {
             position: 0.0,
-            iq: added
-                .and_then(|added| added.get(at.round() as usize))
-                .copied()
-                .unwrap_or(0.0),
+            iq: added.get(at.round() as usize).copied().unwrap_or(0.0),
         }
     }
 }

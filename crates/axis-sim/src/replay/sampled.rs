@@ -25,9 +25,12 @@ pub(super) struct Instants {
     late: f64,
     count: usize,
     next: usize,
+    /// Where the next one lies; `None` after the last.
+    place: Option<Place>,
 }
 
 /// Where an instant lies: at a cycle, or so far behind one.
+#[derive(Clone, Copy)]
 enum Place {
     At(usize),
     Behind(usize, f64),
@@ -37,15 +40,24 @@ impl Instants {
     /// So many, every `periods[1]` seconds, beside cycles every `periods[0]`, on a clock that
     /// is `late`.
     pub(super) fn new(periods: [f64; 2], late: f64, count: usize) -> Self {
-        Self {
+        let mut instants = Self {
             periods,
             late,
             count,
             next: 0,
-        }
+            place: None,
+        };
+        instants.place = instants.find();
+        instants
     }
 
-    fn place(&self) -> Option<Place> {
+    /// Goes on to the next instant.
+    fn pass(&mut self) {
+        self.next += 1;
+        self.place = self.find();
+    }
+
+    fn find(&self) -> Option<Place> {
         if self.next >= self.count {
             return None;
         }
@@ -74,7 +86,7 @@ impl Sampled {
 
     /// The next cycle.
     pub(super) fn take(&mut self, c: &Cycle) {
-        while let Some(place) = self.instants.place() {
+        while let Some(place) = self.instants.place {
             match place {
                 Place::At(k) if k == self.cycle => {
                     for (column, read) in self.columns.iter_mut().zip(&self.reads) {
@@ -93,7 +105,7 @@ impl Sampled {
                 }
                 _ => break,
             }
-            self.instants.next += 1;
+            self.instants.pass();
         }
         self.cycle += 1;
         if self.cycle == self.cycles {

@@ -3,6 +3,7 @@
 use nalgebra::Complex;
 
 use super::Amplitudes;
+use super::transform::Transform;
 
 /// How bands and bins are laid out for a set of logs.
 #[derive(Clone, Debug)]
@@ -12,6 +13,8 @@ pub struct Layout {
     pub(super) logs: Vec<(usize, usize)>,
     /// Per log: time between averages, s.
     pub(super) periods: Vec<f64>,
+    /// Per log: what its averages are transformed with.
+    pub(super) transforms: Vec<Transform>,
     /// Band of each bin, per log.
     pub(super) bands: Vec<Vec<usize>>,
     /// Number of bins in each band.
@@ -22,7 +25,7 @@ pub struct Layout {
     /// Edges of the bands, Hz, one more than bands.
     pub(super) edges: Vec<f64>,
     /// Per log: from when on it counts, s.
-    pub(super) begins: Vec<f64>,
+    begins: Vec<f64>,
     /// Variance, as of white noise, by which a simulation may be off in each channel.
     pub(super) inexact: Vec<f64>,
 }
@@ -88,9 +91,11 @@ impl Layout {
         // Every log has its bin at zero frequency in the first band.
         let mut values: Vec<f64> = counts.iter().map(|&n| n as f64).collect();
         values[0] -= 0.5 * begun(&bands) as f64;
+        let transforms = logs.iter().map(|&(n, h)| Transform::new(n, h, 0.0));
         Self {
             channels,
             values,
+            transforms: transforms.collect(),
             logs: blocks
                 .into_iter()
                 .zip(logs.iter().map(|log| log.0))
@@ -115,7 +120,13 @@ impl Layout {
 
     /// The same, with logs that count from these times on, s.
     pub fn beginning(self, begins: Vec<f64>) -> Self {
-        Self { begins, ..self }
+        let logs = self.logs.iter().zip(&self.periods).zip(&begins);
+        let transforms = logs.map(|((&(_, n), &h), &begin)| Transform::new(n, h, begin));
+        Self {
+            transforms: transforms.collect(),
+            begins,
+            ..self
+        }
     }
 
     /// Time from which on all logs count in full, s.

@@ -140,6 +140,14 @@ impl<'a> Promises<'a> {
         all.into_iter().take(PAIRS).map(|p| p.parts).collect()
     }
 
+    /// Whether the linearised model promises of these two effects together what it asks of one
+    /// beside the `most` that one does alone.
+    pub(super) fn are_worth_it(&self, pair: &[Screened], most: f64) -> bool {
+        let least = (PROMISING * self.search.needed(2, 2)).max(WORTH * most);
+        let effects: Vec<&Screened> = pair.iter().collect();
+        self.promised(&effects).is_some_and(|p| p.fall >= least)
+    }
+
     /// What the linearised model makes of these effects together; `None` where one
     /// is a force in time. With the rest as it is in the weights, as the screening
     /// has it, gains are too small, and a gap promises nothing.

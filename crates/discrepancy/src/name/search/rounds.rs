@@ -33,12 +33,15 @@ impl Search<'_> {
         let screened = promises.one_by_one(&screenings[0]);
         let candidates = if awaited.is_empty() {
             let mut worth = promises.worth_refining(&screened);
+            let most = screened.first().map_or(0.0, |s| s.gain);
             if self.effects_named() + 2 <= self.settings.most_effects {
-                let most = screened.first().map_or(0.0, |s| s.gain);
                 worth.extend(promises.pairs(&screenings, most));
-                worth.extend(self.own_with_memory(&screened));
+                let with_memory = self.own_with_memory(&screened).into_iter();
+                worth.extend(with_memory.filter(|pair| promises.are_worth_it(pair, most)));
             }
-            worth.extend(self.forms(&own).into_iter().map(|form| vec![form]));
+            let forms = self.forms(&own).into_iter();
+            let forms = forms.filter(|form| form.gain >= WORTH * most);
+            worth.extend(forms.map(|form| vec![form]));
             worth
         } else {
             screened.iter().map(|s| vec![s.clone()]).collect()
