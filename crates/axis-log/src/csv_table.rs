@@ -20,14 +20,18 @@ impl<'a> CsvTable<'a> {
             return Err(CsvProblem::NoHeader.into());
         }
         text.check_width(&record)?;
-        let head = |name: &str| Head {
-            name: name.to_owned(),
-            fault: None,
-        };
         Ok(Self {
             text,
-            heads: record.iter().map(head).collect(),
+            heads: record.iter().map(Head::new).collect(),
         })
+    }
+
+    /// The first column under another name.
+    pub(crate) fn with_first_named(mut self, name: &str) -> Self {
+        if let Some(first) = self.heads.first_mut() {
+            first.name = name.to_owned();
+        }
+        self
     }
 
     fn number(

@@ -22,6 +22,10 @@ impl<'a> Text<'a> {
         }
     }
 
+    pub(crate) fn as_str(self) -> &'a str {
+        self.0
+    }
+
     pub(crate) fn parser(self) -> Reader<&'a [u8]> {
         csv::ReaderBuilder::new()
             .has_headers(false)

@@ -63,6 +63,7 @@ impl<'a> MatTable<'a> {
                 found,
                 valid: "a real vector, n × 1 or 1 × n,",
             }),
+            address: None,
         });
         self.arrays.push((element, array));
     }

@@ -41,6 +41,7 @@ impl ParquetTable {
         let head = |column: &ColumnDescriptor| Head {
             name: column.path().string(),
             fault: fault(column),
+            address: None,
         };
         let heads = schema.columns().iter().map(|c| head(c)).collect();
         Ok(Self {

@@ -109,10 +109,12 @@ pub enum ReadProblem {
         /// What the parser says.
         reason: String,
     },
-    /// Not a recording of SINUMERIK Data Recorder that is read.
-    #[error("not readable as a recording of SINUMERIK Data Recorder: {reason}")]
-    DataRecorder {
-        /// What is wrong, with line and column where the text is no such JSON.
+    /// A file of another program of a kind that is not read, or damaged.
+    #[error("not readable as {format}: {reason}")]
+    Import {
+        /// What the file seems to be.
+        format: &'static str,
+        /// What is wrong, with its place where there is one.
         reason: String,
     },
     /// Not a MAT file of version 5.

@@ -25,7 +25,7 @@ pub(crate) trait Table {
     }
 }
 
-impl Table for Box<dyn Table> {
+impl Table for Box<dyn Table + '_> {
     fn heads(&self) -> &[Head] {
         (**self).heads()
     }
@@ -56,6 +56,19 @@ pub(crate) enum Holes {
 pub(crate) struct Head {
     pub name: String,
     pub fault: Option<Fault>,
+    /// What the program itself calls what it recorded, where the name is one that a user gave.
+    pub address: Option<String>,
+}
+
+impl Head {
+    /// A column of that name, and no more.
+    pub(crate) fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            fault: None,
+            address: None,
+        }
+    }
 }
 
 /// Why a column cannot be read: what it is, and what could be.
@@ -65,16 +78,14 @@ pub(crate) struct Fault {
     pub valid: &'static str,
 }
 
-/// The memory that reading a binary file may take. Compressed or run-length coded, a few
-/// bytes can stand for any number of rows.
-#[cfg(any(feature = "mat", feature = "parquet"))]
+/// The memory that reading a file may take in which a few bytes can stand for any number of
+/// rows: compressed, run-length coded, or without what has not changed.
 pub(crate) struct Budget {
     file: usize,
     kept: u64,
     aside: u64,
 }
 
-#[cfg(any(feature = "mat", feature = "parquet"))]
 impl Budget {
     pub(crate) fn of(file: usize) -> Self {
         let (kept, aside) = (0, 0);
@@ -87,6 +98,7 @@ impl Budget {
     }
 
     /// Bytes that are needed for a while; only the most at once count.
+    #[cfg(any(feature = "mat", feature = "parquet"))]
     pub(crate) fn aside(&mut self, bytes: u64) {
         self.aside = self.aside.max(bytes);
     }

@@ -1,18 +1,59 @@
 //! Files of other programs: recognised by content, mapped as asked, damage refused.
 
+mod moteus;
+mod sinumerik_trace;
+mod twincat;
+
 use std::path::{Path, PathBuf};
 
-use axis_log::{ColumnMap, ColumnUnit, Mapping, propose, read_log};
+use axis_log::{ColumnMap, ColumnUnit, Mapping, MappingProposal, propose, read_log};
+use proptest::prelude::*;
 
 fn data(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
     folder.join(name)
 }
 
-fn copy(folder: &Path, name: &str, text: &str) -> PathBuf {
+fn copy(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> PathBuf {
     let path = folder.join(name);
     std::fs::write(&path, text).unwrap();
     path
+}
+
+/// The mapping that is proposed, as a user would take it over.
+fn accepted(proposal: &MappingProposal) -> Mapping {
+    let columns = proposal.columns.iter().map(|column| {
+        let unit = ColumnUnit {
+            unit: Some(column.unit),
+            ..Default::default()
+        };
+        ColumnMap::in_unit(&column.source, column.channel, unit).unwrap()
+    });
+    Mapping {
+        columns: columns.collect(),
+        sample_rate_hz: None,
+    }
+}
+
+/// A column without unit to a channel.
+fn plain(source: &str, channel: &str) -> Mapping {
+    Mapping {
+        columns: vec![ColumnMap::in_unit(source, channel, ColumnUnit::default()).unwrap()],
+        sample_rate_hz: None,
+    }
+}
+
+/// Sources and channels that are proposed.
+fn pairs(proposal: &MappingProposal) -> Vec<(&str, &str)> {
+    let columns = proposal.columns.iter();
+    columns.map(|c| (&*c.source, c.channel)).collect()
+}
+
+/// What a file with this text is refused with.
+fn refusal(text: impl AsRef<[u8]>, mapping: &Mapping) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let path = copy(folder.path(), "x.txt", text);
+    read_log(&path, mapping, &[]).unwrap_err().to_string()
 }
 
 #[test]
@@ -24,17 +65,7 @@ fn a_halscope_capture_is_read_as_it_is_mapped() {
     let proposal = propose(&path).unwrap().unwrap();
     assert_eq!(proposal.format, "LinuxCNC halscope");
     assert_eq!(proposal.others, ["pid.x.output"]);
-    let columns = proposal.columns.iter().map(|column| {
-        let unit = ColumnUnit {
-            unit: Some(column.unit),
-            ..Default::default()
-        };
-        ColumnMap::in_unit(&column.source, column.channel, unit).unwrap()
-    });
-    let mapping = Mapping {
-        columns: columns.collect(),
-        sample_rate_hz: None,
-    };
+    let mapping = accepted(&proposal);
     let log = read_log(&path, &mapping, &["position_ref_m", "position_m"]).unwrap();
     let (command, feedback) = (
         log.channel("position_ref_m").unwrap(),
@@ -191,4 +222,47 @@ fn damaged_recordings_are_refused_with_their_place() {
     assert!(hole.contains("row 8 (\"CURRENT|1\"): \"null\""), "{hole}");
     let text = message(&whole, &recording_mapping(&[("HF_EVENT", "current_q_a")]));
     assert!(text.contains("row 1 (\"HF_EVENT\")"), "{text}");
+}
+
+/// A column of numbers, as `oscilloscope_dump` of odrivetool writes, needs a name and a rate.
+#[test]
+fn a_column_without_a_name_reads_once_it_has_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let mapping = Mapping {
+        sample_rate_hz: Some(8000.0),
+        ..Default::default()
+    };
+    let path = copy(folder.path(), "dump.csv", "iq_a\n0.5\n0.75\n-0.25\n");
+    let log = read_log(&path, &mapping, &["iq_a"]).unwrap();
+    assert_eq!(log.channel("iq_a").unwrap(), [0.5, 0.75, -0.25]);
+    assert_eq!(log.time(), [0.0, 1.25e-4, 2.5e-4]);
+}
+
+const EXAMPLES: [&str; 5] = [
+    "halscope.log",
+    "moteus.csv",
+    "sinumerik.json",
+    "sinumerik_trace.xml",
+    "twincat.csv",
+];
+
+proptest! {
+    /// Bytes that are lost, doubled or others: read or refused, without a panic.
+    #[test]
+    fn damage_of_any_kind_is_read_or_refused(
+        example in 0..EXAMPLES.len(),
+        at in any::<prop::sample::Index>(),
+        length in 0..40_usize,
+        instead in prop::collection::vec(prop_oneof![any::<u8>(), Just(b'\n'), Just(b'\t'), Just(b'<')], 0..6),
+        cut in any::<bool>(),
+    ) {
+        let mut bytes = std::fs::read(data(EXAMPLES[example])).unwrap();
+        let at = at.index(bytes.len());
+        let end = if cut { bytes.len() } else { bytes.len().min(at + length) };
+        bytes.splice(at..end, instead);
+        let folder = tempfile::tempdir().unwrap();
+        let path = copy(folder.path(), "x.csv", &bytes);
+        let mapping = propose(&path).ok().flatten().map(|proposal| accepted(&proposal));
+        drop(read_log(&path, &mapping.unwrap_or_default(), &[]));
+    }
 }

@@ -40,11 +40,10 @@ const PINS: &[(&str, &str, &str)] = &[
 ];
 
 /// The first pin of each ending: two joints would be one channel.
-fn proposed(names: &[String]) -> Vec<ProposedColumn> {
+fn proposed(heads: &[&Head]) -> Vec<ProposedColumn> {
     let one = |(end, channel, unit): &(&str, &'static str, &'static str)| {
-        let source = names
-            .iter()
-            .find(|name| name.starts_with("joint.") && name.ends_with(end))?;
+        let mut names = heads.iter().map(|head| &head.name);
+        let source = names.find(|name| name.starts_with("joint.") && name.ends_with(end))?;
         Some(ProposedColumn {
             source: source.clone(),
             channel,
@@ -98,8 +97,7 @@ impl Capture {
             capture.push(text, line, &names)?;
         }
         let time = std::iter::once(TIME_CHANNEL.to_owned());
-        let head = |name| Head { name, fault: None };
-        capture.heads = time.chain(names).map(head).collect();
+        capture.heads = time.chain(names).map(Head::new).collect();
         Ok(capture)
     }
 

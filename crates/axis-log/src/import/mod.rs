@@ -6,14 +6,18 @@
 //! nothing is applied by itself.
 
 mod halscope;
+mod moteus;
+mod names;
 mod sinumerik;
+mod sinumerik_trace;
+mod twincat;
 
 use std::path::Path;
 
 use crate::read_error::{ReadError, ReadProblem};
-use crate::table::Table;
+use crate::table::{Head, Table};
 
-type Opened = Result<Box<dyn Table>, ReadProblem>;
+type Opened<'a> = Result<Box<dyn Table + 'a>, ReadProblem>;
 
 /// A format of another program.
 struct Format {
@@ -22,15 +26,28 @@ struct Format {
     /// Whether the first bytes of a file are of this format.
     is_it: fn(&[u8]) -> bool,
     /// Reads the whole file.
-    open: fn(&[u8]) -> Opened,
-    /// What the columns of these names are.
-    columns: fn(&[String]) -> Vec<ProposedColumn>,
+    open: fn(&[u8]) -> Opened<'_>,
+    /// What these columns are, all of which can be read.
+    columns: fn(&[&Head]) -> Vec<ProposedColumn>,
     /// What the proposal rests on and leaves open.
     caution: &'static str,
 }
 
 /// All formats, one line each.
-const FORMATS: &[Format] = &[halscope::FORMAT, sinumerik::FORMAT];
+const FORMATS: &[Format] = &[
+    halscope::FORMAT,
+    moteus::FORMAT,
+    sinumerik::FORMAT,
+    sinumerik_trace::FORMAT,
+    twincat::FORMAT,
+];
+
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
+
+/// The bytes behind a byte-order mark.
+fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes)
+}
 
 /// A column that a mapping could have.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -87,8 +104,10 @@ fn proposal(path: &Path) -> Result<Option<MappingProposal>, ReadProblem> {
     let Some(format) = FORMATS.iter().find(|format| (format.is_it)(&bytes)) else {
         return Ok(None);
     };
-    let names = (format.open)(&bytes)?.names();
-    let columns = (format.columns)(&names);
+    let table = (format.open)(&bytes)?;
+    let readable = |head: &&Head| head.fault.is_none();
+    let heads: Vec<&Head> = table.heads().iter().filter(readable).collect();
+    let (names, columns) = (table.names(), (format.columns)(&heads));
     let told = |name: &String| {
         columns.iter().any(|column| column.source == *name) || crate::unit_of(name).is_some()
     };
@@ -101,7 +120,7 @@ fn proposal(path: &Path) -> Result<Option<MappingProposal>, ReadProblem> {
 }
 
 /// The file as a table, where it is of another program.
-pub(crate) fn table(bytes: &[u8]) -> Option<Opened> {
+pub(crate) fn table(bytes: &[u8]) -> Option<Opened<'_>> {
     let format = FORMATS.iter().find(|format| (format.is_it)(bytes))?;
     Some((format.open)(bytes))
 }

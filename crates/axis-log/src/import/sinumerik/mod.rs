@@ -38,17 +38,18 @@ const SIGNALS: &[(&str, &str, &str)] = &[
 ];
 
 /// Those of the first axis that has one: two axes would be one channel.
-fn proposed(names: &[String]) -> Vec<ProposedColumn> {
-    let axis_of = |name: &String| {
+fn proposed(heads: &[&Head]) -> Vec<ProposedColumn> {
+    let axis_of = |head: &&Head| {
         let mut signals = SIGNALS.iter();
-        signals.find_map(|(start, ..)| name.strip_prefix(start).map(str::to_owned))
+        signals.find_map(|(start, ..)| head.name.strip_prefix(start).map(str::to_owned))
     };
-    let Some(axis) = names.iter().find_map(axis_of) else {
+    let Some(axis) = heads.iter().find_map(axis_of) else {
         return Vec::new();
     };
     let one = |(start, channel, unit): &(&str, &'static str, &'static str)| {
         let source = format!("{start}{axis}");
-        names.contains(&source).then_some(ProposedColumn {
+        let is_there = heads.iter().any(|head| head.name == source);
+        is_there.then_some(ProposedColumn {
             source,
             channel,
             unit,
@@ -71,7 +72,10 @@ struct Recording {
 
 impl Recording {
     fn read(bytes: &[u8]) -> Result<Self, ReadProblem> {
-        let refused = |reason: String| ReadProblem::DataRecorder { reason };
+        let refused = |reason: String| ReadProblem::Import {
+            format: "a recording of SINUMERIK Data Recorder",
+            reason,
+        };
         let file: File = serde_json::from_slice(bytes).map_err(|e| refused(e.to_string()))?;
         let count = file.header.signals.len();
         if count == 0 {
@@ -108,10 +112,7 @@ impl Recording {
             return Err(ReadProblem::NoRows);
         }
         let signals = file.header.signals.into_iter();
-        let head = |signal: Signal| Head {
-            name: signal.address,
-            fault: None,
-        };
+        let head = |signal: Signal| Head::new(signal.address);
         Ok(Self {
             heads: signals.map(head).collect(),
             columns,
