@@ -83,7 +83,7 @@ impl<'a> Promises<'a> {
                 &wanted,
             )
         };
-        self.weights.iter().map(weighed).collect()
+        self.weights.par_iter().map(weighed).collect()
     }
 
     /// What each effect explains alone, best first, one entry an effect.
@@ -120,8 +120,9 @@ impl<'a> Promises<'a> {
     /// worth anything alone then.
     pub(super) fn pairs(&self, screenings: &[Screening], most: f64) -> Vec<Vec<Screened>> {
         let least = 2.0 * most + PROMISING * self.search.needed(2, 2);
+        let pairs: Vec<_> = screenings.par_iter().map(Screening::two_by_two).collect();
         let mut all: Vec<[Screened; 2]> = Vec::new();
-        for pair in screenings.iter().flat_map(Screening::two_by_two) {
+        for pair in pairs.into_iter().flatten() {
             let candidates = |p: &[Screened; 2]| [p[0].candidate, p[1].candidate];
             if all.iter().all(|p| candidates(p) != candidates(&pair)) {
                 all.push(pair);

@@ -10,6 +10,7 @@ use super::promise::{PROMISING, Promises, WORTH};
 use super::refined::{Refined, alike, simplest_first, single_before_pair};
 use super::state::Search;
 use super::types::{Named, RunnerUp};
+use crate::answers::Prepared;
 use crate::estimate::fit::{Columns, Fit, free_parameters};
 use crate::name::gap::is_material;
 use crate::name::library::is_force_in_time;
@@ -18,6 +19,12 @@ use crate::name::screen::Screened;
 /// Share of the promised fall of D that a simulation must keep, or other sizes are
 /// tried.
 const KEPT: f64 = 0.8;
+
+/// A load with a period of its own, which is its second number.
+const REPEATS: &str = "cyclic-load";
+
+/// Periods of it that a log must show.
+const REPEATED: f64 = 1.5;
 
 /// Candidates of which it is tried whether least squares lead further.
 const LED_FURTHER: usize = 4;
@@ -56,7 +63,8 @@ impl Search<'_> {
             let is_effect = awaited.is_empty() && !candidate.is_form();
             let is_nothing = candidate.is_below_none()
                 || candidate.bends_own_friction()
-                || self.leaves_no_friction(candidate);
+                || self.leaves_no_friction(candidate)
+                || self.hardly_repeats(candidate);
             if is_effect && is_nothing {
                 return None;
             }
@@ -204,6 +212,20 @@ impl Search<'_> {
             );
         }
         simplest_first(refined)
+    }
+
+    /// Whether a candidate is a load that would repeat, and no log goes on for long enough to
+    /// show that it does: whatever is slow looks like a part of a wave.
+    fn hardly_repeats(&self, candidate: &Refined) -> bool {
+        let duration = |log: &Prepared| match log.log.time() {
+            [first, .., last] => last - first,
+            _ => 0.0,
+        };
+        let all = self.fit_logs.logs.iter().chain(&self.check_logs.logs);
+        let longest = all.map(duration).fold(0.0, f64::max);
+        let effects = &candidate.fit.state.effects;
+        let mut new = effects.iter().rev().take(candidate.parts.len());
+        new.any(|a| a.effect.name == REPEATS && REPEATED * a.values[1] > longest)
     }
 
     fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {
