@@ -71,3 +71,18 @@ fn log_inspect_proposes_a_mapping_and_applies_none() {
     assert_eq!(log["channels"].as_array().map(Vec::len), Some(0));
     assert_eq!(log["imported"][0]["others"][0], "pid.x.output");
 }
+
+/// One that lacks its time is refused, and the mapping that would mend that is told with it.
+#[test]
+fn log_inspect_proposes_a_mapping_of_what_cannot_be_read_yet() {
+    let output = run(&[
+        "log",
+        "inspect",
+        "crates/axis-log/tests/data/sinumerik.json",
+    ]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("t_s"), "{said}");
+    assert!(said.contains("SINUMERIK Data Recorder"), "{said}");
+    assert!(said.contains("source = \"DES_POS|1\""), "{said}");
+}

@@ -14,7 +14,7 @@ use axis_report::{Page, render};
 use axis_sim::Axis;
 use clap::{Args, Subcommand};
 use discrepancy::logs::{exact_channels, relations};
-use miette::{IntoDiagnostic, Result, miette};
+use miette::{IntoDiagnostic, Report, Result, miette};
 
 use crate::exit::wrong_use;
 use crate::output::{print, write_whole};
@@ -44,7 +44,8 @@ enum Command {
 #[derive(Args)]
 #[group(id = "logs-of-a-machine")]
 struct Logs {
-    /// Logs: CSV, Parquet or MAT v5; several files of one log with + between
+    /// Logs: CSV, Parquet, MAT v5, or a recording of TwinCAT Scope, SINUMERIK, LinuxCNC or moteus;
+    /// several files of one log with + between
     #[arg(required = true, value_name = "FILE")]
     logs: Vec<PathBuf>,
     /// Axis file: its `[log]` maps columns, its sizes tell what channels should be of each other
@@ -132,7 +133,8 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
         rate_hz,
     };
     let paths = files(path);
-    let prepared = prepare(&paths, mapping, &[], options).into_diagnostic()?;
+    let prepared = prepare(&paths, mapping, &[], options)
+        .map_err(|error| unmapped(miette!("{error}"), &paths, mapping))?;
     let log = prepared.log;
     let clock = clock(&log).ok_or_else(|| {
         miette!(
@@ -163,6 +165,18 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
         proposals: proposals(&paths, mapping)?,
         log,
     })
+}
+
+/// Why a log cannot be read, and what mapping its files could have: often that is all it lacks.
+fn unmapped(error: Report, paths: &[PathBuf], mapping: &Mapping) -> Report {
+    // A file that is damaged has said so.
+    let proposals = proposals(paths, mapping).unwrap_or_default();
+    let proposals = proposals.iter().map(words::proposed);
+    let proposals: Vec<String> = proposals.collect();
+    match proposals.is_empty() {
+        true => error,
+        false => miette!("{error}\n\n{}", proposals.join("\n")),
+    }
 }
 
 /// What the mapping of files of other programs could have besides.

@@ -228,6 +228,11 @@ const HEADS: [&str; 9] = [
     "noise",
 ];
 
+/// What the mapping of a file of another program could have.
+pub fn proposed(proposal: &MappingProposal) -> String {
+    Imported::of(proposal).to_string()
+}
+
 /// Sampling of a log, in a line.
 pub fn heading(seen: &Seen) -> String {
     let c = &seen.clock;
@@ -251,7 +256,13 @@ impl fmt::Display for OneLog<'_> {
         let mut rows = vec![HEADS.map(str::to_owned)];
         rows.extend(self.channels.iter().map(OneChannel::cells));
         writeln!(f)?;
-        table(f, &rows)?;
+        match self.channels.is_empty() {
+            true => writeln!(
+                f,
+                "no column is a channel yet: give it a name that ends in its unit, or a mapping"
+            )?,
+            false => table(f, &rows)?,
+        }
         writeln!(f)?;
         let channels = self.seen.channels.iter();
         channels.clone().try_for_each(|c| writeln!(f, "{c}"))?;
