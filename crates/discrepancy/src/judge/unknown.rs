@@ -70,44 +70,46 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     let rest = Rest::new(&fitter, &found.fit, &found.columns, &found.noise);
     let layout = &found.fit_logs.layout;
     let needed = |knots: usize| needed(layout, knots, curves.shapes.len(), 0.01).max(material);
-    let mut solved: Vec<(usize, Solved)> = curves
-        .shapes
-        .iter()
-        .enumerate()
-        .map(|(i, (_, columns))| (i, rest.solve(columns)))
-        .filter(|(i, s)| {
-            let knots = curves.shapes[*i].0.knots.len();
-            s.gain >= needed(knots).max(ABOVE * s.of_noise)
-        })
-        .collect();
+    let knots = |i: usize| curves.shapes[i].0.knots.len();
+    let solved = curves.shapes.iter().map(|(_, columns)| rest.solve(columns));
+    let mut solved: Vec<(usize, Solved)> = solved.enumerate().collect();
+    solved.retain(|(i, s)| s.gain >= needed(knots(*i)));
     solved.sort_by(|a, b| b.1.gain.total_cmp(&a.1.gain));
-    tracing::debug!(gains = ?solved.iter().map(|(i, s)| (curves.shapes[*i].0.place, curves.shapes[*i].0.depends_on(), s.gain, s.of_noise)).collect::<Vec<_>>(), "curves");
-    // Of those that are significant, the one that tells most of other motion.
-    let held_out = |(i, s): &(usize, Solved)| -> f64 {
-        let shape = &curves.shapes[*i].0;
+    let held_out = |i: usize, s: &Solved| -> f64 {
+        let shape = &curves.shapes[i].0;
         shape.told(machine, &found.check_logs, &check, s.values.as_slice())
     };
-    let told: Vec<(&(usize, Solved), f64)> =
-        solved.iter().take(TOLD).map(|s| (s, held_out(s))).collect();
-    let most = told.iter().map(|t| t.1).fold(f64::NEG_INFINITY, f64::max);
+    // What noise alone brings is not known of a balance, whose runs are its own rest, drawn anew,
+    // with all that it lacks: other logs may say as much as is asked of those that it was fitted to.
+    let balanced = found.fit_logs.is_balanced();
+    let is_above_noise = |s: &Solved| s.gain >= ABOVE * s.of_noise;
+    let least = |i: usize, s: &Solved| match is_above_noise(s) {
+        true => (0.1 * s.gain).max(25.0),
+        false => needed(knots(i)),
+    };
+    let tried = solved.iter().filter(|(_, s)| balanced || is_above_noise(s));
+    let told = tried.take(TOLD).map(|(i, s)| (*i, s, held_out(*i, s)));
+    let told: Vec<(usize, &Solved, f64)> = told.collect();
+    tracing::debug!(curves = ?told.iter().map(|(i, s, told)| (curves.shapes[*i].0.place, curves.shapes[*i].0.depends_on(), s.gain, s.of_noise, told)).collect::<Vec<_>>(), "what depends on what");
+    // Of those that are significant, the one that tells most of other motion.
+    let holds = told
+        .into_iter()
+        .filter(|(i, s, told)| *told >= least(*i, s));
+    let holds: Vec<(usize, &Solved, f64)> = holds.collect();
+    let most = holds.iter().map(|t| t.2).fold(f64::NEG_INFINITY, f64::max);
     // The simplest of those that tell about as much: they stand in the order of the list.
-    let about = told.into_iter().filter(|t| t.1 >= ABOUT * most);
-    let best = about.min_by_key(|(s, _)| s.0);
-    let Some(((index, solution), told)) = best else {
+    let about = holds.into_iter().filter(|t| t.2 >= ABOUT * most);
+    let Some((index, solution, told)) = about.min_by_key(|t| t.0) else {
         return Ok(None);
     };
-    tracing::debug!(told, "curve on check logs");
-    if told < (0.1 * solution.gain).max(25.0) {
-        return Ok(None);
-    }
     let set = &found.check_logs;
-    let after = curves.shapes[*index]
+    let after = curves.shapes[index]
         .0
         .rest(machine, set, &check, solution.values.as_slice())?;
     if !is_material(machine, set, &check, &after, &[])? {
         return Ok(None);
     }
-    let (shape, freedom) = (&curves.shapes[*index].0, machine.freedom());
+    let (shape, freedom) = (&curves.shapes[index].0, machine.freedom());
     let formula = term(machine, &fitter, found, &rest, shape.place, solution.gain);
     Ok(Some(Unknown {
         channel: shape.place.name().to_owned(),

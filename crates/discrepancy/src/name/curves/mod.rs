@@ -23,6 +23,7 @@ const CURVES: &[(Place, Factor, Variable)] = &[
     (Place::Force, Factor::One, Variable::Time),
     (Place::Force, Factor::One, Variable::Angle),
     (Place::Force, Factor::One, Variable::Acceleration),
+    (Place::Force, Factor::One, Variable::Effort),
     (Place::Offset, Factor::One, Variable::Speed),
     (Place::Offset, Factor::One, Variable::Position),
     (Place::Offset, Factor::One, Variable::Time),
@@ -32,6 +33,8 @@ const CURVES: &[(Place, Factor, Variable)] = &[
     (Place::Force, Factor::Speed, Variable::Time),
     (Place::Force, Factor::Direction, Variable::Position),
     (Place::Force, Factor::Direction, Variable::Time),
+    (Place::Force, Factor::Direction, Variable::Angle),
+    (Place::Force, Factor::Direction, Variable::Acceleration),
     (Place::Force, Factor::Direction, Variable::Effort),
 ];
 
