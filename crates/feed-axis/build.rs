@@ -16,7 +16,9 @@ const SOURCES: [&str; 5] = [
 const PACKAGED: [&str; 4] = ["Cargo.lock", "Cargo.toml", "src", "templates"];
 
 fn main() {
-    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    // As it is now, not as it was when this script was compiled: checkouts may share a target folder.
+    let own = std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR");
+    let own = Path::new(&own);
     let workspace = own.join("../..");
     let (root, sources) = if workspace.join("xtask").is_dir() {
         (workspace, &SOURCES[..])

@@ -71,10 +71,15 @@ impl Balance {
         axis.effects.extend_from_slice(effects);
         let (axis, hooks) = axis.with_effects()?;
         let per_torque = self.channel.per_torque(&axis);
-        let zero = match self.channel.is_current(&axis) {
-            true => hooks.sensors.current_offset,
-            false => 0.0,
+        // What a current's sensor shows of a current: (1 + c) i + i_0.
+        let [gain, zero] = match self.channel.is_current(&axis) {
+            true => [
+                1.0 + hooks.sensors.current_gain,
+                hooks.sensors.current_offset,
+            ],
+            false => [1.0, 0.0],
         };
+        let per_torque = gain * per_torque;
         let mut needed = torque(&axis, &hooks, &self.motions, self.period);
         if self.channel.is_controlled() {
             let more = sampled_inertia(&axis.control) - 1.0;

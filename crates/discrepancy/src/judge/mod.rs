@@ -34,7 +34,7 @@ pub use self::law::FrictionLaw;
 use self::law::{friction_law, steady};
 use self::likeness::likenesses;
 pub use self::likeness::{Likeness, Shown};
-use self::notes::notes;
+use self::notes::{notes, slow_of_loop_note};
 pub use self::overlay::Overlay;
 use self::overlay::overlays;
 pub use self::remedy::{DriveFunction, REMEDIES, Remedy};
@@ -196,8 +196,15 @@ pub fn judged(
         excess.only(|band| rest.follows(band))
     });
     let coloured = excess.filter(|_| following.is_none());
+    // Of a balance nobody knows what the controller makes of its sensors' noise: slow, it is above
+    // the floor, and what curves take of it does not hold on other logs.
+    let slow_of_loop = set.is_balanced()
+        && effects.is_empty()
+        && lack.is_none()
+        && !at_floor(&check)
+        && check.may_be_coloured();
     let unknown = lack.or_else(|| following.map(in_frequency));
-    let is_noise = at_floor(&check) || coloured.is_some();
+    let is_noise = at_floor(&check) || coloured.is_some() || slow_of_loop;
     let rest_significant = !(is_noise || nearly_all) || unknown.is_some();
     let verdict = match (effects.is_empty(), rest_significant) {
         _ if found.refused.is_some() => Verdict::Unknown,
@@ -225,7 +232,7 @@ pub fn judged(
     let told = Told {
         cost: whole_cost(machine, set, full, &after, &each)?,
         each: if each.len() > 1 { each } else { Vec::new() },
-        confidence: Confidence::new(verdict, &effects, &recalibrated),
+        confidence: Confidence::new(verdict, &effects, &recalibrated, slow_of_loop),
         remedies: remedies(&effects),
     };
     let friction = friction_law(machine, set, full, &traces, &after);
@@ -236,8 +243,10 @@ pub fn judged(
         answer: found.fit_logs.answer_of(machine).to_owned(),
         notes: {
             let coloured = coloured.iter().map(Excess::note);
+            let slow_of_loop = slow_of_loop.then(|| slow_of_loop_note(&check));
             let known = [notes(machine, found), slow.notes(set)].concat();
-            known.into_iter().chain(coloured).collect()
+            let of_rest = coloured.chain(slow_of_loop);
+            known.into_iter().chain(of_rest).collect()
         },
         sentence: sentence(
             verdict,

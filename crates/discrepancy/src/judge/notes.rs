@@ -3,6 +3,7 @@
 use axis_sim::Axis;
 
 use crate::answers::{LogSet, Prepared};
+use crate::name::gap::Gap;
 use crate::name::search::Found;
 
 /// What must be known of the logs.
@@ -17,6 +18,15 @@ pub(super) fn notes(machine: &Axis, found: &Found) -> Vec<String> {
 
 /// How the noise of a torque balance is to be read.
 const FLOOR: &str = "the noise given of a torque balance is the least that the spectra of torque and motion leave possible, as no controller is known: a rest above it may be noise";
+
+/// What must be known of a balance's rest that is taken for noise though it is above its floor.
+pub(super) fn slow_of_loop_note(check: &Gap) -> String {
+    let times = check.channels.iter().map(|c| c.after / c.floor);
+    let times = times.fold(0.0, f64::max);
+    format!(
+        "the rest is {times:.1} times the least noise, and no curve over the motion that is found on some logs tells anything of others: it is taken for noise that a controller made of that of its sensors; a replay with the gains of the controller would tell more"
+    )
+}
 
 /// Where a gap is so large that the logs do not say where the screw lay in it at their
 /// start.

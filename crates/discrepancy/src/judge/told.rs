@@ -44,7 +44,7 @@ impl Level {
 pub struct Confidence {
     /// In what was named, or in that nothing is missing: high for a gap that is explained or
     /// is none, medium where a rest is left, low where nothing explains it; a step lower for
-    /// each of the three that follow.
+    /// each of the three that follow, and where a rest above the floor is taken for noise.
     pub level: Level,
     /// Known parameters that were moved to the edge of their tolerance.
     pub at_edge: Vec<Recalibrated>,
@@ -85,7 +85,12 @@ const EDGE: f64 = 0.99;
 const WIDE: f64 = 0.25;
 
 impl Confidence {
-    pub(super) fn new(verdict: Verdict, effects: &[EffectFound], known: &[Recalibrated]) -> Self {
+    pub(super) fn new(
+        verdict: Verdict,
+        effects: &[EffectFound],
+        known: &[Recalibrated],
+        taken_for_noise: bool,
+    ) -> Self {
         let at_edge: Vec<Recalibrated> = known.iter().filter(|k| k.is_at_edge()).cloned().collect();
         let wide: Vec<[String; 2]> = effects.iter().flat_map(wide).collect();
         let alike = effects
@@ -97,7 +102,12 @@ impl Confidence {
             Verdict::PartlyExplained => Level::Medium,
             Verdict::Unknown => Level::Low,
         };
-        let doubts = [at_edge.is_empty(), wide.is_empty(), ambiguous.is_empty()];
+        let doubts = [
+            at_edge.is_empty(),
+            wide.is_empty(),
+            ambiguous.is_empty(),
+            !taken_for_noise,
+        ];
         let steps = doubts.iter().filter(|none| !**none).count();
         Self {
             level: from.lowered(steps),

@@ -9,7 +9,8 @@
 //! ```
 //!
 //! by least squares, and judged on another by the share of the rest's power there that they
-//! foretell.
+//! foretell. Either set is foretold from the other: slow noise has few independent bins, and may
+//! by chance look like the motion in one direction.
 
 use axis_sim::Trace;
 use nalgebra::{Complex, DMatrix};
@@ -49,15 +50,16 @@ impl MotionAndRest {
         }
     }
 
-    /// Whether the rest in a band (`[low, high]`, Hz) follows the motion: filters found on the
-    /// one set of logs foretell it on the other. Where a set has too few bins to tell, it does.
+    /// Whether the rest in a band (`[low, high]`, Hz) follows the motion: filters found on
+    /// either set of logs foretell it on the other. Where a set has too few bins to tell, it does.
     pub(crate) fn follows(&self, band: [f64; 2]) -> bool {
         self.follows_in(band, |_| true)
     }
 
     /// The same of some of the channels, by their places among those that are fitted.
     pub(crate) fn follows_in(&self, band: [f64; 2], wanted: impl Fn(usize) -> bool) -> bool {
-        let shares = foretold(&equations(&self.fit, band), &equations(&self.check, band));
+        let [fit, check] = [&self.fit, &self.check].map(|bins| equations(bins, band));
+        let shares = foretold_either_way(&fit, &check);
         tracing::debug!(?band, ?shares, "of the rest follows the motion");
         shares.is_none_or(|shares| {
             let mut wanted = shares.iter().enumerate().filter(|(c, _)| wanted(*c));
@@ -131,6 +133,13 @@ fn foretold(fit: &Equations, check: &Equations) -> Option<Vec<f64>> {
     Some(shares.collect())
 }
 
+/// The lesser of what either rest's filters foretell of the other; none where one set has too few
+/// bins to find any.
+fn foretold_either_way(a: &Equations, b: &Equations) -> Option<Vec<f64>> {
+    let pairs = foretold(a, b)?.into_iter().zip(foretold(b, a)?);
+    Some(pairs.map(|(there, back)| there.min(back)).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::{Complex, DMatrix};
@@ -138,7 +147,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::{Distribution, StandardNormal};
 
-    use super::{Equations, FOLLOWS, foretold};
+    use super::{Equations, FOLLOWS, foretold_either_way};
 
     const BINS: usize = 120;
     const REGRESSORS: usize = 6;
@@ -168,7 +177,7 @@ mod tests {
         let mut follow = |share: f64| {
             let pairs = (0..200).filter(|_| {
                 let [fit, check] = [(); 2].map(|()| equations(share, &mut random));
-                let shares = foretold(&fit, &check).unwrap();
+                let shares = foretold_either_way(&fit, &check).unwrap();
                 shares.iter().any(|share| *share >= FOLLOWS)
             });
             pairs.count()
@@ -183,6 +192,7 @@ mod tests {
         let [mut fit, check] = [(); 2].map(|()| equations(0.5, &mut random));
         fit.motion = fit.motion.rows(0, REGRESSORS).into_owned();
         fit.rest = fit.rest.rows(0, REGRESSORS).into_owned();
-        assert_eq!(foretold(&fit, &check), None);
+        assert_eq!(foretold_either_way(&fit, &check), None);
+        assert_eq!(foretold_either_way(&check, &fit), None);
     }
 }

@@ -29,7 +29,7 @@ fn discovery(verdict: Verdict, effects: Vec<EffectFound>, known: Vec<Recalibrate
         told: Told {
             cost: cost(),
             each: Vec::new(),
-            confidence: Confidence::new(verdict, &effects, &known),
+            confidence: Confidence::new(verdict, &effects, &known, false),
             remedies: remedies(&effects),
         },
         effects,
@@ -139,7 +139,7 @@ fn an_effect_is_told_with_its_cost_confidence_and_remedy() {
 #[test]
 fn every_doubt_lowers_the_confidence_by_a_step() {
     let level = |verdict, effect: EffectFound, share: f64| {
-        Confidence::new(verdict, &[effect], &[known(share)]).level
+        Confidence::new(verdict, &[effect], &[known(share)], false).level
     };
     let alike = EffectFound {
         indistinguishable_from: vec!["payload-mass".to_owned()],

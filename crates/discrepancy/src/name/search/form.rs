@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::refined::Refined;
 use super::state::Search;
+use super::types::Named;
 use crate::estimate::fit::Columns;
 use crate::name::library::{Candidate, responses};
 use crate::name::screen::{Screened, Screening};
@@ -106,12 +107,26 @@ impl Refined {
     }
 
     /// Whether it is a form, or a friction that is another one in another form: slip with a
-    /// memory is dry friction whose onset has one.
+    /// memory is dry friction whose onset has one, and a fall of the other sign is dry friction
+    /// that comes on with speed.
     fn is_of_another_form(&self) -> bool {
         let with_memory = |p: &Screened| p.effect.name == WITH_MEMORY;
         let plain = |p: &Screened| p.effect.name == PLAIN;
         let others = self.parts.iter().filter(|p| !with_memory(p));
-        self.is_form() || self.parts.iter().any(with_memory) && others.into_iter().all(plain)
+        let is_slip = self.parts.iter().any(with_memory) && others.into_iter().all(plain);
+        self.is_form() || is_slip || self.is_rise()
+    }
+
+    /// Whether it is a fall of dry friction with speed, alone and of the other sign.
+    fn is_rise(&self) -> bool {
+        let is_fall = matches!(self.parts.as_slice(), [one] if one.effect.name == FALL);
+        is_fall
+            && self
+                .fit
+                .state
+                .effects
+                .last()
+                .is_some_and(|a| a.values[0] < 0.0)
     }
 }
 
@@ -158,12 +173,14 @@ impl Search<'_> {
             || has(FALL) && (rises || sliding + fall < 0.0)
     }
 
-    /// Whether an effect is dry friction in another form beside one that is there: the two
-    /// would share what is one friction.
+    /// Whether an effect is dry friction in another form beside one that is there, or a fall
+    /// with speed beside a form, whose curve over speed has it: the two would share what is one
+    /// friction.
     pub(super) fn doubles_a_friction(&self, effect: &Effect) -> bool {
-        let mut named = self.named.iter();
-        effect.name == WITH_MEMORY && named.any(|n| DRY.contains(&n.name))
-            || DRY.contains(&effect.name) && self.named.iter().any(|n| n.name == WITH_MEMORY)
+        let is_there = |is: &dyn Fn(&Named) -> bool| self.named.iter().any(is);
+        effect.name == WITH_MEMORY && is_there(&|n| DRY.contains(&n.name))
+            || DRY.contains(&effect.name) && is_there(&|n| n.name == WITH_MEMORY)
+            || effect.name == FALL && is_there(&Named::is_form)
     }
 }
 
@@ -182,12 +199,20 @@ const FALL: &str = "stribeck-friction";
 /// Dry friction with a memory.
 const WITH_MEMORY: &str = "maxwell-slip-hysteresis";
 
-/// Effects before a form that explains hardly more.
+/// Effects before a form that explains hardly more; a form before a fall of dry friction of the
+/// other sign, which says the same of that friction as if it were another.
 pub(super) fn effects_before_forms(refined: &mut [Refined]) {
+    if let Some(rise) = refined.first().filter(|r| r.is_rise()) {
+        let least = INSTEAD * rise.gain;
+        let form = refined.iter().position(|r| r.is_form() && r.gain >= least);
+        if let Some(at) = form {
+            refined[..=at].rotate_right(1);
+        }
+    }
     let Some(first) = refined.first().filter(|r| r.is_of_another_form()) else {
         return;
     };
-    let share = match first.is_form() {
+    let share = match first.is_form() || first.is_rise() {
         true => INSTEAD,
         false => INSTEAD_OF_MEMORY,
     };

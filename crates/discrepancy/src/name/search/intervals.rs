@@ -31,6 +31,7 @@ impl Search<'_> {
         let noise = drawn(&fitter, &self.fit)?;
         let mut spreads = spreads(&fitter, &self.fit, &columns, &covariance, &noise);
         self.widen_by_own_friction(&mut spreads);
+        self.widen_by_gaps(&mut spreads);
         Ok(Intervals {
             spreads,
             columns,
@@ -66,6 +67,29 @@ impl Search<'_> {
         }
     }
 
+    /// An instant at which no log tells anything, as a balance of a load that stands, may lie
+    /// anywhere between the samples about it.
+    fn widen_by_gaps(&self, spreads: &mut [Spread]) {
+        if !self.fit_logs.is_balanced() {
+            return;
+        }
+        let known = self.machine.known().len();
+        for (i, (e, p)) in free_parameters(&self.fit.state).into_iter().enumerate() {
+            let active = &self.fit.state.effects[e];
+            let is_instant = matches!(
+                active.effect.parameters[p].nature,
+                Nature::Begin(_) | Nature::End(_)
+            );
+            let logs = self.fit_logs.logs.iter();
+            let reach = logs.filter_map(|log| reach(log.log.time(), active.values[p]));
+            if let Some(reach) = reach.min_by(f64::total_cmp).filter(|_| is_instant) {
+                let spread = &mut spreads[known + i];
+                // Uniform over the gap.
+                spread.of_noise = spread.of_noise.hypot(reach / 3.0_f64.sqrt());
+            }
+        }
+    }
+
     pub(super) fn finish(self, base: Fit, intervals: Intervals) -> Found {
         let Intervals {
             columns,
@@ -89,5 +113,26 @@ impl Search<'_> {
             check_logs: self.check_logs,
             test: None,
         }
+    }
+}
+
+/// How far an instant is from the farther of the samples about it; `None` where it is not between
+/// two.
+fn reach(times: &[f64], instant: f64) -> Option<f64> {
+    let next = times.partition_point(|&t| t <= instant);
+    let before = times.get(next.checked_sub(1)?)?;
+    Some((instant - before).max(times.get(next)? - instant))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reach;
+
+    #[test]
+    fn an_instant_is_known_to_the_gap_that_it_lies_in() {
+        let times = [0.0, 0.1, 0.2, 0.9, 1.0];
+        assert_eq!(reach(&times, 0.25), Some(0.9 - 0.25));
+        assert_eq!(reach(&times, 0.2), Some(0.7));
+        assert_eq!([-0.1, 1.0].map(|t| reach(&times, t)), [None; 2]);
     }
 }

@@ -12,6 +12,7 @@ mod revise;
 mod rounds;
 mod state;
 mod types;
+mod wave;
 
 use std::sync::Arc;
 

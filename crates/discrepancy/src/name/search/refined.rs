@@ -101,6 +101,19 @@ pub(super) fn alike(
     all
 }
 
+/// Keeps the first of those that were begun with one effect in several shapes.
+pub(super) fn best_of_each(refined: &mut Vec<Refined>) {
+    let mut seen: Vec<&str> = Vec::new();
+    refined.retain(|r| match r.parts.as_slice() {
+        [one] if !r.is_form() => {
+            let new = !seen.contains(&one.effect.name);
+            seen.push(one.effect.name);
+            new
+        }
+        _ => true,
+    });
+}
+
 /// Moves the simplest of those that explain about as much as the best to the
 /// front.
 pub(super) fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {

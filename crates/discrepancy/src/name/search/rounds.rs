@@ -3,14 +3,13 @@
 use axis_sim::effects::{ActiveEffect, Effect};
 use rayon::prelude::*;
 
-use super::evidence::{HELD_OUT, LEAST_HELD_OUT, MATERIAL, WORSE};
+use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
 use super::form::effects_before_forms;
 use super::free_curve::FreeCurves;
 use super::promise::{PROMISING, Promises, WORTH};
-use super::refined::{Refined, alike, simplest_first, single_before_pair};
+use super::refined::{Refined, alike, best_of_each, simplest_first, single_before_pair};
 use super::state::Search;
 use super::types::{Named, RunnerUp};
-use crate::answers::Prepared;
 use crate::estimate::fit::{Columns, Fit, free_parameters};
 use crate::name::gap::is_material;
 use crate::name::library::is_force_in_time;
@@ -19,12 +18,6 @@ use crate::name::screen::Screened;
 /// Share of the promised fall of D that a simulation must keep, or other sizes are
 /// tried.
 const KEPT: f64 = 0.8;
-
-/// A load with a period of its own, which is its second number.
-const REPEATS: &str = "cyclic-load";
-
-/// Periods of it that a log must show.
-const REPEATED: f64 = 1.5;
 
 /// Candidates of which it is tried whether least squares lead further.
 const LED_FURTHER: usize = 4;
@@ -46,9 +39,12 @@ impl Search<'_> {
                 let with_memory = self.own_with_memory(&screened).into_iter();
                 worth.extend(with_memory.filter(|pair| promises.are_worth_it(pair, most)));
             }
-            let forms = self.forms(&own).into_iter();
-            let forms = forms.filter(|form| form.gain >= WORTH * most);
-            worth.extend(forms.map(|form| vec![form]));
+            let beside = [self.forms(&own), self.waves(&own)];
+            let beside = beside
+                .into_iter()
+                .flatten()
+                .filter(|s| s.gain >= WORTH * most);
+            worth.extend(beside.map(|one| vec![one]));
             worth
         } else {
             screened.iter().map(|s| vec![s.clone()]).collect()
@@ -200,6 +196,7 @@ impl Search<'_> {
             });
         }
         refined.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        best_of_each(&mut refined);
         for r in &refined {
             let found = r.fit.state.effects.iter().rev().take(r.parts.len());
             tracing::debug!(
@@ -214,26 +211,13 @@ impl Search<'_> {
         simplest_first(refined)
     }
 
-    /// Whether a candidate is a load that would repeat, and no log goes on for long enough to
-    /// show that it does: whatever is slow looks like a part of a wave.
-    fn hardly_repeats(&self, candidate: &Refined) -> bool {
-        let duration = |log: &Prepared| match log.log.time() {
-            [first, .., last] => last - first,
-            _ => 0.0,
-        };
-        let all = self.fit_logs.logs.iter().chain(&self.check_logs.logs);
-        let longest = all.map(duration).fold(0.0, f64::max);
-        let effects = &candidate.fit.state.effects;
-        let mut new = effects.iter().rev().take(candidate.parts.len());
-        new.any(|a| a.effect.name == REPEATS && REPEATED * a.values[1] > longest)
-    }
-
     fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {
         let added = free_parameters(&best.fit.state).len() - free_parameters(&self.fit.state).len();
         let needed = self.needed(added, best.parts.len());
         tracing::debug!(gain = best.gain, held_out, needed, "on check logs");
         let sizes = [&self.check_logs, &self.fit_logs].map(|set| set.layout.size() as f64);
-        let least = LEAST_HELD_OUT.max(HELD_OUT * best.gain * (sizes[0] / sizes[1]).min(1.0));
+        let of_length = best.gain * (sizes[0] / sizes[1]).min(1.0);
+        let least = LEAST_HELD_OUT.max(self.held_out_of(best) * of_length);
         best.gain >= needed && held_out >= least && best.gain >= self.material()
     }
 
