@@ -107,14 +107,19 @@ impl Refined {
     }
 
     /// Whether it is a form, or a friction that is another one in another form: slip with a
-    /// memory is dry friction whose onset has one, and a fall of the other sign is dry friction
-    /// that comes on with speed.
+    /// memory is dry friction whose onset has one.
     fn is_of_another_form(&self) -> bool {
         let with_memory = |p: &Screened| p.effect.name == WITH_MEMORY;
         let plain = |p: &Screened| p.effect.name == PLAIN;
         let others = self.parts.iter().filter(|p| !with_memory(p));
-        let is_slip = self.parts.iter().any(with_memory) && others.into_iter().all(plain);
-        self.is_form() || is_slip || self.is_rise()
+        self.is_form() || self.parts.iter().any(with_memory) && others.into_iter().all(plain)
+    }
+
+    /// Whether it is a form of the axis' own dry friction, and not of an effect that is there.
+    fn is_form_of_own(&self) -> bool {
+        let effects = &self.fit.state.effects;
+        let base = effects.last().and_then(|a| OnsetForm::of(a)?.base());
+        base.is_some_and(|base| effects.iter().all(|a| a.effect.name != base.effect.name))
     }
 
     /// Whether it is a fall of dry friction with speed, alone and of the other sign.
@@ -199,17 +204,22 @@ const FALL: &str = "stribeck-friction";
 /// Dry friction with a memory.
 const WITH_MEMORY: &str = "maxwell-slip-hysteresis";
 
-/// Effects before a form that explains hardly more; a form before a fall of dry friction of the
-/// other sign, which says the same of that friction as if it were another.
+/// Effects before a form that explains hardly more. But of the axis' own friction a form goes
+/// before a fall of the other sign: that is the same friction, which comes on with speed.
 pub(super) fn effects_before_forms(refined: &mut [Refined]) {
-    if let Some(rise) = refined.first().filter(|r| r.is_rise()) {
+    let has_form = refined.iter().any(Refined::is_form_of_own);
+    let is_own = |r: &Refined| has_form && r.is_rise();
+    if let Some(rise) = refined.first().filter(|r| is_own(r)) {
         let least = INSTEAD * rise.gain;
-        let form = refined.iter().position(|r| r.is_form() && r.gain >= least);
+        let form = refined
+            .iter()
+            .position(|r| r.is_form_of_own() && r.gain >= least);
         if let Some(at) = form {
             refined[..=at].rotate_right(1);
         }
     }
-    let Some(first) = refined.first().filter(|r| r.is_of_another_form()) else {
+    let is_other = |r: &Refined| r.is_of_another_form() || is_own(r);
+    let Some(first) = refined.first().filter(|r| is_other(r)) else {
         return;
     };
     let share = match first.is_form() || first.is_rise() {
@@ -218,7 +228,7 @@ pub(super) fn effects_before_forms(refined: &mut [Refined]) {
     };
     let least = share * first.gain;
     let mut all = refined.iter();
-    let effect = all.position(|r| !r.is_of_another_form() && r.gain >= least);
+    let effect = all.position(|r| !is_other(r) && r.gain >= least);
     if let Some(at) = effect {
         refined[..=at].rotate_right(1);
     }
