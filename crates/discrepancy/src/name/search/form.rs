@@ -15,7 +15,7 @@ use super::state::Search;
 use super::types::Named;
 use crate::estimate::fit::Columns;
 use crate::name::library::{Candidate, responses};
-use crate::name::screen::{Screened, Screening};
+use crate::name::screen::Screened;
 
 /// Knots of speed as shares of the greatest speed: of the onset, then of the fall after
 /// break-away, whose speed may be a hundredth of the greatest or a tenth.
@@ -90,14 +90,7 @@ impl Search<'_> {
         };
         let forms: Vec<ActiveEffect> = all.filter_map(none).collect();
         let forms: Vec<Candidate> = forms.into_par_iter().map(candidate).collect();
-        let matrices = self.fit_logs.layout.spectral_matrices(&self.fit.rest);
-        let screening = Screening::new(&fitter, &self.fit, own, &forms, &matrices, |_| true);
-        let mut screened = screening.one_by_one();
-        // They have no place in the library.
-        screened.iter_mut().for_each(|s| s.candidate = None);
-        let least = super::promise::PROMISING * self.needed(ONSET_KNOTS, 1);
-        screened.retain(|s| s.gain >= least);
-        screened
+        self.screened_beside(own, &forms, ONSET_KNOTS)
     }
 }
 

@@ -186,6 +186,26 @@ impl<'a> Promises<'a> {
     }
 }
 
+impl Search<'_> {
+    /// Candidates that have no place in the library, with so many `parameters` each, as far as
+    /// they promise enough to be simulated; `own` are the derivatives of the fit's own parameters.
+    pub(super) fn screened_beside(
+        &self,
+        own: &Columns,
+        candidates: &[Candidate],
+        parameters: usize,
+    ) -> Vec<Screened> {
+        let matrices = self.fit_logs.layout.spectral_matrices(&self.fit.rest);
+        let fitter = self.fitter();
+        let screening = Screening::new(&fitter, &self.fit, own, candidates, &matrices, |_| true);
+        let mut screened = screening.one_by_one();
+        screened.iter_mut().for_each(|s| s.candidate = None);
+        let least = PROMISING * self.needed(parameters, 1);
+        screened.retain(|s| s.gain >= least);
+        screened
+    }
+}
+
 /// What some effects together promise.
 struct Promise {
     /// With the sizes at which they do.

@@ -8,7 +8,8 @@
 use std::f64::consts::TAU;
 
 use axis_sim::effects::Scales;
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Complex, Matrix2, Vector2};
+use rayon::prelude::*;
 
 use super::evidence::HELD_OUT;
 use super::refined::Refined;
@@ -16,7 +17,7 @@ use super::state::Search;
 use crate::answers::Prepared;
 use crate::estimate::fit::Columns;
 use crate::name::library::{Candidate, responses};
-use crate::name::screen::{Screened, Screening};
+use crate::name::screen::Screened;
 
 /// A load with a period of its own, which is its second number.
 const REPEATS: &str = "cyclic-load";
@@ -75,14 +76,7 @@ impl Search<'_> {
         };
         let periods = periods.filter(|p| (shortest..=longest).contains(p));
         let waves: Vec<Candidate> = periods.map(candidate).collect();
-        let matrices = self.fit_logs.layout.spectral_matrices(&self.fit.rest);
-        let screening = Screening::new(&fitter, &self.fit, own, &waves, &matrices, |_| true);
-        let mut screened = screening.one_by_one();
-        // They have no place in the library.
-        screened.iter_mut().for_each(|s| s.candidate = None);
-        let least = super::promise::PROMISING * self.needed(known.effect.parameters.len(), 1);
-        screened.retain(|s| s.gain >= least);
-        screened
+        self.screened_beside(own, &waves, known.effect.parameters.len())
     }
 
     /// The strongest lines of the fitted logs' rest, the first the strongest.
@@ -101,7 +95,7 @@ impl Search<'_> {
         let layout = &self.fit_logs.layout;
         let matrices = layout.spectral_matrices(&self.fit.rest);
         let bands: Vec<[f64; 2]> = layout.bands().map(|(edges, _)| edges).collect();
-        let of_bin = |(frequency, bin): (f64, &[nalgebra::Complex<f64>])| {
+        let of_bin = |(frequency, bin): (f64, &[Complex<f64>])| {
             let band = bands.iter().position(|[_, high]| frequency < *high)?;
             let power = |c: usize| matrices[band][(c, c)].re.max(f64::MIN_POSITIVE);
             let all = bin.iter().enumerate();
@@ -123,15 +117,14 @@ impl Search<'_> {
             .fold(f64::INFINITY, f64::min);
         let step = 1.0 / (FINER * longest);
         let steps = (HIGHEST / (period * step)) as usize;
-        let taken = |frequency: f64| -> f64 {
+        let of_all = |k: usize| -> Line {
+            let frequency = k as f64 * step;
             let logs = set.logs.iter().zip(&rest);
             let channels = logs.flat_map(|(log, rest)| rest.iter().map(move |r| (log, r)));
-            channels
-                .map(|(log, rest)| taken(log.log.time(), rest, frequency))
-                .sum()
+            let shares = channels.map(|(log, rest)| taken(log.log.time(), rest, frequency));
+            (frequency, shares.sum())
         };
-        let frequencies = (1..=steps).map(|k| k as f64 * step);
-        frequencies.map(|f| (f, taken(f))).collect()
+        (1..=steps).into_par_iter().map(of_all).collect()
     }
 
     /// Share of the fall of D on the fitted logs that a candidate must bring on others.
