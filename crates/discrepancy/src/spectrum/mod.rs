@@ -23,6 +23,7 @@
 
 mod deviance;
 mod layout;
+mod lomb;
 mod transform;
 mod whitener;
 
@@ -30,6 +31,7 @@ use nalgebra::Complex;
 
 pub(crate) use self::deviance::{deviance_of, regular};
 pub use self::layout::Layout;
+pub(crate) use self::lomb::waves;
 pub use self::whitener::Whitener;
 
 /// Amplitudes of all channels of all logs: `bins[log][bin * channels + channel]`.

@@ -5,11 +5,8 @@
 //! truth. But a load that repeats leaves a line in the rest, so the frequencies of its strongest
 //! lines are tried beside the library's.
 
-use std::f64::consts::TAU;
-
 use axis_sim::effects::Scales;
-use nalgebra::{Complex, Matrix2, Vector2};
-use rayon::prelude::*;
+use nalgebra::Complex;
 
 use super::evidence::HELD_OUT;
 use super::refined::Refined;
@@ -18,6 +15,7 @@ use crate::answers::Prepared;
 use crate::estimate::fit::Columns;
 use crate::name::library::{Candidate, responses};
 use crate::name::screen::Screened;
+use crate::spectrum::waves;
 
 /// A load with a period of its own, which is its second number.
 const REPEATS: &str = "cyclic-load";
@@ -39,9 +37,6 @@ const LINES: usize = 3;
 
 /// Frequencies of a balance's lines that are looked at, per resolved step.
 const FINER: f64 = 2.0;
-
-/// Highest of them, as a share of the rate of its samples.
-const HIGHEST: f64 = 0.25;
 
 /// A frequency, Hz, and how far it stands out there.
 type Line = (f64, f64);
@@ -105,26 +100,27 @@ impl Search<'_> {
         layout.bins(&self.fit.rest).filter_map(of_bin).collect()
     }
 
-    /// What a wave takes of the rest by least squares, which needs no even samples (Lomb,
-    /// Astrophys. Space Sci. 39 (1976) 447–462, doi:10.1007/BF00648343), logs added up.
+    /// What a wave takes of the rest by least squares, logs and channels added up.
     fn lines_of_balances(&self, longest: f64) -> Vec<Line> {
         let set = &self.fit_logs;
         let rest = set.rest(&self.fit.traces);
-        let period = set
-            .logs
-            .iter()
-            .map(|l| l.period)
-            .fold(f64::INFINITY, f64::min);
-        let step = 1.0 / (FINER * longest);
-        let steps = (HIGHEST / (period * step)) as usize;
-        let of_all = |k: usize| -> Line {
-            let frequency = k as f64 * step;
-            let logs = set.logs.iter().zip(&rest);
-            let channels = logs.flat_map(|(log, rest)| rest.iter().map(move |r| (log, r)));
-            let shares = channels.map(|(log, rest)| taken(log.log.time(), rest, frequency));
-            (frequency, shares.sum())
-        };
-        (1..=steps).into_par_iter().map(of_all).collect()
+        let periods = set.logs.iter().map(|l| l.period);
+        let period = periods.fold(f64::INFINITY, f64::min);
+        let length = (FINER * longest / period).ceil() as usize;
+        let logs = set.logs.iter().zip(&rest);
+        let channels = logs.flat_map(|(log, rest)| rest.iter().map(move |r| (log.log.time(), r)));
+        let mut lines: Vec<Line> = Vec::new();
+        for (times, rest) in channels {
+            let waves = waves(times, rest, period, length);
+            match lines.is_empty() {
+                true => lines = waves.collect(),
+                false => lines
+                    .iter_mut()
+                    .zip(waves)
+                    .for_each(|(all, one)| all.1 += one.1),
+            }
+        }
+        lines
     }
 
     /// Share of the fall of D on the fitted logs that a candidate must bring on others.
@@ -171,40 +167,21 @@ fn strongest(mut lines: Vec<Line>, slowest: f64, apart: f64) -> Vec<Line> {
     best
 }
 
-/// Share of the power of a series that a wave of this frequency takes, about its mean.
-fn taken(times: &[f64], series: &[f64], frequency: f64) -> f64 {
-    let mean = series.iter().sum::<f64>() / series.len().max(1) as f64;
-    let (mut normal, mut right, mut power) = (Matrix2::zeros(), Vector2::zeros(), 0.0);
-    for (t, value) in times.iter().zip(series) {
-        let (sin, cos) = (TAU * frequency * t).sin_cos();
-        let wave = Vector2::new(sin, cos);
-        normal += wave * wave.transpose();
-        right += wave * (value - mean);
-        power += (value - mean).powi(2);
-    }
-    let solution = normal.cholesky().map(|c| c.solve(&right));
-    solution.map_or(0.0, |x| x.dot(&right) / power.max(f64::MIN_POSITIVE))
-}
-
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::TAU;
+    use super::strongest;
 
-    use super::{strongest, taken};
-
-    /// A wave of 0.9 Hz, sampled with gaps, beside a slower and weaker one.
     #[test]
-    fn the_frequency_of_a_wave_is_found_in_samples_with_gaps() {
-        let times: Vec<f64> = (0..800)
-            .map(|k| 0.01 * f64::from(k + 60 * (k / 200)))
-            .collect();
-        let wave = |t: &f64| 2.0 * (TAU * 0.9 * t + 1.0).sin() + 0.7 * (TAU * 0.33 * t).cos();
-        let series: Vec<f64> = times.iter().map(wave).collect();
-        let all = (1..80).map(|k| 0.05 * f64::from(k));
-        let lines = all.map(|f| (f, taken(&times, &series, f))).collect();
-        let best = strongest(lines, 0.2, 0.1);
-        assert!((best[0].0 - 0.9).abs() < 0.03, "{best:?}");
-        assert!(best.iter().all(|(f, _)| *f >= 0.2), "{best:?}");
-        assert!((best[0].0 - best[1].0).abs() > 0.1);
+    fn lines_are_the_strongest_that_are_fast_enough_and_apart() {
+        let lines = [
+            (0.1, 9.0),
+            (1.0, 5.0),
+            (1.05, 4.0),
+            (2.0, 1.0),
+            (3.0, 2.0),
+            (4.0, 0.5),
+        ];
+        let best = strongest(lines.to_vec(), 0.2, 0.1);
+        assert_eq!(best, [(1.0, 5.0), (3.0, 2.0), (2.0, 1.0)]);
     }
 }
