@@ -21,7 +21,7 @@ use axis_sim::{Axis, ReplayError};
 pub use self::evidence::{MATERIAL, needed};
 pub(crate) use self::form::is_form;
 pub(crate) use self::revise::ABOVE_NOISE;
-use self::state::{Search, steady_noise};
+use self::state::{ANEW, Search, steady_noise};
 pub use self::types::{
     Alike, Found, Named, ONE_CLASS, RefusalReason, Refused, Replaced, RunnerUp, SearchError,
     Settings, SettingsError, Test,
@@ -172,9 +172,6 @@ fn calibrated(fitter: &Fitter<'_>, start: Fit, nominal: Columns) -> (Fit, Column
         false => one,
     }
 }
-
-/// Times that derivatives are made anew on the way of least squares.
-const ANEW: usize = 6;
 
 /// The logs with the defects of a fitted machine, where it is one that runs.
 fn settled(

@@ -15,6 +15,10 @@ use crate::name::library::Library;
 use crate::noise::{log_noise, noise_on};
 use crate::spectrum::Amplitudes;
 
+/// Times at most that derivatives are made anew on the way of least squares. It ends by itself
+/// where a sum of squares falls no more: one that is cut short leaves a gap that an effect fills.
+pub(super) const ANEW: usize = 40;
+
 /// A search on its way.
 #[derive(Clone)]
 pub(super) struct Search<'a> {
@@ -127,7 +131,7 @@ impl Search<'_> {
         let fitter = self.fitter();
         let known = fitter.known_columns(&self.fit);
         let near = self.steady.as_ref().map(|noise| {
-            let near = fitter.by_least_squares(self.fit.clone(), known.clone(), noise, 2);
+            let near = fitter.by_least_squares(self.fit.clone(), known.clone(), noise, ANEW);
             let known = fitter.known_columns(&near);
             fitter.calibrated(near, known)
         });
