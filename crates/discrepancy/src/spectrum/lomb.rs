@@ -8,7 +8,8 @@ use realfft::RealFftPlanner;
 /// doi:10.1007/BF00648343): pairs of a frequency (Hz) and a share from 0 to 1.
 ///
 /// Frequencies are the multiples of `1 / (length * period)` up to a quarter of the rate
-/// `1 / period`; samples go to the nearest multiple of `period` (s). The sums over samples are
+/// `1 / period`; samples go to the nearest multiple of `period` (s), and `length`, 1 or more, of
+/// these are as long as the series or longer. The sums over samples are
 /// transforms of the series and of the instants that have one, so that the cost is that of two
 /// transforms of `length` points (Press and Rybicki, Astrophys. J. 338 (1989) 277–280,
 /// doi:10.1086/167197).

@@ -15,8 +15,8 @@ use crate::name::library::Library;
 use crate::noise::{log_noise, noise_on};
 use crate::spectrum::Amplitudes;
 
-/// Times at most that derivatives are made anew on the way of least squares. It ends by itself
-/// where a sum of squares falls no more: one that is cut short leaves a gap that an effect fills.
+/// Times at most that derivatives are made anew on the way of least squares, which ends before where
+/// the sum falls no more. A way that is cut short leaves a gap that some effect fills.
 pub(super) const ANEW: usize = 40;
 
 /// A search on its way.

@@ -106,7 +106,7 @@ impl Search<'_> {
         let rest = set.rest(&self.fit.traces);
         let periods = set.logs.iter().map(|l| l.period);
         let period = periods.fold(f64::INFINITY, f64::min);
-        let length = (FINER * longest / period).ceil() as usize;
+        let length = (FINER * longest / period).ceil().max(1.0) as usize;
         let logs = set.logs.iter().zip(&rest);
         let channels = logs.flat_map(|(log, rest)| rest.iter().map(move |r| (log.log.time(), r)));
         let mut lines: Vec<Line> = Vec::new();
