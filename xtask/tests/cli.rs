@@ -1,9 +1,6 @@
 //! The developers' commands, and that the users' are among them.
 
-#[path = "../../crates/feed-axis/tests/common/mod.rs"]
-mod common;
-
-use common::{refuse, root, succeed};
+use crate::common::{refuse, root, succeed};
 
 #[test]
 fn every_crate_depends_strictly_downward() {

@@ -1,10 +1,7 @@
 //! A short torture: no damaged or made-up input, and no disturbed run, shows a fault.
 //! The long one is `cargo xtask torture` (docs/reliability.md).
 
-#[path = "../../crates/feed-axis/tests/common/mod.rs"]
-mod common;
-
-use common::{refuse, succeed};
+use crate::common::{refuse, succeed};
 
 #[test]
 fn inputs_are_read_or_refused_the_same_way_each_time() {

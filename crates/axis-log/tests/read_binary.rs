@@ -1,15 +1,12 @@
 //! Logs from Parquet and MAT: what is read, skipped and refused.
 
-mod parquet_file;
-mod reading;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::parquet_file::{self, Column, Values};
+use crate::reading::{REQUIRED, emps, mapping, names, without_folder};
 use axis_log::{Channel, Log, Mapping, read_log, write_csv};
-use parquet_file::{Column, Values};
 use proptest::prelude::*;
-use reading::{REQUIRED, emps, mapping, names, without_folder};
 
 fn parquet(
     columns: &[Column],

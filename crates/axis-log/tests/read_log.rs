@@ -1,12 +1,10 @@
 //! Logs by a mapping: what is renamed, skipped and refused, in CSV.
 
-mod reading;
-
 use std::fs;
 
+use crate::reading::{REQUIRED, emps, map, mapping, names, without_folder};
 use axis_log::{Log, Mapping, read_log};
 use proptest::prelude::*;
-use reading::{REQUIRED, emps, map, mapping, names, without_folder};
 
 fn csv(text: &str, mapping: &Mapping, required: &[&str]) -> Result<Log, String> {
     let folder = tempfile::tempdir().unwrap();

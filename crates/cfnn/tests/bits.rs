@@ -1,7 +1,7 @@
 //! Networks without an allocator give the bits that they have always given, in both precisions: a hash of many
 //! evaluations.
 //!
-//! `cargo test -p cfnn --no-default-features --test bits -- --nocapture` prints the hash. It was made before the
+//! `cargo test -p cfnn --no-default-features bits -- --nocapture` prints the hash. It was made before the
 //! scalar of an evaluation became that of the other control laws.
 
 use cfnn::{FixedNetwork, NetworkScalar, ScalingRange, pack, packed_len};

@@ -1,6 +1,6 @@
 //! Strategies in `f64` give the bits that they have always given: a hash of a long run.
 //!
-//! `cargo test -p compensator --test bits -- --nocapture` prints the hash. It was made with the strategies in `f64`
+//! `cargo test -p compensator bits -- --nocapture` prints the hash. It was made with the strategies in `f64`
 //! alone, before they became generic over their scalar.
 #![cfg(feature = "alloc")]
 

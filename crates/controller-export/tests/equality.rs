@@ -1,16 +1,14 @@
 //! The C code gives what the Rust code gives.
 
-mod support;
-
 use std::path::Path;
 
+use crate::support::program::{compare, compilers, write, write_one};
+use crate::support::{Outcome, laws, samples};
 use axis_pipeline::strategies::Predictors;
 use axis_sim::Axis;
 use compensator::GuardLimits;
 use controller_export::c::{CSource, Precision};
 use controller_export::{EXPORTED, ExportedController};
-use support::program::{compare, compilers, write, write_one};
-use support::{Outcome, laws, samples};
 
 const BOTH: [Precision; 2] = [Precision::F64, Precision::F32];
 

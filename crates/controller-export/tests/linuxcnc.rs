@@ -1,11 +1,9 @@
 //! LinuxCNC components: texts that halcompile can take, whether it is here or not.
 
-mod support;
-
 use std::collections::BTreeSet;
 
+use crate::support::{Outcome, laws, samples};
 use controller_export::{EXPORTED, ExportedController, linuxcnc};
-use support::{Outcome, laws, samples};
 
 fn words(text: &str) -> BTreeSet<&str> {
     let parts = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));

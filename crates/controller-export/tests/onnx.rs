@@ -1,11 +1,9 @@
 //! The ONNX file holds the network: decoded and evaluated operator by operator.
 
-mod support;
-
+use crate::support::onnx::evaluate;
+use crate::support::{Outcome, laws, samples};
 use controller_export::onnx::{self, OPSET, proto};
 use prost::Message;
-use support::onnx::evaluate;
-use support::{Outcome, laws, samples};
 
 #[test]
 fn the_graph_is_the_network() -> Outcome<()> {

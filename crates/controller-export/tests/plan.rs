@@ -1,15 +1,13 @@
 //! What is exported as a plan is the strategy that the simulator runs.
 
-mod support;
-
 use std::sync::Arc;
 
+use crate::support::laws::{LIMITS, Runs, Streaming};
+use crate::support::{Outcome, laws, samples};
 use axis_pipeline::strategies::{STRATEGIES, named};
 use compensator::{Correction, Reference, Sample};
 use controller_export::c::{self, Precision};
 use controller_export::{ExportError, ExportedController};
-use support::laws::{LIMITS, Runs, Streaming};
-use support::{Outcome, laws, samples};
 use trajectories::Motion;
 
 /// Set points one by one, held back by the look-ahead, give what the strategy gives that knows

@@ -1,11 +1,9 @@
 //! Campaigns without a scheduler: shards and their merging against one process, byte for byte.
 
-mod common;
-
 use std::path::Path;
 use std::process::Command;
 
-use common::{refuse, root, succeed, text};
+use crate::common::{refuse, root, succeed, text};
 
 fn read(path: impl AsRef<Path>) -> Vec<u8> {
     std::fs::read(path).unwrap()

@@ -1,16 +1,13 @@
 //! The commands as a user runs them: the whole pipeline in its small version,
 //! its figures, what it refuses, and what it leaves alone.
 
-mod common;
-mod schema_of;
-
 use std::process::{Command, Stdio};
 
 use axis_log::{Mapping, read_log};
 use serde_json::Value;
 
-use common::{refuse, root, run, succeed, text};
-use schema_of::assert_validates;
+use crate::common::{refuse, root, run, succeed, text};
+use crate::schema_of::assert_validates;
 
 #[test]
 fn help_names_every_command() {

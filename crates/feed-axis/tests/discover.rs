@@ -2,14 +2,11 @@
 //! which nothing may be concluded are refused, with file, place and what would be valid,
 //! and leave no result behind.
 
-mod common;
-mod schema_of;
-
 use std::path::Path;
 
+use crate::common::{refuse, succeed};
+use crate::schema_of::assert_validates;
 use axis_sim::Axis;
-use common::{refuse, succeed};
-use schema_of::assert_validates;
 
 /// A log of a rest, a move, a rest, the way back and a rest at 1 kHz.
 fn lines() -> Vec<String> {

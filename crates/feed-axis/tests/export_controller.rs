@@ -1,14 +1,13 @@
 //! `export c`, `linuxcnc` and `onnx` as a user runs them, with a network that was trained.
 
-mod common;
-#[path = "../../controller-export/tests/support/mod.rs"]
-mod support;
-
 use std::path::{Path, PathBuf};
 
+use crate::common::{refuse, root, run, succeed, text};
+use crate::support;
+use crate::support::program::{Course, compare, compilers, write_course};
+use crate::support::samples::{Event, Random};
 use axis_pipeline::strategies::{NETWORK_LUGRE, Predictors};
 use axis_sim::ClosedLoop;
-use common::{refuse, root, run, succeed, text};
 use compensator::{Compensator, Correction, GuardLimits, Sample};
 use controller_export::ExportedController;
 use controller_export::c::{self, Precision};
@@ -16,8 +15,6 @@ use feed_axis::commands::{identify, train};
 use feed_axis::context::{Common, Context};
 use prost::Message;
 use serde_json::Value;
-use support::program::{Course, compare, compilers, write_course};
-use support::samples::{Event, Random};
 
 const AXIS: &str = "data/axes/linear-stage.toml";
 

@@ -1,8 +1,6 @@
 //! `export drive` as a user runs it.
 
-mod common;
-
-use common::{refuse, succeed};
+use crate::common::{refuse, succeed};
 use serde_json::Value;
 
 #[test]

@@ -1,10 +1,8 @@
 //! `export fmu` as a user runs it; what the unit does is checked by axis-fmu and `.ci/fmu`.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{refuse, succeed};
+use crate::common::{refuse, succeed};
 use serde_json::Value;
 
 /// A file that the command takes for the library: it holds its mark.

@@ -1,13 +1,10 @@
 //! The JSON Schemas of the files: current, and true of what the commands write.
 
-mod common;
-mod schema_of;
-
+use crate::common::{refuse, root, run, succeed};
+use crate::schema_of::{assert_validates, committed};
 use axis_sim::mechanism::MECHANISMS;
 use clap::ValueEnum;
-use common::{refuse, root, run, succeed};
 use feed_axis::commands::schema::File;
-use schema_of::{assert_validates, committed};
 use serde_json::Value;
 
 #[test]

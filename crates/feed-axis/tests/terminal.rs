@@ -1,8 +1,6 @@
 //! What a script relies on: exit codes, what stands on standard output, one JSON document.
 
-mod common;
-
-use common::{refuse, root, run, succeed, text};
+use crate::common::{refuse, root, run, succeed, text};
 use serde_json::Value;
 
 /// Standard output of a command that must be done, as JSON.

@@ -1,9 +1,7 @@
 //! In `f64` every result keeps its bits, on every platform and with every
 //! change of the code: sums over drawn inputs.
 
-mod axis;
-
-use axis::{DC_VOLTAGE, PERIOD, gains, limits, motor, servo};
+use crate::axis::{DC_VOLTAGE, PERIOD, gains, limits, motor, servo};
 use foc_pmsm::inverter::{Inverter, Rotor};
 use foc_pmsm::svpwm::{Duties, Overmodulation, Svpwm, sector};
 use foc_pmsm::{

@@ -1,9 +1,7 @@
 //! A step of the q current in the closed current loop, with the inverter
 //! averaged, switched, and left out (dq voltages held).
 
-mod axis;
-
-use axis::{CurrentLoop, drawn_current_loop, paper_current_loop};
+use crate::axis::{CurrentLoop, drawn_current_loop, paper_current_loop};
 use foc_pmsm::inverter::{Inverter, Rotor};
 use foc_pmsm::svpwm::{Overmodulation, Svpwm};
 use foc_pmsm::{Dq, ServoState};

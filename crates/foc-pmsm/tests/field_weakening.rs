@@ -1,10 +1,8 @@
 //! Field weakening: above base speed the drive keeps following, below it
 //! nothing changes.
 
-mod axis;
-
-use axis::rigid::Rigid;
-use axis::{PERIOD, cast, drawn_current_loop, gains, limits, motor};
+use crate::axis::rigid::Rigid;
+use crate::axis::{PERIOD, cast, drawn_current_loop, gains, limits, motor};
 use axis_scalar::Scalar;
 use foc_pmsm::{
     Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState, FocError, MotorParameters,

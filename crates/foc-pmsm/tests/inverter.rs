@@ -1,8 +1,6 @@
 //! The two models of the inverter: volt-seconds, switching pattern, dead time.
 
-mod axis;
-
-use axis::{DC_VOLTAGE, PERIOD, drawn_dc_voltage, drawn_period, motor};
+use crate::axis::{DC_VOLTAGE, PERIOD, drawn_dc_voltage, drawn_period, motor};
 use foc_pmsm::inverter::{Inverter, Rotor, SwitchingSegment};
 use foc_pmsm::svpwm::{Duties, Overmodulation, Svpwm};
 use foc_pmsm::{AlphaBeta, Dq, FocError, Phases};

@@ -1,8 +1,6 @@
 //! The motor: torque from the power balance, steps, validation.
 
-mod axis;
-
-use axis::{RATED_SPEED, TORQUE_CONSTANT, drawn_motor, log_uniform, motor};
+use crate::axis::{RATED_SPEED, TORQUE_CONSTANT, drawn_motor, log_uniform, motor};
 use foc_pmsm::{Dq, FocError, MotorParameters, Pmsm};
 use proptest::prelude::*;
 

@@ -1,9 +1,9 @@
 //! A d current reference and a voltage limit in each cycle.
 
-mod axis;
-
-use axis::rigid::Rigid;
-use axis::{PERIOD, cast, drawn_gains, drawn_period, gains, limits, log_uniform, motor, servo};
+use crate::axis::rigid::Rigid;
+use crate::axis::{
+    PERIOD, cast, drawn_gains, drawn_period, gains, limits, log_uniform, motor, servo,
+};
 use axis_scalar::Scalar;
 use foc_pmsm::{
     Dq, Measurement, OperatingPoint, ServoCorrection, ServoLimits, ServoReference, ServoState,

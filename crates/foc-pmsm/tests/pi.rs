@@ -1,8 +1,6 @@
 //! The PI law: order of operations, limit, recovery from saturation.
 
-mod axis;
-
-use axis::log_uniform;
+use crate::axis::log_uniform;
 use foc_pmsm::{AntiWindup, FocError, Pi, PiParameters, PiState};
 use proptest::prelude::*;
 

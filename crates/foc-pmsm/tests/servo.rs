@@ -1,9 +1,7 @@
 //! The cascade: one cycle by hand, limits, corrections, a rigid drive.
 
-mod axis;
-
-use axis::rigid::{RADIUS, Rigid};
-use axis::{
+use crate::axis::rigid::{RADIUS, Rigid};
+use crate::axis::{
     CurrentLoop, PERIOD, RPM, drawn_current_loop, drawn_gains, drawn_period, gains, limits,
     log_uniform, motor, servo,
 };

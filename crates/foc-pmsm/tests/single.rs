@@ -1,11 +1,9 @@
 //! `f32` against `f64`: the same laws, apart by the rounding of `f32`.
 
-mod axis;
-
-use axis::rigid::{RADIUS, Rigid};
-use axis::{
-    PERIOD, cast, drawn_current_loop, drawn_dc_voltage, drawn_motor, gains, limits, log_uniform,
-    motor,
+use crate::axis::rigid::{RADIUS, Rigid};
+use crate::axis::{
+    self, PERIOD, cast, drawn_current_loop, drawn_dc_voltage, drawn_motor, gains, limits,
+    log_uniform, motor,
 };
 use axis_scalar::Scalar;
 use foc_pmsm::svpwm::{Overmodulation, Svpwm};

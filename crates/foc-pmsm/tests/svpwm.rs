@@ -1,8 +1,6 @@
 //! Duty cycles: linear range, hexagon, overmodulation, six-step.
 
-mod axis;
-
-use axis::{DC_VOLTAGE, drawn_dc_voltage};
+use crate::axis::{DC_VOLTAGE, drawn_dc_voltage};
 use foc_pmsm::svpwm::{Duties, Overmodulation, Svpwm, sector};
 use foc_pmsm::{AlphaBeta, FocError};
 use proptest::prelude::*;

@@ -1,8 +1,6 @@
 //! Every public function takes every number: none panics, none hangs.
 
-mod axis;
-
-use axis::any_number;
+use crate::axis::{self, any_number};
 use foc_pmsm::inverter::{Inverter, Rotor};
 use foc_pmsm::svpwm::{Duties, Overmodulation, Svpwm, sector};
 use foc_pmsm::{

@@ -1,6 +1,6 @@
 //! The law in `f64` gives the bits that it has always given: a hash of a long run.
 //!
-//! `cargo test -p lugre --test bits -- --nocapture` prints the hash. It was made with the law in `f64` alone, before
+//! `cargo test -p lugre bits -- --nocapture` prints the hash. It was made with the law in `f64` alone, before
 //! the law became generic over its scalar.
 
 use lugre::{LuGre, Parameters};

@@ -1,17 +1,16 @@
 //! σ0 and σ1 from small motions, simulated twenty times finer than sampled.
 #![cfg(feature = "identify")]
 
-mod rig;
-
+use crate::rig;
 use std::f64::consts::PI;
 
+use crate::rig::{Noise, PAPER};
 use lugre::Parameters;
 use lugre::identify::{
     FrictionIdentifyError, MeasuredMotion, ParameterEstimate, PreslidingRecord, StaticKnowledge,
     StaticParameters, identify_presliding,
 };
 use proptest::prelude::*;
-use rig::{Noise, PAPER};
 
 const STATICS: StaticParameters = StaticParameters {
     coulomb: PAPER.coulomb,

@@ -2,12 +2,11 @@
 //! sample rate, through noise, filters and coarse sensors.
 #![cfg(feature = "identify")]
 
-mod rig;
-
+use crate::rig;
 use std::f64::consts::TAU;
 
+use crate::rig::{Noise, QUIET_MM_S, RAD_PER_M};
 use lugre::identify::{ConstantSpeedRun, Reason, identify_static};
-use rig::{Noise, QUIET_MM_S, RAD_PER_M};
 
 const SECONDS: f64 = 2.0;
 

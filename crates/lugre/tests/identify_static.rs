@@ -2,14 +2,13 @@
 //! that vibrates by itself.
 #![cfg(feature = "identify")]
 
-mod rig;
-
+use crate::rig;
+use crate::rig::{Noise, PAPER, QUIET_MM_S, RAD_PER_M, SAMPLE_RATE};
 use lugre::identify::{
     ConstantSpeedRun, FrictionIdentifyError, Reason, StaticFit, identify_static,
     identify_static_within,
 };
 use lugre::{LuGre, Parameters};
-use rig::{Noise, PAPER, QUIET_MM_S, RAD_PER_M, SAMPLE_RATE};
 
 /// Runs on the curve itself, both directions, `samples` each, 1 % noise.
 fn quiet_runs(speeds_mm_s: &[f64], samples: usize, seed: u64) -> Vec<ConstantSpeedRun> {

@@ -1,6 +1,6 @@
 //! Motions in `f64` give the bits that they have always given: a hash of many.
 //!
-//! `cargo test -p trajectories --test bits -- --nocapture` prints the hash. It was made with motions in `f64` alone,
+//! `cargo test -p trajectories bits -- --nocapture` prints the hash. It was made with motions in `f64` alone,
 //! before they became generic over their scalar.
 #![cfg(feature = "alloc")]
 

@@ -4,7 +4,7 @@
 //! than 5 rad/s gives J 1.84e-4 kg·m², 0.0321 N·m and 7.5e-5 N·m·s/rad, and leaves
 //! 3.4 mN·m RMS.
 
-use crate::{Told, axis, discover, folder, holds, off, only, read};
+use super::{Told, axis, discover, folder, holds, off, only, read};
 use discrepancy::Settings;
 
 const FROM: &str = "github:TeacherRock/LuGre_Friction, as CSV (data/axes/lugre-bench.toml)";

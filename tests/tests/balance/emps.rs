@@ -6,7 +6,7 @@
 //! relative force error 4.08 % on the log that was fitted, 5.98 % on the one with pulses
 //! (asymmetric: 3.11 % and 5.37 %).
 
-use crate::{Told, axis, discover, folder, holds, off, only, read};
+use super::{Told, axis, discover, folder, holds, off, only, read};
 
 const FROM: &str = "nonlinearbenchmark.org (EMPS)";
 

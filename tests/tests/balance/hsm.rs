@@ -2,7 +2,7 @@
 //!
 //! Catalogue values inside its files: J 1.2e-4 kg·m², B 7.03e-5 N·m·s/rad.
 
-use crate::{axis, discover, folder, holds, read};
+use super::{axis, discover, folder, holds, read};
 use discrepancy::Settings;
 
 const FROM: &str = "github:malik-robert/HSM150-data, as CSV (data/axes/hsm150.toml)";

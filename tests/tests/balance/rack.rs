@@ -8,7 +8,7 @@ use std::path::Path;
 
 use axis_log::{Channel, Log};
 
-use crate::{axis, discover, folder, only, prepared};
+use super::{axis, discover, folder, only, prepared};
 
 const FROM: &str = "github:KonradMnich/friction-identification, as CSV (data/axes/rack-push.toml)";
 

@@ -1,7 +1,5 @@
 //! By how many samples one sequence comes behind another: correlation at every lag.
 
-use realfft::RealFftPlanner;
-
 /// The lag, in samples, at which `y_k ≈ ± x_{k − lag}` correlates most, and the
 /// correlation there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,8 +84,7 @@ fn sums(x: &[f64]) -> Vec<[f64; 2]> {
 /// Σ_k x_{k−l} y_k at index l, of negative lags from the end.
 fn cross(x: &[f64], y: &[f64]) -> Vec<f64> {
     let n = (x.len() + y.len()).next_power_of_two();
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, back) = (planner.plan_fft_forward(n), planner.plan_fft_inverse(n));
+    let (forward, back) = (axis_fourier::forward(n), axis_fourier::inverse(n));
     let transform = |v: &[f64]| {
         let mut time = v.to_vec();
         time.resize(n, 0.0);

@@ -1,7 +1,5 @@
 //! Power spectral density by Welch's method, with the median over segments.
 
-use realfft::RealFftPlanner;
-
 /// A one-sided density, unit² per 1/sample, at the frequencies k / (2 (length − 1)) per
 /// sample.
 pub(crate) struct Density(pub Vec<f64>);
@@ -25,7 +23,7 @@ pub(crate) fn density(samples: &[f64]) -> Option<Density> {
         .map(|k| 0.5 - 0.5 * (std::f64::consts::TAU * k as f64 / length as f64).cos())
         .collect();
     let power: f64 = window.iter().map(|w| w * w).sum();
-    let fft = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+    let fft = axis_fourier::forward(length);
     let mut out = fft.make_output_vec();
     let moving = |s: &&[f64]| s.windows(2).any(|w| w[0] != w[1]);
     let starts = (0..samples.len().saturating_sub(length - 1)).step_by(length / 2);

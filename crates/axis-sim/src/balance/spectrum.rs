@@ -3,8 +3,6 @@
 
 use std::f64::consts::{LN_2, PI, TAU};
 
-use realfft::RealFftPlanner;
-
 /// How a motion was measured: what is differentiated how often to an acceleration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
@@ -68,7 +66,7 @@ impl Differences {
         for (k, value) in differences.iter_mut().enumerate() {
             *value *= window(k);
         }
-        let fft = RealFftPlanner::<f64>::new().plan_fft_forward(n.max(1));
+        let fft = axis_fourier::forward(n.max(1));
         let mut spectrum = fft.make_output_vec();
         differences.resize(n.max(1), 0.0);
         // The lengths agree by construction, so the transform cannot fail.

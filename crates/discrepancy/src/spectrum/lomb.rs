@@ -1,7 +1,6 @@
 //! Waves by least squares in samples with gaps.
 
 use nalgebra::{Matrix2, Vector2};
-use realfft::RealFftPlanner;
 
 /// What a wave of each frequency takes of the power of a series about its mean, by least squares,
 /// which needs no even samples (Lomb, Astrophys. Space Sci. 39 (1976) 447–462,
@@ -30,7 +29,7 @@ pub(crate) fn waves(
         instants[slot] += 1.0;
         power += (value - mean).powi(2);
     }
-    let fft = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+    let fft = axis_fourier::forward(length);
     let transform = |mut samples: Vec<f64>| {
         let mut spectrum = fft.make_output_vec();
         // The lengths agree by construction, so the transform cannot fail.

@@ -4,8 +4,8 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use std::fmt;
 use std::sync::Arc;
 
+use axis_fourier::RealToComplex;
 use nalgebra::Complex;
-use realfft::{RealFftPlanner, RealToComplex};
 
 use super::layout::{Layout, RAMP};
 
@@ -28,7 +28,7 @@ impl Transform {
     /// Of `n` averages, `period` seconds apart, that count from `begin` on, s.
     pub(super) fn new(n: usize, period: f64, begin: f64) -> Self {
         Self {
-            fft: RealFftPlanner::<f64>::new().plan_fft_forward(n),
+            fft: axis_fourier::forward(n),
             taper: taper(n, period, begin),
         }
     }

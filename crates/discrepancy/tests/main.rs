@@ -1,0 +1,7 @@
+//! One test program: what the search may be asked, and what it may not conclude.
+
+mod controller;
+mod foresight;
+mod logs;
+mod settings;
+mod starts;

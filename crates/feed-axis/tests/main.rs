@@ -1,0 +1,14 @@
+//! One test program: the commands as a user runs them.
+
+mod campaign;
+mod cli;
+mod common;
+mod discover;
+mod export_controller;
+mod export_drive;
+mod export_fmu;
+mod schema;
+mod schema_of;
+#[path = "../../controller-export/tests/support/mod.rs"]
+mod support;
+mod terminal;

@@ -1,0 +1,16 @@
+//! One test program: motor, inverter, frames, laws and the whole cascade.
+
+mod axis;
+mod bits;
+mod current_step;
+mod field_weakening;
+mod frames;
+mod inverter;
+mod motor;
+mod operating_point;
+mod pi;
+mod servo;
+mod single;
+mod svpwm;
+mod total;
+mod total_single;

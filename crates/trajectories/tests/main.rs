@@ -1,0 +1,8 @@
+//! One test program: S-curves, programs and their files.
+
+mod bits;
+mod file;
+mod limits;
+mod program;
+mod scurve;
+mod single_precision;

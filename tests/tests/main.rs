@@ -1,0 +1,8 @@
+//! One test program: acceptance across the crates, on real logs where they lie beside the project.
+
+mod balance;
+mod emps;
+mod identification;
+mod independent_logs;
+mod readme;
+mod rigid_stand_in;
