@@ -6,6 +6,7 @@ use compensator::Drive;
 use super::error::BalanceError;
 use crate::actuator::Effort;
 use crate::axis::Axis;
+use crate::control::absent::command_hold;
 
 /// What a channel shows of the motor's torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +119,7 @@ impl TorqueChannel {
         }
         let held = match axis.has_control() {
             true => axis.period,
-            false => period,
+            false => command_hold(&axis.control) * period,
         };
         let (drive, delay) = axis.actuator.inverse(axis.travel_per_radian());
         let lag = match drive {

@@ -1,6 +1,6 @@
 //! The motor torque that a model needs for a motion.
 
-use lugre::LuGre;
+use lugre::{LuGre, Parameters};
 
 use super::filter::derivative;
 use super::motion::Course;
@@ -15,10 +15,49 @@ pub(super) struct Motions {
     pub motor: Course,
     /// Whether the load's is the motor's times the travel per radian, and nothing else.
     pub load_is_derived: bool,
-    /// Where one of the two was measured: force at the load per wind-up between them, N/m or
-    /// N·m/rad.
-    pub stiffness: Option<f64>,
+    /// Where one of the two was measured: what sets the other apart.
+    pub wind_up: Option<WindUp>,
 }
+
+impl Motions {
+    /// Stiffness between the motion that was measured and a load that was not, N/m or N·m/rad.
+    pub fn spring(&self, axis: &Axis) -> Option<f64> {
+        let wind_up = self.wind_up.filter(|_| self.load_is_derived)?;
+        Some(wind_up.of(axis)[0])
+    }
+}
+
+/// The transmission's wind-up, by that of the axis file.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WindUp {
+    /// Position in which it is looked at, m or rad.
+    pub at: f64,
+    /// Force at the load per wind-up, N/m or N·m/rad, times the mechanism's compliance there: of a
+    /// drive of two inertias 1/r².
+    pub stiffness_by_compliance: f64,
+}
+
+impl WindUp {
+    /// Force at the load per wind-up of an axis whose parameters may be off, and the time
+    /// constant of its damping, s.
+    fn of(&self, axis: &Axis) -> [f64; 2] {
+        let compliance = axis.mechanism.compliance(self.at);
+        [
+            self.stiffness_by_compliance / compliance,
+            axis.mechanism.stiffness_damping(),
+        ]
+    }
+
+    /// Frequency at which the load swings against a motor that is held, rad/s.
+    pub fn swing(&self, axis: &Axis) -> f64 {
+        let [stiffness, _] = self.of(axis);
+        (stiffness / axis.mechanism.load_inertia()).sqrt()
+    }
+}
+
+/// Damping ratios with which a load that is not measured swings at least and at most.
+const LEAST_DAMPING: f64 = 0.005;
+const MOST_DAMPING: f64 = 0.95;
 
 /// Rounds in which a torque is found of which the ripple depends on itself.
 const ROUNDS: usize = 30;
@@ -29,9 +68,11 @@ const ROUNDS: usize = 30;
 /// T + T_hooks(θ, T) = Σ J_i ((1 − s_i) α + s_i a / r) + r (m a + F_friction(v, z) + F_loads(x, v, t))
 /// ```
 pub(super) fn torque(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> Vec<f64> {
-    let shifted = shifted(hooks, motions, h);
-    let load = shifted.as_ref().unwrap_or(&motions.load);
-    let motor = &motions.motor;
+    let Ends {
+        load,
+        motor,
+        forces,
+    } = Ends::of(axis, hooks, motions, h);
     let r = axis.travel_per_radian();
     let mass = axis.mechanism.load_inertia();
     // What turns along a screw lags the motor by a share of the wind-up.
@@ -41,26 +82,145 @@ pub(super) fn torque(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> V
         .map(|[inertia, share]| inertia * share)
         .sum();
     let inertia = axis.mechanism.total_inertia() - mass * r * r - lagging;
-    let forces = forces(axis, hooks, load, h);
-    // The wind-up under the force that is transmitted sets the end that was not measured apart.
-    let apart = motions.stiffness.map(|stiffness| {
-        let transmitted = forces.iter().zip(&load.acceleration);
-        let wind_up: Vec<f64> = transmitted
-            .map(|(force, a)| (force + mass * a) / stiffness)
-            .collect();
-        derivative(&derivative(&wind_up, h), h)
-    });
     let one = |(k, force): (usize, f64)| {
-        let apart = apart.as_ref().map_or(0.0, |a| a[k]);
-        let [of_load, of_motor] = match motions.load_is_derived {
-            true => [load.acceleration[k] - apart, motor.acceleration[k]],
-            false => [load.acceleration[k], motor.acceleration[k] + apart / r],
-        };
+        let [of_load, of_motor] = [load.acceleration[k], motor.acceleration[k]];
         let rotation = inertia * of_motor + lagging * of_load / r;
         let all = rotation + r * (mass * of_load + force);
         own(hooks, motor.position[k], all)
     };
     forces.into_iter().enumerate().map(one).collect()
+}
+
+/// Where load and motor are, the end that was not measured by the other and the wind-up, and the
+/// forces on the load.
+struct Ends {
+    load: Course,
+    motor: Course,
+    forces: Vec<f64>,
+}
+
+impl Ends {
+    fn of(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> Self {
+        let load = shifted(hooks, motions, h).unwrap_or_else(|| motions.load.clone());
+        let motor = motions.motor.clone();
+        let spring = motions.spring(axis);
+        let forces = forces(axis, hooks, &load, spring, h);
+        let Some(wind_up) = motions.wind_up else {
+            return Self {
+                load,
+                motor,
+                forces,
+            };
+        };
+        let wind_up = wind_up.of(axis);
+        let mass = axis.mechanism.load_inertia();
+        if motions.load_is_derived {
+            let behind = |forces: &[f64]| {
+                let lag = lag_of_load(forces, &load.acceleration, mass, wind_up, h);
+                load.plus(-1.0, &lag)
+            };
+            // Loads act where the load is. Friction is left at the motor's speed, with the spring in its
+            // bristles: it sets the load swinging, and along that speed would reverse with every swing.
+            let at_the_load = Course {
+                speed: load.speed.clone(),
+                ..behind(&forces)
+            };
+            let forces = self::forces(axis, hooks, &at_the_load, spring, h);
+            return Self {
+                load: behind(&forces),
+                motor,
+                forces,
+            };
+        }
+        let pairs = forces.iter().zip(&load.acceleration);
+        let transmitted = pairs.map(|(force, a)| force + mass * a).collect();
+        let ahead = lead_of_motor(transmitted, wind_up, h);
+        Self {
+            motor: motor.plus(axis.travel_per_radian().recip(), &ahead),
+            load,
+            forces,
+        }
+    }
+}
+
+/// Wind-up w by which a motor that is not measured leads a load that is, times the travel per radian:
+/// the force F that is transmitted is known, F = k (w + τ ẇ), and of slow motion w = (F − τ Ḟ)/k.
+fn lead_of_motor(transmitted: Vec<f64>, [stiffness, damping]: [f64; 2], h: f64) -> Course {
+    let rates = derivative(&transmitted, h);
+    let pairs = transmitted.into_iter().zip(rates);
+    let position: Vec<f64> = pairs
+        .map(|(force, rate)| (force - damping * rate) / stiffness)
+        .collect();
+    let speed = derivative(&position, h);
+    Course {
+        acceleration: derivative(&speed, h),
+        speed,
+        position: from_its_begin(position),
+    }
+}
+
+/// Wind-up w by which a load that is not measured lags the motor, whose acceleration there is a. It
+/// swings against the motor as one mass on a spring:
+///
+/// ```text
+/// m ẅ + k τ ẇ + k w = m a + F_friction + F_loads
+/// ```
+fn lag_of_load(
+    forces: &[f64],
+    accelerations: &[f64],
+    mass: f64,
+    [stiffness, damping]: [f64; 2],
+    h: f64,
+) -> Course {
+    let pairs = forces.iter().zip(accelerations);
+    let per_mass: Vec<f64> = pairs.map(|(force, a)| a + force / mass).collect();
+    let frequency = (stiffness / mass).sqrt();
+    swing(&per_mass, frequency, 0.5 * damping * frequency, h)
+}
+
+/// Where a log's position begins is where it was set to.
+fn from_its_begin(mut positions: Vec<f64>) -> Vec<f64> {
+    let first = positions.first().copied().unwrap_or(0.0);
+    positions.iter_mut().for_each(|x| *x -= first);
+    positions
+}
+
+/// Course of w from rest under the first of the `inputs` u, which is linear between samples `h` seconds
+/// apart: ẅ + 2 ζ ω ẇ + ω² w = u.
+fn swing(inputs: &[f64], frequency: f64, damping: f64, h: f64) -> Course {
+    // Without any, noise at ω would never die away.
+    let zeta = damping.clamp(LEAST_DAMPING, MOST_DAMPING);
+    let squared = frequency * frequency;
+    let decay = zeta * frequency;
+    let damped = frequency * (1.0 - zeta * zeta).sqrt();
+    let (sin, cos) = (damped * h).sin_cos();
+    let fade = (-decay * h).exp();
+    let [mut w, mut rate] = [inputs.first().map_or(0.0, |u| u / squared), 0.0];
+    let mut course = Course {
+        position: Vec::with_capacity(inputs.len()),
+        speed: Vec::with_capacity(inputs.len()),
+        acceleration: Vec::with_capacity(inputs.len()),
+    };
+    for (k, &now) in inputs.iter().enumerate() {
+        course.position.push(w);
+        course.speed.push(rate);
+        course
+            .acceleration
+            .push(now - 2.0 * decay * rate - squared * w);
+        let slope = (inputs.get(k + 1).unwrap_or(&now) - now) / h;
+        // The particular solution that is linear in time, and the rest about it.
+        let steady = [
+            (now - 2.0 * zeta * slope / frequency) / squared,
+            slope / squared,
+        ];
+        let [d, e] = [w - steady[0], rate - steady[1]];
+        w = fade * ((cos + decay / damped * sin) * d + sin / damped * e)
+            + steady[0]
+            + h * steady[1];
+        rate = fade * ((cos - decay / damped * sin) * e - squared / damped * sin * d) + steady[1];
+    }
+    course.position = from_its_begin(course.position);
+    course
 }
 
 /// Middle of a course.
@@ -102,14 +262,15 @@ fn shifted(hooks: &Hooks, motions: &Motions, h: f64) -> Option<Course> {
 
 /// Forces on the load, against positive motion, N or N·m: friction, whose bristles go along
 /// with the measured speed, loads, and those of effects.
-fn forces(axis: &Axis, hooks: &Hooks, load: &Course, h: f64) -> Vec<f64> {
+fn forces(axis: &Axis, hooks: &Hooks, load: &Course, spring: Option<f64>, h: f64) -> Vec<f64> {
     let friction = axis.friction.share();
     let lever = friction.lever(axis.travel_per_radian());
+    let unit_law = behind_a_spring(&friction.unit, spring, lever);
     let has_loads = hooks.has_loads() || !axis.loads.is_empty();
     let speed = |k: usize| load.speed[k] / lever;
-    let own = self::friction(axis, load, h);
+    let own = self::friction(axis, load, spring, h);
     let mut before = load.speed.first().map_or(0.0, |v| v / lever);
-    let mut unit = friction.unit.steady_bristle(before);
+    let mut unit = unit_law.steady_bristle(before);
     let start = Start {
         speed: load.speed.first().copied().unwrap_or(0.0),
         ..Start::at(load.position.first().copied().unwrap_or(0.0))
@@ -121,12 +282,12 @@ fn forces(axis: &Axis, hooks: &Hooks, load: &Course, h: f64) -> Vec<f64> {
         let now = speed(k);
         let mut force = own[k];
         if has_loads {
-            unit = friction.unit.step(unit, before, now, h);
+            unit = unit_law.step(unit, before, now, h);
             let at = TableState {
                 time: k as f64 * h,
                 position: load.position[k],
                 speed: load.speed[k],
-                bristle: friction.unit.torque(unit, now),
+                bristle: unit_law.torque(unit, now),
                 pressed: 1.0,
                 transmitted,
                 travelled,
@@ -151,17 +312,24 @@ fn forces(axis: &Axis, hooks: &Hooks, load: &Course, h: f64) -> Vec<f64> {
 }
 
 /// Force of the axis' own friction along a course, N or N·m.
-fn friction(axis: &Axis, load: &Course, h: f64) -> Vec<f64> {
+fn friction(axis: &Axis, load: &Course, spring: Option<f64>, h: f64) -> Vec<f64> {
     let friction = axis.friction.share();
     let lever = friction.lever(axis.travel_per_radian());
+    let law = behind_a_spring(&friction.law, spring, lever);
     let first = load.speed.first().map_or(0.0, |v| v / lever);
-    friction_from(
-        &friction.law,
-        friction.law.steady_bristle(first),
-        lever,
-        load,
-        h,
-    )
+    friction_from(&law, law.steady_bristle(first), lever, load, h)
+}
+
+/// A friction law as it acts through a spring, N/m or N·m/rad at the load, that gives way with its
+/// bristles.
+pub(super) fn behind_a_spring(law: &LuGre, spring: Option<f64>, lever: f64) -> LuGre {
+    let own = law.parameters();
+    let Some(spring) = spring.map(|k| k * lever * lever) else {
+        return *law;
+    };
+    let stiffness = own.stiffness * spring / (own.stiffness + spring);
+    // A law that is none with this stiffness is left as it is.
+    LuGre::new(Parameters { stiffness, ..own }).unwrap_or(*law)
 }
 
 /// Force of a friction law along a course from a bristle on; the law's coordinate is the load's

@@ -6,7 +6,7 @@ use super::channel::names;
 use super::error::BalanceError;
 use super::filter::{LowPass, derivative, integral};
 use super::spectrum::{Noise, Source};
-use crate::axis::Axis;
+use crate::axis::{Axis, LoadSensor};
 use crate::mechanism::Freedom;
 
 /// A coordinate with its derivatives, one value a sample.
@@ -33,24 +33,32 @@ struct MotionChannel {
     name: &'static str,
     source: Source,
     whose: Whose,
+    /// Of that coordinate per unit of the channel.
+    scale: f64,
 }
 
-/// Those of an axis: positions before speeds, the load's before the motor's.
+/// Those of an axis: positions before speeds, the load's before the motor's. Without a sensor at
+/// the load, its position and speed are the motor's times the travel per radian.
 fn channels(axis: &Axis) -> Vec<MotionChannel> {
     let [position, speed] = match axis.freedom() {
         Freedom::Linear => ["position_m", "velocity_m_s"],
         Freedom::Rotary => ["position_rad", "velocity_rad_s"],
     };
+    let (of_load, scale) = match axis.sensors.load {
+        LoadSensor::Missing => (Whose::Motor, axis.travel_per_radian().recip()),
+        _ => (Whose::Load, 1.0),
+    };
     let all = [
-        (position, Source::Position, Whose::Load),
-        ("motor_angle_rad", Source::Position, Whose::Motor),
-        (speed, Source::Speed, Whose::Load),
-        ("motor_speed_rad_s", Source::Speed, Whose::Motor),
+        (position, Source::Position, of_load, scale),
+        ("motor_angle_rad", Source::Position, Whose::Motor, 1.0),
+        (speed, Source::Speed, of_load, scale),
+        ("motor_speed_rad_s", Source::Speed, Whose::Motor, 1.0),
     ];
-    all.map(|(name, source, whose)| MotionChannel {
+    all.map(|(name, source, whose, scale)| MotionChannel {
         name,
         source,
         whose,
+        scale,
     })
     .to_vec()
 }
@@ -77,7 +85,8 @@ impl Measured {
             if found.iter().any(known) {
                 continue;
             }
-            let samples = log.channel(channel.name).unwrap_or_default().to_vec();
+            let samples = log.channel(channel.name).unwrap_or_default();
+            let samples: Vec<f64> = samples.iter().map(|x| channel.scale * x).collect();
             found.push(Self {
                 whose: channel.whose,
                 name: channel.name,
@@ -128,6 +137,16 @@ impl Measured {
 }
 
 impl Course {
+    /// With so many times another motion added.
+    pub fn plus(&self, times: f64, other: &Self) -> Self {
+        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + times * b).collect();
+        Self {
+            position: sum(&self.position, &other.position),
+            speed: sum(&self.speed, &other.speed),
+            acceleration: sum(&self.acceleration, &other.acceleration),
+        }
+    }
+
     /// The same motion at the other end of a stiff transmission.
     pub fn times(&self, factor: f64) -> Self {
         let scaled = |series: &[f64]| series.iter().map(|x| factor * x).collect();

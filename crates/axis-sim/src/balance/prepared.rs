@@ -6,7 +6,7 @@ use super::Balance;
 use super::channel::TorqueChannel;
 use super::error::BalanceError;
 use super::filter::LowPass;
-use super::law::Motions;
+use super::law::{Motions, WindUp};
 use super::motion::{Course, Measured, Whose};
 use super::quality::{BalanceQuality, TOLERATED};
 use super::spectrum::{least_noise, passed};
@@ -29,8 +29,15 @@ const RATE: f64 = 2.5;
 /// one: there a two-mass drive's inertia seems greater by 4 %.
 const RIGID: f64 = 0.2;
 
+/// The same where the wind-up is known.
+const SOFT: f64 = 0.4;
+
 /// Speeds below so many deviations of its noise are not told from rest.
 const DEVIATIONS: f64 = 3.0;
+
+/// Ways on which bristles bend to their limit, on which a contact begins to slide: from end to end, by
+/// bristles half as stiff.
+const SLIDES: f64 = 4.0;
 
 /// Periods of the cut-off at either end of a log that are left out: in two, what a filter
 /// makes of an end has decayed to a hundredth.
@@ -67,7 +74,7 @@ impl Balance {
             let most = BELOW * HIGHEST / period;
             let each = motions.iter().map(|m| m.noise.cutoff(most, TOLERATED));
             let asked = axis.balance.cutoff.unwrap_or(f64::INFINITY);
-            let stiff = rigid_below(axis, motions.len());
+            let stiff = rigid_below(axis, motions);
             let found = each.fold(most.min(stiff), f64::min);
             match asked.is_finite() {
                 true => asked.min(0.5 * HIGHEST / BELOW / period),
@@ -109,15 +116,6 @@ impl Balance {
             .slowest
             .map_or(told, |slowest| slowest.max(told));
         let (moving, all) = moving(&motions.load, period, cutoff, every, standstill);
-        if moving.len() < LEAST {
-            let error = BalanceError::Standstill {
-                kept: moving.len(),
-                samples: all,
-                least: LEAST,
-                speed: standstill,
-            };
-            return Err(error.into());
-        }
         let filter = LowPass::new(cutoff * period);
         let logged = log.channel(channel.name)?;
         let noise = &measured[0].noise;
@@ -128,13 +126,24 @@ impl Balance {
             axis,
             measured: &measured[0],
             load: &motions.load,
+            spring: motions.spring(axis),
             period,
             cutoff: motion_cutoff,
         };
         let per_force = channel.per_torque(axis) * axis.travel_per_radian();
         let unsure = remeasured.unsure(&filter);
         let near = (NEAR / (cutoff * period)).ceil() as usize;
-        let kept = sure(&moving, &unsure, near, floor / per_force);
+        let creeps = creeps(axis, &motions.load, period, near);
+        let kept = sure(&moving, creeps, &unsure, near, floor / per_force);
+        if kept.len() < LEAST {
+            let error = BalanceError::Standstill {
+                kept: kept.len(),
+                samples: all,
+                least: LEAST,
+                speed: standstill,
+            };
+            return Err(error.into());
+        }
         let shown = filter.apply(logged);
         let pick = |series: &[f64]| -> Vec<f64> { kept.iter().map(|&k| series[k]).collect() };
         let position = pick(&motions.load.position);
@@ -152,6 +161,7 @@ impl Balance {
             samples: [kept.len(), all],
             unsure: moving.len() - kept.len(),
             floor,
+            friction: per_force * rms(kept.iter().map(|&k| unsure[k])),
         };
         let compared = Log::new(vec![
             Channel::new("t_s", pick(log.time()))?,
@@ -174,15 +184,35 @@ impl Balance {
 
 /// The frequency, Hz, below which one measured motion stands for that of motor and load:
 /// well below the first mode. Of two, each has its own inertia, up to the second.
-fn rigid_below(axis: &Axis, motions: usize) -> f64 {
-    RIGID * natural_frequency(axis, motions) / std::f64::consts::TAU
+///
+/// With the wind-up between them: below the frequency at which the load swings against a motor
+/// that is measured, or both against each other.
+fn rigid_below(axis: &Axis, measured: &[Measured]) -> f64 {
+    let highest = match (measured, wind_up(axis)) {
+        ([one], Some(wind_up)) => match one.whose {
+            Whose::Motor => SOFT * wind_up.swing(axis),
+            Whose::Load => RIGID * natural_frequency(axis, 1),
+        },
+        _ => RIGID * natural_frequency(axis, measured.len()),
+    };
+    highest / std::f64::consts::TAU
+}
+
+/// Root mean square.
+fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len().max(1) as f64;
+    (values.map(|v| v * v).sum::<f64>() / count).sqrt()
+}
+
+/// Middle of the stroke, m or rad.
+fn middle(axis: &Axis) -> f64 {
+    0.5 * (axis.stroke.minimum + axis.stroke.maximum)
 }
 
 /// Natural frequency of the axis in the middle of its stroke, rad/s, the first being 1; infinite
 /// where there are fewer.
 fn natural_frequency(axis: &Axis, place: usize) -> f64 {
-    let at = 0.5 * (axis.stroke.minimum + axis.stroke.maximum);
-    let mut modes = axis.mechanism.modes(at).unwrap_or_default();
+    let mut modes = axis.mechanism.modes(middle(axis)).unwrap_or_default();
     modes.retain(|w| *w > 0.0);
     modes.sort_by(f64::total_cmp);
     modes
@@ -191,15 +221,21 @@ fn natural_frequency(axis: &Axis, place: usize) -> f64 {
         .unwrap_or(f64::INFINITY)
 }
 
-/// Force at the load per wind-up of the transmission, N/m or N·m/rad: that of the two-mass drive
-/// with this axis' inertias and first natural frequency; `None` of a stiff one.
-fn stiffness(axis: &Axis) -> Option<f64> {
+/// The transmission's wind-up: that of the two-mass drive with this axis' inertias and first
+/// natural frequency; `None` of a stiff one.
+fn wind_up(axis: &Axis) -> Option<WindUp> {
     let r = axis.travel_per_radian();
     let load = axis.mechanism.load_inertia();
     let motor = axis.mechanism.total_inertia() / (r * r) - load;
     let reduced = motor * load / (motor + load);
     let stiffness = natural_frequency(axis, 1).powi(2) * reduced;
-    (stiffness.is_finite() && stiffness > 0.0).then_some(stiffness)
+    let at = middle(axis);
+    let stiffness_by_compliance = stiffness * axis.mechanism.compliance(at);
+    let gives_way = stiffness_by_compliance.is_finite() && stiffness_by_compliance > 0.0;
+    gives_way.then_some(WindUp {
+        at,
+        stiffness_by_compliance,
+    })
 }
 
 /// Motor torque per acceleration of what was measured.
@@ -245,24 +281,46 @@ fn motions(axis: &Axis, measured: &[Measured], period: f64, cutoff: f64) -> Moti
         load,
         motor,
         load_is_derived,
-        stiffness: (measured.len() == 1).then(|| stiffness(axis)).flatten(),
+        wind_up: (measured.len() == 1).then(|| wind_up(axis)).flatten(),
     }
 }
 
-/// Of the samples at which the load moves, those about which friction is `unsure` (at the load, by
-/// sample of the log) by less than noise of that size alone, `near` to either side; where
-/// that would leave too few, the surest.
-fn sure(moving: &[usize], unsure: &[f64], near: usize, noise: f64) -> Vec<usize> {
+/// Of the samples at which the load moves and does not creep, those about which friction is
+/// `unsure` (at the load, by sample of the log) by less than noise of that size alone, `near` to either
+/// side; where that would leave too few, the surest.
+fn sure(
+    moving: &[usize],
+    creeps: impl Fn(usize) -> bool,
+    unsure: &[f64],
+    near: usize,
+    noise: f64,
+) -> Vec<usize> {
     let about = |k: &usize| {
         let window = &unsure[k.saturating_sub(near)..(k + near + 1).min(unsure.len())];
         window.iter().copied().fold(0.0, f64::max)
     };
-    let mut sorted: Vec<f64> = moving.iter().map(about).collect();
-    sorted.sort_by(f64::total_cmp);
-    let least = ((MOST_SURE * moving.len() as f64) as usize).max(MOST_SURE_OF);
-    let limit = sorted.get(least).map_or(f64::INFINITY, |of| of.max(noise));
-    let kept = moving.iter().filter(|k| about(k) <= limit);
+    let limit = |of: &[usize], least: usize| {
+        let mut sorted: Vec<f64> = of.iter().map(about).collect();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(least).map_or(f64::INFINITY, |of| of.max(noise))
+    };
+    let share = limit(moving, (MOST_SURE * moving.len() as f64) as usize);
+    let sliding: Vec<usize> = moving.iter().copied().filter(|k| !creeps(*k)).collect();
+    let limit = limit(&sliding, MOST_SURE_OF).max(share);
+    let kept = sliding.iter().filter(|k| about(k) <= limit);
     kept.copied().collect()
+}
+
+/// Whether the load goes, `near` to either side of a sample, less than the way on which its contact
+/// begins to slide. Friction then is whatever holds the load, however well its speed is told from rest.
+fn creeps(axis: &Axis, load: &Course, period: f64, near: usize) -> impl Fn(usize) -> bool {
+    let friction = axis.friction.share();
+    let lever = friction.lever(axis.travel_per_radian());
+    let slides = SLIDES * (friction.law.bristle_limit() * lever).abs();
+    move |k| {
+        let window = &load.speed[k.saturating_sub(near)..(k + near + 1).min(load.speed.len())];
+        period * window.iter().map(|v| v.abs()).sum::<f64>() < slides
+    }
 }
 
 /// Every so manyth sample at which the load moves, and how many there are with those at

@@ -25,6 +25,8 @@ pub struct BalanceQuality {
     /// Noise alone in the compared channel, RMS in its unit: the least that the upper
     /// spectra of torque and motion leave possible.
     pub floor: f64,
+    /// What is unsure of the friction at the samples that are compared, RMS in that unit.
+    pub friction: f64,
 }
 
 impl BalanceQuality {

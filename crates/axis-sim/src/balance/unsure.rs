@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::filter::LowPass;
-use super::law::friction_from;
+use super::law::{behind_a_spring, friction_from};
 use super::motion::{Course, Measured, Whose};
 use crate::axis::Axis;
 
@@ -37,6 +37,8 @@ pub(super) struct Remeasured<'a> {
     pub measured: &'a Measured,
     /// The load's course as it was found.
     pub load: &'a Course,
+    /// Stiffness between it and what was measured, N/m or N·m/rad.
+    pub spring: Option<f64>,
     /// Of the samples, s.
     pub period: f64,
     /// Of the motion's low-pass, Hz.
@@ -49,16 +51,17 @@ impl Remeasured<'_> {
     pub fn unsure(&self, filter: &LowPass) -> Vec<f64> {
         let friction = self.axis.friction.share();
         let lever = friction.lever(self.axis.travel_per_radian());
+        let own = behind_a_spring(&friction.law, self.spring, lever);
         let first = self.load.speed.first().map_or(0.0, |v| v / lever);
-        let settled = friction.law.steady_bristle(first);
+        let settled = own.steady_bristle(first);
         let along = |law: &LuGre, bristle, course: &Course| {
             friction_from(law, bristle, lever, course, self.period)
         };
-        let once = along(&friction.law, settled, self.load);
+        let once = along(&own, settled, self.load);
         let mut squares = vec![0.0; once.len()];
         for seed in 0..TIMES {
             let mut random = ChaCha8Rng::seed_from_u64(seed);
-            let law = contact(&friction.law, STIFFER[seed as usize % STIFFER.len()]);
+            let law = contact(&own, STIFFER[seed as usize % STIFFER.len()]);
             let bristle = law.bristle_limit() * random.random_range(-1.0..1.0);
             let twice = along(&law, bristle, &self.again(&mut random));
             let change: Vec<f64> = twice.iter().zip(&once).map(|(b, a)| b - a).collect();

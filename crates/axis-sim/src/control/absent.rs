@@ -11,10 +11,16 @@ pub(crate) static KIND: PartKind<dyn Control> = PartKind {
     name: "none",
     summary: "no controller that is known",
     keys: &[],
-    known: &[Known::by(SAMPLED_INERTIA, |values, by| {
-        values.set(SAMPLED_INERTIA, by * of(values));
-    })
-    .within(0.1, Role::LoadInertia)],
+    known: &[
+        Known::by(SAMPLED_INERTIA, |values, by| {
+            values.set(SAMPLED_INERTIA, by * sampled(values));
+        })
+        .within(0.1, Role::LoadInertia),
+        Known::by(COMMAND_HOLD, |values, by| {
+            values.set(COMMAND_HOLD, by * hold(values));
+        })
+        .within(1.0, Role::LoadInertia),
+    ],
     build: |_| Ok(Arc::new(Absent)),
 };
 
@@ -28,13 +34,26 @@ pub(crate) static KIND: PartKind<dyn Control> = PartKind {
 /// damped.
 const SAMPLED_INERTIA: &str = "sampled_inertia";
 
-fn of(values: &Values) -> f64 {
+/// Time for which a command is held, as a share of the period of its log. A controller may be
+/// as fast as its log or any number of times faster, so all from 0 to 1 is possible.
+const COMMAND_HOLD: &str = "command_hold";
+
+fn sampled(values: &Values) -> f64 {
     values.optional(SAMPLED_INERTIA).unwrap_or(1.0)
+}
+
+fn hold(values: &Values) -> f64 {
+    values.optional(COMMAND_HOLD).unwrap_or(0.5)
 }
 
 /// That share for a control; 1 where it is known.
 pub(crate) fn sampled_inertia(control: &Part<dyn Control>) -> f64 {
-    of(control.values())
+    sampled(control.values())
+}
+
+/// Share of a log's period for which a command is held where the control is not known.
+pub(crate) fn command_hold(control: &Part<dyn Control>) -> f64 {
+    hold(control.values())
 }
 
 /// Why nothing that needs a loop can be made of such an axis.

@@ -4,24 +4,28 @@
 use axis_log::{Channel, Log};
 use axis_sim::effects::{ActiveEffect, Effect};
 use axis_sim::{
-    Axis, Balance, BalanceError, ClosedLoop, Recorder, ReplayError, Sensors, Tolerances,
+    Axis, Balance, BalanceError, ClosedLoop, LoadSensor, Recorder, ReplayError, Sensors, Tolerances,
 };
 use compensator::NoCompensation;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-use trajectories::{Limits, Program, Step};
+use trajectories::{Limits, Motion, Program, Step};
 
 use crate::{axis, text};
 
 /// The first trajectory as it is simulated, sensors without noise.
 fn simulated(axis: &Axis) -> Log {
+    simulated_on(axis, &axis.plan(&axis.trajectories[0]).unwrap())
+}
+
+/// Any motion, likewise.
+fn simulated_on(axis: &Axis, motion: &impl Motion) -> Log {
     let mut recorder = Recorder::new(axis);
-    let motion = axis.plan(&axis.trajectories[0]).unwrap();
     ClosedLoop::new(axis)
         .unwrap()
         .without_noise()
-        .run(&motion, &mut NoCompensation, |cycle| recorder.push(cycle))
+        .run(motion, &mut NoCompensation, |cycle| recorder.push(cycle))
         .completed()
         .unwrap();
     recorder.log().unwrap()
@@ -92,6 +96,27 @@ fn a_model_balances_its_own_log() {
     assert!(worst < 1.0, "{worst}");
 }
 
+/// Without a sensor at the load, a log's position is the motor's times the travel per radian, and the
+/// load swings behind it.
+#[test]
+fn a_position_without_a_sensor_at_the_load_is_the_motors() {
+    for (name, most) in [("joint.toml", 4e-4), ("belt.toml", 4e-4)] {
+        let mut axis = axis(name);
+        axis.sensors = Sensors {
+            load: LoadSensor::Missing,
+            motor: None,
+        };
+        let log = simulated_on(&axis, &back_and_forth(&axis));
+        let log = without(&log, &["motor_angle_rad"]);
+        let right = unbalanced(&axis, &log);
+        // Taken for the load's:
+        axis.sensors.load = LoadSensor::Perfect;
+        let wrong = unbalanced(&axis, &log);
+        println!("{name}: {right:.2e}, {wrong:.2e} if it were the load's");
+        assert!(right < most && right < 0.5 * wrong);
+    }
+}
+
 /// The joint's position controller runs at 1 kHz and its speed controller at 4 kHz. A log in
 /// step with the first shows each torque of a period's begin, k_p a (T - T_s) / 2 above the
 /// mean: a share of the inertia that `sampled_inertia` takes, and of which a log at 4 kHz knows
@@ -100,19 +125,13 @@ fn a_model_balances_its_own_log() {
 fn a_command_in_step_with_the_position_controller_shows_more_inertia() {
     let mut joint = axis("joint.toml");
     joint.sensors = Sensors::default();
-    let motion = back_and_forth(&joint);
-    let mut recorder = Recorder::new(&joint);
-    ClosedLoop::new(&joint)
-        .unwrap()
-        .without_noise()
-        .run(&motion, &mut NoCompensation, |cycle| recorder.push(cycle))
-        .completed()
-        .unwrap();
-    let log = without(&recorder.log().unwrap(), &["motor_angle_rad"]);
+    let log = simulated_on(&joint, &back_and_forth(&joint));
+    let log = without(&log, &["motor_angle_rad"]);
     let mut unknown = joint.clone().without_control().unwrap();
     unknown.tolerances = Tolerances::all(0.01);
     let known = unknown.known();
-    let sampled = known.iter().position(|n| *n == "sampled_inertia").unwrap();
+    let place = |name| known.iter().position(|n| *n == name).unwrap();
+    let (sampled, hold) = (place("sampled_inertia"), place("command_hold"));
     let more = |every: usize| -> f64 {
         let log = log.decimate(every).unwrap();
         let balance = Balance::new(&log, every as f64 * joint.period, &unknown).unwrap();
@@ -120,6 +139,8 @@ fn a_command_in_step_with_the_position_controller_shows_more_inertia() {
         let with = |share: f64| {
             let mut shares = vec![0.0; known.len()];
             shares[sampled] = share;
+            // A sample stands for its whole period: for its mean, but for that share.
+            shares[hold] = 1.0;
             needed(&balance, &unknown.with_known(&shares), &[])
         };
         let (none, all) = (with(0.0), with(1.0));

@@ -105,13 +105,23 @@ impl Bench {
         outcome.reduction = told.gap.check.reduction;
         outcome.unknown.clone_from(&told.unknown);
         outcome.named = named(found);
-        outcome.estimates = estimates(found, hidden, &truth.shares);
+        outcome.estimates = estimates(found, hidden, &self.as_known(&truth.shares));
         let own = told.own_form.as_ref().map(|_| "own".to_owned());
         let formed = told.effects.iter().filter(|e| e.form.is_some());
         outcome.forms = own
             .into_iter()
             .chain(formed.map(|e| e.name.clone()))
             .collect();
+    }
+
+    /// Shares of the machine's known parameters in the order of those that a search knows, which without a
+    /// control has some of its own.
+    fn as_known(&self, shares: &[f64]) -> Vec<f64> {
+        let names = self.axis.known();
+        let all = self.machine.known().into_iter();
+        let place = |name| names.iter().position(|n| *n == name);
+        let share = |name| place(name).and_then(|k| shares.get(k).copied());
+        all.map(|name| share(name).unwrap_or(0.0)).collect()
     }
 
     /// `None` where a machine does not run.
@@ -126,16 +136,17 @@ impl Bench {
             state.shares.copy_from_slice(shares);
             fitter.at(state).ok()
         };
-        let shares = truth.shares.iter().copied().chain(std::iter::repeat(0.0));
-        let shares = shares.take(nominal.shares.len()).collect();
+        let shares = self.as_known(&truth.shares);
         let effects = truth.effects.clone();
         let truth = fitter.at(State { shares, effects }).ok()?;
         let known = fitter.known_columns(&truth);
-        Some(Deviance {
+        let truth = fitter.refine(truth, &known, 4).deviance;
+        // A force outside the library may feed on itself along a measured motion.
+        truth.is_finite().then_some(Deviance {
             as_filed: of(&nominal.shares)?.deviance,
             calibrated: of(&found.base.state.shares)?.deviance,
             found: found.fit.deviance,
-            truth: fitter.refine(truth, &known, 4).deviance,
+            truth,
             needed: found.needed(),
         })
     }

@@ -117,14 +117,15 @@ pub(crate) fn floors(
     Ok((0..set.channels.len()).map(of).collect())
 }
 
-/// Noise of a balance's channel: the least that its log leaves possible, or, where that is
-/// more, what its rest has from one sample to the next. Nobody knows what its controller makes
+/// Noise of a balance's channel: the least that its log leaves possible, with what is unsure of
+/// its friction, or, where that is more, what its rest has from one sample to the next. Nobody knows what its controller makes
 /// of its sensors' noise, nor what a current has above the rate of its log: that comes back
 /// anywhere below it.
 fn of_balances(balances: &[&Balance], rest: &Rest) -> Floor {
     let samples = balances.iter().map(|b| b.quality().samples[0] as f64);
     let squares = balances.iter().zip(rest).map(|(b, log)| {
-        let least = b.quality().floor.powi(2);
+        let quality = b.quality();
+        let least = quality.floor.powi(2) + quality.friction.powi(2);
         let (time, period) = (b.compared().time(), b.compared_period());
         let unlike = |r: &Vec<f64>| unlike(r, time, period, b.correlation(period));
         log.iter().map(unlike).fold(least, f64::max)
