@@ -29,14 +29,15 @@ const RATE: f64 = 2.5;
 /// one: there a two-mass drive's inertia seems greater by 4 %.
 const RIGID: f64 = 0.2;
 
-/// The same where the wind-up is known.
+/// Highest cut-off as a share of the frequency at which a load that is not measured swings against
+/// the motor: what it does there is computed.
 const SOFT: f64 = 0.4;
 
 /// Speeds below so many deviations of its noise are not told from rest.
 const DEVIATIONS: f64 = 3.0;
 
-/// Ways on which bristles bend to their limit, on which a contact begins to slide: from end to end, by
-/// bristles half as stiff.
+/// Way after which a contact slides for certain, as a multiple of that on which its bristles bend to
+/// their limit: twice for bristles bent the other way, and twice again for some half as stiff.
 const SLIDES: f64 = 4.0;
 
 /// Periods of the cut-off at either end of a log that are left out: in two, what a filter
@@ -185,14 +186,10 @@ impl Balance {
 /// The frequency, Hz, below which one measured motion stands for that of motor and load:
 /// well below the first mode. Of two, each has its own inertia, up to the second.
 ///
-/// With the wind-up between them: below the frequency at which the load swings against a motor
-/// that is measured, or both against each other.
+/// Of a load that is found by its swinging against the motor: below the frequency of that.
 fn rigid_below(axis: &Axis, measured: &[Measured]) -> f64 {
     let highest = match (measured, wind_up(axis)) {
-        ([one], Some(wind_up)) => match one.whose {
-            Whose::Motor => SOFT * wind_up.swing(axis),
-            Whose::Load => RIGID * natural_frequency(axis, 1),
-        },
+        ([one], Some(wind_up)) if one.whose == Whose::Motor => SOFT * wind_up.swing(axis),
         _ => RIGID * natural_frequency(axis, measured.len()),
     };
     highest / std::f64::consts::TAU
