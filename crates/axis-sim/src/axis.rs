@@ -324,7 +324,7 @@ impl Axis {
         named
             || !known.is_exact()
                 && known.beside().is_none_or(|(share, role)| {
-                    let of_role = self.keys_of(role);
+                    let of_role = role.map_or_else(Vec::new, |role| self.keys_of(role));
                     of_role
                         .into_iter()
                         .all(|key| self.tolerances.of(key) < share)

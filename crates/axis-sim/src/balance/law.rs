@@ -1,9 +1,10 @@
 //! The motor torque that a model needs for a motion.
 
-use lugre::{LuGre, Parameters};
+use lugre::LuGre;
 
 use super::filter::derivative;
 use super::motion::Course;
+use super::wind_up::{WindUp, behind_a_spring, lag_of_load, lead_of_motor};
 use crate::axis::Axis;
 use crate::effects::{Hooks, ScrewState, TableState, TableStep};
 use crate::plant::Start;
@@ -26,38 +27,6 @@ impl Motions {
         Some(wind_up.of(axis)[0])
     }
 }
-
-/// The transmission's wind-up, by that of the axis file.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct WindUp {
-    /// Position in which it is looked at, m or rad.
-    pub at: f64,
-    /// Force at the load per wind-up, N/m or N·m/rad, times the mechanism's compliance there: of a
-    /// drive of two inertias 1/r².
-    pub stiffness_by_compliance: f64,
-}
-
-impl WindUp {
-    /// Force at the load per wind-up of an axis whose parameters may be off, and the time
-    /// constant of its damping, s.
-    fn of(&self, axis: &Axis) -> [f64; 2] {
-        let compliance = axis.mechanism.compliance(self.at);
-        [
-            self.stiffness_by_compliance / compliance,
-            axis.mechanism.stiffness_damping(),
-        ]
-    }
-
-    /// Frequency at which the load swings against a motor that is held, rad/s.
-    pub fn swing(&self, axis: &Axis) -> f64 {
-        let [stiffness, _] = self.of(axis);
-        (stiffness / axis.mechanism.load_inertia()).sqrt()
-    }
-}
-
-/// Damping ratios with which a load that is not measured swings at least and at most.
-const LEAST_DAMPING: f64 = 0.005;
-const MOST_DAMPING: f64 = 0.95;
 
 /// Rounds in which a torque is found of which the ripple depends on itself.
 const ROUNDS: usize = 30;
@@ -141,86 +110,6 @@ impl Ends {
             forces,
         }
     }
-}
-
-/// Wind-up w by which a motor that is not measured leads a load that is, times the travel per radian:
-/// the force F that is transmitted is known, F = k (w + τ ẇ), and of slow motion w = (F − τ Ḟ)/k.
-fn lead_of_motor(transmitted: Vec<f64>, [stiffness, damping]: [f64; 2], h: f64) -> Course {
-    let rates = derivative(&transmitted, h);
-    let pairs = transmitted.into_iter().zip(rates);
-    let position: Vec<f64> = pairs
-        .map(|(force, rate)| (force - damping * rate) / stiffness)
-        .collect();
-    let speed = derivative(&position, h);
-    Course {
-        acceleration: derivative(&speed, h),
-        speed,
-        position: from_its_begin(position),
-    }
-}
-
-/// Wind-up w by which a load that is not measured lags the motor, whose acceleration there is a. It
-/// swings against the motor as one mass on a spring:
-///
-/// ```text
-/// m ẅ + k τ ẇ + k w = m a + F_friction + F_loads
-/// ```
-fn lag_of_load(
-    forces: &[f64],
-    accelerations: &[f64],
-    mass: f64,
-    [stiffness, damping]: [f64; 2],
-    h: f64,
-) -> Course {
-    let pairs = forces.iter().zip(accelerations);
-    let per_mass: Vec<f64> = pairs.map(|(force, a)| a + force / mass).collect();
-    let frequency = (stiffness / mass).sqrt();
-    swing(&per_mass, frequency, 0.5 * damping * frequency, h)
-}
-
-/// Where a log's position begins is where it was set to.
-fn from_its_begin(mut positions: Vec<f64>) -> Vec<f64> {
-    let first = positions.first().copied().unwrap_or(0.0);
-    positions.iter_mut().for_each(|x| *x -= first);
-    positions
-}
-
-/// Course of w from rest under the first of the `inputs` u, which is linear between samples `h` seconds
-/// apart: ẅ + 2 ζ ω ẇ + ω² w = u.
-fn swing(inputs: &[f64], frequency: f64, damping: f64, h: f64) -> Course {
-    // Without any, noise at ω would never die away.
-    let zeta = damping.clamp(LEAST_DAMPING, MOST_DAMPING);
-    let squared = frequency * frequency;
-    let decay = zeta * frequency;
-    let damped = frequency * (1.0 - zeta * zeta).sqrt();
-    let (sin, cos) = (damped * h).sin_cos();
-    let fade = (-decay * h).exp();
-    let [mut w, mut rate] = [inputs.first().map_or(0.0, |u| u / squared), 0.0];
-    let mut course = Course {
-        position: Vec::with_capacity(inputs.len()),
-        speed: Vec::with_capacity(inputs.len()),
-        acceleration: Vec::with_capacity(inputs.len()),
-    };
-    for (k, &now) in inputs.iter().enumerate() {
-        course.position.push(w);
-        course.speed.push(rate);
-        course
-            .acceleration
-            .push(now - 2.0 * decay * rate - squared * w);
-        let slope = (inputs.get(k + 1).unwrap_or(&now) - now) / h;
-        // The particular solution that is linear in time, and the rest about it.
-        let steady = [
-            (now - 2.0 * zeta * slope / frequency) / squared,
-            slope / squared,
-        ];
-        let [d, e] = [w - steady[0], rate - steady[1]];
-        w = fade * ((cos + decay / damped * sin) * d + sin / damped * e)
-            + steady[0]
-            + h * steady[1];
-        rate = fade * ((cos - decay / damped * sin) * e - squared / damped * sin * d) + steady[1];
-    }
-    course.position = from_its_begin(course.position);
-    course
 }
 
 /// Middle of a course.
@@ -318,18 +207,6 @@ fn friction(axis: &Axis, load: &Course, spring: Option<f64>, h: f64) -> Vec<f64>
     let law = behind_a_spring(&friction.law, spring, lever);
     let first = load.speed.first().map_or(0.0, |v| v / lever);
     friction_from(&law, law.steady_bristle(first), lever, load, h)
-}
-
-/// A friction law as it acts through a spring, N/m or N·m/rad at the load, that gives way with its
-/// bristles.
-pub(super) fn behind_a_spring(law: &LuGre, spring: Option<f64>, lever: f64) -> LuGre {
-    let own = law.parameters();
-    let Some(spring) = spring.map(|k| k * lever * lever) else {
-        return *law;
-    };
-    let stiffness = own.stiffness * spring / (own.stiffness + spring);
-    // A law that is none with this stiffness is left as it is.
-    LuGre::new(Parameters { stiffness, ..own }).unwrap_or(*law)
 }
 
 /// Force of a friction law along a course from a bristle on; the law's coordinate is the load's

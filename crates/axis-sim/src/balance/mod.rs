@@ -24,6 +24,7 @@ mod prepared;
 mod quality;
 mod spectrum;
 mod unsure;
+mod wind_up;
 
 use axis_log::Log;
 

@@ -6,11 +6,12 @@ use super::Balance;
 use super::channel::TorqueChannel;
 use super::error::BalanceError;
 use super::filter::LowPass;
-use super::law::{Motions, WindUp};
+use super::law::Motions;
 use super::motion::{Course, Measured, Whose};
 use super::quality::{BalanceQuality, TOLERATED};
 use super::spectrum::{least_noise, passed};
 use super::unsure::Remeasured;
+use super::wind_up::WindUp;
 use crate::axis::Axis;
 use crate::replay::ReplayError;
 

@@ -7,14 +7,15 @@
 //! extrapolation: Cook, Stefanski, J. Am. Stat. Assoc. 89 (1994) 1314,
 //! doi:10.1080/01621459.1994.10476871).
 
-use lugre::{LuGre, Parameters};
+use lugre::LuGre;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::filter::LowPass;
-use super::law::{behind_a_spring, friction_from};
+use super::law::friction_from;
 use super::motion::{Course, Measured, Whose};
+use super::wind_up::{behind_a_spring, with_stiffness};
 use crate::axis::Axis;
 
 /// Times that the motion is measured once more.
@@ -22,14 +23,6 @@ const TIMES: u64 = 8;
 
 /// Factors on the bristles' stiffness, in turn.
 const STIFFER: [f64; 2] = [2.0, 0.5];
-
-/// The law with bristles so many times as stiff.
-fn contact(law: &LuGre, stiffer: f64) -> LuGre {
-    let own = law.parameters();
-    let stiffness = stiffer * own.stiffness;
-    // A law that is none with this stiffness is left as it is.
-    LuGre::new(Parameters { stiffness, ..own }).unwrap_or(*law)
-}
 
 /// A motion that is measured once more by the sensor that showed it.
 pub(super) struct Remeasured<'a> {
@@ -61,7 +54,10 @@ impl Remeasured<'_> {
         let mut squares = vec![0.0; once.len()];
         for seed in 0..TIMES {
             let mut random = ChaCha8Rng::seed_from_u64(seed);
-            let law = contact(&own, STIFFER[seed as usize % STIFFER.len()]);
+            let law = with_stiffness(
+                &own,
+                STIFFER[seed as usize % STIFFER.len()] * own.parameters().stiffness,
+            );
             let bristle = law.bristle_limit() * random.random_range(-1.0..1.0);
             let twice = along(&law, bristle, &self.again(&mut random));
             let change: Vec<f64> = twice.iter().zip(&once).map(|(b, a)| b - a).collect();

@@ -15,11 +15,11 @@ pub(crate) static KIND: PartKind<dyn Control> = PartKind {
         Known::by(SAMPLED_INERTIA, |values, by| {
             values.set(SAMPLED_INERTIA, by * sampled(values));
         })
-        .within(0.1, Role::LoadInertia),
+        .within(0.1, Some(Role::LoadInertia)),
         Known::by(COMMAND_HOLD, |values, by| {
             values.set(COMMAND_HOLD, by * hold(values));
         })
-        .within(1.0, Role::LoadInertia),
+        .within(1.0, None),
     ],
     build: |_| Ok(Arc::new(Absent)),
 };

@@ -111,7 +111,7 @@ pub struct Known {
     pub name: &'static str,
     scale: Option<fn(&mut Values, f64)>,
     exact: bool,
-    beside: Option<(f64, Role)>,
+    beside: Option<(f64, Option<Role>)>,
 }
 
 impl Known {
@@ -150,9 +150,9 @@ impl Known {
     }
 
     /// Off by up to this share unless `[tolerances]` names it, whatever these say of all others;
-    /// but exact where parameters of that role may be off by as much, which then take what it
-    /// would do.
-    pub const fn within(self, share: f64, beside: Role) -> Self {
+    /// but exact where parameters of that role, if there is one, may be off by as much, which then
+    /// take what it would do.
+    pub const fn within(self, share: f64, beside: Option<Role>) -> Self {
         Self {
             beside: Some((share, beside)),
             ..self
@@ -160,7 +160,7 @@ impl Known {
     }
 
     /// Its own tolerance, and whose do as much ([`Known::within`]).
-    pub fn beside(&self) -> Option<(f64, Role)> {
+    pub fn beside(&self) -> Option<(f64, Option<Role>)> {
         self.beside
     }
 
