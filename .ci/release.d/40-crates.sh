@@ -40,7 +40,7 @@ cargo run --quiet --locked -p xtask -- publish --dry-run
 echo "-- each feature alone"
 # One package at a time, its tests' dependencies not built: nothing else turns a feature on.
 if cargo_tool cargo-hack 0.6.46; then
-  cargo hack check --quiet --locked --each-feature "${crates[@]}"
+  cargo hack clippy --quiet --locked --each-feature "${crates[@]}" -- -D warnings
 else
   skipped "cargo-hack could not be built: features were not checked alone"
 fi

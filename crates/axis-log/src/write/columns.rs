@@ -61,6 +61,7 @@ impl Columns {
     }
 
     /// Instants that are held.
+    #[cfg(feature = "parquet")]
     pub(super) fn len(&self) -> usize {
         self.all.first().map_or(0, |(.., samples)| samples.len())
     }
