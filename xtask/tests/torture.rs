@@ -24,7 +24,9 @@ fn inputs_are_read_or_refused_the_same_way_each_time() {
 fn disturbed_runs_are_mended_by_the_next() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let said = succeed(&["torture", "--inputs", "0", "--kills", "3", "--out", out]);
+    let said = succeed(&[
+        "torture", "--inputs", "0", "--kills", "3", "--once", "--out", out,
+    ]);
     assert!(said.contains("no faults"), "{said}");
     for way in [
         "twice at once",

@@ -32,6 +32,9 @@ pub struct Options {
     /// How many runs to kill, if the time is enough; with 0, stages are left alone
     #[arg(long, value_name = "COUNT", default_value_t = u64::MAX)]
     kills: u64,
+    /// Disturb a run once in each way, of those but kills, and not at every stage and size
+    #[arg(long)]
+    once: bool,
     /// Number of the first input: with --inputs 1, a single one again
     #[arg(long, value_name = "N", default_value_t = 0)]
     from: u64,

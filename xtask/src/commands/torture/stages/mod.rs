@@ -19,6 +19,8 @@ use folder::Snapshot;
 /// A pipeline small enough to be run a thousand times.
 pub struct Bench {
     seed: u64,
+    /// Whether one of several stages or sizes is enough.
+    once: bool,
     axis: PathBuf,
     /// Where runs work.
     work: PathBuf,
@@ -81,6 +83,7 @@ impl Bench {
         let whole = folder.join("whole");
         let mut bench = Self {
             seed: options.seed,
+            once: options.once,
             work: folder.join("work"),
             reference: Snapshot::default(),
             stages: Vec::new(),
@@ -94,6 +97,17 @@ impl Bench {
         bench.reference = Snapshot::of(&bench.whole)?;
         bench.stages = folder::times(&bench.whole)?;
         Ok(bench)
+    }
+
+    /// All of these, or the one that the seed chooses.
+    fn some<'a, T>(&self, all: &'a [T]) -> &'a [T] {
+        match self.once && !all.is_empty() {
+            true => {
+                let one = (self.seed % all.len() as u64) as usize;
+                &all[one..=one]
+            }
+            false => all,
+        }
     }
 
     /// The small pipeline in a folder.
