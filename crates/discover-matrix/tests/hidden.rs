@@ -133,6 +133,18 @@ fn a_force_in_time_is_found_with_its_edges() {
     );
 }
 
+/// A load that came up with the log, and is hardly more than noise in its first 3 ms: its mean over
+/// the rest was taken for held, and 80 nm of the first rest were left.
+#[test]
+fn a_load_that_repeats_is_not_held_before_it_acts() {
+    let hidden = hide_all(vec![("cyclic-load", vec![35.34, 0.754, -2.653])], 5);
+    let found = find(&hidden, &Settings::default());
+    assert_eq!(found.effects.len(), 1, "{found:?}");
+    assert_eq!(found.effects[0].name, "cyclic-load");
+    assert_eq!(found.verdict, Verdict::Explained, "{:?}", found.gap.check);
+    assert!(found.gap.check.reduction > 0.98, "{:?}", found.gap.check);
+}
+
 /// What the engineer takes as there is there, whatever speaks for it: nothing
 /// promises a force in time here.
 #[test]

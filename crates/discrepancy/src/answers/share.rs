@@ -35,6 +35,7 @@ impl LogSet {
     /// [`ReplayError`] where the machine does not run at this state.
     pub(crate) fn follow(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
         self.find_stored(machine, state)?;
+        self.find_beginning(machine, state)?;
         self.find_effort(machine, state)?;
         self.correct_defects(machine, state)
     }
@@ -90,6 +91,48 @@ impl LogSet {
         tracing::debug!(?kept, "held by bristles at the start");
         *self = self.with_shares(&kept);
         Ok(())
+    }
+
+    /// Finds of each log that shows a command at its start whether it was held before, or came up
+    /// with the log: beside noise the first samples may not tell, and a load that changes with
+    /// time has moved on when their mean does.
+    ///
+    /// # Errors
+    /// [`ReplayError`] where the machine does not run.
+    fn find_beginning(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
+        if self.logs.iter().all(|log| log.held.is_none()) {
+            return Ok(());
+        }
+        let misfits = |set: &Self| -> Result<Vec<f64>, ReplayError> {
+            let rest = set.rest(&set.simulate(machine, state)?);
+            Ok(rest.iter().map(|log| misfit(log)).collect())
+        };
+        let other = self.begun_otherwise();
+        let pairs = misfits(self)?.into_iter().zip(misfits(&other)?);
+        let better: Vec<bool> = pairs.map(|(a, b)| a - b > BY_CHANCE).collect();
+        tracing::debug!(?better, "another beginning");
+        let logs = self.logs.iter_mut().zip(other.logs).zip(better);
+        for ((log, other), _) in logs.filter(|(_, better)| *better) {
+            *log = other;
+        }
+        Ok(())
+    }
+
+    /// With nothing stored where something was held, and the other way round.
+    fn begun_otherwise(&self) -> Self {
+        let mut set = self.clone();
+        for log in &mut set.logs {
+            let Answer::Replay(replay) = &log.answer else {
+                continue;
+            };
+            let other = match (replay.stored(), log.held) {
+                (Stored::Effort(_), _) => Stored::Nothing,
+                (Stored::Nothing, Some(held)) => Stored::Effort(held),
+                _ => continue,
+            };
+            log.answer = Answer::Replay(replay.clone().storing(other));
+        }
+        set
     }
 
     /// Moves what the drive holds at the start of each log, where that is the mean of a noisy
