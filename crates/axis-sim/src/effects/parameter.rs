@@ -45,6 +45,10 @@ pub enum Nature {
     /// Any other number above zero: where the search starts (on the paper's axis), and
     /// between which a test draws it, in logarithm.
     Extent(&'static [f64], [f64; 2]),
+    /// A natural frequency, Hz: where the search starts if each start takes a simulation, and
+    /// between which a test draws it, in logarithm. Resonances are narrow, so that a search to
+    /// which starts cost little starts at as many as lie beside each other.
+    Frequency(&'static [f64], [f64; 2]),
     /// When something begins, s, drawn between these.
     Begin([f64; 2]),
     /// A number that is given, and that no search moves.

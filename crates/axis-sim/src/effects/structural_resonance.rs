@@ -32,7 +32,7 @@ pub(super) const EFFECT: Effect = Effect {
         shape(
             "frequency",
             Measure::Other("Hz"),
-            Nature::Extent(&[20.0, 35.0, 60.0, 100.0], [18.0, 120.0]),
+            Nature::Frequency(&[20.0, 35.0, 60.0, 100.0], [18.0, 120.0]),
             45.0,
             [1.0, 1e3],
         ),

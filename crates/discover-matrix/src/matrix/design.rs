@@ -170,7 +170,9 @@ pub(crate) fn values(axis: &Axis, effect: &Effect, size: f64, random: &mut ChaCh
         Nature::Order([least, most]) => between([f64::from(least), f64::from(most) + 1.0]).floor(),
         Nature::Place(shares) => scales.start + scales.motion * between(shares),
         Nature::Width(shares) => scales.motion * between(shares),
-        Nature::Speed(_, [low, high]) | Nature::Extent(_, [low, high]) => {
+        Nature::Speed(_, [low, high])
+        | Nature::Extent(_, [low, high])
+        | Nature::Frequency(_, [low, high]) => {
             low * (high / low).powf(between([0.0, 1.0])) * scales.ratio(p.measure)
         }
         Nature::Time(_, range) => between(range),

@@ -145,6 +145,9 @@ fn searched(
     if let Some(refused) = search.refused(as_filed, &without)? {
         search = without.with_refused(refused);
         intervals = search.intervals()?;
+    } else if search.is_doubtful(&without)? {
+        search = without.with_leftover(&search.named);
+        intervals = search.intervals()?;
     }
     Ok(search.finish(base, intervals))
 }

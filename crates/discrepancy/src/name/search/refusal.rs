@@ -3,14 +3,19 @@
 use axis_sim::ReplayError;
 
 use super::state::Search;
-use super::types::{RefusalReason, Refused, RunnerUp};
+use super::types::{Named, RefusalReason, Refused, RunnerUp};
 use crate::answers::{LogSet, State};
+use crate::estimate::fit::free_parameters;
 use crate::name::gap::{Gap, gap, worsened};
 use crate::noise::{MotionAndRest, floors};
 
 /// Share of the gap above the noise, RMS on check motion, that all named effects together
 /// must take away: what leaves more than half of it explains something else.
 const LEAST_SHARE: f64 = 0.5;
+
+/// Fall of D that is asked of a balance of which no channel stood out of its noise, as a multiple of
+/// what naming takes: the noise of its motion passes through the model, and looks like evidence.
+const WITHOUT_GAP: f64 = 1.5;
 
 impl Search<'_> {
     /// The effects, where check motion is further off with them than without: than with
@@ -43,13 +48,29 @@ impl Search<'_> {
         tracing::debug!(?of_gap, "of the gap on check motion");
         let share = of_gap.reduction;
         let is_little = share < LEAST_SHARE && !self.settings_ask_for_all();
-        // Where no channel of a replay stood out of its noise, evidence alone speaks; and what is
-        // left is no gap where it is noise of another colour. In a balance noise of the motion
-        // passes through the model, and looks like evidence.
+        // Where no channel stood out of its noise, evidence alone speaks; and what is left of a
+        // replay is no gap where it is noise of another colour. In a balance noise of the motion
+        // passes through the model, and follows it.
         let is_gap = || !of_gap.may_be_coloured() || self.rest_follows_motion(&of_gap);
-        let is_left = set.is_balanced() || of_gap.stands_out() && is_gap();
+        let is_left = of_gap.stands_out() && (set.is_balanced() || is_gap());
         let refused = is_little && is_left;
         Ok(refused.then(|| self.refusal(RefusalReason::Little(share))))
+    }
+
+    /// Whether the effects of a balance of which no channel stood out of its noise bring less than
+    /// is asked then: as if nothing had been named.
+    pub(super) fn is_doubtful(&self, without: &Self) -> Result<bool, ReplayError> {
+        let set = &self.check_logs;
+        if self.named.is_empty() || !set.is_balanced() || self.settings_ask_for_all() {
+            return Ok(false);
+        }
+        let after = set.rest(&self.check.traces);
+        let before = without.check_logs.rest(&without.check.traces);
+        let floors = floors(self.machine, set, &self.check.state, &after)?;
+        let fall = without.fit.deviance - self.fit.deviance;
+        let parameters = free_parameters(&self.fit.state).len();
+        let is_weak = fall < WITHOUT_GAP * self.needed(parameters, 1);
+        Ok(is_weak && !gap(set, &before, &after, &floors).stands_out())
     }
 
     /// Whether what is left follows the motion, in any band of a channel that stands out of
@@ -83,13 +104,23 @@ impl Search<'_> {
     }
 
     /// With this said of what was tried.
-    pub(super) fn with_refused(mut self, refused: Refused) -> Self {
-        let runner_up = |n: &super::types::Named| RunnerUp {
+    pub(super) fn with_refused(self, refused: Refused) -> Self {
+        let search = self.with_leftover(&refused.effects);
+        Self {
+            refused: Some(refused),
+            ..search
+        }
+    }
+
+    /// With these as what was tried.
+    pub(super) fn with_leftover(self, tried: &[Named]) -> Self {
+        let runner_up = |n: &Named| RunnerUp {
             name: n.name,
             gain: n.evidence,
         };
-        self.leftover = refused.effects.iter().map(runner_up).collect();
-        self.refused = Some(refused);
-        self
+        Self {
+            leftover: tried.iter().map(runner_up).collect(),
+            ..self
+        }
     }
 }
