@@ -2,6 +2,7 @@
 //! than the model: other mesh, integrator and step, noise in the loop, known
 //! parameters off by up to 1 %.
 
+use axis_log::{Channel, Log};
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, Scales};
 use discover_matrix::hidden::{Exercise, Hidden, Noise, exercise};
@@ -92,6 +93,33 @@ fn find_on(motions: [Program; 2], hidden: [&Hidden; 2], settings: &Settings) -> 
 fn nothing_is_missing_from_a_clean_axis() {
     let found = find(&hide(None, 11), &Settings::default());
     assert_eq!(found.verdict, Verdict::NothingMissing, "{found:?}");
+}
+
+/// A screw that lies elsewhere in its gap until the first move takes that up: what no log counts
+/// from is not judged either.
+#[test]
+fn what_lies_before_a_log_counts_is_no_gap() {
+    let (machine, clean) = (axis(), hide(None, 11));
+    let elsewhere = |check: bool| {
+        let set = logs(&clean, &there_and_back(check), check);
+        let log = &set.logs[0];
+        let before = (0.15 / log.period) as usize;
+        let moved = |channel: &Channel| {
+            let mut channel = channel.clone();
+            let by = match channel.name.as_str() {
+                "position_m" => 1e-6,
+                _ => 0.0,
+            };
+            channel.samples[..before].iter_mut().for_each(|x| *x += by);
+            channel
+        };
+        let moved = Log::new(log.log.channels().iter().map(moved).collect()).unwrap();
+        LogSet::new(vec![("log".to_owned(), moved, log.period)], &machine).unwrap()
+    };
+    let (fit, check) = (elsewhere(false), elsewhere(true));
+    let found = search(&machine, &fit, &check, &Settings::default(), |_| ()).unwrap();
+    let found = discovery(&machine, &fit, &check, &found).unwrap().discovery;
+    assert_eq!(found.verdict, Verdict::NothingMissing, "{:?}", found.gap);
 }
 
 /// On a move without a way back, the speed sensor's noise in the mean looks like a

@@ -1,5 +1,7 @@
 //! Logs that are compared together, and what a model leaves of them.
 
+use std::ops::Range;
+
 use axis_log::Log;
 use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
 use rayon::prelude::*;
@@ -89,6 +91,16 @@ impl LogSet {
     /// Whether its logs are answered by torque balance.
     pub fn is_balanced(&self) -> bool {
         !self.balances().is_empty()
+    }
+
+    /// Samples of each log that count: what lies before is neither fitted nor judged.
+    pub(crate) fn counted(&self) -> Vec<Range<usize>> {
+        let one = |(l, log): (usize, &Prepared)| {
+            let samples = log.log.len();
+            let first = (self.layout.begins(l) / log.period).ceil() as usize;
+            first.min(samples.saturating_sub(1))..samples
+        };
+        self.logs.iter().enumerate().map(one).collect()
     }
 
     /// Simulates every log.

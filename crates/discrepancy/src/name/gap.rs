@@ -1,5 +1,7 @@
 //! The gap between model and logs, channel by channel.
 
+use std::ops::Range;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -93,23 +95,22 @@ const FLOOR: f64 = 1.05;
 /// is known.
 const DEVIATIONS: f64 = 4.0;
 
-/// Mean of a value over all samples of a channel.
-fn mean(rest: &Rest, channel: usize, value: impl Fn(usize, usize) -> f64) -> f64 {
-    let lengths = rest.iter().map(|log| log[channel].len());
-    let all = lengths
-        .clone()
-        .enumerate()
-        .flat_map(|(l, n)| (0..n).map(move |k| (l, k)));
-    all.map(|(l, k)| value(l, k)).sum::<f64>() / lengths.sum::<usize>().max(1) as f64
+/// Mean of a value over all samples that count.
+fn mean(counted: &[Range<usize>], value: impl Fn(usize, usize) -> f64) -> f64 {
+    let all = counted.iter().cloned().enumerate();
+    let all = all.flat_map(|(l, samples)| samples.map(move |k| (l, k)));
+    let samples: usize = counted.iter().map(Range::len).sum();
+    all.map(|(l, k)| value(l, k)).sum::<f64>() / samples.max(1) as f64
 }
 
-fn mean_square(rest: &Rest, channel: usize) -> f64 {
-    mean(rest, channel, |l, k| rest[l][channel][k].powi(2))
+fn mean_square(counted: &[Range<usize>], rest: &Rest, channel: usize) -> f64 {
+    mean(counted, |l, k| rest[l][channel][k].powi(2))
 }
 
 /// The gap of a set's logs, with rests before and after something was done.
 pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
-    let rms = |rest: &Rest, c: usize| mean_square(rest, c).sqrt();
+    let counted = set.counted();
+    let rms = |rest: &Rest, c: usize| mean_square(&counted, rest, c).sqrt();
     let channels: Vec<ChannelGap> = set
         .channels
         .iter()
@@ -155,8 +156,9 @@ const OF_GAP: f64 = 0.03;
 
 /// Root mean square of each channel's rest.
 pub(crate) fn sizes(set: &LogSet, rest: &Rest) -> Vec<f64> {
+    let counted = set.counted();
     let all = 0..set.channels.len();
-    all.map(|c| mean_square(rest, c).sqrt()).collect()
+    all.map(|c| mean_square(&counted, rest, c).sqrt()).collect()
 }
 
 /// Whether what brought the rest from `before` to `after` is not small in some channel beside
@@ -176,9 +178,10 @@ pub(crate) fn is_material(
 ) -> Result<bool, ReplayError> {
     let earlier = set.rest(&before.traces);
     let floors = floors(machine, set, &before.state, after)?;
+    let counted = set.counted();
     let changed = |c: usize| {
         let change = |l: usize, k: usize| after[l][c][k] - earlier[l][c][k];
-        mean(after, c, |l, k| change(l, k).powi(2)).sqrt()
+        mean(&counted, |l, k| change(l, k).powi(2)).sqrt()
     };
     let least = |c: usize| {
         let of_gap = OF_GAP * gap.get(c).copied().unwrap_or(0.0);
@@ -210,7 +213,8 @@ pub fn worsened(
     after: &Rest,
     floors: &[Floor],
 ) -> Option<Vec<&'static str>> {
-    let is_worse = |c: &usize| further_off(before, after, *c, floors[*c]);
+    let counted = set.counted();
+    let is_worse = |c: &usize| further_off(&counted, before, after, *c, floors[*c]);
     let worse: Vec<usize> = (0..set.channels.len()).filter(is_worse).collect();
     let of_gap = gap(set, before, after, floors);
     // Rests of coloured noise trade a little here for a little there.
@@ -218,11 +222,17 @@ pub fn worsened(
     (in_total || !worse.is_empty()).then(|| worse.into_iter().map(|c| set.channels[c]).collect())
 }
 
-fn further_off(before: &Rest, after: &Rest, channel: usize, floor: Floor) -> bool {
+fn further_off(
+    counted: &[Range<usize>],
+    before: &Rest,
+    after: &Rest,
+    channel: usize,
+    floor: Floor,
+) -> bool {
     let change = |l: usize, k: usize| after[l][channel][k] - before[l][channel][k];
-    let change = mean(before, channel, |l, k| change(l, k).powi(2)).sqrt();
+    let change = mean(counted, |l, k| change(l, k).powi(2)).sqrt();
     let by_noise = DEVIATIONS * 2.0 * floor.rms * change / floor.independent.max(1.0).sqrt();
-    let [before, after] = [before, after].map(|rest| mean_square(rest, channel));
+    let [before, after] = [before, after].map(|rest| mean_square(counted, rest, channel));
     after > before + by_noise && after > (FLOOR * floor.rms).powi(2)
 }
 
@@ -262,7 +272,8 @@ mod tests {
             };
             let floor = Floor::of(std::slice::from_ref(&noise));
             let quarter = std::f64::consts::FRAC_PI_2;
-            further_off(&gap(0.0, 1.0), &gap(quarter, factor), 0, floor)
+            let all = std::slice::from_ref(&(0..SAMPLES));
+            further_off(all, &gap(0.0, 1.0), &gap(quarter, factor), 0, floor)
         };
         (0..400).filter(case).count()
     }

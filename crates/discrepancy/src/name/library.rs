@@ -168,7 +168,7 @@ fn side_by_side(set: &LogSet, [least, most]: [f64; 2]) -> Option<Vec<f64>> {
         return None;
     }
     let longest = set.logs.iter().map(|l| l.log.len() as f64 * l.period);
-    let low = (PERIODS / longest.fold(0.0, f64::max)).max(least);
+    let low = (RESONANCE_PERIODS / longest.fold(0.0, f64::max)).max(least);
     let highest = set.logs.iter().map(|l| 0.5 / l.period);
     let high = highest.fold(0.0, f64::max).min(most);
     let all = std::iter::successors(Some(low), |f| Some(f * RESONANCES_APART));
@@ -188,7 +188,7 @@ const PLACES: usize = 8;
 const RESONANCES_APART: f64 = 1.02;
 
 /// Periods that a log must show of a resonance for it to be told from a mass.
-const PERIODS: f64 = 10.0;
+pub(crate) const RESONANCE_PERIODS: f64 = 10.0;
 
 /// Parts of a motion's time in which a force may begin and end.
 const SLOTS: usize = 24;

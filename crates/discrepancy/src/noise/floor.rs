@@ -1,5 +1,7 @@
 //! Noise alone in each channel.
 
+use std::ops::Range;
+
 use axis_sim::{Axis, Balance, ClosedLoop, Replay, ReplayError, Trace};
 use rayon::prelude::*;
 
@@ -87,7 +89,7 @@ pub(crate) fn floors(
         return Ok(vec![of_balances(&set.balances(), best)]);
     }
     if !shows_noise(&axis, set) {
-        let samples: usize = set.logs.iter().map(|l| l.log.len()).sum();
+        let samples: usize = set.counted().iter().map(Range::len).sum();
         let white = |c: usize| {
             let rms = upper_level(set, best, c);
             let white = Floor {
@@ -110,7 +112,12 @@ pub(crate) fn floors(
         .map(run)
         .collect::<Result<_, _>>()?;
     let of = |c: usize| {
-        let one = |run: &Rest| Floor::of(&run.iter().map(|log| log[c].clone()).collect::<Vec<_>>());
+        let counted = |run: &Rest| -> Vec<Vec<f64>> {
+            let logs = run.iter().zip(set.counted());
+            logs.map(|(log, samples)| log[c][samples].to_vec())
+                .collect()
+        };
+        let one = |run: &Rest| Floor::of(&counted(run));
         let inexact = set.inexactness(machine, c);
         Floor::of_runs(&runs.iter().map(one).collect::<Vec<_>>()).beside(inexact)
     };

@@ -129,6 +129,11 @@ impl Layout {
         }
     }
 
+    /// Time from which on a log counts, s.
+    pub fn begins(&self, log: usize) -> f64 {
+        self.begins.get(log).copied().unwrap_or(0.0)
+    }
+
     /// Time from which on all logs count in full, s.
     pub fn full_weight_from(&self) -> f64 {
         self.begins.iter().copied().fold(0.0, f64::max) + RAMP

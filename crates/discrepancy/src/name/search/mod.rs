@@ -5,12 +5,14 @@ mod force;
 mod form;
 mod free_curve;
 mod intervals;
+mod lines;
 mod promise;
 mod refined;
 mod refusal;
 mod revise;
 mod rounds;
 mod state;
+mod swing;
 mod types;
 mod wave;
 

@@ -16,6 +16,27 @@ pub(super) struct Refined {
 }
 
 impl Refined {
+    /// Numbers that were fitted.
+    fn parameters(&self) -> usize {
+        let all = self.parts.iter().flat_map(|p| p.effect.parameters);
+        all.filter(|p| p.nature != Nature::Held).count()
+    }
+
+    /// Whether a size is as large as it may be.
+    fn ends_at_bound(&self) -> bool {
+        let effects = &self.fit.state.effects;
+        let new = &effects[effects.len().saturating_sub(self.parts.len())..];
+        let mut pairs = new.iter().zip(&self.parts);
+        pairs.any(|(active, part)| {
+            let mut sizes = active.effect.parameters.iter().zip(&active.values);
+            sizes.any(|(p, value)| {
+                let edges = p.bounds(&part.scales);
+                // Some sizes cannot be negative; nothing of them is no bound.
+                p.is_size() && edges.iter().any(|edge| *edge != 0.0 && edge == value)
+            })
+        })
+    }
+
     pub(super) fn runner_up(&self) -> RunnerUp {
         RunnerUp {
             name: self.parts[0].effect.name,
@@ -121,15 +142,31 @@ pub(super) fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
         return refined;
     };
     let enough = enough(best);
-    let parameters = |r: &Refined| -> usize {
-        let all = r.parts.iter().flat_map(|p| p.effect.parameters);
-        all.filter(|p| p.nature != Nature::Held).count()
-    };
     let near = refined.iter().enumerate().filter(|(_, r)| r.gain >= enough);
-    if let Some((at, _)) = near.min_by_key(|(_, r)| parameters(r)) {
+    if let Some((at, _)) = near.min_by_key(|(_, r)| r.parameters()) {
         refined[..=at].rotate_right(1);
     }
     refined
+}
+
+/// Share of what an effect with a size at its bound explains that a simpler one must explain to be
+/// taken first: what asks for more than there can be was fitted to something else, as friction of
+/// a way back that was not run is to noise at rest.
+const INSIDE: f64 = 0.5;
+
+/// Simpler effects before one that ends at a bound.
+pub(super) fn inside_before_bound(refined: &mut [Refined]) {
+    let is_at_bound = |r: &&Refined| !r.is_form() && r.ends_at_bound();
+    let Some(first) = refined.first().filter(is_at_bound) else {
+        return;
+    };
+    let (least, most) = (INSIDE * first.gain, first.parameters());
+    let is_simpler = |r: &Refined| {
+        !r.is_form() && r.parameters() < most && r.gain >= least && !r.ends_at_bound()
+    };
+    if let Some(at) = refined.iter().position(is_simpler) {
+        refined[..=at].rotate_right(1);
+    }
 }
 
 /// Share of what two effects explain together that one must explain to be taken first: the

@@ -7,7 +7,9 @@ use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
 use super::form::effects_before_forms;
 use super::free_curve::FreeCurves;
 use super::promise::{PROMISING, Promises, WORTH};
-use super::refined::{Refined, alike, best_of_each, simplest_first, single_before_pair};
+use super::refined::{
+    Refined, alike, best_of_each, inside_before_bound, simplest_first, single_before_pair,
+};
 use super::state::Search;
 use super::types::{Named, RunnerUp};
 use crate::estimate::fit::{Columns, Fit, free_parameters};
@@ -39,7 +41,7 @@ impl Search<'_> {
                 let with_memory = self.own_with_memory(&screened).into_iter();
                 worth.extend(with_memory.filter(|pair| promises.are_worth_it(pair, most)));
             }
-            let beside = [self.forms(&own), self.waves(&own)];
+            let beside = [self.forms(&own), self.waves(&own), self.resonances(&own)];
             let beside = beside
                 .into_iter()
                 .flatten()
@@ -52,6 +54,7 @@ impl Search<'_> {
         let mut refined = self.refine(candidates, &own);
         effects_before_forms(&mut refined);
         single_before_pair(&mut refined);
+        inside_before_bound(&mut refined);
         let fitter = self.fitter();
         let curves = FreeCurves::new(self, &fitter, &own);
         // Where the best does not hold on other motion, the next may.
