@@ -3,7 +3,7 @@
 use axis_log::Log;
 use axis_sim::part::Role;
 use axis_sim::{
-    Axis, Balance, ChannelPart, ClosedLoop, LogChannel, Replay, ReplayError, Stored, reference_in,
+    Axis, Balance, ChannelPart, ClosedLoop, LogChannel, Replay, ReplayError, reference_in,
 };
 use rayon::prelude::*;
 
@@ -44,13 +44,10 @@ impl LogSet {
         let as_filed = ClosedLoop::new(machine)?;
         let prepare = |(name, log, period): (String, Log, f64)| {
             let channel = |name: &&str| Ok(relative(name, log.channel(name)?));
-            let replay = storing(Replay::new(&log, period)?, &log, period, &as_filed);
+            let (replay, doubtful) = storing(Replay::new(&log, period)?, &log, period, &as_filed);
             Ok(Prepared {
                 taken_up: taken_up(&log, machine),
-                held: match replay.stored() {
-                    Stored::Effort(effort) => Some(effort),
-                    _ => None,
-                },
+                doubtful,
                 answer: Answer::Replay(replay),
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 measured: channels
@@ -108,7 +105,7 @@ impl LogSet {
                     .map(channel)
                     .collect::<Result<_, ReplayError>>()?,
                 taken_up: 0.0,
-                held: None,
+                doubtful: None,
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 log,
                 answer: Answer::Balance(Box::new(balance)),

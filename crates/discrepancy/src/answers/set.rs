@@ -27,9 +27,9 @@ pub struct Prepared {
     pub log: Log,
     /// Largest gap between screw and nut that is taken up before the log counts, m.
     pub taken_up: f64,
-    /// Command with which the drive held the axis at the log's start, as its first samples show it,
-    /// in the actuator's unit; `None` where they show that nothing was held, or nothing of it.
-    pub held: Option<f64>,
+    /// Command with which the drive may have held the axis at the log's start, in the actuator's
+    /// unit, where the first samples are too noisy to tell whether it did.
+    pub doubtful: Option<f64>,
     /// What the fast simulation is short of beside the slow one, by channel.
     pub defect: Vec<Vec<f64>>,
 }

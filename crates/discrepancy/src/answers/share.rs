@@ -93,14 +93,14 @@ impl LogSet {
         Ok(())
     }
 
-    /// Finds of each log that shows a command at its start whether it was held before, or came up
-    /// with the log: beside noise the first samples may not tell, and a load that changes with
-    /// time has moved on when their mean does.
+    /// Finds of each log of which the first samples are too noisy to tell, whether the effects of
+    /// this state were held before it began, or came up with it. A load that changes with time has
+    /// moved on when a mean would tell.
     ///
     /// # Errors
     /// [`ReplayError`] where the machine does not run.
     fn find_beginning(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
-        if self.logs.iter().all(|log| log.held.is_none()) {
+        if state.effects.is_empty() || self.logs.iter().all(|log| log.doubtful.is_none()) {
             return Ok(());
         }
         let misfits = |set: &Self| -> Result<Vec<f64>, ReplayError> {
@@ -125,9 +125,9 @@ impl LogSet {
             let Answer::Replay(replay) = &log.answer else {
                 continue;
             };
-            let other = match (replay.stored(), log.held) {
-                (Stored::Effort(_), _) => Stored::Nothing,
-                (Stored::Nothing, Some(held)) => Stored::Effort(held),
+            let other = match (replay.stored(), log.doubtful) {
+                (Stored::Effort(_), Some(_)) => Stored::Nothing,
+                (Stored::Nothing, Some(effort)) => Stored::Effort(effort),
                 _ => continue,
             };
             log.answer = Answer::Replay(replay.clone().storing(other));

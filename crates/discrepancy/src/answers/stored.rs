@@ -46,25 +46,35 @@ const COMES_UP: f64 = 0.3;
 const QUIET: f64 = 4.0;
 
 /// Tells a replay what its log has stored at its start, by the machine as its file says
-/// (`closed_loop`).
-pub(super) fn storing(replay: Replay, log: &Log, period: f64, closed_loop: &ClosedLoop) -> Replay {
+/// (`closed_loop`); and the command with which the drive may have held the axis, or not, where
+/// the first samples are too noisy to tell.
+pub(super) fn storing(
+    replay: Replay,
+    log: &Log,
+    period: f64,
+    closed_loop: &ClosedLoop,
+) -> (Replay, Option<f64>) {
     let control = &closed_loop.axis().control;
     if !control.integrates() || control.starts_in_motion() {
-        return replay;
+        return (replay, None);
     }
     let Some(rest) = first_rest(log, period) else {
-        return replay;
+        return (replay, None);
     };
     let few = ((BEGINNING / period).round() as usize).max(2);
-    let stored = match command(log, closed_loop.axis(), rest) {
+    let (stored, tells) = match command(log, closed_loop.axis(), rest) {
         Some(command) => {
             let position = replay.reference().at(0.0).position;
             by_command(command, few, MEMORY / period, closed_loop, position)
         }
-        None => by_position(log, rest, few),
+        None => (by_position(log, rest, few), true),
     };
-    tracing::debug!(?stored, rest, "start of a log");
-    replay.storing(stored)
+    tracing::debug!(?stored, tells, rest, "start of a log");
+    let doubtful = match stored {
+        Stored::Effort(effort) if !tells => Some(effort),
+        _ => None,
+    };
+    (replay.storing(stored), doubtful)
 }
 
 /// Noise of the command in the rest that a log begins with, RMS, or one step of a coarser
@@ -121,16 +131,16 @@ fn power(samples: &[f64]) -> f64 {
 }
 
 /// By the commands of a rest, of which the first `few` are its beginning and `memory`
-/// samples on end count as one.
+/// samples on end count as one; and whether its beginning tells.
 fn by_command(
     rest: &[f64],
     few: usize,
     memory: f64,
     closed_loop: &ClosedLoop,
     position: f64,
-) -> Stored {
+) -> (Stored, bool) {
     let Ok(own) = closed_loop.resting_effort(position) else {
-        return Stored::Nothing;
+        return (Stored::Nothing, true);
     };
     let (begun, later) = rest.split_at(few);
     let late = &rest[rest.len() / 2..];
@@ -144,14 +154,15 @@ fn by_command(
     let least = 1e-9 * closed_loop.axis().actuator.limit().min(1e9);
     let [begins, stands] = [first - own, level - own].map(f64::abs);
     if begins <= chance(few).max(least) && stands <= chance(later.len()).max(least) {
-        return Stored::InBristles;
+        return (Stored::InBristles, true);
     }
     if begins <= COMES_UP * stands && stands > chance(few).max(least) {
-        return Stored::Nothing;
+        return (Stored::Nothing, true);
     }
     // What an earlier move has left dies away.
     let dies = (first - level).abs() > chance(few).max(COMES_UP * stands);
-    Stored::Effort(if dies { first } else { mean(rest) })
+    let effort = Stored::Effort(if dies { first } else { mean(rest) });
+    (effort, begins > chance(few).max(least))
 }
 
 /// Where no command is logged: a rest in which nothing happens has something stored, and
