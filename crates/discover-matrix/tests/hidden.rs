@@ -106,11 +106,11 @@ fn what_lies_before_a_log_counts_is_no_gap() {
         let before = (0.15 / log.period) as usize;
         let moved = |channel: &Channel| {
             let mut channel = channel.clone();
-            let by = match channel.name.as_str() {
-                "position_m" => 1e-6,
-                _ => 0.0,
-            };
-            channel.samples[..before].iter_mut().for_each(|x| *x += by);
+            if channel.name == "position_m" {
+                channel.samples[..before]
+                    .iter_mut()
+                    .for_each(|x| *x += 1e-6);
+            }
             channel
         };
         let moved = Log::new(log.log.channels().iter().map(moved).collect()).unwrap();

@@ -8,7 +8,7 @@ use super::evidence::enough;
 use super::state::Search;
 use crate::estimate::fit::Columns;
 use crate::estimate::linear::{Problem, Products, Room};
-use crate::name::library::{Candidate, is_force_in_time, rooms, values_at};
+use crate::name::library::{Candidate, is_force_in_time, responses, rooms, values_at};
 use crate::name::screen::{Screened, Screening};
 use crate::spectrum::Amplitudes;
 
@@ -187,6 +187,18 @@ impl<'a> Promises<'a> {
 }
 
 impl Search<'_> {
+    /// A candidate of the library with another value of a shape, simulated at the fit.
+    pub(super) fn begun_at(&self, known: &Candidate, shape: usize, value: f64) -> Candidate {
+        let mut values = known.values.clone();
+        values[shape] = value;
+        Candidate {
+            columns: responses(&self.fitter(), &self.fit, known.effect, &values),
+            effect: known.effect,
+            values,
+            scales: known.scales,
+        }
+    }
+
     /// Candidates that have no place in the library, with so many `parameters` each, as far as
     /// they promise enough to be simulated; `own` are the derivatives of the fit's own parameters.
     pub(super) fn screened_beside(

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::lines::{Line, duration, strongest};
 use super::state::Search;
 use crate::estimate::fit::Columns;
-use crate::name::library::{Candidate, RESONANCE_PERIODS, responses};
+use crate::name::library::{Candidate, RESONANCE_PERIODS};
 use crate::name::screen::Screened;
 
 /// Width of the line of a body that swings, as a share of its frequency.
@@ -25,7 +25,6 @@ impl Search<'_> {
         else {
             return Vec::new();
         };
-        let fitter = self.fitter();
         let longest = self.fit_logs.logs.iter().map(duration).fold(0.0, f64::max);
         let [least, _] = known.effect.parameters[at].bounds(&known.scales);
         let slowest = (RESONANCE_PERIODS / longest).max(least);
@@ -34,16 +33,7 @@ impl Search<'_> {
         let lines = self.lines_of_replays(&noise);
         let lines = strongest(lines, slowest, |f| WIDTH * f);
         tracing::debug!(?lines, "where a body may swing");
-        let candidate = |(frequency, _): Line| {
-            let mut values = known.values.clone();
-            values[at] = frequency;
-            Candidate {
-                columns: responses(&fitter, &self.fit, known.effect, &values),
-                effect: known.effect,
-                values,
-                scales: known.scales,
-            }
-        };
+        let candidate = |(frequency, _): Line| self.begun_at(known, at, frequency);
         let bodies: Vec<Candidate> = lines.into_par_iter().map(candidate).collect();
         self.screened_beside(own, &bodies, known.effect.parameters.len())
     }

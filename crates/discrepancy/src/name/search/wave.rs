@@ -5,14 +5,12 @@
 //! truth. But a load that repeats leaves a line in the rest, so the frequencies of its strongest
 //! lines are tried beside the library's.
 
-use axis_sim::effects::Scales;
-
 use super::evidence::HELD_OUT;
 use super::lines::{Line, duration, strongest};
 use super::refined::Refined;
 use super::state::Search;
 use crate::estimate::fit::Columns;
-use crate::name::library::{Candidate, responses};
+use crate::name::library::Candidate;
 use crate::name::screen::Screened;
 
 /// A load with a period of its own, which is its second number.
@@ -41,23 +39,12 @@ impl Search<'_> {
         if !self.wanted(known.effect, &[]) {
             return Vec::new();
         }
-        let fitter = self.fitter();
-        let scales = Scales::of(self.machine);
-        let [shortest, longest] = known.effect.parameters[PERIOD].bounds(&scales);
+        let [shortest, longest] = known.effect.parameters[PERIOD].bounds(&known.scales);
         let periods = self
             .lines()
             .into_iter()
             .map(|(frequency, _)| 1.0 / frequency);
-        let candidate = |period: f64| {
-            let mut values = known.values.clone();
-            values[PERIOD] = period;
-            Candidate {
-                columns: responses(&fitter, &self.fit, known.effect, &values),
-                effect: known.effect,
-                values,
-                scales,
-            }
-        };
+        let candidate = |period: f64| self.begun_at(known, PERIOD, period);
         let periods = periods.filter(|p| (shortest..=longest).contains(p));
         let waves: Vec<Candidate> = periods.map(candidate).collect();
         self.screened_beside(own, &waves, known.effect.parameters.len())
