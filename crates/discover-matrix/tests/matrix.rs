@@ -93,7 +93,7 @@ fn cases_are_laid_out_alike_from_the_same_seed_and_not_from_another() {
 }
 
 #[test]
-#[ignore = "fails: the mean of the speed's noise on a move without a way back is taken for a feed-forward, and the friction beside it is refused"]
+#[ignore = "fails: on a move without a way back a constant load is named, which does what the friction does there"]
 fn without_a_way_back_frictions_are_one_class_until_the_proposed_motion_is_run() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
     let axis = Axis::read(file.as_ref()).unwrap();
