@@ -162,7 +162,7 @@ fn a_force_in_time_is_found_with_its_edges() {
 }
 
 /// A load that came up with the log, and is hardly more than noise in its first 3 ms: its mean over
-/// the rest was taken for held, and 80 nm of the first rest were left.
+/// the rest was taken for held, and 0.1 µm RMS was left, nearly all before the first move.
 #[test]
 fn a_load_that_repeats_is_not_held_before_it_acts() {
     let hidden = hide_all(vec![("cyclic-load", vec![35.34, 0.754, -2.653])], 5);

@@ -12,7 +12,7 @@ use crate::answers::Rest;
 use crate::estimate::fit::Fit;
 use crate::noise::{Floor, floors};
 
-/// Root-mean-square gap of a channel, in its unit.
+/// Root-mean-square gap of a channel, in its unit, from where its logs count.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ChannelGap {
     /// Name with unit.

@@ -1,10 +1,10 @@
 //! Frequencies at which the rest stands out.
 
-use nalgebra::Complex;
+use nalgebra::{Complex, DMatrix};
 
 use super::state::Search;
 use crate::answers::Prepared;
-use crate::spectrum::{Amplitudes, waves};
+use crate::spectrum::waves;
 
 /// Lines that are tried.
 const LINES: usize = 3;
@@ -15,11 +15,13 @@ const FINER: f64 = 2.0;
 /// A frequency, Hz, and how far it stands out there.
 pub(super) type Line = (f64, f64);
 
+/// Spectral matrix between channels, of a band.
+pub(super) type Spectral = DMatrix<Complex<f64>>;
+
 impl Search<'_> {
-    /// Power of the rest in each bin beside that of its band `of_band`, over all channels.
-    pub(super) fn lines_of_replays(&self, of_band: &Amplitudes) -> Vec<Line> {
+    /// Power of the rest in each bin beside that of these matrices in its band, over all channels.
+    pub(super) fn lines_of_replays(&self, matrices: &[Spectral]) -> Vec<Line> {
         let layout = &self.fit_logs.layout;
-        let matrices = layout.spectral_matrices(of_band);
         let bands: Vec<[f64; 2]> = layout.bands().map(|(edges, _)| edges).collect();
         let of_bin = |(frequency, bin): (f64, &[Complex<f64>])| {
             let band = bands.iter().position(|[_, high]| frequency < *high)?;

@@ -1,10 +1,10 @@
 //! What is worth a simulation: what the linearised model promises.
 
 use axis_sim::effects::Effect;
-use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 
 use super::evidence::enough;
+use super::lines::Spectral;
 use super::state::Search;
 use crate::estimate::fit::Columns;
 use crate::estimate::linear::{Problem, Products, Room};
@@ -31,7 +31,7 @@ pub(super) struct Promises<'a> {
     /// First column of each candidate.
     firsts: Vec<usize>,
     /// Spectral matrices of the rest, and of noise alone where that is known.
-    weights: Vec<Vec<DMatrix<Complex<f64>>>>,
+    weights: Vec<Vec<Spectral>>,
 }
 
 impl<'a> Promises<'a> {
@@ -84,6 +84,11 @@ impl<'a> Promises<'a> {
             )
         };
         self.weights.par_iter().map(weighed).collect()
+    }
+
+    /// Spectral matrices of noise alone; of the rest, where that is not known.
+    pub(super) fn of_noise(&self) -> &[Spectral] {
+        self.weights.last().map_or(&[], Vec::as_slice)
     }
 
     /// What each effect explains alone, best first, one entry an effect.

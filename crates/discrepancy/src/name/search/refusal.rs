@@ -59,7 +59,7 @@ impl Search<'_> {
 
     /// Whether the effects of a balance of which no channel stood out of its noise bring less than
     /// is asked then: as if nothing had been named.
-    pub(super) fn is_doubtful(&self, without: &Self) -> Result<bool, ReplayError> {
+    pub(super) fn lacks_evidence(&self, without: &Self) -> Result<bool, ReplayError> {
         let set = &self.check_logs;
         if self.named.is_empty() || !set.is_balanced() || self.settings_ask_for_all() {
             return Ok(false);

@@ -41,7 +41,8 @@ impl Search<'_> {
                 let with_memory = self.own_with_memory(&screened).into_iter();
                 worth.extend(with_memory.filter(|pair| promises.are_worth_it(pair, most)));
             }
-            let beside = [self.forms(&own), self.waves(&own), self.resonances(&own)];
+            let resonances = self.resonances(&own, promises.of_noise());
+            let beside = [self.forms(&own), self.waves(&own), resonances];
             let beside = beside
                 .into_iter()
                 .flatten()

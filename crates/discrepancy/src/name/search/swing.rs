@@ -3,7 +3,7 @@
 use axis_sim::effects::Nature;
 use rayon::prelude::*;
 
-use super::lines::{Line, duration, strongest};
+use super::lines::{Line, Spectral, duration, strongest};
 use super::state::Search;
 use crate::estimate::fit::Columns;
 use crate::name::library::{Candidate, RESONANCE_PERIODS};
@@ -16,22 +16,22 @@ impl Search<'_> {
     /// Bodies that swing at the frequencies at which the replayed logs' rest stands out most, beside
     /// the derivatives of the fit's own parameters: what the library starts at lies too far apart
     /// for a resonance. Beside balances it starts at all frequencies.
-    pub(super) fn resonances(&self, own: &Columns) -> Vec<Screened> {
+    ///
+    /// `noise` is its spectral matrices, where they are known: a body with some damping fills a band
+    /// of its own, and stands out beside them alone.
+    pub(super) fn resonances(&self, own: &Columns, noise: &[Spectral]) -> Vec<Screened> {
         let is_frequency = |nature: &Nature| matches!(nature, Nature::Frequency(..));
         let mut library = self.library.candidates.iter();
-        let known = library.find(|c| c.effect.place_of(is_frequency).is_some());
-        let known = known.filter(|c| !self.fit_logs.is_balanced() && self.wanted(c.effect, &[]));
-        let Some((known, at)) = known.and_then(|c| Some((c, c.effect.place_of(is_frequency)?)))
-        else {
+        let known = library.find_map(|c| Some((c, c.effect.place_of(is_frequency)?)));
+        let known =
+            known.filter(|(c, _)| !self.fit_logs.is_balanced() && self.wanted(c.effect, &[]));
+        let Some((known, at)) = known else {
             return Vec::new();
         };
         let longest = self.fit_logs.logs.iter().map(duration).fold(0.0, f64::max);
         let [least, _] = known.effect.parameters[at].bounds(&known.scales);
         let slowest = (RESONANCE_PERIODS / longest).max(least);
-        // A body with some damping fills a band of its own: beside noise it stands out there.
-        let noise = self.noise().unwrap_or_else(|| self.fit.rest.clone());
-        let lines = self.lines_of_replays(&noise);
-        let lines = strongest(lines, slowest, |f| WIDTH * f);
+        let lines = strongest(self.lines_of_replays(noise), slowest, |f| WIDTH * f);
         tracing::debug!(?lines, "where a body may swing");
         let candidate = |(frequency, _): Line| self.begun_at(known, at, frequency);
         let bodies: Vec<Candidate> = lines.into_par_iter().map(candidate).collect();
