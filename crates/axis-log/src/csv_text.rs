@@ -4,26 +4,38 @@ use csv::{Position, Reader, StringRecord};
 
 use crate::error::CsvProblem;
 
-const COMMENT: u8 = b'#';
+pub(crate) const COMMENT: u8 = b'#';
 /// Most columns of a file of any format: a header that names more is damaged, or no log.
 pub(crate) const MAX_COLUMNS: usize = 4096;
 
 /// The whole text, without byte-order mark.
 #[derive(Clone, Copy)]
-pub(crate) struct Text<'a>(&'a str);
+pub(crate) struct Text<'a> {
+    text: &'a str,
+    /// Between fields.
+    separator: u8,
+}
 
 impl<'a> Text<'a> {
+    /// Of UTF-8 with commas between fields.
     pub(crate) fn new(bytes: &'a [u8]) -> Result<Self, CsvProblem> {
         match std::str::from_utf8(bytes) {
-            Ok(text) => Ok(Self(text.strip_prefix('\u{feff}').unwrap_or(text))),
+            Ok(text) => Ok(Self::of(
+                text.strip_prefix('\u{feff}').unwrap_or(text),
+                b',',
+            )),
             Err(e) => Err(CsvProblem::NotText {
                 line: 1 + newlines(&bytes[..e.valid_up_to()]),
             }),
         }
     }
 
+    pub(crate) fn of(text: &'a str, separator: u8) -> Self {
+        Self { text, separator }
+    }
+
     pub(crate) fn as_str(self) -> &'a str {
-        self.0
+        self.text
     }
 
     pub(crate) fn parser(self) -> Reader<&'a [u8]> {
@@ -34,29 +46,30 @@ impl<'a> Text<'a> {
             .flexible(true)
             .comment(Some(COMMENT))
             .trim(csv::Trim::All)
-            .from_reader(self.0.as_bytes())
+            .delimiter(self.separator)
+            .from_reader(self.text.as_bytes())
     }
 
     /// Most rows that a file with that many columns can hold: a row has a byte for each
     /// column at least, its comma or line end.
     pub(crate) fn most_rows(self, columns: usize) -> usize {
         let lines = 1 + self
-            .0
+            .text
             .bytes()
             .filter(|b| matches!(b, b'\n' | b'\r'))
             .count();
-        lines.min(1 + self.0.len() / columns.max(1))
+        lines.min(1 + self.text.len() / columns.max(1))
     }
 
     /// Refuses a last row without a line end: where a file was cut inside a number, what
     /// is left may still read as one.
     pub(crate) fn check_end(self) -> Result<(), CsvProblem> {
-        let last = self.0.rsplit(['\n', '\r']).next().unwrap_or_default();
+        let last = self.text.rsplit(['\n', '\r']).next().unwrap_or_default();
         if last.is_empty() {
             return Ok(());
         }
         Err(CsvProblem::NoLineEnd {
-            line: 1 + newlines(self.0.as_bytes()),
+            line: 1 + newlines(self.text.as_bytes()),
         })
     }
 
@@ -81,15 +94,15 @@ impl<'a> Text<'a> {
     /// The parser's own count is of that byte, before any blank lines and
     /// comments.
     pub(crate) fn line_at(self, offset: u64) -> u64 {
-        let mut start = usize::try_from(offset).unwrap_or(0).min(self.0.len());
-        for line in self.0.as_bytes()[start..].split_inclusive(|&b| b == b'\n') {
+        let mut start = usize::try_from(offset).unwrap_or(0).min(self.text.len());
+        for line in self.text.as_bytes()[start..].split_inclusive(|&b| b == b'\n') {
             let blank = line.iter().all(|b| matches!(b, b'\r' | b'\n'));
             if !blank && line[0] != COMMENT {
                 break;
             }
             start += line.len();
         }
-        1 + newlines(&self.0.as_bytes()[..start])
+        1 + newlines(&self.text.as_bytes()[..start])
     }
 }
 

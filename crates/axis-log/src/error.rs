@@ -233,8 +233,8 @@ pub enum CsvProblem {
         /// Time of this row, s.
         value: f64,
     },
-    /// Bytes that are not UTF-8.
-    #[error("line {line}: not UTF-8 text: a CSV file is expected")]
+    /// Bytes that are not UTF-8, or no text.
+    #[error("line {line}: not UTF-8 text: save it as that")]
     NotText {
         /// Line of the first such byte.
         line: u64,

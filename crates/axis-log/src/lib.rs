@@ -95,6 +95,7 @@
 #![forbid(unsafe_code)]
 
 mod channel;
+mod columns;
 mod csv_in;
 mod csv_table;
 mod csv_text;
@@ -119,12 +120,14 @@ mod read_error;
 mod select;
 mod source_unit;
 mod table;
+mod text_dialect;
 #[cfg(feature = "parquet")]
 mod thrift;
 mod unit;
 mod write;
 
 pub use channel::Channel;
+pub use columns::{ColumnSummary, columns};
 pub use csv_in::{read_csv, read_csv_from};
 pub use error::{CsvError, CsvProblem, LogError};
 pub use import::{MappingProposal, ProposedColumn, propose};

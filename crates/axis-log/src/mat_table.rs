@@ -64,6 +64,7 @@ impl<'a> MatTable<'a> {
                 valid: "a real vector, n × 1 or 1 × n,",
             }),
             address: None,
+            unit: None,
         });
         self.arrays.push((element, array));
     }

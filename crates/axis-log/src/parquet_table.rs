@@ -42,6 +42,7 @@ impl ParquetTable {
             name: column.path().string(),
             fault: fault(column),
             address: None,
+            unit: None,
         };
         let heads = schema.columns().iter().map(|c| head(c)).collect();
         Ok(Self {

@@ -79,24 +79,48 @@ pub(crate) fn read(
     holes: Holes,
 ) -> Result<Vec<Channel>, ReadProblem> {
     mapping.check()?;
-    let bytes = whole(path);
-    if let Ok(bytes) = &bytes
-        && let Some(table) = crate::import::table(bytes)
-    {
-        return channels(table?, mapping, required, holes);
-    }
+    let bytes = match whole(path) {
+        Ok(bytes) => bytes,
+        // Of a file that could not be read anyway, that is said.
+        Err(absent) => {
+            return Err(by_extension(path, &[])
+                .err()
+                .filter(is_of_name)
+                .unwrap_or(absent));
+        }
+    };
+    channels(open(path, &bytes)?, mapping, required, holes)
+}
+
+/// Whether the file's name alone rules it out.
+fn is_of_name(problem: &ReadProblem) -> bool {
+    matches!(
+        problem,
+        ReadProblem::Extension { .. } | ReadProblem::LeftOut { .. }
+    )
+}
+
+/// The file as a table: of another program by its content, of the others by its extension.
+pub(crate) fn open<'a>(path: &Path, bytes: &'a [u8]) -> Result<Box<dyn Table + 'a>, ReadProblem> {
+    crate::import::table(bytes).unwrap_or_else(|| by_extension(path, bytes))
+}
+
+pub(crate) fn by_extension<'a>(
+    path: &Path,
+    bytes: &'a [u8],
+) -> Result<Box<dyn Table + 'a>, ReadProblem> {
     let found = path.extension().unwrap_or_default().to_string_lossy();
     match found.to_ascii_lowercase().as_str() {
-        "csv" => channels(CsvTable::open(&bytes?)?, mapping, required, holes),
+        "csv" | "tsv" | "txt" | "dat" | "asc" => Ok(Box::new(CsvTable::open(bytes)?)),
         #[cfg(feature = "parquet")]
-        "parquet" => channels(ParquetTable::open(bytes?)?, mapping, required, holes),
+        "parquet" => Ok(Box::new(ParquetTable::open(bytes.to_vec())?)),
         #[cfg(not(feature = "parquet"))]
         "parquet" => Err(ReadProblem::LeftOut {
             format: "Parquet",
             feature: "parquet",
         }),
         #[cfg(feature = "mat")]
-        "mat" => channels(MatTable::open(&bytes?)?, mapping, required, holes),
+        "mat" => Ok(Box::new(MatTable::open(bytes)?)),
         #[cfg(not(feature = "mat"))]
         "mat" => Err(ReadProblem::LeftOut {
             format: "MAT",

@@ -48,7 +48,9 @@ impl fmt::Display for Place {
 #[non_exhaustive]
 pub enum ReadProblem {
     /// A file of no known format.
-    #[error("the extension is \"{found}\": it must be .csv, .parquet or .mat")]
+    #[error(
+        "the extension is \"{found}\": it must be .parquet, .mat, or of text .csv, .tsv, .txt, .dat or .asc"
+    )]
     Extension {
         /// The extension, without the point.
         found: String,

@@ -60,6 +60,17 @@ fn row(name: &str) -> Option<&'static Row> {
     UNITS.iter().find(|(names, ..)| names.contains(&name))
 }
 
+/// Whether a column may be given in a unit of that name.
+pub(crate) fn is_unit(name: &str) -> bool {
+    known(name).is_some()
+}
+
+/// The unit's own name where it has several, and its dimension.
+pub(crate) fn known(name: &str) -> Option<(&'static str, &'static str)> {
+    let counted = COUNTS.iter().find(|(own, _)| *own == name).copied();
+    row(name).map(|(names, of, _)| (names[0], *of)).or(counted)
+}
+
 /// Names of the units that a column may be given in, as error messages list them.
 pub(crate) fn source_units() -> String {
     let names = UNITS.iter().map(|(names, ..)| names[0]);

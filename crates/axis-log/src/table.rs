@@ -58,6 +58,8 @@ pub(crate) struct Head {
     pub fault: Option<Fault>,
     /// What the program itself calls what it recorded, where the name is one that a user gave.
     pub address: Option<String>,
+    /// The unit, where the file has it beside the name.
+    pub unit: Option<String>,
 }
 
 impl Head {
@@ -67,6 +69,7 @@ impl Head {
             name: name.into(),
             fault: None,
             address: None,
+            unit: None,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod channel_quality;
 mod csv;
+mod dialect;
 mod import;
 mod intake;
 mod log;

@@ -178,7 +178,7 @@ fn files_that_are_not_what_their_name_says_are_refused() {
             "it is cut off: the element at byte 128",
         ),
         ("x.mat", &plain[..132], "it is cut off inside the tag"),
-        ("x.csv", b"\xff\xfe", "line 1: not UTF-8"),
+        ("x.csv", b"t_s\n0\0\n", "line 2: not UTF-8"),
     ] {
         let path = folder.path().join(name);
         fs::write(&path, bytes).unwrap();

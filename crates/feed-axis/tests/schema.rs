@@ -69,6 +69,49 @@ fn log_inspect_proposes_a_mapping_and_applies_none() {
     assert_eq!(log["imported"][0]["others"][0], "pid.x.output");
 }
 
+/// So is a table of text, with its columns; `discover` says where to look.
+#[test]
+fn a_table_that_lacks_its_mapping_is_shown_with_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drive.csv");
+    let rows: String = (0..20).map(|k| format!("{k};{},5;1\n", 600 + k)).collect();
+    std::fs::write(&path, format!("Zeit [ms];Lage;CH3\n{rows}")).unwrap();
+    let path = path.to_str().unwrap();
+    let output = run(&["log", "inspect", path]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8(output.stderr).unwrap();
+    for part in [
+        "no time",
+        "column     unit     least  greatest      mean  numbers",
+        "Lage       ?     6.0050e2  6.1950e2  6.1000e2       20",
+        "source = \"Zeit [ms]\"\n       channel = \"t_s\"\n       unit = \"ms\"",
+        "source = \"Lage\"\n       channel = \"position_m\"\n       unit = \"mm\"",
+        "not known by name: CH3",
+    ] {
+        assert!(said.contains(part), "no {part:?} in\n{said}");
+    }
+    let output = run(&["discover", "--fit", path, "--check", path]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains(&format!("log inspect {path} shows")),
+        "{said}"
+    );
+    // With its time it is a log whose columns are no channels yet.
+    let timed = folder.path().join("timed.csv");
+    let text = std::fs::read_to_string(path).unwrap();
+    std::fs::write(&timed, text.replace("Zeit [ms]", "t_s")).unwrap();
+    let output = run(&[
+        "log",
+        "inspect",
+        timed.to_str().unwrap(),
+        "--format",
+        "json",
+    ]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["logs"][0]["columns"][1]["name"], "Lage");
+    assert_eq!(found["logs"][0]["columns"][1]["greatest"], 619.5);
+}
+
 /// One that lacks its time is refused, and the mapping that would mend that is told with it.
 #[test]
 fn log_inspect_proposes_a_mapping_of_what_cannot_be_read_yet() {

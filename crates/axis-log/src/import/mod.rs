@@ -5,6 +5,7 @@
 //! ([`propose`]), since a program's names tell what was logged and not always in which unit:
 //! nothing is applied by itself.
 
+mod by_name;
 mod halscope;
 mod moteus;
 mod names;
@@ -60,7 +61,7 @@ pub struct ProposedColumn {
     pub unit: &'static str,
 }
 
-/// What a file of another program is, and what its mapping could be.
+/// What a file is, and what its mapping could be.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MappingProposal {
     /// Name of the format.
@@ -74,6 +75,11 @@ pub struct MappingProposal {
 }
 
 impl MappingProposal {
+    /// Whether all that the file holds has its channel.
+    pub fn is_empty(&self) -> bool {
+        self.columns.is_empty() && self.others.is_empty()
+    }
+
     /// As lines of an axis file.
     pub fn lines(&self) -> String {
         let one = |column: &ProposedColumn| {
@@ -86,8 +92,9 @@ impl MappingProposal {
     }
 }
 
-/// What a file is, by its content, and what mapping it could have; `None` where it is of no
-/// format that is known here, as CSV, Parquet and MAT are not.
+/// What a file is, by its content, and what mapping it could have: of a recording of another
+/// program by the names that this gives, of any other table by what names and units in it seem to say.
+/// `None` where nothing is left to map, and of files that are not read.
 ///
 /// # Errors
 /// A [`ReadError`]: the file cannot be read, or is damaged.
@@ -101,22 +108,45 @@ pub fn propose(path: impl AsRef<Path>) -> Result<Option<MappingProposal>, ReadEr
 
 fn proposal(path: &Path) -> Result<Option<MappingProposal>, ReadProblem> {
     let bytes = crate::read::whole(path)?;
-    let Some(format) = FORMATS.iter().find(|format| (format.is_it)(&bytes)) else {
-        return Ok(None);
-    };
-    let table = (format.open)(&bytes)?;
-    let readable = |head: &&Head| head.fault.is_none();
-    let heads: Vec<&Head> = table.heads().iter().filter(readable).collect();
-    let (names, columns) = (table.names(), (format.columns)(&heads));
-    let told = |name: &String| {
-        columns.iter().any(|column| column.source == *name) || crate::unit_of(name).is_some()
-    };
-    Ok(Some(MappingProposal {
-        format: format.name,
-        others: names.iter().filter(|name| !told(name)).cloned().collect(),
-        columns,
-        caution: format.caution,
-    }))
+    if let Some(format) = FORMATS.iter().find(|format| (format.is_it)(&bytes)) {
+        let table = (format.open)(&bytes)?;
+        return Ok(Some(format.proposal(&table)));
+    }
+    match crate::read::by_extension(path, &bytes) {
+        Ok(table) => Ok(Some(ANY_TABLE.proposal(&table)).filter(|found| !found.is_empty())),
+        Err(ReadProblem::Extension { .. } | ReadProblem::LeftOut { .. }) => Ok(None),
+        Err(problem) => Err(problem),
+    }
+}
+
+/// Tables of which only names and units tell what they hold.
+const ANY_TABLE: Format = Format {
+    name: "by the names of the columns",
+    is_it: |_| false,
+    open: |_| Err(ReadProblem::NoRows),
+    columns: by_name::proposed,
+    caution: "a unit that no name says is a guess (mm, mm/s, A, N·m, s): compare with the numbers",
+};
+
+impl Format {
+    fn proposal(&self, table: &dyn Table) -> MappingProposal {
+        let readable = |head: &&Head| head.fault.is_none();
+        let heads: Vec<&Head> = table.heads().iter().filter(readable).collect();
+        let columns = (self.columns)(&heads);
+        let told = |name: &String| {
+            columns.iter().any(|column| column.source == *name) || crate::unit_of(name).is_some()
+        };
+        MappingProposal {
+            format: self.name,
+            others: table
+                .names()
+                .into_iter()
+                .filter(|name| !told(name))
+                .collect(),
+            columns,
+            caution: self.caution,
+        }
+    }
 }
 
 /// The file as a table, where it is of another program.

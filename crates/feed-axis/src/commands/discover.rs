@@ -2,21 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
-use axis_log::Log;
-use axis_log::intake::{Options as Intake, files, prepare};
+use axis_log::intake::{IntakeError, Options as Intake, files, prepare};
+use axis_log::{Log, ReadError, ReadProblem};
 use axis_sim::Axis;
 use axis_sim::effects::Scales;
 use clap::Args;
 use discrepancy::logs::{NamedLog, admit, exact_channels, needed_channels};
 use discrepancy::summary::{MeasuredError, rank, tried};
 use discrepancy::{Evidence, Settings};
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
 use toml_edit::{DocumentMut, Item, Value};
 
 use super::discover_words::{Files, Found, FoundInSummary, summary_words};
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::output::{Worded, note, print, ready, remove, write_whole};
 use crate::page;
+use crate::program;
 use crate::progress::{bar, spinner};
 
 /// Options of the command.
@@ -202,9 +203,30 @@ fn read_as_one(path: &Path, machine: &Axis, notes: &mut Vec<String>) -> Result<L
         exact: &exact,
         rate_hz: None,
     };
-    let prepared = prepare(&files(path), &machine.log, &needed, options).into_diagnostic()?;
+    let paths = files(path);
+    let prepared = prepare(&paths, &machine.log, &needed, options)
+        .map_err(|error| with_help(error, &paths))?;
     notes.extend(prepared.done.iter().map(ToString::to_string));
     Ok(prepared.log)
+}
+
+/// What helps where only a mapping is missing.
+fn with_help(error: IntakeError, paths: &[PathBuf]) -> Report {
+    let lacks_channel = matches!(
+        &error,
+        IntakeError::Read(ReadError {
+            problem: ReadProblem::NoTime { .. } | ReadProblem::MissingColumn { .. },
+            ..
+        })
+    );
+    if !lacks_channel {
+        return Report::from_err(error);
+    }
+    let paths: Vec<String> = paths.iter().map(|p| p.display().to_string()).collect();
+    let (program, paths) = (program::name(), paths.join("+"));
+    let help =
+        format!("{program} log inspect {paths} shows the columns and what their mapping could be");
+    miette!(help = help, "{error}")
 }
 
 /// A number for a file: all of it.

@@ -101,6 +101,7 @@ impl Trace {
                 valid: "a number in each rec",
             }),
             address: Some(signal.name.clone()),
+            unit: None,
         };
         let time = std::iter::once(Head::new(TIME_CHANNEL));
         Ok(Self {

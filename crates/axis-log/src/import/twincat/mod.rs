@@ -102,6 +102,7 @@ impl<'a> Export<'a> {
             name: header.names[&field].clone(),
             fault,
             address: header.symbol(field).map(str::to_owned),
+            unit: None,
         });
         self.fields.push(field);
     }

@@ -46,7 +46,8 @@ fn only_names_of_registers_make_it_such_a_file() {
     let folder = tempfile::tempdir().unwrap();
     let is_it = |text: &str| {
         let path = copy(folder.path(), "x.csv", text);
-        propose(&path).unwrap().is_some()
+        let format = propose(&path).unwrap().map(|proposal| proposal.format);
+        format.is_some_and(|format| format.starts_with("moteus"))
     };
     let row = "0,10,0.5\n";
     assert!(is_it(&format!("time,MODE,POSITION\n{row}")));

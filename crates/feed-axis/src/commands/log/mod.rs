@@ -5,11 +5,13 @@ mod words;
 
 use std::path::{Path, PathBuf};
 
-use axis_log::intake::{Options as Intake, files, prepare};
+use axis_log::intake::{IntakeError, Options as Intake, files, prepare};
 use axis_log::quality::{
     ChannelQuality, Clock, Finding, Relation, RelationLaw, channel_quality, clock, cross_check,
 };
-use axis_log::{Log, Mapping, MappingProposal, propose};
+use axis_log::{
+    ColumnSummary, Log, Mapping, MappingProposal, ReadError, ReadProblem, columns, propose,
+};
 use axis_report::{Page, render};
 use axis_sim::Axis;
 use clap::{Args, Subcommand};
@@ -74,8 +76,10 @@ struct Seen {
     done: Vec<String>,
     channels: Vec<ChannelQuality>,
     findings: Vec<Finding>,
-    /// Of each file of another program.
+    /// Of each file that has more than its channels.
     proposals: Vec<MappingProposal>,
+    /// What its files hold, where no column is a channel yet.
+    columns: Vec<ColumnSummary>,
 }
 
 /// Runs the command.
@@ -134,7 +138,7 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
     };
     let paths = files(path);
     let prepared = prepare(&paths, mapping, &[], options)
-        .map_err(|error| unmapped(miette!("{error}"), &paths, mapping))?;
+        .map_err(|error| unmapped(&error, &paths, mapping))?;
     let log = prepared.log;
     let clock = clock(&log).ok_or_else(|| {
         miette!(
@@ -163,23 +167,40 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
         channels: channels.collect::<Result<_, _>>().into_diagnostic()?,
         findings: cross_check(&log, mapping, &relations),
         proposals: proposals(&paths, mapping)?,
+        columns: match log.channels().len() {
+            1 => all_columns(&paths)?,
+            _ => Vec::new(),
+        },
         log,
     })
 }
 
-/// Why a log cannot be read, and what mapping its files could have: often that is all it lacks.
-fn unmapped(error: Report, paths: &[PathBuf], mapping: &Mapping) -> Report {
+/// Why a log cannot be read, what its columns are where it only lacks a mapping, and what that
+/// could be.
+fn unmapped(error: &IntakeError, paths: &[PathBuf], mapping: &Mapping) -> Report {
+    let lacks_time = matches!(
+        error,
+        IntakeError::Read(ReadError {
+            problem: ReadProblem::NoTime { .. },
+            ..
+        })
+    );
+    let mut parts = vec![error.to_string()];
     // A file that is damaged has said so.
-    let proposals = proposals(paths, mapping).unwrap_or_default();
-    let proposals = proposals.iter().map(words::proposed);
-    let proposals: Vec<String> = proposals.collect();
-    match proposals.is_empty() {
-        true => error,
-        false => miette!("{error}\n\n{}", proposals.join("\n")),
+    if lacks_time && let Ok(columns) = all_columns(paths) {
+        parts.push(words::columns(&columns));
     }
+    let proposals = proposals(paths, mapping).unwrap_or_default();
+    parts.extend(proposals.iter().map(words::proposed));
+    miette!("{}", parts.join("\n\n"))
 }
 
-/// What the mapping of files of other programs could have besides.
+fn all_columns(paths: &[PathBuf]) -> Result<Vec<ColumnSummary>> {
+    let of_each: Result<Vec<_>, _> = paths.iter().map(columns).collect();
+    Ok(of_each.into_diagnostic()?.concat())
+}
+
+/// What the mapping of these files could have besides.
 fn proposals(paths: &[PathBuf], mapping: &Mapping) -> Result<Vec<MappingProposal>> {
     let mut all = Vec::new();
     for path in paths {
@@ -187,7 +208,9 @@ fn proposals(paths: &[PathBuf], mapping: &Mapping) -> Result<Vec<MappingProposal
             let is_mapped = |name: &str| mapping.columns.iter().any(|map| map.source == name);
             proposal.columns.retain(|column| !is_mapped(&column.source));
             proposal.others.retain(|name| !is_mapped(name));
-            all.push(proposal);
+            if !proposal.is_empty() {
+                all.push(proposal);
+            }
         }
     }
     Ok(all)

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use axis_log::quality::{ChannelQuality, Colour, CrossCheckVerdict};
-use axis_log::{Channel, MappingProposal};
+use axis_log::{Channel, ColumnSummary, MappingProposal};
 use serde::Serialize;
 
 use super::Seen;
@@ -32,11 +32,26 @@ struct OneLog<'a> {
     done: &'a [String],
     channels: Vec<OneChannel<'a>>,
     findings: Vec<Found>,
-    /// Files of other programs, and what their mapping could have besides.
+    /// Files with more than their channels, and what their mapping could have besides.
     imported: Vec<Imported<'a>>,
+    /// What the files hold, where no column is a channel yet.
+    columns: Vec<OneColumn<'a>>,
 }
 
-/// A file of another program.
+/// A column as its file has it.
+#[derive(Serialize)]
+struct OneColumn<'a> {
+    name: &'a str,
+    /// Where the file has one beside the name.
+    unit: Option<&'a str>,
+    least: f64,
+    greatest: f64,
+    mean: f64,
+    /// Of the rows.
+    numbers: usize,
+}
+
+/// A file with more than its channels.
 #[derive(Serialize)]
 struct Imported<'a> {
     format: &'static str,
@@ -127,8 +142,53 @@ impl<'a> OneLog<'a> {
             channels: channels.map(|(q, c)| OneChannel::of(seen, q, c)).collect(),
             findings: seen.findings.iter().map(found).collect(),
             imported: seen.proposals.iter().map(Imported::of).collect(),
+            columns: seen.columns.iter().map(OneColumn::of).collect(),
         }
     }
+}
+
+impl<'a> OneColumn<'a> {
+    fn of(column: &'a ColumnSummary) -> Self {
+        Self {
+            name: &column.name,
+            unit: column.unit.as_deref(),
+            least: column.least,
+            greatest: column.greatest,
+            mean: column.mean,
+            numbers: column.numbers,
+        }
+    }
+
+    /// The cells of its row.
+    fn cells(&self) -> [String; 6] {
+        let number = |value: f64| format!("{value:.4e}");
+        [
+            self.name.to_owned(),
+            self.unit.unwrap_or("?").to_owned(),
+            number(self.least),
+            number(self.greatest),
+            number(self.mean),
+            self.numbers.to_string(),
+        ]
+    }
+}
+
+/// Columns of a file that are no channels yet.
+struct Columns<'a>(&'a [OneColumn<'a>]);
+
+impl fmt::Display for Columns<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let heads = ["column", "unit", "least", "greatest", "mean", "numbers"];
+        let mut rows = vec![heads.map(str::to_owned)];
+        rows.extend(self.0.iter().map(OneColumn::cells));
+        table(f, &rows)
+    }
+}
+
+/// What a file holds, as text.
+pub fn columns(columns: &[ColumnSummary]) -> String {
+    let columns: Vec<OneColumn<'_>> = columns.iter().map(OneColumn::of).collect();
+    Columns(&columns).to_string().trim_end().to_owned()
 }
 
 impl<'a> Imported<'a> {
@@ -228,7 +288,7 @@ const HEADS: [&str; 9] = [
     "noise",
 ];
 
-/// What the mapping of a file of another program could have.
+/// What the mapping of a file could have.
 pub fn proposed(proposal: &MappingProposal) -> String {
     Imported::of(proposal).to_string()
 }
@@ -259,7 +319,8 @@ impl fmt::Display for OneLog<'_> {
         match self.channels.is_empty() {
             true => writeln!(
                 f,
-                "no column is a channel yet: give it a name that ends in its unit, or a mapping"
+                "no column is a channel yet: give it a name that ends in its unit, or a mapping\n\n{}",
+                Columns(&self.columns)
             )?,
             false => table(f, &rows)?,
         }
