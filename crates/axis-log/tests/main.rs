@@ -13,5 +13,6 @@ mod quality;
 mod read_binary;
 mod read_log;
 mod reading;
+mod uneven;
 #[cfg(all(feature = "parquet", feature = "mat"))]
 mod write;

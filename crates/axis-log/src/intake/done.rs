@@ -28,6 +28,24 @@ pub enum Done {
         /// In so many places.
         gaps: usize,
     },
+    /// Time stamps that were uneven; the samples were too.
+    Interpolated {
+        /// The file.
+        file: String,
+        /// Farthest of a stamp from an even grid, periods.
+        jitter: f64,
+        /// Rate of the grid, Hz.
+        rate: f64,
+    },
+    /// Time stamps that were uneven, of samples that are not.
+    Evened {
+        /// The file.
+        file: String,
+        /// Farthest of a stamp from the samples' grid, periods.
+        jitter: f64,
+        /// Rate of the grid, Hz.
+        rate: f64,
+    },
     /// Isolated outliers taken out.
     Outliers {
         /// The channel.
@@ -107,6 +125,16 @@ impl fmt::Display for Done {
                     "{file}: {rows} rows missing in {gaps} place(s); put back without values"
                 )
             }
+            Self::Interpolated { file, jitter, rate } => write!(
+                f,
+                "{file}: time stamps up to {:.0} % of a period off an even grid, and so were the samples; interpolated to {rate:.4} Hz",
+                100.0 * jitter
+            ),
+            Self::Evened { file, jitter, rate } => write!(
+                f,
+                "{file}: time stamps up to {:.0} % of a period off an even grid, the samples not; taken as even at {rate:.4} Hz",
+                100.0 * jitter
+            ),
             Self::Outliers {
                 channel,
                 samples,

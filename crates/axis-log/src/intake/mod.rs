@@ -2,7 +2,10 @@
 //!
 //! [`prepare`] reads files by a [`Mapping`](crate::Mapping) and does, in this order:
 //!
-//! 1. Rows that are missing between time stamps are put back, empty.
+//! 1. A file whose time stamps are more than 5 % of a period off an even grid is put on one:
+//!    values by a cubic between stamps where these are the instants of the samples, as they are
+//!    where samples are even and stamps are not. What moves smoothly tells which.
+//!    Rows that are missing between time stamps are put back, empty.
 //! 2. Isolated outliers (Hampel's test, [`outliers`](crate::quality::outliers)) are taken out.
 //! 3. Several files are joined on one even grid, of the slowest or a given rate, and
 //!    delays are taken out, with a filter without phase ([`prepare`] says how).
@@ -20,6 +23,7 @@
 mod delay;
 mod done;
 mod error;
+mod evened;
 mod join;
 mod prepare;
 mod recording;

@@ -54,7 +54,7 @@ pub fn files(path: &Path) -> Vec<PathBuf> {
 /// # Errors
 /// An [`IntakeError`]: a file that cannot be read ([`read_log`](crate::read_log), except
 /// that missing values and rows are taken), a required channel that none has, time stamps
-/// more than a quarter of a period off an even grid where something is resampled, no time in
+/// without any even grid where something is resampled, no time in
 /// common, a rate above that of all files.
 pub fn prepare<P: AsRef<Path>>(
     paths: &[P],
@@ -68,6 +68,7 @@ pub fn prepare<P: AsRef<Path>>(
     for path in paths {
         let mut part = Recording::read(path.as_ref(), mapping, alone)?;
         let (file, [rows, gaps]) = (part.name.clone(), part.missing);
+        done.extend(part.evened.take());
         if gaps > 0 {
             done.push(Done::Rows { file, rows, gaps });
         }

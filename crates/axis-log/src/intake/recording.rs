@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
+use super::done::Done;
 use super::error::IntakeError;
+use super::evened::{Stamps, even_out};
 use crate::channel::Channel;
 use crate::mapping::Mapping;
 use crate::numeric::grid::Grid;
@@ -22,6 +24,8 @@ pub(super) struct Recording {
     pub grid: Option<Even>,
     /// Rows that were missing, and in how many places.
     pub missing: [usize; 2],
+    /// What was done about uneven time stamps.
+    pub evened: Option<Done>,
 }
 
 /// The even grid of a recording.
@@ -62,9 +66,24 @@ impl Recording {
             channels,
             grid: None,
             missing: [0; 2],
+            evened: None,
         };
+        recording.even_out();
         recording.fill_rows()?;
         Ok(recording)
+    }
+
+    fn even_out(&mut self) {
+        let Some(evened) = even_out(&self.time, &mut self.channels) else {
+            return;
+        };
+        self.time = evened.time;
+        let (file, jitter) = (self.name.clone(), evened.jitter);
+        let rate = 1.0 / evened.period;
+        self.evened = Some(match evened.stamps {
+            Stamps::OfSamples => Done::Interpolated { file, jitter, rate },
+            Stamps::OfMessages => Done::Evened { file, jitter, rate },
+        });
     }
 
     /// Puts missing rows back, as NaN. Other rows keep their time stamps.

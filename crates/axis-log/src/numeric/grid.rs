@@ -53,7 +53,7 @@ impl Grid {
 
     /// Least squares of time over place, both taken from their middle so that long logs
     /// with large time stamps keep their digits.
-    fn fit(time: &[f64], places: Vec<usize>) -> Self {
+    pub(crate) fn fit(time: &[f64], places: Vec<usize>) -> Self {
         let n = time.len() as f64;
         let middle = places.iter().map(|&p| p as f64).sum::<f64>() / n;
         let elapsed = |t: f64| t - time[0];

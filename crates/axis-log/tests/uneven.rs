@@ -1,0 +1,132 @@
+//! Uneven time stamps: of samples that are uneven too, and of even ones.
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+
+use axis_log::intake::{Done, Options, PreparedLog, prepare};
+use axis_log::{Log, Mapping};
+use proptest::prelude::*;
+
+const PERIOD: f64 = 0.002;
+
+/// Goes to and fro by 0.1 m at 0.7 Hz, with a wave of 9 Hz on it.
+fn position(t: f64) -> f64 {
+    0.1 * (TAU * 0.7 * t).sin() + 2e-4 * (TAU * 9.0 * t).sin()
+}
+
+/// Numbers between −1 and 1, the same on every machine.
+fn noise(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Rows of stamp and value.
+fn read(rows: impl Iterator<Item = (f64, f64)>) -> PreparedLog {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("polled.csv");
+    let mut text = "t_s,position_m\n".to_owned();
+    rows.for_each(|(t, x)| writeln!(text, "{t},{x}").unwrap());
+    std::fs::write(&path, text).unwrap();
+    prepare(&[path], &Mapping::default(), &[], Options::default()).unwrap()
+}
+
+fn worst(log: &Log, truth: impl Fn(usize, f64) -> f64) -> f64 {
+    let samples = log.channel("position_m").unwrap().iter().zip(log.time());
+    let off = samples
+        .enumerate()
+        .map(|(k, (x, &t))| (x - truth(k, t)).abs());
+    off.fold(0.0, f64::max)
+}
+
+fn is_even(log: &Log) -> bool {
+    let steps = log.time().windows(2).map(|w| w[1] - w[0]);
+    let [least, most] = steps.fold([f64::MAX, 0.0], |[a, b]: [f64; 2], s| [a.min(s), b.max(s)]);
+    most - least < 1e-9
+}
+
+/// Instants up to a share of a period off the grid.
+fn stamps(seed: u64, share: f64, rows: usize) -> Vec<f64> {
+    let mut noise = noise(seed);
+    (0..rows)
+        .map(|k| (k as f64 + share * noise()) * PERIOD)
+        .collect()
+}
+
+proptest! {
+    // Each case writes a file.
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn uneven_samples_are_interpolated_and_even_ones_kept(seed in 1..u64::MAX, share in 0.08..0.45f64) {
+        let stamps = stamps(seed, share, 900);
+        // A computer that asks when it comes to it.
+        let found = read(stamps.iter().map(|&t| (t, position(t))));
+        let told = matches!(&found.done[..], [Done::Interpolated { .. }]);
+        prop_assert!(told, "{:?}", found.done);
+        prop_assert!(is_even(&found.log));
+        // (9/16) (h/2)⁴ of the fourth derivative, 2e-4 (2π 9)⁴ m/s⁴, with steps of up to 2 h; the
+        // first and the last step have three points only.
+        let off = worst(&found.log, |_, t| position(t));
+        prop_assert!(off < 4e-7, "{off:e}");
+        // A message that comes late, about a sample that does not.
+        let at = |k: usize| position(k as f64 * PERIOD);
+        let found = read(stamps.iter().enumerate().map(|(k, &t)| (t, at(k))));
+        let told = matches!(&found.done[..], [Done::Evened { .. }]);
+        prop_assert!(told, "{:?}", found.done);
+        prop_assert!(is_even(&found.log));
+        prop_assert_eq!(worst(&found.log, |k, _| at(k)), 0.0);
+    }
+}
+
+#[test]
+fn what_noise_covers_is_kept_as_it_is() {
+    let mut noise = noise(5);
+    let values: Vec<f64> = (0..900).map(|_| noise()).collect();
+    let found = read(stamps(7, 0.3, 900).into_iter().zip(values.iter().copied()));
+    assert!(
+        matches!(&found.done[..], [Done::Evened { .. }]),
+        "{:?}",
+        found.done
+    );
+    assert_eq!(worst(&found.log, |k, _| values[k]), 0.0);
+}
+
+#[test]
+fn nothing_is_put_into_a_pause() {
+    let all = stamps(3, 0.4, 900);
+    let kept = all
+        .into_iter()
+        .enumerate()
+        .filter(|(k, _)| !(400..430).contains(k));
+    let found = read(kept.map(|(_, t)| (t, position(t))));
+    let holes = found.log.missing("position_m");
+    assert_eq!(holes.len(), 1, "{holes:?}");
+    assert!((28..=32).contains(&holes[0].len()), "{holes:?}");
+    assert!((899..=901).contains(&found.log.len()));
+    assert!(
+        worst(&found.log, |k, t| match holes[0].contains(&k) {
+            true => found.log.channel("position_m").unwrap()[k],
+            false => position(t),
+        }) < 4e-7
+    );
+}
+
+#[test]
+fn stamps_without_a_grid_are_left_alone() {
+    let mut noise = noise(11);
+    let mut t = 0.0;
+    let wild: Vec<f64> = (0..900)
+        .map(|_| {
+            t -= PERIOD * (0.5 + 0.5 * noise()).max(1e-3).ln();
+            t
+        })
+        .collect();
+    let found = read(wild.iter().map(|&t| (t, position(t))));
+    let evened = |d: &Done| matches!(d, Done::Interpolated { .. } | Done::Evened { .. });
+    assert!(!found.done.iter().any(evened), "{:?}", found.done);
+}
