@@ -7,6 +7,8 @@ import numpy as np
 
 # In the cases hidden orders of cogging are 1 to 24.
 ORDERS = range(1, 25)
+# Of a linear motor, in an electrical period.
+POLE_ORDERS = range(1, 13)
 CENTRES = 9
 STRIBECK_SHARES = (0.01, 0.03, 0.1)
 
@@ -85,7 +87,8 @@ class Columns:
             # The told gravity is the other quadrature.
             more["turn"] = np.cos(x - machine.hanging)
         if machine.pole_pitch:
-            pair(more, "pole", 2.0 * np.pi / machine.pole_pitch * x, 1.0)
+            for k in POLE_ORDERS:
+                pair(more, f"pole {k}", k * np.pi / machine.pole_pitch * x, 1.0)
         else:
             for k in ORDERS:
                 pair(more, f"cogging {k}", k * machine.ratio * x, 1.0)

@@ -80,7 +80,7 @@ def estimates(name, value, machine, terms_of):
         "load-dependent-friction": lambda: [v("s|F|")],
         "spring-force": lambda: [v("x")],
         "gravity-imbalance": lambda: [float(np.hypot(v("gravity"), v("turn")))],
-        "force-ripple": lambda: [v("pole")],
+        "force-ripple": lambda: [most("pole") or 0.0],
         "cogging-torque": lambda: [(most("cogging") or 0.0) / machine.ratio],
         "torque-ripple": lambda: [v("ripple")],
         "stribeck-friction": lambda: [most("stribeck") or 0.0],

@@ -1,6 +1,9 @@
-//! `cogging-torque`: torque that repeats with the motor's turn, at any current.
+//! `cogging-torque`: torque that repeats with the motor's turn, at any current. Of a linear motor it is
+//! `force-ripple`.
 
-use super::{Effect, EffectChannel, EffectVariable, Measure, Nature, PHASE, shape, size};
+use super::{
+    Effect, EffectChannel, EffectNeed, EffectVariable, Measure, Nature, PHASE, shape, size,
+};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
@@ -20,7 +23,7 @@ pub(super) const EFFECT: Effect = Effect {
         ),
         PHASE,
     ],
-    needs: &[],
+    needs: &[EffectNeed::TurningMotor],
     install,
 };
 

@@ -362,6 +362,8 @@ pub enum EffectNeed {
     Poles,
     /// A load that turns.
     Turning,
+    /// A motor that turns.
+    TurningMotor,
     /// A motor that moves its load along a line without a transmission, with poles.
     LinearMotor,
 }
@@ -376,6 +378,7 @@ impl EffectNeed {
             Self::Currents => "currents that are measured",
             Self::Poles => "motor poles",
             Self::Turning => "load that turns",
+            Self::TurningMotor => "motor that turns",
             Self::LinearMotor => "linear motor with poles",
         }
     }
@@ -389,6 +392,10 @@ impl EffectNeed {
             Self::Currents => axis.actuator.has_currents(),
             Self::Poles => axis.actuator.pole_pairs().is_some(),
             Self::Turning => axis.freedom() == Freedom::Rotary,
+            // The motor's coordinate is the load's where that moves along a line.
+            Self::TurningMotor => {
+                axis.freedom() == Freedom::Rotary || axis.mechanism.travel_per_radian() != 1.0
+            }
             Self::LinearMotor => {
                 axis.freedom() == Freedom::Linear
                     && axis.mechanism.stiffness().is_none()

@@ -216,8 +216,11 @@ fn forces_over_position_and_time_are_what_they_say() {
     let pitch = number(&motor.actuator, "pole_pitch");
     for share in [0.0, 0.25, 0.5, 1.25] {
         let at = start(motor.stroke.start + share * pitch, 0.05);
-        let [force, _] = added(&motor, "force-ripple", &[9.0, 0.2], &at);
-        assert_near(force, 9.0 * (TAU * at.position / pitch + 0.2).sin(), 1e-9);
+        for order in [1.0, 2.0, 5.0] {
+            let [force, _] = added(&motor, "force-ripple", &[9.0, order, 0.2], &at);
+            let turns = 0.5 * order * at.position / pitch;
+            assert_near(force, 9.0 * (TAU * turns + 0.2).sin(), 1e-9);
+        }
     }
 
     for time in [0.0, 0.3, 2.0] {

@@ -118,7 +118,7 @@ pub const REMEDIES: &[Remedy] = &[
     line("torque-constant", Setting, "torque constant of the motor in the drive: all torque feed-forwards scale with it"),
     line("cogging-torque", CoggingTable, "amplitude, order and phase"),
     line("torque-ripple", CoggingTable, "amplitude in proportion to the torque, at six times the electrical angle"),
-    line("force-ripple", PositionTable, "amplitude and phase over the pole pitch"),
+    line("force-ripple", PositionTable, "amplitude, order and phase over two pole pitches"),
     line("current-sensor-offset", Setting, "offset of the current sensors: calibrate them in the drive"),
     line("current-sensor-gain", Setting, "scale of the current sensors: calibrate them in the drive"),
     line("backlash", BacklashCompensation, "the gap; beyond a few micrometres preload or repair the nut"),
