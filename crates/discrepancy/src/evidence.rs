@@ -3,8 +3,9 @@
 use axis_sim::{Axis, ReplayError};
 use thiserror::Error;
 
-use crate::answers::LogSet;
-use crate::judge::{Discovered, discovery};
+use crate::answers::{LogSet, Prepared};
+use crate::controller::{OwnController, better_than_own};
+use crate::judge::{Discovered, Verdict, discovery};
 use crate::logs::{LogSetError, NamedLog, check_distinct, set_apart};
 use crate::name::search::{Found, SearchError, Settings, search};
 
@@ -75,7 +76,23 @@ impl Evidence {
             found = found.tested_on(machine, test.clone());
         }
         progress("verdict");
-        let discovered = discovery(machine, &self.fit, &self.check, &found)?;
+        let mut discovered = discovery(machine, &self.fit, &self.check, &found)?;
+        let verdict = discovered.discovery.verdict;
+        if !self.fit.is_balanced() && matches!(verdict, Verdict::Unknown | Verdict::PartlyExplained)
+        {
+            progress("controller");
+            discovered.discovery.told.controller = self.other_controller(machine, &found);
+        }
         Ok((found, discovered))
+    }
+
+    /// What another controller than that of the fitted machine would leave of the commands.
+    fn other_controller(&self, machine: &Axis, found: &Found) -> Option<OwnController> {
+        let logs = |set: &LogSet| -> Vec<NamedLog> {
+            let one = |log: &Prepared| (log.name.clone(), log.log.clone(), log.period);
+            set.logs.iter().map(one).collect()
+        };
+        let fitted = machine.with_known(&found.fit.state.shares);
+        better_than_own(&fitted, &logs(&self.fit), &logs(&self.check))
     }
 }

@@ -7,7 +7,7 @@ use axis_log::{Channel, Log};
 use axis_sim::{Axis, ClosedLoop, Recorder};
 use compensator::NoCompensation;
 use discrepancy::LogSet;
-use discrepancy::controller::{ControllerEstimate, Gain, closed_loop, estimate};
+use discrepancy::controller::{ControllerEstimate, Gain, better_than_own, closed_loop, estimate};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -105,6 +105,35 @@ fn a_command_logged_two_cycles_late_is_found_so() {
     let cycles = found.delay.value / axis.period;
     assert!((cycles - 2.0).abs() < 0.02, "{:?}", found.delay);
     assert!((gain(&found, "kv").value / RACK[0].1 - 1.0).abs() < 0.01);
+}
+
+/// A low pass that a file does not know of is found from the logs; a controller that is as the file
+/// says, or has its gains inside what noise tells, is not doubted.
+#[test]
+fn a_controller_that_does_not_give_the_command_is_told() {
+    let file = machine("rack");
+    let mut other = file.clone();
+    let change = |values: &mut axis_sim::part::Values| values.set("speed_lowpass", 200.0);
+    other.control.change(change).unwrap();
+    let logs = |axis: &Axis| [0, 2].map(|t| [log(axis, t, t as u64, 1e-8, 0)]);
+    let [fit, check] = logs(&other);
+    let found = better_than_own(&file, &fit, &check).unwrap();
+    assert!(found.better.contains("speed_lowpass"), "{found:?}");
+    assert!(found.better_left < 0.1 * found.left, "{found:?}");
+    assert_eq!(better_than_own(&other, &fit, &check), None);
+    let [fit, check] = logs(&file);
+    assert_eq!(better_than_own(&file, &fit, &check), None);
+    // Without a command there is nothing to compare.
+    let bare = |logs: &[(String, Log, f64)]| {
+        let one = |(name, log, period): &(String, Log, f64)| {
+            let channels = log.channels().iter();
+            let kept = channels.filter(|c| c.name != "torque_ref_n_m").cloned();
+            (name.clone(), Log::new(kept.collect()).unwrap(), *period)
+        };
+        logs.iter().map(one).collect::<Vec<_>>()
+    };
+    let [fit, check] = logs(&other).map(|logs| bare(&logs));
+    assert_eq!(better_than_own(&file, &fit, &check), None);
 }
 
 #[test]

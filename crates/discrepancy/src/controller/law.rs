@@ -24,6 +24,18 @@ pub struct Free {
 /// Key of the delay of the logged command behind the logged sensors, s. No control has it.
 pub const DELAY: &str = "delay";
 
+impl Free {
+    /// The delay, on a control of this period (s).
+    pub fn delay(period: f64) -> Self {
+        Self {
+            key: DELAY,
+            start: 0.0,
+            scale: period,
+            room: [-10.0 * period, 50.0 * period],
+        }
+    }
+}
+
 /// A control kind with some of its values free.
 #[derive(Clone, Debug)]
 pub struct Law {

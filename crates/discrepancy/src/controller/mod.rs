@@ -41,6 +41,7 @@ mod error;
 mod fitted;
 mod law;
 mod low_pass;
+mod own;
 mod seen;
 mod solve;
 mod start;
@@ -55,6 +56,7 @@ pub use closed::{ClosedLoopGains, closed_loop};
 use equation::Equation;
 pub use error::ControllerError;
 use fitted::Fitted;
+pub use own::{OwnController, better_than_own};
 use seen::Seen;
 
 /// A gain as estimated.

@@ -5,7 +5,7 @@ use axis_sim::Axis;
 use axis_sim::control::{CONTROLS, Control};
 use axis_sim::part::{PartKind, Values, named};
 
-use super::law::{DELAY, Free, Law};
+use super::law::{Free, Law};
 use super::start::Form;
 
 /// A control kind, where it takes the position from, what it filters, and from which of two
@@ -63,12 +63,7 @@ impl Structure {
         for free in &free {
             values.set(free.key, free.start);
         }
-        free.push(Free {
-            key: DELAY,
-            start: 0.0,
-            scale: machine.period,
-            room: [-10.0 * machine.period, 50.0 * machine.period],
-        });
+        free.push(Free::delay(machine.period));
         Law {
             kind: self.kind,
             values,

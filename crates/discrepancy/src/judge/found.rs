@@ -109,9 +109,13 @@ pub(super) fn replaced(replaced: &Replaced, scales: &Scales) -> ReplacedEffect {
     }
 }
 
-/// Friction acts at the table; its torque at the screw is what catalogues give.
+/// Friction acts at the table; its torque at the screw is what catalogues give. A motor without
+/// transmission has no other place.
 fn at_screw(machine: &Axis, value: f64, unit: &str) -> Option<AtScrew> {
     let r = machine.travel_per_radian();
+    if r == 1.0 {
+        return None;
+    }
     let (factor, unit) = match unit {
         "N" => (r, "N*m"),
         "N*s/m" => (r * r, "N*m*s/rad"),

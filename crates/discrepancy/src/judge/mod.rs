@@ -234,6 +234,7 @@ pub fn judged(
         each: if each.len() > 1 { each } else { Vec::new() },
         confidence: Confidence::new(verdict, &effects, &recalibrated, slow_of_loop),
         remedies: remedies(&effects),
+        controller: None,
     };
     let friction = friction_law(machine, set, full, &traces, &after);
     let overlays = overlays(as_filed, &as_filed.rest(&base.traces), &after);

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::cost::Cost;
 use super::remedy::{DriveFunction, Remedy};
 use super::types::{EffectFound, Recalibrated, Verdict};
+use crate::controller::OwnController;
 
 /// How far a verdict can be relied on.
 #[derive(
@@ -65,6 +66,10 @@ pub struct Told {
     pub confidence: Confidence,
     /// What compensates each named effect.
     pub remedies: Vec<RemedyTold>,
+    /// Where a replay leaves a rest: another controller than the file's, which gives the logged
+    /// commands better.
+    #[serde(default)]
+    pub controller: Option<OwnController>,
 }
 
 /// What compensates an effect.

@@ -8,6 +8,7 @@ use super::told::{RemedyTold, Told};
 use super::types::{Discovery, EffectFound, ParameterFound, RefusedEffects, Verdict};
 use super::units::ReadUnit;
 use super::unknown::Unknown;
+use crate::controller::OwnController;
 
 /// One question of a first screen, and its answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -239,6 +240,7 @@ fn next(discovery: &Discovery) -> Vec<String> {
             next.what
         ));
     }
+    lines.extend(discovery.told.controller.as_ref().map(other_controller));
     let one = |r: &RemedyTold| {
         format!(
             "{}: {}. {}.",
@@ -249,6 +251,22 @@ fn next(discovery: &Discovery) -> Vec<String> {
     };
     lines.extend(discovery.told.remedies.iter().map(one));
     lines
+}
+
+fn other_controller(own: &OwnController) -> String {
+    format!(
+        "The controller of the file does not give the logged command: it leaves {} of it (mean square), where {} leaves {}. Estimate it (identify-control) and search with the file that this writes; or leave the controller out (--balance), which shows forces.",
+        percent(own.left),
+        own.better,
+        percent(own.better_left)
+    )
+}
+
+/// A share with two digits, however small.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share.max(1e-12);
+    let decimals = (1.0 - percent.log10().floor()).max(0.0) as usize;
+    format!("{percent:.decimals$} %")
 }
 
 fn capital(text: &str) -> String {

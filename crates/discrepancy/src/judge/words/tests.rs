@@ -1,5 +1,6 @@
 //! What a first screen says of made discoveries.
 
+use crate::controller::OwnController;
 use crate::judge::told::{Confidence, Level, remedies};
 use crate::judge::{
     Cost, Discovery, EffectFound, EffortCost, FigureLogs, Gaps, ParameterFound, Recalibrated, Size,
@@ -31,6 +32,7 @@ fn discovery(verdict: Verdict, effects: Vec<EffectFound>, known: Vec<Recalibrate
             each: Vec::new(),
             confidence: Confidence::new(verdict, &effects, &known, false),
             remedies: remedies(&effects),
+            controller: None,
         },
         effects,
         own_form: None,
@@ -238,4 +240,20 @@ fn a_torque_balance_has_no_tracking_error() {
     made.told.cost.tracking = None;
     assert!(lines(&made, "What it costs")[0].starts_with("The tracking error is not known"));
     assert!(lines(&made, "How sure")[2].starts_with("Compared by torque balance"));
+}
+
+#[test]
+fn another_controller_is_told_before_remedies() {
+    let mut found = discovery(Verdict::PartlyExplained, vec![viscous()], vec![]);
+    found.told.controller = Some(OwnController {
+        left: 2.083,
+        better: "p-pi, speed_lowpass".to_owned(),
+        better_left: 1.512e-6,
+    });
+    let said = lines(&found, "What to do next");
+    assert_eq!(
+        said[0],
+        "The controller of the file does not give the logged command: it leaves 208 % of it (mean square), where p-pi, speed_lowpass leaves 0.00015 %. Estimate it (identify-control) and search with the file that this writes; or leave the controller out (--balance), which shows forces."
+    );
+    assert_eq!(said.len(), 2);
 }
