@@ -8,7 +8,7 @@ import numpy as np
 # In the cases hidden orders of cogging are 1 to 24.
 ORDERS = range(1, 25)
 # Of a linear motor, in an electrical period.
-POLE_ORDERS = range(1, 13)
+POLE_ORDERS = range(1, 25)
 CENTRES = 9
 STRIBECK_SHARES = (0.01, 0.03, 0.1)
 

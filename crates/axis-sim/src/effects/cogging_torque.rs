@@ -1,5 +1,9 @@
 //! `cogging-torque`: torque that repeats with the motor's turn, at any current. Of a linear motor it is
 //! `force-ripple`.
+//!
+//! With Q slots and p pole pairs the fundamental has the order lcm(Q, 2p), an even multiple of p (Zhu and
+//! Howe, IEEE Trans. Energy Conversion 15 (2000) 407–412, doi:10.1109/60.900501): 24 of 12 slots and 8
+//! poles, 60 of 12 and 10, 72 of 9 or 36 and 8. Tolerances of slots and magnets make lower orders.
 
 use super::{
     Effect, EffectChannel, EffectNeed, EffectVariable, Measure, Nature, PHASE, shape, size,
@@ -17,9 +21,9 @@ pub(super) const EFFECT: Effect = Effect {
         shape(
             "order",
             Measure::Ratio,
-            Nature::Order([1, 24]),
+            Nature::TurnOrder([1, 24]),
             8.0,
-            [1.0, 60.0],
+            [1.0, 1000.0],
         ),
         PHASE,
     ],

@@ -23,9 +23,9 @@ pub(super) const EFFECT: Effect = Effect {
         shape(
             "order",
             Measure::Ratio,
-            Nature::Order([1, 12]),
+            Nature::Order([1, 24]),
             2.0,
-            [1.0, 48.0],
+            [1.0, 100.0],
         ),
         PHASE,
     ],

@@ -33,6 +33,9 @@ pub enum Nature {
     /// How often something repeats in a turn: a whole number, between these where
     /// it is searched for.
     Order([u8; 2]),
+    /// The same in a turn of the motor, where those of its magnets are searched for besides: even
+    /// multiples of the pole pairs, up to twelve of them.
+    TurnOrder([u8; 2]),
     /// A place along the stroke; a test draws it between these shares of a motion.
     Place([f64; 2]),
     /// A width along the stroke; a test draws it between these shares of a motion.
@@ -55,6 +58,13 @@ pub enum Nature {
     Held,
     /// When it ends, s; drawn between these after its beginning.
     End([f64; 2]),
+}
+
+impl Nature {
+    /// Whether it is a whole number that is searched for one by one.
+    pub fn is_order(self) -> bool {
+        matches!(self, Self::Order(_) | Self::TurnOrder(_))
+    }
 }
 
 /// What a number measures.

@@ -167,7 +167,9 @@ pub(crate) fn values(axis: &Axis, effect: &Effect, size: f64, random: &mut ChaCh
         Nature::Size { .. } => sign * size * p.typical(&scales),
         Nature::Phase => between([-3.0, 3.0]),
         Nature::Held => p.typical(&scales),
-        Nature::Order([least, most]) => between([f64::from(least), f64::from(most) + 1.0]).floor(),
+        Nature::Order([least, most]) | Nature::TurnOrder([least, most]) => {
+            between([f64::from(least), f64::from(most) + 1.0]).floor()
+        }
         Nature::Place(shares) => scales.start + scales.motion * between(shares),
         Nature::Width(shares) => scales.motion * between(shares),
         Nature::Speed(_, [low, high])

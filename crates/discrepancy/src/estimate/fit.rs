@@ -41,7 +41,7 @@ impl Fit {
 
 /// Which effect parameters a fit moves: all but whole numbers and what is given.
 pub fn is_free(parameter: &EffectParameter) -> bool {
-    !matches!(parameter.nature, Nature::Order(_) | Nature::Held)
+    !parameter.nature.is_order() && !matches!(parameter.nature, Nature::Held)
 }
 
 /// Steps up and down for a difference quotient of an effect's parameter, inside

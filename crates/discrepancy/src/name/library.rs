@@ -109,6 +109,16 @@ pub fn phase_of(effect: &Effect) -> Option<usize> {
     effect.place_of(|nature| matches!(nature, Nature::Phase))
 }
 
+/// Orders of a turn: all from the least to the greatest that slots and magnets that are not alike
+/// make, and those of the magnets above.
+fn turn_orders([least, most]: [u8; 2], pole_pairs: Option<f64>) -> Vec<f64> {
+    let low = (least..=most).map(f64::from);
+    let multiples = |pairs: f64| (1..=12).map(move |k| 2.0 * pairs * f64::from(k));
+    let of_magnets = pole_pairs.into_iter().flat_map(multiples);
+    low.chain(of_magnets.filter(|order| *order > f64::from(most)))
+        .collect()
+}
+
 /// Values of shape parameters to begin with: all combinations of what each nature asks
 /// for, a width being a part of the stroke that the logs cover, an end the end of the
 /// slot that it begins with.
@@ -134,6 +144,7 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
                 None => starts.to_vec(),
             },
             Nature::Order([least, most]) => (least..=most).map(f64::from).collect(),
+            Nature::TurnOrder(low) => turn_orders(low, fitter.machine.actuator.pole_pairs()),
             Nature::Width(_) => vec![(high - low) / 16.0],
             Nature::Place(_) => (0..PLACES)
                 .map(|k| low + (high - low) * (k as f64 + 0.5) / PLACES as f64)
@@ -252,5 +263,21 @@ pub fn responses(
             .flat_map(|(i, _)| [0.0, std::f64::consts::FRAC_PI_2].map(|angle| with(i, Some(angle))))
             .collect(),
         None => sizes.map(|(i, _)| with(i, None)).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::turn_orders;
+
+    #[test]
+    fn orders_of_magnets_stand_above_those_that_are_all_tried() {
+        assert_eq!(turn_orders([1, 3], None), [1.0, 2.0, 3.0]);
+        let found = turn_orders([1, 24], Some(4.0));
+        assert_eq!(found.len(), 24 + 9);
+        // 36 slots and 8 poles.
+        assert!(found.contains(&72.0) && !found.contains(&36.0));
+        // 12 slots and 10 poles.
+        assert!(turn_orders([1, 24], Some(5.0)).contains(&60.0));
     }
 }

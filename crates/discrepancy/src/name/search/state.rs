@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axis_sim::Axis;
-use axis_sim::effects::{Effect, Nature};
+use axis_sim::effects::Effect;
 
 use super::evidence::needed;
 use super::form::is_form;
@@ -114,7 +114,7 @@ impl Search<'_> {
         let rejected = self.settings.rejected.iter().any(|r| r == effect.name);
         // A second harmonic of the same kind may be there.
         let active = self.named.iter().any(|n| n.name == effect.name);
-        let free = !active || effect.place_of(|n| matches!(n, Nature::Order(_))).is_some();
+        let free = !active || effect.place_of(|n| n.is_order()).is_some();
         free && !rejected
             && !self.doubles_a_friction(effect)
             && (awaited.is_empty() || awaited.contains(&effect.name))
