@@ -6,3 +6,4 @@ mod identification;
 mod independent_logs;
 mod readme;
 mod rigid_stand_in;
+mod slide;

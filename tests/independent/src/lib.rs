@@ -22,6 +22,9 @@
 //! F = k δ + βk δ',   δ = r n(y)ᵀ q + errors of the lead − y,   r = lead / 2π
 //! ```
 //!
+//! [`slide_log`] is another machine, a slide on a linear motor whose drive has more in it than its axis file
+//! says.
+//!
 //! [`cases`] holds the table of what is hidden; [`write_case`] writes one as two logs to
 //! fit, two to check, the axis file and the truth.
 
@@ -39,6 +42,7 @@ mod output;
 mod parameters;
 mod random;
 mod run;
+mod slide;
 mod truth;
 
 pub use drive::{Command, Drive, Reading};
@@ -51,4 +55,5 @@ pub use output::{Rough, log, write_case};
 pub use parameters::Parameters;
 pub use random::Random;
 pub use run::{LoopNoise, Sample, run};
+pub use slide::{SlideDrive, SlideHidden, slide_log};
 pub use truth::{TrueEffect, Truth, Wanted};

@@ -4,7 +4,7 @@ use axis_sim::Axis;
 use rayon::prelude::*;
 
 use crate::estimate::fit::{Columns, Fitter};
-use crate::name::curves::{Course, Place, Rest, STANDS, Solved, answer, courses};
+use crate::name::curves::{Course, Factor, Place, Rest, STANDS, Solved, Variable, answer, courses};
 use crate::name::search::Found;
 
 /// Of time (s), place (m), speed (m/s) and direction (−1 to 1).
@@ -12,6 +12,8 @@ type Value = fn(f64, f64, f64, f64) -> f64;
 
 /// A term: its words and its course. `x` counts from the middle of the motion.
 struct Term {
+    /// On what it depends.
+    over: Over,
     words: &'static str,
     unit: &'static str,
     value: Value,
@@ -19,36 +21,76 @@ struct Term {
     beside: Option<Value>,
 }
 
+/// On what a term depends, as a curve has it.
+pub(super) type Over = (Variable, Factor);
+
+const SPEED: Over = (Variable::Speed, Factor::One);
+const POSITION: Over = (Variable::Position, Factor::One);
+const POSITION_BY_SPEED: Over = (Variable::Position, Factor::Speed);
+const POSITION_BY_DIRECTION: Over = (Variable::Position, Factor::Direction);
+const TIME: Over = (Variable::Time, Factor::One);
+const TIME_BY_DIRECTION: Over = (Variable::Time, Factor::Direction);
+
 const FORCES: [Term; 12] = [
-    term_of("√|v|·sign v", "N·(s/m)^½", |_, _, v, s| {
+    term_of(SPEED, "√|v|·sign v", "N·(s/m)^½", |_, _, v, s| {
         v.abs().sqrt() * s
     }),
-    term_of("|v|·v", "N·s²/m²", |_, _, v, _| v * v.abs()),
-    term_of("v³", "N·s³/m³", |_, _, v, _| v.powi(3)),
-    with("x·v", "N·s/m²", |_, x, v, _| x * v, |_, _, v, _| v),
-    with("x·sign v", "N/m", |_, x, _, s| x * s, |_, _, _, s| s),
-    with("x", "N/m", |_, x, _, _| x, |_, _, _, _| 1.0),
-    with("x²", "N/m²", |_, x, _, _| x * x, |_, _, _, _| 1.0),
-    term_of("exp(−t / 1 s)·sign v", "N", |t, _, _, s| (-t).exp() * s),
-    term_of("exp(−t / 3 s)·sign v", "N", |t, _, _, s| {
-        (-t / 3.0).exp() * s
-    }),
-    term_of("exp(−t / 10 s)·sign v", "N", |t, _, _, s| {
-        (-t / 10.0).exp() * s
-    }),
-    with("t·sign v", "N/s", |t, _, _, s| t * s, |_, _, _, s| s),
-    with("t", "N/s", |t, _, _, _| t, |_, _, _, _| 1.0),
+    term_of(SPEED, "|v|·v", "N·s²/m²", |_, _, v, _| v * v.abs()),
+    term_of(SPEED, "v³", "N·s³/m³", |_, _, v, _| v.powi(3)),
+    with(
+        POSITION_BY_SPEED,
+        "x·v",
+        "N·s/m²",
+        |_, x, v, _| x * v,
+        |_, _, v, _| v,
+    ),
+    with(
+        POSITION_BY_DIRECTION,
+        "x·sign v",
+        "N/m",
+        |_, x, _, s| x * s,
+        |_, _, _, s| s,
+    ),
+    with(POSITION, "x", "N/m", |_, x, _, _| x, |_, _, _, _| 1.0),
+    with(POSITION, "x²", "N/m²", |_, x, _, _| x * x, |_, _, _, _| 1.0),
+    term_of(
+        TIME_BY_DIRECTION,
+        "exp(−t / 1 s)·sign v",
+        "N",
+        |t, _, _, s| (-t).exp() * s,
+    ),
+    term_of(
+        TIME_BY_DIRECTION,
+        "exp(−t / 3 s)·sign v",
+        "N",
+        |t, _, _, s| (-t / 3.0).exp() * s,
+    ),
+    term_of(
+        TIME_BY_DIRECTION,
+        "exp(−t / 10 s)·sign v",
+        "N",
+        |t, _, _, s| (-t / 10.0).exp() * s,
+    ),
+    with(
+        TIME_BY_DIRECTION,
+        "t·sign v",
+        "N/s",
+        |t, _, _, s| t * s,
+        |_, _, _, s| s,
+    ),
+    with(TIME, "t", "N/s", |t, _, _, _| t, |_, _, _, _| 1.0),
 ];
 
 const OFFSETS: [Term; 4] = [
-    term_of("x²", "1/m", |_, x, _, _| x * x),
-    term_of("x³", "1/m²", |_, x, _, _| x.powi(3)),
-    term_of("t·x", "1/s", |t, x, _, _| t * x),
-    term_of("v", "s", |_, _, v, _| v),
+    term_of(POSITION, "x²", "1/m", |_, x, _, _| x * x),
+    term_of(POSITION, "x³", "1/m²", |_, x, _, _| x.powi(3)),
+    term_of(TIME, "t·x", "1/s", |t, x, _, _| t * x),
+    term_of(SPEED, "v", "s", |_, _, v, _| v),
 ];
 
-const fn term_of(words: &'static str, unit: &'static str, value: Value) -> Term {
+const fn term_of(over: Over, words: &'static str, unit: &'static str, value: Value) -> Term {
     Term {
+        over,
         words,
         unit,
         value,
@@ -56,13 +98,30 @@ const fn term_of(words: &'static str, unit: &'static str, value: Value) -> Term 
     }
 }
 
-const fn with(words: &'static str, unit: &'static str, value: Value, beside: Value) -> Term {
+const fn with(
+    over: Over,
+    words: &'static str,
+    unit: &'static str,
+    value: Value,
+    beside: Value,
+) -> Term {
     Term {
+        over,
         words,
         unit,
         value,
         beside: Some(beside),
     }
+}
+
+/// A short term, with its number.
+pub(super) struct Short {
+    /// On what it depends.
+    pub over: Over,
+    /// In words.
+    pub formula: String,
+    /// Fall of D on the fit logs.
+    pub gain: f64,
 }
 
 /// The short term that explains most, where it does nearly as much as the curve.
@@ -73,7 +132,7 @@ pub(super) fn term(
     rest: &Rest<'_>,
     place: Place,
     curve: f64,
-) -> Option<String> {
+) -> Option<Short> {
     let terms: &[Term] = match place {
         Place::Force => &FORCES,
         Place::Offset => &OFFSETS,
@@ -123,7 +182,7 @@ pub(super) fn term(
     } else {
         String::new()
     };
-    Some(format!(
+    let formula = format!(
         "{} = {:.4e} {} · {}{about} (empirical; ± {:.1e})",
         if place == Place::Force {
             "force"
@@ -134,5 +193,10 @@ pub(super) fn term(
         term.unit,
         term.words,
         1.96 * solved.deviations[0]
-    ))
+    );
+    Some(Short {
+        over: term.over,
+        formula,
+        gain: solved.gain,
+    })
 }

@@ -99,9 +99,26 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     let most = holds.iter().map(|t| t.2).fold(f64::NEG_INFINITY, f64::max);
     // The simplest of those that tell about as much: they stand in the order of the list.
     let about = holds.into_iter().filter(|t| t.2 >= ABOUT * most);
-    let Some((index, solution, told)) = about.min_by_key(|t| t.0) else {
+    let Some(first) = about.min_by_key(|t| t.0) else {
         return Ok(None);
     };
+    let place = curves.shapes[first.0].0.place;
+    let short = term(machine, &fitter, found, &rest, place, first.1.gain);
+    // A term with its one number that does as much as the knots of any curve says better on what it
+    // depends.
+    let as_short = short
+        .as_ref()
+        .filter(|s| s.gain >= first.1.gain)
+        .and_then(|short| {
+            let over = |i: usize| {
+                let shape = &curves.shapes[i].0;
+                shape.place == place && (shape.variable, shape.factor) == short.over
+            };
+            let (i, solution) = solved.iter().find(|(i, _)| over(*i))?;
+            let told = held_out(*i, solution);
+            (told >= least(*i, solution)).then_some((*i, solution, told))
+        });
+    let (index, solution, told) = as_short.unwrap_or(first);
     let set = &found.check_logs;
     let after = curves.shapes[index]
         .0
@@ -110,11 +127,10 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
         return Ok(None);
     }
     let (shape, freedom) = (&curves.shapes[index].0, machine.freedom());
-    let formula = term(machine, &fitter, found, &rest, shape.place, solution.gain);
     Ok(Some(Unknown {
         channel: shape.place.name().to_owned(),
         depends_on: shape.depends_on(),
-        formula,
+        formula: short.map(|short| short.formula),
         curve: Curve {
             variable: format!(
                 "{}, {}",

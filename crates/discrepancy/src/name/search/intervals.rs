@@ -1,5 +1,6 @@
 //! How well a search knows what it found.
 
+use super::types::SIMULATED;
 use axis_sim::ReplayError;
 use axis_sim::effects::{ActiveEffect, Measure, Nature};
 use nalgebra::DMatrix;
@@ -20,6 +21,13 @@ pub(super) struct Intervals {
     covariance: DMatrix<f64>,
     pub(super) noise: Vec<Amplitudes>,
     spreads: Vec<Spread>,
+}
+
+impl Intervals {
+    /// Half width of the 95 % interval of a parameter of this value, by its place.
+    pub(super) fn half_width(&self, index: usize, value: f64) -> f64 {
+        self.spreads[index].half_width(SIMULATED * value)
+    }
 }
 
 impl Search<'_> {

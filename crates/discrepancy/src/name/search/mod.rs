@@ -147,7 +147,7 @@ fn searched(
     if let Some(refused) = search.refused(as_filed, &without)? {
         search = without.with_refused(refused);
         intervals = search.intervals()?;
-    } else if search.lacks_evidence(&without)? {
+    } else if search.lacks_evidence(&without, &intervals)? {
         search = without.with_leftover(&search.named);
         intervals = search.intervals()?;
     }

@@ -259,7 +259,7 @@ pub struct Test {
 /// Standard deviation by which two simulations of one machine, with other mesh and
 /// step, differ, as a share of a parameter's value (of a radian, for a phase): where
 /// noise said less than three times this, hidden sizes were missed by 1.1e-4 RMS.
-const SIMULATED: f64 = 2e-4;
+pub(super) const SIMULATED: f64 = 2e-4;
 
 impl Found {
     /// Fall of D that naming an effect of one number took.
