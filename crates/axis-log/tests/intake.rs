@@ -8,6 +8,8 @@ use axis_log::intake::{Done, Options, PreparedLog, prepare};
 use axis_log::{ColumnMap, ColumnUnit, Log, Mapping, MappingError, read_log};
 use proptest::prelude::*;
 
+use crate::reading::noise;
+
 /// Rests, moves 0.3 m within 0.8 s without a jump up to the jerk, rests.
 fn position(t: f64) -> f64 {
     let s = ((t - 0.3) / 0.8).clamp(0.0, 1.0);
@@ -17,17 +19,6 @@ fn position(t: f64) -> f64 {
 fn speed(t: f64) -> f64 {
     let s = ((t - 0.3) / 0.8).clamp(0.0, 1.0);
     0.3 / 0.8 * (1.0 - (TAU * s).cos())
-}
-
-/// Numbers between −1 and 1 of variance 1/3, the same on every machine.
-fn noise(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-    move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
 }
 
 struct Folder(tempfile::TempDir);

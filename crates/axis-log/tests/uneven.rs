@@ -7,22 +7,13 @@ use axis_log::intake::{Done, Options, PreparedLog, prepare};
 use axis_log::{Log, Mapping};
 use proptest::prelude::*;
 
+use crate::reading::noise;
+
 const PERIOD: f64 = 0.002;
 
 /// Goes to and fro by 0.1 m at 0.7 Hz, with a wave of 9 Hz on it.
 fn position(t: f64) -> f64 {
     0.1 * (TAU * 0.7 * t).sin() + 2e-4 * (TAU * 9.0 * t).sin()
-}
-
-/// Numbers between −1 and 1, the same on every machine.
-fn noise(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-    move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
 }
 
 /// Rows of stamp and value.

@@ -1,4 +1,4 @@
-//! Mappings and messages that the tests of `read_log` share.
+//! Mappings, messages and noise that tests share.
 
 use std::path::Path;
 
@@ -45,4 +45,15 @@ pub fn emps() -> Mapping {
         ],
         None,
     )
+}
+
+/// Numbers between −1 and 1 of variance 1/3, the same on every machine.
+pub fn noise(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
 }
