@@ -70,8 +70,10 @@ struct Ends {
 
 impl Ends {
     fn of(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> Self {
-        let load = shifted(hooks, motions, h).unwrap_or_else(|| motions.load.clone());
-        let motor = motions.motor.clone();
+        let mut motor = motions.motor.clone();
+        let ahead = ahead_at_start(axis, hooks, motions, h);
+        motor.position.iter_mut().for_each(|angle| *angle += ahead);
+        let load = shifted(hooks, motions, &motor, h).unwrap_or_else(|| motions.load.clone());
         let spring = motions.spring(axis);
         let forces = forces(axis, hooks, &load, spring, h);
         let Some(wind_up) = motions.wind_up else {
@@ -121,22 +123,12 @@ fn middle(positions: &[f64]) -> f64 {
 
 /// The load's course with errors of the transmission's kinematics, where only the motor's
 /// is measured and there are some.
-fn shifted(hooks: &Hooks, motions: &Motions, h: f64) -> Option<Course> {
+fn shifted(hooks: &Hooks, motions: &Motions, motor: &Course, h: f64) -> Option<Course> {
     if !(motions.load_is_derived && hooks.has_offsets()) {
         return None;
     }
-    let (load, motor) = (&motions.load, &motions.motor);
-    let at = |k: usize| {
-        hooks.offset_at(&ScrewState {
-            time: k as f64 * h,
-            angle: motor.position[k],
-            rate: motor.speed[k],
-            position: load.position[k],
-            speed: load.speed[k],
-            // Of a transmission that gives way with its load no motion of the motor tells.
-            transmitted: 0.0,
-        })
-    };
+    let load = &motions.load;
+    let at = |k: usize| hooks.offset_at(&screw_state(load, motor, k, h));
     let offsets: Vec<[f64; 2]> = (0..load.position.len()).map(at).collect();
     let origin = offsets.first().map_or(0.0, |o| o[0]);
     let rates: Vec<f64> = offsets.iter().map(|o| o[1]).collect();
@@ -147,6 +139,39 @@ fn shifted(hooks: &Hooks, motions: &Motions, h: f64) -> Option<Course> {
         speed: add(&load.speed, &rates),
         acceleration: add(&load.acceleration, &derivative(&rates, h)),
     })
+}
+
+fn screw_state(load: &Course, motor: &Course, k: usize, h: f64) -> ScrewState {
+    ScrewState {
+        time: k as f64 * h,
+        angle: motor.position[k],
+        rate: motor.speed[k],
+        position: load.position[k],
+        speed: load.speed[k],
+        // Of a transmission that gives way with its load no motion of the motor tells.
+        transmitted: 0.0,
+    }
+}
+
+/// By how much the motor is ahead of an angle that was homed on the load as it stands where the log
+/// begins: the wind-up there, less the error of the transmission's kinematics, rad of the motor. What
+/// repeats with its turn has that much more of a phase.
+fn ahead_at_start(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> f64 {
+    let Some(wind_up) = motions.wind_up.filter(|_| motions.load_is_derived) else {
+        return 0.0;
+    };
+    let Some(load) = motions.load.first() else {
+        return 0.0;
+    };
+    let force = forces(axis, hooks, &load, motions.spring(axis), h)[0];
+    let [stiffness, _] = wind_up.of(axis);
+    let wound = (force + axis.mechanism.load_inertia() * load.acceleration[0]) / stiffness;
+    let r = axis.travel_per_radian();
+    let Some(mut motor) = motions.motor.first().filter(|_| hooks.has_offsets()) else {
+        return wound / r;
+    };
+    motor.position[0] += wound / r;
+    (wound - hooks.offset_at(&screw_state(&load, &motor, 0, h))[0]) / r
 }
 
 /// Forces on the load, against positive motion, N or N·m: friction, whose bristles go along

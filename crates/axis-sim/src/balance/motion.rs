@@ -137,6 +137,16 @@ impl Measured {
 }
 
 impl Course {
+    /// Its first sample alone; `None` where it has none.
+    pub fn first(&self) -> Option<Self> {
+        let of = |series: &[f64]| series.first().map(|value| vec![*value]);
+        Some(Self {
+            position: of(&self.position)?,
+            speed: of(&self.speed)?,
+            acceleration: of(&self.acceleration)?,
+        })
+    }
+
     /// With so many times another motion added.
     pub fn plus(&self, times: f64, other: &Self) -> Self {
         let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + times * b).collect();

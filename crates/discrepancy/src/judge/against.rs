@@ -33,14 +33,18 @@ pub struct Against {
     pub with: Vec<f64>,
 }
 
-/// Bins over a variable.
+/// Most bins over a variable.
 const BINS: usize = 48;
+
+/// Samples a bin where there are few, on average.
+const EACH: usize = 10;
 
 /// Fewest samples of which a mean is shown.
 const LEAST: usize = 5;
 
 /// Looks at the rests of `set` without and with an effect, simulated as
-/// `traces` with it. `None` where the motion holds its variable still.
+/// `traces` with it. `None` where the motion holds its variable still, or there are too few
+/// samples to show anything.
 pub(super) fn against(
     machine: &Axis,
     set: &LogSet,
@@ -55,11 +59,12 @@ pub(super) fn against(
     if low >= high {
         return None;
     }
-    let bin = |x: f64| (((x - low) / (high - low) * BINS as f64) as usize).min(BINS - 1);
-    let mut counts = [0usize; BINS];
+    let bins = (all().count() / EACH).clamp(1, BINS);
+    let bin = |x: f64| (((x - low) / (high - low) * bins as f64) as usize).min(bins - 1);
+    let mut counts = vec![0usize; bins];
     all().for_each(|x| counts[bin(x)] += 1);
     let means = |rest: &Rest, channel: usize| -> Vec<f64> {
-        let mut sums = vec![0.0; BINS];
+        let mut sums = vec![0.0; bins];
         for (series, values) in rest.iter().zip(&values) {
             for (r, &x) in series[channel].iter().zip(values) {
                 sums[bin(x)] += r;
@@ -68,7 +73,10 @@ pub(super) fn against(
         let pairs = sums.iter().zip(&counts);
         pairs.map(|(s, &n)| s / n.max(1) as f64).collect()
     };
-    let kept: Vec<usize> = (0..BINS).filter(|&b| counts[b] >= LEAST).collect();
+    let kept: Vec<usize> = (0..bins).filter(|&b| counts[b] >= LEAST).collect();
+    if kept.is_empty() {
+        return None;
+    }
     let pick = |means: Vec<f64>| -> Vec<f64> { kept.iter().map(|&b| means[b]).collect() };
     let scaled = |means: Vec<f64>, by: f64| -> Vec<f64> { means.iter().map(|m| by * m).collect() };
     // How much of a channel's rest above its noise the variable alone makes out:
@@ -96,7 +104,7 @@ pub(super) fn against(
         Some(_) => Measure::Force.unit(machine.freedom()),
         None => channel_unit(set.channels[channel]),
     };
-    let width = (high - low) / BINS as f64;
+    let width = (high - low) / bins as f64;
     Some(Against {
         effect: effect.name.to_owned(),
         channel: set.channels[channel].to_owned(),
