@@ -14,9 +14,9 @@ use crate::read_error::{ReadError, ReadProblem};
 use crate::select::{Pick, select};
 use crate::table::{Holes, Table};
 
-/// Reads a log from a CSV, Parquet or MAT file, by its extension (`.csv`,
-/// `.parquet`, `.mat`, in any case), renaming and scaling columns as `mapping`
-/// says.
+/// Reads a log from a table of text, a Parquet or a MAT file, by its extension (`.csv`,
+/// `.tsv`, `.txt`, `.dat`, `.asc`; `.parquet`; `.mat`, in any case), renaming and scaling
+/// columns as `mapping` says.
 ///
 /// A column that the mapping names becomes `scale · value + offset` under the
 /// channel's name. Any other column is taken as it stands if its name ends in a
@@ -27,8 +27,10 @@ use crate::table::{Holes, Table};
 /// `t_s` comes from its column, or from the mapping's sample rate; it stands
 /// first, then the mapped channels, then the others in the file's order.
 ///
-/// - **CSV** as for [`read_csv`](crate::read_csv), except that columns without a
-///   known unit are skipped, whatever they hold.
+/// - **Text** as for [`read_csv`](crate::read_csv), except that columns without a
+///   known unit are skipped, whatever they hold, and that fields may be separated by
+///   semicolons, tabs or blanks, decimals by a comma, names stand behind a `#`, units in a line
+///   of their own, and the text be UTF-16 or ISO 8859-1.
 /// - **Parquet** (feature `parquet`), uncompressed or Snappy: flat columns of float, double, int32
 ///   and int64; other columns are skipped. Time stamps are read as the integers
 ///   that they are stored as: map them with their unit as scale.

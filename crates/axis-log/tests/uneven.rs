@@ -121,3 +121,37 @@ fn stamps_without_a_grid_are_left_alone() {
     let evened = |d: &Done| matches!(d, Done::Interpolated { .. } | Done::Evened { .. });
     assert!(!found.done.iter().any(evened), "{:?}", found.done);
 }
+
+/// The wave that docs/logs.md gives, at 500 Hz.
+#[test]
+fn a_wave_of_20_hz_keeps_its_amplitude_to_a_thousandth() {
+    let wave = |t: f64| (TAU * 20.0 * t).sin();
+    let found = read(stamps(13, 0.45, 900).into_iter().map(|t| (t, wave(t))));
+    assert!(matches!(&found.done[..], [Done::Interpolated { .. }]));
+    let inside = 2..found.log.len() - 2;
+    let off = worst(&found.log, |k, t| match inside.contains(&k) {
+        true => wave(t),
+        false => found.log.channel("position_m").unwrap()[k],
+    });
+    println!("{off:.1e}");
+    assert!(off < 1e-3, "{off:e}");
+}
+
+/// A stamp that is far away is refused with its file, and takes no memory.
+#[test]
+fn a_stamp_that_is_far_away_is_refused() {
+    for far in [1e6, 1e300] {
+        let mut times = stamps(17, 0.4, 900);
+        times[899] = far;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("far.csv");
+        let mut text = "t_s,position_m\n".to_owned();
+        times
+            .iter()
+            .for_each(|&t| writeln!(text, "{t},{}", position(t)).unwrap());
+        std::fs::write(&path, text).unwrap();
+        let read = prepare(&[path], &Mapping::default(), &[], Options::default());
+        let refused = read.unwrap_err().to_string();
+        assert!(refused.contains("most of it is missing"), "{refused}");
+    }
+}

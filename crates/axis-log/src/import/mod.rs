@@ -110,42 +110,43 @@ fn proposal(path: &Path) -> Result<Option<MappingProposal>, ReadProblem> {
     let bytes = crate::read::whole(path)?;
     if let Some(format) = FORMATS.iter().find(|format| (format.is_it)(&bytes)) {
         let table = (format.open)(&bytes)?;
-        return Ok(Some(format.proposal(&table)));
+        let found = proposed(&table, format.name, format.columns, format.caution);
+        return Ok(Some(found));
     }
     match crate::read::by_extension(path, &bytes) {
-        Ok(table) => Ok(Some(ANY_TABLE.proposal(&table)).filter(|found| !found.is_empty())),
+        Ok(table) => {
+            let name = "by the names of the columns";
+            let found = proposed(&table, name, by_name::proposed, BY_NAME);
+            Ok(Some(found).filter(|found| !found.is_empty()))
+        }
         Err(ReadProblem::Extension { .. } | ReadProblem::LeftOut { .. }) => Ok(None),
         Err(problem) => Err(problem),
     }
 }
 
-/// Tables of which only names and units tell what they hold.
-const ANY_TABLE: Format = Format {
-    name: "by the names of the columns",
-    is_it: |_| false,
-    open: |_| Err(ReadProblem::NoRows),
-    columns: by_name::proposed,
-    caution: "a unit that no name says is a guess (mm, mm/s, A, N·m, s): compare with the numbers",
-};
+/// What the caution of a proposal by names and units alone is.
+const BY_NAME: &str =
+    "a unit that no name says is a guess (mm, mm/s, A, N·m, s): compare with the numbers";
 
-impl Format {
-    fn proposal(&self, table: &dyn Table) -> MappingProposal {
-        let readable = |head: &&Head| head.fault.is_none();
-        let heads: Vec<&Head> = table.heads().iter().filter(readable).collect();
-        let columns = (self.columns)(&heads);
-        let told = |name: &String| {
-            columns.iter().any(|column| column.source == *name) || crate::unit_of(name).is_some()
-        };
-        MappingProposal {
-            format: self.name,
-            others: table
-                .names()
-                .into_iter()
-                .filter(|name| !told(name))
-                .collect(),
-            columns,
-            caution: self.caution,
-        }
+/// The columns of a table that can be read, as `columns` tells what they are.
+fn proposed(
+    table: &dyn Table,
+    format: &'static str,
+    columns: fn(&[&Head]) -> Vec<ProposedColumn>,
+    caution: &'static str,
+) -> MappingProposal {
+    let readable = |head: &&Head| head.fault.is_none();
+    let heads: Vec<&Head> = table.heads().iter().filter(readable).collect();
+    let columns = columns(&heads);
+    let told = |name: &String| {
+        columns.iter().any(|column| column.source == *name) || crate::unit_of(name).is_some()
+    };
+    let names = table.names().into_iter();
+    MappingProposal {
+        format,
+        others: names.filter(|name| !told(name)).collect(),
+        columns,
+        caution,
     }
 }
 

@@ -6,6 +6,7 @@
 //! smoothly: each sample is foreseen from its neighbours, once at the instants that are stamped
 //! and once at even ones, and the instants that foresee better are right.
 
+use super::recording::MOST_EMPTY;
 use crate::channel::Channel;
 use crate::numeric::grid::Grid;
 use crate::numeric::order::median;
@@ -42,7 +43,7 @@ pub(super) struct Evened {
 }
 
 /// Puts channels (NaN where there is no value) with uneven stamps on an even grid; `None`,
-/// and nothing changed, where stamps are even or too wild.
+/// and nothing changed, where stamps are even, too wild, or mostly missing.
 pub(super) fn even_out(time: &[f64], channels: &mut [Channel]) -> Option<Evened> {
     let found = Grid::of(time)?;
     if found.jitter[0] <= MAX_JITTER {
@@ -53,7 +54,11 @@ pub(super) fn even_out(time: &[f64], channels: &mut [Channel]) -> Option<Evened>
         Stamps::OfSamples => {
             let (start, period) = (time[0], steps.period);
             // Rounding must not cost the last row.
-            let rows = ((time[time.len() - 1] - start) / period + 1e-6).floor() as usize + 1;
+            let last = ((time[time.len() - 1] - start) / period + 1e-6).floor() as usize;
+            let rows = last.saturating_add(1);
+            if rows > MOST_EMPTY.saturating_mul(time.len()) {
+                return None;
+            }
             let even: Vec<f64> = (0..rows).map(|k| start + k as f64 * period).collect();
             for channel in channels {
                 channel.samples = interpolated(time, &steps, &channel.samples, &even);
@@ -107,14 +112,12 @@ impl Steps {
         if spread > MOST_SPREAD * period || long > MOST_LONG * steps.len() as f64 {
             return None;
         }
-        let mut place = 0;
+        let mut place = 0_usize;
         let next = steps.iter().map(|&step| {
-            let long = step > longest;
-            place += if long {
-                (step / period).round() as usize
-            } else {
-                1
-            };
+            place = place.saturating_add(match step > longest {
+                true => (step / period).round() as usize,
+                false => 1,
+            });
             place
         });
         Some(Self {

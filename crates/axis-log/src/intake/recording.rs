@@ -39,7 +39,7 @@ pub(super) struct Even {
 /// in periods.
 const MOST_JITTER: f64 = 0.25;
 /// Rows of the grid for each row there is.
-const MOST_EMPTY: usize = 4;
+pub(super) const MOST_EMPTY: usize = 4;
 
 impl Recording {
     pub(super) fn read(
