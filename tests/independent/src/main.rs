@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use independent_axis::cases::{CASES, named};
-use independent_axis::{Rough, write_case};
+use independent_axis::{Rough, SLIDE_CASES, write_case, write_slide};
 
 /// Logs of the paper's ball-screw axis from a simulator of their own, with something hidden
 #[derive(Parser)]
@@ -17,6 +17,9 @@ struct Options {
     /// Case; all where none is given, each in a folder of its name
     #[arg(long, value_name = "NAME")]
     case: Option<String>,
+    /// A slide on a linear motor instead, with this hidden: nothing, ripple, cable or drag
+    #[arg(long, value_name = "NAME", conflicts_with = "case", value_parser = SLIDE_CASES.map(|(name, _)| name))]
+    slide: Option<String>,
     /// Seed of noise and of parameters put off
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -60,6 +63,12 @@ fn run(options: &Options) -> Result<(), Box<dyn std::error::Error>> {
     let Some(folder) = &options.out else {
         return Ok(());
     };
+    if let Some(asked) = &options.slide {
+        for (_, hidden) in SLIDE_CASES.iter().filter(|(name, _)| name == asked) {
+            write_slide(hidden, options.seed, folder)?;
+        }
+        return Ok(writeln!(out, "{}", folder.display())?);
+    }
     if let Some(name) = &options.case {
         write_case(named(name)?, options.seed, rough, folder)?;
         return Ok(writeln!(out, "{}", folder.display())?);

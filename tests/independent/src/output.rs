@@ -11,6 +11,7 @@ use crate::motion::{Motion, exercises};
 use crate::parameters::Parameters;
 use crate::random::Random;
 use crate::run::{LoopNoise, run};
+use crate::slide::{SlideDrive, SlideHidden, slide_log, slide_motions};
 use crate::truth::Truth;
 
 /// The axis as its file says.
@@ -111,6 +112,21 @@ fn of_file(path: &Path, reason: &dyn std::fmt::Display) -> IndependentError {
         path: path.to_owned(),
         reason: reason.to_string(),
     }
+}
+
+/// Writes `fit.csv` and `check.csv` of a slide with [`SlideDrive::OTHER`] into a folder, which is
+/// made where it is missing.
+///
+/// # Errors
+/// [`IndependentError::File`].
+pub fn write_slide(hidden: &SlideHidden, seed: u64, folder: &Path) -> Result<(), IndependentError> {
+    std::fs::create_dir_all(folder).map_err(|e| of_file(folder, &e))?;
+    for ((seed, name), motion) in (seed..).zip(["fit.csv", "check.csv"]).zip(slide_motions()) {
+        let mut random = Random::new(seed, 1);
+        let table = slide_log(&SlideDrive::OTHER, hidden, &motion, &mut random);
+        write_csv(&folder.join(name), &table)?;
+    }
+    Ok(())
 }
 
 fn write_csv(path: &Path, table: &Table) -> Result<(), IndependentError> {

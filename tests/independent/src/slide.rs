@@ -6,7 +6,7 @@
 //! low-pass its speed and command a cycle late.
 //!
 //! ```text
-//! 40 kg y'' = 93 N/A i − 25 N tanh(y' / 0.3 mm/s) − 50 N·s/m y' − hidden(y)
+//! 40 kg y'' = 93 N/A i − 25 N tanh(y' / 0.3 mm/s) − 50 N·s/m y' − hidden(y, y')
 //! i' = 2π 800 Hz (i_ref − i)
 //! i_ref = 180 A·s/m (e + ∫ e dt / 10 ms),   e = 83.3 1/s (r − y) + r' − v
 //! ```
@@ -45,6 +45,14 @@ pub struct SlideDrive {
     pub late: bool,
 }
 
+impl SlideDrive {
+    /// A low pass at 500 Hz, and a command that is late.
+    pub const OTHER: Self = Self {
+        speed_lowpass: Some(500.0),
+        late: true,
+    };
+}
+
 /// Forces against positive motion that the axis file does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SlideHidden {
@@ -52,16 +60,55 @@ pub struct SlideHidden {
     pub ripple: [f64; 3],
     /// A cable chain's pull, N/m, from 0.1 m on.
     pub cable: f64,
+    /// Drag by the square of the speed, N·s²/m².
+    pub drag: f64,
+}
+
+/// What may be hidden in a slide, by name.
+pub const SLIDE_CASES: [(&str, SlideHidden); 4] = {
+    let none = SlideHidden {
+        ripple: [0.0; 3],
+        cable: 0.0,
+        drag: 0.0,
+    };
+    let ripple = [9.0, 0.024, 0.7];
+    [
+        ("nothing", none),
+        ("ripple", SlideHidden { ripple, ..none }),
+        (
+            "cable",
+            SlideHidden {
+                cable: 60.0,
+                ..none
+            },
+        ),
+        ("drag", SlideHidden { drag: 40.0, ..none }),
+    ]
+};
+
+/// The motions of a log to fit and one to check.
+pub fn slide_motions() -> [Motion; 2] {
+    let there = |start: f64, way: f64, speed: f64| {
+        Motion::from(start)
+            .rest(0.25)
+            .by(way, speed, 0.08)
+            .rest(0.25)
+            .by(-0.7 * way, 0.3 * speed, 0.1)
+            .rest(0.25)
+            .by(-0.2 * way, 0.05 * speed, 0.05)
+            .rest(0.25)
+    };
+    [there(0.1, 0.4, 1.0), there(0.55, -0.3, 0.7)]
 }
 
 impl SlideHidden {
-    fn force(&self, y: f64) -> f64 {
+    fn force(&self, y: f64, v: f64) -> f64 {
         let [amplitude, length, phase] = self.ripple;
         let ripple = match length > 0.0 {
             true => amplitude * (TAU * y / length + phase).sin(),
             false => 0.0,
         };
-        ripple + self.cable * (y - 0.1)
+        ripple + self.cable * (y - 0.1) + self.drag * v * v.abs()
     }
 }
 
@@ -117,7 +164,8 @@ impl Slide {
         for _ in 0..STEPS {
             self.current += step * TAU * CURRENT_LOOP_HZ * (reference - self.current);
             let v = self.speed;
-            let against = COULOMB * (v / 3e-4).tanh() + VISCOUS * v + hidden.force(self.position);
+            let against =
+                COULOMB * (v / 3e-4).tanh() + VISCOUS * v + hidden.force(self.position, v);
             self.speed += step * (FORCE_CONSTANT * self.current - against) / MASS;
             self.position += step * self.speed;
         }
