@@ -72,8 +72,33 @@ fn forces_are_named_by_balance_whatever_the_drive_does() {
     assert_eq!(only(&told, "amplitude", 9.0), ("force-ripple", true));
     let told = balanced("cable");
     assert_eq!(only(&told, "stiffness", 60.0), ("spring-force", true));
-    // Which is in no library; that what is named may stand for it is all that is said today.
-    assert_ne!(balanced("drag").verdict, Verdict::Explained);
+}
+
+/// A drag by the square of the speed is in no library. Viscous friction with less dry friction
+/// imitates it, on check motion that goes back twice as fast as the fitted one too.
+#[test]
+fn a_law_of_no_library_is_said_in_a_formula_and_not_put_together_from_others() {
+    let told = balanced("drag");
+    assert_eq!(told.verdict, Verdict::Unknown, "{}", told.sentence);
+    assert!(told.effects.is_empty());
+    let refused = told.refused.unwrap();
+    assert_eq!(refused.law.as_deref(), Some("|v|·v"));
+    let unknown = told.unknown.unwrap();
+    assert_eq!(unknown.depends_on, "speed");
+    // force = 4.0e1 N·s²/m² · |v|·v (empirical; ± 1.7e-1)
+    let formula = unknown.formula.unwrap();
+    let [number, within] = ["force = ", "± "].map(|before| {
+        let rest = formula.split(before).nth(1).unwrap();
+        let end = rest.find([' ', ')']).unwrap();
+        rest[..end].parse::<f64>().unwrap()
+    });
+    assert!((number - 40.0).abs() < within, "{formula}");
+    assert!(within < 0.4, "{formula}");
+    let faster = told
+        .notes
+        .iter()
+        .filter(|note| note.contains("goes back at up to 700 mm/s"));
+    assert_eq!(faster.count(), 1, "{:?}", told.notes);
 }
 
 /// What the file's controller does not give, one with a low pass of the speed does, whatever the

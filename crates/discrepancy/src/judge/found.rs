@@ -84,15 +84,22 @@ pub(super) fn form_of_own(machine: &Axis, found: &Found, index: usize) -> Option
 }
 
 pub(super) fn refused_effects(refused: &Refused) -> RefusedEffects {
-    RefusedEffects {
+    let told = RefusedEffects {
         effects: refused.effects.iter().map(|n| n.name.to_owned()).collect(),
-        channels: match &refused.reason {
-            RefusalReason::Worse(channels) => channels.iter().map(|&c| c.to_owned()).collect(),
-            RefusalReason::Little(_) => Vec::new(),
+        ..RefusedEffects::default()
+    };
+    match &refused.reason {
+        RefusalReason::Worse(channels) => RefusedEffects {
+            channels: channels.iter().map(|&c| c.to_owned()).collect(),
+            ..told
         },
-        takes_away: match refused.reason {
-            RefusalReason::Little(share) => Some(share),
-            RefusalReason::Worse(_) => None,
+        RefusalReason::Little(share) => RefusedEffects {
+            takes_away: Some(*share),
+            ..told
+        },
+        RefusalReason::OneLaw(law) => RefusedEffects {
+            law: Some((*law).to_owned()),
+            ..told
         },
     }
 }

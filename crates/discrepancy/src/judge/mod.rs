@@ -34,7 +34,7 @@ pub use self::law::FrictionLaw;
 use self::law::{friction_law, steady};
 use self::likeness::likenesses;
 pub use self::likeness::{Likeness, Shown};
-use self::notes::{notes, slow_of_loop_note};
+use self::notes::{faster_notes, notes, slow_of_loop_note};
 pub use self::overlay::Overlay;
 use self::overlay::overlays;
 pub use self::remedy::{DriveFunction, REMEDIES, Remedy};
@@ -207,9 +207,11 @@ pub fn judged(
     let is_noise = at_floor(&check) || coloured.is_some() || slow_of_loop;
     let rest_significant = !(is_noise || nearly_all) || unknown.is_some();
     let verdict = match (effects.is_empty(), rest_significant) {
-        _ if found.refused.is_some() => Verdict::Unknown,
+        (true, _) if found.refused.is_some() => Verdict::Unknown,
         (true, false) => Verdict::NothingMissing,
         (true, true) => Verdict::Unknown,
+        // What was refused beside what is named is a rest that has no name.
+        _ if found.refused.is_some() => Verdict::PartlyExplained,
         // No share of a gap can be asked for where none stood out.
         (false, false) if check.reduction >= EXPLAINED || !check.stands_out() => Verdict::Explained,
         (false, _) => Verdict::PartlyExplained,
@@ -245,7 +247,8 @@ pub fn judged(
         notes: {
             let coloured = coloured.iter().map(Excess::note);
             let slow_of_loop = slow_of_loop.then(|| slow_of_loop_note(&check));
-            let known = [notes(machine, found), slow.notes(set)].concat();
+            let faster = faster_notes(machine, found, set, &traces);
+            let known = [notes(machine, found), faster, slow.notes(set)].concat();
             let of_rest = coloured.chain(slow_of_loop);
             known.into_iter().chain(of_rest).collect()
         },

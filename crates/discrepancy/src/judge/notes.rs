@@ -1,7 +1,9 @@
 //! What must be known of the logs to read a result.
 
-use axis_sim::Axis;
+use axis_sim::effects::Measure;
+use axis_sim::{Axis, Trace};
 
+use super::units::ReadUnit;
 use crate::answers::{LogSet, Prepared};
 use crate::name::gap::Gap;
 use crate::name::search::Found;
@@ -41,6 +43,41 @@ fn slack_notes(machine: &Axis, found: &Found) -> Vec<String> {
     };
     left.flatten().map(note).collect()
 }
+
+/// Where a log goes faster than those that were fitted to, one way: what is said of that is a
+/// law drawn further than it was seen.
+pub(super) fn faster_notes(
+    machine: &Axis,
+    found: &Found,
+    set: &LogSet,
+    traces: &[Trace],
+) -> Vec<String> {
+    let fastest = |traces: &[Trace], way: f64| {
+        let speeds = traces.iter().flat_map(|trace| &trace.speed);
+        speeds.fold(0.0_f64, |most, v| most.max(way * v))
+    };
+    let si = Measure::Speed.unit(machine.freedom());
+    let one = |(log, trace): (&Prepared, &Trace), way: f64, words: &str| {
+        let seen = fastest(&found.fit.traces, way);
+        let own = fastest(std::slice::from_ref(trace), way);
+        let unit = ReadUnit::of(si, own);
+        (own > FASTER * seen).then(|| {
+            format!(
+                "{} goes {words} at up to {}, the fitted logs at up to {}: what depends on the speed is drawn further there than it was seen; fit to motion as fast",
+                log.name,
+                unit.said(own),
+                unit.said(seen)
+            )
+        })
+    };
+    let logs = set.logs.iter().zip(traces);
+    logs.flat_map(|log| [one(log, 1.0, "ahead"), one(log, -1.0, "back")])
+        .flatten()
+        .collect()
+}
+
+/// How much faster than the fitted motion is worth saying.
+const FASTER: f64 = 1.2;
 
 /// All logs that a result was made from.
 fn sets(found: &Found) -> impl Iterator<Item = &LogSet> {

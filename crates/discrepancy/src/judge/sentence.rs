@@ -30,6 +30,7 @@ pub(super) fn sentence(
         .filter_map(|e| e.form.as_ref())
         .chain(own_form);
     let forms: String = forms.map(FormFound::sentence).collect();
+    let refused = refused.map_or(String::new(), RefusedEffects::sentence);
     let it = if names.len() == 1 { "it" } else { "them" };
     let names = names.join("; ");
     let gone = check.gone();
@@ -52,16 +53,13 @@ pub(super) fn sentence(
         }
         Verdict::Explained => format!("The model lacks {names}. {gone}.{forms}"),
         Verdict::PartlyExplained if !check.stands_out() => format!(
-            "Partly explained, by {names}. {gone}. A rest remains that is not named.{place} What is named may stand for something that is not in the library.{forms}"
+            "Partly explained, by {names}. {gone}. A rest remains that is not named.{place} What is named may stand for something that is not in the library.{refused}{forms}"
         ),
         Verdict::PartlyExplained => format!(
-            "Partly explained: with {names}, {gone}, and a rest remains that is not named.{place} What is named may stand for something that is not in the library.{forms}"
+            "Partly explained: with {names}, {gone}, and a rest remains that is not named.{place} What is named may stand for something that is not in the library.{refused}{forms}"
         ),
-        Verdict::Unknown => {
-            let refused = refused.map_or(String::new(), RefusedEffects::sentence);
-            format!(
-                "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}{refused}{forms}"
-            )
-        }
+        Verdict::Unknown => format!(
+            "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}{refused}{forms}"
+        ),
     }
 }

@@ -1,202 +1,168 @@
 //! Short terms that may do as much as a curve.
 
-use axis_sim::Axis;
+use axis_sim::ReplayError;
+use axis_sim::effects::ActiveEffect;
+use axis_sim::mechanism::Freedom;
 use rayon::prelude::*;
 
-use crate::estimate::fit::{Columns, Fitter};
-use crate::name::curves::{Course, Factor, Place, Rest, STANDS, Solved, Variable, answer, courses};
+use crate::answers;
+use crate::estimate::fit::{Columns, Fit, Fitter};
+use crate::name::curves::{Over, Place, Rest, Solved, answer, courses};
 use crate::name::search::Found;
+use crate::name::terms::{Term, middle, terms};
 
-/// Of time (s), place (m), speed (m/s) and direction (−1 to 1).
-type Value = fn(f64, f64, f64, f64) -> f64;
-
-/// A term: its words and its course. `x` counts from the middle of the motion.
-struct Term {
-    /// On what it depends.
-    over: Over,
-    words: &'static str,
-    unit: &'static str,
-    value: Value,
-    /// What it is taken with: a zero of its own, say.
-    beside: Option<Value>,
-}
-
-/// On what a term depends, as a curve has it.
-pub(super) type Over = (Variable, Factor);
-
-const SPEED: Over = (Variable::Speed, Factor::One);
-const POSITION: Over = (Variable::Position, Factor::One);
-const POSITION_BY_SPEED: Over = (Variable::Position, Factor::Speed);
-const POSITION_BY_DIRECTION: Over = (Variable::Position, Factor::Direction);
-const TIME: Over = (Variable::Time, Factor::One);
-const TIME_BY_DIRECTION: Over = (Variable::Time, Factor::Direction);
-
-const FORCES: [Term; 12] = [
-    term_of(SPEED, "√|v|·sign v", "N·(s/m)^½", |_, _, v, s| {
-        v.abs().sqrt() * s
-    }),
-    term_of(SPEED, "|v|·v", "N·s²/m²", |_, _, v, _| v * v.abs()),
-    term_of(SPEED, "v³", "N·s³/m³", |_, _, v, _| v.powi(3)),
-    with(
-        POSITION_BY_SPEED,
-        "x·v",
-        "N·s/m²",
-        |_, x, v, _| x * v,
-        |_, _, v, _| v,
-    ),
-    with(
-        POSITION_BY_DIRECTION,
-        "x·sign v",
-        "N/m",
-        |_, x, _, s| x * s,
-        |_, _, _, s| s,
-    ),
-    with(POSITION, "x", "N/m", |_, x, _, _| x, |_, _, _, _| 1.0),
-    with(POSITION, "x²", "N/m²", |_, x, _, _| x * x, |_, _, _, _| 1.0),
-    term_of(
-        TIME_BY_DIRECTION,
-        "exp(−t / 1 s)·sign v",
-        "N",
-        |t, _, _, s| (-t).exp() * s,
-    ),
-    term_of(
-        TIME_BY_DIRECTION,
-        "exp(−t / 3 s)·sign v",
-        "N",
-        |t, _, _, s| (-t / 3.0).exp() * s,
-    ),
-    term_of(
-        TIME_BY_DIRECTION,
-        "exp(−t / 10 s)·sign v",
-        "N",
-        |t, _, _, s| (-t / 10.0).exp() * s,
-    ),
-    with(
-        TIME_BY_DIRECTION,
-        "t·sign v",
-        "N/s",
-        |t, _, _, s| t * s,
-        |_, _, _, s| s,
-    ),
-    with(TIME, "t", "N/s", |t, _, _, _| t, |_, _, _, _| 1.0),
-];
-
-const OFFSETS: [Term; 4] = [
-    term_of(POSITION, "x²", "1/m", |_, x, _, _| x * x),
-    term_of(POSITION, "x³", "1/m²", |_, x, _, _| x.powi(3)),
-    term_of(TIME, "t·x", "1/s", |t, x, _, _| t * x),
-    term_of(SPEED, "v", "s", |_, _, v, _| v),
-];
-
-const fn term_of(over: Over, words: &'static str, unit: &'static str, value: Value) -> Term {
-    Term {
-        over,
-        words,
-        unit,
-        value,
-        beside: None,
-    }
-}
-
-const fn with(
-    over: Over,
-    words: &'static str,
-    unit: &'static str,
-    value: Value,
-    beside: Value,
-) -> Term {
-    Term {
-        over,
-        words,
-        unit,
-        value,
-        beside: Some(beside),
-    }
-}
+/// Share of what a curve explains that a term must explain to be said in its place: it has one
+/// number, where the curve has ten.
+const SHORT: f64 = 0.8;
 
 /// A short term, with its number.
 pub(super) struct Short {
-    /// On what it depends.
-    pub over: Over,
-    /// In words.
-    pub formula: String,
-    /// Fall of D on the fit logs.
-    pub gain: f64,
+    term: &'static Term,
+    place: Place,
+    middle: f64,
+    /// Fall of D on the fit logs, as the linearised model has it.
+    gain: f64,
+    /// The term's number, and its standard deviation.
+    number: [f64; 2],
+    /// What is left with it on the check logs.
+    left: answers::Rest,
 }
 
-/// The short term that explains most, where it does nearly as much as the curve.
-pub(super) fn term(
-    machine: &Axis,
-    fitter: &Fitter<'_>,
-    found: &Found,
-    rest: &Rest<'_>,
-    place: Place,
-    curve: f64,
-) -> Option<Short> {
-    let terms: &[Term] = match place {
-        Place::Force => &FORCES,
-        Place::Offset => &OFFSETS,
-    };
-    let courses = courses(machine, fitter.set, &found.fit.traces);
-    let positions = courses.iter().flat_map(|c| &c.position);
-    let (low, high) = positions.fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
-    let middle = f64::midpoint(low, high);
-    let series = |value: Value| -> Vec<Vec<f64>> {
-        let one = |c: &Course| {
-            let at = |k: usize| {
-                let (x, v) = (c.position[k] - middle, c.speed[k]);
-                value(c.time[k], x, v, (v / STANDS).tanh())
-            };
-            (0..c.time.len()).map(at).collect()
-        };
-        courses.iter().map(one).collect()
-    };
-    let tried = |term: &Term| {
-        let values = [Some(term.value), term.beside];
-        let columns: Columns = values
-            .into_iter()
-            .flatten()
-            .map(|value| {
+impl Short {
+    /// The term that explains most at a place, where it does nearly as much as the `curve`,
+    /// fitted: with known parameters and effects for a force. `check` is the fit of the check
+    /// logs without it.
+    ///
+    /// # Errors
+    /// [`ReplayError`] where the machine does not run with it.
+    pub(super) fn of(
+        [fitter, checker]: [&Fitter<'_>; 2],
+        found: &Found,
+        check: &Fit,
+        rest: &Rest<'_>,
+        place: Place,
+        curve: f64,
+    ) -> Result<Option<Self>, ReplayError> {
+        let machine = fitter.machine;
+        let motions = courses(machine, fitter.set, &found.fit.traces);
+        let middle = middle(&motions);
+        let tried = |term: &'static Term| {
+            let column = |mut course: Vec<Vec<f64>>| {
                 // Of the size of a probe, whatever the term's unit.
-                let mut course = series(value);
                 let most = course.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
                 let most = most.max(f64::MIN_POSITIVE);
                 course.iter_mut().flatten().for_each(|v| *v /= most);
                 let mut column = answer(fitter, &found.fit, place, course);
                 column.iter_mut().flatten().for_each(|c| *c *= most);
                 column
-            })
-            .collect();
-        rest.solve(&columns)
-    };
-    let all: Vec<Solved> = terms.par_iter().map(tried).collect();
-    let (term, solved) = terms
-        .iter()
-        .zip(&all)
-        .max_by(|a, b| a.1.gain.total_cmp(&b.1.gain))?;
-    if solved.gain < 0.8 * curve {
-        return None;
+            };
+            let series = term.series(&motions, middle).into_iter();
+            let columns: Columns = series.map(column).collect();
+            (term, rest.solve(&columns))
+        };
+        let all: Vec<(&Term, Solved)> = terms(place).par_iter().map(tried).collect();
+        let most = all.into_iter().max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
+        let Some((term, solved)) = most.filter(|(_, s)| s.gain >= SHORT * curve) else {
+            return Ok(None);
+        };
+        let set = checker.set;
+        let (number, traces) = match term.as_effect(&motions) {
+            Some(active) => {
+                let begun = Term::sized(active, solved.values.as_slice());
+                let (fit, deviation) = fitted(fitter, found, begun)?;
+                let last = &fit.state.effects[fit.state.effects.len() - 1];
+                let [factor, per_size] = Term::factor(last);
+                let traces = set.simulate(machine, &fit.state)?;
+                ([factor, per_size * deviation], traces)
+            }
+            None => {
+                let motions = courses(machine, set, &check.traces);
+                let probes = term.probes(place, solved.values.as_slice(), &motions, middle);
+                let traces = set.simulate_with(machine, &check.state, Some(&probes))?;
+                ([solved.values[0], solved.deviations[0]], traces)
+            }
+        };
+        Ok(Some(Self {
+            term,
+            place,
+            middle,
+            gain: solved.gain,
+            number,
+            left: set.rest(&traces),
+        }))
     }
-    let about = if term.words.contains('x') {
-        format!(", x from {middle:.3} m")
-    } else {
-        String::new()
-    };
-    let formula = format!(
-        "{} = {:.4e} {} · {}{about} (empirical; ± {:.1e})",
-        if place == Place::Force {
-            "force"
+
+    /// On what it depends.
+    pub(super) fn over(&self) -> Over {
+        self.term.over
+    }
+
+    /// Fall of D on the fit logs.
+    pub(super) fn gain(&self) -> f64 {
+        self.gain
+    }
+
+    /// What is left with it on the check logs.
+    pub(super) fn left(&self) -> &answers::Rest {
+        &self.left
+    }
+
+    /// In words, for a load that moves like this.
+    pub(super) fn formula(&self, freedom: Freedom) -> String {
+        let Term { words, unit, .. } = self.term;
+        let about = if words.contains('x') {
+            format!(", x from {:.3} {}", self.middle, turned("m", freedom))
         } else {
-            "displacement"
-        },
-        solved.values[0],
-        term.unit,
-        term.words,
-        1.96 * solved.deviations[0]
-    );
-    Some(Short {
-        over: term.over,
-        formula,
-        gain: solved.gain,
-    })
+            String::new()
+        };
+        let what = match self.place {
+            Place::Force => "force",
+            Place::Offset => "displacement",
+        };
+        let [number, deviation] = self.number;
+        format!(
+            "{what} = {number:.4e} {} · {words}{about} (empirical; ± {:.1e})",
+            turned(unit, freedom),
+            1.96 * deviation
+        )
+    }
+}
+
+/// Rounds of a fit with a term.
+const ROUNDS: usize = 8;
+
+/// The fit with one effect more, and the standard deviation of its first size.
+fn fitted(
+    fitter: &Fitter<'_>,
+    found: &Found,
+    active: ActiveEffect,
+) -> Result<(Fit, f64), ReplayError> {
+    let mut state = found.fit.state.clone();
+    state.effects.push(active);
+    let fit = fitter.refine(fitter.at(state)?, &found.columns, ROUNDS);
+    let new = fitter.effect_columns(&fit, found.columns.len() - fit.state.shares.len());
+    let at = found.columns.len();
+    let columns: Columns = found.columns.iter().cloned().chain(new).collect();
+    let deviation = fitter.solve(&fit, &columns).covariance[(at, at)].sqrt();
+    Ok((fit, deviation))
+}
+
+/// A unit of a load that moves along a line, as it is on one that moves like this.
+fn turned(unit: &str, freedom: Freedom) -> String {
+    match freedom {
+        Freedom::Linear => unit.to_owned(),
+        Freedom::Rotary => unit.replace('m', "rad").replace('N', "N·m"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Freedom, turned};
+
+    #[test]
+    fn what_turns_has_torques_and_angles() {
+        assert_eq!(turned("N·s²/m²", Freedom::Linear), "N·s²/m²");
+        assert_eq!(turned("N·s²/m²", Freedom::Rotary), "N·m·s²/rad²");
+        assert_eq!(turned("1/m", Freedom::Rotary), "1/rad");
+    }
 }

@@ -103,8 +103,9 @@ pub struct ReplacedEffect {
 }
 
 /// Effects that explain something of the fitted logs, and are not given: with them check
-/// motion is further off, or they take away too little of its gap.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// motion is further off, or they take away too little of its gap, or one law of a single
+/// number explains more than all of them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RefusedEffects {
     /// Names.
     pub effects: Vec<String>,
@@ -113,6 +114,10 @@ pub struct RefusedEffects {
     /// Share of the gap on check motion that they take away, where that is too little.
     #[serde(default)]
     pub takes_away: Option<f64>,
+    /// The law that explains more, where they are not given for that: a force in proportion
+    /// to this, of time t, position x and speed v.
+    #[serde(default)]
+    pub law: Option<String>,
 }
 
 impl RefusedEffects {
@@ -123,6 +128,16 @@ impl RefusedEffects {
                 " {} would take away {:.0} % of the gap, which explains nothing, so it is not given.",
                 self.effects.join(" with "),
                 100.0 * share.max(0.0)
+            );
+        }
+        if let Some(law) = &self.law {
+            let (it, explains, is) = match self.effects.len() {
+                1 => ("it", "explains", "is"),
+                _ => ("they", "explain", "are"),
+            };
+            return format!(
+                " {} {explains} less than a force in proportion to {law} does with one number, so {it} {is} not given.",
+                self.effects.join(" with ")
             );
         }
         let where_ = match self.channels.as_slice() {

@@ -12,7 +12,7 @@ use axis_sim::{Axis, ReplayError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::term::term;
+use super::term::Short;
 use crate::estimate::fit::Fitter;
 use crate::name::curves::{Rest, Solved};
 use crate::name::gap::is_material;
@@ -93,36 +93,53 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     tracing::debug!(curves = ?told.iter().map(|(i, s, told)| (curves.shapes[*i].0.place, curves.shapes[*i].0.depends_on(), s.gain, s.of_noise, told)).collect::<Vec<_>>(), "what depends on what");
     // Of those that are significant, the one that tells most of other motion.
     let holds = told
-        .into_iter()
-        .filter(|(i, s, told)| *told >= least(*i, s));
+        .iter()
+        .filter(|(i, s, told)| *told >= least(*i, s))
+        .copied();
     let holds: Vec<(usize, &Solved, f64)> = holds.collect();
     let most = holds.iter().map(|t| t.2).fold(f64::NEG_INFINITY, f64::max);
     // The simplest of those that tell about as much: they stand in the order of the list.
     let about = holds.into_iter().filter(|t| t.2 >= ABOUT * most);
-    let Some(first) = about.min_by_key(|t| t.0) else {
+    let first = about.min_by_key(|t| t.0);
+    // A short term goes on where the curve ends, and may hold where no curve does.
+    let Some(explains_most) = first.or(told.first().copied()) else {
         return Ok(None);
     };
-    let place = curves.shapes[first.0].0.place;
-    let short = term(machine, &fitter, found, &rest, place, first.1.gain);
+    let place = curves.shapes[explains_most.0].0.place;
+    let short = Short::of(
+        [&fitter, &checker],
+        found,
+        &check,
+        &rest,
+        place,
+        explains_most.1.gain,
+    )?;
+    let set = &found.check_logs;
+    let short = short.and_then(|short| {
+        let over = |i: &usize| {
+            let shape = &curves.shapes[*i].0;
+            shape.place == place && (shape.variable, shape.factor) == short.over()
+        };
+        let (i, solution) = solved.iter().find(|(i, _)| over(i))?;
+        let left = set.amplitudes(short.left());
+        let told = set.layout.deviance(&check.rest) - set.layout.deviance(&left);
+        tracing::debug!(over = ?short.over(), gain = short.gain(), told, "a short term");
+        (told >= least(*i, solution)).then_some((short, (*i, solution, told)))
+    });
     // A term with its one number that does as much as the knots of any curve says better on what it
     // depends.
     let as_short = short
         .as_ref()
-        .filter(|s| s.gain >= first.1.gain)
-        .and_then(|short| {
-            let over = |i: usize| {
-                let shape = &curves.shapes[i].0;
-                shape.place == place && (shape.variable, shape.factor) == short.over
-            };
-            let (i, solution) = solved.iter().find(|(i, _)| over(*i))?;
-            let told = held_out(*i, solution);
-            (told >= least(*i, solution)).then_some((*i, solution, told))
-        });
-    let (index, solution, told) = as_short.unwrap_or(first);
-    let set = &found.check_logs;
-    let after = curves.shapes[index]
-        .0
-        .rest(machine, set, &check, solution.values.as_slice())?;
+        .filter(|(short, _)| first.is_none_or(|first| short.gain() >= first.1.gain));
+    let (index, solution, told) = match (as_short, first) {
+        (Some((_, of_it)), _) => *of_it,
+        (None, Some(first)) => first,
+        (None, None) => return Ok(None),
+    };
+    let after = match as_short {
+        Some((short, _)) => short.left().clone(),
+        None => (curves.shapes[index].0).rest(machine, set, &check, solution.values.as_slice())?,
+    };
     if !is_material(machine, set, &check, &after, &[])? {
         return Ok(None);
     }
@@ -130,7 +147,7 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     Ok(Some(Unknown {
         channel: shape.place.name().to_owned(),
         depends_on: shape.depends_on(),
-        formula: short.map(|short| short.formula),
+        formula: short.map(|(short, _)| short.formula(freedom)),
         curve: Curve {
             variable: format!(
                 "{}, {}",

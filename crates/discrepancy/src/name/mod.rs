@@ -5,3 +5,4 @@ pub mod gap;
 pub mod library;
 pub mod screen;
 pub mod search;
+pub mod terms;

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 pub use self::course::{Course, STANDS, angles, courses, slope};
 pub use self::rest::{Rest, Solved};
 pub use self::shape::Shape;
-pub use self::variable::{Factor, Place, Variable};
+pub use self::variable::{Factor, Over, Place, Variable, is_over};
 use crate::answers::LogSet;
 use crate::estimate::fit::{Columns, Fit, Fitter};
 use crate::spectrum::Amplitudes;

@@ -1,11 +1,11 @@
 //! A curve over a variable: hat functions, and what they do to logs.
 
-use axis_sim::effects::{self, Measure};
+use axis_sim::effects::{EffectVariable, Measure};
 use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, Probe, ReplayError};
 
 use super::course::{Course, STANDS, courses};
-use super::variable::{Factor, Place, Variable};
+use super::variable::{Factor, Place, Variable, is_over};
 use crate::answers::{self, LogSet};
 use crate::estimate::fit::Fit;
 
@@ -22,6 +22,10 @@ pub struct Shape {
 pub const KNOTS: usize = 10;
 
 const KNOTS_OF_PRODUCT: usize = 6;
+
+/// How far beyond its outermost knots a curve is taken to go on as there, as a share of what it
+/// spans.
+const BEYOND: f64 = 0.1;
 
 impl Shape {
     pub fn new(place: Place, factor: Factor, variable: Variable, courses: &[Course]) -> Self {
@@ -57,19 +61,8 @@ impl Shape {
     }
 
     /// Whether it is over what an effect is shown over, or over a product with it.
-    pub fn is_over(&self, variable: effects::EffectVariable) -> bool {
-        match variable {
-            effects::EffectVariable::Speed => {
-                self.variable == Variable::Speed || self.factor != Factor::One
-            }
-            effects::EffectVariable::Position => self.variable == Variable::Position,
-            effects::EffectVariable::MotorAngle => self.variable == Variable::Angle,
-            effects::EffectVariable::Acceleration => self.variable == Variable::Acceleration,
-            effects::EffectVariable::Current => self.variable == Variable::Effort,
-            effects::EffectVariable::Way | effects::EffectVariable::Time => {
-                self.variable == Variable::Time
-            }
-        }
+    pub fn is_over(&self, variable: EffectVariable) -> bool {
+        is_over((self.variable, self.factor), variable)
     }
 
     /// What is left on logs of which this is the fit with these values at the knots.
@@ -99,12 +92,51 @@ impl Shape {
     }
 
     /// Fall of D on logs that were not fitted, of which this is the fit, with these values at
-    /// the knots; nothing where it does not run.
+    /// the knots; nothing where it does not run. Motion beyond the outermost knots does not
+    /// count: nothing tells how the curve goes on there.
     pub fn told(&self, machine: &Axis, set: &LogSet, fit: &Fit, values: &[f64]) -> f64 {
-        let rest = self.rest(machine, set, fit, values);
-        rest.map_or(f64::NEG_INFINITY, |rest| {
-            set.layout.deviance(&fit.rest) - set.layout.deviance(&set.amplitudes(&rest))
-        })
+        let Ok(mut after) = self.rest(machine, set, fit, values) else {
+            return f64::NEG_INFINITY;
+        };
+        let inside: Vec<Vec<bool>> = (courses(machine, set, &fit.traces).iter())
+            .map(|course| self.inside(course))
+            .collect();
+        let all = inside.iter().flatten();
+        let (counted, samples) = (all.clone().filter(|i| **i).count(), all.count());
+        if counted == samples {
+            return set.layout.deviance(&fit.rest) - set.layout.deviance(&set.amplitudes(&after));
+        }
+        let mut before = set.rest(&fit.traces);
+        for rest in [&mut before, &mut after] {
+            for (channels, inside) in rest.iter_mut().zip(&inside) {
+                for channel in channels {
+                    let beyond = channel.iter_mut().zip(inside).filter(|(_, i)| !**i);
+                    beyond.for_each(|(r, _)| *r = 0.0);
+                }
+            }
+        }
+        let [before, after] = [before, after].map(|r| set.layout.deviance(&set.amplitudes(&r)));
+        // As many independent values as count.
+        (before - after) * counted as f64 / samples.max(1) as f64
+    }
+
+    /// Of each sample of a motion, whether the fitted motion went so far.
+    fn inside(&self, course: &Course) -> Vec<bool> {
+        let (Some(&low), Some(&high)) = (self.knots.first(), self.knots.last()) else {
+            return Vec::new();
+        };
+        if self.variable == Variable::Angle {
+            return vec![true; course.time.len()];
+        }
+        let [below, above] = match self.variable {
+            // Either way has its own knots.
+            Variable::Speed => [BEYOND * low.abs(), BEYOND * high.abs()],
+            _ => [BEYOND * (high - low); 2],
+        };
+        let values = course.of(self.variable).iter();
+        values
+            .map(|x| (low - below..=high + above).contains(x))
+            .collect()
     }
 
     /// On what it depends, in words.
@@ -176,5 +208,41 @@ impl Shape {
             Some(next) => (1.0 - (x - own) / (next - own)).max(0.0),
             None => 1.0,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Course, Factor, Place, Shape, Variable};
+
+    fn course(values: &[f64]) -> Course {
+        Course {
+            time: vec![0.0; values.len()],
+            position: values.to_vec(),
+            speed: values.to_vec(),
+            angle: values.to_vec(),
+            acceleration: values.to_vec(),
+            effort: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn motion_beyond_the_fitted_is_outside_of_a_curve() {
+        let fitted = [course(&[-0.3, 0.0, 1.0])];
+        let inside = |variable: Variable| {
+            let shape = Shape::new(Place::Force, Factor::One, variable, &fitted);
+            shape.inside(&course(&[-0.45, -0.4, -0.32, 0.5, 1.05, 1.2]))
+        };
+        // A tenth of the fastest that way.
+        assert_eq!(
+            inside(Variable::Speed),
+            [false, false, true, true, true, false]
+        );
+        // A tenth of the whole way.
+        assert_eq!(
+            inside(Variable::Position),
+            [false, true, true, true, true, false]
+        );
+        assert_eq!(inside(Variable::Angle), [true; 6]);
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axis_sim::Probe;
-use axis_sim::effects::Measure;
+use axis_sim::effects::{EffectVariable, Measure};
 use axis_sim::mechanism::Freedom;
 
 /// Where a disturbance acts.
@@ -81,4 +81,19 @@ pub enum Factor {
     Speed,
     /// Of motion: −1 to 1, without a jump.
     Direction,
+}
+
+/// On what a law depends.
+pub type Over = (Variable, Factor);
+
+/// Whether that is what an effect is shown over, or a product with it.
+pub fn is_over((own, factor): Over, variable: EffectVariable) -> bool {
+    match variable {
+        EffectVariable::Speed => own == Variable::Speed || factor != Factor::One,
+        EffectVariable::Position => own == Variable::Position,
+        EffectVariable::MotorAngle => own == Variable::Angle,
+        EffectVariable::Acceleration => own == Variable::Acceleration,
+        EffectVariable::Current => own == Variable::Effort,
+        EffectVariable::Way | EffectVariable::Time => own == Variable::Time,
+    }
 }

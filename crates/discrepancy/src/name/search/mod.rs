@@ -6,6 +6,7 @@ mod form;
 mod free_curve;
 mod intervals;
 mod lines;
+mod one_law;
 mod promise;
 mod refined;
 mod refusal;
@@ -142,6 +143,13 @@ fn searched(
     while search.drop_noise(&intervals) {
         // What was named together with it may be nothing without it.
         search.revise();
+        intervals = search.intervals()?;
+    }
+    if let Some(other) = search.without_pieces() {
+        search = match (other.named.is_empty(), &other.refused) {
+            (true, Some(refused)) => without.clone().with_refused(refused.clone()),
+            _ => other,
+        };
         intervals = search.intervals()?;
     }
     if let Some(refused) = search.refused(as_filed, &without)? {

@@ -115,12 +115,12 @@ impl Search<'_> {
     }
 
     /// Whether the engineer takes an effect as there.
-    fn is_accepted(&self, name: &str) -> bool {
+    pub(super) fn is_accepted(&self, name: &str) -> bool {
         self.settings.accepted.iter().any(|a| a == name)
     }
 
     /// Without one effect, the others and known parameters fitted again.
-    fn without(&self, index: usize) -> Option<Self> {
+    pub(super) fn without(&self, index: usize) -> Option<Self> {
         let mut without = self.clone();
         let mut state = self.fit.state.clone();
         for place in state.remove(index) {

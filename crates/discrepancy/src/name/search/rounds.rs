@@ -119,7 +119,7 @@ impl Search<'_> {
     }
 
     /// Candidates of one effect or two, by simulation; the simplest of the best first.
-    fn refine(&self, candidates: Vec<Vec<Screened>>, own: &Columns) -> Vec<Refined> {
+    pub(super) fn refine(&self, candidates: Vec<Vec<Screened>>, own: &Columns) -> Vec<Refined> {
         let fitter = self.fitter();
         let promised = candidates.iter().map(|parts| parts[0].gain);
         let least = WORTH * promised.fold(0.0, f64::max);

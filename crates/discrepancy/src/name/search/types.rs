@@ -210,6 +210,8 @@ pub enum RefusalReason {
     Worse(Vec<&'static str>),
     /// They take away this share of the gap on check motion, too little to explain it.
     Little(f64),
+    /// A law of one number that is not in the library, this one, explains more than all of them.
+    OneLaw(&'static str),
 }
 
 /// What a search found.
