@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use axis_log::Mapping;
-use trajectories::{Limits, SCurve, TrajectoryError};
+use trajectories::{Limits, Program, ProgramUnit, SCurve, TrajectoryError};
 
 use crate::actuator::{Actuator, Surroundings};
 use crate::control::{Control, absent};
@@ -300,6 +300,34 @@ impl Axis {
     pub fn plan(&self, spec: &MoveSpec) -> Result<SCurve, TrajectoryError> {
         let start = self.stroke.start;
         SCurve::plan(start, start + spec.displacement, &spec.limits)
+    }
+
+    /// In which unit files of motion programs for it are.
+    pub fn unit_of_programs(&self) -> ProgramUnit {
+        match self.freedom() {
+            Freedom::Linear => ProgramUnit::Millimetres,
+            Freedom::Rotary => ProgramUnit::Degrees,
+        }
+    }
+
+    /// Whether a program that was read from a file is in the unit of this axis, or else why not.
+    ///
+    /// # Errors
+    /// The reason, with the keys that would be right, as a sentence without its stop.
+    pub fn takes(&self, program: &Program) -> Result<(), String> {
+        let unit = self.unit_of_programs();
+        if program.unit() == unit {
+            return Ok(());
+        }
+        let (moves, end) = match unit {
+            ProgramUnit::Millimetres => ("moves along a line", "mm"),
+            ProgramUnit::Degrees => ("turns", "deg"),
+        };
+        Err(format!(
+            "the program is in {}, and the axis \"{}\" {moves}; its keys would be start_{end}, to_{end}, by_{end}, amplitude_{end}, velocity_{end}_s, acceleration_{end}_s2 and jerk_{end}_s3",
+            program.unit().name(),
+            self.name
+        ))
     }
 
     /// The parameters that the file gives and that may be off by its tolerances:

@@ -207,7 +207,10 @@ impl AnyMotion<'_> {
                 Arc::new(planned.map_err(raise::<MotionError>)?)
             }
             Self::SCurve(curve) => Arc::new(curve.0),
-            Self::Program(program) => Arc::new(program.0.clone()),
+            Self::Program(program) => {
+                axis.takes(&program.0).map_err(MotionError::new_err)?;
+                Arc::new(program.0.clone())
+            }
         })
     }
 }

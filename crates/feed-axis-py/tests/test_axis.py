@@ -65,5 +65,8 @@ def test_errors_have_the_library_s_words(axis: fa.Axis, tmp_path: Path) -> None:
         fa.Move(distance_m=1, speed_m_s=-1, acceleration_m_s2=1, jerk_m_s3=1)
     with pytest.raises(fa.MotionError, match="period_s"):
         fa.Program.from_toml("start_mm = 0.0\nsteps = []").sample(0.0)
+    turning = fa.Program.from_toml("start_deg = 30.0\n[[steps]]\ndwell = { duration_s = 0.1 }")
+    with pytest.raises(fa.MotionError, match="start_mm, to_mm"):
+        axis.simulate(turning)
     assert issubclass(fa.AxisError, fa.FeedAxisError)
     assert issubclass(fa.FeedAxisError, ValueError)

@@ -132,6 +132,31 @@ fn simulate_writes_a_log() {
     assert!(message.contains(".csv or .parquet or .mat"), "{message}");
 }
 
+/// A program of an axis that turns is in degrees, and only that.
+#[test]
+fn programs_are_in_the_unit_of_the_axis() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("program.toml");
+    let joint = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/joint.toml");
+    let path = program.to_str().unwrap();
+    let on_joint = ["simulate", "--axis", joint, "--program", path];
+    let sine = |unit: &str| {
+        let text = format!(
+            "start_{unit} = 10\n[[steps]]\nsine = {{ amplitude_{unit} = 1, frequency_hz = 1, cycles = 1 }}\n"
+        );
+        std::fs::write(&program, text).unwrap();
+    };
+    sine("deg");
+    let said = succeed(&on_joint);
+    assert!(said.contains("tracking error"), "{said}");
+    let message = refuse(&["simulate", "--program", path]);
+    assert!(message.contains("start_mm, to_mm"), "{message}");
+    sine("mm");
+    let message = refuse(&on_joint);
+    let expected = "the program is in millimetres, and the axis \"joint\" turns";
+    assert!(message.replace("\n", " ").contains(expected), "{message}");
+}
+
 /// Figures for people have six digits at most; a run of years is refused with
 /// the limit, at once, and leaves no log behind.
 /// The points of a figure in a page, the title of which begins so.

@@ -52,7 +52,7 @@
 //!
 //! # Features
 //! `std` (default) implies `alloc`; `alloc` gives [`Program`]; `serde` reads and writes programs
-//! and steps in `f64` with keys in millimetres (see [`Step`]) and implies `alloc`. Without any of them the
+//! and steps in `f64` with keys in millimetres or degrees (see [`Step`]) and implies `alloc`. Without any of them the
 //! crate is `no_std` and allocates nothing.
 #![no_std]
 
@@ -82,7 +82,7 @@ pub use limits::Limits;
 pub use motion::{Motion, Setpoint};
 pub use oscillation::{Chirp, Oscillation, Sine};
 #[cfg(feature = "alloc")]
-pub use program::Program;
+pub use program::{Program, ProgramUnit};
 pub use real::Real;
 pub use scurve::{SCurve, Segment};
 pub use step::Step;

@@ -28,6 +28,7 @@ use crate::{
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program<T = f64> {
+    unit: ProgramUnit,
     start: T,
     steps: Vec<Step<T>>,
     pieces: Vec<Piece<T>>,
@@ -35,6 +36,27 @@ pub struct Program<T = f64> {
     times: Vec<T>,
     duration: T,
     extremes: Extremes<T>,
+}
+
+/// In which unit a program stands in a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ProgramUnit {
+    /// Of an axis that moves along a line: `to_mm`, `velocity_mm_s`, and so on.
+    #[default]
+    Millimetres,
+    /// Of an axis that turns: `to_deg`, `velocity_deg_s`, and so on; radians stand in the place of
+    /// all metres then.
+    Degrees,
+}
+
+impl ProgramUnit {
+    /// In words.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Millimetres => "millimetres",
+            Self::Degrees => "degrees",
+        }
+    }
 }
 
 /// A planned step.
@@ -76,6 +98,7 @@ impl<T: Real> Program<T> {
             pieces.push(piece);
         }
         Ok(Self {
+            unit: ProgramUnit::default(),
             start,
             steps,
             pieces,
@@ -95,7 +118,19 @@ impl<T: Real> Program<T> {
             .iter()
             .map(Step::cast)
             .collect::<Result<_, _>>()?;
-        Program::new(U::of(self.start.to_f64()), steps)
+        let program = Program::new(U::of(self.start.to_f64()), steps)?;
+        Ok(program.with_unit(self.unit))
+    }
+
+    /// The same program, that stands in files in this unit; in millimetres where nothing is said.
+    #[must_use]
+    pub fn with_unit(self, unit: ProgramUnit) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// In which unit it stands, or stood, in a file.
+    pub const fn unit(&self) -> ProgramUnit {
+        self.unit
     }
 
     /// Position at the start, m.

@@ -24,6 +24,9 @@ use crate::{Chirp, Limits, Sine, TrajectoryError};
 /// # `ramp_s` may be left out (a tenth of the duration), `sweep` too (linear).
 /// chirp = { amplitude_mm = 0.1, from_frequency_hz = 1.0, to_frequency_hz = 100.0, duration_s = 10.0, ramp_s = 1.0, sweep = "logarithmic" }
 /// ```
+///
+/// Of an axis that turns the keys are in degrees: `start_deg`, `to_deg`, `by_deg`, `amplitude_deg`,
+/// `velocity_deg_s`, `acceleration_deg_s2`, `jerk_deg_s3`. A program is in the one or the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step<T = f64> {
     /// Time-optimal S-curve to a position of the axis. With a long travel, a constant-speed run.

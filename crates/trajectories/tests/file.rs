@@ -2,7 +2,7 @@
 #![cfg(feature = "serde")]
 
 use proptest::prelude::*;
-use trajectories::{Chirp, Limits, Motion, Program, Sine, Step, Sweep};
+use trajectories::{Chirp, Limits, Motion, Program, ProgramUnit, Sine, Step, Sweep};
 
 const PROGRAM: &str = r#"
 start_mm = 600.0
@@ -69,6 +69,69 @@ fn a_written_program_reads_back_the_same() {
     let program: Program = toml::from_str(PROGRAM).unwrap();
     let written = toml::to_string(&program).unwrap();
     assert_eq!(toml::from_str::<Program>(&written).unwrap(), program);
+}
+
+const TURNING: &str = r#"
+start_deg = -30.0
+
+[[steps]]
+move = { to_deg = 60.0, velocity_deg_s = 90.0, acceleration_deg_s2 = 300.0, jerk_deg_s3 = 3000.0 }
+[[steps]]
+move_by = { by_deg = -15.0, velocity_deg_s = 20.0, acceleration_deg_s2 = 225.0, jerk_deg_s3 = 1200.0 }
+[[steps]]
+sine = { amplitude_deg = 1.5, frequency_hz = 5.0, cycles = 10 }
+[[steps]]
+chirp = { amplitude_deg = 0.1, from_frequency_hz = 1.0, to_frequency_hz = 100.0, duration_s = 10.0 }
+"#;
+
+#[test]
+fn degrees_become_radians_and_are_written_as_degrees() {
+    let program: Program = toml::from_str(TURNING).unwrap();
+    assert_eq!(program.unit(), ProgramUnit::Degrees);
+    assert_eq!(program.start(), (-30.0_f64).to_radians());
+    let degrees = f64::to_radians;
+    let limits = Limits::new(degrees(90.0), degrees(300.0), degrees(3000.0)).unwrap();
+    let to = degrees(60.0);
+    assert_eq!(program.steps()[0], Step::Move { to, limits });
+    assert!((program.end() - degrees(45.0)).abs() < 1e-15);
+    let written = toml::to_string(&program).unwrap();
+    assert!(!written.contains("mm"), "{written}");
+    assert_eq!(toml::from_str::<Program>(&written).unwrap(), program);
+    // Another scalar, and a program that was made here.
+    assert_eq!(program.cast::<f32>().unwrap().unit(), ProgramUnit::Degrees);
+    let made = Program::new(0.5, Vec::new()).unwrap();
+    let written = toml::to_string(&made.with_unit(ProgramUnit::Degrees)).unwrap();
+    assert!(
+        written.starts_with("start_deg = 28.64788975654116"),
+        "{written}"
+    );
+}
+
+#[test]
+fn a_program_has_one_unit() {
+    let refused = |text: &str| toml::from_str::<Program>(text).unwrap_err().to_string();
+    let mixed = refused(
+        "start_mm = 0.0\n[[steps]]\nsine = { amplitude_deg = 1.0, frequency_hz = 5.0, cycles = 1 }",
+    );
+    let expected = "step 1 (sine): `amplitude_deg` in a program that is in millimetres: `amplitude_mm` would be right";
+    assert!(mixed.contains(expected), "{mixed}");
+    let both = refused("start_mm = 0.0\nstart_deg = 0.0\nsteps = []");
+    assert!(
+        both.contains("`start_deg` in a program that is in millimetres"),
+        "{both}"
+    );
+    let neither = refused("steps = []");
+    assert!(
+        neither.contains("missing field `start_mm` or `start_deg`"),
+        "{neither}"
+    );
+    let missing = refused(
+        "start_deg = 0.0\n[[steps]]\nmove = { velocity_deg_s = 1.0, acceleration_deg_s2 = 1.0, jerk_deg_s3 = 1.0 }",
+    );
+    assert!(
+        missing.contains("step 1 (move): missing field `to_deg`"),
+        "{missing}"
+    );
 }
 
 proptest! {

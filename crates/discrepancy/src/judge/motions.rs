@@ -84,6 +84,9 @@ pub(super) fn motions(axis: &Axis) -> Result<Vec<(&'static str, Program)>, Traje
     mixed.extend([chirp(small), rest(0.2)]);
     all.push(("slow, fast, and a small chirp", mixed));
     all.into_iter()
-        .map(|(what, steps)| Ok((what, Program::new(start, steps)?)))
+        .map(|(what, steps)| {
+            let program = Program::new(start, steps)?;
+            Ok((what, program.with_unit(axis.unit_of_programs())))
+        })
         .collect()
 }

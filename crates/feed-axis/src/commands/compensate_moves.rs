@@ -13,7 +13,7 @@ use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 
-use super::simulate::{factor, program, trajectory};
+use super::simulate::{factor, program_on, trajectory};
 use super::validate;
 use crate::context::Context;
 use crate::output::{print, write_whole};
@@ -227,7 +227,7 @@ impl fmt::Display for Moved<'_> {
 fn motion(name: &str, context: &Context) -> Result<NamedMotion> {
     let motion = match name.parse::<usize>() {
         Ok(number) => trajectory("--moves", number, context)?,
-        Err(_) => Arc::new(program(Path::new(name))?),
+        Err(_) => Arc::new(program_on(Path::new(name), &context.axis)?),
     };
     Ok(NamedMotion {
         name: name.to_owned(),

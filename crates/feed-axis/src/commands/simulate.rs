@@ -259,7 +259,7 @@ fn unwritten(path: &Path) -> String {
 
 fn motion(options: &Options, context: &Context) -> Result<SharedMotion> {
     if let Some(file) = &options.program {
-        return Ok(Arc::new(program(file)?));
+        return Ok(Arc::new(program_on(file, &context.axis)?));
     }
     trajectory("--trajectory", options.trajectory.unwrap_or(0), context)
 }
@@ -276,6 +276,15 @@ pub(super) fn trajectory(option: &str, number: usize, context: &Context) -> Resu
             ))
         })?;
     Ok(Arc::new(context.axis.plan(spec).into_diagnostic()?))
+}
+
+/// Reads a motion program for an axis, in whose unit it must be.
+pub(super) fn program_on(file: &Path, axis: &Axis) -> Result<Program> {
+    let program = program(file)?;
+    match axis.takes(&program) {
+        Ok(()) => Ok(program),
+        Err(why) => Err(miette!("{}: {why}", file.display())),
+    }
 }
 
 /// Reads a motion program.
