@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use axis_log::intake::{Done, Options, PreparedLog, prepare};
-use axis_log::{Log, Mapping};
+use axis_log::intake::{Done, Options, PreparedLog, prepare, prepare_channels};
+use axis_log::{Channel, Log, Mapping};
 use proptest::prelude::*;
 
 use crate::reading::noise;
@@ -16,14 +16,23 @@ fn position(t: f64) -> f64 {
     0.1 * (TAU * 0.7 * t).sin() + 2e-4 * (TAU * 9.0 * t).sin()
 }
 
-/// Rows of stamp and value.
+/// Rows of stamp and value, from a file and as channels.
 fn read(rows: impl Iterator<Item = (f64, f64)>) -> PreparedLog {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("polled.csv");
     let mut text = "t_s,position_m\n".to_owned();
-    rows.for_each(|(t, x)| writeln!(text, "{t},{x}").unwrap());
+    let (time, position): (Vec<f64>, Vec<f64>) = rows.unzip();
+    let mut rows = time.iter().zip(&position);
+    rows.try_for_each(|(t, x)| writeln!(text, "{t},{x}"))
+        .unwrap();
     std::fs::write(&path, text).unwrap();
-    prepare(&[path], &Mapping::default(), &[], Options::default()).unwrap()
+    let name = path.display().to_string();
+    let prepared = prepare(&[path], &Mapping::default(), &[], Options::default()).unwrap();
+    let channels = [("t_s", time), ("position_m", position)];
+    let channels = channels.map(|(name, samples)| Channel::new(name, samples).unwrap());
+    let same = prepare_channels(&name, channels.to_vec(), &[], Options::default());
+    assert_eq!(same.unwrap(), prepared);
+    prepared
 }
 
 fn worst(log: &Log, truth: impl Fn(usize, f64) -> f64) -> f64 {
@@ -154,4 +163,29 @@ fn a_stamp_that_is_far_away_is_refused() {
         let refused = read.unwrap_err().to_string();
         assert!(refused.contains("most of it is missing"), "{refused}");
     }
+}
+
+#[test]
+fn channels_may_have_holes_and_nothing_infinite() {
+    let time: Vec<f64> = (0..200).map(|k| f64::from(k) * PERIOD).collect();
+    let given = |at_100: f64| {
+        let mut samples: Vec<f64> = time.iter().map(|&t| position(t)).collect();
+        samples[100] = at_100;
+        let channels = [("t_s", time.clone()), ("position_m", samples)];
+        let channels = channels.map(|(name, samples)| Channel::new(name, samples).unwrap());
+        let options = Options::default();
+        prepare_channels("of a program", channels.to_vec(), &["position_m"], options)
+    };
+    let prepared = given(f64::NAN).unwrap();
+    assert_eq!(prepared.log.missing("position_m"), [100..101]);
+    assert!((prepared.log.channel("position_m").unwrap()[100] - position(time[100])).abs() < 1e-5);
+    let message = given(f64::INFINITY).unwrap_err().to_string();
+    assert!(
+        message.contains(
+            "of a program: channel \"position_m\", sample 100: inf is not a finite number"
+        ),
+        "{message}"
+    );
+    let none = prepare_channels("of a program", Vec::new(), &[], Options::default());
+    assert!(none.unwrap_err().to_string().contains("the log is empty"));
 }

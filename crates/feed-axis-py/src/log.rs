@@ -1,9 +1,9 @@
 //! Logs from files, frames, runs and arrays.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use axis_log::intake::{Options, files, prepare};
-use axis_log::{Channel, Log, TIME_CHANNEL};
+use axis_log::intake::{Options, files, prepare, prepare_channels};
+use axis_log::{Channel, TIME_CHANNEL};
 use axis_sim::Axis;
 use discrepancy::logs::{NamedLog, admit, exact_channels, needed_channels};
 use numpy::{AllowTypeChange, PyArrayLike1};
@@ -15,34 +15,35 @@ use crate::errors::{LogError, raise};
 /// A log as a caller gives it, and what was done to it, in words.
 ///
 /// A path is read as the axis' `[log]` maps its columns, several with `+` between them as one log. A pandas or polars frame, a Run, or a
-/// dict of arrays has its columns named as channels, `t_s` among them.
+/// dict of arrays has its columns named as channels, `t_s` among them, and NaN where there is no value.
 pub(crate) fn log_of(
     given: &Bound<'_, PyAny>,
     name: &str,
     axis: &Axis,
     notes: &mut Vec<String>,
 ) -> PyResult<NamedLog> {
-    let (name, log) = match given.extract::<PathBuf>() {
-        Ok(path) => (path.display().to_string(), read(&path, axis, notes)?),
-        Err(_) => (name.to_owned(), columns(given)?),
-    };
-    admit(name, log, axis, notes).map_err(raise::<LogError>)
-}
-
-fn read(path: &Path, axis: &Axis, notes: &mut Vec<String>) -> PyResult<Log> {
-    let needed = needed_channels(axis);
-    let exact = exact_channels(axis);
+    let (needed, exact) = (needed_channels(axis), exact_channels(axis));
     let options = Options {
         exact: &exact,
         rate_hz: None,
     };
-    let prepared = prepare(&files(path), &axis.log, &needed, options).map_err(raise::<LogError>)?;
+    let (name, prepared) = match given.extract::<PathBuf>() {
+        Ok(path) => (
+            path.display().to_string(),
+            prepare(&files(&path), &axis.log, &needed, options),
+        ),
+        Err(_) => (
+            name.to_owned(),
+            prepare_channels(name, columns(given)?, &needed, options),
+        ),
+    };
+    let prepared = prepared.map_err(raise::<LogError>)?;
     notes.extend(prepared.done.iter().map(ToString::to_string));
-    Ok(prepared.log)
+    admit(name, prepared.log, axis, notes).map_err(raise::<LogError>)
 }
 
 /// The columns of a frame, a mapping or a Run.
-fn columns(given: &Bound<'_, PyAny>) -> PyResult<Log> {
+fn columns(given: &Bound<'_, PyAny>) -> PyResult<Vec<Channel>> {
     let names = match given.getattr_opt("columns")? {
         Some(columns) => columns,
         None if given.hasattr("keys")? => given.call_method0("keys")?,
@@ -68,6 +69,5 @@ fn columns(given: &Bound<'_, PyAny>) -> PyResult<Log> {
         let samples = samples.as_array().to_vec();
         Channel::new(name, samples).map_err(raise::<LogError>)
     });
-    let channels = channels.collect::<PyResult<_>>()?;
-    Log::new(channels).map_err(raise::<LogError>)
+    channels.collect()
 }

@@ -57,9 +57,16 @@ def test_hidden_viscous_friction_is_found_in_frames(
     again = found.axis.simulate(axis.trajectories[0])
     there = machine.simulate(axis.trajectories[0])
     assert abs(again.max_error - there.max_error) < 0.2e-6
-    # With it in the model nothing is missing: on runs in place of frames.
-    nothing = fa.discover(found.axis, fit=[logs[0]], check=[logs[1]])
+    # With it in the model nothing is missing: on a run and a table in place of frames, of which
+    # the table's time stamps are late by turns, and one sample is not there.
+    table = {name: np.array(logs[0][name]) for name in logs[0]}
+    period = table["t_s"][1] - table["t_s"][0]
+    table["t_s"] += 0.2 * period * np.random.default_rng(1).random(table["t_s"].size)
+    table["iq_a"][400] = np.nan
+    nothing = fa.discover(found.axis, fit=[table], check=[logs[1]])
     assert nothing.verdict == "nothing-missing" and nothing.size is None
+    notes = nothing.to_dict()["notes"]
+    assert any("fit 1" in note and "stamps" in note for note in notes), notes
 
 
 def test_a_log_says_what_is_wrong_with_it(

@@ -13,7 +13,8 @@
 //!    [missing](crate::Log::missing).
 //!
 //! A file without any of that gives the same log as [`read_log`](crate::read_log), to the
-//! bit. Everything that was done is told, as [`Done`].
+//! bit. Everything that was done is told, as [`Done`]. [`prepare_channels`]
+//! does the same to channels that a program has.
 //!
 //! # Memory
 //! A file is read whole (a CSV's text beside its numbers), and numbers take 8 bytes each.
@@ -31,5 +32,5 @@ mod repair;
 
 pub use done::{Done, FileDelay};
 pub use error::IntakeError;
-pub use prepare::{Options, PreparedLog, files, prepare};
+pub use prepare::{Options, PreparedLog, files, prepare, prepare_channels};
 pub use repair::SHORT_GAP;

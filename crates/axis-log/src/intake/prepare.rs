@@ -62,18 +62,57 @@ pub fn prepare<P: AsRef<Path>>(
     required: &[&str],
     options: Options<'_>,
 ) -> Result<PreparedLog, IntakeError> {
-    let mut done = Vec::new();
     let alone: &[&str] = if paths.len() == 1 { required } else { &[] };
-    let mut parts = Vec::with_capacity(paths.len());
-    for path in paths {
-        let mut part = Recording::read(path.as_ref(), mapping, alone)?;
+    let read = |path: &P| Recording::read(path.as_ref(), mapping, alone);
+    let parts: Result<_, _> = paths.iter().map(read).collect();
+    prepared(parts?, required, options)
+}
+
+/// As [`prepare`], of channels that are there already under the `name` that messages give them,
+/// as a table of a program has them: the time first, NaN where there is no value.
+///
+/// # Errors
+/// As [`prepare`]; [`IntakeError::Log`] where the channels are not of one length, the time does
+/// not rise, or a value is infinite.
+pub fn prepare_channels(
+    name: &str,
+    channels: Vec<Channel>,
+    required: &[&str],
+    options: Options<'_>,
+) -> Result<PreparedLog, IntakeError> {
+    let filled = |(place, channel): (usize, &Channel)| {
+        let mut channel = channel.clone();
+        if place > 0 {
+            let holes = channel.samples.iter_mut().filter(|v| v.is_nan());
+            holes.for_each(|v| *v = 0.0);
+        }
+        channel
+    };
+    // All that a log asks for, but that every value is there.
+    Log::new(channels.iter().enumerate().map(filled).collect()).map_err(|problem| {
+        IntakeError::Log {
+            file: name.to_owned(),
+            problem,
+        }
+    })?;
+    let part = Recording::of(name.to_owned(), channels, |_| 0.0)?;
+    prepared(vec![part], required, options)
+}
+
+/// Recordings made one log.
+fn prepared(
+    mut parts: Vec<Recording>,
+    required: &[&str],
+    options: Options<'_>,
+) -> Result<PreparedLog, IntakeError> {
+    let mut done = Vec::new();
+    for part in &mut parts {
         let (file, [rows, gaps]) = (part.name.clone(), part.missing);
         done.extend(part.evened.take());
         if gaps > 0 {
             done.push(Done::Rows { file, rows, gaps });
         }
-        take_out(&mut part, options.exact, &mut done);
-        parts.push(part);
+        take_out(part, options.exact, &mut done);
     }
     let names: Vec<&str> = parts.iter().map(|p| p.name.as_str()).collect();
     let file = names.join(" + ");

@@ -52,13 +52,21 @@ impl Recording {
             file: name.clone(),
             problem,
         };
-        let mut channels = read(path, mapping, required, Holes::Kept).map_err(refused)?;
-        // The reader puts the time first.
-        let time = channels.remove(0).samples;
+        let channels = read(path, mapping, required, Holes::Kept).map_err(refused)?;
         let delay = |c: &Channel| {
             let map = mapping.columns.iter().find(|m| m.channel == c.name);
             map.map_or(0.0, |m| m.delay)
         };
+        Self::of(name, channels, delay)
+    }
+
+    /// Of channels with the time first, as long as each other, and the delay of each.
+    pub(super) fn of(
+        name: String,
+        mut channels: Vec<Channel>,
+        delay: impl Fn(&Channel) -> f64,
+    ) -> Result<Self, IntakeError> {
+        let time = channels.remove(0).samples;
         let mut recording = Self {
             delays: channels.iter().map(delay).collect(),
             name,
