@@ -85,15 +85,14 @@ fn a_law_of_no_library_is_said_in_a_formula_and_not_put_together_from_others() {
     assert_eq!(refused.law.as_deref(), Some("|v|·v"));
     let unknown = told.unknown.unwrap();
     assert_eq!(unknown.depends_on, "speed");
-    // force = 4.0e1 N·s²/m² · |v|·v (empirical; ± 1.7e-1)
+    // force = c · |v|·v, c = 39.94 N·s²/m² (95 %: 39.77 to 40.11) (empirical)
     let formula = unknown.formula.unwrap();
-    let [number, within] = ["force = ", "± "].map(|before| {
+    let [low, high] = ["95 %: ", " to "].map(|before| {
         let rest = formula.split(before).nth(1).unwrap();
         let end = rest.find([' ', ')']).unwrap();
         rest[..end].parse::<f64>().unwrap()
     });
-    assert!((number - 40.0).abs() < within, "{formula}");
-    assert!(within < 0.4, "{formula}");
+    assert!(low < 40.0 && 40.0 < high && high - low < 0.8, "{formula}");
     let faster = told
         .notes
         .iter()

@@ -7,7 +7,7 @@ use clap::{Args, ColorChoice, Parser};
 use miette::Result;
 
 use crate::diagnostic::Compiler;
-use crate::exit::Exit;
+use crate::exit::{Exit, is_unread};
 use crate::output;
 use crate::program;
 use crate::terminal::{Format, Terminal, color_in};
@@ -75,8 +75,10 @@ pub fn finish(result: Result<()>) -> ExitCode {
     match result.and(written) {
         Ok(()) => Exit::Done.into(),
         Err(error) => {
-            // Where standard error is closed, the exit code still tells.
-            let _ = writeln!(std::io::stderr(), "{error:?}");
+            if !is_unread(&error) {
+                // Where standard error is closed, the exit code still tells.
+                let _ = writeln!(std::io::stderr(), "{error:?}");
+            }
             Exit::of(&error).into()
         }
     }

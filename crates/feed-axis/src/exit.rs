@@ -1,9 +1,10 @@
 //! Exit codes: what a script learns of a command without reading its words.
 
 use std::fmt;
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
-use miette::{Diagnostic, Report};
+use miette::{Diagnostic, Report, miette};
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,6 +89,34 @@ pub fn busy(what: impl Into<String>) -> Report {
     refused(Exit::Busy, what)
 }
 
+/// The error of standard output that did not take a text.
+pub(crate) fn not_out(e: &std::io::Error) -> Report {
+    match e.kind() {
+        ErrorKind::BrokenPipe => Report::new(Unread),
+        _ => miette!("cannot write to standard output: {e}"),
+    }
+}
+
+/// Whether a command ended because nobody reads its standard output any more, as where `head` has
+/// what it wants: that needs no words.
+pub(crate) fn is_unread(error: &Report) -> bool {
+    error.downcast_ref::<Unread>().is_some()
+}
+
+/// Standard output that was closed at its other end.
+#[derive(Debug)]
+struct Unread;
+
+impl fmt::Display for Unread {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("standard output is read no more")
+    }
+}
+
+impl std::error::Error for Unread {}
+
+impl Diagnostic for Unread {}
+
 fn refused(exit: Exit, what: impl Into<String>) -> Report {
     let what = what.into();
     Report::new(Refused { exit, what })
@@ -95,7 +124,7 @@ fn refused(exit: Exit, what: impl Into<String>) -> Report {
 
 #[cfg(test)]
 mod tests {
-    use miette::{WrapErr, miette};
+    use miette::WrapErr;
 
     use super::*;
 

@@ -10,9 +10,10 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use atomic_write_file::AtomicWriteFile;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::{Serialize, Serializer};
 
+use crate::exit::not_out;
 use crate::terminal::{Format, Terminal};
 
 /// What has been found so far, for the JSON document.
@@ -121,7 +122,7 @@ fn line_out(line: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "{line}")
         .and_then(|()| out.flush())
-        .map_err(|e| miette!("cannot write to standard output: {e}"))
+        .map_err(|e| not_out(&e))
 }
 
 /// Writes a file whole: aside first, then renamed.

@@ -92,6 +92,22 @@ fn standard_output_that_fails_is_told() {
     assert!(message.contains("standard output"), "{message}");
 }
 
+/// As where `head` has what it wants.
+#[test]
+fn a_reader_that_leaves_is_no_error_to_tell() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_feed-axis"))
+        .args(["simulate", "--trajectory", "1"])
+        .current_dir(root())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(text(&output), "");
+    assert_eq!(output.status.code(), Some(1));
+}
+
 #[test]
 fn simulate_writes_a_log() {
     let folder = tempfile::tempdir().unwrap();

@@ -5,6 +5,7 @@ use axis_sim::effects::ActiveEffect;
 use axis_sim::mechanism::Freedom;
 use rayon::prelude::*;
 
+use super::units::ReadUnit;
 use crate::answers;
 use crate::estimate::fit::{Columns, Fit, Fitter};
 use crate::name::curves::{Over, Place, Rest, Solved, answer, courses};
@@ -31,10 +32,7 @@ pub(super) struct Short {
 impl Short {
     /// The term that explains most at a place, where it does nearly as much as the `curve`,
     /// fitted: with known parameters and effects for a force. `check` is the fit of the check
-    /// logs without it.
-    ///
-    /// # Errors
-    /// [`ReplayError`] where the machine does not run with it.
+    /// logs without it. `None` also where the machine does not run with it.
     pub(super) fn of(
         [fitter, checker]: [&Fitter<'_>; 2],
         found: &Found,
@@ -42,7 +40,7 @@ impl Short {
         rest: &Rest<'_>,
         place: Place,
         curve: f64,
-    ) -> Result<Option<Self>, ReplayError> {
+    ) -> Option<Self> {
         let machine = fitter.machine;
         let motions = courses(machine, fitter.set, &found.fit.traces);
         let middle = middle(&motions);
@@ -62,34 +60,34 @@ impl Short {
         };
         let all: Vec<(&Term, Solved)> = terms(place).par_iter().map(tried).collect();
         let most = all.into_iter().max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
-        let Some((term, solved)) = most.filter(|(_, s)| s.gain >= SHORT * curve) else {
-            return Ok(None);
-        };
+        let (term, solved) = most.filter(|(_, s)| s.gain >= SHORT * curve)?;
         let set = checker.set;
         let (number, traces) = match term.as_effect(&motions) {
             Some(active) => {
                 let begun = Term::sized(active, solved.values.as_slice());
-                let (fit, deviation) = fitted(fitter, found, begun)?;
+                let (fit, deviation) = fitted(fitter, found, begun).ok()?;
                 let last = &fit.state.effects[fit.state.effects.len() - 1];
                 let [factor, per_size] = Term::factor(last);
-                let traces = set.simulate(machine, &fit.state)?;
+                let traces = set.simulate(machine, &fit.state).ok()?;
                 ([factor, per_size * deviation], traces)
             }
             None => {
                 let motions = courses(machine, set, &check.traces);
                 let probes = term.probes(place, solved.values.as_slice(), &motions, middle);
-                let traces = set.simulate_with(machine, &check.state, Some(&probes))?;
+                let traces = set
+                    .simulate_with(machine, &check.state, Some(&probes))
+                    .ok()?;
                 ([solved.values[0], solved.deviations[0]], traces)
             }
         };
-        Ok(Some(Self {
+        Some(Self {
             term,
             place,
             middle,
             gain: solved.gain,
             number,
             left: set.rest(&traces),
-        }))
+        })
     }
 
     /// On what it depends.
@@ -119,13 +117,23 @@ impl Short {
             Place::Force => "force",
             Place::Offset => "displacement",
         };
-        let [number, deviation] = self.number;
-        format!(
-            "{what} = {number:.4e} {} · {words}{about} (empirical; ± {:.1e})",
-            turned(unit, freedom),
-            1.96 * deviation
-        )
+        let number = said(self.number, turned(unit, freedom));
+        format!("{what} = c · {words}{about}, c = {number} (empirical)")
     }
+}
+
+/// A number and its 95 % interval from its standard deviation, in this unit.
+fn said([number, deviation]: [f64; 2], unit: String) -> String {
+    let interval = [-1.96, 1.96].map(|by| number + by * deviation);
+    if !(1e-3..1e6).contains(&number.abs()) {
+        let [low, high] = interval;
+        return format!("{number:.3e} {unit} (95 %: {low:.3e} to {high:.3e})");
+    }
+    let unit = ReadUnit {
+        factor: 1.0,
+        name: unit,
+    };
+    unit.said_within(number, interval)
 }
 
 /// Rounds of a fit with a term.
@@ -157,12 +165,20 @@ fn turned(unit: &str, freedom: Freedom) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Freedom, turned};
+    use super::{Freedom, said, turned};
 
     #[test]
     fn what_turns_has_torques_and_angles() {
         assert_eq!(turned("N·s²/m²", Freedom::Linear), "N·s²/m²");
         assert_eq!(turned("N·s²/m²", Freedom::Rotary), "N·m·s²/rad²");
         assert_eq!(turned("1/m", Freedom::Rotary), "1/rad");
+    }
+
+    #[test]
+    fn numbers_are_read_as_they_are() {
+        let of = |number, deviation| said([number, deviation], "N/m".to_owned());
+        assert_eq!(of(39.944, 0.0867), "39.94 N/m (95 %: 39.77 to 40.11)");
+        assert_eq!(of(-18760.0, 306.0), "-18760 N/m (95 %: -19360 to -18160)");
+        assert_eq!(of(2e-7, 1e-9), "2.000e-7 N/m (95 %: 1.980e-7 to 2.020e-7)");
     }
 }

@@ -113,7 +113,7 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
         &rest,
         place,
         explains_most.1.gain,
-    )?;
+    );
     let set = &found.check_logs;
     let short = short.and_then(|short| {
         let over = |i: &usize| {

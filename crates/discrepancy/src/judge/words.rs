@@ -241,6 +241,7 @@ fn next(discovery: &Discovery) -> Vec<String> {
         ));
     }
     lines.extend(discovery.told.controller.as_ref().map(other_controller));
+    lines.extend(discovery.unknown.as_ref().and_then(of_unknown));
     let one = |r: &RemedyTold| {
         format!(
             "{}: {}. {}.",
@@ -251,6 +252,20 @@ fn next(discovery: &Discovery) -> Vec<String> {
     };
     lines.extend(discovery.told.remedies.iter().map(one));
     lines
+}
+
+/// What a curve that has no name is good for.
+fn of_unknown(unknown: &Unknown) -> Option<String> {
+    let is_force = matches!(unknown.curve.unit.as_str(), "N" | "N*m");
+    let table = match unknown.depends_on.as_str() {
+        "speed" if is_force => "friction over speed",
+        "position" if is_force => "force over position",
+        "position" => "errors of the pitch",
+        _ => return None,
+    };
+    Some(format!(
+        "What has no name: enter its curve where the drive takes a table ({table}). Motion that is slower, faster and longer shows more of it."
+    ))
 }
 
 fn other_controller(own: &OwnController) -> String {

@@ -36,7 +36,7 @@ const TIME: Over = (Variable::Time, Factor::One);
 const TIME_BY_DIRECTION: Over = (Variable::Time, Factor::Direction);
 
 /// Forces on the load, against positive motion.
-const FORCES: &[Term] = &[
+static FORCES: [Term; 12] = [
     term_of(SPEED, "√|v|·sign v", "N·(s/m)^½", |_, _, v, s| {
         v.abs().sqrt() * s
     }),
@@ -87,7 +87,7 @@ const FORCES: &[Term] = &[
 ];
 
 /// Displacements of the load on its transmission.
-const OFFSETS: &[Term] = &[
+static OFFSETS: [Term; 4] = [
     term_of(POSITION, "x²", "1/m", |_, x, _, _| x * x),
     term_of(POSITION, "x³", "1/m²", |_, x, _, _| x.powi(3)),
     term_of(TIME, "t·x", "1/s", |t, x, _, _| t * x),
@@ -123,8 +123,8 @@ const fn with(
 /// The terms of a place.
 pub fn terms(place: Place) -> &'static [Term] {
     match place {
-        Place::Force => FORCES,
-        Place::Offset => OFFSETS,
+        Place::Force => &FORCES,
+        Place::Offset => &OFFSETS,
     }
 }
 
@@ -220,7 +220,7 @@ impl Term {
     /// It as an effect, of no size, that a fit may move; `None` of a displacement, and of what
     /// these motions do not show.
     pub fn as_effect(&self, courses: &[Course]) -> Option<ActiveEffect> {
-        let place = FORCES.iter().position(|t| t.words == self.words)?;
+        let place = FORCES.iter().position(|term| std::ptr::eq(term, self))?;
         let middle = middle(courses);
         let mut values = vec![place as f64, middle];
         for series in self.series(courses, middle) {
@@ -272,4 +272,41 @@ fn install(values: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
         t.pressed * parts.iter().map(of).sum::<f64>()
     });
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Course, OFFSETS, Place, Term, terms};
+
+    fn course() -> Course {
+        let time: Vec<f64> = (0..100).map(f64::from).collect();
+        Course {
+            position: time.clone(),
+            speed: time.iter().map(|t| 0.1 * (0.3 * t).sin()).collect(),
+            angle: Vec::new(),
+            acceleration: Vec::new(),
+            effort: Vec::new(),
+            time,
+        }
+    }
+
+    /// The factor that goes in is the one that comes out; a displacement of the same formula is no
+    /// force.
+    #[test]
+    fn forces_are_effects_in_their_own_unit_and_displacements_are_none() {
+        let motions = [course()];
+        for term in terms(Place::Force) {
+            let active = term.as_effect(&motions).unwrap();
+            let [factor, per_newton] = Term::factor(&Term::sized(active, &[2.5, 1.0]));
+            assert!((factor - 2.5).abs() < 1e-12, "{}", term.words);
+            let series = term.series(&motions, super::middle(&motions));
+            let most = series[0][0].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            assert!((per_newton * most - 1.0).abs() < 1e-12, "{}", term.words);
+        }
+        assert!(
+            OFFSETS
+                .iter()
+                .all(|term| term.as_effect(&motions).is_none())
+        );
+    }
 }

@@ -26,8 +26,8 @@ pub struct Options {
     /// Axis file: the model that the logs are compared with
     #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     axis: PathBuf,
-    /// Logs to fit to: CSV, Parquet or MAT v5, 100 Hz to 20 kHz; a
-    /// log in several files as their paths with + between
+    /// Logs to fit to: tables of text (CSV and the like), Parquet, MAT v5, or recordings of other
+    /// programs, 100 Hz to 20 kHz; a log in several files as their paths with + between
     #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
     fit: Vec<PathBuf>,
     /// Logs of other motion, to check on; never fitted to

@@ -6,8 +6,9 @@ use std::path::PathBuf;
 use clap::{Args, Command};
 use clap_complete::Shell;
 use clap_mangen::Man;
-use miette::{IntoDiagnostic, Result, miette};
+use miette::{IntoDiagnostic, Result};
 
+use crate::exit::not_out;
 use crate::output::{note, write_whole};
 use crate::program;
 
@@ -79,5 +80,5 @@ pub(super) fn out(text: &[u8]) -> Result<()> {
     let mut out = std::io::stdout().lock();
     out.write_all(text)
         .and_then(|()| out.flush())
-        .map_err(|e| miette!("cannot write to standard output: {e}"))
+        .map_err(|e| not_out(&e))
 }

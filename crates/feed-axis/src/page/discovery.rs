@@ -4,8 +4,8 @@ use axis_report::{Block, Cell, Figure, Notice, Page, Section, Series, Table, ren
 use axis_sim::Axis;
 use discrepancy::summary::SummaryFound;
 use discrepancy::{
-    Against, Discovered, Discovery, FrictionLaw, Gap, NextExperiment, Overlay, ReadUnit, Unknown,
-    Verdict,
+    Against, Discovered, Discovery, EffectFound, FrictionLaw, Gap, NextExperiment, Overlay,
+    ReadUnit, Unknown, Verdict,
 };
 use miette::{IntoDiagnostic, Result};
 
@@ -30,7 +30,7 @@ pub fn page(discovered: &Discovered) -> Result<String> {
         discovery.next_experiment.as_ref().map(next),
     ];
     let page = Page::new(format!("What the model of {} lacks", discovery.axis))
-        .lead("Logs replayed through the simulated closed loop; what is left, and which effect explains it.")
+        .lead(lead(discovery))
         .first(Block::Notice(kind, discovery.sentence.clone()))
         .first(Block::Answers(answers));
     let page = notes.into_iter().fold(page, Page::first);
@@ -49,6 +49,18 @@ pub fn page(discovered: &Discovered) -> Result<String> {
         .chain([likenesses(discovery), known(discovery)])
         .fold(page, Page::section);
     render(&page).into_diagnostic()
+}
+
+/// How the logs were compared.
+fn lead(discovery: &Discovery) -> &'static str {
+    match discovery.answer.as_str() {
+        "torque-balance" => {
+            "The torque that the model needs for the logged motion, beside the one that was logged; what is left, and which effect explains it."
+        }
+        _ => {
+            "Logs replayed through the simulated closed loop; what is left, and which effect explains it."
+        }
+    }
 }
 
 /// Values in a unit for people.
@@ -151,7 +163,17 @@ fn effects(discovery: &Discovery) -> Section {
             Cell::number(*gain, 0),
         ]);
     }
-    let section = Section::new("Effects").table(table).table(others);
+    let section = Section::new("Effects");
+    let section = match discovery.effects.as_slice() {
+        [] => section.paragraph("None is named."),
+        _ => section.table(table),
+    };
+    let has_others = |e: &EffectFound| !e.runners_up.is_empty();
+    let has_others = !discovery.not_added.is_empty() || discovery.effects.iter().any(has_others);
+    let section = match has_others {
+        true => section.table(others),
+        false => section,
+    };
     if discovery.replaced.is_empty() {
         return section;
     }

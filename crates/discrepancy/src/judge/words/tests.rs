@@ -218,6 +218,7 @@ fn nothing_and_the_unknown_are_said_so() {
         lines(&unknown, "How sure")[0].split(' ').nth(1),
         Some("low")
     );
+    assert!(lines(&unknown, "What to do next")[0].contains("(friction over speed)"));
 }
 
 #[test]
