@@ -189,3 +189,34 @@ fn channels_may_have_holes_and_nothing_infinite() {
     let none = prepare_channels("of a program", Vec::new(), &[], Options::default());
     assert!(none.unwrap_err().to_string().contains("the log is empty"));
 }
+
+/// A whole part of the rate, to the samples asked for; what is slow stays.
+#[test]
+fn a_log_that_is_too_long_is_resampled_to_a_part_of_its_rate() {
+    let slow = |t: f64| 0.1 * (TAU * 0.7 * t).sin();
+    let time: Vec<f64> = (0..5000).map(|k| f64::from(k) * PERIOD).collect();
+    let samples = time.iter().map(|&t| slow(t)).collect();
+    let channels = [("t_s", time), ("position_m", samples)];
+    let channels = channels.map(|(name, samples)| Channel::new(name, samples).unwrap());
+    let prepared = |most: usize| {
+        let options = Options {
+            most_samples: Some(most),
+            ..Options::default()
+        };
+        prepare_channels("long", channels.to_vec(), &[], options).unwrap()
+    };
+    let whole = prepared(5000);
+    assert!(whole.done.is_empty() && whole.log.len() == 5000);
+    let part = prepared(1999);
+    assert_eq!(part.log.len(), 1667);
+    let told = part.done[0].to_string();
+    assert!(
+        told.starts_with("long: 5000 samples at 500.0000 Hz; resampled to 166.6667 Hz"),
+        "{told}"
+    );
+    // The ends rest on fewer samples.
+    let (time, position) = (part.log.time(), part.log.channel("position_m").unwrap());
+    for k in 100..1567 {
+        assert!((position[k] - slow(time[k])).abs() < 2e-5, "{k}");
+    }
+}

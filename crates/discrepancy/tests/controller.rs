@@ -148,7 +148,7 @@ fn the_published_gains_of_emps_come_from_a_file_without_them() {
     let read = |file: &str| {
         let options = Options {
             exact: &[],
-            rate_hz: None,
+            ..Options::default()
         };
         let read = prepare(&[data.join(file)], &axis.log, &[], options).unwrap();
         [(file.to_owned(), read.log, 1e-3)]

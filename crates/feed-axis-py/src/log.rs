@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use axis_log::intake::{Options, files, prepare, prepare_channels};
 use axis_log::{Channel, TIME_CHANNEL};
 use axis_sim::Axis;
-use discrepancy::logs::{NamedLog, admit, exact_channels, needed_channels};
+use discrepancy::logs::{NamedLog, admit, exact_channels, most_samples, needed_channels};
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -26,6 +26,7 @@ pub(crate) fn log_of(
     let options = Options {
         exact: &exact,
         rate_hz: None,
+        most_samples: most_samples(axis),
     };
     let (name, prepared) = match given.extract::<PathBuf>() {
         Ok(path) => (

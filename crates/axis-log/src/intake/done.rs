@@ -46,6 +46,15 @@ pub enum Done {
         /// Rate of the grid, Hz.
         rate: f64,
     },
+    /// A log of more samples than were asked for, at a lower rate.
+    Slowed {
+        /// The file.
+        file: String,
+        /// Samples that it had.
+        samples: usize,
+        /// Its rate and the new one, Hz.
+        rates: [f64; 2],
+    },
     /// Isolated outliers taken out.
     Outliers {
         /// The channel.
@@ -134,6 +143,14 @@ impl fmt::Display for Done {
                 f,
                 "{file}: time stamps up to {:.0} % of a period off an even grid, the samples not; taken as even at {rate:.4} Hz",
                 100.0 * jitter
+            ),
+            Self::Slowed {
+                file,
+                samples,
+                rates: [from, to],
+            } => write!(
+                f,
+                "{file}: {samples} samples at {from:.4} Hz; resampled to {to:.4} Hz, as so long a log needs no more"
             ),
             Self::Outliers {
                 channel,

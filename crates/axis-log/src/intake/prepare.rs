@@ -19,6 +19,9 @@ pub struct Options<'a> {
     /// Rate of the joined log, Hz; `None` for that of the slowest file. Of a single file
     /// it means a resampling.
     pub rate_hz: Option<f64>,
+    /// Most samples of the log where no rate is asked for: a longer one is resampled to a whole
+    /// part of its rate. `None` for any number.
+    pub most_samples: Option<usize>,
 }
 
 /// A log, and what was done to it.
@@ -116,13 +119,17 @@ fn prepared(
     }
     let names: Vec<&str> = parts.iter().map(|p| p.name.as_str()).collect();
     let file = names.join(" + ");
-    let single = parts.len() == 1 && options.rate_hz.is_none();
+    let slower = options
+        .most_samples
+        .and_then(|most| slowed(&parts, most, &mut done));
+    let rate = options.rate_hz.or(slower);
+    let single = parts.len() == 1 && rate.is_none();
     let channels = match parts.pop() {
         None => return Err(IntakeError::None),
         Some(part) if single && part.delays.iter().all(|&d| d == 0.0) => as_it_is(part),
         Some(part) => {
             parts.push(part);
-            join(parts, options.rate_hz, &mut done)?
+            join(parts, rate, &mut done)?
         }
     };
     let log = into_log(channels, &mut done).and_then(|log| {
@@ -135,6 +142,24 @@ fn prepared(
         Ok(log) => Ok(PreparedLog { log, done }),
         Err(problem) => Err(IntakeError::Log { file, problem }),
     }
+}
+
+/// A whole part of the slowest recording's rate at which it has no more samples than these; `None`
+/// where it has no more.
+fn slowed(parts: &[Recording], most: usize, done: &mut Vec<Done>) -> Option<f64> {
+    let of = |part: &Recording| Some((part.grid?.period, part.time.len(), part.name.clone()));
+    let slowest = parts.iter().filter_map(of);
+    let (period, samples, file) = slowest.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let parts = samples.div_ceil(most.max(1));
+    (parts > 1).then(|| {
+        let rates = [1.0 / period, 1.0 / (period * parts as f64)];
+        done.push(Done::Slowed {
+            file,
+            samples,
+            rates,
+        });
+        rates[1]
+    })
 }
 
 fn as_it_is(part: Recording) -> Vec<Channel> {

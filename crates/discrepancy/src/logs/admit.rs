@@ -19,6 +19,16 @@ pub fn needed_channels(machine: &Axis) -> Vec<&'static str> {
     }
 }
 
+/// Samples of a log that a torque balance takes: ten minutes at 1 kHz. What it compares is slow (at
+/// a tenth of the rate and below), and what the library does is worked out along every sample.
+const BALANCED: usize = 600_000;
+
+/// Most samples of a log for this machine ([`axis_log::intake::Options`]); `None` for any number: a
+/// replay goes at the controller's own rate.
+pub fn most_samples(machine: &Axis) -> Option<usize> {
+    (!machine.has_control()).then_some(BALANCED)
+}
+
 /// Looks at a log and takes it from its first rest on. What must be known of it goes to
 /// `notes`: channels that agree only nearly, and what was cut away.
 ///

@@ -7,7 +7,7 @@ mod error;
 mod relations;
 mod start;
 
-pub use self::admit::{admit, needed_channels};
+pub use self::admit::{admit, most_samples, needed_channels};
 pub use self::apart::{NamedLog, set_apart};
 pub use self::checks::{check_distinct, check_log};
 pub use self::error::LogSetError;

@@ -7,7 +7,7 @@ use axis_log::{Log, ReadError, ReadProblem};
 use axis_sim::Axis;
 use axis_sim::effects::Scales;
 use clap::Args;
-use discrepancy::logs::{NamedLog, admit, exact_channels, needed_channels};
+use discrepancy::logs::{NamedLog, admit, exact_channels, most_samples, needed_channels};
 use discrepancy::summary::{MeasuredError, rank, tried};
 use discrepancy::{Evidence, Settings};
 use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
@@ -202,6 +202,7 @@ fn read_as_one(path: &Path, machine: &Axis, notes: &mut Vec<String>) -> Result<L
     let options = Intake {
         exact: &exact,
         rate_hz: None,
+        most_samples: most_samples(machine),
     };
     let paths = files(path);
     let prepared = prepare(&paths, &machine.log, &needed, options)

@@ -135,6 +135,7 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
     let options = Intake {
         exact: &exact,
         rate_hz,
+        ..Intake::default()
     };
     let paths = files(path);
     let prepared = prepare(&paths, mapping, &[], options)
