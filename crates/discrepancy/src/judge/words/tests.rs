@@ -3,8 +3,8 @@
 use crate::controller::OwnController;
 use crate::judge::told::{Confidence, Level, remedies};
 use crate::judge::{
-    Cost, Discovery, EffectFound, EffortCost, FigureLogs, Gaps, ParameterFound, Recalibrated, Size,
-    Told, TrackingCost, Verdict,
+    Cost, Discovery, EffectFound, EffortCost, FigureLogs, Gaps, ParameterFound, Recalibrated,
+    RefusedEffects, Size, Told, TrackingCost, Verdict,
 };
 use crate::judge::{Curve, Unknown};
 use crate::name::gap::{ChannelGap, Gap};
@@ -219,6 +219,23 @@ fn nothing_and_the_unknown_are_said_so() {
         Some("low")
     );
     assert!(lines(&unknown, "What to do next")[0].contains("(friction over speed)"));
+}
+
+#[test]
+fn pieces_of_one_law_are_said_beside_what_is_named() {
+    let refused = |effects: &[&str]| RefusedEffects {
+        effects: effects.iter().map(|name| (*name).to_owned()).collect(),
+        law: Some("|v|·v".to_owned()),
+        ..RefusedEffects::default()
+    };
+    let mut made = discovery(Verdict::PartlyExplained, vec![viscous()], Vec::new());
+    made.refused = Some(refused(&["coulomb-friction", "stribeck-friction"]));
+    assert_eq!(
+        lines(&made, "What is missing")[1],
+        "coulomb-friction with stribeck-friction explain less than a force in proportion to |v|·v does with one number, so they are not given."
+    );
+    made.refused = Some(refused(&["coulomb-friction"]));
+    assert!(lines(&made, "What is missing")[1].ends_with("so it is not given."));
 }
 
 #[test]

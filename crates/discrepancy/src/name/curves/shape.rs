@@ -103,9 +103,6 @@ impl Shape {
             .collect();
         let all = inside.iter().flatten();
         let (counted, samples) = (all.clone().filter(|i| **i).count(), all.count());
-        if counted == samples {
-            return set.layout.deviance(&fit.rest) - set.layout.deviance(&set.amplitudes(&after));
-        }
         let mut before = set.rest(&fit.traces);
         for rest in [&mut before, &mut after] {
             for (channels, inside) in rest.iter_mut().zip(&inside) {

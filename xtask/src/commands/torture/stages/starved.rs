@@ -180,8 +180,13 @@ fn unheard(bench: &Bench) -> Result<Tally> {
         let output = child
             .and_then(std::process::Child::wait_with_output)
             .into_diagnostic()?;
+        let words = said(&output);
+        tally.judge(bench, output.status.success(), &words, &[""])?;
         // A reader that has left needs no words.
-        tally.judge(bench, output.status.success(), &said(&output), &[""])?;
+        if !words.is_empty() {
+            let name = &tally.name;
+            tally.faults.push(format!("{name}: it says {words}"));
+        }
         let Ok(full) = std::fs::OpenOptions::new().write(true).open("/dev/full") else {
             continue;
         };
