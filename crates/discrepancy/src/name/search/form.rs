@@ -10,6 +10,7 @@ use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, ONSET_FORM, ONSET_KNOTS, OnsetForm, Scales};
 use rayon::prelude::*;
 
+use super::evidence::BY_CHANCE;
 use super::refined::Refined;
 use super::state::Search;
 use super::types::Named;
@@ -197,32 +198,57 @@ const FALL: &str = "stribeck-friction";
 /// Dry friction with a memory.
 const WITH_MEMORY: &str = "maxwell-slip-hysteresis";
 
-/// Effects before a form that explains hardly more. But of the axis' own friction a form goes
-/// before a fall of the other sign: that is the same friction, which comes on with speed.
-pub(super) fn effects_before_forms(refined: &mut [Refined]) {
-    let has_form = refined.iter().any(Refined::is_form_of_own);
-    let is_own = |r: &Refined| has_form && r.is_rise();
-    if let Some(rise) = refined.first().filter(|r| is_own(r)) {
-        let least = INSTEAD * rise.gain;
-        let form = refined
-            .iter()
-            .position(|r| r.is_form_of_own() && r.gain >= least);
-        if let Some(at) = form {
+impl Search<'_> {
+    /// Effects before a form that explains hardly more. But of the axis' own friction a form goes
+    /// before a fall of the other sign: that is the same friction, which comes on with speed. Slip
+    /// with a memory goes behind dry friction that does most of what it does, unless it does more
+    /// than that friction in any form.
+    pub(super) fn effects_before_forms(&self, refined: &mut [Refined]) {
+        let has_form = refined.iter().any(Refined::is_form_of_own);
+        let is_own = |r: &Refined| has_form && r.is_rise();
+        if let Some(rise) = refined.first().filter(|r| is_own(r)) {
+            let least = INSTEAD * rise.gain;
+            let form = refined
+                .iter()
+                .position(|r| r.is_form_of_own() && r.gain >= least);
+            if let Some(at) = form {
+                refined[..=at].rotate_right(1);
+            }
+        }
+        let is_other = |r: &Refined| r.is_of_another_form() || is_own(r);
+        let Some(first) = refined.first().filter(|r| is_other(r)) else {
+            return;
+        };
+        let with_memory = !first.is_form() && !first.is_rise();
+        let share = match with_memory {
+            true => INSTEAD_OF_MEMORY,
+            false => INSTEAD,
+        };
+        let least = share * first.gain;
+        let mut all = refined.iter();
+        let Some(at) = all.position(|r| !is_other(r) && r.gain >= least) else {
+            return;
+        };
+        if !(with_memory && self.outdoes_all_forms(first, &refined[at])) {
             refined[..=at].rotate_right(1);
         }
     }
-    let is_other = |r: &Refined| r.is_of_another_form() || is_own(r);
-    let Some(first) = refined.first().filter(|r| is_other(r)) else {
-        return;
-    };
-    let share = match first.is_form() || first.is_rise() {
-        true => INSTEAD,
-        false => INSTEAD_OF_MEMORY,
-    };
-    let least = share * first.gain;
-    let mut all = refined.iter();
-    let effect = all.position(|r| !is_other(r) && r.gain >= least);
-    if let Some(at) = effect {
-        refined[..=at].rotate_right(1);
+
+    /// Whether slip with a memory explains more than another candidate with the form of a
+    /// friction beside it, whose curve has several numbers.
+    fn outdoes_all_forms(&self, memory: &Refined, other: &Refined) -> bool {
+        let mut beside = self.clone();
+        beside.fit = other.fit.clone();
+        let own = beside.own_columns();
+        let forms = beside.forms(&own).into_iter().map(|form| vec![form]);
+        let refined = beside.refine(forms.collect(), &own);
+        let form = refined.iter().map(|r| r.gain).fold(0.0, f64::max);
+        tracing::debug!(
+            memory = memory.gain,
+            other = other.gain,
+            form,
+            "slip with a memory, and another in any form"
+        );
+        memory.gain > other.gain + form + BY_CHANCE
     }
 }

@@ -8,6 +8,7 @@ use axis_sim::effects::{ActiveEffect, EffectChannel, Scales};
 
 use super::evidence::{BY_CHANCE, LEAST_HELD_OUT, MATERIAL};
 use super::form::is_form;
+use super::revise::RIVAL;
 use super::state::Search;
 use super::types::{Named, RefusalReason, Refused};
 use crate::estimate::fit::{Fit, is_free};
@@ -55,7 +56,10 @@ impl<'a> Search<'a> {
         };
         let candidates: Vec<Candidate> = laws.iter().map(candidate).collect();
         let screened = without.screened_beside(&own, &candidates, 1).into_iter();
-        let best = screened.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
+        let loss = without.fit.deviance - self.fit.deviance;
+        let best = screened
+            .filter(|law| law.gain >= RIVAL * loss)
+            .max_by(|a, b| a.gain.total_cmp(&b.gain))?;
         let refined = without.refine(vec![vec![best]], &own);
         let fit = refined.into_iter().next()?.fit;
         let check = without.checker().at(fit.state.clone()).ok()?;

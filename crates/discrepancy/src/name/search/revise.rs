@@ -19,9 +19,9 @@ use crate::estimate::fit::is_free;
 use crate::estimate::known::pinned;
 use crate::estimate::spread::over_noise;
 
-/// Share of what an effect brings that another must promise in its place before
+/// Share of what an effect brings that another, or a law, must promise in its place before
 /// that is tried.
-const RIVAL: f64 = 0.5;
+pub(super) const RIVAL: f64 = 0.5;
 
 /// Fall of D that one further number brings by chance in one of a hundred cases, as χ² with
 /// one degree of freedom.

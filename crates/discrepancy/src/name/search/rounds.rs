@@ -4,7 +4,6 @@ use axis_sim::effects::{ActiveEffect, Effect};
 use rayon::prelude::*;
 
 use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
-use super::form::effects_before_forms;
 use super::free_curve::FreeCurves;
 use super::promise::{PROMISING, Promises, WORTH};
 use super::refined::{
@@ -53,7 +52,7 @@ impl Search<'_> {
             screened.iter().map(|s| vec![s.clone()]).collect()
         };
         let mut refined = self.refine(candidates, &own);
-        effects_before_forms(&mut refined);
+        self.effects_before_forms(&mut refined);
         single_before_pair(&mut refined);
         inside_before_bound(&mut refined);
         let fitter = self.fitter();
