@@ -39,8 +39,10 @@ impl<'a> Search<'a> {
     fn replaced_by(&self, over: Over, laws: &[Law]) -> Option<Instead<'a>> {
         let mut without = self.clone();
         let mut taken = Vec::new();
+        let mut active = Vec::new();
         while let Some(index) = without.piece(over) {
             taken.push(without.named[index].clone());
+            active.push(without.fit.state.effects[index].clone());
             without = without.without(index)?;
         }
         if taken.is_empty() {
@@ -48,18 +50,25 @@ impl<'a> Search<'a> {
         }
         let own = without.own_columns();
         let fitter = without.fitter();
-        let candidate = |(_, law): &Law| Candidate {
-            columns: responses(&fitter, &without.fit, law.effect, &law.values),
-            effect: law.effect,
-            values: law.values.clone(),
+        let candidate = |active: &ActiveEffect| Candidate {
+            columns: responses(&fitter, &without.fit, active.effect, &active.values),
+            effect: active.effect,
+            values: active.values.clone(),
             scales: Scales::of(self.machine),
         };
-        let candidates: Vec<Candidate> = laws.iter().map(candidate).collect();
-        let screened = without.screened_beside(&own, &candidates, 1).into_iter();
-        let loss = without.fit.deviance - self.fit.deviance;
-        let best = screened
-            .filter(|law| law.gain >= RIVAL * loss)
-            .max_by(|a, b| a.gain.total_cmp(&b.gain))?;
+        let screened = |candidates: &[Candidate]| without.screened_beside(&own, candidates, 1);
+        // What one effect promises there, a law must promise as well; of several together
+        // that is not known.
+        let alone = match active.as_slice() {
+            [one] => screened(&[candidate(one)]).first().map_or(0.0, |s| s.gain),
+            _ => 0.0,
+        };
+        let laws_there: Vec<Candidate> = laws.iter().map(|(_, law)| candidate(law)).collect();
+        let screened = screened(&laws_there).into_iter();
+        let best = screened.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
+        if best.gain < RIVAL * alone {
+            return None;
+        }
         let refined = without.refine(vec![vec![best]], &own);
         let fit = refined.into_iter().next()?.fit;
         let check = without.checker().at(fit.state.clone()).ok()?;

@@ -19,7 +19,7 @@ use crate::estimate::fit::is_free;
 use crate::estimate::known::pinned;
 use crate::estimate::spread::over_noise;
 
-/// Share of what an effect brings that another, or a law, must promise in its place before
+/// Share of what an effect brings, or promises, that another must promise in its place before
 /// that is tried.
 pub(super) const RIVAL: f64 = 0.5;
 
