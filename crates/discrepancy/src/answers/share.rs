@@ -7,8 +7,8 @@
 
 use axis_sim::{Axis, ReplayError, Stored};
 
-use super::stored::noise_of_effort;
-use super::{Answer, LogSet, State};
+use super::stored::{EffortShown, effort_shown};
+use super::{Answer, LogSet, Prepared, State};
 
 /// Shares that are tried first.
 const TRIED: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];
@@ -19,10 +19,15 @@ const HALVINGS: usize = 5;
 /// Fall of minus twice the log-likelihood below which nothing is said to be stored.
 const BY_CHANCE: f64 = 25.0;
 
-/// Step by which a held effort is first moved, and most by which it is moved at once, as
-/// shares of the command's noise.
+/// Steps by which a held effort is moved to see where the log is more likely, the way downhill
+/// where three points do not show a minimum, and most that it is moved, as shares of the command's
+/// noise.
 const STEP: f64 = 0.1;
+const STRIDE: f64 = 0.25;
 const REACH: f64 = 0.5;
+
+/// Parabolas at most.
+const PARABOLAS: usize = 5;
 
 /// Fall of minus twice the log-likelihood below which it stays: one number by chance.
 const MOVED: f64 = 10.0;
@@ -135,55 +140,97 @@ impl LogSet {
         set
     }
 
-    /// Moves what the drive holds at the start of each log, where that is the mean of a noisy
-    /// command, to where the log is most likely beside this state: by a parabola through three
-    /// points, by no more than [`REACH`].
+    /// Moves what the drive holds at the start of each log, where that is the mean of a noisy or
+    /// coarse command, to where the log is most likely beside this state: by parabolas through
+    /// three points, from where the last one led, by no more than [`REACH`].
     ///
     /// # Errors
     /// [`ReplayError`] where the machine does not run.
     fn find_effort(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
-        let noise = self
-            .logs
-            .iter()
-            .map(|log| match log.answer.replay()?.stored() {
-                Stored::Effort(_) => noise_of_effort(&log.log, log.period, machine),
-                _ => None,
-            });
-        let noise: Vec<Option<f64>> = noise.collect();
-        if noise.iter().all(|n| n.is_none_or(|n| n <= 0.0)) {
+        let shown = self.efforts_shown(machine).into_iter();
+        let noise: Vec<f64> = shown.map(|s| s.map_or(0.0, |s| s.noise)).collect();
+        if noise.iter().all(|n| *n <= 0.0) {
             return Ok(());
         }
+        // Of shares of the noise.
         let misfits = |moves: &[f64]| -> Result<Vec<f64>, ReplayError> {
-            let set = self.with_efforts_moved(moves);
+            let moves: Vec<f64> = moves.iter().zip(&noise).map(|(by, n)| by * n).collect();
+            let set = self.with_efforts_moved(&moves);
             let rest = set.rest(&set.simulate(machine, state)?);
             Ok(rest.iter().map(|log| misfit(log)).collect())
         };
-        let steps: Vec<f64> = noise.iter().map(|n| STEP * n.unwrap_or(0.0)).collect();
-        let times = |by: f64| steps.iter().map(|step| by * step).collect::<Vec<f64>>();
-        let [below, here, above] = [-1.0, 0.0, 1.0].map(times).map(|m| misfits(&m));
-        let (below, here, above) = (below?, here?, above?);
-        let vertex = |i: usize| {
-            let (slope, bend) = (above[i] - below[i], above[i] + below[i] - 2.0 * here[i]);
-            let most = REACH / STEP;
-            let by = match bend > 0.0 {
-                true => -0.5 * slope / bend,
-                false => -slope.signum(),
+        let mut moves = vec![0.0; noise.len()];
+        let mut here = misfits(&moves)?;
+        for _ in 0..PARABOLAS {
+            let beside = |by: f64| misfits(&moves.iter().map(|m| m + by).collect::<Vec<f64>>());
+            let (below, above) = (beside(-STEP)?, beside(STEP)?);
+            let to = |i: usize| {
+                let (slope, bend) = (above[i] - below[i], above[i] + below[i] - 2.0 * here[i]);
+                let by = match bend > 0.0 {
+                    true => -0.5 * STEP * slope / bend,
+                    false => -STRIDE * slope.signum(),
+                };
+                (moves[i] + by).clamp(-REACH, REACH)
             };
-            by.clamp(-most, most) * steps[i]
-        };
-        let moves: Vec<f64> = (0..steps.len()).map(vertex).collect();
-        let there = misfits(&moves)?;
-        let gains = here.iter().zip(&there).map(|(a, b)| a - b > MOVED);
-        let kept = gains
-            .zip(moves)
-            .map(|(better, by)| if better { by } else { 0.0 });
-        let kept: Vec<f64> = kept.collect();
+            let next: Vec<f64> = (0..moves.len()).map(to).collect();
+            let there = misfits(&next)?;
+            let mut has_left = false;
+            for (i, after) in there.into_iter().enumerate() {
+                if here[i] - after > MOVED {
+                    // Beyond the three points the parabola knows nothing.
+                    has_left |= (next[i] - moves[i]).abs() > STEP;
+                    (moves[i], here[i]) = (next[i], after);
+                }
+            }
+            if !has_left {
+                break;
+            }
+        }
+        let kept: Vec<f64> = moves.iter().zip(&noise).map(|(by, n)| by * n).collect();
         tracing::debug!(?kept, ?noise, "effort at the start, moved by");
         *self = self.with_efforts_moved(&kept);
         Ok(())
     }
 
-    fn with_efforts_moved(&self, moves: &[f64]) -> Self {
+    /// How well each log shows the command with which its drive holds the axis at its start;
+    /// `None` where that is not held, or not shown.
+    fn efforts_shown(&self, machine: &Axis) -> Vec<Option<EffortShown>> {
+        let of = |log: &Prepared| match log.answer.replay()?.stored() {
+            Stored::Effort(_) => effort_shown(&log.log, log.period, machine),
+            _ => None,
+        };
+        self.logs.iter().map(of).collect()
+    }
+
+    /// By how much what the drive holds at the start of each log may be off, in the actuator's
+    /// unit, where its command is coarse; `None` where no log's is.
+    pub(crate) fn coarse_efforts(&self, machine: &Axis) -> Option<Vec<f64>> {
+        let coarse = |shown: Option<EffortShown>| shown.filter(|s| s.is_coarse);
+        let all = self.efforts_shown(machine).into_iter();
+        let all: Vec<f64> = all
+            .map(|shown| coarse(shown).map_or(0.0, |s| REACH * s.noise))
+            .collect();
+        all.iter().any(|by| *by > 0.0).then_some(all)
+    }
+
+    /// Whether the drive holds another command at the start of a log than in `before`, by more than
+    /// a fifth of what it may be off by.
+    pub(crate) fn begins_elsewhere(&self, before: &Self, machine: &Axis) -> bool {
+        let effort = |log: &Prepared| match log.answer.replay()?.stored() {
+            Stored::Effort(effort) => Some(effort),
+            _ => None,
+        };
+        let shown = self.efforts_shown(machine).into_iter();
+        let pairs = self.logs.iter().zip(&before.logs).zip(shown);
+        let mut moved = pairs.map(|((now, before), shown)| {
+            let by = (effort(now)? - effort(before)?).abs();
+            Some(by > 0.2 * REACH * shown?.noise)
+        });
+        moved.any(|is_moved| is_moved == Some(true))
+    }
+
+    /// The same logs, the drive holding so much more at their starts.
+    pub(crate) fn with_efforts_moved(&self, moves: &[f64]) -> Self {
         let mut set = self.clone();
         for (log, by) in set.logs.iter_mut().zip(moves) {
             if let Answer::Replay(replay) = &log.answer

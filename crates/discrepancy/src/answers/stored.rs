@@ -77,10 +77,19 @@ pub(super) fn storing(
     (replay.storing(stored), doubtful)
 }
 
-/// Noise of the command in the rest that a log begins with, RMS, or one step of a coarser
-/// command, in the actuator's unit; `None` where it has no such rest, or does not show the
-/// command.
-pub(super) fn noise_of_effort(log: &Log, period: f64, machine: &Axis) -> Option<f64> {
+/// How well a log shows the command of the rest that it begins with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EffortShown {
+    /// Noise, RMS, or one step of a coarser command, in the actuator's unit.
+    pub(super) noise: f64,
+    /// Whether the command is coarser than its noise: the mean of a rest is then off by what it
+    /// was rounded by.
+    pub(super) is_coarse: bool,
+}
+
+/// How well a log shows the command of its first rest; `None` where it has no such rest, or does
+/// not show the command.
+pub(super) fn effort_shown(log: &Log, period: f64, machine: &Axis) -> Option<EffortShown> {
     let rest = first_rest(log, period)?;
     let whole = command(log, machine, log.len().max(rest));
     let command = whole.or_else(|| command(log, machine, rest))?;
@@ -88,10 +97,10 @@ pub(super) fn noise_of_effort(log: &Log, period: f64, machine: &Axis) -> Option<
     let changes = command.windows(2).map(|w| (w[1] - w[0]).abs());
     let least = 1e-9 * machine.actuator.limit().min(1e9);
     let step = changes.filter(|by| *by > least).fold(f64::MAX, f64::min);
-    Some(if step < f64::MAX {
-        noise.max(step)
-    } else {
-        noise
+    let step = if step < f64::MAX { step } else { 0.0 };
+    Some(EffortShown {
+        noise: noise.max(step),
+        is_coarse: step > noise,
     })
 }
 

@@ -387,7 +387,8 @@ pub fn free_parameters(state: &State) -> Vec<(usize, usize)> {
 }
 
 impl Fitter<'_> {
-    fn moved(&self, state: &State, step: &DVector<f64>, length: f64) -> State {
+    /// A state so far along a step of all its parameters, inside their bounds.
+    pub(crate) fn moved(&self, state: &State, step: &DVector<f64>, length: f64) -> State {
         let scales = Scales::of(self.machine);
         let mut state = state.clone();
         let known = state.shares.len();

@@ -8,4 +8,5 @@ pub mod known;
 pub mod linear;
 pub mod projector;
 pub mod spread;
+pub mod starts;
 pub mod thin;

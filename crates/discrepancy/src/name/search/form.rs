@@ -30,6 +30,10 @@ const INSTEAD: f64 = 0.9;
 /// does.
 const INSTEAD_OF_MEMORY: f64 = 0.6;
 
+/// Share of what slip with a memory and a level each way explain that it must explain with one
+/// level to be taken instead; what is a thirtieth of a gap is not named beside it either.
+const OF_ONE_LEVEL: f64 = 0.97;
+
 /// Whether an active effect is a form of another.
 pub(crate) fn is_form(active: &ActiveEffect) -> bool {
     OnsetForm::of(active).is_some()
@@ -107,6 +111,12 @@ impl Refined {
         let plain = |p: &Screened| p.effect.name == PLAIN;
         let others = self.parts.iter().filter(|p| !with_memory(p));
         self.is_form() || self.parts.iter().any(with_memory) && others.into_iter().all(plain)
+    }
+
+    /// Whether it is slip with a memory and another dry friction, and nothing else.
+    fn is_memory_beside(&self, other: &str) -> bool {
+        let has = |name: &str| self.parts.iter().any(|p| p.effect.name == name);
+        self.parts.len() == 2 && has(WITH_MEMORY) && has(other)
     }
 
     /// Whether it is a form of the axis' own dry friction, and not of an effect that is there.
@@ -250,5 +260,18 @@ impl Search<'_> {
             "slip with a memory, and another in any form"
         );
         memory.gain > other.gain + form + BY_CHANCE
+    }
+}
+
+/// Own friction with a memory in place of a bristle before the same with another level each
+/// way, unless that explains clearly more: the two levels make up for what is not named yet.
+pub(super) fn own_before_directions(refined: &mut [Refined]) {
+    let Some(first) = refined.first().filter(|r| r.is_memory_beside(BY_DIRECTION)) else {
+        return;
+    };
+    let least = OF_ONE_LEVEL * first.gain;
+    let one_level = |r: &Refined| r.is_memory_beside(PLAIN) && r.gain >= least;
+    if let Some(at) = refined.iter().position(one_level) {
+        refined[..=at].rotate_right(1);
     }
 }

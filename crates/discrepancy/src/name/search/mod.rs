@@ -31,6 +31,7 @@ pub use self::types::{
 };
 use crate::answers::{LogSet, State};
 use crate::estimate::fit::{Columns, Fit, Fitter};
+use crate::estimate::starts::with_starts;
 use crate::name::gap::sizes;
 use crate::name::library::Library;
 
@@ -94,15 +95,34 @@ fn searched(
     let nominal = library.as_ref().map(|l| l.known.clone());
     let nominal = nominal.unwrap_or_else(|| fitter.known_columns(&start));
     let (base, known) = calibrated(&fitter, start, nominal);
-    // Defects of the machine with its parameters as they were fitted.
-    let settled = settled(machine, fit_logs, check_logs, &base);
+    // Defects and starts by the machine with its parameters as they were fitted.
     let as_filed = check_logs;
-    let (fit_logs, check_logs) = settled.unwrap_or_else(|| (fit_logs.clone(), check_logs.clone()));
+    let (mut fit_logs, mut check_logs) = (fit_logs.clone(), check_logs.clone());
+    let (mut base, mut known) = (base, known);
+    for _ in 0..SETTLINGS {
+        let settled = settled(machine, &fit_logs, &check_logs, &base, &known);
+        let begins_elsewhere = match settled {
+            Some((fitted, checked)) => {
+                let elsewhere = fitted.begins_elsewhere(&fit_logs, machine);
+                (fit_logs, check_logs) = (fitted, checked);
+                elsewhere
+            }
+            None => false,
+        };
+        let fitter = Fitter {
+            machine,
+            set: &fit_logs,
+        };
+        (base, known) = fitter.calibrated(fitter.at(base.state)?, known);
+        // What was fitted beside another start may have made up for it.
+        if !begins_elsewhere {
+            break;
+        }
+    }
     let fitter = Fitter {
         machine,
         set: &fit_logs,
     };
-    let (base, known) = fitter.calibrated(fitter.at(base.state)?, known);
     let library = library.unwrap_or_else(|| {
         progress("screening all effects");
         Arc::new(Library::new(&fitter, &base, known.clone()))
@@ -186,12 +206,16 @@ fn calibrated(fitter: &Fitter<'_>, start: Fit, nominal: Columns) -> (Fit, Column
     }
 }
 
-/// The logs with the defects of a fitted machine, where it is one that runs.
+/// Times at most that the known parameters are fitted again beside other starts of the logs.
+const SETTLINGS: usize = 4;
+
+/// The logs with the defects and starts of a fitted machine, where it is one that runs.
 fn settled(
     machine: &Axis,
     fit_logs: &LogSet,
     check_logs: &LogSet,
     fit: &Fit,
+    known: &Columns,
 ) -> Option<(LogSet, LogSet)> {
     let corrected = |set: &LogSet| {
         let mut set = set.clone();
@@ -199,10 +223,16 @@ fn settled(
         Some(set)
     };
     let (fitted, checked) = (corrected(fit_logs)?, corrected(check_logs)?);
-    let with = Fitter {
-        machine,
-        set: &fitted,
-    };
-    let better = with.at(fit.state.clone()).ok()?;
-    (better.deviance <= fit.deviance + 1.0).then_some((fitted, checked))
+    let [with, checker] = [&fitted, &checked].map(|set| Fitter { machine, set });
+    let at = with.at(fit.state.clone()).ok()?;
+    if at.deviance > fit.deviance + 1.0 {
+        return None;
+    }
+    let started = with_starts(&with, &at, Some(known));
+    let check = checker.at(fit.state.clone()).ok()?;
+    let check_started = with_starts(&checker, &check, None);
+    Some((
+        started.map_or(fitted.clone(), |(set, _)| set),
+        check_started.map_or(checked.clone(), |(set, _)| set),
+    ))
 }

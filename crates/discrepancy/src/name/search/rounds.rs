@@ -4,6 +4,7 @@ use axis_sim::effects::{ActiveEffect, Effect};
 use rayon::prelude::*;
 
 use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
+use super::form::own_before_directions;
 use super::free_curve::FreeCurves;
 use super::promise::{PROMISING, Promises, WORTH};
 use super::refined::{
@@ -55,6 +56,7 @@ impl Search<'_> {
         self.effects_before_forms(&mut refined);
         single_before_pair(&mut refined);
         inside_before_bound(&mut refined);
+        own_before_directions(&mut refined);
         let fitter = self.fitter();
         let curves = FreeCurves::new(self, &fitter, &own);
         // Where the best does not hold on other motion, the next may.

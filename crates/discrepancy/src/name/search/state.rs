@@ -11,6 +11,7 @@ use super::types::{Named, Refused, Replaced, RunnerUp, Settings};
 use crate::answers::LogSet;
 use crate::estimate::fit::{Columns, Fit, Fitter};
 use crate::estimate::known::tolerances;
+use crate::estimate::starts::with_starts;
 use crate::name::library::Library;
 use crate::noise::{log_noise, noise_on};
 use crate::spectrum::Amplitudes;
@@ -160,7 +161,20 @@ impl Search<'_> {
             self.fit = fit;
         }
         self.known = known;
+        self.settle_starts();
         self.settle_check();
+    }
+
+    /// Fits what drives with a coarse command hold at the starts of the fitted logs.
+    fn settle_starts(&mut self) {
+        if self.fit_logs.coarse_efforts(self.machine).is_none() {
+            return;
+        }
+        let own = self.own_columns();
+        if let Some((set, fit)) = with_starts(&self.fitter(), &self.fit, Some(&own)) {
+            self.fit_logs = set;
+            self.fit = fit;
+        }
     }
 
     fn settle_check(&mut self) {
@@ -181,6 +195,10 @@ impl Search<'_> {
                 self.check = better;
                 self.check_logs = corrected;
             }
+        }
+        if let Some((set, check)) = with_starts(&self.checker(), &self.check, None) {
+            self.check_logs = set;
+            self.check = check;
         }
     }
 }
