@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::inexact::inexactness;
 use super::set::{LogSet, Prepared, relative};
 use super::slack::{first_move, taken_up};
-use super::stored::storing;
+use super::stored::{held_effort, storing};
 use super::{Answer, State};
 use crate::spectrum::Layout;
 
@@ -48,6 +48,7 @@ impl LogSet {
             Ok(Prepared {
                 taken_up: taken_up(&log, machine),
                 doubtful,
+                shown_effort: held_effort(&replay),
                 answer: Answer::Replay(replay),
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 measured: channels
@@ -106,6 +107,7 @@ impl LogSet {
                     .collect::<Result<_, ReplayError>>()?,
                 taken_up: 0.0,
                 doubtful: None,
+                shown_effort: None,
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 log,
                 answer: Answer::Balance(Box::new(balance)),

@@ -30,6 +30,8 @@ pub struct Prepared {
     /// Command with which the drive may have held the axis at the log's start, in the actuator's
     /// unit, where the first samples are too noisy to tell whether it did.
     pub doubtful: Option<f64>,
+    /// Command that the drive holds at its start as the log shows it, in the actuator's unit.
+    pub shown_effort: Option<f64>,
     /// What the fast simulation is short of beside the slow one, by channel.
     pub defect: Vec<Vec<f64>>,
 }

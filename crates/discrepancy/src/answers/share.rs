@@ -7,7 +7,7 @@
 
 use axis_sim::{Axis, ReplayError, Stored};
 
-use super::stored::{EffortShown, effort_shown};
+use super::stored::{EffortShown, effort_shown, held_effort};
 use super::{Answer, LogSet, Prepared, State};
 
 /// Shares that are tried first.
@@ -195,34 +195,34 @@ impl LogSet {
     /// How well each log shows the command with which its drive holds the axis at its start;
     /// `None` where that is not held, or not shown.
     fn efforts_shown(&self, machine: &Axis) -> Vec<Option<EffortShown>> {
-        let of = |log: &Prepared| match log.answer.replay()?.stored() {
-            Stored::Effort(_) => effort_shown(&log.log, log.period, machine),
-            _ => None,
+        let of = |log: &Prepared| {
+            held_effort(log.answer.replay()?)?;
+            effort_shown(&log.log, log.period, machine)
         };
         self.logs.iter().map(of).collect()
     }
 
-    /// By how much what the drive holds at the start of each log may be off, in the actuator's
-    /// unit, where its command is coarse; `None` where no log's is.
-    pub(crate) fn coarse_efforts(&self, machine: &Axis) -> Option<Vec<f64>> {
-        let coarse = |shown: Option<EffortShown>| shown.filter(|s| s.is_coarse);
-        let all = self.efforts_shown(machine).into_iter();
-        let all: Vec<f64> = all
-            .map(|shown| coarse(shown).map_or(0.0, |s| REACH * s.noise))
-            .collect();
-        all.iter().any(|by| *by > 0.0).then_some(all)
+    /// Least and most by which what the drive holds at the start of each log may be moved, in the
+    /// actuator's unit: none where its command is not coarse. `None` where no log's is.
+    pub(crate) fn coarse_efforts(&self, machine: &Axis) -> Option<Vec<[f64; 2]>> {
+        let room = |(log, shown): (&Prepared, Option<EffortShown>)| {
+            let most = REACH * shown.filter(|s| s.is_coarse)?.noise;
+            let moved = held_effort(log.answer.replay()?)? - log.shown_effort?;
+            Some([-most - moved, most - moved])
+        };
+        let rooms = self.logs.iter().zip(self.efforts_shown(machine)).map(room);
+        let rooms: Vec<Option<[f64; 2]>> = rooms.collect();
+        let is_coarse = rooms.iter().any(Option::is_some);
+        is_coarse.then(|| rooms.into_iter().map(Option::unwrap_or_default).collect())
     }
 
     /// Whether the drive holds another command at the start of a log than in `before`, by more than
     /// a fifth of what it may be off by.
     pub(crate) fn begins_elsewhere(&self, before: &Self, machine: &Axis) -> bool {
-        let effort = |log: &Prepared| match log.answer.replay()?.stored() {
-            Stored::Effort(effort) => Some(effort),
-            _ => None,
-        };
         let shown = self.efforts_shown(machine).into_iter();
         let pairs = self.logs.iter().zip(&before.logs).zip(shown);
         let mut moved = pairs.map(|((now, before), shown)| {
+            let effort = |log: &Prepared| held_effort(log.answer.replay()?);
             let by = (effort(now)? - effort(before)?).abs();
             Some(by > 0.2 * REACH * shown?.noise)
         });

@@ -77,6 +77,15 @@ pub(super) fn storing(
     (replay.storing(stored), doubtful)
 }
 
+/// Command that the drive holds at the start of a replay, in the actuator's unit; `None` where
+/// that is not what is stored.
+pub(super) fn held_effort(replay: &Replay) -> Option<f64> {
+    match replay.stored() {
+        Stored::Effort(effort) => Some(effort),
+        _ => None,
+    }
+}
+
 /// How well a log shows the command of the rest that it begins with.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EffortShown {

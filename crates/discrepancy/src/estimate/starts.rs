@@ -11,8 +11,8 @@ use crate::spectrum::Amplitudes;
 /// Rounds at most.
 const ROUNDS: usize = 4;
 
-/// Step of a difference quotient, as a share of what a start may be off by.
-const STEP: f64 = 0.2;
+/// Step of a difference quotient, as a share of what a start may be moved over.
+const STEP: f64 = 0.1;
 
 /// Fall of D that is not worth another round.
 const ENOUGH: f64 = 2.0;
@@ -22,12 +22,15 @@ const ENOUGH: f64 = 2.0;
 /// the fit, these move as well.
 pub fn with_starts(fitter: &Fitter<'_>, fit: &Fit, own: Option<&Columns>) -> Option<(LogSet, Fit)> {
     let machine = fitter.machine;
-    let most = fitter.set.coarse_efforts(machine)?;
-    let step: Vec<f64> = most.iter().map(|most| STEP * most).collect();
+    let rooms = fitter.set.coarse_efforts(machine)?;
+    let step: Vec<f64> = rooms
+        .iter()
+        .map(|[low, high]| STEP * (high - low))
+        .collect();
     // A parameter that does nothing stays out of it.
     let held = || vec![fitter.nothing(fit); fit.state.shares.len()];
     let columns = own.cloned().unwrap_or_else(held);
-    let mut moved = vec![0.0; most.len()];
+    let mut moved = vec![0.0; rooms.len()];
     let mut best: Option<(LogSet, Fit)> = None;
     for _ in 0..ROUNDS {
         let (set, at) = best.as_ref().map_or((fitter.set, fit), |(s, f)| (s, f));
@@ -35,14 +38,14 @@ pub fn with_starts(fitter: &Fitter<'_>, fit: &Fit, own: Option<&Columns>) -> Opt
         let beside = set.with_efforts_moved(&step);
         let traces = beside.simulate(machine, &at.state).ok()?;
         let response = set.difference(&traces, &at.traces, 1.0);
-        let starts = (0..most.len()).map(|log| only(&response, log));
+        let starts = (0..rooms.len()).map(|log| only(&response, log));
         let all: Columns = columns.iter().cloned().chain(starts).collect();
         let solved = here.solve(at, &all);
         let start = |log: usize| {
             let by = step[log] * solved.step[columns.len() + log];
-            (moved[log] + by).clamp(-most[log], most[log])
+            (moved[log] + by).clamp(rooms[log][0], rooms[log][1])
         };
-        let to: Vec<f64> = (0..most.len()).map(start).collect();
+        let to: Vec<f64> = (0..rooms.len()).map(start).collect();
         let next = fitter.set.with_efforts_moved(&to);
         let there = Fitter {
             machine,

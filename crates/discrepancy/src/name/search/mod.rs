@@ -229,10 +229,13 @@ fn settled(
         return None;
     }
     let started = with_starts(&with, &at, Some(known));
-    let check = checker.at(fit.state.clone()).ok()?;
-    let check_started = with_starts(&checker, &check, None);
-    Some((
-        started.map_or(fitted.clone(), |(set, _)| set),
-        check_started.map_or(checked.clone(), |(set, _)| set),
-    ))
+    let check_started = checked.coarse_efforts(machine).and_then(|_| {
+        let check = checker.at(fit.state.clone()).ok()?;
+        with_starts(&checker, &check, None)
+    });
+    let of = |set: &LogSet, started: Option<(LogSet, Fit)>| match started {
+        Some((set, _)) => set,
+        None => set.clone(),
+    };
+    Some((of(&fitted, started), of(&checked, check_started)))
 }
