@@ -104,7 +104,7 @@ mod tests {
         let limits = Limits::new(0.2, 1.0, 20.0).unwrap();
         let rest = Step::Dwell { duration: 0.2 };
         let to = |to: f64| Step::Move { to, limits };
-        let steps = vec![rest.clone(), to(from + 0.05), rest.clone(), to(from), rest];
+        let steps = vec![rest, to(from + 0.05), rest, to(from), rest];
         let program = Program::new(from, steps).unwrap();
         let mut recorder = Recorder::new(&axis);
         ClosedLoop::new(&axis)
