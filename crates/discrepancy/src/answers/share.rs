@@ -217,14 +217,14 @@ impl LogSet {
     }
 
     /// Whether the drive holds another command at the start of a log than in `before`, by more than
-    /// a fifth of what it may be off by.
+    /// a tenth of its noise or step.
     pub(crate) fn begins_elsewhere(&self, before: &Self, machine: &Axis) -> bool {
         let shown = self.efforts_shown(machine).into_iter();
         let pairs = self.logs.iter().zip(&before.logs).zip(shown);
         let mut moved = pairs.map(|((now, before), shown)| {
             let effort = |log: &Prepared| held_effort(log.answer.replay()?);
             let by = (effort(now)? - effort(before)?).abs();
-            Some(by > 0.2 * REACH * shown?.noise)
+            Some(by > STEP * shown?.noise)
         });
         moved.any(|is_moved| is_moved == Some(true))
     }

@@ -167,11 +167,23 @@ mod tests {
         }
     }
 
+    /// Of a noisy command the mean of a rest tells what is held, whatever that is.
     #[test]
-    fn a_fine_command_is_left_as_it_is() {
+    fn a_command_finer_than_its_noise_is_left_as_it_is() {
         let (machine, log) = joint();
+        let truth = log.channel(COMMAND).unwrap()[0];
+        let noisy = |(k, torque): (usize, &f64)| torque + 0.02 + 1e-3 * (1.7 * k as f64).sin();
+        let channel = |channel: &Channel| Channel {
+            samples: match channel.name == COMMAND {
+                true => channel.samples.iter().enumerate().map(noisy).collect(),
+                false => channel.samples.clone(),
+            },
+            ..channel.clone()
+        };
+        let log = Log::new(log.channels().iter().map(channel).collect()).unwrap();
         let logs = vec![("log".to_owned(), log, machine.period)];
         let set = LogSet::new(logs, &machine).unwrap();
+        assert!((held(&set) - truth - 0.02).abs() < 1e-4);
         let fitter = Fitter {
             machine: &machine,
             set: &set,

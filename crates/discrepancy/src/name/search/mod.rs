@@ -94,21 +94,16 @@ fn searched(
     let start = fitter.at(State::initial(machine))?;
     let nominal = library.as_ref().map(|l| l.known.clone());
     let nominal = nominal.unwrap_or_else(|| fitter.known_columns(&start));
-    let (base, known) = calibrated(&fitter, start, nominal);
+    let (mut base, mut known) = calibrated(&fitter, start, nominal);
     // Defects and starts by the machine with its parameters as they were fitted.
     let as_filed = check_logs;
     let (mut fit_logs, mut check_logs) = (fit_logs.clone(), check_logs.clone());
-    let (mut base, mut known) = (base, known);
     for _ in 0..SETTLINGS {
-        let settled = settled(machine, &fit_logs, &check_logs, &base, &known);
-        let begins_elsewhere = match settled {
-            Some((fitted, checked)) => {
-                let elsewhere = fitted.begins_elsewhere(&fit_logs, machine);
-                (fit_logs, check_logs) = (fitted, checked);
-                elsewhere
-            }
-            None => false,
-        };
+        let mut begins_elsewhere = false;
+        if let Some(settled) = settled(machine, &fit_logs, &check_logs, &base, &known) {
+            begins_elsewhere = settled.0.begins_elsewhere(&fit_logs, machine);
+            (fit_logs, check_logs) = settled;
+        }
         let fitter = Fitter {
             machine,
             set: &fit_logs,
@@ -233,9 +228,8 @@ fn settled(
         let check = checker.at(fit.state.clone()).ok()?;
         with_starts(&checker, &check, None)
     });
-    let of = |set: &LogSet, started: Option<(LogSet, Fit)>| match started {
-        Some((set, _)) => set,
-        None => set.clone(),
-    };
-    Some((of(&fitted, started), of(&checked, check_started)))
+    Some((
+        started.map_or(fitted, |(set, _)| set),
+        check_started.map_or(checked, |(set, _)| set),
+    ))
 }
