@@ -53,11 +53,10 @@ use crate::answers::Rest;
 use crate::answers::{LogSet, State};
 use crate::estimate::fit::Fitter;
 use crate::estimate::known::{shown, tolerances};
-use crate::name::gap::{ChannelGap, Gap, gap};
+use crate::name::gap::gap;
+use crate::name::left::Left;
 use crate::name::search::{Found, MATERIAL, is_form};
-use crate::noise::{
-    Excess, Floor, MotionAndRest, SlowNoise, excess, floors, log_noise, slow_noise,
-};
+use crate::noise::{Excess, MotionAndRest, excess, floors, log_noise, slow_noise};
 
 /// A search's result in words, figures and pictures.
 #[derive(Clone, Debug)]
@@ -118,7 +117,7 @@ pub fn judged(
         let traces = set.simulate(machine, full)?;
         let after = set.rest(&traces);
         let slow = slow_noise(machine, set, full, &traces)?;
-        let floors = with_slow(set, &slow, floors(machine, set, full, &after)?);
+        let floors = slow.beside_floors(set, floors(machine, set, full, &after)?);
         gap(set, &before_of(fit_logs)?, &after, &floors)
     };
     let (as_filed, set) = match &found.test {
@@ -129,8 +128,11 @@ pub fn judged(
     let traces = set.simulate(machine, full)?;
     let after = set.rest(&traces);
     let slow = slow_noise(machine, set, full, &traces)?;
-    let check_floors = with_slow(set, &slow, floors(machine, set, full, &after)?);
-    let check = gap(set, &before, &after, &check_floors);
+    let fitted = (&found.fit_logs, found.fit.traces.as_slice());
+    let floors = slow.beside_floors(set, floors(machine, set, full, &after)?);
+    let rests = [&before, &after];
+    let left = Left::of(machine, full, fitted, (set, &traces), rests, floors, &slow)?;
+    let (check, check_floors, loop_noise) = (left.gap, left.floors, left.loop_noise);
 
     let mut effects = Vec::new();
     let mut pictured = Vec::new();
@@ -173,13 +175,15 @@ pub fn judged(
         set: as_filed,
     };
     let base = checker.at(found.base.state.clone())?;
-    let at_floor = |gap: &Gap| gap.channels.iter().all(ChannelGap::is_at_floor);
     let largest = found.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
     let nearly_all = check.reduction >= NEARLY_ALL && !effects.is_empty();
     let lack = lack(machine, found, MATERIAL * largest)?;
-    let excess = match lack {
+    let notes_of_loop: Vec<String> = loop_noise.iter().flat_map(|n| n.notes(machine)).collect();
+    let is_coloured = loop_noise.is_some();
+    let noise = loop_noise.or_else(|| log_noise(machine, set, full, &traces));
+    let excess = match (&lack, &noise) {
         // Beside effects that leave next to nothing, a rest without a curve is small change.
-        None if !nearly_all => excess(machine, set, full, &traces, &slow)?,
+        (None, Some(noise)) if !nearly_all => excess(machine, set, full, &traces, noise, &slow)?,
         _ => None,
     };
     // A rest that is neither a curve over the motion nor follows it is noise, whatever its
@@ -191,8 +195,7 @@ pub fn judged(
         if !may_be_noise {
             return Some(excess.clone());
         }
-        let fit = (&found.fit_logs, found.fit.traces.as_slice());
-        let rest = MotionAndRest::new(fit, (set, &traces));
+        let rest = MotionAndRest::new(fitted, (set, &traces));
         excess.only(|band| rest.follows(band))
     });
     let coloured = excess.filter(|_| following.is_none());
@@ -201,17 +204,21 @@ pub fn judged(
     let slow_of_loop = set.is_balanced()
         && effects.is_empty()
         && lack.is_none()
-        && !at_floor(&check)
+        && !check.is_at_floor()
         && check.may_be_coloured();
     let unknown = lack.or_else(|| following.map(in_frequency));
-    let is_noise = at_floor(&check) || coloured.is_some() || slow_of_loop;
+    let as_coloured = is_coloured && unknown.is_none() && check.may_be_coloured();
+    let is_noise = check.is_at_floor() || coloured.is_some() || slow_of_loop || as_coloured;
     let rest_significant = !(is_noise || nearly_all) || unknown.is_some();
+    // What takes away little of a rest that is noise was fitted to noise.
+    let refused = found.refused.as_ref();
+    let refused = refused.filter(|_| !(as_coloured && effects.is_empty()));
     let verdict = match (effects.is_empty(), rest_significant) {
-        (true, _) if found.refused.is_some() => Verdict::Unknown,
+        (true, _) if refused.is_some() => Verdict::Unknown,
         (true, false) => Verdict::NothingMissing,
         (true, true) => Verdict::Unknown,
         // What was refused beside what is named is a rest that has no name.
-        _ if found.refused.is_some() => Verdict::PartlyExplained,
+        _ if refused.is_some() => Verdict::PartlyExplained,
         // No share of a gap can be asked for where none stood out.
         (false, false) if check.reduction >= EXPLAINED || !check.stands_out() => Verdict::Explained,
         (false, _) => Verdict::PartlyExplained,
@@ -230,7 +237,7 @@ pub fn judged(
             tolerance,
         })
         .collect();
-    let refused = found.refused.as_ref().map(refused_effects);
+    let refused = refused.map(refused_effects);
     let told = Told {
         cost: whole_cost(machine, set, full, &after, &each)?,
         each: if each.len() > 1 { each } else { Vec::new() },
@@ -248,7 +255,13 @@ pub fn judged(
             let coloured = coloured.iter().map(Excess::note);
             let slow_of_loop = slow_of_loop.then(|| slow_of_loop_note(&check));
             let faster = faster_notes(machine, found, set, &traces);
-            let known = [notes(machine, found), faster, slow.notes(set)].concat();
+            let known = [
+                notes(machine, found),
+                faster,
+                slow.notes(set),
+                notes_of_loop,
+            ]
+            .concat();
             let of_rest = coloured.chain(slow_of_loop);
             known.into_iter().chain(of_rest).collect()
         },
@@ -289,11 +302,4 @@ pub fn judged(
         friction,
         proposal,
     })
-}
-
-/// Floors with the logger's slow noise.
-fn with_slow(set: &LogSet, slow: &SlowNoise, floors: Vec<Floor>) -> Vec<Floor> {
-    let all = floors.into_iter().enumerate();
-    all.map(|(c, floor)| floor.beside(slow.rms(set, c)))
-        .collect()
 }

@@ -56,6 +56,11 @@ impl Gap {
         self.channels.iter().any(ChannelGap::stood_out)
     }
 
+    /// Whether what is left is noise in all channels.
+    pub(crate) fn is_at_floor(&self) -> bool {
+        self.channels.iter().all(ChannelGap::is_at_floor)
+    }
+
     /// Whether what is left may be noise of another colour than that of the floors.
     pub(crate) fn may_be_coloured(&self) -> bool {
         let mut channels = self.channels.iter();

@@ -2,6 +2,7 @@
 
 pub mod curves;
 pub mod gap;
+pub(crate) mod left;
 pub mod library;
 pub mod screen;
 pub mod search;

@@ -4,7 +4,7 @@ use axis_sim::{Axis, ReplayError, Trace};
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 
-use super::{SlowNoise, log_noise, noise_on};
+use super::{LogNoise, SlowNoise, noise_on};
 use crate::answers::{LogSet, State};
 use crate::spectrum::Layout;
 
@@ -56,8 +56,8 @@ const UNLIKE_FIRST: f64 = 2.0;
 /// twice the greatest of 32.
 const SPREAD: f64 = 2.0;
 
-/// Compares the spectrum of a ball-screw loop's rest with that of noise alone,
-/// simulated with sensors as noisy as the logs show, and slow noise of the logger.
+/// Compares the spectrum of a loop's rest with that of noise alone, simulated with sensors as noisy
+/// as the logs show (`noise`), and slow noise of the logger.
 ///
 /// With λ the eigenvalues of the one relative to the other, the divergence of a
 /// band per bin is Σ (λ − 1 − ln λ) over those above 1, that of Kullback and
@@ -72,15 +72,13 @@ pub(crate) fn excess(
     set: &LogSet,
     state: &State,
     traces: &[Trace],
+    noise: &LogNoise,
     slow: &SlowNoise,
 ) -> Result<Option<Excess>, ReplayError> {
-    let Some(noise) = log_noise(machine, set, state, traces) else {
-        return Ok(None);
-    };
     let layout = &set.layout;
     let seen = layout.spectral_matrices(&set.amplitudes(&set.rest(traces)));
     let run = |run: u64| -> Result<Vec<DMatrix<Complex<f64>>>, ReplayError> {
-        let amplitudes = noise_on(machine, state, set, traces, &noise, run + 1)?;
+        let amplitudes = noise_on(machine, state, set, traces, noise, run + 1)?;
         Ok(layout.spectral_matrices(&amplitudes))
     };
     let mut runs = Vec::new();

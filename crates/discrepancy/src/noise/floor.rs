@@ -6,7 +6,7 @@ use axis_sim::{Axis, Balance, ClosedLoop, Replay, ReplayError, Trace};
 use rayon::prelude::*;
 
 use super::level::{noise_at, shows_noise, upper_level};
-use super::{Rest, at_state, noise_series};
+use super::{LogNoise, Rest, at_state, noise_series};
 use crate::answers::{LogSet, State};
 
 /// Noise alone in a channel.
@@ -106,7 +106,33 @@ pub(crate) fn floors(
     let quiet = |replay: &&Replay| replay.follow(&closed_loop, |_| ());
     let quiet: Vec<Trace> = (replays.par_iter().map(quiet)).collect::<Result<_, _>>()?;
     let noise = noise_at(&axis, set, best, &quiet);
-    let run = |seed: u64| noise_series(&closed_loop, set, &quiet, &noise, seed);
+    floors_of(machine, set, &quiet, &closed_loop, &noise)
+}
+
+/// Noise alone in each channel of logs that are replayed, with sensors and a logger like these.
+///
+/// # Errors
+/// [`ReplayError`] where the machine does not run with noise.
+pub(crate) fn floors_with(
+    machine: &Axis,
+    set: &LogSet,
+    state: &State,
+    traces: &[Trace],
+    noise: &LogNoise,
+) -> Result<Vec<Floor>, ReplayError> {
+    let closed_loop = ClosedLoop::new(&at_state(machine, state))?.without_noise();
+    floors_of(machine, set, traces, &closed_loop, noise)
+}
+
+/// The same, of a closed loop and what it does without noise.
+fn floors_of(
+    machine: &Axis,
+    set: &LogSet,
+    quiet: &[Trace],
+    closed_loop: &ClosedLoop,
+    noise: &LogNoise,
+) -> Result<Vec<Floor>, ReplayError> {
+    let run = |seed: u64| noise_series(closed_loop, set, quiet, noise, seed);
     let runs: Vec<Rest> = (0..RUNS)
         .into_par_iter()
         .map(run)

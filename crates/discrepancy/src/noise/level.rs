@@ -2,6 +2,7 @@
 
 use axis_sim::{Axis, ClosedLoop, ReplayError, Trace};
 
+use super::sensor::Sensor;
 use super::sources::{Powers, variances};
 use super::{LogNoise, Rest, SensorNoise, noise_series};
 use crate::answers::LogSet;
@@ -16,7 +17,7 @@ pub fn shows_noise(axis: &Axis, set: &LogSet) -> bool {
 }
 
 /// Noise of the logs of an axis (its effects included), as their rest shows it beside
-/// simulations without any.
+/// simulations without any: white.
 ///
 /// The upper half of the bins lies above what the position loop answers to. There the
 /// position and the angle show their own noise, the command that of the speed through the
@@ -26,84 +27,95 @@ pub fn shows_noise(axis: &Axis, set: &LogSet) -> bool {
 /// found from all channels and bands together ([`variances`]): no channel's noise is taken
 /// from another alone.
 pub fn noise_at(axis: &Axis, set: &LogSet, rest: &Rest, quiet: &[Trace]) -> LogNoise {
-    let guess = Levels::of(set, rest).noise(axis);
-    let sensors = Sensor::ALL.map(|sensor| sensor.alone(guess));
-    let answers: Vec<Rest> = sensors
-        .iter()
-        .map(|noise| simulated(axis, set, quiet, *noise).unwrap_or_default())
-        .collect();
-    let bands = Bands::of(set);
-    let none = || vec![vec![0.0; bands.values.len()]; set.channels.len()];
-    let of_answer = |rest: &Rest| match rest.is_empty() {
-        true => none(),
-        false => bands.powers(set, rest),
-    };
-    let of_logger = |c: usize| {
-        let mut own = none();
-        own[c].fill(1.0);
-        own
-    };
-    let sources: Vec<Powers> = (answers.iter().map(of_answer))
-        .chain((0..set.channels.len()).map(of_logger))
-        .collect();
-    // A command is made of what the sensors show, and tells them from the logger. Without one
-    // nobody knows, and neither comes first.
-    let has_command = set.channels.iter().any(|c| COMMANDS.contains(c));
-    let last = match has_command {
-        true => sensors.len(),
-        false => sources.len(),
-    };
-    let observed = bands.powers(set, rest);
-    let found = variances(&observed, &sources, &bands.values, bands.upper, last);
-    let (of_sensors, of_logger) = found.split_at(sensors.len());
-    let loop_noise = Sensor::ALL.iter().zip(of_sensors);
-    let logger = set.channels.iter().zip(of_logger);
-    let noise = LogNoise {
-        sensors: loop_noise.fold(guess, |noise, (sensor, p)| sensor.times(noise, p.sqrt())),
-        logger: logger.map(|(&name, p)| (name, p.sqrt())).collect(),
-    };
-    tracing::debug!(?noise, "noise of the logs");
-    noise
+    Spectra::of(axis, set, rest, quiet).white()
 }
 
-/// A sensor of the loop.
-#[derive(Clone, Copy, PartialEq)]
-enum Sensor {
-    Position,
-    Angle,
-    Speed,
-    Current,
+/// Powers of a rest by channel and band, and of what each sensor's noise does there.
+pub(super) struct Spectra<'a> {
+    set: &'a LogSet,
+    pub(super) bands: Bands,
+    /// Of the rest.
+    pub(super) observed: Powers,
+    /// Noise of the sensors, guessed.
+    pub(super) guess: SensorNoise,
+    /// Of what each of them does with that, in the order of [`Sensor::ALL`].
+    pub(super) answers: Vec<Powers>,
 }
 
-impl Sensor {
-    const ALL: [Self; 4] = [Self::Position, Self::Angle, Self::Speed, Self::Current];
-
-    /// That of its noise.
-    fn of(self, noise: &mut SensorNoise) -> &mut f64 {
-        match self {
-            Self::Position => &mut noise.position,
-            Self::Angle => &mut noise.angle,
-            Self::Speed => &mut noise.speed,
-            Self::Current => &mut noise.current,
+impl<'a> Spectra<'a> {
+    pub(super) fn of(axis: &Axis, set: &'a LogSet, rest: &Rest, quiet: &[Trace]) -> Self {
+        let guess = Levels::of(set, rest).noise(axis);
+        let bands = Bands::of(set);
+        let answer = |sensor: Sensor| {
+            let alone = sensor.alone(guess);
+            match simulated(axis, set, quiet, alone).unwrap_or_default() {
+                rest if rest.is_empty() => bands.nothing(set),
+                rest => bands.powers(set, &rest),
+            }
+        };
+        Self {
+            set,
+            observed: bands.powers(set, rest),
+            answers: Sensor::ALL.map(answer).into(),
+            guess,
+            bands,
         }
     }
 
-    /// This sensor's noise, and no other's.
-    fn alone(self, mut all: SensorNoise) -> SensorNoise {
-        let mut own = SensorNoise {
-            position: 0.0,
-            angle: 0.0,
-            speed: 0.0,
-            current: 0.0,
+    /// What all sources make of the rest: the sensors as they were guessed, then loggers of unit
+    /// variance.
+    fn sources(&self) -> Vec<Powers> {
+        let of_logger = |c: usize| {
+            let mut own = self.bands.nothing(self.set);
+            own[c].fill(1.0);
+            own
         };
-        *self.of(&mut own) = *self.of(&mut all);
-        own
+        let loggers = (0..self.set.channels.len()).map(of_logger);
+        self.answers.iter().cloned().chain(loggers).collect()
     }
 
-    /// With this sensor's noise so many times as large.
-    fn times(self, mut noise: SensorNoise, by: f64) -> SensorNoise {
-        *self.of(&mut noise) *= by;
+    /// White noise of sensors and loggers.
+    pub(super) fn white(&self) -> LogNoise {
+        let sources = self.sources();
+        // A command is made of what the sensors show, and tells them from the logger. Without one
+        // nobody knows, and neither comes first.
+        let has_command = self.set.channels.iter().any(|c| COMMANDS.contains(c));
+        let last = match has_command {
+            true => self.answers.len(),
+            false => sources.len(),
+        };
+        let bands = &self.bands;
+        let found = variances(&self.observed, &sources, &bands.values, bands.upper, last);
+        let (of_sensors, of_logger) = found.split_at(self.answers.len());
+        let loop_noise = Sensor::ALL.iter().zip(of_sensors);
+        let logger = self.set.channels.iter().zip(of_logger);
+        let sensors = loop_noise.fold(self.guess, |noise, (s, p)| s.times(noise, p.sqrt()));
+        let noise = LogNoise {
+            logger: logger.map(|(&name, p)| (name, p.sqrt())).collect(),
+            ..LogNoise::of_sensors(sensors)
+        };
+        tracing::debug!(?noise, "noise of the logs");
         noise
+    }
+
+    /// Powers of white noise.
+    pub(super) fn foreseen(&self, noise: &LogNoise) -> Powers {
+        let (mut own, mut guess) = (noise.sensors, self.guess);
+        let share = |sensor: &Sensor| match *sensor.of(&mut guess) {
+            0.0 => 0.0,
+            guess => (*sensor.of(&mut own) / guess).powi(2),
+        };
+        let of_sensors: Vec<f64> = Sensor::ALL.iter().map(share).collect();
+        let names = self.set.channels.iter();
+        let of_loggers = names.map(|name| noise.logger.get(name).map_or(0.0, |d| d * d));
+        let shares: Vec<f64> = of_sensors.into_iter().chain(of_loggers).collect();
+        let mut all = self.bands.nothing(self.set);
+        for (source, share) in self.sources().iter().zip(shares) {
+            for (into, powers) in all.iter_mut().flatten().zip(source.iter().flatten()) {
+                *into += share * powers;
+            }
+        }
+        all
     }
 }
 
@@ -128,7 +140,7 @@ fn simulated(
 }
 
 /// Bands of the logs, for one channel at a time.
-struct Bands {
+pub(super) struct Bands {
     layout: Layout,
     values: Vec<f64>,
     /// The first in the upper half of the frequencies.
@@ -148,6 +160,15 @@ impl Bands {
             upper: upper.unwrap_or(edges.len().saturating_sub(1)),
             layout,
         }
+    }
+
+    /// Lower and upper edge of each, Hz.
+    pub(super) fn edges(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        self.layout.bands().map(|(edges, _)| edges)
+    }
+
+    fn nothing(&self, set: &LogSet) -> Powers {
+        vec![vec![0.0; self.values.len()]; set.channels.len()]
     }
 
     /// Mean power of a rest in each channel and band.

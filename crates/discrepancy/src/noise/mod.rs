@@ -1,5 +1,6 @@
 //! How much of a rest is noise: what goes round the loop, and what the logger adds.
 
+mod colour;
 mod excess;
 mod floor;
 mod level;
@@ -7,20 +8,24 @@ mod motion;
 mod sensor;
 mod slow;
 mod sources;
+mod steady;
 mod turned;
 
 use std::collections::BTreeMap;
 
-use axis_sim::{Axis, ClosedLoop, Replay, ReplayError, Trace};
+use axis_sim::{Axis, ClosedLoop, Measured, Replay, ReplayError, Trace};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
+use trajectories::Motion;
 
+use self::colour::Colour;
+pub(crate) use self::colour::coloured_noise;
 pub(crate) use self::excess::{Excess, excess};
-pub(crate) use self::floor::{Floor, floors};
+pub(crate) use self::floor::{Floor, floors, floors_with};
 use self::level::{noise_at, shows_noise};
-pub(crate) use self::motion::MotionAndRest;
+pub(crate) use self::motion::{MotionAndRest, Simulated};
 pub use self::sensor::SensorNoise;
 pub(crate) use self::slow::{SlowNoise, slow_noise};
 pub(crate) use self::turned::turned;
@@ -35,6 +40,8 @@ pub struct LogNoise {
     pub sensors: SensorNoise,
     /// Standard deviation of what the logger adds, white, by channel, in its unit.
     pub logger: BTreeMap<&'static str, f64>,
+    /// What the sensors have beside their white noise.
+    colour: Colour,
 }
 
 impl LogNoise {
@@ -43,7 +50,30 @@ impl LogNoise {
         Self {
             sensors,
             logger: BTreeMap::new(),
+            colour: Colour::default(),
         }
+    }
+
+    /// The sensors, for [`axis_sim::ClosedLoop::run_sensed`], over so many cycles of `period`
+    /// seconds: the same seed gives the same noise.
+    fn sensed(&self, seed: u64, cycles: usize, period: f64) -> impl FnMut(&mut Measured) {
+        let mut white = self.sensors.sensors(seed);
+        let mut coloured = self.colour.series(seed, cycles, period).into_iter();
+        move |seen: &mut Measured| {
+            white(seen);
+            if let Some([position, angle, speed, q, d]) = coloured.next() {
+                seen.position += position;
+                seen.motor_angle += angle;
+                seen.motor_speed += speed;
+                seen.current.q += q;
+                seen.current.d += d;
+            }
+        }
+    }
+
+    /// What must be known of noise in the loop that is not white.
+    pub(crate) fn notes(&self, machine: &Axis) -> Vec<String> {
+        self.colour.notes(machine)
     }
 
     /// What the logger adds to a channel of a log, of so many samples.
@@ -84,7 +114,9 @@ fn noise_series(
 ) -> Result<Rest, ReplayError> {
     let one = |(l, (replay, quiet)): (usize, (&Replay, &Trace))| {
         let stream = 1000 * seed + l as u64 + 1;
-        let sensors = noise.sensors.sensors(stream);
+        let period = closed_loop.axis().period;
+        let cycles = (replay.reference().duration() / period).ceil() as usize + 1;
+        let sensors = noise.sensed(stream, cycles, period);
         let noisy = replay.follow(closed_loop, sensors)?;
         let channel = |(c, name): (usize, &&'static str)| -> Vec<f64> {
             let [a, b] = [&noisy, quiet].map(|t| t.channel(name).unwrap_or_default());

@@ -39,3 +39,44 @@ impl SensorNoise {
         }
     }
 }
+
+/// A sensor of the loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Sensor {
+    Position,
+    Angle,
+    Speed,
+    Current,
+}
+
+impl Sensor {
+    pub(super) const ALL: [Self; 4] = [Self::Position, Self::Angle, Self::Speed, Self::Current];
+
+    /// That of its noise.
+    pub(super) fn of(self, noise: &mut SensorNoise) -> &mut f64 {
+        match self {
+            Self::Position => &mut noise.position,
+            Self::Angle => &mut noise.angle,
+            Self::Speed => &mut noise.speed,
+            Self::Current => &mut noise.current,
+        }
+    }
+
+    /// This sensor's noise, and no other's.
+    pub(super) fn alone(self, mut all: SensorNoise) -> SensorNoise {
+        let mut own = SensorNoise {
+            position: 0.0,
+            angle: 0.0,
+            speed: 0.0,
+            current: 0.0,
+        };
+        *self.of(&mut own) = *self.of(&mut all);
+        own
+    }
+
+    /// With this sensor's noise so many times as large.
+    pub(super) fn times(self, mut noise: SensorNoise, by: f64) -> SensorNoise {
+        *self.of(&mut noise) *= by;
+        noise
+    }
+}

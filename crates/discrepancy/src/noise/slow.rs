@@ -18,7 +18,7 @@ use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
 
 use super::level::{noise_at, shows_noise};
-use super::{LogNoise, Rest, SensorNoise, at_state, noise_series};
+use super::{Floor, LogNoise, Rest, SensorNoise, at_state, noise_series};
 use crate::answers::effort::COMMANDS;
 use crate::answers::{LogSet, State};
 
@@ -154,6 +154,13 @@ impl SlowNoise {
         let sum: f64 = in_bands.map(|(power, values)| power * values).sum();
         let samples: usize = set.logs.iter().map(|l| l.log.len()).sum();
         (sum / (0.5 * samples as f64)).sqrt()
+    }
+
+    /// Floors of the channels with this beside.
+    pub(crate) fn beside_floors(&self, set: &LogSet, floors: Vec<Floor>) -> Vec<Floor> {
+        let all = floors.into_iter().enumerate();
+        all.map(|(c, floor)| floor.beside(self.rms(set, c)))
+            .collect()
     }
 
     /// What must be known of it to read a result.

@@ -1,0 +1,244 @@
+//! Coloured noise that sensors bring into the loop.
+//!
+//! A sensor's noise need not be white: hum, a fan, an interpolation that beats with the sampling.
+//! Where such noise goes round the loop, it shows in all channels, as a force does. In a band in which
+//! the rest neither follows the motion ([`MotionAndRest`]) nor asks whether the axis moves
+//! ([`Steadiness`]), what is above the white noise is taken for noise of the sensors, shared among
+//! them as their white noise would have to be to show so in all channels. Below the second band
+//! nobody can tell noise from what the model lacks: there each sensor's is taken to go on as in the quietest
+//! of the next bands. What the loop makes of it is simulated, friction and all: noise shakes
+//! bristles that hold, and so changes how an axis stands and starts.
+
+use axis_sim::effects::Measure;
+use axis_sim::{Axis, ReplayError};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::level::{Spectra, shows_noise};
+use super::motion::{MotionAndRest, Simulated};
+use super::sensor::Sensor;
+use super::sources::{Powers, variances};
+use super::steady::{Steadiness, shaped};
+use super::{LogNoise, at_state};
+use crate::answers::State;
+
+/// Noise of each sensor beside its white noise, by band.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Colour {
+    /// Upper edges of the bands, Hz.
+    ends: Vec<f64>,
+    /// In the order of [`Sensor::ALL`]: standard deviation of white noise with the power that the
+    /// sensor's noise has in the band, in its unit. Empty of white noise.
+    deviations: Vec<[f64; 4]>,
+}
+
+/// Share of the white noise of a channel that may be beside it where nothing is seen.
+const LEAST: f64 = 0.1;
+
+/// Share of a channel's white noise that the white noise of a sensor must make to be seen there.
+const HARDLY: f64 = 1e-6;
+
+/// Share of a sensor's white noise below which its noise is none.
+const NOTHING: f64 = 1e-3;
+
+/// Bands from which on noise is told from what the model lacks, and of which the quietest goes on
+/// below.
+const TOLD: std::ops::Range<usize> = 1..4;
+
+/// Noise of the `check` logs (with their simulations) with its colour; `None` where no band of
+/// them shows any. Filters from motion to rest are sought on the `fit` logs too.
+///
+/// # Errors
+/// [`ReplayError`] where the machine does not run with noise.
+pub(crate) fn coloured_noise(
+    machine: &Axis,
+    state: &State,
+    fit: Simulated,
+    check: Simulated,
+) -> Result<Option<LogNoise>, ReplayError> {
+    let (set, traces) = check;
+    let axis = at_state(machine, state);
+    if !shows_noise(&axis, set) {
+        return Ok(None);
+    }
+    let rest = set.rest(traces);
+    let spectra = Spectra::of(&axis, set, &rest, traces);
+    let mut noise = spectra.white();
+    let foreseen = spectra.foreseen(&noise);
+    let of_motion = MotionAndRest::new(fit, check);
+    let steadiness = Steadiness::new(set, &rest, traces);
+    // Filters take bins of all channels: bands are wider then.
+    let wider = |[low, high]: [f64; 2]| {
+        let mut bands = set.layout.bands().map(|(edges, _)| edges);
+        bands.find(|edges| 0.5 * (low + high) < edges[1])
+    };
+    let is_noise = |(b, band): (usize, [f64; 2])| {
+        let white: Vec<f64> = foreseen.iter().map(|channel| channel[b]).collect();
+        b >= TOLD.start
+            && steadiness.holds(band, &white)
+            && wider(band).is_some_and(|edges| !of_motion.follows(edges))
+    };
+    let is_noise: Vec<bool> = spectra.bands.edges().enumerate().map(is_noise).collect();
+    let deviations = coloured(&spectra, &foreseen, &is_noise);
+    if deviations.iter().flatten().all(|d| *d == 0.0) {
+        return Ok(None);
+    }
+    noise.colour = Colour {
+        ends: spectra.bands.edges().map(|[_, high]| high).collect(),
+        deviations,
+    };
+    tracing::debug!(colour = ?noise.colour, "noise in the loop");
+    Ok(Some(noise))
+}
+
+/// Deviations of each sensor's noise beside its white noise, a row a band.
+/// In bands that are none of noise there is none.
+fn coloured(spectra: &Spectra, foreseen: &Powers, is_noise: &[bool]) -> Vec<[f64; 4]> {
+    let one = |(b, is_noise): (usize, &bool)| {
+        if !is_noise {
+            return [0.0; 4];
+        }
+        let cells = spectra.observed.iter().zip(foreseen);
+        let above: Vec<Vec<f64>> = cells
+            .map(|(seen, white)| vec![(seen[b] - white[b]).max(LEAST * white[b])])
+            .collect();
+        // What hardly shows a sensor's noise cannot tell how much of it there is.
+        let shown = |answer: f64, white: f64| if answer > HARDLY * white { answer } else { 0.0 };
+        let of_sensors: Vec<Vec<Vec<f64>>> = (spectra.answers.iter())
+            .map(|channels| {
+                let pairs = channels.iter().zip(foreseen);
+                pairs
+                    .map(|(c, white)| vec![shown(c[b], white[b])])
+                    .collect()
+            })
+            .collect();
+        let shares = variances(&above, &of_sensors, &[1.0], 0, of_sensors.len());
+        let mut guess = spectra.guess;
+        let mut deviations = [0.0; 4];
+        for ((deviation, sensor), share) in deviations.iter_mut().zip(Sensor::ALL).zip(shares) {
+            let share = if share < NOTHING { 0.0 } else { share };
+            *deviation = *sensor.of(&mut guess) * share.sqrt();
+        }
+        deviations
+    };
+    let mut all: Vec<[f64; 4]> = is_noise.iter().enumerate().map(one).collect();
+    let told = &all[TOLD.start.min(all.len())..TOLD.end.min(all.len())];
+    let below = [0, 1, 2, 3].map(|s| told.iter().map(|d| d[s]).fold(f64::INFINITY, f64::min));
+    if !told.is_empty() {
+        all[..TOLD.start].fill(below);
+    }
+    all
+}
+
+impl Colour {
+    /// What must be known of it to read a result.
+    pub(super) fn notes(&self, machine: &Axis) -> Vec<String> {
+        let freedom = machine.freedom();
+        let named = [
+            ("position sensor", Measure::Travel.unit(freedom)),
+            ("motor encoder", "rad"),
+            ("speed sensor", "rad/s"),
+            ("current sensor", "A"),
+        ];
+        let one = |(s, (name, unit)): (usize, (&str, &str))| {
+            let power = |b: usize| {
+                let begin = if b == 0 { 0.0 } else { self.ends[b - 1] };
+                self.deviations[b][s].powi(2) * (self.ends[b] - begin)
+            };
+            let bands = 0..self.ends.len();
+            let most = bands
+                .clone()
+                .max_by(|&a, &b| power(a).total_cmp(&power(b)))?;
+            let highest = bands.clone().rfind(|&b| power(b) > 0.0)?;
+            // White noise has its power up to half of the control rate.
+            let rms = (2.0 * machine.period * bands.map(power).sum::<f64>()).sqrt();
+            let low = if most == 0 { 0.0 } else { self.ends[most - 1] };
+            Some(format!(
+                "noise in the loop is not white: beside its white noise there is as much as a {name} with {rms:.1e} {unit} RMS below {:.0} Hz would bring, most of it from {low:.0} to {:.0} Hz; it does not follow the motion, is there while the axis stands too, and is taken for noise",
+                self.ends[highest], self.ends[most]
+            ))
+        };
+        named.into_iter().enumerate().filter_map(one).collect()
+    }
+
+    /// Noise beside the white noise for so many samples, one every `period` seconds, of the sensors
+    /// of [`Sensor::ALL`], the current's on the q axis, and then on the d axis; none where there is
+    /// not any.
+    pub(super) fn series(&self, seed: u64, samples: usize, period: f64) -> Vec<[f64; 5]> {
+        if self.deviations.is_empty() {
+            return Vec::new();
+        }
+        let mut all = vec![[0.0; 5]; samples];
+        for (place, s) in [0, 1, 2, 3, 3].into_iter().enumerate() {
+            if self.deviations.iter().all(|d| d[s] == 0.0) {
+                continue;
+            }
+            let mut random = ChaCha8Rng::seed_from_u64((seed << 3) + place as u64 + 1);
+            let white: Vec<f64> = (0..samples)
+                .map(|_| StandardNormal.sample(&mut random))
+                .collect();
+            let own = shaped(&white, |k| {
+                let frequency = k as f64 / (samples as f64 * period);
+                let band = self.ends.iter().position(|end| frequency < *end);
+                band.map_or(0.0, |b| self.deviations[b][s])
+            });
+            for (into, value) in all.iter_mut().zip(own) {
+                into[place] = value;
+            }
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Colour;
+    use crate::noise::steady::only;
+
+    const PERIOD: f64 = 1e-4;
+    const SAMPLES: usize = 60_000;
+
+    /// White in [25, 37.5) Hz for the position, in [37.5, 84) Hz for the current.
+    fn colour() -> Colour {
+        let mut deviations = vec![[0.0; 4]; 3];
+        (deviations[1][0], deviations[2][3]) = (2.0, 3.0);
+        Colour {
+            ends: vec![25.0, 37.5, 84.0],
+            deviations,
+        }
+    }
+
+    /// White noise of deviation σ has σ² (high − low) 2T of its variance in a band, T being the
+    /// sampling period. In 6 s bands as wide as these have 75 and 279 complex values: their mean
+    /// square is known to 12 and 6 %.
+    #[test]
+    fn each_sensor_has_the_noise_of_its_band_and_no_other() {
+        let series = colour().series(3, SAMPLES, PERIOD);
+        assert_eq!(series.len(), SAMPLES);
+        let column = |place: usize| -> Vec<f64> { series.iter().map(|s| s[place]).collect() };
+        let square = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>() / SAMPLES as f64;
+        let near = |found: f64, deviation: f64, width: f64, within: f64| {
+            let expected = deviation * deviation * width * 2.0 * PERIOD;
+            assert!(
+                (found / expected - 1.0).abs() < within,
+                "{found} {expected}"
+            );
+        };
+        near(square(&column(0)), 2.0, 12.5, 0.4);
+        for q_or_d in [3, 4] {
+            near(square(&column(q_or_d)), 3.0, 46.5, 0.2);
+            let outside = only(&column(q_or_d), PERIOD, [84.0, 400.0]);
+            assert!(square(&outside) < 1e-20);
+        }
+        // Two currents, each with noise of its own.
+        let pairs = series.iter().map(|s| s[3] * s[4]).sum::<f64>() / SAMPLES as f64;
+        assert!(pairs.abs() < 0.25 * square(&column(3)));
+        assert!(column(1).iter().chain(&column(2)).all(|v| *v == 0.0));
+    }
+
+    #[test]
+    fn white_noise_has_nothing_beside_it() {
+        assert!(Colour::default().series(3, 100, PERIOD).is_empty());
+    }
+}

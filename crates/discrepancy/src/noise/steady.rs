@@ -1,0 +1,155 @@
+//! Whether a rest is there whether the axis moves or not.
+//!
+//! What a machine lacks comes with its motion; noise that a sensor brings into the loop, or a
+//! disturbance from outside, does not ask whether the axis stands.
+
+use std::ops::Range;
+
+use axis_fourier::Complex;
+use axis_sim::Trace;
+
+use crate::answers::{LogSet, Rest};
+
+/// Speeds below which the axis stands, and above which it moves fast, as shares of the fastest.
+const STANDS: f64 = 1e-3;
+const FAST: f64 = 0.3;
+
+/// Least power above the white noise that is there while the axis stands, moves slowly or moves
+/// fast, as a share of the most. Friction that holds a standing axis changes what noise does to
+/// it: of coloured noise in the loop of a linear motor, the share was 0.34 and more in the
+/// current.
+const EVEN: f64 = 0.25;
+
+/// Times the white noise that there must be in a channel for it to tell anything.
+const STANDS_OUT: f64 = 1.5;
+
+/// Periods of a band's width that each of the three must last, in all logs together.
+const LONG: f64 = 5.0;
+
+/// Rests of logs, with what the axis does meanwhile.
+pub(super) struct Steadiness<'a> {
+    set: &'a LogSet,
+    rest: &'a Rest,
+    groups: Vec<Vec<Option<usize>>>,
+}
+
+impl<'a> Steadiness<'a> {
+    /// `traces` are simulations of the logs.
+    pub(super) fn new(set: &'a LogSet, rest: &'a Rest, traces: &[Trace]) -> Self {
+        let groups = groups(set, traces);
+        Self { set, rest, groups }
+    }
+
+    /// Whether the rest in a band (`[low, high]`, Hz), above its `white` noise (power by channel,
+    /// as a variance), is about the same while the axis stands, moves slowly and moves fast, in some channel in
+    /// which it stands out; not where the logs show too little of one of the three.
+    ///
+    /// One channel is enough: friction may hold the load against noise that the current shows.
+    pub(super) fn holds(&self, band: [f64; 2], white: &[f64]) -> bool {
+        let width = band[1] - band[0];
+        let mut channels = white.iter().enumerate();
+        channels.any(|(c, white)| {
+            let (mut sums, mut seconds) = ([0.0; 3], [0.0; 3]);
+            for ((log, groups), rest) in self.set.logs.iter().zip(&self.groups).zip(self.rest) {
+                let inside = only(&rest[c], log.period, band);
+                for (group, value) in groups.iter().zip(inside) {
+                    if let Some(group) = group {
+                        sums[*group] += value * value / (2.0 * width);
+                        seconds[*group] += log.period;
+                    }
+                }
+            }
+            let is_long = seconds.iter().all(|s| s * width >= LONG);
+            let powers = [0, 1, 2].map(|g| sums[g] / f64::max(seconds[g], f64::MIN_POSITIVE));
+            is_long && is_even(powers, *white)
+        })
+    }
+}
+
+/// Whether powers stand out of white noise, by about the same.
+fn is_even(powers: [f64; 3], white: f64) -> bool {
+    let above = powers.map(|p| p - white);
+    let most = above.iter().copied().fold(0.0, f64::max);
+    most > (STANDS_OUT - 1.0) * white && above.iter().all(|a| *a >= EVEN * most)
+}
+
+/// What the axis does at each sample of each log: 0 where it stands, 1 where it moves slowly, 2
+/// where it moves fast; none before a log counts.
+fn groups(set: &LogSet, traces: &[Trace]) -> Vec<Vec<Option<usize>>> {
+    let all = traces.iter().flat_map(|t| &t.speed);
+    let fastest = all.fold(0.0, |most: f64, v| most.max(v.abs()));
+    let of = |v: &f64| match v.abs() {
+        v if v < STANDS * fastest => 0,
+        v if v < FAST * fastest => 1,
+        _ => 2,
+    };
+    let one = |(trace, counted): (&Trace, Range<usize>)| {
+        let speeds = trace.speed.iter().enumerate();
+        let group = |(k, v): (usize, &f64)| counted.contains(&k).then(|| of(v));
+        speeds.map(group).collect()
+    };
+    traces.iter().zip(set.counted()).map(one).collect()
+}
+
+/// Of a series, what lies in a band.
+pub(super) fn only(series: &[f64], period: f64, [low, high]: [f64; 2]) -> Vec<f64> {
+    let n = series.len();
+    let inside = |k: usize| (low..high).contains(&(k as f64 / (n as f64 * period)));
+    shaped(series, |k| if inside(k) { 1.0 } else { 0.0 })
+}
+
+/// A series whose bin k of n/2 + 1 counts so many times.
+pub(super) fn shaped(series: &[f64], times: impl Fn(usize) -> f64) -> Vec<f64> {
+    let n = series.len();
+    let (forward, inverse) = (axis_fourier::forward(n), axis_fourier::inverse(n));
+    let (mut samples, mut back) = (series.to_vec(), inverse.make_output_vec());
+    let mut bins = forward.make_output_vec();
+    // The lengths agree by construction, and ends that are real stay so.
+    let mut done = forward.process(&mut samples, &mut bins);
+    for (k, bin) in bins.iter_mut().enumerate() {
+        *bin *= Complex::new(times(k) / n as f64, 0.0);
+    }
+    done = done.and_then(|()| inverse.process(&mut bins, &mut back));
+    match done {
+        Ok(()) => back,
+        Err(_) => vec![0.0; n],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{is_even, only, shaped};
+
+    const PERIOD: f64 = 1e-3;
+
+    fn wave(hertz: f64) -> Vec<f64> {
+        let turn = std::f64::consts::TAU * hertz * PERIOD;
+        (0..4000).map(|k| (turn * k as f64).sin()).collect()
+    }
+
+    #[test]
+    fn a_band_holds_the_waves_in_it_and_no_others() {
+        let both: Vec<f64> = wave(27.25)
+            .iter()
+            .zip(wave(60.0))
+            .map(|(a, b)| a + b)
+            .collect();
+        let off = |found: Vec<f64>, wanted: Vec<f64>| {
+            let pairs = found.iter().zip(&wanted).map(|(a, b)| (a - b).abs());
+            pairs.fold(0.0, f64::max)
+        };
+        assert!(off(only(&both, PERIOD, [25.0, 37.5]), wave(27.25)) < 1e-9);
+        assert!(off(only(&both, PERIOD, [37.5, 84.0]), wave(60.0)) < 1e-9);
+        assert!(off(shaped(&both, |_| 1.0), both.clone()) < 1e-9);
+        assert!(off(only(&both, PERIOD, [100.0, 200.0]), vec![0.0; 4000]) < 1e-9);
+    }
+
+    #[test]
+    fn powers_are_even_where_none_is_far_below_another() {
+        assert!(is_even([2.0, 3.0, 4.0], 1.0));
+        assert!(!is_even([1.2, 3.0, 4.0], 1.0));
+        // A rest that is there where the axis moves alone, and one that is hardly there.
+        assert!(!is_even([1.0, 1.6, 1.7], 1.0));
+        assert!(!is_even([1.3, 1.4, 1.4], 1.0));
+    }
+}
