@@ -17,7 +17,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::level::{Spectra, shows_noise};
 use super::motion::{MotionAndRest, Simulated};
-use super::sensor::Sensor;
+use super::sensor::{Sensor, SensorNoise};
 use super::sources::{Powers, variances};
 use super::steady::{Steadiness, shaped};
 use super::{LogNoise, at_state};
@@ -80,10 +80,11 @@ pub(crate) fn coloured_noise(
             && wider(band).is_some_and(|edges| !of_motion.follows(edges))
     };
     let is_noise: Vec<bool> = spectra.bands.edges().enumerate().map(is_noise).collect();
-    let deviations = coloured(&spectra, &foreseen, &is_noise);
-    if deviations.iter().flatten().all(|d| *d == 0.0) {
+    if !is_noise.contains(&true) {
         return Ok(None);
     }
+    let answers = spectra.answers_in_bands(&axis, traces);
+    let deviations = coloured(&spectra, &answers, &foreseen, &is_noise);
     noise.colour = Colour {
         ends: spectra.bands.edges().map(|[_, high]| high).collect(),
         deviations,
@@ -92,9 +93,15 @@ pub(crate) fn coloured_noise(
     Ok(Some(noise))
 }
 
-/// Deviations of each sensor's noise beside its white noise, a row a band.
-/// In bands that are none of noise there is none.
-fn coloured(spectra: &Spectra, foreseen: &Powers, is_noise: &[bool]) -> Vec<[f64; 4]> {
+/// Deviations of each sensor's noise beside its white noise, a row a band, by the powers of their
+/// `answers` to noise in the bands and those `foreseen` of white noise. In bands that are none of noise
+/// there is none.
+fn coloured(
+    spectra: &Spectra,
+    answers: &[Powers],
+    foreseen: &Powers,
+    is_noise: &[bool],
+) -> Vec<[f64; 4]> {
     let one = |(b, is_noise): (usize, &bool)| {
         if !is_noise {
             return [0.0; 4];
@@ -105,7 +112,7 @@ fn coloured(spectra: &Spectra, foreseen: &Powers, is_noise: &[bool]) -> Vec<[f64
             .collect();
         // What hardly shows a sensor's noise cannot tell how much of it there is.
         let shown = |answer: f64, white: f64| if answer > HARDLY * white { answer } else { 0.0 };
-        let of_sensors: Vec<Vec<Vec<f64>>> = (spectra.answers.iter())
+        let of_sensors: Vec<Powers> = (answers.iter())
             .map(|channels| {
                 let pairs = channels.iter().zip(foreseen);
                 pairs
@@ -132,6 +139,14 @@ fn coloured(spectra: &Spectra, foreseen: &Powers, is_noise: &[bool]) -> Vec<[f64
 }
 
 impl Colour {
+    /// White up to a frequency, Hz.
+    pub(super) fn up_to(end: f64, mut sensors: SensorNoise) -> Self {
+        Self {
+            ends: vec![end],
+            deviations: vec![Sensor::ALL.map(|sensor| *sensor.of(&mut sensors))],
+        }
+    }
+
     /// What must be known of it to read a result.
     pub(super) fn notes(&self, machine: &Axis) -> Vec<String> {
         let freedom = machine.freedom();

@@ -46,20 +46,21 @@ impl<'a> Spectra<'a> {
     pub(super) fn of(axis: &Axis, set: &'a LogSet, rest: &Rest, quiet: &[Trace]) -> Self {
         let guess = Levels::of(set, rest).noise(axis);
         let bands = Bands::of(set);
-        let answer = |sensor: Sensor| {
-            let alone = sensor.alone(guess);
-            match simulated(axis, set, quiet, alone).unwrap_or_default() {
-                rest if rest.is_empty() => bands.nothing(set),
-                rest => bands.powers(set, &rest),
-            }
-        };
         Self {
             set,
             observed: bands.powers(set, rest),
-            answers: Sensor::ALL.map(answer).into(),
+            answers: answers(axis, set, quiet, &bands, guess, LogNoise::of_sensors),
             guess,
             bands,
         }
+    }
+
+    /// Of what each sensor does with noise as guessed that is white up to where the bands end, and none
+    /// above. What lies above comes back below where a log has a lower rate than the loop.
+    pub(super) fn answers_in_bands(&self, axis: &Axis, quiet: &[Trace]) -> Vec<Powers> {
+        let end = self.bands.edges().last().map_or(0.0, |[_, high]| high);
+        let noise = |sensors| LogNoise::in_band(sensors, end);
+        answers(axis, self.set, quiet, &self.bands, self.guess, noise)
     }
 
     /// What all sources make of the rest: the sensors as they were guessed, then loggers of unit
@@ -119,24 +120,28 @@ impl<'a> Spectra<'a> {
     }
 }
 
-/// What sensors with this noise do to the logs.
-fn simulated(
+/// Powers of what each sensor's `noise` alone does to the logs, with levels as `guess`ed; nothing
+/// where the machine does not run with it.
+fn answers(
     axis: &Axis,
     set: &LogSet,
     quiet: &[Trace],
-    sensors: SensorNoise,
-) -> Result<Rest, ReplayError> {
-    let silent = [
-        sensors.position,
-        sensors.angle,
-        sensors.speed,
-        sensors.current,
-    ];
-    if silent.iter().all(|noise| *noise == 0.0) {
-        return Ok(Rest::new());
-    }
-    let closed_loop = ClosedLoop::new(axis)?.without_noise();
-    noise_series(&closed_loop, set, quiet, &LogNoise::of_sensors(sensors), 0)
+    bands: &Bands,
+    guess: SensorNoise,
+    noise: impl Fn(SensorNoise) -> LogNoise,
+) -> Vec<Powers> {
+    let run = |alone: SensorNoise| -> Result<Rest, ReplayError> {
+        let closed_loop = ClosedLoop::new(axis)?.without_noise();
+        noise_series(&closed_loop, set, quiet, &noise(alone), 0)
+    };
+    let answer = |sensor: Sensor| {
+        let mut alone = sensor.alone(guess);
+        match *sensor.of(&mut alone) {
+            0.0 => bands.nothing(set),
+            _ => run(alone).map_or_else(|_| bands.nothing(set), |rest| bands.powers(set, &rest)),
+        }
+    };
+    Sensor::ALL.map(answer).into()
 }
 
 /// Bands of the logs, for one channel at a time.
@@ -172,7 +177,7 @@ impl Bands {
     }
 
     /// Mean power of a rest in each channel and band.
-    fn powers(&self, set: &LogSet, rest: &Rest) -> Powers {
+    pub(super) fn powers(&self, set: &LogSet, rest: &Rest) -> Powers {
         let channel = |c: usize| {
             let amplitudes = rest.iter().enumerate().map(|(l, log)| {
                 self.layout

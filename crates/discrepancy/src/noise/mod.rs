@@ -54,6 +54,14 @@ impl LogNoise {
         }
     }
 
+    /// Of sensors alone, with this noise up to a frequency (Hz) and none above.
+    fn in_band(sensors: SensorNoise, end: f64) -> Self {
+        Self {
+            colour: Colour::up_to(end, sensors),
+            ..Self::of_sensors(SensorNoise::NONE)
+        }
+    }
+
     /// The sensors, for [`axis_sim::ClosedLoop::run_sensed`], over so many cycles of `period`
     /// seconds: the same seed gives the same noise.
     fn sensed(&self, seed: u64, cycles: usize, period: f64) -> impl FnMut(&mut Measured) {

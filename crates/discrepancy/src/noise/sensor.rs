@@ -22,6 +22,14 @@ pub struct SensorNoise {
 }
 
 impl SensorNoise {
+    /// Of sensors without any.
+    pub const NONE: Self = Self {
+        position: 0.0,
+        angle: 0.0,
+        speed: 0.0,
+        current: 0.0,
+    };
+
     /// Sensors with this noise, for [`axis_sim::ClosedLoop::run_sensed`]: the same seed
     /// gives the same noise.
     pub fn sensors(self, seed: u64) -> impl FnMut(&mut Measured) {
@@ -64,12 +72,7 @@ impl Sensor {
 
     /// This sensor's noise, and no other's.
     pub(super) fn alone(self, mut all: SensorNoise) -> SensorNoise {
-        let mut own = SensorNoise {
-            position: 0.0,
-            angle: 0.0,
-            speed: 0.0,
-            current: 0.0,
-        };
+        let mut own = SensorNoise::NONE;
         *self.of(&mut own) = *self.of(&mut all);
         own
     }
