@@ -5,7 +5,7 @@
 //! the rest neither follows the motion ([`MotionAndRest`]) nor asks whether the axis moves
 //! ([`Steadiness`]), what is above the white noise is taken for noise of the sensors, shared among
 //! them as their white noise would have to be to show so in all channels. Below the second band
-//! nobody can tell noise from what the model lacks: there each sensor's is taken to go on as in the quietest
+//! nobody can tell noise from what the model lacks: there it is taken to go on as in the quietest
 //! of the next bands. What the loop makes of it is simulated, friction and all: noise shakes
 //! bristles that hold, and so changes how an axis stands and starts.
 
@@ -130,10 +130,14 @@ fn coloured(
         deviations
     };
     let mut all: Vec<[f64; 4]> = is_noise.iter().enumerate().map(one).collect();
+    // As a whole: of few channels noise of one sensor may pass for another's.
+    let mut guess = spectra.guess;
+    let levels = Sensor::ALL.map(|sensor| sensor.of(&mut guess).max(f64::MIN_POSITIVE));
+    let power = |d: &[f64; 4]| -> f64 { d.iter().zip(levels).map(|(d, l)| (d / l).powi(2)).sum() };
     let told = &all[TOLD.start.min(all.len())..TOLD.end.min(all.len())];
-    let below = [0, 1, 2, 3].map(|s| told.iter().map(|d| d[s]).fold(f64::INFINITY, f64::min));
-    if !told.is_empty() {
-        all[..TOLD.start].fill(below);
+    let quietest = told.iter().min_by(|a, b| power(a).total_cmp(&power(b)));
+    if let Some(quietest) = quietest.copied() {
+        all[..TOLD.start].fill(quietest);
     }
     all
 }
