@@ -207,7 +207,7 @@ pub fn judged(
         && !check.is_at_floor()
         && check.may_be_coloured();
     let unknown = lack.or_else(|| following.map(in_frequency));
-    let as_coloured = is_coloured && unknown.is_none() && check.may_be_coloured();
+    let as_coloured = is_coloured && unknown.is_none();
     let is_noise = check.is_at_floor() || coloured.is_some() || slow_of_loop || as_coloured;
     let rest_significant = !(is_noise || nearly_all) || unknown.is_some();
     // What takes away little of a rest that is noise was fitted to noise.

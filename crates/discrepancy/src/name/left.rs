@@ -4,8 +4,7 @@ use axis_sim::{Axis, ReplayError};
 
 use super::gap::{Gap, gap};
 use crate::answers::{Rest, State};
-use crate::noise::Simulated;
-use crate::noise::{Floor, LogNoise, SlowNoise, coloured_noise, floors_with};
+use crate::noise::{Floor, LogNoise, Simulated, SlowNoise, coloured_noise, floors_with};
 
 /// Times the noise, as it is known with its colour, beyond which what is left in a channel is
 /// something else, and the colour is not to be trusted either.

@@ -18,7 +18,6 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
-use trajectories::Motion;
 
 use self::colour::Colour;
 pub(crate) use self::colour::coloured_noise;
@@ -62,11 +61,11 @@ impl LogNoise {
         }
     }
 
-    /// The sensors, for [`axis_sim::ClosedLoop::run_sensed`], over so many cycles of `period`
-    /// seconds: the same seed gives the same noise.
-    fn sensed(&self, seed: u64, cycles: usize, period: f64) -> impl FnMut(&mut Measured) {
+    /// The sensors, for [`axis_sim::ClosedLoop::run_sensed`], read every `period` seconds: the same
+    /// seed gives the same noise.
+    fn sensed(&self, seed: u64, period: f64) -> impl FnMut(&mut Measured) {
         let mut white = self.sensors.sensors(seed);
-        let mut coloured = self.colour.series(seed, cycles, period).into_iter();
+        let mut coloured = self.colour.samples(seed, period);
         move |seen: &mut Measured| {
             white(seen);
             if let Some([position, angle, speed, q, d]) = coloured.next() {
@@ -122,9 +121,7 @@ fn noise_series(
 ) -> Result<Rest, ReplayError> {
     let one = |(l, (replay, quiet)): (usize, (&Replay, &Trace))| {
         let stream = 1000 * seed + l as u64 + 1;
-        let period = closed_loop.axis().period;
-        let cycles = (replay.reference().duration() / period).ceil() as usize + 1;
-        let sensors = noise.sensed(stream, cycles, period);
+        let sensors = noise.sensed(stream, closed_loop.axis().period);
         let noisy = replay.follow(closed_loop, sensors)?;
         let channel = |(c, name): (usize, &&'static str)| -> Vec<f64> {
             let [a, b] = [&noisy, quiet].map(|t| t.channel(name).unwrap_or_default());
