@@ -34,6 +34,8 @@ pub struct Prepared {
     pub shown_effort: Option<f64>,
     /// What the fast simulation is short of beside the slow one, by channel.
     pub defect: Vec<Vec<f64>>,
+    /// Hum that is taken out of it, by channel.
+    pub hum: Vec<Vec<f64>>,
 }
 
 /// Logs that are compared together.
@@ -138,9 +140,9 @@ impl LogSet {
             let simulated = self.simulated(trace, c);
             let pairs = log.measured[c].iter().zip(simulated);
             let mut rest: Vec<f64> = pairs.map(|(m, s)| m - s).collect();
-            rest.iter_mut()
-                .zip(&log.defect[c])
-                .for_each(|(r, d)| *r -= d);
+            for known in [&log.defect[c], &log.hum[c]] {
+                rest.iter_mut().zip(known).for_each(|(r, k)| *r -= k);
+            }
             for instants in log.log.missing(self.channels[c]) {
                 rest[instants.clone()].fill(0.0);
             }

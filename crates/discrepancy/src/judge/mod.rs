@@ -112,17 +112,19 @@ pub fn judged(
     let before_of = |set: &LogSet| -> Result<Rest, ReplayError> {
         Ok(set.rest(&set.simulate(machine, &initial)?))
     };
+    let without_hum = |set: &LogSet| found.hum.out_of(machine, set, &found.base.state);
     let fit = {
         let set = &found.fit_logs;
         let traces = set.simulate(machine, full)?;
         let after = set.rest(&traces);
         let slow = slow_noise(machine, set, full, &traces)?;
         let floors = slow.beside_floors(set, floors(machine, set, full, &after)?);
-        gap(set, &before_of(fit_logs)?, &after, &floors)
+        gap(set, &before_of(&without_hum(fit_logs)?)?, &after, &floors)
     };
+    let checked = without_hum(check_logs)?;
     let (as_filed, set) = match &found.test {
         Some(test) => (&test.as_filed, &test.fitted),
-        None => (check_logs, &found.check_logs),
+        None => (&checked, &found.check_logs),
     };
     let before = before_of(as_filed)?;
     let traces = set.simulate(machine, full)?;
@@ -259,6 +261,7 @@ pub fn judged(
                 notes(machine, found),
                 faster,
                 slow.notes(set),
+                found.hum.notes(),
                 notes_of_loop,
             ]
             .concat();

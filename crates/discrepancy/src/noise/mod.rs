@@ -3,6 +3,7 @@
 mod colour;
 mod excess;
 mod floor;
+mod hum;
 mod level;
 mod motion;
 mod sensor;
@@ -23,6 +24,7 @@ use self::colour::Colour;
 pub(crate) use self::colour::coloured_noise;
 pub(crate) use self::excess::{Excess, excess};
 pub(crate) use self::floor::{Floor, floors, floors_with};
+pub(crate) use self::hum::Hum;
 use self::level::{noise_at, shows_noise};
 pub(crate) use self::motion::{MotionAndRest, Simulated};
 pub use self::sensor::SensorNoise;

@@ -119,6 +119,7 @@ impl Search<'_> {
             library: self.library,
             fit_logs: self.fit_logs,
             check_logs: self.check_logs,
+            hum: self.hum,
             test: None,
         }
     }

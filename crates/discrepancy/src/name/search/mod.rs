@@ -34,6 +34,7 @@ use crate::estimate::fit::{Columns, Fit, Fitter};
 use crate::estimate::starts::with_starts;
 use crate::name::gap::sizes;
 use crate::name::library::Library;
+use crate::noise::Hum;
 
 /// Searches for effects that explain the rest of `fit_logs`, and that prove
 /// themselves on `check_logs`. `progress` is told what is being done.
@@ -114,6 +115,18 @@ fn searched(
             break;
         }
     }
+    let checks = check_logs.simulate(machine, &base.state)?;
+    let hum = Hum::of((&fit_logs, &base.traces), (&check_logs, &checks));
+    let as_filed = &hum.out_of(machine, as_filed, &base.state)?;
+    if !hum.is_none() {
+        fit_logs = hum.taken_out(&fit_logs, &base.traces);
+        check_logs = hum.taken_out(&check_logs, &checks);
+        let fitter = Fitter {
+            machine,
+            set: &fit_logs,
+        };
+        (base, known) = calibrated(&fitter, fitter.at(base.state)?, known);
+    }
     let fitter = Fitter {
         machine,
         set: &fit_logs,
@@ -140,6 +153,7 @@ fn searched(
         replaced: Vec::new(),
         leftover: Vec::new(),
         refused: None,
+        hum,
         fit_logs,
         check_logs,
     };

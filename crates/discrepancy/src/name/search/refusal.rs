@@ -9,8 +9,7 @@ use super::types::{Named, RefusalReason, Refused, RunnerUp};
 use crate::answers::{LogSet, State};
 use crate::estimate::fit::free_parameters;
 use crate::name::gap::{Gap, gap, worsened};
-use crate::name::left::Left;
-use crate::noise::{MotionAndRest, Simulated, SlowNoise, floors};
+use crate::noise::{MotionAndRest, floors};
 
 /// Share of the gap above the noise, RMS on check motion, that all named effects together
 /// must take away: what leaves more than half of it explains something else.
@@ -47,10 +46,7 @@ impl Search<'_> {
             }
         }
         let [_, calibrated] = &befores;
-        let (state, slow) = (&self.check.state, SlowNoise::default());
-        let (fit, check) = (self.fitted(), (set, self.check.traces.as_slice()));
-        let rests = [calibrated, &after];
-        let of_gap = Left::of(self.machine, state, fit, check, rests, floors, &slow)?.gap;
+        let of_gap = gap(set, calibrated, &after, &floors);
         tracing::debug!(?of_gap, "of the gap on check motion");
         let share = of_gap.reduction;
         let is_little = share < LEAST_SHARE && !self.settings_ask_for_all();
@@ -107,19 +103,15 @@ impl Search<'_> {
     /// Whether what is left follows the motion, in any band of a channel that stands out of
     /// its noise.
     fn rest_follows_motion(&self, of_gap: &Gap) -> bool {
+        let fit = (&self.fit_logs, self.fit.traces.as_slice());
         let check = (&self.check_logs, self.check.traces.as_slice());
-        let rest = MotionAndRest::new(self.fitted(), check);
+        let rest = MotionAndRest::new(fit, check);
         let mut bands = self.check_logs.layout.bands();
         let stands_out = |c: usize| {
             let channel = of_gap.channels.get(self.check_logs.fitted[c]);
             channel.is_none_or(|c| !c.is_at_floor())
         };
         bands.any(|(edges, _)| rest.follows_in(edges, stands_out))
-    }
-
-    /// The fitted logs and their simulations.
-    fn fitted(&self) -> Simulated<'_> {
-        (&self.fit_logs, self.fit.traces.as_slice())
     }
 
     fn refusal(&self, reason: RefusalReason) -> Refused {

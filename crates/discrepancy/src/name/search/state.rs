@@ -13,7 +13,7 @@ use crate::estimate::fit::{Columns, Fit, Fitter};
 use crate::estimate::known::tolerances;
 use crate::estimate::starts::with_starts;
 use crate::name::library::Library;
-use crate::noise::{log_noise, noise_on};
+use crate::noise::{Hum, log_noise, noise_on};
 use crate::spectrum::Amplitudes;
 
 /// Times at most that derivatives are made anew on the way of least squares, which ends before where
@@ -35,6 +35,8 @@ pub(super) struct Search<'a> {
     pub(super) replaced: Vec<Replaced>,
     pub(super) leftover: Vec<RunnerUp>,
     pub(super) refused: Option<Refused>,
+    /// What was taken out of the logs.
+    pub(super) hum: Hum,
     /// Root mean square of each channel's rest on the check logs before anything was named.
     pub(super) gap_before: Vec<f64>,
     /// What weighs the rest where a fit begins far off; `None` where it does not.

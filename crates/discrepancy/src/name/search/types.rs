@@ -13,6 +13,7 @@ use crate::answers::LogSet;
 use crate::estimate::fit::{Columns, Fit};
 use crate::estimate::interval::Spread;
 use crate::name::library::{Library, applicable};
+use crate::noise::Hum;
 use crate::spectrum::Amplitudes;
 
 /// How the search is made.
@@ -244,6 +245,8 @@ pub struct Found {
     pub fit_logs: LogSet,
     /// The logs that were not, likewise.
     pub check_logs: LogSet,
+    /// What was taken out of both.
+    pub(crate) hum: Hum,
     /// Logs that took no part, from which the figures are; `None` where these are of the
     /// check logs.
     pub test: Option<Test>,
@@ -274,6 +277,8 @@ impl Found {
     /// With the figures that are reported taken from these logs, which took no part.
     #[must_use]
     pub fn tested_on(mut self, machine: &Axis, logs: LogSet) -> Self {
+        // What does not run is compared as it is.
+        let logs = (self.hum.out_of(machine, &logs, &self.base.state)).unwrap_or(logs);
         let mut fitted = logs.clone();
         // What does not run in the exact way is compared without it.
         if fitted.follow(machine, &self.fit.state).is_err() {
