@@ -45,6 +45,9 @@ pub(super) fn sentence(
         )
     });
     match verdict {
+        Verdict::NothingMissing if own_form.is_some() && check.stands_out() => format!(
+            "No effect is missing, but the axis\u{2019} own friction has another form than the model\u{2019}s. With it, {gone}.{forms}"
+        ),
         Verdict::NothingMissing => format!(
             "Nothing is missing: the model and the logs agree to the noise, with known parameters inside their tolerance.{forms}"
         ),

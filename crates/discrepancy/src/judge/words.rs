@@ -39,7 +39,10 @@ impl Discovery {
 
 fn missing(discovery: &Discovery) -> Vec<String> {
     let mut lines: Vec<String> = discovery.effects.iter().map(effect).collect();
-    if discovery.verdict == Verdict::NothingMissing {
+    let has_form = discovery.own_form.is_some() && discovery.gap.check.stands_out();
+    if discovery.verdict == Verdict::NothingMissing && has_form {
+        lines.push("No effect, but the axis\u{2019} own friction has another form than the model\u{2019}s.".to_owned());
+    } else if discovery.verdict == Verdict::NothingMissing {
         lines.push("Nothing: model and logs agree to the noise, with the known parameters inside their tolerances.".to_owned());
     }
     lines.extend(

@@ -3,8 +3,8 @@
 use crate::controller::OwnController;
 use crate::judge::told::{Confidence, Level, remedies};
 use crate::judge::{
-    Cost, Discovery, EffectFound, EffortCost, FigureLogs, Gaps, ParameterFound, Recalibrated,
-    RefusedEffects, Size, Told, TrackingCost, Verdict,
+    Cost, Discovery, EffectFound, EffortCost, FigureLogs, FormFound, Gaps, ParameterFound,
+    Recalibrated, RefusedEffects, Size, Told, TrackingCost, Verdict,
 };
 use crate::judge::{Curve, Unknown};
 use crate::name::gap::{ChannelGap, Gap};
@@ -193,6 +193,20 @@ fn nothing_and_the_unknown_are_said_so() {
     let nothing = discovery(Verdict::NothingMissing, Vec::new(), Vec::new());
     assert!(lines(&nothing, "What is missing")[0].starts_with("Nothing:"));
     assert_eq!(lines(&nothing, "What it costs").len(), 1);
+    // A gap that a form of the axis' own friction takes away was there.
+    let mut bent = discovery(Verdict::NothingMissing, Vec::new(), Vec::new());
+    bent.own_form = Some(FormFound {
+        of: "dry friction of the axis".to_owned(),
+        below: 2e-4,
+        unit: "m/s".to_owned(),
+        with_speed: 1.0,
+        speed: vec![1e-5, 1e-3],
+        ratio: vec![0.1, 1.0],
+        evidence: [100.0, 100.0],
+    });
+    let said = lines(&bent, "What is missing");
+    assert!(said[0].starts_with("No effect, but"), "{said:?}");
+    assert!(said[1].contains("below 0.20 mm/s differs"), "{said:?}");
     let mut unknown = discovery(Verdict::Unknown, Vec::new(), Vec::new());
     assert!(lines(&unknown, "What is missing")[0].starts_with("Unknown:"));
     unknown.unknown = Some(Unknown {
