@@ -40,23 +40,12 @@ pub struct Proposal {
 const SEPARATES: f64 = 25.0;
 
 /// The motion that best separates the first named effect with a class from
-/// its nearest rival; `None` where no effect has one, or no motion does.
-///
-/// # Errors
-/// [`ReplayError`] where the fitted machine no longer runs its own logs.
-pub fn propose(
-    machine: &Axis,
-    found: &Found,
-    noise: &LogNoise,
-) -> Result<Option<Proposal>, ReplayError> {
-    let with_class = found.named.iter().position(|n| !n.alike.is_empty());
-    let Some(index) = with_class else {
-        return Ok(None);
-    };
-    let question = Question::new(machine, found, index)?;
-    let Ok(motions) = motions(machine) else {
-        return Ok(None);
-    };
+/// its nearest rival; `None` where no effect has one, where the rival does not run beside what else is
+/// named (two changes of one resistance may leave less than none), or where no motion does.
+pub fn propose(machine: &Axis, found: &Found, noise: &LogNoise) -> Option<Proposal> {
+    let index = found.named.iter().position(|n| !n.alike.is_empty())?;
+    let question = Question::new(machine, found, index).ok()?;
+    let motions = motions(machine).ok()?;
     let answers: Vec<Proposal> = motions
         .into_par_iter()
         .filter_map(|(what, program)| {
@@ -77,7 +66,7 @@ pub fn propose(
             a
         }
     });
-    Ok(best.filter(|p| p.separation >= SEPARATES))
+    best.filter(|p| p.separation >= SEPARATES)
 }
 
 /// Two explanations of the same logs.

@@ -225,10 +225,8 @@ pub fn judged(
         (false, false) if check.reduction >= EXPLAINED || !check.stands_out() => Verdict::Explained,
         (false, _) => Verdict::PartlyExplained,
     };
-    let proposal = match log_noise(machine, &found.fit_logs, full, &found.fit.traces) {
-        Some(noise) => propose(machine, found, &noise)?,
-        None => None,
-    };
+    let noise = log_noise(machine, &found.fit_logs, full, &found.fit.traces);
+    let proposal = noise.and_then(|noise| propose(machine, found, &noise));
     let name = machine.name.clone();
     let recalibrated: Vec<Recalibrated> = (machine.known().into_iter())
         .zip(&full.shares)
