@@ -213,17 +213,15 @@ fn fits_reach_the_truth_from_files_that_are_far_off() {
     assert!(tried("p04-clean-2").wrong_names().is_empty());
 }
 
-/// Clean linear motors of seeds 909 and 1717 (which served). Noise in the loop of the first, of which
-/// reference, position and current are logged, is a line at 27 Hz and slow noise, up to 250 times the white
-/// noise: it shakes the bristles, so that what it leaves below 25 Hz follows the motion, and looked like
-/// something that is missing. The hum of the second was taken for a load that repeats.
+/// A clean linear motor of seed 909 (which served), of which reference, position and current are logged.
+/// Noise in the loop is a line at 27 Hz, taken out as a hum, and slow noise: together up to 250 times the
+/// white noise. It shakes the bristles, so that what it leaves below 25 Hz follows the motion, and looked
+/// like something that is missing.
 #[test]
 fn coloured_noise_in_the_loop_is_noise() {
-    for (seed, id) in [(909, "p02-clean-0"), (1717, "p35-clean-2")] {
-        let outcome = Trial::new(seed).of(id);
-        assert_eq!(outcome.verdict, Some(Verdict::NothingMissing), "{id}");
-        assert!(outcome.named.is_empty(), "{id}: {:?}", outcome.named);
-    }
+    let outcome = Trial::new(909).of("p02-clean-0");
+    assert_eq!(outcome.verdict, Some(Verdict::NothingMissing));
+    assert!(outcome.named.is_empty(), "{:?}", outcome.named);
 }
 
 /// Torque balances of seeds 1010 and 1111 in which no channel stands out of its noise. Both were refused
