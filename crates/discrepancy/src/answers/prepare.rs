@@ -51,7 +51,7 @@ impl LogSet {
                 shown_effort: held_effort(&replay),
                 answer: Answer::Replay(replay),
                 defect: vec![vec![0.0; log.len()]; channels.len()],
-                hum: vec![vec![0.0; log.len()]; channels.len()],
+                hum: vec![Vec::new(); channels.len()],
                 measured: channels
                     .iter()
                     .map(channel)
@@ -110,7 +110,7 @@ impl LogSet {
                 doubtful: None,
                 shown_effort: None,
                 defect: vec![vec![0.0; log.len()]; channels.len()],
-                hum: vec![vec![0.0; log.len()]; channels.len()],
+                hum: vec![Vec::new(); channels.len()],
                 log,
                 answer: Answer::Balance(Box::new(balance)),
             })

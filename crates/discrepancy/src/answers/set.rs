@@ -34,7 +34,7 @@ pub struct Prepared {
     pub shown_effort: Option<f64>,
     /// What the fast simulation is short of beside the slow one, by channel.
     pub defect: Vec<Vec<f64>>,
-    /// Hum that is taken out of it, by channel.
+    /// Hum that is taken out of it, by channel; empty where there is none.
     pub hum: Vec<Vec<f64>>,
 }
 

@@ -6,6 +6,7 @@ mod experiment;
 mod form;
 mod found;
 mod law;
+mod left;
 mod likeness;
 mod motions;
 mod notes;
@@ -18,6 +19,8 @@ mod types;
 mod units;
 mod unknown;
 mod words;
+
+use std::borrow::Cow;
 
 use axis_sim::effects::Scales;
 use axis_sim::{Axis, ReplayError};
@@ -32,6 +35,7 @@ pub use self::form::FormFound;
 use self::found::{effect_found, form_of_own, refused_effects, replaced};
 pub use self::law::FrictionLaw;
 use self::law::{friction_law, steady};
+use self::left::Left;
 use self::likeness::likenesses;
 pub use self::likeness::{Likeness, Shown};
 use self::notes::{faster_notes, notes, slow_of_loop_note};
@@ -54,7 +58,6 @@ use crate::answers::{LogSet, State};
 use crate::estimate::fit::Fitter;
 use crate::estimate::known::{shown, tolerances};
 use crate::name::gap::gap;
-use crate::name::left::Left;
 use crate::name::search::{Found, MATERIAL, is_form};
 use crate::noise::{Excess, MotionAndRest, excess, floors, log_noise, slow_noise};
 
@@ -112,20 +115,21 @@ pub fn judged(
     let before_of = |set: &LogSet| -> Result<Rest, ReplayError> {
         Ok(set.rest(&set.simulate(machine, &initial)?))
     };
-    let without_hum = |set: &LogSet| found.hum.out_of(machine, set, &found.base.state);
+    let (hum, base) = (&found.hum, &found.base.state);
     let fit = {
         let set = &found.fit_logs;
         let traces = set.simulate(machine, full)?;
         let after = set.rest(&traces);
         let slow = slow_noise(machine, set, full, &traces)?;
         let floors = slow.beside_floors(set, floors(machine, set, full, &after)?);
-        gap(set, &before_of(&without_hum(fit_logs)?)?, &after, &floors)
+        let as_filed = hum.out_of(machine, fit_logs, base)?;
+        gap(set, &before_of(&as_filed)?, &after, &floors)
     };
-    let checked = without_hum(check_logs)?;
     let (as_filed, set) = match &found.test {
-        Some(test) => (&test.as_filed, &test.fitted),
-        None => (&checked, &found.check_logs),
+        Some(test) => (Cow::Borrowed(&test.as_filed), &test.fitted),
+        None => (hum.out_of(machine, check_logs, base)?, &found.check_logs),
     };
+    let as_filed = as_filed.as_ref();
     let before = before_of(as_filed)?;
     let traces = set.simulate(machine, full)?;
     let after = set.rest(&traces);

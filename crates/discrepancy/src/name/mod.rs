@@ -2,7 +2,6 @@
 
 pub mod curves;
 pub mod gap;
-pub(crate) mod left;
 pub mod library;
 pub mod screen;
 pub mod search;

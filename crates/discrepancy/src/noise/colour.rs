@@ -1,7 +1,7 @@
 //! Coloured noise that sensors bring into the loop.
 //!
 //! A sensor's noise need not be white: hum, a fan, an interpolation that beats with the sampling.
-//! Where such noise goes round the loop, it shows in all channels, as a force does. In a band in which
+//! A line that stands out is taken from the logs before ([`Hum`](super::Hum)). Where such noise goes round the loop, it shows in all channels, as a force does. In a band in which
 //! the rest neither follows the motion ([`MotionAndRest`]) nor asks whether the axis moves
 //! ([`Steadiness`]), what is above the white noise is taken for noise of the sensors, shared among
 //! them as their white noise would have to be to show so in all channels. Below the second band

@@ -6,6 +6,7 @@
 //! band on both sets of logs, which does not follow the motion and is there while the axis stands, its
 //! wave is taken out of all channels of each log, by least squares, with a phase of its own in each.
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use axis_sim::{Axis, ReplayError, Trace};
@@ -44,16 +45,17 @@ impl Hum {
         if fit.0.is_balanced() {
             return hum;
         }
-        let rests = [fit, check].map(|(set, traces)| set.rest(traces));
+        let before = check.0.rest(check.1);
         let of_motion = MotionAndRest::new(fit, check);
-        let steadiness = Steadiness::new(check.0, &rests[1], check.1);
+        let steadiness = Steadiness::new(check.0, &before, check.1);
+        let [mut of_fit, mut of_check] = [fit.0.rest(fit.1), before.clone()];
         while hum.frequencies.len() < LINES {
-            let [fitted, checked] = [(fit.0, &rests[0]), (check.0, &rests[1])]
-                .map(|(set, rest)| Lines::of(set, &hum.without(set, rest.clone())));
+            let fitted = Lines::of(fit.0, &of_fit);
             let Some(peak) = fitted.strongest().filter(|(_, power)| *power >= LINE) else {
                 break;
             };
-            let frequency = fitted.refined(fit.0, &hum.without(fit.0, rests[0].clone()), peak.0);
+            let frequency = fitted.refined(fit.0, &of_fit, peak.0);
+            let checked = Lines::of(check.0, &of_check);
             let about = [frequency - 0.5 * WIDTH, frequency + 0.5 * WIDTH];
             let band = fit.0.layout.bands().map(|(edges, _)| edges);
             let band = band.into_iter().find(|edges| frequency < edges[1]);
@@ -65,6 +67,8 @@ impl Hum {
                 break;
             }
             hum.frequencies.push(frequency);
+            take_out(fit.0, &mut of_fit, frequency);
+            take_out(check.0, &mut of_check, frequency);
         }
         hum
     }
@@ -78,51 +82,39 @@ impl Hum {
     ///
     /// # Errors
     /// [`ReplayError`] where the machine does not run.
-    pub(crate) fn out_of(
+    pub(crate) fn out_of<'a>(
         &self,
         machine: &Axis,
-        set: &LogSet,
+        set: &'a LogSet,
         state: &State,
-    ) -> Result<LogSet, ReplayError> {
+    ) -> Result<Cow<'a, LogSet>, ReplayError> {
         match self.is_none() {
-            true => Ok(set.clone()),
-            false => Ok(self.taken_out(set, &set.simulate(machine, state)?)),
+            true => Ok(Cow::Borrowed(set)),
+            false => {
+                let traces = set.simulate(machine, state)?;
+                Ok(Cow::Owned(self.taken_out(set, &traces)))
+            }
         }
     }
 
     /// The same, of simulations of the logs.
     pub(crate) fn taken_out(&self, set: &LogSet, traces: &[Trace]) -> LogSet {
         let before = set.rest(traces);
-        let after = self.without(set, before.clone());
+        let mut after = before.clone();
+        for frequency in &self.frequencies {
+            take_out(set, &mut after, *frequency);
+        }
         let mut set = set.clone();
         let logs = set.logs.iter_mut().zip(before.iter().zip(&after));
         for (log, (before, after)) in logs {
             let channels = log.hum.iter_mut().zip(before.iter().zip(after));
             for (hum, (before, after)) in channels {
+                hum.resize(before.len(), 0.0);
                 let wave = before.iter().zip(after).map(|(b, a)| b - a);
-                hum.iter_mut()
-                    .zip(wave)
-                    .for_each(|(hum, wave)| *hum += wave);
+                hum.iter_mut().zip(wave).for_each(|(hum, w)| *hum += w);
             }
         }
         set
-    }
-
-    /// A rest without it.
-    fn without(&self, set: &LogSet, mut rest: Rest) -> Rest {
-        let logs = set.logs.iter().zip(set.counted());
-        for ((log, counted), channels) in logs.zip(&mut rest) {
-            for channel in channels {
-                for frequency in &self.frequencies {
-                    let turn = TAU * frequency * log.period;
-                    let wave = wave(&channel[counted.clone()], turn);
-                    for (k, value) in channel[counted.clone()].iter_mut().enumerate() {
-                        *value -= (wave * turned(turn, k)).re;
-                    }
-                }
-            }
-        }
-        rest
     }
 
     /// What must be known of it to read a result.
@@ -133,6 +125,20 @@ impl Hum {
             )
         };
         self.frequencies.iter().map(one).collect()
+    }
+}
+
+/// Takes a wave out of each channel of each log.
+fn take_out(set: &LogSet, rest: &mut Rest, frequency: f64) {
+    let logs = set.logs.iter().zip(set.counted());
+    for ((log, counted), channels) in logs.zip(rest) {
+        let turn = TAU * frequency * log.period;
+        for channel in channels {
+            let wave = wave(&channel[counted.clone()], turn);
+            for (k, value) in channel[counted.clone()].iter_mut().enumerate() {
+                *value -= (wave * turned(turn, k)).re;
+            }
+        }
     }
 }
 

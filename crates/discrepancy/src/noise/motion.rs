@@ -208,7 +208,7 @@ mod tests {
     }
 
     /// A hum is in one bin of each log, at a phase of its own; motion has most of its power at the lower
-    /// edge of a band. Measured, of 200 pairs.
+    /// edge of a band. Measured, of 200 pairs: by [`FOLLOWS`] 30 would follow, by [`BY_CHANCE`] 5.
     #[test]
     fn a_hum_does_not_follow_the_motion() {
         let mut random = ChaCha8Rng::seed_from_u64(10);
@@ -230,8 +230,7 @@ mod tests {
             passed += usize::from(shares.iter().any(|share| *share >= FOLLOWS));
             followed += usize::from(shares.iter().any(|share| *share >= BY_CHANCE));
         }
-        println!("{passed} {followed}");
-        assert!(followed <= 10, "{followed}");
+        assert!(passed >= 20 && followed <= 10, "{passed} {followed}");
     }
 
     #[test]

@@ -117,7 +117,7 @@ fn searched(
     }
     let checks = check_logs.simulate(machine, &base.state)?;
     let hum = Hum::of((&fit_logs, &base.traces), (&check_logs, &checks));
-    let as_filed = &hum.out_of(machine, as_filed, &base.state)?;
+    let as_filed = hum.out_of(machine, as_filed, &base.state)?;
     if !hum.is_none() {
         fit_logs = hum.taken_out(&fit_logs, &base.traces);
         check_logs = hum.taken_out(&check_logs, &checks);
@@ -181,7 +181,7 @@ fn searched(
         };
         intervals = search.intervals()?;
     }
-    if let Some(refused) = search.refused(as_filed, &without)? {
+    if let Some(refused) = search.refused(&as_filed, &without)? {
         search = without.with_refused(refused);
         intervals = search.intervals()?;
     } else if search.lacks_evidence(&without, &intervals)? {

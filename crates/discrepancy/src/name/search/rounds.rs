@@ -71,9 +71,11 @@ impl Search<'_> {
             }
             let check = self.checker().at(candidate.fit.state.clone()).ok()?;
             let held_out = self.check.deviance - check.deviance;
-            let is_other = !curves.are_matched_by(candidate, held_out)
-                || self.is_out_of_phase(candidate, &check, held_out);
-            if is_effect && is_other {
+            let is_other = || {
+                !curves.are_matched_by(candidate, held_out)
+                    || self.is_out_of_phase(candidate, &check, held_out)
+            };
+            if is_effect && is_other() {
                 return None;
             }
             let holds = !awaited.is_empty()

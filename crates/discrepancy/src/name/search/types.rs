@@ -5,6 +5,7 @@ use std::sync::Arc;
 use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, ONSET_FORM};
 use axis_sim::{Axis, ReplayError};
 use nalgebra::DMatrix;
+use std::borrow::Cow;
 use thiserror::Error;
 
 use super::evidence::needed;
@@ -278,7 +279,8 @@ impl Found {
     #[must_use]
     pub fn tested_on(mut self, machine: &Axis, logs: LogSet) -> Self {
         // What does not run is compared as it is.
-        let logs = (self.hum.out_of(machine, &logs, &self.base.state)).unwrap_or(logs);
+        let without_hum = self.hum.out_of(machine, &logs, &self.base.state);
+        let logs = without_hum.map_or_else(|_| logs.clone(), Cow::into_owned);
         let mut fitted = logs.clone();
         // What does not run in the exact way is compared without it.
         if fitted.follow(machine, &self.fit.state).is_err() {

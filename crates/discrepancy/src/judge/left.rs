@@ -2,8 +2,8 @@
 
 use axis_sim::{Axis, ReplayError};
 
-use super::gap::{Gap, gap};
 use crate::answers::{Rest, State};
+use crate::name::gap::{Gap, gap};
 use crate::noise::{Floor, LogNoise, Simulated, SlowNoise, coloured_noise, floors_with};
 
 /// Times the noise, as it is known with its colour, beyond which what is left in a channel is
@@ -11,19 +11,19 @@ use crate::noise::{Floor, LogNoise, Simulated, SlowNoise, coloured_noise, floors
 const EXPLAINS: f64 = 2.0;
 
 /// The gap on check logs.
-pub(crate) struct Left {
-    pub(crate) gap: Gap,
+pub(super) struct Left {
+    pub(super) gap: Gap,
     /// Noise alone, by channel.
-    pub(crate) floors: Vec<Floor>,
+    pub(super) floors: Vec<Floor>,
     /// Noise of sensors that is not white, where what is left shows it.
-    pub(crate) loop_noise: Option<LogNoise>,
+    pub(super) loop_noise: Option<LogNoise>,
 }
 
 impl Left {
     /// Of a machine at a `state`, its simulations of the logs that were fitted and of `check` logs,
     /// the rests of these before and after, their `floors` as of white noise, and slow noise of their
     /// logger, which is in these already.
-    pub(crate) fn of(
+    pub(super) fn of(
         machine: &Axis,
         state: &State,
         fitted: Simulated,
