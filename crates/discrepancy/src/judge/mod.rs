@@ -184,7 +184,7 @@ pub fn judged(
     let largest = found.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
     let nearly_all = check.reduction >= NEARLY_ALL && !effects.is_empty();
     let lack = lack(machine, found, MATERIAL * largest)?;
-    let notes_of_loop: Vec<String> = loop_noise.iter().flat_map(|n| n.notes(machine)).collect();
+    let note_of_loop = loop_noise.as_ref().and_then(|n| n.note(machine));
     let is_coloured = loop_noise.is_some();
     let noise = loop_noise.or_else(|| log_noise(machine, set, full, &traces));
     let excess = match (&lack, &noise) {
@@ -259,16 +259,10 @@ pub fn judged(
             let coloured = coloured.iter().map(Excess::note);
             let slow_of_loop = slow_of_loop.then(|| slow_of_loop_note(&check));
             let faster = faster_notes(machine, found, set, &traces);
-            let known = [
-                notes(machine, found),
-                faster,
-                slow.notes(set),
-                found.hum.notes(),
-                notes_of_loop,
-            ]
-            .concat();
+            let known = [notes(machine, found), faster, slow.notes(set), hum.notes()].concat();
+            let known = known.into_iter().chain(note_of_loop);
             let of_rest = coloured.chain(slow_of_loop);
-            known.into_iter().chain(of_rest).collect()
+            known.chain(of_rest).collect()
         },
         sentence: sentence(
             verdict,

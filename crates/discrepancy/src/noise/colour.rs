@@ -151,34 +151,35 @@ impl Colour {
         }
     }
 
-    /// What must be known of it to read a result.
-    pub(super) fn notes(&self, machine: &Axis) -> Vec<String> {
-        let freedom = machine.freedom();
+    /// What must be known of it to read a result; `None` where there is nothing.
+    pub(super) fn note(&self, machine: &Axis) -> Option<String> {
         let named = [
-            ("position sensor", Measure::Travel.unit(freedom)),
-            ("motor encoder", "rad"),
-            ("speed sensor", "rad/s"),
-            ("current sensor", "A"),
+            ("a position sensor", Measure::Travel.unit(machine.freedom())),
+            ("a motor encoder", "rad"),
+            ("a speed sensor", "rad/s"),
+            ("a current sensor", "A"),
         ];
-        let one = |(s, (name, unit)): (usize, (&str, &str))| {
-            let power = |b: usize| {
-                let begin = if b == 0 { 0.0 } else { self.ends[b - 1] };
-                self.deviations[b][s].powi(2) * (self.ends[b] - begin)
-            };
+        let begin = |b: usize| if b == 0 { 0.0 } else { self.ends[b - 1] };
+        let of = |(s, (name, unit)): (usize, (&str, &str))| {
+            let power = |b: usize| self.deviations[b][s].powi(2) * (self.ends[b] - begin(b));
             let bands = 0..self.ends.len();
             let most = bands
                 .clone()
                 .max_by(|&a, &b| power(a).total_cmp(&power(b)))?;
-            let highest = bands.clone().rfind(|&b| power(b) > 0.0)?;
             // White noise has its power up to half of the control rate.
             let rms = (2.0 * machine.period * bands.map(power).sum::<f64>()).sqrt();
-            let low = if most == 0 { 0.0 } else { self.ends[most - 1] };
-            Some(format!(
-                "noise in the loop is not white: beside its white noise there is as much as a {name} with {rms:.1e} {unit} RMS below {:.0} Hz would bring, most of it from {low:.0} to {:.0} Hz; it does not follow the motion, is there while the axis stands too, and is taken for noise",
-                self.ends[highest], self.ends[most]
-            ))
+            (rms > 0.0).then(|| {
+                let [low, high] = [begin(most), self.ends[most]];
+                format!("{name} with {rms:.1e} {unit} RMS (most from {low:.0} to {high:.0} Hz)")
+            })
         };
-        named.into_iter().enumerate().filter_map(one).collect()
+        let all: Vec<String> = named.into_iter().enumerate().filter_map(of).collect();
+        (!all.is_empty()).then(|| {
+            format!(
+                "noise in the loop is not white: beside white noise there is as much as would come of {}; it does not follow the motion, is there while the axis stands too, and is taken for noise",
+                all.join(", ")
+            )
+        })
     }
 
     /// Noise beside the white noise, one sample every `period` seconds without end, of the sensors
@@ -261,6 +262,8 @@ impl Iterator for Samples {
 
 #[cfg(test)]
 mod tests {
+    use axis_sim::Axis;
+
     use super::Colour;
     use crate::noise::steady::only;
 
@@ -304,6 +307,16 @@ mod tests {
         let pairs = series.iter().map(|s| s[3] * s[4]).sum::<f64>() / SAMPLES as f64;
         assert!(pairs.abs() < 0.25 * square(&column(3)));
         assert!(column(1).iter().chain(&column(2)).all(|v| *v == 0.0));
+    }
+
+    /// σ √(2 · width · period): of the current 3 A · √(2 · 46.5 Hz · 1e-4 s), at the control rate of this axis.
+    #[test]
+    fn one_note_gives_the_size_of_each_sensors_noise() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
+        let machine = Axis::read(file.as_ref()).unwrap();
+        let note = colour().note(&machine).unwrap();
+        assert!(note.contains("1.0e-1 m RMS (most from 25 to 38 Hz), a current sensor with 2.9e-1 A RMS (most from 38 to 84 Hz)"), "{note}");
+        assert_eq!(Colour::default().note(&machine), None);
     }
 
     #[test]

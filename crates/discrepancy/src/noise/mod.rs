@@ -81,8 +81,8 @@ impl LogNoise {
     }
 
     /// What must be known of noise in the loop that is not white.
-    pub(crate) fn notes(&self, machine: &Axis) -> Vec<String> {
-        self.colour.notes(machine)
+    pub(crate) fn note(&self, machine: &Axis) -> Option<String> {
+        self.colour.note(machine)
     }
 
     /// What the logger adds to a channel of a log, of so many samples.
