@@ -181,12 +181,16 @@ impl Fitter<'_> {
         let step = |fit: &Fit| {
             let new = self.effect_slopes(fit, of_effects);
             let columns: Columns = given.iter().cloned().chain(new).collect();
-            let Solved { step, promised, .. } = self.solve(fit, &columns);
-            (promised >= ENOUGH).then_some((step, columns))
+            let solved = self.solve(fit, &columns);
+            (solved.promised >= ENOUGH).then_some((solved, columns))
         };
-        let better = |fit: &Fit, (step, columns): &(DVector<f64>, Columns), length: f64| {
-            let trial = self.at(self.moved(&fit.state, step, length)).ok()?;
-            self.below(fit, trial, columns)
+        let better = |fit: &Fit, (solved, columns): &(Solved, Columns), length: f64| {
+            let along = |step: &DVector<f64>| {
+                let trial = self.at(self.moved(&fit.state, step, length)).ok()?;
+                self.below(fit, trial, columns)
+            };
+            let inside = || along(solved.inside.as_ref().filter(|_| length == 1.0)?);
+            along(&solved.step).or_else(inside)
         };
         let descent = Descent {
             rounds,
@@ -332,15 +336,21 @@ impl Fitter<'_> {
             right[i] -= weight * fit.state.shares[i];
         }
         let tolerances = tolerances(self.machine);
-        let room = |i: usize| {
-            (i < known).then(|| {
-                let (share, most) = (fit.state.shares[i], tolerances[i]);
-                [-most - share, most - share]
-            })
+        let of_effects = self.rooms_of_effects(&fit.state);
+        let of_known = |i: usize| {
+            let (share, most) = (fit.state.shares.get(i)?, tolerances[i]);
+            Some([-most - share, most - share])
         };
-        let step = bounded(&normal, &right, room);
+        let step = bounded(&normal, &right, of_known);
+        let pairs = of_effects.iter().zip(step.iter().skip(known));
+        let leaves = |([low, high], by): (&[f64; 2], &f64)| !(low..=high).contains(&by);
+        let inside = pairs.clone().any(leaves).then(|| {
+            let of_effect = |i: usize| of_effects.get(i.checked_sub(known)?).copied();
+            bounded(&normal, &right, |i| of_known(i).or_else(|| of_effect(i)))
+        });
         Solved {
             promised: 2.0 * step.dot(&right) - step.dot(&(&normal * &step)),
+            inside,
             step,
             covariance: inverse_of(&normal),
         }
@@ -351,6 +361,10 @@ impl Fitter<'_> {
 pub struct Solved {
     /// To its minimum inside the known parameters' tolerance.
     pub step: DVector<f64>,
+    /// To that which moves the parameters of effects no farther than their derivatives hold either;
+    /// `None` where that is the same. Where two do nearly the same, as a force and the way over
+    /// which it comes, a step of one that is cut short leaves the other where it is of no use.
+    pub inside: Option<DVector<f64>>,
     /// By how much D falls on the way, if the problem is as linear as that.
     pub promised: f64,
     /// Of all parameters.
@@ -390,26 +404,40 @@ impl Fitter<'_> {
     /// A state so far along a step of all its parameters, inside their bounds.
     pub(crate) fn moved(&self, state: &State, step: &DVector<f64>, length: f64) -> State {
         let scales = Scales::of(self.machine);
+        let rooms = self.rooms_of_effects(state);
         let mut state = state.clone();
         let known = state.shares.len();
         for (share, by) in state.shares.iter_mut().zip(step.iter()) {
             *share += length * by;
         }
-        for (i, (e, p)) in free_parameters(&state).into_iter().enumerate() {
-            let parameter = state.effects[e].effect.parameters[p];
-            let before = state.effects[e].values[p];
-            let mut by = length * step[known + i];
-            if !parameter.is_size() {
-                // A shape that moves far has left the range of its derivative.
-                let most = match parameter.nature {
-                    Nature::Phase => 1.0,
-                    _ => 0.3 * parameter.typical(&scales).abs().max(before.abs()),
-                };
-                by = by.clamp(-most, most);
-            }
-            let [low, high] = parameter.bounds(&scales);
-            state.effects[e].values[p] = (before + by).clamp(low, high);
+        let free = free_parameters(&state).into_iter().zip(rooms);
+        for (i, ((e, p), [least, most])) in free.enumerate() {
+            let [low, high] = state.effects[e].effect.parameters[p].bounds(&scales);
+            let value = &mut state.effects[e].values[p];
+            let by = (length * step[known + i]).clamp(least, most);
+            *value = (*value + by).clamp(low, high);
         }
         state
+    }
+
+    /// By how much one step may change each free parameter of the effects, down and up: inside its
+    /// bounds, and of a shape not so far that its derivative is another one.
+    fn rooms_of_effects(&self, state: &State) -> Vec<[f64; 2]> {
+        let scales = Scales::of(self.machine);
+        let room = |(e, p): (usize, usize)| {
+            let parameter = &state.effects[e].effect.parameters[p];
+            let value = state.effects[e].values[p];
+            let most = match parameter.nature {
+                _ if parameter.is_size() => f64::INFINITY,
+                Nature::Phase => 1.0,
+                _ => 0.3 * parameter.typical(&scales).abs().max(value.abs()),
+            };
+            let [low, high] = parameter.bounds(&scales);
+            [
+                (low - value).clamp(-most, 0.0),
+                (high - value).clamp(0.0, most),
+            ]
+        };
+        free_parameters(state).into_iter().map(room).collect()
     }
 }

@@ -54,6 +54,19 @@ const NEVER_BELOW_NONE: [&str; 3] = [
 ];
 
 impl Refined {
+    /// Whether it is a friction that falls with a speed that is as high as it may be: over all of the
+    /// motion it is dry friction that is a little less where motion is fast.
+    pub(super) fn hardly_falls(&self) -> bool {
+        let new = self.fit.state.effects.iter().rev().take(self.parts.len());
+        let mut pairs = new.zip(self.parts.iter().rev());
+        pairs.any(|(active, part)| {
+            let mut values = active.effect.parameters.iter().zip(&active.values);
+            values.any(|(p, value)| {
+                matches!(p.nature, Nature::Speed(..)) && *value >= p.bounds(&part.scales)[1]
+            })
+        })
+    }
+
     /// Whether it is less than none of something.
     pub(super) fn is_below_none(&self) -> bool {
         let new = self.fit.state.effects.iter().rev().take(self.parts.len());

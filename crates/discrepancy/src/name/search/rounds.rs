@@ -65,7 +65,8 @@ impl Search<'_> {
             let is_nothing = candidate.is_below_none()
                 || candidate.bends_own_friction()
                 || self.leaves_no_friction(candidate)
-                || self.hardly_repeats(candidate);
+                || self.hardly_repeats(candidate)
+                || self.swings_unseen(candidate);
             if is_effect && is_nothing {
                 return None;
             }
@@ -193,6 +194,7 @@ impl Search<'_> {
             }
             r.gain = gain(&r.fit);
         });
+        refined.retain(|r| !asked.is_empty() || !r.hardly_falls());
         // Those that are near one another are compared where they end, with
         // derivatives of all effects as they are there, or a simple one that is
         // not there yet loses to one that contains it.

@@ -1,9 +1,10 @@
 //! At what frequency a body that swings by itself is sought.
 
-use axis_sim::effects::Nature;
+use axis_sim::effects::{ActiveEffect, Nature};
 use rayon::prelude::*;
 
 use super::lines::{Line, Spectral, duration, strongest};
+use super::refined::Refined;
 use super::state::Search;
 use crate::estimate::fit::Columns;
 use crate::name::library::{Candidate, RESONANCE_PERIODS};
@@ -20,7 +21,6 @@ impl Search<'_> {
     /// `noise` is its spectral matrices, where they are known: a body with some damping fills a band
     /// of its own, and stands out beside them alone.
     pub(super) fn resonances(&self, own: &Columns, noise: &[Spectral]) -> Vec<Screened> {
-        let is_frequency = |nature: &Nature| matches!(nature, Nature::Frequency(..));
         let mut library = self.library.candidates.iter();
         let known = library.find_map(|c| Some((c, c.effect.place_of(is_frequency)?)));
         let known =
@@ -37,4 +37,21 @@ impl Search<'_> {
         let bodies: Vec<Candidate> = lines.into_par_iter().map(candidate).collect();
         self.screened_beside(own, &bodies, known.effect.parameters.len())
     }
+
+    /// Whether a candidate is a body that would swing faster than any log shows: it is a mass.
+    pub(super) fn swings_unseen(&self, candidate: &Refined) -> bool {
+        let highest = self.fit_logs.logs.iter().map(|log| 0.5 / log.period);
+        let highest = highest.fold(0.0, f64::max);
+        let is_faster = |active: &ActiveEffect| {
+            let parameters = active.effect.parameters.iter().zip(&active.values);
+            let mut parameters = parameters.map(|(p, value)| (p.nature, value));
+            parameters.any(|(nature, value)| is_frequency(&nature) && *value > highest)
+        };
+        let effects = candidate.fit.state.effects.iter().rev();
+        effects.take(candidate.parts.len()).any(is_faster)
+    }
+}
+
+fn is_frequency(nature: &Nature) -> bool {
+    matches!(nature, Nature::Frequency(..))
 }
