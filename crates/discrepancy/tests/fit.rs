@@ -50,9 +50,5 @@ fn a_size_follows_a_shape_that_moves_in_steps() {
     assert!(far.deviance > there + 1e3, "{} {there}", far.deviance);
     let known = fitter.known_columns(&far);
     let found = fitter.refine(far, &known, 4);
-    let [force, distance] = found.state.effects[0].values[..] else {
-        panic!("two values");
-    };
-    println!("{force} N, {distance} m: D {} of {there}", found.deviance);
     assert!(found.deviance < there + 30.0, "{} {there}", found.deviance);
 }

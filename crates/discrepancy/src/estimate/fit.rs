@@ -342,9 +342,9 @@ impl Fitter<'_> {
             Some([-most - share, most - share])
         };
         let step = bounded(&normal, &right, of_known);
-        let pairs = of_effects.iter().zip(step.iter().skip(known));
+        let mut pairs = of_effects.iter().zip(step.iter().skip(known));
         let leaves = |([low, high], by): (&[f64; 2], &f64)| !(low..=high).contains(&by);
-        let inside = pairs.clone().any(leaves).then(|| {
+        let inside = pairs.any(leaves).then(|| {
             let of_effect = |i: usize| of_effects.get(i.checked_sub(known)?).copied();
             bounded(&normal, &right, |i| of_known(i).or_else(|| of_effect(i)))
         });
@@ -361,9 +361,9 @@ impl Fitter<'_> {
 pub struct Solved {
     /// To its minimum inside the known parameters' tolerance.
     pub step: DVector<f64>,
-    /// To that which moves the parameters of effects no farther than their derivatives hold either;
-    /// `None` where that is the same. Where two do nearly the same, as a force and the way over
-    /// which it comes, a step of one that is cut short leaves the other where it is of no use.
+    /// The same where the parameters of effects, too, move no farther than their derivatives hold;
+    /// `None` where they do so anyway. Of two that do nearly the same, as a force and the way over
+    /// which it comes, one that is cut short afterwards leaves the other where it is of no use.
     pub inside: Option<DVector<f64>>,
     /// By how much D falls on the way, if the problem is as linear as that.
     pub promised: f64,

@@ -144,12 +144,11 @@ impl Refined {
     /// course of the axis' own friction over speed, and no two effects.
     pub(super) fn bends_own_friction(&self) -> bool {
         let effects = &self.fit.state.effects;
-        let new = &effects[effects.len() - self.parts.len()..];
         let is_friction = |a: &ActiveEffect| a.effect.name == FALL || DRY.contains(&a.effect.name);
         let falls = |a: &ActiveEffect| a.effect.name == FALL && a.values[0] > 0.0;
         let dry = effects.iter().filter(|a| DRY.contains(&a.effect.name));
         let level: f64 = dry.flat_map(|a| &a.values).sum();
-        new.iter().any(is_friction) && effects.iter().any(falls) && level < 0.0
+        self.added().iter().any(is_friction) && effects.iter().any(falls) && level < 0.0
     }
 }
 

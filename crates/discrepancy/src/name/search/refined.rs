@@ -16,6 +16,12 @@ pub(super) struct Refined {
 }
 
 impl Refined {
+    /// The effects that it adds, one for each of its parts.
+    pub(super) fn added(&self) -> &[ActiveEffect] {
+        let effects = &self.fit.state.effects;
+        &effects[effects.len().saturating_sub(self.parts.len())..]
+    }
+
     /// Numbers that were fitted.
     fn parameters(&self) -> usize {
         let all = self.parts.iter().flat_map(|p| p.effect.parameters);
@@ -24,9 +30,7 @@ impl Refined {
 
     /// Whether a size is as large as it may be.
     fn ends_at_bound(&self) -> bool {
-        let effects = &self.fit.state.effects;
-        let new = &effects[effects.len().saturating_sub(self.parts.len())..];
-        let mut pairs = new.iter().zip(&self.parts);
+        let mut pairs = self.added().iter().zip(&self.parts);
         pairs.any(|(active, part)| {
             let mut sizes = active.effect.parameters.iter().zip(&active.values);
             sizes.any(|(p, value)| {
@@ -57,8 +61,7 @@ impl Refined {
     /// Whether it is a friction that falls with a speed that is as high as it may be: over all of the
     /// motion it is dry friction that is a little less where motion is fast.
     pub(super) fn hardly_falls(&self) -> bool {
-        let new = self.fit.state.effects.iter().rev().take(self.parts.len());
-        let mut pairs = new.zip(self.parts.iter().rev());
+        let mut pairs = self.added().iter().zip(&self.parts);
         pairs.any(|(active, part)| {
             let mut values = active.effect.parameters.iter().zip(&active.values);
             values.any(|(p, value)| {
@@ -69,8 +72,10 @@ impl Refined {
 
     /// Whether it is less than none of something.
     pub(super) fn is_below_none(&self) -> bool {
-        let new = self.fit.state.effects.iter().rev().take(self.parts.len());
-        let mut never = new.filter(|a| NEVER_BELOW_NONE.contains(&a.effect.name));
+        let mut never = self
+            .added()
+            .iter()
+            .filter(|a| NEVER_BELOW_NONE.contains(&a.effect.name));
         never.any(|a| a.values[0] < 0.0)
     }
 }

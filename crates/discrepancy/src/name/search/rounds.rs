@@ -65,8 +65,7 @@ impl Search<'_> {
             let is_nothing = candidate.is_below_none()
                 || candidate.bends_own_friction()
                 || self.leaves_no_friction(candidate)
-                || self.hardly_repeats(candidate)
-                || self.swings_unseen(candidate);
+                || self.hardly_repeats(candidate);
             if is_effect && is_nothing {
                 return None;
             }
@@ -194,7 +193,7 @@ impl Search<'_> {
             }
             r.gain = gain(&r.fit);
         });
-        refined.retain(|r| !asked.is_empty() || !r.hardly_falls());
+        refined.retain(|r| !asked.is_empty() || !(r.hardly_falls() || self.swings_unseen(r)));
         // Those that are near one another are compared where they end, with
         // derivatives of all effects as they are there, or a simple one that is
         // not there yet loses to one that contains it.
@@ -209,13 +208,12 @@ impl Search<'_> {
         refined.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         best_of_each(&mut refined);
         for r in &refined {
-            let found = r.fit.state.effects.iter().rev().take(r.parts.len());
             tracing::debug!(
                 name = r.parts.iter().map(|p| p.effect.name).collect::<Vec<_>>().join(" and "),
                 foreseen = r.parts[0].gain,
                 gain = r.gain,
                 screened = ?r.parts.iter().map(|p| &p.values).collect::<Vec<_>>(),
-                found = ?found.rev().map(|a| &a.values).collect::<Vec<_>>(),
+                found = ?r.added().iter().map(|a| &a.values).collect::<Vec<_>>(),
                 "refined"
             );
         }

@@ -1,11 +1,11 @@
 //! What a search is asked, and what it says.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, ONSET_FORM};
 use axis_sim::{Axis, ReplayError};
 use nalgebra::DMatrix;
-use std::borrow::Cow;
 use thiserror::Error;
 
 use super::evidence::needed;

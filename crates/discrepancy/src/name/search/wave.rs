@@ -81,9 +81,8 @@ impl Search<'_> {
     pub(super) fn hardly_repeats(&self, candidate: &Refined) -> bool {
         let all = self.fit_logs.logs.iter().chain(&self.check_logs.logs);
         let longest = all.map(duration).fold(0.0, f64::max);
-        let effects = &candidate.fit.state.effects;
-        let mut new = effects.iter().rev().take(candidate.parts.len());
-        new.any(|a| a.effect.name == REPEATS && REPEATED * a.values[PERIOD] > longest)
+        let mut added = candidate.added().iter();
+        added.any(|a| a.effect.name == REPEATS && REPEATED * a.values[PERIOD] > longest)
     }
 
     /// Whether a candidate is a load that would repeat faster than motion does, and has another phase or
