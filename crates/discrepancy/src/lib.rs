@@ -50,7 +50,8 @@ mod spectrum;
 pub mod summary;
 
 pub use answers::{Answer, LogSet, Prepared, State};
-pub use estimate::fit::{Fit, Fitter, free_parameters};
+pub use estimate::columns::free_parameters;
+pub use estimate::fit::{Fit, Fitter};
 pub use estimate::interval::Spread;
 pub use estimate::known::{known_deviations, tolerances};
 pub use evidence::{Evidence, EvidenceError};

@@ -139,7 +139,7 @@ const TITLE: &str = "# Hidden effects, searched blind";
 pub fn page(axis: &Axis, seed: u64, all: usize, outcomes: &[CaseOutcome], score: &Score) -> String {
     let mut text = format!(
         "{TITLE}\n\nMachine: {}. Seed {seed}. {} of {all} cases run.\n\
-        `cargo xtask discover-matrix --seed {seed} --page FILE` makes this page; docs/theory/discrepancy.md says how cases\n\
+        `cargo xtask discover-matrix --seed {seed} --page FILE` makes this page; docs/theory/discover-matrix.md says how cases\n\
         are made and counted. Intervals are Wilson's. Everything here is simulated.\n\n{}\n\
         ## Each effect, hidden alone\n\nErrors are those of sizes where it was named first, known parameters told.\n\n\
         | effect | can be seen | named first | or in the class | error: median, largest | 95 % intervals |\n\

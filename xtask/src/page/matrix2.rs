@@ -48,7 +48,7 @@ pub fn page(machines: &[Axis], seed: u64, all: usize, outcomes: &[CaseOutcome]) 
     let mut text = format!(
         "{TITLE}\n\nMachines: {}. Seed {seed}. {} of {all} cases run.\n\
         `cargo xtask discover-matrix --version 2 --seed {seed} --size {all} --page FILE` makes this page;\n\
-        docs/theory/discrepancy.md says how cases are made and counted. Intervals are Wilson's, cases taken as independent.\n\
+        docs/theory/discover-matrix.md says how cases are made and counted. Intervals are Wilson's, cases taken as independent.\n\
         {SEEN} Everything here is simulated.\n\n\
         \"By the interval\": met or missed where ten cases are asked and the whole interval says so, open otherwise.\n\n{}",
         machines.join(", "),

@@ -120,6 +120,8 @@ pub const TARGETS: &[ScoreTarget] = &[
         |o| covered(&o.estimates.iter().filter(|_| o.is_of_library()).collect::<Vec<_>>())),
     target("cases in which the library does not imitate what it lacks: a wrong name", Limit::Told,
         |o| Rate::one(o.failed.is_none() && !o.is_imitated(), !o.wrong_names().is_empty())),
+    target("all cases: a wrong name, and the truth explains the fitted logs better", Limit::Told,
+        |o| Rate::one(o.failed.is_none(), !o.wrong_names().is_empty() && o.is_truth_better())),
     target("one hidden: seen", Limit::Told,
         |o| Rate::one(is(o, CaseKind::Single), o.is_seen())),
     target("of these, told apart", Limit::Told,

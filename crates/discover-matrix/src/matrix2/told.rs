@@ -40,6 +40,13 @@ impl CaseOutcome {
         named.map(|n| n.name.as_str()).collect()
     }
 
+    /// Whether the fitted logs speak for the truth against what was found, by as much as naming
+    /// an effect takes. Where they do not, nothing in them contradicts what was found, right or
+    /// wrong.
+    pub fn is_truth_better(&self) -> bool {
+        self.deviance.is_some_and(|d| d.found - d.truth >= d.needed)
+    }
+
     /// Whether a clean machine was given a name that is not there, or, where its laws are
     /// those of the model, anything was said of it.
     pub fn is_false_alarm(&self) -> bool {

@@ -1,6 +1,8 @@
 //! Parameters: known ones inside their tolerance, sizes of effects, and how sure they are.
 
 pub mod bounded;
+pub mod calibration;
+pub mod columns;
 pub mod fit;
 pub mod gauss_newton;
 pub mod interval;
@@ -9,4 +11,5 @@ pub mod linear;
 pub mod projector;
 pub mod spread;
 pub mod starts;
+pub mod step;
 pub mod thin;

@@ -4,7 +4,8 @@ use axis_sim::ReplayError;
 use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::estimate::fit::{Columns, Fit, Fitter, free_parameters};
+use crate::estimate::columns::{Columns, free_parameters};
+use crate::estimate::fit::{Fit, Fitter};
 use crate::estimate::interval::Spread;
 use crate::estimate::known::{known_deviations, tolerances};
 use crate::estimate::projector::Projector;

@@ -4,7 +4,8 @@
 //! homed where it stands is off by what that bends, for the whole log. It is one unknown a log,
 //! a state of that log and no parameter of the machine, and is fitted beside these.
 
-use super::fit::{Columns, Fit, Fitter};
+use super::columns::Columns;
+use super::fit::{Fit, Fitter};
 use crate::answers::LogSet;
 use crate::spectrum::Amplitudes;
 

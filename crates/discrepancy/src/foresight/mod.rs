@@ -13,7 +13,8 @@ use rayon::prelude::*;
 
 pub use self::types::{Foreseen, Hypothesis, Imitation};
 use crate::answers::{LogSet, State};
-use crate::estimate::fit::{Columns, Fit, Fitter};
+use crate::estimate::columns::Columns;
+use crate::estimate::fit::{Fit, Fitter};
 use crate::estimate::known::pinned;
 use crate::estimate::projector::{Projector, sine};
 use crate::estimate::spread::size_over_noise;

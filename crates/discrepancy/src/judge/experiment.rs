@@ -17,7 +17,8 @@ use trajectories::Program;
 
 use super::motions::motions;
 use crate::answers::{LogSet, State};
-use crate::estimate::fit::{Columns, Fitter};
+use crate::estimate::columns::Columns;
+use crate::estimate::fit::Fitter;
 use crate::estimate::known::known_deviations;
 use crate::name::library::rooms;
 use crate::name::search::Found;

@@ -6,7 +6,7 @@ use axis_sim::effects::{ActiveEffect, EffectParameter, Scales};
 use super::form::FormFound;
 use super::types::{AtScrew, EffectFound, ParameterFound, RefusedEffects, ReplacedEffect};
 use crate::answers::is_form_of;
-use crate::estimate::fit::free_parameters;
+use crate::estimate::columns::free_parameters;
 use crate::name::search::{Found, Named, RefusalReason, Refused, Replaced};
 
 pub(super) fn effect_found(

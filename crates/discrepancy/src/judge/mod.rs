@@ -193,10 +193,13 @@ pub fn judged(
         _ => None,
     };
     // A rest that is neither a curve over the motion nor follows it is noise, whatever its
-    // colour; but it may be what an imitation leaves of a gap.
-    let may_be_noise = !set.is_balanced()
-        && check.may_be_coloured()
-        && (effects.is_empty() || !check.stands_out());
+    // colour; but it may be what an imitation leaves of a gap, be that a form of friction.
+    let imitates = !effects.is_empty() && check.stands_out();
+    let is_small = match found.named.is_empty() {
+        true => check.may_be_noise_apart_from_motion(),
+        false => check.may_be_coloured(),
+    };
+    let may_be_noise = !set.is_balanced() && is_small && !imitates;
     let following = excess.as_ref().and_then(|excess| {
         if !may_be_noise {
             return Some(excess.clone());

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 
 use super::units::ReadUnit;
 use crate::answers;
-use crate::estimate::fit::{Columns, Fit, Fitter};
+use crate::estimate::columns::Columns;
+use crate::estimate::fit::{Fit, Fitter};
 use crate::name::curves::{Over, Place, Rest, Solved, answer, courses};
 use crate::name::search::Found;
 use crate::name::terms::{Term, middle, terms};

@@ -61,10 +61,20 @@ impl Gap {
         self.channels.iter().all(ChannelGap::is_at_floor)
     }
 
-    /// Whether what is left may be noise of another colour than that of the floors.
+    /// Whether what is left may be noise of another colour than that of the floors, whatever else is
+    /// known of it.
     pub(crate) fn may_be_coloured(&self) -> bool {
+        self.is_within(COLOURED)
+    }
+
+    /// Whether it may be such noise where it does not follow the motion.
+    pub(crate) fn may_be_noise_apart_from_motion(&self) -> bool {
+        self.is_within(APART_FROM_MOTION)
+    }
+
+    fn is_within(&self, floors: f64) -> bool {
         let mut channels = self.channels.iter();
-        channels.all(|c| c.after <= COLOURED * c.floor)
+        channels.all(|c| c.after <= floors * c.floor)
     }
 
     /// What is gone of it, as the beginning of a sentence.
@@ -86,6 +96,10 @@ const REST: f64 = 1.2;
 /// Multiple of the floor, as it is told from high frequencies, beyond which nobody would call a
 /// rest noise.
 const COLOURED: f64 = 4.0;
+
+/// The same of a rest that does not follow the motion: noise of a low corner, or of steps in what the
+/// controller reads, has most of its power where the loop answers, and little above.
+const APART_FROM_MOTION: f64 = 20.0;
 
 /// And beyond this multiple of the noisiest of the runs.
 const OF_RUNS: f64 = 1.1;

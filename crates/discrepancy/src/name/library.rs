@@ -5,7 +5,8 @@ use axis_sim::{Axis, ReplayError, position_in};
 use rayon::prelude::*;
 
 use crate::answers::{LogSet, Prepared, State};
-use crate::estimate::fit::{Columns, Fit, Fitter};
+use crate::estimate::columns::Columns;
+use crate::estimate::fit::{Fit, Fitter};
 use crate::estimate::linear::Room;
 use crate::name::curves::Curves;
 

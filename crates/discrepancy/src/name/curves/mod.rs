@@ -13,7 +13,8 @@ pub use self::rest::{Rest, Solved};
 pub use self::shape::Shape;
 pub use self::variable::{Factor, Over, Place, Variable, is_over};
 use crate::answers::LogSet;
-use crate::estimate::fit::{Columns, Fit, Fitter};
+use crate::estimate::columns::Columns;
+use crate::estimate::fit::{Fit, Fitter};
 use crate::spectrum::Amplitudes;
 
 /// All curves that are tried: a line each, the simple ones first.

@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::estimate::fit::{Columns, Fit, Fitter};
+use crate::estimate::columns::Columns;
+use crate::estimate::fit::{Fit, Fitter};
 use crate::estimate::known::pinned;
 use crate::estimate::projector::Projector;
 use crate::spectrum::{Amplitudes, Whitener};

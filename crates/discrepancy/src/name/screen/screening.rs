@@ -6,7 +6,8 @@ use rayon::prelude::*;
 
 use super::response::{Response, responses_in};
 use super::screened::Screened;
-use crate::estimate::fit::{Columns, Fit, Fitter};
+use crate::estimate::columns::Columns;
+use crate::estimate::fit::{Fit, Fitter};
 use crate::estimate::known::pinned;
 use crate::estimate::projector::Projector;
 use crate::estimate::thin::{Thin, products};

@@ -15,7 +15,8 @@ use rayon::prelude::*;
 
 use super::promise::PROMISING;
 use super::state::Search;
-use crate::estimate::fit::{Columns, Fit};
+use crate::estimate::columns::Columns;
+use crate::estimate::fit::Fit;
 use crate::estimate::linear::{Problem, Products};
 use crate::name::library::{Candidate, is_force_in_time, responses};
 use crate::name::screen::mostly_same;

@@ -14,7 +14,7 @@ use super::evidence::BY_CHANCE;
 use super::refined::Refined;
 use super::state::Search;
 use super::types::Named;
-use crate::estimate::fit::Columns;
+use crate::estimate::columns::Columns;
 use crate::name::library::{Candidate, responses};
 use crate::name::screen::Screened;
 

@@ -9,7 +9,8 @@ use rayon::prelude::*;
 
 use super::refined::Refined;
 use super::state::Search;
-use crate::estimate::fit::{Columns, Fitter};
+use crate::estimate::columns::Columns;
+use crate::estimate::fit::Fitter;
 use crate::name::curves::{Rest, Shape};
 use crate::spectrum::Amplitudes;
 

@@ -30,7 +30,8 @@ pub use self::types::{
     Settings, SettingsError, Test,
 };
 use crate::answers::{LogSet, State};
-use crate::estimate::fit::{Columns, Fit, Fitter};
+use crate::estimate::columns::Columns;
+use crate::estimate::fit::{Fit, Fitter};
 use crate::estimate::starts::with_starts;
 use crate::name::gap::sizes;
 use crate::name::library::Library;
@@ -231,17 +232,19 @@ fn settled(
         set.follow(machine, &fit.state).ok()?;
         Some(set)
     };
-    let (fitted, checked) = (corrected(fit_logs)?, corrected(check_logs)?);
+    let at = |set: &LogSet| Fitter { machine, set }.at(fit.state.clone()).ok();
+    let followed = corrected(fit_logs)?;
+    let there = at(&followed)?;
+    // Far from the truth what follows the machine may lead farther away; starts may not.
+    let (fitted, checked, there) = match there.deviance > fit.deviance + 1.0 {
+        true => (fit_logs.clone(), check_logs.clone(), fit.clone()),
+        false => (followed, corrected(check_logs)?, there),
+    };
     let [with, checker] = [&fitted, &checked].map(|set| Fitter { machine, set });
-    let at = with.at(fit.state.clone()).ok()?;
-    if at.deviance > fit.deviance + 1.0 {
-        return None;
-    }
-    let started = with_starts(&with, &at, Some(known));
-    let check_started = checked.coarse_efforts(machine).and_then(|_| {
-        let check = checker.at(fit.state.clone()).ok()?;
-        with_starts(&checker, &check, None)
-    });
+    let started = with_starts(&with, &there, Some(known));
+    let check_started = checked
+        .coarse_efforts(machine)
+        .and_then(|_| with_starts(&checker, &at(&checked)?, None));
     Some((
         started.map_or(fitted, |(set, _)| set),
         check_started.map_or(checked, |(set, _)| set),

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::evidence::enough;
 use super::lines::Spectral;
 use super::state::Search;
-use crate::estimate::fit::Columns;
+use crate::estimate::columns::Columns;
 use crate::estimate::linear::{Problem, Products, Room};
 use crate::name::library::{Candidate, is_force_in_time, responses, rooms, values_at};
 use crate::name::screen::{Screened, Screening};

@@ -7,7 +7,7 @@ use super::intervals::Intervals;
 use super::state::Search;
 use super::types::{Named, RefusalReason, Refused, RunnerUp};
 use crate::answers::{LogSet, State};
-use crate::estimate::fit::free_parameters;
+use crate::estimate::columns::free_parameters;
 use crate::name::gap::{Gap, gap, worsened};
 use crate::noise::{MotionAndRest, floors};
 
@@ -53,7 +53,8 @@ impl Search<'_> {
         // Where no channel stood out of its noise, evidence alone speaks; and what is left of a
         // replay is no gap where it is noise of another colour. In a balance noise of the motion
         // passes through the model, and follows it.
-        let is_gap = || !of_gap.may_be_coloured() || self.rest_follows_motion(&of_gap);
+        let is_gap =
+            || !of_gap.may_be_noise_apart_from_motion() || self.rest_follows_motion(&of_gap);
         let is_left = of_gap.stands_out() && (set.is_balanced() || is_gap());
         let refused = is_little && is_left;
         Ok(refused.then(|| self.refusal(RefusalReason::Little(share))))

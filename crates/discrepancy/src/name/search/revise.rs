@@ -15,7 +15,7 @@ use super::promise::Promises;
 use super::state::Search;
 use super::types::{Named, Replaced};
 use crate::answers::is_form_of;
-use crate::estimate::fit::is_free;
+use crate::estimate::columns::is_free;
 use crate::estimate::known::pinned;
 use crate::estimate::spread::over_noise;
 

@@ -12,7 +12,8 @@ use super::refined::{
 };
 use super::state::Search;
 use super::types::{Named, RunnerUp};
-use crate::estimate::fit::{Columns, Fit, free_parameters};
+use crate::estimate::columns::{Columns, free_parameters};
+use crate::estimate::fit::Fit;
 use crate::name::gap::is_material;
 use crate::name::library::is_force_in_time;
 use crate::name::screen::Screened;

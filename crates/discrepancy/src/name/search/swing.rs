@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::lines::{Line, Spectral, duration, strongest};
 use super::refined::Refined;
 use super::state::Search;
-use crate::estimate::fit::Columns;
+use crate::estimate::columns::Columns;
 use crate::name::library::{Candidate, RESONANCE_PERIODS};
 use crate::name::screen::Screened;
 

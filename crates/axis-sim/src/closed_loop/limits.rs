@@ -1,0 +1,57 @@
+//! Where a run is given up.
+
+use feed_dynamics::DriveError;
+
+use super::ClosedLoop;
+use crate::cycle::{Cycle, Outcome, Stop, StopReason};
+
+impl ClosedLoop {
+    pub(super) fn stop_reason(&self, cycle: &Cycle) -> Option<StopReason> {
+        let (stroke, axis) = (&self.axis.stroke, &self.axis);
+        let current = cycle.current.d + cycle.current.q + cycle.command.effort;
+        let state = cycle.position + cycle.motor_speed + current;
+        if !state.is_finite() {
+            Some(StopReason::NotFinite)
+        } else if cycle.error().abs() > axis.following_error_limit {
+            let limit = axis.following_error_limit;
+            Some(StopReason::FollowingError(limit, axis.freedom()))
+        } else if !(stroke.minimum..=stroke.maximum).contains(&cycle.position)
+            || (axis.mechanism.reach()).is_some_and(|reach| !reach.contains(cycle.position))
+        {
+            Some(StopReason::LeftStroke)
+        } else {
+            None
+        }
+    }
+
+    pub(super) fn stopped(&self, reason: StopReason, at: &Cycle) -> crate::RunStopped {
+        crate::RunStopped {
+            time: at.time,
+            reason,
+            at: Stop {
+                position: at.position,
+                error: at.error(),
+                motor_speed: at.motor_speed,
+                torque: at.torque,
+                freedom: self.axis.freedom(),
+            },
+        }
+    }
+
+    pub(super) fn given_up(&self, reason: StopReason, at: &Cycle) -> Outcome {
+        let crate::RunStopped { time, reason, at } = self.stopped(reason, at);
+        Outcome::Stopped { time, reason, at }
+    }
+}
+
+/// Why a run cannot go on after `error`, which has left it in the state `at`.
+pub(super) fn reason_of(error: &DriveError, at: &Cycle) -> StopReason {
+    let state = at.position + at.motor_speed + at.current.d + at.current.q;
+    match error {
+        DriveError::LoadNotFound { residual, .. } if (state + residual).is_finite() => {
+            StopReason::LoadNotFound
+        }
+        DriveError::OffScrew { .. } if state.is_finite() => StopReason::LeftStroke,
+        _ => StopReason::NotFinite,
+    }
+}

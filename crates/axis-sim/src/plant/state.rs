@@ -1,0 +1,184 @@
+//! The machine in motion.
+
+use std::fmt;
+use std::sync::Arc;
+
+use feed_dynamics::{DriveError, NutErrors, TimeStepper};
+
+use super::law::{Law, coulomb_bristle};
+use super::{Running, Seen};
+use crate::actuator::{Actuating, MotorMotion};
+use crate::effects::{Memory, TableState, TableStep};
+
+/// Time over which a standing load comes up, s.
+const STANDING_LOAD_RISE: f64 = 0.02;
+
+/// The machine's inner state, which no controller sees.
+pub(super) struct State<S: TimeStepper> {
+    pub(super) law: Arc<Law<S>>,
+    pub(super) drive: S::State,
+    /// Where the load and the motor were when the motion began.
+    pub(super) origin: f64,
+    pub(super) motor_origin: f64,
+    /// Displacement of the transmission's kinematic errors there.
+    pub(super) offset_origin: f64,
+    /// Bristle deflection z, in the friction's coordinate.
+    pub(super) bristle: f64,
+    /// That of the unit element.
+    pub(super) unit_bristle: f64,
+    /// What forces with a memory remember.
+    pub(super) memory: Memory,
+    /// Way that the load has travelled since the motion began, m or rad.
+    pub(super) travelled: f64,
+    /// Force from outside, N or N·m.
+    pub(super) outer_load: f64,
+    /// Change of the transmission's force over the last step, N or N·m.
+    pub(super) force_change: f64,
+    /// Motor acceleration over the last step, rad/s².
+    pub(super) motor_acceleration: f64,
+    /// Whether standing loads act from the start on.
+    pub(super) pressed: bool,
+    pub(super) seen: Seen,
+}
+
+impl<S: TimeStepper> Clone for State<S> {
+    fn clone(&self) -> Self {
+        Self {
+            law: self.law.clone(),
+            drive: self.drive.clone(),
+            memory: self.memory.clone(),
+            ..*self
+        }
+    }
+}
+
+impl<S: TimeStepper> fmt::Debug for State<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.seen.fmt(f)
+    }
+}
+
+impl<S> Running for State<S>
+where
+    S: TimeStepper + fmt::Debug + Send + Sync + 'static,
+    S::State: fmt::Debug + Send + Sync + 'static,
+{
+    fn advance(&mut self, actuator: &mut dyn Actuating) -> Result<(), DriveError> {
+        let law = &*self.law;
+        let (stepper, assembly) = (&law.stepper, &law.assembly);
+        let (friction, hooks) = (&assembly.friction, &assembly.hooks);
+        let h = stepper.step_length();
+        let has_loads = hooks.has_loads() || !assembly.loads.is_empty();
+        let rise = if self.pressed {
+            0.0
+        } else {
+            STANDING_LOAD_RISE
+        };
+        let mut errors = NutErrors::new(0.0, 0.0, assembly.backlash)?;
+        for _ in 0..assembly.substeps {
+            // The actuator, over the mean motor speed of the step.
+            let start = self.seen;
+            let mean_speed = start.motor_speed + 0.5 * h * self.motor_acceleration;
+            let own = actuator.torque(
+                &MotorMotion {
+                    angle: start.motor_angle,
+                    speed: mean_speed,
+                },
+                h,
+            );
+            let time = start.time + h;
+            let angle = start.motor_angle + h * mean_speed;
+            let torque = hooks.torque_at(angle, own);
+
+            // Mechanics; the friction follows the load's speed at the end of the step.
+            if hooks.has_offsets() {
+                let force = start.transmission_force + self.force_change;
+                errors = law.errors(&start.screw(time, angle, force), self.offset_origin)?;
+            }
+            let (z0, u0, w0) = (self.bristle, self.unit_bristle, law.by_lever(start.speed));
+            let (origin, travelled, memory) = (self.origin, self.travelled, &mut self.memory);
+            let outer_load = self.outer_load;
+            let pressed = (time / rise).min(1.0);
+            let (mut z1, mut u1, mut end_load) = (z0, u0, 0.0);
+            let report = stepper.step_through(&mut self.drive, torque, &errors, |table| {
+                let w1 = law.by_lever(table.speed);
+                let (z, own) = friction.law.step_torque(z0, w0, w1, h);
+                z1 = z;
+                let mut load = law.by_lever(own) + outer_load;
+                if has_loads {
+                    let mut bristle = 0.0;
+                    if law.moves_bristle {
+                        u1 = friction.unit.step(u0, w0, w1, h);
+                        bristle = friction.unit.torque(u1, w1);
+                    }
+                    let at = TableState {
+                        time,
+                        position: origin + table.displacement,
+                        speed: table.speed,
+                        bristle,
+                        pressed,
+                        transmitted: start.transmission_force,
+                        travelled,
+                    };
+                    load += hooks.loads_at(&at) + law.loads_at(&at);
+                    if !hooks.memories().is_empty() {
+                        let step = TableStep {
+                            length: h,
+                            way: table.displacement - start.displacement,
+                            speed_before: start.speed,
+                            speed: table.speed,
+                        };
+                        load += hooks.memories().step(&step, memory);
+                    }
+                }
+                end_load = load;
+                load
+            });
+            if !report.load.converged {
+                return Err(DriveError::LoadNotFound {
+                    rounds: report.load.rounds,
+                    residual: report.load.residual,
+                });
+            }
+            self.bristle = z1;
+            self.unit_bristle = u1;
+            let origins = [self.origin, self.motor_origin];
+            self.seen = Seen::of(
+                &stepper.observe(&self.drive),
+                origins,
+                time,
+                torque,
+                end_load,
+            );
+            self.motor_acceleration = (self.seen.motor_speed - start.motor_speed) / h;
+            if has_loads {
+                self.memory.accept();
+                self.travelled += (self.seen.displacement - start.displacement).abs();
+            }
+            self.force_change = self.seen.transmission_force - start.transmission_force;
+        }
+        Ok(())
+    }
+
+    fn seen(&self) -> &Seen {
+        &self.seen
+    }
+
+    fn set_outer_load(&mut self, force: f64) {
+        self.outer_load = force;
+    }
+
+    fn copy(&self) -> Box<dyn Running> {
+        Box::new(self.clone())
+    }
+
+    fn energy(&self) -> f64 {
+        self.law.stepper.energy(&self.drive)
+    }
+
+    fn friction(&self) -> [f64; 2] {
+        let law = &self.law.assembly.friction.law;
+        let force = law.torque(self.bristle, self.seen.speed / self.law.lever) / self.law.lever;
+        [force, self.bristle / coulomb_bristle(law)]
+    }
+}
