@@ -372,3 +372,25 @@ fn what_is_rejected_is_not_named() {
     assert_ne!(found.verdict, Verdict::Explained, "{found:?}");
     assert_ne!(found.verdict, Verdict::NothingMissing, "{found:?}");
 }
+
+/// What is missing may be as small as noise of another colour, and a cogging torque follows no motion as
+/// filters do: where nothing of the library may be named, neither is taken for such noise.
+#[test]
+fn what_is_missing_is_no_noise() {
+    let rejected = axis_sim::effects::EFFECTS.iter();
+    let settings = Settings {
+        rejected: rejected.map(|e| e.name.to_owned()).collect(),
+        ..Settings::default()
+    };
+    let hidden = [
+        ("cogging-torque", vec![0.02, 4.0, 0.5]),
+        ("presliding", vec![3e5]),
+    ];
+    for (name, values) in hidden {
+        let found = find(&hide_all(vec![(name, values)], 41), &settings);
+        let floors = found.gap.check.channels.iter().map(|c| c.after / c.floor);
+        let most = floors.fold(0.0, f64::max);
+        assert!((4.0..20.0).contains(&most), "{name}: {most} floors");
+        assert_eq!(found.verdict, Verdict::Unknown, "{name}");
+    }
+}

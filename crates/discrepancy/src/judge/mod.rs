@@ -59,7 +59,7 @@ use crate::estimate::fit::Fitter;
 use crate::estimate::known::{shown, tolerances};
 use crate::name::gap::gap;
 use crate::name::search::{Found, MATERIAL, is_form};
-use crate::noise::{Excess, MotionAndRest, excess, floors, log_noise, slow_noise};
+use crate::noise::{Excess, MotionAndRest, excess, floors, log_noise, slow_noise, steady_bands};
 
 /// A search's result in words, figures and pictures.
 #[derive(Clone, Debug)]
@@ -205,7 +205,11 @@ pub fn judged(
             return Some(excess.clone());
         }
         let rest = MotionAndRest::new(fitted, (set, &traces));
-        excess.only(|band| rest.follows(band))
+        // A larger one must be there while the axis stands, too.
+        let is_large = !check.may_be_coloured();
+        let is_steady = is_large.then(|| steady_bands(machine, full, (set, &traces)));
+        let comes_with_motion = |band| is_steady.as_ref().is_some_and(|steady| !steady(band));
+        excess.only(|band| rest.follows(band) || comes_with_motion(band))
     });
     let coloured = excess.filter(|_| following.is_none());
     // Of a balance nobody knows what the controller makes of its sensors' noise: slow, it is above

@@ -93,6 +93,31 @@ pub(crate) fn coloured_noise(
     Ok(Some(noise))
 }
 
+/// Of a band (`[low, high]`, Hz): whether what the logs' rest has there beside white noise is there while the
+/// axis stands. What repeats with its way does not follow its motion as filters do, but comes with it.
+pub(crate) fn steady_bands(
+    machine: &Axis,
+    state: &State,
+    (set, traces): Simulated,
+) -> impl Fn([f64; 2]) -> bool {
+    let rest = set.rest(traces);
+    let spectra = Spectra::of(&at_state(machine, state), set, &rest, traces);
+    let foreseen = spectra.foreseen(&spectra.white());
+    let steadiness = Steadiness::new(set, &rest, traces);
+    let holds = |(b, band): (usize, [f64; 2])| {
+        let white: Vec<f64> = foreseen.iter().map(|channel| channel[b]).collect();
+        (band, steadiness.holds(band, &white))
+    };
+    let bands: Vec<([f64; 2], bool)> = spectra.bands.edges().enumerate().map(holds).collect();
+    move |[low, high]| {
+        let middle = |[a, b]: [f64; 2]| 0.5 * (a + b);
+        let mut inside = bands
+            .iter()
+            .filter(|(band, _)| (low..high).contains(&middle(*band)));
+        inside.all(|(_, holds)| *holds)
+    }
+}
+
 /// Deviations of each sensor's noise beside its white noise, a row a band, by the powers of their
 /// `answers` to noise in the bands and those `foreseen` of white noise. In bands that are none of noise
 /// there is none.

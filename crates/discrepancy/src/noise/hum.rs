@@ -5,6 +5,7 @@
 //! take a twentieth of the line seems to explain a great deal. So where the rest has a line above the first
 //! band on both sets of logs, which does not follow the motion and is there while the axis stands, its
 //! wave is taken out of all channels of each log, by least squares, with a phase of its own in each.
+//! What is missing may look like a line, or hide one: after each effect that is named, the hum is sought anew.
 
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -38,9 +39,13 @@ const STEPS: f64 = 16.0;
 /// Width about a line in which its power is seen while the axis stands and moves, Hz.
 const WIDTH: f64 = 6.0;
 
+/// Distance from a line that was a hum within which it is the same one, Hz.
+const SAME: f64 = 1.0;
+
 impl Hum {
-    /// Of logs that are fitted and others, with their simulations.
-    pub(crate) fn of(fit: Simulated, check: Simulated) -> Self {
+    /// Of logs that are fitted and others, with their simulations. What is `known` for a hum is one where
+    /// it still stands out.
+    pub(crate) fn of(fit: Simulated, check: Simulated, known: &Self) -> Self {
         let mut hum = Self::default();
         if fit.0.is_balanced() {
             return hum;
@@ -59,9 +64,11 @@ impl Hum {
             let about = [frequency - 0.5 * WIDTH, frequency + 0.5 * WIDTH];
             let band = fit.0.layout.bands().map(|(edges, _)| edges);
             let band = band.into_iter().find(|edges| frequency < edges[1]);
-            let is_hum = checked.at(frequency) >= THERE_TOO
-                && steadiness.holds(about, &vec![0.0; check.0.channels.len()])
-                && band.is_some_and(|band| !of_motion.follows(band));
+            let is_noise = || {
+                steadiness.holds(about, &vec![0.0; check.0.channels.len()])
+                    && band.is_some_and(|band| !of_motion.follows(band))
+            };
+            let is_hum = checked.at(frequency) >= THERE_TOO && (known.has(frequency) || is_noise());
             tracing::debug!(frequency, power = peak.1, is_hum, "line");
             if !is_hum {
                 break;
@@ -71,6 +78,12 @@ impl Hum {
             take_out(check.0, &mut of_check, frequency);
         }
         hum
+    }
+
+    /// Whether this frequency is one of its own.
+    fn has(&self, frequency: f64) -> bool {
+        let mut own = self.frequencies.iter();
+        own.any(|f| (f - frequency).abs() < SAME)
     }
 
     /// Whether there is any.
@@ -113,6 +126,15 @@ impl Hum {
                 let wave = before.iter().zip(after).map(|(b, a)| b - a);
                 hum.iter_mut().zip(wave).for_each(|(hum, w)| *hum += w);
             }
+        }
+        set
+    }
+
+    /// These logs with everything that hums in them.
+    pub(crate) fn put_back(set: &LogSet) -> LogSet {
+        let mut set = set.clone();
+        for log in &mut set.logs {
+            log.hum.iter_mut().for_each(Vec::clear);
         }
         set
     }
@@ -213,7 +235,7 @@ impl Lines {
         let near = self
             .bins
             .iter()
-            .filter(|(f, _)| (f - frequency).abs() < 1.0);
+            .filter(|(f, _)| (f - frequency).abs() < SAME);
         near.map(|(_, power)| *power).fold(0.0, f64::max)
     }
 
@@ -251,7 +273,86 @@ impl Lines {
 mod tests {
     use std::f64::consts::TAU;
 
-    use super::{turned, wave};
+    use axis_log::{Channel, Log};
+    use axis_sim::{Axis, ClosedLoop, Recorder};
+    use compensator::NoCompensation;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+    use trajectories::{Limits, Program, Step};
+
+    use super::{Hum, turned, wave};
+    use crate::answers::{LogSet, State};
+
+    /// A linear motor that moves there and back in a second and a half, and noise of each of its
+    /// channels with a hum of 61.3 Hz three times as large.
+    fn humming() -> (Axis, LogSet) {
+        let file = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../data/axes/linear-motor.toml"
+        );
+        let machine = Axis::read(file.as_ref()).unwrap();
+        let from = machine.stroke.start;
+        let limits = Limits::new(0.2, 2.0, 40.0).unwrap();
+        let rest = Step::Dwell { duration: 0.2 };
+        let to = |to: f64| Step::Move { to, limits };
+        let steps = vec![rest, to(from + 0.05), rest, to(from), rest];
+        let program = Program::new(from, steps).unwrap();
+        let mut recorder = Recorder::new(&machine);
+        ClosedLoop::new(&machine)
+            .unwrap()
+            .without_noise()
+            .run(&program, &mut NoCompensation, |c| recorder.push(c))
+            .completed()
+            .unwrap();
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let turn = TAU * 61.3 * machine.period;
+        let mut noisy = |channel: &Channel| {
+            let mut channel = channel.clone();
+            let size = match channel.name.as_str() {
+                "position_m" => 1e-8,
+                "iq_a" | "iq_ref_a" => 0.01,
+                "ud_v" | "uq_v" => 0.1,
+                _ => 0.0,
+            };
+            for (k, x) in channel.samples.iter_mut().enumerate() {
+                let normal: f64 = StandardNormal.sample(&mut random);
+                *x += size * (normal + 3.0 * (turn * k as f64).sin());
+            }
+            channel
+        };
+        let log = recorder.log().unwrap();
+        let log = Log::new(log.channels().iter().map(&mut noisy).collect()).unwrap();
+        let logs = vec![("log".to_owned(), log, machine.period)];
+        let set = LogSet::new(logs, &machine).unwrap();
+        (machine, set)
+    }
+
+    /// A log that rests too little to tell a hum from what comes with motion; but what was known for
+    /// one is one, as long as it stands out, and what was taken out is put back.
+    #[test]
+    fn a_hum_that_is_known_stays_out_while_it_stands_out() {
+        let (machine, set) = humming();
+        let traces = set.simulate(&machine, &State::initial(&machine)).unwrap();
+        let of = |set: &LogSet, known: &Hum| Hum::of((set, &traces), (set, &traces), known);
+        let power = |set: &LogSet| set.rest(&traces)[0][0].iter().map(|r| r * r).sum::<f64>();
+        assert!(of(&set, &Hum::default()).is_none());
+
+        let known = Hum {
+            frequencies: vec![61.0],
+        };
+        let hum = of(&set, &known);
+        let [found] = hum.frequencies[..] else {
+            panic!("{hum:?}");
+        };
+        assert!((found - 61.3).abs() < 0.1, "{found}");
+        let without = hum.taken_out(&set, &traces);
+        // Noise of unit power, and a wave of 9/2.
+        let ratio = power(&set) / power(&without);
+        assert!((ratio - 5.5).abs() < 0.5, "{ratio}");
+        assert!(of(&without, &known).is_none());
+        assert_eq!(power(&Hum::put_back(&without)), power(&set));
+    }
 
     #[test]
     fn a_wave_is_found_with_its_phase_beside_a_drift() {

@@ -21,7 +21,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use self::colour::Colour;
-pub(crate) use self::colour::coloured_noise;
+pub(crate) use self::colour::{coloured_noise, steady_bands};
 pub(crate) use self::excess::{Excess, excess};
 pub(crate) use self::floor::{Floor, floors, floors_with};
 pub(crate) use self::hum::Hum;

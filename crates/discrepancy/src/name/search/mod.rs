@@ -117,7 +117,11 @@ fn searched(
         }
     }
     let checks = check_logs.simulate(machine, &base.state)?;
-    let hum = Hum::of((&fit_logs, &base.traces), (&check_logs, &checks));
+    let hum = Hum::of(
+        (&fit_logs, &base.traces),
+        (&check_logs, &checks),
+        &Hum::default(),
+    );
     let as_filed = hum.out_of(machine, as_filed, &base.state)?;
     if !hum.is_none() {
         fit_logs = hum.taken_out(&fit_logs, &base.traces);

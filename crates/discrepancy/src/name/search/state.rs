@@ -164,8 +164,37 @@ impl Search<'_> {
             self.fit = fit;
         }
         self.known = known;
+        self.settle_hum();
         self.settle_starts();
         self.settle_check();
+    }
+
+    /// Seeks the hum of the logs anew: beside a large gap a line may be hidden, or be a part of the gap.
+    fn settle_hum(&mut self) {
+        if self.fit_logs.is_balanced() {
+            return;
+        }
+        let [fit_logs, check_logs] = [&self.fit_logs, &self.check_logs].map(Hum::put_back);
+        let Ok(checks) = check_logs.simulate(self.machine, &self.fit.state) else {
+            return;
+        };
+        let fits = &self.fit.traces;
+        let hum = Hum::of((&fit_logs, fits), (&check_logs, &checks), &self.hum);
+        if hum.is_none() && self.hum.is_none() {
+            return;
+        }
+        let fit_logs = hum.taken_out(&fit_logs, fits);
+        let with = Fitter {
+            machine: self.machine,
+            set: &fit_logs,
+        };
+        let Ok(fit) = with.at(self.fit.state.clone()) else {
+            return;
+        };
+        (self.fit, self.known) = with.calibrated(fit, self.known.clone());
+        self.check_logs = hum.taken_out(&check_logs, &checks);
+        self.fit_logs = fit_logs;
+        self.hum = hum;
     }
 
     /// Fits what drives with a coarse command hold at the starts of the fitted logs.
