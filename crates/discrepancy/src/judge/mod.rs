@@ -59,7 +59,9 @@ use crate::estimate::fit::Fitter;
 use crate::estimate::known::{shown, tolerances};
 use crate::name::gap::gap;
 use crate::name::search::{Found, MATERIAL, is_form};
-use crate::noise::{Excess, MotionAndRest, excess, floors, log_noise, slow_noise, steady_bands};
+use crate::noise::{
+    Excess, Hum, MotionAndRest, excess, floors, log_noise, slow_noise, steady_bands,
+};
 
 /// A search's result in words, figures and pictures.
 #[derive(Clone, Debug)]
@@ -115,19 +117,21 @@ pub fn judged(
     let before_of = |set: &LogSet| -> Result<Rest, ReplayError> {
         Ok(set.rest(&set.simulate(machine, &initial)?))
     };
-    let (hum, base) = (&found.hum, &found.base.state);
     let fit = {
         let set = &found.fit_logs;
         let traces = set.simulate(machine, full)?;
         let after = set.rest(&traces);
         let slow = slow_noise(machine, set, full, &traces)?;
         let floors = slow.beside_floors(set, floors(machine, set, full, &after)?);
-        let as_filed = hum.out_of(machine, fit_logs, base)?;
+        let as_filed = Hum::as_in(set, fit_logs);
         gap(set, &before_of(&as_filed)?, &after, &floors)
     };
     let (as_filed, set) = match &found.test {
         Some(test) => (Cow::Borrowed(&test.as_filed), &test.fitted),
-        None => (hum.out_of(machine, check_logs, base)?, &found.check_logs),
+        None => {
+            let set = &found.check_logs;
+            (Cow::Owned(Hum::as_in(set, check_logs)), set)
+        }
     };
     let as_filed = as_filed.as_ref();
     let before = before_of(as_filed)?;
@@ -266,7 +270,13 @@ pub fn judged(
             let coloured = coloured.iter().map(Excess::note);
             let slow_of_loop = slow_of_loop.then(|| slow_of_loop_note(&check));
             let faster = faster_notes(machine, found, set, &traces);
-            let known = [notes(machine, found), faster, slow.notes(set), hum.notes()].concat();
+            let known = [
+                notes(machine, found),
+                faster,
+                slow.notes(set),
+                found.hum.notes(),
+            ]
+            .concat();
             let known = known.into_iter().chain(note_of_loop);
             let of_rest = coloured.chain(slow_of_loop);
             known.chain(of_rest).collect()

@@ -93,8 +93,8 @@ impl Gap {
 /// A channel's rest is significant beyond this multiple of its floor.
 const REST: f64 = 1.2;
 
-/// Multiple of the floor, as it is told from high frequencies, beyond which nobody would call a
-/// rest noise.
+/// Multiple of the floor, as it is told from high frequencies, beyond which a
+/// rest is no noise, whatever its colour, unless more is known of it.
 const COLOURED: f64 = 4.0;
 
 /// The same of a rest that does not follow the motion: noise of a low corner, or of steps in what the

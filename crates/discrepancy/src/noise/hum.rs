@@ -130,6 +130,16 @@ impl Hum {
         set
     }
 
+    /// These logs without what was taken out of `other`, which are the same ones: what two machines leave of
+    /// them is compared without one and the same hum.
+    pub(crate) fn as_in(other: &LogSet, set: &LogSet) -> LogSet {
+        let mut set = set.clone();
+        for (log, other) in set.logs.iter_mut().zip(&other.logs) {
+            log.hum.clone_from(&other.hum);
+        }
+        set
+    }
+
     /// These logs with everything that hums in them.
     pub(crate) fn put_back(set: &LogSet) -> LogSet {
         let mut set = set.clone();
@@ -352,6 +362,7 @@ mod tests {
         assert!((ratio - 5.5).abs() < 0.5, "{ratio}");
         assert!(of(&without, &known).is_none());
         assert_eq!(power(&Hum::put_back(&without)), power(&set));
+        assert_eq!(power(&Hum::as_in(&without, &set)), power(&without));
     }
 
     #[test]

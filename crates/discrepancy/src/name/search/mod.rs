@@ -122,7 +122,6 @@ fn searched(
         (&check_logs, &checks),
         &Hum::default(),
     );
-    let as_filed = hum.out_of(machine, as_filed, &base.state)?;
     if !hum.is_none() {
         fit_logs = hum.taken_out(&fit_logs, &base.traces);
         check_logs = hum.taken_out(&check_logs, &checks);
@@ -186,7 +185,7 @@ fn searched(
         };
         intervals = search.intervals()?;
     }
-    if let Some(refused) = search.refused(&as_filed, &without)? {
+    if let Some(refused) = search.refused(as_filed, &without)? {
         search = without.with_refused(refused);
         intervals = search.intervals()?;
     } else if search.lacks_evidence(&without, &intervals)? {

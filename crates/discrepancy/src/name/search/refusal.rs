@@ -1,6 +1,6 @@
 //! What makes check motion worse is not given.
 
-use axis_sim::ReplayError;
+use axis_sim::{ReplayError, Trace};
 
 use super::form::is_form;
 use super::intervals::Intervals;
@@ -9,7 +9,7 @@ use super::types::{Named, RefusalReason, Refused, RunnerUp};
 use crate::answers::{LogSet, State};
 use crate::estimate::columns::free_parameters;
 use crate::name::gap::{Gap, gap, worsened};
-use crate::noise::{MotionAndRest, floors};
+use crate::noise::{Hum, MotionAndRest, floors};
 
 /// Share of the gap above the noise, RMS on check motion, that all named effects together
 /// must take away: what leaves more than half of it explains something else.
@@ -35,9 +35,11 @@ impl Search<'_> {
         let after = set.rest(&self.check.traces);
         let floors = floors(self.machine, set, &self.check.state, &after)?;
         let initial = State::initial(self.machine);
+        // The hum may be another since.
+        let before = |logs: &LogSet, traces: &[Trace]| Hum::as_in(set, logs).rest(traces);
         let befores = [
-            as_filed.rest(&as_filed.simulate(self.machine, &initial)?),
-            without.check_logs.rest(&without.check.traces),
+            before(as_filed, &as_filed.simulate(self.machine, &initial)?),
+            before(&without.check_logs, &without.check.traces),
         ];
         for before in &befores {
             if let Some(channels) = worsened(set, before, &after, &floors) {

@@ -280,7 +280,7 @@ impl Found {
     #[must_use]
     pub fn tested_on(mut self, machine: &Axis, logs: LogSet) -> Self {
         // What does not run is compared as it is.
-        let without_hum = self.hum.out_of(machine, &logs, &self.base.state);
+        let without_hum = self.hum.out_of(machine, &logs, &self.fit.state);
         let logs = without_hum.map_or_else(|_| logs.clone(), Cow::into_owned);
         let mut fitted = logs.clone();
         // What does not run in the exact way is compared without it.
