@@ -100,6 +100,14 @@ fn a_law_of_no_library_is_said_in_a_formula_and_not_put_together_from_others() {
     assert_eq!(faster.count(), 1, "{:?}", told.notes);
 }
 
+/// A spring against a load imitates a force that turns at a place; a curve over the position does better.
+#[test]
+fn a_step_along_the_way_is_not_put_together_from_a_spring_and_a_load() {
+    let told = balanced("edge");
+    assert_eq!(told.verdict, Verdict::Unknown, "{}", told.sentence);
+    assert_eq!(told.unknown.unwrap().depends_on, "position");
+}
+
 /// What the file's controller does not give, one with a low pass of the speed does, whatever the
 /// machine hides.
 #[test]

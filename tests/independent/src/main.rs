@@ -17,7 +17,7 @@ struct Options {
     /// Case; all where none is given, each in a folder of its name
     #[arg(long, value_name = "NAME")]
     case: Option<String>,
-    /// A slide on a linear motor instead, with this hidden: nothing, ripple, cable or drag
+    /// A slide on a linear motor instead, with this hidden
     #[arg(long, value_name = "NAME", conflicts_with = "case", value_parser = SLIDE_CASES.map(|(name, _)| name))]
     slide: Option<String>,
     /// Seed of noise and of parameters put off

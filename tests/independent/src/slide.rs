@@ -62,16 +62,20 @@ pub struct SlideHidden {
     pub cable: f64,
     /// Drag by the square of the speed, N·s²/m².
     pub drag: f64,
+    /// Force (N) that turns at a place (m) along the way, over a width (m).
+    pub edge: [f64; 3],
 }
 
 /// What may be hidden in a slide, by name.
-pub const SLIDE_CASES: [(&str, SlideHidden); 4] = {
+pub const SLIDE_CASES: [(&str, SlideHidden); 5] = {
     let none = SlideHidden {
         ripple: [0.0; 3],
         cable: 0.0,
         drag: 0.0,
+        edge: [0.0; 3],
     };
     let ripple = [9.0, 0.024, 0.7];
+    let edge = [60.0, 0.35, 0.01];
     [
         ("nothing", none),
         ("ripple", SlideHidden { ripple, ..none }),
@@ -83,6 +87,7 @@ pub const SLIDE_CASES: [(&str, SlideHidden); 4] = {
             },
         ),
         ("drag", SlideHidden { drag: 40.0, ..none }),
+        ("edge", SlideHidden { edge, ..none }),
     ]
 };
 
@@ -108,7 +113,12 @@ impl SlideHidden {
             true => amplitude * (TAU * y / length + phase).sin(),
             false => 0.0,
         };
-        ripple + self.cable * (y - 0.1) + self.drag * v * v.abs()
+        let [turning, place, width] = self.edge;
+        let edge = match width > 0.0 {
+            true => turning * ((y - place) / width).tanh(),
+            false => 0.0,
+        };
+        ripple + self.cable * (y - 0.1) + self.drag * v * v.abs() + edge
     }
 }
 

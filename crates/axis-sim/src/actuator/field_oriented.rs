@@ -178,6 +178,44 @@ fn weakening(v: &Values) -> Result<Option<[f64; 3]>, PartError> {
     Ok(Some([gain, current, share]))
 }
 
+/// Refuses gains (V/A, V/(A·s)) with which a current loop is unstable.
+///
+/// A winding under a voltage that is held over the period T is the discrete lag
+///
+/// ```text
+/// i' = a i + b u,   a = exp(−R T / L),   b = (1 − a) / R
+/// ```
+///
+/// and with a PI controller, which integrates before it gives its output, a pole leaves the unit circle at
+/// −1 where k_p + k_i T / 2 reaches (1 + a) / b; no other does earlier (Jury's conditions).
+fn current_loop(
+    key: &'static str,
+    [proportional, integral]: [f64; 2],
+    inductance: f64,
+    resistance: f64,
+    period: f64,
+) -> Result<(), PartError> {
+    let decay = resistance * period / inductance;
+    let a = (-decay).exp();
+    // (1 − a) / R, which is T / L without resistance.
+    let b = match decay > 1e-9 {
+        true => -(-decay).exp_m1() / resistance,
+        false => period / inductance,
+    };
+    let most = (1.0 + a) / b - 0.5 * integral * period;
+    if proportional < most {
+        return Ok(());
+    }
+    let [gain, hertz, millihenry, most] =
+        [proportional, 1.0 / period, 1e3 * inductance, most.max(0.0)].map(crate::SixDigits);
+    Err(PartError::together(
+        format!(
+            "has a frequency of {hertz} Hz, at which {key} = {gain} V/A makes the current of a winding of {millihenry} mH unstable"
+        ),
+        format!("the frequency of the drive's current controller, or less than {most} V/A"),
+    ))
+}
+
 impl Actuator for FieldOriented {
     fn effort(&self) -> Effort {
         Effort::Current
@@ -212,6 +250,25 @@ impl Actuator for FieldOriented {
             voltage: self.limits.voltage,
         };
         (field_oriented, self.delay)
+    }
+
+    fn runs_at(&self, period: f64) -> Result<(), PartError> {
+        let motor = self.motor.parameters();
+        let g = &self.gains;
+        current_loop(
+            D_PROPORTIONAL.name,
+            [g.d_p, g.d_i],
+            motor.inductance_d,
+            motor.resistance,
+            period,
+        )?;
+        current_loop(
+            Q_PROPORTIONAL.name,
+            [g.q_p, g.q_i],
+            motor.inductance_q,
+            motor.resistance,
+            period,
+        )
     }
 
     fn start(&self, on: &Surroundings) -> Result<Box<dyn Actuating>, PartError> {
@@ -326,5 +383,52 @@ impl State {
         }
         .clarke()
         .park(at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::current_loop;
+
+    /// Whether a current that is 1 A off is less than that after 4000 periods.
+    fn settles([p, i]: [f64; 2], inductance: f64, resistance: f64, period: f64) -> bool {
+        let (mut current, mut integral) = (1.0_f64, 0.0);
+        for _ in 0..4000 {
+            integral -= i * period * current;
+            let voltage = integral - p * current;
+            // The winding, in steps that are short beside its time constant.
+            let steps = 200;
+            for _ in 0..steps {
+                let h = period / f64::from(steps);
+                let rate = |x: f64| (voltage - resistance * x) / inductance;
+                current += h * rate(current + 0.5 * h * rate(current));
+            }
+        }
+        current.abs() < 1.0
+    }
+
+    #[test]
+    fn a_gain_is_refused_from_where_the_current_swings_up() {
+        for (resistance, integral) in [(2.0, 10_000.0), (0.0, 0.0), (40.0, 0.0), (2.0, 60_000.0)] {
+            let (inductance, period) = (0.018, 5e-4);
+            let edge = {
+                let is_refused = |p: f64| {
+                    current_loop("p", [p, integral], inductance, resistance, period).is_err()
+                };
+                let (mut low, mut high) = (0.0, 1000.0);
+                assert!(!is_refused(low) && is_refused(high));
+                while high - low > 1e-3 {
+                    let middle = 0.5 * (low + high);
+                    *(if is_refused(middle) {
+                        &mut high
+                    } else {
+                        &mut low
+                    }) = middle;
+                }
+                low
+            };
+            let at = |share: f64| settles([share * edge, integral], inductance, resistance, period);
+            assert!(at(0.99) && !at(1.01), "{edge} V/A");
+        }
     }
 }

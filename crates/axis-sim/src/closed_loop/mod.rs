@@ -154,6 +154,7 @@ impl ClosedLoop {
         let way = axis.simulation.way;
         let plant = axis.mechanism.plant(way, step, assembly)?;
         // Refused here, so that no run can be.
+        axis.actuator.runs_at(axis.period)?;
         axis.actuator.start(&axis.surroundings())?;
         axis.control.start(&axis.surroundings())?;
         Ok(Self {

@@ -45,6 +45,9 @@ const CASES: &[Case] = &[
         &["a notch at 3601 Hz", "sampled at 8000 Hz", "at most 3600 Hz"]),
     case(["rack.toml", "position_rate_khz = 4", "speed_rate_khz = 2\nspeed_lowpass_hz = 901"], "[control]", "control",
         &["a lowpass at 901 Hz", "sampled at 2000 Hz", "at most 900 Hz"]),
+    // A current loop that is too slow for its gain.
+    case(["linear-motor.toml", "frequency_khz = 10", "frequency_khz = 2"], "[control]", "control",
+        &["2000 Hz", "current_d_proportional = 90 V/A", "18 mH unstable", "current controller, or less than 68."]),
     // Numbers and units that do not fit the mechanism.
     case(["joint.toml", "ratio = 100", "ratio = 0"], "ratio = 0", "mechanism.ratio", &["is 0", "from 0.01 to 10000"]),
     case(["joint.toml", "minimum_deg = -120", "minimum_mm = -120"], "minimum_mm", "stroke.minimum_mm",

@@ -109,10 +109,9 @@ impl Short {
     /// In words, for a load that moves like this.
     pub(super) fn formula(&self, freedom: Freedom) -> String {
         let Term { words, unit, .. } = self.term;
-        let about = if words.contains('x') {
-            format!(", x from {:.3} {}", self.middle, turned("m", freedom))
-        } else {
-            String::new()
+        let about = match has_place(words) {
+            true => format!(", x from {:.3} {}", self.middle, turned("m", freedom)),
+            false => String::new(),
         };
         let what = match self.place {
             Place::Force => "force",
@@ -121,6 +120,12 @@ impl Short {
         let number = said(self.number, turned(unit, freedom));
         format!("{what} = c · {words}{about}, c = {number} (empirical)")
     }
+}
+
+/// Whether the place x is in a formula, as which letters of a function's name do not count.
+fn has_place(formula: &str) -> bool {
+    let mut names = formula.split(|c: char| !c.is_alphabetic());
+    names.any(|name| name == "x")
 }
 
 /// A number and its 95 % interval from its standard deviation, in this unit.
@@ -166,13 +171,23 @@ fn turned(unit: &str, freedom: Freedom) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Freedom, said, turned};
+    use super::{Freedom, has_place, said, turned};
 
     #[test]
     fn what_turns_has_torques_and_angles() {
         assert_eq!(turned("N·s²/m²", Freedom::Linear), "N·s²/m²");
         assert_eq!(turned("N·s²/m²", Freedom::Rotary), "N·m·s²/rad²");
         assert_eq!(turned("1/m", Freedom::Rotary), "1/rad");
+    }
+
+    #[test]
+    fn a_formula_says_from_where_it_counts_the_place_that_is_in_it() {
+        assert!(
+            ["x", "x²", "x·v", "t·x", "x·sign v"]
+                .into_iter()
+                .all(has_place)
+        );
+        assert!(!["exp(−t / 3 s)·sign v", "v³"].into_iter().any(has_place));
     }
 
     #[test]

@@ -26,8 +26,8 @@ pub struct Unknown {
     pub channel: String,
     /// On what it depends, as far as one variable shows it.
     pub depends_on: String,
-    /// A short term with its number, empirical; `None` where none does nearly
-    /// as much as the curve.
+    /// A short term over the same with its number, empirical; `None` where none does
+    /// nearly as much as the curve.
     pub formula: Option<String>,
     /// The curve.
     pub curve: Curve,
@@ -144,6 +144,8 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
         return Ok(None);
     }
     let (shape, freedom) = (&curves.shapes[index].0, machine.freedom());
+    // One over something else says less than the curve, and would contradict it.
+    let short = short.filter(|(_, (of_it, ..))| *of_it == index);
     Ok(Some(Unknown {
         channel: shape.place.name().to_owned(),
         depends_on: shape.depends_on(),

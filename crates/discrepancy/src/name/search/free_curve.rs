@@ -19,6 +19,11 @@ use crate::spectrum::Amplitudes;
 /// room for a law whose form differs.
 const SHARE: f64 = 0.5;
 
+/// The same of two effects that are named at once, as neither is worth anything alone: together they
+/// imitate much that is neither of them, a step along the way as a spring against a load. Two that are
+/// there do as well as any curve; the rest is for noise.
+const SHARE_OF_TWO: f64 = 0.9;
+
 /// Fall of D that a curve brings by chance, a knot.
 const BY_CHANCE: f64 = 4.0;
 
@@ -72,7 +77,7 @@ impl<'a> FreeCurves<'a> {
     /// Whether what was refined explains about as much as the best curve over what it
     /// depends on, or more: in the linearised model, as the curves are solved, or by what is
     /// simulated on the check logs, where D of the effect falls by `held_out`. Of a gap that is
-    /// large the linearised model is a poor one, of both.
+    /// large the linearised model is a poor one, of both. Of two effects at once both are asked.
     pub(super) fn are_matched_by(&self, refined: &Refined, held_out: f64) -> bool {
         let pair = self.search.fit.rest.iter().zip(&refined.fit.rest);
         let does: Amplitudes = pair
@@ -89,6 +94,9 @@ impl<'a> FreeCurves<'a> {
         });
         let name = refined.parts.first().map_or("", |p| p.effect.name);
         tracing::debug!(name, gain, curve, held_out, told, "beside a free curve");
-        gain >= SHARE * curve || held_out >= told
+        match refined.parts.as_slice() {
+            [_] => gain >= SHARE * curve || held_out >= told,
+            _ => gain >= SHARE_OF_TWO * curve && held_out >= SHARE_OF_TWO * told,
+        }
     }
 }

@@ -3,7 +3,7 @@
 use axis_sim::effects::{ActiveEffect, Effect};
 use rayon::prelude::*;
 
-use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE};
+use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE, enough};
 use super::form::own_before_directions;
 use super::free_curve::FreeCurves;
 use super::promise::{PROMISING, Promises, WORTH};
@@ -60,6 +60,8 @@ impl Search<'_> {
         own_before_directions(&mut refined);
         let fitter = self.fitter();
         let curves = FreeCurves::new(self, &fitter, &own);
+        // Of what is not material, by how much D falls on the fitted and on the check logs.
+        let mut immaterial: Vec<[f64; 2]> = Vec::new();
         // Where the best does not hold on other motion, the next may.
         let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
             let is_effect = awaited.is_empty() && !candidate.is_form();
@@ -79,11 +81,21 @@ impl Search<'_> {
             if is_effect && is_other() {
                 return None;
             }
-            let holds = !awaited.is_empty()
-                || self.proves_itself(candidate, held_out)
-                    && self.worsens_none(&check)
-                    && self.is_material(&check);
-            holds.then_some((place, check))
+            if awaited.is_empty() {
+                let holds = self.proves_itself(candidate, held_out) && self.worsens_none(&check);
+                if !holds {
+                    return None;
+                }
+                let falls = [candidate.gain, held_out];
+                if immaterial.iter().any(|little| is_no_more(falls, *little)) {
+                    return None;
+                }
+                if !self.is_material(&check) {
+                    immaterial.push(falls);
+                    return None;
+                }
+            }
+            Some((place, check))
         });
         let Some((place, check)) = proven else {
             let alone = refined
@@ -254,5 +266,24 @@ impl Search<'_> {
             rest.iter().flat_map(|log| &log[c]).map(|r| r * r).sum()
         };
         (0..self.check_logs.channels.len()).all(|c| power(&after, c) <= WORSE * power(&before, c))
+    }
+}
+
+/// Whether by its falls of D on the fitted and on the check logs something is no more than what is simpler:
+/// the more numbers of a look-alike bring it over a limit that what it imitates is below.
+fn is_no_more([gain, held_out]: [f64; 2], [simpler, simpler_held_out]: [f64; 2]) -> bool {
+    enough(gain) <= simpler && held_out <= simpler_held_out + LEAST_HELD_OUT
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_no_more;
+
+    #[test]
+    fn a_look_alike_of_something_small_is_small_and_what_tells_more_is_not() {
+        // A load of 3 % of the gap, and asymmetric friction that is the same.
+        assert!(is_no_more([66.2, 24.2], [63.7, 25.2]));
+        assert!(!is_no_more([120.0, 24.2], [63.7, 25.2]));
+        assert!(!is_no_more([66.2, 60.0], [63.7, 25.2]));
     }
 }
