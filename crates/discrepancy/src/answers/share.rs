@@ -142,7 +142,7 @@ impl LogSet {
 
     /// Moves what the drive holds at the start of each log, where that is the mean of a noisy or
     /// coarse command, to where the log is most likely beside this state: by parabolas through
-    /// three points, from where the last one led, by no more than [`REACH`].
+    /// three points, from where the last one led, by no more than [`REACH`] from what is shown.
     ///
     /// # Errors
     /// [`ReplayError`] where the machine does not run.
@@ -152,7 +152,13 @@ impl LogSet {
         if noise.iter().all(|n| *n <= 0.0) {
             return Ok(());
         }
-        // Of shares of the noise.
+        // Reached so far, of what is shown: shares of the noise, as all moves here.
+        let reached = |(log, noise): (&Prepared, &f64)| {
+            let held = held_effort(log.answer.replay()?)?;
+            (*noise > 0.0).then_some((held - log.shown_effort?) / noise)
+        };
+        let reached = self.logs.iter().zip(&noise).map(reached);
+        let reached: Vec<f64> = reached.map(Option::unwrap_or_default).collect();
         let misfits = |moves: &[f64]| -> Result<Vec<f64>, ReplayError> {
             let moves: Vec<f64> = moves.iter().zip(&noise).map(|(by, n)| by * n).collect();
             let set = self.with_efforts_moved(&moves);
@@ -170,7 +176,8 @@ impl LogSet {
                     true => -0.5 * STEP * slope / bend,
                     false => -STRIDE * slope.signum(),
                 };
-                (moves[i] + by).clamp(-REACH, REACH)
+                let to = (reached[i] + moves[i] + by).clamp(-REACH, REACH);
+                to - reached[i]
             };
             let next: Vec<f64> = (0..moves.len()).map(to).collect();
             let there = misfits(&next)?;
@@ -273,4 +280,60 @@ fn misfit(log: &[Vec<f64>]) -> f64 {
         n * square.max(f64::MIN_POSITIVE).ln()
     };
     log.iter().map(channel).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use axis_log::{Channel, Log};
+    use axis_sim::effects::{ActiveEffect, Effect};
+    use axis_sim::{Axis, ClosedLoop, Recorder};
+    use compensator::NoCompensation;
+    use trajectories::{Limits, Program, Step};
+
+    use super::{LogSet, REACH, State, held_effort};
+
+    /// The paper's axis under a load that its file does not have: whatever is held at the start makes
+    /// up for a part of it, and is looked for beside each state that a search comes to.
+    #[test]
+    fn what_is_held_at_the_start_stays_near_what_the_log_shows() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
+        let machine = Axis::read(file.as_ref()).unwrap();
+        let mut loaded = machine.clone();
+        loaded.effects.push(ActiveEffect {
+            effect: Effect::named("constant-load").unwrap(),
+            values: vec![-14.4],
+        });
+        let from = machine.stroke.start;
+        let rest = Step::Dwell { duration: 0.3 };
+        let limits = Limits::new(0.05, 0.5, 10.0).unwrap();
+        let to = |to: f64| Step::Move { to, limits };
+        let steps = vec![rest, to(from + 0.01), rest, to(from), rest];
+        let program = Program::new(from, steps).unwrap();
+        let mut recorder = Recorder::new(&loaded);
+        ClosedLoop::new(&loaded)
+            .unwrap()
+            .run(&program, &mut NoCompensation, |c| recorder.push(c))
+            .completed()
+            .unwrap();
+        // Loads come up with the first samples.
+        let channel =
+            |c: &Channel| Channel::new(c.name.clone(), c.samples[1000..].to_vec()).unwrap();
+        let log = recorder.log().unwrap();
+        let log = Log::new(log.channels().iter().map(channel).collect()).unwrap();
+        let logs = vec![("log".to_owned(), log, machine.period)];
+        let mut set = LogSet::new(logs, &machine).unwrap();
+        let mut moved = Vec::new();
+        for _ in 0..4 {
+            set.find_effort(&machine, &State::initial(&machine))
+                .unwrap();
+            let log = &set.logs[0];
+            let held = held_effort(log.answer.replay().unwrap()).unwrap();
+            let noise = set.efforts_shown(&machine)[0].unwrap().noise;
+            moved.push((held - log.shown_effort.unwrap()) / noise);
+        }
+        println!("{moved:?}");
+        assert!(moved[0].abs() > 0.5 * REACH, "{moved:?}");
+        let most = REACH * (1.0 + 1e-9);
+        assert!(moved.iter().all(|by| by.abs() <= most), "{moved:?}");
+    }
 }

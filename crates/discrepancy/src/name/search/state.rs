@@ -150,15 +150,17 @@ impl Search<'_> {
                 machine: self.machine,
                 set: &corrected,
             };
-            // An axis that vibrates by itself does so with another phase in
-            // every simulation, and the difference of two is no defect.
-            if let Ok(better) = with.at(fit.state.clone())
-                && better.deviance < fit.deviance
-            {
-                self.fit = with.refine(better, &known, 4);
-                self.fit_logs = corrected;
-            } else {
-                self.fit = fit;
+            // What was fitted beside another beginning of a log may have made up for it. An axis that
+            // vibrates by itself does so with another phase in every simulation, and the difference of
+            // two is no defect.
+            let there = with.at(fit.state.clone()).ok();
+            let there = there.map(|there| with.refine(there, &known, 4));
+            match there.filter(|there| there.deviance < fit.deviance) {
+                Some(better) => {
+                    self.fit = better;
+                    self.fit_logs = corrected;
+                }
+                None => self.fit = fit,
             }
         } else {
             self.fit = fit;
