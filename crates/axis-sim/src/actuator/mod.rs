@@ -133,12 +133,11 @@ pub trait Actuator: fmt::Debug + Send + Sync {
         (lag, 0.0)
     }
 
-    /// Whether its own controllers are stable where they run once in each `period`, s.
+    /// Whether its own controllers are stable where they run once in each period, s.
     ///
     /// # Errors
     /// [`PartError`] where a gain is too high for so slow a controller.
-    fn runs_at(&self, period: f64) -> Result<(), PartError> {
-        let _ = period;
+    fn runs_at(&self, _: f64) -> Result<(), PartError> {
         Ok(())
     }
 

@@ -45,13 +45,19 @@ const STEP: f64 = 5e-5;
 pub fn command(options: &Options) -> Result<()> {
     let mut machine = Axis::read(&options.axis)?;
     let frequency = frequency(options, &machine)?;
+    // Said before anything is computed: a file with such a `[control]` could not be read.
+    let period = frequency.map_or(machine.period, f64::recip);
+    machine.actuator.runs_at(period).map_err(|e| {
+        let (file, what, valid) = (options.axis.display(), &e.what, &e.valid);
+        miette!("{file}: the controller {what}; valid: {valid}")
+    })?;
     let mut notes = Vec::new();
     let fit = read_all(&options.fit, &machine, &mut notes)?;
     let check = read_all(&options.check, &machine, &mut notes)?;
     check_distinct(&fit, &check).into_diagnostic()?;
     notes.iter().for_each(note);
-    if let Some(frequency) = frequency {
-        machine.period = 1.0 / frequency;
+    if frequency.is_some() {
+        machine.period = period;
         machine.simulation.step = machine.simulation.step.min(STEP);
     }
     let found = estimate(&machine, &fit, &check).into_diagnostic()?;
