@@ -154,8 +154,8 @@ impl LogSet {
         }
         // Reached so far, of what is shown: shares of the noise, as all moves here.
         let reached = |(log, noise): (&Prepared, &f64)| {
-            let held = held_effort(log.answer.replay()?)?;
-            (*noise > 0.0).then_some((held - log.shown_effort?) / noise)
+            let moved = effort_moved(log)?;
+            (*noise > 0.0).then_some(moved / noise)
         };
         let reached = self.logs.iter().zip(&noise).map(reached);
         let reached: Vec<f64> = reached.map(Option::unwrap_or_default).collect();
@@ -214,7 +214,7 @@ impl LogSet {
     pub(crate) fn coarse_efforts(&self, machine: &Axis) -> Option<Vec<[f64; 2]>> {
         let room = |(log, shown): (&Prepared, Option<EffortShown>)| {
             let most = REACH * shown.filter(|s| s.is_coarse)?.noise;
-            let moved = held_effort(log.answer.replay()?)? - log.shown_effort?;
+            let moved = effort_moved(log)?;
             Some([-most - moved, most - moved])
         };
         let rooms = self.logs.iter().zip(self.efforts_shown(machine)).map(room);
@@ -271,6 +271,12 @@ impl LogSet {
     }
 }
 
+/// By how much what the drive holds at the start of a log is more than the log shows, in the actuator's
+/// unit; `None` where that is not held, or not shown.
+fn effort_moved(log: &Prepared) -> Option<f64> {
+    Some(held_effort(log.answer.replay()?)? - log.shown_effort?)
+}
+
 /// Minus twice the log-likelihood of channels with white rests of unknown variance, but for
 /// a constant.
 fn misfit(log: &[Vec<f64>]) -> f64 {
@@ -290,7 +296,7 @@ mod tests {
     use compensator::NoCompensation;
     use trajectories::{Limits, Program, Step};
 
-    use super::{LogSet, REACH, State, held_effort};
+    use super::{LogSet, REACH, State, effort_moved};
 
     /// The paper's axis under a load that its file does not have: whatever is held at the start makes
     /// up for a part of it, and is looked for beside each state that a search comes to.
@@ -326,10 +332,8 @@ mod tests {
         for _ in 0..4 {
             set.find_effort(&machine, &State::initial(&machine))
                 .unwrap();
-            let log = &set.logs[0];
-            let held = held_effort(log.answer.replay().unwrap()).unwrap();
             let noise = set.efforts_shown(&machine)[0].unwrap().noise;
-            moved.push((held - log.shown_effort.unwrap()) / noise);
+            moved.push(effort_moved(&set.logs[0]).unwrap() / noise);
         }
         println!("{moved:?}");
         assert!(moved[0].abs() > 0.5 * REACH, "{moved:?}");
