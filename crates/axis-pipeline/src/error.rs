@@ -38,6 +38,9 @@ pub enum PipelineError {
     /// A compensation strategy cannot be set up.
     #[error("the compensation cannot be set up: {0}")]
     Compensator(#[from] compensator::CompensatorError),
+    /// No plan can be made of the axis.
+    #[error("no plan can be made of the axis: {0}")]
+    Belief(#[from] axis_sim::BeliefError),
     /// No feedback can be designed for the axis.
     #[error(
         "no feedback can be designed for this axis; valid: a strategy without one, such as plan or adaptive"

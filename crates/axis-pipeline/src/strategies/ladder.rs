@@ -129,7 +129,7 @@ impl Ladder {
     }
 
     fn designed(&self, model: &DriveModel) -> Result<FeedbackDesign, PipelineError> {
-        let mechanism = &self.axis.mechanism;
+        let mechanism = self.axis.planned_mechanism()?;
         let stroke = &self.axis.stroke;
         let modes = |share: f64| {
             let x = stroke.minimum + share * (stroke.maximum - stroke.minimum);
