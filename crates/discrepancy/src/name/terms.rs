@@ -267,8 +267,10 @@ fn install(values: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
     let laws = term.into_iter().flat_map(|t| [Some(t.value), t.beside]);
     let sizes = each.chunks_exact(EACH).map(|of| of[1] / of[0]);
     let parts: Vec<(Value, f64)> = laws.flatten().zip(sizes).collect();
+    // What has a direction comes on through the bristle, as the library's dry friction does.
     to.load(move |t: &TableState| {
-        let of = |(law, by): &(Value, f64)| by * at(*law, t.time, t.position - middle, t.speed);
+        let of =
+            |(law, by): &(Value, f64)| by * law(t.time, t.position - middle, t.speed, t.bristle);
         t.pressed * parts.iter().map(of).sum::<f64>()
     });
     Ok(())
@@ -308,5 +310,22 @@ mod tests {
                 .iter()
                 .all(|term| term.as_effect(&motions).is_none())
         );
+    }
+
+    /// A jump at rest, or an onset of another length than the bristle's, would be a second law beside
+    /// the one that is said.
+    #[test]
+    fn what_has_a_direction_comes_on_with_the_bristle() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
+        let axis = axis_sim::Axis::read(file.as_ref()).unwrap();
+        let root = &terms(Place::Force)[0];
+        let active = Term::sized(root.as_effect(&[course()]).unwrap(), &[200.0]);
+        let forces = axis.effect_forces(&[active]).unwrap();
+        let travel = axis.travel_per_radian();
+        for (speed, share) in [(1e-5, 0.1), (0.04, 1.0), (-0.04, -1.0), (-1e-5, 0.0)] {
+            let [_, force] = forces.at(0.0, speed / travel, 0.7, share);
+            let expected = 200.0 * f64::abs(speed).sqrt() * share;
+            assert!((force - expected).abs() < 1e-9, "{speed}: {force}");
+        }
     }
 }
