@@ -1,6 +1,7 @@
 //! One test program: acceptance across the crates, on real logs where they lie beside the project.
 
 mod balance;
+mod bench;
 mod emps;
 mod identification;
 mod independent_logs;

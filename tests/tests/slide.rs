@@ -22,7 +22,7 @@ fn axis() -> Axis {
     Axis::read(&root.join("data/axes/linear-motor.toml")).unwrap()
 }
 
-fn as_log(table: &Table) -> Log {
+pub(crate) fn as_log(table: &Table) -> Log {
     let column = |i: usize| table.rows.iter().map(|row| row[i]).collect();
     let channel = |(i, name): (usize, &&str)| Channel::new(*name, column(i)).unwrap();
     Log::new(table.names.iter().enumerate().map(channel).collect()).unwrap()

@@ -23,11 +23,12 @@
 //! ```
 //!
 //! [`slide_log`] is another machine, a slide on a linear motor whose drive has more in it than its axis file
-//! says.
+//! says. [`bench_log`] is a motor on a bench that never rests.
 //!
 //! [`cases`] holds the table of what is hidden; [`write_case`] writes one as two logs to
 //! fit, two to check, the axis file and the truth.
 
+mod bench;
 pub mod cases;
 mod chain;
 mod drive;
@@ -45,6 +46,7 @@ mod run;
 mod slide;
 mod truth;
 
+pub use bench::{BenchFriction, bench_log};
 pub use drive::{Command, Drive, Reading};
 pub use error::IndependentError;
 pub use hidden::{Bump, Cogging, Friction, Hidden, Periodic, Thermal};

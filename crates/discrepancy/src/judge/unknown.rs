@@ -140,7 +140,7 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
         Some((short, _)) => short.left().clone(),
         None => (curves.shapes[index].0).rest(machine, set, &check, solution.values.as_slice())?,
     };
-    if !is_material(machine, set, &check, &after, &[])? {
+    if !is_material(machine, set, &check, &after, || None, &[])? {
         return Ok(None);
     }
     let (shape, freedom) = (&curves.shapes[index].0, machine.freedom());

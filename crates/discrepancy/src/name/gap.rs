@@ -180,11 +180,19 @@ pub(crate) fn sizes(set: &LogSet, rest: &Rest) -> Vec<f64> {
     all.map(|c| mean_square(&counted, rest, c).sqrt()).collect()
 }
 
+/// Share of what is left above the noise, as power, that something may leave which takes the rest of
+/// a gap: half of its size.
+const OF_REST: f64 = 0.5;
+
 /// Whether what brought the rest from `before` to `after` is not small in some channel beside
 /// its noise, nor beside the `gap` that there was. D counts evidence, not size: it falls with
 /// the length of the logs, for what is far beneath their noise as well. Whether a channel came
 /// nearer is not asked: in noise that is common to several channels something may be plain by
 /// how they differ, and yet not bring any one of them nearer.
+///
+/// What was named before may have made up for most of it, as dry friction does for viscous. So
+/// beside the gap it counts by its own size where it takes most of what stands out of the noise
+/// yet: the rest would be `without` it if nothing else were changed.
 ///
 /// # Errors
 /// [`ReplayError`] where the machine does not run with noise.
@@ -193,23 +201,34 @@ pub(crate) fn is_material(
     set: &LogSet,
     before: &Fit,
     after: &Rest,
+    without: impl FnOnce() -> Option<Rest>,
     gap: &[f64],
 ) -> Result<bool, ReplayError> {
     let earlier = set.rest(&before.traces);
     let floors = floors(machine, set, &before.state, after)?;
     let counted = set.counted();
-    let changed = |c: usize| {
-        let change = |l: usize, k: usize| after[l][c][k] - earlier[l][c][k];
+    let change = |from: &Rest, c: usize| {
+        let change = |l: usize, k: usize| after[l][c][k] - from[l][c][k];
         mean(&counted, |l, k| change(l, k).powi(2)).sqrt()
     };
-    let least = |c: usize| {
-        let of_gap = OF_GAP * gap.get(c).copied().unwrap_or(0.0);
-        (MATERIAL_OF_NOISE * floors[c].rms).max(of_gap)
+    let of_noise = |c: usize| MATERIAL_OF_NOISE * floors[c].rms;
+    let of_gap = |c: usize| OF_GAP * gap.get(c).copied().unwrap_or(0.0);
+    let seen = |c: &usize| change(&earlier, *c) >= of_noise(*c).max(f64::MIN_POSITIVE);
+    let seen: Vec<usize> = (0..set.channels.len()).filter(seen).collect();
+    let of_gap_before = seen.iter().any(|&c| change(&earlier, c) >= of_gap(c));
+    let takes_rest = |c: usize| {
+        let [before, after] = [&earlier, after].map(|rest| mean_square(&counted, rest, c));
+        let above = |power: f64| power - floors[c].rms.powi(2);
+        before > (REST * floors[c].rms).powi(2) && above(after) <= OF_REST * above(before)
     };
-    let most = (0..set.channels.len()).map(|c| changed(c) / least(c).max(f64::MIN_POSITIVE));
-    let most = most.fold(0.0, f64::max);
-    tracing::debug!(most, "changed on check logs, of what is material");
-    Ok(most >= 1.0)
+    let by_itself = || {
+        let takers: Vec<usize> = seen.iter().copied().filter(|&c| takes_rest(c)).collect();
+        let without = (!takers.is_empty()).then(without).flatten();
+        without.is_some_and(|without| takers.iter().any(|&c| change(&without, c) >= of_gap(c)))
+    };
+    let material = of_gap_before || by_itself();
+    tracing::debug!(material, of_gap_before, ?seen, "material on check logs");
+    Ok(material)
 }
 
 /// Channels that are further off after something was done than before, beyond what noise

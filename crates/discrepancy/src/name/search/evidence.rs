@@ -48,6 +48,10 @@ pub(super) const EQUAL: f64 = 15.0;
 /// Fall of D that further parameters may bring by chance.
 pub(super) const BY_CHANCE: f64 = 25.0;
 
+/// Fall of D that one further number brings by chance in one of a hundred cases, as χ² with
+/// one degree of freedom.
+pub(super) const BY_ONE_NUMBER: f64 = 6.6;
+
 /// Fall of D of something simpler from which on it is taken instead of what brings
 /// `best`: further parameters must bring a hundredth of the whole, and no less than
 /// chance could.

@@ -10,7 +10,7 @@ use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, ONSET_FORM, ONSET_KNOTS, OnsetForm, Scales};
 use rayon::prelude::*;
 
-use super::evidence::BY_CHANCE;
+use super::evidence::{BY_CHANCE, BY_ONE_NUMBER};
 use super::refined::Refined;
 use super::state::Search;
 use super::types::Named;
@@ -33,6 +33,9 @@ const INSTEAD_OF_MEMORY: f64 = 0.6;
 /// Share of what slip with a memory and a level each way explain that it must explain with one
 /// level to be taken instead; what is a thirtieth of a gap is not named beside it either.
 const OF_ONE_LEVEL: f64 = 0.97;
+
+/// Share of the way on which the axis' own friction comes on that slip with a memory must take.
+const OF_OWN_WAY: f64 = 0.1;
 
 /// Whether an active effect is a form of another.
 pub(crate) fn is_form(active: &ActiveEffect) -> bool {
@@ -119,6 +122,16 @@ impl Refined {
         self.parts.len() == 2 && has(WITH_MEMORY) && has(other)
     }
 
+    /// Whether it has dry friction of one level alone.
+    fn is_plain(&self) -> bool {
+        self.parts.iter().all(|p| p.effect.name == PLAIN)
+    }
+
+    /// Whether it is a dry friction that comes on through the bristle, alone.
+    fn is_dry(&self) -> bool {
+        matches!(self.parts.as_slice(), [one] if DRY.contains(&one.effect.name))
+    }
+
     /// Whether it is a form of the axis' own dry friction, and not of an effect that is there.
     fn is_form_of_own(&self) -> bool {
         let effects = &self.fit.state.effects;
@@ -181,6 +194,16 @@ impl Search<'_> {
             || has(FALL) && (rises || sliding + fall < 0.0)
     }
 
+    /// Whether a candidate is slip with a memory that takes up next to no way: dry friction that comes on
+    /// sooner than the file says.
+    pub(super) fn hardly_remembers(&self, candidate: &Refined) -> bool {
+        let friction = &self.machine.friction;
+        let lever = friction.lever(self.machine.travel_per_radian());
+        let own = lever / friction.unit.parameters().stiffness;
+        let mut added = candidate.added().iter();
+        added.any(|a| a.effect.name == WITH_MEMORY && a.values[1] < OF_OWN_WAY * own)
+    }
+
     /// Whether an effect is dry friction in another form beside one that is there, or a fall
     /// with speed beside a form, whose curve over speed has it: the two would share what is one
     /// friction.
@@ -210,8 +233,9 @@ const WITH_MEMORY: &str = "maxwell-slip-hysteresis";
 impl Search<'_> {
     /// Effects before a form that explains hardly more. But of the axis' own friction a form goes
     /// before a fall of the other sign: that is the same friction, which comes on with speed. Slip
-    /// with a memory goes behind dry friction that does most of what it does, unless it does more
-    /// than that friction in any form.
+    /// with a memory goes behind dry friction, whatever that does, as the way on which it comes on may be
+    /// wrong in the file, or else behind what does most of what it does; unless it does more than that
+    /// with a form.
     pub(super) fn effects_before_forms(&self, refined: &mut [Refined]) {
         let has_form = refined.iter().any(Refined::is_form_of_own);
         let is_own = |r: &Refined| has_form && r.is_rise();
@@ -234,8 +258,14 @@ impl Search<'_> {
             false => INSTEAD,
         };
         let least = share * first.gain;
-        let mut all = refined.iter();
-        let Some(at) = all.position(|r| !is_other(r) && r.gain >= least) else {
+        let place = |of: &dyn Fn(&Refined) -> bool| refined.iter().position(of);
+        let dry = || {
+            let best = place(&Refined::is_dry).filter(|_| with_memory)?;
+            let near = refined[best].gain - BY_ONE_NUMBER;
+            place(&|r| r.is_dry() && r.is_plain() && r.gain >= near).or(Some(best))
+        };
+        let other = || place(&|r| !is_other(r) && r.gain >= least);
+        let Some(at) = dry().or_else(other) else {
             return;
         };
         if !(with_memory && self.outdoes_all_forms(first, &refined[at])) {

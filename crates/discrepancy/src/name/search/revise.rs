@@ -8,7 +8,7 @@
 
 use axis_sim::effects::{ActiveEffect, Effect};
 
-use super::evidence::{BY_CHANCE, MATERIAL};
+use super::evidence::{BY_CHANCE, BY_ONE_NUMBER, MATERIAL};
 use super::form::is_form;
 use super::intervals::Intervals;
 use super::promise::Promises;
@@ -22,10 +22,6 @@ use crate::estimate::spread::over_noise;
 /// Share of what an effect brings, or promises, that another must promise in its place before
 /// that is tried.
 pub(super) const RIVAL: f64 = 0.5;
-
-/// Fall of D that one further number brings by chance in one of a hundred cases, as χ² with
-/// one degree of freedom.
-const BY_ONE_NUMBER: f64 = 6.6;
 
 /// Effects of two levels, and those of one.
 const ONE_OF_TWO: [(&str, &str); 2] = [

@@ -90,7 +90,7 @@ impl Search<'_> {
                 if immaterial.iter().any(|little| is_no_more(falls, *little)) {
                     return None;
                 }
-                if !self.is_material(&check) {
+                if !self.is_material(candidate, &check) {
                     immaterial.push(falls);
                     return None;
                 }
@@ -206,7 +206,9 @@ impl Search<'_> {
             }
             r.gain = gain(&r.fit);
         });
-        refined.retain(|r| !asked.is_empty() || !(r.hardly_falls() || self.swings_unseen(r)));
+        let is_unseen =
+            |r: &Refined| r.hardly_falls() || self.hardly_remembers(r) || self.swings_unseen(r);
+        refined.retain(|r| !asked.is_empty() || !is_unseen(r));
         // Those that are near one another are compared where they end, with
         // derivatives of all effects as they are there, or a simple one that is
         // not there yet loses to one that contains it.
@@ -250,11 +252,19 @@ impl Search<'_> {
         MATERIAL * largest
     }
 
-    /// Whether what a fit of the check logs adds is material.
-    fn is_material(&self, check: &Fit) -> bool {
+    /// Whether what a candidate adds, with `check` its fit of the check logs, is material.
+    fn is_material(&self, candidate: &Refined, check: &Fit) -> bool {
         let set = &self.check_logs;
         let after = set.rest(&check.traces);
-        is_material(self.machine, set, &self.check, &after, &self.gap_before).unwrap_or(true)
+        let without = || {
+            let mut state = check.state.clone();
+            let named = state.effects.len() - candidate.parts.len();
+            state.effects.truncate(named);
+            let traces = set.simulate(self.machine, &state).ok()?;
+            Some(set.rest(&traces))
+        };
+        let (machine, gap) = (self.machine, &self.gap_before);
+        is_material(machine, set, &self.check, &after, without, gap).unwrap_or(true)
     }
 
     /// Whether no channel of the check logs, fitted or not, is so much further off than
