@@ -13,6 +13,7 @@ use axis_sim::effects::{ActiveEffect, Scales};
 use nalgebra::DVector;
 use rayon::prelude::*;
 
+use super::lines::duration;
 use super::promise::PROMISING;
 use super::state::Search;
 use crate::estimate::columns::Columns;
@@ -94,6 +95,13 @@ impl Search<'_> {
     /// dry friction loose at the first standstill.
     pub(super) fn acts(&self, end: f64) -> bool {
         end > self.fit_logs.layout.full_weight_from()
+    }
+
+    /// Whether a force between these times acts all along the logs: a standing load, whose beginning may
+    /// look like its own where what was stored at a log's start is known badly.
+    pub(super) fn acts_throughout(&self, [begin, end]: [f64; 2]) -> bool {
+        let longest = self.fit_logs.logs.iter().map(duration).fold(0.0, f64::max);
+        begin < self.fit_logs.layout.full_weight_from() && end > longest - FINEST
     }
 
     /// Cuts the slots on either side of both edges into three, as often as it takes.

@@ -22,6 +22,9 @@ use crate::name::screen::Screened;
 /// tried.
 const KEPT: f64 = 0.8;
 
+/// The force that acts all along.
+const STANDING: &str = "constant-load";
+
 /// Candidates of which it is tried whether least squares lead further.
 const LED_FURTHER: usize = 4;
 
@@ -186,9 +189,13 @@ impl Search<'_> {
                 r.fit = r.fit.clone().better(near);
             });
         }
+        let stands = |r: &Refined| r.parts.len() == 1 && r.parts[0].effect.name == STANDING;
+        let has_standing = refined.iter().any(stands);
         refined.retain(|r| match r.fit.state.effects.last() {
             Some(last) if r.parts.len() == 1 && is_force_in_time(last.effect) => {
-                awaited || self.acts(last.values[2])
+                let times = [last.values[1], last.values[2]];
+                let is_standing = has_standing && self.acts_throughout(times);
+                awaited || self.acts(times[1]) && !is_standing
             }
             _ => true,
         });
