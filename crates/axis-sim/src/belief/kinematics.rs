@@ -19,6 +19,9 @@ const ROUNDING: f64 = 1e-9;
 pub(super) fn harmonic(axis: &Axis, hooks: &Hooks) -> Option<[f64; 3]> {
     let own = axis.mechanism.kinematic_harmonic();
     own.or_else(|| {
+        if !hooks.has_offsets() {
+            return None;
+        }
         let travel = axis.travel_per_radian();
         strongest(|angle| {
             let at = ScrewState {
