@@ -51,7 +51,8 @@ impl<'a> Steadiness<'a> {
         channels.any(|(c, white)| {
             let (mut sums, mut seconds) = ([0.0; 3], [0.0; 3]);
             for ((log, groups), rest) in self.set.logs.iter().zip(&self.groups).zip(self.rest) {
-                let inside = only(&rest[c], log.period, band);
+                let mut inside = only(&rest[c], log.period, band);
+                without_what_stays(&mut inside, groups);
                 for (group, value) in groups.iter().zip(inside) {
                     if let Some(group) = group {
                         sums[*group] += value * value / (2.0 * width);
@@ -92,6 +93,21 @@ fn groups(set: &LogSet, traces: &[Trace]) -> Vec<Vec<Option<usize>>> {
     traces.iter().zip(set.counted()).map(one).collect()
 }
 
+/// Takes the mean out of each standstill: a force that stays while the axis stands, or an offset, is there
+/// then and no noise.
+fn without_what_stays(values: &mut [f64], groups: &[Option<usize>]) {
+    let mut at = 0;
+    for run in groups.chunk_by(|a, b| a == b) {
+        let (begin, stands) = (at, run.first() == Some(&Some(0)));
+        at += run.len();
+        let Some(standing) = values.get_mut(begin..at).filter(|_| stands) else {
+            continue;
+        };
+        let mean = standing.iter().sum::<f64>() / standing.len() as f64;
+        standing.iter_mut().for_each(|value| *value -= mean);
+    }
+}
+
 /// Of a series, what lies in a band.
 pub(super) fn only(series: &[f64], period: f64, [low, high]: [f64; 2]) -> Vec<f64> {
     let n = series.len();
@@ -119,7 +135,7 @@ pub(super) fn shaped(series: &[f64], times: impl Fn(usize) -> f64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{is_there_too, only, shaped};
+    use super::{is_there_too, only, shaped, without_what_stays};
 
     const PERIOD: f64 = 1e-3;
 
@@ -143,6 +159,14 @@ mod tests {
         assert!(off(only(&both, PERIOD, [37.5, 84.0]), wave(60.0)) < 1e-9);
         assert!(off(shaped(&both, |_| 1.0), both.clone()) < 1e-9);
         assert!(off(only(&both, PERIOD, [100.0, 200.0]), vec![0.0; 4000]) < 1e-9);
+    }
+
+    #[test]
+    fn a_force_that_stays_is_no_noise_of_a_standstill() {
+        let groups = [Some(0), Some(0), Some(2), Some(0), Some(0), None];
+        let mut values = [5.0, 7.0, 9.0, -3.0, -3.0, 1.0];
+        without_what_stays(&mut values, &groups);
+        assert_eq!(values, [-1.0, 1.0, 9.0, 0.0, 0.0, 1.0]);
     }
 
     #[test]
