@@ -60,10 +60,9 @@ fn named(told: &Discovery) -> Vec<(&str, Vec<f64>)> {
     all
 }
 
-/// Within a tenth: the form of the dry friction takes up some of the viscous one.
-fn near(found: &[f64], expected: &[f64]) -> bool {
-    let pairs = found.iter().zip(expected);
-    found.len() == expected.len() && pairs.into_iter().all(|(f, e)| (f / e - 1.0).abs() < 0.1)
+fn near(found: &[f64], expected: &[f64], within: f64) -> bool {
+    let off = |(found, expected): (&f64, &f64)| (found / expected - 1.0).abs();
+    found.len() == expected.len() && found.iter().zip(expected).map(off).all(|off| off < within)
 }
 
 /// Friction that comes on sooner than the file says has no memory: it was slip with a memory that
@@ -80,6 +79,9 @@ fn dry_and_viscous_friction_are_named_whatever_the_file_says_of_their_onset() {
             panic!("{}", told.sentence);
         };
         assert_eq!(*first, name, "{}", told.sentence);
-        assert!(near(dry, levels) && near(viscous, &[0.02]), "{named:?}");
+        println!("{named:?}");
+        assert!(near(dry, levels, 0.01), "{named:?}");
+        // The form of the dry friction takes up some of it.
+        assert!(near(viscous, &[0.02], 0.1), "{named:?}");
     }
 }

@@ -39,7 +39,7 @@ pub enum PipelineError {
     #[error("the compensation cannot be set up: {0}")]
     Compensator(#[from] compensator::CompensatorError),
     /// No plan can be made of the axis.
-    #[error("no plan can be made of the axis: {0}")]
+    #[error(transparent)]
     Belief(#[from] axis_sim::BeliefError),
     /// No feedback can be designed for the axis.
     #[error(

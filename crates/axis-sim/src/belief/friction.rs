@@ -57,8 +57,8 @@ impl Added<'_> {
 
 /// The friction of an axis whose effects are `hooks`: with what is dry, viscous or falls with speed
 /// of what they add. The dry part has the axis' own pre-sliding distance, as in most effects (one
-/// with a memory counts by its level); a fall with speed is one law's with the axis' own, which has fallen to 1/e where both together
-/// have.
+/// with a memory counts by its level). A fall with speed and the axis' own become one, which is at
+/// 1/e of the whole at the speed at which both together are.
 ///
 /// # Errors
 /// [`LugreError`] where less than no friction is left.

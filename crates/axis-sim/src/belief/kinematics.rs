@@ -23,15 +23,18 @@ pub(super) fn harmonic(axis: &Axis, hooks: &Hooks) -> Option<[f64; 3]> {
             return None;
         }
         let travel = axis.travel_per_radian();
-        strongest(|angle| {
-            let at = ScrewState {
-                angle,
-                position: travel * angle,
-                ..ScrewState::default()
-            };
-            hooks.offset_at(&at)[0]
-        })
+        strongest(|angle| offset(hooks, travel, angle))
     })
+}
+
+/// Displacement of the load on its transmission at an angle of the motor (rad), m or rad.
+pub(super) fn offset(hooks: &Hooks, travel: f64, angle: f64) -> f64 {
+    let at = ScrewState {
+        angle,
+        position: travel * angle,
+        ..ScrewState::default()
+    };
+    hooks.offset_at(&at)[0]
 }
 
 /// The strongest wave a sin(n θ + φ) of an error over a turn, beside what grows along the turn.

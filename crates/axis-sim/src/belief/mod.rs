@@ -25,10 +25,10 @@ pub enum BeliefError {
     #[error(transparent)]
     Setup(#[from] SetupError),
     /// Its effects leave no valid friction.
-    #[error("the friction with what [[effects]] add to it: {0}")]
+    #[error("no plan can be made of the axis: its friction with what [[effects]] add to it: {0}")]
     Friction(#[from] LugreError),
     /// Its parts make no plan.
-    #[error(transparent)]
+    #[error("no plan can be made of the axis: {0}")]
     Plan(#[from] CompensatorError),
 }
 

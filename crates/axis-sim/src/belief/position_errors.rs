@@ -2,8 +2,9 @@
 
 use std::f64::consts::TAU;
 
+use super::kinematics::offset;
 use crate::axis::Axis;
-use crate::effects::{Hooks, ScrewState};
+use crate::effects::Hooks;
 use crate::error::SetupError;
 
 /// What the effects of an axis file do that depends on the position alone: what the
@@ -41,12 +42,7 @@ impl PositionErrors {
     }
 
     fn offset(&self, angle: f64) -> f64 {
-        let screw = ScrewState {
-            angle,
-            position: self.travel * angle,
-            ..ScrewState::default()
-        };
-        self.hooks.offset_at(&screw)[0]
+        offset(&self.hooks, self.travel, angle)
     }
 
     fn mean(&self, position: f64) -> f64 {

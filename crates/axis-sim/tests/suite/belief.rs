@@ -154,6 +154,7 @@ fn a_wave_of_the_transmission_is_believed_and_planned_for() {
     }
     let closed = ClosedLoop::new(&machine).unwrap();
     let [none, untold, told] = [None, Some(&own), Some(&model)].map(|b| greatest(&closed, b));
+    println!("{none} without, {untold} untold, {told} told");
     assert!(told < 0.5 * untold, "{told} of {untold}, {none} without");
 }
 
@@ -225,6 +226,7 @@ fn a_plan_that_is_told_what_was_found_does_as_well_as_on_the_machine_of_the_file
         let [untold, told] =
             [&own, &model].map(|believed| greatest(&changed, Some(believed)) / none);
         let ideal = greatest(&as_filed, Some(&own)) / greatest(&as_filed, None);
+        println!("{name}: {untold:.4} untold, {told:.4} told, {ideal:.4} as filed");
         assert!(
             told < 1.1 * ideal + 5e-3,
             "{name}: {told}, as filed {ideal}"

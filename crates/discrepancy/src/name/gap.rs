@@ -181,7 +181,7 @@ pub(crate) fn sizes(set: &LogSet, rest: &Rest) -> Vec<f64> {
 }
 
 /// Share of what is left above the noise, as power, that something may leave which takes the rest of
-/// a gap: half of its size.
+/// a gap.
 const OF_REST: f64 = 0.5;
 
 /// Whether what brought the rest from `before` to `after` is not small in some channel beside
