@@ -6,7 +6,7 @@ use compensator::Drive;
 use super::error::BalanceError;
 use crate::actuator::Effort;
 use crate::axis::Axis;
-use crate::control::absent::command_hold;
+use crate::control::absent::{command_hold, torque_skew};
 
 /// What a channel shows of the motor's torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,10 +112,10 @@ impl TorqueChannel {
     /// torque follows, s; `period` is that of the log.
     ///
     /// A command acts from one sample to the next, so half a period late in the mean, and
-    /// by the actuator's delay later still.
+    /// by the actuator's delay later still. What is measured is as early as its sample is.
     pub fn ahead(&self, axis: &Axis, period: f64) -> [f64; 2] {
         if self.shows != Shows::Command {
-            return [0.0; 2];
+            return [torque_skew(&axis.control) * period, 0.0];
         }
         let held = match axis.has_control() {
             true => axis.period,

@@ -20,6 +20,7 @@ pub(crate) static KIND: PartKind<dyn Control> = PartKind {
             values.set(COMMAND_HOLD, by * hold(values));
         })
         .within(1.0, None),
+        Known::by(TORQUE_SKEW, |values, by| values.set(TORQUE_SKEW, by - 1.0)).within(0.5, None),
     ],
     build: |_| Ok(Arc::new(Absent)),
 };
@@ -38,6 +39,11 @@ const SAMPLED_INERTIA: &str = "sampled_inertia";
 /// as fast as its log or any number of times faster, so all from 0 to 1 is possible.
 const COMMAND_HOLD: &str = "command_hold";
 
+/// Time by which a torque, a force or a current that is measured is ahead of the motion beside it, as
+/// a share of the period of its log: channels of one row are seldom taken at one instant, and
+/// what is called measured may be a command that is held.
+const TORQUE_SKEW: &str = "torque_skew";
+
 fn sampled(values: &Values) -> f64 {
     values.optional(SAMPLED_INERTIA).unwrap_or(1.0)
 }
@@ -54,6 +60,12 @@ pub(crate) fn sampled_inertia(control: &Part<dyn Control>) -> f64 {
 /// Share of a log's period for which a command is held where the control is not known.
 pub(crate) fn command_hold(control: &Part<dyn Control>) -> f64 {
     hold(control.values())
+}
+
+/// Share of a log's period by which a measured torque is ahead of the motion where the control is
+/// not known.
+pub(crate) fn torque_skew(control: &Part<dyn Control>) -> f64 {
+    control.values().optional(TORQUE_SKEW).unwrap_or(0.0)
 }
 
 /// Why nothing that needs a loop can be made of such an axis.

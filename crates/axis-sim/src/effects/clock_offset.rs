@@ -1,16 +1,16 @@
-//! `clock-offset`: time by which the table's channel is late against the motor's.
+//! `clock-offset`: time by which the load's channel is late against those of the motor.
 
 use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "clock-offset",
-    summary: "time by which the table's channel is late against the motor's",
+    summary: "time by which the load's channel is late against those of the motor",
     channel: EffectChannel::Clock,
     depends_on: "speed",
     shown_over: EffectVariable::Speed,
     parameters: &[signed("time", Measure::Time, 2e-5, 5e-3)],
-    needs: &[EffectNeed::MotorEncoder],
+    needs: &[EffectNeed::AnotherClock],
     install,
 };
 

@@ -171,18 +171,15 @@ const PAPER_INERTIA: f64 = 0.0096;
 const PAPER_MOTION: f64 = 0.2;
 
 impl Scales {
-    /// Those of an axis. Where its file lists no trajectories, nothing says what it is made
-    /// for, and the paper's sizes stand.
+    /// Those of an axis. Where its file lists no trajectories, nothing says how fast it is meant
+    /// to be, and the paper's speed stands.
     pub fn of(axis: &Axis) -> Self {
-        if axis.trajectories.is_empty() {
-            return Self::paper(axis);
-        }
         let travel = axis.travel_per_radian();
         let torque = axis.torque_constant() * axis.actuator.limit();
         let force = torque / travel;
         let stroke = axis.stroke.maximum - axis.stroke.minimum;
         let fastest = axis.trajectories.iter().map(|t| t.limits.velocity());
-        let fastest = fastest.fold(0.0, f64::max);
+        let fastest = fastest.reduce(f64::max).unwrap_or(PAPER_SPEED);
         let stiffness = axis.mechanism.stiffness();
         let load = axis.mechanism.load_inertia();
         let paper_force = PAPER_TORQUE / PAPER_LEVER;
@@ -198,24 +195,6 @@ impl Scales {
             acceleration: (torque / axis.mechanism.total_inertia() * travel)
                 / (PAPER_TORQUE / PAPER_INERTIA * PAPER_LEVER),
             motion: (stroke * PAPER_MOTION / 1.5).max(f64::MIN_POSITIVE),
-            stroke: [axis.stroke.minimum, axis.stroke.maximum],
-            start: axis.stroke.start,
-        }
-    }
-
-    /// Those of the paper's axis, on the stroke of another.
-    fn paper(axis: &Axis) -> Self {
-        Self {
-            freedom: axis.freedom(),
-            force: 1.0,
-            way: 1.0,
-            speed: 1.0,
-            inertia: 1.0,
-            motor_inertia: 1.0,
-            motor_torque: 1.0,
-            effort: 1.0,
-            acceleration: 1.0,
-            motion: PAPER_MOTION,
             stroke: [axis.stroke.minimum, axis.stroke.maximum],
             start: axis.stroke.start,
         }
@@ -366,6 +345,9 @@ pub enum EffectNeed {
     Transmission,
     /// A motor encoder, apart from the load's position.
     MotorEncoder,
+    /// A channel beside the load's position in its log, that another clock may have timed: a motor
+    /// encoder, or the torque that it is balanced with where no control is known.
+    AnotherClock,
     /// Currents that are measured.
     Currents,
     /// Poles.
@@ -385,6 +367,9 @@ impl EffectNeed {
             Self::Role(role) => role.name(),
             Self::Transmission => "transmission between motor and load",
             Self::MotorEncoder => "motor encoder apart from the load's position",
+            Self::AnotherClock => {
+                "clock beside that of the load's position (a motor encoder, or a torque balance)"
+            }
             Self::Currents => "currents that are measured",
             Self::Poles => "motor poles",
             Self::Turning => "load that turns",
@@ -399,6 +384,7 @@ impl EffectNeed {
             Self::Role(role) => axis.has(role),
             Self::Transmission => axis.mechanism.stiffness().is_some(),
             Self::MotorEncoder => axis.mechanism.has_motor_encoder(),
+            Self::AnotherClock => axis.mechanism.has_motor_encoder() || !axis.has_control(),
             Self::Currents => axis.actuator.has_currents(),
             Self::Poles => axis.actuator.pole_pairs().is_some(),
             Self::Turning => axis.freedom() == Freedom::Rotary,
