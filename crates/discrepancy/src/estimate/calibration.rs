@@ -17,6 +17,10 @@ const CALIBRATIONS: usize = 4;
 /// Fall of D, or of a sum of squares, that is not worth another round of derivatives.
 const SETTLED: f64 = 2.0;
 
+/// Share of a sum of squares by which another round of derivatives must bring it down: that is where a
+/// descent of D begins, which goes on from there by itself.
+const WORTH: f64 = 1e-4;
+
 /// The largest of the changes from one state to another.
 fn farthest(from: &[f64], to: &[f64]) -> f64 {
     let changes = from.iter().zip(to).map(|(a, b)| (a - b).abs());
@@ -89,7 +93,8 @@ impl Fitter<'_> {
                 deviance = fit.deviance,
                 "least squares"
             );
-            if round == anew || moved <= SAME || before - after < SETTLED {
+            let little = SETTLED.max(WORTH * after);
+            if round == anew || moved <= SAME || before - after < little {
                 break;
             }
             known = self.known_columns(&fit);
