@@ -60,7 +60,7 @@ use crate::estimate::known::{shown, tolerances};
 use crate::name::gap::gap;
 use crate::name::search::{Found, MATERIAL, is_form};
 use crate::noise::{
-    Excess, Hum, MotionAndRest, excess, floors, log_noise, slow_noise, steady_bands,
+    Excess, Hum, MotionAndRest, excess, floors, log_noise, slow_noise, stays, steady_bands,
 };
 
 /// A search's result in words, figures and pictures.
@@ -213,7 +213,8 @@ pub fn judged(
         let is_large = !check.may_be_coloured();
         let is_steady = is_large.then(|| steady_bands(machine, full, (set, &traces)));
         let comes_with_motion = |band| is_steady.as_ref().is_some_and(|steady| !steady(band));
-        excess.only(|band| rest.follows(band) || comes_with_motion(band))
+        let stays = stays([fitted, (set, &traces)]);
+        excess.only(|band| rest.follows(band) || comes_with_motion(band) || stays && band[0] == 0.0)
     });
     let coloured = excess.filter(|_| following.is_none());
     // Of a balance nobody knows what the controller makes of its sensors' noise: slow, it is above

@@ -29,6 +29,7 @@ use self::level::{noise_at, shows_noise};
 pub(crate) use self::motion::{MotionAndRest, Simulated};
 pub use self::sensor::SensorNoise;
 pub(crate) use self::slow::{SlowNoise, slow_noise};
+pub(crate) use self::steady::stays;
 pub(crate) use self::turned::turned;
 use crate::answers::{LogSet, Rest, State};
 use crate::spectrum::Amplitudes;

@@ -8,6 +8,7 @@ use std::ops::Range;
 use axis_fourier::Complex;
 use axis_sim::Trace;
 
+use super::motion::Simulated;
 use crate::answers::{LogSet, Rest};
 
 /// Speeds below which the axis stands, and above which it moves fast, as shares of the fastest.
@@ -25,6 +26,38 @@ const STANDS_OUT: f64 = 1.5;
 
 /// Periods of a band's width that each of the three must last, in all logs together.
 const LONG: f64 = 5.0;
+
+/// Share of the power of a rest that its mean has at least where it stays. Of noise with a low corner the
+/// mean over a log of seconds has a hundredth.
+const STAYS: f64 = 0.5;
+
+/// Whether the rest of some channel is mostly one value in each log of both sets, of the same sign in all: an
+/// offset, or a force that does not change, is no noise, and does not follow the motion either.
+pub(crate) fn stays(sets: [Simulated; 2]) -> bool {
+    let logs = sets.iter().flat_map(|(set, traces)| {
+        let rests = set.rest(traces).into_iter().zip(set.counted());
+        rests.map(|(rest, counted)| {
+            let channels = rest.iter();
+            channels.map(|r| mostly(&r[counted.clone()])).collect()
+        })
+    });
+    let logs: Vec<Vec<f64>> = logs.collect();
+    let channels = logs.first().map_or(0, Vec::len);
+    let in_all = |c: usize, sign: f64| logs.iter().all(|log| sign * log[c] > 0.0);
+    (0..channels).any(|c| in_all(c, 1.0) || in_all(c, -1.0))
+}
+
+/// Sign of what a series mostly is; 0 of one whose mean has little of its power.
+fn mostly(series: &[f64]) -> f64 {
+    let count = series.len().max(1) as f64;
+    let mean = series.iter().sum::<f64>() / count;
+    let power = series.iter().map(|v| v * v).sum::<f64>() / count;
+    if mean != 0.0 && mean * mean >= STAYS * power {
+        mean.signum()
+    } else {
+        0.0
+    }
+}
 
 /// Rests of logs, with what the axis does meanwhile.
 pub(super) struct Steadiness<'a> {
@@ -135,7 +168,7 @@ pub(super) fn shaped(series: &[f64], times: impl Fn(usize) -> f64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{is_there_too, only, shaped, without_what_stays};
+    use super::{is_there_too, mostly, only, shaped, without_what_stays};
 
     const PERIOD: f64 = 1e-3;
 
@@ -178,5 +211,15 @@ mod tests {
         // A rest that is there where the axis moves alone, and one that is hardly there.
         assert!(!is_there_too([1.0, 1.6, 1.7], 1.0));
         assert!(!is_there_too([1.3, 1.4, 1.4], 1.0));
+    }
+
+    #[test]
+    fn an_offset_is_most_of_a_rest_and_a_wave_is_not() {
+        let wave = |offset: f64| -> Vec<f64> {
+            let at = |k: usize| offset + (0.1 * k as f64).sin();
+            (0..1000).map(at).collect()
+        };
+        assert_eq!([2.0, -2.0, 0.1].map(|o| mostly(&wave(o))), [1.0, -1.0, 0.0]);
+        assert_eq!([mostly(&[0.0; 9]), mostly(&[])], [0.0; 2]);
     }
 }
