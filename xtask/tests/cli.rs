@@ -72,7 +72,7 @@ fn the_scored_page_is_not_taken_by_another_seed() {
     let said = refuse(&[
         "discover-matrix",
         "--seed",
-        "8",
+        "18",
         "--first",
         "3",
         "--page",
