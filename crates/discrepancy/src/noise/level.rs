@@ -46,10 +46,12 @@ impl<'a> Spectra<'a> {
     pub(super) fn of(axis: &Axis, set: &'a LogSet, rest: &Rest, quiet: &[Trace]) -> Self {
         let guess = Levels::of(set, rest).noise(axis);
         let bands = Bands::of(set);
+        let observed = bands.powers(set, rest);
+        let answers = answers(axis, set, quiet, &bands, guess, LogNoise::of_sensors);
         Self {
             set,
-            observed: bands.powers(set, rest),
-            answers: answers(axis, set, quiet, &bands, guess, LogNoise::of_sensors),
+            answers: heard(answers, &observed),
+            observed,
             guess,
             bands,
         }
@@ -60,7 +62,8 @@ impl<'a> Spectra<'a> {
     pub(super) fn answers_in_bands(&self, axis: &Axis, quiet: &[Trace]) -> Vec<Powers> {
         let end = self.bands.edges().last().map_or(0.0, |[_, high]| high);
         let noise = |sensors| LogNoise::in_band(sensors, end);
-        answers(axis, self.set, quiet, &self.bands, self.guess, noise)
+        let answers = answers(axis, self.set, quiet, &self.bands, self.guess, noise);
+        heard(answers, &self.observed)
     }
 
     /// What all sources make of the rest: the sensors as they were guessed, then loggers of unit
@@ -142,6 +145,23 @@ fn answers(
         }
     };
     Sensor::ALL.map(answer).into()
+}
+
+/// Least that a sensor's noise as guessed makes of a rest's power in some channel and band for it to be
+/// heard there. A sensor that the control does not read, and whose channel is compared without its noise, makes what
+/// rounding makes of it: that would be amplified until it explains the rest, by 10¹⁴⁰ of a joint's load sensor.
+const HEARD: f64 = 1e-9;
+
+/// What sensors do to the logs, and nothing of those that are not heard.
+fn heard(mut answers: Vec<Powers>, observed: &Powers) -> Vec<Powers> {
+    for answer in &mut answers {
+        let mut cells = answer.iter().flatten().zip(observed.iter().flatten());
+        let is_heard = cells.any(|(own, all)| *own > HEARD * all);
+        if !is_heard {
+            answer.iter_mut().flatten().for_each(|power| *power = 0.0);
+        }
+    }
+    answers
 }
 
 /// Bands of the logs, for one channel at a time.
@@ -256,4 +276,19 @@ pub fn upper_level(set: &LogSet, rest: &Rest, channel: usize) -> f64 {
         }
     }
     (sum / n.max(1) as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::heard;
+
+    /// Of two channels and two bands.
+    #[test]
+    fn what_rounding_makes_of_a_sensors_noise_is_not_heard() {
+        let observed = vec![vec![1.0, 2.0], vec![4e-8, 1e-8]];
+        let sensor = vec![vec![0.0, 1e-12], vec![1e-9, 0.0]];
+        let dust = vec![vec![1e-30, 1e-28], vec![0.0, 1e-31]];
+        let all = heard(vec![sensor.clone(), dust], &observed);
+        assert_eq!(all, [sensor, vec![vec![0.0; 2]; 2]]);
+    }
 }
