@@ -153,5 +153,9 @@ pub(crate) fn size_over_noise(seen: &DVector<f64>, runs: &[DVector<f64>]) -> f64
     let along =
         |run: &DVector<f64>| -> f64 { seen.iter().zip(run.iter()).map(|(s, n)| s * n).sum() };
     let squares: f64 = runs.iter().map(|run| along(run).powi(2)).sum();
-    seen.norm_squared() / (squares / runs.len() as f64).sqrt()
+    match seen.norm_squared() {
+        // Of nothing there is no ratio.
+        0.0 => 0.0,
+        size => size / (squares / runs.len() as f64).sqrt(),
+    }
 }

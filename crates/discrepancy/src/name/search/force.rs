@@ -26,6 +26,12 @@ use crate::spectrum::Amplitudes;
 /// Stretches of which the edges are sought.
 const STRETCHES: usize = 2;
 
+/// Way from where a log begins, as a share of the longest, after which its axis moves.
+const BEGINS: f64 = 1e-3;
+
+/// Share of a force's time in which an axis must move.
+const MOVING: f64 = 0.5;
+
 /// Length of the slots at the edges at which Gauss and Newton take over, s.
 const FINEST: f64 = 0.01;
 
@@ -67,7 +73,9 @@ impl Search<'_> {
         // A force over the whole motion is a constant load.
         let n = slots.len();
         let all = (0..n).flat_map(|i| (i + 1..=n).map(move |j| i..j));
-        let all = all.filter(|s| s.len() < n && self.acts(slots[s.end - 1].times[1]));
+        let all = all.filter(|s| {
+            s.len() < n && self.acts([slots[s.start].times[0], slots[s.end - 1].times[1]])
+        });
         let all = all.collect();
         let start = DVector::zeros(own.len() + 1);
         let mut chosen: Vec<Stretch> = Vec::new();
@@ -90,11 +98,26 @@ impl Search<'_> {
         fits.into_iter().reduce(Fit::better)
     }
 
-    /// Whether a force that ends then acts while the logs count. One before only
-    /// changes the state that they begin in, which is not known: noise shakes
-    /// dry friction loose at the first standstill.
-    pub(super) fn acts(&self, end: f64) -> bool {
-        end > self.fit_logs.layout.full_weight_from()
+    /// Whether a force between these times acts while the logs count, and not mostly before an axis moves. Such a
+    /// one only changes the state that they begin in, which is not known: noise shakes dry friction loose at
+    /// the first standstill, and a friction in another form than the model's holds an axis in another way.
+    pub(super) fn acts(&self, [begin, end]: [f64; 2]) -> bool {
+        let moving = end - begin.max(self.moves_from());
+        end > self.fit_logs.layout.full_weight_from() && moving > MOVING * (end - begin)
+    }
+
+    /// When the first of the fitted logs' motions begins, s.
+    fn moves_from(&self) -> f64 {
+        let logs = self.fit.traces.iter().zip(&self.fit_logs.logs);
+        let begins = logs.filter_map(|(trace, log)| {
+            let positions = trace.position();
+            let first = *positions.first()?;
+            let ways = positions.iter().map(|x| (x - first).abs());
+            let farthest = ways.clone().fold(0.0, f64::max);
+            let begins = ways.into_iter().position(|way| way > BEGINS * farthest)?;
+            Some(log.period * begins as f64)
+        });
+        begins.reduce(f64::min).unwrap_or(0.0)
     }
 
     /// Whether a force between these times acts all along the logs: a standing load, whose beginning may
@@ -134,7 +157,8 @@ impl Search<'_> {
             }
             let n = finer.len();
             let holds = |s: &Range<usize>| {
-                inside.is_none_or(|i| s.contains(&i)) && self.acts(finer[s.end - 1].times[1])
+                inside.is_none_or(|i| s.contains(&i))
+                    && self.acts([finer[s.start].times[0], finer[s.end - 1].times[1]])
             };
             let all = (0..n).flat_map(|i| (i + 1..=n).map(move |j| i..j));
             let all = all.filter(holds);

@@ -195,7 +195,7 @@ impl Search<'_> {
             Some(last) if r.parts.len() == 1 && is_force_in_time(last.effect) => {
                 let times = [last.values[1], last.values[2]];
                 let is_standing = has_standing && self.acts_throughout(times);
-                awaited || self.acts(times[1]) && !is_standing
+                awaited || self.acts(times) && !is_standing
             }
             _ => true,
         });
