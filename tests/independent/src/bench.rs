@@ -2,7 +2,8 @@
 //!
 //! Its axis file knows the inertia alone, and a way on which friction comes on that is far too long, as
 //! such files do. What differs on purpose from the library: symplectic Euler in steps of 50 µs, and dry
-//! friction that comes on with the speed, as tanh(ω / 10 mrad/s).
+//! friction that comes on with the speed, as tanh(ω / 10 mrad/s). The torque is shown as it begins to be
+//! held for a control period, as drives do: half of that early.
 //!
 //! ```text
 //! 0.02 kg·m² ω' = T − T₊₋ tanh(ω / 10 mrad/s) − d ω,   T = 60 N·m/rad (r − φ) + 1.2 N·m·s/rad (r' − ω)

@@ -20,6 +20,7 @@ pub(crate) static KIND: PartKind<dyn Control> = PartKind {
             values.set(COMMAND_HOLD, by * hold(values));
         })
         .within(1.0, None),
+        // Beside nothing: the share by which it is off is the skew.
         Known::by(TORQUE_SKEW, |values, by| values.set(TORQUE_SKEW, by - 1.0)).within(0.5, None),
     ],
     build: |_| Ok(Arc::new(Absent)),

@@ -19,7 +19,7 @@ const SETTLED: f64 = 2.0;
 
 /// Share of a sum of squares by which another round of derivatives must bring it down: that is where a
 /// descent of D begins, which goes on from there by itself.
-const WORTH: f64 = 1e-4;
+const LITTLE: f64 = 1e-4;
 
 /// The largest of the changes from one state to another.
 fn farthest(from: &[f64], to: &[f64]) -> f64 {
@@ -93,7 +93,7 @@ impl Fitter<'_> {
                 deviance = fit.deviance,
                 "least squares"
             );
-            let little = SETTLED.max(WORTH * after);
+            let little = SETTLED.max(LITTLE * after);
             if round == anew || moved <= SAME || before - after < little {
                 break;
             }

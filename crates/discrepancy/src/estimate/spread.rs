@@ -159,3 +159,20 @@ pub(crate) fn size_over_noise(seen: &DVector<f64>, runs: &[DVector<f64>]) -> f64
         size => size / (squares / runs.len() as f64).sqrt(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DVector;
+
+    use super::size_over_noise;
+
+    #[test]
+    fn what_is_not_seen_stands_out_by_nothing() {
+        let of = |x: f64, y: f64| DVector::from_vec(vec![x, y]);
+        let runs = [of(0.3, 0.0), of(-0.1, 2.0)];
+        assert_eq!(size_over_noise(&of(0.0, 0.0), &runs), 0.0);
+        // A deviation along the first of √((0.3² + 0.1²)/2).
+        let along = size_over_noise(&of(2.0, 0.0), &runs);
+        assert!((along - 2.0 / 0.05_f64.sqrt()).abs() < 1e-12, "{along}");
+    }
+}

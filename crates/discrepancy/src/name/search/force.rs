@@ -42,6 +42,14 @@ struct Slot {
     column: Amplitudes,
 }
 
+/// Begin and end of neighbouring slots.
+fn times_of(slots: &[Slot], stretch: &Range<usize>) -> [f64; 2] {
+    [
+        slots[stretch.start].times[0],
+        slots[stretch.end - 1].times[1],
+    ]
+}
+
 /// A force over neighbouring slots.
 struct Stretch {
     slots: Range<usize>,
@@ -54,6 +62,22 @@ struct Stretch {
 impl Stretch {
     fn size(&self) -> f64 {
         self.x[self.x.len() - 1]
+    }
+}
+
+/// When logs count and an axis moves, s.
+pub(super) struct InMotion {
+    counts_from: f64,
+    moves_from: f64,
+}
+
+impl InMotion {
+    /// Whether a force between these times acts while the logs count, and not mostly before an axis moves. Such a
+    /// one only changes the state that they begin in, which is not known: noise shakes dry friction loose at
+    /// the first standstill, and a friction in another form than the model's holds an axis in another way.
+    pub(super) fn has(&self, [begin, end]: [f64; 2]) -> bool {
+        let moving = end - begin.max(self.moves_from);
+        end > self.counts_from && moving > MOVING * (end - begin)
     }
 }
 
@@ -73,9 +97,8 @@ impl Search<'_> {
         // A force over the whole motion is a constant load.
         let n = slots.len();
         let all = (0..n).flat_map(|i| (i + 1..=n).map(move |j| i..j));
-        let all = all.filter(|s| {
-            s.len() < n && self.acts([slots[s.start].times[0], slots[s.end - 1].times[1]])
-        });
+        let in_motion = self.in_motion();
+        let all = all.filter(|s| s.len() < n && in_motion.has(times_of(&slots, s)));
         let all = all.collect();
         let start = DVector::zeros(own.len() + 1);
         let mut chosen: Vec<Stretch> = Vec::new();
@@ -98,12 +121,12 @@ impl Search<'_> {
         fits.into_iter().reduce(Fit::better)
     }
 
-    /// Whether a force between these times acts while the logs count, and not mostly before an axis moves. Such a
-    /// one only changes the state that they begin in, which is not known: noise shakes dry friction loose at
-    /// the first standstill, and a friction in another form than the model's holds an axis in another way.
-    pub(super) fn acts(&self, [begin, end]: [f64; 2]) -> bool {
-        let moving = end - begin.max(self.moves_from());
-        end > self.fit_logs.layout.full_weight_from() && moving > MOVING * (end - begin)
+    /// When a force in time says anything of the machine.
+    pub(super) fn in_motion(&self) -> InMotion {
+        InMotion {
+            counts_from: self.fit_logs.layout.full_weight_from(),
+            moves_from: self.moves_from(),
+        }
     }
 
     /// When the first of the fitted logs' motions begins, s.
@@ -130,6 +153,7 @@ impl Search<'_> {
     /// Cuts the slots on either side of both edges into three, as often as it takes.
     fn cut_finer(&self, own: &Columns, slots: &[Slot], first: Stretch) -> (Vec<Slot>, Stretch) {
         let (mut slots, mut best) = (slots.to_vec(), first);
+        let in_motion = self.in_motion();
         loop {
             let Range { start, end } = best.slots;
             let at_edges = [start.saturating_sub(1), start, end - 1, end];
@@ -157,8 +181,7 @@ impl Search<'_> {
             }
             let n = finer.len();
             let holds = |s: &Range<usize>| {
-                inside.is_none_or(|i| s.contains(&i))
-                    && self.acts([finer[s.start].times[0], finer[s.end - 1].times[1]])
+                inside.is_none_or(|i| s.contains(&i)) && in_motion.has(times_of(&finer, s))
             };
             let all = (0..n).flat_map(|i| (i + 1..=n).map(move |j| i..j));
             let all = all.filter(holds);
@@ -260,4 +283,25 @@ fn joined(a: &Slot, b: &Slot) -> Slot {
 fn less(a: &Amplitudes, b: &Amplitudes) -> Amplitudes {
     let take = |(a, b): (&Vec<_>, &Vec<_>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
     a.iter().zip(b).map(take).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::InMotion;
+
+    #[test]
+    fn a_force_before_an_axis_moves_says_how_a_log_begins() {
+        let logs = InMotion {
+            counts_from: 0.12,
+            moves_from: 0.2,
+        };
+        assert!(!logs.has([0.0, 0.11]) && !logs.has([0.02, 0.2]) && !logs.has([0.04, 0.28]));
+        assert!(logs.has([0.04, 0.5]) && logs.has([0.3, 0.31]));
+        // Where logs begin in motion, all that acts while they count.
+        let moving = InMotion {
+            moves_from: 0.0,
+            ..logs
+        };
+        assert!(moving.has([0.0, 0.13]) && !moving.has([0.0, 0.11]));
+    }
 }

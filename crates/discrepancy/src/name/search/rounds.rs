@@ -191,11 +191,12 @@ impl Search<'_> {
         }
         let stands = |r: &Refined| r.parts.len() == 1 && r.parts[0].effect.name == STANDING;
         let has_standing = refined.iter().any(stands);
+        let in_motion = self.in_motion();
         refined.retain(|r| match r.fit.state.effects.last() {
             Some(last) if r.parts.len() == 1 && is_force_in_time(last.effect) => {
                 let times = [last.values[1], last.values[2]];
                 let is_standing = has_standing && self.acts_throughout(times);
-                awaited || self.acts(times) && !is_standing
+                awaited || in_motion.has(times) && !is_standing
             }
             _ => true,
         });
