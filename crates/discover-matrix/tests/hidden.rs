@@ -394,3 +394,42 @@ fn what_is_missing_is_no_noise() {
         assert_eq!(found.verdict, Verdict::Unknown, "{name}");
     }
 }
+
+/// A friction that falls with speed, where the library has none, is a form of the axis' own.
+#[test]
+fn a_fall_of_the_own_friction_is_another_form_of_it() {
+    let rejected = axis_sim::effects::EFFECTS.iter();
+    let settings = Settings {
+        rejected: rejected.map(|e| e.name.to_owned()).collect(),
+        ..Settings::default()
+    };
+    let hidden = hide_all(vec![("stribeck-friction", vec![60.0, 0.008])], 43);
+    let found = find(&hidden, &settings);
+    assert!(found.gap.check.stands_out() && found.own_form.is_some());
+    assert_eq!(found.verdict, Verdict::OtherForm, "{}", found.sentence);
+}
+
+/// A body that swings as fast as the library has it does what a mass does, and is none beside it.
+#[test]
+fn a_body_that_swings_too_fast_to_be_seen_is_no_name() {
+    let hidden = hide_all(vec![("payload-mass", vec![30.0])], 47);
+    let settings = Settings {
+        rejected: vec!["payload-mass".to_owned()],
+        most_effects: 1,
+        ..Settings::default()
+    };
+    let found = find(&hidden, &settings);
+    let body = found
+        .effects
+        .iter()
+        .find(|e| e.name == "structural-resonance");
+    assert!(body.is_none(), "{body:?}");
+    assert_ne!(found.verdict, Verdict::NothingMissing);
+    let found = find(&hidden, &Settings::default());
+    assert_eq!(found.effects[0].name, "payload-mass");
+    let alike = &found.effects[0].indistinguishable_from;
+    assert!(
+        alike.iter().all(|name| name != "structural-resonance"),
+        "{alike:?}"
+    );
+}

@@ -46,11 +46,13 @@ const SEPARATES: f64 = 25.0;
 pub fn propose(machine: &Axis, found: &Found, noise: &LogNoise) -> Option<Proposal> {
     let index = found.named.iter().position(|n| !n.alike.is_empty())?;
     let question = Question::new(machine, found, index).ok()?;
+    tracing::debug!(pair = ?question.pair.each_ref().map(|e| (e.effect.name, &e.values)), "to be told apart");
     let motions = motions(machine).ok()?;
     let answers: Vec<Proposal> = motions
         .into_par_iter()
         .filter_map(|(what, program)| {
             let separation = question.separation(&program, noise).ok()?;
+            tracing::debug!(what, separation, "experiment");
             Some(Proposal {
                 what,
                 program,

@@ -233,6 +233,7 @@ pub fn judged(
     let refused = refused.filter(|_| !(as_coloured && effects.is_empty()));
     let verdict = match (effects.is_empty(), rest_significant) {
         (true, _) if refused.is_some() => Verdict::Unknown,
+        (true, false) if own_form.is_some() && check.stands_out() => Verdict::OtherForm,
         (true, false) => Verdict::NothingMissing,
         (true, true) => Verdict::Unknown,
         // What was refused beside what is named is a rest that has no name.

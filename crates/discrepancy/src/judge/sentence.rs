@@ -45,7 +45,7 @@ pub(super) fn sentence(
         )
     });
     match verdict {
-        Verdict::NothingMissing if own_form.is_some() && check.stands_out() => format!(
+        Verdict::OtherForm => format!(
             "No effect is missing, but the axis\u{2019} own friction has another form than the model\u{2019}s. With it, {gone}.{forms}"
         ),
         Verdict::NothingMissing => format!(

@@ -103,7 +103,7 @@ impl Confidence {
             .filter(|e| !e.indistinguishable_from.is_empty());
         let ambiguous: Vec<String> = alike.map(|e| e.name.clone()).collect();
         let from = match verdict {
-            Verdict::Explained | Verdict::NothingMissing => Level::High,
+            Verdict::Explained | Verdict::NothingMissing | Verdict::OtherForm => Level::High,
             Verdict::PartlyExplained => Level::Medium,
             Verdict::Unknown => Level::Low,
         };

@@ -24,6 +24,9 @@ pub enum Verdict {
     PartlyExplained,
     /// No gap beyond noise and the tolerance of known parameters.
     NothingMissing,
+    /// No effect, but the axis' own friction has another form than the model's: with it, nothing
+    /// significant is left of the gap.
+    OtherForm,
     /// A significant gap, and nothing in the library that explains it.
     Unknown,
 }
@@ -35,6 +38,7 @@ impl Verdict {
             Self::Explained => "explained",
             Self::PartlyExplained => "partly-explained",
             Self::NothingMissing => "nothing-missing",
+            Self::OtherForm => "other-form",
             Self::Unknown => "unknown",
         }
     }

@@ -39,12 +39,16 @@ impl Discovery {
 
 fn missing(discovery: &Discovery) -> Vec<String> {
     let mut lines: Vec<String> = discovery.effects.iter().map(effect).collect();
-    let has_form = discovery.own_form.is_some() && discovery.gap.check.stands_out();
-    if discovery.verdict == Verdict::NothingMissing && has_form {
-        lines.push("No effect, but the axis\u{2019} own friction has another form than the model\u{2019}s.".to_owned());
-    } else if discovery.verdict == Verdict::NothingMissing {
-        lines.push("Nothing: model and logs agree to the noise, with the known parameters inside their tolerances.".to_owned());
-    }
+    let nothing = match discovery.verdict {
+        Verdict::OtherForm => Some(
+            "No effect, but the axis\u{2019} own friction has another form than the model\u{2019}s.",
+        ),
+        Verdict::NothingMissing => Some(
+            "Nothing: model and logs agree to the noise, with the known parameters inside their tolerances.",
+        ),
+        _ => None,
+    };
+    lines.extend(nothing.map(str::to_owned));
     lines.extend(
         discovery
             .unknown
@@ -198,6 +202,9 @@ fn verdict(verdict: Verdict) -> &'static str {
             "the gap is explained in part, what is named may stand for something else"
         }
         Verdict::NothingMissing => "no gap beyond noise and tolerances",
+        Verdict::OtherForm => {
+            "the gap is explained by another form of the axis\u{2019} own friction"
+        }
         Verdict::Unknown => "there is a gap, and nothing in the library explains it",
     }
 }

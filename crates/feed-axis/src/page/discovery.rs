@@ -13,7 +13,7 @@ use miette::{IntoDiagnostic, Result};
 pub fn page(discovered: &Discovered) -> Result<String> {
     let discovery = &discovered.discovery;
     let kind = match discovery.verdict {
-        Verdict::Explained | Verdict::NothingMissing => Notice::Good,
+        Verdict::Explained | Verdict::NothingMissing | Verdict::OtherForm => Notice::Good,
         Verdict::PartlyExplained | Verdict::Unknown => Notice::Warn,
     };
     let answers = discovery.first_screen().into_iter();

@@ -194,7 +194,7 @@ fn nothing_and_the_unknown_are_said_so() {
     assert!(lines(&nothing, "What is missing")[0].starts_with("Nothing:"));
     assert_eq!(lines(&nothing, "What it costs").len(), 1);
     // A gap that a form of the axis' own friction takes away was there.
-    let mut bent = discovery(Verdict::NothingMissing, Vec::new(), Vec::new());
+    let mut bent = discovery(Verdict::OtherForm, Vec::new(), Vec::new());
     bent.own_form = Some(FormFound {
         of: "dry friction of the axis".to_owned(),
         below: 2e-4,

@@ -34,9 +34,6 @@ const INSTEAD_OF_MEMORY: f64 = 0.6;
 /// level to be taken instead; what is a thirtieth of a gap is not named beside it either.
 const OF_ONE_LEVEL: f64 = 0.97;
 
-/// Share of the way on which the axis' own friction comes on that slip with a memory must take.
-const OF_OWN_WAY: f64 = 0.1;
-
 /// Whether an active effect is a form of another.
 pub(crate) fn is_form(active: &ActiveEffect) -> bool {
     OnsetForm::of(active).is_some()
@@ -194,16 +191,6 @@ impl Search<'_> {
             || has(FALL) && (rises || sliding + fall < 0.0)
     }
 
-    /// Whether a candidate is slip with a memory that takes up next to no way: dry friction that comes on
-    /// sooner than the file says.
-    pub(super) fn hardly_remembers(&self, candidate: &Refined) -> bool {
-        let friction = &self.machine.friction;
-        let lever = friction.lever(self.machine.travel_per_radian());
-        let own = lever / friction.unit.parameters().stiffness;
-        let mut added = candidate.added().iter();
-        added.any(|a| a.effect.name == WITH_MEMORY && a.values[1] < OF_OWN_WAY * own)
-    }
-
     /// Whether an effect is dry friction in another form beside one that is there, or a fall
     /// with speed beside a form, whose curve over speed has it: the two would share what is one
     /// friction.
@@ -228,7 +215,7 @@ const BY_DIRECTION: &str = "asymmetric-friction";
 const FALL: &str = "stribeck-friction";
 
 /// Dry friction with a memory.
-const WITH_MEMORY: &str = "maxwell-slip-hysteresis";
+pub(super) const WITH_MEMORY: &str = "maxwell-slip-hysteresis";
 
 impl Search<'_> {
     /// Effects before a form that explains hardly more. But of the axis' own friction a form goes
@@ -280,7 +267,7 @@ impl Search<'_> {
         beside.fit = other.fit.clone();
         let own = beside.own_columns();
         let forms = beside.forms(&own).into_iter().map(|form| vec![form]);
-        let refined = beside.refine(forms.collect(), &own);
+        let refined = beside.refine(forms.collect(), &own).kept;
         let form = refined.iter().map(|r| r.gain).fold(0.0, f64::max);
         tracing::debug!(
             memory = memory.gain,

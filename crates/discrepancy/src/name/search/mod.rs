@@ -15,6 +15,7 @@ mod rounds;
 mod state;
 mod swing;
 mod types;
+mod unseen;
 mod wave;
 
 use std::sync::Arc;
@@ -157,6 +158,7 @@ fn searched(
         replaced: Vec::new(),
         leftover: Vec::new(),
         refused: None,
+        unseen: Vec::new(),
         hum,
         fit_logs,
         check_logs,

@@ -70,7 +70,7 @@ impl<'a> Search<'a> {
         if best.gain < RIVAL * alone {
             return None;
         }
-        let refined = without.refine(vec![vec![best]], &own);
+        let refined = without.refine(vec![vec![best]], &own).kept;
         let fit = refined.into_iter().next()?.fit;
         let check = without.checker().at(fit.state.clone()).ok()?;
         let place = fit.state.effects.last()?.values[0];

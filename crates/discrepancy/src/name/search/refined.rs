@@ -15,6 +15,15 @@ pub(super) struct Refined {
     pub(super) gain: f64,
 }
 
+/// What became of candidates.
+pub(super) struct Refinement {
+    /// Those that may be named, the simplest of the best first.
+    pub(super) kept: Vec<Refined>,
+    /// Effects that ended, alone, where nothing of them is to be seen but what a simpler one does: a body
+    /// that swings faster than logs show is a mass.
+    pub(super) unseen: Vec<&'static str>,
+}
+
 impl Refined {
     /// The effects that it adds, one for each of its parts.
     pub(super) fn added(&self) -> &[ActiveEffect] {
@@ -58,18 +67,6 @@ const NEVER_BELOW_NONE: [&str; 3] = [
 ];
 
 impl Refined {
-    /// Whether it is a friction that falls with a speed that is as high as it may be: over all of the
-    /// motion it is dry friction that is a little less where motion is fast.
-    pub(super) fn hardly_falls(&self) -> bool {
-        let mut pairs = self.added().iter().zip(&self.parts);
-        pairs.any(|(active, part)| {
-            let mut values = active.effect.parameters.iter().zip(&active.values);
-            values.any(|(p, value)| {
-                matches!(p.nature, Nature::Speed(..)) && *value >= p.bounds(&part.scales)[1]
-            })
-        })
-    }
-
     /// Whether it is less than none of something.
     pub(super) fn is_below_none(&self) -> bool {
         let mut never = self
@@ -87,12 +84,13 @@ const CLEARLY: f64 = 0.05;
 /// Effects that do nearly the same as the best, or explain as much: the logs
 /// cannot tell. What can do more is not among them, unless these logs would not
 /// show the more, or show it and not clearly enough to take it. `refined` are those that were
-/// not tried before it: what was tried did not hold on other motion.
+/// not tried before it: what was tried did not hold on other motion; `unseen` are as in [`Refinement`].
 pub(super) fn alike(
     own: &Screened,
     best: &Refined,
     refined: &[Refined],
     all: &[Screened],
+    unseen: &[&str],
 ) -> Vec<Alike> {
     let pair = best.parts.iter().map(|p| p.effect.name);
     let pair: Vec<&str> = pair.collect();
@@ -109,6 +107,8 @@ pub(super) fn alike(
     let others = all
         .iter()
         .filter(|other| !pair.contains(&other.effect.name))
+        // What came out as the simpler one is no second explanation.
+        .filter(|other| fitted(other).is_some() || !unseen.contains(&other.effect.name))
         .filter(|other| {
             let more = other.basis.ncols() > own.basis.ncols();
             explains_more(other) || !(more && other.more_is_shown(own, best.gain, EQUAL))

@@ -8,10 +8,12 @@ use super::form::own_before_directions;
 use super::free_curve::FreeCurves;
 use super::promise::{PROMISING, Promises, WORTH};
 use super::refined::{
-    Refined, alike, best_of_each, inside_before_bound, simplest_first, single_before_pair,
+    Refined, Refinement, alike, best_of_each, inside_before_bound, simplest_first,
+    single_before_pair,
 };
 use super::state::Search;
 use super::types::{Named, RunnerUp};
+use super::unseen::may_end_unseen;
 use crate::estimate::columns::{Columns, free_parameters};
 use crate::estimate::fit::Fit;
 use crate::name::gap::is_material;
@@ -56,11 +58,12 @@ impl Search<'_> {
         } else {
             screened.iter().map(|s| vec![s.clone()]).collect()
         };
-        let mut refined = self.refine(candidates, &own);
-        self.effects_before_forms(&mut refined);
-        single_before_pair(&mut refined);
-        inside_before_bound(&mut refined);
-        own_before_directions(&mut refined);
+        let mut of_all = self.refine(candidates, &own);
+        let refined = &mut of_all.kept;
+        self.effects_before_forms(refined);
+        single_before_pair(refined);
+        inside_before_bound(refined);
+        own_before_directions(refined);
         let fitter = self.fitter();
         let curves = FreeCurves::new(self, &fitter, &own);
         // Of what is not material, by how much D falls on the fitted and on the check logs.
@@ -107,11 +110,30 @@ impl Search<'_> {
             self.leftover = alone.map(Refined::runner_up).collect();
             return false;
         };
-        self.add(&refined, place, check, &screened);
-        true
+        // All parameters move when an effect is added, and its own may end where it is another one.
+        let added = of_all.kept[place].added();
+        let may_end = awaited.is_empty() && added.iter().any(|a| may_end_unseen(a.effect));
+        let (before, count) = (may_end.then(|| self.clone()), added.len());
+        self.add(&of_all, place, check, &screened);
+        let effects = self.fit.state.effects.iter().rev().take(count);
+        let unseen = effects.filter(|active| self.is_unseen(active));
+        let unseen: Vec<&'static str> = unseen.map(|active| active.effect.name).collect();
+        match before.filter(|_| !unseen.is_empty()) {
+            Some(before) => {
+                tracing::debug!(?unseen, "ended as a simpler effect");
+                *self = before;
+                self.unseen.extend(unseen);
+                self.add_next()
+            }
+            None => {
+                self.unseen.clear();
+                true
+            }
+        }
     }
 
-    fn add(&mut self, refined: &[Refined], place: usize, check: Fit, screened: &[Screened]) {
+    fn add(&mut self, of_all: &Refinement, place: usize, check: Fit, screened: &[Screened]) {
+        let refined = &of_all.kept;
         let best = &refined[place];
         let others = refined.iter().enumerate();
         let others = others.filter(|(i, r)| *i != place && r.parts.len() == 1 && !r.is_form());
@@ -123,7 +145,7 @@ impl Search<'_> {
                 held_out: self.check.deviance - check.deviance,
                 alike: match best.is_form() {
                     true => Vec::new(),
-                    false => alike(part, best, &refined[place..], screened),
+                    false => alike(part, best, &refined[place..], screened, &of_all.unseen),
                 },
                 when_named: Vec::new(),
                 runners_up: others.clone(),
@@ -140,7 +162,7 @@ impl Search<'_> {
     }
 
     /// Candidates of one effect or two, by simulation; the simplest of the best first.
-    pub(super) fn refine(&self, candidates: Vec<Vec<Screened>>, own: &Columns) -> Vec<Refined> {
+    pub(super) fn refine(&self, candidates: Vec<Vec<Screened>>, own: &Columns) -> Refinement {
         let fitter = self.fitter();
         let promised = candidates.iter().map(|parts| parts[0].gain);
         let least = WORTH * promised.fold(0.0, f64::max);
@@ -214,9 +236,6 @@ impl Search<'_> {
             }
             r.gain = gain(&r.fit);
         });
-        let is_unseen =
-            |r: &Refined| r.hardly_falls() || self.hardly_remembers(r) || self.swings_unseen(r);
-        refined.retain(|r| !asked.is_empty() || !is_unseen(r));
         // Those that are near one another are compared where they end, with
         // derivatives of all effects as they are there, or a simple one that is
         // not there yet loses to one that contains it.
@@ -228,6 +247,14 @@ impl Search<'_> {
                 r.gain = gain(&r.fit);
             });
         }
+        let mut unseen = Vec::new();
+        refined.retain(|r| {
+            let drops = asked.is_empty() && r.added().iter().any(|a| self.is_unseen(a));
+            if let ([one], true) = (r.parts.as_slice(), drops) {
+                unseen.push(one.effect.name);
+            }
+            !drops
+        });
         refined.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         best_of_each(&mut refined);
         for r in &refined {
@@ -240,7 +267,8 @@ impl Search<'_> {
                 "refined"
             );
         }
-        simplest_first(refined)
+        let kept = simplest_first(refined);
+        Refinement { kept, unseen }
     }
 
     fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {

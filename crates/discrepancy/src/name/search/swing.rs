@@ -1,10 +1,9 @@
 //! At what frequency a body that swings by itself is sought.
 
-use axis_sim::effects::{ActiveEffect, Nature};
+use axis_sim::effects::Nature;
 use rayon::prelude::*;
 
 use super::lines::{Line, Spectral, duration, strongest};
-use super::refined::Refined;
 use super::state::Search;
 use crate::estimate::columns::Columns;
 use crate::name::library::{Candidate, RESONANCE_PERIODS};
@@ -37,40 +36,9 @@ impl Search<'_> {
         let bodies: Vec<Candidate> = lines.into_par_iter().map(candidate).collect();
         self.screened_beside(own, &bodies, known.effect.parameters.len())
     }
-
-    /// Whether a candidate is a body that would swing faster than any log shows: it is a mass.
-    pub(super) fn swings_unseen(&self, candidate: &Refined) -> bool {
-        let highest = self.fit_logs.logs.iter().map(|log| 0.5 / log.period);
-        let highest = highest.fold(0.0, f64::max);
-        let mut added = candidate.added().iter();
-        added.any(|active| is_faster(active, highest))
-    }
 }
 
-/// Whether this is a body that swings faster than so many hertz.
-fn is_faster(active: &ActiveEffect, highest: f64) -> bool {
-    let at = active.effect.place_of(is_frequency);
-    at.is_some_and(|at| active.values[at] > highest)
-}
-
-fn is_frequency(nature: &Nature) -> bool {
+/// Whether a number is the frequency of a body that swings.
+pub(super) fn is_frequency(nature: &Nature) -> bool {
     matches!(nature, Nature::Frequency(..))
-}
-
-#[cfg(test)]
-mod tests {
-    use axis_sim::effects::{ActiveEffect, Effect};
-
-    use super::is_faster;
-
-    #[test]
-    fn a_body_swings_faster_than_half_the_rate_or_not() {
-        let active = |name: &str, values: &[f64]| ActiveEffect {
-            effect: Effect::named(name).unwrap(),
-            values: values.to_vec(),
-        };
-        let body = active("structural-resonance", &[900.0, 600.0, 0.03]);
-        assert!(is_faster(&body, 500.0) && !is_faster(&body, 700.0));
-        assert!(!is_faster(&active("payload-mass", &[900.0]), 500.0));
-    }
 }
