@@ -24,6 +24,14 @@ pub(super) struct Refinement {
     pub(super) unseen: Vec<&'static str>,
 }
 
+impl Refinement {
+    /// Whether an effect ended, wherever it began, as a simpler one.
+    pub(super) fn ended_unseen(&self, name: &str) -> bool {
+        let is_it = |r: &Refined| r.parts.len() == 1 && r.parts[0].effect.name == name;
+        self.unseen.contains(&name) && !self.kept.iter().any(is_it)
+    }
+}
+
 impl Refined {
     /// The effects that it adds, one for each of its parts.
     pub(super) fn added(&self) -> &[ActiveEffect] {
@@ -84,13 +92,14 @@ const CLEARLY: f64 = 0.05;
 /// Effects that do nearly the same as the best, or explain as much: the logs
 /// cannot tell. What can do more is not among them, unless these logs would not
 /// show the more, or show it and not clearly enough to take it. `refined` are those that were
-/// not tried before it: what was tried did not hold on other motion; `unseen` are as in [`Refinement`].
+/// not tried before it: what was tried did not hold on other motion. What is no other than a simpler effect
+/// is no second explanation: `is_other` says so of a rival as it would be.
 pub(super) fn alike(
     own: &Screened,
     best: &Refined,
     refined: &[Refined],
     all: &[Screened],
-    unseen: &[&str],
+    is_other: impl Fn(&ActiveEffect) -> bool,
 ) -> Vec<Alike> {
     let pair = best.parts.iter().map(|p| p.effect.name);
     let pair: Vec<&str> = pair.collect();
@@ -107,8 +116,6 @@ pub(super) fn alike(
     let others = all
         .iter()
         .filter(|other| !pair.contains(&other.effect.name))
-        // What came out as the simpler one is no second explanation.
-        .filter(|other| fitted(other).is_some() || !unseen.contains(&other.effect.name))
         .filter(|other| {
             let more = other.basis.ncols() > own.basis.ncols();
             explains_more(other) || !(more && other.more_is_shown(own, best.gain, EQUAL))
@@ -135,6 +142,7 @@ pub(super) fn alike(
                 sine,
             })
         })
+        .filter(|alike| is_other(&alike.fitted))
         .collect();
     all.sort_by(|a, b| a.sine.total_cmp(&b.sine));
     all

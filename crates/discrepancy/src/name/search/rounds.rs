@@ -145,7 +145,9 @@ impl Search<'_> {
                 held_out: self.check.deviance - check.deviance,
                 alike: match best.is_form() {
                     true => Vec::new(),
-                    false => alike(part, best, &refined[place..], screened, &of_all.unseen),
+                    false => alike(part, best, &refined[place..], screened, |rival| {
+                        !(self.is_unseen(rival) || of_all.ended_unseen(rival.effect.name))
+                    }),
                 },
                 when_named: Vec::new(),
                 runners_up: others.clone(),
