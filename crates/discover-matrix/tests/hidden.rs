@@ -89,6 +89,16 @@ fn find_on(motions: [Program; 2], hidden: [&Hidden; 2], settings: &Settings) -> 
     discovery(&machine, &fit, &check, &found).unwrap().discovery
 }
 
+/// A search that may name these effects and no others.
+fn with_only(library: &[&str]) -> Settings {
+    let all = axis_sim::effects::EFFECTS.iter().map(|e| e.name);
+    let rejected = all.filter(|name| !library.contains(name));
+    Settings {
+        rejected: rejected.map(str::to_owned).collect(),
+        ..Settings::default()
+    }
+}
+
 #[test]
 fn nothing_is_missing_from_a_clean_axis() {
     let found = find(&hide(None, 11), &Settings::default());
@@ -377,11 +387,7 @@ fn what_is_rejected_is_not_named() {
 /// filters do: where nothing of the library may be named, neither is taken for such noise.
 #[test]
 fn what_is_missing_is_no_noise() {
-    let rejected = axis_sim::effects::EFFECTS.iter();
-    let settings = Settings {
-        rejected: rejected.map(|e| e.name.to_owned()).collect(),
-        ..Settings::default()
-    };
+    let settings = with_only(&[]);
     let hidden = [
         ("cogging-torque", vec![0.02, 4.0, 0.5]),
         ("presliding", vec![3e5]),
@@ -398,11 +404,7 @@ fn what_is_missing_is_no_noise() {
 /// A friction that falls with speed, where the library has none, is a form of the axis' own.
 #[test]
 fn a_fall_of_the_own_friction_is_another_form_of_it() {
-    let rejected = axis_sim::effects::EFFECTS.iter();
-    let settings = Settings {
-        rejected: rejected.map(|e| e.name.to_owned()).collect(),
-        ..Settings::default()
-    };
+    let settings = with_only(&[]);
     let hidden = hide_all(vec![("stribeck-friction", vec![60.0, 0.008])], 43);
     let found = find(&hidden, &settings);
     assert!(found.gap.check.stands_out() && found.own_form.is_some());
@@ -415,12 +417,9 @@ fn a_body_that_swings_too_fast_to_be_seen_is_no_name() {
     let hidden = hide_all(vec![("payload-mass", vec![30.0])], 47);
     let found = |library: &[&str]| {
         let motions = [false, true].map(|c| exercise(&axis(), Exercise::WithChirp, c).unwrap());
-        let all = axis_sim::effects::EFFECTS.iter().map(|e| e.name);
-        let rejected = all.filter(|name| !library.contains(name));
         let settings = Settings {
-            rejected: rejected.map(str::to_owned).collect(),
             most_effects: 1,
-            ..Settings::default()
+            ..with_only(library)
         };
         find_on(motions, [&hidden, &hidden], &settings)
     };

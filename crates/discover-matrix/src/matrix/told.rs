@@ -5,10 +5,6 @@ use discrepancy::{Foreseen, Verdict};
 use super::case::CaseKind;
 use super::outcome::CaseOutcome;
 
-/// Effects that are another form of a dry friction: how it comes on before it slides, and how it falls
-/// from there.
-const FORMS: [&str; 3] = ["stribeck-friction", "presliding", "maxwell-slip-hysteresis"];
-
 impl CaseOutcome {
     /// Whether all that is hidden can be seen, by what was known beforehand.
     pub fn is_detectable(&self) -> bool {
@@ -70,13 +66,11 @@ impl CaseOutcome {
         self.foreseen.iter().any(complete)
     }
 
-    /// Not called explained; or by an effect that was foreseen to look the same; or another form of
-    /// the axis' own friction, where what is hidden is one.
+    /// Not called explained; or by an effect that was foreseen to look the same.
     pub(super) fn is_honest(&self) -> bool {
         match self.verdict {
             Some(Verdict::Unknown | Verdict::PartlyExplained) => true,
             Some(Verdict::Explained) => self.first_is_foretold(),
-            Some(Verdict::OtherForm) => FORMS.iter().any(|form| self.hides(form)),
             _ => false,
         }
     }

@@ -115,21 +115,19 @@ impl Search<'_> {
         let may_end = awaited.is_empty() && added.iter().any(|a| may_end_unseen(a.effect));
         let (before, count) = (may_end.then(|| self.clone()), added.len());
         self.add(&of_all, place, check, &screened);
-        let effects = self.fit.state.effects.iter().rev().take(count);
-        let unseen = effects.filter(|active| self.is_unseen(active));
-        let unseen: Vec<&'static str> = unseen.map(|active| active.effect.name).collect();
-        match before.filter(|_| !unseen.is_empty()) {
-            Some(before) => {
+        if let Some(before) = before {
+            let new = self.fit.state.effects.iter().rev().take(count);
+            let unseen = new.filter(|active| self.is_unseen(active));
+            let unseen: Vec<&'static str> = unseen.map(|active| active.effect.name).collect();
+            if !unseen.is_empty() {
                 tracing::debug!(?unseen, "ended as a simpler effect");
                 *self = before;
                 self.unseen.extend(unseen);
-                self.add_next()
-            }
-            None => {
-                self.unseen.clear();
-                true
+                return self.add_next();
             }
         }
+        self.unseen.clear();
+        true
     }
 
     fn add(&mut self, of_all: &Refinement, place: usize, check: Fit, screened: &[Screened]) {
