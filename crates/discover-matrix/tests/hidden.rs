@@ -5,7 +5,7 @@
 use axis_log::{Channel, Log};
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, Scales};
-use discover_matrix::hidden::{Exercise, Hidden, Noise, exercise};
+use discover_matrix::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
 use discrepancy::{Discovery, Fitter, LogSet, Settings, State, Verdict, discovery, search};
 use trajectories::{Limits, Program, Step};
 
@@ -432,4 +432,23 @@ fn a_body_that_swings_too_fast_to_be_seen_is_no_name() {
     assert_eq!(with.effects[0].name, mass);
     let alike = &with.effects[0].indistinguishable_from;
     assert!(!alike.iter().any(body), "{alike:?}");
+}
+
+/// Frictions of the library put the root of speed together: where that law alone, with one number,
+/// explains as much, and more of other motion, none of them is given.
+#[test]
+fn several_effects_do_not_stand_for_one_law() {
+    let root = OUTSIDE.iter().find(|e| e.name == "root-friction").unwrap();
+    let mut hidden = hide(None, 53);
+    hidden.effects = vec![ActiveEffect {
+        effect: root,
+        values: vec![50.0],
+    }];
+    let library = ["viscous-friction", "coulomb-friction", "stribeck-friction"];
+    let found = find(&hidden, &with_only(&library));
+    assert_eq!(found.verdict, Verdict::Unknown, "{}", found.sentence);
+    let unknown = found.unknown.unwrap();
+    assert_eq!(unknown.depends_on, "speed", "{}", found.sentence);
+    let formula = unknown.formula.unwrap();
+    assert!(formula.contains("√|v|"), "{formula:?}");
 }

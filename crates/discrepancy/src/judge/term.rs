@@ -17,6 +17,15 @@ use crate::name::terms::{Term, middle, terms};
 /// number, where the curve has ten.
 const SHORT: f64 = 0.8;
 
+/// Which term is looked for.
+#[derive(Clone, Copy)]
+pub(super) enum Sought<'a> {
+    /// One that does nearly as much as a curve that makes D fall by this.
+    AsGoodAs(f64),
+    /// The one of these words.
+    Law(&'a str),
+}
+
 /// A short term, with its number.
 pub(super) struct Short {
     term: &'static Term,
@@ -31,8 +40,7 @@ pub(super) struct Short {
 }
 
 impl Short {
-    /// The term that explains most at a place, where it does nearly as much as the `curve`,
-    /// fitted: with known parameters and effects for a force. `check` is the fit of the check
+    /// The term that explains most at a place, of those that are sought, fitted: with known parameters and effects for a force. `check` is the fit of the check
     /// logs without it. `None` also where the machine does not run with it.
     pub(super) fn of(
         [fitter, checker]: [&Fitter<'_>; 2],
@@ -40,7 +48,7 @@ impl Short {
         check: &Fit,
         rest: &Rest<'_>,
         place: Place,
-        curve: f64,
+        sought: Sought<'_>,
     ) -> Option<Self> {
         let machine = fitter.machine;
         let motions = courses(machine, fitter.set, &found.fit.traces);
@@ -60,8 +68,14 @@ impl Short {
             (term, rest.solve(&columns))
         };
         let all: Vec<(&Term, Solved)> = terms(place).par_iter().map(tried).collect();
-        let most = all.into_iter().max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
-        let (term, solved) = most.filter(|(_, s)| s.gain >= SHORT * curve)?;
+        let most = all
+            .into_iter()
+            .filter(|(term, solved)| match sought {
+                Sought::AsGoodAs(curve) => solved.gain >= SHORT * curve,
+                Sought::Law(words) => term.words == words,
+            })
+            .max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
+        let (term, solved) = most?;
         let set = checker.set;
         let (number, traces) = match term.as_effect(&motions) {
             Some(active) => {

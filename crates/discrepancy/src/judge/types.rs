@@ -108,7 +108,7 @@ pub struct ReplacedEffect {
 
 /// Effects that explain something of the fitted logs, and are not given: with them check
 /// motion is further off, or they take away too little of its gap, or one law of a single
-/// number explains more than all of them.
+/// number explains as much as all of them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RefusedEffects {
     /// Names.
@@ -118,7 +118,7 @@ pub struct RefusedEffects {
     /// Share of the gap on check motion that they take away, where that is too little.
     #[serde(default)]
     pub takes_away: Option<f64>,
-    /// The law that explains more, where they are not given for that: a force in proportion
+    /// The law that explains as much or more, where they are not given for that: a force in proportion
     /// to this, of time t, position x and speed v.
     #[serde(default)]
     pub law: Option<String>,
@@ -140,7 +140,7 @@ impl RefusedEffects {
                 _ => ("they", "explain", "are"),
             };
             return format!(
-                " {} {explains} less than a force in proportion to {law} does with one number, so {it} {is} not given.",
+                " {} {explains} no more than a force in proportion to {law} does with one number, so {it} {is} not given.",
                 self.effects.join(" with ")
             );
         }

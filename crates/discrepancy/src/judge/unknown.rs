@@ -12,9 +12,9 @@ use axis_sim::{Axis, ReplayError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::term::Short;
+use super::term::{Short, Sought};
 use crate::estimate::fit::Fitter;
-use crate::name::curves::{Rest, Solved};
+use crate::name::curves::{Place, Rest, Solved};
 use crate::name::gap::is_material;
 use crate::name::search::{Found, needed};
 use crate::noise::Excess;
@@ -105,15 +105,17 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     let Some(explains_most) = first.or(told.first().copied()) else {
         return Ok(None);
     };
-    let place = curves.shapes[explains_most.0].0.place;
-    let short = Short::of(
-        [&fitter, &checker],
-        found,
-        &check,
-        &rest,
-        place,
-        explains_most.1.gain,
-    );
+    // A law that took the place of effects was simulated, and did better than they did.
+    let law = found.law_in_place();
+    let place = match law {
+        Some(_) => Place::Force,
+        None => curves.shapes[explains_most.0].0.place,
+    };
+    let sought = match law {
+        Some(words) => Sought::Law(words),
+        None => Sought::AsGoodAs(explains_most.1.gain),
+    };
+    let short = Short::of([&fitter, &checker], found, &check, &rest, place, sought);
     let set = &found.check_logs;
     let short = short.and_then(|short| {
         let over = |i: &usize| {
@@ -128,9 +130,9 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     });
     // A term with its one number that does as much as the knots of any curve says better on what it
     // depends.
-    let as_short = short
-        .as_ref()
-        .filter(|(short, _)| first.is_none_or(|first| short.gain() >= first.1.gain));
+    let as_short = short.as_ref().filter(|(short, _)| {
+        law.is_some() || first.is_none_or(|first| short.gain() >= first.1.gain)
+    });
     let (index, solution, told) = match (as_short, first) {
         (Some((_, of_it)), _) => *of_it,
         (None, Some(first)) => first,

@@ -246,7 +246,7 @@ fn pieces_of_one_law_are_said_beside_what_is_named() {
     made.refused = Some(refused(&["coulomb-friction", "stribeck-friction"]));
     assert_eq!(
         lines(&made, "What is missing")[1],
-        "coulomb-friction with stribeck-friction explain less than a force in proportion to |v|·v does with one number, so they are not given."
+        "coulomb-friction with stribeck-friction explain no more than a force in proportion to |v|·v does with one number, so they are not given."
     );
     made.refused = Some(refused(&["coulomb-friction"]));
     assert!(lines(&made, "What is missing")[1].ends_with("so it is not given."));

@@ -2,7 +2,7 @@
 //!
 //! A law that is not in the library is put together from what is: a drag by the square of the
 //! speed from viscous friction and less dry friction. Where a law of a single number, over what
-//! they depend on, explains more than all of them, they are not there.
+//! they depend on, explains as much as all of them, and more of the check logs, they are not there.
 
 use axis_sim::effects::{ActiveEffect, EffectChannel, Scales};
 
@@ -18,9 +18,9 @@ use crate::name::library::{Candidate, responses};
 use crate::name::terms::{Term, terms};
 
 impl<'a> Search<'a> {
-    /// Without those effects in whose place one law of a single number explains more, of the
-    /// fitted logs and of the check logs, and without what is needless beside that law; they are
-    /// said to be refused.
+    /// Without those effects in whose place one law of a single number explains as much of the
+    /// fitted logs (more, if it is one effect) and more of the check logs, and without what is
+    /// needless beside that law; they are said to be refused.
     pub(super) fn without_pieces(&self) -> Option<Self> {
         let courses = courses(self.machine, &self.fit_logs, &self.fit.traces);
         let laws = terms(Place::Force).iter().filter(|t| t.has_one_number());
@@ -77,7 +77,12 @@ impl<'a> Search<'a> {
         let (term, _) = laws.iter().find(|(_, law)| law.values[0] == place)?;
         let fall = self.fit.deviance - fit.deviance;
         let held_out = self.check.deviance - check.deviance;
-        let least = BY_CHANCE.max(MATERIAL * (without.fit.deviance - fit.deviance));
+        // One number in the place of several effects need only explain as much; in the place of
+        // one, more than chance and the model's own simplifications bring.
+        let least = match taken.as_slice() {
+            [_] => BY_CHANCE.max(MATERIAL * (without.fit.deviance - fit.deviance)),
+            _ => 0.0,
+        };
         tracing::debug!(
             of = ?taken.iter().map(|n| n.name).collect::<Vec<_>>(),
             law = term.words,

@@ -213,7 +213,8 @@ pub enum RefusalReason {
     Worse(Vec<&'static str>),
     /// They take away this share of the gap on check motion, too little to explain it.
     Little(f64),
-    /// A law of one number that is not in the library, this one, explains more than all of them.
+    /// A law of one number that is not in the library, this one, explains as much as all of them
+    /// (more than one of them alone), and more of the check logs.
     OneLaw(&'static str),
 }
 
@@ -269,6 +270,14 @@ pub struct Test {
 pub(super) const SIMULATED: f64 = 2e-4;
 
 impl Found {
+    /// The law that was found in the place of effects, in words.
+    pub(crate) fn law_in_place(&self) -> Option<&'static str> {
+        match self.refused.as_ref()?.reason {
+            RefusalReason::OneLaw(words) => Some(words),
+            _ => None,
+        }
+    }
+
     /// Fall of D that naming an effect of one number took.
     pub fn needed(&self) -> f64 {
         let tried = self.library.candidates.len();
