@@ -40,8 +40,9 @@ pub(super) struct Short {
 }
 
 impl Short {
-    /// The term that explains most at a place, of those that are sought, fitted: with known parameters and effects for a force. `check` is the fit of the check
-    /// logs without it. `None` also where the machine does not run with it.
+    /// The term that explains most at a place, of those that are sought, fitted: with known
+    /// parameters and effects for a force. `check` is the fit of the check logs without it.
+    /// `None` also where the machine does not run with it.
     pub(super) fn of(
         [fitter, checker]: [&Fitter<'_>; 2],
         found: &Found,
