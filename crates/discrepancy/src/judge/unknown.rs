@@ -106,14 +106,12 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
         return Ok(None);
     };
     // A law that took the place of effects was simulated, and did better than they did.
-    let law = found.law_in_place();
-    let place = match law {
-        Some(_) => Place::Force,
-        None => curves.shapes[explains_most.0].0.place,
-    };
-    let sought = match law {
-        Some(words) => Sought::Law(words),
-        None => Sought::AsGoodAs(explains_most.1.gain),
+    let (place, sought) = match found.law_in_place() {
+        Some(words) => (Place::Force, Sought::Law(words)),
+        None => {
+            let (i, curve, _) = explains_most;
+            (curves.shapes[i].0.place, Sought::AsGoodAs(curve.gain))
+        }
     };
     let short = Short::of([&fitter, &checker], found, &check, &rest, place, sought);
     let set = &found.check_logs;
@@ -131,7 +129,7 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     // A term with its one number that does as much as the knots of any curve says better on what it
     // depends.
     let as_short = short.as_ref().filter(|(short, _)| {
-        law.is_some() || first.is_none_or(|first| short.gain() >= first.1.gain)
+        matches!(sought, Sought::Law(_)) || first.is_none_or(|first| short.gain() >= first.1.gain)
     });
     let (index, solution, told) = match (as_short, first) {
         (Some((_, of_it)), _) => *of_it,
