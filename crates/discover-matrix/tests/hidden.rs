@@ -435,17 +435,19 @@ fn a_body_that_swings_too_fast_to_be_seen_is_no_name() {
 }
 
 /// Frictions of the library put the root of speed together: where that law alone, with one number,
-/// explains as much, and more of other motion, none of them is given.
+/// explains as much (here 24 more of D, which chance may bring), and more of other motion, none of
+/// them is given.
 #[test]
 fn several_effects_do_not_stand_for_one_law() {
     let root = OUTSIDE.iter().find(|e| e.name == "root-friction").unwrap();
-    let mut hidden = hide(None, 53);
+    let mut hidden = hide(None, 55);
     hidden.effects = vec![ActiveEffect {
         effect: root,
-        values: vec![50.0],
+        values: vec![24.0],
     }];
     let library = ["viscous-friction", "coulomb-friction", "stribeck-friction"];
-    let found = find(&hidden, &with_only(&library));
+    let motions = [false, true].map(|check| over(0.03, check));
+    let found = find_on(motions, [&hidden, &hidden], &with_only(&library));
     assert_eq!(found.verdict, Verdict::Unknown, "{}", found.sentence);
     let unknown = found.unknown.unwrap();
     assert_eq!(unknown.depends_on, "speed", "{}", found.sentence);
@@ -458,5 +460,5 @@ fn several_effects_do_not_stand_for_one_law() {
     let [_, _, low, high] = numbers[..] else {
         panic!("{formula}");
     };
-    assert!(low < 50.0 && 50.0 < high && high - low < 5.0, "{formula}");
+    assert!(low < 24.0 && 24.0 < high && high - low < 5.0, "{formula}");
 }
