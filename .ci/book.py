@@ -6,8 +6,11 @@
 Blocks of a page:
   ```sh         runs, in one temporary folder per page, where the project's folders are and `cargo xtask`
                 is the program that was built. A block that fails fails the page.
+  ```sh,fails   likewise, of commands that must fail; what they print is standard error as well.
   ```text       straight behind such a block: what it prints. Every line must be there, in this order;
                 three dots stand for the rest of a line, or alone for any number of lines; spaces count as one.
+  ```toml,save=FILE, ```toml,append=FILE
+                blocks that a reader saves as a file, or adds to its end.
   ```sh,ignore  does not run; a comment before it says why: <!-- not run: ... -->
 A line with a command that a page names as <!-- not run: `COMMAND`: why --> is left out of its blocks.
 A page with <!-- goes on from PAGE.md --> finds the files that the blocks of that page have made.
@@ -102,33 +105,36 @@ def run_page(page, text, work, scratch):
     env = dict(os.environ, PATH=f"{scratch / 'bin'}:{os.environ['PATH']}", HOME=str(scratch), NO_COLOR="1")
     for line, language, block, before, follows in blocks(text):
         where = f"{name}:{line}"
-        if language == "sh":
+        if language in ("sh", "sh,fails"):
             lines = [line for line in block.splitlines() if not any(command in line for command in left_out)]
-            output, ran = run_block(where, "\n".join(lines), work, env), ran + 1
+            output, ran = run_block(where, "\n".join(lines), work, env, language == "sh,fails"), ran + 1
         elif language == "text" and follows and output is not None:
             if not pattern(block).search(output):
                 sys.exit(f"{where}: the page shows\n{block}\nthe command printed\n{output}")
+        elif kept := re.fullmatch(r"toml,(save|append)=([\w.-]+)", language):
+            with (work / kept[2]).open("w" if kept[1] == "save" else "a") as file:
+                file.write(block + "\n")
         elif language in ("bash", "shell", "console"):
             sys.exit(f"{where}: a block of commands is ```sh, so that it runs")
         elif language.startswith("sh,") and (language != "sh,ignore" or not before.startswith("<!-- not run:")):
             sys.exit(f"{where}: a block that does not run is ```sh,ignore behind <!-- not run: why -->")
-        if language != "sh":
+        if language not in ("sh", "sh,fails"):
             output = None
     if ran:
         print(f"{name}: {ran} blocks, {time.monotonic() - begin:.1f} s", flush=True)
     return ran
 
 
-def run_block(where, text, work, env):
-    """Standard output of a block."""
+def run_block(where, text, work, env, fails):
+    """Standard output of a block, and standard error of one that must fail."""
     command = ["bash", "-euo", "pipefail", "-c", text]
     try:
         done = subprocess.run(command, cwd=work, env=env, capture_output=True, text=True, timeout=LONGEST_S)
     except subprocess.TimeoutExpired:
         sys.exit(f"{where}: still running after {LONGEST_S} s\n{text}")
-    if done.returncode:
+    if fails != bool(done.returncode):
         sys.exit(f"{where}: ends with {done.returncode}\n{text}\n{done.stdout}{done.stderr}")
-    return done.stdout
+    return done.stdout + done.stderr if fails else done.stdout
 
 
 def run(named):

@@ -10,6 +10,7 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 
 use crate::exit::{busy, wrong_use};
 use crate::output::ready;
+use crate::set_key::{SetKey, with_keys};
 
 /// The axis file that commands take where none is given: the paper's, in the project's folder.
 pub const DEFAULT_AXIS: &str = "data/axes/liu2025.toml";
@@ -20,6 +21,10 @@ pub struct Common {
     /// Axis file
     #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     pub axis: PathBuf,
+    /// Set a key of the axis file to another value for this run, such as mechanism.table_mass_kg=415
+    /// (may be repeated); the file of --machine keeps its own
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<SetKey>,
     /// Axis file of what stands for the measured machine [default: the one
     /// that the axis file names, or the axis itself]
     #[arg(long, value_name = "FILE")]
@@ -61,7 +66,11 @@ pub struct Context {
 impl Common {
     /// Reads the axis files and sets the number of threads.
     pub fn open(&self) -> Result<Context> {
-        let axis = read_axis(&self.axis)?;
+        let mut axis = read_axis(&self.axis)?;
+        if !self.set.is_empty() {
+            let content = with_keys(&read_text(&self.axis)?, &self.set)?;
+            axis = Axis::read_changed(&self.axis, &content)?;
+        }
         let machine_file = self.machine.clone().or_else(|| {
             let experiment = axis.experiment.as_ref();
             experiment.map(|experiment| experiment.machine.clone())

@@ -17,6 +17,7 @@ mod paper;
 pub mod program;
 pub mod progress;
 mod results;
+pub mod set_key;
 pub mod store;
 mod strategy_name;
 pub mod terminal;

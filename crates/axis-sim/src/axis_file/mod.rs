@@ -75,8 +75,20 @@ impl Axis {
     /// # Errors
     /// As [`Axis::read`].
     pub fn read_with(path: &Path, registry: &Registry) -> Result<Self, AxisFileError> {
-        let content = content(path)?;
-        let mut axis = Self::parse_with(&path.display().to_string(), &content, registry)?;
+        Self::stands_for(path, &content(path)?, registry)
+    }
+
+    /// As [`Axis::read`], of a text that stands for the file at `path`, such as the file's own
+    /// with changes: messages name the file, and files that it names lie beside it.
+    ///
+    /// # Errors
+    /// As [`Axis::read`].
+    pub fn read_changed(path: &Path, content: &str) -> Result<Self, AxisFileError> {
+        Self::stands_for(path, content, &Registry::default())
+    }
+
+    fn stands_for(path: &Path, content: &str, registry: &Registry) -> Result<Self, AxisFileError> {
+        let mut axis = Self::parse_with(&path.display().to_string(), content, registry)?;
         axis.lies_in(path.parent());
         Ok(axis)
     }

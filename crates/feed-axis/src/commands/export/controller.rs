@@ -53,6 +53,7 @@ impl Results {
     pub fn open(&self) -> Result<Context> {
         let common = Common {
             axis: self.axis.clone(),
+            set: Vec::new(),
             machine: self.machine.clone(),
             out: self.run.clone(),
             seed: self.seed,

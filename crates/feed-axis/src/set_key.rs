@@ -1,0 +1,120 @@
+//! Keys of an axis file that an option sets to other values for one run.
+
+use std::str::FromStr;
+
+use miette::{IntoDiagnostic, Result};
+use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
+
+use crate::exit::wrong_use;
+
+/// One key, by the tables that it is in, and its value: `mechanism.table_mass_kg=415`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SetKey {
+    tables: Vec<String>,
+    key: String,
+    value: String,
+}
+
+impl FromStr for SetKey {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let valid = "valid: KEY=VALUE, such as mechanism.table_mass_kg=415";
+        let (path, value) = text.split_once('=').ok_or(format!("no `=`; {valid}"))?;
+        let mut tables: Vec<String> = path.split('.').map(|part| part.trim().into()).collect();
+        if tables.iter().any(String::is_empty) {
+            return Err(format!("a part of the key is empty; {valid}"));
+        }
+        let key = tables.pop().unwrap_or_default();
+        let value = value.trim().to_owned();
+        Ok(Self { tables, key, value })
+    }
+}
+
+impl SetKey {
+    /// What the value is in TOML: a number, a list and so on, or else a text, for which a shell
+    /// needs no quotes within quotes.
+    fn value(&self) -> Value {
+        self.value
+            .parse()
+            .unwrap_or_else(|_| Value::from(self.value.as_str()))
+    }
+}
+
+/// The text of an axis file with keys set. A key that the file leaves out is added; whether there is
+/// such a key, and whether the value is valid, is for the reader of the file to say.
+///
+/// # Errors
+/// A text that is no TOML; wrong use, where what should be a table is none.
+pub fn with_keys(content: &str, keys: &[SetKey]) -> Result<String> {
+    let mut document: DocumentMut = content.parse().into_diagnostic()?;
+    for set in keys {
+        let mut table: &mut dyn TableLike = document.as_table_mut();
+        for name in &set.tables {
+            let item = table
+                .entry(name)
+                .or_insert_with(|| Item::Table(Table::new()));
+            table = item.as_table_like_mut().ok_or_else(|| {
+                wrong_use(format!(
+                    "--set {}.{}: `{name}` is no table of the axis file; valid: a table such as \
+                     mechanism, actuator, control, friction or stroke, a point, and one of its keys",
+                    set.tables.join("."),
+                    set.key
+                ))
+            })?;
+        }
+        match table.get_mut(&set.key).and_then(Item::as_value_mut) {
+            // What stands around a value, its comment among it, stays.
+            Some(value) => {
+                let around = value.decor().clone();
+                *value = set.value();
+                *value.decor_mut() = around;
+            }
+            None => {
+                table.insert(&set.key, Item::Value(set.value()));
+            }
+        }
+    }
+    Ok(document.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{SetKey, with_keys};
+
+    const FILE: &str =
+        "name = \"a\"\n[mechanism]\nmass_kg = 515 # of the table\nmounting = \"fixed-free\"\n";
+
+    fn set(keys: &[&str]) -> String {
+        let keys: Vec<SetKey> = keys.iter().map(|key| key.parse().unwrap()).collect();
+        with_keys(FILE, &keys).unwrap()
+    }
+
+    #[test]
+    fn a_key_has_its_new_value_and_keeps_its_comment() {
+        assert_eq!(set(&["mechanism.mass_kg=415"]), FILE.replace("515", "415"));
+        assert_eq!(
+            set(&["mechanism.mounting=fixed-fixed", "name = b"]),
+            FILE.replace("fixed-free", "fixed-fixed")
+                .replace("\"a\"", "\"b\"")
+        );
+    }
+
+    #[test]
+    fn a_key_that_is_not_there_is_added() {
+        let text = set(&["mechanism.lead_mm=10", "stroke.start_mm=[1, 2]"]);
+        assert!(text.contains("lead_mm = 10\n"), "{text}");
+        assert!(text.contains("[stroke]\nstart_mm = [1, 2]\n"), "{text}");
+    }
+
+    #[test]
+    fn what_is_no_key_is_told_with_what_would_be() {
+        for wrong in ["mass", "a..b=1", "=3"] {
+            let message = wrong.parse::<SetKey>().unwrap_err();
+            assert!(message.contains("mechanism.table_mass_kg=415"), "{message}");
+        }
+        let in_a_value: SetKey = "name.first=3".parse().unwrap();
+        let message = with_keys(FILE, &[in_a_value]).unwrap_err().to_string();
+        assert!(message.contains("`name` is no table"), "{message}");
+    }
+}
