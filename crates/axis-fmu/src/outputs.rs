@@ -6,8 +6,8 @@ use axis_sim::{Axis, Cycle, LogChannel, LoopState, channels};
 /// Where an output is read.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {
-    /// The machine, now.
-    Machine(fn(&LoopState) -> f64),
+    /// The machine, now, times a number.
+    Machine(fn(&LoopState) -> f64, f64),
     /// What the drive sampled and commanded in its last cycle.
     Drive(fn(&Cycle) -> f64),
 }
@@ -15,7 +15,7 @@ pub(crate) enum Source {
 impl Source {
     pub(crate) fn read(self, state: &LoopState, cycle: &Cycle) -> f64 {
         match self {
-            Self::Machine(read) => read(state),
+            Self::Machine(read, times) => times * read(state),
             Self::Drive(read) => read(cycle),
         }
     }
@@ -62,7 +62,7 @@ const MOTOR: &[Line] = &[
 
 #[rustfmt::skip]
 const FORCE: &[Line] = &[
-    ("motor_force_n", "N", "force of the motor", |s| s.plant().seen().torque),
+    ("motor_force_n", "N", "force of the motor on the load", |s| s.plant().seen().torque),
 ];
 
 #[rustfmt::skip]
@@ -77,18 +77,25 @@ pub(crate) fn outputs(axis: &Axis) -> Vec<Output> {
         Freedom::Linear => LINEAR,
         Freedom::Rotary => ROTARY,
     };
-    let motor = if is_linear_motor(axis) { FORCE } else { MOTOR };
+    // A torque T at a motor that moves the load by r a radian is the force T/r on it.
+    let (motor, per_torque) = match is_force(axis) {
+        true => (FORCE, 1.0 / axis.travel_per_radian()),
+        false => (MOTOR, 1.0),
+    };
     let currents = if axis.actuator.has_currents() {
         CURRENTS
     } else {
         &[]
     };
-    let machine = [load, motor, currents].concat().into_iter();
-    let machine = machine.map(|(name, unit, meaning, read)| Output {
-        name: format!("machine.{name}"),
-        unit,
-        meaning,
-        source: Source::Machine(read),
+    let groups = [(load, 1.0), (motor, per_torque), (currents, 1.0)];
+    let machine = groups.into_iter().flat_map(|(lines, times)| {
+        let output = move |(name, unit, meaning, read): &Line| Output {
+            name: format!("machine.{name}"),
+            unit,
+            meaning,
+            source: Source::Machine(*read, times),
+        };
+        lines.iter().map(output)
     });
     let drive = channels(axis).into_iter().filter(|c| !is_reference(c));
     let drive = drive.map(|channel| {
@@ -103,8 +110,9 @@ pub(crate) fn outputs(axis: &Axis) -> Vec<Output> {
     machine.chain(drive).collect()
 }
 
-/// Whether motor and load are one and move along a line: its torque is a force.
-pub(crate) fn is_linear_motor(axis: &Axis) -> bool {
+/// Whether motor and load are one and move along a line, be it by the lead of a screw: what
+/// the motor gives is told as the force on the load.
+pub(crate) fn is_force(axis: &Axis) -> bool {
     axis.freedom() == Freedom::Linear && !axis.mechanism.has_motor_encoder()
 }
 

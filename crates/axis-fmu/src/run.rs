@@ -7,7 +7,7 @@ use compensator::{Compensator, Correction, Sample};
 use trajectories::Setpoint;
 
 use crate::error::UnitError;
-use crate::outputs::is_linear_motor;
+use crate::outputs::is_force;
 
 /// A run between two communication steps.
 #[derive(Clone, Debug)]
@@ -36,7 +36,7 @@ impl Compensator for Offset {
 /// What is given to the loop in a cycle.
 pub(crate) struct Given {
     pub reference: Setpoint,
-    /// N·m, or N of a linear motor.
+    /// N·m at the motor, or N at a load that is one with it.
     pub motor: f64,
     /// N or N·m.
     pub load: f64,
@@ -62,7 +62,7 @@ impl Run {
     /// One control cycle.
     pub fn cycle(&mut self, given: &Given) -> Result<(), UnitError> {
         let axis = self.closed_loop.axis();
-        let torque = match is_linear_motor(axis) {
+        let torque = match is_force(axis) {
             true => given.motor * axis.travel_per_radian(),
             false => given.motor,
         };

@@ -5,7 +5,7 @@ use axis_sim::mechanism::Freedom;
 
 use crate::error::UnitError;
 use crate::measure::UnitDefinition;
-use crate::outputs::{Source, is_linear_motor, outputs};
+use crate::outputs::{Source, is_force, outputs};
 use crate::parameters::parameters;
 
 /// A variable of a unit; all are 64-bit floating-point numbers.
@@ -157,7 +157,7 @@ fn inputs(axis: &Axis) -> [Line; 5] {
     use Input::{Acceleration, Load, Motor, Position, Velocity};
     const LOAD: &str = "on the load from outside, positive against positive motion";
     let (at, motor) = (axis.stroke.start, "added to what the controller asks of the motor");
-    let motor = match is_linear_motor(axis) {
+    let motor = match is_force(axis) {
         true => ("force_offset_n", motor, "N", Motor, 0.0),
         false => ("torque_offset_n_m", motor, "N·m", Motor, 0.0),
     };

@@ -54,9 +54,9 @@ pub enum LearningError {
     },
     /// Another move.
     #[error(
-        "the reference is not that of the move that the correction was learned on: it differs by {0:.3e} m or rad and more wherever it is laid; valid: a log or motion of the same move, or a new correction file"
+        "the reference is not that of the move that the correction was learned on: it differs by {0:.3e} {1} and more wherever it is laid; valid: a log or motion of the same move, or a new correction file"
     )]
-    OtherMove(f64),
+    OtherMove(f64, &'static str),
     /// A stored correction that nothing can be made of.
     #[error("the correction is not valid: {0}")]
     Correction(#[from] CompensatorError),
@@ -142,7 +142,7 @@ impl StoredCorrection {
     pub fn learn(&mut self, axis: &Axis, log: &Log) -> Result<Round, LearningError> {
         self.check(axis)?;
         let cycles = Cycles::of(axis, log)?;
-        let offset = align(&cycles.reference, &self.reference)?;
+        let offset = align(axis, &cycles.reference, &self.reference)?;
         let mut errors = vec![None; self.reference.len()];
         for (k, error) in cycles.errors.iter().enumerate() {
             let at = usize::try_from(k as i64 + offset).ok();
@@ -154,7 +154,8 @@ impl StoredCorrection {
         let round = learned.learn(&errors);
         self.shift = learned.shift().to_vec();
         self.rounds = learned.rounds();
-        self.history = learned.history();
+        // JSON has no infinity.
+        self.history = learned.history().map(|part| part.min(f64::MAX));
         self.axis_fingerprint.clone_from(&axis.fingerprint);
         Ok(round)
     }
@@ -171,7 +172,7 @@ impl StoredCorrection {
         let reference: Vec<f64> = (0..count)
             .map(|k| motion.at(k as f64 * period).position)
             .collect();
-        let offset = align(&reference, &self.reference)?;
+        let offset = align(axis, &reference, &self.reference)?;
         let (length, taper) = (self.shift.len() as i64, (TAPER / period).ceil());
         let whole = offset == 0;
         let shift = (0..count as i64).map(|k| {
@@ -227,7 +228,7 @@ impl StoredCorrection {
 }
 
 /// Cycles by which `new` begins after `known`, found where both references are the same.
-fn align(new: &[f64], known: &[f64]) -> Result<i64, LearningError> {
+fn align(axis: &Axis, new: &[f64], known: &[f64]) -> Result<i64, LearningError> {
     // A sample in the fastest part of the one is where the other passes the same place.
     let steps = new.windows(2).map(|w| (w[1] - w[0]).abs());
     let (fast, step) = steps.enumerate().fold(
@@ -259,7 +260,7 @@ fn align(new: &[f64], known: &[f64]) -> Result<i64, LearningError> {
     }
     match best {
         (off, offset) if off <= SAME_REFERENCE => Ok(offset),
-        (off, _) => Err(LearningError::OtherMove(off)),
+        (off, _) => Err(LearningError::OtherMove(off, axis.freedom().unit())),
     }
 }
 

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use axis_sim::{ClosedLoop, LoopState, Measured, Outcome, Start};
-use compensator::{Compensator, Correction, LearnedMove, Sample};
+use compensator::{Compensator, Correction, Homed, LearnedMove, Sample};
 
-use crate::strategies::{LearnedValues, NextMove, SharedMotion, Strategy};
+use crate::strategies::{Continued, LearnedValues, NextMove, SharedMotion, Strategy};
 use crate::{Figures, PipelineError};
 
 /// Positions nearer than this count as one, m or rad: the same place in two programs.
@@ -43,8 +43,8 @@ pub struct Moves<'a, S> {
 /// How the last move has left the axis.
 struct Left {
     state: LoopState,
-    /// What was added to its command.
-    own: Correction,
+    /// What was added to its command, and where it was homed.
+    continued: Continued,
     /// Where its motion ended.
     end: f64,
 }
@@ -107,7 +107,7 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
         let begin = planned.motion.at(0.0).position;
         let left = self.left.take();
         let (mut state, continued) = match left.filter(|l| (l.end - begin).abs() < SAME_PLACE) {
-            Some(left) => (left.state.at_rest(), Some(left.own)),
+            Some(left) => (left.state.at_rest(), Some(left.continued)),
             None => (self.closed_loop.start(&Start::at(begin))?, None),
         };
         let mut compensator = strategy.compensator(&NextMove {
@@ -131,9 +131,18 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
         let Recording { samples, last, .. } = recording;
         if let Outcome::Completed = outcome {
             let end = planned.motion.at(f64::INFINITY).position;
+            // An axis that was settled anew was homed there.
+            let homed = continued.map(|before| before.homed);
+            let here = samples.first().map_or_else(Homed::default, |first| Homed {
+                position: first.reference.position,
+                effort: first.iq_command,
+            });
             self.left = Some(Left {
                 state,
-                own: last,
+                continued: Continued {
+                    own: last,
+                    homed: homed.unwrap_or(here),
+                },
                 end,
             });
         }
@@ -161,5 +170,9 @@ impl Compensator for Recording<'_> {
         self.samples.push(*sample);
         self.last = self.inner.correct(sample);
         self.last
+    }
+
+    fn surprise(&self) -> f64 {
+        self.inner.surprise()
     }
 }

@@ -68,6 +68,65 @@ fn terms_of_the_papers_axis_by_hand() {
     }
 }
 
+/// A mass on a lead has a motor that turns: its inertia is m r², its torque constant the
+/// force's times r. A linear motor's are the slide's.
+#[test]
+fn terms_of_motors_that_turn_and_of_those_that_do_not() {
+    let r = 2.5e-3 / TAU;
+    let emps = [
+        ("travel_per_radian", r, "m/rad", 2.5, "mm/rev"),
+        (
+            "torque_constant",
+            35.15065188 * r,
+            "N·m/V",
+            35.15065188 * r,
+            "N·m/V",
+        ),
+        (
+            "inertia_total",
+            95.1089 * r * r,
+            "kg·m²",
+            95.1089e4 * r * r,
+            "kg·cm²",
+        ),
+        (
+            "acceleration_feedforward",
+            95.1089 / 35.15065188,
+            "V/(m/s²)",
+            95.1089 / 35.15065188,
+            "V/(m/s²)",
+        ),
+    ];
+    let linear = [
+        ("travel_per_radian", 1.0, "m/m", 1.0, "1"),
+        ("torque_constant", 93.0, "N/A", 93.0, "N/A"),
+        ("inertia_total", 40.0, "kg", 40.0, "kg"),
+        (
+            "acceleration_feedforward",
+            40.0 / 93.0,
+            "A/(m/s²)",
+            40.0 / 93.0,
+            "A/(m/s²)",
+        ),
+    ];
+    for (file, expected) in [("emps.toml", emps), ("linear-motor.toml", linear)] {
+        let axis = axis(file);
+        let list = terms(&axis, &of_axis(&axis).unwrap());
+        for (name, value, unit, drive_value, drive_unit) in expected {
+            let term = list.iter().find(|t| t.name == name).unwrap();
+            let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+            assert!(
+                near(term.value, value) && near(term.drive_value, drive_value),
+                "{term:?}"
+            );
+            assert_eq!(
+                (term.unit.as_str(), term.drive_unit.as_str()),
+                (unit, drive_unit)
+            );
+        }
+    }
+}
+
 #[test]
 fn every_term_has_units_and_a_meaning_on_every_axis() {
     for file in [

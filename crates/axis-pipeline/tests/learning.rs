@@ -118,7 +118,7 @@ fn another_move_is_refused_and_so_is_a_log_that_stands_still() {
     let mut correction = StoredCorrection::of(&rig.axis, &log).unwrap();
     let other = motion(&rig.axis, 0);
     let refused = correction.on(&rig.axis, &*other).unwrap_err();
-    assert!(matches!(refused, LearningError::OtherMove(_)), "{refused}");
+    assert!(matches!(refused, LearningError::OtherMove(..)), "{refused}");
     let still = Log::new(vec![
         axis_log::Channel::new("t_s", (0..100).map(|k| 1e-4 * f64::from(k)).collect()).unwrap(),
         axis_log::Channel::new("position_ref_m", vec![0.6; 100]).unwrap(),

@@ -2,5 +2,6 @@
 
 mod drive_terms;
 mod learning;
+mod moves;
 mod robustness;
 mod samples;

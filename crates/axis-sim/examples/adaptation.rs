@@ -33,6 +33,10 @@ impl<C: Compensator> Compensator for Logged<C> {
         self.log.push(*sample);
         self.inner.correct(sample)
     }
+
+    fn surprise(&self) -> f64 {
+        self.inner.surprise()
+    }
 }
 
 /// Greatest tracking error, m, and the log.

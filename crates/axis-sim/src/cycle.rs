@@ -19,13 +19,14 @@ pub struct Cycle {
     pub position: f64,
     /// Its speed, m/s or rad/s. Not seen by the controller.
     pub load_speed: f64,
-    /// Motor angle, rad.
+    /// Motor angle, rad; m where the motor moves along a line
+    /// ([`Mechanism::motor_freedom`](crate::mechanism::Mechanism::motor_freedom)).
     pub motor_angle: f64,
-    /// Motor speed, rad/s.
+    /// Motor speed, rad/s; m/s there.
     pub motor_speed: f64,
     /// Currents, A; 0 where the actuator has none.
     pub current: Dq,
-    /// Torque of the motor, N·m.
+    /// Torque of the motor, N·m; its force, N, there.
     pub torque: f64,
     /// What the sensors show: the above where they are perfect.
     pub measured: Measured,
@@ -108,20 +109,22 @@ pub struct Stop {
     pub position: f64,
     /// Tracking error, m or rad.
     pub error: f64,
-    /// Motor speed, rad/s.
+    /// Motor speed, rad/s, or m/s of a motor that moves along a line.
     pub motor_speed: f64,
-    /// Motor torque, N·m.
+    /// Motor torque, N·m, or force, N.
     pub torque: f64,
     /// How the load moves.
     pub freedom: Freedom,
+    /// How the motor moves.
+    pub motor: Freedom,
 }
 
 /// A run that did not come to its end.
 #[derive(Clone, Copy, Debug, Error)]
 #[error(
-    "the simulation stopped at t = {} s because {reason}: load at {} {unit}, tracking error {} {unit}, motor speed {} rad/s, motor torque {} N·m",
+    "the simulation stopped at t = {} s because {reason}: load at {} {unit}, tracking error {} {unit}, motor speed {} {speed}, motor {force} {} {force_unit}",
     SixDigits(*.time), SixDigits(.at.position), SixDigits(.at.error), SixDigits(.at.motor_speed), SixDigits(.at.torque),
-    unit = .at.freedom.unit()
+    unit = .at.freedom.unit(), speed = .at.motor.speed_unit(), force = .at.motor.force()[0], force_unit = .at.motor.force()[1]
 )]
 pub struct RunStopped {
     /// When, s.

@@ -4,6 +4,7 @@ use feed_dynamics::DriveError;
 use thiserror::Error;
 
 use crate::part::PartError;
+use crate::plant::AdvanceError;
 
 /// Why an axis, with its effects, makes no closed loop.
 #[derive(Debug, Error)]
@@ -12,6 +13,9 @@ pub enum SetupError {
     /// The mechanics cannot be set up, or are asked for what they are not.
     #[error(transparent)]
     Drive(#[from] DriveError),
+    /// A cycle from a given state cannot be made.
+    #[error(transparent)]
+    Cycle(#[from] AdvanceError),
     /// A part refuses its values.
     #[error(transparent)]
     Part(#[from] PartError),

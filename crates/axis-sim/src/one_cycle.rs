@@ -63,7 +63,7 @@ impl OneCycle {
     /// # Errors
     /// [`SetupError::Drive`] with `OffScrew` for a position off the screw (where the
     /// cycle carries the load over its end, the transmission stays there), with
-    /// `Parameter` for a motion that is not finite, with `LoadNotFound` where no
+    /// `Parameter` for a motion that is not finite; [`SetupError::Cycle`] where no
     /// friction goes with the motion.
     pub fn increment(&self, input: &CycleInput) -> Result<f64, SetupError> {
         let start = Start {

@@ -172,12 +172,16 @@ impl Submission {
     }
 }
 
-/// A minute before the time limit: stopped, and back to the queue. What was made is kept.
+/// A minute before the time limit: stopped, and back to the queue. What was made is kept. The
+/// task is named by array and index: the job's own number is that of the whole array in its last
+/// task, and would put all of it back, what is finished too
+/// (<https://slurm.schedmd.com/job_array.html>, job ID and environment variables).
 const SLURM_TIME_IS_UP: &str = "\
 # A minute before the time limit: back to the queue, to go on where it was.\n\
 again() {\n  \
   kill \"$shard\"\n  wait \"$shard\"\n  \
-  [ \"${SLURM_RESTART_COUNT:-0}\" -lt 10 ] && scontrol requeue \"$SLURM_JOB_ID\"\n  \
+  [ \"${SLURM_RESTART_COUNT:-0}\" -lt 10 ] && \
+  scontrol requeue \"${SLURM_ARRAY_JOB_ID}_${SLURM_ARRAY_TASK_ID}\"\n  \
   exit 1\n}\n\
 trap again USR1\n\n";
 
@@ -212,5 +216,51 @@ mod tests {
                 .unwrap();
             assert_eq!(String::from_utf8(shell.stdout).unwrap(), word);
         }
+    }
+
+    /// The last task of an array has the array's own number for its job: it alone goes back.
+    #[test]
+    fn a_task_whose_time_is_up_puts_itself_back_and_no_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let write = |name: &str, text: &str| {
+            use std::os::unix::fs::PermissionsExt;
+            std::fs::write(at(name), text).unwrap();
+            let all = std::fs::Permissions::from_mode(0o755);
+            std::fs::set_permissions(at(name), all).unwrap();
+        };
+        write("scontrol", "#!/bin/sh\necho \"$@\" >> \"$TOLD\"\n");
+        // Tells the script that starts it that its time is up.
+        write(
+            "program",
+            "#!/bin/sh\nsleep 0.3\nkill -USR1 $PPID\nexec sleep 60\n",
+        );
+        let submission = Submission {
+            scheduler: Scheduler::Slurm,
+            job: "robustness".to_owned(),
+            shards: 3,
+            program: at("program"),
+            directory: folder.path().to_owned(),
+            folder: folder.path().to_owned(),
+            options: Vec::new(),
+            cpus: 1,
+            minutes: Some(60),
+            scheduler_options: Vec::new(),
+        };
+        let [(name, script), ..] = submission.scripts();
+        write(name, &script);
+        let path = std::env::var("PATH").unwrap();
+        let ended = std::process::Command::new("bash")
+            .arg(at(name))
+            .env("PATH", format!("{}:{path}", folder.path().display()))
+            .env("TOLD", at("told"))
+            .env("SLURM_JOB_ID", "4711")
+            .env("SLURM_ARRAY_JOB_ID", "4711")
+            .env("SLURM_ARRAY_TASK_ID", "3")
+            .output()
+            .unwrap();
+        assert_eq!(ended.status.code(), Some(1), "{ended:?}");
+        let told = std::fs::read_to_string(at("told")).unwrap();
+        assert_eq!(told, "requeue 4711_3\n");
     }
 }

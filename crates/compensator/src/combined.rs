@@ -36,4 +36,13 @@ where
             iq: a.iq + b.iq,
         }
     }
+
+    /// The greater of both; what is no number before what is one.
+    fn surprise(&self) -> T {
+        let (a, b) = (self.first.surprise(), self.second.surprise());
+        match b.abs() <= a.abs() || !a.is_finite() {
+            true => a,
+            false => b,
+        }
+    }
 }

@@ -120,7 +120,7 @@ pub use learning::{Advice, Gauss, LearnedMove, LearningSettings, Round};
 pub use model::{Along, Cascade, Drive, DriveModel, DriveSection, Kinematics, Mode, SECTIONS};
 pub use network::{IncrementModel, NetworkCompensation};
 pub use none::NoCompensation;
-pub use plan::{Plan, PlanSettings, Planned, Planner, PlannerConstants, Standstill, Target};
+pub use plan::{Homed, Plan, PlanSettings, Planned, Planner, PlannerConstants, Standstill, Target};
 pub use residual::{HARMONICS, KNOTS, Residual, ResidualAt, ResidualModel};
 #[cfg(feature = "alloc")]
 pub use residual::{NETWORK_INPUTS, ResidualNetwork};
@@ -151,6 +151,21 @@ pub trait Compensator<T: axis_scalar::Scalar = f64> {
 }
 
 impl<T: axis_scalar::Scalar, C: Compensator<T> + ?Sized> Compensator<T> for &mut C {
+    fn reset(&mut self) {
+        (**self).reset();
+    }
+
+    fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
+        (**self).correct(sample)
+    }
+
+    fn surprise(&self) -> T {
+        (**self).surprise()
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl<T: axis_scalar::Scalar, C: Compensator<T> + ?Sized> Compensator<T> for alloc::boxed::Box<C> {
     fn reset(&mut self) {
         (**self).reset();
     }

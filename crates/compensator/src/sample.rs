@@ -13,7 +13,8 @@ pub struct Reference<T = f64> {
     pub acceleration: T,
 }
 
-/// What a controller knows at the start of a control cycle.
+/// What a controller knows at the start of a control cycle. Of a load that turns positions are
+/// rad, speeds rad/s; of a motor that moves along a line its "angle" is m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample<T = f64> {
     /// Reference at this instant.
@@ -26,18 +27,19 @@ pub struct Sample<T = f64> {
     pub motor_angle: T,
     /// Measured motor speed, rad/s.
     pub motor_speed: T,
-    /// Measured q current, A.
+    /// Measured q current, A; 0 where the actuator has no current that is measured.
     pub iq: T,
-    /// q current that was commanded in the cycle before, A.
+    /// Command of the cycle before, in the actuator's unit: q current (A), torque (N·m), force
+    /// (N) or voltage (V).
     pub iq_command: T,
 }
 
 /// What is added to the controller in this cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Correction<T = f64> {
-    /// Added to the position error, m.
+    /// Added to the position error, m or rad.
     pub position: T,
-    /// Added to the speed controller's current command, A.
+    /// Added to the speed controller's command, in the actuator's unit: A, N·m, N or V.
     pub iq: T,
 }
 

@@ -1,6 +1,9 @@
 //! The guard: limits, fading, trips.
 
-use compensator::{Compensator, Correction, Guard, GuardLimits, Guarded, Sample, Status, Trip};
+use compensator::{
+    Combined, Compensator, Correction, Guard, GuardLimits, Guarded, NoCompensation, Sample, Status,
+    Trip,
+};
 use proptest::prelude::*;
 
 const LIMITS: GuardLimits = GuardLimits {
@@ -98,6 +101,51 @@ fn limits_that_are_none_are_refused() {
         };
         let message = Guard::new(limits).unwrap_err().to_string();
         assert!(message.contains("effort"), "{message}");
+    }
+}
+
+/// Is surprised by so much.
+struct Surprised(f64);
+
+impl Compensator for Surprised {
+    fn reset(&mut self) {}
+
+    fn correct(&mut self, _: &Sample) -> Correction {
+        Correction::default()
+    }
+
+    fn surprise(&self) -> f64 {
+        self.0
+    }
+}
+
+/// What watches a law watches it in every wrapper that the crate has.
+#[test]
+fn a_surprise_comes_through_every_wrapper() {
+    let trips = |law: &mut dyn Compensator| {
+        let mut guarded = Guarded::new(law, on());
+        for _ in 0..=LIMITS.patience {
+            guarded.correct(&Sample::default());
+        }
+        guarded.guard().status() == Status::Tripped(Trip::Surprise)
+    };
+    let much = 2.0 * LIMITS.surprise;
+    for surprise in [much, -much, f64::NAN] {
+        let law = || Surprised(surprise);
+        let calm = || Surprised(0.5 * LIMITS.surprise);
+        assert!(trips(&mut Combined::new(law(), NoCompensation)));
+        assert!(trips(&mut Combined::new(NoCompensation, law())));
+        assert!(trips(&mut Combined::new(calm(), law())));
+        assert!(trips(&mut Combined::new(law(), calm())));
+        assert!(trips(&mut Combined::new(
+            Combined::new(calm(), law()),
+            calm()
+        )));
+        assert!(trips(&mut Guarded::new(law(), on())));
+        let boxed: Box<dyn Compensator> = Box::new(law());
+        assert!(trips(&mut Combined::new(boxed, calm())));
+        assert!(trips(&mut &mut law()));
+        assert!(!trips(&mut Combined::new(calm(), calm())));
     }
 }
 

@@ -52,3 +52,17 @@ fn texts_are_filled() -> Outcome<()> {
     }
     Ok(())
 }
+
+/// Functions without `fp` or `nofp`, which LinuxCNC 2.9 takes as `fp` and its successor refuses.
+#[test]
+fn functions_have_no_options() -> Outcome<()> {
+    let predictors = laws::predictors(&samples::axis()?)?;
+    for &name in EXPORTED {
+        let controller = ExportedController::of(&predictors, name, laws::LIMITS)?;
+        let made = linuxcnc::export(&controller)?;
+        let lines = made.component.text.lines();
+        let functions: Vec<&str> = lines.filter(|l| l.starts_with("function ")).collect();
+        assert_eq!(functions, ["function update_feedback;", "function update;"]);
+    }
+    Ok(())
+}

@@ -4,6 +4,7 @@ use lhs::{LatinHypercube, LhsError, Marginal, Uniform, map};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
+use crate::arrays::rows_of;
 use crate::errors::{ParameterError, raise};
 
 /// `n` points between bounds (least, greatest) of each variable: each of the n intervals of
@@ -13,18 +14,19 @@ use crate::errors::{ParameterError, raise};
 pub(crate) fn latin_hypercube<'py>(
     py: Python<'py>,
     n: usize,
-    bounds: Vec<(f64, f64)>,
+    bounds: &Bound<'py, PyAny>,
     seed: u64,
     centred: bool,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let dims = bounds.len();
+    let bounds = rows_of::<ParameterError>(bounds, "bounds", 2)?;
+    let dims = bounds.len() / 2;
     let drawn = py.detach(|| -> Result<Vec<f64>, LhsError> {
         let hypercube = LatinHypercube::new(n, dims, seed)?;
         let hypercube = match centred {
             true => hypercube.centred(),
             false => hypercube,
         };
-        let marginals = bounds.iter().map(|&(a, b)| Uniform::new(a, b));
+        let marginals = bounds.chunks(2).map(|pair| Uniform::new(pair[0], pair[1]));
         let marginals = marginals.collect::<Result<Vec<_>, _>>()?;
         let marginals: Vec<&dyn Marginal> = marginals.iter().map(|m| m as &dyn Marginal).collect();
         Ok(map(&hypercube.design()?, &marginals)?.into_values())

@@ -9,6 +9,7 @@ use discrepancy::{Evidence, Found, Settings};
 use pyo3::prelude::*;
 use toml::Table;
 
+use crate::arrays::Logs;
 use crate::axis::PyAxis;
 use crate::discovery::Discovery;
 use crate::errors::{AxisError, LogError, SearchError, raise};
@@ -24,14 +25,14 @@ use crate::long::long;
 ///
 /// Ctrl-C raises at once; the search itself ends at its next stage.
 #[pyfunction]
-#[pyo3(signature = (axis, fit, check, *, test = Vec::new(), accept = Vec::new(), reject = Vec::new(), balance = false, progress = None))]
+#[pyo3(signature = (axis, fit, check, *, test = Logs(Vec::new()), accept = Vec::new(), reject = Vec::new(), balance = false, progress = None))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn discover(
     py: Python<'_>,
     axis: PyRef<'_, PyAxis>,
-    fit: Vec<Bound<'_, PyAny>>,
-    check: Vec<Bound<'_, PyAny>>,
-    test: Vec<Bound<'_, PyAny>>,
+    fit: Logs<'_>,
+    check: Logs<'_>,
+    test: Logs<'_>,
     accept: Vec<String>,
     reject: Vec<String>,
     balance: bool,
@@ -53,9 +54,9 @@ pub(crate) fn discover(
         logs.iter().enumerate().map(one).collect()
     };
     let logs = [
-        read("fit", &fit)?,
-        read("check", &check)?,
-        read("test", &test)?,
+        read("fit", &fit.0)?,
+        read("check", &check.0)?,
+        read("test", &test.0)?,
     ];
     let [fit, check, test] = logs;
     let (text, machine) = (axis.text.clone(), Arc::new(machine));

@@ -13,7 +13,7 @@
 //! - `compensation`, `sample`, `identify`: corrections, cycle by cycle and on whole moves.
 //! - `network`, `one_cycle`: training and prediction; samples of one control cycle.
 //! - `lugre_law`, `beam`, `design`: the parts for themselves.
-//! - `dict`: conversion. `errors`: exceptions. `html`: tables of notebooks. `long`: long work.
+//! - `arrays`, `dict`: conversion. `errors`: exceptions. `html`: tables of notebooks. `long`: long work.
 //!
 //! # Long work
 //! It runs on a thread of its own, without Python's lock; the calling thread looks for
@@ -22,6 +22,7 @@
 //! # Units
 //! SI, as in the axis file's channels: the last part of a name is its unit (`position_m`).
 
+mod arrays;
 mod axis;
 mod beam;
 mod compensation;

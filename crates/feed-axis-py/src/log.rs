@@ -6,10 +6,10 @@ use axis_log::intake::{Options, files, prepare, prepare_channels};
 use axis_log::{Channel, TIME_CHANNEL};
 use axis_sim::Axis;
 use discrepancy::logs::{NamedLog, admit, exact_channels, most_samples, needed_channels};
-use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
+use crate::arrays::samples;
 use crate::errors::{LogError, raise};
 
 /// A log as a caller gives it, and what was done to it, in words.
@@ -62,12 +62,7 @@ fn columns(given: &Bound<'_, PyAny>) -> PyResult<Vec<Channel>> {
     names.sort_by_key(|name| name != TIME_CHANNEL);
     let channels = names.into_iter().map(|name| {
         let column: Bound<'_, PyAny> = given.get_item(&name)?;
-        let samples = given
-            .py()
-            .import("numpy")?
-            .call_method1("asarray", (column, "float64"))?;
-        let samples: PyArrayLike1<'_, f64, AllowTypeChange> = samples.extract()?;
-        let samples = samples.as_array().to_vec();
+        let samples = samples::<LogError>(&column, &name)?;
         Channel::new(name, samples).map_err(raise::<LogError>)
     });
     channels.collect()

@@ -1,10 +1,11 @@
 //! LuGre friction.
 
 use lugre::{LuGre, Parameters};
-use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArrayLike1};
+use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
+use crate::arrays::line;
 use crate::errors::{ParameterError, raise};
 
 /// LuGre friction: bristles, Stribeck curve, viscous share. For a contact that slides along a
@@ -78,15 +79,15 @@ impl PyLuGre {
         self.0.parameters().viscous
     }
 
-    /// Friction at constant speeds (rad/s), N·m.
+    /// Friction at constant speeds (rad/s), N·m; of one speed an array of one number.
     fn steady_state<'py>(
         &self,
         py: Python<'py>,
-        speed_rad_s: PyArrayLike1<'py, f64, AllowTypeChange>,
-    ) -> Bound<'py, PyArray1<f64>> {
-        let speeds = speed_rad_s.as_array();
+        speed_rad_s: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let speeds = line::<ParameterError>(speed_rad_s, "speed_rad_s")?;
         let torques: Vec<f64> = speeds.iter().map(|&w| self.0.steady_state(w)).collect();
-        torques.into_pyarray(py)
+        Ok(torques.into_pyarray(py))
     }
 
     /// Friction (N·m) along speeds (rad/s) that lie `dt_s` apart, linear between; bristles
@@ -94,7 +95,7 @@ impl PyLuGre {
     fn simulate<'py>(
         &self,
         py: Python<'py>,
-        speed_rad_s: PyArrayLike1<'py, f64, AllowTypeChange>,
+        speed_rad_s: &Bound<'py, PyAny>,
         dt_s: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         if !(dt_s > 0.0 && dt_s.is_finite()) {
@@ -102,6 +103,7 @@ impl PyLuGre {
                 "dt_s is {dt_s}, but must be finite and greater than 0"
             )));
         }
+        let speeds = line::<ParameterError>(speed_rad_s, "speed_rad_s")?;
         let (mut bristle, mut before) = (0.0, None);
         let step = |&speed: &f64| {
             if let Some(before) = before.replace(speed) {
@@ -109,7 +111,7 @@ impl PyLuGre {
             }
             self.0.torque(bristle, speed)
         };
-        let torques: Vec<f64> = speed_rad_s.as_array().iter().map(step).collect();
+        let torques: Vec<f64> = speeds.iter().map(step).collect();
         Ok(torques.into_pyarray(py))
     }
 

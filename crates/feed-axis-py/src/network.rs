@@ -6,13 +6,11 @@ use axis_pipeline::training::test;
 use cfnn::artifact::{network_from_bytes, network_to_bytes};
 use cfnn::train::{Dataset, Trainer, TrainingSettings};
 use cfnn::{Network, Shape};
-use numpy::{
-    AllowTypeChange, IntoPyArray, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods,
-    PyUntypedArrayMethods,
-};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
+use crate::arrays::{Layers, rows, rows_of};
 use crate::errors::{NetworkError, raise};
 use crate::long::long;
 use crate::one_cycle::Samples;
@@ -27,31 +25,30 @@ pub(crate) struct PyNetwork {
 
 #[pymethods]
 impl PyNetwork {
-    /// Trains by Levenberg–Marquardt on inputs x and targets y, a row a sample.
+    /// Trains by Levenberg–Marquardt on inputs x and targets y, a row a sample; of one variable
+    /// also arrays of one dimension.
     /// `progress("train", epoch, epochs)`.
     #[classmethod]
-    #[pyo3(signature = (x, y, *, hidden = vec![10], epochs = 100, seed = 1, threads = 0, progress = None))]
+    #[pyo3(signature = (x, y, *, hidden = Layers(vec![10]), epochs = 100, seed = 1, threads = 0, progress = None))]
     #[allow(clippy::too_many_arguments)]
     fn train<'py>(
         _: &Bound<'py, PyType>,
         py: Python<'py>,
-        x: PyArrayLike2<'py, f64, AllowTypeChange>,
-        y: PyArrayLike2<'py, f64, AllowTypeChange>,
-        hidden: Vec<usize>,
+        x: &Bound<'py, PyAny>,
+        y: &Bound<'py, PyAny>,
+        hidden: Layers,
         epochs: usize,
         seed: u64,
         threads: usize,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Self> {
-        let (inputs, outputs) = (x.shape()[1], y.shape()[1]);
-        let rows = |table: PyArrayLike2<'py, f64, AllowTypeChange>| -> Vec<f64> {
-            table.as_array().iter().copied().collect()
-        };
-        let data = Dataset::new(inputs, outputs, rows(x), rows(y));
+        let (x, inputs) = rows::<NetworkError>(x, "x")?;
+        let (y, outputs) = rows::<NetworkError>(y, "y")?;
+        let data = Dataset::new(inputs, outputs, x, y);
         let data = data.map_err(raise::<NetworkError>)?;
         let shape = Shape {
             inputs,
-            hidden,
+            hidden: hidden.0,
             outputs,
         };
         let settings = TrainingSettings {
@@ -72,21 +69,23 @@ impl PyNetwork {
         })
     }
 
-    /// The outputs for inputs x, a row a sample.
+    /// The outputs for inputs x, a row a sample; one row, or inputs of one variable, also as an
+    /// array of one dimension.
     fn predict<'py>(
         &self,
         py: Python<'py>,
-        x: PyArrayLike2<'py, f64, AllowTypeChange>,
+        x: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let outputs = self.network.shape().outputs;
+        let (inputs, outputs) = (self.network.shape().inputs, self.network.shape().outputs);
+        let x = rows_of::<NetworkError>(x, "x", inputs)?;
         let mut scratch = self.network.scratch();
-        let mut predicted = vec![0.0; x.shape()[0] * outputs];
-        for (row, output) in (x.as_array().rows().into_iter()).zip(predicted.chunks_mut(outputs)) {
-            let input: Vec<f64> = row.to_vec();
-            let done = self.network.evaluate(&input, &mut scratch, output);
+        let count = x.len() / inputs;
+        let mut predicted = vec![0.0; count * outputs];
+        for (row, output) in x.chunks(inputs).zip(predicted.chunks_mut(outputs)) {
+            let done = self.network.evaluate(row, &mut scratch, output);
             done.map_err(raise::<NetworkError>)?;
         }
-        predicted.into_pyarray(py).reshape([x.shape()[0], outputs])
+        predicted.into_pyarray(py).reshape([count, outputs])
     }
 
     /// Maximum and mean absolute error on one-cycle samples, µm or µrad.

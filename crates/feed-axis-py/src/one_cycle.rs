@@ -6,6 +6,7 @@ use axis_sim::CycleInput;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
+use crate::arrays::Layers;
 use crate::axis::PyAxis;
 use crate::errors::{NetworkError, raise};
 use crate::long::long;
@@ -83,13 +84,13 @@ impl PyAxis {
     }
 
     /// Trains the one-cycle predictor: what the best linear map of the samples leaves.
-    #[pyo3(signature = (samples, *, hidden = vec![34, 19, 8], epochs = 500, seed = 1, threads = 0, progress = None))]
+    #[pyo3(signature = (samples, *, hidden = Layers(vec![34, 19, 8]), epochs = 500, seed = 1, threads = 0, progress = None))]
     #[allow(clippy::too_many_arguments)]
     fn train(
         &self,
         py: Python<'_>,
         samples: PyRef<'_, Samples>,
-        hidden: Vec<usize>,
+        hidden: Layers,
         epochs: usize,
         seed: u64,
         threads: usize,
@@ -98,7 +99,7 @@ impl PyAxis {
         let (axis, samples) = (self.axis.clone(), samples.0.clone());
         long(py, progress, move |hook| {
             let plan = NetworkPlan {
-                hidden,
+                hidden: hidden.0,
                 epochs,
                 initial_damping: INITIAL_DAMPING,
                 seed,

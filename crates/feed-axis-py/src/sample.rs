@@ -3,40 +3,43 @@
 use compensator::{Reference, Sample};
 use pyo3::prelude::*;
 
+use crate::arrays::Triple;
+
 /// What a controller knows at the start of a control cycle. SI units, at the load; rad for m
 /// on an axis that turns.
-#[pyclass(
-    module = "feed_axis",
-    name = "Sample",
-    get_all,
-    set_all,
-    from_py_object
-)]
+#[pyclass(module = "feed_axis", name = "Sample", from_py_object)]
 #[derive(Clone, Default)]
 pub(crate) struct PySample {
     /// Reference now, m, m/s, m/s².
+    #[pyo3(get)]
     reference: (f64, f64, f64),
     /// Reference one cycle ahead, m, m/s, m/s².
+    #[pyo3(get)]
     next_reference: (f64, f64, f64),
     /// Measured position of the load, m.
+    #[pyo3(get, set)]
     position_m: f64,
     /// Measured motor angle, rad.
+    #[pyo3(get, set)]
     motor_angle_rad: f64,
     /// Measured motor speed, rad/s.
+    #[pyo3(get, set)]
     motor_speed_rad_s: f64,
-    /// Measured q current, A.
+    /// Measured q current, A; 0 where the actuator has none.
+    #[pyo3(get, set)]
     iq_a: f64,
-    /// q current that was commanded in the cycle before, A.
+    /// Command of the cycle before in the actuator's unit: q current, A, of a motor with current control.
+    #[pyo3(get, set)]
     iq_command_a: f64,
 }
 
 #[pymethods]
 impl PySample {
     #[new]
-    #[pyo3(signature = (*, reference = (0.0, 0.0, 0.0), next_reference = (0.0, 0.0, 0.0), position_m = 0.0, motor_angle_rad = 0.0, motor_speed_rad_s = 0.0, iq_a = 0.0, iq_command_a = 0.0))]
+    #[pyo3(signature = (*, reference = Triple(0.0, 0.0, 0.0), next_reference = Triple(0.0, 0.0, 0.0), position_m = 0.0, motor_angle_rad = 0.0, motor_speed_rad_s = 0.0, iq_a = 0.0, iq_command_a = 0.0))]
     fn new(
-        reference: (f64, f64, f64),
-        next_reference: (f64, f64, f64),
+        reference: Triple,
+        next_reference: Triple,
         position_m: f64,
         motor_angle_rad: f64,
         motor_speed_rad_s: f64,
@@ -44,14 +47,24 @@ impl PySample {
         iq_command_a: f64,
     ) -> Self {
         Self {
-            reference,
-            next_reference,
+            reference: reference.tuple(),
+            next_reference: next_reference.tuple(),
             position_m,
             motor_angle_rad,
             motor_speed_rad_s,
             iq_a,
             iq_command_a,
         }
+    }
+
+    #[setter]
+    fn set_reference(&mut self, reference: Triple) {
+        self.reference = reference.tuple();
+    }
+
+    #[setter]
+    fn set_next_reference(&mut self, next_reference: Triple) {
+        self.next_reference = next_reference.tuple();
     }
 
     fn __repr__(&self) -> String {

@@ -20,16 +20,19 @@ impl PyAxis {
     /// Follows a motion in closed loop.
     ///
     /// `compensation` is a Compensator, or a function that is called with each cycle's Sample
-    /// and gives a Correction. `noise` is that of every sensor, in multiples of good ones; with
-    /// it the axis is simulated the slow, exact way, to stand for a machine.
+    /// and gives a Correction. `noise` is that of every sensor beside the axis file's own, in
+    /// multiples of good ones. With `exact` the axis is simulated the slow, exact way, to stand
+    /// for a machine.
     /// `progress(what, done, total)` is called every 50 ms or so.
-    #[pyo3(signature = (motion, *, compensation = None, noise = 0.0, seed = 1, progress = None))]
+    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
+    #[pyo3(signature = (motion, *, compensation = None, noise = 0.0, exact = false, seed = 1, progress = None))]
     fn simulate(
         &self,
         py: Python<'_>,
         motion: AnyMotion<'_>,
         compensation: Option<crate::compensation::Given<'_>>,
         noise: f64,
+        exact: bool,
         seed: u64,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Run> {
@@ -42,7 +45,7 @@ impl PyAxis {
         let law = compensation.map(|given| given.recipe()).transpose()?;
         let axis = self.axis.clone();
         let columns = long(py, progress, move |hook| {
-            let closed_loop = match noise > 0.0 {
+            let closed_loop = match exact {
                 true => ClosedLoop::exact(&axis, MACHINE_STEP),
                 false => ClosedLoop::new(&axis),
             };

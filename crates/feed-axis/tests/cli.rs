@@ -33,6 +33,55 @@ fn help_names_every_command() {
     }
 }
 
+/// Noise is the sensors' and nothing else: none to speak of changes nothing to speak of, and the
+/// commands that have it say the same of it.
+#[test]
+fn noise_is_the_sensors_alone() {
+    let words = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let of = |command: &str, option: &str| {
+        let help = words(succeed(&[command, "--help"]));
+        let (_, after) = help.split_once(&format!("{option} ")).unwrap();
+        after.split(" --").next().unwrap().to_owned()
+    };
+    for option in ["--noise", "--exact"] {
+        assert_eq!(of("simulate", option), of("compensate", option));
+    }
+
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let program = at("short.toml");
+    let steps = "start_mm = 600\n[[steps]]\nmove_by = { by_mm = 2, velocity_mm_s = 50, acceleration_mm_s2 = 1000, jerk_mm_s3 = 50000 }\n";
+    std::fs::write(&program, steps).unwrap();
+    let position = |name: &str, more: &[&str]| {
+        let log = at(name);
+        let axis = "data/axes/liu2025.toml";
+        let line = [
+            "simulate",
+            "--axis",
+            axis,
+            "--program",
+            &program,
+            "--log",
+            &log,
+        ];
+        succeed(&[&line[..], more].concat());
+        let log = read_log(log.as_ref(), &Mapping::default()).unwrap();
+        log.channel("position_m").unwrap().to_vec()
+    };
+    let apart = |a: &[f64], b: &[f64]| {
+        let pairs = a.iter().zip(b);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    let still = position("still.csv", &[]);
+    let near = apart(&still, &position("near.csv", &["--noise", "1e-6"]));
+    let exact = apart(&still, &position("exact.csv", &["--exact"]));
+    let noisy = apart(&still, &position("noisy.csv", &["--noise", "1"]));
+    println!("a millionth {near:e}, exact {exact:e}, noise {noisy:e} m");
+    assert!(near < 1e-12 && exact > 10.0 * near, "{near:e} {exact:e}");
+    // Ten nanometres, and what the drive makes of them.
+    assert!((1e-8..1e-6).contains(&noisy), "{noisy:e}");
+}
+
 #[test]
 fn a_bad_axis_file_is_refused_with_its_line() {
     let folder = tempfile::tempdir().unwrap();

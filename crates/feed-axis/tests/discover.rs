@@ -73,7 +73,8 @@ fn the_new_axis_file_is_the_machine_for_every_other_command() {
         let (program, whole) = (format!("data/programs/{program}.toml"), at("whole.csv"));
         #[rustfmt::skip]
         succeed(&[
-            "simulate", "--axis", machine, "--program", &program, "--noise", "1", "--seed", seed,
+            "simulate", "--axis", machine, "--program", &program, "--noise", "1", "--exact",
+            "--seed", seed,
             "--log", &whole,
         ]);
         // 1 kHz: head, and every tenth sample.

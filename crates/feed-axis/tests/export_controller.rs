@@ -83,6 +83,10 @@ impl Compensator for Kept {
         self.1.push(*sample);
         self.0.correct(sample)
     }
+
+    fn surprise(&self) -> f64 {
+        self.0.surprise()
+    }
 }
 
 /// One small training serves all: the C code over a simulated move, the component, the graph,

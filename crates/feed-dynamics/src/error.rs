@@ -28,16 +28,6 @@ pub enum DriveError {
     /// The beam model refused its input or did not solve.
     #[error(transparent)]
     Beam(#[from] BeamError),
-    /// No load on the table was found that goes with the motion it leads to.
-    #[error(
-        "no load was found that goes with the table's motion after {rounds} tries, the last off by {residual} N: the load's law must be finite, and bounded or growing with the speed"
-    )]
-    LoadNotFound {
-        /// Loads that were tried.
-        rounds: u32,
-        /// What was left of the last one, N.
-        residual: f64,
-    },
     /// The dynamic stiffness is singular (a resonance without damping, or zero frequency).
     #[error(
         "the dynamic stiffness at {angular_frequency} rad/s is singular: ask off the resonance, above zero"

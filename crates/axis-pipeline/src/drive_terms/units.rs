@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use axis_sim::Axis;
+use axis_sim::mechanism::Freedom;
 
 /// Units of an axis, and factors from SI to those that drives use.
 pub(super) struct Units {
@@ -27,8 +28,7 @@ impl Units {
         let linear = (60e3, "mm/min");
         let feed = if load == "m" { linear } else { (RPM, "rpm") };
         let effort = axis.actuator.effort().unit();
-        // A linear motor moves as the load does.
-        if load == "m" && !axis.mechanism.has_motor_encoder() {
+        if axis.mechanism.motor_freedom() == Freedom::Linear {
             return Self {
                 load,
                 inertia: "kg",

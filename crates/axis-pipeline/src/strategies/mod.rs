@@ -26,7 +26,7 @@ mod transfer_function_lugre;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use compensator::{Compensator, Correction, LearnedMove, Sample};
+use compensator::{Compensator, Correction, Homed, LearnedMove, Sample};
 use trajectories::Motion;
 
 use crate::PipelineError;
@@ -112,11 +112,20 @@ pub trait Strategy {
 pub struct NextMove {
     /// Its motion.
     pub motion: SharedMotion,
-    /// What the compensator added last, where the axis stands as the move before has left
-    /// it; none where it was settled anew.
-    pub continued: Option<Correction>,
+    /// Where the axis stands as the move before has left it; none where it was settled anew.
+    pub continued: Option<Continued>,
     /// What was learned from repetitions of this very move, where something was.
     pub learned: Option<Arc<LearnedMove>>,
+}
+
+/// How a move goes on from the one before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Continued {
+    /// What the compensator added last.
+    pub own: Correction,
+    /// How the axis stood when it was settled: where a position loop that is closed at the
+    /// motor was homed.
+    pub homed: Homed,
 }
 
 /// A motion that several may hold.

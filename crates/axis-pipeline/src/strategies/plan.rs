@@ -55,7 +55,7 @@ pub(super) fn plan(
     };
     let plan = Plan::new(model, &PlanSettings::default(), target)?;
     Ok(match &next.continued {
-        Some(own) => plan.after(own),
+        Some(before) => plan.after(&before.own).homed(before.homed),
         None => plan,
     })
 }

@@ -143,6 +143,7 @@ impl Balance {
                 samples: all,
                 least: LEAST,
                 speed: standstill,
+                unit: axis.freedom().speed_unit(),
             };
             return Err(error.into());
         }

@@ -4,6 +4,7 @@ use feed_dynamics::DriveError;
 
 use super::ClosedLoop;
 use crate::cycle::{Cycle, Outcome, Stop, StopReason};
+use crate::plant::AdvanceError;
 
 impl ClosedLoop {
     pub(super) fn stop_reason(&self, cycle: &Cycle) -> Option<StopReason> {
@@ -34,6 +35,7 @@ impl ClosedLoop {
                 motor_speed: at.motor_speed,
                 torque: at.torque,
                 freedom: self.axis.freedom(),
+                motor: self.axis.mechanism.motor_freedom(),
             },
         }
     }
@@ -45,13 +47,25 @@ impl ClosedLoop {
 }
 
 /// Why a run cannot go on after `error`, which has left it in the state `at`.
-pub(super) fn reason_of(error: &DriveError, at: &Cycle) -> StopReason {
-    let state = at.position + at.motor_speed + at.current.d + at.current.q;
+pub(super) fn reason_of(error: &AdvanceError, at: &Cycle) -> StopReason {
     match error {
-        DriveError::LoadNotFound { residual, .. } if (state + residual).is_finite() => {
+        AdvanceError::LoadNotFound { residual, .. } if (state(at) + residual).is_finite() => {
             StopReason::LoadNotFound
         }
-        DriveError::OffScrew { .. } if state.is_finite() => StopReason::LeftStroke,
+        AdvanceError::Drive(error) => reason_of_drive(error, at),
         _ => StopReason::NotFinite,
     }
+}
+
+/// The same of the mechanics alone.
+pub(super) fn reason_of_drive(error: &DriveError, at: &Cycle) -> StopReason {
+    match error {
+        DriveError::OffScrew { .. } if state(at).is_finite() => StopReason::LeftStroke,
+        _ => StopReason::NotFinite,
+    }
+}
+
+/// Finite where all of it is.
+fn state(at: &Cycle) -> f64 {
+    at.position + at.motor_speed + at.current.d + at.current.q
 }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use compensator::{Compensator, Reference, Sample};
 use trajectories::{Motion, Setpoint};
 
-use self::limits::reason_of;
+use self::limits::{reason_of, reason_of_drive};
 use self::sampling::Sampling;
 use crate::actuator::Actuating;
 use crate::axis::Axis;
@@ -323,7 +323,7 @@ impl ClosedLoop {
                     ..Cycle::default()
                 };
                 let reason = match &error {
-                    SetupError::Drive(error) => reason_of(error, &at),
+                    SetupError::Drive(error) => reason_of_drive(error, &at),
                     _ => StopReason::NotFinite,
                 };
                 self.given_up(reason, &at)

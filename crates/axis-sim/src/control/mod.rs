@@ -105,12 +105,11 @@ pub fn units_of_gain(
 
 /// Whether what the gain under a key acts on turns.
 pub(crate) fn gain_turns(control: &dyn Control, key: &str, mechanism: &dyn Mechanism) -> bool {
-    let load_turns = mechanism.freedom() == Freedom::Rotary;
-    // Only where motor and load are one does a motor move along a line.
-    match control.at_motor().contains(&key) {
-        true => load_turns || mechanism.travel_per_radian() != 1.0,
-        false => load_turns,
-    }
+    let moves = match control.at_motor().contains(&key) {
+        true => mechanism.motor_freedom(),
+        false => mechanism.freedom(),
+    };
+    moves == Freedom::Rotary
 }
 
 /// Whether a unit is that of a gain on what turns or not, to a command in `effort`.

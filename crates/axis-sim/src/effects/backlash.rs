@@ -1,4 +1,4 @@
-//! `backlash`: free travel between screw and nut.
+//! `backlash`: free travel of the transmission.
 
 use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, positive};
 use crate::error::SetupError;
@@ -6,9 +6,9 @@ use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "backlash",
-    summary: "free travel between screw and nut",
+    summary: "free travel of the transmission",
     channel: EffectChannel::Kinematics,
-    depends_on: "sign of nut force",
+    depends_on: "sign of the transmitted force",
     shown_over: EffectVariable::Acceleration,
     parameters: &[positive("gap", Measure::Way, 4e-6, 1e-3)],
     needs: &[EffectNeed::Role(Role::Backlash)],

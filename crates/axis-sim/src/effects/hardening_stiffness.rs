@@ -23,7 +23,7 @@ pub(super) const EFFECT: Effect = Effect {
     name: "hardening-stiffness",
     summary: "stiffness of the transmission that grows with the force through it",
     channel: EffectChannel::Kinematics,
-    depends_on: "nut force",
+    depends_on: "transmitted force",
     shown_over: EffectVariable::Acceleration,
     parameters: &[positive("relative_increase", Measure::Ratio, 2.0, 8.0)],
     needs: &[EffectNeed::Transmission],

@@ -388,10 +388,7 @@ impl EffectNeed {
             Self::Currents => axis.actuator.has_currents(),
             Self::Poles => axis.actuator.pole_pairs().is_some(),
             Self::Turning => axis.freedom() == Freedom::Rotary,
-            // The motor's coordinate is the load's where that moves along a line.
-            Self::TurningMotor => {
-                axis.freedom() == Freedom::Rotary || axis.mechanism.travel_per_radian() != 1.0
-            }
+            Self::TurningMotor => axis.mechanism.motor_freedom() == Freedom::Rotary,
             Self::LinearMotor => {
                 axis.freedom() == Freedom::Linear
                     && axis.mechanism.stiffness().is_none()

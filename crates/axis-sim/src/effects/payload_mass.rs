@@ -1,4 +1,4 @@
-//! `payload-mass`: mass on the table.
+//! `payload-mass`: payload that moves with the load.
 
 use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, size};
 use crate::error::SetupError;
@@ -6,7 +6,7 @@ use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "payload-mass",
-    summary: "mass on the table",
+    summary: "payload that moves with the load",
     channel: EffectChannel::Torque,
     depends_on: "acceleration",
     shown_over: EffectVariable::Acceleration,

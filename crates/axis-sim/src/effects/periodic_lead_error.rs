@@ -1,4 +1,4 @@
-//! `periodic-lead-error`: travel error that repeats with the screw's turn; of another order it is
+//! `periodic-lead-error`: travel error that repeats with the motor's turn; of another order it is
 //! `kinematic-error-harmonic`.
 
 use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, PHASE, size};
@@ -6,9 +6,9 @@ use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "periodic-lead-error",
-    summary: "travel error that repeats with the screw's turn",
+    summary: "travel error that repeats with the motor's turn",
     channel: EffectChannel::Kinematics,
-    depends_on: "screw angle",
+    depends_on: "motor angle",
     shown_over: EffectVariable::MotorAngle,
     parameters: &[size("amplitude", Measure::Way, 2e-6, 1e-3), PHASE],
     needs: &[EffectNeed::Transmission],

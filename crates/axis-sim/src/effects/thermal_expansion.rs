@@ -1,11 +1,11 @@
-//! `thermal-expansion`: growth of the screw with time.
+//! `thermal-expansion`: growth of the transmission with time.
 
 use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, Nature, shape, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "thermal-expansion",
-    summary: "growth of the screw with time",
+    summary: "growth of the transmission with time",
     channel: EffectChannel::Kinematics,
     depends_on: "time and position",
     shown_over: EffectVariable::Position,

@@ -1,4 +1,4 @@
-//! `transmission-stiffness`: stiffness of screw and nut.
+//! `transmission-stiffness`: stiffness of the transmission.
 
 use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
@@ -6,9 +6,9 @@ use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "transmission-stiffness",
-    summary: "stiffness of screw and nut",
+    summary: "stiffness of the transmission",
     channel: EffectChannel::Kinematics,
-    depends_on: "nut force",
+    depends_on: "transmitted force",
     shown_over: EffectVariable::Acceleration,
     parameters: &[signed("relative_change", Measure::Ratio, -0.2, 0.8)],
     needs: &[EffectNeed::Role(Role::TransmissionStiffness)],

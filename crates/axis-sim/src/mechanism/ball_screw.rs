@@ -153,7 +153,7 @@ impl Mechanism for BallScrew {
     fn participation(&self, x: f64) -> Result<Vec<Mode>, DriveError> {
         let modes = self.drive.modes(x, NutCoupling::ShapeFunctions)?;
         let load = modes.shapes.nrows() - 1;
-        let beta = self.drive.parameters().stiffness_damping;
+        let beta = self.stiffness_damping();
         let elastic = modes.frequencies.iter().enumerate().skip(1);
         let elastic = elastic.map(|(i, &frequency)| Mode {
             frequency,
@@ -162,6 +162,10 @@ impl Mechanism for BallScrew {
             load: modes.shapes[(load, i)],
         });
         Ok(std::iter::once(self.rigid_mode()).chain(elastic).collect())
+    }
+
+    fn stiffness_damping(&self) -> f64 {
+        self.drive.parameters().stiffness_damping
     }
 
     fn stiffness(&self) -> Option<f64> {

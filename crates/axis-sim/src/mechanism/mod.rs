@@ -50,6 +50,22 @@ impl Freedom {
             Self::Rotary => "rad",
         }
     }
+
+    /// SI unit of its speed.
+    pub fn speed_unit(self) -> &'static str {
+        match self {
+            Self::Linear => "m/s",
+            Self::Rotary => "rad/s",
+        }
+    }
+
+    /// What moves it, and the SI unit of that.
+    pub fn force(self) -> [&'static str; 2] {
+        match self {
+            Self::Linear => ["force", "N"],
+            Self::Rotary => ["torque", "N·m"],
+        }
+    }
 }
 
 /// How a mechanism's equations are solved.
@@ -77,6 +93,15 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
     /// Travel r of the load per radian of the motor, m/rad or rad/rad; 1 where
     /// the load is the motor.
     fn travel_per_radian(&self) -> f64;
+
+    /// How the motor moves: along a line where its coordinate is that of a load that does,
+    /// and its torque is a force; else about an axis.
+    fn motor_freedom(&self) -> Freedom {
+        match self.travel_per_radian() == 1.0 {
+            true => self.freedom(),
+            false => Freedom::Rotary,
+        }
+    }
 
     /// Inertia of all that moves, seen at the motor, kg·m² (kg where r is 1 m).
     fn total_inertia(&self) -> f64;

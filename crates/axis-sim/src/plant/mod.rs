@@ -7,6 +7,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use feed_dynamics::{DriveError, Observation};
+use thiserror::Error;
 
 pub use self::law::Assembly;
 use crate::actuator::Actuating;
@@ -33,10 +34,9 @@ pub trait Running: fmt::Debug + Send + Sync {
     /// some 10 µm, and the loop looks at the next sample where the load is.
     ///
     /// # Errors
-    /// [`DriveError::LoadNotFound`] where no friction goes with the load's motion
-    /// at the end of a step; [`DriveError::Parameter`] where an effect shifts the
-    /// transmission by no number. Time and what is seen are then those at its start.
-    fn advance(&mut self, actuator: &mut dyn Actuating) -> Result<(), DriveError>;
+    /// [`AdvanceError`]; time and what is seen are then those at the start of the step that
+    /// failed.
+    fn advance(&mut self, actuator: &mut dyn Actuating) -> Result<(), AdvanceError>;
 
     /// What can be seen of it.
     fn seen(&self) -> &Seen;
@@ -55,6 +55,25 @@ pub trait Running: fmt::Debug + Send + Sync {
     /// Friction at the load as it acts now, N or N·m, and the share of its
     /// Coulomb deflection that the bristles have.
     fn friction(&self) -> [f64; 2];
+}
+
+/// Why a machine in motion cannot go on.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum AdvanceError {
+    /// The mechanics refuse the step: an effect shifts the transmission by no number.
+    #[error(transparent)]
+    Drive(#[from] DriveError),
+    /// No force on the load was found that goes with the motion that it leads to.
+    #[error(
+        "no force on the load was found that goes with its motion after {rounds} tries, the last off by {residual} of it: friction, loads and effects must be finite, and bounded or growing with the speed"
+    )]
+    LoadNotFound {
+        /// Forces that were tried.
+        rounds: u32,
+        /// What was left of the last one, N or N·m.
+        residual: f64,
+    },
 }
 
 /// Position and speed that a machine starts with, and what it was left with.

@@ -3,10 +3,10 @@
 use std::fmt;
 use std::sync::Arc;
 
-use feed_dynamics::{DriveError, NutErrors, TimeStepper};
+use feed_dynamics::{NutErrors, TimeStepper};
 
 use super::law::{Law, coulomb_bristle};
-use super::{Running, Seen};
+use super::{AdvanceError, Running, Seen};
 use crate::actuator::{Actuating, MotorMotion};
 use crate::effects::{Memory, TableState, TableStep};
 
@@ -63,7 +63,7 @@ where
     S: TimeStepper + fmt::Debug + Send + Sync + 'static,
     S::State: fmt::Debug + Send + Sync + 'static,
 {
-    fn advance(&mut self, actuator: &mut dyn Actuating) -> Result<(), DriveError> {
+    fn advance(&mut self, actuator: &mut dyn Actuating) -> Result<(), AdvanceError> {
         let law = &*self.law;
         let (stepper, assembly) = (&law.stepper, &law.assembly);
         let (friction, hooks) = (&assembly.friction, &assembly.hooks);
@@ -135,7 +135,7 @@ where
                 load
             });
             if !report.load.converged {
-                return Err(DriveError::LoadNotFound {
+                return Err(AdvanceError::LoadNotFound {
                     rounds: report.load.rounds,
                     residual: report.load.residual,
                 });

@@ -5,9 +5,11 @@
 //! output error: Gautier, Janot, Vandanjon, IEEE Trans. Control Syst. Technol.
 //! 21 (2013) 428–444, doi:10.1109/TCST.2012.2185697).
 
+mod curve;
 mod error;
 mod reference;
 mod sampled;
+mod smooth;
 
 use std::sync::Arc;
 
@@ -21,6 +23,7 @@ use crate::effects::{ActiveEffect, Hooks, Steepness};
 use crate::plant::Start;
 use crate::work::cycles_of;
 use crate::{ClosedLoop, Cycle, Measured, SetupError};
+pub use curve::Curve;
 pub use error::ReplayError;
 use error::check_length;
 pub use reference::LoggedReference;
@@ -178,7 +181,7 @@ impl Replay {
             (compared.iter()).partition(|c| c.name(axis).starts_with("position_"));
         let speed: fn(&Cycle) -> f64 = |c| c.load_speed;
         let sampled = |channels: &[LogChannel], beside: Option<fn(&Cycle) -> f64>, late: f64| {
-            let instants = Instants::new([period, self.reference.period], late, self.samples);
+            let instants = Instants::new([period, self.reference.period()], late, self.samples);
             let reads = channels.iter().map(|c| c.read).chain(beside).collect();
             Sampled::new(reads, instants, cycles as usize)
         };
@@ -232,7 +235,7 @@ impl Replay {
     }
 
     fn attach(&self, hooks: &mut Hooks, probe: &Probe) {
-        let h = self.reference.period;
+        let h = self.reference.period();
         let value = move |samples: &[f64], t: f64| {
             let Some(last) = samples.len().checked_sub(1) else {
                 return [0.0; 2];
@@ -270,7 +273,7 @@ impl Compensator for Added<'_> {
         let Some(added) = &self.replay.added else {
             return Correction::default();
         };
-        let at = self.cycle as f64 * self.period / self.replay.reference.period;
+        let at = self.cycle as f64 * self.period / self.replay.reference.period();
         self.cycle += 1;
         Correction {
             position: 0.0,

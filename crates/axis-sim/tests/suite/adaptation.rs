@@ -34,6 +34,10 @@ impl<C: Compensator> Compensator for Logged<C> {
         self.log.push(*sample);
         self.plan.correct(sample)
     }
+
+    fn surprise(&self) -> f64 {
+        self.inner.surprise()
+    }
 }
 
 /// Greatest tracking error along a motion that is planned with `model`, and the log.

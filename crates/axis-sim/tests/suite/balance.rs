@@ -96,6 +96,65 @@ fn a_model_balances_its_own_log() {
     assert!(worst < 1.0, "{worst}");
 }
 
+/// What a mechanism's parameter changes in the machine it changes in a balance, whichever end
+/// was measured.
+#[test]
+fn every_parameter_of_a_mechanism_is_in_a_balance() {
+    for name in [
+        "liu2025.toml",
+        "screw-datasheet.toml",
+        "rack.toml",
+        "belt.toml",
+        "joint.toml",
+    ] {
+        let mut axis = axis(name);
+        axis.sensors = Sensors::default();
+        let log = simulated(&axis);
+        for left_out in ["position_", "motor_angle_rad"] {
+            let all = log.channels().iter().map(|c| c.name.as_str());
+            let names: Vec<&str> = all.filter(|name| name.starts_with(left_out)).collect();
+            let balance = Balance::new(&without(&log, &names), axis.period, &axis).unwrap();
+            let before = needed(&balance, &axis, &[]);
+            for key in axis.mechanism.kind().keys {
+                let key = key.name();
+                let Some(value) = axis.mechanism.values().optional(key) else {
+                    continue;
+                };
+                // Of the load's motion alone a kinematic error tells nothing; an error of the
+                // transmission shows between motor and load.
+                if key.starts_with("kinematic_error") && left_out == "motor_angle_rad" {
+                    continue;
+                }
+                let mut other = axis.clone();
+                crate::change(&mut other.mechanism, &[(key, 1.1 * value)]);
+                let after = needed(&balance, &other, &[]);
+                let change: Vec<f64> = before.iter().zip(&after).map(|(a, b)| a - b).collect();
+                let share = rms(&change) / rms(&before);
+                println!("{name} without {left_out}: {key} {share:.1e}");
+                assert!(share > 1e-12, "{name} without {left_out}: {key}");
+            }
+        }
+    }
+}
+
+/// A screw's damping holds its table back by k τ ẇ: with a millisecond of it, a balance by the
+/// motor alone leaves a fraction of what it leaves without.
+#[test]
+fn a_screws_damping_is_in_a_balance() {
+    let damped = |seconds: f64| {
+        let text = format!("stiffness_damping_s = {seconds}");
+        let mut axis = crate::changed("liu2025.toml", &[("stiffness_damping_s = 1e-5", &text)]);
+        axis.sensors = Sensors::default();
+        axis.balance.slowest = Some(0.05 * axis.trajectories[0].limits.velocity());
+        axis
+    };
+    let axis = damped(1e-3);
+    let log = without(&simulated(&axis), &["motor_angle_rad"]);
+    let [right, wrong] = [1e-3, 0.0].map(|seconds| unbalanced(&damped(seconds), &log));
+    println!("{right:.2e}, without damping {wrong:.2e}");
+    assert!(right < 0.3 * wrong, "{right} {wrong}");
+}
+
 /// Without a sensor at the load, a log's position is the motor's times the travel per radian, and the
 /// load swings behind it.
 #[test]

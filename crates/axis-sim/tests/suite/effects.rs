@@ -234,6 +234,18 @@ fn an_effect_tells_whether_it_applies() {
     }
 }
 
+/// What is said of an effect is said on a joint too.
+#[test]
+fn no_effect_speaks_of_a_screw() {
+    for effect in EFFECTS {
+        for text in [effect.summary, effect.depends_on] {
+            let mut words = text.split(|c: char| !c.is_alphanumeric());
+            let of_a_screw = ["screw", "nut", "table"];
+            assert!(words.all(|word| !of_a_screw.contains(&word)), "{text}");
+        }
+    }
+}
+
 #[test]
 fn names_are_unique_and_found() {
     for (i, effect) in EFFECTS.iter().enumerate() {

@@ -12,6 +12,7 @@ mod belief;
 mod belt;
 mod closed_loop;
 mod controls;
+mod datasheet;
 mod effect_laws;
 mod effects;
 mod energy;

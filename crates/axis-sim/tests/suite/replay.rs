@@ -1,9 +1,12 @@
-//! Replays of a rigid mass: its following-error limit, and logs too long.
+//! Replays: limits of what is replayed, and references that a feed-forward is made of.
 
 use axis_log::{Channel, Log};
-use axis_sim::{Axis, Replay, ReplayError, RunStopped, StopReason};
+use axis_sim::{
+    Axis, ClosedLoop, Cycle, LoggedReference, Replay, ReplayError, RunStopped, Sensors, StopReason,
+};
+use trajectories::Motion;
 
-use crate::{PRINTED, RIGID, text};
+use crate::{PRINTED, RIGID, changed, follow, text};
 
 /// A reference that runs at 0.1 m/s, every millisecond.
 fn moving() -> Log {
@@ -70,5 +73,122 @@ fn a_period_that_is_none_is_refused() {
     for period in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
         let error = Replay::new(&moving(), period).unwrap_err();
         assert!(matches!(error, ReplayError::Period { .. }), "{error}");
+    }
+}
+
+/// The rack with perfect sensors, a loop of 10 kHz, and this much torque (N·m) fed forward
+/// per m/s².
+fn fed(torque: f64) -> Axis {
+    let more = format!("position_rate_khz = 5\nacceleration_feedforward_n_m_s2_per_m = {torque}");
+    let changes = [
+        ("frequency_khz = 8", "frequency_khz = 10"),
+        ("position_rate_khz = 4", more.as_str()),
+    ];
+    let mut axis = changed("rack.toml", &changes);
+    axis.sensors = Sensors::default();
+    axis
+}
+
+/// A channel of a cycle, by its name in a log.
+type Channels = &'static [(&'static str, fn(&Cycle) -> f64)];
+
+const POSITION: Channels = &[
+    ("t_s", |c| c.time),
+    ("position_ref_m", |c| c.reference.position),
+    ("position_m", |c| c.position),
+];
+const VELOCITY: Channels = &[("velocity_ref_m_s", |c| c.reference.velocity)];
+const ACCELERATION: Channels = &[("acceleration_ref_m_s2", |c| c.reference.acceleration)];
+
+/// These channels of every `every`-th cycle, the references in steps of `resolution`.
+fn logged(cycles: &[Cycle], channels: &[Channels], every: usize, resolution: f64) -> Log {
+    let stepped = |name: &str, value: f64| match name.contains("_ref_") && resolution > 0.0 {
+        true => resolution * (value / resolution).round(),
+        false => value,
+    };
+    let channel = |(name, read): &(&'static str, fn(&Cycle) -> f64)| {
+        let samples = cycles.iter().step_by(every).map(|c| stepped(name, read(c)));
+        Channel::new(*name, samples.collect()).unwrap()
+    };
+    Log::new(channels.iter().copied().flatten().map(channel).collect()).unwrap()
+}
+
+/// Greatest distance of a replay's position from the log's, m.
+fn residual(axis: &Axis, log: &Log, period: f64) -> f64 {
+    let trace = Replay::new(log, period).unwrap().run(axis, &[], None);
+    let trace = trace.unwrap();
+    let logged = log.channel("position_m").unwrap();
+    let apart = trace.position().iter().zip(logged);
+    apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// What a file says is fed forward is fed forward in a replay: the torque for 300 kg on this
+/// travel, left out, is a gap of tenths of a millimetre.
+#[test]
+fn a_replay_feeds_the_acceleration_forward() {
+    let axis = fed(2.2);
+    let cycles = follow(&ClosedLoop::new(&axis).unwrap(), 2);
+    let log = |channels: &[Channels], every| logged(&cycles, channels, every, 0.0);
+    let left_out = residual(&fed(0.0), &log(&[POSITION, VELOCITY], 1), 1e-4);
+    assert!(left_out > 2e-5, "{left_out:e}");
+    let all = [POSITION, VELOCITY, ACCELERATION];
+    for (channels, every, most) in [
+        // In the loop's own rate nothing is between samples.
+        (&all[..], 1, 1e-14),
+        (&all[..], 10, 1e-3 * left_out),
+        // The acceleration derived.
+        (&all[..2], 1, 1e-3 * left_out),
+        (&all[..2], 10, 1e-2 * left_out),
+        (&all[..1], 1, 1e-3 * left_out),
+        (&all[..1], 10, 1e-2 * left_out),
+    ] {
+        let apart = residual(&axis, &log(channels, every), 1e-4 * every as f64);
+        println!(
+            "{} channels, every {every}: {apart:e} of {left_out:e} m",
+            channels.len()
+        );
+        assert!(
+            apart < most,
+            "{} channels, every {every}: {apart:e}",
+            channels.len()
+        );
+    }
+}
+
+/// Steps of a micrometre at 1 kHz are 1 m/s² in a second difference, more than the motion's
+/// own acceleration.
+#[test]
+fn the_steps_of_a_reference_are_not_its_acceleration() {
+    let axis = fed(2.2);
+    let cycles = follow(&ClosedLoop::new(&axis).unwrap(), 2);
+    let exact: Vec<f64> = cycles
+        .iter()
+        .step_by(10)
+        .map(|c| c.reference.acceleration)
+        .collect();
+    for (channels, resolution) in [
+        (&[POSITION][..], 1e-6),
+        (&[POSITION][..], 1e-5),
+        (&[POSITION, VELOCITY][..], 1e-6),
+        (&[POSITION, VELOCITY][..], 1e-4),
+    ] {
+        let log = logged(&cycles, channels, 10, resolution);
+        let reference = LoggedReference::new(&log, 1e-3).unwrap();
+        let squares = exact.iter().enumerate().map(|(k, exact)| {
+            let off = reference.at(1e-3 * k as f64).acceleration - exact;
+            off * off
+        });
+        let off = (squares.sum::<f64>() / exact.len() as f64).sqrt();
+        println!("{} channels in {resolution}: {off} m/s²", channels.len());
+        // Of 1 m/s².
+        assert!(
+            off < 0.05,
+            "{} channels in {resolution}: {off}",
+            channels.len()
+        );
+        let apart = residual(&axis, &log, 1e-3);
+        let left_out = residual(&fed(0.0), &log, 1e-3);
+        println!("    {apart:e} of {left_out:e} m");
+        assert!(apart < 0.2 * left_out, "{apart:e} of {left_out:e}");
     }
 }

@@ -16,12 +16,15 @@ pub struct DriveTermsFeedforward<T = f64> {
     terms: DriveTerms<T>,
     /// Friction level that a reset begins with, N·m.
     carried: T,
+    /// Wind-up with which the position loop was homed before an earlier motion, rad.
+    homed: Option<T>,
     state: State<T>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct State<T> {
-    /// What is held at the start: load torque (N·m) and wind-up (rad).
+    /// Load torque that is held at the start (N·m), and wind-up with which the position loop
+    /// was homed (rad).
     home: Option<[T; 2]>,
     /// −1 or 1; 0 before the first motion.
     direction: T,
@@ -53,14 +56,17 @@ impl<T: Exponential> DriveTermsFeedforward<T> {
         Self {
             terms,
             carried: T::ZERO,
+            homed: None,
             state: State::at(T::ZERO),
         }
     }
 
-    /// The same drive at rest before its next motion: it keeps its friction level.
+    /// The same drive at rest before its next motion: it keeps its friction level, and where
+    /// its position loop was homed.
     #[must_use]
     pub fn carried_on(mut self) -> Self {
         self.carried = self.state.after;
+        self.homed = self.homed.or(self.state.home.map(|[_, wound]| wound));
         self.reset();
         self
     }
@@ -118,7 +124,8 @@ impl<T: Exponential> DriveTermsFeedforward<T> {
         self.state.since = (self.state.since + self.terms.period).min(T::of(1e6));
         let [friction, level] = self.friction();
         let [load, wound] = self.tables(next, level);
-        let [home_load, home_wound] = *self.state.home.get_or_insert([load_now, wound_now]);
+        let here = [load_now, self.homed.unwrap_or(wound_now)];
+        let [home_load, home_wound] = *self.state.home.get_or_insert(here);
         let (t, own) = (&self.terms, &self.terms.own);
         let mut position = T::ZERO;
         if own.position > T::ZERO {

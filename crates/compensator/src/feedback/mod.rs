@@ -104,8 +104,6 @@ pub struct Feedback<T = f64> {
     own: T,
     /// How that changes in a cycle.
     own_rate: T,
-    /// Wind-up along the plan at the start: where the motor's angle was set to the load.
-    home: Option<T>,
     /// Motor's speed along the plan in the cycle before, rad/s.
     speed: T,
     last: Deviations<T>,
@@ -121,7 +119,6 @@ impl<T: Scalar> Feedback<T> {
             before: None,
             own: T::ZERO,
             own_rate: T::ZERO,
-            home: None,
             speed: T::ZERO,
             last: Deviations::default(),
         }
@@ -138,7 +135,6 @@ impl<T: Scalar> Feedback<T> {
             before: None,
             own: U::ZERO,
             own_rate: U::ZERO,
-            home: None,
             speed: U::ZERO,
             last: Deviations::default(),
         }
@@ -156,7 +152,6 @@ impl<T: Scalar> Feedback<T> {
         self.before = None;
         self.own = T::ZERO;
         self.own_rate = T::ZERO;
-        self.home = None;
         self.speed = T::ZERO;
         self.last = Deviations::default();
     }
@@ -174,13 +169,12 @@ impl<T: Scalar> Feedback<T> {
     /// The correction of the cycle that begins with `sample` and that the plan has as
     /// `planned`. It replaces the plan's own and the drive's loops.
     pub fn correct(&mut self, sample: &Sample<T>, planned: &Planned<T>) -> Correction<T> {
-        let home = *self.home.get_or_insert(planned.wind_up);
         self.predict(sample.iq_command);
         let g = &self.gains;
         let c = &g.cascade;
         let mut position = planned.position;
         if c.from_motor {
-            position += g.travel * (planned.wind_up - home);
+            position += g.travel * (planned.wind_up - planned.home);
         }
         // A difference of angles is the mean speed of the cycle before.
         let mut speed = planned.motor_speed;

@@ -72,8 +72,8 @@ pub enum Advice {
     Done,
     /// Enough rounds, or the last one hardly helped: more would learn noise.
     Enough,
-    /// The move has become worse than without δ, or than twice its best: something has
-    /// changed. δ starts anew from this move.
+    /// The move has become worse than without δ: something has changed. δ is dropped, and the
+    /// next move is the first again.
     Restarted,
 }
 
@@ -159,15 +159,17 @@ impl LearnedMove {
         let learnable = Scalar::sqrt(power.iter().fold(0.0_f64, |most, p| most.max(*p)));
         let floor = median(&smooth) / NORMAL_MEDIAN;
         let peak = filled.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
-        let worse = self.rounds > 0
-            && (learnable > self.first || learnable > 2.0 * self.best)
-            && learnable > 3.0 * floor;
-        if worse {
-            self.shift.clear();
-            self.rounds = 0;
+        let stands_out = self.rounds > 0 && learnable > 3.0 * floor;
+        if stands_out && learnable > self.first {
+            return self.dropped(peak, learnable, floor);
+        }
+        // Better than without δ, but not what it was: there is more to learn again. What this
+        // move is off by was left by δ, which stays.
+        if stands_out && learnable > 2.0 * self.best {
+            self.rounds = 1;
+            self.best = learnable;
         }
         let advice = match () {
-            () if worse => Advice::Restarted,
             () if learnable <= STANDS_OUT * floor => Advice::Done,
             // It gets hardly better: what is left varies faster than the Gaussian passes.
             () if self.rounds > 1 && learnable > 0.8 * self.best => Advice::Enough,
@@ -179,7 +181,7 @@ impl LearnedMove {
             self.best = learnable;
         }
         self.best = self.best.min(learnable);
-        if matches!(advice, Advice::Again | Advice::Restarted) {
+        if advice == Advice::Again {
             self.shift.resize(filled.len().max(self.shift.len()), 0.0);
             // 1 − 2 floor²/power of the error at an instant is no noise.
             let share = |power: &f64| match *power > 0.0 {
@@ -200,6 +202,21 @@ impl LearnedMove {
             learnable,
             floor,
             advice,
+        }
+    }
+
+    /// Nothing learned, of a move that became worse with δ: what it was off by is that of δ as
+    /// well, and says nothing of the move without.
+    fn dropped(&mut self, peak: f64, learnable: f64, floor: f64) -> Round {
+        self.shift.fill(0.0);
+        self.rounds = 0;
+        (self.first, self.best) = (f64::INFINITY, f64::INFINITY);
+        Round {
+            rounds: 0,
+            peak,
+            learnable,
+            floor,
+            advice: Advice::Restarted,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use lugre::Exponential;
 
-use super::{PlanSettings, Planned, Planner, Standstill, Target};
+use super::{Homed, PlanSettings, Planned, Planner, Standstill, Target};
 use crate::model::DriveModel;
 use crate::{Compensator, CompensatorError, Correction, Residual, ResidualModel, Sample};
 
@@ -13,6 +13,7 @@ pub struct Plan<F, T = f64, R = ResidualModel<T>> {
     /// Target of a cycle, counted from the start of the motion; beyond its end, rest.
     targets: F,
     own: T,
+    homed: Option<Homed<T>>,
     cycle: usize,
     planned: Planned<T>,
 }
@@ -32,6 +33,7 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>> Plan<F, T> {
             planner: Planner::new(model, settings)?,
             targets,
             own: T::ZERO,
+            homed: None,
             cycle: 0,
             planned: Planned::default(),
         })
@@ -44,6 +46,7 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>> Plan<F, T> {
             planner: self.planner.with_residual(residual),
             targets: self.targets,
             own: self.own,
+            homed: self.homed,
             cycle: self.cycle,
             planned: self.planned,
         }
@@ -59,6 +62,14 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> Plan<F, T, R>
         self
     }
 
+    /// Says where the drive's position loop, closed at the motor, was homed, where that was
+    /// before an earlier motion.
+    #[must_use]
+    pub fn homed(mut self, homed: Homed<T>) -> Self {
+        self.homed = Some(homed);
+        self
+    }
+
     /// What the plan says of the cycle that begins with `sample`.
     pub fn advance(&mut self, sample: &Sample<T>) -> Planned<T> {
         let ahead = self.planner.look_ahead();
@@ -70,6 +81,7 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> Plan<F, T, R>
                     effort: sample.iq_command,
                     own: self.own,
                     motor_angle: sample.motor_angle,
+                    homed: self.homed,
                 },
             );
             self.planner.push(first);

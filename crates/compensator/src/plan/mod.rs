@@ -76,6 +76,16 @@ impl<T: Exponential> Target<T> {
     }
 }
 
+/// Where and under what a position loop that is closed at the motor was homed: there the
+/// position that it shows is the load's.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Homed<T = f64> {
+    /// Position of the load, m or rad.
+    pub position: T,
+    /// Command that the drive held it with, in the actuator's unit.
+    pub effort: T,
+}
+
 /// How an axis stands before a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Standstill<T = f64> {
@@ -87,6 +97,9 @@ pub struct Standstill<T = f64> {
     pub own: T,
     /// Angle of the motor, rad: where what repeats with its turn is.
     pub motor_angle: T,
+    /// Where a position loop that is closed at the motor was homed, where that was not here:
+    /// the wind-up that the axis stands with now, after a motion, is not the one of then.
+    pub homed: Option<Homed<T>>,
 }
 
 /// What the plan says of a cycle.
@@ -100,6 +113,8 @@ pub struct Planned<T = f64> {
     pub motor_speed: T,
     /// Wind-up s of the motor against the load, rad.
     pub wind_up: T,
+    /// That with which a position loop that is closed at the motor was homed, rad.
+    pub home: T,
     /// Torque of the motor at the start of the cycle, N·m.
     pub torque: T,
     /// Friction force on the load, N.
@@ -142,6 +157,16 @@ struct Wound<T> {
     torque: T,
 }
 
+/// An axis at rest.
+struct Resting<T> {
+    bristle: T,
+    /// On the load, N or N·m.
+    friction: T,
+    /// Through the transmission, N·m at the motor.
+    rigid: T,
+    wind_up: T,
+}
+
 /// Set points between the newest and the one whose wind-up is smoothed.
 const AHEAD: usize = MOST_HALF + 2;
 /// Those between that and the cycle that is planned.
@@ -168,7 +193,7 @@ pub struct Planner<T = f64, R = ResidualModel<T>> {
     wound_at: usize,
     /// Set points since the start, as far as the look-ahead counts them.
     pushed: usize,
-    /// Wind-up at the start, rad.
+    /// Wind-up with which the position loop was homed, rad.
     home: T,
     /// What the drive's integrator holds.
     held: T,
@@ -296,21 +321,17 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
     /// that differs from the axis' own load, friction holds the difference: bristles are
     /// taken as deflected so far.
     pub fn begin(&mut self, position: T, standstill: &Standstill<T>) {
+        let resting = self.resting(position, standstill.effort);
+        let Resting {
+            friction,
+            rigid,
+            wind_up,
+            ..
+        } = resting;
+        self.bristle = resting.bristle;
+        self.speed = T::ZERO;
         let m = &self.model;
         let section = m.along.at(position);
-        let holding = m.torque_constant() * standstill.effort / m.travel - section.load;
-        let p = m.friction.parameters();
-        let most = m.friction.bristle_limit();
-        self.bristle = if p.stiffness > T::ZERO {
-            (holding * m.lever / p.stiffness).max(-most).min(most)
-        } else {
-            T::ZERO
-        };
-        self.speed = T::ZERO;
-        let friction = m.friction.torque(self.bristle, T::ZERO) / m.lever;
-        let rigid = m.travel * (friction + section.load);
-        let wind_up = section.compliance * rigid + self.side(rigid);
-        let m = &self.model;
         let ahead = Ahead {
             target: Target::of(Reference {
                 position,
@@ -332,11 +353,38 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
         }; WOUND];
         self.smoothing.settle(wind_up);
         self.inverse.settle(rigid);
-        self.home = wind_up;
+        self.home = match &standstill.homed {
+            Some(homed) => self.resting(homed.position, homed.effort).wind_up,
+            None => wind_up,
+        };
+        let m = &self.model;
         self.zero_angle = standstill.motor_angle - position / m.travel - wind_up;
         self.ahead_at_start = m.kinematics.ahead(standstill.motor_angle);
         self.held = standstill.effort - standstill.own;
         (self.ahead_at, self.wound_at, self.pushed) = (0, 0, 0);
+    }
+
+    /// The axis at rest at a position, the drive holding a command: bristles hold what the
+    /// command has beside the load.
+    fn resting(&self, position: T, effort: T) -> Resting<T> {
+        let m = &self.model;
+        let section = m.along.at(position);
+        let holding = m.torque_constant() * effort / m.travel - section.load;
+        let p = m.friction.parameters();
+        let most = m.friction.bristle_limit();
+        let bristle = if p.stiffness > T::ZERO {
+            (holding * m.lever / p.stiffness).max(-most).min(most)
+        } else {
+            T::ZERO
+        };
+        let friction = m.friction.torque(bristle, T::ZERO) / m.lever;
+        let rigid = m.travel * (friction + section.load);
+        Resting {
+            bristle,
+            friction,
+            rigid,
+            wind_up: section.compliance * rigid + self.side(rigid),
+        }
     }
 
     /// Takes the next set point. From the [`Planner::look_ahead`]th after the first on it
@@ -484,6 +532,7 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
             position: reference.position + shift.position,
             motor_speed: start.motor_speed,
             wind_up: start.wind_up,
+            home: self.home,
             torque: start.torque,
             friction: start.ahead.friction,
             sticking: start.ahead.sticking,

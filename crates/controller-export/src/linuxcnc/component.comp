@@ -19,8 +19,8 @@ pin out bit fault "The guard has tripped, or the thread has another period than 
 pin out s32 status-out "0 off, 1 on; tripped: 2 not a number, 3 position, 4 effort, 5 surprise; 6 period.";
 param rw float units-per-si = @UNITS@ "Machine units per @L@.";
 variable double held_cycle[@ROOM@];
-function update_feedback fp;
-function update fp;
+function update_feedback;
+function update;
 license "Dual MIT/GPL";
 author "generated";
 ;;

@@ -129,6 +129,7 @@ impl<T: Exponential> Runs<T> for Streaming<T> {
                 effort: sample.iq_command,
                 own: self.own,
                 motor_angle: sample.motor_angle,
+                homed: None,
             };
             self.planner.begin(newest.position, &standstill);
             self.started = true;
@@ -183,7 +184,7 @@ pub fn single(law: &ExportedLaw<f32>) -> Outcome<Box<dyn Runs<f32> + '_>> {
         Position::Network(n) => fixed::<ACTIVATIONS>(n)?,
     };
     let all: Box<dyn Compensator<f32> + '_> = match law.friction {
-        Some(friction) => Box::new(Combined::new(Boxed(first), friction)),
+        Some(friction) => Box::new(Combined::new(first, friction)),
         None => first,
     };
     Ok(Box::new(all))
@@ -194,19 +195,6 @@ fn fixed<const A: usize>(law: &NetworkLaw<f32>) -> Outcome<Box<dyn Compensator<f
     let network =
         FixedNetwork::<f32, 4, 1, A>::new(&law.hidden, &law.packed, law.input, [law.output])?;
     Ok(Box::new(NetworkCompensation::new(network, law.estimator)))
-}
-
-/// A compensator of any kind as one of the kinds that can be combined.
-struct Boxed<'a>(Box<dyn Compensator<f32> + 'a>);
-
-impl Compensator<f32> for Boxed<'_> {
-    fn reset(&mut self) {
-        self.0.reset();
-    }
-
-    fn correct(&mut self, sample: &Sample<f32>) -> Correction<f32> {
-        self.0.correct(sample)
-    }
 }
 
 /// Inputs of a network over its ranges, row by row, and its outputs.

@@ -1,8 +1,8 @@
 //! What a controller saw in a log, in every control cycle.
 
-use axis_log::{Channel, Log};
+use axis_log::Log;
 use axis_sim::actuator::Effort;
-use axis_sim::{Axis, LoggedReference, Measured, Trace, position_in};
+use axis_sim::{Axis, Curve, LoggedReference, Measured, Trace, position_in};
 use trajectories::{Motion, Setpoint};
 
 use super::error::ControllerError;
@@ -103,26 +103,24 @@ impl Seen {
         let (h, travel) = (axis.period, axis.travel_per_radian());
         let reference = LoggedReference::new(shown.log, shown.period)?;
         let cycles = (reference.duration() / h + 1e-6) as usize + 1;
-        let curve = |samples: &[f64]| curve(samples, shown.period);
-        let position = curve(shown.position)?;
+        let curve = |samples: &[f64]| Curve::spline(samples, shown.period);
+        let position = curve(shown.position);
         let angle = match shown.angle {
-            Some(angle) => curve(angle)?,
-            None => curve(&scaled(shown.position, 1.0 / travel))?,
+            Some(angle) => curve(angle),
+            None => curve(&scaled(shown.position, 1.0 / travel)),
         };
-        let speed = shown.speed.map(curve).transpose()?;
+        let speed = shown.speed.map(curve);
         let measured = |k: usize| {
             let t = k as f64 * h;
-            let now = angle.at(t);
+            let [motor_angle, slope] = angle.at(t);
             Measured {
-                position: position.at(t).position,
-                motor_angle: now.position,
+                position: position.at(t)[0],
+                motor_angle,
                 motor_speed: match &speed {
-                    Some(speed) => speed.at(t).position,
+                    Some(speed) => speed.at(t)[0],
                     // As a drive derives it, from one cycle to the next.
-                    None if axis.derives_speed() && k > 0 => {
-                        (now.position - angle.at(t - h).position) / h
-                    }
-                    None => now.velocity,
+                    None if axis.derives_speed() && k > 0 => (motor_angle - angle.at(t - h)[0]) / h,
+                    None => slope,
                 },
                 ..Measured::default()
             }
@@ -148,18 +146,4 @@ impl Seen {
 
 fn scaled(samples: &[f64], by: f64) -> Vec<f64> {
     samples.iter().map(|sample| by * sample).collect()
-}
-
-/// The cubic spline through samples, as a motion.
-fn curve(samples: &[f64], period: f64) -> Result<LoggedReference, ControllerError> {
-    let time = (0..samples.len()).map(|k| k as f64 * period).collect();
-    let channel = |name: &str, samples: Vec<f64>| Channel::new(name, samples);
-    let log = || {
-        Log::new(vec![
-            channel("t_s", time)?,
-            channel("position_ref_m", samples.to_vec())?,
-        ])
-    };
-    let log = log().map_err(axis_sim::ReplayError::from)?;
-    Ok(LoggedReference::new(&log, period)?)
 }

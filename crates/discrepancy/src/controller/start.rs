@@ -37,7 +37,7 @@ pub fn start(equation: &Equation<'_>, form: Form, from_motor: bool) -> Option<[f
     };
     for log in &equation.logs {
         let columns = columns(equation, log, from_motor);
-        let command = equation.compared(log, true, &log.command);
+        let command = equation.compared(log, true, &unfed(equation, log, form));
         products.all += Matrix6::from_fn(|i, j| dot(&columns[i], &columns[j]));
         products.with_command += Vector6::from_fn(|i, _| dot(&columns[i], &command));
     }
@@ -74,6 +74,23 @@ fn columns(equation: &Equation<'_>, log: &Seen, from_motor: bool) -> [Vec<f64>; 
         let shown: Vec<f64> = (0..log.command.len()).map(at).collect();
         equation.compared(log, true, &shown)
     })
+}
+
+/// The logged command without the acceleration feed-forward that a cascade of the file has,
+/// which stays as it is.
+fn unfed(equation: &Equation<'_>, log: &Seen, form: Form) -> Vec<f64> {
+    let axis = equation.axis;
+    let cascade = axis.control.cascade(axis.travel_per_radian());
+    let fed = cascade.map_or(0.0, |cascade| cascade.acceleration_feedforward);
+    if form != Form::ProportionalIntegral || fed == 0.0 {
+        return log.command.clone();
+    }
+    let acceleration: Vec<f64> = log.reference.iter().map(|r| r.acceleration).collect();
+    let at = |k: usize| {
+        let along = k as f64 * log.log_period / axis.period;
+        log.command[k] - fed * super::equation::interpolated(&acceleration, along)
+    };
+    (0..log.command.len()).map(at).collect()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -35,9 +35,10 @@ pub(super) fn slow_of_loop_note(check: &Gap) -> String {
 fn slack_notes(machine: &Axis, found: &Found) -> Vec<String> {
     let effects = [&machine.effects[..], &found.fit.state.effects].concat();
     let left = sets(found).map(|set| set.slack_left(&effects));
+    let unit = machine.freedom().unit();
     let note = |(gap, log): (f64, &Prepared)| {
         format!(
-            "{} counts from where its reference has moved by {:.3e} m; of a gap of {gap:.3e} m that takes up a part, and the screw\u{2019}s place in the rest is not known: record a longer first move",
+            "{} counts from where its reference has moved by {:.3e} {unit}; of a gap of {gap:.3e} {unit} that takes up a part, and the motor\u{2019}s place in the rest is not known: record a longer first move",
             log.name, log.taken_up
         )
     };

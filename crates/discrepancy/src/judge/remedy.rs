@@ -103,7 +103,7 @@ pub const REMEDIES: &[Remedy] = &[
     line("asymmetric-viscous-friction", ViscousFeedForward, "one coefficient for each direction, or a table of torque over speed"),
     line("stribeck-friction", FrictionCompensation, "a table of torque over speed, dense at low speed"),
     line("presliding", FrictionCompensation, "delay and decay of the pulse after a reversal"),
-    line("position-dependent-friction", PositionTable, "the level over the position; look at the guide or screw there"),
+    line("position-dependent-friction", PositionTable, "the level over the position; look at guide and transmission there"),
     line("load-dependent-friction", FrictionCompensation, "a level that grows with the acceleration, where the drive has one"),
     line("warming-friction", MechanicalRepair, "a warm-up run, or a level that is adapted as the machine warms"),
     line("maxwell-slip-hysteresis", FrictionCompensation, "delay and decay of the pulse after a reversal"),
@@ -121,11 +121,11 @@ pub const REMEDIES: &[Remedy] = &[
     line("force-ripple", PositionTable, "amplitude, order and phase over two pole pitches"),
     line("current-sensor-offset", Setting, "offset of the current sensors: calibrate them in the drive"),
     line("current-sensor-gain", Setting, "scale of the current sensors: calibrate them in the drive"),
-    line("backlash", BacklashCompensation, "the gap; beyond a few micrometres preload or repair the nut"),
+    line("backlash", BacklashCompensation, "the gap; beyond a few micrometres preload or repair the transmission"),
     line("lead-error", LeadErrorTable, "a straight line over the position: slope"),
-    line("periodic-lead-error", LeadErrorTable, "a sine with the screw's turn: several points a turn"),
+    line("periodic-lead-error", LeadErrorTable, "a sine with the motor's turn: several points a turn"),
     line("kinematic-error-harmonic", LeadErrorTable, "a sine with several periods a turn: eight points and more a period"),
-    line("thermal-expansion", ThermalCompensation, "strain against time or temperature of the screw"),
+    line("thermal-expansion", ThermalCompensation, "strain against time or temperature of the transmission"),
     line("transmission-stiffness", WindUpCompensation, "travel lost per acceleration"),
     line("hardening-stiffness", WindUpCompensation, "travel lost over the force, as a table"),
     line("encoder-eccentricity", LeadErrorTable, "a sine with the motor's turn; or mount the encoder anew"),
@@ -154,5 +154,18 @@ mod tests {
         assert_eq!(REMEDIES.len(), lines.len());
         assert!(REMEDIES.iter().all(|r| !r.parameter.is_empty()));
         assert!(Remedy::of("nonsense").is_none());
+    }
+
+    /// What is advised is advised on a joint too; a table is one of numbers.
+    #[test]
+    fn no_line_speaks_of_a_screw() {
+        for line in REMEDIES {
+            let mut words = line.parameter.split(|c: char| !c.is_alphanumeric());
+            assert!(
+                words.all(|word| !["screw", "nut"].contains(&word)),
+                "{}",
+                line.parameter
+            );
+        }
     }
 }

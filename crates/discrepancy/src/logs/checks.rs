@@ -59,7 +59,7 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, LogSetErr
     no_holes(&file(), log)?;
     agree(&file(), log, machine)?;
     on_stroke(&file(), log, machine)?;
-    follows(&file(), log, reference, position)?;
+    follows(&file(), log, machine, reference, position)?;
     moves_both_ways(&file(), reference)?;
     Ok(sampling.period)
 }
@@ -150,13 +150,20 @@ fn on_stroke(file: &str, log: &Log, machine: &Axis) -> Result<(), LogSetError> {
                 time: log.time()[k],
                 minimum: stroke.minimum,
                 maximum: stroke.maximum,
+                unit: machine.freedom().unit(),
             });
         }
     }
     Ok(())
 }
 
-fn follows(file: &str, log: &Log, reference: &[f64], position: &[f64]) -> Result<(), LogSetError> {
+fn follows(
+    file: &str,
+    log: &Log,
+    machine: &Axis,
+    reference: &[f64],
+    position: &[f64],
+) -> Result<(), LogSetError> {
     let (low, high) = reference
         .iter()
         .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
@@ -171,6 +178,7 @@ fn follows(file: &str, log: &Log, reference: &[f64], position: &[f64]) -> Result
             time: log.time()[worst],
             error: reference[worst] - position[worst],
             travel,
+            unit: machine.freedom().unit(),
         });
     }
     Ok(())

@@ -77,35 +77,39 @@ pub enum LogSetError {
     },
     /// Positions that the axis cannot take.
     #[error(
-        "{file}: the {channel} is {position:.6} at t = {time:.4} s, outside the axis' stroke of {minimum} to {maximum} (m or rad): the log belongs to another axis, is in another unit, or counts from another zero (offset in [log])"
+        "{file}: the {channel} is {position:.6} at t = {time:.4} s, outside the axis' stroke of {minimum} to {maximum} {unit}: the log belongs to another axis, is in another unit, or counts from another zero (offset in [log])"
     )]
     OffStroke {
         /// The log.
         file: String,
         /// Its channel.
         channel: &'static str,
-        /// Where, m.
+        /// Where, m or rad.
         position: f64,
         /// When, s.
         time: f64,
-        /// Least position, m.
+        /// Least position, m or rad.
         minimum: f64,
-        /// Greatest position, m.
+        /// Greatest position, m or rad.
         maximum: f64,
+        /// Unit of the positions.
+        unit: &'static str,
     },
-    /// The table does not follow the reference at all.
+    /// The load does not follow the reference at all.
     #[error(
-        "{file}: at t = {time:.4} s the table is {error:.6} m from its reference, more than a tenth of the motion's {travel:.6} m: the two columns are not of one axis and one time"
+        "{file}: at t = {time:.4} s the load is {error:.6} {unit} from its reference, more than a tenth of the motion's {travel:.6} {unit}: the two columns are not of one axis and one time"
     )]
     NotFollowing {
         /// The log.
         file: String,
         /// When, s.
         time: f64,
-        /// Reference minus measured, m.
+        /// Reference minus measured, m or rad.
         error: f64,
-        /// Range of the reference, m.
+        /// Range of the reference, m or rad.
         travel: f64,
+        /// Unit of both.
+        unit: &'static str,
     },
     /// Nothing moves, or only one way.
     #[error(

@@ -50,6 +50,8 @@ _Path: TypeAlias = str | os.PathLike[str]
 # What is done, how much of it, of how much: None where that is not known.
 _Progress: TypeAlias = Callable[[str, int, int | None], object]
 _Motion: TypeAlias = Move | SCurve | Program
+# Neurons of the hidden layers.
+_Layers: TypeAlias = int | Sequence[int] | NDArray[np.integer[Any]]
 # Position, speed, acceleration.
 _Reference: TypeAlias = tuple[float, float, float]
 
@@ -105,6 +107,7 @@ class Axis:
         *,
         compensation: Compensator | Callable[[Sample], Correction] | None = None,
         noise: float = 0.0,
+        exact: bool = False,
         seed: int = 1,
         progress: _Progress | None = None,
     ) -> Run: ...
@@ -120,7 +123,7 @@ class Axis:
         self,
         samples: Samples,
         *,
-        hidden: Sequence[int] = ...,
+        hidden: _Layers = ...,
         epochs: int = 500,
         seed: int = 1,
         threads: int = 0,
@@ -284,8 +287,8 @@ class Sample:
     def __new__(
         cls,
         *,
-        reference: _Reference = ...,
-        next_reference: _Reference = ...,
+        reference: ArrayLike = ...,
+        next_reference: ArrayLike = ...,
         position_m: float = 0.0,
         motor_angle_rad: float = 0.0,
         motor_speed_rad_s: float = 0.0,
@@ -337,7 +340,7 @@ class Network:
         x: ArrayLike,
         y: ArrayLike,
         *,
-        hidden: Sequence[int] = ...,
+        hidden: _Layers = ...,
         epochs: int = 100,
         seed: int = 1,
         threads: int = 0,
@@ -400,7 +403,7 @@ class Beam:
 
 def latin_hypercube(
     n: int,
-    bounds: Sequence[tuple[float, float]],
+    bounds: ArrayLike,
     *,
     seed: int = 1,
     centred: bool = False,

@@ -7,13 +7,13 @@ use std::sync::Arc;
 use axis_pipeline::Figures;
 use axis_pipeline::moves::{MoveRun, Moves, NamedMotion};
 use axis_pipeline::strategies::{LearnedValues, NONE, Predictors, StrategyKind};
-use axis_sim::{ClosedLoop, Measured};
+use axis_sim::Measured;
 use clap::Args;
 use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 
-use super::simulate::{factor, program_on, trajectory};
+use super::simulate::{EXACT, NOISE, closed_loop, factor, program_on, trajectory};
 use super::validate;
 use crate::context::Context;
 use crate::output::{print, write_whole};
@@ -36,10 +36,9 @@ pub struct Options {
     /// state that the axis was left in; before any other it is settled anew
     #[arg(long, value_name = "MOVE", num_args = 1.., requires = "strategy")]
     moves: Vec<String>,
-    /// Noise of every sensor, in multiples of a good linear scale's (10 nm), motor
-    /// encoder's (2 µrad; its speed 0.01 rad/s) and current sensor's (5 mA of 15 A)
     #[arg(
         long,
+        help = NOISE,
         value_name = "FACTOR",
         default_value_t = 0.0,
         value_parser = factor,
@@ -47,6 +46,8 @@ pub struct Options {
         requires = "strategy"
     )]
     noise: f64,
+    #[arg(long, help = EXACT, requires = "strategy")]
+    exact: bool,
     /// Where to write the moves' errors, and what was learned, as JSON
     #[arg(long, value_name = "FILE", requires = "strategy")]
     json: Option<PathBuf>,
@@ -91,7 +92,7 @@ pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) ->
     let predictors = validate::predictors(context, kind.needs)?;
     // Refused before anything is computed.
     kind.strategy(&predictors).into_diagnostic()?;
-    let closed_loop = ClosedLoop::new(&context.machine).into_diagnostic()?;
+    let closed_loop = closed_loop(&context.machine, options.exact)?;
     let progress = bar("compensate", 2 * motions.len() as u64);
     let made = |kind| -> Made {
         let sensors = Noise::good(&context.machine).scaled(options.noise);

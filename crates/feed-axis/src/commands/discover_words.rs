@@ -92,7 +92,7 @@ impl Found<'_> {
                     p.name, p.value, p.unit
                 )?;
                 match &p.at_screw {
-                    Some(s) => writeln!(f, "   at the screw {:.4e} {}", s.value, s.unit)?,
+                    Some(s) => writeln!(f, "   at the motor {:.4e} {}", s.value, s.unit)?,
                     None => writeln!(f)?,
                 }
             }
@@ -183,7 +183,7 @@ pub fn summary_words(axis: &Axis, found: &SummaryFound, trajectories: usize) -> 
             let total = axis.friction.law.parameters().viscous + closing.parameters[0].1 * r * r;
             let rpm = std::f64::consts::TAU / 60.0;
             lines.push(format!(
-                "   with the file's own: σ2 = {:.5} N·m/rpm at the screw",
+                "   with the file's own: σ2 = {:.5} N·m/rpm at the motor",
                 total * rpm
             ));
         }

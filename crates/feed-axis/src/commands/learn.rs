@@ -69,7 +69,7 @@ fn tell(axis: &Axis, round: &Round, file: &Path) -> Result<()> {
         Advice::Done => "what is left is noise: keep the correction, and stop".to_owned(),
         Advice::Enough => "more rounds would learn noise: keep the correction, and stop".to_owned(),
         Advice::Restarted => format!(
-            "the move has become worse than it was: something has changed. {} starts anew from this log",
+            "the move has become worse than without the correction: something has changed. {} is empty again: make the move with it",
             file.display()
         ),
     };

@@ -43,7 +43,7 @@ pub fn compensation(results: &Results) -> Section {
     let grid = grid.collect();
     let left_out = left_out(&results.compensation);
     let section = Section::new("Compensation")
-        .paragraph("On the simulated machine. The compensator sees what a controller samples: reference, table position, motor speed, currents. Network: ΔS = S_ref − S + Ê, Ê predicted for the end of the cycle (Section 4.4). Transfer function: a linear model of the tracking error, driven by the reference and led by the position loop's time constant; beside LuGre, the model of the error that LuGre leaves. LuGre: current for the friction along the reference, with the parameters identified on the machine. A figure is marked where its peak is at or below the paper's.");
+        .paragraph("On the simulated machine. The compensator sees what a controller samples: reference, position of the load, motor speed, currents. Network: ΔS = S_ref − S + Ê, Ê predicted for the end of the cycle (Section 4.4). Transfer function: a linear model of the tracking error, driven by the reference and led by the position loop's time constant; beside LuGre, the model of the error that LuGre leaves. LuGre: current for the friction along the reference, with the parameters identified on the machine. A figure is marked where its peak is at or below the paper's.");
     let section = match left_out.is_empty() {
         true => section,
         false => section.paragraph(format!(

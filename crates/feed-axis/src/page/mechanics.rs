@@ -104,7 +104,7 @@ pub fn vibration(results: &Results) -> Section {
         table = table.row(speed.into_iter().chain(cells(a)).chain(cells(b)));
     }
     Section::new("Self-excited vibration")
-        .paragraph("Where friction falls with speed it feeds the table's vibration on the nut's stiffness.")
+        .paragraph("Where friction falls with speed it feeds the load's vibration on the transmission's stiffness.")
         .table(table)
 }
 
@@ -117,10 +117,10 @@ pub fn modes(results: &Results) -> Section {
         return Section::new("Modes")
             .paragraph("This mechanism moves as one with its motor: it has no natural frequency.");
     }
-    let mut figure = Figure::new("Natural frequencies", "table position", "frequency")
+    let mut figure = Figure::new("Natural frequencies", "position of the load", "frequency")
         .units("m", "Hz")
         .log_y()
-        .alt("Natural frequencies of the drive against the table's position");
+        .alt("Natural frequencies of the drive against the load's position");
     for mode in 0..count {
         let y = modes.iter().map(|m| m.frequencies_hz[mode]).collect();
         figure = figure.series(Series::line(format!("mode {}", mode + 1), x.clone(), y));

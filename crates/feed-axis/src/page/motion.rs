@@ -2,7 +2,6 @@
 
 use axis_log::Log;
 use axis_report::{Block, Cell, Figure, KeyValues, Page, Section, Series, Table, engineering};
-use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, Cycle};
 
 /// What was run.
@@ -141,18 +140,15 @@ fn error(ran: &Ran<'_>, errors: &[f64]) -> Figure {
     ))
 }
 
-fn speed_unit(freedom: Freedom) -> &'static str {
-    match freedom {
-        Freedom::Linear => "m/s",
-        Freedom::Rotary => "rad/s",
-    }
-}
-
 fn speed(ran: &Ran<'_>) -> Figure {
     let of = |read: fn(&Cycle) -> f64| ran.cycles.iter().map(read).collect();
-    over_time("Speed of the load", "speed", speed_unit(ran.axis.freedom()))
-        .series(Series::line("load", times(ran), of(|c| c.load_speed)))
-        .series(Series::line("reference", times(ran), of(|c| c.reference.velocity)).dashed())
+    over_time(
+        "Speed of the load",
+        "speed",
+        ran.axis.freedom().speed_unit(),
+    )
+    .series(Series::line("load", times(ran), of(|c| c.load_speed)))
+    .series(Series::line("reference", times(ran), of(|c| c.reference.velocity)).dashed())
 }
 
 /// Channels of the log that are one figure: its title, and the legend's name of each.
@@ -183,21 +179,18 @@ const DRIVE: [Shown; 6] = [
     ),
 ];
 
-/// What the motor gives, and its unit: where its coordinate is the load's, along a line, a force.
-fn effort(ran: &Ran<'_>) -> (&'static str, &'static str) {
-    let direct = ran.axis.travel_per_radian() == 1.0;
-    match ran.axis.freedom() {
-        Freedom::Linear if direct => ("force", "N"),
-        _ => ("torque", "N·m"),
-    }
+/// What the motor gives, and its unit.
+fn effort(ran: &Ran<'_>) -> [&'static str; 2] {
+    ran.axis.mechanism.motor_freedom().force()
 }
 
 fn drive(ran: &Ran<'_>) -> Section {
-    let torque = ran.cycles.iter().map(|c| c.torque).collect();
-    let torque = over_time("Motor torque", "torque", "N·m").series(Series::line(
-        "torque",
+    let [name, unit_of_it] = effort(ran);
+    let torque = over_time(&format!("Motor {name}"), name, unit_of_it);
+    let torque = torque.series(Series::line(
+        name,
         times(ran),
-        torque,
+        ran.cycles.iter().map(|c| c.torque).collect(),
     ));
     let shown = DRIVE.iter().filter_map(|(title, names)| {
         let has = |(name, _): &&(&str, &'static str)| {
@@ -248,10 +241,10 @@ fn table(ran: &Ran<'_>, errors: &[f64]) -> Table {
     let table = row(
         table,
         "speed of the load",
-        speed_unit(ran.axis.freedom()),
+        ran.axis.freedom().speed_unit(),
         &speeds,
     );
-    let (name, unit) = effort(ran);
+    let [name, unit] = effort(ran);
     let table = row(table, &format!("motor {name}"), unit, &torques);
     match ran.log.channel("iq_a") {
         Ok(current) => row(table, "q current", "A", current),

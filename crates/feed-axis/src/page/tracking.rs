@@ -87,7 +87,7 @@ pub fn model_and_machine(context: &Context, results: &Results) -> Section {
             .series(Series::line("machine − model", time, deviation.collect()))
     });
     Section::new("Model and machine")
-        .paragraph("Error = reference − table position at the sampling instants, from the start to the end of the motion (the paper's Fig. 11).")
+        .paragraph("Error = reference − position of the load at the sampling instants, from the start to the end of the motion (the paper's Fig. 11).")
         .table(table)
         .figure_grid(grid.collect(), 2)
 }

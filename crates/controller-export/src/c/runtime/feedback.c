@@ -99,12 +99,8 @@ static void feedback_correct(@X@_feedback *s, const @X@_input *in, planned_cycle
     unsigned i;
     int sound = 1;
 
-    if (!s->has_home) {
-        s->home = p->wind_up;
-        s->has_home = 1;
-    }
     feedback_predict(s, in->effort_command);
-    deviations[0] = in->position - (FROM_MOTOR ? p->position + TRAVEL * (p->wind_up - s->home) : p->position);
+    deviations[0] = in->position - (FROM_MOTOR ? p->position + TRAVEL * (p->wind_up - p->home) : p->position);
     if (SPEED_BY_DIFFERENCES) {
         speed = R(0.5) * (speed + s->speed);
     }

@@ -1,7 +1,7 @@
 /* What the plan says of a cycle. */
 typedef struct {
     real position, velocity, acceleration; /* the set point */
-    real motor_speed, wind_up, sticking, current;
+    real motor_speed, wind_up, home, sticking, current;
     real effort;                           /* the command of the cycle */
     real position_offset, effort_offset;
 } planned_cycle;
@@ -106,6 +106,7 @@ static void plan_cycle(@X@_plan *s, const @X@_wound *start, const @X@_wound *bef
 
     p->motor_speed = start->motor_speed;
     p->wind_up = start->wind_up;
+    p->home = s->home;
     p->sticking = start->at.sticking;
     p->current = (LATE == 0) ? actuator_now(s) : start->torque / TORQUE_CONSTANT;
     p->effort = actuator_towards(s, torque, R(0.5) * (before->motor_speed + after->motor_speed));

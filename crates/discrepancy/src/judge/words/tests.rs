@@ -261,7 +261,9 @@ fn effects_that_look_alike_are_named_in_plain_words() {
     let made = discovery(Verdict::Explained, vec![effect], Vec::new());
     assert_eq!(
         lines(&made, "What else"),
-        ["These logs cannot tell viscous-friction from payload-mass (mass on the table)."]
+        [
+            "These logs cannot tell viscous-friction from payload-mass (payload that moves with the load)."
+        ]
     );
 }
 

@@ -24,8 +24,8 @@ impl Place {
 
     pub fn name(self) -> &'static str {
         match self {
-            Self::Force => "torque balance (as a force at the table, against positive motion)",
-            Self::Offset => "kinematics (as a displacement of the table on the screw)",
+            Self::Force => "torque balance (as a force on the load, against positive motion)",
+            Self::Offset => "kinematics (as a displacement between motor and load)",
         }
     }
 
