@@ -79,9 +79,12 @@ pub enum PipelineError {
         /// When and in which state.
         source: axis_sim::RunStopped,
     },
-    /// Friction parameters cannot be found.
+    /// Friction parameters cannot be found in logs.
     #[error("friction cannot be identified: {0}")]
-    Identify(#[from] lugre::identify::FrictionIdentifyError),
+    Identify(#[from] crate::identification::IdentifyLogsError),
+    /// A simulated run makes no log.
+    #[error("a simulated run makes no log: {0}")]
+    Log(#[from] axis_log::LogError),
     /// Friction parameters make no law.
     #[error("the friction law is not valid: {0}")]
     Friction(#[from] lugre::LugreError),

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use axis_pipeline::identification::{IdentificationPlan, identify};
 use axis_pipeline::strategies::TransferModels;
 use axis_pipeline::transfer::{TransferPlan, identify_transfer};
+use discover_matrix::hidden::Noise;
 use lugre::LuGre;
 use pyo3::prelude::*;
 
@@ -40,26 +41,27 @@ fn counting<'a>(hook: &'a Hook, what: &'a str, total: u64) -> impl Fn() + Sync +
 #[pymethods]
 impl PyAxis {
     /// Identifies the friction of this axis from simulated experiments: constant speeds and
-    /// pre-sliding, with noise on the torque as a share of it.
-    #[pyo3(signature = (*, torque_noise = 0.01, seed = 0, progress = None))]
+    /// small motions about a standstill, as its sensors log them, with `noise` times the noise
+    /// of a good scale, motor encoder and current sensor besides.
+    #[pyo3(signature = (*, noise = 1.0, seed = 0, progress = None))]
     fn identify_friction(
         &self,
         py: Python<'_>,
-        torque_noise: f64,
+        noise: f64,
         seed: u64,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyLuGre> {
         let axis = self.axis.clone();
         let law = long(py, progress, move |hook| {
             let plan = IdentificationPlan {
-                torque_noise,
                 seed,
                 ..IdentificationPlan::of(&axis)
             };
-            let total = 2 * plan.speeds.len() as u64;
-            let found = identify(&axis, &plan, counting(hook, "friction runs", total));
-            let found = found.map_err(raise::<StrategyError>)?;
-            LuGre::new(found.parameters).map_err(raise::<StrategyError>)
+            let sensors = Noise::good(&axis).scaled(noise).sensors(seed);
+            let count = counting(hook, "friction runs", plan.motions());
+            let session = identify(&axis, &axis, &plan, sensors, count);
+            let found = session.map_err(raise::<StrategyError>)?.found;
+            LuGre::new(found.law).map_err(raise::<StrategyError>)
         })?;
         Ok(PyLuGre(law))
     }

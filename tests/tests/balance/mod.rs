@@ -17,7 +17,7 @@ use axis_sim::Axis;
 use discrepancy::{Discovery, EffectFound, Found, LogSet, Settings, discovery, search};
 
 /// The folder of a data set; where it is not there, that is said with where to get it.
-fn folder(name: &str, from: &str) -> Option<PathBuf> {
+pub(crate) fn folder(name: &str, from: &str) -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
     let named = std::env::var_os("FEED_AXIS_DATA").map(PathBuf::from);
     let all = named.into_iter().chain([beside]).map(|f| f.join(name));

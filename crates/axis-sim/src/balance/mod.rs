@@ -22,6 +22,7 @@ mod law;
 mod motion;
 mod prepared;
 mod quality;
+mod shown;
 mod spectrum;
 mod unsure;
 mod wind_up;
@@ -37,6 +38,7 @@ pub use error::BalanceError;
 use filter::{LowPass, ahead, derivative};
 use law::{Motions, torque};
 pub use quality::BalanceQuality;
+pub use shown::{FrictionCourse, Shown};
 
 /// One log's measured motion and torque, ready to be compared with any model of the axis.
 #[derive(Clone, Debug)]

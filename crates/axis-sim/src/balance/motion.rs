@@ -105,6 +105,46 @@ impl Measured {
         Ok(found)
     }
 
+    /// Its positions as they were sampled, or its speeds integrated from the first sample on.
+    pub fn positions(&self, period: f64) -> Vec<f64> {
+        match self.source {
+            Source::Position => self.samples.clone(),
+            Source::Speed => integral(&self.samples, period),
+        }
+    }
+
+    /// Its speeds as they were sampled, or the differences of its positions.
+    pub fn speeds(&self, period: f64) -> Vec<f64> {
+        match self.source {
+            Source::Position => {
+                let steps = self.samples.windows(2).map(|w| (w[1] - w[0]) / period);
+                let mut speeds: Vec<f64> = steps.collect();
+                speeds.extend(speeds.last().copied());
+                speeds
+            }
+            Source::Speed => self.samples.clone(),
+        }
+    }
+
+    /// How far a mean speed over `time` seconds may be off by noise and resolution.
+    pub fn unsure_speed(&self, period: f64, time: f64) -> f64 {
+        let deviation = self.noise.deviation(period);
+        match self.source {
+            Source::Position => deviation * std::f64::consts::SQRT_2 / time,
+            Source::Speed => deviation * (period / time).sqrt(),
+        }
+    }
+
+    /// The power that noise alone has in its samples.
+    pub fn noise_power(&self, period: f64) -> f64 {
+        self.noise.deviation(period).powi(2)
+    }
+
+    /// Its samples, in its own unit.
+    pub fn samples(&self) -> &[f64] {
+        &self.samples
+    }
+
     /// Low-passed at `cutoff` (Hz), and differentiated.
     pub fn course(&self, period: f64, cutoff: f64) -> Course {
         self.smoothed(&self.samples, period, cutoff)

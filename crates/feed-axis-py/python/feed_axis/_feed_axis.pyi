@@ -132,7 +132,7 @@ class Axis:
     def identify_friction(
         self,
         *,
-        torque_noise: float = 0.01,
+        noise: float = 1.0,
         seed: int = 0,
         progress: _Progress | None = None,
     ) -> LuGre: ...

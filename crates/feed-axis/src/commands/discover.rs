@@ -189,15 +189,19 @@ pub fn read_all(
     notes: &mut Vec<String>,
 ) -> Result<Vec<NamedLog>> {
     let one = |path: &PathBuf| {
-        let log = read_as_one(path, machine, notes)?;
+        let log = read_as_one(path, machine, &needed_channels(machine), notes)?;
         admit(path.display().to_string(), log, machine, notes).into_diagnostic()
     };
     paths.iter().map(one).collect()
 }
 
-/// One log of a file, or of several with `+` between them.
-fn read_as_one(path: &Path, machine: &Axis, notes: &mut Vec<String>) -> Result<Log> {
-    let needed = needed_channels(machine);
+/// One log of a file, or of several with `+` between them, with channels that it must have.
+pub(super) fn read_as_one(
+    path: &Path,
+    machine: &Axis,
+    needed: &[&str],
+    notes: &mut Vec<String>,
+) -> Result<Log> {
     let exact = exact_channels(machine);
     let options = Intake {
         exact: &exact,
@@ -205,8 +209,8 @@ fn read_as_one(path: &Path, machine: &Axis, notes: &mut Vec<String>) -> Result<L
         most_samples: most_samples(machine),
     };
     let paths = files(path);
-    let prepared = prepare(&paths, &machine.log, &needed, options)
-        .map_err(|error| with_help(error, &paths))?;
+    let prepared =
+        prepare(&paths, &machine.log, needed, options).map_err(|error| with_help(error, &paths))?;
     notes.extend(prepared.done.iter().map(ToString::to_string));
     Ok(prepared.log)
 }

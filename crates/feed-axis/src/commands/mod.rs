@@ -43,8 +43,9 @@ pub enum Command<J: Jobs> {
     Job(J),
     /// Train the cascade-forward network on the samples (Section 4.3)
     Train(Common),
-    /// Identify friction on the machine, and the transfer function from the model
-    Identify(Common),
+    /// Identify friction from logs of the axis, or from a simulated machine's, and the transfer
+    /// function from the model
+    Identify(identify::Options),
     /// Structure, gains and delay of an unknown controller, from logs
     IdentifyControl(identify_control::Options),
     /// Model against machine, and both predictors against the machine (Tables 13, 14)
@@ -82,7 +83,7 @@ impl<J: Jobs> Command<J> {
             Self::Pipeline(common) => pipeline::run(common),
             Self::Job(job) => job.run(),
             Self::Train(common) => train::command(common),
-            Self::Identify(common) => identify::command(common),
+            Self::Identify(options) => identify::command(options),
             Self::IdentifyControl(options) => identify_control::command(options),
             Self::Validate(common) => validate::command(common),
             Self::Compensate(options) => compensate::command(options),

@@ -9,17 +9,34 @@ use crate::results::Results;
 
 /// Identification: parameters and curve.
 pub fn friction(context: &Context, results: &Results) -> Section {
+    let friction = &results.friction;
+    let of = match friction.simulated {
+        true => "Friction as identified on the simulated machine",
+        false => "Friction as identified from logs",
+    };
     let mut table = Table::new(
-        "Friction as identified on the simulated machine",
-        ["Parameter", "found", "standard error", "true", "off by"],
+        of,
+        ["Parameter", "found", "95 % from", "to", "true", "off by"],
     );
-    for p in &results.friction.parameters {
+    for p in &friction.parameters {
+        let end = |place: usize| match p.interval_95 {
+            Some(ends) => Cell::quantity(ends[place], &p.unit, 5),
+            None => Cell::text(p.source.clone()),
+        };
+        let [truth, off] = match p.truth {
+            Some(truth) => [
+                Cell::quantity(truth, &p.unit, 5),
+                Cell::text(format!("{:+.2} %", 100.0 * (p.value / truth - 1.0))),
+            ],
+            None => [Cell::text("not known"), Cell::text("")],
+        };
         table = table.row([
             Cell::text(p.name.clone()),
             Cell::quantity(p.value, &p.unit, 5),
-            Cell::quantity(p.standard_error, &p.unit, 2),
-            Cell::quantity(p.truth, &p.unit, 5),
-            Cell::text(format!("{:+.2} %", 100.0 * (p.value / p.truth - 1.0))),
+            end(0),
+            end(1),
+            truth,
+            off,
         ]);
     }
     let runs = |name: &str, left_out: bool| {
@@ -55,23 +72,25 @@ pub fn friction(context: &Context, results: &Results) -> Section {
         speeds.clone(),
         curve(&context.axis.friction.law),
     ))
-    .series(Series::line(
-        "machine",
-        speeds.clone(),
-        curve(&context.machine.friction.law),
-    ))
     .series(Series::line("identified", speeds.clone(), curve(&results.friction_law)).dashed())
     .log_x()
     .alt("Steady-state friction torque against speed");
+    if friction.simulated {
+        let machine = curve(&context.machine.friction.law);
+        figure = figure.series(Series::line("machine", speeds.clone(), machine));
+    }
     let dots = [
         runs("runs used", false),
-        runs("runs left out: they vibrate", true),
+        runs("runs left out: they vibrate or rest", true),
     ];
     for series in dots.into_iter().flatten() {
         figure = figure.series(series);
     }
-    Section::new("Friction")
-        .paragraph("Constant-speed runs both ways and a pre-sliding test, with 1 % noise on the torque. Runs in which the axis vibrates by itself are recognised by their own speed and left out: their mean torque is not a point of the curve.")
+    let section = Section::new("Friction")
+        .paragraph("From stretches of constant speed both ways and small motions about a standstill, as the sensors log them. Runs in which the axis vibrates by itself are recognised by their own speed and left out: their mean torque is not a point of the curve. Intervals hold what the logs scatter; the torque constant of the axis file scales all forces with it.");
+    let lines = friction.open.iter().chain(&friction.notes);
+    lines
+        .fold(section, |section, line| section.paragraph(line.clone()))
         .table(table)
         .figure(figure)
 }

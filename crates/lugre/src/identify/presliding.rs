@@ -5,6 +5,7 @@ use nalgebra::{Matrix4, SMatrix};
 use super::error::{FrictionIdentifyError, check_finite, check_positive};
 use super::estimate::ParameterEstimate;
 use super::least_squares::{FitOutcome, Minimum, Problem, dot, square};
+use super::series::correlation_time;
 use super::static_fit::StaticKnowledge;
 use super::trial::{Trial, Unknowns};
 use crate::law::LuGre;
@@ -47,9 +48,9 @@ pub struct PreslidingFit {
     pub covariance: [[f64; 4]; 4],
     /// RMS of the torque residuals, N·m.
     pub residual_rms: f64,
-    /// Correlation of neighbouring residuals. The standard errors assume white
-    /// noise, that is about 0 (±2/√n); more says that the model or the given
-    /// motion is wrong somewhere, and the standard errors too small.
+    /// Correlation of neighbouring residuals: of white noise about 0 (±2/√n). More says that noise is
+    /// slow, or the model or the given motion wrong somewhere; the standard errors are wider then,
+    /// as so many fewer samples are independent.
     pub residual_correlation: f64,
     /// Samples whose bristles were more than a tenth away from steady sliding.
     pub presliding_samples: usize,
@@ -77,7 +78,8 @@ impl PreslidingFit {
 
 /// Fits `σ0` and `σ1` by the output error: the bristle is simulated with
 /// [`LuGre::step`] along the measured motion, and the torque of equation (3)
-/// compared with the measured one, whose noise is taken as white.
+/// compared with the measured one. The standard errors are those of residuals that are correlated
+/// as they turn out to be.
 ///
 /// Unknown as well, and fitted: the bristle torque `σ0 z` at the start and a
 /// constant torque offset. As long as nothing slides the two cannot be told
@@ -233,7 +235,8 @@ fn report(
     let n = trial.speeds.len();
     let residuals = &minimum.residuals[..n];
     let squares = square(residuals);
-    let variance = squares / (n - 4) as f64;
+    // Residuals that last tell as much as fewer independent ones.
+    let variance = squares / (n - 4) as f64 * correlation_time(residuals);
     let inverse = minimum.inverse.ok_or_else(|| open(f64::INFINITY))?;
     let mut c = covariance(trial, statics, &minimum, &inverse, variance);
     // From ln σ0 to σ0.

@@ -99,6 +99,23 @@ impl Series {
     }
 }
 
+/// How many samples in a row say the same: `τ = 1 + 2 Σ ρ_k` of residuals about zero, summed up to
+/// the first lag beyond `5 τ`; at least 1.
+pub(super) fn correlation_time(residuals: &[f64]) -> f64 {
+    let variance = autocovariance(residuals, 0);
+    let mut tau = 1.0_f64;
+    if variance <= 0.0 {
+        return tau;
+    }
+    for lag in 1..residuals.len() / 4 {
+        if lag as f64 > 5.0 * tau.max(1.0) {
+            break;
+        }
+        tau += 2.0 * autocovariance(residuals, lag) / variance;
+    }
+    tau.max(1.0)
+}
+
 /// The frequency, in cycles a sample up to `highest`, whose cosine fits the
 /// correlations `(lag, value)` best: they have averaged the noise out.
 fn frequency(correlations: &[(f64, f64)], highest: f64) -> f64 {

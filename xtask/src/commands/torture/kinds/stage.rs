@@ -66,8 +66,12 @@ fn make(context: &Context) -> Result<()> {
     stage.write_json(
         "friction.json",
         &Friction {
+            simulated: true,
             parameters: Vec::new(),
+            open: Vec::new(),
+            notes: Vec::new(),
             runs: Vec::new(),
+            small_motions: Vec::new(),
             law: [
                 law.coulomb,
                 law.stiction,
@@ -79,6 +83,10 @@ fn make(context: &Context) -> Result<()> {
         },
     )?;
     stage.write_json("transfer_functions.json", &[transfer(), transfer()])?;
+    // Logs that nothing reads again.
+    for log in ["constant-speed.parquet", "pre-sliding.parquet"] {
+        write_whole(&stage.path(log), b"")?;
+    }
     stage.finish()?;
     let stage = train::stage(context);
     stage.begin()?;

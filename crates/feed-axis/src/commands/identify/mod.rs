@@ -1,0 +1,177 @@
+//! `identify`: friction from logs of an axis or of a simulated machine, transfer function from
+//! the model.
+
+mod friction;
+mod from_logs;
+mod simulated;
+mod words;
+
+use std::path::PathBuf;
+
+use axis_pipeline::transfer::{TransferPlan, identify_transfer};
+use clap::Args;
+use compensator::TransferFunctionModel;
+use lugre::LuGre;
+use miette::{IntoDiagnostic, Result, miette};
+use serde::{Deserialize, Serialize};
+
+pub use self::friction::{Found, Friction, RunPoint, SmallMotionPoint};
+use self::simulated::{PRESLIDING, SPEEDS};
+use self::words::Told;
+use crate::context::{Common, Context};
+use crate::output::{print, remove};
+use crate::progress::bar;
+use crate::store::Stage;
+
+const FRICTION: &str = "friction.json";
+pub(super) const TRANSFER: &str = "transfer_functions.json";
+
+/// Options of the command.
+#[derive(Args)]
+pub struct Options {
+    #[command(flatten)]
+    common: Common,
+    /// Logs of the axis itself, of constant speeds both ways and of small motions about a standstill,
+    /// as `log inspect` reads them; a log in several files as their paths with + between. Without
+    /// any, both are made on the simulated machine, and kept beside the results
+    #[arg(long, value_name = "LOG", num_args = 1..)]
+    log: Vec<PathBuf>,
+}
+
+/// The transfer function as identified.
+#[derive(Serialize, Deserialize)]
+pub struct Transfer {
+    /// Control period, s.
+    pub period: f64,
+    /// Direct feed-through, s².
+    pub direct: f64,
+    /// Real poles, of z.
+    pub poles: Vec<f64>,
+    /// Coefficient of each pole, s².
+    pub coefficients: Vec<f64>,
+    /// RMS of what it misses on the motions it was fitted to, µm.
+    pub training_rms_um: f64,
+    /// RMS of what it misses on other motions, µm.
+    pub validation_rms_um: f64,
+    /// How many candidates were tried.
+    pub candidates: usize,
+}
+
+/// Runs the command.
+pub fn command(options: &Options) -> Result<()> {
+    let context = options.common.open()?;
+    let _claim = context.claim()?;
+    if options.log.is_empty() {
+        // Asked for without logs: what an earlier run was told is over.
+        remove(&from_logs::list(&context))?;
+        return run(&context);
+    }
+    let found = from_logs::identify(&context, &options.log)?;
+    from_logs::remember(&context, &options.log)?;
+    finish(&context, &found)
+}
+
+/// The stage, for this context: from the logs that it was last given, where there were any.
+pub fn stage(context: &Context) -> Stage<'_> {
+    let machine = &context.machine.fingerprint;
+    let transfer = transfer_plan(context);
+    match from_logs::remembered(context) {
+        Some(logs) => {
+            let settings = format!("{transfer:?} {logs}");
+            let files = &[FRICTION, TRANSFER, from_logs::LIST];
+            Stage::new(context, "identify", files, &settings, &[])
+        }
+        None => {
+            let plan = simulated::plan(context);
+            let settings = format!("{plan:?} {transfer:?} {machine}");
+            let files = &[FRICTION, TRANSFER, SPEEDS, PRESLIDING];
+            Stage::new(context, "identify", files, &settings, &[])
+        }
+    }
+}
+
+/// Runs the stage: from the logs that it was last given, or else on the simulated machine.
+pub fn run(context: &Context) -> Result<()> {
+    if from_logs::remembered(context).is_some() {
+        let found = from_logs::again(context)?;
+        return finish(context, &found);
+    }
+    let stage = stage(context);
+    stage.begin()?;
+    let found = simulated::identify(context, &stage)?;
+    finish(context, &found)
+}
+
+/// Writes the friction, and finds the transfer functions beside it.
+fn finish(context: &Context, found: &Friction) -> Result<()> {
+    let stage = stage(context);
+    stage.begin()?;
+    stage.write_json(FRICTION, found)?;
+    let fits = transfer(context)?;
+    stage.write_json(TRANSFER, &fits)?;
+    stage.finish()?;
+    let told = Told {
+        units: context.axis.friction.at.units(),
+        friction: found,
+        transfer_functions: &fits,
+    };
+    print("identify", &told)
+}
+
+/// The transfer functions without and with friction feed-forward; none of an axis whose
+/// controller is not known.
+fn transfer(context: &Context) -> Result<Vec<Transfer>> {
+    if !context.axis.has_control() {
+        return Ok(Vec::new());
+    }
+    let plan = transfer_plan(context);
+    let progress = bar("transfer", 2 * (plan.training + plan.validation) as u64);
+    let fit = |feedforward| {
+        let fit = identify_transfer(&context.axis, &plan, feedforward, || progress.inc(1))
+            .into_diagnostic()?;
+        Ok::<_, miette::Report>(Transfer {
+            period: fit.model.period(),
+            direct: fit.model.direct(),
+            poles: fit.model.poles().to_vec(),
+            coefficients: fit.model.coefficients().to_vec(),
+            training_rms_um: 1e6 * fit.chosen.training_rms,
+            validation_rms_um: 1e6 * fit.chosen.validation_rms,
+            candidates: fit.trials.len(),
+        })
+    };
+    let fits = vec![fit(false)?, fit(true)?];
+    progress.finish_and_clear();
+    Ok(fits)
+}
+
+/// The friction of a finished stage.
+pub fn load_friction(context: &Context) -> Result<(Friction, LuGre)> {
+    let friction: Friction = stage(context).read_json(FRICTION)?;
+    let law = LuGre::new(friction.parameters()).into_diagnostic()?;
+    Ok((friction, law))
+}
+
+/// The transfer functions of a finished stage, without and with friction feed-forward.
+pub fn load_transfer(context: &Context) -> Result<([Transfer; 2], [TransferFunctionModel; 2])> {
+    let fits: Vec<Transfer> = stage(context).read_json(TRANSFER)?;
+    let fits: [Transfer; 2] = fits.try_into().map_err(|_| {
+        miette!("the axis has no [control], so no transfer function of its tracking error was identified; valid: strategies without one, or an axis file with [control]")
+    })?;
+    let model = |t: &Transfer| {
+        TransferFunctionModel::new(t.period, t.direct, &t.poles, &t.coefficients).into_diagnostic()
+    };
+    let models = [model(&fits[0])?, model(&fits[1])?];
+    Ok((fits, models))
+}
+
+fn transfer_plan(context: &Context) -> TransferPlan {
+    let mut plan = TransferPlan {
+        seed: context.seed,
+        ..TransferPlan::default()
+    };
+    if context.quick {
+        plan.training = 3;
+        plan.validation = 2;
+    }
+    plan
+}
