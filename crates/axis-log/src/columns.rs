@@ -23,12 +23,25 @@ pub struct ColumnSummary {
     pub mean: f64,
 }
 
-/// The columns of a file of any format that [`read_log`](crate::read_log) reads, without a
-/// mapping. What holds no numbers is left out.
+/// What a file is, as far as it can be told without a mapping.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileSummary {
+    /// What it is written as, in a few words: `text, semicolons between fields`.
+    pub looks_like: String,
+    /// Its rows; of columns of different lengths the most.
+    pub rows: usize,
+    /// How many columns it has, with those that hold no numbers.
+    pub all_columns: usize,
+    /// The columns that hold numbers.
+    pub columns: Vec<ColumnSummary>,
+}
+
+/// What a file of any format that [`read_log`](crate::read_log) reads holds, without a
+/// mapping.
 ///
 /// # Errors
 /// A [`ReadError`]: the file cannot be read, is of no known format, or damaged.
-pub fn columns(path: impl AsRef<Path>) -> Result<Vec<ColumnSummary>, ReadError> {
+pub fn columns(path: impl AsRef<Path>) -> Result<FileSummary, ReadError> {
     let path = path.as_ref();
     all(path).map_err(|problem| ReadError {
         file: path.display().to_string(),
@@ -36,10 +49,10 @@ pub fn columns(path: impl AsRef<Path>) -> Result<Vec<ColumnSummary>, ReadError> 
     })
 }
 
-fn all(path: &Path) -> Result<Vec<ColumnSummary>, ReadProblem> {
+fn all(path: &Path) -> Result<FileSummary, ReadProblem> {
     let bytes = whole(path)?;
     let mut table = open(path, &bytes)?;
-    let mut found = Vec::new();
+    let (mut found, mut rows) = (Vec::new(), 0);
     for column in 0..table.heads().len() {
         if table.heads()[column].fault.is_some() {
             continue;
@@ -49,6 +62,7 @@ fn all(path: &Path) -> Result<Vec<ColumnSummary>, ReadProblem> {
             Err(ReadProblem::NotANumber { .. }) => continue,
             Err(problem) => return Err(problem),
         };
+        rows = rows.max(values.len());
         let (mut numbers, mut sum) = (0, 0.0);
         let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
         for value in values.into_iter().filter(|value| value.is_finite()) {
@@ -69,5 +83,10 @@ fn all(path: &Path) -> Result<Vec<ColumnSummary>, ReadProblem> {
             });
         }
     }
-    Ok(found)
+    Ok(FileSummary {
+        looks_like: table.looks_like(),
+        rows,
+        all_columns: table.heads().len(),
+        columns: found,
+    })
 }

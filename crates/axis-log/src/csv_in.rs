@@ -25,8 +25,7 @@ use crate::unit::unit_of;
 /// # Errors
 /// A [`CsvError`] with file, line and column: file not readable, empty, a
 /// missing or doubled column, more than 4096 columns, an unknown unit, a ragged row,
-/// a field that is not a finite number, a time that does not increase, a last row
-/// without a line end (the file may have been cut inside a number).
+/// a field that is not a finite number, a time that does not increase.
 pub fn read_csv(path: impl AsRef<Path>, required: &[&str]) -> Result<Log, CsvError> {
     let path = path.as_ref();
     let file = path.display().to_string();
@@ -80,7 +79,6 @@ fn read(mut reader: impl Read, required: &[&str]) -> Result<Log, CsvProblem> {
     if columns[0].is_empty() {
         return Err(CsvProblem::NoRows { line: header.line });
     }
-    text.check_end()?;
     Ok(header.into_log(columns))
 }
 

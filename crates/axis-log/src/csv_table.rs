@@ -6,7 +6,7 @@ use crate::csv_text::Text;
 use crate::error::CsvProblem;
 use crate::read_error::{Place, ReadProblem};
 use crate::source_unit::is_unit;
-use crate::table::{Head, Holes, Table};
+use crate::table::{Head, Holes, Note, Table};
 use crate::text_dialect::Dialect;
 
 pub(crate) struct CsvTable<'a> {
@@ -18,13 +18,32 @@ pub(crate) struct CsvTable<'a> {
 
 impl<'a> CsvTable<'a> {
     pub(crate) fn open(bytes: &'a [u8]) -> Result<Self, ReadProblem> {
-        let dialect = Dialect::of(bytes)?;
+        Self::of(Dialect::of(bytes)?)
+    }
+
+    /// Of a program that always writes semicolons between fields.
+    pub(crate) fn with_semicolons(bytes: &'a [u8]) -> Result<Self, ReadProblem> {
+        Self::of(Dialect::separated_by(bytes, b';')?)
+    }
+
+    fn of(dialect: Dialect<'a>) -> Result<Self, ReadProblem> {
         let text = dialect.text();
         let (mut rows, mut record) = (text.parser(), StringRecord::new());
         if !read_record(&mut rows, &mut record)? {
             return Err(CsvProblem::NoHeader.into());
         }
         text.check_width(&record)?;
+        if !dialect.is_named() {
+            // A separator may stand behind the last field.
+            let ends_empty = record.len() > 1 && record.get(record.len() - 1) == Some("");
+            let columns = record.len() - usize::from(ends_empty);
+            let name = |k: usize| Head::new(format!("column {}", k + 1));
+            return Ok(Self {
+                heads: (0..columns).map(name).collect(),
+                dialect,
+                above: 0,
+            });
+        }
         let mut heads: Vec<Head> = record.iter().map(Head::new).collect();
         let mut above = 1;
         if read_record(&mut rows, &mut record)? && are_units(&record, heads.len()) {
@@ -40,10 +59,10 @@ impl<'a> CsvTable<'a> {
         })
     }
 
-    /// The first column under another name.
-    pub(crate) fn with_first_named(mut self, name: &str) -> Self {
-        if let Some(first) = self.heads.first_mut() {
-            first.name = name.to_owned();
+    /// The columns under other names, as many as there are.
+    pub(crate) fn with_names(mut self, names: impl IntoIterator<Item = String>) -> Self {
+        for (head, name) in self.heads.iter_mut().zip(names) {
+            head.name = name;
         }
         self
     }
@@ -141,8 +160,37 @@ impl Table for CsvTable<'_> {
             }
             row += 1;
         }
-        text.check_end()?;
         Ok(columns)
+    }
+
+    fn looks_like(&self) -> String {
+        format!("text, {} between fields", self.dialect.separator_in_words())
+    }
+
+    fn notes(&self) -> Vec<Note> {
+        let columns = self.heads.len();
+        let nameless = (!self.dialect.is_named()).then_some(Note::NoNames { columns });
+        let open = self.text().ends_open().then_some(Note::NoLineEnd);
+        nameless.into_iter().chain(open).collect()
+    }
+
+    /// By their text, so that columns without numbers count too.
+    fn repeats(&mut self, rows: &[usize]) -> Result<Vec<bool>, ReadProblem> {
+        let text = self.text();
+        let (mut all, mut record) = (text.parser(), StringRecord::new());
+        let mut before = StringRecord::new();
+        for _ in 0..self.above {
+            read_record(&mut all, &mut record)?;
+        }
+        let (mut same, mut row) = (Vec::with_capacity(rows.len()), 0);
+        while same.len() < rows.len() && read_record(&mut all, &mut record)? {
+            if row == rows[same.len()] {
+                same.push(record == before);
+            }
+            before.clone_from(&record);
+            row += 1;
+        }
+        Ok(same)
     }
 
     /// Only errors ask for it, so it looks for the row anew.

@@ -167,15 +167,6 @@ pub enum CsvProblem {
         /// How many are read.
         most: usize,
     },
-    /// A last row without a line end.
-    #[error(
-        "line {line}: the last row has no line end, so the file may have been cut inside a \
-         number: end the row with a line break if it is whole"
-    )]
-    NoLineEnd {
-        /// Line of the row.
-        line: u64,
-    },
     /// A row with more or fewer fields than the header.
     #[error("line {line}: {found} fields: the header has {expected}")]
     Ragged {

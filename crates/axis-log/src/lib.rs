@@ -99,6 +99,7 @@ mod columns;
 mod csv_in;
 mod csv_table;
 mod csv_text;
+mod encoding;
 mod error;
 mod import;
 pub mod intake;
@@ -107,9 +108,15 @@ mod mapping;
 #[cfg(feature = "mat")]
 mod mat_element;
 #[cfg(feature = "mat")]
+mod mat_path;
+#[cfg(feature = "mat")]
 mod mat_table;
 pub mod metrics;
 mod numeric;
+#[cfg(feature = "parquet")]
+mod parquet_codec;
+#[cfg(feature = "parquet")]
+mod parquet_hybrid;
 #[cfg(feature = "parquet")]
 mod parquet_pages;
 #[cfg(feature = "parquet")]
@@ -127,10 +134,10 @@ mod unit;
 mod write;
 
 pub use channel::Channel;
-pub use columns::{ColumnSummary, columns};
+pub use columns::{ColumnSummary, FileSummary, columns};
 pub use csv_in::{read_csv, read_csv_from};
 pub use error::{CsvError, CsvProblem, LogError};
-pub use import::{MappingProposal, ProposedColumn, propose};
+pub use import::{AxisProposal, MappingProposal, ProposedColumn, propose};
 pub use log::{Log, TIME_CHANNEL};
 pub use mapping::{ColumnMap, ColumnUnit, Mapping, MappingError};
 pub use read::read_log;

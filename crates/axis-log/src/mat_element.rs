@@ -10,66 +10,143 @@ const NUMERIC: std::ops::RangeInclusive<u32> = 6..=15;
 /// Flag of an array with imaginary parts.
 const COMPLEX: u32 = 0x0800;
 
-/// What stands before the numbers of a numeric array.
+/// An array: its name, its size, and what is in it.
 #[derive(Debug)]
-pub(crate) struct ArrayHead {
+pub(crate) struct Array {
     pub name: String,
     pub size: Vec<u64>,
+    pub content: Content,
+}
+
+#[derive(Debug)]
+pub(crate) enum Content {
+    Numbers(Numbers),
+    /// Where the arrays in each field stand, the fields of the first element before those of the
+    /// second.
+    Struct(Vec<String>, Fields),
+    Cells(Fields),
+    /// What has no numbers, in words.
+    Other(&'static str),
+}
+
+/// From where on the arrays of a struct or of cells stand.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Fields {
+    pub start: usize,
+}
+
+/// How the numbers of an array are stored.
+#[derive(Debug, Clone)]
+pub(crate) struct Numbers {
     pub complex: bool,
     /// Number of values.
     pub count: u64,
     /// How each value is stored.
     kind: u32,
-    /// Where the real parts stand, from the first byte behind the array's tag.
+    /// Where the real parts stand, from the beginning of what was parsed.
     start: usize,
 }
 
-/// The head of a numeric array, from what stands behind its tag; the numbers
-/// themselves need not be there. `None` where it is another kind of array or damaged.
-pub(crate) fn head(content: &[u8], big: bool) -> Option<ArrayHead> {
+/// An array, from what stands behind its tag, which is at `start` of `content`; numbers
+/// themselves need not be there. `None` where it is damaged.
+pub(crate) fn array(content: &[u8], start: usize, big: bool) -> Option<Array> {
     let mut reader = Reader {
         content,
-        at: 0,
+        at: start,
         big,
     };
     let (flags_kind, flags) = reader.element()?;
     let flags = reader.word(flags.get(..4)?)?;
-    if flags_kind != 6 || !NUMERIC.contains(&(flags & 0xff)) {
+    let class = flags & 0xff;
+    if flags_kind != 6 {
         return None;
+    }
+    if class == OPAQUE {
+        // It has no size: what it is stands in names of its own.
+        let (_, name) = reader.element()?;
+        return Some(Array {
+            name: text(name)?,
+            size: Vec::new(),
+            content: Content::Other("an object"),
+        });
     }
     let (size_kind, size) = reader.element()?;
     let (name_kind, name) = reader.element()?;
-    let (kind, start, length) = reader.tag()?;
-    if size_kind != 5 || name_kind != 1 || name.is_empty() {
+    if size_kind != 5 || name_kind != 1 {
         return None;
     }
     let word = |bytes| reader.word(bytes).filter(|&n| n <= i32::MAX as u32);
     let size: Option<Vec<u64>> = (size.chunks(4)).map(|n| word(n).map(u64::from)).collect();
     let size = size.filter(|size| size.len() >= 2)?;
     let count = (size.iter()).try_fold(1_u64, |product, &n| product.checked_mul(n))?;
-    // The length is of 32 bits, so this cannot overflow what it is compared with.
-    if count.checked_mul(width(kind)? as u64)? != length as u64 {
-        return None;
-    }
-    Some(ArrayHead {
-        name: String::from_utf8(name.to_vec()).ok()?,
+    let content = match class {
+        1 => Content::Cells(Fields { start: reader.at }),
+        2 => {
+            let (_, length) = reader.element()?;
+            let length = reader.word(length.get(..4)?)? as usize;
+            let (_, names) = reader.element()?;
+            let fields: Option<Vec<String>> = match length {
+                0 => Some(Vec::new()),
+                _ => names.chunks(length).map(text).collect(),
+            };
+            Content::Struct(fields?, Fields { start: reader.at })
+        }
+        4 => Content::Other("text"),
+        5 => Content::Other("a sparse array"),
+        3 => Content::Other("an object"),
+        16 => Content::Other("a function"),
+        class if NUMERIC.contains(&class) => {
+            let (kind, start, length) = reader.tag()?;
+            // The length is of 32 bits, so this cannot overflow what it is compared with.
+            if count.checked_mul(width(kind)? as u64)? != length as u64 {
+                return None;
+            }
+            Content::Numbers(Numbers {
+                complex: flags & COMPLEX != 0,
+                count,
+                kind,
+                start,
+            })
+        }
+        _ => Content::Other("of a class that is not known"),
+    };
+    let name = text(name)?;
+    Some(Array {
+        name,
         size,
-        complex: flags & COMPLEX != 0,
-        count,
-        kind,
-        start,
+        content,
     })
 }
 
-impl ArrayHead {
+/// Class of what MATLAB alone can read: strings, tables, objects of classes.
+const OPAQUE: u32 = 17;
+
+/// A name, to the first zero behind it.
+fn text(bytes: &[u8]) -> Option<String> {
+    let end = bytes.iter().position(|&b| b == 0).unwrap_or(bytes.len());
+    String::from_utf8(bytes[..end].to_vec()).ok()
+}
+
+/// The next array of a struct or of cells: where it stands behind its tag, `None` of an empty one;
+/// and where the one after it begins.
+pub(crate) fn inside(content: &[u8], at: usize, big: bool) -> Option<(Option<usize>, usize)> {
+    let mut reader = Reader { content, at, big };
+    let (kind, start, length) = reader.tag()?;
+    let end = start.checked_add(length)?;
+    if kind != MATRIX || end > content.len() {
+        return None;
+    }
+    Some(((length > 0).then_some(start), end.next_multiple_of(TAG)))
+}
+
+impl Numbers {
     /// Where the real parts end.
     pub(crate) fn end(&self) -> u64 {
         self.start as u64 + self.count * width(self.kind).unwrap_or(0) as u64
     }
 
-    /// The real parts, from what stands behind the array's tag; `None` where they are
-    /// cut off.
-    pub(crate) fn numbers(&self, content: &[u8], big: bool) -> Option<Vec<f64>> {
+    /// The real parts, from what they were parsed of; `None` where they are cut off.
+    pub(crate) fn values(&self, content: &[u8], big: bool) -> Option<Vec<f64>> {
         let length = usize::try_from(self.count).ok()? * width(self.kind)?;
         let bytes = content.get(self.start..self.start.checked_add(length)?)?;
         macro_rules! as_numbers {

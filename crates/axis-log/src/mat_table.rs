@@ -5,9 +5,10 @@ use std::borrow::Cow;
 use miniz_oxide::inflate::{TINFLStatus, decompress_to_vec_zlib_with_limit};
 
 use crate::csv_text::MAX_COLUMNS;
-use crate::mat_element::{ArrayHead, MATRIX, TAG, head};
+use crate::mat_element::{Array, Content, MATRIX, TAG, array};
+use crate::mat_path::{Slice, Vectors};
 use crate::read_error::{Place, ReadProblem};
-use crate::table::{Budget, Fault, Head, Holes, Table};
+use crate::table::{Budget, Head, Holes, Table};
 
 /// Length of the file header.
 const HEADER: usize = 128;
@@ -19,7 +20,9 @@ const HEAD: usize = 4096;
 pub(crate) struct MatTable<'a> {
     big: bool,
     heads: Vec<Head>,
-    arrays: Vec<(Element<'a>, ArrayHead)>,
+    /// Number of the element, and where in it the numbers of each head are.
+    slices: Vec<(usize, Option<Slice>)>,
+    elements: Vec<Element<'a>>,
     file: usize,
     unreadable: usize,
 }
@@ -36,37 +39,49 @@ impl<'a> MatTable<'a> {
         let mut table = Self {
             big,
             heads: Vec::new(),
-            arrays: Vec::new(),
+            slices: Vec::new(),
+            elements,
             file: bytes.len(),
             unreadable: 0,
         };
-        for element in elements {
-            let found = element.array(HEAD).and_then(|content| head(&content, big));
-            match found {
-                Some(array) => table.push(element, array),
-                None => table.unreadable += 1,
+        for element in 0..table.elements.len() {
+            let Some(vectors) = table.vectors(element) else {
+                table.unreadable += 1;
+                continue;
+            };
+            table.unreadable += vectors.damaged;
+            for (head, slice) in vectors.found {
+                table.heads.push(head);
+                table.slices.push((element, slice));
+            }
+            if table.heads.len() > MAX_COLUMNS {
+                let found = table.heads.len();
+                return Err(too_many(found));
             }
         }
         Ok(table)
     }
 
-    fn push(&mut self, element: Element<'a>, array: ArrayHead) {
-        let vector = array.size.iter().filter(|&&n| n != 1).count() <= 1;
-        let found = match (vector, array.complex) {
-            (false, _) => Some(format!("an array of {}", size(&array))),
-            (_, true) => Some("complex".to_owned()),
-            _ => None,
-        };
-        self.heads.push(Head {
-            name: array.name.clone(),
-            fault: found.map(|found| Fault {
-                found,
-                valid: "a real vector, n × 1 or 1 × n,",
-            }),
-            address: None,
-            unit: None,
-        });
-        self.arrays.push((element, array));
+    /// What is in an element; `None` where it is damaged. What may be inflated of a struct is bound
+    /// as what is read of a file: its arrays are only seen where all before them is there.
+    fn vectors(&self, element: usize) -> Option<Vectors> {
+        let element = &self.elements[element];
+        let content = element.array(HEAD)?;
+        let top = array(&content, 0, self.big).filter(|top| !top.name.is_empty())?;
+        let is_nested =
+            |top: &Array| matches!(top.content, Content::Struct(..) | Content::Cells(_));
+        if element.kind == MATRIX || !is_nested(&top) {
+            return Some(Vectors::of(&content, top, self.big));
+        }
+        let content = element.array(Budget::of(self.file).numbers().saturating_mul(8))?;
+        let top = array(&content, 0, self.big)?;
+        Some(Vectors::of(&content, top, self.big))
+    }
+}
+
+fn too_many(found: usize) -> ReadProblem {
+    ReadProblem::Mat {
+        reason: format!("it has {found} arrays, at most {MAX_COLUMNS} are read"),
     }
 }
 
@@ -79,27 +94,43 @@ impl Table for MatTable<'_> {
         self.unreadable
     }
 
+    fn looks_like(&self) -> String {
+        "MAT version 5".to_owned()
+    }
+
     fn read(&mut self, wanted: &[usize], _: Holes) -> Result<Vec<Vec<f64>>, ReadProblem> {
         let mut budget = Budget::of(self.file);
-        for (element, array) in wanted.iter().map(|&index| &self.arrays[index]) {
-            budget.keep(array.count);
-            if element.kind == COMPRESSED {
-                budget.aside(array.end());
-            }
+        let of = |&index: &usize| {
+            let (element, slice) = &self.slices[index];
+            Some((&self.elements[*element], slice.as_ref()?))
+        };
+        for (element, slice) in wanted.iter().filter_map(of) {
+            budget.keep(slice.count as u64);
+            // All of a matrix is decoded for one of its columns.
+            let whole = (slice.count as u64 != slice.numbers.count).then_some(slice.numbers.count);
+            let inflated = (element.kind == COMPRESSED).then_some(slice.numbers.end());
+            budget.aside(inflated.unwrap_or(0) + 8 * whole.unwrap_or(0));
         }
         budget.check()?;
-        let numbers = |&index: &usize| {
-            let (element, array) = &self.arrays[index];
-            let length = usize::try_from(array.end()).ok();
-            length
-                .and_then(|length| element.array(length + TAG))
-                .and_then(|content| array.numbers(&content, self.big))
-                .ok_or_else(|| ReadProblem::Mat {
-                    reason: format!(
-                        "the numbers of \"{}\" are damaged or cut off; save it again with -v7",
-                        array.name
-                    ),
-                })
+        let numbers = |index: &usize| {
+            let damaged = || ReadProblem::Mat {
+                reason: format!(
+                    "the numbers of \"{}\" are damaged or cut off; save it again with -v7",
+                    self.heads[*index].name
+                ),
+            };
+            let (element, slice) = of(index).ok_or_else(damaged)?;
+            let length = usize::try_from(slice.numbers.end()).map_err(|_| damaged())?;
+            let content = element.array(length + TAG).ok_or_else(damaged)?;
+            let all = slice
+                .numbers
+                .values(&content, self.big)
+                .ok_or_else(damaged)?;
+            if slice.count == all.len() {
+                return Ok(all);
+            }
+            let own = all.into_iter().skip(slice.first).step_by(slice.step);
+            Ok(own.take(slice.count).collect())
         };
         wanted.iter().map(numbers).collect()
     }
@@ -179,15 +210,7 @@ fn split(bytes: &[u8]) -> Result<(bool, Vec<Element<'_>>), ReadProblem> {
         ));
     }
     if elements.len() > MAX_COLUMNS {
-        let found = elements.len();
-        return Err(refuse(&format!(
-            "it has {found} arrays, at most {MAX_COLUMNS} are read"
-        )));
+        return Err(too_many(elements.len()));
     }
     Ok((big, elements))
-}
-
-fn size(array: &ArrayHead) -> String {
-    let all: Vec<String> = array.size.iter().map(u64::to_string).collect();
-    all.join(" × ")
 }

@@ -1,12 +1,10 @@
 //! Parquet as a table.
 
-use std::cell::Cell;
-use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
-use std::sync::Once;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use bytes::Bytes;
-use parquet::basic::{ConvertedType, Repetition, Type};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::basic::{ConvertedType, LogicalType, Repetition, TimeUnit, Type};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ColumnChunkMetaData;
@@ -14,7 +12,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
 use crate::csv_text::MAX_COLUMNS;
-use crate::parquet_pages::pages;
+use crate::parquet_pages::Pages;
 use crate::read_error::{Place, ReadProblem};
 use crate::table::{Budget, Fault, Head, Holes, Table};
 
@@ -42,7 +40,8 @@ impl ParquetTable {
             name: column.path().string(),
             fault: fault(column),
             address: None,
-            unit: None,
+            unit: time_unit(column).map(str::to_owned),
+            stored: time_unit(column),
         };
         let heads = schema.columns().iter().map(|c| head(c)).collect();
         Ok(Self {
@@ -59,10 +58,9 @@ impl ParquetTable {
         for &index in wanted {
             let mut count = 0;
             for group in self.reader.metadata().row_groups() {
-                let found = self.claim(group.columns().get(index));
-                let found = found.map_err(|what| ReadProblem::Parquet {
-                    reason: format!("column \"{}\": {what}", self.heads[index].name),
-                })?;
+                let found = self.pages(group.columns().get(index));
+                let found = found.and_then(Pages::claims);
+                let found = found.map_err(|what| self.refused(index, &what))?;
                 count += found.values;
                 budget.aside(found.largest);
             }
@@ -74,10 +72,14 @@ impl ParquetTable {
         Ok(counts)
     }
 
-    fn claim(
-        &self,
-        chunk: Option<&ColumnChunkMetaData>,
-    ) -> Result<crate::parquet_pages::Pages, String> {
+    fn refused(&self, index: usize, what: &str) -> ReadProblem {
+        ReadProblem::Parquet {
+            reason: format!("column \"{}\": {what}", self.heads[index].name),
+        }
+    }
+
+    /// The pages of a column in a row group.
+    fn pages(&self, chunk: Option<&ColumnChunkMetaData>) -> Result<Pages, String> {
         let chunk = chunk.ok_or("it is missing in a row group")?;
         let start = chunk.dictionary_page_offset();
         let start = start.unwrap_or(chunk.data_page_offset());
@@ -85,29 +87,47 @@ impl ParquetTable {
         let range = at(start)
             .zip(at(chunk.compressed_size()))
             .and_then(|(start, length)| Some(start..start.checked_add(length)?));
-        let bytes = range.and_then(|range| self.bytes.get(range));
-        let bytes = bytes.ok_or("its place is not in the file")?;
+        let range = range.filter(|range| range.end <= self.bytes.len());
+        let range = range.ok_or("its place is not in the file")?;
         let width = match chunk.column_type() {
             Type::FLOAT | Type::INT32 => 4,
             _ => 8,
         };
-        pages(bytes, width)
+        let optional = chunk.column_descr().max_def_level() > 0;
+        let bytes = self.bytes.slice(range);
+        Ok(Pages::of(bytes, chunk.compression(), width, optional))
     }
 
-    fn column(&self, index: usize, count: usize) -> Result<Vec<f64>, ReadProblem> {
+    fn column(&self, index: usize, count: usize, holes: Holes) -> Result<Vec<f64>, ReadProblem> {
         let mut values = Vec::with_capacity(count);
-        for group in 0..self.reader.num_row_groups() {
-            let group = self.reader.get_row_group(group).map_err(refused)?;
-            let column = group.get_column_reader(index).map_err(refused)?;
-            let first_null = match column {
+        let descriptor = self
+            .reader
+            .metadata()
+            .file_metadata()
+            .schema_descr()
+            .column(index);
+        let unsigned = matches!(
+            descriptor.converted_type(),
+            ConvertedType::UINT_32 | ConvertedType::UINT_64
+        );
+        for group in self.reader.metadata().row_groups() {
+            let pages = self.pages(group.columns().get(index));
+            let pages = pages.map_err(|what| self.refused(index, &what))?;
+            let first_null = match get_column_reader(descriptor.clone(), Box::new(pages)) {
                 ColumnReader::DoubleColumnReader(r) => drain(r, &mut values, |v| v),
                 ColumnReader::FloatColumnReader(r) => drain(r, &mut values, f64::from),
-                ColumnReader::Int32ColumnReader(r) => drain(r, &mut values, f64::from),
+                ColumnReader::Int32ColumnReader(r) => drain(r, &mut values, |v| match unsigned {
+                    true => f64::from(v.cast_unsigned()),
+                    false => f64::from(v),
+                }),
                 // Exact up to 2^53: 104 days of nanoseconds.
-                ColumnReader::Int64ColumnReader(r) => drain(r, &mut values, |v| v as f64),
+                ColumnReader::Int64ColumnReader(r) => drain(r, &mut values, |v| match unsigned {
+                    true => v.cast_unsigned() as f64,
+                    false => v as f64,
+                }),
                 _ => return Err(self.unreadable_column(index)),
             }?;
-            if let Some(row) = first_null {
+            if let Some(row) = first_null.filter(|_| holes == Holes::Refused) {
                 return Err(ReadProblem::MissingValue {
                     place: self.place(row, index),
                     name: self.heads[index].name.clone(),
@@ -131,7 +151,11 @@ impl Table for ParquetTable {
         &self.heads
     }
 
-    fn read(&mut self, wanted: &[usize], _: Holes) -> Result<Vec<Vec<f64>>, ReadProblem> {
+    fn looks_like(&self) -> String {
+        "Parquet".to_owned()
+    }
+
+    fn read(&mut self, wanted: &[usize], holes: Holes) -> Result<Vec<Vec<f64>>, ReadProblem> {
         let counts = self.claims(wanted)?;
         let all = wanted.iter().zip(counts);
         let named = |index: usize, problem| match problem {
@@ -141,7 +165,7 @@ impl Table for ParquetTable {
             other => other,
         };
         all.map(|(&index, count)| {
-            guarded(|| self.column(index, count)).map_err(|problem| named(index, problem))
+            guarded(|| self.column(index, count, holes)).map_err(|problem| named(index, problem))
         })
         .collect()
     }
@@ -151,53 +175,65 @@ impl Table for ParquetTable {
     }
 }
 
-/// The decoder may panic on a damaged page (an index beyond the dictionary), which
-/// cannot be seen without decoding it. Nothing that it was working on is used
-/// afterwards, and what the process does with its other panics stays as it is.
+/// Pages are checked before they are decoded ([`Pages`]); should the decoder panic on something
+/// else that is damaged all the same, the file is refused. Nothing that it was working on is used
+/// afterwards. The process's own panic hook is left alone, and may print that panic.
 fn guarded<T>(read: impl FnOnce() -> Result<T, ReadProblem>) -> Result<T, ReadProblem> {
-    thread_local!(static QUIET: Cell<bool> = const { Cell::new(false) });
-    static HOOK: Once = Once::new();
-    HOOK.call_once(|| {
-        let others = take_hook();
-        set_hook(Box::new(move |panic| {
-            if !QUIET.get() {
-                others(panic);
-            }
-        }));
-    });
-    QUIET.set(true);
-    let result = catch_unwind(AssertUnwindSafe(read));
-    QUIET.set(false);
-    result.unwrap_or_else(|_| {
+    catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| {
         Err(ReadProblem::Parquet {
             reason: "it is damaged".to_owned(),
         })
     })
 }
 
-/// Appends what is left in the reader. Answers the row, from 0 over the whole
-/// file, of the first null, and stops there.
+/// Appends what is left in the reader, NaN for each null. Answers the row, from 0 over the whole
+/// file, of the first null.
 fn drain<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     values: &mut Vec<f64>,
     number: impl Fn(T::T) -> f64,
 ) -> Result<Option<usize>, ReadProblem> {
     let (mut levels, mut batch) = (Vec::new(), Vec::new());
+    let mut first_null = None;
     loop {
         levels.clear();
         batch.clear();
         let (rows, present, _) = reader
             .read_records(BATCH, Some(&mut levels), None, &mut batch)
             .map_err(refused)?;
-        if present < rows {
-            // In a flat column the level is 1 for a value and 0 for a null.
-            let null = levels.iter().position(|&level| level == 0);
-            return Ok(Some(values.len() + null.unwrap_or(present)));
-        }
         if rows == 0 {
-            return Ok(None);
+            return Ok(first_null);
         }
-        values.extend(batch.drain(..).map(&number));
+        let mut numbers = batch.drain(..).map(&number);
+        if present == rows {
+            values.extend(numbers);
+            continue;
+        }
+        // In a flat column the level is 1 for a value and 0 for a null.
+        for &level in &levels {
+            let value = if level > 0 { numbers.next() } else { None };
+            if value.is_none() {
+                first_null.get_or_insert(values.len());
+            }
+            values.push(value.unwrap_or(f64::NAN));
+        }
+    }
+}
+
+/// The unit of a column that is typed as a time stamp or as a time of day.
+fn time_unit(column: &ColumnDescriptor) -> Option<&'static str> {
+    let unit = match column.logical_type_ref() {
+        Some(LogicalType::Timestamp(stamp)) => Some(stamp.unit),
+        Some(LogicalType::Time(time)) => Some(time.unit),
+        _ => None,
+    };
+    match (unit, column.converted_type()) {
+        (Some(TimeUnit::MILLIS), _)
+        | (None, ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIME_MILLIS) => Some("ms"),
+        (Some(TimeUnit::MICROS), _)
+        | (None, ConvertedType::TIMESTAMP_MICROS | ConvertedType::TIME_MICROS) => Some("us"),
+        (Some(TimeUnit::NANOS), _) => Some("ns"),
+        _ => None,
     }
 }
 
@@ -209,10 +245,7 @@ fn fault(column: &ColumnDescriptor) -> Option<Fault> {
         Type::DOUBLE | Type::FLOAT | Type::INT32 | Type::INT64
     );
     // Their integers do not stand for themselves.
-    let coded = matches!(
-        column.converted_type(),
-        ConvertedType::DECIMAL | ConvertedType::UINT_32 | ConvertedType::UINT_64
-    );
+    let coded = column.converted_type() == ConvertedType::DECIMAL;
     let found = match (flat, number, coded) {
         (false, _, _) => "nested or repeated".to_owned(),
         (_, false, _) => format!("of type {}", column.physical_type()),

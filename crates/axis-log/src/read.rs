@@ -12,7 +12,7 @@ use crate::mat_table::MatTable;
 use crate::parquet_table::ParquetTable;
 use crate::read_error::{ReadError, ReadProblem};
 use crate::select::{Pick, select};
-use crate::table::{Holes, Table};
+use crate::table::{Holes, Note, Table};
 
 /// Reads a log from a table of text, a Parquet or a MAT file, by its extension (`.csv`,
 /// `.tsv`, `.txt`, `.dat`, `.asc`; `.parquet`; `.mat`, in any case), renaming and scaling
@@ -30,15 +30,19 @@ use crate::table::{Holes, Table};
 /// - **Text** as for [`read_csv`](crate::read_csv), except that columns without a
 ///   known unit are skipped, whatever they hold, and that fields may be separated by
 ///   semicolons, tabs or blanks, decimals by a comma, names stand behind a `#`, units in a line
-///   of their own, and the text be UTF-16 or ISO 8859-1.
-/// - **Parquet** (feature `parquet`), uncompressed or Snappy: flat columns of float, double, int32
-///   and int64; other columns are skipped. Time stamps are read as the integers
-///   that they are stored as: map them with their unit as scale.
+///   of their own, and the text be UTF-16 or ISO 8859-1. Where the first row holds numbers only,
+///   there are no names: columns are called `column 1`, `column 2`, ….
+/// - **Parquet** (feature `parquet`), uncompressed or by Snappy, zstd, gzip, LZ4 or Brotli: flat
+///   columns of float, double, int32 and int64; other columns are skipped. Time stamps and times of
+///   day, as which a column may be typed, are in seconds where the mapping gives no scale (1), and
+///   otherwise the integers that they are stored as.
 /// - **MAT version 5** (feature `mat`; `-v6`, `-v7`), compressed or not: each real
-///   numeric vector, n × 1 or 1 × n, is a column under its variable's name. Skipped
-///   are matrices, scalars and vectors of another length than the time, complex and
-///   sparse arrays, text, cells and structs. Version 7.3 is HDF5 and refused with that
-///   hint.
+///   numeric vector, n × 1 or 1 × n, is a column under its variable's name. So are the fields of a
+///   struct, the columns of a matrix (its rows where these are longer) and the cells of an array of
+///   cells, by their path: `data.q(2)` is the second column of field `q` of `data`. Skipped
+///   are scalars and vectors of another length than the time, complex and
+///   sparse arrays, and text. Version 7.3 is HDF5 and refused with that hint.
+/// - **Rows that are there twice**, time and all, are taken once.
 ///
 /// - **Files of other programs** that are recognised by their content, whatever their
 ///   extension: [`propose`](crate::propose) says which they are and what their mapping
@@ -65,7 +69,8 @@ pub fn read_log(
             let channel = late.channel.clone();
             return Err(ReadProblem::Delay { channel });
         }
-        Ok(Log::new(read(path, mapping, required, Holes::Refused)?)?)
+        let read = read(path, mapping, required, Holes::Refused)?;
+        Ok(Log::new(read.channels)?)
     };
     whole().map_err(|problem| ReadError {
         file: path.display().to_string(),
@@ -73,13 +78,20 @@ pub fn read_log(
     })
 }
 
-/// The channels, the time first; NaN in the others only where holes are kept.
+/// What was read of a file.
+pub(crate) struct Read {
+    /// The channels, the time first; NaN in the others only where holes are kept.
+    pub channels: Vec<Channel>,
+    /// What is to be told of it.
+    pub notes: Vec<Note>,
+}
+
 pub(crate) fn read(
     path: &Path,
     mapping: &Mapping,
     required: &[&str],
     holes: Holes,
-) -> Result<Vec<Channel>, ReadProblem> {
+) -> Result<Read, ReadProblem> {
     mapping.check()?;
     let bytes = match whole(path) {
         Ok(bytes) => bytes,
@@ -134,11 +146,13 @@ pub(crate) fn by_extension<'a>(
     }
 }
 
+/// What is in a file, a text as UTF-8.
 pub(crate) fn whole(path: &Path) -> Result<Vec<u8>, ReadProblem> {
-    std::fs::read(path).map_err(|source| ReadProblem::Io {
+    let bytes = std::fs::read(path).map_err(|source| ReadProblem::Io {
         action: "read it",
         source,
-    })
+    })?;
+    Ok(crate::encoding::plain(bytes)?)
 }
 
 fn channels(
@@ -146,7 +160,7 @@ fn channels(
     mapping: &Mapping,
     required: &[&str],
     holes: Holes,
-) -> Result<Vec<Channel>, ReadProblem> {
+) -> Result<Read, ReadProblem> {
     let mut picks = select(&table, mapping, required)?;
     // The time goes first, the others keep their order.
     picks.sort_by_key(|p| p.map.channel != TIME_CHANNEL);
@@ -156,6 +170,21 @@ fn channels(
     let mut columns = table.read(&wanted, holes)?;
     let at = |pick: &Pick| wanted.partition_point(|&c| c < pick.column);
     let samples = length(&mut picks, |pick| &columns[at(pick)])?;
+    let mut notes = table.notes();
+    let time = picks.first().filter(|p| p.map.channel == TIME_CHANNEL);
+    let kept = match time.map(|pick| (at(pick), pick.map.clone())) {
+        Some((time, map)) => {
+            let (kept, first) = once(&mut table, &mut columns, time)?;
+            let rows = samples - kept.len();
+            notes.extend(first.map(|value| Note::Repeated {
+                rows,
+                first: map.apply(value),
+            }));
+            kept
+        }
+        None => Vec::from_iter(0..samples),
+    };
+    let samples = kept.len();
     let mut channels = Vec::with_capacity(picks.len() + 1);
     if picks.first().is_none_or(|p| p.map.channel != TIME_CHANNEL)
         && let Some(rate) = mapping.sample_rate_hz
@@ -172,9 +201,37 @@ fn channels(
         } else {
             std::mem::take(values)
         };
-        channels.push(channel(&table, pick, values, holes)?);
+        channels.push(channel(&table, pick, values, &kept, holes)?);
     }
-    Ok(channels)
+    Ok(Read { channels, notes })
+}
+
+/// Takes out of the columns what is in the table twice: rows with the time of the one before that
+/// are the same in all else too. The rows that are kept, and the first time that was there twice.
+fn once(
+    table: &mut impl Table,
+    columns: &mut [Vec<f64>],
+    time: usize,
+) -> Result<(Vec<usize>, Option<f64>), ReadProblem> {
+    let times = &columns[time];
+    let again: Vec<usize> = (1..times.len())
+        .filter(|&k| times[k] == times[k - 1])
+        .collect();
+    let mut kept: Vec<usize> = (0..times.len()).collect();
+    if again.is_empty() {
+        return Ok((kept, None));
+    }
+    let same = table.repeats(&again)?;
+    let again = again.into_iter().zip(same).filter(|(_, same)| *same);
+    let twice: Vec<usize> = again.map(|(row, _)| row).collect();
+    let first = twice.first().map(|&row| columns[time][row]);
+    let is_kept = |row: usize| twice.binary_search(&row).is_err();
+    for column in columns.iter_mut() {
+        let mut row = 0..;
+        column.retain(|_| row.next().is_some_and(is_kept));
+    }
+    kept.retain(|&row| is_kept(row));
+    Ok((kept, first))
 }
 
 /// The number of samples, set by the first column that someone asked for (the
@@ -212,14 +269,15 @@ fn channel(
     table: &impl Table,
     pick: &Pick,
     mut samples: Vec<f64>,
+    kept: &[usize],
     holes: Holes,
 ) -> Result<Channel, ReadProblem> {
     for value in &mut samples {
         *value = pick.map.apply(*value);
     }
-    let at = |row| (table.place(row, pick.column), pick.map.source.clone());
-    let kept = holes == Holes::Kept && pick.map.channel != TIME_CHANNEL;
-    let refused = |v: &f64| !(v.is_finite() || kept && v.is_nan());
+    let at = |row: usize| (table.place(kept[row], pick.column), pick.map.source.clone());
+    let kept_holes = holes == Holes::Kept && pick.map.channel != TIME_CHANNEL;
+    let refused = |v: &f64| !(v.is_finite() || kept_holes && v.is_nan());
     if let Some(row) = samples.iter().position(refused) {
         let ((place, name), value) = (at(row), samples[row]);
         return Err(ReadProblem::NotFinite { place, name, value });

@@ -104,9 +104,7 @@ pub enum ReadProblem {
     #[error(transparent)]
     Csv(#[from] CsvProblem),
     /// Not Parquet, or Parquet of a kind that is not read.
-    #[error(
-        "not readable as Parquet (flat, uncompressed or Snappy): {reason}; save it again, or as CSV"
-    )]
+    #[error("not readable as Parquet: {reason}; save it again, or as CSV")]
     Parquet {
         /// What the parser says.
         reason: String,
@@ -137,7 +135,7 @@ pub enum ReadProblem {
         column: String,
         /// The columns that exist.
         available: Vec<String>,
-        /// Parts of a MAT file that are not numeric arrays, or damaged.
+        /// Parts of a MAT file that are damaged.
         unreadable: usize,
     },
     /// Neither a time column nor a sample rate.
@@ -148,8 +146,22 @@ pub enum ReadProblem {
     NoTime {
         /// The columns that exist.
         available: Vec<String>,
-        /// Parts of a MAT file that are not numeric arrays, or damaged.
+        /// Parts of a MAT file that are damaged.
         unreadable: usize,
+    },
+    /// A column whose name says another unit than the file says beside it.
+    #[error(
+        "column \"{}\": its name says {named}, the file says {} below it: map it, with the unit that is right",
+        clip(name),
+        clip(said)
+    )]
+    TwoUnits {
+        /// Name of the column.
+        name: String,
+        /// The unit that stands beside the name.
+        said: String,
+        /// The one that its name ends in.
+        named: &'static str,
     },
     /// Two columns of one name, and the name is wanted.
     #[error(
@@ -269,7 +281,7 @@ fn mapped(channel: &str, column: &str) -> String {
 fn rest(unreadable: usize) -> String {
     match unreadable {
         0 => String::new(),
-        1 => ", and one part that is damaged or not a numeric array".to_owned(),
-        n => format!(", and {n} parts that are damaged or not numeric arrays"),
+        1 => ", and one part that is damaged".to_owned(),
+        n => format!(", and {n} parts that are damaged"),
     }
 }

@@ -3,6 +3,7 @@
 use crate::log::TIME_CHANNEL;
 use crate::mapping::{ColumnMap, Mapping};
 use crate::read_error::ReadProblem;
+use crate::source_unit::{known, size_of};
 use crate::table::{Head, Table};
 use crate::unit::unit_of;
 
@@ -30,7 +31,7 @@ pub(crate) fn select(
         if let Some(column) = find(heads, &map.source)? {
             picks.push(Pick {
                 column,
-                map: map.clone(),
+                map: in_its_unit(map.clone(), &heads[column]),
                 asked: true,
             });
         }
@@ -44,9 +45,10 @@ pub(crate) fn select(
         let asked = head.name == TIME_CHANNEL || required.contains(&head.name.as_str());
         find(heads, &head.name)?;
         if asked || head.fault.is_none() {
+            agrees(head)?;
             picks.push(Pick {
                 column: index,
-                map: own(&head.name),
+                map: in_its_unit(own(&head.name), head),
                 asked,
             });
         }
@@ -64,6 +66,35 @@ fn own(name: &str) -> ColumnMap {
         // Adding −0 keeps every bit, the sign of a zero too.
         offset: -0.0,
         delay: 0.0,
+    }
+}
+
+/// The mapping of a column whose type says its unit: where no scale is given it is that unit's.
+fn in_its_unit(mut map: ColumnMap, head: &Head) -> ColumnMap {
+    let own = unit_of(&map.channel).and_then(size_of);
+    if let Some((own, stored)) = own.zip(head.stored.and_then(size_of))
+        && map.scale == 1.0
+    {
+        map.scale = stored / own;
+    }
+    map
+}
+
+/// Refuses a column whose name says another unit than the line below the names.
+fn agrees(head: &Head) -> Result<(), ReadProblem> {
+    let (Some(said), Some(named)) = (head.unit.as_deref(), unit_of(&head.name)) else {
+        return Ok(());
+    };
+    let of = |unit: &str| Some((known(unit)?.1, size_of(unit)?));
+    match of(said).zip(of(named)) {
+        Some((said_is, named_is)) if head.stored.is_none() && said_is != named_is => {
+            Err(ReadProblem::TwoUnits {
+                name: head.name.clone(),
+                said: said.to_owned(),
+                named,
+            })
+        }
+        _ => Ok(()),
     }
 }
 

@@ -9,18 +9,20 @@ use crate::unit::unit_of;
 type Row = (&'static [&'static str], &'static str, f64);
 
 const UNITS: &[Row] = &[
-    (&["s"], "time", 1.0),
-    (&["ms"], "time", 1e-3),
-    (&["us", "µs"], "time", 1e-6),
+    (&["s", "sec"], "time", 1.0),
+    (&["ms", "msec"], "time", 1e-3),
+    // Micro is written as the sign of its own, the Greek letter, or "u".
+    (&["us", "µs", "μs", "usec"], "time", 1e-6),
+    (&["ns", "nsec"], "time", 1e-9),
     (&["Hz", "hz"], "frequency", 1.0),
     (&["kHz", "khz"], "frequency", 1e3),
     (&["m"], "length", 1.0),
     (&["mm"], "length", 1e-3),
-    (&["um", "µm"], "length", 1e-6),
+    (&["um", "µm", "μm"], "length", 1e-6),
     (&["nm"], "length", 1e-9),
     (&["in", "inch"], "length", 25.4e-3),
-    (&["m/s"], "speed", 1.0),
-    (&["mm/s"], "speed", 1e-3),
+    (&["m/s", "m/sec"], "speed", 1.0),
+    (&["mm/s", "mm/sec"], "speed", 1e-3),
     (&["m/min"], "speed", 1.0 / 60.0),
     (&["mm/min"], "speed", 1e-3 / 60.0),
     (&["m/s²", "m/s2"], "acceleration", 1.0),
@@ -28,14 +30,18 @@ const UNITS: &[Row] = &[
     (&["m/s³", "m/s3"], "jerk", 1.0),
     (&["rad"], "angle", 1.0),
     (&["mrad"], "angle", 1e-3),
-    (&["deg", "°"], "angle", PI / 180.0),
+    (&["deg", "°", "degree", "degrees"], "angle", PI / 180.0),
     (&["arcmin"], "angle", PI / 10_800.0),
     (&["arcsec"], "angle", PI / 648_000.0),
-    (&["rev"], "angle", TAU),
-    (&["rad/s"], "angular speed", 1.0),
-    (&["deg/s", "°/s"], "angular speed", PI / 180.0),
-    (&["rev/s"], "angular speed", TAU),
-    (&["rpm", "1/min"], "angular speed", TAU / 60.0),
+    (&["rev", "turn", "turns"], "angle", TAU),
+    (&["rad/s", "rad/sec"], "angular speed", 1.0),
+    (&["deg/s", "°/s", "deg/sec"], "angular speed", PI / 180.0),
+    (&["rev/s", "rps"], "angular speed", TAU),
+    (
+        &["rpm", "1/min", "rev/min", "r/min", "U/min", "RPM"],
+        "angular speed",
+        TAU / 60.0,
+    ),
     (&["rad/s²", "rad/s2"], "angular acceleration", 1.0),
     (&["A", "a"], "current", 1.0),
     (&["mA", "ma"], "current", 1e-3),
@@ -69,6 +75,11 @@ pub(crate) fn is_unit(name: &str) -> bool {
 pub(crate) fn known(name: &str) -> Option<(&'static str, &'static str)> {
     let counted = COUNTS.iter().find(|(own, _)| *own == name).copied();
     row(name).map(|(names, of, _)| (names[0], *of)).or(counted)
+}
+
+/// How many SI units (rad for angles) one of that name is.
+pub(crate) fn size_of(name: &str) -> Option<f64> {
+    row(name).map(|(_, _, size)| *size)
 }
 
 /// Names of the units that a column may be given in, as error messages list them.

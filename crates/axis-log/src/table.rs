@@ -7,9 +7,17 @@ pub(crate) trait Table {
     /// All columns in the order of the file.
     fn heads(&self) -> &[Head];
 
-    /// Parts of the file that are not among the heads.
+    /// Parts of the file that are not among the heads, because they are damaged.
     fn unreadable(&self) -> usize {
         0
+    }
+
+    /// What the file looks like, in a few words: `text, semicolons between fields`.
+    fn looks_like(&self) -> String;
+
+    /// What was taken for granted about the file, to be told.
+    fn notes(&self) -> Vec<Note> {
+        Vec::new()
     }
 
     /// The numbers of these columns (indices into the heads, none of which has
@@ -23,6 +31,39 @@ pub(crate) trait Table {
     fn names(&self) -> Vec<String> {
         self.heads().iter().map(|h| h.name.clone()).collect()
     }
+
+    /// Which of these rows hold the same as the row before them, in every column that can be read.
+    fn repeats(&mut self, rows: &[usize]) -> Result<Vec<bool>, ReadProblem> {
+        let mut same = vec![true; rows.len()];
+        for column in 0..self.heads().len() {
+            if self.heads()[column].fault.is_some() {
+                continue;
+            }
+            let values = match self.read(&[column], Holes::Kept) {
+                Ok(mut columns) => columns.pop().unwrap_or_default(),
+                Err(ReadProblem::NotANumber { .. }) => continue,
+                Err(problem) => return Err(problem),
+            };
+            let bits = |row: usize| values.get(row).map(|v| v.to_bits());
+            for (same, &row) in same.iter_mut().zip(rows) {
+                *same &= row > 0 && bits(row) == bits(row - 1);
+            }
+        }
+        Ok(same)
+    }
+}
+
+/// What was taken for granted about a file.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Note {
+    /// Its first row holds numbers, so that its columns have no names.
+    NoNames { columns: usize },
+    /// Its last row has no line end.
+    NoLineEnd,
+    /// Rows that the program left out because nothing changed; values were held.
+    Held { rows: usize },
+    /// Rows that were there twice; the second was dropped.
+    Repeated { rows: usize, first: f64 },
 }
 
 impl Table for Box<dyn Table + '_> {
@@ -34,12 +75,24 @@ impl Table for Box<dyn Table + '_> {
         (**self).unreadable()
     }
 
+    fn looks_like(&self) -> String {
+        (**self).looks_like()
+    }
+
+    fn notes(&self) -> Vec<Note> {
+        (**self).notes()
+    }
+
     fn read(&mut self, wanted: &[usize], holes: Holes) -> Result<Vec<Vec<f64>>, ReadProblem> {
         (**self).read(wanted, holes)
     }
 
     fn place(&self, row: usize, column: usize) -> Place {
         (**self).place(row, column)
+    }
+
+    fn repeats(&mut self, rows: &[usize]) -> Result<Vec<bool>, ReadProblem> {
+        (**self).repeats(rows)
     }
 }
 
@@ -60,6 +113,8 @@ pub(crate) struct Head {
     pub address: Option<String>,
     /// The unit, where the file has it beside the name.
     pub unit: Option<String>,
+    /// The unit of the numbers, where the column's type says what they are: a time stamp's.
+    pub stored: Option<&'static str>,
 }
 
 impl Head {
@@ -70,6 +125,7 @@ impl Head {
             fault: None,
             address: None,
             unit: None,
+            stored: None,
         }
     }
 }
@@ -106,11 +162,20 @@ impl Budget {
         self.aside = self.aside.max(bytes);
     }
 
+    /// How many numbers may be kept at most.
+    pub(crate) fn numbers(&self) -> usize {
+        usize::try_from(self.most() / 8).unwrap_or(usize::MAX)
+    }
+
+    fn most(&self) -> u64 {
+        9 * self.file as u64 + (64 << 20)
+    }
+
     /// Refuses more than nine times the file and 64 MB: what numbers of one byte each
     /// take when read, and what a silent log may that compresses well.
     pub(crate) fn check(&self) -> Result<(), ReadProblem> {
         let needed = self.kept.saturating_add(self.aside);
-        let most = 9 * self.file as u64 + (64 << 20);
+        let most = self.most();
         if needed <= most {
             return Ok(());
         }

@@ -5,40 +5,80 @@ use std::borrow::Cow;
 use crate::csv_text::{COMMENT, Text};
 use crate::error::CsvProblem;
 
-/// A whole text and the byte between its fields.
+/// A whole text, the byte between its fields, and whether its columns have names.
 pub(crate) struct Dialect<'a> {
     text: Cow<'a, str>,
     separator: u8,
+    is_named: bool,
 }
 
 /// What may stand between fields, the surest first: a decimal comma is no separator.
 const SEPARATORS: [u8; 3] = [b';', b'\t', b','];
 
 impl<'a> Dialect<'a> {
-    /// Told from the names and the first row.
+    /// Told from the names and the first row, or from a line `sep=;` before them.
     pub(crate) fn of(bytes: &'a [u8]) -> Result<Self, CsvProblem> {
-        let mut text = decoded(bytes)?;
+        let text = Self::text_of(bytes)?;
+        let (text, said) = without_separator_line(text);
+        Ok(Self::told(text, said))
+    }
+
+    /// The same of a program that always writes this byte between fields.
+    pub(crate) fn separated_by(bytes: &'a [u8], separator: u8) -> Result<Self, CsvProblem> {
+        let text = Cow::Borrowed(Self::text_of(bytes)?);
+        Ok(Self::told(text, Some(separator)))
+    }
+
+    fn text_of(bytes: &'a [u8]) -> Result<&'a str, CsvProblem> {
+        let zero = bytes.iter().position(|&b| b == 0);
+        let text = std::str::from_utf8(bytes).map_err(|e| e.valid_up_to());
+        let text = zero.map_or(text, Err);
+        text.map_err(|at| CsvProblem::NotText {
+            line: 1 + bytes[..at].iter().filter(|&&b| b == b'\n').count() as u64,
+        })
+    }
+
+    fn told(mut text: Cow<'a, str>, said: Option<u8>) -> Self {
         if let Some(mark) = names_in_comment(&text) {
             let mut owned = text.into_owned();
             owned.replace_range(mark..=mark, " ");
             text = Cow::Owned(owned);
         }
-        let separator = separator(&text);
-        if separator.is_none() && is_blank_separated(&text) {
-            // As many lines as before, so that errors name the right one.
-            return Ok(Self {
-                text: Cow::Owned(text.split_inclusive('\n').map(joined).collect()),
-                separator: b'\t',
-            });
-        }
-        Ok(Self {
+        let blanks = said.is_none() && is_blank_separated(&text);
+        let separator = said.or_else(|| separator(&text));
+        let (text, separator) = match (separator, blanks) {
+            (None | Some(b','), true) => {
+                // As many lines as before, so that errors name the right one.
+                let lines = text.split_inclusive('\n').map(joined);
+                (Cow::Owned(lines.collect()), b'\t')
+            }
+            _ => (text, separator.unwrap_or(b',')),
+        };
+        let is_named = has_names(&text, separator);
+        Self {
             text,
-            separator: separator.unwrap_or(b','),
-        })
+            separator,
+            is_named,
+        }
     }
 
     pub(crate) fn text(&self) -> Text<'_> {
         Text::of(&self.text, self.separator)
+    }
+
+    /// Whether the first line holds names, not numbers.
+    pub(crate) fn is_named(&self) -> bool {
+        self.is_named
+    }
+
+    /// What stands between fields, in words.
+    pub(crate) fn separator_in_words(&self) -> &'static str {
+        match self.separator {
+            b';' => "semicolons",
+            b'\t' => "tabs or blanks",
+            b',' => "commas",
+            _ => "signs of its own",
+        }
     }
 
     /// Whether a comma may stand in a number.
@@ -47,30 +87,37 @@ impl<'a> Dialect<'a> {
     }
 }
 
-/// UTF-8; UTF-16 where a byte-order mark says so; else what Windows and drives write for the
-/// signs of Western languages (ISO 8859-1), as long as it is text at all.
-fn decoded(bytes: &[u8]) -> Result<Cow<'_, str>, CsvProblem> {
-    let wide = |unit: fn([u8; 2]) -> u16| {
-        let units = bytes[2..].chunks_exact(2);
-        let units: Vec<u16> = units.map(|pair| unit([pair[0], pair[1]])).collect();
-        String::from_utf16(&units).map(Cow::Owned)
-    };
-    let not_text = |at: usize| CsvProblem::NotText {
-        line: 1 + bytes[..at].iter().filter(|&&b| b == b'\n').count() as u64,
-    };
-    match bytes {
-        [0xff, 0xfe, ..] => wide(u16::from_le_bytes).map_err(|_| not_text(0)),
-        [0xfe, 0xff, ..] => wide(u16::from_be_bytes).map_err(|_| not_text(0)),
-        _ => {
-            if let Some(at) = bytes.iter().position(|&b| b == 0) {
-                return Err(not_text(at));
-            }
-            Ok(match std::str::from_utf8(bytes) {
-                Ok(text) => Cow::Borrowed(text.strip_prefix('\u{feff}').unwrap_or(text)),
-                Err(_) => Cow::Owned(bytes.iter().map(|&b| char::from(b)).collect()),
-            })
+/// The text without the line `sep=;` that Excel puts first, and the byte that it names. The line
+/// becomes a comment, so that others keep their numbers.
+fn without_separator_line(text: &str) -> (Cow<'_, str>, Option<u8>) {
+    let line = text.lines().next().unwrap_or_default();
+    let bare = line.trim().trim_matches('"');
+    let is_it = bare
+        .get(..4)
+        .is_some_and(|key| key.eq_ignore_ascii_case("sep="));
+    match (is_it, bare.get(4..).map(str::as_bytes)) {
+        (true, Some(&[separator])) => {
+            let rest = &text[line.len()..];
+            (Cow::Owned(format!("#{rest}")), Some(separator))
         }
+        // A tab at the end of the line was trimmed.
+        (true, _) => (Cow::Owned(format!("#{}", &text[line.len()..])), Some(b'\t')),
+        _ => (Cow::Borrowed(text), None),
     }
+}
+
+/// Whether the first line that is no comment has a field that is no number, so that it holds
+/// names.
+fn has_names(text: &str, separator: u8) -> bool {
+    let Some(line) = filled(text).find(|line| !is_comment(line)) else {
+        return true;
+    };
+    let fields = line.split(char::from(separator));
+    let mut fields = fields
+        .map(|field| field.trim().trim_matches('"').trim())
+        .filter(|field| !field.is_empty())
+        .peekable();
+    fields.peek().is_none() || !fields.all(is_number)
 }
 
 /// Lines that hold something, comments or not.
@@ -96,10 +143,16 @@ fn names_in_comment(text: &str) -> Option<usize> {
     if numbers.is_empty() || !numbers.iter().all(|word| is_number(word)) {
         return None;
     }
+    // Names are apart as numbers are: a remark of as many words is none.
+    let apart = |line: &str| SEPARATORS.map(|separator| count(line, separator) > 0);
+    let are_names = |comment: &&str| {
+        let names = &comment[1..];
+        words(names).len() == numbers.len() && apart(names) == apart(row)
+    };
     let comment = filled(text)
         .take_while(|line| is_comment(line))
         .last()
-        .filter(|comment| words(&comment[1..]).len() == numbers.len())?;
+        .filter(are_names)?;
     // Both are parts of one text.
     Some(comment.as_ptr() as usize - text.as_ptr() as usize)
 }
@@ -139,11 +192,16 @@ fn count(line: &str, byte: u8) -> usize {
     line.bytes().filter(outside).count()
 }
 
-/// Whether each name and each number stands between blanks.
+/// Whether each name and each number stands between blanks. A comma behind a word is between
+/// fields.
 fn is_blank_separated(text: &str) -> bool {
     first_lines(text).is_some_and(|[names, row]| {
-        let (names, mut row) = (names.split_whitespace().count(), row.split_whitespace());
-        names > 1 && row.clone().count() == names && row.all(is_number)
+        let (names, row) = (names.split_whitespace(), row.split_whitespace());
+        let ends_in_comma = |word: &str| word.ends_with(',');
+        names.clone().count() > 1
+            && row.clone().count() == names.clone().count()
+            && row.clone().all(is_number)
+            && !names.chain(row).any(ends_in_comma)
     })
 }
 

@@ -6,6 +6,7 @@ const UNITS: &[(&str, &str)] = &[
     ("s", "s"),
     ("ms", "ms"),
     ("us", "µs"),
+    ("ns", "ns"),
     ("hz", "Hz"),
     ("m", "m"),
     ("mm", "mm"),

@@ -7,6 +7,8 @@ mod import;
 mod intake;
 mod log;
 #[cfg(all(feature = "parquet", feature = "mat"))]
+mod machines;
+#[cfg(all(feature = "parquet", feature = "mat"))]
 mod parquet_file;
 mod quality;
 #[cfg(all(feature = "parquet", feature = "mat"))]

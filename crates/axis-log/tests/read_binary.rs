@@ -86,7 +86,10 @@ fn parquet_refusals_name_the_row() {
             );
         }
     }
-    let times = [Column::new("t_s", Values::Double(vec![0.0, 1.0, 1.0]))];
+    let times = [
+        Column::new("t_s", Values::Double(vec![0.0, 1.0, 1.0])),
+        Column::new("x_m", Values::Double(vec![0.0, 1.0, 2.0])),
+    ];
     let found = parquet(&times, 1, &Mapping::default(), &[]).unwrap_err();
     assert!(
         found.starts_with("log.parquet: row 3 (\"t_s\"): the time 1 s is repeated"),
@@ -129,10 +132,7 @@ fn mat_files_plain_and_compressed_read_alike() {
 #[test]
 fn mat_refusals_say_what_the_file_has() {
     for (source, expected) in [
-        (
-            "jacobian_m",
-            "column \"jacobian_m\" is an array of 6 × 2: a real vector",
-        ),
+        ("note", "column \"note\" is text: a real vector"),
         (
             "phase_rad",
             "column \"phase_rad\" is complex: a real vector",
@@ -142,10 +142,10 @@ fn mat_refusals_say_what_the_file_has() {
             "\"short_m\" has 4 samples: \"t\" has 6, and they must agree",
         ),
         (
-            "note",
-            "no column for \"x_m\" (mapped from \"note\"): the file has \"t\", \"qm\", \"qg\", \
+            "notes",
+            "no column for \"x_m\" (mapped from \"notes\"): the file has \"t\", \"qm\", \"qg\", \
              \"vir\", \"duty_1\", \"Fs_hz\", \"short_m\", \"counts_1\", \"phase_rad\", \
-             \"jacobian_m\", and 2 parts",
+             \"jacobian_m(1)\", \"jacobian_m(2)\", \"note\", \"drive.gain_1\"",
         ),
     ] {
         let mapping = mapping(&[("t", "t_s", 1.0), (source, "x_m", 1.0)], None);

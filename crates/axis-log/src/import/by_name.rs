@@ -3,7 +3,7 @@
 //! Words of English and German, as drives, laboratories and their users write them. A guess:
 //! it is proposed and never applied.
 
-use super::ProposedColumn;
+use super::{Found, ProposedColumn};
 use crate::source_unit::known;
 use crate::table::Head;
 use crate::unit::stem_of;
@@ -119,17 +119,21 @@ const OTHER: &[&str] = &[
     "temperature",
 ];
 
-/// The first column of each channel.
-pub(super) fn proposed(heads: &[&Head]) -> Vec<ProposedColumn> {
-    let mut found: Vec<ProposedColumn> = Vec::new();
-    for head in heads {
-        if let Some(column) = one(head)
-            && found.iter().all(|other| other.channel != column.channel)
-        {
-            found.push(column);
-        }
-    }
-    found
+/// What each column seems to be.
+pub(super) fn proposed(heads: &[&Head]) -> Vec<Found> {
+    heads.iter().filter_map(|head| one(head)).collect()
+}
+
+/// The channels that show the same as this one, where its unit is of another dimension; its own
+/// where it is of that.
+pub(super) fn channel_of(channel: &str, dimension: &str) -> Option<&'static str> {
+    QUANTITIES.iter().find_map(|quantity| {
+        let mut own = quantity.channels.iter();
+        let role = own.find_map(|(_, names)| names.iter().position(|name| *name == channel))?;
+        let mut of = quantity.channels.iter();
+        let (_, names) = of.find(|(of, _)| *of == dimension)?;
+        Some(names[role])
+    })
 }
 
 /// Whether a name is that of a channel already.
@@ -138,13 +142,13 @@ pub(super) fn is_channel(name: &str) -> bool {
     all.flat_map(|(_, names)| names).any(|own| *own == name)
 }
 
-fn one(head: &Head) -> Option<ProposedColumn> {
+fn one(head: &Head) -> Option<Found> {
     if is_channel(&head.name) {
         return None;
     }
-    let (stem, said) = parts(&head.name);
-    let said = head.unit.as_deref().or(said);
-    let words = words(stem);
+    let parts = parts(&head.name);
+    let said = head.unit.as_deref().or(parts.unit);
+    let words = words(parts.stem);
     let has = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
     // A unit that is said and not known is not one of these.
     let said = match said {
@@ -155,11 +159,11 @@ fn one(head: &Head) -> Option<ProposedColumn> {
         return None;
     }
     let mut candidates = QUANTITIES.iter().filter(|quantity| has(quantity.words));
-    let (channels, unit) = candidates.find_map(|quantity| {
+    let (quantity, channels, unit) = candidates.find_map(|quantity| {
         let (unit, dimension) = said.or_else(|| known(quantity.usual))?;
         let mut channels = quantity.channels.iter();
         let (_, channels) = channels.find(|(of, _)| *of == dimension)?;
-        Some((channels, unit))
+        Some((quantity, channels, unit))
     })?;
     let demanded = |word: &String| {
         DEMANDED
@@ -171,32 +175,75 @@ fn one(head: &Head) -> Option<ProposedColumn> {
         (false, true) => channels[2],
         (false, false) => channels[0],
     };
-    (!channel.is_empty()).then(|| ProposedColumn {
-        source: head.name.clone(),
-        channel,
-        unit,
+    let is_time = quantity.usual == "s";
+    (!channel.is_empty()).then(|| Found {
+        axis: match (is_time, parts.axis) {
+            (true, _) => String::new(),
+            (false, Some(axis)) => axis.to_owned(),
+            (false, None) => axis_of(&words, quantity.words),
+        },
+        column: ProposedColumn {
+            source: head.name.clone(),
+            channel,
+            unit,
+        },
+        is_said: said.is_some(),
     })
 }
 
+/// Letters of axes (ISO 841).
+const AXES: [&str; 9] = ["x", "y", "z", "a", "b", "c", "u", "v", "w"];
+
+/// What of a name tells the axis: its numbers, and a letter of an axis beside a longer word for
+/// the quantity.
+fn axis_of(words: &[String], of_quantity: &[&str]) -> String {
+    let named = |word: &&String| word.len() > 1 && of_quantity.contains(&word.as_str());
+    let long = words.iter().any(|word| named(&word));
+    let tells = |word: &&String| {
+        let is_letter = long && AXES.contains(&word.as_str());
+        is_letter || word.bytes().all(|b| b.is_ascii_digit())
+    };
+    let told: Vec<&str> = words.iter().filter(tells).map(String::as_str).collect();
+    told.concat().to_uppercase()
+}
+
+/// What a name is made of.
+struct Parts<'a> {
+    stem: &'a str,
+    unit: Option<&'a str>,
+    /// What stands in brackets and is no unit, as `[u1, 2]` behind the signals of a control.
+    axis: Option<&'a str>,
+}
+
 /// A name without its unit, and the unit: in brackets, behind a stroke, or as its end.
-fn parts(name: &str) -> (&str, Option<&str>) {
+fn parts(name: &str) -> Parts<'_> {
     let name = name.trim();
+    let of = |stem, unit| Parts {
+        stem,
+        unit,
+        axis: None,
+    };
     for (open, close) in [('[', ']'), ('(', ')')] {
-        if let Some((stem, unit)) = name.strip_suffix(close).and_then(|n| n.rsplit_once(open)) {
-            return (stem, Some(unit.trim()).filter(|unit| !unit.is_empty()));
+        if let Some((stem, inside)) = name.strip_suffix(close).and_then(|n| n.rsplit_once(open)) {
+            let inside = inside.trim();
+            let counts =
+                inside.contains([',', ';']) && inside.contains(|c: char| c.is_ascii_digit());
+            let axis = counts.then_some(inside);
+            let unit = (!counts && !inside.is_empty()).then_some(inside);
+            return Parts { stem, unit, axis };
         }
     }
     for mark in [" / ", " in "] {
         if let Some((stem, unit)) = name.rsplit_once(mark) {
-            return (stem, Some(unit.trim()));
+            return of(stem, Some(unit.trim()));
         }
     }
     if let Some((stem, unit)) = stem_of(name) {
-        return (stem, Some(unit));
+        return of(stem, Some(unit));
     }
     match name.rsplit_once(['_', ' ']) {
-        Some((stem, unit)) if known(unit).is_some() => (stem, Some(unit)),
-        _ => (name, None),
+        Some((stem, unit)) if known(unit).is_some() => of(stem, Some(unit)),
+        _ => of(name, None),
     }
 }
 

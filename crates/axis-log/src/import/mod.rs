@@ -9,6 +9,7 @@ mod by_name;
 mod halscope;
 mod moteus;
 mod names;
+mod numbers;
 mod sinumerik;
 mod sinumerik_trace;
 mod twincat;
@@ -28,8 +29,8 @@ struct Format {
     is_it: fn(&[u8]) -> bool,
     /// Reads the whole file.
     open: fn(&[u8]) -> Opened<'_>,
-    /// What these columns are, all of which can be read.
-    columns: fn(&[&Head]) -> Vec<ProposedColumn>,
+    /// What these columns are, all of which can be read, of every axis.
+    columns: fn(&[&Head]) -> Vec<Found>,
     /// What the proposal rests on and leaves open.
     caution: &'static str,
 }
@@ -43,11 +44,29 @@ const FORMATS: &[Format] = &[
     twincat::FORMAT,
 ];
 
-const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
+/// What a column seems to be.
+#[derive(Clone)]
+struct Found {
+    /// Which axis it is of; empty where nothing tells.
+    axis: String,
+    column: ProposedColumn,
+    /// Whether the file itself says the unit, or it is only the usual one.
+    is_said: bool,
+}
 
-/// The bytes behind a byte-order mark.
-fn without_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes)
+impl Found {
+    /// A column of an axis, in a unit that is the usual one there.
+    fn of(axis: &str, head: &Head, channel: &'static str, unit: &'static str) -> Self {
+        Self {
+            axis: axis.to_owned(),
+            column: ProposedColumn {
+                source: head.name.clone(),
+                channel,
+                unit,
+            },
+            is_said: false,
+        }
+    }
 }
 
 /// A column that a mapping could have.
@@ -61,17 +80,35 @@ pub struct ProposedColumn {
     pub unit: &'static str,
 }
 
-/// What a file is, and what its mapping could be.
+/// What the columns of one axis seem to be.
 #[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AxisProposal {
+    /// What tells it from the others: a number, or what stands around the names.
+    pub axis: String,
+    /// Its columns.
+    pub columns: Vec<ProposedColumn>,
+}
+
+/// What a file is, and what its mapping could be.
+#[derive(Debug, Clone, PartialEq)]
 pub struct MappingProposal {
     /// Name of the format.
     pub format: &'static str,
-    /// Columns of which the name tells what they are.
+    /// Columns of which the name tells what they are: those that all axes share, and those of the
+    /// first axis. A log is of one axis.
     pub columns: Vec<ProposedColumn>,
+    /// The other axes that the file holds, to be chosen instead.
+    pub other_axes: Vec<AxisProposal>,
+    /// What the first axis is called, where there are others.
+    pub axis: Option<String>,
     /// Columns of which it does not.
     pub others: Vec<String>,
     /// What it rests on and leaves open.
     pub caution: &'static str,
+    /// What the numbers say of names and units.
+    pub remarks: Vec<String>,
+    /// The sampling rate in Hz that the proposed time has, or the file's own.
+    pub rate_hz: Option<f64>,
 }
 
 impl MappingProposal {
@@ -82,14 +119,25 @@ impl MappingProposal {
 
     /// As lines of an axis file.
     pub fn lines(&self) -> String {
-        let one = |column: &ProposedColumn| {
-            format!(
-                "[[log.column]]\nsource = {:?}\nchannel = \"{}\"\nunit = \"{}\"\n",
-                column.source, column.channel, column.unit
-            )
-        };
-        self.columns.iter().map(one).collect()
+        lines(&self.columns)
     }
+}
+
+impl AxisProposal {
+    /// As lines of an axis file.
+    pub fn lines(&self) -> String {
+        lines(&self.columns)
+    }
+}
+
+fn lines(columns: &[ProposedColumn]) -> String {
+    let one = |column: &ProposedColumn| {
+        format!(
+            "[[log.column]]\nsource = {:?}\nchannel = \"{}\"\nunit = \"{}\"\n",
+            column.source, column.channel, column.unit
+        )
+    };
+    columns.iter().map(one).collect()
 }
 
 /// What a file is, by its content, and what mapping it could have: of a recording of another
@@ -110,13 +158,13 @@ fn proposal(path: &Path) -> Result<Option<MappingProposal>, ReadProblem> {
     let bytes = crate::read::whole(path)?;
     if let Some(format) = FORMATS.iter().find(|format| (format.is_it)(&bytes)) {
         let table = (format.open)(&bytes)?;
-        let found = proposed(&table, format.name, format.columns, format.caution);
+        let found = proposed(table, format.name, format.columns, format.caution);
         return Ok(Some(found));
     }
     match crate::read::by_extension(path, &bytes) {
         Ok(table) => {
             let name = "by the names of the columns";
-            let found = proposed(&table, name, by_name::proposed, BY_NAME);
+            let found = proposed(table, name, by_name::proposed, BY_NAME);
             Ok(Some(found).filter(|found| !found.is_empty()))
         }
         Err(ReadProblem::Extension { .. } | ReadProblem::LeftOut { .. }) => Ok(None),
@@ -126,28 +174,60 @@ fn proposal(path: &Path) -> Result<Option<MappingProposal>, ReadProblem> {
 
 /// What the caution of a proposal by names and units alone is.
 const BY_NAME: &str =
-    "a unit that no name says is a guess (mm, mm/s, A, N·m, s): compare with the numbers";
+    "a unit that no name says is a guess (mm, mm/s, A, N·m): compare with the numbers";
 
 /// The columns of a table that can be read, as `columns` tells what they are.
 fn proposed(
-    table: &dyn Table,
+    mut table: Box<dyn Table + '_>,
     format: &'static str,
-    columns: fn(&[&Head]) -> Vec<ProposedColumn>,
+    columns: fn(&[&Head]) -> Vec<Found>,
     caution: &'static str,
 ) -> MappingProposal {
     let readable = |head: &&Head| head.fault.is_none();
     let heads: Vec<&Head> = table.heads().iter().filter(readable).collect();
-    let columns = columns(&heads);
+    let mut found = columns(&heads);
+    let numbers = numbers::checked(&mut *table, &mut found);
     let told = |name: &String| {
-        columns.iter().any(|column| column.source == *name) || crate::unit_of(name).is_some()
+        found.iter().any(|found| found.column.source == *name) || crate::unit_of(name).is_some()
     };
     let names = table.names().into_iter();
+    let others = names.filter(|name| !told(name)).collect();
+    let mut axes = by_axis(&found);
+    let first = axes.remove(0);
     MappingProposal {
         format,
-        others: names.filter(|name| !told(name)).collect(),
-        columns,
+        axis: (!axes.is_empty()).then_some(first.axis),
+        columns: first.columns,
+        other_axes: axes,
+        others,
         caution,
+        remarks: numbers.remarks,
+        rate_hz: numbers.rate_hz,
     }
+}
+
+/// The columns of each axis, the first column of a channel; at least one, of which no column need
+/// be. What no axis is told of belongs to the first.
+fn by_axis(found: &[Found]) -> Vec<AxisProposal> {
+    let mut axes: Vec<AxisProposal> = Vec::new();
+    for axis in found.iter().map(|found| &found.axis) {
+        if !axis.is_empty() && axes.iter().all(|known| known.axis != *axis) {
+            let (axis, columns) = (axis.clone(), Vec::new());
+            axes.push(AxisProposal { axis, columns });
+        }
+    }
+    if axes.is_empty() {
+        let (axis, columns) = (String::new(), Vec::new());
+        axes.push(AxisProposal { axis, columns });
+    }
+    for Found { axis, column, .. } in found {
+        let own = axes.iter().position(|known| known.axis == *axis);
+        let columns = &mut axes[own.unwrap_or(0)].columns;
+        if columns.iter().all(|other| other.channel != column.channel) {
+            columns.push(column.clone());
+        }
+    }
+    axes
 }
 
 /// The file as a table, where it is of another program.

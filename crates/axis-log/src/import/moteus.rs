@@ -12,7 +12,7 @@
 //! clock of the computer that asks, since the file was begun or since 1970. A register that an
 //! answer does not have is written as 0.
 
-use super::{Format, ProposedColumn, without_mark};
+use super::{Format, Found};
 use crate::csv_table::CsvTable;
 use crate::log::TIME_CHANNEL;
 use crate::table::Head;
@@ -22,7 +22,7 @@ pub(super) const FORMAT: Format = Format {
     is_it,
     open: |bytes| {
         Ok(Box::new(
-            CsvTable::open(bytes)?.with_first_named(TIME_CHANNEL),
+            CsvTable::open(bytes)?.with_names([TIME_CHANNEL.to_owned()]),
         ))
     },
     columns: proposed,
@@ -43,21 +43,17 @@ const REGISTERS: &[(&str, &str, &str)] = &[
     ("D_CURRENT", "id_a", "A"),
 ];
 
-fn proposed(heads: &[&Head]) -> Vec<ProposedColumn> {
+fn proposed(heads: &[&Head]) -> Vec<Found> {
     let one = |(register, channel, unit): &(&str, &'static str, &'static str)| {
-        let is_there = heads.iter().any(|head| head.name == *register);
-        is_there.then(|| ProposedColumn {
-            source: (*register).to_owned(),
-            channel,
-            unit,
-        })
+        let head = heads.iter().find(|head| head.name == *register)?;
+        Some(Found::of("", head, channel, unit))
     };
     REGISTERS.iter().filter_map(one).collect()
 }
 
 /// `time`, and registers behind it.
 fn is_it(bytes: &[u8]) -> bool {
-    let line = without_mark(bytes).split(|byte| *byte == b'\n').next();
+    let line = bytes.split(|byte| *byte == b'\n').next();
     let Some(Ok(line)) = line.map(std::str::from_utf8) else {
         return false;
     };

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::table::Note;
+
 /// The delay of one file's clock against another's, found from their channels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FileDelay {
@@ -19,6 +21,56 @@ pub struct FileDelay {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Done {
+    /// A file without names: its first row holds numbers, and is data.
+    NoNames {
+        /// The file.
+        file: String,
+        /// Its columns, which are called `column 1` and so on.
+        columns: usize,
+    },
+    /// A file whose last row has no line end; it was taken as a row.
+    NoLineEnd {
+        /// The file.
+        file: String,
+    },
+    /// Rows that the program left out because nothing changed; the values were held.
+    Held {
+        /// The file.
+        file: String,
+        /// Rows.
+        rows: usize,
+    },
+    /// Rows that were there twice, the same in every column; taken once.
+    Repeated {
+        /// The file.
+        file: String,
+        /// Rows that were dropped.
+        rows: usize,
+        /// Time of the first, s.
+        first: f64,
+    },
+    /// An angle or a counter that began anew after a turn or after all its bits; it goes on.
+    Unwrapped {
+        /// The channel.
+        channel: String,
+        /// After how much it began anew, in its unit.
+        period: f64,
+        /// How often.
+        jumps: usize,
+        /// Unit of the channel.
+        unit: String,
+    },
+    /// Time stamps that were uneven, of samples that stand so many rows behind their stamps.
+    Shifted {
+        /// The file.
+        file: String,
+        /// Rows by which samples come late; negative where early.
+        rows: i64,
+        /// Farthest of a stamp from an even grid, periods.
+        jitter: f64,
+        /// Rate of the grid, Hz.
+        rate: f64,
+    },
     /// Rows that were missing between time stamps.
     Rows {
         /// The file.
@@ -125,9 +177,62 @@ pub enum Done {
     },
 }
 
+impl Done {
+    /// What a file says of itself.
+    pub(super) fn of(note: Note, file: String) -> Self {
+        match note {
+            Note::NoNames { columns } => Self::NoNames { file, columns },
+            Note::NoLineEnd => Self::NoLineEnd { file },
+            Note::Held { rows } => Self::Held { file, rows },
+            Note::Repeated { rows, first } => Self::Repeated { file, rows, first },
+        }
+    }
+}
+
 impl fmt::Display for Done {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::NoNames { file, columns } => write!(
+                f,
+                "{file}: its first row holds numbers, so it is data and there are no names; the columns are called \"column 1\" to \"column {columns}\""
+            ),
+            Self::NoLineEnd { file } => write!(
+                f,
+                "{file}: its last row has no line end; it was taken as it stands, and if the file was cut there, its last number may be too"
+            ),
+            Self::Held { file, rows } => write!(
+                f,
+                "{file}: {rows} rows that the control left out because nothing changed; values hold there"
+            ),
+            Self::Repeated { file, rows, first } => write!(
+                f,
+                "{file}: {rows} row(s) that are there twice, the first at t = {first:.4} s; taken once"
+            ),
+            Self::Unwrapped {
+                channel,
+                period,
+                jumps,
+                unit,
+            } => write!(
+                f,
+                "{channel}: it begins anew after {period:.6} {unit}, {jumps} time(s); it was made to go on"
+            ),
+            Self::Shifted {
+                file,
+                rows,
+                jitter,
+                rate,
+            } => {
+                let (count, way) = match *rows < 0 {
+                    true => (-rows, "before"),
+                    false => (*rows, "behind"),
+                };
+                write!(
+                    f,
+                    "{file}: time stamps up to {:.0} % of a period off an even grid, and so were the samples, {count} row {way} their stamps; interpolated to {rate:.4} Hz",
+                    100.0 * jitter
+                )
+            }
             Self::Rows { file, rows, gaps } => {
                 write!(
                     f,

@@ -2,9 +2,10 @@
 //!
 //! Stamps are uneven for one of two reasons. A computer that polls a drive takes samples when it
 //! comes to it: stamps are right, samples uneven. Or a drive samples evenly, and what stamps its
-//! messages is late by turns: samples are even, stamps wrong. Which it is shows in what moves
-//! smoothly: each sample is foreseen from its neighbours, once at the instants that are stamped
-//! and once at even ones, and the instants that foresee better are right.
+//! messages is late by turns: samples are even, stamps wrong. Or a program stamps what it read the
+//! round before: samples are those of the row before, or of the next. Which it is shows in what
+//! moves smoothly: each sample is foreseen from its neighbours, at the instants that are stamped,
+//! at those of the rows beside it, and at even ones, and the instants that foresee best are right.
 
 use super::recording::MOST_EMPTY;
 use crate::channel::Channel;
@@ -28,6 +29,8 @@ const MOST_LONG: f64 = 0.05;
 pub(super) enum Stamps {
     /// The instants of the samples.
     OfSamples,
+    /// Those of the samples so many rows on, which come late by as many.
+    OfRow(i64),
     /// Those of messages about samples that are even.
     OfMessages,
 }
@@ -51,7 +54,13 @@ pub(super) fn even_out(time: &[f64], channels: &mut [Channel]) -> Option<Evened>
     }
     let steps = Steps::of(time, &found)?;
     match stamps(time, &steps, channels) {
-        Stamps::OfSamples => {
+        stamps @ (Stamps::OfSamples | Stamps::OfRow(_)) => {
+            let rows = match stamps {
+                Stamps::OfRow(rows) => rows,
+                _ => 0,
+            };
+            let time = moved(time, channels, rows);
+            let steps = Steps::of(time, &Grid::of(time)?)?;
             let (start, period) = (time[0], steps.period);
             // Rounding must not cost the last row.
             let last = ((time[time.len() - 1] - start) / period + 1e-6).floor() as usize;
@@ -64,7 +73,7 @@ pub(super) fn even_out(time: &[f64], channels: &mut [Channel]) -> Option<Evened>
                 channel.samples = interpolated(time, &steps, &channel.samples, &even);
             }
             Some(Evened {
-                stamps: Stamps::OfSamples,
+                stamps,
                 jitter: found.jitter[0],
                 period,
                 time: even,
@@ -135,20 +144,66 @@ impl Steps {
     }
 }
 
+/// Gives each sample the stamp of the row that it is of, where samples come so many rows late:
+/// rows at the ends that have no stamp or no sample go. The stamps that are left.
+fn moved<'a>(time: &'a [f64], channels: &mut [Channel], rows: i64) -> &'a [f64] {
+    let gone = rows.unsigned_abs() as usize;
+    let left = time.len().saturating_sub(gone);
+    for channel in channels {
+        match rows > 0 {
+            true => drop(channel.samples.drain(..gone)),
+            false => channel.samples.truncate(left),
+        }
+    }
+    match rows > 0 {
+        true => &time[..left],
+        false => &time[gone..],
+    }
+}
+
+/// Rows by which samples may stand beside their stamps.
+const ROWS: [i64; 2] = [1, -1];
+
 /// What the channel says that tells most.
 fn stamps(time: &[f64], steps: &Steps, channels: &[Channel]) -> Stamps {
     let even: Vec<f64> = steps.places.iter().map(|&p| p as f64).collect();
     let told = channels.iter().filter_map(|channel| {
-        let stamped = surprise(time, time, steps, &channel.samples)?;
         let even = surprise(time, &even, steps, &channel.samples)?;
-        Some((stamped / even).ln()).filter(|ratio| ratio.is_finite())
+        let ratio = |instants: &[f64]| {
+            let stamped = surprise(time, instants, steps, &channel.samples)?;
+            Some((stamped / even).ln()).filter(|ratio| ratio.is_finite())
+        };
+        let own = ratio(time)?;
+        let beside = ROWS.map(|rows| Some((ratio(&beside(time, rows))?, Stamps::OfRow(rows))));
+        let best = beside.into_iter().flatten();
+        let best = best.min_by(|a, b| a.0.total_cmp(&b.0));
+        // The row's own stamp unless another is clearly better.
+        Some(match best {
+            Some((ratio, stamps)) if ratio < own - CLEARLY => (ratio, stamps),
+            _ => (own, Stamps::OfSamples),
+        })
     });
-    let most = told.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let most = told.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     match most {
-        Some(ratio) if ratio < -CLEARLY => Stamps::OfSamples,
+        Some((ratio, stamps)) if ratio < -CLEARLY => stamps,
         // Where nothing tells, values stay as they are.
         _ => Stamps::OfMessages,
     }
+}
+
+/// The stamps of the rows that samples are of which come so many rows late; at the ends, where there
+/// is none, as far before and behind as the first and last steps.
+fn beside(time: &[f64], rows: i64) -> Vec<f64> {
+    let last = time.len() as i64 - 1;
+    let at = |k: i64| {
+        let inside = k.clamp(0, last);
+        let step = match k < 0 {
+            true => time[1] - time[0],
+            false => time[last as usize] - time[last as usize - 1],
+        };
+        time[inside as usize] + (k - inside) as f64 * step
+    };
+    (0..=last).map(|k| at(k - rows)).collect()
 }
 
 /// RMS of what the two neighbours on each side, at those instants, do not foresee.

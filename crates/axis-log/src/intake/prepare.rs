@@ -7,6 +7,7 @@ use super::error::IntakeError;
 use super::join::join;
 use super::recording::Recording;
 use super::repair::{bridged, take_out};
+use super::unwrapped::unwrapped;
 use crate::channel::Channel;
 use crate::log::{Log, TIME_CHANNEL};
 use crate::mapping::Mapping;
@@ -98,8 +99,10 @@ pub fn prepare_channels(
             problem,
         }
     })?;
+    let mut channels = channels;
+    let done = unwrapped(&mut channels, |_| 1.0);
     let part = Recording::of(name.to_owned(), channels, |_| 0.0)?;
-    prepared(vec![part], required, options)
+    prepared(vec![Recording { done, ..part }], required, options)
 }
 
 /// Recordings made one log.
@@ -111,6 +114,7 @@ fn prepared(
     let mut done = Vec::new();
     for part in &mut parts {
         let (file, [rows, gaps]) = (part.name.clone(), part.missing);
+        done.append(&mut part.done);
         done.extend(part.evened.take());
         if gaps > 0 {
             done.push(Done::Rows { file, rows, gaps });

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::done::Done;
 use super::error::IntakeError;
 use super::evened::{Stamps, even_out};
+use super::unwrapped::unwrapped;
 use crate::channel::Channel;
 use crate::mapping::Mapping;
 use crate::numeric::grid::Grid;
@@ -24,6 +25,8 @@ pub(super) struct Recording {
     pub grid: Option<Even>,
     /// Rows that were missing, and in how many places.
     pub missing: [usize; 2],
+    /// What was done on reading.
+    pub done: Vec<Done>,
     /// What was done about uneven time stamps.
     pub evened: Option<Done>,
 }
@@ -52,12 +55,23 @@ impl Recording {
             file: name.clone(),
             problem,
         };
-        let channels = read(path, mapping, required, Holes::Kept).map_err(refused)?;
+        let read = read(path, mapping, required, Holes::Kept).map_err(refused)?;
         let delay = |c: &Channel| {
             let map = mapping.columns.iter().find(|m| m.channel == c.name);
             map.map_or(0.0, |m| m.delay)
         };
-        Self::of(name, channels, delay)
+        let told = |note| Done::of(note, name.clone());
+        let mut done: Vec<Done> = read.notes.into_iter().map(told).collect();
+        let mut channels = read.channels;
+        let scale = |c: &Channel| {
+            let map = mapping.columns.iter().find(|m| m.channel == c.name);
+            map.map_or(1.0, |m| m.scale)
+        };
+        done.extend(unwrapped(&mut channels, scale));
+        Ok(Self {
+            done,
+            ..Self::of(name, channels, delay)?
+        })
     }
 
     /// Of channels with the time first, as long as each other, and the delay of each.
@@ -74,6 +88,7 @@ impl Recording {
             channels,
             grid: None,
             missing: [0; 2],
+            done: Vec::new(),
             evened: None,
         };
         recording.even_out();
@@ -90,6 +105,12 @@ impl Recording {
         let rate = 1.0 / evened.period;
         self.evened = Some(match evened.stamps {
             Stamps::OfSamples => Done::Interpolated { file, jitter, rate },
+            Stamps::OfRow(rows) => Done::Shifted {
+                file,
+                rows,
+                jitter,
+                rate,
+            },
             Stamps::OfMessages => Done::Evened { file, jitter, rate },
         });
     }

@@ -7,3 +7,4 @@ pub(crate) mod lag;
 pub(crate) mod order;
 pub(crate) mod resample;
 pub(crate) mod welch;
+pub(crate) mod wrap;

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::hold::{Hold, Saturation, hold, saturation};
+use super::jitter::{SampleJitter, sample_jitter};
 use super::noise::{ChannelNoise, Colour, noise};
 use super::outliers::outliers;
 use super::quantum::{Quantum, quantum};
@@ -70,6 +71,8 @@ pub struct ChannelQuality {
     pub noise: Option<ChannelNoise>,
     /// Frequency in Hz from which on its spectrum falls off as behind a filter.
     pub corner: Option<f64>,
+    /// How far its samples are off the time stamps, where it is a position or an angle that tells.
+    pub jitter: Option<SampleJitter>,
     /// Its delay against another channel, where one was given and they correlate.
     pub delay: Option<Delay>,
 }
@@ -109,6 +112,10 @@ pub fn channel_quality(
         hold: hold(x, period, quantum.map_or(0.0, |q| q.step)),
         quantum,
         saturation: saturation(x),
+        jitter: match crate::unit_of(name) {
+            Some("m" | "mm" | "µm" | "rad" | "°" | "rev") => sample_jitter(log, name),
+            _ => None,
+        },
         noise,
         corner,
         delay,
@@ -182,6 +189,15 @@ impl fmt::Display for ChannelQuality {
         }
         if let Some(corner) = self.corner {
             write!(f, "; filtered from {corner:.0} Hz on")?;
+        }
+        if let Some(jitter) = self.jitter {
+            write!(
+                f,
+                "; samples jitter under even stamps by {:.2} ± {:.2} % of a period ({:.2} us)",
+                100.0 * jitter.share,
+                100.0 * jitter.share * jitter.standard_error / jitter.rms,
+                1e6 * jitter.rms
+            )?;
         }
         match &self.delay {
             Some(d) => write!(

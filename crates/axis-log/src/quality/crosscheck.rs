@@ -64,7 +64,9 @@ const OFFSET: f64 = 0.1;
 /// or its integral, times the factor that it should have. A factor within 3 % of 1 agrees; one within 3 % of
 /// a unit's (1000 for millimetres, 180/π for degrees, 60/2π for revolutions a minute,
 /// encoder counts a turn), with either sign, contradicts where the correlation is above 0.99
-/// (0.9 for currents, which must come within 15 %). The slip is laid to the channel whose numbers are larger.
+/// (0.9 for currents, which must come within 15 %). The slip is laid to the channel of which a unit
+/// explains it: its numbers are too large by what a smaller unit makes them, or too small by a
+/// greater one.
 pub fn cross_check(log: &Log, mapping: &Mapping, relations: &[Relation]) -> Vec<Finding> {
     let Some(clock) = clock(log) else {
         return Vec::new();
@@ -172,83 +174,48 @@ fn slip(relation: &Relation, factor: f64, near: f64, mapping: &Mapping) -> Judge
     } else {
         ""
     };
-    let blamed = if size >= 1.0 {
-        &relation.channel
-    } else {
-        &relation.from
-    };
-    let large = size.max(1.0 / size);
-    let symbol = crate::unit_of(blamed).unwrap_or_default();
-    let map = of(mapping, blamed);
-    if (large - 1.0).abs() <= near {
-        // Which of two is turned they cannot tell; the one that is judged is named.
-        let map = of(mapping, &relation.channel);
-        let repair = ColumnMap {
-            scale: -map.scale,
-            offset: -map.offset,
+    let scaled = |channel: &str, by: f64| {
+        let map = of(mapping, channel);
+        ColumnMap {
+            scale: map.scale * by,
+            offset: map.offset * by,
             ..map
-        };
+        }
+    };
+    if (size - 1.0).abs() <= near {
+        // Which of two is turned they cannot tell; the one that is judged is named.
         return (
             CrossCheckVerdict::Contradicts,
             "right but for its sign".to_owned(),
-            Some(repair),
+            Some(scaled(&relation.channel, -1.0)),
         );
     }
-    let by_unit = slipped_unit(symbol, large, near).map(|(unit, exact)| {
-        (
-            format!("{blamed} is in {unit} read as {symbol}{turned}"),
-            exact,
-        )
+    // Either the channel's numbers are so many times too large, or the other's too small.
+    let either = [(&relation.channel, size), (&relation.from, 1.0 / size)];
+    let unit = either.iter().filter_map(|(channel, times)| {
+        let symbol = crate::unit_of(channel)?;
+        let (unit, exact) = slipped_unit(symbol, *times, near)?;
+        let words = format!("{channel} is in {unit} read as {symbol}{turned}");
+        Some(((times / exact - 1.0).abs(), channel, words, exact))
     });
-    let by_counts = || {
-        let counts = counts_per_turn(symbol, large)?;
-        let words = format!("{blamed} is in counts, {counts} a turn, read as {symbol}{turned}");
-        Some((words, counts / TAU))
-    };
-    // A turn for a radian makes numbers smaller.
-    let turns = || {
-        let whose = if size < 1.0 {
-            &relation.channel
-        } else {
-            &relation.from
-        };
-        let rev = whose.ends_with("_rad") && (large / TAU - 1.0).abs() <= near;
-        rev.then(|| {
-            (
-                (format!("{whose} is in rev read as rad{turned}"), 1.0 / TAU),
-                whose,
-            )
-        })
-    };
-    match turns().or_else(|| by_unit.or_else(by_counts).map(|t| (t, blamed))) {
-        Some(((words, exact), whose)) => {
-            let map = if whose == blamed {
-                map
-            } else {
-                of(mapping, whose)
-            };
-            let scale = map.scale / exact * factor.signum();
-            let offset = map.offset / exact * factor.signum();
-            (
-                CrossCheckVerdict::Contradicts,
-                words,
-                Some(ColumnMap {
-                    scale,
-                    offset,
-                    ..map
-                }),
-            )
-        }
-        None => {
-            let map = of(mapping, &relation.channel);
-            let repair = ColumnMap {
-                scale: map.scale / factor,
-                offset: map.offset / factor,
-                ..map
-            };
-            let words = format!("{factor:.5} times what it should be, which no unit explains");
-            (CrossCheckVerdict::Unsure, words, Some(repair))
-        }
+    let unit = unit.min_by(|a, b| a.0.total_cmp(&b.0));
+    let mut counts = either.iter().filter_map(|(channel, times)| {
+        let symbol = crate::unit_of(channel)?;
+        let counts = counts_per_turn(symbol, *times)?;
+        let words = format!("{channel} is in counts, {counts} a turn, read as {symbol}{turned}");
+        Some((0.0, channel, words, counts / TAU))
+    });
+    match unit.or_else(|| counts.next()) {
+        Some((_, channel, words, exact)) => (
+            CrossCheckVerdict::Contradicts,
+            words,
+            Some(scaled(channel, factor.signum() / exact)),
+        ),
+        None => (
+            CrossCheckVerdict::Unsure,
+            format!("{factor:.5} times what it should be, which no unit explains"),
+            Some(scaled(&relation.channel, 1.0 / factor)),
+        ),
     }
 }
 

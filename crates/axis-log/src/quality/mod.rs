@@ -4,6 +4,7 @@
 mod channel;
 mod crosscheck;
 mod hold;
+mod jitter;
 mod noise;
 mod outliers;
 mod quantum;
@@ -14,12 +15,14 @@ mod unit_slip;
 pub use channel::{ChannelQuality, Clock, Delay, channel_quality, clock};
 pub use crosscheck::{CrossCheckVerdict, Finding, cross_check};
 pub use hold::{Hold, Saturation};
+pub use jitter::{SampleJitter, sample_jitter};
 pub use noise::{ChannelNoise, Colour};
 pub use outliers::{Outlier, outliers};
 pub use quantum::Quantum;
 pub use relation::{Relation, RelationLaw};
 pub use sampling::{
     MAX_JITTER, MAX_RATE_HZ, MIN_RATE_HZ, MIN_SAMPLES, Sampling, SamplingError, check_sampling,
+    rate_of,
 };
 pub use unit_slip::{UnitSlip, unit_slip};
 

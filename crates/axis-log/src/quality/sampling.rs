@@ -6,10 +6,11 @@ use crate::log::Log;
 
 /// Fewest samples that are judged.
 pub const MIN_SAMPLES: usize = 100;
-/// Lowest sample rate, Hz.
-pub const MIN_RATE_HZ: f64 = 100.0;
-/// Highest sample rate, Hz.
+/// Highest sample rate, Hz: that of the fastest current loops whose logs are read.
 pub const MAX_RATE_HZ: f64 = 20e3;
+/// Lowest sample rate, Hz: a thousandth of the highest, so that no rate that is read is another
+/// one whose time is in ms, µs or ns and was taken for s. What a log is used for may need more.
+pub const MIN_RATE_HZ: f64 = MAX_RATE_HZ / 1e3;
 /// Greatest deviation from the even grid, as a share of the period.
 pub const MAX_JITTER: f64 = 0.05;
 
@@ -42,8 +43,8 @@ pub enum SamplingError {
     },
     /// A rate that is out of range.
     #[error(
-        "the sample rate is {rate:.6} Hz: it must lie between {MIN_RATE_HZ} and {MAX_RATE_HZ} Hz{}",
-        rate_hint(*rate)
+        "the sample rate is {} Hz: it must lie between {MIN_RATE_HZ} and {MAX_RATE_HZ} Hz{}",
+        in_digits(*rate), rate_hint(*rate)
     )]
     Rate {
         /// The rate found, Hz.
@@ -117,6 +118,14 @@ fn median(steps: &[f64]) -> f64 {
     *sorted.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
+/// The rate of samples that are so many seconds apart, Hz, where it is one at which logs are read.
+///
+/// # Errors
+/// [`SamplingError::Rate`] outside [`MIN_RATE_HZ`] to [`MAX_RATE_HZ`] by more than 0.1 %.
+pub fn rate_of(period: f64) -> Result<f64, SamplingError> {
+    check_rate(1.0 / period).map(|()| 1.0 / period)
+}
+
 fn check_rate(rate: f64) -> Result<(), SamplingError> {
     let range = MIN_RATE_HZ * (1.0 - RATE_SLACK)..=MAX_RATE_HZ * (1.0 + RATE_SLACK);
     if range.contains(&rate) {
@@ -176,7 +185,15 @@ fn fit_grid(time: &[f64]) -> Result<Sampling, SamplingError> {
     })
 }
 
-/// A rate that is right but for a factor of 1000 or 10⁶ has its time in another
+/// Six digits, whatever the size: 0.000000 Hz says nothing.
+fn in_digits(rate: f64) -> String {
+    match (0.01..1e7).contains(&rate) {
+        true => format!("{rate:.6}"),
+        false => format!("{rate:.5e}"),
+    }
+}
+
+/// A rate that is right but for a factor of 1000, 10⁶ or 10⁹ has its time in another
 /// unit.
 fn rate_hint(rate: f64) -> &'static str {
     let fits = |factor: f64| check_rate(rate * factor).is_ok();
@@ -184,6 +201,8 @@ fn rate_hint(rate: f64) -> &'static str {
         "; the time may be in milliseconds"
     } else if fits(1e6) {
         "; the time may be in microseconds"
+    } else if fits(1e9) {
+        "; the time may be in nanoseconds"
     } else {
         ""
     }

@@ -1,5 +1,7 @@
 //! Small Parquet files for the tests.
 
+pub mod by_hand;
+
 use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;

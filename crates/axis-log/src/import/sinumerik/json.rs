@@ -18,12 +18,29 @@ pub(super) struct File {
 pub(super) struct Header {
     #[serde(rename = "SignalListHFData", default)]
     pub signals: Vec<Signal>,
+    #[serde(rename = "CycleTimeMs", default)]
+    cycle: serde_json::Value,
+}
+
+impl Header {
+    /// The position control cycle, s, where the header has one.
+    pub(super) fn cycle(&self) -> Option<f64> {
+        let ms = match &self.cycle {
+            serde_json::Value::String(text) => text.trim().parse().ok(),
+            other => other.as_f64(),
+        };
+        ms.filter(|ms: &f64| ms.is_finite() && *ms > 0.0)
+            .map(|ms| ms * 1e-3)
+    }
 }
 
 #[derive(Deserialize)]
 pub(super) struct Signal {
     #[serde(rename = "Address")]
     pub address: String,
+    /// Name of the axis on the machine.
+    #[serde(rename = "Axis", default)]
+    pub axis: Option<String>,
 }
 
 #[derive(Default, Deserialize)]

@@ -10,15 +10,18 @@
 //! ```
 //!
 //! A row of `HFData` has a value for each signal of the header, in its order. Columns are named
-//! by `Address`. What else the payload has is left out. `CYCLE` counts position control cycles;
-//! how long one is, the described fields do not say, so that no time is made of it here.
+//! by `Address`. What else the payload has is left out. `CYCLE` counts position control cycles.
+//! How long one is, the described fields do not say; recorders from 3.1 on write it as
+//! `CycleTimeMs` of the header (as an
+//! [example](https://github.com/max-scw/CaptureDataParser) shows), and the time is made of both.
 
 mod json;
 
 use json::{Cell, File, Signal};
 
-use super::{Format, ProposedColumn};
+use super::{Format, Found};
 use crate::csv_text::MAX_COLUMNS;
+use crate::log::TIME_CHANNEL;
 use crate::read_error::{Place, ReadProblem};
 use crate::table::{Head, Holes, Table};
 
@@ -27,35 +30,42 @@ pub(super) const FORMAT: Format = Format {
     is_it,
     open: |bytes| Ok(Box::new(Recording::read(bytes)?)),
     columns: proposed,
-    caution: "map CYCLE to \"t_s\" with the position control cycle in s as factor; positions are in mm, of an axis that turns in deg",
+    caution: "positions are in mm, of an axis that turns in deg (A, B, C and SP by their names); where the header has no CycleTimeMs, map CYCLE to \"t_s\" with the position control cycle in s as factor",
 };
 
-/// Signals of an axis whose unit is described, what they are, and their unit on a linear axis
+/// The signal that counts position control cycles.
+const CYCLE: &str = "CYCLE";
+
+/// Signals of an axis whose unit is described, what they are on a linear axis in mm and on one
+/// that turns in deg
 /// (<https://docs.industrial-operations-x.siemens.cloud/r/de-de/1.0.0/sinumerik-connector/faq/which-hf-data-can-be-collected-via-sinumerik-connector>).
 const SIGNALS: &[(&str, &str, &str)] = &[
-    ("DES_POS|", "position_ref_m", "mm"),
-    ("ENC_POS|", "position_m", "mm"),
+    ("DES_POS|", "position_ref_m", "position_ref_rad"),
+    ("ENC_POS|", "position_m", "position_rad"),
 ];
 
-/// Those of the first axis that has one: two axes would be one channel.
-fn proposed(heads: &[&Head]) -> Vec<ProposedColumn> {
-    let axis_of = |head: &&Head| {
+/// Names of axes that turn begin with these (ISO 841), and a spindle's so.
+const TURN: [&str; 4] = ["A", "B", "C", "SP"];
+
+fn proposed(heads: &[&Head]) -> Vec<Found> {
+    let one = |head: &&Head| {
         let mut signals = SIGNALS.iter();
-        signals.find_map(|(start, ..)| head.name.strip_prefix(start).map(str::to_owned))
+        let (number, linear, turns) = signals.find_map(|(start, linear, turns)| {
+            let number = head.name.strip_prefix(start)?;
+            Some((number, linear, turns))
+        })?;
+        let name = head.address.as_deref().unwrap_or_default();
+        let axis = match name {
+            "" => number.to_owned(),
+            name => format!("{number} ({name})"),
+        };
+        let (channel, unit) = match TURN.iter().any(|start| name.starts_with(start)) {
+            true => (turns, "deg"),
+            false => (linear, "mm"),
+        };
+        Some(Found::of(&axis, head, channel, unit))
     };
-    let Some(axis) = heads.iter().find_map(axis_of) else {
-        return Vec::new();
-    };
-    let one = |(start, channel, unit): &(&str, &'static str, &'static str)| {
-        let source = format!("{start}{axis}");
-        let is_there = heads.iter().any(|head| head.name == source);
-        is_there.then_some(ProposedColumn {
-            source,
-            channel,
-            unit,
-        })
-    };
-    SIGNALS.iter().filter_map(one).collect()
+    heads.iter().filter_map(one).collect()
 }
 
 /// `{ "Header"`, with any white space.
@@ -67,7 +77,10 @@ fn is_it(bytes: &[u8]) -> bool {
 /// The high-frequency part of a recording.
 struct Recording {
     heads: Vec<Head>,
+    /// Of the signals, which are the heads behind the time where there is one.
     columns: Vec<Vec<Cell>>,
+    /// Index of the signal that counts cycles, and the length of one in s, where both are there.
+    time: Option<(usize, f64)>,
 }
 
 impl Recording {
@@ -111,17 +124,36 @@ impl Recording {
         if columns[0].is_empty() {
             return Err(ReadProblem::NoRows);
         }
+        let cycle = file.header.cycle();
         let signals = file.header.signals.into_iter();
-        let head = |signal: Signal| Head::new(signal.address);
+        let head = |signal: Signal| Head {
+            address: signal.axis,
+            ..Head::new(signal.address)
+        };
+        let signals: Vec<Head> = signals.map(head).collect();
+        let counter = signals.iter().position(|head| head.name == CYCLE);
+        let time = counter.zip(cycle);
+        let first = time.map(|_| Head::new(TIME_CHANNEL));
         Ok(Self {
-            heads: signals.map(head).collect(),
+            heads: first.into_iter().chain(signals).collect(),
             columns,
+            time,
         })
     }
 
+    /// Index of the signal of a column, and what its numbers are multiplied by.
+    fn signal(&self, column: usize) -> (usize, f64) {
+        match (self.time, column.checked_sub(1)) {
+            (Some(time), None) => time,
+            (Some(_), Some(signal)) => (signal, 1.0),
+            (None, _) => (column, 1.0),
+        }
+    }
+
     fn number(&self, column: usize, row: usize, holes: Holes) -> Result<f64, ReadProblem> {
-        let text = match self.columns[column][row] {
-            Cell::Number(value) => return Ok(value),
+        let (signal, factor) = self.signal(column);
+        let text = match self.columns[signal][row] {
+            Cell::Number(value) => return Ok(value * factor),
             Cell::Null if holes == Holes::Kept => return Ok(f64::NAN),
             Cell::Null => "null",
             Cell::Other => "text, or true or false, or a list",
@@ -137,6 +169,10 @@ impl Recording {
 impl Table for Recording {
     fn heads(&self) -> &[Head] {
         &self.heads
+    }
+
+    fn looks_like(&self) -> String {
+        "JSON, high-frequency signals".to_owned()
     }
 
     fn read(&mut self, wanted: &[usize], holes: Holes) -> Result<Vec<Vec<f64>>, ReadProblem> {

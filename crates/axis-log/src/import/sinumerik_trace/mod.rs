@@ -16,7 +16,9 @@
 //!
 //! Times are in seconds. A signal without `id` has that of its place, `f1` for the first. What
 //! a `rec` does not have is as it was: a value holds until the next, and before the first there
-//! is none. Numbers from [`NOT_MEASURED`](record::NOT_MEASURED) on stand for no value. Columns are
+//! is none. A `rec` that would have no value is left out: where `datapointCount` and `interval` of
+//! the signals count more instants than there are, or none is counted and `dropOuts` is 0, those
+//! between are put back and values hold there too. Numbers from [`NOT_MEASURED`](record::NOT_MEASURED) on stand for no value. Columns are
 //! named by `description` where it is there and no other has it, by `name` otherwise.
 
 mod record;
@@ -25,10 +27,10 @@ mod xml;
 use record::Record;
 
 use super::names::distinct;
-use super::{Format, ProposedColumn};
+use super::{Format, Found};
 use crate::log::TIME_CHANNEL;
 use crate::read_error::{Place, ReadProblem};
-use crate::table::{Budget, Fault, Head, Holes, Table};
+use crate::table::{Budget, Fault, Head, Holes, Note, Table};
 
 pub(super) const FORMAT: Format = Format {
     name: "SINUMERIK trace",
@@ -49,48 +51,40 @@ const SIGNALS: &[(&str, &[&str], &str)] = &[
     ("position_m", &["nckServoDataActPos"], "mm"),
 ];
 
-/// Those of the first axis that has one: two axes would be one channel.
-fn proposed(heads: &[&Head]) -> Vec<ProposedColumn> {
-    let is_one = |head: &&&Head, names: &[&str]| {
+fn proposed(heads: &[&Head]) -> Vec<Found> {
+    let one = |head: &&Head| {
         let address = head.address.as_deref().unwrap_or_default();
-        names.iter().any(|name| address.contains(name))
+        let is_it = |names: &[&str]| names.iter().any(|name| address.contains(name));
+        let (channel, _, unit) = SIGNALS.iter().find(|(_, names, _)| is_it(names))?;
+        Some(Found::of(axis_of(head), head, channel, unit))
     };
-    let any = |head: &&&Head| SIGNALS.iter().any(|(_, names, _)| is_one(head, names));
-    let Some(axis) = heads.iter().find(any).map(|head| axis_of(head)) else {
-        return Vec::new();
-    };
-    let one = |(channel, names, unit): &(&'static str, &[&str], &'static str)| {
-        let mut of_axis = heads.iter().filter(|head| axis_of(head) == axis);
-        let head = of_axis.find(|head| is_one(head, names))?;
-        Some(ProposedColumn {
-            source: head.name.clone(),
-            channel,
-            unit,
-        })
-    };
-    SIGNALS.iter().filter_map(one).collect()
+    heads.iter().filter_map(one).collect()
 }
 
-/// `[u1, 2]` of an address, its unit and the number of its axis.
+/// `u1, 2` of an address, its unit and the number of its axis.
 fn axis_of(head: &Head) -> &str {
     let address = head.address.as_deref().unwrap_or_default();
-    address.find('[').map_or("", |at| &address[at..])
+    let inside = address.find('[').map_or("", |at| &address[at..]);
+    inside.trim_matches(['[', ']'])
 }
 
 /// A trace; the time is its first column.
 struct Trace {
     heads: Vec<Head>,
     record: Record,
+    /// Rows that were put back.
+    held: usize,
     /// Size of the file, bytes.
     file: usize,
 }
 
 impl Trace {
     fn read(bytes: &[u8]) -> Result<Self, ReadProblem> {
-        let record = xml::read(&xml::text(bytes))?;
+        let mut record = xml::read(&xml::text(bytes))?;
         if record.times.is_empty() {
             return Err(ReadProblem::NoRows);
         }
+        let held = record.hold(Budget::of(bytes.len()).numbers());
         let names = record.signals.iter();
         let names: Vec<_> = names.map(|s| [&*s.description, &*s.name]).collect();
         let signals = distinct(&names).into_iter().zip(&record.signals);
@@ -102,11 +96,13 @@ impl Trace {
             }),
             address: Some(signal.name.clone()),
             unit: None,
+            stored: None,
         };
         let time = std::iter::once(Head::new(TIME_CHANNEL));
         Ok(Self {
             heads: time.chain(signals.map(head)).collect(),
             record,
+            held,
             file: bytes.len(),
         })
     }
@@ -129,6 +125,15 @@ impl Trace {
 impl Table for Trace {
     fn heads(&self) -> &[Head] {
         &self.heads
+    }
+
+    fn looks_like(&self) -> String {
+        "XML, values as they change".to_owned()
+    }
+
+    fn notes(&self) -> Vec<Note> {
+        let rows = self.held;
+        Vec::from_iter((rows > 0).then_some(Note::Held { rows }))
     }
 
     fn read(&mut self, wanted: &[usize], holes: Holes) -> Result<Vec<Vec<f64>>, ReadProblem> {

@@ -10,6 +10,9 @@ use crate::error::clip;
 /// (0x7FF0000000000000 is the least of them).
 pub(super) const NOT_MEASURED: f64 = 9_218_868_437_227_405_312.0;
 
+/// Farthest of a `rec` from the grid of its signals, intervals.
+const OFF: f64 = 0.25;
+
 const TWICE: &str = "a rec has an attribute twice";
 
 /// A signal, and the values that it took.
@@ -21,6 +24,10 @@ pub(super) struct Signal {
     changes: Vec<(usize, f64)>,
     /// The first value that is no number, and where it stands.
     pub other: Option<String>,
+    /// Time from one value to the next, s.
+    interval: Option<f64>,
+    /// How many values were taken.
+    count: Option<usize>,
 }
 
 impl Signal {
@@ -43,6 +50,8 @@ pub(super) struct Record {
     pub times: Vec<f64>,
     /// Index of the signal that has a key.
     keys: HashMap<String, usize>,
+    /// Whether the control says that it lost nothing.
+    is_whole: bool,
 }
 
 /// The attributes of an element, or why they cannot be read.
@@ -69,6 +78,8 @@ impl Record {
                 "id" => key = value.into_owned(),
                 "name" => signal.name = value.into_owned(),
                 "description" => signal.description = value.into_owned(),
+                "interval" => signal.interval = positive(&value),
+                "datapointCount" => signal.count = value.trim().parse().ok(),
                 _ => {}
             }
         }
@@ -78,6 +89,69 @@ impl Record {
         }
         self.signals.push(signal);
         Ok(())
+    }
+
+    /// The `frameHeader`.
+    pub(super) fn header<'a>(&mut self, attributes: impl Attributes<'a>) -> Result<(), String> {
+        for attribute in attributes {
+            let (name, value) = attribute?;
+            self.is_whole |= name == "dropOuts" && value.trim() == "0";
+        }
+        Ok(())
+    }
+
+    /// Puts back each `rec` that was left out because no signal changed: where the signals'
+    /// `datapointCount` counts it, or where none has one and no `dropOuts` are told. At most so
+    /// many are put back. How many were.
+    pub(super) fn hold(&mut self, most: usize) -> usize {
+        let Some((interval, places)) = self.places() else {
+            return 0;
+        };
+        let (rows, seen) = (self.times.len(), places.last().map_or(0, |last| last + 1));
+        let counted = self.signals.iter().filter_map(|signal| signal.count).max();
+        // A signal whose value did not change at the end has no last `rec`.
+        let whole = match counted {
+            Some(counted) if counted >= seen => counted,
+            None if self.is_whole => seen,
+            _ => return 0,
+        };
+        if whole <= rows || whole - rows > most {
+            return 0;
+        }
+        let mut times: Vec<f64> = (0..whole)
+            .map(|place| self.times[0] + place as f64 * interval)
+            .collect();
+        places
+            .iter()
+            .zip(&self.times)
+            .for_each(|(&place, &time)| times[place] = time);
+        self.times = times;
+        for signal in &mut self.signals {
+            signal
+                .changes
+                .iter_mut()
+                .for_each(|(rec, _)| *rec = places[*rec]);
+        }
+        whole - rows
+    }
+
+    /// The shortest interval of the signals, and where on it each `rec` lies; `None` where one
+    /// lies beside it.
+    fn places(&self) -> Option<(f64, Vec<usize>)> {
+        let intervals = self.signals.iter().filter_map(|signal| signal.interval);
+        let interval = intervals.min_by(f64::total_cmp)?;
+        let start = *self.times.first()?;
+        let mut places: Vec<usize> = Vec::with_capacity(self.times.len());
+        for time in &self.times {
+            let place = (time - start) / interval;
+            let is_beside = (place - place.round()).abs() > OFF;
+            let place = place.round() as usize;
+            if is_beside || places.last().is_some_and(|last| place <= *last) {
+                return None;
+            }
+            places.push(place);
+        }
+        Some((interval, places))
     }
 
     /// A `rec`.
@@ -118,6 +192,11 @@ impl Record {
         signal.changes.push((rec, value));
         Ok(())
     }
+}
+
+fn positive(text: &str) -> Option<f64> {
+    let number: Option<f64> = text.trim().parse().ok();
+    number.filter(|number| number.is_finite() && *number > 0.0)
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

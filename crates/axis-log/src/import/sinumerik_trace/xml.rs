@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 
-use super::super::without_mark;
 use super::record::{Attributes, Record};
 use crate::error::clip;
 use crate::read_error::ReadProblem;
@@ -22,7 +21,7 @@ const MOST_DEEP: usize = 32;
 
 /// A root with one of the elements of a trace in it.
 pub(super) fn is_it(bytes: &[u8]) -> bool {
-    let bytes = without_mark(bytes).trim_ascii_start();
+    let bytes = bytes.trim_ascii_start();
     if !bytes.starts_with(b"<") {
         return false;
     }
@@ -46,7 +45,6 @@ pub(super) fn is_it(bytes: &[u8]) -> bool {
 /// The text: UTF-8, and ISO-8859-1 where it is not. What is declared does not count, since
 /// files are declared as the one and are the other; numbers are the same in both.
 pub(super) fn text(bytes: &[u8]) -> Cow<'_, str> {
-    let bytes = without_mark(bytes);
     match std::str::from_utf8(bytes) {
         Ok(text) => Cow::Borrowed(text),
         Err(_) => bytes.iter().map(|byte| char::from(*byte)).collect(),
@@ -118,6 +116,7 @@ impl Document {
                     _ => Err("a second dataFrame: keep one, each is a recording".to_owned()),
                 }
             }
+            "frameHeader" if self.is_in(&[DATA, FRAME]) => self.record.header(attributes(tag)),
             "dataSignal" if self.is_in(&[DATA, FRAME]) => self.record.signal(attributes(tag)),
             "rec" if self.is_in(&[DATA, FRAME]) => self.record.rec(attributes(tag)),
             _ => Ok(()),

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use super::super::names::distinct;
+use super::blanks;
 use super::line::{NAME, fields, key, separator};
 use super::number::decimal;
 use super::refused;
@@ -11,9 +12,13 @@ use crate::csv_text::MAX_COLUMNS;
 use crate::error::CsvProblem;
 use crate::read_error::ReadProblem;
 
+/// Lines in which a header ends.
+const MOST_LINES: usize = 1000;
+const BLANKS: &str = "blanks separate the fields, and names have blanks, so that one cannot be told from the next: export with a tab or \";\"";
+
 const SYMBOL: &str = "SymbolName";
 /// Keys of the other lines that a header may have.
-const KEYS: &[&str] = &[
+pub(super) const KEYS: &[&str] = &[
     SYMBOL,
     "SymbolComment",
     "Data-Type",
@@ -54,17 +59,18 @@ pub(super) struct Header<'a> {
 impl<'a> Header<'a> {
     pub(super) fn read(text: &'a str) -> Result<Self, ReadProblem> {
         let separator = separator(text.as_bytes()).unwrap_or_default();
-        if separator == ' ' {
-            let reason =
-                "blanks separate the fields, and names may have blanks: export with a tab or \";\"";
-            return Err(refused(1, reason));
-        }
         let mut lines = text.lines().enumerate().skip(1);
         let Some((at, line)) = lines.find(|(_, line)| key(line, separator) == NAME) else {
             let reason = "no second line \"Name\" with the channels: export with a header";
             return Err(refused(1, reason));
         };
-        let names = names_of(line, separator, at as u64 + 1)?;
+        let names = match separator {
+            ' ' => {
+                let below: Vec<&str> = text.lines().skip(at + 1).take(MOST_LINES).collect();
+                blanks::names(line, &below).ok_or_else(|| refused(at as u64 + 1, BLANKS))?
+            }
+            _ => names_of(line, separator, at as u64 + 1)?,
+        };
         let mut header = Self::new(separator, names, at + 1);
         header.read_on(lines);
         header.name();

@@ -1,16 +1,13 @@
 //! Lines and their fields.
 
-use super::super::without_mark;
-
 /// Key of the line of names, and of the first line.
 pub(super) const NAME: &str = "Name";
 
-/// What separates fields. A blank may too, and is refused, since names have blanks.
+/// What separates fields, or a blank.
 const SEPARATORS: [char; 5] = ['\t', ';', ',', ':', ' '];
 
 /// Name, file and start of an export in its first three lines, with one separator.
 pub(super) fn is_it(bytes: &[u8]) -> bool {
-    let bytes = without_mark(bytes);
     let Some(separator) = separator(bytes) else {
         return false;
     };

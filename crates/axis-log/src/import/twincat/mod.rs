@@ -20,7 +20,7 @@
 //! EOF
 //! ```
 //!
-//! → is a tab, `;`, `,` or `:`. The key of a header line stands above a column of times, and
+//! → is a tab, `;`, `,`, `:` or a blank. The key of a header line stands above a column of times, and
 //! what is behind it, above channels that were sampled then ("timelines": for each channel,
 //! or for each sample time). Times are ms, or 100 ns ticks since 1601 ("full timestamp").
 //! A timeline that has ended leaves blank fields, or none where no other is behind it.
@@ -28,6 +28,7 @@
 //! A table has one time: that of the timeline with the most samples. Channels on others are
 //! among the heads, with a fault that says so.
 
+mod blanks;
 mod clock;
 mod header;
 mod line;
@@ -45,7 +46,7 @@ use super::Format;
 use crate::csv_text::Text;
 use crate::log::TIME_CHANNEL;
 use crate::read_error::{Place, ReadProblem};
-use crate::table::{Budget, Fault, Head, Holes, Table};
+use crate::table::{Budget, Fault, Head, Holes, Note, Table};
 
 pub(super) const FORMAT: Format = Format {
     name: "TwinCAT Scope",
@@ -103,6 +104,7 @@ impl<'a> Export<'a> {
             fault,
             address: header.symbol(field).map(str::to_owned),
             unit: None,
+            stored: None,
         });
         self.fields.push(field);
     }
@@ -141,6 +143,14 @@ impl<'a> Export<'a> {
 impl Table for Export<'_> {
     fn heads(&self) -> &[Head] {
         &self.heads
+    }
+
+    fn looks_like(&self) -> String {
+        "text, timelines of channels".to_owned()
+    }
+
+    fn notes(&self) -> Vec<Note> {
+        Vec::from_iter(self.rows.end_open().then_some(Note::NoLineEnd))
     }
 
     fn read(&mut self, wanted: &[usize], holes: Holes) -> Result<Vec<Vec<f64>>, ReadProblem> {

@@ -1,6 +1,6 @@
 //! What channels seem to be, by the names of the NC.
 
-use super::super::ProposedColumn;
+use super::super::Found;
 use crate::table::Head;
 
 /// Variables of an axis, in small letters
@@ -18,22 +18,21 @@ const VARIABLES: &[(&str, &str, &str)] = &[
 const NOT_BEHIND: &str = "modulo";
 const NOT_BEFORE: &str = "without";
 
-/// Those of the first axis that has one: two axes would be one channel.
-pub(super) fn proposed(heads: &[&Head]) -> Vec<ProposedColumn> {
-    let any = |head: &&Head| VARIABLES.iter().find_map(|(name, ..)| axis(head, name));
-    let Some(first) = heads.iter().find_map(any) else {
-        return Vec::new();
-    };
-    let one = |(name, channel, unit): &(&str, &'static str, &'static str)| {
-        let mut heads = heads.iter();
-        let head = heads.find(|head| axis(head, name).as_ref() == Some(&first))?;
-        Some(ProposedColumn {
-            source: head.name.clone(),
-            channel,
-            unit,
+/// Of each axis, in the order of its variables.
+pub(super) fn proposed(heads: &[&Head]) -> Vec<Found> {
+    let one = |head: &&Head| {
+        let mut variables = VARIABLES.iter().enumerate();
+        variables.find_map(|(place, (name, channel, unit))| {
+            let axis = axis(head, name)?.concat();
+            let axis = axis.trim_matches(['.', '_', ' ']);
+            Some((place, Found::of(axis, head, channel, unit)))
         })
     };
-    VARIABLES.iter().filter_map(one).collect()
+    let all: Vec<(usize, Found)> = heads.iter().filter_map(one).collect();
+    let first = |axis: &str| all.iter().position(|(_, found)| found.axis == axis);
+    let mut sorted: Vec<&(usize, Found)> = all.iter().collect();
+    sorted.sort_by_key(|(place, found)| (first(&found.axis), *place));
+    sorted.into_iter().map(|(_, found)| found.clone()).collect()
 }
 
 /// What stands before and behind the variable's name, where the channel has it; that is the

@@ -40,7 +40,7 @@ pub(super) struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// Refuses rows of another width than the header's, and a last one that may have been cut.
+    /// Refuses rows of another width than the header's.
     pub(super) fn behind(text: Text<'a>, header: &Header<'_>) -> Result<Self, ReadProblem> {
         let rows = Self {
             text: text.as_str(),
@@ -56,11 +56,13 @@ impl<'a> Rows<'a> {
         if is_first {
             return Err(ReadProblem::NoRows);
         }
-        let mut all = rows.text.lines().skip(rows.above);
-        if !all.any(|line| rows.is_end(line)) {
-            text.check_end()?;
-        }
         Ok(rows)
+    }
+
+    /// Whether the last row may have been cut: it has no line end, and no mark is behind it.
+    pub(super) fn end_open(&self) -> bool {
+        let mut all = self.text.lines().skip(self.above);
+        !self.text.ends_with('\n') && !all.any(|line| self.is_end(line))
     }
 
     fn is_end(&self, line: &str) -> bool {

@@ -175,7 +175,12 @@ fn names_that_occur_twice_are_told_apart() {
     let path = copy(folder.path(), "x.csv", &text);
     let proposal = propose(&path).unwrap().unwrap();
     assert_eq!(pairs(&proposal), [("X.ActPos", "position_m")]);
-    assert_eq!(proposal.others, ["Y.ActPos", "Name", "n", "n (2)"]);
+    assert_eq!(proposal.others, ["Name", "n", "n (2)"]);
+    let other = &proposal.other_axes[0].columns[0];
+    assert_eq!(
+        (other.source.as_str(), other.channel),
+        ("Y.ActPos", "position_m")
+    );
     assert_eq!(
         read(&text, &Mapping::default()).channel("M.t_s").unwrap(),
         [4.0]

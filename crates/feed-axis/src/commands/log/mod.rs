@@ -5,18 +5,19 @@ mod words;
 
 use std::path::{Path, PathBuf};
 
-use axis_log::intake::{IntakeError, Options as Intake, files, prepare};
+use axis_log::intake::{IntakeError, Options as Intake, PreparedLog, files, prepare};
 use axis_log::quality::{
     ChannelQuality, Clock, Finding, Relation, RelationLaw, channel_quality, clock, cross_check,
+    rate_of,
 };
 use axis_log::{
-    ColumnSummary, Log, Mapping, MappingProposal, ReadError, ReadProblem, columns, propose,
+    FileSummary, Log, Mapping, MappingProposal, ReadError, ReadProblem, columns, propose,
 };
 use axis_report::{Page, render};
 use axis_sim::Axis;
 use clap::{Args, Subcommand};
 use discrepancy::logs::{exact_channels, relations};
-use miette::{IntoDiagnostic, Report, Result, miette};
+use miette::{IntoDiagnostic, Result, miette};
 
 use crate::exit::wrong_use;
 use crate::output::{print, write_whole};
@@ -68,18 +69,24 @@ struct Inspect {
     report: Option<PathBuf>,
 }
 
-/// A log and all that was found.
+/// What was asked for, and all that was found.
 struct Seen {
     name: String,
+    /// Each of its files, as it is before any mapping.
+    files: Vec<(PathBuf, FileSummary)>,
+    /// The log; of what is none yet, what it lacks.
+    log: Result<SeenLog, String>,
+    /// Of each file that has more than its channels.
+    proposals: Vec<MappingProposal>,
+}
+
+/// A log as it was read.
+struct SeenLog {
     log: Log,
     clock: Clock,
     done: Vec<String>,
     channels: Vec<ChannelQuality>,
     findings: Vec<Finding>,
-    /// Of each file that has more than its channels.
-    proposals: Vec<MappingProposal>,
-    /// What its files hold, where no column is a channel yet.
-    columns: Vec<ColumnSummary>,
 }
 
 /// Runs the command.
@@ -138,9 +145,41 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
         ..Intake::default()
     };
     let paths = files(path);
-    let prepared = prepare(&paths, mapping, &[], options)
-        .map_err(|error| unmapped(&error, &paths, mapping))?;
-    let log = prepared.log;
+    let log = match prepare(&paths, mapping, &[], options) {
+        Ok(prepared) => Ok(seen(path, prepared, mapping, axis)?),
+        Err(error) if lacks_time(&error) => Err(LACKS_TIME.to_owned()),
+        Err(error) => return Err(miette!("{error}")),
+    };
+    let summary = |path: &PathBuf| Ok((path.clone(), columns(path).into_diagnostic()?));
+    Ok(Seen {
+        name: path.display().to_string(),
+        files: paths.iter().map(summary).collect::<Result<_>>()?,
+        log,
+        proposals: proposals(&paths, mapping)?,
+    })
+}
+
+/// What a file lacks that is read, and is no log.
+const LACKS_TIME: &str = "no log yet, as it has no time: map a column to \"t_s\" in [log] of the axis file, or give sample_rate_hz there";
+
+fn lacks_time(error: &IntakeError) -> bool {
+    matches!(
+        error,
+        IntakeError::Read(ReadError {
+            problem: ReadProblem::NoTime { .. },
+            ..
+        })
+    )
+}
+
+/// All that a log tells.
+fn seen(
+    path: &Path,
+    prepared: PreparedLog,
+    mapping: &Mapping,
+    axis: Option<&Axis>,
+) -> Result<SeenLog> {
+    let PreparedLog { log, done } = prepared;
     let clock = clock(&log).ok_or_else(|| {
         miette!(
             "{}: a single sample; at least two are needed",
@@ -161,44 +200,23 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
     };
     let names = log.channels()[1..].iter().map(|c| c.name.as_str());
     let channels = names.map(|name| channel_quality(&log, name, against(name)));
-    Ok(Seen {
-        name: path.display().to_string(),
-        clock,
-        done: prepared.done.iter().map(ToString::to_string).collect(),
+    let mut done: Vec<String> = done.iter().map(ToString::to_string).collect();
+    done.extend(rate_words(&clock));
+    Ok(SeenLog {
         channels: channels.collect::<Result<_, _>>().into_diagnostic()?,
         findings: cross_check(&log, mapping, &relations),
-        proposals: proposals(&paths, mapping)?,
-        columns: match log.channels().len() {
-            1 => all_columns(&paths)?,
-            _ => Vec::new(),
-        },
+        clock,
+        done,
         log,
     })
 }
 
-/// Why a log cannot be read, what its columns are where it only lacks a mapping, and what that
-/// could be.
-fn unmapped(error: &IntakeError, paths: &[PathBuf], mapping: &Mapping) -> Report {
-    let lacks_time = matches!(
-        error,
-        IntakeError::Read(ReadError {
-            problem: ReadProblem::NoTime { .. },
-            ..
-        })
-    );
-    let mut parts = vec![error.to_string()];
-    // A file that is damaged has said so.
-    if lacks_time && let Ok(columns) = all_columns(paths) {
-        parts.push(words::columns(&columns));
+/// Of a rate at which no log is read.
+fn rate_words(clock: &Clock) -> Option<String> {
+    match rate_of(clock.period) {
+        Ok(_) => None,
+        Err(why) => Some(format!("{why}; discover refuses it")),
     }
-    let proposals = proposals(paths, mapping).unwrap_or_default();
-    parts.extend(proposals.iter().map(words::proposed));
-    miette!("{}", parts.join("\n\n"))
-}
-
-fn all_columns(paths: &[PathBuf]) -> Result<Vec<ColumnSummary>> {
-    let of_each: Result<Vec<_>, _> = paths.iter().map(columns).collect();
-    Ok(of_each.into_diagnostic()?.concat())
 }
 
 /// What the mapping of these files could have besides.
@@ -207,6 +225,15 @@ fn proposals(paths: &[PathBuf], mapping: &Mapping) -> Result<Vec<MappingProposal
     for path in paths {
         if let Some(mut proposal) = propose(path).into_diagnostic()? {
             let is_mapped = |name: &str| mapping.columns.iter().any(|map| map.source == name);
+            // An axis of which something is mapped has been chosen.
+            if proposal
+                .columns
+                .iter()
+                .any(|column| is_mapped(&column.source))
+            {
+                proposal.other_axes.clear();
+                proposal.axis = None;
+            }
             proposal.columns.retain(|column| !is_mapped(&column.source));
             proposal.others.retain(|name| !is_mapped(name));
             if !proposal.is_empty() {

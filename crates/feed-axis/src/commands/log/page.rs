@@ -3,8 +3,8 @@
 use axis_log::quality::{ChannelQuality, CrossCheckVerdict};
 use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table};
 
-use super::Seen;
-use super::words::heading;
+use super::words::{file_words, heading};
+use super::{Seen, SeenLog};
 
 /// The page of one log.
 pub fn of_one(seen: &Seen) -> Page {
@@ -23,8 +23,22 @@ fn short(value: f64, unit: &str) -> Cell {
     Cell::quantity(value, unit, 4)
 }
 
-/// The sections of a log.
+/// The sections of what was asked for.
 fn sections(seen: &Seen, page: Page) -> Page {
+    match &seen.log {
+        Ok(log) => of_log(&seen.name, log, page),
+        Err(lacks) => {
+            let files = seen.files.iter();
+            let section = Section::new(format!("{}: {lacks}", seen.name));
+            page.section(files.fold(section, |section, (path, file)| {
+                section.paragraph(file_words(path, file))
+            }))
+        }
+    }
+}
+
+/// The sections of a log.
+fn of_log(name: &str, seen: &SeenLog, page: Page) -> Page {
     let mut checks = Section::new("What was done, and what channels say of each other");
     for line in &seen.done {
         checks = checks.notice(Notice::Info, line);
@@ -44,7 +58,7 @@ fn sections(seen: &Seen, page: Page) -> Page {
         let (time, samples) = (seen.log.time().to_vec(), channel.samples.clone());
         let mut figure = Figure::new(&channel.name, "time", &channel.name)
             .units("s", &channel.unit)
-            .linked(&seen.name)
+            .linked(name)
             .series(Series::line(&channel.name, time, samples))
             .caption(quality.to_string());
         // A straight line stands in a gap.
@@ -57,17 +71,17 @@ fn sections(seen: &Seen, page: Page) -> Page {
         }
         figures = figures.figure(figure);
     }
-    let title = format!("Log {}: table of channels", seen.name);
+    let title = format!("Log {name}: table of channels");
     page.section(
         Section::new(title)
-            .paragraph(heading(seen))
+            .paragraph(heading(name, seen))
             .table(table(seen)),
     )
     .section(checks)
     .section(figures)
 }
 
-fn table(seen: &Seen) -> Table {
+fn table(seen: &SeenLog) -> Table {
     let heads = [
         "channel",
         "unit",

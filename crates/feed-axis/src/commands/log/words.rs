@@ -1,13 +1,13 @@
 //! What `log` says: for people, and as JSON.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use axis_log::quality::{ChannelQuality, Colour, CrossCheckVerdict};
-use axis_log::{Channel, ColumnSummary, MappingProposal};
+use axis_log::{AxisProposal, Channel, ColumnSummary, FileSummary, MappingProposal};
 use serde::Serialize;
 
-use super::Seen;
+use super::{Seen, SeenLog};
 
 /// Logs as they were seen, and the pages that show them.
 #[derive(Serialize)]
@@ -16,12 +16,16 @@ pub struct Inspected<'a> {
     pages: Vec<&'a PathBuf>,
 }
 
-/// One log.
+/// One log, or what is none yet.
 #[derive(Serialize)]
 struct OneLog<'a> {
     #[serde(skip)]
     seen: &'a Seen,
     name: &'a str,
+    /// Its files, before any mapping.
+    files: Vec<OneFile<'a>>,
+    /// What it lacks to be a log; what follows is then 0 or empty.
+    lacks: Option<&'a str>,
     samples: usize,
     rate_hz: f64,
     duration_s: f64,
@@ -36,6 +40,15 @@ struct OneLog<'a> {
     imported: Vec<Imported<'a>>,
     /// What the files hold, where no column is a channel yet.
     columns: Vec<OneColumn<'a>>,
+}
+
+/// A file as it is before any mapping.
+#[derive(Serialize)]
+struct OneFile<'a> {
+    name: String,
+    looks_like: &'a str,
+    rows: usize,
+    columns: usize,
 }
 
 /// A column as its file has it.
@@ -57,9 +70,25 @@ struct Imported<'a> {
     format: &'static str,
     /// Lines for the axis file; none where all is mapped.
     proposed: Option<String>,
+    /// The sampling rate that the file has so.
+    rate_hz: Option<f64>,
+    /// Which axis the lines are of, where the file holds several.
+    axis: Option<&'a str>,
+    /// The other axes, to be chosen instead.
+    other_axes: Vec<OtherAxis<'a>>,
+    /// What the numbers say of names and units.
+    remarks: &'a [String],
     /// Columns of which the name does not tell what they are.
     others: &'a [String],
     caution: &'static str,
+}
+
+/// Another axis of a file.
+#[derive(Serialize)]
+struct OtherAxis<'a> {
+    axis: &'a str,
+    /// Lines for the axis file.
+    proposed: String,
 }
 
 /// One channel; what has no unit in its name is in the channel's.
@@ -84,6 +113,8 @@ struct OneChannel<'a> {
     noise_colour: Option<&'static str>,
     /// From where on its spectrum falls off.
     filtered_from_hz: Option<f64>,
+    /// Standard deviation of the samples' instants about their even stamps.
+    sample_jitter_s: Option<f64>,
     delay_s: Option<f64>,
     delay_against: Option<&'a str>,
     /// Limits that it runs into.
@@ -120,7 +151,37 @@ impl<'a> Inspected<'a> {
 
 impl<'a> OneLog<'a> {
     fn of(seen: &'a Seen) -> Self {
-        let channels = seen.channels.iter().zip(&seen.log.channels()[1..]);
+        let file = |(path, file): &'a (PathBuf, FileSummary)| OneFile {
+            name: path.display().to_string(),
+            looks_like: &file.looks_like,
+            rows: file.rows,
+            columns: file.all_columns,
+        };
+        let empty = Self {
+            seen,
+            name: &seen.name,
+            files: seen.files.iter().map(file).collect(),
+            lacks: seen.log.as_ref().err().map(String::as_str),
+            samples: 0,
+            rate_hz: 0.0,
+            duration_s: 0.0,
+            jitter_periods: 0.0,
+            missing_rows: 0,
+            done: &[],
+            channels: Vec::new(),
+            findings: Vec::new(),
+            imported: seen.proposals.iter().map(Imported::of).collect(),
+            columns: Vec::new(),
+        };
+        let all = seen.files.iter().flat_map(|(_, file)| &file.columns);
+        let columns = || all.clone().map(OneColumn::of).collect();
+        let Ok(log) = &seen.log else {
+            return Self {
+                columns: columns(),
+                ..empty
+            };
+        };
+        let channels = log.channels.iter().zip(&log.log.channels()[1..]);
         let found = |finding: &axis_log::quality::Finding| Found {
             verdict: match finding.verdict {
                 CrossCheckVerdict::Agrees => "agrees",
@@ -131,18 +192,19 @@ impl<'a> OneLog<'a> {
             proposed: finding.lines(),
         };
         Self {
-            seen,
-            name: &seen.name,
-            samples: seen.log.len(),
-            rate_hz: 1.0 / seen.clock.period,
-            duration_s: seen.clock.period * (seen.log.len() - 1) as f64,
-            jitter_periods: seen.clock.jitter,
-            missing_rows: seen.clock.missing_rows,
-            done: &seen.done,
-            channels: channels.map(|(q, c)| OneChannel::of(seen, q, c)).collect(),
-            findings: seen.findings.iter().map(found).collect(),
-            imported: seen.proposals.iter().map(Imported::of).collect(),
-            columns: seen.columns.iter().map(OneColumn::of).collect(),
+            samples: log.log.len(),
+            rate_hz: 1.0 / log.clock.period,
+            duration_s: log.clock.period * (log.log.len() - 1) as f64,
+            jitter_periods: log.clock.jitter,
+            missing_rows: log.clock.missing_rows,
+            done: &log.done,
+            channels: channels.map(|(q, c)| OneChannel::of(log, q, c)).collect(),
+            findings: log.findings.iter().map(found).collect(),
+            columns: match log.channels.is_empty() {
+                true => columns(),
+                false => Vec::new(),
+            },
+            ..empty
         }
     }
 }
@@ -185,18 +247,34 @@ impl fmt::Display for Columns<'_> {
     }
 }
 
-/// What a file holds, as text.
-pub fn columns(columns: &[ColumnSummary]) -> String {
-    let columns: Vec<OneColumn<'_>> = columns.iter().map(OneColumn::of).collect();
-    Columns(&columns).to_string().trim_end().to_owned()
+/// What a file is, in a line.
+pub fn file_words(path: &Path, file: &FileSummary) -> String {
+    let plural = |n: usize| if n == 1 { "" } else { "s" };
+    format!(
+        "{}: {}; {} row{}, {} column{}",
+        path.display(),
+        file.looks_like,
+        file.rows,
+        plural(file.rows),
+        file.all_columns,
+        plural(file.all_columns)
+    )
 }
 
 impl<'a> Imported<'a> {
     fn of(proposal: &'a MappingProposal) -> Self {
         let lines = proposal.lines();
+        let other = |axis: &'a AxisProposal| OtherAxis {
+            axis: &axis.axis,
+            proposed: axis.lines(),
+        };
         Self {
             format: proposal.format,
             proposed: (!lines.is_empty()).then_some(lines),
+            rate_hz: proposal.rate_hz,
+            axis: proposal.axis.as_deref(),
+            other_axes: proposal.other_axes.iter().map(other).collect(),
+            remarks: &proposal.remarks,
             others: &proposal.others,
             caution: proposal.caution,
         }
@@ -206,18 +284,30 @@ impl<'a> Imported<'a> {
 impl fmt::Display for Imported<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: {}", self.format, self.caution)?;
+        let mut remarks = self.remarks.iter();
+        remarks.try_for_each(|remark| writeln!(f, "- {remark}"))?;
         if !self.others.is_empty() {
             writeln!(f, "not known by name: {}", self.others.join(", "))?;
         }
-        match &self.proposed {
-            Some(lines) => writeln!(f, "  proposed, for the axis file:\n{lines}"),
-            None => Ok(()),
+        let at = match self.rate_hz {
+            Some(rate) => format!(", {rate:.4} Hz"),
+            None => String::new(),
+        };
+        match (&self.proposed, self.axis) {
+            (Some(lines), None) => writeln!(f, "  proposed, for the axis file{at}:\n{lines}")?,
+            (Some(lines), Some(axis)) => writeln!(
+                f,
+                "  proposed, for the axis file{at}; the file holds several axes, choose one.\n  Axis {axis}:\n{lines}"
+            )?,
+            (None, _) => {}
         }
+        let mut others = self.other_axes.iter();
+        others.try_for_each(|other| writeln!(f, "  or axis {}:\n{}", other.axis, other.proposed))
     }
 }
 
 impl<'a> OneChannel<'a> {
-    fn of(seen: &Seen, quality: &'a ChannelQuality, channel: &Channel) -> Self {
+    fn of(seen: &SeenLog, quality: &'a ChannelQuality, channel: &Channel) -> Self {
         let time = seen.log.time();
         let gaps = seen.log.missing(&channel.name).iter().map(|gap| Gap {
             from_s: time[gap.start],
@@ -247,6 +337,7 @@ impl<'a> OneChannel<'a> {
                 Colour::Rising => "rising",
             }),
             filtered_from_hz: quality.corner,
+            sample_jitter_s: quality.jitter.map(|jitter| jitter.rms),
             delay_s: delay.map(|delay| delay.seconds),
             delay_against: delay.map(|delay| delay.against.as_str()),
             stays_at: quality.saturation.iter().map(|s| s.value).collect(),
@@ -288,17 +379,11 @@ const HEADS: [&str; 9] = [
     "noise",
 ];
 
-/// What the mapping of a file could have.
-pub fn proposed(proposal: &MappingProposal) -> String {
-    Imported::of(proposal).to_string()
-}
-
 /// Sampling of a log, in a line.
-pub fn heading(seen: &Seen) -> String {
+pub fn heading(name: &str, seen: &SeenLog) -> String {
     let c = &seen.clock;
     format!(
-        "{}: {} samples at {:.4} Hz, {:.3} s; jitter up to {:.2} % of a period ({:.3} % RMS)",
-        seen.name,
+        "{name}: {} samples at {:.4} Hz, {:.3} s; jitter up to {:.2} % of a period ({:.3} % RMS)",
         seen.log.len(),
         1.0 / c.period,
         c.period * (seen.log.len() - 1) as f64,
@@ -309,7 +394,21 @@ pub fn heading(seen: &Seen) -> String {
 
 impl fmt::Display for OneLog<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", heading(self.seen))?;
+        let mut files = self.seen.files.iter();
+        files.try_for_each(|(path, file)| writeln!(f, "{}", file_words(path, file)))?;
+        match &self.seen.log {
+            Ok(log) => self.log(f, log)?,
+            Err(lacks) => writeln!(f, "{lacks}\n\n{}", Columns(&self.columns))?,
+        }
+        self.imported
+            .iter()
+            .try_for_each(|file| write!(f, "{file}"))
+    }
+}
+
+impl OneLog<'_> {
+    fn log(&self, f: &mut fmt::Formatter<'_>, log: &SeenLog) -> fmt::Result {
+        writeln!(f, "{}", heading(self.name, log))?;
         self.done
             .iter()
             .try_for_each(|line| writeln!(f, "- {line}"))?;
@@ -325,8 +424,8 @@ impl fmt::Display for OneLog<'_> {
             false => table(f, &rows)?,
         }
         writeln!(f)?;
-        let channels = self.seen.channels.iter();
-        channels.clone().try_for_each(|c| writeln!(f, "{c}"))?;
+        let mut channels = log.channels.iter();
+        channels.try_for_each(|c| writeln!(f, "{c}"))?;
         for found in &self.findings {
             let word = match found.verdict {
                 "contradicts" => "CONTRADICTS",
@@ -337,9 +436,7 @@ impl fmt::Display for OneLog<'_> {
                 writeln!(f, "  proposed, for the axis file:\n{lines}")?;
             }
         }
-        self.imported
-            .iter()
-            .try_for_each(|file| write!(f, "{file}"))
+        Ok(())
     }
 }
 
