@@ -3,8 +3,15 @@
 //! A Cortex-M4F computes `f32` in hardware and `f64` in software, so control
 //! laws are generic over their scalar. [`Scalar`] has the arithmetic that they
 //! need and the elementary functions of [`libm`], which are the same to the bit
-//! on every platform and need no `std`. Sine and cosine of an `f32` are computed in
-//! `f32`, where those of `libm` would be in `f64`; so is its cube root still.
+//! on every platform and need no `std`. Of an `f32`, sine, cosine and cube root are this
+//! crate's own, in `f32` and whole numbers, since those of `libm` compute in `f64`.
+//!
+//! # Errors
+//! Of every number, however large, as measured on a hundred million of them, relative
+//! to the result (a subnormal one: to the least normal number), in ε = 2⁻²³ for `f32`:
+//! square root 0.5, cube root 0.51, eˣ 0.63, eˣ − 1 0.69, logarithm 0.69, hyperbolic
+//! tangent 1.4, sine and cosine 1.02. Those of an `f64` are off by 1 ε, ε = 2⁻⁵², or
+//! less; its hyperbolic tangent by 2 ε.
 //!
 //! ```
 //! use axis_scalar::Scalar;
@@ -27,8 +34,8 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 
 mod single;
 
-use libm::sincos as double_sin_cos;
-use single::sin_cos as single_sin_cos;
+use libm::{cbrt as double_cbrt, sincos as double_sin_cos};
+use single::{cbrt as single_cbrt, sin_cos as single_sin_cos};
 
 mod sealed {
     pub trait Sealed {}
@@ -109,7 +116,7 @@ pub trait Scalar:
     #[must_use]
     fn sqrt(self) -> Self;
 
-    /// Sine and cosine of an angle in rad.
+    /// Sine and cosine of an angle in rad, of any size; NaN of an infinite one.
     #[must_use]
     fn sin_cos(self) -> (Self, Self);
 
@@ -226,7 +233,7 @@ macro_rules! scalar {
 
             #[inline]
             fn cbrt(self) -> Self {
-                libm::$cbrt(self)
+                $cbrt(self)
             }
 
             #[inline]
@@ -260,7 +267,7 @@ scalar!(
     expm1f,
     logf,
     tanhf,
-    cbrtf,
+    single_cbrt,
     floorf,
     ceilf
 );
@@ -272,7 +279,7 @@ scalar!(
     expm1,
     log,
     tanh,
-    cbrt,
+    double_cbrt,
     floor,
     ceil
 );
@@ -283,46 +290,4 @@ scalar!(
 struct Readme;
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn near(single: f32, double: f64, units: f64) -> bool {
-        let scale = double.abs().max(f64::from(f32::MIN_POSITIVE));
-        (f64::from(single) - double).abs() <= units * f64::from(f32::EPSILON) * scale
-    }
-
-    proptest! {
-        /// Every function of an `f32` is that of the same `f64`, to its rounding.
-        #[test]
-        fn single_precision_follows_double(x in -20.0_f32..20.0) {
-            let wide = f64::from(x);
-            prop_assert!(near(Scalar::exp(x), Scalar::exp(wide), 1.0));
-            prop_assert!(near(Scalar::exp_m1(x), Scalar::exp_m1(wide), 1.0));
-            prop_assert!(near(Scalar::tanh(x), Scalar::tanh(wide), 2.0));
-            prop_assert!(near(Scalar::cbrt(x), Scalar::cbrt(wide), 1.0));
-            prop_assert!(near(Scalar::sqrt(x.abs()), Scalar::sqrt(wide.abs()), 0.5));
-            prop_assert!(near(Scalar::ln(x.abs()), Scalar::ln(wide.abs()), 1.0));
-            let ((s, c), (sin, cos)) = (Scalar::sin_cos(x), Scalar::sin_cos(wide));
-            prop_assert!(near(s, sin, 1.0) && near(c, cos, 1.0));
-            prop_assert_eq!(f64::from(Scalar::floor(x)), Scalar::floor(wide));
-            prop_assert_eq!(f64::from(Scalar::ceil(x)), Scalar::ceil(wide));
-            prop_assert_eq!(f32::of(wide), x);
-            prop_assert_eq!(x.to_f64(), wide);
-        }
-
-        /// Double precision against the standard library's functions.
-        #[test]
-        fn double_precision_is_that_of_the_standard_library(x in -20.0_f64..20.0) {
-            let close = |a: f64, b: f64| (a - b).abs() <= 2.0 * f64::EPSILON * b.abs();
-            prop_assert!(close(Scalar::exp(x), f64::exp(x)));
-            prop_assert!(close(Scalar::exp_m1(x), f64::exp_m1(x)));
-            prop_assert!(close(Scalar::tanh(x), f64::tanh(x)));
-            prop_assert!(close(Scalar::ln(x.abs()), f64::ln(x.abs())));
-            prop_assert_eq!(Scalar::sqrt(x.abs()), f64::sqrt(x.abs()));
-            prop_assert_eq!(Scalar::floor(x), f64::floor(x));
-            let (s, c) = Scalar::sin_cos(x);
-            prop_assert!(close(s, f64::sin(x)) && close(c, f64::cos(x)));
-        }
-    }
-}
+mod tests;

@@ -1,6 +1,6 @@
 #![no_std]
-//! Cascade-forward neural networks: evaluation, analytic Jacobian and
-//! Levenberg–Marquardt training.
+//! Cascade-forward neural networks: evaluation, and Levenberg–Marquardt training
+//! with exact derivatives.
 //!
 //! # The problem
 //!

@@ -93,12 +93,16 @@ impl<T: Scalar> FieldWeakening<T> {
     /// One period: the d current reference (A) of the next cycle
     /// ([`crate::OperatingPoint::id_ref`]), from the `voltage` (V) that this
     /// cycle commands, limited or not, and the length U_max (V) that it could
-    /// have had ([`crate::Servo::available_voltage`]). A NaN passes through.
+    /// have had ([`crate::Servo::available_voltage`]). A NaN passes through
+    /// to this cycle's reference and leaves the state as it was.
     #[inline]
     pub fn update(&self, state: &mut FieldWeakeningState<T>, voltage: Dq<T>, most: T) -> T {
         let left = self.parameters.voltage_share * most - voltage.dot(voltage).sqrt();
         let next = state.id_ref + self.ki_period * left;
-        state.id_ref = clamp(next, -self.parameters.current, T::ZERO);
-        state.id_ref
+        let id_ref = clamp(next, -self.parameters.current, T::ZERO);
+        if !id_ref.is_nan() {
+            state.id_ref = id_ref;
+        }
+        id_ref
     }
 }

@@ -36,13 +36,13 @@
 //! - [`inverter`]: averaged and switched, with dead time.
 //!
 //! Laws are immutable and validated once; states are plain structs of the
-//! caller's. After construction nothing fails, panics or allocates; a NaN
-//! passes through to the outputs.
+//! caller's. After construction nothing fails, panics or allocates. A NaN passes
+//! through to the outputs of its cycle; controllers do not keep it, so that the next
+//! sound sample has a sound output (a motor's currents, being computed, do).
 //!
 //! All types are generic over [`axis_scalar::Scalar`], `f64` unless said otherwise.
 //! In `f32` nothing is computed in `f64`, which many controllers have in
-//! software only; the sine and cosine of the Park transform are the crate's
-//! own there.
+//! software only; nor do sine and cosine of the Park transform, those of axis-scalar.
 //!
 //! # Example
 //! A step of 5 A in the q current, with the motor held:

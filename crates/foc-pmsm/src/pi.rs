@@ -28,7 +28,9 @@ pub enum AntiWindup<T = f64> {
     /// Back-calculation: the integral is moved by (limited − unlimited
     /// output) T_s / T_t in each period (Åström and Rundqwist, "Integrator
     /// windup and how to avoid it", American Control Conference 1989,
-    /// 1693–1698).
+    /// 1693–1698). What it was moved by is forgotten with the time constant
+    /// kp/ki of the integral; a law with ki = 0 has none to move, and keeps
+    /// what it is given.
     BackCalculation {
         /// Tracking time T_t, s, at least one period.
         tracking_time: T,
@@ -45,8 +47,8 @@ pub struct Pi<T = f64> {
     parameters: PiParameters<T>,
     anti_windup: AntiWindup<T>,
     ki_period: T,
-    /// T_s / T_t of back-calculation; negative for conditional integration.
-    tracking: T,
+    /// T_s / T_t of back-calculation, where there is an integral to move.
+    tracking: Option<T>,
 }
 
 /// The memory of one PI controller; zero at rest.
@@ -79,7 +81,7 @@ impl<T: Scalar> Pi<T> {
             parameters,
             anti_windup: AntiWindup::Conditional,
             ki_period: parameters.ki * parameters.period,
-            tracking: -T::ONE,
+            tracking: None,
         })
     }
 
@@ -90,11 +92,12 @@ impl<T: Scalar> Pi<T> {
     /// one period (the correction would overshoot).
     pub fn with_anti_windup(self, anti_windup: AntiWindup<T>) -> Result<Self, FocError> {
         let tracking = match anti_windup {
-            AntiWindup::Conditional => -T::ONE,
+            AntiWindup::Conditional => None,
             AntiWindup::BackCalculation { tracking_time: t } => {
                 let ok = t.is_finite() && t >= self.parameters.period;
                 let valid = "finite and at least one period";
-                self.parameters.period / check(ok, "tracking_time", t, valid)?
+                let share = self.parameters.period / check(ok, "tracking_time", t, valid)?;
+                (self.parameters.ki > T::ZERO).then_some(share)
             }
         };
         Ok(Self {
@@ -125,7 +128,9 @@ impl<T: Scalar> Pi<T> {
 
     /// As [`Pi::update`], with a `feed_forward` (output unit) added before
     /// the limit, so that anti-windup sees it. A NaN passes through to the
-    /// output instead of being hidden by the limit.
+    /// output instead of being hidden by the limit; the integral passes over
+    /// a period whose numbers would not leave it finite, so that the output is
+    /// sound again as soon as they are.
     #[inline]
     pub fn update_with_feed_forward(
         &self,
@@ -139,18 +144,19 @@ impl<T: Scalar> Pi<T> {
         let integral = state.integral + self.ki_period * error;
         let output = self.parameters.kp * error + integral + feed_forward;
         let saturated = output.abs() > limit;
-        if !saturated {
-            state.integral = integral;
-            return PiOutput {
-                value: output,
-                saturated,
-            };
-        }
-        let value = limit.copysign(output);
-        if self.tracking >= T::ZERO {
-            state.integral = integral + self.tracking * (value - output);
-        } else if error * output <= T::ZERO {
-            state.integral = integral;
+        let value = if saturated {
+            limit.copysign(output)
+        } else {
+            output
+        };
+        let next = match self.tracking {
+            _ if !saturated => integral,
+            Some(share) => integral + share * (value - output),
+            None if error * output <= T::ZERO => integral,
+            None => state.integral,
+        };
+        if next.is_finite() {
+            state.integral = next;
         }
         PiOutput { value, saturated }
     }

@@ -5,9 +5,9 @@ use crate::axis::rigid::Rigid;
 use crate::axis::{PERIOD, cast, drawn_current_loop, gains, limits, motor};
 use axis_scalar::Scalar;
 use foc_pmsm::{
-    Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState, FocError, MotorParameters,
-    OperatingPoint, Pmsm, Servo, ServoCommand, ServoCorrection, ServoGains, ServoLimits,
-    ServoReference, ServoState,
+    Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState, FocError, Measurement,
+    MotorParameters, OperatingPoint, Pmsm, Servo, ServoCommand, ServoCorrection, ServoGains,
+    ServoLimits, ServoReference, ServoState,
 };
 use proptest::prelude::*;
 
@@ -28,6 +28,62 @@ fn spindle(limits: &ServoLimits) -> Servo {
         ..gains()
     };
     cast::servo(&gains, limits, PERIOD).unwrap()
+}
+
+/// A voltage that is no number costs its own cycle: the next reference is that of a
+/// law that has passed over it.
+#[test]
+fn a_voltage_that_is_no_number_does_not_stay() {
+    let law = FieldWeakening::new(parameters()).unwrap();
+    let most = 312.0;
+    let q = |q| Dq { d: 0.0, q };
+    let mut sound = FieldWeakeningState::default();
+    law.update(&mut sound, q(most), most);
+    let mut state = sound;
+    assert!(sound.id_ref < 0.0);
+    assert!(law.update(&mut state, q(f64::NAN), most).is_nan());
+    assert!(law.update(&mut state, q(most), f64::NAN).is_nan());
+    assert_eq!(state, sound);
+    let next = law.update(&mut sound, q(most), most);
+    assert_eq!(law.update(&mut state, q(most), most), next);
+}
+
+/// The same of the whole cascade, by each of its measurements, references and
+/// corrections.
+#[test]
+fn a_measurement_that_is_no_number_does_not_stay_in_the_cascade() {
+    let servo = cast::servo(&gains(), &limits(), PERIOD).unwrap();
+    for place in 0..9 {
+        let mut numbers = [1e-6, 0.3, 0.2, -0.1, 2e-6, 0.31, 1e-7, 0.01, 0.02];
+        let cycle = |numbers: [f64; 9], state: &mut ServoState| {
+            let [position, motor_speed, d, q, p_ref, v_ref, offset, speed, iq] = numbers;
+            let m = Measurement {
+                position,
+                motor_speed,
+                current: Dq { d, q },
+            };
+            let r = ServoReference {
+                position: p_ref,
+                motor_speed: v_ref,
+            };
+            let c = ServoCorrection {
+                position_offset: offset,
+                speed,
+                iq,
+            };
+            servo.cycle(state, &m, &r, &c)
+        };
+        let mut state = ServoState::settled(0.5, Dq { d: 1.0, q: 20.0 });
+        let good = numbers;
+        numbers[place] = f64::NAN;
+        let bad = cycle(numbers, &mut state);
+        assert!(bad.voltage.d.is_nan() || bad.voltage.q.is_nan(), "{place}");
+        let next = cycle(good, &mut state);
+        assert!(
+            next.voltage.d.is_finite() && next.voltage.q.is_finite(),
+            "{place}"
+        );
+    }
 }
 
 struct Sample {

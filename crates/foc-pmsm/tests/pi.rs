@@ -122,15 +122,49 @@ fn anti_windup_limits_overshoot() {
     assert!(with_back < 0.5 * without, "{with_back} against {without}");
 }
 
+/// One sample that is no number, or infinite, in any argument and with any
+/// anti-windup: it is seen in its own period, and the next ones are those of a law
+/// that has passed over that period.
 #[test]
-fn nan_passes_through() {
-    let mut state = PiState::default();
-    assert!(
-        conditional()
-            .update(&mut state, f64::NAN, NONE)
-            .value
-            .is_nan()
-    );
+fn a_bad_sample_is_seen_and_does_not_stay() {
+    for law in [conditional(), tracking(0.05), tracking(1e-2)] {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut state = PiState { integral: 1.5 };
+            let out = law.update(&mut state, bad, NONE);
+            assert!(out.value.is_nan() == bad.is_nan(), "{bad}: {out:?}");
+            assert_eq!(state.integral, 1.5, "{bad}");
+            // 2·0.25 + 1.5 + 50·0.25·0.01.
+            assert_eq!(law.update(&mut state, 0.25, NONE).value, 2.125);
+            let mut state = PiState { integral: 1.5 };
+            let out = law.update_with_feed_forward(&mut state, 0.0, bad, NONE);
+            assert!(out.value.is_nan() == bad.is_nan(), "{bad}: {out:?}");
+            assert_eq!(law.update(&mut state, 0.0, NONE).value, 1.5, "{bad}");
+        }
+    }
+}
+
+/// A proportional law has no integral for back-calculation to move: the output is
+/// kp e within the limit, whatever was before.
+#[test]
+fn without_an_integral_the_output_follows_the_error_alone() {
+    let proportional = Pi::new(PiParameters {
+        kp: 1.0,
+        ki: 0.0,
+        limit: 5.0,
+        period: 1e-2,
+    })
+    .unwrap();
+    for periods in [1.0, 3.0, 50.0] {
+        let kind = AntiWindup::BackCalculation {
+            tracking_time: periods * 1e-2,
+        };
+        let law = proportional.with_anti_windup(kind).unwrap();
+        let mut state = PiState::default();
+        for (error, output) in [(6.0, 5.0), (0.0, 0.0), (-40.0, -5.0), (3.0, 3.0)] {
+            assert_eq!(law.update(&mut state, error, NONE).value, output);
+        }
+        assert_eq!(state, PiState::default());
+    }
 }
 
 #[test]

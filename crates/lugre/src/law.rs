@@ -8,7 +8,7 @@ use crate::parameters::{LugreError, Parameters};
 ///
 /// The bristle deflection `z` is the caller's, so that snapshots, several
 /// contacts and Monte Carlo runs need nothing from this type. No method
-/// fails or allocates; a NaN in gives a NaN out.
+/// fails or allocates; a NaN in gives a NaN out, of a law without friction too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -173,9 +173,16 @@ impl<T: Exponential> LuGre<T> {
     #[inline]
     pub fn coulomb_share(&self, z: T) -> T {
         if self.coulomb_bristle == T::ZERO {
-            return T::ZERO;
+            // Not 0 itself, so that NaN stays; ∞ · 0 would not be 0.
+            return if z.is_nan() { z } else { T::ZERO };
         }
-        (z / self.coulomb_bristle).max(-T::ONE).min(T::ONE)
+        // Comparisons, as `max` and `min` would hide NaN.
+        let share = z / self.coulomb_bristle;
+        if share.abs() > T::ONE {
+            T::ONE.copysign(share)
+        } else {
+            share
+        }
     }
 
     /// `dz/dt`, equation (1), rad/s.

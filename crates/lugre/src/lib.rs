@@ -56,8 +56,8 @@
 //! # Features
 //! Without features the crate is `no_std` and allocates nothing. `identify`
 //! (on by default, needs `std`) finds the six parameters from records, see
-//! the module `identify`. `serde` reads and writes [`Parameters`] and
-//! [`LuGre`], validated on the way in.
+//! the module `identify`. `serde` reads and writes [`Parameters`], plain data, and
+//! [`LuGre`], which is validated on the way in.
 //!
 //! # What this crate does not know
 //! Nothing of machines, of where friction acts, of transmissions, control,

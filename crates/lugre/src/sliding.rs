@@ -28,6 +28,9 @@ impl<T: Exponential> LuGre<T> {
     /// their damping, and the result is `σ1 + σ2`.
     #[must_use]
     pub fn vibration_damping(&self, speed: T, frequency: T) -> T {
+        if speed.is_nan() || frequency.is_nan() {
+            return T::NAN;
+        }
         let p = self.parameters();
         let speed = speed.abs();
         let level = self.level(speed);

@@ -63,6 +63,9 @@ impl<T: Exponential> LuGre<T> {
     #[must_use]
     pub fn steepness(&self, h: T) -> T {
         let p = self.parameters();
+        if h.is_nan() {
+            return h;
+        }
         if self.bristle_stiffness() == T::ZERO {
             return p.viscous;
         }
