@@ -114,13 +114,16 @@ pub struct Stop {
     pub torque: f64,
     /// How the load moves.
     pub freedom: Freedom,
+    /// Where the load may be: the stroke, as far as the mechanism reaches, m or rad.
+    pub stroke: [f64; 2],
 }
 
 /// A run that did not come to its end.
 #[derive(Clone, Copy, Debug, Error)]
 #[error(
-    "the simulation stopped at t = {} s because {reason}: load at {} {unit}, tracking error {} {unit}, motor speed {} rad/s, motor torque {} N·m",
+    "the simulation stopped at t = {} s because {reason}: load at {} {unit}, tracking error {} {unit}, motor speed {} rad/s, motor torque {} N·m; valid: {}",
     SixDigits(*.time), SixDigits(.at.position), SixDigits(.at.error), SixDigits(.at.motor_speed), SixDigits(.at.torque),
+    .reason.valid(.at),
     unit = .at.freedom.unit()
 )]
 pub struct RunStopped {
@@ -130,6 +133,38 @@ pub struct RunStopped {
     pub reason: StopReason,
     /// What the load was doing then.
     pub at: Stop,
+}
+
+impl StopReason {
+    /// What would not have been given up for this reason.
+    fn valid(&self, at: &Stop) -> String {
+        match self {
+            Self::NotFinite => {
+                "a loop that is stable (smaller gains in [control]), or a shorter step in [simulation]"
+                    .to_owned()
+            }
+            Self::FollowingError(..) => {
+                "a loop that is stable, a motion that the motor can follow, or a greater limit".to_owned()
+            }
+            Self::LeftStroke => {
+                let [from, to] = at.stroke.map(SixDigits);
+                format!(
+                    "a motion from {from} to {to} {}, where the load may be ([stroke]), and a load that the \
+                     motor can hold there",
+                    at.freedom.unit()
+                )
+            }
+            Self::LoadNotFound => {
+                "a shorter step in [simulation], a greater mass of the load, or effects of the load that are \
+                 smaller or steadier"
+                    .to_owned()
+            }
+            Self::TooLong(_) => format!(
+                "at most {} internal steps, by a shorter motion, a lower control frequency or a longer step",
+                SixDigits(MOST_STEPS)
+            ),
+        }
+    }
 }
 
 impl std::fmt::Display for StopReason {
@@ -151,7 +186,7 @@ impl std::fmt::Display for StopReason {
             ),
             Self::TooLong(steps) => write!(
                 f,
-                "the motion takes {} internal steps, more than {} (a shorter motion, a lower control frequency or a longer step would be valid)",
+                "the motion takes {} internal steps, more than {}",
                 SixDigits(*steps),
                 SixDigits(MOST_STEPS)
             ),

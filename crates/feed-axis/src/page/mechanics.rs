@@ -19,7 +19,10 @@ pub fn friction(context: &Context, results: &Results) -> Section {
             Cell::quantity(p.value, &p.unit, 5),
             Cell::quantity(p.standard_error, &p.unit, 2),
             Cell::quantity(p.truth, &p.unit, 5),
-            Cell::text(format!("{:+.2} %", 100.0 * (p.value / p.truth - 1.0))),
+            match p.truth {
+                0.0 => Cell::Missing,
+                truth => Cell::text(format!("{:+.2} %", 100.0 * (p.value / truth - 1.0))),
+            },
         ]);
     }
     let runs = |name: &str, left_out: bool| {
@@ -78,14 +81,15 @@ pub fn friction(context: &Context, results: &Results) -> Section {
 
 /// Constant-speed runs.
 pub fn vibration(results: &Results) -> Section {
+    let unit = results.validation.unit;
     let mut table = Table::new(
         "Tracking error at constant speed, last second of four",
         [
-            "Speed, mm/s",
-            "peak to peak, µm",
-            "frequency, Hz",
-            "peak to peak, µm",
-            "frequency, Hz",
+            format!("Speed, {}/s", unit.thousand()),
+            format!("peak to peak, {unit}"),
+            "frequency, Hz".to_owned(),
+            format!("peak to peak, {unit}"),
+            "frequency, Hz".to_owned(),
         ],
     )
     .group("", 1)
@@ -93,34 +97,34 @@ pub fn vibration(results: &Results) -> Section {
     .group("Machine (simulated)", 2);
     let cells = |v: &Vibration| {
         [
-            Cell::number(v.peak_to_peak_um, 2),
+            Cell::number(*v.peak_to_peak, 2),
             v.frequency_hz
                 .map_or(Cell::text("quiet"), |f| Cell::number(f, 1)),
         ]
     };
     let v = &results.validation;
     for (a, b) in v.vibration_model.iter().zip(&v.vibration_machine) {
-        let speed = [Cell::number(a.speed_mm_s, 0)];
+        let speed = [Cell::number(*a.speed, 0)];
         table = table.row(speed.into_iter().chain(cells(a)).chain(cells(b)));
     }
     Section::new("Self-excited vibration")
-        .paragraph("Where friction falls with speed it feeds the table's vibration on the nut's stiffness.")
+        .paragraph("Where friction falls with speed it feeds a vibration of the load on the drive's stiffness.")
         .table(table)
 }
 
 /// Frequencies against position.
 pub fn modes(results: &Results) -> Section {
     let modes = &results.validation.modes;
-    let x: Vec<f64> = modes.iter().map(|m| m.position_m).collect();
+    let x: Vec<f64> = modes.iter().map(|m| *m.position).collect();
     let count = modes.first().map_or(0, |m| m.frequencies_hz.len());
     if count == 0 {
         return Section::new("Modes")
             .paragraph("This mechanism moves as one with its motor: it has no natural frequency.");
     }
-    let mut figure = Figure::new("Natural frequencies", "table position", "frequency")
-        .units("m", "Hz")
+    let mut figure = Figure::new("Natural frequencies", "position of the load", "frequency")
+        .units(results.validation.unit.million(), "Hz")
         .log_y()
-        .alt("Natural frequencies of the drive against the table's position");
+        .alt("Natural frequencies of the drive against the load's position");
     for mode in 0..count {
         let y = modes.iter().map(|m| m.frequencies_hz[mode]).collect();
         figure = figure.series(Series::line(format!("mode {}", mode + 1), x.clone(), y));
