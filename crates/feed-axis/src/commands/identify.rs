@@ -3,6 +3,7 @@
 use std::fmt;
 
 use axis_pipeline::identification::{IdentificationPlan, Identified, identify};
+use axis_pipeline::measured::{TrainingRms, ValidationRms};
 use axis_pipeline::transfer::{TransferPlan, identify_transfer};
 use axis_sim::friction::FrictionUnits;
 use compensator::TransferFunctionModel;
@@ -67,10 +68,12 @@ pub struct Transfer {
     pub poles: Vec<f64>,
     /// Coefficient of each pole, s².
     pub coefficients: Vec<f64>,
-    /// RMS of what it misses on the motions it was fitted to, µm.
-    pub training_rms_um: f64,
-    /// RMS of what it misses on other motions, µm.
-    pub validation_rms_um: f64,
+    /// RMS of what it misses on the motions it was fitted to.
+    #[serde(flatten)]
+    pub training_rms: TrainingRms<f64>,
+    /// RMS of what it misses on other motions.
+    #[serde(flatten)]
+    pub validation_rms: ValidationRms<f64>,
     /// How many candidates were tried.
     pub candidates: usize,
 }
@@ -106,6 +109,7 @@ pub fn run(context: &Context) -> Result<()> {
         "transfer",
         2 * (transfer.training + transfer.validation) as u64,
     );
+    let unit = context.unit();
     let fit = |feedforward| {
         let fit = identify_transfer(&context.axis, &transfer, feedforward, || progress.inc(1))
             .into_diagnostic()?;
@@ -114,8 +118,8 @@ pub fn run(context: &Context) -> Result<()> {
             direct: fit.model.direct(),
             poles: fit.model.poles().to_vec(),
             coefficients: fit.model.coefficients().to_vec(),
-            training_rms_um: 1e6 * fit.chosen.training_rms,
-            validation_rms_um: 1e6 * fit.chosen.validation_rms,
+            training_rms: TrainingRms::new(unit, 1e6 * fit.chosen.training_rms),
+            validation_rms: ValidationRms::new(unit, 1e6 * fit.chosen.validation_rms),
             candidates: fit.trials.len(),
         })
     };
