@@ -7,22 +7,16 @@
 //! data/axes/emps.toml) beside the project, in shared/data/emps, or name their
 //! folder in EMPS_DATA.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use axis_log::read_log;
 use axis_sim::Axis;
 use discrepancy::{Discovery, EffectFound, LogSet, Settings, Verdict, discovery, search};
 
+use crate::needs;
+
 /// Published force gain, N/V.
 const GAIN: f64 = 35.15065188;
-
-fn folder() -> Option<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let named = std::env::var_os("EMPS_DATA").map(PathBuf::from);
-    let beside = root.join("../shared/data/emps");
-    let all = named.into_iter().chain([beside]);
-    all.into_iter().find(|f| f.join("emps.csv").is_file())
-}
 
 fn discover(folder: &Path) -> Discovery {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/axes/emps.toml");
@@ -43,10 +37,8 @@ fn off(value: f64, published: f64) -> f64 {
 
 #[test]
 fn published_friction_of_a_real_stage_is_found_from_mass_and_viscous_friction_alone() {
-    let Some(folder) = folder() else {
-        eprintln!(
-            "skipped: no EMPS data. Get them from nonlinearbenchmark.org, and name their folder in EMPS_DATA"
-        );
+    // Of nonlinearbenchmark.org.
+    let Some(folder) = needs::named_or_shared("EMPS_DATA", "data/emps") else {
         return;
     };
     let found = discover(&folder);

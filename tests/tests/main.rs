@@ -5,6 +5,8 @@ mod bench;
 mod emps;
 mod identification;
 mod independent_logs;
+#[path = "../needs.rs"]
+mod needs;
 mod readme;
 mod rigid_stand_in;
 mod slide;

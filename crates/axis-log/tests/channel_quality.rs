@@ -1,7 +1,6 @@
 //! What can be told of a channel alone, and of two together.
 
 use std::f64::consts::{PI, TAU};
-use std::path::Path;
 
 use axis_log::quality::{
     ChannelQuality, Colour, CrossCheckVerdict, Relation, RelationLaw, channel_quality, clock,
@@ -310,13 +309,7 @@ fn a_factor_that_no_unit_explains_is_unsure() {
 }
 
 fn measured(file: &str) -> Option<Log> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../../../shared/data")
-        .join(file);
-    if !path.exists() {
-        eprintln!("skipped: no measured data at {}", path.display());
-        return None;
-    }
+    let path = crate::needs::shared(&format!("data/{file}"))?;
     let map = |source: &str, channel: &str| ColumnMap {
         source: source.into(),
         channel: channel.into(),

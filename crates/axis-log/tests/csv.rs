@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::io::{self, Read, Write};
-use std::path::PathBuf;
 
 use axis_log::{Channel, CsvProblem, Log, metrics::ErrorSummary};
 use axis_log::{read_csv, read_csv_from, write_csv, write_csv_to};
@@ -208,20 +207,10 @@ fn a_folder_in_the_files_place_is_an_error() {
 /// test says so.
 #[test]
 fn reads_the_published_trajectory() {
-    let path = std::env::var_os("AXIS_LOG_GOLDEN").map_or_else(
-        || {
-            PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-                .join("../../../shared/golden/trajectory1_published.csv")
-        },
-        PathBuf::from,
-    );
-    if !path.exists() {
-        println!(
-            "skipped: {} is not there (set AXIS_LOG_GOLDEN)",
-            path.display()
-        );
+    let golden = "golden/trajectory1_published.csv";
+    let Some(path) = crate::needs::named_or_shared("AXIS_LOG_GOLDEN", golden) else {
         return;
-    }
+    };
     let log = read_csv(&path, &["position_ref_m", "position_m", "iq_a"]).unwrap();
     let error = ErrorSummary::between(
         log.channel("position_ref_m").unwrap(),

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use axis_log::intake::{Done, Options, PreparedLog, prepare};
 use axis_log::{ColumnMap, ColumnUnit, Log, Mapping, MappingError, read_log};
@@ -363,11 +363,9 @@ proptest! {
 
 #[test]
 fn the_rack_is_joined_with_the_delay_that_its_authors_give() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data/rack");
-    if !folder.exists() {
-        eprintln!("skipped: no measured data at {}", folder.display());
+    let Some(folder) = crate::needs::shared("data/rack") else {
         return;
-    }
+    };
     let unit = |unit, factor| ColumnUnit {
         unit,
         factor,

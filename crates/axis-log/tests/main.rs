@@ -6,6 +6,8 @@ mod dialect;
 mod import;
 mod intake;
 mod log;
+#[path = "../../../tests/needs.rs"]
+mod needs;
 #[cfg(all(feature = "parquet", feature = "mat"))]
 mod machines;
 #[cfg(all(feature = "parquet", feature = "mat"))]

@@ -4,10 +4,10 @@ use axis_sim::{Axis, ClosedLoop, Measured};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::PipelineError;
 use crate::moves::{Moves, NamedMotion};
 use crate::strategies::{Build, Predictors, STRATEGIES, StrategyKind};
 use crate::tracking::{PlannedTrajectory, Run, plan_all, run_of};
+use crate::{ErrorUnit, PipelineError};
 
 /// One trajectory under one strategy.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -65,7 +65,7 @@ pub fn compensate_with(
             Err(error) => return Err(error),
         }
     }
-    let closed_loop = ClosedLoop::new(machine)?;
+    let (closed_loop, unit) = (ClosedLoop::new(machine)?, ErrorUnit::of(machine));
     let motions: Vec<NamedMotion> = plan_all(model)?
         .into_iter()
         .map(PlannedTrajectory::named)
@@ -93,7 +93,7 @@ pub fn compensate_with(
                 Ok(CompensatedRun {
                     id: first + i,
                     strategy: kind.name.to_owned(),
-                    run: run_of(&made.errors)?,
+                    run: run_of(&made.errors, unit)?,
                 })
             };
             motions.iter().enumerate().map(one).collect()

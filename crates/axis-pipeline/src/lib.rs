@@ -11,7 +11,7 @@
 //!   └─ identification (friction), transfer ───────────┘
 //! ```
 //!
-//! Errors are in µm where a name says so, SI otherwise.
+//! Errors are in millionths of the unit of the axis' position, µm or µrad ([`measured::ErrorUnit`]), SI otherwise.
 
 pub mod compensation;
 pub mod corrections;
@@ -21,6 +21,7 @@ mod figures;
 pub mod identification;
 pub mod learning;
 mod linear_map;
+pub mod measured;
 pub mod moves;
 pub mod residuals;
 pub mod robustness;
@@ -38,6 +39,7 @@ pub mod vibration;
 pub use error::PipelineError;
 pub use figures::Figures;
 pub use linear_map::LinearMap;
+pub use measured::ErrorUnit;
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

@@ -66,12 +66,12 @@ impl LinearMap {
         rows.map(|(x, y)| y - self.increment(x)).collect()
     }
 
-    /// Maximum and mean of the absolute residuals, in µm.
+    /// Maximum and mean of the absolute residuals, in µm or µrad.
     ///
     /// # Errors
     /// [`PipelineError`] for an empty set.
     pub fn errors(&self, samples: &SampleSet) -> Result<Figures, PipelineError> {
-        Figures::of_metres(&self.residuals(samples))
+        Figures::of_si(&self.residuals(samples))
     }
 }
 

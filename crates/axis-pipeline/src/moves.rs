@@ -75,7 +75,7 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
         let (errors, samples) = self.run(strategy, planned)?;
         let learned = strategy.learn(&samples)?;
         Ok(MoveRun {
-            figures: Figures::of_metres(&errors)?,
+            figures: Figures::of_si(&errors)?,
             errors,
             learned,
         })
@@ -92,7 +92,7 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
     ) -> Result<MoveRun, PipelineError> {
         let (errors, _) = self.run(strategy, planned)?;
         Ok(MoveRun {
-            figures: Figures::of_metres(&errors)?,
+            figures: Figures::of_si(&errors)?,
             errors,
             learned: LearnedValues::new(),
         })

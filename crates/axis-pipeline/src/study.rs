@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::sampling::ranges;
 use crate::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity};
 use crate::training::{input_ranges, rows, test};
-use crate::{Figures, PipelineError};
+use crate::{ErrorUnit, Figures, PipelineError};
 
 /// One setting of the study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,7 +31,9 @@ pub struct Setting {
 pub struct StudyRow {
     /// The setting.
     pub setting: Setting,
-    /// Errors on unseen samples, one for each seed, µm.
+    /// Unit of the errors.
+    pub unit: ErrorUnit,
+    /// Errors on unseen samples, one for each seed.
     pub errors: Vec<Figures>,
 }
 
@@ -82,7 +84,7 @@ pub fn settings() -> Vec<Setting> {
 const UNSEEN: u64 = 0x5eed_0000_0000_0000;
 
 /// Trains the network of a setting from a seed: on `samples` samples that are drawn from
-/// it, and judges it by as many unseen ones. Answers its errors, µm.
+/// it, and judges it by as many unseen ones. Answers its errors, µm or µrad.
 ///
 /// As in the paper the network learns the position S(k+1) itself, from
 /// Nguyen–Widrow starting weights.

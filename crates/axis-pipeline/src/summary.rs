@@ -9,6 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::Figures;
 use crate::compensation::CompensatedRun;
+use crate::measured::{Errors, LinearMaxAbsError, LinearMeanAbsError, MaxAbsError, MeanAbsError};
 use crate::validation::{ValidatedTrajectory, Validation};
 
 /// What `summary.json` holds.
@@ -48,12 +49,13 @@ pub struct TrajectorySummary {
     /// Duration of the motion, s.
     pub motion_time_s: f64,
     /// Tracking errors.
-    pub errors_um: ErrorsUm,
+    #[serde(flatten)]
+    pub errors: Errors<TrackingErrors>,
 }
 
-/// Maximum and mean absolute tracking errors, µm.
+/// Maximum and mean absolute tracking errors, in the unit that their name ends in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ErrorsUm {
+pub struct TrackingErrors {
     /// The model, without compensation.
     pub model: Figures,
     /// What stands for the machine, without compensation.
@@ -148,15 +150,18 @@ pub fn trajectories(validation: &Validation, runs: &[CompensatedRun]) -> Vec<Tra
     let one = |t: &ValidatedTrajectory| TrajectorySummary {
         id: t.id,
         motion_time_s: t.motion_time_s,
-        errors_um: ErrorsUm {
-            model: t.model.figures,
-            machine: t.machine.figures,
-            predicted: Predicted {
-                network: t.network.figures,
-                transfer_function: t.transfer_function.figures,
+        errors: Errors::new(
+            validation.unit,
+            TrackingErrors {
+                model: t.model.figures,
+                machine: t.machine.figures,
+                predicted: Predicted {
+                    network: t.network.figures,
+                    transfer_function: t.transfer_function.figures,
+                },
+                compensated: Compensated::of_trajectory(runs, t.id),
             },
-            compensated: Compensated::of_trajectory(runs, t.id),
-        },
+        ),
     };
     validation.trajectories.iter().map(one).collect()
 }
@@ -172,15 +177,19 @@ pub struct NetworkSummary {
     pub train_samples: usize,
     /// Unseen samples that the errors are from.
     pub test_samples: usize,
-    /// Largest absolute error of the predicted position, µm.
-    pub max_abs_error_um: f64,
-    /// Mean absolute error, µm.
-    pub mean_abs_error_um: f64,
+    /// Largest absolute error of the predicted position.
+    #[serde(flatten)]
+    pub max_abs_error: MaxAbsError<f64>,
+    /// Mean absolute error.
+    #[serde(flatten)]
+    pub mean_abs_error: MeanAbsError<f64>,
     /// Largest absolute error of the best linear map of as many evenly spread
-    /// samples, µm.
-    pub linear_max_abs_error_um: f64,
-    /// Its mean absolute error, µm.
-    pub linear_mean_abs_error_um: f64,
+    /// samples.
+    #[serde(flatten)]
+    pub linear_max_abs_error: LinearMaxAbsError<f64>,
+    /// Its mean absolute error.
+    #[serde(flatten)]
+    pub linear_mean_abs_error: LinearMeanAbsError<f64>,
     /// Time spent in training, s.
     pub train_seconds: f64,
 }

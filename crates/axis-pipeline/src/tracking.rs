@@ -5,18 +5,20 @@ use std::sync::Arc;
 use axis_sim::{Axis, ClosedLoop, Cycle};
 use compensator::Compensator;
 use serde::{Deserialize, Serialize};
-use trajectories::{Motion, SCurve};
+use trajectories::{Motion, SCurve, Setpoint};
 
+use crate::measured::{Acceleration, ErrorSeries, Jerk, Velocity};
 use crate::moves::NamedMotion;
-use crate::{Figures, PipelineError};
+use crate::{ErrorUnit, Figures, PipelineError};
 
 /// One run: its figures over every control cycle, and the error thinned for display.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// Maximum and mean of the absolute tracking error over all cycles, µm.
+    /// Maximum and mean of the absolute tracking error over all cycles, µm or µrad.
     pub figures: Figures,
-    /// The tracking error at every [`DISPLAY_EVERY`]th cycle, µm.
-    pub error_um: Vec<f64>,
+    /// The tracking error at every [`DISPLAY_EVERY`]th cycle.
+    #[serde(flatten)]
+    pub error: ErrorSeries<Vec<f64>>,
 }
 
 /// Cycles from one displayed sample to the next.
@@ -74,7 +76,7 @@ pub fn track(
     follow(closed_loop, planned, compensator, |cycle| {
         errors.push(cycle.error())
     })?;
-    run_of(&errors)
+    run_of(&errors, ErrorUnit::of(closed_loop.axis()))
 }
 
 /// Follows a trajectory and shows every cycle to `observe`.
@@ -94,15 +96,15 @@ pub fn follow(
     })
 }
 
-/// A run from its errors in metres, one a cycle.
+/// A run from its errors in metres or radians, one a cycle.
 ///
 /// # Errors
 /// [`PipelineError::Metric`] for an empty or not finite series.
-pub fn run_of(errors: &[f64]) -> Result<Run, PipelineError> {
+pub fn run_of(errors: &[f64], unit: ErrorUnit) -> Result<Run, PipelineError> {
     let thinned = errors.iter().step_by(DISPLAY_EVERY);
     Ok(Run {
-        figures: Figures::of_metres(errors)?,
-        error_um: thinned.map(|e| 1e6 * e).collect(),
+        figures: Figures::of_si(errors)?,
+        error: ErrorSeries::new(unit, thinned.map(|e| 1e6 * e).collect()),
     })
 }
 
@@ -111,26 +113,32 @@ pub fn run_of(errors: &[f64]) -> Result<Run, PipelineError> {
 pub struct Profile {
     /// Time, s.
     pub time_s: Vec<f64>,
-    /// Velocity, mm/s.
-    pub velocity_mm_s: Vec<f64>,
-    /// Acceleration, mm/s².
-    pub acceleration_mm_s2: Vec<f64>,
-    /// Jerk, mm/s³.
-    pub jerk_mm_s3: Vec<f64>,
+    /// Velocity.
+    #[serde(flatten)]
+    pub velocity: Velocity<Vec<f64>>,
+    /// Acceleration.
+    #[serde(flatten)]
+    pub acceleration: Acceleration<Vec<f64>>,
+    /// Jerk.
+    #[serde(flatten)]
+    pub jerk: Jerk<Vec<f64>>,
 }
 
-/// The profile of a planned trajectory for a control period (s).
-pub fn profile(planned: &PlannedTrajectory, period: f64) -> Profile {
-    let step = DISPLAY_EVERY as f64 * period;
+/// The profile of a planned trajectory for the control period of its axis.
+pub fn profile(planned: &PlannedTrajectory, axis: &Axis) -> Profile {
+    let (step, unit) = (DISPLAY_EVERY as f64 * axis.period, ErrorUnit::of(axis));
     let count = (planned.motion.duration() / step * (1.0 + 1e-12)) as usize;
-    let mut profile = Profile::default();
-    for k in 0..=count {
-        let time = k as f64 * step;
-        let at = planned.motion.at(time);
-        profile.time_s.push(time);
-        profile.velocity_mm_s.push(1e3 * at.velocity);
-        profile.acceleration_mm_s2.push(1e3 * at.acceleration);
-        profile.jerk_mm_s3.push(1e3 * at.jerk);
+    let time_s: Vec<f64> = (0..=count).map(|k| k as f64 * step).collect();
+    let of = |read: fn(&Setpoint<f64>) -> f64| {
+        let values = time_s
+            .iter()
+            .map(|&time| 1e3 * read(&planned.motion.at(time)));
+        values.collect()
+    };
+    Profile {
+        velocity: Velocity::new(unit, of(|at| at.velocity)),
+        acceleration: Acceleration::new(unit, of(|at| at.acceleration)),
+        jerk: Jerk::new(unit, of(|at| at.jerk)),
+        time_s,
     }
-    profile
 }

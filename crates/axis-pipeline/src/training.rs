@@ -110,12 +110,12 @@ pub fn train(
     })
 }
 
-/// Absolute errors of the predicted position, µm.
+/// Absolute errors of the predicted position, µm or µrad.
 ///
 /// # Errors
 /// [`PipelineError`] for a network of another shape or an empty set.
 pub fn test(network: &Network, samples: &SampleSet) -> Result<Figures, PipelineError> {
-    Figures::of_metres(&residuals(network, samples)?)
+    Figures::of_si(&residuals(network, samples)?)
 }
 
 /// What the network leaves of each increment, m.

@@ -9,10 +9,11 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use trajectories::Motion;
 
+use crate::measured::Position;
 use crate::strategies::{BothPredictors, Need, Predictors};
 use crate::tracking::{PlannedTrajectory, Profile, Run, follow, plan_all, profile, run_of, track};
 use crate::vibration::{Vibration, vibration};
-use crate::{Figures, PipelineError};
+use crate::{ErrorUnit, Figures, PipelineError};
 
 /// One trajectory without compensation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -40,13 +41,14 @@ pub struct ValidatedTrajectory {
 /// Natural frequencies at one table position.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ModesAt {
-    /// Table position, m from the driven end.
-    pub position_m: f64,
+    /// Position of the load.
+    #[serde(flatten)]
+    pub position: Position<f64>,
     /// Frequencies of the first elastic modes, Hz.
     pub frequencies_hz: Vec<f64>,
 }
 
-/// How far the numerical choices move the figures, µm.
+/// How far the numerical choices move the figures, µm or µrad.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct NumericalChecks {
     /// Largest change of a maximum or mean when the internal step is halved.
@@ -59,6 +61,8 @@ pub struct NumericalChecks {
 /// Everything that validation shows.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Validation {
+    /// Unit of all maxima and means.
+    pub unit: ErrorUnit,
     /// Each trajectory.
     pub trajectories: Vec<ValidatedTrajectory>,
     /// Constant-speed runs of the model.
@@ -111,6 +115,7 @@ pub fn validate(
     let trajectories = trajectories?;
     let checks = checks(model, &planned, &trajectories, &each)?;
     Ok(Validation {
+        unit: ErrorUnit::of(model),
         vibration_model: vibration(model, &vibration_speeds(model))?,
         vibration_machine: vibration(machine, &vibration_speeds(model))?,
         modes: modes(model)?,
@@ -134,14 +139,14 @@ fn one(
     planned: &PlannedTrajectory,
     predictors: &Predictors,
 ) -> Result<ValidatedTrajectory, PipelineError> {
-    let mut watch = Watch::new(predictors)?;
+    let (mut watch, unit) = (Watch::new(predictors)?, ErrorUnit::of(machine.axis()));
     let mut errors = Vec::new();
     follow(machine, planned, &mut watch, |cycle| {
         errors.push(cycle.error())
     })?;
     let deviation = |predicted: &[f64]| {
         let missed: Vec<f64> = errors.iter().zip(predicted).map(|(e, p)| e - p).collect();
-        Figures::of_metres(&missed)
+        Figures::of_si(&missed)
     };
     // What was predicted at k is for k + 1; the last one has no counterpart.
     watch.network.truncate(errors.len());
@@ -149,11 +154,11 @@ fn one(
     Ok(ValidatedTrajectory {
         id: planned.id,
         motion_time_s: planned.motion.duration(),
-        profile: profile(planned, model.axis().period),
+        profile: profile(planned, model.axis()),
         model: track(model, planned, &mut NoCompensation)?,
-        machine: run_of(&errors)?,
-        network: run_of(&watch.network)?,
-        transfer_function: run_of(&watch.transfer_function)?,
+        machine: run_of(&errors, unit)?,
+        network: run_of(&watch.network, unit)?,
+        transfer_function: run_of(&watch.transfer_function, unit)?,
         network_deviation: deviation(&watch.network)?,
         transfer_function_deviation: deviation(&watch.transfer_function)?,
     })
@@ -203,7 +208,7 @@ fn modes(axis: &Axis) -> Result<Vec<ModesAt>, PipelineError> {
         let modes = axis.mechanism.modes(position).map_err(SetupError::from)?;
         let hertz = |w: &f64| w / std::f64::consts::TAU;
         Ok(ModesAt {
-            position_m: position,
+            position: Position::new(ErrorUnit::of(axis), position),
             frequencies_hz: modes.iter().take(MODES).map(hertz).collect(),
         })
     };

@@ -7,38 +7,42 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use trajectories::{Limits, Motion, SCurve};
 
-use crate::PipelineError;
+use crate::measured::{PeakToPeak, Speed};
+use crate::{ErrorUnit, PipelineError};
 
 /// What the tracking error does at one constant speed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Vibration {
-    /// Table speed, mm/s.
-    pub speed_mm_s: f64,
-    /// Peak to peak of the tracking error, µm.
-    pub peak_to_peak_um: f64,
+    /// Speed of the load.
+    #[serde(flatten)]
+    pub speed: Speed<f64>,
+    /// Peak to peak of the tracking error.
+    #[serde(flatten)]
+    pub peak_to_peak: PeakToPeak<f64>,
     /// Frequency from the crossings of the mean, Hz; none where it is quiet.
     pub frequency_hz: Option<f64>,
 }
 
-/// Peak to peak below which a run counts as quiet, µm.
+/// Peak to peak below which a run counts as quiet, µm or µrad.
 pub const QUIET: f64 = 0.5;
 
-/// Runs the axis at each of the speeds (mm/s) for 4 s and looks at the last second.
+/// Runs the axis at each of the speeds (mm/s or mrad/s) for 4 s and looks at the last second.
 ///
 /// # Errors
 /// [`PipelineError`] where a run diverges or does not fit the stroke.
-pub fn vibration(axis: &Axis, speeds_mm_s: &[f64]) -> Result<Vec<Vibration>, PipelineError> {
+pub fn vibration(axis: &Axis, speeds: &[f64]) -> Result<Vec<Vibration>, PipelineError> {
     let closed_loop = ClosedLoop::new(axis)?;
     let one = |&speed: &f64| one(&closed_loop, speed);
-    speeds_mm_s.par_iter().map(one).collect()
+    speeds.par_iter().map(one).collect()
 }
 
-fn one(closed_loop: &ClosedLoop, speed_mm_s: f64) -> Result<Vibration, PipelineError> {
+fn one(closed_loop: &ClosedLoop, thousandths: f64) -> Result<Vibration, PipelineError> {
     let plan = |e| PipelineError::Trajectory {
         index: 0,
         source: e,
     };
-    let (axis, speed) = (closed_loop.axis(), 1e-3 * speed_mm_s);
+    let (axis, speed) = (closed_loop.axis(), 1e-3 * thousandths);
+    let unit = ErrorUnit::of(axis);
     let start = axis.stroke.start;
     // In proportion to the stroke, as on the paper's axis.
     let length = Scales::of(axis).motion / 0.2;
@@ -53,16 +57,16 @@ fn one(closed_loop: &ClosedLoop, speed_mm_s: f64) -> Result<Vibration, PipelineE
         }
     });
     outcome.completed().map_err(|source| PipelineError::Run {
-        what: format!("constant speed {speed_mm_s} mm/s"),
+        what: format!("constant speed {thousandths} {}/s", unit.thousand()),
         source,
     })?;
     let (least, most) =
         (errors.iter()).fold((f64::MAX, f64::MIN), |(l, m), e| (l.min(*e), m.max(*e)));
-    let peak_to_peak_um = most - least;
-    let frequency_hz = (peak_to_peak_um > QUIET).then(|| frequency(&errors, axis.period));
+    let peak_to_peak = most - least;
+    let frequency_hz = (peak_to_peak > QUIET).then(|| frequency(&errors, axis.period));
     Ok(Vibration {
-        speed_mm_s,
-        peak_to_peak_um,
+        speed: Speed::new(unit, thousandths),
+        peak_to_peak: PeakToPeak::new(unit, peak_to_peak),
         frequency_hz,
     })
 }

@@ -210,7 +210,7 @@ fn error_under(machine: &Axis, terms: DriveTerms) -> [f64; 2] {
         let mut law = DriveTermsFeedforward::new(terms);
         let run = closed_loop.run(&motion, &mut law, |cycle| errors.push(cycle.error()));
         run.completed().unwrap();
-        let figures = axis_pipeline::Figures::of_metres(&errors).unwrap();
+        let figures = axis_pipeline::Figures::of_si(&errors).unwrap();
         most = most.max(figures.max);
         mean = mean.max(figures.mean);
     }

@@ -117,13 +117,16 @@ pub struct Stop {
     pub freedom: Freedom,
     /// How the motor moves.
     pub motor: Freedom,
+    /// Where the load may be: the stroke, as far as the mechanism reaches, m or rad.
+    pub stroke: [f64; 2],
 }
 
 /// A run that did not come to its end.
 #[derive(Clone, Copy, Debug, Error)]
 #[error(
-    "the simulation stopped at t = {} s because {reason}: load at {} {unit}, tracking error {} {unit}, motor speed {} {speed}, motor {force} {} {force_unit}",
+    "the simulation stopped at t = {} s because {reason}: load at {} {unit}, tracking error {} {unit}, motor speed {} {speed}, motor {force} {} {force_unit}; valid: {}",
     SixDigits(*.time), SixDigits(.at.position), SixDigits(.at.error), SixDigits(.at.motor_speed), SixDigits(.at.torque),
+    .reason.valid(.at),
     unit = .at.freedom.unit(), speed = .at.motor.speed_unit(), force = .at.motor.force()[0], force_unit = .at.motor.force()[1]
 )]
 pub struct RunStopped {
@@ -133,6 +136,38 @@ pub struct RunStopped {
     pub reason: StopReason,
     /// What the load was doing then.
     pub at: Stop,
+}
+
+impl StopReason {
+    /// What would not have been given up for this reason.
+    fn valid(&self, at: &Stop) -> String {
+        match self {
+            Self::NotFinite => {
+                "a loop that is stable (smaller gains in [control]), or a shorter step in [simulation]"
+                    .to_owned()
+            }
+            Self::FollowingError(..) => {
+                "a loop that is stable, a motion that the motor can follow, or a greater limit".to_owned()
+            }
+            Self::LeftStroke => {
+                let [from, to] = at.stroke.map(SixDigits);
+                format!(
+                    "a motion from {from} to {to} {}, where the load may be ([stroke]), and a load that the \
+                     motor can hold there",
+                    at.freedom.unit()
+                )
+            }
+            Self::LoadNotFound => {
+                "a shorter step in [simulation], a greater mass of the load, or effects of the load that are \
+                 smaller or steadier"
+                    .to_owned()
+            }
+            Self::TooLong(_) => format!(
+                "at most {} internal steps, by a shorter motion, a lower control frequency or a longer step",
+                SixDigits(MOST_STEPS)
+            ),
+        }
+    }
 }
 
 impl std::fmt::Display for StopReason {
@@ -154,7 +189,7 @@ impl std::fmt::Display for StopReason {
             ),
             Self::TooLong(steps) => write!(
                 f,
-                "the motion takes {} internal steps, more than {} (a shorter motion, a lower control frequency or a longer step would be valid)",
+                "the motion takes {} internal steps, more than {}",
                 SixDigits(*steps),
                 SixDigits(MOST_STEPS)
             ),

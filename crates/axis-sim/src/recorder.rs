@@ -6,7 +6,7 @@ use axis_log::{Channel, CsvSink, Log, LogError, LogSink};
 
 use crate::axis::Axis;
 use crate::channels::{LogChannel, channels};
-use crate::cycle::Cycle;
+use crate::cycle::{Cycle, RunStopped};
 use crate::mechanism::Freedom;
 
 /// Collects the cycles of a run, in memory.
@@ -115,13 +115,29 @@ impl<S: LogSink> FlowRecorder<S> {
     /// The sink's; [`io::ErrorKind::InvalidData`] where there was no cycle,
     /// or one that is not finite.
     pub fn finish(mut self) -> io::Result<S::End> {
-        if let Some(error) = self.failed {
+        self.write_rest()?;
+        self.sink.finish()
+    }
+
+    /// The same, of a run that did not come to its end: the log says so, and why, in a
+    /// [note](LogSink::note) `stopped`.
+    ///
+    /// # Errors
+    /// As [`FlowRecorder::finish`].
+    pub fn finish_stopped(mut self, why: &RunStopped) -> io::Result<S::End> {
+        self.write_rest()?;
+        self.sink.note("stopped", &why.to_string())?;
+        self.sink.finish()
+    }
+
+    fn write_rest(&mut self) -> io::Result<()> {
+        if let Some(error) = self.failed.take() {
             return Err(error);
         }
         if !self.is_begun || !self.block.cycles.is_empty() {
             self.write_block()?;
         }
-        self.sink.finish()
+        Ok(())
     }
 
     fn write_block(&mut self) -> io::Result<()> {

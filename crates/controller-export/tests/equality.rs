@@ -41,7 +41,7 @@ fn same_bits(
 /// A strategy in both precisions over cycles in which it is switched, trips and begins anew.
 fn c_is_rust(names: &[&str]) -> Outcome<()> {
     if compilers().is_empty() {
-        println!("skipped: neither gcc nor clang");
+        crate::needs::skipped("program", "gcc|clang");
         return Ok(());
     }
     let predictors = laws::predictors(&samples::axis()?)?;
@@ -83,7 +83,7 @@ fn plans_of_other_axes_are_those_of_rust() -> Outcome<()> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes");
     let compilers = compilers();
     if compilers.is_empty() {
-        println!("skipped: neither gcc nor clang");
+        crate::needs::skipped("program", "gcc|clang");
         return Ok(());
     }
     let (mut compared, mut seen) = (0, Vec::new());

@@ -2,6 +2,8 @@
 
 mod equality;
 mod linuxcnc;
+#[path = "../../../tests/needs.rs"]
+mod needs;
 mod onnx;
 mod plan;
 mod support;

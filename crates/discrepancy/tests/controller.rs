@@ -1,6 +1,5 @@
 //! An unknown controller, estimated from logs.
 
-use std::path::Path;
 
 use axis_log::intake::{Options, prepare};
 use axis_log::{Channel, Log};
@@ -138,10 +137,8 @@ fn a_controller_that_does_not_give_the_command_is_told() {
 
 #[test]
 fn the_published_gains_of_emps_come_from_a_file_without_them() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let data = ["../shared/data/emps", "../../shared/data/emps"].map(|at| root.join(at));
-    let Some(data) = data.iter().find(|at| at.join("emps.csv").is_file()) else {
-        eprintln!("skipped: no logs of EMPS in ../shared/data/emps (nonlinearbenchmark.org)");
+    // Of nonlinearbenchmark.org.
+    let Some(data) = crate::needs::shared("data/emps") else {
         return;
     };
     let axis = machine("emps");

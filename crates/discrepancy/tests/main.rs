@@ -4,5 +4,7 @@ mod controller;
 mod fit;
 mod foresight;
 mod logs;
+#[path = "../../../tests/needs.rs"]
+mod needs;
 mod settings;
 mod starts;

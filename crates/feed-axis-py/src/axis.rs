@@ -109,7 +109,9 @@ impl PyAxis {
     /// The moves on which it is judged, those of `[[trajectory]]`.
     #[getter]
     fn trajectories(&self) -> Vec<Move> {
-        self.axis.trajectories.iter().map(Move::of).collect()
+        let freedom = self.axis.freedom();
+        let moves = self.axis.trajectories.iter();
+        moves.map(|spec| Move::of(spec, freedom)).collect()
     }
 
     /// Natural frequencies with the load at a position (m or rad; where motions start, if it is

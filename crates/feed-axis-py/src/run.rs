@@ -135,6 +135,12 @@ impl Run {
         self.error.clone_ref(py)
     }
 
+    /// Unit of the errors: m, or rad where the load turns.
+    #[getter]
+    fn error_unit(&self) -> &'static str {
+        self.unit
+    }
+
     /// Greatest absolute tracking error, m or rad.
     #[getter]
     fn max_error(&self) -> f64 {

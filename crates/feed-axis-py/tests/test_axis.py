@@ -70,3 +70,25 @@ def test_errors_have_the_library_s_words(axis: fa.Axis, tmp_path: Path) -> None:
         axis.simulate(turning)
     assert issubclass(fa.AxisError, fa.FeedAxisError)
     assert issubclass(fa.FeedAxisError, ValueError)
+
+
+def test_motions_of_an_axis_that_turns_are_in_its_unit(root: Path, axis: fa.Axis) -> None:
+    table = fa.Axis.load(root / "data/axes/rotary-table.toml")
+    first = table.trajectories[0]
+    assert first.distance_rad == pytest.approx(np.pi / 2)
+    with pytest.raises(AttributeError, match="in rad"):
+        _ = first.distance_m
+    limits = {"speed_rad_s": 1.0, "acceleration_rad_s2": 5.0, "jerk_rad_s3": 50.0}
+    move = fa.Move.turn(distance_rad=0.1, **limits)
+    assert repr(move).startswith("Move.turn(distance_rad=0.1, speed_rad_s=1")
+    run = table.simulate(move)
+    assert run.error_unit == "rad" and run["position_rad"][-1] == pytest.approx(0.1, abs=1e-2)
+    curve = fa.SCurve.turn(0.0, 0.1, **limits)
+    assert curve.sample(1e-3)["position_rad"][-1] == pytest.approx(0.1)
+    for motion, other, words in [
+        (move, axis, "moves along a line"),
+        (curve, axis, "moves along a line"),
+        (axis.trajectories[0], table, r"turns: give Move\.turn"),
+    ]:
+        with pytest.raises(fa.MotionError, match=words):
+            other.simulate(motion)

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::ErrorUnit;
 use axis_sim::Axis;
 use campaign::Inputs;
 use clap::Args;
@@ -121,6 +122,11 @@ impl Context {
             ))
         })?;
         Ok(Claim { _lock: lock })
+    }
+
+    /// Unit of the axis' errors.
+    pub fn unit(&self) -> ErrorUnit {
+        ErrorUnit::of(&self.axis)
     }
 
     /// Everything of these options that results depend on, and the program.

@@ -1,5 +1,6 @@
 //! The commands whose work is a job of independent cases: in one process, or a shard of it.
 
+use std::fmt;
 use std::path::PathBuf;
 
 use campaign::{IfOther, Job, Shard, run_shard, run_whole};
@@ -116,8 +117,12 @@ fn make(job: &dyn Job, shard: Shard) -> Result<()> {
     print(job.name(), &Worded { text, value })
 }
 
-/// A failure with its causes, in one message.
+/// A failure with its causes, in one message; one that is a report of this program as it was.
 pub fn told(failure: campaign::Failure) -> miette::Report {
+    let failure = match failure.downcast::<Reported>() {
+        Ok(reported) => return reported.0,
+        Err(failure) => failure,
+    };
     let mut text = failure.to_string();
     let mut next = failure.source();
     while let Some(cause) = next {
@@ -129,5 +134,21 @@ pub fn told(failure: campaign::Failure) -> miette::Report {
 
 /// A message as the failure of a job.
 pub fn failure(report: impl Into<miette::Report>) -> campaign::Failure {
-    report.into().into()
+    Box::new(Reported(report.into()))
+}
+
+/// A report on its way through a job, so that its exit code is not lost.
+#[derive(Debug)]
+struct Reported(miette::Report);
+
+impl fmt::Display for Reported {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&self.0, f)
+    }
+}
+
+impl std::error::Error for Reported {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.0.source()
+    }
 }

@@ -144,12 +144,17 @@ pub fn write_whole_by(
         file.sync_all()?;
         file.commit()
     };
-    attempt().into_diagnostic().wrap_err_with(|| {
-        format!(
-            "cannot write {}: is the folder writable, the disk full?",
-            path.display()
-        )
-    })
+    attempt()
+        .into_diagnostic()
+        .wrap_err_with(|| cannot_write(path))
+}
+
+/// That a file cannot be written, and what to look at.
+pub(crate) fn cannot_write(path: &Path) -> String {
+    format!(
+        "cannot write {}: is the folder writable, the disk full?",
+        path.display()
+    )
 }
 
 /// Removes what killed runs left of the files of these names: what was written aside,

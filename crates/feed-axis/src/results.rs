@@ -1,6 +1,7 @@
 //! Results of all stages together: what the report shows.
 
 use axis_pipeline::compensation::{CompensatedRun, find};
+use axis_pipeline::measured::{LinearMaxAbsError, LinearMeanAbsError, MaxAbsError, MeanAbsError};
 use axis_pipeline::strategies::{STRATEGIES, StrategyKind};
 use axis_pipeline::study::StudyRow;
 use axis_pipeline::summary::{self, NetworkSummary, Summary};
@@ -82,6 +83,7 @@ fn summarise(
             program::name()
         ));
     }
+    let unit = context.unit();
     Ok(Summary {
         schema: Summary::SCHEMA,
         axis: context.axis.name.clone(),
@@ -96,10 +98,10 @@ fn summarise(
             epochs: training.epochs,
             train_samples: training.train_samples,
             test_samples: training.test_samples,
-            max_abs_error_um: training.network.max,
-            mean_abs_error_um: training.network.mean,
-            linear_max_abs_error_um: training.linear.max,
-            linear_mean_abs_error_um: training.linear.mean,
+            max_abs_error: MaxAbsError::new(unit, training.network.max),
+            mean_abs_error: MeanAbsError::new(unit, training.network.mean),
+            linear_max_abs_error: LinearMaxAbsError::new(unit, training.linear.max),
+            linear_mean_abs_error: LinearMeanAbsError::new(unit, training.linear.mean),
             train_seconds: training.seconds,
         },
     })

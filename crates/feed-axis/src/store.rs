@@ -98,24 +98,13 @@ impl<'a> Stage<'a> {
         found.is_ok_and(|found| self.expected().is_ok_and(|whole| whole == found))
     }
 
-    /// Makes the stage's folder.
+    /// Makes the stage's folder, and removes what killed runs left aside in it.
     pub fn begin(&self) -> Result<()> {
         ready(&self.path(""))?;
-        self.sweep()?;
+        let names = [self.files, self.scratch, &[MANIFEST]].concat();
+        sweep(&self.path(""), &names)?;
         // Results without manifest are unfinished; the old one must not vouch for them.
         remove(&self.path(MANIFEST))
-    }
-
-    /// Removes from a finished stage's folder what killed runs left.
-    pub fn tidy(&self) -> Result<()> {
-        let mut scratch = self.scratch.iter();
-        scratch.try_for_each(|file| remove(&self.path(file)))?;
-        self.sweep()
-    }
-
-    fn sweep(&self) -> Result<()> {
-        let names = [self.files, self.scratch, &[MANIFEST]].concat();
-        sweep(&self.path(""), &names)
     }
 
     /// Writes a result as JSON.
@@ -124,10 +113,19 @@ impl<'a> Stage<'a> {
         write_whole(&self.path(file), &bytes)
     }
 
-    /// Declares the stage done.
+    /// Declares the stage done. What only helped to make it goes before: nothing in the folder of a finished
+    /// stage is ever changed but to make the stage anew.
     pub fn finish(&self) -> Result<()> {
-        write_whole(&self.path(MANIFEST), &self.expected()?)?;
-        self.tidy()
+        let manifest = self.expected()?;
+        for file in self.scratch {
+            let path = self.path(file);
+            remove(&path)?;
+            // The folder of its own that it may have; where something else is in it, it stays.
+            if let Some(folder) = path.parent().filter(|folder| *folder != self.path("")) {
+                let _ = std::fs::remove_dir(folder);
+            }
+        }
+        write_whole(&self.path(MANIFEST), &manifest)
     }
 
     /// The manifest that the inputs and the files make.
@@ -311,6 +309,15 @@ mod tests {
         stage
     }
 
+    fn names(stage: &Stage<'_>) -> Vec<String> {
+        let entries = std::fs::read_dir(stage.path("")).unwrap();
+        let mut names: Vec<String> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
     #[test]
     fn what_killed_runs_left_goes_with_the_next() {
         let folder = tempfile::tempdir().unwrap();
@@ -322,16 +329,34 @@ mod tests {
                 std::fs::write(stage.path(name), "half").unwrap();
             }
         };
-        let count = || std::fs::read_dir(stage.path("")).unwrap().count();
-        leave();
-        stage.tidy().unwrap();
-        assert!(stage.is_current());
-        assert_eq!(count(), 3);
         leave();
         stage.begin().unwrap();
         // The results, without the manifest, and the checkpoint to go on from.
-        assert_eq!(count(), 3);
-        assert!(stage.path("checkpoint").exists() && !stage.is_current());
+        assert_eq!(names(&stage), ["a.json", "b.json", "checkpoint"]);
+        assert!(!stage.is_current());
+        stage.finish().unwrap();
+        assert_eq!(names(&stage), ["a.json", "b.json", "manifest.json"]);
+        assert!(stage.is_current());
+    }
+
+    /// A process that is killed once the manifest is there leaves nothing that the next run would have to remove
+    /// from a finished stage: what only helped is gone before.
+    #[test]
+    fn what_only_helped_goes_before_a_stage_is_finished() {
+        let folder = tempfile::tempdir().unwrap();
+        let context = context(folder.path());
+        let stage = finished(&context).with_scratch(&["checkpoint", "shards/a.part"]);
+        stage.begin().unwrap();
+        std::fs::create_dir(stage.path("shards")).unwrap();
+        for file in stage.scratch {
+            std::fs::write(stage.path(file), "half").unwrap();
+        }
+        // The manifest cannot be put in place: as far as a killed process came.
+        std::fs::create_dir(stage.path(MANIFEST)).unwrap();
+        stage.finish().unwrap_err();
+        let left = names(&stage);
+        let left: Vec<&String> = left.iter().filter(|name| !name.starts_with('.')).collect();
+        assert_eq!(left, ["a.json", "b.json", "manifest.json"]);
     }
 
     #[test]

@@ -10,6 +10,8 @@ mod export_fmu;
 mod identify_control;
 mod schema;
 mod schema_of;
+mod stopped;
 #[path = "../../controller-export/tests/support/mod.rs"]
 mod support;
 mod terminal;
+mod units;

@@ -120,14 +120,12 @@ fn a_limit_that_is_no_number_is_refused() {
     }
 }
 
-/// A long record that drifts, whose samples are all correlated.
+/// A long record that drifts, whose samples are all correlated: over all lags of all samples, 10¹² products, this would
+/// not end.
 #[test]
 fn a_long_record_takes_no_longer_than_its_length() {
     let n = 1 << 20;
     let speeds: Vec<f64> = (0..n).map(|i| 1.0 + i as f64 / n as f64).collect();
-    let started = std::time::Instant::now();
     let run = ConstantSpeedRun::from_record(&speeds, &speeds, 1e4).expect("good");
     assert!(run.torque_standard_error.is_some());
-    // 1 s; over all lags of all samples it would be minutes.
-    assert!(started.elapsed().as_secs() < 10);
 }

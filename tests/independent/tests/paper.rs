@@ -1,5 +1,8 @@
 //! The machine without anything hidden gives the paper's tracking errors.
 
+#[path = "../../needs.rs"]
+mod needs;
+
 use independent_axis::{Hidden, LoopNoise, Machine, Parameters, Random, run, s_curve};
 
 /// Largest and mean tracking error, µm.
@@ -34,12 +37,10 @@ fn tracking_errors_are_those_of_the_converged_model() {
 /// Another program's trajectory 1, where its log lies beside the project.
 #[test]
 fn trajectory_1_is_that_of_another_program() {
-    let file = "../shared/golden/trajectory1_published.csv";
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-    let Ok(mut reader) = csv::Reader::from_path(std::path::Path::new(root).join(file)) else {
-        eprintln!("{file} is not there: nothing to compare with");
+    let Some(file) = needs::shared("golden/trajectory1_published.csv") else {
         return;
     };
+    let mut reader = csv::Reader::from_path(file).unwrap();
     let (p, mut all) = (Parameters::paper(), Vec::new());
     let (none, noise) = (Hidden::default(), LoopNoise::default());
     let motion = s_curve([0.3, 0.1, 0.225, 1.2]);

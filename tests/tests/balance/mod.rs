@@ -16,14 +16,16 @@ use axis_log::{Log, read_log};
 use axis_sim::Axis;
 use discrepancy::{Discovery, EffectFound, Found, LogSet, Settings, discovery, search};
 
+use crate::needs;
+
 /// The folder of a data set; where it is not there, that is said with where to get it.
 pub(crate) fn folder(name: &str, from: &str) -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let named = std::env::var_os("FEED_AXIS_DATA").map(PathBuf::from);
-    let all = named.into_iter().chain([beside]).map(|f| f.join(name));
-    let found = all.into_iter().find(|f| f.is_dir());
+    let named = std::env::var_os("FEED_AXIS_DATA").map(|all| Path::new(&all).join(name));
+    let found = named
+        .filter(|folder| folder.is_dir())
+        .or_else(|| needs::shared(&format!("data/{name}")));
     if found.is_none() {
-        eprintln!("skipped: no data of {name}. Get them from {from}");
+        eprintln!("get the data of {name} from {from}");
     }
     found
 }

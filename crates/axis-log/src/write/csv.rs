@@ -6,7 +6,7 @@ use std::path::Path;
 use atomic_write_file::AtomicWriteFile;
 
 use super::columns::Names;
-use super::{LogSink, invalid};
+use super::{LogSink, in_a_line, invalid};
 use crate::error::{CsvError, CsvProblem};
 use crate::log::Log;
 
@@ -76,6 +76,10 @@ impl<W: Write> LogSink for CsvSink<W> {
             out.write_all(b"\n")?;
         }
         out.flush()
+    }
+
+    fn note(&mut self, name: &str, text: &str) -> io::Result<()> {
+        writeln!(self.writer, "# {name}: {}", in_a_line(text))
     }
 
     fn finish(mut self: Box<Self>) -> io::Result<W> {

@@ -98,6 +98,10 @@ impl LogSink for LogFile {
         self.sink.write(block)
     }
 
+    fn note(&mut self, name: &str, text: &str) -> io::Result<()> {
+        self.sink.note(name, text)
+    }
+
     fn finish(self: Box<Self>) -> io::Result<()> {
         in_place(self.sink.finish()?)
     }

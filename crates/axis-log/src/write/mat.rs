@@ -4,11 +4,12 @@ use std::io::{self, Write};
 
 use super::columns::Columns;
 use super::mat_bytes::{column, header, texts};
-use super::{LAYOUT, LogSink, invalid};
+use super::{LAYOUT, LogSink, in_a_line, invalid};
 use crate::log::Log;
 
-/// The struct of units, and the number of the layout.
+/// The structs of units and of notes, and the number of the layout.
 const UNITS: &str = "units";
+const NOTES: &str = "notes";
 const VERSION: &str = "axis_log_version";
 /// Most characters of a variable's name.
 const NAME: usize = 63;
@@ -17,12 +18,17 @@ const NAME: usize = 63;
 pub(super) struct MatSink<W> {
     writer: W,
     columns: Columns,
+    notes: Vec<(String, String)>,
 }
 
 impl<W: Write> MatSink<W> {
     pub(super) fn new(writer: W) -> Self {
         let columns = Columns::default();
-        Self { writer, columns }
+        Self {
+            writer,
+            columns,
+            notes: Vec::new(),
+        }
     }
 }
 
@@ -37,6 +43,11 @@ impl<W: Write> LogSink for MatSink<W> {
         Ok(())
     }
 
+    fn note(&mut self, name: &str, text: &str) -> io::Result<()> {
+        self.notes.push((name.to_owned(), in_a_line(text)));
+        Ok(())
+    }
+
     fn finish(mut self: Box<Self>) -> io::Result<W> {
         self.columns.check()?;
         let to = &mut self.writer;
@@ -47,6 +58,11 @@ impl<W: Write> LogSink for MatSink<W> {
         let all = self.columns.all.iter();
         let units: Vec<(&str, &str)> = all.map(|(n, u, _)| (n.as_str(), u.as_str())).collect();
         to.write_all(&texts(UNITS, &units))?;
+        if !self.notes.is_empty() {
+            let notes = self.notes.iter();
+            let notes: Vec<(&str, &str)> = notes.map(|(n, t)| (n.as_str(), t.as_str())).collect();
+            to.write_all(&texts(NOTES, &notes))?;
+        }
         to.write_all(&column(VERSION, &[f64::from(LAYOUT)])?)?;
         to.flush()?;
         Ok(self.writer)

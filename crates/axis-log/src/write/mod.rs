@@ -34,6 +34,14 @@ pub trait LogSink {
     /// The writer's; [`io::ErrorKind::InvalidData`] where the channels are others.
     fn write(&mut self, block: &Log) -> io::Result<()>;
 
+    /// Says something of the whole log inside the file, behind the blocks, such as why its run stopped: in CSV
+    /// a last line `# name: text`, in Parquet an entry of the key-value metadata, in MAT a text in the struct
+    /// `notes`. `name` is one of a variable.
+    ///
+    /// # Errors
+    /// The writer's.
+    fn note(&mut self, name: &str, text: &str) -> io::Result<()>;
+
     /// Ends the file.
     ///
     /// # Errors
@@ -139,6 +147,11 @@ impl WriteError {
     fn io(path: &Path, action: &'static str, source: io::Error) -> Self {
         Self::of(path, WriteProblem::Io { action, source })
     }
+}
+
+/// A text of one line.
+fn in_a_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// What a format cannot hold.

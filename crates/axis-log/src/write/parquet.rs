@@ -12,7 +12,7 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
 use super::columns::Columns;
-use super::{LAYOUT, LogSink, arrow_schema};
+use super::{LAYOUT, LogSink, arrow_schema, in_a_line, invalid};
 use crate::log::Log;
 
 /// Instants of a row group.
@@ -88,6 +88,14 @@ impl<W: Write + Send> LogSink for ParquetSink<W> {
         while self.columns.len() >= GROUP {
             self.group(GROUP).map_err(failed)?;
         }
+        Ok(())
+    }
+
+    fn note(&mut self, name: &str, text: &str) -> io::Result<()> {
+        let State::Open(file) = &mut self.state else {
+            return Err(invalid("no instants: a log has at least one"));
+        };
+        file.append_key_value_metadata(KeyValue::new(name.to_owned(), Some(in_a_line(text))));
         Ok(())
     }
 

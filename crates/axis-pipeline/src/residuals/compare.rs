@@ -11,11 +11,12 @@ use serde::Serialize;
 use super::drawn::drawn_machine;
 use super::learner::AnyLearner;
 use super::named::NamedEffects;
-use crate::PipelineError;
+use crate::measured::{Left, WithoutCompensation};
 use crate::moves::{Moves, NamedMotion};
 use crate::robustness::{Sense, WRONG, random_program, room, wrong_belief};
 use crate::strategies::{NONE, Predictors, Strategy, adapted};
 use crate::tracking::{PlannedTrajectory, plan_all};
+use crate::{ErrorUnit, PipelineError};
 
 /// Programs of five moves that are learned from.
 pub const PROGRAMS: usize = 10;
@@ -67,10 +68,12 @@ pub struct Contest {
 pub struct Compared {
     /// How it was learned.
     pub way: ResidualMethod,
-    /// Without compensation, the counted moves: greatest error, µm.
-    pub none_um: Vec<f64>,
-    /// With it, after each of [`AFTER`]: the same of every counted move, µm.
-    pub left_um: Vec<Vec<f64>>,
+    /// Without compensation, the counted moves: greatest error.
+    #[serde(flatten)]
+    pub none: WithoutCompensation<Vec<f64>>,
+    /// With it, after each of [`AFTER`]: the same of every counted move.
+    #[serde(flatten)]
+    pub left: Left<Vec<Vec<f64>>>,
     /// Whether the gate let it be used then.
     pub used: Vec<bool>,
 }
@@ -179,31 +182,31 @@ impl Contest {
         network: &NetworkBasis,
         sense: Sense<'_>,
     ) -> Result<Compared, PipelineError> {
-        let closed_loop = ClosedLoop::new(&self.machine)?;
+        let (closed_loop, unit) = (ClosedLoop::new(&self.machine)?, ErrorUnit::of(axis));
         let predictors = Predictors {
             believed: Some(self.believed),
             ..Predictors::of(axis)
         };
         let mut moves = Moves::new(&closed_loop, sense(self.seed));
-        let none_um = self.count(&mut moves, &mut *NONE.strategy(&predictors)?)?;
+        let none = self.count(&mut moves, &mut *NONE.strategy(&predictors)?)?;
         let mut strategy = adapted(&predictors, self.learner(axis, way, network)?)?;
-        let (mut left_um, mut used) = (Vec::new(), Vec::new());
+        let (mut left, mut used) = (Vec::new(), Vec::new());
         for (k, program) in self.programs.iter().enumerate() {
             let made = moves.make(&mut *strategy, program)?;
             if AFTER.contains(&(k + 1)) {
-                left_um.push(self.count(&mut moves, &mut *strategy)?);
+                left.push(self.count(&mut moves, &mut *strategy)?);
                 used.push(made.learned.get("residual_used") == Some(&1.0));
             }
         }
         Ok(Compared {
             way,
-            none_um,
-            left_um,
+            none: WithoutCompensation::new(unit, none),
+            left: Left::new(unit, left),
             used,
         })
     }
 
-    /// Greatest errors of the counted moves, µm; nothing is learned from them.
+    /// Greatest errors of the counted moves, µm or µrad; nothing is learned from them.
     fn count<S: FnMut(&mut Measured)>(
         &self,
         moves: &mut Moves<'_, S>,

@@ -99,7 +99,7 @@ pub fn pre_roll(start: f64, way: f64) -> Result<NamedMotion, PipelineError> {
     ];
     let program = Program::new(start, steps).map_err(failed)?;
     Ok(NamedMotion {
-        name: format!("pre-roll of {} mm", axis_sim::SixDigits(1e3 * way)),
+        name: "pre-roll".to_owned(),
         motion: Arc::new(program),
         learned: None,
     })
@@ -114,7 +114,7 @@ pub fn constant_speed(start: f64, way: f64, speed: f64) -> Result<NamedMotion, P
     let limits = Limits::new(speed, 0.1, 1.0).map_err(failed)?;
     let curve = SCurve::plan(start, start + way, &limits).map_err(failed)?;
     Ok(NamedMotion {
-        name: format!("{} mm/s", axis_sim::SixDigits(1e3 * speed)),
+        name: "constant speed".to_owned(),
         motion: Arc::new(curve),
         learned: None,
     })

@@ -2,12 +2,15 @@
 
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, EFFECTS};
+use axis_sim::mechanism::Freedom;
+
+use crate::ErrorUnit;
 
 /// A machine that differs from the axis.
 #[derive(Clone, Debug)]
 pub struct Machine {
     /// In words.
-    pub name: &'static str,
+    pub name: String,
     /// The machine.
     pub axis: Axis,
 }
@@ -39,25 +42,30 @@ pub fn machines(axis: &Axis) -> Vec<Machine> {
         }
         machine
     };
+    let unit = ErrorUnit::of(axis);
+    let mass = match axis.freedom() {
+        Freedom::Linear => "kg",
+        Freedom::Rotary => "kg·m²",
+    };
     vec![
         Machine {
-            name: "200 kg more",
+            name: format!("200 {mass} more"),
             axis: known(&[("table_mass", 200.0 / axis.mechanism.load_inertia())]),
         },
         Machine {
-            name: "3 µm backlash",
+            name: format!("3 {unit} backlash"),
             axis: with(&[("backlash", &[3e-6])]),
         },
         Machine {
-            name: "nut stiffness -20 %",
+            name: "nut stiffness -20 %".to_owned(),
             axis: known(&[("nut_stiffness", -0.2)]),
         },
         Machine {
-            name: "Stribeck speed +20 %, break-away +5 %",
+            name: "Stribeck speed +20 %, break-away +5 %".to_owned(),
             axis: known(&[("stribeck_speed", 0.2), ("break_away", 0.05)]),
         },
         Machine {
-            name: "cogging, local and asymmetric friction",
+            name: "cogging, local and asymmetric friction".to_owned(),
             axis: with(&[
                 ("cogging-torque", &[0.05, 11.0, 0.6]),
                 ("position-dependent-friction", &[40.0, 0.75, 0.06]),

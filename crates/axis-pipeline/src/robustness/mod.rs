@@ -41,7 +41,7 @@ pub struct Draw {
 /// What came of a draw: a point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
-    /// Without compensation, each counted move, µm.
+    /// Without compensation, each counted move, µm or µrad.
     pub none: Vec<Figures>,
     /// With it.
     pub compensated: Vec<Figures>,

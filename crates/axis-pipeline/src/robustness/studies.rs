@@ -7,9 +7,9 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use super::{Draw, Machine, constant_speed, machines, pre_roll, random_program, wrong_belief};
-use crate::PipelineError;
 use crate::moves::NamedMotion;
 use crate::tracking::{PlannedTrajectory, plan_all};
+use crate::{ErrorUnit, PipelineError};
 
 /// What is asked of a counted move, in the worst of all draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub enum Goal {
         /// Of the peak, median draw.
         median: Option<f64>,
     },
-    /// Greatest error that is left, µm.
+    /// Greatest error that is left, µm or µrad.
     Left(f64),
 }
 
@@ -81,7 +81,7 @@ pub(crate) const WRONG: [f64; 2] = [0.2, 0.1];
 /// Ordinary moves from which what no parameter holds is learned.
 const ORDINARY: usize = 10;
 
-/// Way of a pre-roll, m.
+/// Way of a pre-roll, m or rad.
 const PRE_ROLL: f64 = 1e-3;
 
 /// What the rows are made of.
@@ -138,6 +138,10 @@ impl Ground {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         random.set_stream(1000 * row + draw as u64);
         random
+    }
+
+    fn unit(&self) -> ErrorUnit {
+        ErrorUnit::of(&self.axis)
     }
 
     /// A draw whose belief is right.
@@ -277,7 +281,7 @@ impl Ground {
             ground.draw(vec![constant_speed(start, 3.0 * speed, speed)?], 1)
         };
         Study {
-            name: "constant speed, 1 to 8 mm/s".to_owned(),
+            name: format!("constant speed, 1 to 8 {}/s", self.unit().thousand()),
             strategy: "feedback",
             noise: true,
             moves: vec![("first move", Goal::Left(0.1))],

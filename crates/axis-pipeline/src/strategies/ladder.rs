@@ -18,8 +18,8 @@ use trajectories::Motion;
 
 use super::plan::plan;
 use super::{DesignOnce, LearnedValues, NextMove, Predictors, SharedMotion, Strategy};
-use crate::PipelineError;
 use crate::residuals::{AnyLearner, AnyResidual};
+use crate::{ErrorUnit, PipelineError};
 
 /// Which rungs a strategy has above the plan.
 #[derive(Clone, Copy, Debug, Default)]
@@ -261,6 +261,7 @@ impl Strategy for Ladder {
 
     fn learn(&mut self, record: &[Sample]) -> Result<LearnedValues, PipelineError> {
         let mut known = LearnedValues::new();
+        let unit = ErrorUnit::of(&self.axis).key();
         if let Some(adaptation) = &mut self.adaptation {
             // What repeats with a move is not what repeats with angle and position.
             let again = self
@@ -287,7 +288,7 @@ impl Strategy for Ladder {
             let used = residual.filter(|beside| beside.learner.model().is_some());
             let told = used.map_or(&*adaptation, |beside| &beside.adaptation);
             let free = told.model().kinematics.free_travel;
-            known.insert("free_travel_um".to_owned(), 1e6 * free);
+            known.insert(format!("free_travel_{unit}"), 1e6 * free);
             for estimate in told.estimates() {
                 let name = estimate.parameter.name().replace(' ', "_");
                 known.insert(format!("{name}_relative"), estimate.relative);
@@ -303,8 +304,8 @@ impl Strategy for Ladder {
                     .collect();
                 let round = repeated.learned.learn(&errors);
                 known.insert("repetitions".to_owned(), f64::from(round.rounds));
-                known.insert("learnable_um".to_owned(), 1e6 * round.learnable);
-                known.insert("noise_um".to_owned(), 1e6 * round.floor);
+                known.insert(format!("learnable_{unit}"), 1e6 * round.learnable);
+                known.insert(format!("noise_{unit}"), 1e6 * round.floor);
             }
         }
         Ok(known)

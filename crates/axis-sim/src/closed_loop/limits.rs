@@ -3,12 +3,13 @@
 use feed_dynamics::DriveError;
 
 use super::ClosedLoop;
+use crate::axis::ValueRange;
 use crate::cycle::{Cycle, Outcome, Stop, StopReason};
 use crate::plant::AdvanceError;
 
 impl ClosedLoop {
     pub(super) fn stop_reason(&self, cycle: &Cycle) -> Option<StopReason> {
-        let (stroke, axis) = (&self.axis.stroke, &self.axis);
+        let axis = &self.axis;
         let current = cycle.current.d + cycle.current.q + cycle.command.effort;
         let state = cycle.position + cycle.motor_speed + current;
         if !state.is_finite() {
@@ -16,12 +17,26 @@ impl ClosedLoop {
         } else if cycle.error().abs() > axis.following_error_limit {
             let limit = axis.following_error_limit;
             Some(StopReason::FollowingError(limit, axis.freedom()))
-        } else if !(stroke.minimum..=stroke.maximum).contains(&cycle.position)
-            || (axis.mechanism.reach()).is_some_and(|reach| !reach.contains(cycle.position))
-        {
+        } else if !self.room().contains(cycle.position) {
             Some(StopReason::LeftStroke)
         } else {
             None
+        }
+    }
+
+    /// Where the load may be: on the stroke, as far as the mechanism reaches.
+    fn room(&self) -> ValueRange {
+        let stroke = &self.axis.stroke;
+        let stroke = ValueRange {
+            least: stroke.minimum,
+            most: stroke.maximum,
+        };
+        match self.axis.mechanism.reach() {
+            Some(reach) => ValueRange {
+                least: stroke.least.max(reach.least),
+                most: stroke.most.min(reach.most),
+            },
+            None => stroke,
         }
     }
 
@@ -36,6 +51,7 @@ impl ClosedLoop {
                 torque: at.torque,
                 freedom: self.axis.freedom(),
                 motor: self.axis.mechanism.motor_freedom(),
+                stroke: [self.room().least, self.room().most],
             },
         }
     }

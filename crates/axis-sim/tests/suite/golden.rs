@@ -1,8 +1,6 @@
 //! Trajectory 1, instant by instant, against programs that share no code with
 //! the crates.
 
-use std::path::PathBuf;
-
 use axis_sim::{ClosedLoop, Cycle};
 
 use crate::obvious::{EVERY, HEADER, PERIOD, STEPS, duration, line, simulate};
@@ -95,18 +93,12 @@ fn trajectory_1_of_the_obvious_program() {
 
 #[test]
 fn trajectory_1_of_the_independent_program() {
-    let file = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../../../shared/golden/trajectory1_published.csv");
-    let Ok(golden) = std::fs::read_to_string(&file) else {
-        println!(
-            "skipped: {} is not there. It is the log of a program that is not published; put it \
-             there (every millisecond: {HEADER}) to run this comparison. The one with \
-             tests/reference/trajectory1.csv needs nothing",
-            file.display()
-        );
+    // The log of a program that is not published, every millisecond, with the columns of HEADER. The comparison with
+    // tests/reference/trajectory1.csv needs nothing.
+    let Some(file) = crate::needs::shared("golden/trajectory1_published.csv") else {
         return;
     };
-    let rows = rows(&golden);
+    let rows = rows(&std::fs::read_to_string(file).unwrap());
     assert_eq!(rows.len(), 3632);
     let most = deviations(&cycles(), &rows, 10);
     println!("independent program: reference, position, angle, speed, iq within {most:?}");

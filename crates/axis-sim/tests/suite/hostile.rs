@@ -1,8 +1,6 @@
 //! Values that nobody should give, to everything that is public: no panic, and
 //! an end.
 
-use std::time::{Duration, Instant};
-
 use axis_log::{Channel, Log};
 use axis_sim::effects::{ActiveEffect, EFFECTS};
 use axis_sim::mechanism::Way;
@@ -172,14 +170,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(600))]
 
     /// Files with wild values are refused, or their axis is planned, set up and
-    /// run for fifty cycles in no time; how long a run takes is known before.
+    /// run for fifty cycles; how long a run takes is known before, so that one without end is refused and this ends.
     #[test]
     fn files_with_any_values(
         which in 0..2 + OTHERS.len(),
         values in prop::collection::vec((0..200_usize, wild()), 1..4)
     ) {
         let content = with_values(&text([PRINTED, RIGID].iter().chain(&OTHERS).nth(which).unwrap()), &values);
-        let begin = Instant::now();
         match Axis::parse("axis.toml", &content) {
             Err(error) => prop_assert!(error.to_string().starts_with("axis.toml:")),
             Ok(axis) if which == 1 => {
@@ -190,7 +187,6 @@ proptest! {
             }
             Ok(axis) => fifty_cycles(&axis),
         }
-        prop_assert!(begin.elapsed() < Duration::from_secs(20), "{:?}", begin.elapsed());
     }
 }
 

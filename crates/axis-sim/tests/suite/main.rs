@@ -21,6 +21,8 @@ mod files;
 mod fingerprint;
 mod golden;
 mod hostile;
+#[path = "../../../../tests/needs.rs"]
+mod needs;
 mod obvious;
 mod one_cycle;
 mod other_effects;

@@ -323,6 +323,8 @@ fn a_load_that_no_motion_goes_with() {
         let (outcome, seen) = run(&axis, &mut NoCompensation);
         let (time, reason) = stopped(outcome);
         assert_eq!(reason, expected);
+        let said = outcome.completed().unwrap_err().to_string();
+        assert!(said.contains("; valid: "), "{said}");
         // The state is that of the last step that was made.
         assert!((time - 0.1).abs() < 1e-9 && seen == 1001, "{time} {seen}");
         let motion = axis.plan(&axis.trajectories[0]).unwrap();
@@ -344,6 +346,8 @@ fn a_motion_that_begins_off_the_screw() {
             .unwrap()
             .run(&motion, &mut NoCompensation, |_| panic!("no cycle"));
         assert_eq!(stopped(outcome), (0.0, StopReason::LeftStroke));
+        let said = outcome.completed().unwrap_err().to_string();
+        assert!(said.contains("valid: a motion from 0 to 1.5 m"), "{said}");
     }
 }
 
@@ -358,5 +362,8 @@ fn a_stroke_beyond_the_screw_ends_with_the_screw() {
         .unwrap()
         .run(&motion, &mut NoCompensation, |c| last = c.position);
     assert_eq!(stopped(outcome).1, StopReason::LeftStroke);
+    // Where the screw ends, not where the file says that the stroke does.
+    let said = outcome.completed().unwrap_err().to_string();
+    assert!(said.contains("valid: a motion from 0 to 1.5 m"), "{said}");
     assert!((1.5 - last).abs() < 0.3 * 2e-4, "{last}");
 }

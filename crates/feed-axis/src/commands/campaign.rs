@@ -9,6 +9,7 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
 
 use crate::exit::wrong_use;
+use crate::file_set::FileSet;
 use crate::jobs::Jobs;
 use crate::output::{Worded, print, ready, write_whole};
 use crate::program;
@@ -87,12 +88,14 @@ pub fn command<J: Jobs>(options: &Options) -> Result<()> {
         scheduler_options: options.scheduler_option.clone(),
         folder,
     };
-    let mut files = Vec::new();
-    for (name, text) in submission.scripts() {
-        let path = submission.folder.join(name);
-        write_whole(&path, text.as_bytes())?;
-        files.push(path);
+    let scripts = submission.scripts();
+    let names: Vec<&str> = scripts.iter().map(|(name, _)| name.as_ref()).collect();
+    let mut set = FileSet::new(&submission.folder, &names)?;
+    for (name, text) in &scripts {
+        set.put(name, text.as_bytes())?;
     }
+    set.publish()?;
+    let files: Vec<PathBuf> = names.iter().map(|n| submission.folder.join(n)).collect();
     let script = submission.folder.join("submit.sh");
     let mut text: String = files.iter().map(|f| format!("{}\n", f.display())).collect();
     if !options.submit {

@@ -3,16 +3,16 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use axis_pipeline::Figures;
 use axis_pipeline::compensation::{self, CompensatedRun};
+use axis_pipeline::measured::Errors;
 use axis_pipeline::strategies::{Need, STRATEGIES};
+use axis_pipeline::{ErrorUnit, Figures};
 use clap::Args;
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 
 use super::{compensate_moves, identify, train, validate};
 use crate::context::{Common, Context};
-use crate::measured::Errors;
 use crate::output::print;
 use crate::progress::bar;
 use crate::store::Stage;
@@ -64,14 +64,14 @@ pub fn run(context: &Context) -> Result<()> {
     progress.finish_and_clear();
     stage.write_json(COMPENSATION, &runs)?;
     stage.finish()?;
-    let freedom = context.axis.freedom();
+    let unit = context.unit();
     let run = |run: &CompensatedRun| Run {
         trajectory: run.id,
         strategy: run.strategy.clone(),
-        errors: Errors::of(freedom, run.run.figures),
+        errors: Errors::new(unit, run.run.figures),
     };
     let found = Compensated {
-        unit: freedom.unit(),
+        unit,
         runs: runs.iter().map(run).collect(),
         file: stage.path(COMPENSATION),
     };
@@ -82,7 +82,7 @@ pub fn run(context: &Context) -> Result<()> {
 #[derive(Serialize)]
 struct Compensated {
     #[serde(skip)]
-    unit: &'static str,
+    unit: ErrorUnit,
     runs: Vec<Run>,
     file: PathBuf,
 }
@@ -100,7 +100,7 @@ impl fmt::Display for Compensated {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "compensate: tracking error of the machine (simulated), max / mean in µ{}",
+            "compensate: tracking error of the machine (simulated), max / mean in {}",
             self.unit
         )?;
         for kind in STRATEGIES {
@@ -111,7 +111,7 @@ impl fmt::Display for Compensated {
             };
             writeln!(f, "  {}", kind.label)?;
             for run in [first].into_iter().chain(runs) {
-                let (errors, _) = run.errors.get();
+                let errors = &*run.errors;
                 writeln!(
                     f,
                     "  {:>10} {:>8.3} / {:.4}",

@@ -4,9 +4,10 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use axis_pipeline::Figures;
+use axis_pipeline::measured::Errors;
 use axis_pipeline::moves::{MoveRun, Moves, NamedMotion};
 use axis_pipeline::strategies::{LearnedValues, NONE, Predictors, StrategyKind};
+use axis_pipeline::{ErrorUnit, Figures};
 use axis_sim::Measured;
 use clap::Args;
 use discover_matrix::hidden::Noise;
@@ -65,19 +66,32 @@ struct Report<'a> {
     noise: f64,
     seed: u64,
     version: &'a str,
+    /// Those that came to their end with and without the strategy.
     moves: Vec<Entry<'a>>,
+    /// Where the moves ended before the last that was asked for.
+    stopped: Vec<Stopped<'a>>,
+}
+
+/// A move that did not come to its end, nor were those after it made.
+#[derive(Serialize)]
+struct Stopped<'a> {
+    strategy: &'a str,
+    #[serde(rename = "move")]
+    name: &'a str,
+    why: String,
 }
 
 #[derive(Serialize)]
 struct Entry<'a> {
     #[serde(rename = "move")]
     name: &'a str,
-    errors_um: Errors,
+    #[serde(flatten)]
+    errors: Errors<Pair>,
     learned: &'a LearnedValues,
 }
 
 #[derive(Serialize)]
-struct Errors {
+struct Pair {
     none: Figures,
     compensated: Figures,
 }
@@ -114,13 +128,17 @@ pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) ->
     };
     let (none, compensated) = rayon::join(|| made(&NONE), || made(kind));
     progress.finish_and_clear();
+    let unit = context.unit();
     let pairs = none.runs.iter().zip(&compensated.runs);
     let entries = pairs.zip(&motions).map(|((none, with), motion)| Entry {
         name: &motion.name,
-        errors_um: Errors {
-            none: none.figures,
-            compensated: with.figures,
-        },
+        errors: Errors::new(
+            unit,
+            Pair {
+                none: none.figures,
+                compensated: with.figures,
+            },
+        ),
         learned: &with.learned,
     });
     let report = Report {
@@ -133,6 +151,10 @@ pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) ->
         seed: context.seed,
         version: env!("CARGO_PKG_VERSION"),
         moves: entries.collect(),
+        stopped: [(NONE.name, &none), (kind.name, &compensated)]
+            .into_iter()
+            .filter_map(|(strategy, made)| made.stopped(strategy, &motions))
+            .collect(),
     };
     // What was computed before a move stopped is kept.
     if let Some(path) = &options.json {
@@ -140,7 +162,7 @@ pub fn run(context: &Context, options: &Options, kind: &'static StrategyKind) ->
         write_whole(path, &bytes)?;
     }
     let made = Moved {
-        unit: context.axis.freedom().unit(),
+        unit,
         label: kind.label,
         report,
     };
@@ -157,6 +179,18 @@ struct Made {
     stopped: Option<axis_pipeline::PipelineError>,
 }
 
+impl Made {
+    /// Which move stopped, and why.
+    fn stopped<'a>(&self, strategy: &'a str, motions: &'a [NamedMotion]) -> Option<Stopped<'a>> {
+        let (error, motion) = (self.stopped.as_ref()?, motions.get(self.runs.len())?);
+        Some(Stopped {
+            strategy,
+            name: &motion.name,
+            why: error.to_string(),
+        })
+    }
+}
+
 fn series<S: FnMut(&mut Measured)>(
     kind: &StrategyKind,
     predictors: &Predictors,
@@ -168,7 +202,11 @@ fn series<S: FnMut(&mut Measured)>(
     let mut attempt = || {
         let mut strategy = kind.strategy(predictors)?;
         for motion in motions {
-            runs.push(moves.make(&mut *strategy, motion)?);
+            // A move's errors, one a cycle, are in its figures.
+            runs.push(MoveRun {
+                errors: Vec::new(),
+                ..moves.make(&mut *strategy, motion)?
+            });
             each();
         }
         Ok(())
@@ -181,7 +219,7 @@ fn series<S: FnMut(&mut Measured)>(
 #[derive(Serialize)]
 struct Moved<'a> {
     #[serde(skip)]
-    unit: &'static str,
+    unit: ErrorUnit,
     #[serde(skip)]
     label: &'static str,
     #[serde(flatten)]
@@ -193,7 +231,7 @@ impl fmt::Display for Moved<'_> {
         let (report, unit) = (&self.report, self.unit);
         writeln!(
             f,
-            "{} on {} (simulated): tracking error, max / mean in µ{unit}",
+            "{} on {} (simulated): tracking error, max / mean in {unit}",
             self.label, report.machine
         )?;
         writeln!(
@@ -201,7 +239,7 @@ impl fmt::Display for Moved<'_> {
             "        none                 compensated            taken away"
         )?;
         for entry in &report.moves {
-            let (a, b) = (&entry.errors_um.none, &entry.errors_um.compensated);
+            let (a, b) = (&entry.errors.none, &entry.errors.compensated);
             writeln!(
                 f,
                 "  {:>9.3} / {:<9.4} {:>9.4} / {:<9.5} {:>6.2} / {:.2} %   {}",
@@ -212,6 +250,13 @@ impl fmt::Display for Moved<'_> {
                 100.0 * (1.0 - b.max / a.max),
                 100.0 * (1.0 - b.mean / a.mean),
                 entry.name
+            )?;
+        }
+        for stopped in &report.stopped {
+            writeln!(
+                f,
+                "  stopped at {} under {}, and made no more moves: {}",
+                stopped.name, stopped.strategy, stopped.why
             )?;
         }
         if let Some(last) = report.moves.last().filter(|last| !last.learned.is_empty()) {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use axis_log::intake::{IntakeError, Options as Intake, files, prepare};
 use axis_log::{Log, ReadError, ReadProblem};
+use axis_pipeline::ErrorUnit;
 use axis_sim::Axis;
 use axis_sim::effects::Scales;
 use clap::Args;
@@ -15,7 +16,8 @@ use toml_edit::{DocumentMut, Item, Value};
 
 use super::discover_words::{Files, Found, FoundInSummary, summary_words};
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
-use crate::output::{Worded, note, print, ready, remove, write_whole};
+use crate::file_set::FileSet;
+use crate::output::{Worded, note, print, ready};
 use crate::page;
 use crate::program;
 use crate::progress::{bar, spinner};
@@ -38,7 +40,8 @@ pub struct Options {
     #[arg(long, value_name = "LOG", num_args = 1.., requires = "check")]
     test: Vec<PathBuf>,
     /// Instead of logs: CSV with the columns trajectory, experiment_max_um and
-    /// experiment_mean_um (or max_um, mean_um), one row a trajectory of the axis file
+    /// experiment_mean_um (or max_um, mean_um; of an axis that turns, _urad), one row a
+    /// trajectory of the axis file
     #[arg(long, value_name = "TABLE", conflicts_with_all = ["fit", "check", "test", "accept", "reject"])]
     summary: Option<PathBuf>,
     /// Folder for discovery.json, report.html and axis.toml, or for ranking.json and
@@ -119,18 +122,16 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
             .map(|active| active.entry(&scales, number))
             .collect()
     };
+    let mut files = FileSet::new(out, &[DISCOVERY, AXIS, NEXT, REPORT])?;
     let json = serde_json::to_vec_pretty(discovery).into_diagnostic()?;
-    write_whole(&out.join("discovery.json"), &json)?;
-    write_whole(&out.join("axis.toml"), (text + &entries(whole)).as_bytes())?;
-    match &discovery.next_experiment {
-        Some(next) => {
-            let program = toml::to_string(&next.program).into_diagnostic()?;
-            write_whole(&out.join(NEXT), program.as_bytes())?;
-        }
-        None => remove(&out.join(NEXT))?,
+    files.put(DISCOVERY, &json)?;
+    files.put(AXIS, (text + &entries(whole)).as_bytes())?;
+    if let Some(next) = &discovery.next_experiment {
+        let program = toml::to_string(&next.program).into_diagnostic()?;
+        files.put(NEXT, program.as_bytes())?;
     }
-    let html = page::discovery::page(&discovered)?;
-    write_whole(&out.join(REPORT), html.as_bytes())?;
+    files.put(REPORT, page::discovery::page(&discovered)?.as_bytes())?;
+    files.publish()?;
     let found = Found {
         discovery,
         added: entries(read),
@@ -139,6 +140,9 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     print("discover", &found)
 }
 
+/// What was found, and the axis file with it.
+pub(super) const DISCOVERY: &str = "discovery.json";
+pub(super) const AXIS: &str = "axis.toml";
 /// File of the proposed motion.
 pub(super) const NEXT: &str = "next-experiment.toml";
 /// What logs and what a table of errors show: in one folder, neither takes the other's
@@ -253,14 +257,15 @@ fn from_summary(options: &Options, machine: &Axis, table: &Path, out: &Path) -> 
         ));
     }
     let measured = read_summary(table, axis)?;
-    ready(out)?;
+    let mut files = FileSet::new(out, &[RANKING, RANKING_REPORT])?;
     let progress = bar("effects", tried(axis) as u64);
     let found = rank(axis, &measured, || progress.inc(1)).into_diagnostic()?;
     progress.finish_and_clear();
     let json = serde_json::to_vec_pretty(&found).into_diagnostic()?;
-    write_whole(&out.join(RANKING), &json)?;
+    files.put(RANKING, &json)?;
     let html = page::discovery::summary_page(axis, &found)?;
-    write_whole(&out.join(RANKING_REPORT), html.as_bytes())?;
+    files.put(RANKING_REPORT, html.as_bytes())?;
+    files.publish()?;
     let text = summary_words(axis, &found, measured.len());
     let report = out.join(RANKING_REPORT);
     let text = format!("{text}\n{}", report.display());
@@ -276,8 +281,10 @@ pub fn read_summary(path: &Path, axis: &Axis) -> Result<Vec<MeasuredError>> {
     let text = read_text(path)?;
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers().into_diagnostic()?.clone();
-    let column = |names: [&str; 2]| {
-        let at = header.iter().position(|h| names.contains(&h.trim()));
+    let column = |names: [String; 2]| {
+        let at = header
+            .iter()
+            .position(|h| names.iter().any(|name| name == h.trim()));
         at.ok_or_else(|| {
             let found: Vec<&str> = header.iter().collect();
             miette!(
@@ -288,10 +295,12 @@ pub fn read_summary(path: &Path, axis: &Axis) -> Result<Vec<MeasuredError>> {
             )
         })
     };
+    let unit = ErrorUnit::of(axis).key();
+    let in_unit = |name: &str| format!("{name}_{unit}");
     let [number, max, mean] = [
-        column(["trajectory", "number"])?,
-        column(["experiment_max_um", "max_um"])?,
-        column(["experiment_mean_um", "mean_um"])?,
+        column(["trajectory", "number"].map(str::to_owned))?,
+        column(["experiment_max", "max"].map(in_unit))?,
+        column(["experiment_mean", "mean"].map(in_unit))?,
     ];
     let mut rows = Vec::new();
     for (i, record) in reader.records().enumerate() {
@@ -303,7 +312,7 @@ pub fn read_summary(path: &Path, axis: &Axis) -> Result<Vec<MeasuredError>> {
             let number = text
                 .parse::<f64>()
                 .ok()
-                // Above zero in metres too.
+                // Above zero in metres or radians too.
                 .filter(|v| v.is_finite() && 1e-6 * v > 0.0);
             number.ok_or_else(|| {
                 miette!(

@@ -9,7 +9,7 @@ use discrepancy::summary::SummaryFound;
 use discrepancy::{Discovery, Verdict};
 use serde::Serialize;
 
-use super::discover::{NEXT, REPORT};
+use super::discover::{AXIS, DISCOVERY, NEXT, REPORT};
 
 /// What a search found, and where it is written.
 #[derive(Serialize)]
@@ -37,8 +37,8 @@ impl Files {
     /// The files in a folder.
     pub fn of(out: &Path, has_next: bool) -> Self {
         Self {
-            discovery: out.join("discovery.json"),
-            axis: out.join("axis.toml"),
+            discovery: out.join(DISCOVERY),
+            axis: out.join(AXIS),
             report: out.join(REPORT),
             next_experiment: has_next.then(|| out.join(NEXT)),
         }

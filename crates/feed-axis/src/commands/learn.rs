@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use axis_log::read_log;
+use axis_pipeline::ErrorUnit;
 use axis_pipeline::learning::StoredCorrection;
+use axis_pipeline::measured::Errors;
 use axis_sim::{Axis, SixDigits};
 use clap::Args;
 use compensator::{Advice, LearnedMove, Round};
@@ -12,7 +14,6 @@ use serde::Serialize;
 use trajectories::Motion;
 
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
-use crate::measured::Errors;
 use crate::output::{Worded, print, write_whole};
 
 /// Options of `learn`.
@@ -52,10 +53,10 @@ pub fn command(options: &Options) -> Result<()> {
 }
 
 fn tell(axis: &Axis, round: &Round, file: &Path) -> Result<()> {
-    let unit = axis.freedom().unit();
+    let unit = ErrorUnit::of(axis);
     let micro = |value: f64| SixDigits((1e10 * value).round() / 1e4);
     let error = format!(
-        "round {}: tracking error up to {} µ{unit}; of it {} µ{unit} (RMS) can be learned, noise leaves {} µ{unit} there",
+        "round {}: tracking error up to {} {unit}; of it {} {unit} (RMS) can be learned, noise leaves {} {unit} there",
         round.rounds,
         micro(round.peak),
         micro(round.learnable),
@@ -75,8 +76,8 @@ fn tell(axis: &Axis, round: &Round, file: &Path) -> Result<()> {
     };
     let value = Learned {
         rounds: round.rounds,
-        errors: Errors::of(
-            axis.freedom(),
+        errors: Errors::new(
+            unit,
             Left {
                 max: 1e6 * round.peak,
                 learnable_rms: 1e6 * round.learnable,

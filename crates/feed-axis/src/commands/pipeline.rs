@@ -31,7 +31,6 @@ pub fn run(common: &Common) -> Result<()> {
     ];
     for (stage, name, run) in &stages {
         if stage.is_current() {
-            stage.tidy()?;
             let text = format!("{name}: up to date");
             let value = UpToDate { up_to_date: true };
             print(name, &Worded { text, value })?;

@@ -9,7 +9,9 @@ use serde::Serialize;
 
 use super::{compensate, identify, validate};
 use crate::context::{Common, Context, read_text};
-use crate::output::{Worded, print, ready, sweep, write_whole};
+use crate::exit::wrong_use;
+use crate::file_set::FileSet;
+use crate::output::{Worded, print, ready, write_whole};
 use crate::page::compare::RunFolder;
 use crate::store::read_finished;
 use crate::{page, program, results};
@@ -34,6 +36,15 @@ struct Compared<'a> {
 
 fn compare(a: &Path, b: &Path, out: Option<&Path>) -> Result<()> {
     let [first, second] = [run_folder(a)?, run_folder(b)?];
+    let [of_a, of_b] = [first.validation.unit, second.validation.unit];
+    if of_a != of_b {
+        return Err(wrong_use(format!(
+            "--compare: the errors of {} are in {of_a}, those of {} in {of_b}; give two runs of axes that both turn, \
+             or both move along a line",
+            a.display(),
+            b.display()
+        )));
+    }
     let out = out.unwrap_or(Path::new("runs/compare"));
     ready(out)?;
     let file = out.join(COMPARED);
@@ -96,15 +107,15 @@ pub fn command(options: &Options) -> Result<()> {
 /// Writes both files.
 pub fn run(context: &Context) -> Result<()> {
     let results = results::gather(context)?;
-    sweep(&context.out, &[SUMMARY, REPORT])?;
+    let [summary_path, report_path] = [SUMMARY, REPORT].map(|name| context.out.join(name));
+    let mut files = FileSet::new(&context.out, &[SUMMARY, REPORT])?;
     let json = serde_json::to_vec_pretty(&results.summary).into_diagnostic()?;
-    let summary_path = context.out.join(SUMMARY);
-    write_whole(&summary_path, &json)?;
-    let report_path = context.out.join(REPORT);
+    files.put(SUMMARY, &json)?;
     let html = axis_report::render(&page::page(context, &results))
         .into_diagnostic()
         .wrap_err("the report cannot be made")?;
-    write_whole(&report_path, html.as_bytes())?;
+    files.put(REPORT, html.as_bytes())?;
+    files.publish()?;
     let text = format!(
         "report: {} and {}",
         summary_path.display(),

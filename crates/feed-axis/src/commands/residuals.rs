@@ -1,5 +1,6 @@
 //! `residuals`: what no parameter holds, learned in three ways, side by side.
 
+use axis_pipeline::ErrorUnit;
 use axis_pipeline::residuals::{
     AFTER, Compared, NetworkSettings, ResidualMethod, compare, contests, trained_basis,
 };
@@ -65,7 +66,7 @@ pub fn command(common: &Common) -> Result<()> {
     )?;
     let text = format!(
         "{}each move is a number in {}",
-        words(&made),
+        words(&made, context.unit()),
         path.display()
     );
     let value = report;
@@ -73,17 +74,17 @@ pub fn command(common: &Common) -> Result<()> {
 }
 
 /// The comparison as a table.
-fn words(made: &[Vec<Compared>]) -> String {
+fn words(made: &[Vec<Compared>], unit: ErrorUnit) -> String {
     let after: Vec<String> = AFTER.iter().map(|n| format!("after {n}")).collect();
     let mut text = format!(
-        "| peak left, µm: median / worst | {} |\n|---|{}\n",
+        "| peak left, {unit}: median / worst | {} |\n|---|{}\n",
         after.join(" | "),
         "---|".repeat(AFTER.len())
     );
     for (w, way) in ResidualMethod::ALL.iter().enumerate() {
         let cells = (0..AFTER.len()).map(|i| {
             let of_way = made.iter().map(|machine| &machine[w]);
-            let mut left: Vec<f64> = of_way.clone().flat_map(|c| c.left_um[i].clone()).collect();
+            let mut left: Vec<f64> = of_way.clone().flat_map(|c| c.left[i].clone()).collect();
             left.sort_by(f64::total_cmp);
             let used = of_way.clone().filter(|c| c.used[i]).count();
             let worst = left.last().copied().unwrap_or(0.0);

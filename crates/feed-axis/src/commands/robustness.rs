@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::ErrorUnit;
 use axis_pipeline::robustness::{Draws, Goal, Point, Sense, Study, make, studies};
 use axis_report::{Page, render};
 use axis_sim::Measured;
@@ -12,10 +13,15 @@ use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result, WrapErr};
 
 use crate::context::{Claim, Common, Context};
+use crate::file_set::FileSet;
 use crate::jobs::{JobOptions, Sharding, failure};
-use crate::output::{Worded, print, write_whole};
+use crate::output::{Worded, print};
 use crate::page;
 use crate::page::robustness::{Asked, Limit, Robustness, Row};
+
+/// The table, and its page.
+const TABLE: &str = "robustness.json";
+const PAGE: &str = "robustness.html";
 
 /// Options of `robustness`.
 #[derive(Args)]
@@ -103,17 +109,20 @@ impl AllDraws {
             seed: context.seed,
             quick: self.draws != Draws::FULL,
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            unit: context.unit(),
             rows,
         };
-        let json = context.out.join("robustness.json");
-        write_whole(&json, &serde_json::to_vec_pretty(&table).into_diagnostic()?)?;
+        let mut files = FileSet::new(&context.out, &[TABLE, PAGE])?;
+        let json = serde_json::to_vec_pretty(&table).into_diagnostic()?;
+        files.put(TABLE, &json)?;
         let title = format!("Compensation of {}", table.axis);
         let page = Page::new(title).section(page::robustness::robustness(&table));
         let page = render(&page)
             .into_diagnostic()
             .wrap_err("the page cannot be made")?;
-        let html = context.out.join("robustness.html");
-        write_whole(&html, page.as_bytes())?;
+        files.put(PAGE, page.as_bytes())?;
+        files.publish()?;
+        let [json, html] = [TABLE, PAGE].map(|name| context.out.join(name));
         let [json, html] = [json.display(), html.display()];
         let text = format!(
             "{}each draw is a point in {json} and {html}",
@@ -171,13 +180,13 @@ impl Job for AllDraws {
         };
         let judged = self
             .ranges()
-            .map(|(row, cases)| Ok(judge(row, points(cases)?)));
+            .map(|(row, cases)| Ok(judge(row, points(cases)?, self.context.unit())));
         let rows = judged.collect::<std::result::Result<Vec<_>, Failure>>()?;
         self.write(rows).map_err(failure)
     }
 }
 
-fn judge(row: &Study, points: Vec<Point>) -> Row {
+fn judge(row: &Study, points: Vec<Point>, unit: ErrorUnit) -> Row {
     let mut counted: Vec<Counted> = row.moves.iter().map(|_| Counted::default()).collect();
     for point in &points {
         for (i, counted) in counted.iter_mut().enumerate() {
@@ -193,7 +202,7 @@ fn judge(row: &Study, points: Vec<Point>) -> Row {
         strategy: row.strategy.to_owned(),
         noise: row.noise,
         moves: moves
-            .map(|((words, goal), counted)| asked(words, goal, counted))
+            .map(|((words, goal), counted)| asked(words, goal, counted, unit))
             .collect(),
         points,
     }
@@ -202,7 +211,7 @@ fn judge(row: &Study, points: Vec<Point>) -> Row {
 /// What the draws made of one counted move.
 #[derive(Default)]
 struct Counted {
-    /// Greatest error with and without compensation, µm.
+    /// Greatest error with and without compensation, µm or µrad.
     left: f64,
     none: f64,
     /// Shares taken of the peak and of the mean, %.
@@ -210,15 +219,15 @@ struct Counted {
     means: Vec<f64>,
 }
 
-fn asked(words: &str, goal: &Goal, counted: &mut Counted) -> Asked {
+fn asked(words: &str, goal: &Goal, counted: &mut Counted, unit: ErrorUnit) -> Asked {
     counted.peaks.sort_by(f64::total_cmp);
     counted.means.sort_by(f64::total_cmp);
     let worst = |of: &[f64]| of.first().copied().unwrap_or(f64::NAN);
     let median = |of: &[f64]| of.get(of.len() / 2).copied().unwrap_or(f64::NAN);
     let (asked, found, kept) = match *goal {
         Goal::Left(most) => {
-            let found = format!("{:.3} µm (none: {:.0})", counted.left, counted.none);
-            (format!("≤ {most} µm"), found, counted.left <= most)
+            let found = format!("{:.3} {unit} (none: {:.0})", counted.left, counted.none);
+            (format!("≤ {most} {unit}"), found, counted.left <= most)
         }
         Goal::Taken {
             peak,
@@ -243,7 +252,7 @@ fn asked(words: &str, goal: &Goal, counted: &mut Counted) -> Asked {
         counted: words.to_owned(),
         asked,
         goal: match *goal {
-            Goal::Left(most) => Limit::LeftUm(most),
+            Goal::Left(most) => Limit::left(unit, most),
             Goal::Taken { peak, .. } => Limit::LeftPercent(100.0 - peak),
         },
         worst: found,

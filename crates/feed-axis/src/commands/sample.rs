@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::ErrorUnit;
 use axis_pipeline::sample_file;
 use axis_pipeline::sampling::{SamplePlan, SampleSet, Sampler, SpeedDensity};
 use axis_sim::CycleInput;
@@ -195,13 +196,20 @@ impl Samples {
     }
 }
 
-/// As the binary file has them.
-const COLUMNS: &[Column] = &[
+/// As the binary file has them; of an axis that moves along a line, and of one that turns.
+const LINEAR: &[Column] = &[
     Column::number("position_m"),
     Column::number("speed_m_per_s"),
     Column::number("acceleration_m_per_s2"),
     Column::number("iq_command_a"),
     Column::number("increment_m"),
+];
+const ROTARY: &[Column] = &[
+    Column::number("position_rad"),
+    Column::number("speed_rad_per_s"),
+    Column::number("acceleration_rad_per_s2"),
+    Column::number("iq_command_a"),
+    Column::number("increment_rad"),
 ];
 
 fn of_row(row: &Row) -> std::result::Result<(CycleInput, f64), Failure> {
@@ -241,7 +249,10 @@ impl Job for Samples {
     }
 
     fn columns(&self) -> &'static [Column] {
-        COLUMNS
+        match self.context.unit() {
+            ErrorUnit::Micrometre => LINEAR,
+            ErrorUnit::Microradian => ROTARY,
+        }
     }
 
     fn cases(&self) -> usize {

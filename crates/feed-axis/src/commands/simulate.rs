@@ -7,8 +7,9 @@ use std::sync::Arc;
 use atomic_write_file::AtomicWriteFile;
 use axis_log::{LogFile, WriteProblem};
 use axis_pipeline::Figures;
+use axis_pipeline::measured::Errors;
 use axis_pipeline::strategies::{Build, NextMove, SharedMotion, StrategyKind};
-use axis_sim::{Axis, ClosedLoop, Cycle, FlowRecorder, Measured, Recorder, SixDigits};
+use axis_sim::{Axis, ClosedLoop, Cycle, FlowRecorder, Measured, Recorder, RunStopped, SixDigits};
 use clap::Args;
 use discover_matrix::hidden::{MACHINE_STEP, Noise};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
@@ -18,9 +19,8 @@ use trajectories::Program;
 use super::{learn, validate};
 use crate::context::{Common, Context, read_text};
 use crate::exit::wrong_use;
-use crate::measured::Errors;
 use crate::output::{print, write_whole};
-use crate::page::motion::{self as motion_page, Ran};
+use crate::page::motion::{self as motion_page, Ran, Shown};
 use crate::progress::bar;
 use crate::strategy_name::strategy_name;
 
@@ -98,10 +98,7 @@ pub fn command(options: &Options) -> Result<()> {
     if let Some(path) = &options.report {
         check_writable(path)?;
     }
-    let mut shown = options
-        .report
-        .as_ref()
-        .map(|_| Recorder::new(&context.axis));
+    let mut shown = options.report.as_ref().map(|_| Shown::of(&context.axis));
     let bar = bar("simulate", closed_loop.cycles(&*motion));
     let mut tracking = Tracking::default();
     let observe = |cycle: &Cycle| {
@@ -126,14 +123,20 @@ pub fn command(options: &Options) -> Result<()> {
     };
     let outcome = closed_loop.run_sensed(&*motion, &mut *law, sense, observe);
     bar.finish_and_clear();
-    // What was computed before the run stopped is kept.
-    if let Some((path, rows)) = log.zip(rows).filter(|_| tracking.cycles > 0) {
-        let placed = rows.finish().into_diagnostic();
-        placed.wrap_err_with(|| unwritten(path))?;
+    let stopped = outcome.completed().err();
+    if let (0, Some(stopped)) = (tracking.cycles, stopped) {
+        return Err(stopped).into_diagnostic();
     }
-    outcome.completed().into_diagnostic()?;
+    // What was computed before the run stopped is kept, and says that it did.
+    if let Some((path, rows)) = log.zip(rows) {
+        let placed = match &stopped {
+            Some(why) => rows.finish_stopped(why),
+            None => rows.finish(),
+        };
+        placed.into_diagnostic().wrap_err_with(|| unwritten(path))?;
+    }
     if let (Some(path), Some(shown)) = (&options.report, &shown) {
-        write_page(path, options, &context, shown)?;
+        write_page(path, options, &context, shown, stopped.as_ref())?;
     }
     let axis = &context.axis;
     let figures = Figures {
@@ -148,11 +151,16 @@ pub fn command(options: &Options) -> Result<()> {
             compensation: strategy.name,
             duration_s: motion.duration(),
             cycles: tracking.cycles,
-            tracking_error: Errors::of(axis.freedom(), figures),
+            tracking_error: Errors::new(context.unit(), figures),
+            stopped: stopped.map(|why| why.to_string()),
             log: options.log.as_deref(),
             report: options.report.as_deref(),
         },
-    )
+    )?;
+    match stopped {
+        Some(stopped) => Err(stopped).into_diagnostic(),
+        None => Ok(()),
+    }
 }
 
 /// Asks whether the page can be written, before the work that makes it.
@@ -164,8 +172,15 @@ fn check_writable(path: &Path) -> Result<()> {
         .wrap_err_with(|| format!("cannot write the page {}", path.display()))
 }
 
-fn write_page(path: &Path, options: &Options, context: &Context, shown: &Recorder) -> Result<()> {
+fn write_page(
+    path: &Path,
+    options: &Options,
+    context: &Context,
+    shown: &Shown,
+    stopped: Option<&RunStopped>,
+) -> Result<()> {
     let next = match options.compensation.name {
+        _ if stopped.is_some() => "Mend what stopped it, and run it again.",
         "none" => {
             "Run it again with --compensation, such as plan or drive-terms, and compare the peaks."
         }
@@ -183,8 +198,8 @@ fn write_page(path: &Path, options: &Options, context: &Context, shown: &Recorde
         compensation: options.compensation.label,
         noise: options.noise,
         seed: context.seed,
-        cycles: shown.cycles(),
-        log: &shown.log().into_diagnostic()?,
+        shown,
+        stopped,
         next,
     });
     let html = axis_report::render(&page)
@@ -199,8 +214,11 @@ struct Simulated<'a> {
     axis: &'a str,
     axis_fingerprint: &'a str,
     compensation: &'a str,
+    /// Of the motion; a run that stopped has fewer cycles.
     duration_s: f64,
     cycles: u64,
+    /// Why the run stopped before the motion's end, where it did: the errors are those until then.
+    stopped: Option<String>,
     #[serde(flatten)]
     tracking_error: Errors<Figures>,
     log: Option<&'a Path>,
@@ -209,7 +227,10 @@ struct Simulated<'a> {
 
 impl fmt::Display for Simulated<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (errors, unit) = self.tracking_error.get();
+        let (errors, unit) = (&*self.tracking_error, self.tracking_error.unit());
+        if self.stopped.is_some() {
+            write!(f, "stopped before its end, figures until then: ")?;
+        }
         write!(
             f,
             "{} s, {} cycles: tracking error max {} {unit}, mean {} {unit} (simulated)",

@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use axis_pipeline::Figures;
 use axis_pipeline::study::{Setting, StudyRow, network, settings};
+use axis_pipeline::{ErrorUnit, Figures};
 use campaign::{Column, Failure, Inputs, Job, Merged, Row, Value};
 use clap::Args;
 use miette::Result;
@@ -128,6 +128,7 @@ impl Networks {
                 Ok(Figures { max, mean })
             });
             Ok(StudyRow {
+                unit: self.context.unit(),
                 setting: setting.clone(),
                 errors: errors.collect::<std::result::Result<_, Failure>>()?,
             })
@@ -153,11 +154,18 @@ impl Job for Networks {
     }
 
     fn columns(&self) -> &'static [Column] {
-        const COLUMNS: [Column; 2] = [
+        const LINEAR: [Column; 2] = [
             Column::number("max_abs_error_um"),
             Column::number("mean_abs_error_um"),
         ];
-        &COLUMNS
+        const ROTARY: [Column; 2] = [
+            Column::number("max_abs_error_urad"),
+            Column::number("mean_abs_error_urad"),
+        ];
+        match self.context.unit() {
+            ErrorUnit::Micrometre => &LINEAR,
+            ErrorUnit::Microradian => &ROTARY,
+        }
     }
 
     fn cases(&self) -> usize {

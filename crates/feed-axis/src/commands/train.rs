@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use axis_pipeline::measured::Rms;
 use axis_pipeline::training::{INITIAL_DAMPING, NetworkPlan, Trained, test, train};
-use axis_pipeline::{Figures, LinearMap};
+use axis_pipeline::{ErrorUnit, Figures, LinearMap};
 use cfnn::Network;
 use cfnn::artifact::{
     checkpoint_from_bytes, checkpoint_to_bytes, network_from_bytes, network_to_bytes,
@@ -37,14 +38,17 @@ pub struct Training {
     pub train_samples: usize,
     /// Samples it has not seen.
     pub test_samples: usize,
-    /// Errors on the unseen samples, µm.
+    /// Unit of the errors.
+    pub unit: ErrorUnit,
+    /// Errors on the unseen samples.
     pub network: Figures,
     /// Errors there of the best linear map of as many evenly spread samples.
     pub linear: Figures,
-    /// Errors of the network on its own training samples, µm.
+    /// Errors of the network on its own training samples.
     pub seen: Figures,
-    /// Root mean square over the training samples after each epoch, µm.
-    pub rms_um: Vec<f64>,
+    /// Root mean square over the training samples after each epoch.
+    #[serde(flatten)]
+    pub rms: Rms<Vec<f64>>,
     /// Time of the training, s.
     pub seconds: f64,
 }
@@ -112,12 +116,13 @@ pub fn run(context: &Context) -> Result<()> {
         initial_damping: plan.initial_damping,
         train_samples: seen.inputs.len(),
         test_samples: unseen.inputs.len(),
+        unit: context.unit(),
         network: test(&trained.network, &unseen).into_diagnostic()?,
         linear: LinearMap::fit(&even)
             .and_then(|map| map.errors(&unseen))
             .into_diagnostic()?,
         seen: test(&trained.network, &seen).into_diagnostic()?,
-        rms_um: rms(&trained),
+        rms: Rms::new(context.unit(), rms(&trained)),
         seconds: trained.seconds,
     };
     let provenance = &context.axis.fingerprint;
@@ -126,14 +131,14 @@ pub fn run(context: &Context) -> Result<()> {
     stage.write_json(TRAINING, &training)?;
     stage.finish()?;
     let text = format!(
-        "train: {} epochs in {:.1} s; unseen samples max {:.2e} µ{unit}, mean {:.2e} µ{unit} (linear map {:.2e}, {:.2e})",
+        "train: {} epochs in {:.1} s; unseen samples max {:.2e} {unit}, mean {:.2e} {unit} (linear map {:.2e}, {:.2e})",
         training.epochs,
         training.seconds,
         training.network.max,
         training.network.mean,
         training.linear.max,
         training.linear.mean,
-        unit = context.axis.freedom().unit()
+        unit = training.unit
     );
     let value = training;
     print("train", &Worded { text, value })

@@ -3,15 +3,15 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use axis_pipeline::Figures;
+use axis_pipeline::measured::Errors;
 use axis_pipeline::strategies::{Need, Predictors, TransferModels};
 use axis_pipeline::validation::{self, Validation};
+use axis_pipeline::{ErrorUnit, Figures};
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 
 use super::{identify, train};
 use crate::context::{Common, Context};
-use crate::measured::Errors;
 use crate::output::print;
 use crate::progress::bar;
 use crate::store::Stage;
@@ -50,11 +50,11 @@ pub fn run(context: &Context) -> Result<()> {
     progress.finish_and_clear();
     stage.write_json(VALIDATION, &found)?;
     stage.finish()?;
-    let freedom = context.axis.freedom();
+    let unit = context.unit();
     let rows = found.trajectories.iter().map(|t| Row {
         trajectory: t.id,
-        errors: Errors::of(
-            freedom,
+        errors: Errors::new(
+            unit,
             Pair {
                 model: t.model.figures,
                 machine: t.machine.figures,
@@ -62,7 +62,7 @@ pub fn run(context: &Context) -> Result<()> {
         ),
     });
     let told = Validated {
-        unit: freedom.unit(),
+        unit,
         trajectories: rows.collect(),
         file: stage.path(VALIDATION),
     };
@@ -73,7 +73,7 @@ pub fn run(context: &Context) -> Result<()> {
 #[derive(Serialize)]
 struct Validated {
     #[serde(skip)]
-    unit: &'static str,
+    unit: ErrorUnit,
     trajectories: Vec<Row>,
     file: PathBuf,
 }
@@ -93,16 +93,13 @@ struct Pair {
 
 impl fmt::Display for Validated {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "validate: tracking error, max / mean in µ{}", self.unit)?;
+        writeln!(f, "validate: tracking error, max / mean in {}", self.unit)?;
         writeln!(f, "  trajectory      model          machine (simulated)")?;
         for row in &self.trajectories {
-            let (
-                Pair {
-                    model: a,
-                    machine: b,
-                },
-                _,
-            ) = row.errors.get();
+            let Pair {
+                model: a,
+                machine: b,
+            } = &*row.errors;
             writeln!(
                 f,
                 "  {:>10} {:>8.3} / {:.4} {:>10.3} / {:.4}",

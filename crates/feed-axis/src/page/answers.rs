@@ -14,17 +14,17 @@ type Left = (&'static StrategyKind, Figures);
 
 /// Questions and answers, on the trajectory where the machine alone is furthest off.
 pub fn answers(context: &Context, results: &Results) -> Vec<(String, Vec<String>)> {
-    let alone = |t: &&TrajectorySummary| t.errors_um.machine.max;
+    let alone = |t: &&TrajectorySummary| t.errors.machine.max;
     let all = results.summary.trajectories.iter();
     let Some(worst) = all.max_by(|a, b| alone(a).total_cmp(&alone(b))) else {
         return Vec::new();
     };
-    let unit = format!("µ{}", context.axis.freedom().unit());
-    let none = worst.errors_um.machine;
+    let unit = context.unit().symbol();
+    let none = worst.errors.machine;
     let off = format!(
         "Without compensation the tracking error is {} peak, {} mean, on trajectory {}, where its peak is greatest of {}.",
-        engineering(none.max, &unit, 3),
-        engineering(none.mean, &unit, 3),
+        engineering(none.max, unit, 3),
+        engineering(none.mean, unit, 3),
         worst.id,
         results.summary.trajectories.len()
     );
@@ -32,11 +32,11 @@ pub fn answers(context: &Context, results: &Results) -> Vec<(String, Vec<String>
     // That of the paper first, which the overview is about.
     let mut left: Vec<Left> = ran(worst, &NETWORK_LUGRE).into_iter().chain(best).collect();
     left.dedup_by_key(|(kind, _)| kind.name);
-    let left = left.into_iter().map(|left| what_is_left(left, none, &unit));
+    let left = left.into_iter().map(|left| what_is_left(left, none, unit));
     [
         ("How far the axis is off", vec![off]),
         ("How much compensation takes away", left.collect()),
-        ("How sure that is", sure(context, results, &unit)),
+        ("How sure that is", sure(context, results, unit)),
         ("What to do next", next(context, worst.id, best)),
     ]
     .map(|(question, lines)| (question.to_owned(), lines))
@@ -44,7 +44,7 @@ pub fn answers(context: &Context, results: &Results) -> Vec<(String, Vec<String>
 }
 
 fn ran(on: &TrajectorySummary, kind: &'static StrategyKind) -> Option<Left> {
-    let figures = on.errors_um.compensated.under(kind.name)?;
+    let figures = on.errors.compensated.under(kind.name)?;
     Some((kind, figures))
 }
 

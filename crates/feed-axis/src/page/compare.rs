@@ -1,10 +1,10 @@
 //! Two runs side by side: settings, tracking errors with their differences, the same figures overlaid.
 
-use axis_pipeline::Figures;
 use axis_pipeline::compensation::{CompensatedRun, find};
 use axis_pipeline::strategies::STRATEGIES;
 use axis_pipeline::summary::Summary;
 use axis_pipeline::validation::Validation;
+use axis_pipeline::{ErrorUnit, Figures};
 use axis_report::{Block, Cell, Figure, Mark, Page, Section, Series, Table, engineering};
 
 use super::times;
@@ -20,7 +20,7 @@ pub struct RunFolder {
     pub period: f64,
 }
 
-/// A tracking error of both runs, µm.
+/// A tracking error of both runs, in their unit.
 struct Compared {
     trajectory: usize,
     what: &'static str,
@@ -73,7 +73,7 @@ pub fn page(a: &RunFolder, b: &RunFolder) -> Page {
     Page::new("Two runs compared")
         .lead(format!("A: {}. B: {}.", a.name, b.name))
         .first(Block::Answers(answers(a, b, &all)))
-        .section(Section::new("Tracking errors").table(errors(&all)))
+        .section(Section::new("Tracking errors").table(errors(&all, a.validation.unit)))
         .section(figures(a, b))
         .section(Section::new("Settings").table(settings(a, b)))
 }
@@ -86,7 +86,7 @@ fn compared(a: &RunFolder, b: &RunFolder) -> Vec<Compared> {
         let Some(other) = b.summary.trajectories.iter().find(|o| o.id == t.id) else {
             continue;
         };
-        let (of_a, of_b) = (&t.errors_um, &other.errors_um);
+        let (of_a, of_b) = (&t.errors, &other.errors);
         all.push(Compared {
             trajectory: t.id,
             what: "none",
@@ -117,13 +117,14 @@ fn answers(a: &RunFolder, b: &RunFolder, all: &[Compared]) -> Vec<(String, Vec<S
     let answer = |question: &str, lines: Vec<String>| (question.to_owned(), lines);
     let count = |change| all.iter().filter(|c| c.change() == change).count();
     let (less, more) = (count(Change::Smaller), count(Change::Greater));
+    let unit = a.validation.unit.symbol();
     let told = |c: &Compared| {
         format!(
             "Trajectory {}, {}: peak {} in A, {} in B ({}).",
             c.trajectory,
             c.what,
-            engineering(c.a.max, "µm", 3),
-            engineering(c.b.max, "µm", 3),
+            engineering(c.a.max, unit, 3),
+            engineering(c.b.max, unit, 3),
             c.said()
         )
     };
@@ -179,7 +180,7 @@ fn differing(a: &RunFolder, b: &RunFolder) -> Vec<String> {
     }
 }
 
-/// How far halving the internal step moves the peaks, µm.
+/// How far halving the internal step moves the peaks, µm or µrad.
 fn step_error(run: &RunFolder) -> f64 {
     run.validation.checks.half_step.max
 }
@@ -191,8 +192,8 @@ fn sure(a: &RunFolder, b: &RunFolder) -> String {
     };
     format!(
         "Both are simulated, with {seeds}. Halving the internal step moves peaks by at most {} in A and {} in B; peaks that differ by less than twice that, or by less than a thousandth, are called the same.",
-        engineering(step_error(a), "µm", 2),
-        engineering(step_error(b), "µm", 2)
+        engineering(step_error(a), a.validation.unit.symbol(), 2),
+        engineering(step_error(b), b.validation.unit.symbol(), 2)
     )
 }
 
@@ -206,7 +207,7 @@ fn next(a: &RunFolder, b: &RunFolder) -> String {
     }
 }
 
-fn errors(all: &[Compared]) -> Table {
+fn errors(all: &[Compared], unit: ErrorUnit) -> Table {
     let heads = [
         "Trajectory",
         "compensation",
@@ -221,19 +222,19 @@ fn errors(all: &[Compared]) -> Table {
         "Tracking error of the machine (simulated) in both runs",
         heads,
     )
-    .note("Marked: the smaller peak, where they differ. Of an axis that turns, read rad for m.");
+    .note("Marked: the smaller peak, where they differ.");
     for c in all {
-        let um = |value| Cell::quantity(value, "µm", 4);
+        let cell = |value| Cell::quantity(value, unit.symbol(), 4);
         let mark = |better: bool| if better { Mark::Best } else { Mark::Plain };
         table = table.row([
             Cell::text(c.trajectory.to_string()),
             Cell::text(c.what),
-            um(c.a.max).marked(mark(c.change() == Change::Greater)),
-            um(c.b.max).marked(mark(c.change() == Change::Smaller)),
-            um(c.b.max - c.a.max),
+            cell(c.a.max).marked(mark(c.change() == Change::Greater)),
+            cell(c.b.max).marked(mark(c.change() == Change::Smaller)),
+            cell(c.b.max - c.a.max),
             Cell::text(c.said()),
-            um(c.a.mean),
-            um(c.b.mean),
+            cell(c.a.mean),
+            cell(c.b.mean),
         ]);
     }
     table
@@ -252,13 +253,13 @@ fn figures(a: &RunFolder, b: &RunFolder) -> Section {
                 Series::line(name, times(error.len(), period), error.to_vec())
             };
             Figure::new(title, "time", "tracking error")
-                .units("s", "µm")
+                .units("s", a.validation.unit.symbol())
                 .linked(&link)
                 .series(line("A", a.period, of_a))
                 .series(line("B", b.period, of_b).dashed())
         };
         let title = format!("Trajectory {}, no compensation", t.id);
-        grid.push(figure(title, &t.machine.error_um, &other.machine.error_um));
+        grid.push(figure(title, &t.machine.error, &other.machine.error));
         let both = STRATEGIES.iter().filter_map(|kind| {
             let of_a = find(&a.compensation, t.id, kind.name)?;
             Some((kind, of_a, find(&b.compensation, t.id, kind.name)?))
@@ -266,7 +267,7 @@ fn figures(a: &RunFolder, b: &RunFolder) -> Section {
         let best = both.min_by(|x, y| x.1.figures.max.total_cmp(&y.1.figures.max));
         if let Some((kind, of_a, of_b)) = best {
             let title = format!("Trajectory {}, {}", t.id, kind.label);
-            grid.push(figure(title, &of_a.error_um, &of_b.error_um));
+            grid.push(figure(title, &of_a.error, &of_b.error));
         }
     }
     Section::new("The same figures of both")

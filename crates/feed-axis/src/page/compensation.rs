@@ -1,5 +1,6 @@
 //! Figure 13, Tables 15 and 16.
 
+use axis_pipeline::ErrorUnit;
 use axis_pipeline::compensation::{CompensatedRun, find};
 use axis_pipeline::strategies::{ReportTable as Group, STRATEGIES, StrategyKind, of_table};
 use axis_pipeline::tracking::Run;
@@ -23,6 +24,7 @@ fn column(strategy: &StrategyKind) -> Option<fn(&Row) -> Pair> {
 
 /// The section.
 pub fn compensation(results: &Results) -> Section {
+    let unit = results.validation.unit;
     let [without, with] = [
         Group::WithoutFrictionFeedforward,
         Group::WithFrictionFeedforward,
@@ -31,12 +33,12 @@ pub fn compensation(results: &Results) -> Section {
     let grid = results.validation.trajectories.iter().map(|t| {
         let time = |run: &[f64]| times(run.len(), results.transfer[0].period);
         let line = |name: &str, error: &[f64]| Series::line(name, time(error), error.to_vec());
-        let figure = tracking::figure(t).series(line("none", &t.machine.error_um));
+        let figure = tracking::figure(t, unit).series(line("none", &t.machine.error));
         without
             .iter()
             .chain(&with)
             .fold(figure, |figure, kind| match under(results, t.id, kind) {
-                Some(run) => figure.series(line(kind.heading, &run.error_um)),
+                Some(run) => figure.series(line(kind.heading, &run.error)),
                 None => figure,
             })
     });
@@ -54,18 +56,19 @@ pub fn compensation(results: &Results) -> Section {
     section
         .table(beside_paper(
             results,
-            "Without friction feed-forward, µm (Table 16)",
+            format!("Without friction feed-forward, {unit} (Table 16)"),
             &without,
         ))
         .table(beside_paper(
             results,
-            "With LuGre feed-forward, identified parameters, µm (Table 15)",
+            format!("With LuGre feed-forward, identified parameters, {unit} (Table 15)"),
             &with,
         ))
         .table(more(
             &results.validation.trajectories,
             &results.compensation,
             &ran(&of_table(STRATEGIES, Group::More), &results.compensation),
+            unit,
         ))
         .table(transfer_models(results))
         .figure_grid(grid, 2)
@@ -86,7 +89,7 @@ fn left_out(runs: &[CompensatedRun]) -> Vec<&'static str> {
 }
 
 /// Strategies beside the servo alone, and each beside the paper's figures for it.
-fn beside_paper(results: &Results, caption: &str, strategies: &[&StrategyKind]) -> Table {
+fn beside_paper(results: &Results, caption: String, strategies: &[&StrategyKind]) -> Table {
     let groups = 1 + strategies
         .iter()
         .map(|kind| 1 + usize::from(column(kind).is_some()))
@@ -120,10 +123,11 @@ fn more(
     trajectories: &[ValidatedTrajectory],
     runs: &[CompensatedRun],
     strategies: &[&StrategyKind],
+    unit: ErrorUnit,
 ) -> Table {
     let caption = match strategies.len() {
-        2 => "Two more strategies, µm",
-        _ => "More strategies, µm",
+        2 => format!("Two more strategies, {unit}"),
+        _ => format!("More strategies, {unit}"),
     };
     let mut table = Table::new(caption, columns(strategies.len())).group("", 1);
     for kind in strategies {
@@ -164,15 +168,16 @@ fn under<'a>(results: &'a Results, id: usize, strategy: &StrategyKind) -> Option
 
 /// The transfer functions themselves.
 fn transfer_models(results: &Results) -> Table {
+    let unit = results.validation.unit;
     let mut table = Table::new(
         "Transfer functions of the tracking error, identified from simulated motion of the model",
         [
-            "Servo",
-            "order",
-            "poles, ms",
-            "missed on training motions, RMS µm",
-            "on other motions, RMS µm",
-            "candidates tried",
+            "Servo".to_owned(),
+            "order".to_owned(),
+            "poles, ms".to_owned(),
+            format!("missed on training motions, RMS {unit}"),
+            format!("on other motions, RMS {unit}"),
+            "candidates tried".to_owned(),
         ],
     );
     for (t, name) in results
@@ -188,8 +193,8 @@ fn transfer_models(results: &Results) -> Table {
             Cell::text(name),
             Cell::text(t.poles.len().to_string()),
             Cell::text(times.join(" and ")),
-            Cell::number(t.training_rms_um, 3),
-            Cell::number(t.validation_rms_um, 3),
+            Cell::number(*t.training_rms, 3),
+            Cell::number(*t.validation_rms, 3),
             Cell::text(t.candidates.to_string()),
         ]);
     }
@@ -199,6 +204,7 @@ fn transfer_models(results: &Results) -> Table {
 #[cfg(test)]
 mod tests {
     use axis_pipeline::Figures;
+    use axis_pipeline::measured::ErrorSeries;
     use axis_pipeline::strategies::NONE;
     use axis_pipeline::tracking::Profile;
     use axis_report::{Page, render};
@@ -220,7 +226,7 @@ mod tests {
     fn a_new_strategy_stands_among_more_strategies() {
         let run = |max: f64| Run {
             figures: Figures { max, mean: 1.125 },
-            error_um: Vec::new(),
+            error: ErrorSeries::default(),
         };
         let trajectory = ValidatedTrajectory {
             id: 1,
@@ -240,11 +246,16 @@ mod tests {
         }];
         let mut strategies = STRATEGIES.to_vec();
         strategies.push(&NEW);
-        let table = more(&[trajectory], &runs, &of_table(&strategies, Group::More));
+        let table = more(
+            &[trajectory],
+            &runs,
+            &of_table(&strategies, Group::More),
+            ErrorUnit::Microradian,
+        );
         let page = Page::new("").section(Section::new("").table(table));
         let html = render(&page).unwrap();
         for text in [
-            "More strategies",
+            "More strategies, µrad",
             "LuGre alone",
             "A new one",
             "47.25",

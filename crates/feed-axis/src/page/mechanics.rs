@@ -26,7 +26,10 @@ pub fn friction(context: &Context, results: &Results) -> Section {
         let [truth, off] = match p.truth {
             Some(truth) => [
                 Cell::quantity(truth, &p.unit, 5),
-                Cell::text(format!("{:+.2} %", 100.0 * (p.value / truth - 1.0))),
+                match truth {
+                    0.0 => Cell::Missing,
+                    _ => Cell::text(format!("{:+.2} %", 100.0 * (p.value / truth - 1.0))),
+                },
             ],
             None => [Cell::text("not known"), Cell::text("")],
         };
@@ -97,14 +100,15 @@ pub fn friction(context: &Context, results: &Results) -> Section {
 
 /// Constant-speed runs.
 pub fn vibration(results: &Results) -> Section {
+    let unit = results.validation.unit;
     let mut table = Table::new(
         "Tracking error at constant speed, last second of four",
         [
-            "Speed, mm/s",
-            "peak to peak, µm",
-            "frequency, Hz",
-            "peak to peak, µm",
-            "frequency, Hz",
+            format!("Speed, {}/s", unit.thousand()),
+            format!("peak to peak, {unit}"),
+            "frequency, Hz".to_owned(),
+            format!("peak to peak, {unit}"),
+            "frequency, Hz".to_owned(),
         ],
     )
     .group("", 1)
@@ -112,14 +116,14 @@ pub fn vibration(results: &Results) -> Section {
     .group("Machine (simulated)", 2);
     let cells = |v: &Vibration| {
         [
-            Cell::number(v.peak_to_peak_um, 2),
+            Cell::number(*v.peak_to_peak, 2),
             v.frequency_hz
                 .map_or(Cell::text("quiet"), |f| Cell::number(f, 1)),
         ]
     };
     let v = &results.validation;
     for (a, b) in v.vibration_model.iter().zip(&v.vibration_machine) {
-        let speed = [Cell::number(a.speed_mm_s, 0)];
+        let speed = [Cell::number(*a.speed, 0)];
         table = table.row(speed.into_iter().chain(cells(a)).chain(cells(b)));
     }
     Section::new("Self-excited vibration")
@@ -130,14 +134,14 @@ pub fn vibration(results: &Results) -> Section {
 /// Frequencies against position.
 pub fn modes(results: &Results) -> Section {
     let modes = &results.validation.modes;
-    let x: Vec<f64> = modes.iter().map(|m| m.position_m).collect();
+    let x: Vec<f64> = modes.iter().map(|m| *m.position).collect();
     let count = modes.first().map_or(0, |m| m.frequencies_hz.len());
     if count == 0 {
         return Section::new("Modes")
             .paragraph("This mechanism moves as one with its motor: it has no natural frequency.");
     }
     let mut figure = Figure::new("Natural frequencies", "position of the load", "frequency")
-        .units("m", "Hz")
+        .units(results.validation.unit.million(), "Hz")
         .log_y()
         .alt("Natural frequencies of the drive against the load's position");
     for mode in 0..count {

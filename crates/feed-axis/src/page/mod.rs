@@ -4,6 +4,7 @@ mod answers;
 pub mod compare;
 mod compensation;
 pub mod discovery;
+mod envelope;
 mod mechanics;
 pub mod motion;
 mod network;
@@ -12,7 +13,7 @@ mod tracking;
 
 use axis_pipeline::strategies::{NETWORK, NETWORK_LUGRE, StrategyKind};
 use axis_report::{Block, Cell, KeyValues, Mark, Notice, Page, Section, Table};
-use axis_sim::mechanism::{Freedom, Way};
+use axis_sim::mechanism::Way;
 
 use crate::context::Context;
 use crate::paper::Pair;
@@ -41,32 +42,23 @@ pub fn page(context: &Context, results: &Results) -> Page {
         .section(settings(context, results))
 }
 
-/// What units mean on an axis that turns; nothing on others.
-fn of_units(section: Section, context: &Context) -> Section {
-    match context.axis.freedom() {
-        Freedom::Linear => section,
-        Freedom::Rotary => section.paragraph(
-            "This axis turns: wherever this page has mm or µm, of positions, speeds and errors, read mrad or µrad.",
-        ),
-    }
-}
-
 fn overview(context: &Context, results: &Results) -> Section {
+    let unit = context.unit();
     let mut table = Table::new(
         "Peak of the tracking error on the machine and how much of it compensation takes away",
         [
-            "Trajectory",
-            "none, µm",
-            "network, µm",
-            "network + LuGre, µm",
-            "peak less by",
-            "mean less by",
+            "Trajectory".to_owned(),
+            format!("none, {unit}"),
+            format!("network, {unit}"),
+            format!("network + LuGre, {unit}"),
+            "peak less by".to_owned(),
+            "mean less by".to_owned(),
         ],
     );
     let (mut best_peak, mut best_mean) = (0.0_f64, 0.0_f64);
     for t in &results.summary.trajectories {
-        let under = |kind: &StrategyKind| t.errors_um.compensated.under(kind.name);
-        let none = t.errors_um.machine;
+        let under = |kind: &StrategyKind| t.errors.compensated.under(kind.name);
+        let none = t.errors.machine;
         let (Some(network), Some(both)) = (under(&NETWORK), under(&NETWORK_LUGRE)) else {
             continue;
         };
@@ -91,8 +83,7 @@ fn overview(context: &Context, results: &Results) -> Section {
     } else {
         "No stand-in for a machine was given, so \u{201c}machine\u{201d} is the model itself. Nothing on this page was measured.".to_owned()
     };
-    let section = Section::new("Overview").notice(Notice::Info, machine);
-    let mut section = of_units(section, context);
+    let mut section = Section::new("Overview").notice(Notice::Info, machine);
     if context.quick {
         section = section.notice(
             Notice::Warn,
@@ -110,7 +101,7 @@ fn overview(context: &Context, results: &Results) -> Section {
 }
 
 fn settings(context: &Context, results: &Results) -> Section {
-    let checks = &results.validation.checks;
+    let (checks, unit) = (&results.validation.checks, context.unit());
     let list = KeyValues::new("What made this page")
         .entry("Axis", &context.axis.name)
         .entry("Fingerprint of the axis", &context.axis.fingerprint)
@@ -137,14 +128,14 @@ fn settings(context: &Context, results: &Results) -> Section {
         .entry(
             "Halving the step moves the figures by at most",
             format!(
-                "{:.1e} µm (max), {:.1e} µm (mean)",
+                "{:.1e} {unit} (max), {:.1e} {unit} (mean)",
                 checks.half_step.max, checks.half_step.mean
             ),
         )
         .entry(
             "The mechanism's other way of being solved moves them by at most",
             match checks.exact_way {
-                Some(by) => format!("{:.1e} µm (max), {:.1e} µm (mean)", by.max, by.mean),
+                Some(by) => format!("{:.1e} {unit} (max), {:.1e} {unit} (mean)", by.max, by.mean),
                 None => "it has none".to_owned(),
             },
         );

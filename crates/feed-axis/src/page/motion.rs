@@ -1,8 +1,11 @@
 //! The page of one simulated motion: position and error, speed, what drives it.
 
-use axis_log::Log;
-use axis_report::{Block, Cell, Figure, KeyValues, Page, Section, Series, Table, engineering};
-use axis_sim::{Axis, Cycle};
+use axis_report::{
+    Block, Cell, Figure, KeyValues, Notice, Page, Section, Series, Table, engineering,
+};
+use axis_sim::{Axis, Cycle, RunStopped, channels};
+
+use super::envelope::{Envelope, Sizes};
 
 /// What was run.
 pub struct Ran<'a> {
@@ -10,29 +13,102 @@ pub struct Ran<'a> {
     pub compensation: &'a str,
     pub noise: f64,
     pub seed: u64,
-    /// Every control cycle.
-    pub cycles: &'a [Cycle],
-    /// The same as its log.
-    pub log: &'a Log,
+    /// What was seen of it.
+    pub shown: &'a Shown,
+    /// Why the run did not come to its end, where it did not.
+    pub stopped: Option<&'a RunStopped>,
     /// The compensation or the command that would show more.
     pub next: Vec<String>,
 }
 
-/// Least, greatest, RMS of a signal.
-struct Size {
-    peak: f64,
-    rms: f64,
-    mean: f64,
+/// What the page shows of a run, collected while it goes on: its size does not grow with the run.
+pub struct Shown {
+    cycles: u64,
+    /// Cycles in which a limit was active.
+    saturated: u64,
+    signals: Vec<Signal>,
 }
 
-impl Size {
-    fn of(values: &[f64]) -> Self {
-        let count = values.len().max(1) as f64;
+/// A signal with its unit.
+struct Signal {
+    name: &'static str,
+    unit: &'static str,
+    read: fn(&Cycle) -> f64,
+    seen: Envelope,
+}
+
+/// Signals that are read of a cycle itself: every axis has them.
+const ERROR: &str = "error";
+const POSITION: &str = "position";
+const REFERENCE: &str = "reference";
+const SPEED: &str = "speed";
+const SPEED_REFERENCE: &str = "speed reference";
+const TORQUE: &str = "torque";
+
+impl Shown {
+    /// Of a run of this axis, before its first cycle.
+    pub fn of(axis: &Axis) -> Self {
+        let freedom = axis.freedom();
+        let (unit, per_second) = (freedom.unit(), freedom.speed_unit());
+        let signal = |name, unit, read| Signal {
+            name,
+            unit,
+            read,
+            seen: Envelope::default(),
+        };
+        let own = [
+            signal(ERROR, unit, Cycle::error),
+            signal(POSITION, unit, |c| c.position),
+            signal(REFERENCE, unit, |c| c.reference.position),
+            signal(SPEED, per_second, |c| c.load_speed),
+            signal(SPEED_REFERENCE, per_second, |c| c.reference.velocity),
+            signal(TORQUE, axis.mechanism.motor_freedom().force()[1], |c| c.torque),
+        ];
+        let names = || DRIVE.iter().flat_map(|(_, names)| *names);
+        let of_log = channels(axis).into_iter().filter_map(|channel| {
+            let [name, unit] = channel.of_freedom(freedom);
+            names()
+                .any(|(shown, _)| *shown == name)
+                .then(|| signal(name, unit, channel.read))
+        });
         Self {
-            peak: values.iter().fold(0.0, |most, v| most.max(v.abs())),
-            rms: (values.iter().map(|v| v * v).sum::<f64>() / count).sqrt(),
-            mean: values.iter().map(|v| v.abs()).sum::<f64>() / count,
+            cycles: 0,
+            saturated: 0,
+            signals: own.into_iter().chain(of_log).collect(),
         }
+    }
+
+    /// Adds a cycle.
+    pub fn push(&mut self, cycle: &Cycle) {
+        self.cycles += 1;
+        self.saturated += u64::from(cycle.command.saturated);
+        for signal in &mut self.signals {
+            signal.seen.push(cycle.time, (signal.read)(cycle));
+        }
+    }
+
+    /// The signal of a name, where this axis has it.
+    fn signal(&self, name: &str) -> Option<&Signal> {
+        self.signals.iter().find(|signal| signal.name == name)
+    }
+
+    fn sizes(&self, name: &str) -> Sizes {
+        self.signal(name)
+            .map_or_else(Sizes::default, |signal| *signal.seen.sizes())
+    }
+
+    /// A line of a figure.
+    fn line(&self, name: &str, legend: &str) -> Series {
+        let (t, y) = self
+            .signal(name)
+            .map(|signal| signal.seen.points())
+            .unwrap_or_default();
+        Series::line(legend, t, y)
+    }
+
+    /// Cycles of which each pair of points holds the extremes.
+    fn stride(&self) -> usize {
+        self.signals.first().map_or(1, |s| s.seen.stride())
     }
 }
 
@@ -41,35 +117,39 @@ const TIME: &str = "time";
 
 /// The page.
 pub fn page(ran: &Ran<'_>) -> Page {
-    let errors: Vec<f64> = ran.cycles.iter().map(Cycle::error).collect();
+    let motion = Section::new("Motion");
+    let motion = match ran.stopped {
+        Some(why) => motion.notice(Notice::Warn, stopped(why)),
+        None => motion,
+    };
     Page::new(format!("Motion of {}", ran.axis.name))
         .lead(ran.axis.description.clone())
-        .first(Block::Answers(answers(ran, &errors)))
+        .first(Block::Answers(answers(ran)))
         .section(
-            Section::new("Motion")
+            motion
                 .figure(position(ran))
-                .figure(error(ran, &errors))
+                .figure(error(ran))
                 .figure(speed(ran)),
         )
         .section(drive(ran))
-        .section(Section::new("Figures").table(table(ran, &errors)))
+        .section(Section::new("Figures").table(table(ran)))
         .section(settings(ran))
 }
 
-fn answers(ran: &Ran<'_>, errors: &[f64]) -> Vec<(String, Vec<String>)> {
+fn stopped(why: &RunStopped) -> String {
+    format!("The run did not come to its end, and all figures are those until then: {why}.")
+}
+
+fn answers(ran: &Ran<'_>) -> Vec<(String, Vec<String>)> {
     let unit = ran.axis.freedom().unit();
-    let size = Size::of(errors);
+    let size = ran.shown.sizes(ERROR);
     let said = |value| engineering(value, unit, 3);
-    let at = (0..errors.len()).find(|&k| errors[k].abs() >= size.peak);
-    let at = at.map_or(0.0, |k| ran.cycles[k].time);
-    let left = errors.last().copied().unwrap_or(0.0);
-    let saturated = ran.cycles.iter().filter(|c| c.command.saturated).count();
-    let limit = match saturated {
+    let cycles = ran.shown.cycles;
+    let limit = match ran.shown.saturated {
         0 => "No limit of the controller or the drive was reached.".to_owned(),
-        n => format!(
-            "A limit of the controller or the drive was active in {n} of {} cycles.",
-            errors.len()
-        ),
+        n => {
+            format!("A limit of the controller or the drive was active in {n} of {cycles} cycles.")
+        }
     };
     let noise = match ran.noise {
         0.0 => "Simulated, not measured; sensors without noise.".to_owned(),
@@ -78,28 +158,26 @@ fn answers(ran: &Ran<'_>, errors: &[f64]) -> Vec<(String, Vec<String>)> {
             ran.seed
         ),
     };
+    let mut run = vec![format!(
+        "{} of motion, {cycles} control cycles of {}, compensation: {}.",
+        engineering(ran.axis.period * cycles as f64, "s", 4),
+        engineering(ran.axis.period, "s", 3),
+        ran.compensation
+    )];
+    run.extend(ran.stopped.map(stopped));
     let answer = |question: &str, lines: Vec<String>| (question.to_owned(), lines);
     vec![
-        answer(
-            "What was run",
-            vec![format!(
-                "{} of motion, {} control cycles of {}, compensation: {}.",
-                engineering(ran.axis.period * errors.len() as f64, "s", 4),
-                errors.len(),
-                engineering(ran.axis.period, "s", 3),
-                ran.compensation
-            )],
-        ),
+        answer("What was run", run),
         answer(
             "How far it is off",
             vec![
                 format!(
                     "Tracking error: {} peak (at {}), {} RMS, {} mean; {} at the end.",
                     said(size.peak),
-                    engineering(at, "s", 4),
-                    said(size.rms),
-                    said(size.mean),
-                    said(left)
+                    engineering(size.peak_at, "s", 4),
+                    said(size.rms()),
+                    said(size.mean()),
+                    said(size.last)
                 ),
                 limit,
             ],
@@ -107,10 +185,6 @@ fn answers(ran: &Ran<'_>, errors: &[f64]) -> Vec<(String, Vec<String>)> {
         answer("How sure that is", vec![noise]),
         answer("What to do next", ran.next.clone()),
     ]
-}
-
-fn times(ran: &Ran<'_>) -> Vec<f64> {
-    ran.cycles.iter().map(|c| c.time).collect()
 }
 
 /// A figure over the time of this run.
@@ -121,41 +195,32 @@ fn over_time(title: &str, label: &str, unit: &str) -> Figure {
 }
 
 fn position(ran: &Ran<'_>) -> Figure {
-    let of = |read: fn(&Cycle) -> f64| ran.cycles.iter().map(read).collect();
     over_time(
         "Position of the load",
         "position",
         ran.axis.freedom().unit(),
     )
-    .series(Series::line("load", times(ran), of(|c| c.position)))
-    .series(Series::line("reference", times(ran), of(|c| c.reference.position)).dashed())
+    .series(ran.shown.line(POSITION, "load"))
+    .series(ran.shown.line(REFERENCE, "reference").dashed())
 }
 
-fn error(ran: &Ran<'_>, errors: &[f64]) -> Figure {
+fn error(ran: &Ran<'_>) -> Figure {
     let unit = ran.axis.freedom().unit();
-    over_time("Tracking error", "reference − position", unit).series(Series::line(
-        "tracking error",
-        times(ran),
-        errors.to_vec(),
-    ))
+    over_time("Tracking error", "reference − position", unit)
+        .series(ran.shown.line(ERROR, "tracking error"))
 }
 
 fn speed(ran: &Ran<'_>) -> Figure {
-    let of = |read: fn(&Cycle) -> f64| ran.cycles.iter().map(read).collect();
-    over_time(
-        "Speed of the load",
-        "speed",
-        ran.axis.freedom().speed_unit(),
-    )
-    .series(Series::line("load", times(ran), of(|c| c.load_speed)))
-    .series(Series::line("reference", times(ran), of(|c| c.reference.velocity)).dashed())
+    over_time("Speed of the load", "speed", ran.axis.freedom().speed_unit())
+        .series(ran.shown.line(SPEED, "load"))
+        .series(ran.shown.line(SPEED_REFERENCE, "reference").dashed())
 }
 
 /// Channels of the log that are one figure: its title, and the legend's name of each.
-type Shown = (&'static str, &'static [(&'static str, &'static str)]);
+type OneFigure = (&'static str, &'static [(&'static str, &'static str)]);
 
 /// What drives the axis: those that its log has are shown.
-const DRIVE: [Shown; 6] = [
+const DRIVE: [OneFigure; 6] = [
     (
         "Current",
         &[("iq_a", "q"), ("iq_ref_a", "q reference"), ("id_a", "d")],
@@ -185,80 +250,72 @@ fn effort(ran: &Ran<'_>) -> [&'static str; 2] {
 }
 
 fn drive(ran: &Ran<'_>) -> Section {
-    let [name, unit_of_it] = effort(ran);
-    let torque = over_time(&format!("Motor {name}"), name, unit_of_it);
-    let torque = torque.series(Series::line(
-        name,
-        times(ran),
-        ran.cycles.iter().map(|c| c.torque).collect(),
-    ));
+    let moves = |name: &str| ran.shown.sizes(name).peak != 0.0;
     let shown = DRIVE.iter().filter_map(|(title, names)| {
-        let has = |(name, _): &&(&str, &'static str)| {
-            ran.log
-                .channel(name)
-                .is_ok_and(|all| all.iter().any(|v| *v != 0.0))
-        };
-        let there: Vec<_> = names.iter().filter(has).collect();
+        let there: Vec<_> = names.iter().filter(|(name, _)| moves(name)).collect();
         let (first, _) = there.first()?;
         let label = title.split(' ').next().unwrap_or(title).to_lowercase();
-        let figure = over_time(title, &label, unit(ran.log, first));
-        let add = |figure: Figure, (name, legend): &&(&str, &str)| match ran.log.channel(name) {
-            Ok(samples) => figure.series(Series::line(*legend, times(ran), samples.to_vec())),
-            Err(_) => figure,
+        let unit = ran.shown.signal(first).map_or("", |signal| signal.unit);
+        let figure = over_time(title, &label, unit);
+        let add = |figure: Figure, (name, legend): &&(&str, &str)| {
+            figure.series(ran.shown.line(name, legend))
         };
         Some(there.iter().fold(figure, add))
     });
-    let torque = ran.cycles.iter().any(|c| c.torque != 0.0).then_some(torque);
+    let [name, unit] = effort(ran);
+    let torque = moves(TORQUE).then(|| {
+        over_time(&format!("Motor {name}"), name, unit).series(ran.shown.line(TORQUE, name))
+    });
     shown
         .chain(torque)
         .fold(Section::new("Drive"), Section::figure)
 }
 
-fn unit<'a>(log: &'a Log, name: &str) -> &'a str {
-    let found = log.channels().iter().find(|c| c.name == name);
-    found.map_or("", |c| c.unit.as_str())
-}
-
-fn table(ran: &Ran<'_>, errors: &[f64]) -> Table {
+fn table(ran: &Ran<'_>) -> Table {
     let unit = ran.axis.freedom().unit();
-    let speeds: Vec<f64> = ran.cycles.iter().map(|c| c.load_speed).collect();
-    let torques: Vec<f64> = ran.cycles.iter().map(|c| c.torque).collect();
-    let row = |table: Table, name: &str, unit: &str, values: &[f64]| {
-        let size = Size::of(values);
+    let row = |table: Table, name: &str, unit: &str, size: Sizes| {
         let cell = |value| Cell::quantity(value, unit, 4);
         table.row([
             Cell::text(name),
             cell(size.peak),
-            cell(size.rms),
-            cell(size.mean),
+            cell(size.rms()),
+            cell(size.mean()),
         ])
     };
-    let table = Table::new(
-        "Over the whole motion",
-        ["Signal", "peak", "RMS", "mean of absolute values"],
-    );
-    let table = row(table, "tracking error", unit, errors);
+    let whole = match ran.stopped {
+        Some(_) => "Until the run stopped",
+        None => "Over the whole motion",
+    };
+    let table = Table::new(whole, ["Signal", "peak", "RMS", "mean of absolute values"]);
+    let table = row(table, "tracking error", unit, ran.shown.sizes(ERROR));
     let table = row(
         table,
         "speed of the load",
         ran.axis.freedom().speed_unit(),
-        &speeds,
+        ran.shown.sizes(SPEED),
     );
     let [name, unit] = effort(ran);
-    let table = row(table, &format!("motor {name}"), unit, &torques);
-    match ran.log.channel("iq_a") {
-        Ok(current) => row(table, "q current", "A", current),
-        Err(_) => table,
+    let torque = ran.shown.sizes(TORQUE);
+    let table = row(table, &format!("motor {name}"), unit, torque);
+    match ran.shown.signal("iq_a") {
+        Some(current) => row(table, "q current", "A", *current.seen.sizes()),
+        None => table,
     }
 }
 
 fn settings(ran: &Ran<'_>) -> Section {
+    let points = match ran.shown.stride() {
+        // Of two cycles both are an extreme.
+        1 | 2 => "every control cycle".to_owned(),
+        n => format!("the least and the greatest value of every {n} control cycles"),
+    };
     let list = KeyValues::new("What made this page")
         .entry("Axis", &ran.axis.name)
         .entry("Fingerprint of the axis", &ran.axis.fingerprint)
         .entry("Compensation", ran.compensation)
         .entry("Noise of the sensors, times that of good ones", ran.noise)
         .entry("Seed", ran.seed)
+        .entry("Points of the figures", points)
         .entry("Version", env!("CARGO_PKG_VERSION"));
     Section::new("Settings").key_values(list)
 }

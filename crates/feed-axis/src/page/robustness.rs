@@ -1,5 +1,6 @@
 //! What compensation leaves where the belief is wrong: every draw a point.
 
+use axis_pipeline::ErrorUnit;
 use axis_pipeline::robustness::Point;
 use axis_report::{Cell, Figure, Mark, Section, Series, Table};
 use serde::{Deserialize, Serialize};
@@ -17,6 +18,8 @@ pub struct Robustness {
     /// Whether fewer draws were made.
     pub quick: bool,
     pub version: String,
+    /// Unit of the maxima and means.
+    pub unit: ErrorUnit,
     pub rows: Vec<Row>,
 }
 
@@ -48,6 +51,18 @@ pub enum Limit {
     LeftPercent(f64),
     /// What may be left, µm.
     LeftUm(f64),
+    /// The same of an axis that turns, µrad.
+    LeftUrad(f64),
+}
+
+impl Limit {
+    /// What may be left, in the unit of the axis' errors.
+    pub fn left(unit: ErrorUnit, most: f64) -> Self {
+        match unit {
+            ErrorUnit::Micrometre => Self::LeftUm(most),
+            ErrorUnit::Microradian => Self::LeftUrad(most),
+        }
+    }
 }
 
 impl Robustness {
@@ -79,13 +94,14 @@ pub fn robustness(made: &Robustness) -> Section {
         "Simulated, seed {}. Each point is the peak of the tracking error in one draw of belief, machine, motion and sensor noise; the black one is the goal, which all points of its row are to be left of.",
         made.seed
     ));
+    let left = format!("peak left, {}", made.unit);
     let figures = [
         (
             &shares,
             "Share of the uncompensated peak that is left",
             "peak left, %",
         ),
-        (&sizes, "Peak that is left", "peak left, µm"),
+        (&sizes, "Peak that is left", left.as_str()),
     ];
     for (strips, title, label) in figures {
         if !strips.is_empty() {
@@ -103,7 +119,8 @@ fn strips(made: &Robustness, shares: bool) -> Vec<Strip<'_>> {
         for (i, asked) in row.moves.iter().enumerate() {
             number += 1;
             let limit = match (asked.goal, shares) {
-                (Limit::LeftPercent(limit), true) | (Limit::LeftUm(limit), false) => limit,
+                (Limit::LeftPercent(limit), true)
+                | (Limit::LeftUm(limit) | Limit::LeftUrad(limit), false) => limit,
                 _ => continue,
             };
             let left = row.points.iter().map(|p| match shares {
@@ -225,6 +242,7 @@ mod tests {
             seed: 1,
             quick: false,
             version: String::new(),
+            unit: ErrorUnit::Micrometre,
             rows: vec![row(Limit::LeftPercent(4.0), 20), row(Limit::LeftUm(0.6), 7)],
         };
         let html = render(&Page::new("").section(robustness(&made))).unwrap();

@@ -1,5 +1,6 @@
 //! Figures 10 to 12, Tables 13 and 14.
 
+use axis_pipeline::ErrorUnit;
 use axis_pipeline::tracking::Profile;
 use axis_pipeline::validation::ValidatedTrajectory;
 use axis_report::{Cell, Figure, Section, Series, Table};
@@ -10,9 +11,10 @@ use crate::results::Results;
 
 /// Figure 10: velocity, acceleration, jerk.
 pub fn profiles(results: &Results) -> Section {
-    let figure = |title: &str, unit: &str, of: fn(&Profile) -> &Vec<f64>| {
+    let length = results.validation.unit.thousand();
+    let figure = |title: &str, per: &str, of: fn(&Profile) -> &Vec<f64>| {
         let mut figure = Figure::new(title, "time", title.to_lowercase())
-            .units("s", unit)
+            .units("s", format!("{length}{per}"))
             .linked("profile")
             .alt(format!("{title} of each trajectory against time"));
         for t in &results.validation.trajectories {
@@ -29,9 +31,9 @@ pub fn profiles(results: &Results) -> Section {
         .paragraph("Seven-segment, jerk-limited S-curves (the paper's Fig. 10, Table 12).")
         .figure_grid(
             vec![
-                figure("Velocity", "mm/s", |p| &p.velocity_mm_s),
-                figure("Acceleration", "mm/s²", |p| &p.acceleration_mm_s2),
-                figure("Jerk", "mm/s³", |p| &p.jerk_mm_s3),
+                figure("Velocity", "/s", |p| &p.velocity),
+                figure("Acceleration", "/s²", |p| &p.acceleration),
+                figure("Jerk", "/s³", |p| &p.jerk),
             ],
             3,
         )
@@ -39,8 +41,9 @@ pub fn profiles(results: &Results) -> Section {
 
 /// Figure 11 and Table 13.
 pub fn model_and_machine(context: &Context, results: &Results) -> Section {
+    let unit = context.unit();
     let mut table = Table::new(
-        "Tracking error without compensation, µm (Table 13)",
+        format!("Tracking error without compensation, {unit} (Table 13)"),
         [
             "Trajectory",
             "max",
@@ -70,20 +73,20 @@ pub fn model_and_machine(context: &Context, results: &Results) -> Section {
         );
     }
     let grid = results.validation.trajectories.iter().map(|t| {
-        let time = times(t.model.error_um.len(), context.axis.period);
+        let time = times(t.model.error.len(), context.axis.period);
         let deviation = t
             .machine
-            .error_um
+            .error
             .iter()
-            .zip(&t.model.error_um)
+            .zip(t.model.error.iter())
             .map(|(a, b)| a - b);
-        figure(t)
+        figure(t, unit)
             .series(Series::line(
                 "machine",
                 time.clone(),
-                t.machine.error_um.clone(),
+                t.machine.error.to_vec(),
             ))
-            .series(Series::line("model", time.clone(), t.model.error_um.clone()).dashed())
+            .series(Series::line("model", time.clone(), t.model.error.to_vec()).dashed())
             .series(Series::line("machine − model", time, deviation.collect()))
     });
     Section::new("Model and machine")
@@ -94,8 +97,9 @@ pub fn model_and_machine(context: &Context, results: &Results) -> Section {
 
 /// Figure 12 and Table 14.
 pub fn prediction(results: &Results) -> Section {
+    let unit = results.validation.unit;
     let mut table = Table::new(
-        "The machine's tracking error as predicted, µm (Table 14)",
+        format!("The machine's tracking error as predicted, {unit} (Table 14)"),
         [
             "Trajectory",
             "max",
@@ -117,7 +121,7 @@ pub fn prediction(results: &Results) -> Section {
     .group("Transfer function", 2)
     .group("Paper's transfer f.", 2);
     let mut missed = Table::new(
-        "What the predictions miss of the machine's error, µm",
+        format!("What the predictions miss of the machine's error, {unit}"),
         ["Trajectory", "max", "mean", "max", "mean"],
     )
     .group("", 1)
@@ -144,27 +148,22 @@ pub fn prediction(results: &Results) -> Section {
     }
     let grid = results.validation.trajectories.iter().map(|t| {
         let time = |run: &[f64]| times(run.len(), results.transfer[0].period);
-        let miss: Vec<f64> = (t.machine.error_um.iter().zip(&t.transfer_function.error_um))
+        let miss: Vec<f64> = (t.machine.error.iter().zip(t.transfer_function.error.iter()))
             .map(|(a, b)| a - b)
             .collect();
-        figure(t)
+        figure(t, unit)
             .series(Series::line(
                 "machine",
-                time(&t.machine.error_um),
-                t.machine.error_um.clone(),
+                time(&t.machine.error),
+                t.machine.error.to_vec(),
             ))
             .series(
-                Series::line(
-                    "network",
-                    time(&t.network.error_um),
-                    t.network.error_um.clone(),
-                )
-                .dashed(),
+                Series::line("network", time(&t.network.error), t.network.error.to_vec()).dashed(),
             )
             .series(Series::line(
                 "transfer function",
-                time(&t.transfer_function.error_um),
-                t.transfer_function.error_um.clone(),
+                time(&t.transfer_function.error),
+                t.transfer_function.error.to_vec(),
             ))
             .series(Series::line(
                 "machine − transfer function",
@@ -180,10 +179,10 @@ pub fn prediction(results: &Results) -> Section {
 }
 
 /// An empty figure of tracking errors.
-pub fn figure(t: &ValidatedTrajectory) -> Figure {
+pub fn figure(t: &ValidatedTrajectory, unit: ErrorUnit) -> Figure {
     let title = format!("Trajectory {}", t.id);
     Figure::new(title.clone(), "time", "tracking error")
-        .units("s", "µm")
+        .units("s", unit.symbol())
         .linked(&title)
         .alt(format!("{title}: tracking errors against time"))
 }

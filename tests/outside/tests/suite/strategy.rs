@@ -51,7 +51,7 @@ fn it_appears_in_summary_and_tables_beside_the_others() {
     let validation = validate(&axis, &axis, &predictors, || ()).unwrap();
     let trajectories = summary::trajectories(&validation, &compensated);
 
-    let all = &trajectories[0].errors_um.compensated;
+    let all = &trajectories[0].errors.compensated;
     let names: Vec<&str> = all.iter().map(|(name, _)| name).collect();
     let expected: Vec<&str> = strategies.iter().map(|kind| kind.name).collect();
     assert_eq!(names, expected);

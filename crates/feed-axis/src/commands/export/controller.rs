@@ -13,7 +13,7 @@ use super::guard::{self, Guarded};
 use crate::commands::validate;
 use crate::context::{Common, Context, DEFAULT_AXIS};
 use crate::exit::wrong_use;
-use crate::output::{ready, remove, sweep, write_whole};
+use crate::file_set::FileSet;
 use crate::strategy_name::strategy_name_of;
 
 /// Valid limits while those of the export are not known.
@@ -104,15 +104,11 @@ impl Options {
     /// Writes texts into the folder, each whole. The first is removed before and written last,
     /// so that it never stands beside others of another export.
     pub fn write(&self, texts: &[&NamedText]) -> Result<()> {
-        ready(&self.out)?;
-        let names: Vec<&str> = texts.iter().map(|text| &*text.name).collect();
-        sweep(&self.out, &names)?;
-        if let Some(first) = names.first() {
-            remove(&self.out.join(first))?;
-        }
-        let mut last_first = texts.iter().rev();
-        last_first
-            .try_for_each(|text| write_whole(&self.out.join(&text.name), text.text.as_bytes()))
+        let last_first = || texts.iter().rev();
+        let names: Vec<&str> = last_first().map(|text| &*text.name).collect();
+        let mut files = FileSet::new(&self.out, &names)?;
+        last_first().try_for_each(|text| files.put(&text.name, text.text.as_bytes()))?;
+        files.publish()
     }
 }
 

@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
+use axis_pipeline::ErrorUnit;
 use axis_pipeline::drive_terms::{self, Loss, Term, TermTable};
 use axis_sim::{Axis, SixDigits};
 use clap::Args;
@@ -10,7 +11,8 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 
 use crate::context::{DEFAULT_AXIS, read_axis};
-use crate::output::{Worded, print, ready, remove, sweep, write_whole};
+use crate::file_set::FileSet;
+use crate::output::{Worded, print};
 
 const TERMS: &str = "drive.json";
 const OVER_POSITION: &str = "drive.csv";
@@ -45,7 +47,7 @@ struct Export<'a> {
     position_from: &'a str,
     terms: Vec<Term>,
     tables: Vec<&'a str>,
-    loss_unit: String,
+    loss_unit: ErrorUnit,
     loss: &'a [Loss],
     /// Why there is no loss, where there is none.
     loss_missing: Option<String>,
@@ -64,17 +66,13 @@ pub fn command(options: &Options) -> Result<()> {
     let of = of.wrap_err_with(of_axis)?;
     let errors = axis.position_errors().into_diagnostic();
     let errors = errors.wrap_err_with(of_axis)?;
-    ready(&options.out)?;
-    sweep(&options.out, &[TERMS, OVER_POSITION, OVER_TURN])?;
+    let mut files = FileSet::new(&options.out, &[OVER_POSITION, OVER_TURN, TERMS])?;
     let mut tables = vec![OVER_POSITION];
     let position = drive_terms::over_position(&axis, &of, &errors);
-    write_table(&options.out.join(OVER_POSITION), &position)?;
-    match drive_terms::over_turn(&axis, &errors) {
-        Some(table) => {
-            write_table(&options.out.join(OVER_TURN), &table)?;
-            tables.push(OVER_TURN);
-        }
-        None => remove(&options.out.join(OVER_TURN))?,
+    files.put(OVER_POSITION, text_of(&position).as_bytes())?;
+    if let Some(table) = drive_terms::over_turn(&axis, &errors) {
+        files.put(OVER_TURN, text_of(&table).as_bytes())?;
+        tables.push(OVER_TURN);
     }
     let losses = drive_terms::losses(&axis, &machine);
     let (loss, missing) = match &losses {
@@ -93,12 +91,13 @@ pub fn command(options: &Options) -> Result<()> {
         position_from: if of.from_motor() { "motor" } else { "load" },
         terms: drive_terms::terms(&axis, &of),
         tables,
-        loss_unit: format!("µ{}", axis.freedom().unit()),
+        loss_unit: ErrorUnit::of(&axis),
         loss,
         loss_missing: missing,
     };
     let bytes = serde_json::to_vec_pretty(&export).into_diagnostic()?;
-    write_whole(&options.out.join(TERMS), &bytes)?;
+    files.put(TERMS, &bytes)?;
+    files.publish()?;
     let text = words(&export, &options.out).into_diagnostic()?;
     print(
         "export-drive",
@@ -112,13 +111,14 @@ pub fn command(options: &Options) -> Result<()> {
     losses.map(|_| ()).into_diagnostic().wrap_err_with(failed)
 }
 
-fn write_table(path: &Path, table: &TermTable) -> Result<()> {
+/// A table as CSV.
+fn text_of(table: &TermTable) -> String {
     let mut text = table.headings.join(",") + "\n";
     for row in &table.rows {
         let cells: Vec<String> = row.iter().map(f64::to_string).collect();
         text += &(cells.join(",") + "\n");
     }
-    write_whole(path, text.as_bytes())
+    text
 }
 
 /// The export as people read it.

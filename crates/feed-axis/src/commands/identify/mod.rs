@@ -8,6 +8,7 @@ mod words;
 
 use std::path::PathBuf;
 
+use axis_pipeline::measured::{TrainingRms, ValidationRms};
 use axis_pipeline::transfer::{TransferPlan, identify_transfer};
 use clap::Args;
 use compensator::TransferFunctionModel;
@@ -49,10 +50,12 @@ pub struct Transfer {
     pub poles: Vec<f64>,
     /// Coefficient of each pole, s².
     pub coefficients: Vec<f64>,
-    /// RMS of what it misses on the motions it was fitted to, µm.
-    pub training_rms_um: f64,
-    /// RMS of what it misses on other motions, µm.
-    pub validation_rms_um: f64,
+    /// RMS of what it misses on the motions it was fitted to.
+    #[serde(flatten)]
+    pub training_rms: TrainingRms<f64>,
+    /// RMS of what it misses on other motions.
+    #[serde(flatten)]
+    pub validation_rms: ValidationRms<f64>,
     /// How many candidates were tried.
     pub candidates: usize,
 }
@@ -126,6 +129,7 @@ fn transfer(context: &Context) -> Result<Vec<Transfer>> {
     }
     let plan = transfer_plan(context);
     let progress = bar("transfer", 2 * (plan.training + plan.validation) as u64);
+    let unit = context.unit();
     let fit = |feedforward| {
         let fit = identify_transfer(&context.axis, &plan, feedforward, || progress.inc(1))
             .into_diagnostic()?;
@@ -134,8 +138,8 @@ fn transfer(context: &Context) -> Result<Vec<Transfer>> {
             direct: fit.model.direct(),
             poles: fit.model.poles().to_vec(),
             coefficients: fit.model.coefficients().to_vec(),
-            training_rms_um: 1e6 * fit.chosen.training_rms,
-            validation_rms_um: 1e6 * fit.chosen.validation_rms,
+            training_rms: TrainingRms::new(unit, 1e6 * fit.chosen.training_rms),
+            validation_rms: ValidationRms::new(unit, 1e6 * fit.chosen.validation_rms),
             candidates: fit.trials.len(),
         })
     };

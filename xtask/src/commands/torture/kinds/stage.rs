@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use axis_pipeline::Figures;
+use axis_pipeline::measured::{Rms, TrainingRms, ValidationRms};
 use axis_sim::Axis;
 use cfnn::artifact::network_to_bytes;
 use miette::{IntoDiagnostic, Result};
@@ -51,14 +52,15 @@ pub fn kind(desk: &Path) -> Result<Box<dyn Kind>> {
 }
 
 fn make(context: &Context) -> Result<()> {
+    let unit = context.unit();
     let law = context.axis.friction.law.parameters();
     let transfer = || Transfer {
         period: 1e-4,
         direct: 0.5,
         poles: vec![0.5, 0.25],
         coefficients: vec![1.0, 0.5],
-        training_rms_um: 1.0,
-        validation_rms_um: 1.5,
+        training_rms: TrainingRms::new(unit, 1.0),
+        validation_rms: ValidationRms::new(unit, 1.5),
         candidates: 3,
     };
     let stage = identify::stage(context);
@@ -101,13 +103,14 @@ fn make(context: &Context) -> Result<()> {
         &Training {
             hidden: vec![2, 2],
             epochs: 3,
+            unit,
             initial_damping: 0.97,
             train_samples: 10,
             test_samples: 10,
             network: figures,
             linear: figures,
             seen: figures,
-            rms_um: vec![3.0, 2.0, 1.0],
+            rms: Rms::new(unit, vec![3.0, 2.0, 1.0]),
             seconds: 0.1,
         },
     )?;
