@@ -110,6 +110,7 @@ impl Seen {
             None => curve(&scaled(shown.position, 1.0 / travel))?,
         };
         let speed = shown.speed.map(curve).transpose()?;
+        let every = axis.control.speed_every(h) as usize;
         let measured = |k: usize| {
             let t = k as f64 * h;
             let now = angle.at(t);
@@ -118,9 +119,11 @@ impl Seen {
                 motor_angle: now.position,
                 motor_speed: match &speed {
                     Some(speed) => speed.at(t).position,
-                    // As a drive derives it, from one cycle to the next.
-                    None if axis.derives_speed() && k > 0 => {
-                        (now.position - angle.at(t - h).position) / h
+                    // As a drive derives it, from one cycle of its speed loop to the next.
+                    None if axis.derives_speed() && k >= every => {
+                        let taken = (k - k % every) as f64 * h;
+                        let period = every as f64 * h;
+                        (angle.at(taken).position - angle.at(taken - period).position) / period
                     }
                     None => now.velocity,
                 },
