@@ -16,7 +16,7 @@ INERTIA = {"payload-mass", "motor-inertia"}
 DRY = {"coulomb-friction", "asymmetric-friction"}
 VISCOUS = {"viscous-friction", "asymmetric-viscous-friction"}
 GAIN = {"torque-constant", "current-sensor-gain"}
-STANDING = {"constant-load", "current-sensor-offset", "asymmetric-friction"}
+STANDING = {"constant-load", "asymmetric-friction"}
 
 # First word of a term -> effects of which it is a part. A name by a peer is such a set: it is
 # right where what is hidden is in it, and false otherwise.
@@ -32,8 +32,9 @@ EFFECTS = {
     "s|F|": {"load-dependent-friction"},
     "x": {"spring-force"},
     "turn": {"gravity-imbalance"},
-    "pole": {"force-ripple"},
-    "cogging": {"cogging-torque"},
+    # An offset of a phase current turns with the electrical angle.
+    "pole": {"force-ripple", "current-sensor-offset"},
+    "cogging": {"cogging-torque", "current-sensor-offset"},
     "ripple": {"torque-ripple"},
     "stribeck": {"stribeck-friction"},
     "bump": {"position-dependent-friction"},

@@ -76,7 +76,6 @@ def estimates(name, value, machine, terms_of):
         "torque-constant": lambda: [1.0 / (1.0 + v("gain")) - 1.0],
         "current-sensor-gain": lambda: [v("gain")],
         "constant-load": lambda: [v("1")],
-        "current-sensor-offset": lambda: [v("1") / machine.gain],
         "load-dependent-friction": lambda: [v("s|F|")],
         "spring-force": lambda: [v("x")],
         "gravity-imbalance": lambda: [float(np.hypot(v("gravity"), v("turn")))],

@@ -289,7 +289,6 @@ impl Axis {
         Surroundings {
             period: self.period,
             travel_per_radian: self.travel_per_radian(),
-            effort_limit: self.actuator.limit(),
         }
     }
 

@@ -43,7 +43,7 @@ pub struct Command {
     pub speed_ref: f64,
     /// Command of the actuator, in its unit: q current reference, torque, force, voltage.
     pub effort: f64,
-    /// Voltage that the actuator holds over the cycle, V; 0 where it has none.
+    /// Voltage that the actuator's controllers ask for, V; 0 where it has none.
     pub voltage: Dq,
     /// Whether a limit was active.
     pub saturated: bool,

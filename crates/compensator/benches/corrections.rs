@@ -127,6 +127,7 @@ fn planned() -> (DriveModel, Vec<Mode>) {
             d: [2.776, 626.2],
             q: [8.805, 1003.3],
             voltage: 311.0,
+            late: 0.0,
         },
         delay: 0.0,
         effort_limit: 15.0,
@@ -137,6 +138,7 @@ fn planned() -> (DriveModel, Vec<Mode>) {
             speed: 0.6474,
             speed_integral: 6.8,
             from_motor: false,
+            passage: compensator::Passage::default(),
         },
         period: T,
     };

@@ -54,6 +54,7 @@ fn believed() -> Result<DriveModel, Box<dyn std::error::Error>> {
             speed: SPEED[0],
             speed_integral: SPEED[1],
             from_motor: false,
+            passage: compensator::Passage::default(),
         },
         period: T,
     })
@@ -86,6 +87,7 @@ fn single(model: &DriveModel) -> Result<DriveModel<f32>, Box<dyn std::error::Err
             speed: c.speed as f32,
             speed_integral: c.speed_integral as f32,
             from_motor: false,
+            passage: compensator::Passage::default(),
         },
         period: T as f32,
     })

@@ -86,6 +86,7 @@ mod learning;
 mod model;
 mod network;
 mod none;
+mod passage;
 mod plan;
 mod remainder;
 mod residual;
@@ -120,6 +121,7 @@ pub use learning::{Advice, Gauss, LearnedMove, LearningSettings, Round};
 pub use model::{Along, Cascade, Drive, DriveModel, DriveSection, Kinematics, Mode, SECTIONS};
 pub use network::{IncrementModel, NetworkCompensation};
 pub use none::NoCompensation;
+pub use passage::{DriveFilter, Passage};
 pub use plan::{Homed, Plan, PlanSettings, Planned, Planner, PlannerConstants, Standstill, Target};
 pub use residual::{HARMONICS, KNOTS, Residual, ResidualAt, ResidualModel};
 #[cfg(feature = "alloc")]

@@ -14,8 +14,8 @@ use axis_scalar::Scalar;
 use foc_pmsm::{MotorParameters, Pmsm};
 use lugre::{Exponential, LuGre};
 
-use crate::CompensatorError;
 use crate::error::{self, require, within};
+use crate::{CompensatorError, Passage};
 
 /// Positions at which [`Along`] holds its values.
 pub const SECTIONS: usize = 33;
@@ -194,10 +194,23 @@ pub enum Drive<T = f64> {
         q: [T; 2],
         /// Greatest length of the voltage, V.
         voltage: T,
+        /// Control periods from the sample of a current until the voltage made of it begins to
+        /// act; it is held for one then.
+        late: T,
     },
 }
 
 impl<T: Scalar> Drive<T> {
+    /// Control periods from the sample of a current until the voltage made of it begins to
+    /// act; 0 where there is no current loop.
+    #[must_use]
+    pub fn late(&self) -> T {
+        match self {
+            Self::Lag { .. } => T::ZERO,
+            Self::FieldOriented { late, .. } => *late,
+        }
+    }
+
     /// Each value rounded; none where the motor's leave their ranges by that.
     fn cast<U: Scalar>(&self) -> Option<Drive<U>> {
         let to = |value: T| U::of(value.to_f64());
@@ -212,6 +225,7 @@ impl<T: Scalar> Drive<T> {
                 d,
                 q,
                 voltage,
+                late,
             } => {
                 let p = motor.parameters();
                 let parameters = MotorParameters {
@@ -227,6 +241,7 @@ impl<T: Scalar> Drive<T> {
                     d: d.map(to),
                     q: q.map(to),
                     voltage: to(*voltage),
+                    late: to(*late),
                 }
             }
         })
@@ -245,6 +260,7 @@ impl<T: Scalar> Cascade<T> {
             speed: to(self.speed),
             speed_integral: to(self.speed_integral),
             from_motor: self.from_motor,
+            passage: self.passage.cast(),
         }
     }
 }
@@ -265,6 +281,8 @@ pub struct Cascade<T = f64> {
     pub speed_integral: T,
     /// Whether the position comes from the motor, not from the load.
     pub from_motor: bool,
+    /// What lies between a correction and the command besides.
+    pub passage: Passage<T>,
 }
 
 /// How the motor runs ahead of the load without any force: free travel, and an error of the
@@ -423,8 +441,10 @@ impl<T: Exponential> DriveModel<T> {
         let inside = self.effort_limit > T::ZERO;
         require(inside, "effort_limit", self.effort_limit, "above 0")?;
         let cycles = self.delay / self.period;
-        let inside = within(cycles, 0.0, MOST_DELAY as f64);
-        require(inside, "delay", self.delay, "from 0 to 16 control periods")?;
+        let together = cycles + self.drive.late();
+        let inside = cycles >= T::ZERO && within(together, 0.0, MOST_DELAY as f64);
+        let valid = "from 0 to 16 control periods, with what a voltage is late";
+        require(inside, "delay", self.delay, valid)?;
         let c = &self.cascade;
         let gains = [
             ("position", c.position),
@@ -440,7 +460,15 @@ impl<T: Exponential> DriveModel<T> {
                 let inside = *bandwidth > T::ZERO;
                 require(inside, "bandwidth", *bandwidth, "above 0")?;
             }
-            Drive::FieldOriented { q: [kp, ki], .. } => {
+            Drive::FieldOriented {
+                q: [kp, ki], late, ..
+            } => {
+                require(
+                    *late >= T::ZERO,
+                    "late",
+                    *late,
+                    "at least 0 control periods",
+                )?;
                 let inside = *kp > T::ZERO && kp.is_finite() && *ki >= T::ZERO && ki.is_finite();
                 require(inside, "current_q", *kp, "finite and above 0")?;
             }
@@ -449,5 +477,5 @@ impl<T: Exponential> DriveModel<T> {
     }
 }
 
-/// Most control periods by which a command may come late in a plan.
+/// Most control periods by which a command and the voltage made of it may come late in a plan.
 pub(crate) const MOST_DELAY: usize = 16;

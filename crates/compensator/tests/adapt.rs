@@ -48,6 +48,7 @@ fn truth() -> DriveModel {
             speed: 0.65,
             speed_integral: 6.8,
             from_motor: false,
+            passage: compensator::Passage::default(),
         },
         period: PERIOD,
     }

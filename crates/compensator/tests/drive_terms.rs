@@ -49,6 +49,7 @@ fn model(from_motor: bool) -> DriveModel {
             speed: 0.6474,
             speed_integral: 6.801,
             from_motor,
+            passage: compensator::Passage::default(),
         },
         period: T,
     }

@@ -56,6 +56,7 @@ fn axis(position: f64) -> (DriveModel, Vec<Mode>) {
             speed: CASCADE[0],
             speed_integral: 6.8,
             from_motor: false,
+            passage: compensator::Passage::default(),
         },
         period: T,
     };

@@ -46,6 +46,7 @@ fn model(kinematics: Kinematics) -> DriveModel {
             speed: 0.02,
             speed_integral: 0.4,
             from_motor: false,
+            passage: compensator::Passage::default(),
         },
         period: T,
     }

@@ -7,6 +7,8 @@ mod drive_terms;
 mod estimator;
 #[cfg(feature = "design")]
 mod feedback;
+#[cfg(feature = "design")]
+mod feedback_drive;
 mod friction;
 mod guard;
 #[cfg(feature = "identify")]

@@ -1,5 +1,13 @@
 //! `pmsm-foc` and `linear-pmsm-foc`: a permanent-magnet synchronous motor whose
 //! current is controlled in the rotor's frame.
+//!
+//! The voltage that is made of a sample comes late: `current_delay_periods` from the sample to
+//! the middle of the control period for which it is held, so 1.5 where it is computed in one
+//! period and held by the inverter over the next, as in most drives (Bae and Sul, IEEE Trans.
+//! Ind. Appl. 39 (2003) 802–810, doi:10.1109/TIA.2003.810660). A voltage that is held from its
+//! sample on is 0.5 late, and 0 says just that: the delay of an ideal drive is the hold's.
+//! While it is under way the rotor turns; the drive turns its voltage ahead by as much, as
+//! drives do, so that it acts in the frame in which it was asked for.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -10,7 +18,9 @@ use foc_pmsm::{
     Pmsm, Servo, ServoGains, ServoLimits, ServoState,
 };
 
+use super::current_loop::CurrentLoop;
 use super::delay::DelayLine;
+use super::late_voltage::LateVoltage;
 use super::{Actuating, Actuator, Effort, Electrical, MotorMotion, Surroundings};
 use crate::cycle::Measured;
 use crate::part::units::*;
@@ -33,6 +43,7 @@ pub(super) static ROTARY: PartKind<dyn Actuator> = PartKind {
         CURRENT_LIMIT,
         DEAD_TIME,
         DELAY,
+        CURRENT_DELAY,
         WEAKENING_GAIN,
         WEAKENING_CURRENT,
         WEAKENING_SHARE,
@@ -61,6 +72,7 @@ pub(super) static LINEAR: PartKind<dyn Actuator> = PartKind {
         CURRENT_LIMIT,
         DEAD_TIME,
         DELAY,
+        CURRENT_DELAY,
         WEAKENING_GAIN,
         WEAKENING_CURRENT,
         WEAKENING_SHARE,
@@ -89,6 +101,10 @@ const DELAY: Key = quantity("command_delay", &TIME, 0.0, 0.1)
     .or(0.0)
     .role(Role::CommandDelay);
 
+/// Half a control period: that for which a voltage is held, in its mean.
+const HELD: f64 = 0.5;
+const CURRENT_DELAY: Key = number("current_delay_periods", 0.0, 8.0).or(1.5).counted();
+
 /// Field weakening is on where its gain is given.
 const WEAKENING_GAIN: Key =
     quantity("field_weakening_gain", &FIELD_WEAKENING, 1e-6, 1e6).optional();
@@ -116,6 +132,8 @@ struct FieldOriented {
     gear: f64,
     dead_time_voltage: f64,
     delay: f64,
+    /// Control periods from a sample until the voltage made of it begins to act.
+    late: f64,
     /// Gain, greatest current and share of the voltage.
     weakening: Option<[f64; 3]>,
 }
@@ -157,8 +175,24 @@ fn build(
         gear,
         dead_time_voltage: v.or("dead_time_voltage", 0.0),
         delay: v.or("command_delay", 0.0),
+        late: late(v)?,
         weakening: weakening(v)?,
     }))
+}
+
+fn late(v: &Values) -> Result<f64, PartError> {
+    let delay = v.or("current_delay_periods", 1.5);
+    if delay > 0.0 && delay < HELD {
+        return Err(PartError::of(
+            "current_delay_periods",
+            format!(
+                "is {}, less than the half of a period by which a voltage that is held is late by itself",
+                crate::SixDigits(delay)
+            ),
+            "0 (held from its sample on, the same as 0.5), or from 0.5 to 8; 1.5 in most drives",
+        ));
+    }
+    Ok((delay - HELD).max(0.0))
 }
 
 fn weakening(v: &Values) -> Result<Option<[f64; 3]>, PartError> {
@@ -176,44 +210,6 @@ fn weakening(v: &Values) -> Result<Option<[f64; 3]>, PartError> {
     }
     let share = v.or("field_weakening_voltage_share", 0.95);
     Ok(Some([gain, current, share]))
-}
-
-/// Refuses gains (V/A, V/(A·s)) with which a current loop is unstable.
-///
-/// A winding under a voltage that is held over the period T is the discrete lag
-///
-/// ```text
-/// i' = a i + b u,   a = exp(−R T / L),   b = (1 − a) / R
-/// ```
-///
-/// and with a PI controller, which integrates before it gives its output, a pole leaves the unit circle at
-/// −1 where k_p + k_i T / 2 reaches (1 + a) / b; no other does earlier (Jury's conditions).
-fn current_loop(
-    key: &'static str,
-    [proportional, integral]: [f64; 2],
-    inductance: f64,
-    resistance: f64,
-    period: f64,
-) -> Result<(), PartError> {
-    let decay = resistance * period / inductance;
-    let a = (-decay).exp();
-    // (1 − a) / R, which is T / L without resistance.
-    let b = match decay > 1e-9 {
-        true => -(-decay).exp_m1() / resistance,
-        false => period / inductance,
-    };
-    let most = (1.0 + a) / b - 0.5 * integral * period;
-    if proportional < most {
-        return Ok(());
-    }
-    let [gain, hertz, millihenry, most] =
-        [proportional, 1.0 / period, 1e3 * inductance, most.max(0.0)].map(crate::SixDigits);
-    Err(PartError::together(
-        format!(
-            "has a frequency of {hertz} Hz, at which {key} = {gain} V/A makes the current of a winding of {millihenry} mH unstable"
-        ),
-        format!("the frequency of the drive's current controller, or less than {most} V/A"),
-    ))
 }
 
 impl Actuator for FieldOriented {
@@ -248,6 +244,7 @@ impl Actuator for FieldOriented {
             d: [self.gains.d_p, self.gains.d_i],
             q: [self.gains.q_p, self.gains.q_i],
             voltage: self.limits.voltage,
+            late: self.late,
         };
         (field_oriented, self.delay)
     }
@@ -255,20 +252,14 @@ impl Actuator for FieldOriented {
     fn runs_at(&self, period: f64) -> Result<(), PartError> {
         let motor = self.motor.parameters();
         let g = &self.gains;
-        current_loop(
-            D_PROPORTIONAL.name,
-            [g.d_p, g.d_i],
-            motor.inductance_d,
-            motor.resistance,
+        let at = |inductance| CurrentLoop {
+            inductance,
+            resistance: motor.resistance,
             period,
-        )?;
-        current_loop(
-            Q_PROPORTIONAL.name,
-            [g.q_p, g.q_i],
-            motor.inductance_q,
-            motor.resistance,
-            period,
-        )
+            late: self.late,
+        };
+        at(motor.inductance_d).check(D_PROPORTIONAL.name, [g.d_p, g.d_i])?;
+        at(motor.inductance_q).check(Q_PROPORTIONAL.name, [g.q_p, g.q_i])
     }
 
     fn start(&self, on: &Surroundings) -> Result<Box<dyn Actuating>, PartError> {
@@ -290,6 +281,7 @@ impl Actuator for FieldOriented {
             servo,
             state: ServoState::default(),
             delay: DelayLine::new(self.delay / on.period),
+            acting: LateVoltage::new(self.late, on.period),
             current: Dq::ZERO,
             voltage: Dq::ZERO,
             saturated: false,
@@ -305,7 +297,10 @@ struct State {
     servo: Servo,
     state: ServoState,
     delay: DelayLine,
+    /// The voltage on its way to the winding.
+    acting: LateVoltage,
     current: Dq,
+    /// What was asked for last.
     voltage: Dq,
     saturated: bool,
 }
@@ -318,22 +313,25 @@ impl Actuating for State {
         self.voltage = motor.steady_voltage(self.current, self.law.gear * speed);
         self.state = ServoState::settled(q, self.voltage);
         self.delay.settle(q);
+        self.acting.settle(self.voltage);
         q
     }
 
+    fn available(&self) -> f64 {
+        self.servo.q_current_limit(self.d_reference.id_ref)
+    }
+
     fn command(&mut self, effort: f64, measured: &Measured) {
-        let mut reference = Dq {
+        // The length of the current stays within its limit.
+        let most = self.available();
+        let reference = Dq {
             d: self.d_reference.id_ref,
-            q: self.delay.push(effort),
+            q: self.delay.push(effort).clamp(-most, most),
         };
-        if reference.d != 0.0 {
-            // The length of the current stays within its limit.
-            let most = self.servo.q_current_limit(reference.d);
-            reference.q = reference.q.clamp(-most, most);
-        }
         let error = reference - measured.current;
         let (voltage, d, q) = self.servo.current_loop(&mut self.state, error, Dq::ZERO);
         self.voltage = voltage;
+        self.acting.push(voltage);
         self.saturated = d || q;
         if let Some(law) = &self.weakening {
             law.update(&mut self.d_reference, voltage, self.law.limits.voltage);
@@ -342,7 +340,7 @@ impl Actuating for State {
 
     fn torque(&mut self, motor: &MotorMotion, h: f64) -> f64 {
         let law = &self.law;
-        let voltage = self.voltage + self.lost_voltage(motor.angle);
+        let voltage = self.acting.over(h) + self.lost_voltage(motor.angle);
         let speed = law.gear * motor.speed;
         self.current = law.motor.step(self.current, voltage, speed, h);
         law.gear * law.motor.torque(self.current)
@@ -383,52 +381,5 @@ impl State {
         }
         .clarke()
         .park(at)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::current_loop;
-
-    /// Whether a current that is 1 A off is less than that after 4000 periods.
-    fn settles([p, i]: [f64; 2], inductance: f64, resistance: f64, period: f64) -> bool {
-        let (mut current, mut integral) = (1.0_f64, 0.0);
-        for _ in 0..4000 {
-            integral -= i * period * current;
-            let voltage = integral - p * current;
-            // The winding, in steps that are short beside its time constant.
-            let steps = 200;
-            for _ in 0..steps {
-                let h = period / f64::from(steps);
-                let rate = |x: f64| (voltage - resistance * x) / inductance;
-                current += h * rate(current + 0.5 * h * rate(current));
-            }
-        }
-        current.abs() < 1.0
-    }
-
-    #[test]
-    fn a_gain_is_refused_from_where_the_current_swings_up() {
-        for (resistance, integral) in [(2.0, 10_000.0), (0.0, 0.0), (40.0, 0.0), (2.0, 60_000.0)] {
-            let (inductance, period) = (0.018, 5e-4);
-            let edge = {
-                let is_refused = |p: f64| {
-                    current_loop("p", [p, integral], inductance, resistance, period).is_err()
-                };
-                let (mut low, mut high) = (0.0, 1000.0);
-                assert!(!is_refused(low) && is_refused(high));
-                while high - low > 1e-3 {
-                    let middle = 0.5 * (low + high);
-                    *(if is_refused(middle) {
-                        &mut high
-                    } else {
-                        &mut low
-                    }) = middle;
-                }
-                low
-            };
-            let at = |share: f64| settles([share * edge, integral], inductance, resistance, period);
-            assert!(at(0.99) && !at(1.01), "{edge} V/A");
-        }
     }
 }

@@ -50,6 +50,7 @@ impl Actuator for ForceGain {
     fn start(&self, on: &Surroundings) -> Result<Box<dyn Actuating>, PartError> {
         Ok(Box::new(State {
             gain: self.gain,
+            limit: self.limit,
             travel: on.travel_per_radian,
             command: 0.0,
         }))
@@ -59,6 +60,7 @@ impl Actuator for ForceGain {
 #[derive(Clone, Copy, Debug)]
 struct State {
     gain: f64,
+    limit: f64,
     travel: f64,
     command: f64,
 }
@@ -70,7 +72,7 @@ impl Actuating for State {
     }
 
     fn command(&mut self, effort: f64, _: &Measured) {
-        self.command = effort;
+        self.command = effort.clamp(-self.limit, self.limit);
     }
 
     fn torque(&mut self, _: &MotorMotion, _: f64) -> f64 {

@@ -1,8 +1,10 @@
 //! Actuators: what makes a torque of the controller's command.
 
+mod current_loop;
 mod delay;
 mod field_oriented;
 mod force_gain;
+mod late_voltage;
 mod torque_source;
 
 use std::fmt;
@@ -71,8 +73,6 @@ pub struct Surroundings {
     pub period: f64,
     /// Travel of the load per radian of the motor, m/rad or rad/rad.
     pub travel_per_radian: f64,
-    /// Greatest command that the actuator takes.
-    pub effort_limit: f64,
 }
 
 /// The motor's motion in a step.
@@ -89,7 +89,8 @@ pub struct MotorMotion {
 pub struct Electrical {
     /// Currents, A.
     pub current: Dq,
-    /// Voltages held over the cycle, V.
+    /// Voltages that its controllers ask for in this cycle, V; they act as late as the
+    /// actuator says.
     pub voltage: Dq,
     /// Whether the voltage is at its limit.
     pub saturated: bool,
@@ -154,7 +155,15 @@ pub trait Actuating: fmt::Debug + Send + Sync {
     /// `speed` (rad/s); the command that holds it there.
     fn settle(&mut self, torque: f64, speed: f64) -> f64;
 
-    /// Takes the command of a cycle, with what the sensors show at its start.
+    /// Greatest command that it takes in the coming cycle: less than [`Actuator::limit`] where a
+    /// part of that is taken for something else. A control that is told keeps its integral
+    /// from winding up. Infinite: that limit alone.
+    fn available(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Takes the command of a cycle, with what the sensors show at its start; of one beyond
+    /// what it takes, as much as it does.
     fn command(&mut self, effort: f64, measured: &Measured);
 
     /// Torque at the end of a step of `h` seconds, N·m.

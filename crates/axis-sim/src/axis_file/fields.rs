@@ -205,7 +205,12 @@ impl<'a> Fields<'a> {
                     };
                     match (given, key.default) {
                         (Some((number, unit)), _) => values.set_in(name, number, unit),
-                        (None, Some(default)) => values.set(name, default),
+                        (None, Some(default)) => {
+                            values.set(name, default);
+                            if key.counted {
+                                self.keep(name, default);
+                            }
+                        }
                         (None, None) => {}
                     }
                 }

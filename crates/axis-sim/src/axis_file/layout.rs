@@ -99,6 +99,7 @@ const BALL_SCREW: &[Place] = &[
             "current_q_integral",
             "current_limit",
             "command_delay",
+            "current_delay_periods",
         ],
     ),
     ("control", Section::Control, ALL),

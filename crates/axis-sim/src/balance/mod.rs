@@ -74,15 +74,13 @@ impl Balance {
         axis.effects.extend_from_slice(effects);
         let (axis, hooks) = axis.with_effects()?;
         let per_torque = self.channel.per_torque(&axis);
-        // What a current's sensor shows of a current: (1 + c) i + i_0.
-        let [gain, zero] = match self.channel.is_current(&axis) {
-            true => [
-                1.0 + hooks.sensors.current_gain,
-                hooks.sensors.current_offset,
-            ],
-            false => [1.0, 0.0],
+        // What a current's sensors show of a current: (1 + c) i + i_0(θ).
+        let sensors = self.channel.is_current(&axis).then_some(&hooks.sensors);
+        let per_torque = sensors.map_or(1.0, |s| 1.0 + s.current_gain) * per_torque;
+        let zero = |angle: f64| {
+            let offset = sensors.and_then(|s| s.current_offset.at(angle));
+            offset.map_or(0.0, |offset| offset.q)
         };
-        let per_torque = gain * per_torque;
         let mut needed = torque(&axis, &hooks, &self.motions, self.period);
         if self.channel.is_controlled() {
             let more = sampled_inertia(&axis.control) - 1.0;
@@ -93,8 +91,9 @@ impl Balance {
         let [early, lag] = self.channel.ahead(&axis, self.period);
         // T + τ Ṫ makes the torque T of an actuator with the time constant τ.
         let rates = derivative(&needed, self.period);
-        let pairs = needed.iter().zip(rates);
-        let shown = pairs.map(|(t, rate)| per_torque * (t + lag * rate) + zero);
+        let angles = self.motions.motor.position.iter();
+        let pairs = needed.iter().zip(rates).zip(angles);
+        let shown = pairs.map(|((t, rate), angle)| per_torque * (t + lag * rate) + zero(*angle));
         // A position that is logged late shows the motion of before.
         let by = (early + hooks.clock_offset) / self.period;
         let smooth = self.filter.apply(&ahead(shown.collect(), by));

@@ -6,7 +6,9 @@ mod position_errors;
 
 pub use position_errors::PositionErrors;
 
-use compensator::{Along, Cascade, CompensatorError, DriveModel, DriveSection, Kinematics};
+use compensator::{
+    Along, Cascade, CompensatorError, DriveModel, DriveSection, Kinematics, Passage,
+};
 use lugre::LugreError;
 use thiserror::Error;
 
@@ -126,16 +128,22 @@ impl Axis {
                 load: self.load_at(x) + hooks.loads_at(&at_rest),
             }
         })?;
-        let mut cascade = self.control.cascade(travel).unwrap_or(Cascade {
-            position: 0.0,
-            velocity_feedforward: 0.0,
-            acceleration_feedforward: 0.0,
-            speed: 0.0,
-            speed_integral: 0.0,
-            from_motor: false,
-        });
+        let mut cascade = self
+            .control
+            .cascade(travel, self.period)
+            .unwrap_or(Cascade {
+                position: 0.0,
+                velocity_feedforward: 0.0,
+                acceleration_feedforward: 0.0,
+                speed: 0.0,
+                speed_integral: 0.0,
+                from_motor: false,
+                passage: Passage::default(),
+            });
         // A load without a sensor is where the motor says that it is.
-        cascade.from_motor |= matches!(self.sensors.load, LoadSensor::Missing);
+        let missing = matches!(self.sensors.load, LoadSensor::Missing);
+        cascade.passage.other_position |= cascade.from_motor && !missing;
+        cascade.from_motor |= missing;
         let [amplitude, order, phase] = kinematics::harmonic(self, with_waves).unwrap_or_default();
         Ok(DriveModel {
             kinematics: Kinematics {

@@ -45,8 +45,11 @@ pub struct LoopState {
     controller: Box<dyn Controller>,
     load_sensor: Option<Box<dyn Sensing>>,
     motor_sensor: Option<Box<dyn Sensing>>,
-    /// Motor angle that its sensor showed last.
+    /// Motor angle that its sensor showed when the drive last took a speed from it, that speed,
+    /// and the control periods until it takes the next.
     last_angle: f64,
+    derived_speed: f64,
+    speed_due: u32,
     /// Position where the motor's angle would be 0, wound up as at the start: an axis
     /// without a sensor at the load is homed where it stands.
     home: f64,
@@ -162,6 +165,7 @@ impl ClosedLoop {
                 travel: axis.travel_per_radian(),
                 has_motor_encoder: axis.mechanism.has_motor_encoder(),
                 derives_speed: axis.derives_speed(),
+                speed_every: axis.control.speed_every(axis.period),
             },
             plant,
             axis,
@@ -245,6 +249,7 @@ impl ClosedLoop {
             reference,
             measured: &measured,
             correction: &correction,
+            limit: state.actuator.available().min(self.axis.actuator.limit()),
         });
         state.actuator.command(demand.effort, &measured);
         let electrical = state.actuator.electrical();

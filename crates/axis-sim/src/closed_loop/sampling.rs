@@ -12,6 +12,8 @@ pub(super) struct Sampling {
     /// Whether the motor's angle can be seen by itself.
     pub(super) has_motor_encoder: bool,
     pub(super) derives_speed: bool,
+    /// Control periods from one execution of the speed loop to the next.
+    pub(super) speed_every: u32,
 }
 
 impl ClosedLoop {
@@ -42,13 +44,26 @@ impl ClosedLoop {
             measured.motor_angle = measured.position / travel;
         }
         if self.sampling.derives_speed {
-            measured.motor_speed = (measured.motor_angle - state.last_angle) / self.axis.period;
-            state.last_angle = measured.motor_angle;
+            // A speed loop that is slower than the control takes it once in each of its own
+            // periods, over the whole of that, and has it until the next.
+            if state.speed_due == 0 {
+                let turned = measured.motor_angle - state.last_angle;
+                state.derived_speed = turned / self.speed_period();
+                state.last_angle = measured.motor_angle;
+                state.speed_due = self.sampling.speed_every;
+            }
+            state.speed_due -= 1;
+            measured.motor_speed = state.derived_speed;
         }
         if matches!(self.axis.sensors.load, LoadSensor::Missing) {
             measured.position = state.home + measured.motor_angle * travel;
         }
         measured
+    }
+
+    /// Time over which a speed is derived from angles, s.
+    pub(super) fn speed_period(&self) -> f64 {
+        f64::from(self.sampling.speed_every) * self.axis.period
     }
 
     /// The motor's angle as its sensor shows it, or as the load's does, which reads `load`,

@@ -41,6 +41,8 @@ impl ClosedLoop {
             },
             motor_sensor: motor_sensor.map(|s| sensing(s, 1, seen.motor_angle, seen.motor_speed)),
             last_angle: 0.0,
+            derived_speed: 0.0,
+            speed_due: 0,
             home: 0.0,
             last_effort: effort,
             cycles: 0,
@@ -82,6 +84,7 @@ impl ClosedLoop {
         // The current loop is at rest where the current that is read is the one asked for.
         let read = self.hooks.sensors.show(Measured {
             current: actuator.electrical().current,
+            motor_angle: seen.motor_angle,
             ..Measured::default()
         });
         Ok((plant, actuator, read.current.q))
@@ -145,11 +148,11 @@ impl ClosedLoop {
         Ok(plant.seen().displacement)
     }
 
-    /// What it showed a cycle before the start, so that no step of its resolution counts
-    /// as speed.
+    /// What it showed when a speed was taken from it last before the start, so that no step of
+    /// its resolution counts as speed.
     fn angle_before(&self, state: &LoopState) -> f64 {
         let mut before = state.clone();
-        let (seen, period) = (state.plant.seen(), self.axis.period);
+        let (seen, period) = (state.plant.seen(), self.speed_period());
         let position = seen.position - period * seen.speed;
         let angle = seen.motor_angle - period * seen.motor_speed;
         let load = before.load_sensor.as_mut().map(|sensor| {

@@ -3,18 +3,21 @@
 //!
 //! ```text
 //! ω_ref  = P (S_ref − S + Δ) + f_v v_ref / r                 P = Kv / r
-//! u      = PI(ω_ref − ω_m) + f_a a_ref + u_added             limited, anti-windup
+//! u      = PI(ω_ref − ω_m) + f_a a_ref + u_added             filtered, limited, anti-windup
 //! ```
 //!
 //! S is the load's position, the motor's, or both blended: slow from the load, fast from
 //! the motor. The speed passes a low pass on its way in, the command a low pass and a notch
-//! on its way out, where the file has them.
+//! on its way out, where the file has them. The limit comes behind these, and the integral
+//! waits while it would press on against it.
 
 use std::sync::Arc;
 
+use compensator::Passage;
 use foc_pmsm::{Pi, PiParameters, PiState};
 
 use super::filter::Filter;
+use super::output::Output;
 use super::{Control, Controller, Demand, Situation};
 use crate::SixDigits;
 use crate::actuator::{Effort, Surroundings};
@@ -178,7 +181,12 @@ impl Control for Cascade {
         Some(self.speed[0])
     }
 
-    fn cascade(&self, travel: f64) -> Option<compensator::Cascade> {
+    fn speed_every(&self, period: f64) -> u32 {
+        // What is no divisor is refused at the start.
+        every("speed_rate", self.speed_rate, period).unwrap_or(1)
+    }
+
+    fn cascade(&self, travel: f64, period: f64) -> Option<compensator::Cascade> {
         Some(compensator::Cascade {
             position: self.velocity_gain(travel)? / travel,
             velocity_feedforward: self.velocity_feedforward,
@@ -186,6 +194,7 @@ impl Control for Cascade {
             speed: self.speed[0],
             speed_integral: self.speed[1],
             from_motor: matches!(self.feedback, Feedback::Motor),
+            passage: self.passage(period),
         })
     }
 
@@ -204,15 +213,12 @@ impl Control for Cascade {
         let pi = Pi::new(PiParameters {
             kp: self.speed[0],
             ki: self.speed[1],
-            limit: on.effort_limit,
+            // Behind the filters.
+            limit: f64::INFINITY,
             period: speed_period,
         })
         .map_err(|e| PartError::together(e, "other control parameters"))?;
-        let low_pass = |at: Option<f64>| {
-            let filter = |f| Filter::low_pass(f, speed_period);
-            at.map(filter).transpose()
-        };
-        let notch = |[f, damping, depth]: [f64; 3]| Filter::notch(f, damping, depth, speed_period);
+        let [speed_filter, command_filter, notch] = self.filters(speed_period)?;
         let blend = match self.feedback {
             Feedback::Blend(frequency) => Some(Filter::low_pass(
                 frequency,
@@ -234,13 +240,45 @@ impl Control for Cascade {
             speed_every,
             position_every,
             pi,
-            speed_filter: low_pass(self.speed_lowpass)?,
-            command_filter: low_pass(self.command_lowpass)?,
-            notch: self.notch.map(notch).transpose()?,
+            speed_filter,
+            output: Output {
+                filters: [command_filter, notch],
+            },
             integral: PiState::default(),
             cycle: 0,
             demand: Demand::default(),
         }))
+    }
+}
+
+impl Cascade {
+    /// Low pass of the speed, low pass and notch of the command, for a speed loop with that
+    /// period, s.
+    fn filters(&self, period: f64) -> Result<[Option<Filter>; 3], PartError> {
+        let low_pass = |at: Option<f64>| at.map(|f| Filter::low_pass(f, period)).transpose();
+        let notch = |[f, damping, depth]: [f64; 3]| Filter::notch(f, damping, depth, period);
+        Ok([
+            low_pass(self.speed_lowpass)?,
+            low_pass(self.command_lowpass)?,
+            self.notch.map(notch).transpose()?,
+        ])
+    }
+
+    /// What lies between a correction and the command. Rates and filters that the period
+    /// does not go with are refused at the start.
+    fn passage(&self, period: f64) -> Passage {
+        let speed_every = self.speed_every(period);
+        let filters = self.filters(period * f64::from(speed_every));
+        let [speed, low_pass, notch] = filters.unwrap_or_default();
+        let law = |filter: Option<Filter>| filter.map(|filter| filter.law());
+        Passage {
+            position_every: every("position_rate", self.position_rate, period).unwrap_or(1),
+            speed_every,
+            speed: law(speed),
+            command: [law(low_pass), law(notch)],
+            other_position: matches!(self.feedback, Feedback::Blend(_)),
+            ..Passage::default()
+        }
     }
 }
 
@@ -278,8 +316,7 @@ struct State {
     position_every: u32,
     pi: Pi,
     speed_filter: Option<Filter>,
-    command_filter: Option<Filter>,
-    notch: Option<Filter>,
+    output: Output,
     integral: PiState,
     /// Control cycles so far, up to the least common multiple of the two rates.
     cycle: u64,
@@ -305,12 +342,8 @@ impl Controller for State {
         self.integral = PiState { integral: effort };
         self.home = measured.position - self.travel * measured.motor_angle;
         let speed = speed / self.travel;
-        let filters = [
-            (&mut self.blend, 0.0),
-            (&mut self.speed_filter, speed),
-            (&mut self.command_filter, effort),
-            (&mut self.notch, effort),
-        ];
+        self.output.settle(effort);
+        let filters = [(&mut self.blend, 0.0), (&mut self.speed_filter, speed)];
         for (filter, value) in filters {
             if let Some(filter) = filter {
                 filter.settle(value);
@@ -340,17 +373,17 @@ impl Controller for State {
                 fed += self.acceleration_feedforward * s.reference.acceleration;
             }
             let error = self.demand.speed_ref - speed;
+            let before = self.integral;
             let integral = &mut self.integral;
             let out = self
                 .pi
                 .update_with_feed_forward(integral, error, fed, f64::INFINITY);
-            let mut effort = out.value;
-            let filters = [&mut self.command_filter, &mut self.notch];
-            for filter in filters.into_iter().flatten() {
-                effort = filter.pass(effort);
+            let limited = self.output.pass(out.value, s.limit);
+            if limited.presses(error) {
+                self.integral = before;
             }
-            self.demand.effort = effort;
-            self.demand.saturated = out.saturated;
+            self.demand.effort = limited.effort;
+            self.demand.saturated = limited.saturated;
         }
         self.demand
     }

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use compensator::DriveFilter;
+
 use crate::part::PartError;
 
 /// A filter of second order in discrete time, its direct form II transposed:
@@ -58,10 +60,29 @@ impl Filter {
         y
     }
 
+    /// Tells it that the last of what it made was not `asked` but `given`, which the next
+    /// ones follow from.
+    pub fn made(&mut self, asked: f64, given: f64) {
+        let by = given - asked;
+        for (state, a) in self.state.iter_mut().zip(self.a) {
+            *state -= a * by;
+        }
+    }
+
     /// As if `u` had come in for ever.
     pub fn settle(&mut self, u: f64) {
         let last = (self.b[2] - self.a[1]) * u;
         self.state = [(self.b[1] - self.a[0]) * u + last, last];
+    }
+}
+
+impl Filter {
+    /// It as corrections pass through it.
+    pub fn law(&self) -> DriveFilter {
+        DriveFilter {
+            b: self.b,
+            a: self.a,
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 pub(crate) mod absent;
 mod cascade;
 mod filter;
+mod output;
 mod p_p;
 mod pid;
 
@@ -28,6 +29,9 @@ pub struct Situation<'a> {
     pub measured: &'a Measured,
     /// What the compensator adds: to the position error, and to the actuator's command.
     pub correction: &'a Correction,
+    /// Greatest command that the actuator takes now, in its unit: less than its limit where a
+    /// part of that is taken for something else, as a motor's current by field weakening.
+    pub limit: f64,
 }
 
 /// What a controller asks for.
@@ -65,10 +69,16 @@ pub trait Control: fmt::Debug + Send + Sync {
         None
     }
 
-    /// It as corrections pass through it, on a load that moves by `travel` a radian. None
-    /// where there is no speed loop to pass through.
-    fn cascade(&self, _travel: f64) -> Option<Cascade> {
+    /// It as corrections pass through it, run once in each `period` (s) on a load that moves
+    /// by `travel` a radian. None where there is no speed loop to pass through.
+    fn cascade(&self, _travel: f64, _period: f64) -> Option<Cascade> {
         None
+    }
+
+    /// Control periods, of `period` seconds each, from one execution of its speed loop to the
+    /// next: that over which a speed that is derived from an angle is the mean.
+    fn speed_every(&self, _period: f64) -> u32 {
+        1
     }
 
     /// The unit in which its gains give the actuator's command, where they are tied to one.

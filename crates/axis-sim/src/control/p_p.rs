@@ -2,14 +2,15 @@
 //! of the position, as the EMPS benchmark has it.
 //!
 //! ```text
-//! u_k  = sat( K_v (K_p (q_ref − q + Δ) − dq) ) + u_added
+//! u_k  = sat( K_v (K_p (q_ref − q + Δ) − dq) + u_added )
 //! dq_k = (f_k − f_{k−1}) / T,   f_k = (q_k + q_{k−1}) / 2
 //! ```
 
 use std::sync::Arc;
 
-use compensator::Cascade;
+use compensator::{Cascade, Passage};
 
+use super::output::Output;
 use super::{Control, Controller, Demand, Situation};
 use crate::actuator::{Effort, Surroundings};
 use crate::cycle::Measured;
@@ -47,7 +48,7 @@ impl Control for PP {
         Some(self.position)
     }
 
-    fn cascade(&self, travel: f64) -> Option<Cascade> {
+    fn cascade(&self, travel: f64, _: f64) -> Option<Cascade> {
         Some(Cascade {
             position: self.position / travel,
             velocity_feedforward: 0.0,
@@ -55,6 +56,10 @@ impl Control for PP {
             speed: self.speed * travel,
             speed_integral: 0.0,
             from_motor: false,
+            passage: Passage {
+                speed_of_position: true,
+                ..Passage::default()
+            },
         })
     }
 
@@ -98,13 +103,13 @@ impl Controller for State {
         ];
         let seen_speed = (filtered[0] - filtered[1]) / self.on.period;
         let wanted = self.law.position * (s.reference.position - x + s.correction.position);
-        let asked = self.law.speed * (wanted - seen_speed);
-        let limit = self.on.effort_limit;
+        let asked = self.law.speed * (wanted - seen_speed) + s.correction.iq;
+        let limited = Output::default().pass(asked, s.limit);
         self.before = [x, self.before[0]];
         Demand {
             speed_ref: wanted / self.on.travel_per_radian,
-            effort: asked.clamp(-limit, limit) + s.correction.iq,
-            saturated: asked.abs() > limit,
+            effort: limited.effort,
+            saturated: limited.saturated,
         }
     }
 

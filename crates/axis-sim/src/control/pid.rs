@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use super::filter::Filter;
+use super::output::Output;
 use super::{Control, Controller, Demand, Situation};
 use crate::actuator::{Effort, Surroundings};
 use crate::cycle::Measured;
@@ -90,22 +91,21 @@ impl Controller for State {
     }
 
     fn cycle(&mut self, s: &Situation<'_>) -> Demand {
-        let (law, period, limit) = (&self.law, self.on.period, self.on.effort_limit);
+        let (law, period) = (&self.law, self.on.period);
         let error = s.reference.position - s.measured.position + s.correction.position;
         let slope = (error - self.before.unwrap_or(error)) / period;
         let damping = law.derivative * self.slope.pass(slope);
         self.before = Some(error);
         let sum = self.sum + law.integral * period * error;
         let asked = law.proportional * error + sum + damping + s.correction.iq;
-        let effort = asked.clamp(-limit, limit);
-        // The integral grows only where that does not press on against the limit.
-        if asked == effort || (asked > 0.0) != (error > 0.0) {
+        let limited = Output::default().pass(asked, s.limit);
+        if !limited.presses(error) {
             self.sum = sum;
         }
         Demand {
             speed_ref: 0.0,
-            effort,
-            saturated: asked != effort,
+            effort: limited.effort,
+            saturated: limited.saturated,
         }
     }
 

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
+use foc_pmsm::{Dq, Phases};
+
 use super::memory::{MemoryLaw, MemoryLaws};
 use crate::axis::Axis;
 use crate::cycle::Measured;
@@ -99,20 +101,46 @@ pub struct ScrewState {
 pub struct SensorErrors {
     /// Share by which both currents are shown too great.
     pub current_gain: f64,
-    /// Added to the q current, A.
-    pub current_offset: f64,
+    /// What the current sensors show at no current.
+    pub current_offset: CurrentOffset,
     /// Amplitude and phase of each of the motor encoder's errors, rad.
     pub eccentricities: Vec<[f64; 2]>,
+}
+
+/// What the current sensors of a motor show at no current.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CurrentOffset {
+    /// Of phases a and b, A.
+    pub phases: [f64; 2],
+    /// Electrical periods per radian of the motor; none of an actuator whose current has no
+    /// angle, and one sensor.
+    pub poles: Option<f64>,
+}
+
+impl CurrentOffset {
+    /// It in the rotor's frame at a motor angle (rad), A; none where the sensors show nothing.
+    pub(crate) fn at(&self, motor_angle: f64) -> Option<Dq> {
+        let [a, b] = self.phases;
+        if [a, b] == [0.0; 2] {
+            return None;
+        }
+        Some(match self.poles {
+            Some(poles) => Phases { a, b, c: -a - b }
+                .clarke()
+                .park(poles * motor_angle),
+            None => Dq { d: 0.0, q: a },
+        })
+    }
 }
 
 impl SensorErrors {
     /// What these sensors make of what perfect ones would show.
     pub(crate) fn show(&self, mut m: Measured) -> Measured {
         let gain = 1.0 + self.current_gain;
-        m.current = foc_pmsm::Dq {
-            d: gain * m.current.d,
-            q: gain * m.current.q + self.current_offset,
-        };
+        m.current = m.current * gain;
+        if let Some(offset) = self.current_offset.at(m.motor_angle) {
+            m.current = m.current + offset;
+        }
         let true_angle = m.motor_angle;
         let mut speed_ratio = 1.0;
         for [amplitude, phase] in &self.eccentricities {

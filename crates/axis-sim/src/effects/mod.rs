@@ -62,7 +62,7 @@ mod viscous_friction;
 mod warming_friction;
 
 pub(crate) use changes::Hooks;
-pub use changes::{Changes, ScrewState, SensorErrors, Steepness, TableState};
+pub use changes::{Changes, CurrentOffset, ScrewState, SensorErrors, Steepness, TableState};
 pub(crate) use install::install;
 pub(crate) use memory::Memory;
 pub use memory::{MemoryLaw, TableStep};

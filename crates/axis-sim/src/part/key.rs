@@ -17,6 +17,8 @@ pub struct Key {
     pub(crate) optional: bool,
     /// What a number is where it is left out.
     pub(crate) default: Option<f64>,
+    /// Whether that counts in the fingerprint where the key is left out.
+    pub(crate) counted: bool,
     pub(crate) role: Option<Role>,
 }
 
@@ -45,6 +47,7 @@ const fn key(name: &'static str, kind: Kind) -> Key {
         kind,
         optional: false,
         default: None,
+        counted: false,
         role: None,
     }
 }
@@ -121,6 +124,15 @@ impl Key {
     pub const fn or(mut self, default: f64) -> Self {
         self.optional = true;
         self.default = Some(default);
+        self
+    }
+
+    /// Counts in the fingerprint where it is left out, too: of a key that did not exist when
+    /// results were made with files without it, and that stands for something else than they
+    /// did.
+    #[must_use]
+    pub const fn counted(mut self) -> Self {
+        self.counted = true;
         self
     }
 

@@ -115,9 +115,9 @@ fn every_value_counts() {
     let (changed, seen) = change_each(PRINTED);
     let original = text(PRINTED);
     // 7 of the screw, 7 of the drive, 6 of the friction, 5 of the motor, 1 of
-    // the inverter, 10 of the control, 3 of the stroke, 8 of the samples, the
+    // the inverter, 11 of the control, 3 of the stroke, 8 of the samples, the
     // step, and 4 of each of the six trajectories.
-    assert_eq!(changed, 72);
+    assert_eq!(changed, 73);
     let moving = original.replace("\"shape-functions\"", "\"moving-node\"");
     assert!(!seen.contains(&fingerprint(&moving)));
 }
@@ -126,7 +126,7 @@ fn every_value_counts() {
 fn every_value_of_the_other_axes_counts() {
     let numbers = OTHERS.map(|file| change_each(file).0);
     // As many as the files have, but for the schema.
-    assert_eq!(numbers, [43, 47, 38, 36, 36, 29, 44]);
+    assert_eq!(numbers, [43, 48, 38, 37, 37, 29, 45]);
 }
 
 #[test]
@@ -146,11 +146,11 @@ fn fingerprints_of_the_files_as_they_are() {
     for (file, expected) in [
         (
             PRINTED,
-            "c70286c0772ff5dcf73c4cf3e298e6f4b53f3cae362b8501488e73bcd482cacb",
+            "44d50e5523aa8bcc6bfba63e8f636cc553e3d5550c0c3f102b905e41ad3ff8bc",
         ),
         (
             MACHINE,
-            "5c8b30de93bb300d6a7bc21883aea7c0c6aac38becd9a653ebe58a67820ac419",
+            "edaaa4275f7848d2e33ef3536898bd406e6893d59bd90146fdaa1b55a43a7b0c",
         ),
         (
             RIGID,
@@ -165,6 +165,30 @@ fn fingerprints_of_the_files_as_they_are() {
         fingerprint(&more),
         "878ff92d7232572f720a02298a25bd384bae9bddeb2d8ad5bde908dbbf260dac"
     );
+}
+
+/// A file without the key has the delay of most drives, not what files without it once had: it
+/// counts as if it were given.
+#[test]
+fn a_current_delay_that_is_left_out_counts() {
+    let original = text(PRINTED);
+    let without: String = original
+        .lines()
+        .filter(|line| !line.starts_with("current_delay_periods"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let given = |value: &str| {
+        fingerprint(&original.replace(
+            "current_delay_periods = 0 ",
+            &format!("current_delay_periods = {value} "),
+        ))
+    };
+    assert_eq!(given("0"), fingerprint(&original));
+    assert_eq!(given("1.5"), fingerprint(&without));
+    assert_ne!(fingerprint(&without), fingerprint(&original));
+    // That of the file before there was the key.
+    let before = "c70286c0772ff5dcf73c4cf3e298e6f4b53f3cae362b8501488e73bcd482cacb";
+    assert!(![fingerprint(&without), fingerprint(&original)].contains(&before.to_owned()));
 }
 
 #[test]

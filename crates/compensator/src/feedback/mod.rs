@@ -53,6 +53,9 @@ pub const NODES: usize = 7;
 /// that is taken as lasting. Slow against filters in the drive's command, quick against an
 /// integrator that sees the speed between two executions of a slower position loop.
 const OWN: f64 = 1.0 / 16.0;
+/// The same for how that changes in a cycle: twice the root of it is [`OWN`], so that both settle
+/// as fast as they can without swinging.
+const OWN_RATE: f64 = 0.25 * OWN * OWN;
 /// Greatest state that is believed, in its unit: what the greatest force moves in a cycle, or
 /// that force, or the greatest command.
 const MOST: f64 = 1e6;
@@ -247,7 +250,7 @@ impl<T: Scalar> Feedback<T> {
         if other.abs() <= T::TWO * g.limit {
             effort = commanded;
             let limited = |value: T| value.max(-g.limit).min(g.limit);
-            self.own_rate = limited(self.own_rate + T::of(0.25 * OWN * OWN) * other);
+            self.own_rate = limited(self.own_rate + T::of(OWN_RATE) * other);
             self.own = limited(self.own + self.own_rate + T::of(OWN) * other);
         }
         let (low, high, share) = g.around(before.sticking);

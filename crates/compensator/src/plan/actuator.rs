@@ -3,7 +3,7 @@
 use foc_pmsm::Dq;
 use lugre::Exponential;
 
-use crate::model::{Drive, DriveModel};
+use crate::model::{Drive, DriveModel, MOST_DELAY};
 
 /// The command of a cycle and what comes of it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,9 +23,17 @@ pub(super) struct Inverse<T> {
     /// Share of the torque that a lag keeps over a cycle.
     kept: T,
     torque: T,
-    current: Dq<T>,
+    /// Currents at the start of the cycle in which the next voltage acts, and in those before:
+    /// the newest first.
+    past: [Dq<T>; PAST],
+    /// Cycles from the sample that the current controllers go by to that, whole and part.
+    late: usize,
+    late_part: T,
     integral: Dq<T>,
 }
+
+/// Currents that are remembered.
+const PAST: usize = MOST_DELAY + 2;
 
 impl<T: Exponential> Inverse<T> {
     pub fn new(model: &DriveModel<T>) -> Self {
@@ -33,13 +41,16 @@ impl<T: Exponential> Inverse<T> {
             Drive::Lag { bandwidth, .. } => (-*bandwidth * model.period).exp(),
             Drive::FieldOriented { .. } => T::ZERO,
         };
+        let whole = model.drive.late().floor();
         Self {
             drive: model.drive,
             limit: model.effort_limit,
             period: model.period,
             kept,
             torque: T::ZERO,
-            current: Dq::ZERO,
+            past: [Dq::ZERO; PAST],
+            late: (whole.to_f64() as usize).min(MOST_DELAY),
+            late_part: model.drive.late() - whole,
             integral: Dq::ZERO,
         }
     }
@@ -54,8 +65,9 @@ impl<T: Exponential> Inverse<T> {
         self.torque = torque;
         if let Drive::FieldOriented { motor, gear, .. } = &self.drive {
             let q = motor.q_current(torque / *gear);
-            self.current = Dq { d: T::ZERO, q };
-            self.integral = motor.steady_voltage(self.current, T::ZERO);
+            let current = Dq { d: T::ZERO, q };
+            self.past = [current; PAST];
+            self.integral = motor.steady_voltage(current, T::ZERO);
         }
     }
 
@@ -63,12 +75,21 @@ impl<T: Exponential> Inverse<T> {
     /// would hold the torque where there is none.
     pub fn effort_now(&self) -> T {
         match &self.drive {
-            Drive::FieldOriented { .. } => self.current.q,
+            Drive::FieldOriented { .. } => self.past[0].q,
             Drive::Lag { gain, .. } => self.torque / *gain,
         }
     }
 
-    /// The command of the coming cycle, at whose end the torque is to be `torque` (N·m),
+    /// Currents as the controllers sampled them.
+    fn sampled(&self) -> Dq<T> {
+        let newer = self.past[self.late];
+        if self.late_part == T::ZERO {
+            return newer;
+        }
+        newer * (T::ONE - self.late_part) + self.past[self.late + 1] * self.late_part
+    }
+
+    /// The command of the cycle, at whose end the torque is to be `torque` (N·m),
     /// the motor turning at the mean `speed` (rad/s).
     pub fn towards(&mut self, torque: T, speed: T) -> Commanded<T> {
         match self.drive {
@@ -79,13 +100,15 @@ impl<T: Exponential> Inverse<T> {
                 d,
                 q,
                 voltage,
+                ..
             } => {
                 let h = self.period;
                 let speed = gear * speed;
-                let error = -self.current.d;
+                let (sampled, current) = (self.sampled(), self.past[0]);
+                let error = -sampled.d;
                 self.integral.d += d[1] * h * error;
                 let ud = (d[0] * error + self.integral.d).max(-voltage).min(voltage);
-                let at = |uq| motor.step(self.current, Dq { d: ud, q: uq }, speed, h);
+                let at = |uq| motor.step(current, Dq { d: ud, q: uq }, speed, h);
                 let (free, one) = (at(T::ZERO), at(T::ONE));
                 let rise = one - free;
                 let per_current = gear
@@ -99,14 +122,16 @@ impl<T: Exponential> Inverse<T> {
                 let left = ((voltage - ud) * (voltage + ud)).max(T::ZERO).sqrt();
                 let per_error = q[0] + q[1] * h;
                 let error = (wanted.max(-left).min(left) - self.integral.q) / per_error;
-                let asked = self.current.q + error;
+                let asked = sampled.q + error;
                 let effort = asked.max(-self.limit).min(self.limit);
-                let error = effort - self.current.q;
+                let error = effort - sampled.q;
                 self.integral.q += q[1] * h * error;
                 let uq = q[0] * error + self.integral.q;
                 let uq = uq.max(-left).min(left);
-                self.current = free + rise * uq;
-                self.torque = gear * motor.torque(self.current);
+                let reached = free + rise * uq;
+                self.past.copy_within(..=self.late, 1);
+                self.past[0] = reached;
+                self.torque = gear * motor.torque(reached);
                 Commanded {
                     effort,
                     limited: effort != asked || wanted.abs() > left,

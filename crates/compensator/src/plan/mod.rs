@@ -178,7 +178,7 @@ const WOUND: usize = MOST_DELAY + 2;
 pub struct Planner<T = f64, R = ResidualModel<T>> {
     model: DriveModel<T>,
     half: usize,
-    /// Cycles by which a command comes late, whole.
+    /// Cycles by which a command and the voltage made of it come late, whole.
     late: usize,
     /// What a part of a cycle more is.
     late_part: T,
@@ -224,7 +224,7 @@ impl<T: Exponential> Planner<T> {
             valid,
         )?;
         let half = ((T::of(4.0) * sigma).ceil().to_f64() as usize + 1).min(MOST_HALF);
-        let cycles = model.delay / model.period;
+        let cycles = model.delay / model.period + model.drive.late();
         let whole = cycles.floor();
         let mut planner = Self {
             model: *model,
@@ -281,7 +281,7 @@ impl<T: Exponential> Planner<T> {
 pub struct PlannerConstants<'a, T = f64> {
     /// Set points from the smoothed one to either end of the Gaussian.
     pub half: usize,
-    /// Whole cycles by which a command comes late.
+    /// Whole cycles by which a command and the voltage made of it come late.
     pub late: usize,
     /// The part of a cycle more.
     pub late_part: T,

@@ -34,12 +34,15 @@ pub(super) fn add<T: Exponential>(draft: &mut Draft, planner: &Planner<T>) {
     draft.inputs.extend(inputs);
     draft.inputs.insert(Input::EffortCommand);
     let window = 2 * constants.half + 1;
+    let (whole, part) = sampled_before(model);
+    let sampled = whole + 1 + usize::from(part > T::ZERO);
     draft.states.push(State {
         name: "plan",
         declaration: include_str!("runtime/plan.h")
             .replace("@HALF@", &constants.half.to_string())
-            .replace("@LATE@", &late.to_string()),
-        reals: 6 * (constants.half + 2) + 9 * (late + 2) + 2 * window + 10,
+            .replace("@LATE@", &late.to_string())
+            .replace("@SAMPLED@", &sampled.to_string()),
+        reals: 6 * (constants.half + 2) + 9 * (late + 2) + 2 * window + 8 + 2 * sampled,
         integers: 5,
     });
 }
@@ -118,6 +121,13 @@ fn timing<T: Scalar>(draft: &mut Draft, constants: &PlannerConstants<'_, T>) {
     draft.constants += 1 + 3 * value.len();
 }
 
+/// Cycles, whole and part, from the sample that the current controllers go by to the voltage
+/// made of it.
+fn sampled_before<T: Exponential>(model: &DriveModel<T>) -> (usize, T) {
+    let late = model.drive.late();
+    (late.floor().to_f64() as usize, late - late.floor())
+}
+
 /// The actuator that is inverted.
 fn actuator<T: Exponential>(draft: &mut Draft, model: &DriveModel<T>, kept: T) {
     let named = match &model.drive {
@@ -134,7 +144,18 @@ fn actuator<T: Exponential>(draft: &mut Draft, model: &DriveModel<T>, kept: T) {
             d,
             q,
             voltage,
+            ..
         } => {
+            let (whole, part) = sampled_before(model);
+            let between = usize::from(part > T::ZERO);
+            draft.data += &format!(
+                "#define SAMPLED {}u /* currents from the sampled one to the newest */\n#define SAMPLED_BETWEEN {between} /* whether it lies between two */\n",
+                whole + 1 + between
+            );
+            if part > T::ZERO {
+                draft.data += &constant("SAMPLED_PART", part, "of a cycle");
+                draft.constants += 1;
+            }
             draft.part(&part::FIELD_ORIENTED);
             let p = motor.parameters();
             vec![

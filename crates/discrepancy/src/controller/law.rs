@@ -82,7 +82,6 @@ impl Law {
         let on = Surroundings {
             period: axis.period,
             travel_per_radian: axis.travel_per_radian(),
-            effort_limit: axis.actuator.limit(),
         };
         let mut controller = self.control(at).ok()?.start(&on).ok()?;
         controller.settle(*seen.command.first()?, seen.measured.first()?, seen.speed);
@@ -96,6 +95,7 @@ impl Law {
                 reference,
                 measured,
                 correction: &correction,
+                limit: axis.actuator.limit(),
             };
             controller.cycle(&situation).effort
         };

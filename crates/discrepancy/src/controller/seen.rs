@@ -110,6 +110,7 @@ impl Seen {
             None => curve(&scaled(shown.position, 1.0 / travel)),
         };
         let speed = shown.speed.map(curve);
+        let every = axis.control.speed_every(h) as usize;
         let measured = |k: usize| {
             let t = k as f64 * h;
             let [motor_angle, slope] = angle.at(t);
@@ -118,8 +119,12 @@ impl Seen {
                 motor_angle,
                 motor_speed: match &speed {
                     Some(speed) => speed.at(t)[0],
-                    // As a drive derives it, from one cycle to the next.
-                    None if axis.derives_speed() && k > 0 => (motor_angle - angle.at(t - h)[0]) / h,
+                    // As a drive derives it, from one cycle of its speed loop to the next.
+                    None if axis.derives_speed() && k >= every => {
+                        let taken = (k - k % every) as f64 * h;
+                        let period = every as f64 * h;
+                        (angle.at(taken)[0] - angle.at(taken - period)[0]) / period
+                    }
                     None => slope,
                 },
                 ..Measured::default()

@@ -7,6 +7,8 @@
 //! w(k) = w(k−1) + k_i T_s e(k),   v(k) = k_p e(k) + w(k),   e(k) = u(k − delay) − i(k)
 //! ```
 //!
+//! v(k) begins to act `late` periods after its sample ([`Drive::FieldOriented`]) and is held for one.
+//!
 //! g is what a vibration in slow sliding meets: the falling Stribeck curve feeds it (g < 0).
 //! The actuator may also be torque behind a first-order lag. The mechanics, the current and the back-EMF are
 //! discretised together and exactly (matrix exponential).
@@ -86,7 +88,11 @@ impl Linear {
             Drive::Lag { bandwidth, .. } => (usize::from(bandwidth.is_finite()), 0),
         };
         let angles = usize::from(settings.speed_by_differences);
-        let size = 2 * n + inner + held + late + angles + 1;
+        // Voltages under way: whole periods, and the part of one more.
+        let v_late = model.drive.late();
+        let (v_whole, v_part) = (v_late as usize, v_late - (v_late as usize) as f64);
+        let under_way = v_whole + usize::from(v_part > 0.0);
+        let size = 2 * n + inner + held + under_way + late + angles + 1;
         if size > MOST_STATES {
             return Err(DesignError::Size {
                 states: size,
@@ -162,6 +168,11 @@ impl Linear {
             ac[(i, j)] * h * unit(j) / unit(i)
         });
         let ad = ac.exp();
+        // Of two voltages in a period the newer acts in the rest of it.
+        let rest = match v_part > 0.0 {
+            true => (&ac * (1.0 - v_part)).exp(),
+            false => ad.clone(),
+        };
 
         let mut a = DMatrix::zeros(size, size);
         let mut b = DVector::zeros(size);
@@ -170,7 +181,31 @@ impl Linear {
         a.view_mut((0, size - 1), (flow, 1))
             .copy_from(&ad.view((0, at_d), (flow, 1)));
         a[(size - 1, size - 1)] = 1.0;
-        let into = DVector::from_fn(size, |i, _| if i < flow { ad[(i, at_v)] } else { 0.0 });
+        let newer = DVector::from_fn(size, |i, _| if i < flow { rest[(i, at_v)] } else { 0.0 });
+        let older = DVector::from_fn(size, |i, _| match i < flow {
+            true => ad[(i, at_v)] - rest[(i, at_v)],
+            false => 0.0,
+        });
+        // v(k − j): of the voltages under way, or the one that is made now.
+        let voltages = flow + held;
+        let mut into = DVector::zeros(size);
+        let mut acts_after = |j: usize, on: &DVector<f64>| match j {
+            0 => into += on,
+            j => {
+                let column = a.column(voltages + j - 1) + on;
+                a.set_column(voltages + j - 1, &column);
+            }
+        };
+        acts_after(v_whole, &newer);
+        if v_part > 0.0 {
+            acts_after(v_whole + 1, &older);
+        }
+        for j in 0..under_way {
+            match j {
+                0 => into[voltages] = 1.0,
+                j => a[(voltages + j, voltages + j - 1)] = 1.0,
+            }
+        }
         // What the late command does: through the PI, or at once.
         let mut acts = into.clone();
         if held == 1 {
@@ -183,7 +218,7 @@ impl Linear {
             a[(w, w)] = 1.0;
         }
         // u(k − j): the j-th past command, or the one that is made now.
-        let past = flow + held;
+        let past = flow + held + under_way;
         let mut late_by = |j: usize, weight: f64| match j {
             0 => b += &acts * weight,
             j => {

@@ -1,7 +1,9 @@
 //! Margins of a designed feedback, on the believed axis or on another one.
 //!
 //! The loop is cut at the plant's input, the command: one signal, whatever is measured. With
-//! L(z) = −(command that comes back)/(command that goes in), S = 1/(1 + L).
+//! L(z) = −(command that comes back)/(command that goes in), S = 1/(1 + L). What comes back has passed the
+//! observer, the state feedback, and all that the drive has between a correction and the
+//! command: its filters, and a position controller at a rate of its own.
 
 use super::cut::Loop;
 use super::linear::{Linear, Situation};
@@ -47,7 +49,8 @@ pub struct Margins {
     pub sensitivity_late: f64,
     /// χ where that is.
     pub sticking_late: f64,
-    /// Delay that the loop takes before it is unstable, s.
+    /// Delay that the loop takes before it is unstable, s; where the drive's position controller
+    /// runs at a rate of its own, in whole control periods, up to 16 of them.
     pub delay: f64,
     /// Greatest eigenvalue of the closed loop, 1/cycle; below 1.
     pub radius: f64,
@@ -59,6 +62,12 @@ impl FeedbackDesign {
     /// # Errors
     /// [`DesignError`] where that has more states than there is room for.
     pub fn margins(&self, on: &Variation<'_>) -> Result<Margins, DesignError> {
+        self.worst(on, true)
+    }
+
+    /// The margins; of a loop that repeats after several periods the delay takes long, and is
+    /// left out where nobody asks for it.
+    fn worst(&self, on: &Variation<'_>, with_delay: bool) -> Result<Margins, DesignError> {
         let mut all = Margins {
             sensitivity: 0.0,
             sticking: 0.0,
@@ -69,14 +78,17 @@ impl FeedbackDesign {
         };
         for (design, sticking) in self.designs.iter().zip(STICKING) {
             let plant = self.plant(on, sticking)?;
-            let at = Loop::new(&plant, design);
-            for late in [false, true] {
+            let at = Loop::new(&plant, &self.model, design);
+            if with_delay && at.repeats() > 1 {
+                all.delay = all.delay.min(at.whole_delay(self.model.period));
+            }
+            for late in [0, 1] {
                 let radius = at.radius(late);
                 let (mut sensitivity, delay) = at.frequencies(late, self.model.period);
                 if radius.is_nan() || radius >= 1.0 {
                     sensitivity = f64::INFINITY;
                 }
-                let (worst, place) = if late {
+                let (worst, place) = if late > 0 {
                     (&mut all.sensitivity_late, &mut all.sticking_late)
                 } else {
                     all.radius = all.radius.max(radius);
@@ -126,7 +138,7 @@ impl FeedbackDesign {
                             stribeck,
                             ..Variation::default()
                         };
-                        self.margins(&on)?.within(s, &on)?;
+                        self.worst(&on, false)?.within(s, &on)?;
                     }
                 }
             }

@@ -1,7 +1,9 @@
 //! Design of a [`Feedback`]: linear-quadratic state feedback and Kalman filter at each χ.
 
 mod cut;
+mod drive_loops;
 mod error;
+mod hessenberg;
 mod linear;
 mod margins;
 mod riccati;
@@ -68,8 +70,8 @@ impl FeedbackDesign {
     /// [`FeedbackSettings::modes`] of them count.
     ///
     /// # Errors
-    /// [`DesignError`] says what cannot be carried: no speed loop that could be replaced, too
-    /// many states, a Riccati equation without solution, margins that are not met.
+    /// [`DesignError`] says what cannot be carried: no speed loop that could be replaced, or one
+    /// that runs at a rate of its own, a position that is not the measured one, too many states, a Riccati equation without solution, margins that are not met.
     pub fn new(
         model: &DriveModel,
         modes: &[Mode],
@@ -133,6 +135,7 @@ impl FeedbackDesign {
         if c.speed <= 0.0 {
             return Err(DesignError::Control("its speed controller has no gain"));
         }
+        drive_loops::check(&c.passage)?;
         let modes = settings.used(modes)?;
         let stribeck = stribeck_damping(model, &modes);
         let mut designed = Self {

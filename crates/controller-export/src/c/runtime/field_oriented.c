@@ -36,43 +36,65 @@ static real motor_torque(real d, real q)
 /* At rest with a torque that it has held for ever. */
 static void actuator_settle(@X@_plan *s, real torque)
 {
+    uint32_t i;
+
     s->torque = torque;
-    s->current_d = R(0.0);
-    s->current_q = torque / GEAR / (R(1.5) * POLE_PAIRS * FLUX_LINKAGE);
-    s->integral_d = steady_d(R(0.0), s->current_d, s->current_q);
-    s->integral_q = steady_q(R(0.0), s->current_d, s->current_q);
+    for (i = 0; i < SAMPLED; i++) {
+        s->past_d[i] = R(0.0);
+        s->past_q[i] = torque / GEAR / (R(1.5) * POLE_PAIRS * FLUX_LINKAGE);
+    }
+    s->integral_d = steady_d(R(0.0), s->past_d[0], s->past_q[0]);
+    s->integral_q = steady_q(R(0.0), s->past_d[0], s->past_q[0]);
 }
 
 static real actuator_now(const @X@_plan *s)
 {
-    return s->current_q;
+    return s->past_q[0];
 }
 
-/* The command of the coming cycle, at whose end the torque is to be `torque`, the motor turning
+/* A current as its controller sampled it, before the voltage made of it acts. */
+static real sampled(const real *past)
+{
+#if SAMPLED_BETWEEN
+    return past[SAMPLED - 2u] * (R(1.0) - SAMPLED_PART) + past[SAMPLED - 1u] * SAMPLED_PART;
+#else
+    return past[SAMPLED - 1u];
+#endif
+}
+
+/* The command of the cycle, at whose end the torque is to be `torque`, the motor turning
  * at the mean `speed`. */
 static real actuator_towards(@X@_plan *s, real torque, real speed)
 {
     const real at = GEAR * speed;
     const real per_error = Q_GAIN + Q_INTEGRAL * PERIOD;
+    const real current_d = s->past_d[0];
+    const real current_q = s->past_q[0];
+    const real sampled_q = sampled(s->past_q);
+    uint32_t i;
     real ud, free_d, free_q, one_d, one_q, rise_d, rise_q, wanted, left, error, effort, uq;
 
-    error = -s->current_d;
+    error = -sampled(s->past_d);
     s->integral_d += D_INTEGRAL * PERIOD * error;
     ud = limited(D_GAIN * error + s->integral_d, VOLTAGE);
-    motor_step(s->current_d, s->current_q, ud, R(0.0), at, &free_d, &free_q);
-    motor_step(s->current_d, s->current_q, ud, R(1.0), at, &one_d, &one_q);
+    motor_step(current_d, current_q, ud, R(0.0), at, &free_d, &free_q);
+    motor_step(current_d, current_q, ud, R(1.0), at, &one_d, &one_q);
     rise_d = one_d - free_d;
     rise_q = one_q - free_q;
     wanted = (torque / (GEAR * motor_torque(free_d, R(1.0))) - free_q) / rise_q;
     /* As the drive limits it: d first, then what the vector leaves for q, and the command. */
     left = root(greatest((VOLTAGE - ud) * (VOLTAGE + ud), R(0.0)));
     error = (limited(wanted, left) - s->integral_q) / per_error;
-    effort = limited(s->current_q + error, ACTUATOR_LIMIT);
-    error = effort - s->current_q;
+    effort = limited(sampled_q + error, ACTUATOR_LIMIT);
+    error = effort - sampled_q;
     s->integral_q += Q_INTEGRAL * PERIOD * error;
     uq = limited(Q_GAIN * error + s->integral_q, left);
-    s->current_d = free_d + rise_d * uq;
-    s->current_q = free_q + rise_q * uq;
-    s->torque = GEAR * motor_torque(s->current_d, s->current_q);
+    for (i = SAMPLED - 1u; i > 0; i--) {
+        s->past_d[i] = s->past_d[i - 1u];
+        s->past_q[i] = s->past_q[i - 1u];
+    }
+    s->past_d[0] = free_d + rise_d * uq;
+    s->past_q[0] = free_q + rise_q * uq;
+    s->torque = GEAR * motor_torque(s->past_d[0], s->past_q[0]);
     return effort;
 }

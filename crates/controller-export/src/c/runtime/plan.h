@@ -25,7 +25,8 @@ typedef struct {
     @real@ home;                          /* rad: wind-up at the start */
     @real@ held;                          /* @E@: what the drive's integrator holds */
     @real@ own;                           /* @E@: what this compensator added last */
-    @real@ torque, current_d, current_q, integral_d, integral_q; /* of the actuator: N m, A, V */
+    @real@ torque, integral_d, integral_q; /* of the actuator: N m, V */
+    @real@ past_d[@SAMPLED@], past_q[@SAMPLED@]; /* A: its currents, the newest first */
     uint32_t ahead_at, wound_at, sample_at; /* where the next one goes */
     uint32_t pushed;                        /* set points since the start, as far as they count */
     int32_t started;
