@@ -3,6 +3,9 @@
 mod controller;
 mod fit;
 mod foresight;
+mod late;
 mod logs;
+mod nothing_missing;
+mod repeats;
 mod settings;
 mod starts;

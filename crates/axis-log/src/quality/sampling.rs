@@ -42,12 +42,14 @@ pub enum SamplingError {
     },
     /// A rate that is out of range.
     #[error(
-        "the sample rate is {rate:.6} Hz: it must lie between {MIN_RATE_HZ} and {MAX_RATE_HZ} Hz{}",
+        "the sample rate is {rate:.6} Hz: it must lie between {least} and {MAX_RATE_HZ} Hz{}",
         rate_hint(*rate)
     )]
     Rate {
         /// The rate found, Hz.
         rate: f64,
+        /// The lowest that will do, Hz.
+        least: f64,
     },
     /// Samples are missing.
     #[error(
@@ -94,6 +96,15 @@ pub enum SamplingError {
 /// [`SamplingError::Jitter`], an instant more than [`MAX_JITTER`] periods off
 /// the grid.
 pub fn check_sampling(log: &Log) -> Result<Sampling, SamplingError> {
+    check_sampling_from(log, MIN_RATE_HZ)
+}
+
+/// As [`check_sampling`], of logs from another lowest rate on, Hz: where what is made of them says itself
+/// how slow they may be.
+///
+/// # Errors
+/// As [`check_sampling`].
+pub fn check_sampling_from(log: &Log, least: f64) -> Result<Sampling, SamplingError> {
     let time = log.time();
     if time.len() < MIN_SAMPLES {
         return Err(SamplingError::TooFew { found: time.len() });
@@ -106,7 +117,7 @@ pub fn check_sampling(log: &Log) -> Result<Sampling, SamplingError> {
         .fold((0.0, 0.0), |(sum, count), s| (sum + s, count + 1.0));
     // The median itself is no gap, so count is not 0.
     let period = sum / count;
-    check_rate(1.0 / period)?;
+    check_rate(1.0 / period, least)?;
     check_gaps(time, &steps, longest, period)?;
     fit_grid(time)
 }
@@ -117,12 +128,12 @@ fn median(steps: &[f64]) -> f64 {
     *sorted.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-fn check_rate(rate: f64) -> Result<(), SamplingError> {
-    let range = MIN_RATE_HZ * (1.0 - RATE_SLACK)..=MAX_RATE_HZ * (1.0 + RATE_SLACK);
+fn check_rate(rate: f64, least: f64) -> Result<(), SamplingError> {
+    let range = least * (1.0 - RATE_SLACK)..=MAX_RATE_HZ * (1.0 + RATE_SLACK);
     if range.contains(&rate) {
         Ok(())
     } else {
-        Err(SamplingError::Rate { rate })
+        Err(SamplingError::Rate { rate, least })
     }
 }
 
@@ -179,7 +190,7 @@ fn fit_grid(time: &[f64]) -> Result<Sampling, SamplingError> {
 /// A rate that is right but for a factor of 1000 or 10⁶ has its time in another
 /// unit.
 fn rate_hint(rate: f64) -> &'static str {
-    let fits = |factor: f64| check_rate(rate * factor).is_ok();
+    let fits = |factor: f64| check_rate(rate * factor, MIN_RATE_HZ).is_ok();
     if fits(1e3) {
         "; the time may be in milliseconds"
     } else if fits(1e6) {

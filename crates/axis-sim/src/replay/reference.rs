@@ -4,6 +4,7 @@ use axis_log::Log;
 use trajectories::{Motion, Setpoint};
 
 use super::ReplayError;
+use crate::balance::LowPass;
 use crate::channels::reference_in;
 
 /// A logged reference as a motion: cubic between samples, through positions
@@ -11,8 +12,12 @@ use crate::channels::reference_in;
 #[derive(Clone, Debug)]
 pub struct LoggedReference {
     pub(super) period: f64,
+    /// Time by which the log shows it late, s.
+    pub(super) late: f64,
     position: Vec<f64>,
     velocity: Vec<f64>,
+    /// Whether the velocity was logged, and is not that of the spline.
+    is_logged: bool,
 }
 
 impl LoggedReference {
@@ -27,20 +32,56 @@ impl LoggedReference {
             return Err(ReplayError::Period { period });
         }
         let position = reference_in(log)?.to_vec();
-        let velocity = match log
-            .channel("velocity_ref_m_s")
-            .or(log.channel("velocity_ref_rad_s"))
-        {
-            Ok(samples) => samples.to_vec(),
-            Err(_) => slopes(&position, period),
-        };
+        let logged = log.channel("velocity_ref_m_s");
+        let logged = logged.or(log.channel("velocity_ref_rad_s")).ok();
+        let is_logged = logged.is_some();
+        let velocity = logged.map_or_else(|| slopes(&position, period), <[f64]>::to_vec);
         Ok(Self {
             period,
+            late: 0.0,
             position,
             velocity,
+            is_logged,
         })
     }
+
+    /// With positions and velocities like these at its samples.
+    fn with(self, position: Vec<f64>, velocity: impl FnOnce() -> Vec<f64>) -> Self {
+        let velocity = match self.is_logged {
+            true => velocity(),
+            false => slopes(&position, self.period),
+        };
+        Self {
+            position,
+            velocity,
+            ..self
+        }
+    }
+
+    /// The same, sampled so much after each of its instants, s.
+    pub(super) fn sampled_off(&self, by: &[f64]) -> Self {
+        let read = |k: usize| {
+            let off = by.get(k).copied().unwrap_or(0.0);
+            self.at(k as f64 * self.period - self.late + off)
+        };
+        let read: Vec<Setpoint> = (0..self.position.len()).map(read).collect();
+        let position = read.iter().map(|at| at.position).collect();
+        let velocity = || read.iter().map(|at| at.velocity).collect();
+        self.clone().with(position, velocity)
+    }
+
+    /// The same without what is faster than a fifth of its rate, where of a motion's corners nothing is lost
+    /// that matters, and of noise most of what its derivatives show.
+    pub(super) fn smoothed(self) -> Self {
+        let filter = LowPass::new(SMOOTH);
+        let position = filter.apply(&self.position);
+        let velocity = self.velocity.clone();
+        self.with(position, || filter.apply(&velocity))
+    }
 }
+
+/// Cut-off of a smoothed reference, as a share of its rate.
+const SMOOTH: f64 = 0.2;
 
 /// Slopes at its knots of the cubic spline through samples, at rest at both ends or, where
 /// it begins or ends in motion, with the slope of the first or last step there:
@@ -84,6 +125,7 @@ impl Motion for LoggedReference {
         if t.is_nan() {
             return Setpoint::at_rest(self.position[0]);
         }
+        let t = t + self.late;
         let last = self.position.len() - 1;
         let along = (t / self.period).clamp(0.0, last as f64);
         // The nearest sample; of numbers from 0 on a cast is faster than a call of `round`.
