@@ -43,6 +43,7 @@ mod estimate;
 mod evidence;
 mod foresight;
 mod judge;
+mod late;
 pub mod logs;
 mod name;
 mod noise;

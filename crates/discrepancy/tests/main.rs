@@ -3,8 +3,11 @@
 mod controller;
 mod fit;
 mod foresight;
+mod late;
 mod logs;
 #[path = "../../../tests/needs.rs"]
 mod needs;
+mod nothing_missing;
+mod repeats;
 mod settings;
 mod starts;

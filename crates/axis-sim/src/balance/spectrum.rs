@@ -14,7 +14,7 @@ pub(super) enum Source {
 
 impl Source {
     /// Derivatives to the acceleration.
-    fn order(self) -> i32 {
+    pub fn order(self) -> i32 {
         match self {
             Self::Position => 2,
             Self::Speed => 1,
@@ -192,6 +192,18 @@ impl Noise {
             true => noise / total,
             false => 1.0,
         }
+    }
+
+    /// Frequency below which a share of the acceleration's power lies, were all of it motion that is
+    /// not noise, Hz.
+    pub fn holds(&self, share: f64) -> f64 {
+        let motion = |(k, power): (usize, &f64)| {
+            power - self.acceleration(k as f64 * self.bin, self.density[1])
+        };
+        let motion: Vec<f64> = self.power.iter().enumerate().map(motion).collect();
+        let most = motion.iter().copied().fold(0.0, f64::max);
+        let first = motion.iter().position(|power| *power >= share * most);
+        first.map_or(0.0, |k| k as f64 * self.bin)
     }
 
     /// The highest frequency up to `most` below which noise takes no more than `share` of

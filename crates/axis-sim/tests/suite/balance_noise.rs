@@ -1,5 +1,8 @@
 //! Torque balance of noisy motions: what noise of the acceleration does to an inertia.
 
+use std::f64::consts::TAU;
+
+use axis_log::Log;
 use axis_sim::Balance;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -88,4 +91,103 @@ fn standstill_is_left_out() {
     );
     let early = time.iter().filter(|t| **t < 5.0).count();
     assert!(early as f64 * balance.compared_period() > 4.0, "{early}");
+}
+
+/// A rotor at 30 rad/s that hardly swings, with cogging of an order, and white noise of its position (rad).
+fn rolling(order: f64, noise: f64, samples: usize) -> Log {
+    let mut random = ChaCha8Rng::seed_from_u64(4);
+    let angle = |k: usize| 30.0 * k as f64 * 1e-3 + 0.05 * (8.0 * k as f64 * 1e-3).sin();
+    let angles: Vec<f64> = (0..samples).map(angle).collect();
+    let torque = angles
+        .iter()
+        .map(|a| 0.01 + 2e-3 * (order * a).sin())
+        .collect();
+    let shown = angles.iter().map(|a| {
+        let n: f64 = StandardNormal.sample(&mut random);
+        a + noise * n
+    });
+    log_of(&[("position_rad", shown.collect()), ("torque_n_m", torque)])
+}
+
+/// Of a rotor of 4e-6 kg·m² its acceleration is noise at any frequency, and its inertia makes nothing of the
+/// torque. 12 a turn at 30 rad/s are 57 Hz.
+#[test]
+fn a_log_at_one_speed_is_compared_up_to_what_repeats_with_the_turn() {
+    let unknown = "[tolerances]\ntable_inertia = \"unknown\"";
+    for (order, hertz) in [(12.0, 57.3), (36.0, 171.9)] {
+        let log = rolling(order, 1e-3, 3000);
+        let balance = Balance::new(&log, 1e-3, &bench(4e-6, unknown)).unwrap();
+        let quality = balance.quality();
+        println!("{quality:?}");
+        assert_eq!(quality.orders, [order]);
+        assert!(quality.cutoff > hertz && quality.cutoff < 1.5 * hertz);
+        let [kept, all] = quality.samples;
+        assert!(10 * kept > 9 * all, "{kept} of {all}");
+        // What is compared shows it as it is: 2 mN·m behind the low-pass.
+        let torque = balance.compared().channel("torque_n_m").unwrap();
+        let most = torque
+            .iter()
+            .fold(0.0_f64, |most, t| most.max((t - 0.01).abs()));
+        let left = 2e-3 / (1.0 + (hertz / quality.cutoff).powi(8));
+        assert!((most / left - 1.0).abs() < 0.1, "{most} {left}");
+    }
+}
+
+#[test]
+fn what_bounds_a_cutoff_is_said_and_what_would_set_it() {
+    let sentence = |more: &str| {
+        let log = rolling(12.0, 1e-3, 3000);
+        let balance = Balance::new(&log, 1e-3, &bench(4e-6, more)).unwrap();
+        balance.quality().sentence("log")
+    };
+    let asked = sentence("[balance]\ncutoff_hz = 30");
+    assert!(
+        asked.contains("30.000 Hz (as [balance] cutoff_hz of the axis file asks)"),
+        "{asked}"
+    );
+    let capped = sentence("[balance]\ncutoff_hz = 400");
+    assert!(
+        capped.contains("250.000 Hz (capped by the sampling rate"),
+        "{capped}"
+    );
+    // Too short for anything.
+    let log = rolling(12.0, 1e-3, 60);
+    let error = Balance::new(&log, 1e-3, &bench(4e-6, ""))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("below") && error.contains("[balance] cutoff_hz"),
+        "{error}"
+    );
+}
+
+/// Every eleventh sample of a motion of up to 4 Hz is balanced as well as all are; of a motion of 30 Hz they
+/// show another one.
+#[test]
+fn a_slow_log_is_balanced_where_it_shows_its_motion() {
+    let [position, acceleration] = motion(20_000);
+    let torque: Vec<f64> = acceleration.iter().map(|a| INERTIA * a).collect();
+    let every = |series: &[f64]| -> Vec<f64> { series.iter().step_by(11).copied().collect() };
+    let axis = bench(INERTIA, "");
+    let slow = log_of(&[
+        ("position_rad", every(&position)),
+        ("torque_n_m", every(&torque)),
+    ]);
+    let balance = Balance::new(&slow, 11e-3, &axis).unwrap();
+    let model = balance.run(&axis, &[], None).unwrap();
+    let measured = balance.compared().channel("torque_n_m").unwrap();
+    let model = model.channel("torque_n_m").unwrap();
+    let off = model
+        .iter()
+        .zip(measured)
+        .map(|(a, b)| (a - b).powi(2))
+        .sum::<f64>();
+    let all = measured.iter().map(|b| b * b).sum::<f64>();
+    assert!((off / all).sqrt() < 1e-3, "{}", (off / all).sqrt());
+    let fast: Vec<f64> = (0..2000)
+        .map(|k| (TAU * 30.0 * 11e-3 * f64::from(k)).sin())
+        .collect();
+    let log = log_of(&[("position_rad", fast.clone()), ("torque_n_m", fast)]);
+    let error = Balance::new(&log, 11e-3, &axis).unwrap_err().to_string();
+    assert!(error.contains("samples a second at least"), "{error}");
 }

@@ -12,6 +12,7 @@ mod stored;
 use axis_sim::effects::ActiveEffect;
 use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
 
+pub(crate) use self::inexact::INEXACT;
 pub use self::set::{LogSet, Prepared, Rest};
 pub use self::state::State;
 pub(crate) use self::state::is_form_of;

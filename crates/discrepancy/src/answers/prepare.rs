@@ -12,6 +12,7 @@ use super::set::{LogSet, Prepared, relative};
 use super::slack::{first_move, taken_up};
 use super::stored::{held_effort, storing};
 use super::{Answer, State};
+use crate::noise::jitter;
 use crate::spectrum::Layout;
 
 impl LogSet {
@@ -44,8 +45,16 @@ impl LogSet {
         let as_filed = ClosedLoop::new(machine)?;
         let prepare = |(name, log, period): (String, Log, f64)| {
             let channel = |name: &&str| Ok(relative(name, log.channel(name)?));
-            let (replay, doubtful) = storing(Replay::new(&log, period)?, &log, period, &as_filed);
+            let jitter = jitter(&log, period, machine);
+            let replay = match jitter {
+                Some(jitter) if jitter.of_reference => {
+                    Replay::new(&log, period)?.with_reference_off(&[])
+                }
+                _ => Replay::new(&log, period)?,
+            };
+            let (replay, doubtful) = storing(replay, &log, period, &as_filed);
             Ok(Prepared {
+                jitter,
                 taken_up: taken_up(&log, machine),
                 doubtful,
                 shown_effort: held_effort(&replay),
@@ -107,6 +116,7 @@ impl LogSet {
                     .map(channel)
                     .collect::<Result<_, ReplayError>>()?,
                 taken_up: 0.0,
+                jitter: None,
                 doubtful: None,
                 shown_effort: None,
                 defect: vec![vec![0.0; log.len()]; channels.len()],

@@ -7,6 +7,7 @@ use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
 use rayon::prelude::*;
 
 use super::{Answer, State};
+use crate::noise::Jitter;
 use crate::spectrum::{Amplitudes, Layout};
 
 /// Series per log, per channel; most often measured minus simulated.
@@ -32,6 +33,8 @@ pub struct Prepared {
     pub doubtful: Option<f64>,
     /// Command that the drive holds at its start as the log shows it, in the actuator's unit.
     pub shown_effort: Option<f64>,
+    /// By how much its samples lie off their stamps, where they do.
+    pub(crate) jitter: Option<Jitter>,
     /// What the fast simulation is short of beside the slow one, by channel.
     pub defect: Vec<Vec<f64>>,
     /// Hum that is taken out of it, by channel; empty where there is none.
@@ -70,11 +73,11 @@ impl LogSet {
         self.logs.iter().filter_map(|l| l.answer.replay()).collect()
     }
 
-    /// What was decided for the torque balance of each log, in words.
+    /// What was decided for the torque balance of each log, and what is known of its instants, in words.
     pub fn notes(&self) -> Vec<String> {
-        let notes = self.logs.iter().filter_map(|log| {
-            let balance = log.answer.balance()?;
-            Some(balance.quality().sentence(&log.name))
+        let notes = self.logs.iter().filter_map(|log| match &log.answer {
+            Answer::Balance(balance) => Some(balance.quality().sentence(&log.name)),
+            Answer::Replay(_) => Some(log.jitter?.note(&log.name, log.period)),
         });
         notes.collect()
     }

@@ -145,7 +145,16 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
                 None => starts.to_vec(),
             },
             Nature::Order([least, most]) => (least..=most).map(f64::from).collect(),
-            Nature::TurnOrder(low) => turn_orders(low, fitter.machine.actuator.pole_pairs()),
+            Nature::TurnOrder(low) => {
+                let mut all = turn_orders(low, fitter.machine.actuator.pole_pairs());
+                // With which the effort of balanced logs was seen to repeat.
+                let balances = fitter.set.balances();
+                let seen = balances.iter().flat_map(|b| b.quality().orders.iter());
+                all.extend(seen);
+                all.sort_by(f64::total_cmp);
+                all.dedup();
+                all
+            }
             Nature::Width(_) => vec![(high - low) / 16.0],
             Nature::Place(_) => (0..PLACES)
                 .map(|k| low + (high - low) * (k as f64 + 0.5) / PLACES as f64)
