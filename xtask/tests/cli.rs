@@ -64,7 +64,11 @@ fn messages_name_this_program() {
 fn the_scored_page_is_not_taken_by_another_seed() {
     let folder = tempfile::tempdir().unwrap();
     let page = folder.path().join("page.md");
-    std::fs::copy(root().join("data/outcomes/discover-matrix-seed-18.md"), &page).unwrap();
+    std::fs::copy(
+        root().join("data/outcomes/discover-matrix-seed-18.md"),
+        &page,
+    )
+    .unwrap();
     let before = std::fs::read(&page).unwrap();
     let to = page.to_str().unwrap();
     let said = refuse(&["discover-matrix", "--seed", "1", "--page", to]);

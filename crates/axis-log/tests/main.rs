@@ -6,10 +6,10 @@ mod dialect;
 mod import;
 mod intake;
 mod log;
-#[path = "../../../tests/needs.rs"]
-mod needs;
 #[cfg(all(feature = "parquet", feature = "mat"))]
 mod machines;
+#[path = "../../../tests/needs.rs"]
+mod needs;
 #[cfg(all(feature = "parquet", feature = "mat"))]
 mod parquet_file;
 mod quality;

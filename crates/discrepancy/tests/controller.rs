@@ -1,6 +1,5 @@
 //! An unknown controller, estimated from logs.
 
-
 use axis_log::intake::{Options, prepare};
 use axis_log::{Channel, Log};
 use axis_sim::{Axis, ClosedLoop, Recorder};

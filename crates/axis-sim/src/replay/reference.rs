@@ -86,7 +86,11 @@ impl LoggedReference {
         };
         let read: Vec<Setpoint> = (0..self.position.values().len()).map(read).collect();
         let of = |value: fn(&Setpoint) -> f64| -> Vec<f64> { read.iter().map(value).collect() };
-        self.with(of(|s| s.position), of(|s| s.velocity), &of(|s| s.acceleration))
+        self.with(
+            of(|s| s.position),
+            of(|s| s.velocity),
+            &of(|s| s.acceleration),
+        )
     }
 
     /// The same without what is faster than a fifth of its rate, where of a motion's corners nothing is lost

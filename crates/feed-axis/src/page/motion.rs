@@ -62,7 +62,9 @@ impl Shown {
             signal(REFERENCE, unit, |c| c.reference.position),
             signal(SPEED, per_second, |c| c.load_speed),
             signal(SPEED_REFERENCE, per_second, |c| c.reference.velocity),
-            signal(TORQUE, axis.mechanism.motor_freedom().force()[1], |c| c.torque),
+            signal(TORQUE, axis.mechanism.motor_freedom().force()[1], |c| {
+                c.torque
+            }),
         ];
         let names = || DRIVE.iter().flat_map(|(_, names)| *names);
         let of_log = channels(axis).into_iter().filter_map(|channel| {
@@ -211,9 +213,13 @@ fn error(ran: &Ran<'_>) -> Figure {
 }
 
 fn speed(ran: &Ran<'_>) -> Figure {
-    over_time("Speed of the load", "speed", ran.axis.freedom().speed_unit())
-        .series(ran.shown.line(SPEED, "load"))
-        .series(ran.shown.line(SPEED_REFERENCE, "reference").dashed())
+    over_time(
+        "Speed of the load",
+        "speed",
+        ran.axis.freedom().speed_unit(),
+    )
+    .series(ran.shown.line(SPEED, "load"))
+    .series(ran.shown.line(SPEED_REFERENCE, "reference").dashed())
 }
 
 /// Channels of the log that are one figure: its title, and the legend's name of each.
