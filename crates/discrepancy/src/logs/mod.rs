@@ -5,6 +5,7 @@ mod apart;
 mod checks;
 mod error;
 mod relations;
+mod shared;
 mod start;
 
 pub use self::admit::{admit, most_samples, needed_channels};
