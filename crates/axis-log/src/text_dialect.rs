@@ -44,12 +44,14 @@ impl<'a> Dialect<'a> {
             owned.replace_range(mark..=mark, " ");
             text = Cow::Owned(owned);
         }
-        let blanks = said.is_none() && is_blank_separated(&text);
+        let names = blank_separated(&text).filter(|_| said.is_none());
         let separator = said.or_else(|| separator(&text));
-        let (text, separator) = match (separator, blanks) {
-            (None | Some(b','), true) => {
+        let (text, separator) = match (separator, names) {
+            (None | Some(b','), Some(names)) => {
                 // As many lines as before, so that errors name the right one.
-                let lines = text.split_inclusive('\n').map(joined);
+                let mut names = Some(names);
+                let lines = text.split_inclusive('\n');
+                let lines = lines.map(|line| joined(line, &mut names));
                 (Cow::Owned(lines.collect()), b'\t')
             }
             _ => (text, separator.unwrap_or(b',')),
@@ -192,28 +194,60 @@ fn count(line: &str, byte: u8) -> usize {
     line.bytes().filter(outside).count()
 }
 
-/// Whether each name and each number stands between blanks. A comma behind a word is between
+/// The names, where names and numbers stand between blanks. A comma behind a word is between
 /// fields.
-fn is_blank_separated(text: &str) -> bool {
-    first_lines(text).is_some_and(|[names, row]| {
-        let (names, row) = (names.split_whitespace(), row.split_whitespace());
-        let ends_in_comma = |word: &str| word.ends_with(',');
-        names.clone().count() > 1
-            && row.clone().count() == names.clone().count()
-            && row.clone().all(is_number)
-            && !names.chain(row).any(ends_in_comma)
-    })
+fn blank_separated(text: &str) -> Option<Vec<String>> {
+    let [names, row] = first_lines(text)?;
+    let row: Vec<&str> = row.split_whitespace().collect();
+    let ends_in_comma = |word: &str| word.ends_with(',');
+    let mut words = names.split_whitespace().chain(row.iter().copied());
+    if row.len() < 2 || !row.iter().copied().all(is_number) || words.any(ends_in_comma) {
+        return None;
+    }
+    let [single, bracketed, wide] = [
+        names.split_whitespace().map(str::to_owned).collect(),
+        with_brackets(names),
+        apart_by_two(names),
+    ];
+    [single, bracketed, wide]
+        .into_iter()
+        .find(|names: &Vec<String>| names.len() == row.len())
+}
+
+/// Words, a unit in brackets with the one before it.
+fn with_brackets(line: &str) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for word in line.split_whitespace() {
+        match names.last_mut().filter(|_| word.starts_with(['[', '('])) {
+            Some(name) => *name += &format!(" {word}"),
+            None => names.push(word.to_owned()),
+        }
+    }
+    names
+}
+
+/// What stands between two blanks or more.
+fn apart_by_two(line: &str) -> Vec<String> {
+    let names = line
+        .split("  ")
+        .map(str::trim)
+        .filter(|name| !name.is_empty());
+    names.map(str::to_owned).collect()
 }
 
 fn is_number(word: &str) -> bool {
     word.replace(',', ".").parse::<f64>().is_ok()
 }
 
-/// A line with a tab between its words, its end as it was.
-fn joined(line: &str) -> String {
-    if is_comment(line) {
+/// A line with a tab between its words, its end as it was; the first that is no comment has these
+/// names.
+fn joined(line: &str, names: &mut Option<Vec<String>>) -> String {
+    if is_comment(line) || line.trim().is_empty() {
         return line.to_owned();
     }
     let end = if line.ends_with('\n') { "\n" } else { "" };
-    line.split_whitespace().collect::<Vec<_>>().join("\t") + end
+    match names.take() {
+        Some(names) => names.join("\t") + end,
+        None => line.split_whitespace().collect::<Vec<_>>().join("\t") + end,
+    }
 }

@@ -132,8 +132,67 @@ fn a_check_that_was_fitted_is_refused() {
     assert!(
         matches!(&error, LogSetError::SameLog { fit, check } if fit == "a.csv" && check == "b.csv")
     );
-    let other = log(0.0, 2.5, reference, |t| followed(t) + 1e-9, current);
+    // The same motion once more, with a nanometre of other noise.
+    let again = |t: f64| followed(t) + 1e-9 * (777.0 * t).sin();
+    let other = log(0.0, 2.5, reference, again, current);
     check_distinct(&[named("a.csv", one())], &[named("b.csv", other)]).unwrap();
+}
+
+/// From any row on, from another zero, and where only a part is of the other log.
+#[test]
+fn a_check_that_was_cut_from_what_was_fitted_is_refused() {
+    let named = |name: &str, log: Log| (name.to_owned(), log, PERIOD);
+    let fit = || [named("a.csv", log(0.0, 2.5, reference, followed, current))];
+    let cut = |from: usize, to: usize, zero: f64| {
+        let whole = fit()[0].1.skip(from).unwrap().first(to - from).unwrap();
+        let moved = |c: &Channel| {
+            let by = if c.unit == "m" { zero } else { 0.0 };
+            let samples = c.samples.iter().map(|x| x + by).collect();
+            Channel {
+                samples,
+                ..c.clone()
+            }
+        };
+        Log::new(whole.channels().iter().map(moved).collect()).unwrap()
+    };
+    for (from, to, zero) in [
+        (0, 2500, 0.0),
+        (1, 2500, 0.0),
+        (437, 2113, 0.0),
+        (600, 900, 0.125),
+    ] {
+        let error = check_distinct(&fit(), &[named("b.csv", cut(from, to, zero))]).unwrap_err();
+        assert!(
+            matches!(&error, LogSetError::SameLog { .. }),
+            "{from}: {error}"
+        );
+    }
+    // Half of it is another run.
+    let mut half = cut(500, 1500, 0.0).channels().to_vec();
+    for (k, x) in half[2].samples.iter_mut().enumerate().skip(500) {
+        *x += 1e-8 * (0.9 * k as f64).sin();
+    }
+    let half = Log::new(half).unwrap();
+    let error = check_distinct(&fit(), &[named("b.csv", half)]).unwrap_err();
+    let LogSetError::SharedPart { samples, from, .. } = &error else {
+        panic!("{error}");
+    };
+    assert!((499..=502).contains(samples), "{error}");
+    assert!((from - 0.5).abs() < 1e-9, "{error}");
+}
+
+/// A replay needs what a controller was given; so does no reading.
+#[test]
+fn a_slow_log_is_refused_for_a_replay_by_its_rate() {
+    let mut slow = log(0.0, 2.5, reference, followed, current)
+        .channels()
+        .to_vec();
+    slow[0].samples.iter_mut().for_each(|t| *t *= 1000.0 / 93.4);
+    let message = refusal(&Log::new(slow).unwrap());
+    assert!(
+        message.contains("93.4000 Hz") && message.contains("100 Hz at least"),
+        "{message}"
+    );
 }
 
 #[test]

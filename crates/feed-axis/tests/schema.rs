@@ -77,15 +77,17 @@ fn a_table_that_lacks_its_mapping_is_shown_with_one() {
     let rows: String = (0..20).map(|k| format!("{k};{},5;1\n", 600 + k)).collect();
     std::fs::write(&path, format!("Zeit [ms];Lage;CH3\n{rows}")).unwrap();
     let path = path.to_str().unwrap();
-    let output = run(&["log", "inspect", path]);
-    assert_eq!(output.status.code(), Some(1));
-    let said = String::from_utf8(output.stderr).unwrap();
+    let said = succeed(&["log", "inspect", path]);
+    assert!(
+        said.starts_with(&format!("{path}: text, semicolons between fields; 20 rows, 3 columns\nno log yet, as it has no time")),
+        "{said}"
+    );
     for part in [
-        "no time",
         "column     unit     least  greatest      mean  numbers",
         "Lage       ?     6.0050e2  6.1950e2  6.1000e2       20",
-        "source = \"Zeit [ms]\"\n       channel = \"t_s\"\n       unit = \"ms\"",
-        "source = \"Lage\"\n       channel = \"position_m\"\n       unit = \"mm\"",
+        "proposed, for the axis file, 1000.0000 Hz",
+        "source = \"Zeit [ms]\"\nchannel = \"t_s\"\nunit = \"ms\"",
+        "source = \"Lage\"\nchannel = \"position_m\"\nunit = \"mm\"",
         "not known by name: CH3",
     ] {
         assert!(said.contains(part), "no {part:?} in\n{said}");
@@ -112,17 +114,37 @@ fn a_table_that_lacks_its_mapping_is_shown_with_one() {
     assert_eq!(found["logs"][0]["columns"][1]["greatest"], 619.5);
 }
 
-/// One that lacks its time is refused, and the mapping that would mend that is told with it.
+/// One that lacks its time is shown with the mapping that would mend that, as JSON too.
 #[test]
 fn log_inspect_proposes_a_mapping_of_what_cannot_be_read_yet() {
-    let output = run(&[
-        "log",
-        "inspect",
-        "crates/axis-log/tests/data/sinumerik.json",
-    ]);
-    assert_eq!(output.status.code(), Some(1));
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("t_s"), "{said}");
+    let file = "crates/axis-log/tests/data/sinumerik.json";
+    let said = succeed(&["log", "inspect", file]);
+    assert!(said.contains("20 rows, 5 columns\nno log yet"), "{said}");
     assert!(said.contains("SINUMERIK Data Recorder"), "{said}");
     assert!(said.contains("source = \"DES_POS|1\""), "{said}");
+    let output = run(&["log", "inspect", file, "--format", "json"]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let log = &found["logs"][0];
+    assert!(log["lacks"].as_str().unwrap().contains("t_s"), "{log}");
+    assert_eq!(
+        (&log["files"][0]["rows"], &log["samples"]),
+        (&20.into(), &0.into())
+    );
+}
+
+/// Each axis of a file is offered.
+#[test]
+fn log_inspect_offers_every_axis() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("robot.csv");
+    let rows: String = (0..50).map(|k| format!("{k},{k},{}\n", 2 * k)).collect();
+    std::fs::write(&path, format!("Time,Pos1 [deg],Pos2 [deg]\n{rows}")).unwrap();
+    let said = succeed(&["log", "inspect", path.to_str().unwrap()]);
+    for part in [
+        "choose one.\n  Axis 1:\n",
+        "source = \"Pos1 [deg]\"",
+        "  or axis 2:\n[[log.column]]\nsource = \"Pos2 [deg]\"\nchannel = \"position_rad\"\nunit = \"deg\"",
+    ] {
+        assert!(said.contains(part), "no {part:?} in\n{said}");
+    }
 }

@@ -31,7 +31,9 @@ fn jumps(samples: &[f64], period: f64) -> Option<usize> {
     };
     let (mut count, mut through, mut odd) = (0, 0, 0);
     for (k, &step) in steps.iter().enumerate() {
-        if !(step.abs() > FASTEST * period) {
+        // A step beside a sample without a value is no number.
+        let is_fast = step.abs() > FASTEST * period;
+        if !is_fast {
             continue;
         }
         let around = [moves(k.checked_sub(1)), moves(Some(k + 1))];

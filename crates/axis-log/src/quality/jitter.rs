@@ -75,7 +75,8 @@ pub fn sample_jitter(log: &Log, channel: &str) -> Option<SampleJitter> {
     };
     let rests = Rests::of(x, step, is_missing)?;
     let [squared, error] = rests.slope()?;
-    if !(squared >= SURE * error && squared.is_finite()) || rests.correlation() > INDEPENDENT {
+    let is_sure = squared.is_finite() && squared >= SURE * error;
+    if !is_sure || rests.correlation() > INDEPENDENT {
         return None;
     }
     let share = squared.sqrt();

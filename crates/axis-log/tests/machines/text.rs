@@ -166,6 +166,21 @@ fn a_row_that_is_there_twice_is_taken_once_and_another_at_its_time_refused() {
     assert!(message.contains("line 5, column 2"), "{message}");
 }
 
+/// Names with blanks in them, over numbers between blanks.
+#[test]
+fn names_between_blanks_keep_their_units() {
+    for names in ["Time [s] Pos [mm]", " Time (s)   Pos axis  ", "Time Pos"] {
+        let given = given("log.txt", format!("{names}\n 0.000  1.5\n 0.001  1.25\n"));
+        let log = given.accepted();
+        assert_eq!(log.log.time(), [0.0, 0.001], "{names}");
+        assert_near(
+            log.log.channel("position_m").unwrap(),
+            |k| [1.5e-3, 1.25e-3][k],
+            1e-18,
+        );
+    }
+}
+
 /// Blanks between fields, in names too.
 #[test]
 fn twincat_exports_with_blanks_between_fields_are_read() {

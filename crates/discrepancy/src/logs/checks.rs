@@ -7,6 +7,7 @@ use axis_sim::{Axis, Balance, ReplayError, position_in, reference_in};
 
 use super::error::LogSetError;
 use super::relations::agree;
+use super::shared::shared;
 
 /// Channels that are compared: a constant one is not connected.
 const COMPARED: [&str; 11] = [
@@ -64,6 +65,7 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, LogSetErr
             channel,
         });
     }
+    fast_enough(&file(), sampling.rate)?;
     no_holes(&file(), log)?;
     agree(&file(), log, machine)?;
     on_stroke(&file(), log, machine)?;
@@ -100,6 +102,23 @@ fn moves_both_ways(file: &str, reference: &[f64]) -> Result<(), LogSetError> {
     })
 }
 
+/// Lowest rate of a log that is replayed, Hz: between slower samples a reference is not what its
+/// controller was given.
+const REPLAYED_HZ: f64 = 100.0;
+
+fn fast_enough(file: &str, rate: f64) -> Result<(), LogSetError> {
+    // Clocks may be a little off.
+    match rate >= REPLAYED_HZ * (1.0 - 1e-3) {
+        true => Ok(()),
+        false => Err(LogSetError::TooSlow {
+            file: file.to_owned(),
+            rate,
+            least: REPLAYED_HZ,
+        }),
+    }
+}
+
+/// The same for every log, whatever it was read of and whatever is done with it.
 fn no_holes(file: &str, log: &Log) -> Result<(), LogSetError> {
     for channel in log.channels() {
         let long = log
@@ -142,6 +161,7 @@ fn check_balanced(
         let channel = channel.to_owned();
         return Err(LogSetError::Constant { file, channel });
     }
+    no_holes(&file, log)?;
     on_stroke(&file, log, machine)?;
     Ok(period)
 }
@@ -197,28 +217,30 @@ fn follows(
     Ok(())
 }
 
-/// Refuses a check log that is one of the fit logs.
+/// Refuses a check log that is one of the fit logs, or holds a part of one.
 ///
 /// # Errors
-/// [`LogSetError::SameLog`].
+/// [`LogSetError::SameLog`], [`LogSetError::SharedPart`].
 pub fn check_distinct(
     fit: &[(String, Log, f64)],
     check: &[(String, Log, f64)],
 ) -> Result<(), LogSetError> {
-    let same = |a: &Log, b: &Log| {
-        a.len() == b.len()
-            && position_in(a)
-                .ok()
-                .is_some_and(|x| Some(x) == position_in(b).ok())
-    };
     for (fit_name, fit_log, _) in fit {
         for (check_name, check_log, _) in check {
-            if same(fit_log, check_log) {
-                return Err(LogSetError::SameLog {
-                    fit: fit_name.clone(),
-                    check: check_name.clone(),
-                });
-            }
+            let Some(part) = shared(fit_log, check_log) else {
+                continue;
+            };
+            let (fit, check) = (fit_name.clone(), check_name.clone());
+            return Err(match part.len() == check_log.len() {
+                true => LogSetError::SameLog { fit, check },
+                false => LogSetError::SharedPart {
+                    fit,
+                    check,
+                    samples: part.len(),
+                    from: check_log.time()[part.start],
+                    to: check_log.time()[part.end - 1],
+                },
+            });
         }
     }
     Ok(())

@@ -63,6 +63,18 @@ pub enum LogSetError {
         /// What would mend it.
         scale: f64,
     },
+    /// Samples too far apart for a replay.
+    #[error(
+        "{file}: {rate:.4} Hz: a replay of a controller needs {least} Hz at least, as between slower samples a reference is not what the controller was given; record faster, or leave [control] out of the axis file (or give --balance) where the log has a torque, force or current"
+    )]
+    TooSlow {
+        /// The log.
+        file: String,
+        /// Its rate, Hz.
+        rate: f64,
+        /// What is needed, Hz.
+        least: f64,
+    },
     /// Too long a time without measurement.
     #[error(
         "{file}: \"{channel}\" was not measured for {samples} samples from t = {time:.4} s on: at most {SHORT_GAP} in a row can be bridged; split the log there"
@@ -152,5 +164,21 @@ pub enum LogSetError {
         fit: String,
         /// Given to check.
         check: String,
+    },
+    /// A part of one log in the other.
+    #[error(
+        "{check} holds {samples} samples of {fit}, from t = {from:.4} to {to:.4} s: what is checked or tested on must be motion that was used for nothing before; give another log, or cut that part out of one of them"
+    )]
+    SharedPart {
+        /// Given to fit.
+        fit: String,
+        /// Given to check.
+        check: String,
+        /// Samples that both have.
+        samples: usize,
+        /// Where they begin and end in the check log, s.
+        from: f64,
+        /// See `from`.
+        to: f64,
     },
 }

@@ -5,6 +5,7 @@ mod apart;
 mod checks;
 mod error;
 mod relations;
+mod shared;
 mod standstill;
 mod start;
 
