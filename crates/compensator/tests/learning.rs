@@ -127,7 +127,10 @@ fn what_is_learned_stays_where_a_part_has_changed_a_little() {
         assert_ne!(round.advice, Advice::Restarted, "lap {lap}");
         peaks.push(round.peak);
     }
-    assert!(peaks[3..].iter().all(|peak| *peak < 0.03 * peaks[0]), "{peaks:?}");
+    assert!(
+        peaks[3..].iter().all(|peak| *peak < 0.03 * peaks[0]),
+        "{peaks:?}"
+    );
 }
 
 #[test]
