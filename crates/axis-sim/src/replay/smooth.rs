@@ -22,7 +22,7 @@ const HALVINGS: usize = 12;
 /// The samples without noise, for a derivative of the order `order` − 1, at most 2.
 pub(super) fn smooth(samples: &[f64], order: usize) -> Vec<f64> {
     let noise = noise(samples);
-    let moving = moving(samples, 1).count();
+    let moving = samples.windows(2).filter(|w| w[0] != w[1]).count();
     if noise == 0.0 || samples.len() <= 2 * order {
         return samples.to_vec();
     }
@@ -43,25 +43,22 @@ pub(super) fn smooth(samples: &[f64], order: usize) -> Vec<f64> {
     samples.iter().zip(removed).map(|(y, r)| y - r).collect()
 }
 
-/// Where samples move within `order` steps from them on.
-fn moving(samples: &[f64], order: usize) -> impl Iterator<Item = usize> + '_ {
-    let windows = samples.windows(order + 1).enumerate();
-    let moves = |w: &[f64]| w.iter().any(|y| *y != w[0]);
-    windows.filter(move |(_, w)| moves(w)).map(|(k, _)| k)
-}
-
 /// Upper bound of the samples' noise in root mean square: the least, over the orders k, of
-/// what the k-th differences would be of noise alone. Where the samples stand they say
-/// nothing of it.
+/// what the k-th differences would be of noise alone. Where these are nothing but rounding (at
+/// rest, and where a motion goes on by whole steps) the samples say nothing of it.
 fn noise(samples: &[f64]) -> f64 {
+    let most = samples.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
     let mut differences = samples.to_vec();
     let mut least = f64::INFINITY;
-    // Variance of a k-th difference of white noise of variance 1: (2k over k).
-    let mut variance = 1.0;
+    // Of a k-th difference: variance of white noise of variance 1, (2k over k), and what the
+    // rounding of its samples adds up to, 2^k of them.
+    let (mut variance, mut rounding) = (1.0, f64::EPSILON * most);
     for k in 1..=ORDERS.min(samples.len().saturating_sub(1)) {
         difference(&mut differences);
         variance *= (4 * k - 2) as f64 / k as f64;
-        let mut sizes: Vec<f64> = moving(samples, k).map(|at| differences[at].abs()).collect();
+        rounding *= 2.0;
+        let sizes = differences.iter().map(|d| d.abs());
+        let mut sizes: Vec<f64> = sizes.filter(|size| *size > rounding).collect();
         if sizes.is_empty() {
             return 0.0;
         }
@@ -175,7 +172,7 @@ mod tests {
             let share = noise(&wave(step)) / step;
             assert!((0.2..0.4).contains(&share), "{share}");
         }
-        assert!(noise(&wave(0.0)) < 1e-16);
+        assert!(noise(&wave(0.0)) < 1e-15);
         assert_eq!(noise(&[0.3; 50]), 0.0);
         assert_eq!(noise(&[]), 0.0);
         // What stands most of the time is not without noise while it moves.

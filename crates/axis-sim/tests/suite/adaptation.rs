@@ -36,7 +36,7 @@ impl<C: Compensator> Compensator for Logged<C> {
     }
 
     fn surprise(&self) -> f64 {
-        self.inner.surprise()
+        self.plan.surprise()
     }
 }
 

@@ -92,6 +92,11 @@ pub struct LearnedMove {
 
 /// Median of the magnitude of a normal variable of deviation 1.
 const NORMAL_MEDIAN: f64 = 0.6745;
+/// How much wider the second Gaussian is of which the noise is told.
+const WIDER: f64 = 3.0;
+/// What G − G·H has of the deviation that G has of white noise, H of three times G's width:
+/// √(1 − 2√2/√(1 + 1 + 9) + √2/√(2 + 18)), from ∫ of products of Gaussians.
+const FAST: f64 = 0.6808;
 /// How long a while is, in deviations of the Gaussian.
 const WHILE: f64 = 5.0;
 /// Times the noise that it may reach itself in the worst while of a move.
@@ -148,16 +153,15 @@ impl LearnedMove {
     /// sample is missing: there the errors beside it count. Before the first sample and
     /// after the last nothing is learned.
     ///
-    /// Most of a move is noise alone behind the Gaussian: the median of its magnitude tells
-    /// how much, whatever the noise's spectrum. Where the move is off by more than that for
-    /// a while, the error is learned; elsewhere not.
+    /// Where the move is off by more than noise for a while, the error is learned; elsewhere
+    /// not.
     pub fn learn(&mut self, errors: &[Option<f64>]) -> Round {
         let gauss = Gauss::new(self.settings.smoothing / self.period);
         let filled = fill(errors);
         let smooth = gauss.pass(&filled);
         let power = power(&smooth, WHILE * self.settings.smoothing / self.period);
         let learnable = Scalar::sqrt(power.iter().fold(0.0_f64, |most, p| most.max(*p)));
-        let floor = median(&smooth) / NORMAL_MEDIAN;
+        let floor = self.floor(&gauss, &smooth);
         let peak = filled.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
         let stands_out = self.rounds > 0 && learnable > 3.0 * floor;
         if stands_out && learnable > self.first {
@@ -203,6 +207,21 @@ impl LearnedMove {
             floor,
             advice,
         }
+    }
+
+    /// Noise behind the Gaussian: the less of two figures, each of which an error that repeats
+    /// only makes greater.
+    ///
+    /// - The median of what is left behind it. Most of a move from rest to rest is noise alone
+    ///   there, whatever the noise's spectrum.
+    /// - The same of the faster part of it, what a second Gaussian three times as wide takes
+    ///   away, as the share of white noise that this is. Of a lap that is off all the way the
+    ///   first is the error itself, which is slower than this.
+    fn floor(&self, gauss: &Gauss, smooth: &[f64]) -> f64 {
+        let width = WIDER * self.settings.smoothing / self.period;
+        let slow = Gauss::new(width).pass(smooth);
+        let fast: Vec<f64> = smooth.iter().zip(slow).map(|(a, b)| a - b).collect();
+        median(smooth).min(median(&fast) / FAST) / NORMAL_MEDIAN
     }
 
     /// Nothing learned, of a move that became worse with δ: what it was off by is that of δ as
