@@ -32,8 +32,11 @@ pub(crate) fn plain(bytes: Vec<u8>) -> Result<Vec<u8>, CsvProblem> {
 const MARK: &[u8] = "\u{feff}".as_bytes();
 const PARQUET: &[u8] = b"PAR1";
 
+/// How two bytes of a UTF-16 text make a unit.
+type Unit = fn([u8; 2]) -> u16;
+
 /// How many bytes a UTF-16 text's mark takes, and how two of its bytes make a unit.
-fn wide(bytes: &[u8]) -> Option<(usize, fn([u8; 2]) -> u16)> {
+fn wide(bytes: &[u8]) -> Option<(usize, Unit)> {
     match bytes {
         [0xff, 0xfe, ..] => Some((2, u16::from_le_bytes)),
         [0xfe, 0xff, ..] => Some((2, u16::from_be_bytes)),

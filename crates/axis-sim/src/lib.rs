@@ -129,7 +129,7 @@ pub use plant::Start;
 pub use recorder::{CsvRecorder, FlowRecorder, Recorder};
 pub use replay::{Curve, LoggedReference, Probe, Replay, ReplayError, Stored, Trace};
 pub use six_digits::SixDigits;
-pub use work::MOST_STEPS;
+pub use work::{FREQUENCIES, MOST_STEPS};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

@@ -4,8 +4,8 @@ use feed_dynamics::DriveError;
 
 use crate::axis::Axis;
 
-/// Least and greatest control frequency, Hz.
-pub(crate) const FREQUENCIES: [f64; 2] = [100.0, 1e6];
+/// Least and greatest control frequency that an axis file takes, Hz.
+pub const FREQUENCIES: [f64; 2] = [100.0, 1e6];
 
 /// Internal steps of the plant beyond which a run is refused: about an hour's
 /// computing with the modal stepper, and as many days with some hundred

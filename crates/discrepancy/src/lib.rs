@@ -50,7 +50,7 @@ mod noise;
 mod spectrum;
 pub mod summary;
 
-pub use answers::{Answer, LogSet, Prepared, State};
+pub use answers::{Answer, LogSet, Prepared, Repeats, State};
 pub use estimate::columns::free_parameters;
 pub use estimate::fit::{Fit, Fitter};
 pub use estimate::interval::Spread;

@@ -5,7 +5,9 @@ use axis_log::{Channel, Log};
 use axis_sim::{Axis, ClosedLoop, Recorder};
 use compensator::NoCompensation;
 use discrepancy::LogSet;
-use discrepancy::controller::{ControllerEstimate, Gain, better_than_own, closed_loop, estimate};
+use discrepancy::controller::{
+    ControllerEstimate, Gain, Undetermined, better_than_own, closed_loop, estimate,
+};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -201,4 +203,54 @@ fn a_file_that_says_so_answers_with_an_estimated_controller() {
         let set = LogSet::new(logs.clone(), &axis).unwrap();
         assert_eq!(set.answer_of(&axis), answer);
     }
+}
+
+/// Logs of a command that a file's keys cannot give: its velocity feed-forward is 17.6, and an axis file
+/// takes 10 at most.
+#[test]
+fn a_gain_beyond_what_a_file_takes_ends_there_and_is_said_to_be_undetermined() {
+    let axis = machine("rack");
+    let made = |trajectory: usize| {
+        let (name, log, period) = log(&axis, trajectory, 7, 0.0, 0);
+        let of = |name: &str| log.channel(name).unwrap().to_vec();
+        let (reference, position) = (of("position_ref_m"), of("position_m"));
+        let angle = of("motor_angle_rad");
+        let travel = axis.travel_per_radian();
+        let slope = |samples: &[f64], k: usize| match k {
+            0 => 0.0,
+            k => (samples[k] - samples[k - 1]) / period,
+        };
+        let mut integral = 0.0;
+        let command = (0..reference.len()).map(|k| {
+            let asked = 9.0 * (reference[k] - position[k]) / travel;
+            let off = asked + 17.6 * slope(&reference, k) / travel - slope(&angle, k);
+            integral += 0.002 * off * period;
+            0.004 * off + integral
+        });
+        let command: Vec<f64> = command.collect();
+        let channels = log.channels().iter().map(|channel| {
+            let mut channel = channel.clone();
+            if channel.name == "torque_ref_n_m" {
+                channel.samples.clone_from(&command);
+            }
+            channel
+        });
+        [(name, Log::new(channels.collect()).unwrap(), period)]
+    };
+    let found = estimate(&axis, &made(0), &made(2)).unwrap();
+    assert_eq!(found.control.kind().name, "p-pi", "{:?}", found.tried);
+    let keys = found.control.kind().keys;
+    for gain in &found.gains {
+        let key = keys.iter().find(|key| key.name() == gain.key).unwrap();
+        let [least, most] = key.limits().unwrap();
+        assert!((least..=most).contains(&gain.value), "{gain:?}");
+    }
+    assert_eq!(gain(&found, "velocity_feedforward").value, 10.0);
+    let at_edge = Undetermined::AtEdge([0.0, 10.0]);
+    let doubt = ("velocity_feedforward", at_edge);
+    assert!(
+        found.undetermined.contains(&doubt),
+        "{:?}",
+        found.undetermined
+    );
 }

@@ -28,11 +28,11 @@ const MOST_LONG: f64 = 0.05;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Stamps {
     /// The instants of the samples.
-    OfSamples,
+    Samples,
     /// Those of the samples so many rows on, which come late by as many.
-    OfRow(i64),
+    Row(i64),
     /// Those of messages about samples that are even.
-    OfMessages,
+    Messages,
 }
 
 /// Instants and what they are of.
@@ -54,9 +54,9 @@ pub(super) fn even_out(time: &[f64], channels: &mut [Channel]) -> Option<Evened>
     }
     let steps = Steps::of(time, &found)?;
     match stamps(time, &steps, channels) {
-        stamps @ (Stamps::OfSamples | Stamps::OfRow(_)) => {
+        stamps @ (Stamps::Samples | Stamps::Row(_)) => {
             let rows = match stamps {
-                Stamps::OfRow(rows) => rows,
+                Stamps::Row(rows) => rows,
                 _ => 0,
             };
             let time = moved(time, channels, rows);
@@ -79,11 +79,11 @@ pub(super) fn even_out(time: &[f64], channels: &mut [Channel]) -> Option<Evened>
                 time: even,
             })
         }
-        Stamps::OfMessages => {
+        Stamps::Messages => {
             let grid = Grid::fit(time, steps.places.clone());
             let at = |&place: &usize| grid.start + place as f64 * grid.period;
             Some(Evened {
-                stamps: Stamps::OfMessages,
+                stamps: Stamps::Messages,
                 jitter: grid.jitter[0],
                 period: grid.period,
                 time: grid.places.iter().map(at).collect(),
@@ -174,20 +174,20 @@ fn stamps(time: &[f64], steps: &Steps, channels: &[Channel]) -> Stamps {
             Some((stamped / even).ln()).filter(|ratio| ratio.is_finite())
         };
         let own = ratio(time)?;
-        let beside = ROWS.map(|rows| Some((ratio(&beside(time, rows))?, Stamps::OfRow(rows))));
+        let beside = ROWS.map(|rows| Some((ratio(&beside(time, rows))?, Stamps::Row(rows))));
         let best = beside.into_iter().flatten();
         let best = best.min_by(|a, b| a.0.total_cmp(&b.0));
         // The row's own stamp unless another is clearly better.
         Some(match best {
             Some((ratio, stamps)) if ratio < own - CLEARLY => (ratio, stamps),
-            _ => (own, Stamps::OfSamples),
+            _ => (own, Stamps::Samples),
         })
     });
     let most = told.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     match most {
         Some((ratio, stamps)) if ratio < -CLEARLY => stamps,
         // Where nothing tells, values stay as they are.
-        _ => Stamps::OfMessages,
+        _ => Stamps::Messages,
     }
 }
 

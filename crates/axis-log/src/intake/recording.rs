@@ -104,14 +104,14 @@ impl Recording {
         let (file, jitter) = (self.name.clone(), evened.jitter);
         let rate = 1.0 / evened.period;
         self.evened = Some(match evened.stamps {
-            Stamps::OfSamples => Done::Interpolated { file, jitter, rate },
-            Stamps::OfRow(rows) => Done::Shifted {
+            Stamps::Samples => Done::Interpolated { file, jitter, rate },
+            Stamps::Row(rows) => Done::Shifted {
                 file,
                 rows,
                 jitter,
                 rate,
             },
-            Stamps::OfMessages => Done::Evened { file, jitter, rate },
+            Stamps::Messages => Done::Evened { file, jitter, rate },
         });
     }
 

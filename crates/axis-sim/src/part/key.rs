@@ -156,6 +156,17 @@ impl Key {
         }
     }
 
+    /// The least and the greatest number that it takes, in SI units; none of what is not a number, or
+    /// is a whole one.
+    pub fn limits(&self) -> Option<[f64; 2]> {
+        match &self.kind {
+            Kind::Quantity(_, limits) | Kind::Number(_, limits) => {
+                Some([limits.least, limits.most])
+            }
+            _ => None,
+        }
+    }
+
     /// Whether a number stands under it that need not be whole.
     pub fn is_number(&self) -> bool {
         matches!(self.kind, Kind::Quantity(..) | Kind::Number(..))

@@ -8,6 +8,7 @@ use axis_sim::{
 use rayon::prelude::*;
 
 use super::inexact::inexactness;
+use super::repeats::Repeats;
 use super::set::{LogSet, Prepared, relative};
 use super::slack::{first_move, taken_up};
 use super::stored::{held_effort, storing};
@@ -61,6 +62,7 @@ impl LogSet {
                 answer: Answer::Replay(replay),
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 hum: vec![Vec::new(); channels.len()],
+                repeats: of_reference(&log, period),
                 measured: channels
                     .iter()
                     .map(channel)
@@ -121,6 +123,7 @@ impl LogSet {
                 shown_effort: None,
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 hum: vec![Vec::new(); channels.len()],
+                repeats: of_motion(&balance, machine),
                 log,
                 answer: Answer::Balance(Box::new(balance)),
             })
@@ -208,4 +211,22 @@ impl LogSet {
         }
         Ok(())
     }
+}
+
+/// The period of a log's reference.
+fn of_reference(log: &Log, period: f64) -> Option<Repeats> {
+    let reference = reference_in(log).ok()?;
+    let speed = reference
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]) / period);
+    let speed: Vec<f64> = speed.collect();
+    let time: Vec<f64> = (0..speed.len()).map(|k| k as f64 * period).collect();
+    Repeats::of(&time, &speed, period)
+}
+
+/// The period of a balance's motion.
+fn of_motion(balance: &Balance, machine: &Axis) -> Option<Repeats> {
+    let trace = balance.run(machine, &[], None).ok()?;
+    let period = balance.compared_period();
+    Repeats::of(balance.compared().time(), &trace.speed, period)
 }

@@ -6,6 +6,7 @@ use axis_log::Log;
 use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
 use rayon::prelude::*;
 
+use super::repeats::Repeats;
 use super::{Answer, State};
 use crate::noise::Jitter;
 use crate::spectrum::{Amplitudes, Layout};
@@ -37,6 +38,8 @@ pub struct Prepared {
     pub(crate) jitter: Option<Jitter>,
     /// What the fast simulation is short of beside the slow one, by channel.
     pub defect: Vec<Vec<f64>>,
+    /// The period with which the drive moves the axis to and fro, where it does.
+    pub repeats: Option<Repeats>,
     /// Hum that is taken out of it, by channel; empty where there is none.
     pub hum: Vec<Vec<f64>>,
 }
@@ -159,6 +162,22 @@ impl LogSet {
         self.logs.iter().zip(traces).map(one).collect()
     }
 
+    /// Whether the drive moves the axis of any log to and fro with one period.
+    pub(crate) fn repeats(&self) -> bool {
+        self.logs.iter().any(|log| log.repeats.is_some())
+    }
+
+    /// Series per log and channel without what repeats with the drive.
+    pub(crate) fn apart(&self, mut series: Rest) -> Rest {
+        for (log, channels) in self.logs.iter().zip(&mut series) {
+            let Some(repeats) = log.repeats else { continue };
+            for channel in channels {
+                repeats.take_out(log.log.time(), channel);
+            }
+        }
+        series
+    }
+
     /// Difference of two simulations divided by `by`, as amplitudes.
     pub fn difference(&self, a: &[Trace], b: &[Trace], by: f64) -> Amplitudes {
         let free = self.free();
@@ -171,6 +190,19 @@ impl LogSet {
             self.layout.transform(i, &series, &free)
         };
         a.iter().zip(b).enumerate().map(one).collect()
+    }
+
+    /// As [`LogSet::difference`], without what repeats with the drive.
+    pub(crate) fn difference_apart(&self, [a, b]: [&[Trace]; 2], by: f64) -> Amplitudes {
+        if !self.repeats() {
+            return self.difference(a, b, by);
+        }
+        let mut series = self.simulated_all(a);
+        let others = self.simulated_all(b);
+        let values = series.iter_mut().flatten().flatten();
+        let others = others.iter().flatten().flatten();
+        values.zip(others).for_each(|(x, y)| *x = (*x - y) / by);
+        self.amplitudes(&self.apart(series))
     }
 
     /// Amplitudes of series per log and channel, of the channels that are fitted.

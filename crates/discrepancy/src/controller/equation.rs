@@ -11,6 +11,9 @@ use super::seen::Seen;
 /// Samples at both ends of a log that are not compared: the low pass begins there.
 const ENDS: usize = 20;
 
+/// Parts into which logs are cut to see by how much chance moves what is found.
+pub const BLOCKS: usize = 20;
+
 /// Logs whose commands are to be explained.
 pub struct Equation<'a> {
     pub axis: &'a Axis,
@@ -87,6 +90,14 @@ impl<'a> Equation<'a> {
         let all: f64 = self.logs.iter().flat_map(own).map(|u| u * u).sum();
         let rest = self.rest(&law.plain(), at)?.norm_squared();
         (all > 0.0).then(|| rest / all)
+    }
+
+    /// What the law leaves of the logs' commands, in parts of equal length: sums of squares.
+    pub fn losses(&self, law: &Law, at: &[f64]) -> Option<Vec<f64>> {
+        let rest = self.rest(&law.plain(), at)?;
+        let length = rest.len().div_ceil(BLOCKS).max(1);
+        let parts = rest.as_slice().chunks(length);
+        Some(parts.map(|part| part.iter().map(|r| r * r).sum()).collect())
     }
 
     /// Derivatives of the command by what is free, times its scale, on the signals `shown`.

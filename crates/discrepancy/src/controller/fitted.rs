@@ -3,8 +3,11 @@
 use axis_log::Log;
 use axis_sim::{Axis, Replay};
 
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
 use super::equation::Equation;
 use super::law::Law;
+use super::own::BETTER;
 use super::seen::Seen;
 use super::solve::Solved;
 use super::start::start;
@@ -96,6 +99,28 @@ impl Fitted {
     }
 }
 
+impl Fitted {
+    /// Whether check logs tell that it leaves less than `other`: the mean difference of what both leave in
+    /// parts of the logs is above 0 by its 95 % interval (Student's t of paired differences). What another
+    /// has besides may always be there, too weak to be seen; it is told apart if it is not needed.
+    pub fn is_told_from(&self, other: &Self, check: &Equation<'_>) -> bool {
+        if self.structure.is_part_of(&other.structure) {
+            return true;
+        }
+        let losses = |of: &Self| check.losses(&of.law, &of.solved().0.at);
+        let (Some(own), Some(others)) = (losses(self), losses(other)) else {
+            return true;
+        };
+        let more: Vec<f64> = others.iter().zip(&own).map(|(b, a)| b - a).collect();
+        let n = more.len() as f64;
+        let mean = more.iter().sum::<f64>() / n;
+        let squares: f64 = more.iter().map(|m| (m - mean).powi(2)).sum();
+        let deviation = (squares / (n * (n - 1.0).max(1.0))).sqrt();
+        let t = StudentsT::new(0.0, 1.0, (n - 1.0).max(1.0)).map(|t| t.inverse_cdf(0.975));
+        mean > t.unwrap_or(f64::INFINITY) * deviation
+    }
+}
+
 /// All structures, the best one first, then by their scores; and the names of those that
 /// cannot give these commands.
 pub fn all(
@@ -116,9 +141,19 @@ pub fn all(
         }
     }
     fitted.sort_by(|a, b| a.score().total_cmp(&b.score()));
+    // Noise of the log makes a low pass look better, but not as much as another controller would be.
+    let all: Vec<(Structure, f64)> = fitted
+        .iter()
+        .map(|found| (found.structure.clone(), found.left))
+        .collect();
+    let outdoes_bare = |found: &Fitted| {
+        let bare = all.iter().filter(|(s, _)| s.is_part_of(&found.structure));
+        let least = bare.map(|(_, left)| *left).fold(f64::INFINITY, f64::min);
+        found.left < BETTER * least
+    };
     let best = fitted.iter_mut().position(|found| {
         found.instrument(fit, check, logs);
-        found.needs_filter()
+        found.needs_filter() || outdoes_bare(found)
     });
     if let Some(best) = best {
         fitted[..=best].rotate_right(1);

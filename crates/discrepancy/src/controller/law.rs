@@ -24,7 +24,32 @@ pub struct Free {
 /// Key of the delay of the logged command behind the logged sensors, s. No control has it.
 pub const DELAY: &str = "delay";
 
+/// Share of an edge within which a value is at it: far inside the rounding of what is written.
+const EDGE: f64 = 1e-6;
+
 impl Free {
+    /// The same between the limits of its key as well: an axis file takes nothing beyond them.
+    pub fn within(self, [least, most]: [f64; 2]) -> Self {
+        let start = self.start.clamp(least, most);
+        let room = match start == self.start {
+            true => [self.room[0].max(least), self.room[1].min(most)],
+            false => [least, most],
+        };
+        Self {
+            start,
+            room,
+            scale: self.scale.min(most - least),
+            ..self
+        }
+    }
+
+    /// Whether a value is at an edge of what is accepted: the logs ask for more than that. A value of 0
+    /// where there cannot be less is nothing of it, and no edge.
+    pub fn is_at_edge(&self, value: f64) -> bool {
+        let near = |edge: &f64| *edge != 0.0 && (value - edge).abs() <= EDGE * edge.abs();
+        self.room.iter().any(near)
+    }
+
     /// The delay, on a control of this period (s).
     pub fn delay(period: f64) -> Self {
         Self {

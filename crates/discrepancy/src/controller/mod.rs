@@ -56,6 +56,7 @@ pub use closed::{ClosedLoopGains, closed_loop};
 use equation::Equation;
 pub use error::ControllerError;
 use fitted::Fitted;
+use law::{DELAY, Free};
 pub use own::{OwnController, better_than_own};
 use seen::Seen;
 
@@ -70,6 +71,14 @@ pub struct Gain {
     pub ci95: [f64; 2],
 }
 
+impl Gain {
+    /// Whether it may be nothing at all.
+    fn holds_zero(&self) -> bool {
+        let [low, high] = self.ci95;
+        self.value != 0.0 && low <= 0.0 && high >= 0.0
+    }
+}
+
 /// A structure that was tried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tried {
@@ -78,6 +87,17 @@ pub struct Tried {
     /// Share of the check logs' command, in mean square, that it leaves; none where it could
     /// not be fitted.
     pub left: Option<f64>,
+    /// Whether the check logs tell it from the chosen one.
+    pub is_told_apart: bool,
+}
+
+/// Why logs do not determine a gain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Undetermined {
+    /// It is at the edge of what an axis file takes, or of what is searched: these limits, in SI units.
+    AtEdge([f64; 2]),
+    /// Its 95 % interval holds 0.
+    HoldsZero,
 }
 
 /// A controller as estimated.
@@ -96,6 +116,8 @@ pub struct ControllerEstimate {
     pub explained: [f64; 2],
     /// Whether the gains were found with instruments; by least squares else.
     pub instrumented: bool,
+    /// The gains that the logs do not determine, by their keys, and why.
+    pub undetermined: Vec<(&'static str, Undetermined)>,
     /// All structures, the chosen one first, then by what they leave.
     pub tried: Vec<Tried>,
 }
@@ -123,8 +145,13 @@ pub fn estimate(
     let tried = |found: &Fitted| Tried {
         name: found.name(machine.travel_per_radian()),
         left: Some(found.left),
+        is_told_apart: (fitted.first()).is_none_or(|best| best.is_told_from(found, &checking)),
     };
-    let failed = failed.into_iter().map(|name| Tried { name, left: None });
+    let failed = failed.into_iter().map(|name| Tried {
+        name,
+        left: None,
+        is_told_apart: true,
+    });
     let tried = fitted.iter().map(tried).chain(failed).collect();
     let Some(best) = fitted.into_iter().next() else {
         return Err(ControllerError::NoneFits);
@@ -134,12 +161,24 @@ pub fn estimate(
     let mut gains: Vec<Gain> = (best.law.free.iter().enumerate())
         .map(|(i, free)| solved.gain(free.key, i))
         .collect();
+    let doubted = |(gain, free): (&Gain, &Free)| {
+        let why = match free.is_at_edge(gain.value) {
+            true => Undetermined::AtEdge(free.room),
+            // A delay may be none.
+            false if free.key != DELAY && gain.holds_zero() => Undetermined::HoldsZero,
+            false => return None,
+        };
+        Some((gain.key, why))
+    };
+    let undetermined = gains.iter().zip(&best.law.free).filter_map(doubted);
+    let undetermined = undetermined.collect();
     let Some(delay) = gains.pop() else {
         return Err(ControllerError::NoneFits);
     };
     Ok(ControllerEstimate {
         control: best.law.control(&solved.at)?,
         words: best.structure.words.clone(),
+        undetermined,
         gains,
         delay,
         explained: [explained(&fitting), explained(&checking)],

@@ -23,7 +23,7 @@ pub struct OwnController {
 
 /// Share of what the file's controller leaves that another may leave at most: less is no other
 /// controller, but gains inside their tolerance and noise of the log.
-const BETTER: f64 = 0.1;
+pub(super) const BETTER: f64 = 0.1;
 
 /// Share of the command, in mean square, that is nothing to ask about.
 const GIVES_IT: f64 = 1e-6;

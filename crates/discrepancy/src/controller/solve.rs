@@ -4,13 +4,11 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::Gain;
-use super::equation::Equation;
+use super::equation::{BLOCKS, Equation};
 use super::law::Law;
 use super::seen::Seen;
 use crate::estimate::bounded::bounded;
 
-/// Blocks of the logs whose scores are compared for the intervals.
-const BLOCKS: usize = 20;
 /// Rounds of Levenberg–Marquardt.
 const ROUNDS: usize = 60;
 

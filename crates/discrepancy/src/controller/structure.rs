@@ -3,7 +3,7 @@
 use axis_log::Log;
 use axis_sim::Axis;
 use axis_sim::control::{CONTROLS, Control};
-use axis_sim::part::{PartKind, Values, named};
+use axis_sim::part::{Key, PartKind, Values, named};
 
 use super::law::{Free, Law};
 use super::start::Form;
@@ -40,6 +40,12 @@ impl Structure {
         self.filter == Some(key)
     }
 
+    /// Whether another is it with a low pass more.
+    pub fn is_part_of(&self, other: &Self) -> bool {
+        let is_same = self.kind.name == other.kind.name && self.words == other.words;
+        is_same && self.filter.is_none() && other.filter.is_some()
+    }
+
     /// Whether it reads the position from the motor.
     pub fn reads_motor(&self) -> bool {
         self.words.contains(&("feedback", "motor"))
@@ -60,7 +66,11 @@ impl Structure {
             self.filter
                 .map(|key| filter(key, values.or(key, 0.05 * rate), rate)),
         );
-        for free in &free {
+        for free in &mut free {
+            let own = self.kind.keys.iter().find(|key| key.name() == free.key);
+            if let Some(limits) = own.and_then(Key::limits) {
+                *free = free.within(limits);
+            }
             values.set(free.key, free.start);
         }
         free.push(Free::delay(machine.period));

@@ -306,6 +306,7 @@ pub fn judged(
             unknown.as_ref(),
             refused.as_ref(),
             own_form.as_ref(),
+            proposal.as_ref().map(|proposal| proposal.what),
         ),
         verdict,
         effects,

@@ -82,10 +82,10 @@ impl Gap {
     pub fn gone(&self) -> String {
         match self.stands_out() {
             true => format!(
-                "{:.1} % of the gap above the noise is gone on motion that it was not fitted to",
+                "{:.1} % of the gap above the noise is gone on motion that was not fitted to",
                 100.0 * self.reduction
             ),
-            false => "No channel stood out of its noise by more than a fifth: the evidence is that of all samples together, on motion that it was not fitted to as well".to_owned(),
+            false => "No channel's gap was more than 1.2 times its noise; what is named rests on all samples together, on the check logs too".to_owned(),
         }
     }
 }

@@ -238,7 +238,7 @@ fn candidates(fitter: &Fitter<'_>, fit: &Fit, wanted: impl Fn(&Effect) -> bool) 
 }
 
 /// Secants at half of the typical size: derivatives would say nothing of
-/// gaps and dry friction.
+/// gaps and dry friction. Those of a force in time are beside all that repeats with the drive.
 pub fn responses(
     fitter: &Fitter<'_>,
     fit: &Fit,
@@ -266,7 +266,10 @@ pub fn responses(
             effect,
             values: tried,
         });
-        fitter.column(fit, &state, SHARE)
+        match effect.acts_in_time() {
+            true => fitter.column_apart(fit, &state, SHARE),
+            false => fitter.column(fit, &state, SHARE),
+        }
     };
     match phase {
         Some(_) => sizes

@@ -39,8 +39,14 @@ pub fn tolerance(gain: &Gain) -> Option<String> {
 }
 
 /// The axis file's text with the controller in its `[control]` and the gains' intervals in
-/// `[tolerances]`; all else as it was.
-pub fn with_control(text: &str, machine: &Axis, found: &ControllerEstimate) -> Result<String> {
+/// `[tolerances]`; all else as it was. The control runs at `frequency` (Hz), or as the file says
+/// where there is none.
+pub fn with_control(
+    text: &str,
+    machine: &Axis,
+    found: &ControllerEstimate,
+    frequency: Option<f64>,
+) -> Result<String> {
     let mut document: DocumentMut = text.parse().into_diagnostic()?;
     let has_sections = document.contains_key("mechanism");
     let kind = found.control.kind().name;
@@ -59,18 +65,17 @@ pub fn with_control(text: &str, machine: &Axis, found: &ControllerEstimate) -> R
         }
         set(control, "kind", kind.into());
     }
-    if !["frequency_hz", "frequency_khz"]
-        .iter()
-        .any(|key| control.contains_key(key))
-    {
-        set(control, "frequency_hz", digits(1.0 / machine.period).into());
+    if let Some(hz) = frequency {
+        control.remove("frequency_khz");
+        set(control, "frequency_hz", hz.into());
     }
     for (key, word) in &found.words {
         set(control, key, (*word).into());
     }
     for gain in &found.gains {
         let (name, factor) = spelling(machine, &found.control, gain.key);
-        set(control, &name, digits(gain.value / factor).into());
+        let limits = limits(&found.control, gain.key);
+        set(control, &name, written(gain.value, factor, limits).into());
     }
     set(control, "gains", "estimated".into());
     write_tolerances(&mut document, found)?;
@@ -124,6 +129,22 @@ fn set(table: &mut Table, key: &str, mut value: Value) {
     table.insert(key, Item::Value(value));
 }
 
+/// The least and the greatest value of a key, in SI units.
+pub fn limits(control: &Part<dyn Control>, key: &str) -> Option<[f64; 2]> {
+    let known = control.kind().keys.iter().find(|k| k.name() == key);
+    known.and_then(Key::limits)
+}
+
+/// Seven digits of a value in a unit of this factor; all of them where seven would leave the limits.
+fn written(value: f64, factor: f64, limits: Option<[f64; 2]>) -> f64 {
+    let rounded = digits(value / factor);
+    let holds = |[least, most]: [f64; 2]| (least..=most).contains(&(rounded * factor));
+    match limits.is_none_or(holds) {
+        true => rounded,
+        false => value / factor,
+    }
+}
+
 /// Seven digits of a number.
 fn digits(value: f64) -> f64 {
     format!("{value:.6e}").parse().unwrap_or(value)
@@ -148,6 +169,18 @@ mod tests {
         assert_eq!(tolerance(&gain(3.0, 0.1)).unwrap(), "3.34 %");
         assert_eq!(tolerance(&gain(3.0, 30.0)).unwrap(), "unknown");
         assert_eq!(tolerance(&gain(0.0, 30.0)), None);
+    }
+
+    /// 1e9 rad/s per m is 9549296.585513721 rpm/mm, and 9549297 is more.
+    #[test]
+    fn a_value_at_its_limit_is_not_rounded_beyond_it() {
+        let rpm_per_mm = std::f64::consts::TAU / 60.0 * 1e3;
+        let limits = Some([0.0, 1e9]);
+        assert_eq!(digits(1e9 / rpm_per_mm), 9_549_297.0);
+        let most = written(1e9, rpm_per_mm, limits);
+        assert!((most * rpm_per_mm / 1e9 - 1.0).abs() < 1e-15 && most < 9_549_297.0);
+        assert_eq!(written(1.0 / 3.0, 1.0, limits), 0.333_333_3);
+        assert_eq!(written(17.59, 1.0, None), 17.59);
     }
 
     #[test]

@@ -2,14 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use axis_sim::Axis;
+use axis_sim::{Axis, FREQUENCIES, SixDigits};
 use clap::Args;
-use discrepancy::controller::{ClosedLoopGains, ControllerEstimate, Gain, closed_loop, estimate};
+use discrepancy::controller::{
+    ClosedLoopGains, ControllerEstimate, Gain, Undetermined, closed_loop, estimate,
+};
 use discrepancy::logs::check_distinct;
 use miette::{IntoDiagnostic, Result, miette};
 use serde::Serialize;
 
-use super::control_table::{spelling, tolerance, with_control};
+use super::control_table::{limits, spelling, tolerance, with_control};
 use super::discover::{moved, read_all};
 use crate::context::read_text;
 use crate::exit::wrong_use;
@@ -40,6 +42,9 @@ pub struct Options {
 
 /// Longest internal step of a file that had no `[simulation]`, s.
 const STEP: f64 = 5e-5;
+
+/// Share of the command that a controller which is there gives, as discovery asks it of named effects.
+const EXPLAINED: f64 = 0.9;
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
@@ -74,17 +79,10 @@ pub fn command(options: &Options) -> Result<()> {
         None => {}
     }
     let replayed = replayed.and_then(std::result::Result::ok);
-    let folder = match options.out.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-        _ => PathBuf::from("."),
-    };
-    ready(&folder)?;
-    let file = moved(&read_text(&options.axis)?, &options.axis, &folder)?;
-    let file = with_control(&file, &machine, &found)?;
-    // What is written can be read.
-    Axis::parse(&options.out.display().to_string(), &file)?;
-    write_whole(&options.out, file.as_bytes())?;
-    text += &format!("\n{}", options.out.display());
+    let written = write(options, &machine, &found, frequency);
+    if written.is_ok() {
+        text += &format!("\n{}", options.out.display());
+    }
     let gains = |gains: &[Gain]| -> Vec<GainFound> {
         gains
             .iter()
@@ -98,10 +96,32 @@ pub fn command(options: &Options) -> Result<()> {
         explained_fit: found.explained[0],
         explained_check: found.explained[1],
         gains_by_replay: replayed.map(|replayed| gains(&replayed.gains)),
+        not_determined: doubts(&found, &machine),
+        not_told_apart: not_told_apart(&found),
         notes,
-        axis_file: &options.out,
+        axis_file: written.is_ok().then_some(options.out.as_path()),
     };
-    print("identify-control", &Worded { text, value })
+    // What was found is shown whether a file of it could be written or not.
+    print("identify-control", &Worded { text, value })?;
+    written
+}
+
+/// Writes the axis file; none that could not be read.
+fn write(
+    options: &Options,
+    machine: &Axis,
+    found: &ControllerEstimate,
+    frequency: Option<f64>,
+) -> Result<()> {
+    let folder = match options.out.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+        _ => PathBuf::from("."),
+    };
+    ready(&folder)?;
+    let file = moved(&read_text(&options.axis)?, &options.axis, &folder)?;
+    let file = with_control(&file, machine, found, frequency)?;
+    Axis::parse(&options.out.display().to_string(), &file)?;
+    write_whole(&options.out, file.as_bytes())
 }
 
 /// The control frequency that was asked for, Hz.
@@ -111,9 +131,12 @@ fn frequency(options: &Options, machine: &Axis) -> Result<Option<f64>> {
             "{} has no [control], so nothing says how often the controller runs; valid: --frequency-hz, such as --frequency-hz 1000 (the limit of the command is the actuator's, in [actuator])",
             options.axis.display()
         )),
-        (Some(hz), _) if !(1.0..=1e6).contains(&hz) => Err(wrong_use(format!(
-            "--frequency-hz is {hz}; valid: 1 to 1e6, as the drive's documents have it"
-        ))),
+        (Some(hz), _) if !(FREQUENCIES[0]..=FREQUENCIES[1]).contains(&hz) => {
+            let [least, most] = FREQUENCIES.map(SixDigits);
+            Err(wrong_use(format!(
+                "--frequency-hz is {hz}; valid: {least} to {most}, which an axis file takes, as the drive's documents have it"
+            )))
+        }
         (asked, _) => Ok(asked),
     }
 }
@@ -131,8 +154,13 @@ struct Identified<'a> {
     explained_check: f64,
     /// By closed-loop replay, which rests on the machine's model.
     gains_by_replay: Option<Vec<GainFound>>,
+    /// Gains that these logs do not determine, and why, in words.
+    not_determined: Vec<String>,
+    /// Structures that these logs do not tell from the one that was chosen.
+    not_told_apart: Vec<String>,
     notes: Vec<String>,
-    axis_file: &'a Path,
+    /// None where it could not be written.
+    axis_file: Option<&'a Path>,
 }
 
 /// A gain as the axis file has it: its key ends in the unit.
@@ -170,6 +198,34 @@ impl GainFound {
     }
 }
 
+/// Gains that logs do not determine, and why.
+fn doubts(found: &ControllerEstimate, machine: &Axis) -> Vec<String> {
+    let one = |(key, why): &(&'static str, Undetermined)| match why {
+        Undetermined::AtEdge(room) => {
+            let (name, factor) = spelling(machine, &found.control, key);
+            let [low, high] = room.map(|edge| SixDigits(edge / factor));
+            let whose = match limits(&found.control, key) {
+                Some(limits) if limits.iter().any(|edge| room.contains(edge)) => {
+                    "of what an axis file takes"
+                }
+                _ => "of what is searched",
+            };
+            format!("{name}, which ends at the edge {whose}, {low} to {high}")
+        }
+        Undetermined::HoldsZero => {
+            let (name, _) = spelling(machine, &found.control, key);
+            format!("{name}, of which the 95 % interval holds 0")
+        }
+    };
+    found.undetermined.iter().map(one).collect()
+}
+
+/// Structures that logs do not tell from the chosen one.
+fn not_told_apart(found: &ControllerEstimate) -> Vec<String> {
+    let others = found.tried.iter().skip(1).filter(|t| !t.is_told_apart);
+    others.map(|t| t.name.clone()).collect()
+}
+
 /// The estimate as people read it.
 fn words(found: &ControllerEstimate, machine: &Axis) -> String {
     let mut lines = Vec::new();
@@ -193,6 +249,21 @@ fn words(found: &ControllerEstimate, machine: &Axis) -> String {
     lines.push(format!(
         "command explained: {fit:.6} % fitted, {check:.6} % on check logs; {way}"
     ));
+    let doubts = doubts(found, machine).into_iter();
+    lines.extend(doubts.map(|doubt| format!("  not determined by these logs: {doubt}")));
+    let alike = not_told_apart(found);
+    if !alike.is_empty() {
+        lines.push(format!(
+            "  not told from it by these logs: {}. Motion that is faster, and at several speeds, tells more",
+            alike.join("; ")
+        ));
+    }
+    if found.explained[1] < EXPLAINED {
+        lines.push(format!(
+            "  no structure gives the command of the check logs to {:.0} %: these are not the gains of that controller. Is the command the controller's own, its sign and unit right, the reference on time (delay_ms)? Otherwise leave the controller out (discover --balance)",
+            100.0 * EXPLAINED
+        ));
+    }
     let least = found.tried.first().and_then(|best| best.left);
     for other in tried {
         lines.push(match (other.left, least) {

@@ -38,12 +38,12 @@ const PINS: &[(&str, &str, &str)] = &[
 fn proposed(heads: &[&Head]) -> Vec<Found> {
     let one = |head: &&Head| {
         let joint = head.name.strip_prefix("joint.")?;
-        let pins = PINS.iter();
-        let found = pins.filter_map(|(end, channel, unit)| {
+        let pins = PINS.iter().rev();
+        let mut found = pins.filter_map(|(end, channel, unit)| {
             let joint = joint.strip_suffix(end)?;
             Some(Found::of(joint, head, channel, unit))
         });
-        found.last()
+        found.next()
     };
     heads.iter().filter_map(one).collect()
 }

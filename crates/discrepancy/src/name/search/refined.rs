@@ -24,14 +24,6 @@ pub(super) struct Refinement {
     pub(super) unseen: Vec<&'static str>,
 }
 
-impl Refinement {
-    /// Whether an effect ended, wherever it began, as a simpler one.
-    pub(super) fn ended_unseen(&self, name: &str) -> bool {
-        let is_it = |r: &Refined| r.parts.len() == 1 && r.parts[0].effect.name == name;
-        self.unseen.contains(&name) && !self.kept.iter().any(is_it)
-    }
-}
-
 impl Refined {
     /// The effects that it adds, one for each of its parts.
     pub(super) fn added(&self) -> &[ActiveEffect] {
@@ -180,17 +172,19 @@ pub(super) fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
 /// a way back that was not run is to noise at rest.
 const INSIDE: f64 = 0.5;
 
-/// Simpler effects before one that ends at a bound.
+/// Simpler effects, and what explains as much, before one that ends at a bound.
 pub(super) fn inside_before_bound(refined: &mut [Refined]) {
     let is_at_bound = |r: &&Refined| !r.is_form() && r.ends_at_bound();
     let Some(first) = refined.first().filter(is_at_bound) else {
         return;
     };
     let (least, most) = (INSIDE * first.gain, first.parameters());
-    let is_simpler = |r: &Refined| {
-        !r.is_form() && r.parameters() < most && r.gain >= least && !r.ends_at_bound()
+    let as_much = enough(first.gain);
+    let is_other = |r: &Refined| {
+        let explains = r.gain >= as_much || r.parameters() < most && r.gain >= least;
+        !r.is_form() && explains && !r.ends_at_bound()
     };
-    if let Some(at) = refined.iter().position(is_simpler) {
+    if let Some(at) = refined.iter().position(is_other) {
         refined[..=at].rotate_right(1);
     }
 }

@@ -8,6 +8,7 @@ use super::state::Search;
 use super::types::{Named, RefusalReason, Refused, RunnerUp};
 use crate::answers::{LogSet, State};
 use crate::estimate::columns::free_parameters;
+use crate::estimate::known::pinned;
 use crate::name::gap::{Gap, gap, worsened};
 use crate::noise::{Hum, MotionAndRest, floors};
 
@@ -39,7 +40,10 @@ impl Search<'_> {
         let before = |logs: &LogSet, traces: &[Trace]| Hum::as_in(set, logs).rest(traces);
         let befores = [
             before(as_filed, &as_filed.simulate(self.machine, &initial)?),
-            before(&without.check_logs, &without.check.traces),
+            before(
+                &without.check_logs,
+                &without.beside(&self.fit.state).check.traces,
+            ),
         ];
         for before in &befores {
             if let Some(channels) = worsened(set, before, &after, &floors) {
@@ -63,44 +67,53 @@ impl Search<'_> {
     }
 
     /// Whether the effects of a balance of which no channel stood out of its noise bring less than
-    /// is asked then, or one of them may be of no size at all: as if nothing had been named.
-    pub(super) fn lacks_evidence(
-        &self,
-        without: &Self,
-        intervals: &Intervals,
-    ) -> Result<bool, ReplayError> {
+    /// is asked then: as if nothing had been named.
+    pub(super) fn lacks_evidence(&self, without: &Self) -> Result<bool, ReplayError> {
         let set = &self.check_logs;
         if self.named.is_empty() || !set.is_balanced() || self.settings_ask_for_all() {
             return Ok(false);
         }
         let after = set.rest(&self.check.traces);
-        let before = without.check_logs.rest(&without.check.traces);
+        let beside = without.beside(&self.fit.state);
+        let before = without.check_logs.rest(&beside.check.traces);
         let floors = floors(self.machine, set, &self.check.state, &after)?;
-        let fall = without.fit.deviance - self.fit.deviance;
+        let fall = beside.fit.deviance - self.fit.deviance;
         let parameters = free_parameters(&self.fit.state).len();
-        let is_weak =
-            fall < WITHOUT_GAP * self.needed(parameters, 1) || self.may_be_nothing(intervals);
+        let is_weak = fall < WITHOUT_GAP * self.needed(parameters, 1);
         Ok(is_weak && !gap(set, &before, &after, &floors).stands_out())
     }
 
-    /// Whether the 95 % intervals of all sizes of an effect hold zero.
-    fn may_be_nothing(&self, intervals: &Intervals) -> bool {
+    /// Takes out an effect that may be of no size at all; false where there is none.
+    pub(super) fn drop_unsized(&mut self, intervals: &Intervals) -> bool {
+        let of_no_size =
+            (0..self.named.len()).find(|&index| self.may_be_of_no_size(index, intervals));
+        let without = of_no_size.and_then(|index| self.without(index));
+        if let Some(without) = without {
+            tracing::debug!(?of_no_size, "may be of no size");
+            *self = without;
+            return true;
+        }
+        false
+    }
+
+    /// Whether the 95 % intervals of all sizes of a named effect hold zero: then it is not named. Not
+    /// by known parameters at their edge: inside their tolerance there is more of it.
+    fn may_be_of_no_size(&self, index: usize, intervals: &Intervals) -> bool {
         let state = &self.fit.state;
-        let free = free_parameters(state);
-        let holds_zero = |(at, &(effect, parameter)): (usize, &(usize, usize))| {
-            let value = state.effects[effect].values[parameter];
-            value.abs() <= intervals.half_width(state.shares.len() + at, value)
-        };
-        let named = (0..state.effects.len()).filter(|&e| !is_form(&state.effects[e]));
-        let mut sizes = named.map(|e| {
-            let of_it = free
-                .iter()
-                .enumerate()
-                .filter(move |(_, (effect, _))| *effect == e);
-            let is_size = move |p: usize| state.effects[e].effect.parameters[p].is_size();
-            of_it.filter(move |(_, (_, p))| is_size(*p))
+        let active = &state.effects[index];
+        if is_form(active) || self.is_accepted(active.effect.name) {
+            return false;
+        }
+        let at_edge = pinned(self.machine, &state.shares);
+        let free = free_parameters(state).into_iter().enumerate();
+        let mut sizes = free.filter(|(_, (effect, parameter))| {
+            *effect == index && active.effect.parameters[*parameter].is_size()
         });
-        sizes.any(|mut of_it| of_it.all(holds_zero))
+        sizes.all(|(at, (_, parameter))| {
+            let value = active.values[parameter];
+            let place = state.shares.len() + at;
+            value.abs() <= intervals.half_width(place, value, &at_edge)
+        })
     }
 
     /// Whether what is left follows the motion, in any band of a channel that stands out of

@@ -48,7 +48,7 @@ pub(super) struct Search<'a> {
 
 /// Tolerance of a known parameter beyond which what is linear about the file's values may lead
 /// astray.
-const WIDE: f64 = 0.02;
+pub(super) const WIDE: f64 = 0.02;
 
 /// Noise alone, as the logs of a fit show it, where a known parameter may be far off.
 pub(super) fn steady_noise(fitter: &Fitter<'_>, fit: &Fit) -> Option<Arc<Amplitudes>> {
@@ -122,7 +122,9 @@ impl Search<'_> {
         let active = self.named.iter().any(|n| n.name == effect.name);
         let free = !active || effect.place_of(|n| n.is_order()).is_some();
         let unseen = self.unseen.contains(&effect.name);
-        free && !(rejected || unseen)
+        // What the file does not know at all is fitted, and no effect of the same quantity beside it.
+        let unknown = !self.is_accepted(effect.name) && effect.changes_unknown(self.machine);
+        free && !(rejected || unseen || unknown)
             && !self.doubles_a_friction(effect)
             && (awaited.is_empty() || awaited.contains(&effect.name))
     }
