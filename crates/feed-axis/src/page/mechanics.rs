@@ -81,7 +81,7 @@ pub fn friction(context: &Context, results: &Results) -> Section {
     }
     let dots = [
         runs("runs used", false),
-        runs("runs left out: they vibrate or rest", true),
+        runs("runs left out", true),
     ];
     for series in dots.into_iter().flatten() {
         figure = figure.series(series);
