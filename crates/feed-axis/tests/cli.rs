@@ -65,7 +65,12 @@ fn noise_is_the_sensors_alone() {
             &log,
         ];
         succeed(&[&line[..], more].concat());
-        let log = read_log(std::path::Path::new(&log), &Mapping::default(), &["position_m"]).unwrap();
+        let log = read_log(
+            std::path::Path::new(&log),
+            &Mapping::default(),
+            &["position_m"],
+        )
+        .unwrap();
         log.channel("position_m").unwrap().to_vec()
     };
     let apart = |a: &[f64], b: &[f64]| {

@@ -208,13 +208,12 @@ impl<'a, S: FnMut(&mut Measured)> Bench<'a, S> {
     /// smallest up, as what it does to friction tells.
     fn amplitude(&mut self, statics: &StaticFit) -> Result<f64, PipelineError> {
         let coulomb = statics.coulomb.value;
+        let fastest = self.plan.frequencies.iter().copied().reduce(f64::max);
+        let frequency = fastest.unwrap_or(1.0);
         let mut amplitude = self.plan.smallest;
         for _ in 0..TRIALS {
             let from = self.recorder.cycles().len();
-            self.sine(
-                amplitude,
-                self.plan.frequencies.first().copied().unwrap_or(1.0),
-            )?;
+            self.sine(amplitude, frequency)?;
             let share = self.swing(from)? / coulomb;
             if (0.35..0.65).contains(&share) {
                 break;

@@ -31,13 +31,19 @@ const QUIET: f64 = 0.02;
 const LEAST_FRICTION: f64 = 0.2;
 const LEAST_WAY: f64 = 12.0;
 
-/// Shortest of these motions, s, and fewest samples of a fit.
-const SHORTEST: f64 = 0.1;
+/// Shortest of these motions, s, and fewest samples of a fit. Three swings of 2 Hz take longer; the ringing of
+/// a machine that stops, in which its own modes take part, is shorter.
+const SHORTEST: f64 = 0.5;
 const FEWEST: usize = 32;
 
-/// Samples of a fit per period of the cut-off: what passes it is not sampled too thinly, and
-/// no finer than it need be.
-const RATE: f64 = 5.0;
+/// Samples of a fit per period of the cut-off. A motion of a quarter of the cut-off is taken as straight
+/// between them, which is (2π/4/40)²/12 = 0.01 % of its way.
+const RATE: f64 = 40.0;
+
+/// Least share of the whole way for a swing to count, and fewest swings: to, fro, and to again. One way
+/// alone is a start or a stop, which inertia and the curve's own errors weigh on more than bristles.
+const SWING: f64 = 0.2;
+const SWINGS: usize = 3;
 
 /// Small motions of a record, each with what it tells.
 pub(super) fn small_motions(record: &Record<'_>, statics: &StaticFit) -> Vec<SmallMotion> {
@@ -91,7 +97,9 @@ impl Level<'_> {
             });
             let mut holes = record.shown.holes().iter();
             let whole = holes.all(|hole| hole.end <= samples.start || hole.start >= samples.end);
+            let least = least_way.max(SWING * way);
             samples.len() >= shortest
+                && swings(&self.course.position[samples.clone()], least) >= SWINGS
                 && way > least_way
                 && change > LEAST_FRICTION * self.coulomb
                 && whole
@@ -148,6 +156,31 @@ impl Level<'_> {
         }
         found
     }
+}
+
+/// How often a motion goes farther than `least` one way before it turns.
+fn swings(position: &[f64], least: f64) -> usize {
+    let Some(&first) = position.first() else {
+        return 0;
+    };
+    // The ends of the way since the last turn, and which of them was reached last.
+    let (mut low, mut high) = (first, first);
+    let (mut upward, mut count) = (None, 0);
+    for &x in position {
+        (low, high) = (low.min(x), high.max(x));
+        let turned = match upward {
+            None if x - low > least => Some(true),
+            None if high - x > least => Some(false),
+            Some(true) if high - x > least => Some(false),
+            Some(false) if x - low > least => Some(true),
+            _ => None,
+        };
+        if turned.is_some() {
+            (upward, low, high) = (turned, x, x);
+            count += 1;
+        }
+    }
+    count
 }
 
 /// The bristles of one small motion.

@@ -10,11 +10,15 @@ use super::found::SpeedRun;
 
 /// Lengths over which speeds are compared, s: the longest first, over which a vibration
 /// averages out; the shortest for fast runs on short strokes.
-const WINDOWS: [f64; 4] = [0.4, 0.2, 0.1, 0.05];
+const WINDOWS: [f64; 3] = [0.4, 0.2, 0.1];
 
 /// Fewest samples of a window, and of a stretch.
 const FEWEST_IN_WINDOW: usize = 16;
 const FEWEST: usize = 64;
+
+/// Shortest stretch, s. A vibration shows in the autocovariance of the speed at lags above 32 ms, of
+/// which a quarter of a record is looked at: shorter pieces of a run that vibrates would pass for quiet.
+const SHORTEST: f64 = 0.25;
 
 /// Largest change of the mean speed from one window to the next, as a share. The speed's curve is
 /// straight over so little: at most exp(−1/2) √2 · 1 % of T_S − T_C lie between its ends.
@@ -211,7 +215,7 @@ fn split(record: &Record<'_>, stretch: Range<usize>, window: usize) -> Vec<Range
 /// inertia takes. `None` where inertia takes too much, or the torque goes on changing.
 fn run(record: &Record<'_>, stretch: &Range<usize>) -> Option<SpeedRun> {
     let settled = whole_turns(record, settled(record, stretch));
-    if settled.len() < FEWEST {
+    if settled.len() < FEWEST || (settled.len() as f64) * record.shown.period() < SHORTEST {
         return None;
     }
     let lever = record.axis.friction.lever(record.axis.travel_per_radian());
@@ -245,7 +249,7 @@ fn run(record: &Record<'_>, stretch: &Range<usize>) -> Option<SpeedRun> {
 
 /// The part of a stretch in which its torque has settled: what is left after the start whose
 /// removal makes the mean's standard error least (K. P. White, Simulation 69 (1997) 323–334,
-/// doi:10.1177/003754979706900601), half of the stretch at least.
+/// doi:10.1177/003754979706900601), and once more as much cut; half of the stretch at least.
 fn settled(record: &Record<'_>, stretch: &Range<usize>) -> Range<usize> {
     let block = (stretch.len() / BLOCKS).max(1);
     let means: Vec<f64> = record.force[stretch.clone()]
@@ -258,9 +262,10 @@ fn settled(record: &Record<'_>, stretch: &Range<usize>) -> Range<usize> {
         let mean = rest.iter().sum::<f64>() / count;
         rest.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (count * count)
     };
-    let cuts = 0..=means.len() / 2;
-    let best = cuts.min_by(|&a, &b| error(a).total_cmp(&error(b)));
-    stretch.start + best.unwrap_or(0) * block..stretch.end
+    // Twice as much again: what decays is then below the noise by as much as it was at first above.
+    let most = means.len() / 2;
+    let best = (0..=most / 2).min_by(|&a, &b| error(a).total_cmp(&error(b)));
+    stretch.start + 2 * best.unwrap_or(0) * block..stretch.end
 }
 
 /// The end of a stretch that is a whole number of the motor's turns, over which what repeats

@@ -9,13 +9,14 @@ use super::channel::TorqueChannel;
 use super::error::BalanceError;
 use super::filter::{LowPass, ahead, derivative};
 use super::motion::{Course, Measured, Whose};
+use super::spectrum::least_noise;
 use crate::axis::Axis;
 
 /// Highest cut-off as a share of the sampling rate: above it, differences are no derivatives
 /// any more.
 const HIGHEST: f64 = 0.1;
 
-/// Share of a motion's own deviation that a low-pass may take from it.
+/// Share of the deviation of a motion or a torque that a low-pass may take from it.
 const TAKEN: f64 = 2e-3;
 
 /// The motion and the motor's torque that a log shows, side by side and not filtered.
@@ -130,20 +131,28 @@ impl Shown {
         self.per_load() * self.nearest().unsure_speed(self.period, time)
     }
 
-    /// The lowest cut-off, Hz, that takes no more from the motion between two samples than
-    /// its sensor's noise, and at which the noise of acceleration is worth at most `force` (N or
-    /// N·m at the load) of inertia.
+    /// The lowest cut-off, Hz, that takes no more from motion and torque between two samples than
+    /// noise, and at which the noise of acceleration is worth at most `force` (N or N·m at the load)
+    /// of inertia.
     pub fn quiet_cutoff(&self, axis: &Axis, within: Range<usize>, force: f64) -> f64 {
         let most = HIGHEST / self.period;
         let nearest = self.nearest();
-        let series = nearest.samples().get(within).unwrap_or_default();
+        let part = |series: &[f64]| series.get(within.clone()).unwrap_or_default().to_vec();
+        let [motion, torque] = [part(nearest.samples()), part(&self.torque)];
+        let of_torque = 0.5 * least_noise(&torque, self.period) / self.period;
+        let both = [
+            (motion, nearest.noise_power(self.period)),
+            (torque, of_torque),
+        ];
         let kept = |cutoff: f64| {
-            let smooth = LowPass::new(cutoff * self.period).apply(series);
-            let pairs = series.iter().zip(&smooth);
-            let taken = power(pairs.map(|(a, b)| a - b));
-            // Beside white noise, a twentieth for its own scatter.
-            let noise = 1.05 * nearest.noise_power(self.period);
-            taken <= noise + TAKEN.powi(2) * power(series.iter().copied())
+            let filter = LowPass::new(cutoff * self.period);
+            both.iter().all(|(series, noise)| {
+                let smooth = filter.apply(series);
+                let pairs = series.iter().zip(&smooth);
+                let taken = power(pairs.map(|(a, b)| a - b));
+                // Beside white noise, a twentieth for its own scatter.
+                taken <= 1.05 * noise + TAKEN.powi(2) * power(series.iter().copied())
+            })
         };
         // Steps by a fourth root of 2 over a bit more than two decades.
         let lower = |k: i32| most * 0.5_f64.powf(0.25 * f64::from(k));

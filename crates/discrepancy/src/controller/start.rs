@@ -80,7 +80,7 @@ fn columns(equation: &Equation<'_>, log: &Seen, from_motor: bool) -> [Vec<f64>; 
 /// which stays as it is.
 fn unfed(equation: &Equation<'_>, log: &Seen, form: Form) -> Vec<f64> {
     let axis = equation.axis;
-    let cascade = axis.control.cascade(axis.travel_per_radian());
+    let cascade = (axis.control).cascade(axis.travel_per_radian(), axis.period);
     let fed = cascade.map_or(0.0, |cascade| cascade.acceleration_feedforward);
     if form != Form::ProportionalIntegral || fed == 0.0 {
         return log.command.clone();

@@ -36,9 +36,12 @@ impl fmt::Display for Told<'_> {
         if varying > 0 {
             write!(f, ", {varying} speeds at which it changes slowly")?;
         }
-        write!(f, " and {told} small motions about a standstill")?;
+        write!(f, " and {told} small motion(s) about a standstill")?;
         if left_out > 0 {
-            write!(f, "; {left_out} stretches left out for vibration or rest")?;
+            write!(
+                f,
+                "; {left_out} stretches left out for vibration, rest, or bristles that still bend"
+            )?;
         }
         let simulated = if friction.simulated {
             " (simulated)"
