@@ -36,6 +36,24 @@ pub enum BeamError {
         /// Its coordinate, m.
         value: f64,
     },
+    /// Two mesh nodes so close that the element between them would hide the rest
+    /// of the beam.
+    #[error(
+        "nodes {} and {index}, at {before} m and {value} m, are {} m apart: neighbours must be at least {least} m apart ({} of the beam's length); leave one of them out",
+        index - 1,
+        value - before,
+        crate::Mesh::LEAST_SPACING
+    )]
+    Spacing {
+        /// Index of the second node of the first such pair.
+        index: usize,
+        /// Coordinate of the node before it, m.
+        before: f64,
+        /// Its coordinate, m.
+        value: f64,
+        /// The least distance that is valid, m.
+        least: f64,
+    },
     /// A degree of freedom or node that the model does not have.
     #[error("{field} = {index} is not valid: it must be below {bound}")]
     Index {
@@ -94,6 +112,18 @@ pub enum BeamError {
     /// A stiffness matrix with a negative eigenvalue beyond rounding.
     #[error("the stiffness matrix is not positive semidefinite: its spring energy can be negative")]
     StiffnessNegative,
+    /// A motion so soft that it cannot be told from a rigid one, beside the
+    /// rounding of stiffer parts.
+    #[error(
+        "a frequency above 0 is lost in the rounding of the stiffness matrix, which is greatest at row {row} (stiffness {stiffness}): elements there must be longer, or springs softer, or the supports stiffer"
+    )]
+    Unresolved {
+        /// The row of the greatest ratio of stiffness to mass among those that
+        /// take part in the motion.
+        row: usize,
+        /// Its diagonal entry of the stiffness matrix.
+        stiffness: f64,
+    },
     /// More modes asked for than there are degrees of freedom, or none.
     #[error("count = {count} modes is not valid: it must lie between 1 and {order}")]
     ModeCount {

@@ -73,6 +73,7 @@
 
 mod banded;
 mod beam;
+mod dense;
 pub mod element;
 mod error;
 mod material;

@@ -13,6 +13,14 @@ impl Mesh {
     /// The most elements a mesh may have: a bound on memory, not on theory.
     pub const MAX_ELEMENTS: usize = 1_000_000;
 
+    /// The least distance of neighbouring nodes, as a share of the beam's length.
+    ///
+    /// A coordinate has 16 digits, so such a distance has six left; and the element
+    /// between is 10¹⁰ times as stiff as the beam, of whose stiffness a sum with it
+    /// keeps six digits. No screw has elements as short; nodes that are closer are
+    /// one node, computed twice.
+    pub const LEAST_SPACING: f64 = 1e-10;
+
     /// `elements` equal elements over `length` metres.
     ///
     /// # Errors
@@ -30,7 +38,8 @@ impl Mesh {
     ///
     /// # Errors
     /// [`BeamError::Node`] unless they start at 0 and ascend strictly,
-    /// [`BeamError::Elements`] for fewer than two nodes.
+    /// [`BeamError::Spacing`] for two that are closer than [`Mesh::LEAST_SPACING`]
+    /// times the length, [`BeamError::Elements`] for fewer than two nodes.
     pub fn from_nodes(nodes: Vec<f64>) -> Result<Self, BeamError> {
         check_elements(nodes.len().saturating_sub(1), 1)?;
         let mut previous = 0.0;
@@ -45,7 +54,22 @@ impl Mesh {
             }
             previous = value;
         }
-        Ok(Self { nodes })
+        let mesh = Self { nodes };
+        mesh.check_spacing()?;
+        Ok(mesh)
+    }
+
+    fn check_spacing(&self) -> Result<(), BeamError> {
+        let least = Self::LEAST_SPACING * self.length();
+        match self.lengths().position(|length| length < least) {
+            None => Ok(()),
+            Some(before) => Err(BeamError::Spacing {
+                index: before + 1,
+                before: self.nodes[before],
+                value: self.nodes[before + 1],
+                least,
+            }),
+        }
     }
 
     /// Node coordinates, m; one more than elements.

@@ -1,8 +1,9 @@
 //! Natural modes of dense matrices.
 
-use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
+use nalgebra::{Cholesky, DMatrix};
 
 use crate::BeamError;
+use crate::dense::{self, reduced};
 
 /// Undamped natural modes of `M q̈ + K q = 0`.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,16 +23,19 @@ impl Modes {
     }
 }
 
-/// All modes of a dense symmetric pencil, n × n: Cholesky M = L Lᵀ, then the
-/// symmetric problem of L⁻¹ K L⁻ᵀ. Only lower triangles are read.
+/// All modes of a dense symmetric pencil, n × n. Only lower triangles are read.
 ///
-/// Eigenvalues ω² at or below n · 2⁻⁵² · ω²_max in size are rounding and are
-/// reported as 0: rigid-body modes, or springs too soft to be told from them.
+/// The rigid modes, of frequency 0, are as many as motions whose spring energy is
+/// rounding: at most τ Σ K_ii x_i², τ = 4n · 2⁻⁵² (the theory page derives it). The others are those
+/// of L⁻¹ K L⁻ᵀ with M = L Lᵀ, and, where they lie more than 2²⁶ below the highest
+/// ω², of L⁻¹ M L⁻ᵀ with K + sM = L Lᵀ, whose rounding counts in low modes less.
 ///
 /// # Errors
 /// [`BeamError::Shape`], [`BeamError::NotFinite`],
-/// [`BeamError::MassNotPositiveDefinite`], [`BeamError::StiffnessNegative`]
-/// for an eigenvalue below zero by more than 100 times that,
+/// [`BeamError::MassNotPositiveDefinite`]; [`BeamError::StiffnessNegative`] where a
+/// motion has an energy below −τ Σ K_ii x_i², [`BeamError::Unresolved`] where one has
+/// one between τ and 10 τ times that sum, so that a tenth of its ω² may be rounding, or
+/// where rounding could hide, as a rigid mode, an ω² of a thousandth of the lowest one;
 /// [`BeamError::NotConverged`].
 pub fn natural_modes(mass: &DMatrix<f64>, stiffness: &DMatrix<f64>) -> Result<Modes, BeamError> {
     let order = mass.nrows();
@@ -40,54 +44,27 @@ pub fn natural_modes(mass: &DMatrix<f64>, stiffness: &DMatrix<f64>) -> Result<Mo
     if order == 0 {
         return Err(BeamError::ModeCount { count: 0, order });
     }
+    let mut stiffness = stiffness.clone();
+    stiffness.fill_upper_triangle_with_lower_triangle();
+    let mut mass = mass.clone();
+    mass.fill_upper_triangle_with_lower_triangle();
     let cholesky = Cholesky::new(mass.clone()).ok_or(BeamError::MassNotPositiveDefinite)?;
-    let factor = cholesky.l_dirty();
-    let mut reduced = stiffness.clone();
-    reduced.fill_upper_triangle_with_lower_triangle();
-    // Two solves with L, on the columns and then, transposed, on the rows:
-    // the diagonal of L is above zero, so neither can fail.
-    factor.solve_lower_triangular_mut(&mut reduced);
-    reduced.transpose_mut();
-    factor.solve_lower_triangular_mut(&mut reduced);
-    let symmetric = (&reduced + reduced.transpose()) * 0.5;
-    if !symmetric.iter().all(|v| v.is_finite()) {
-        return Err(BeamError::NotFinite { field: "reduced" });
-    }
-    let eigen = SymmetricEigen::try_new(symmetric, f64::EPSILON, 1000 * order)
-        .ok_or(BeamError::NotConverged)?;
-    let mut shapes = eigen.eigenvectors;
-    factor.tr_solve_lower_triangular_mut(&mut shapes);
-    let numbers = eigen.eigenvalues.iter().chain(&shapes);
-    if !numbers.into_iter().all(|v| v.is_finite()) {
-        return Err(BeamError::NotConverged);
-    }
-    sorted(eigen.eigenvalues.as_slice(), &shapes)
-}
-
-/// Sorts, clamps rigid modes, and takes the roots.
-fn sorted(eigenvalues: &[f64], shapes: &DMatrix<f64>) -> Result<Modes, BeamError> {
-    let order = eigenvalues.len();
-    let largest = eigenvalues.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let rounding = order as f64 * f64::EPSILON * largest;
-    let mut ranks: Vec<usize> = (0..order).collect();
-    ranks.sort_by(|&i, &j| eigenvalues[i].total_cmp(&eigenvalues[j]));
-    if eigenvalues[ranks[0]] < -100.0 * rounding {
-        return Err(BeamError::StiffnessNegative);
-    }
-    let frequency = |&i: &usize| frequency(eigenvalues[i], rounding);
+    let mut pairs = reduced(&cholesky, &stiffness)?;
+    let rigid = dense::rigid_motions(&mass, &stiffness)?;
+    dense::refine_low(&mut pairs, rigid.count, &mass, &stiffness)?;
+    dense::check_rigid(&pairs, &rigid, &mass, &stiffness)?;
+    let frequency = |(mode, &value): (usize, &f64)| {
+        // The rigid ones come first; no other is below zero.
+        if mode < rigid.count {
+            0.0
+        } else {
+            value.max(0.0).sqrt()
+        }
+    };
     Ok(Modes {
-        frequencies_rad_s: ranks.iter().map(frequency).collect(),
-        shapes: DMatrix::from_fn(order, order, |row, column| shapes[(row, ranks[column])]),
+        frequencies_rad_s: pairs.values.iter().enumerate().map(frequency).collect(),
+        shapes: pairs.shapes,
     })
-}
-
-/// √ω², or 0 where the eigenvalue cannot be told from rounding.
-pub(crate) fn frequency(eigenvalue: f64, rounding: f64) -> f64 {
-    if eigenvalue > rounding {
-        eigenvalue.sqrt()
-    } else {
-        0.0
-    }
 }
 
 /// Refuses what is not `order` × `order`.

@@ -34,7 +34,8 @@ impl MovingNode {
     ///
     /// # Errors
     /// [`BeamError::Parameter`] for a length that is not above zero, x off
-    /// the beam, or `min_fraction` outside (0, 0.5];
+    /// the beam, `min_fraction` above 0.5 or such that the shortest element may be
+    /// under twice [`Mesh::LEAST_SPACING`] of the beam;
     /// [`BeamError::Elements`] for fewer than two elements.
     pub fn at(length: f64, elements: usize, x: f64, min_fraction: f64) -> Result<Self, BeamError> {
         let (node, position) = Self::place(length, elements, x, min_fraction)?;
@@ -64,11 +65,13 @@ impl MovingNode {
                 valid: "between 0 and the length of the beam",
             });
         }
-        if !(min_fraction > 0.0 && min_fraction <= 0.5) {
+        // Twice, as the rounding of the coordinates may take from it.
+        let least = 2.0 * Mesh::LEAST_SPACING * elements as f64;
+        if !(least..=0.5).contains(&min_fraction) {
             return Err(BeamError::Parameter {
                 field: "min_fraction",
                 value: min_fraction,
-                valid: "above 0 and at most 0.5",
+                valid: "at least 2e-10 times the number of elements, and at most 0.5",
             });
         }
         let node = segment(length, elements, x, min_fraction).min(elements - 1);

@@ -4,5 +4,6 @@ mod assembly_laws;
 mod bad_input;
 mod banded_modes;
 mod closed_forms;
+mod definite;
 mod element_sources;
 mod moving_nut;

@@ -99,6 +99,12 @@ impl ScrewShaft {
 impl Stiffness for ScrewShaft {
     fn at(&self, x: f64) -> f64 {
         let least = self.length / (Self::MOST * self.rigidity);
-        1.0 / self.compliance(x).max(least)
+        let compliance = self.compliance(x);
+        // Not `max`, which would make a stiffness of an x that is no number.
+        1.0 / if compliance < least {
+            least
+        } else {
+            compliance
+        }
     }
 }

@@ -57,6 +57,19 @@ pub(crate) fn finite<const N: usize>(fields: [(&'static str, f64); N]) -> Result
     refuse_first(fields, |value| !value.is_finite(), "finite")
 }
 
+/// Refuses an angular frequency, rad/s, of which no response can be computed: one that is
+/// no number, infinite, or whose fourth power, which goes into a response, is.
+pub(crate) fn frequency(value: f64) -> Result<f64, DriveError> {
+    if value.powi(4).is_finite() {
+        return Ok(value);
+    }
+    Err(DriveError::Parameter {
+        name: "angular frequency",
+        value,
+        valid: "finite, and so its fourth power",
+    })
+}
+
 fn refuse_first<const N: usize>(
     fields: [(&'static str, f64); N],
     bad: impl Fn(f64) -> bool,

@@ -2,6 +2,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+use crate::error::frequency;
 use crate::{DriveError, FeedDrive, NutCoupling};
 
 /// A coordinate where the drive is driven or observed.
@@ -31,10 +32,23 @@ impl FeedDrive {
     /// Receptance `H(iω) = [K + iωC − ω²M]⁻¹` from a load at `input` to the
     /// displacement at `output`, one value for each angular frequency (rad/s).
     ///
+    /// The axis is free, `K φ = 0` for its rigid motion φ (a radian of everything that
+    /// rotates, r of the table), so that but for −ω²M the matrix is singular, and at low
+    /// frequencies rounding of K hides that. The rigid motion is therefore split off, as
+    /// that in which the output takes part: q = φ α + e with e = 0 at the output, and the
+    /// output's equation gives way to the sum of all, each times its part of φ. With K φ
+    /// and φᵀK left out where they stand,
+    ///
+    /// ```text
+    /// −ω² φᵀM (φ α + e) = φᵀF                       in place of the output's
+    /// −ω² M φ α + (K + iωC − ω²M) e = F             all others
+    /// ```
+    ///
     /// # Errors
     /// [`DriveError::OffScrew`] where `x` is not on the screw;
-    /// [`DriveError::Parameter`] for a screw node that does not exist;
-    /// [`DriveError::Singular`] at zero frequency, where the axis is free.
+    /// [`DriveError::Parameter`] for a screw node that does not exist and a frequency
+    /// that is not finite; [`DriveError::Singular`] at zero frequency, where the axis is
+    /// free, and at a resonance without damping.
     pub fn receptance(
         &self,
         x: f64,
@@ -45,21 +59,38 @@ impl FeedDrive {
     ) -> Result<Vec<Complex<f64>>, DriveError> {
         let m = self.matrices(x, coupling)?;
         let (from, to) = (self.checked_row(input)?, self.checked_row(output)?);
-        let mut load = DVector::from_element(self.coordinates(), Complex::new(0.0, 0.0));
-        load[from] = Complex::new(1.0, 0.0);
+        let rigid = self.rigid_motion();
+        let momentum = &m.mass * &rigid;
+        let inertia = momentum.dot(&rigid);
+        let (n, beta) = (self.coordinates(), self.parameters().stiffness_damping);
         let solve = |&w: &f64| {
-            let dynamic = DMatrix::from_fn(load.len(), load.len(), |i, j| {
-                let real = m.stiffness[(i, j)] - w * w * m.mass[(i, j)];
-                Complex::new(real, w * m.damping[(i, j)])
+            let square = frequency(w)? * w;
+            let dynamic = DMatrix::from_fn(n, n, |i, j| match (i == to, j == to) {
+                (true, true) => Complex::from(-square * inertia),
+                (true, false) => Complex::from(-square * momentum[j]),
+                (false, true) => Complex::from(-square * momentum[i]),
+                (false, false) => {
+                    let spring = m.stiffness[(i, j)];
+                    Complex::new(spring - square * m.mass[(i, j)], w * beta * spring)
+                }
             });
-            // At w = 0 rounding may leave a pivot that is tiny but not zero.
-            let free = w == 0.0;
-            let solution = (!free).then(|| dynamic.lu().solve(&load)).flatten();
-            solution.map(|q| q[to]).ok_or(DriveError::Singular {
+            let mut load = DVector::zeros(n);
+            load[from] = Complex::from(1.0);
+            load[to] = Complex::from(rigid[from]);
+            let response = dynamic.lu().solve(&load).map(|q| q[to] * rigid[to]);
+            let finite = response.filter(|h| h.re.is_finite() && h.im.is_finite());
+            finite.ok_or(DriveError::Singular {
                 angular_frequency: w,
             })
         };
         angular_frequencies.iter().map(solve).collect()
+    }
+
+    /// The motion that no spring resists: one radian of all that rotates.
+    fn rigid_motion(&self) -> DVector<f64> {
+        let mut motion = DVector::from_element(self.coordinates(), 1.0);
+        motion[self.coordinates() - 1] = self.travel_per_radian();
+        motion
     }
 
     fn checked_row(&self, coordinate: Coordinate) -> Result<usize, DriveError> {

@@ -43,14 +43,13 @@ pub fn minimum_distance(design: &Design) -> f64 {
     let mut best = f64::INFINITY;
     for (i, a) in order.iter().enumerate() {
         for b in &order[i + 1..] {
-            let gap = b[0] - a[0];
-            if gap * gap >= best {
+            if b[0] - a[0] >= best {
                 break;
             }
-            best = best.min(squared_distance(a, b));
+            best = best.min(distance(a, b));
         }
     }
-    best.sqrt()
+    best
 }
 
 /// φ_p = (Σ over pairs of d⁻ᵖ)^(1/p) of Morris and Mitchell 1995, doi
@@ -74,7 +73,10 @@ pub fn phi_p(design: &Design, p: f64) -> f64 {
         let mut rows = design.rows();
         let others = rows.clone().take(i);
         let Some(a) = rows.nth(i) else { return 0.0 };
-        let share = |b| any_power(least * least / squared_distance(a, b), 0.5 * p);
+        let share = |b| {
+            let nearness = least / distance(a, b);
+            any_power(nearness * nearness, 0.5 * p)
+        };
         others.map(share).sum()
     };
     let rows: Vec<f64> = (0..design.len()).into_par_iter().map(row_sum).collect();
@@ -91,6 +93,21 @@ fn any_power(x: f64, e: f64) -> f64 {
     }
 }
 
-fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum()
+/// Euclidean distance; in units of the greatest difference where squares would leave
+/// the range of f64, or the digits of its least numbers.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let sum_of_squares = |unit: f64| -> f64 {
+        let square = |(x, y): (&f64, &f64)| ((x - y) / unit) * ((x - y) / unit);
+        a.iter().zip(b).map(square).sum()
+    };
+    let plain = sum_of_squares(1.0);
+    if (1e-280..=1e280).contains(&plain) {
+        return plain.sqrt();
+    }
+    let differences = a.iter().zip(b).map(|(x, y)| (x - y).abs());
+    let greatest = differences.fold(0.0, f64::max);
+    if greatest == 0.0 || greatest.is_infinite() {
+        return greatest;
+    }
+    greatest * sum_of_squares(greatest).sqrt()
 }

@@ -131,6 +131,31 @@ fn edge_cases_of_distances() {
     assert!((phi_p(&close, 20.0) / 1e30 - 1.0).abs() < 1e-15);
 }
 
+/// Triangles of 3, 4 and 5, from the least numbers of f64 to the greatest: no square may
+/// overflow or vanish.
+#[test]
+fn distances_have_the_range_of_f64() {
+    for unit in [5e-324, 1e-310, 1e-200, 1e-150, 1.0, 1e150, 1e200, 3e307] {
+        let d = design(2, &[0.0, 0.0, 3.0 * unit, 0.0, 3.0 * unit, 4.0 * unit]);
+        assert_eq!(minimum_distance(&d), 3.0 * unit, "{unit:e}");
+        let hypotenuse = design(2, &[0.0, 0.0, 3.0 * unit, 4.0 * unit]);
+        // The rounding of a quotient, a square, a sum, a root and a product.
+        let off = minimum_distance(&hypotenuse) / (5.0 * unit) - 1.0;
+        assert!(off.abs() <= 4.0 * f64::EPSILON, "{unit:e}: {off:e}");
+        // In units of the least distance: 1 + (3/4)⁴ + (3/5)⁴.
+        let phi = phi_p(&d, 4.0) * (3.0 * unit);
+        let exact = (1.0 + 0.75_f64.powi(4) + 0.6_f64.powi(4)).powf(0.25);
+        let finite = unit > 1e-309;
+        assert!(
+            !finite || (phi / exact - 1.0).abs() < 1e-15,
+            "{unit:e}: {phi}"
+        );
+    }
+    // Two near points among far ones: their squares are 10⁻⁴⁰⁰.
+    let mixed = design(2, &[0.0, 0.0, 1e-200, 0.0, 1.0, 1.0]);
+    assert_eq!(minimum_distance(&mixed), 1e-200);
+}
+
 #[test]
 fn threads_do_not_change_a_bit() {
     let d = LatinHypercube::new(1500, 4, 3).unwrap().design().unwrap();

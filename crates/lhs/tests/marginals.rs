@@ -103,6 +103,160 @@ proptest! {
     }
 }
 
+/// Every marginal cut to a thin slice below its upper end, and to its mirror image at the
+/// lower one: 1000 strata give 1000 values, which are those of the density there, and
+/// mirror images of each other.
+#[test]
+fn thin_tails_keep_their_strata() {
+    let pair = |upper: Box<dyn Marginal>, lower: Box<dyn Marginal>| (upper, lower);
+    let humps = |at: f64| {
+        let parts: Vec<(f64, Box<dyn Cumulative>)> = vec![
+            (1.0, Box::new(Uniform::new(at - 1.0, at).unwrap())),
+            (1.0, Box::new(Uniform::new(at, at + 1.0).unwrap())),
+        ];
+        Mixture::new(parts).unwrap()
+    };
+    let table = |points: &[(f64, f64)]| Tabulated::new(points).unwrap();
+    for width in [1e-7, 1e-12] {
+        let inner = |m| Truncated::new(m, -3.0 * width, 0.0).unwrap();
+        let mirrored = |m| Truncated::new(m, 0.0, 3.0 * width).unwrap();
+        let uniform = (
+            Uniform::new(-1.0, 0.0).unwrap(),
+            Uniform::new(0.0, 1.0).unwrap(),
+        );
+        let slope = (
+            Triangular::new(-1.0, -1.0, 0.0).unwrap(),
+            Triangular::new(0.0, 1.0, 1.0).unwrap(),
+        );
+        let ramp = (
+            table(&[(-1.0, 0.0), (0.0, 1.0)]),
+            table(&[(0.0, 0.0), (1.0, 1.0)]),
+        );
+        // Of a density that is constant, but for the slope: there it rises from the end.
+        let cases = [
+            (
+                "uniform",
+                false,
+                pair(
+                    Box::new(Truncated::new(uniform.0, -width, 0.0).unwrap()),
+                    Box::new(Truncated::new(uniform.1, 0.0, width).unwrap()),
+                ),
+            ),
+            (
+                "twice",
+                false,
+                pair(
+                    Box::new(Truncated::new(inner(uniform.0), -width, 0.0).unwrap()),
+                    Box::new(Truncated::new(mirrored(uniform.1), 0.0, width).unwrap()),
+                ),
+            ),
+            (
+                "triangle",
+                true,
+                pair(
+                    Box::new(Truncated::new(slope.0, -width, 0.0).unwrap()),
+                    Box::new(Truncated::new(slope.1, 0.0, width).unwrap()),
+                ),
+            ),
+            (
+                "table",
+                false,
+                pair(
+                    Box::new(Truncated::new(ramp.0, -width, 0.0).unwrap()),
+                    Box::new(Truncated::new(ramp.1, 0.0, width).unwrap()),
+                ),
+            ),
+            (
+                "mixture",
+                false,
+                pair(
+                    Box::new(Truncated::new(humps(-1.0), -width, 0.0).unwrap()),
+                    Box::new(Truncated::new(humps(1.0), 0.0, width).unwrap()),
+                ),
+            ),
+        ];
+        for (name, slope, (upper, lower)) in cases {
+            let mut before = f64::NEG_INFINITY;
+            for stratum in 0..1000 {
+                let p = (f64::from(stratum) + 0.5) / 1000.0;
+                let x = upper.inverse_cdf(p);
+                assert!(x > before, "{name} {width:e}: {x:e} after {before:e}");
+                before = x;
+                let share = if slope { (1.0 - p).sqrt() } else { 1.0 - p };
+                let off = x / (-width * share) - 1.0;
+                assert!(off.abs() < 1e-12, "{name} {width:e} at {p}: off by {off:e}");
+                let mirror = lower.inverse_cdf(1.0 - p);
+                assert!(
+                    (mirror / -x - 1.0).abs() < 1e-12,
+                    "{name} {width:e}: {mirror:e} {x:e}"
+                );
+            }
+        }
+    }
+}
+
+/// The slice of the report: as many values as strata, √ of what is above.
+#[test]
+fn the_upper_end_of_a_triangle_keeps_its_strata() {
+    let triangle = Triangular::new(0.0, 0.0, 1.0).unwrap();
+    let slice = Truncated::new(triangle, 1.0 - 1e-7, 1.0).unwrap();
+    let mut values: Vec<f64> = (0..1000)
+        .map(|stratum| slice.inverse_cdf((f64::from(stratum) + 0.5) / 1000.0))
+        .collect();
+    let width = 1.0 - (1.0 - 1e-7);
+    for (stratum, x) in values.iter().enumerate() {
+        let share = 1.0 - (stratum as f64 + 0.5) / 1000.0;
+        // One place of x, 1.1e-16.
+        assert!(
+            (1.0 - x - width * share.sqrt()).abs() < 3e-16,
+            "{stratum}: {x}"
+        );
+    }
+    values.dedup();
+    assert_eq!(values.len(), 1000);
+}
+
+/// A log-uniform and a normal tail, from their definitions: ln(hi/x) and the mirror image.
+#[test]
+fn survival_has_the_digits_of_thin_tails() {
+    let decades = LogUniform::new(1e-3, 1e3).unwrap();
+    for tail in [1e-3, 1e-8, 1e-12] {
+        let x = 1e3 * (1.0 - tail);
+        let exact = -((x - 1e3) / 1e3_f64).ln_1p() / 1e6_f64.ln();
+        assert!(
+            (decades.survival(x) / exact - 1.0).abs() < 1e-14,
+            "{tail:e}"
+        );
+        let back = decades.inverse_survival(exact);
+        assert!(
+            (back / x - 1.0).abs() < 1e-15,
+            "{tail:e}: {back:e} for {x:e}"
+        );
+        let y = 1e-3 * (1.0 + tail);
+        let exact = ((y - 1e-3) / 1e-3).ln_1p() / 1e6_f64.ln();
+        assert!((decades.cdf(y) / exact - 1.0).abs() < 1e-14, "{tail:e}");
+    }
+    // Half a normal: its far tail is that of the whole one, twice as likely.
+    let normal = Normal::new(0.0, 1.0).unwrap();
+    let half = Truncated::new(normal, 0.0, f64::INFINITY).unwrap();
+    let mixed: Vec<(f64, Box<dyn Cumulative>)> = vec![(3.0, Box::new(normal))];
+    let mixed = Mixture::new(mixed).unwrap();
+    for q in [0.25, 1e-3, 1e-10, 1e-15] {
+        let x = half.inverse_cdf(1.0 - q);
+        let above = 1.0 - (1.0 - q);
+        assert!(
+            (x / normal.inverse_survival(0.5 * above) - 1.0).abs() < 1e-14,
+            "{q:e}: {x}"
+        );
+        assert!((half.survival(x) / above - 1.0).abs() < 1e-13, "{q:e}: {x}");
+        let y = mixed.inverse_cdf(1.0 - q);
+        assert!(
+            (y / normal.inverse_survival(above) - 1.0).abs() < 1e-14,
+            "{q:e}: {y}"
+        );
+    }
+}
+
 /// Quantiles of the standard normal in 40 digits, rounded, made by
 /// `python3 crates/lhs/tests/golden/reference_numbers.py`.
 #[test]

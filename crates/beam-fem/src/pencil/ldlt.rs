@@ -54,6 +54,17 @@ impl Ldlt {
         stiffness: &SymmetricBanded,
         mu: f64,
     ) -> Option<usize> {
+        self.factorise_within(GROWTH, mass, stiffness, mu)
+    }
+
+    /// The same with another bound on the growth than [`GROWTH`].
+    pub fn factorise_within(
+        &mut self,
+        growth: f64,
+        mass: &SymmetricBanded,
+        stiffness: &SymmetricBanded,
+        mu: f64,
+    ) -> Option<usize> {
         self.load(mass, stiffness, mu);
         let negative = match self.half_bandwidth {
             0 => self.data.iter().filter(|d| **d < 0.0).count(),
@@ -61,7 +72,7 @@ impl Ldlt {
             3 => self.eliminate::<4>(),
             _ => self.eliminate_any(),
         };
-        let own = |i: usize| stiffness.column(i)[0].abs() + mu.abs() * mass.column(i)[0];
+        let own = |i: usize| growth * (stiffness.column(i)[0].abs() + mu.abs() * mass.column(i)[0]);
         let reliable = match self.half_bandwidth {
             0 | 1 => true,
             3 => self.grew_little::<4>(own),
@@ -70,22 +81,22 @@ impl Ldlt {
         reliable.then_some(negative)
     }
 
-    /// Whether every g_i is within [`GROWTH`] times `own(i)`; not, if it is no number.
-    fn grew_little<const WIDTH: usize>(&mut self, own: impl Fn(usize) -> f64) -> bool {
+    /// Whether every g_i is within `most(i)`; not, if it is no number.
+    fn grew_little<const WIDTH: usize>(&mut self, most: impl Fn(usize) -> f64) -> bool {
         self.growth.fill(0.0);
         let (columns, _) = self.data.as_chunks::<WIDTH>();
         let columns = columns.iter().enumerate();
         columns.fold(true, |all, (j, l)| {
-            all & add_growth(l, &mut self.growth[j..], own(j))
+            all & add_growth(l, &mut self.growth[j..], most(j))
         })
     }
 
     /// The same for any band.
-    fn any_grew_little(&mut self, own: impl Fn(usize) -> f64) -> bool {
+    fn any_grew_little(&mut self, most: impl Fn(usize) -> f64) -> bool {
         self.growth.fill(0.0);
         let columns = self.data.chunks_exact(self.half_bandwidth + 1).enumerate();
         columns.fold(true, |all, (j, l)| {
-            all & add_growth(l, &mut self.growth[j..], own(j))
+            all & add_growth(l, &mut self.growth[j..], most(j))
         })
     }
 
@@ -201,15 +212,15 @@ fn pivot(d: &mut f64) -> usize {
 }
 
 /// Adds a column's part to the g_i from its own row on, and tells whether that
-/// row's, now whole, is within [`GROWTH`] times `own`.
+/// row's, now whole, is within `most`.
 #[inline(always)]
-fn add_growth(l: &[f64], growth: &mut [f64], own: f64) -> bool {
+fn add_growth(l: &[f64], growth: &mut [f64], most: f64) -> bool {
     let size = l[0].abs();
     growth[0] += size;
     for (factor, g) in l[1..].iter().zip(&mut growth[1..]) {
         *g += factor * factor * size;
     }
-    growth[0] <= GROWTH * own
+    growth[0] <= most
 }
 
 #[inline(always)]

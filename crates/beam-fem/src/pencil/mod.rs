@@ -1,11 +1,13 @@
 //! The lowest modes of a banded pencil, at a cost linear in its order.
 //!
 //! 1. Split the pencil into independent parts ([`components`]).
-//! 2. Bisect, by counting negative pivots of K − μM, for a limit μ below which
+//! 2. Count the rigid motions of each, and refuse what has motions of negative
+//!    energy or such that cannot be told from rigid ones ([`part`]).
+//! 3. Bisect, by counting negative pivots of K − μM, for a limit μ below which
 //!    there are at least as many eigenvalues as wanted, and not many more.
 //!    Each part then knows how many of them it must find. Where a count is not
 //!    reliable ([`ldlt`]), one a little above takes its place.
-//! 3. Find them: block Lanczos on (K + sM)⁻¹ M with s = μ/64 ([`krylov`]).
+//! 4. Find them: block Lanczos on (K + sM)⁻¹ M with s = μ/64 ([`krylov`]).
 //!    s > 0 keeps the matrix positive definite though a free beam's K is
 //!    singular.
 
@@ -13,27 +15,16 @@ mod block;
 mod components;
 mod krylov;
 mod ldlt;
+mod part;
 
 use nalgebra::DMatrix;
 
-use crate::banded::{BandedMatrices, SymmetricBanded};
+use crate::banded::BandedMatrices;
 use crate::error::check_size;
-use crate::modes::frequency;
-use crate::{BeamError, Modes, natural_modes};
+use crate::{BeamError, Modes};
 pub(crate) use block::Block;
-use components::{Component, split};
-use ldlt::Ldlt;
-
-/// A part of order below 4 × (modes wanted) + this is solved densely: a
-/// Krylov space would fill it.
-const SMALL: usize = 40;
-
-/// The least shift s, in units of max K_ii / M_ii: so far above rounding that
-/// K + sM is positive definite though K is singular.
-const SHIFT: f64 = 2e-13;
-
-/// Rounding of an eigenvalue, in units of 2⁻⁵² max K_ii / M_ii.
-const ROUNDING: f64 = 32.0;
+use components::split;
+use part::Part;
 
 /// How often a limit is moved to where the count is reliable: each move finds
 /// such a place far more often than not.
@@ -42,15 +33,19 @@ const MOST_MOVES: usize = 32;
 /// The `count` lowest modes of a banded pencil. Time and memory grow
 /// linearly with the order; the result does not depend on threads or runs.
 ///
-/// Eigenvalues ω² at or below 32 · 2⁻⁵² · max K_ii / M_ii (the maximum over
-/// the rows of the independent part that the mode belongs to) are rounding
-/// and are reported as 0. Equal frequencies are all found, since their number
-/// is known from a count beforehand.
+/// The rigid modes, of frequency 0, are as many as motions whose spring energy is
+/// rounding: at most τ Σ K_ii x_i², τ = (2p + 1)(4p + 13) 2⁻⁵³ for a half bandwidth p of
+/// the independent part that they belong to (the theory page derives it). This and what
+/// is refused is decided by K alone, whatever `count`. Equal frequencies are all found,
+/// since their number is known from a count beforehand.
 ///
 /// # Errors
 /// [`BeamError::Shape`], [`BeamError::NotFinite`], [`BeamError::ModeCount`],
-/// [`BeamError::TooLarge`], [`BeamError::MassNotPositiveDefinite`], [`BeamError::StiffnessNegative`],
-/// [`BeamError::NotConverged`].
+/// [`BeamError::TooLarge`], [`BeamError::MassNotPositiveDefinite`];
+/// [`BeamError::StiffnessNegative`] where a motion has an energy below −τ Σ K_ii x_i²,
+/// [`BeamError::Unresolved`] where one has one between τ and 10 τ times that sum, so that
+/// a tenth of its ω² may be rounding, or where rounding could hide, as a rigid mode, an ω²
+/// of a thousandth of the lowest one of its part; [`BeamError::NotConverged`].
 pub fn lowest_modes(matrices: &BandedMatrices, count: usize) -> Result<Modes, BeamError> {
     let (mass, stiffness) = (&matrices.mass, &matrices.stiffness);
     check(matrices, count)?;
@@ -61,13 +56,17 @@ pub fn lowest_modes(matrices: &BandedMatrices, count: usize) -> Result<Modes, Be
     let limit = limit(&mut parts, count)?;
     let mut found = Vec::new();
     for (index, part) in parts.iter_mut().enumerate() {
-        let shapes = part.modes_below(limit)?;
-        for (column, eigenvalue) in part.quotients(&shapes).into_iter().enumerate() {
-            if !eigenvalue.is_finite() {
+        let modes = part.modes_below(limit)?;
+        for (mode, (eigenvalue, shape)) in modes.into_iter().enumerate() {
+            let frequency = if mode < part.rigid.count {
+                0.0
+            } else {
+                eigenvalue.sqrt()
+            };
+            if !frequency.is_finite() {
                 return Err(BeamError::NotConverged);
             }
-            let frequency = frequency(eigenvalue, part.rounding());
-            found.push((frequency, index, shapes.column(column).into_owned()));
+            found.push((frequency, index, shape));
         }
     }
     if found.len() < count {
@@ -103,42 +102,51 @@ fn check(matrices: &BandedMatrices, count: usize) -> Result<(), BeamError> {
 }
 
 /// A limit with at least `count` eigenvalues below it: down in steps of 256
-/// from above the spectrum, then four bisections of the last step. Stops
-/// well above rounding, where counts mean nothing.
+/// from above the spectrum, then four bisections of the last step. Not below a limit
+/// under which there are rigid motions alone.
+///
+/// Within the spectrum of a long mesh some pivot is always small, so that no count
+/// stands there: such places are passed over on the way down, and count as too high in
+/// a bisection, which then goes on until one stands.
 fn limit(parts: &mut [Part], count: usize) -> Result<f64, BeamError> {
-    let mut high = above(parts, count)?;
-    let (mut low, floor) = (high / 256.0, high * 1e-12);
-    while low > floor {
-        let (mu, found) = below(parts, low)?;
-        if found < count {
-            break;
+    let rigid: usize = parts.iter().map(|part| part.rigid.count).sum();
+    let mut top = above(parts, count)?;
+    let mut high = below(parts, top).ok().map(|(mu, _)| mu);
+    let mut low = high.unwrap_or(top) / 256.0;
+    while low > f64::MIN_POSITIVE {
+        match below(parts, low).ok() {
+            Some((_, found)) if found < count => break,
+            Some((mu, found)) if found <= rigid => return Ok(mu),
+            Some((mu, _)) => (top, high) = (mu, Some(mu)),
+            None => (top, high) = (low, None),
         }
-        high = mu;
         low /= 256.0;
     }
-    for _ in 0..4 {
-        let (mu, found) = below(parts, (high * low).sqrt())?;
-        if found >= count {
-            high = mu;
-        } else {
-            low = mu;
+    for round in 0..MOST_MOVES {
+        if let Some(high) = high.filter(|_| round >= 4) {
+            return Ok(high);
+        }
+        let middle = (top * low).sqrt();
+        match below(parts, middle) {
+            Ok((mu, found)) if found >= count => (top, high) = (mu, Some(mu)),
+            Ok((mu, _)) => low = mu,
+            Err(_) => (top, high) = (middle, None),
         }
     }
-    Ok(high)
+    high.ok_or(BeamError::NotConverged)
 }
 
 /// A start for the bisection. The largest K_ii / M_ii is a Rayleigh quotient,
 /// so the spectrum reaches at least that far; it is doubled until enough
-/// eigenvalues lie below.
+/// eigenvalues lie below, or no count stands.
 fn above(parts: &mut [Part], count: usize) -> Result<f64, BeamError> {
     let scale = parts.iter().fold(0.0_f64, |m, part| m.max(part.scale));
     let mut top = if scale > 0.0 { scale } else { 1.0 };
     while top.is_finite() {
-        let (mu, found) = below(parts, top)?;
-        if found >= count {
-            return Ok(mu);
+        match below(parts, top) {
+            Ok((_, found)) if found < count => top *= 2.0,
+            _ => return Ok(top),
         }
-        top *= 2.0;
     }
     Err(BeamError::NotConverged)
 }
@@ -146,103 +154,20 @@ fn above(parts: &mut [Part], count: usize) -> Result<f64, BeamError> {
 /// `mu`, or the first value above it in steps of a 64th at which every part can
 /// be counted reliably, and the number of eigenvalues of all parts below it.
 fn below(parts: &mut [Part], mu: f64) -> Result<(f64, usize), BeamError> {
-    let mut at = mu;
+    reliable(mu, |at| parts.iter_mut().map(|part| part.count(at)).sum())
+}
+
+/// `at`, or the first value beyond it in steps of a 64th at which there is a count,
+/// and the count.
+fn reliable(
+    mut at: f64,
+    mut count: impl FnMut(f64) -> Option<usize>,
+) -> Result<(f64, usize), BeamError> {
     for _ in 0..MOST_MOVES {
-        let counts = parts.iter_mut().map(|part| part.count(at));
-        if let Some(sum) = counts.sum() {
-            return Ok((at, sum));
+        if let Some(found) = count(at) {
+            return Ok((at, found));
         }
         at *= 1.0 + 1.0 / 64.0;
     }
     Err(BeamError::NotConverged)
-}
-
-/// An independent part with its working memory.
-struct Part {
-    component: Component,
-    factor: Ldlt,
-    /// Largest K_ii / M_ii: the size of the largest eigenvalues.
-    scale: f64,
-}
-
-impl Part {
-    fn new(component: Component) -> Result<Self, BeamError> {
-        let (mass, stiffness) = (&component.mass, &component.stiffness);
-        let mut scale = 0.0_f64;
-        for j in 0..mass.order() {
-            let (m, k) = (mass.column(j)[0], stiffness.column(j)[0]);
-            if m <= 0.0 {
-                return Err(BeamError::MassNotPositiveDefinite);
-            }
-            scale = scale.max(k.abs() / m);
-        }
-        if !scale.is_finite() {
-            return Err(BeamError::NotFinite { field: "reduced" });
-        }
-        let mut factor = Ldlt::new(mass, stiffness);
-        // No pivot of a positive definite matrix is small beside its row.
-        if factor.factorise(mass, mass, 0.0) != Some(0) {
-            return Err(BeamError::MassNotPositiveDefinite);
-        }
-        Ok(Self {
-            component,
-            factor,
-            scale,
-        })
-    }
-
-    /// Number of eigenvalues below `mu`; none where it is not reliable.
-    fn count(&mut self, mu: f64) -> Option<usize> {
-        let (mass, stiffness) = (&self.component.mass, &self.component.stiffness);
-        self.factor.factorise(mass, stiffness, mu)
-    }
-
-    fn rounding(&self) -> f64 {
-        ROUNDING * f64::EPSILON * self.scale
-    }
-
-    /// Shapes of all modes with eigenvalues below `limit`, one a column.
-    fn modes_below(&mut self, limit: f64) -> Result<DMatrix<f64>, BeamError> {
-        let order = self.component.dofs.len();
-        let wanted = self.count(limit).ok_or(BeamError::NotConverged)?;
-        if wanted == 0 {
-            return Ok(DMatrix::zeros(order, 0));
-        }
-        if order < 4 * wanted + SMALL {
-            let (mass, stiffness) = (&self.component.mass, &self.component.stiffness);
-            let modes = natural_modes(&mass.to_dense()?, &stiffness.to_dense()?)?;
-            return Ok(modes.shapes.columns(0, wanted).into_owned());
-        }
-        let s = (limit / 64.0).max(SHIFT * self.scale);
-        // Where it is positive definite, the count is reliable too.
-        if self.count(-s) != Some(0) {
-            return Err(BeamError::StiffnessNegative);
-        }
-        krylov::lowest(&self.component, &self.factor, s, limit, wanted)
-    }
-
-    /// Rayleigh quotients of the shapes, two at a time: their errors are
-    /// squares of the shapes' errors.
-    fn quotients(&self, shapes: &DMatrix<f64>) -> Vec<f64> {
-        let (order, count) = shapes.shape();
-        let mut pair = vec![[0.0; 2]; order];
-        let mut product = pair.clone();
-        let mut quotients = Vec::with_capacity(count + 1);
-        for first in (0..count).step_by(2) {
-            let second = (first + 1).min(count - 1);
-            let (left, right) = (shapes.column(first), shapes.column(second));
-            for ((row, l), r) in pair.iter_mut().zip(&left).zip(&right) {
-                *row = [*l, *r];
-            }
-            let mut energies = |a: &SymmetricBanded| {
-                block::multiply(a, &pair, &mut product);
-                [0, 1].map(|c| block::dot(&pair, c, &product, c))
-            };
-            let potential = energies(&self.component.stiffness);
-            let kinetic = energies(&self.component.mass);
-            quotients.extend([0, 1].map(|c| potential[c] / kinetic[c]));
-        }
-        quotients.truncate(count);
-        quotients
-    }
 }

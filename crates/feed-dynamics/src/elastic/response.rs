@@ -4,6 +4,7 @@ use nalgebra::Complex;
 
 use super::ElasticDrive;
 use crate::DriveError;
+use crate::error::frequency;
 
 /// Where an elastic drive is driven or observed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,8 +26,8 @@ impl ElasticDrive {
     /// ```
     ///
     /// # Errors
-    /// [`DriveError::Parameter`] where `x` is not finite or the stiffness there is
-    /// not valid; [`DriveError::Singular`] at zero frequency, where the axis is free,
+    /// [`DriveError::Parameter`] where `x` or a frequency is not finite or the stiffness
+    /// there is not valid; [`DriveError::Singular`] at zero frequency, where the axis is free,
     /// and at a resonance without damping.
     pub fn receptance(
         &self,
@@ -49,7 +50,7 @@ impl ElasticDrive {
         w: f64,
     ) -> Result<Complex<f64>, DriveError> {
         let p = &self.parameters;
-        let (r, square) = (p.travel_per_radian, w * w);
+        let (r, square) = (p.travel_per_radian, frequency(w)? * w);
         let spring = Complex::new(stiffness, stiffness * w * p.stiffness_damping);
         let both = square * p.motor_inertia * p.load_inertia;
         let determinant = (Complex::from(both) - spring * self.total_inertia()) * square;

@@ -2,8 +2,8 @@
 //! eigenvalue problem and a system of equations solved by nalgebra.
 
 use feed_dynamics::{
-    BeltStrands, DriveError, ElasticDrive, ElasticDriveParameters, ElasticStepper, Settled, Side,
-    Stiffness, TimeStepper,
+    BeltStrands, DriveError, ElasticDrive, ElasticDriveParameters, ElasticStepper, Mounting,
+    ScrewShaft, Settled, Side, Stiffness, TimeStepper,
 };
 use nalgebra::{Complex, Matrix2, SymmetricEigen, Vector2};
 use proptest::prelude::*;
@@ -179,6 +179,16 @@ fn parameters_and_positions_are_checked_by_name() {
                 .receptance(x, Side::Motor, Side::Load, &[1.0])
                 .is_err()
         );
+    }
+    for bad in [f64::NAN, f64::INFINITY, 1e300] {
+        let error = drive(good).receptance(0.0, Side::Motor, Side::Load, &[bad]);
+        let text = error.unwrap_err().to_string();
+        assert!(text.starts_with("angular frequency = "), "{text}");
+    }
+    let shaft = ScrewShaft::new(2.6e8, 1.5, Mounting::FixedFree).unwrap();
+    for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert!(drive(good).resonance(x).is_nan() && drive(good).antiresonance(x).is_nan());
+        assert!(!x.is_nan() || shaft.at(x).is_nan());
     }
     let fast = Settled {
         speed: f64::NAN,

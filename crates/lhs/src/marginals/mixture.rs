@@ -58,6 +58,10 @@ impl Marginal for Mixture {
         if !is_probability(p) {
             return f64::NAN;
         }
+        if p > 0.5 && p < 1.0 {
+            // There 1 − G has more digits, and 1 − p is exact.
+            return self.inverse_survival(1.0 - p);
+        }
         let (least, greatest) = self.bracket(|part| part.inverse_cdf(p));
         // The ends of the support: G says nothing there (it is 0 all the way
         // below the least, and rounds to 1 before the greatest).
@@ -83,6 +87,9 @@ impl Cumulative for Mixture {
     fn inverse_survival(&self, q: f64) -> f64 {
         if !is_probability(q) {
             return f64::NAN;
+        }
+        if q > 0.5 && q < 1.0 {
+            return self.inverse_cdf(1.0 - q);
         }
         let (least, greatest) = self.bracket(|part| part.inverse_survival(q));
         if q == 1.0 {

@@ -46,6 +46,17 @@ impl Cumulative for Uniform {
     fn cdf(&self, x: f64) -> f64 {
         ((x - self.lo) / (self.hi - self.lo)).clamp(0.0, 1.0)
     }
+
+    fn survival(&self, x: f64) -> f64 {
+        ((self.hi - x) / (self.hi - self.lo)).clamp(0.0, 1.0)
+    }
+
+    fn inverse_survival(&self, q: f64) -> f64 {
+        if !is_probability(q) {
+            return f64::NAN;
+        }
+        (self.hi - q * (self.hi - self.lo)).max(self.lo)
+    }
 }
 
 /// ln v uniform on [ln lo, ln hi]: every ratio equally likely.
@@ -64,8 +75,7 @@ impl LogUniform {
     pub fn new(lo: f64, hi: f64) -> Result<Self, LhsError> {
         let (lo, hi) = interval("LogUniform", lo, hi)?;
         checked("LogUniform", "lo", lo, lo > 0.0, "positive")?;
-        // Two logarithms, because hi / lo may overflow.
-        let log_ratio = libm::log(hi) - libm::log(lo);
+        let log_ratio = log_ratio(lo, hi);
         checked(
             "LogUniform",
             "hi",
@@ -82,11 +92,18 @@ impl Marginal for LogUniform {
         if !is_probability(p) {
             return f64::NAN;
         }
-        // From the nearer bound, so that neither factor overflows.
+        self.quantile(p, 1.0 - p)
+    }
+}
+
+impl LogUniform {
+    /// The value with `p` below and `q` = 1 − p above it. From the nearer bound, so that
+    /// neither factor overflows.
+    fn quantile(&self, p: f64, q: f64) -> f64 {
         let x = if p < 0.5 {
             self.lo * libm::exp(p * self.log_ratio)
         } else {
-            self.hi * libm::exp((p - 1.0) * self.log_ratio)
+            self.hi * libm::exp(-q * self.log_ratio)
         };
         x.clamp(self.lo, self.hi)
     }
@@ -97,7 +114,32 @@ impl Cumulative for LogUniform {
         if x <= self.lo {
             return 0.0;
         }
-        ((libm::log(x) - libm::log(self.lo)) / self.log_ratio).clamp(0.0, 1.0)
+        (log_ratio(self.lo, x) / self.log_ratio).clamp(0.0, 1.0)
+    }
+
+    fn survival(&self, x: f64) -> f64 {
+        if x <= self.lo {
+            return 1.0;
+        }
+        (log_ratio(x, self.hi) / self.log_ratio).clamp(0.0, 1.0)
+    }
+
+    fn inverse_survival(&self, q: f64) -> f64 {
+        if !is_probability(q) {
+            return f64::NAN;
+        }
+        self.quantile(1.0 - q, q)
+    }
+}
+
+/// ln(b/a) of two positive numbers.
+fn log_ratio(a: f64, b: f64) -> f64 {
+    let share = (b - a) / a;
+    if share.abs() < 0.5 {
+        libm::log1p(share)
+    } else {
+        // Two logarithms, because b / a may overflow.
+        libm::log(b) - libm::log(a)
     }
 }
 
@@ -124,33 +166,68 @@ impl Triangular {
     }
 }
 
-impl Marginal for Triangular {
-    fn inverse_cdf(&self, p: f64) -> f64 {
+impl Triangular {
+    /// The value with `p` below and `q` = 1 − p above it.
+    fn quantile(&self, p: f64, q: f64) -> f64 {
         let Self { lo, mode, hi } = *self;
         let width = hi - lo;
-        if !is_probability(p) {
-            f64::NAN
-        } else if p * width < mode - lo {
+        if p * width < mode - lo {
             lo + width * (p * ((mode - lo) / width)).sqrt()
         } else {
-            hi - width * ((1.0 - p) * ((hi - mode) / width)).sqrt()
+            hi - width * (q * ((hi - mode) / width)).sqrt()
         }
+    }
+
+    /// G(x) of an x between `lo` and `mode`.
+    fn rising(&self, x: f64) -> f64 {
+        ((x - self.lo) / (self.hi - self.lo)) * ((x - self.lo) / (self.mode - self.lo))
+    }
+
+    /// 1 − G(x) of an x between `mode` and `hi`.
+    fn falling(&self, x: f64) -> f64 {
+        ((self.hi - x) / (self.hi - self.lo)) * ((self.hi - x) / (self.hi - self.mode))
+    }
+}
+
+impl Marginal for Triangular {
+    fn inverse_cdf(&self, p: f64) -> f64 {
+        if !is_probability(p) {
+            return f64::NAN;
+        }
+        self.quantile(p, 1.0 - p)
     }
 }
 
 impl Cumulative for Triangular {
     fn cdf(&self, x: f64) -> f64 {
-        let Self { lo, mode, hi } = *self;
-        let width = hi - lo;
-        if x <= lo {
+        if x <= self.lo {
             0.0
-        } else if x >= hi {
+        } else if x >= self.hi {
             1.0
-        } else if x < mode {
-            ((x - lo) / width) * ((x - lo) / (mode - lo))
+        } else if x < self.mode {
+            self.rising(x)
         } else {
-            1.0 - ((hi - x) / width) * ((hi - x) / (hi - mode))
+            1.0 - self.falling(x)
         }
+    }
+
+    fn survival(&self, x: f64) -> f64 {
+        if x <= self.lo {
+            1.0
+        } else if x >= self.hi {
+            0.0
+        } else if x < self.mode {
+            1.0 - self.rising(x)
+        } else {
+            self.falling(x)
+        }
+    }
+
+    fn inverse_survival(&self, q: f64) -> f64 {
+        if !is_probability(q) {
+            return f64::NAN;
+        }
+        self.quantile(1.0 - q, q)
     }
 }
 

@@ -75,28 +75,55 @@ impl Marginal for Tabulated {
         // the segment exists and rises.
         let k = self.points.partition_point(|&(_, g)| g < p).max(1);
         let ((x0, p0), (x1, p1)) = (self.points[k - 1], self.points[k]);
-        interpolate((p - p0) / (p1 - p0), x0, x1)
+        between([(p1 - p) / (p1 - p0), (p - p0) / (p1 - p0)], x0, x1)
+    }
+}
+
+impl Tabulated {
+    /// The table's points on either side of `x`, as far as there are.
+    fn around(&self, x: f64) -> [Option<(f64, f64)>; 2] {
+        let k = self.points.partition_point(|&(x0, _)| x0 <= x);
+        let before = k.checked_sub(1).map(|i| self.points[i]);
+        [before, self.points.get(k).copied()]
     }
 }
 
 impl Cumulative for Tabulated {
     fn cdf(&self, x: f64) -> f64 {
-        let k = self.points.partition_point(|&(x0, _)| x0 <= x);
-        if k == 0 {
-            return 0.0;
-        }
-        match self.points.get(k) {
-            None => 1.0,
-            Some(&(x1, p1)) => {
-                let (x0, p0) = self.points[k - 1];
-                interpolate((x - x0) / (x1 - x0), p0, p1)
+        match self.around(x) {
+            [None, _] => 0.0,
+            [_, None] => 1.0,
+            [Some((x0, p0)), Some((x1, p1))] => {
+                between([(x1 - x) / (x1 - x0), (x - x0) / (x1 - x0)], p0, p1)
             }
         }
     }
+
+    fn survival(&self, x: f64) -> f64 {
+        match self.around(x) {
+            [None, _] => 1.0,
+            [_, None] => 0.0,
+            [Some((x0, p0)), Some((x1, p1))] => {
+                let shares = [(x - x0) / (x1 - x0), (x1 - x) / (x1 - x0)];
+                between(shares, 1.0 - p1, 1.0 - p0)
+            }
+        }
+    }
+
+    fn inverse_survival(&self, q: f64) -> f64 {
+        if !is_probability(q) {
+            return f64::NAN;
+        }
+        let k = self.points.partition_point(|&(_, g)| 1.0 - g > q).max(1);
+        let ((x0, p0), (x1, p1)) = (self.points[k - 1], self.points[k]);
+        let (q0, q1) = (1.0 - p0, 1.0 - p1);
+        between([(q - q1) / (q0 - q1), (q0 - q) / (q0 - q1)], x0, x1)
+    }
 }
 
-/// From `a` at share 0 to exactly `b` at share 1, never past either; the two
-/// products keep b − a from overflowing.
-fn interpolate(share: f64, a: f64, b: f64) -> f64 {
-    ((1.0 - share) * a + share * b).clamp(a, b)
+/// a and b ≥ a by their shares, which add up to one: exactly either where its share is 1,
+/// never past it, and with the digits of a small share. The two products keep b − a from
+/// overflowing.
+fn between(shares: [f64; 2], a: f64, b: f64) -> f64 {
+    (shares[0] * a + shares[1] * b).clamp(a, b)
 }
