@@ -8,6 +8,7 @@ mod pairs;
 
 use super::Found;
 use crate::log::TIME_CHANNEL;
+use crate::numeric::grid::Grid;
 use crate::numeric::order::median;
 use crate::quality::{MAX_RATE_HZ, MIN_RATE_HZ, rate_of};
 use crate::source_unit::size_of;
@@ -85,19 +86,16 @@ fn rising(table: &mut dyn Table, found: &[Found]) -> Option<Found> {
     values.windows(2).all(is_even).then_some(time)
 }
 
-/// The usual step of a column that rises: the mean of those that are no gaps, as rounded ones have
-/// a median that is off.
+/// The usual step of a column that rises: that of its grid, where it always does, as rounded steps
+/// have a median that is off.
 fn step(table: &mut dyn Table, name: &str) -> Option<f64> {
     let values = column(table, name)?;
     let steps = values.windows(2).map(|w| w[1] - w[0]);
     let mut rising: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
-    if 2 * rising.len() <= values.len() {
-        return None;
+    if rising.len() + 1 == values.len() {
+        return Grid::of(&values).map(|grid| grid.period);
     }
-    let longest = 1.5 * median(&mut rising);
-    let (sum, count) = (rising.iter().filter(|step| **step <= longest))
-        .fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
-    Some(sum / count)
+    (2 * rising.len() > values.len()).then(|| median(&mut rising))
 }
 
 /// Six digits of a number, without what rounding left behind.

@@ -11,7 +11,8 @@ use axis_log::quality::{
     rate_of,
 };
 use axis_log::{
-    FileSummary, Log, Mapping, MappingProposal, ReadError, ReadProblem, columns, propose,
+    FileSummary, Log, Mapping, MappingProposal, ReadError, ReadProblem, TIME_CHANNEL, columns,
+    propose,
 };
 use axis_report::{Page, render};
 use axis_sim::Axis;
@@ -236,6 +237,19 @@ fn proposals(paths: &[PathBuf], mapping: &Mapping) -> Result<Vec<MappingProposal
             }
             proposal.columns.retain(|column| !is_mapped(&column.source));
             proposal.others.retain(|name| !is_mapped(name));
+            // What is mapped needs no remark on its unit, and the rate is the log's.
+            let of_mapped = |remark: &String| {
+                let mut all = mapping.columns.iter();
+                all.any(|map| remark.starts_with(&format!("{}: ", map.source)))
+            };
+            proposal.remarks.retain(|remark| !of_mapped(remark));
+            if mapping
+                .columns
+                .iter()
+                .any(|map| map.channel == TIME_CHANNEL)
+            {
+                proposal.rate_hz = None;
+            }
             if !proposal.is_empty() {
                 all.push(proposal);
             }
