@@ -87,8 +87,19 @@ fn plans_of_other_axes_are_those_of_rust() -> Outcome<()> {
         return Ok(());
     }
     let (mut compared, mut seen) = (0, Vec::new());
+    let mut axes = Vec::new();
     for file in std::fs::read_dir(folder)? {
-        let axis = Axis::read(&file?.path())?;
+        axes.push(Axis::read(&file?.path())?);
+    }
+    // Voltages that are late by whole periods, and by a part of one.
+    for delay in ["1.5", "2.25"] {
+        let text = std::fs::read_to_string(format!("{folder}/linear-motor.toml"))?;
+        let late = format!("current_delay_periods = {delay} ");
+        let late = text.replace("current_delay_periods = 0 ", &late);
+        assert_ne!(late, text);
+        axes.push(Axis::parse("late.toml", &late)?);
+    }
+    for axis in axes {
         let predictors = Predictors::of(&axis);
         let feedback = ["emps", "rotary-table"].contains(&&*axis.name);
         for name in &PLANS[..1 + usize::from(feedback)] {
@@ -107,7 +118,12 @@ fn plans_of_other_axes_are_those_of_rust() -> Outcome<()> {
                 same_bits(path, name, 20_000, &source, &compilers[..1])?;
                 compared += 1;
                 let text = &source.source.text;
-                let parts = ["#define LATE 0u", " GAIN = ", " VOLTAGE = "];
+                let parts = [
+                    "#define LATE 0u",
+                    " GAIN = ",
+                    " VOLTAGE = ",
+                    "SAMPLED_PART =",
+                ];
                 seen.push(parts.map(|part| text.contains(part)));
             }
         }
@@ -117,5 +133,7 @@ fn plans_of_other_axes_are_those_of_rust() -> Outcome<()> {
     let with = |part: usize, there: bool| seen.iter().any(|parts| parts[part] == there);
     assert!(with(0, true) && with(0, false), "{seen:?}");
     assert!(with(1, true) && with(2, true), "{seen:?}");
+    // A sample between two.
+    assert!(seen.iter().any(|parts| parts[3]), "{seen:?}");
     Ok(())
 }

@@ -103,7 +103,8 @@ mod tests {
                 most_free = most_free.max(value.abs());
             }
             assert!(most == 1.0, "{most}");
-            assert!(filters[1].is_none() || most_free > 1.1, "{most_free}");
+            // But for the low passes, which take that from it.
+            assert!(filters[0].is_some() || most_free > 1.1, "{most_free}");
         }
     }
 

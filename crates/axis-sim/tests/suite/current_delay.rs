@@ -1,9 +1,10 @@
 //! The voltage of a motor comes late by computing and PWM: against the loop by hand.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
-use axis_sim::{Axis, ClosedLoop, Cycle};
-use compensator::{Compensator, Correction, Sample};
+use axis_sim::{Axis, ClosedLoop, Cycle, Sensors};
+use compensator::{Compensator, Correction, Drive, Plan, PlanSettings, Reference, Sample, Target};
+use trajectories::Motion;
 
 use crate::{Dwell, changed};
 
@@ -199,6 +200,50 @@ fn the_angle_is_compensated() {
         at("current_delay_periods = 0"),
         at("current_delay_periods = 1.5"),
     );
-    println!("{none:?} A, {late:?} A, {TAU}");
+    println!("{none:?} A, {late:?} A");
     assert!((none[0] - late[0]).abs() < 1e-3 && (none[1] - late[1]).abs() < 1e-3);
+}
+
+/// Peak error of a plan in which the axis is as believed but for what the voltage is late, µm, its
+/// sensors perfect.
+fn planned(delay: &str, believed_late: f64) -> f64 {
+    let mut axis = changed("linear-motor.toml", &[("current_delay_periods = 0", delay)]);
+    axis.sensors = Sensors::default();
+    let mut model = axis.drive_model().unwrap();
+    if let Drive::FieldOriented { late, .. } = &mut model.drive {
+        *late = believed_late;
+    }
+    let motion = axis.plan(&axis.trajectories[1]).unwrap();
+    let targets = |k: usize| {
+        let s = motion.at(k as f64 * axis.period);
+        Target::of(Reference {
+            position: s.position,
+            velocity: s.velocity,
+            acceleration: s.acceleration,
+        })
+    };
+    let mut plan = Plan::new(&model, &PlanSettings::default(), targets).unwrap();
+    let mut most = 0.0_f64;
+    ClosedLoop::new(&axis)
+        .unwrap()
+        .run(&motion, &mut plan, |c| {
+            most = most.max(1e6 * c.error().abs())
+        })
+        .completed()
+        .unwrap();
+    most
+}
+
+/// A plan asks for each voltage as much earlier as it comes late.
+#[test]
+fn plans_count_it() {
+    let none = planned("current_delay_periods = 0", 0.0);
+    for (delay, late) in [
+        ("current_delay_periods = 1.5", 1.0),
+        ("current_delay_periods = 2.25", 1.75),
+    ] {
+        let [counted, not] = [late, 0.0].map(|late| planned(delay, late));
+        println!("{delay}: {counted:.4} µm, {not:.4} not counted, {none:.4} without a delay");
+        assert!(counted < 0.4 * not, "{counted} {not} {none}");
+    }
 }

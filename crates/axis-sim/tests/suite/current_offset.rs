@@ -59,15 +59,12 @@ fn it_ripples_at_the_electrical_frequency() {
         let expected = 2.0 / 3f64.sqrt() * f64::sqrt(a * a + a * b + b * b);
         let shown = amplitude(&cycles, 22.0, |c| c.measured.current.q);
         let of_d = amplitude(&cycles, 22.0, |c| c.measured.current.d - c.current.d);
-        let other = amplitude(&cycles, 44.0, |c| c.measured.current.q - c.current.q);
-        println!("{a} {b}: {shown} A, {of_d} A of {expected} A; {other} A at twice that");
+        println!("{a} {b}: {shown} A, {of_d} A of {expected} A");
         assert!(
             (shown / expected - 1.0).abs() < 0.02,
             "{shown} of {expected}"
         );
         assert!((of_d / expected - 1.0).abs() < 2e-3, "{of_d} of {expected}");
-        // What a window that is cut at samples leaves of the first.
-        assert!(other < 0.05 * expected, "{other}");
     }
     assert!(amplitude(&clean, 22.0, |c| c.measured.current.q) < 2e-3);
 }

@@ -163,7 +163,7 @@ fn fingerprints_of_the_files_as_they_are() {
         + "\n[tolerances]\nknown_parameters_percent = 3\n[[log.column]]\nsource = \"a\"\nchannel = \"t_s\"\nscale = 1e-3\n[[effects]]\nname = \"backlash\"\ngap = 4e-6\n[[effects]]\nname = \"periodic-lead-error\"\namplitude = 1e-6\nphase = 1\n";
     assert_eq!(
         fingerprint(&more),
-        "878ff92d7232572f720a02298a25bd384bae9bddeb2d8ad5bde908dbbf260dac"
+        "c49edbd3b655366a2cbe00bfc6091b5a2bb0a1d861bbb163238fd29ace3158db"
     );
 }
 
