@@ -161,7 +161,7 @@ impl LearnedMove {
         let smooth = gauss.pass(&filled);
         let power = power(&smooth, WHILE * self.settings.smoothing / self.period);
         let learnable = Scalar::sqrt(power.iter().fold(0.0_f64, |most, p| most.max(*p)));
-        let floor = self.floor(&gauss, &smooth);
+        let floor = self.floor(&smooth);
         let peak = filled.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
         let stands_out = self.rounds > 0 && learnable > 3.0 * floor;
         if stands_out && learnable > self.first {
@@ -217,7 +217,7 @@ impl LearnedMove {
     /// - The same of the faster part of it, what a second Gaussian three times as wide takes
     ///   away, as the share of white noise that this is. Of a lap that is off all the way the
     ///   first is the error itself, which is slower than this.
-    fn floor(&self, gauss: &Gauss, smooth: &[f64]) -> f64 {
+    fn floor(&self, smooth: &[f64]) -> f64 {
         let width = WIDER * self.settings.smoothing / self.period;
         let slow = Gauss::new(width).pass(smooth);
         let fast: Vec<f64> = smooth.iter().zip(slow).map(|(a, b)| a - b).collect();
