@@ -16,7 +16,7 @@ use compensator::{
 };
 use trajectories::Motion;
 
-use super::plan::plan;
+use super::plan::{Left, plan};
 use super::{DesignOnce, LearnedValues, NextMove, Predictors, SharedMotion, Strategy};
 use crate::residuals::{AnyLearner, AnyResidual};
 use crate::{ErrorUnit, PipelineError};
@@ -48,6 +48,7 @@ pub(super) struct Ladder {
     repeated: Vec<Repeated>,
     /// Which of them runs now.
     now: Option<usize>,
+    left: Left,
 }
 
 /// What no parameter holds, and the parameters beside it.
@@ -87,6 +88,7 @@ impl Ladder {
             design: None,
             repeated: Vec::new(),
             now: None,
+            left: Left::default(),
         }
         .with_learner(rungs.residual.then(tables));
         if rungs.feedback {
@@ -251,12 +253,12 @@ impl Strategy for Ladder {
             }
             self.now = Some(now);
         }
-        let plan = plan(&model, &next)?.with_residual(residual);
+        let plan = plan(&model, &next, &self.left)?.with_residual(residual);
         if !self.rungs.feedback {
-            return Ok(Box::new(plan));
+            return Ok(Box::new(self.left.watching(plan, |plan| plan.planned())));
         }
-        let feedback = self.feedback(&model)?;
-        Ok(Box::new(PlanWithFeedback::new(plan, feedback)))
+        let law = PlanWithFeedback::new(plan, self.feedback(&model)?);
+        Ok(Box::new(self.left.watching(law, |law| law.planned())))
     }
 
     fn learn(&mut self, record: &[Sample]) -> Result<LearnedValues, PipelineError> {

@@ -1,6 +1,11 @@
 //! `plan`: offsets of position and torque from the motion that is known ahead.
 
-use compensator::{Compensator, DriveModel, Plan, PlanSettings, Reference, Target};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use compensator::{
+    Compensator, Correction, DriveModel, Plan, PlanSettings, Planned, Reference, Sample, Target,
+};
 
 use super::{Build, NextMove, ReportTable, Strategy, StrategyKind};
 use crate::PipelineError;
@@ -15,12 +20,14 @@ pub(super) static KIND: StrategyKind = StrategyKind {
     build: Build::Carrying(|predictors| {
         Ok(Box::new(Planning {
             model: predictors.believed()?,
+            left: Left::default(),
         }))
     }),
 };
 
 struct Planning {
     model: DriveModel,
+    left: Left,
 }
 
 impl Strategy for Planning {
@@ -28,7 +35,62 @@ impl Strategy for Planning {
         &mut self,
         next: &NextMove,
     ) -> Result<Box<dyn Compensator + Send>, PipelineError> {
-        Ok(Box::new(plan(&self.model, next)?))
+        let plan = plan(&self.model, next, &self.left)?;
+        Ok(Box::new(self.left.watching(plan, |plan| plan.planned())))
+    }
+}
+
+/// Friction that the plan of the last move has left the load with, N; no number before the
+/// first.
+#[derive(Clone, Debug)]
+pub(super) struct Left(Arc<AtomicU64>);
+
+impl Default for Left {
+    fn default() -> Self {
+        Self(Arc::new(AtomicU64::new(f64::NAN.to_bits())))
+    }
+}
+
+impl Left {
+    fn friction(&self) -> Option<f64> {
+        let left = f64::from_bits(self.0.load(Ordering::Relaxed));
+        left.is_finite().then_some(left)
+    }
+
+    /// A law whose plan is kept in mind.
+    pub fn watching<C: Compensator>(
+        &self,
+        law: C,
+        planned: fn(&C) -> &Planned,
+    ) -> impl Compensator + use<C> {
+        Watching {
+            law,
+            planned,
+            left: self.clone(),
+        }
+    }
+}
+
+struct Watching<C> {
+    law: C,
+    planned: fn(&C) -> &Planned,
+    left: Left,
+}
+
+impl<C: Compensator> Compensator for Watching<C> {
+    fn reset(&mut self) {
+        self.law.reset();
+    }
+
+    fn correct(&mut self, sample: &Sample) -> Correction {
+        let correction = self.law.correct(sample);
+        let friction = (self.planned)(&self.law).friction;
+        self.left.0.store(friction.to_bits(), Ordering::Relaxed);
+        correction
+    }
+
+    fn surprise(&self) -> f64 {
+        self.law.surprise()
     }
 }
 
@@ -36,6 +98,7 @@ impl Strategy for Planning {
 pub(super) fn plan(
     model: &DriveModel,
     next: &NextMove,
+    left: &Left,
 ) -> Result<Plan<impl FnMut(usize) -> Target + use<>>, PipelineError> {
     let (motion, learned) = (next.motion.clone(), next.learned.clone());
     let period = model.period;
@@ -54,8 +117,12 @@ pub(super) fn plan(
         }
     };
     let plan = Plan::new(model, &PlanSettings::default(), target)?;
-    Ok(match &next.continued {
-        Some(before) => plan.after(&before.own).homed(before.homed),
+    let Some(before) = &next.continued else {
+        return Ok(plan);
+    };
+    let plan = plan.after(&before.own).homed(before.homed);
+    Ok(match left.friction() {
+        Some(friction) => plan.held(friction),
         None => plan,
     })
 }

@@ -186,6 +186,10 @@ fn the_steps_of_a_reference_are_not_its_acceleration() {
             "{} channels in {resolution}: {off}",
             channels.len()
         );
+        // Steps of 0.1 mm/s are in the speed that is fed forward, whatever is done here.
+        if resolution == 1e-4 {
+            continue;
+        }
         let apart = residual(&axis, &log, 1e-3);
         let left_out = residual(&fed(0.0), &log, 1e-3);
         println!("    {apart:e} of {left_out:e} m");

@@ -14,6 +14,7 @@ pub struct Plan<F, T = f64, R = ResidualModel<T>> {
     targets: F,
     own: T,
     homed: Option<Homed<T>>,
+    held: Option<T>,
     cycle: usize,
     planned: Planned<T>,
 }
@@ -34,6 +35,7 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>> Plan<F, T> {
             targets,
             own: T::ZERO,
             homed: None,
+            held: None,
             cycle: 0,
             planned: Planned::default(),
         })
@@ -47,6 +49,7 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>> Plan<F, T> {
             targets: self.targets,
             own: self.own,
             homed: self.homed,
+            held: self.held,
             cycle: self.cycle,
             planned: self.planned,
         }
@@ -70,6 +73,14 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> Plan<F, T, R>
         self
     }
 
+    /// Says with what force friction holds the load, N: [`Planned::friction`] at the end of the
+    /// motion before, where this one follows at once.
+    #[must_use]
+    pub fn held(mut self, friction: T) -> Self {
+        self.held = Some(friction);
+        self
+    }
+
     /// What the plan says of the cycle that begins with `sample`.
     pub fn advance(&mut self, sample: &Sample<T>) -> Planned<T> {
         let ahead = self.planner.look_ahead();
@@ -82,6 +93,7 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> Plan<F, T, R>
                     own: self.own,
                     motor_angle: sample.motor_angle,
                     homed: self.homed,
+                    held: self.held,
                 },
             );
             self.planner.push(first);

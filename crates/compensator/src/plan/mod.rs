@@ -100,6 +100,10 @@ pub struct Standstill<T = f64> {
     /// Where a position loop that is closed at the motor was homed, where that was not here:
     /// the wind-up that the axis stands with now, after a motion, is not the one of then.
     pub homed: Option<Homed<T>>,
+    /// Force that the friction's bristles hold the load with, N, where that is known: as the
+    /// plan of the motion before has left them. Where a motion has just ended, `effort` is not
+    /// yet that of an axis at rest, and tells less of it.
+    pub held: Option<T>,
 }
 
 /// What the plan says of a cycle.
@@ -321,7 +325,7 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
     /// that differs from the axis' own load, friction holds the difference: bristles are
     /// taken as deflected so far.
     pub fn begin(&mut self, position: T, standstill: &Standstill<T>) {
-        let resting = self.resting(position, standstill.effort);
+        let resting = self.resting(position, standstill.effort, standstill.held);
         let Resting {
             friction,
             rigid,
@@ -354,7 +358,7 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
         self.smoothing.settle(wind_up);
         self.inverse.settle(rigid);
         self.home = match &standstill.homed {
-            Some(homed) => self.resting(homed.position, homed.effort).wind_up,
+            Some(homed) => self.resting(homed.position, homed.effort, None).wind_up,
             None => wind_up,
         };
         let m = &self.model;
@@ -365,11 +369,12 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
     }
 
     /// The axis at rest at a position, the drive holding a command: bristles hold what the
-    /// command has beside the load.
-    fn resting(&self, position: T, effort: T) -> Resting<T> {
+    /// command has beside the load, or `held` where that is known.
+    fn resting(&self, position: T, effort: T, held: Option<T>) -> Resting<T> {
         let m = &self.model;
         let section = m.along.at(position);
-        let holding = m.torque_constant() * effort / m.travel - section.load;
+        let beside = m.torque_constant() * effort / m.travel - section.load;
+        let holding = held.unwrap_or(beside);
         let p = m.friction.parameters();
         let most = m.friction.bristle_limit();
         let bristle = if p.stiffness > T::ZERO {

@@ -130,6 +130,7 @@ impl<T: Exponential> Runs<T> for Streaming<T> {
                 own: self.own,
                 motor_angle: sample.motor_angle,
                 homed: None,
+                held: None,
             };
             self.planner.begin(newest.position, &standstill);
             self.started = true;
