@@ -79,10 +79,7 @@ pub fn friction(context: &Context, results: &Results) -> Section {
         let machine = curve(&context.machine.friction.law);
         figure = figure.series(Series::line("machine", speeds.clone(), machine));
     }
-    let dots = [
-        runs("runs used", false),
-        runs("runs left out", true),
-    ];
+    let dots = [runs("runs used", false), runs("runs left out", true)];
     for series in dots.into_iter().flatten() {
         figure = figure.series(series);
     }

@@ -38,7 +38,10 @@ impl fmt::Display for Told<'_> {
         }
         write!(f, " and {told} small motion(s) about a standstill")?;
         if left_out > 0 {
-            write!(f, "; {left_out} stretches left out for vibration, rest, or bristles that still bend")?;
+            write!(
+                f,
+                "; {left_out} stretches left out for vibration, rest, or bristles that still bend"
+            )?;
         }
         let simulated = if friction.simulated {
             " (simulated)"
