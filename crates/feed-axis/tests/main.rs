@@ -7,6 +7,7 @@ mod discover;
 mod export_controller;
 mod export_drive;
 mod export_fmu;
+mod identify;
 mod identify_control;
 mod schema;
 mod schema_of;

@@ -108,10 +108,10 @@ fn runs_in_which_the_axis_vibrates_are_left_out() {
     let mut vibrating = 0;
     for run in &found.runs {
         let speed = 1e3 * r * run.run.speed.abs();
-        // The axis vibrates by itself from about 3 to 7 mm/s.
+        // The axis vibrates by itself from about 3 to 7 mm/s, and a while after a start from 2 on.
         match &run.left_out {
             Some(reason) if reason.starts_with("vibrates") => {
-                assert!((2.5..8.0).contains(&speed), "{speed} mm/s: {reason}");
+                assert!((2.0..8.0).contains(&speed), "{speed} mm/s: {reason}");
                 vibrating += 1;
             }
             Some(_) => {}

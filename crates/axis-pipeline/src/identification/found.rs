@@ -64,6 +64,8 @@ pub enum ParameterSource {
     /// The logs show no fall of friction with speed: `T_S` is `T_C`, and `Ω_S` the slowest
     /// speed, without a meaning.
     NoFall,
+    /// The logs show none: the best value is the least there can be, 0.
+    NotSeen,
 }
 
 /// A parameter with how well it is known.

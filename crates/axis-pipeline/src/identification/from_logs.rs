@@ -206,6 +206,17 @@ fn gathered(
             no_fall("Ω_S", statics.stribeck_speed.value),
         ],
     };
+    let viscous = match statics.viscous.value > 0.0 {
+        true => of("σ2", statics.viscous),
+        false => FoundParameter::open("σ2", 0.0, ParameterSource::NotSeen),
+    };
+    if viscous.source == ParameterSource::NotSeen {
+        open.push(Open {
+            parameters: vec!["σ2"],
+            why: "friction does not rise with speed in these runs".to_owned(),
+            run: "run faster, and at more speeds, both ways".to_owned(),
+        });
+    }
     let (bristles, more) = bristles(axis, &small_motions, &statics);
     open.extend(more);
     let [stiffness, damping] = bristles;
@@ -214,7 +225,7 @@ fn gathered(
         of("T_C", statics.coulomb),
         stiction,
         stribeck_speed,
-        of("σ2", statics.viscous),
+        viscous,
         stiffness,
         damping,
     ];

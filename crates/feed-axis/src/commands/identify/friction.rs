@@ -18,7 +18,7 @@ pub struct Found {
     pub standard_error: Option<f64>,
     /// Interval that holds it in 95 % of such logs.
     pub interval_95: Option<[f64; 2]>,
-    /// "logs"; "axis file", where the logs leave it open; "no fall with speed", where T_S is T_C.
+    /// "logs"; "axis file", where the logs leave it open; "no fall with speed", where T_S is T_C; "not seen", where σ2 is 0.
     pub source: String,
     /// The value in the machine's axis file, where the logs are simulated.
     pub truth: Option<f64>,
@@ -104,6 +104,7 @@ impl Friction {
                     ParameterSource::Logs => "logs",
                     ParameterSource::AxisFile => "axis file",
                     ParameterSource::NoFall => "no fall with speed",
+                    ParameterSource::NotSeen => "not seen",
                 }
                 .to_owned(),
                 truth: truth.map(|truth| of_name(truth, p.name)),
