@@ -86,19 +86,24 @@ pub(super) fn decides(effects: &[EffectFound], next: Option<&str>) -> String {
     let alike = effects
         .iter()
         .find(|e| !e.indistinguishable_from.is_empty());
-    let depends = |name: &str| {
-        let on = Effect::named(name).map_or("", |effect| effect.depends_on);
-        format!("{name} on {on}")
-    };
-    let motion = alike.map(|e| match next {
-        Some(next) => format!("the next experiment ({next})"),
-        None => {
-            let names = std::iter::once(&e.name).chain(&e.indistinguishable_from);
-            let all: Vec<String> = names.map(|name| depends(name)).collect();
-            format!(
-                "motion that tells apart what they depend on ({})",
-                all.join(", ")
-            )
+    let on = |name: &str| Effect::named(name).map_or("", |effect| effect.depends_on);
+    let motion = alike.map(|e| {
+        if let Some(next) = next {
+            return format!("the next experiment ({next})");
+        }
+        let others = e.indistinguishable_from.iter();
+        let others = others.filter(|name| on(name) != on(&e.name));
+        let names: Vec<&String> = std::iter::once(&e.name).chain(others).collect();
+        match names.as_slice() {
+            [own] => format!("more motion over what both depend on ({})", on(own)),
+            names => {
+                let each = names.iter().map(|name| format!("{name} on {}", on(name)));
+                let each: Vec<String> = each.collect();
+                format!(
+                    "motion that tells apart what they depend on ({})",
+                    each.join(", ")
+                )
+            }
         }
     });
     let value = (!parameters.is_empty()).then(|| {

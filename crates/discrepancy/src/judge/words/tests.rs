@@ -297,7 +297,7 @@ fn the_gap_is_said_before_and_after() {
     let made = discovery(Verdict::Explained, vec![viscous()], Vec::new());
     assert_eq!(
         made.gap_line(),
-        "Gap between logs and model on motion that was not fitted to, RMS: position_m 4.00 µm before, 0.016 µm after (noise 0.010 µm)."
+        "Gap between logs and model on motion that was not fitted to, RMS: position_m 4.00 µm before, 0.0160 µm after (noise 0.0100 µm)."
     );
 }
 
@@ -330,6 +330,12 @@ fn a_parameter_at_its_edge_and_an_effect_are_both_in_the_headline() {
         motion.ends_with("motion that tells apart what they depend on (viscous-friction on speed, payload-mass on acceleration)."),
         "{motion}"
     );
+    let same = EffectFound {
+        indistinguishable_from: vec!["asymmetric-friction".to_owned()],
+        name: "coulomb-friction".to_owned(),
+        ..viscous()
+    };
+    assert!(said(&[same], None).ends_with("over what both depend on (sign of speed)."));
     assert!(said(&[alike], Some("slow moves")).ends_with("the next experiment (slow moves)."));
     assert!(!said(&[viscous()], None).contains("decide"));
     let made = discovery(Verdict::Explained, vec![effect], Vec::new());

@@ -1,6 +1,6 @@
 //! Candidates after refinement by simulation.
 
-use axis_sim::effects::{ActiveEffect, Nature};
+use axis_sim::effects::{ActiveEffect, Nature, Scales};
 
 use super::evidence::{EQUAL, enough};
 use super::types::{Alike, ONE_CLASS, RunnerUp};
@@ -37,17 +37,11 @@ impl Refined {
         all.filter(|p| p.nature != Nature::Held).count()
     }
 
-    /// Whether a size is as large as it may be.
-    fn ends_at_bound(&self) -> bool {
+    /// Whether a size of what it adds is as large as it may be: it asks for more than there can be, and was
+    /// fitted to something else.
+    pub(super) fn ends_at_bound(&self) -> bool {
         let mut pairs = self.added().iter().zip(&self.parts);
-        pairs.any(|(active, part)| {
-            let mut sizes = active.effect.parameters.iter().zip(&active.values);
-            sizes.any(|(p, value)| {
-                let edges = p.bounds(&part.scales);
-                // Some sizes cannot be negative; nothing of them is no bound.
-                p.is_size() && edges.iter().any(|edge| *edge != 0.0 && edge == value)
-            })
-        })
+        !self.is_form() && pairs.any(|(active, part)| is_at_bound(active, &part.scales))
     }
 
     pub(super) fn runner_up(&self) -> RunnerUp {
@@ -56,6 +50,15 @@ impl Refined {
             gain: self.gain,
         }
     }
+}
+
+/// Whether a size of an effect is as large as it may be; nothing of one that cannot be negative is no bound.
+pub(super) fn is_at_bound(active: &ActiveEffect, scales: &Scales) -> bool {
+    let mut sizes = active.effect.parameters.iter().zip(&active.values);
+    sizes.any(|(p, value)| {
+        let edges = p.bounds(scales);
+        p.is_size() && edges.iter().any(|edge| *edge != 0.0 && edge == value)
+    })
 }
 
 /// Effects that no axis file has a parameter for, and of which there cannot be less than none:
@@ -165,28 +168,6 @@ pub(super) fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
         refined[..=at].rotate_right(1);
     }
     refined
-}
-
-/// Share of what an effect with a size at its bound explains that a simpler one must explain to be
-/// taken first: what asks for more than there can be was fitted to something else, as friction of
-/// a way back that was not run is to noise at rest.
-const INSIDE: f64 = 0.5;
-
-/// Simpler effects, and what explains as much, before one that ends at a bound.
-pub(super) fn inside_before_bound(refined: &mut [Refined]) {
-    let is_at_bound = |r: &&Refined| !r.is_form() && r.ends_at_bound();
-    let Some(first) = refined.first().filter(is_at_bound) else {
-        return;
-    };
-    let (least, most) = (INSIDE * first.gain, first.parameters());
-    let as_much = enough(first.gain);
-    let is_other = |r: &Refined| {
-        let explains = r.gain >= as_much || r.parameters() < most && r.gain >= least;
-        !r.is_form() && explains && !r.ends_at_bound()
-    };
-    if let Some(at) = refined.iter().position(is_other) {
-        refined[..=at].rotate_right(1);
-    }
 }
 
 /// Share of what two effects explain together that one must explain to be taken first: the

@@ -1,9 +1,11 @@
 //! What makes check motion worse is not given.
 
+use axis_sim::effects::Scales;
 use axis_sim::{ReplayError, Trace};
 
 use super::form::is_form;
 use super::intervals::Intervals;
+use super::refined::is_at_bound;
 use super::state::Search;
 use super::types::{Named, RefusalReason, Refused, RunnerUp};
 use crate::answers::{LogSet, State};
@@ -83,26 +85,30 @@ impl Search<'_> {
         Ok(is_weak && !gap(set, &before, &after, &floors).stands_out())
     }
 
-    /// Takes out an effect that may be of no size at all; false where there is none.
+    /// Takes out an effect that may be of no size at all, or that is as large as it may be; false where there
+    /// is none.
     pub(super) fn drop_unsized(&mut self, intervals: &Intervals) -> bool {
-        let of_no_size =
-            (0..self.named.len()).find(|&index| self.may_be_of_no_size(index, intervals));
+        let of_no_size = (0..self.named.len()).find(|&index| self.is_unfounded(index, intervals));
         let without = of_no_size.and_then(|index| self.without(index));
         if let Some(without) = without {
-            tracing::debug!(?of_no_size, "may be of no size");
+            tracing::debug!(?of_no_size, "of no size, or at its bound");
             *self = without;
             return true;
         }
         false
     }
 
-    /// Whether the 95 % intervals of all sizes of a named effect hold zero: then it is not named. Not
-    /// by known parameters at their edge: inside their tolerance there is more of it.
-    fn may_be_of_no_size(&self, index: usize, intervals: &Intervals) -> bool {
+    /// Whether the 95 % intervals of all sizes of a named effect hold zero, or one of them is as large as it
+    /// may be: then it is not named. Not zero by known parameters at their edge: inside their tolerance
+    /// there is more of it.
+    fn is_unfounded(&self, index: usize, intervals: &Intervals) -> bool {
         let state = &self.fit.state;
         let active = &state.effects[index];
         if is_form(active) || self.is_accepted(active.effect.name) {
             return false;
+        }
+        if is_at_bound(active, &Scales::of(self.machine)) {
+            return true;
         }
         let at_edge = pinned(self.machine, &state.shares);
         let free = free_parameters(state).into_iter().enumerate();

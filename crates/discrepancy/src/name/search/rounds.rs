@@ -8,9 +8,7 @@ use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE, enough};
 use super::form::own_before_directions;
 use super::free_curve::FreeCurves;
 use super::promise::{PROMISING, Promises, WORTH};
-use super::refined::{
-    Refined, Refinement, best_of_each, inside_before_bound, simplest_first, single_before_pair,
-};
+use super::refined::{Refined, Refinement, best_of_each, simplest_first, single_before_pair};
 use super::state::Search;
 use super::types::{Named, RunnerUp};
 use super::unseen::may_end_unseen;
@@ -62,7 +60,6 @@ impl Search<'_> {
         let refined = &mut of_all.kept;
         self.effects_before_forms(refined);
         single_before_pair(refined);
-        inside_before_bound(refined);
         own_before_directions(refined);
         let fitter = self.fitter();
         let curves = FreeCurves::new(self, &fitter, &own);
@@ -72,6 +69,7 @@ impl Search<'_> {
         let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
             let is_effect = awaited.is_empty() && !candidate.is_form();
             let is_nothing = candidate.is_below_none()
+                || candidate.ends_at_bound()
                 || candidate.bends_own_friction()
                 || self.leaves_no_friction(candidate)
                 || self.hardly_repeats(candidate);
