@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use axis_log::{Channel, Log};
 use axis_sim::Axis;
 use discrepancy::logs::{NamedLog, admit};
-use discrepancy::{Discovery, Evidence, Settings, Verdict};
+use discrepancy::{Discovery, Evidence, Settings};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};

@@ -24,6 +24,10 @@ struct Cli {
 }
 
 #[derive(Subcommand)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is one value of it, for as long as the process lives"
+)]
 enum Own {
     #[command(flatten)]
     User(Command<UserJob>),

@@ -25,6 +25,7 @@ fn trained(run: &str) -> (Context, Predictors) {
     }
     let common = Common {
         axis: root().join(AXIS),
+        set: Vec::new(),
         machine: None,
         out: Some(PathBuf::from(run)),
         seed: 1,

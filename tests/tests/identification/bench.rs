@@ -19,7 +19,7 @@ fn friction_and_bristles_of_a_real_bench() {
     // is no steady-state curve of this law.
     let axis = Axis::parse(file, &(text + "\n[balance]\nslowest_rad_per_s = 5\n")).unwrap();
     let read = |name: &&str| {
-        let log = read_log(&folder.join(name), &axis.log, &[]).unwrap();
+        let log = read_log(folder.join(name), &axis.log, &[]).unwrap();
         ((*name).to_owned(), log)
     };
     let names = [

@@ -7,7 +7,7 @@ use crate::parquet_file::by_hand::{Codec, Stored, file};
 use crate::reading::mapping;
 
 fn values(rows: usize) -> Vec<Option<f64>> {
-    let value = |k: usize| (k % 7 != 3).then(|| 0.25 * k as f64 - 3.0);
+    let value = |k: usize| (k % 7 != 3).then_some(0.25 * k as f64 - 3.0);
     (0..rows).map(value).collect()
 }
 

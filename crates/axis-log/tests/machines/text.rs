@@ -294,7 +294,7 @@ fn a_recording_has_its_time_and_a_choice_of_axes() {
         assert!((rate(&log) - 250.0).abs() < 1e-9, "{}", rate(&log));
         assert!((log.log.time()[0] - 28.0).abs() < 1e-12);
         // Two cycles that are not there are a hole.
-        assert_eq!(log.log.missing("position_m"), [6..8]);
+        assert_eq!(log.log.missing("position_m"), std::slice::from_ref(&(6..8)));
     }
     // Without it the counter can be mapped, as it must be.
     let given = given("capture.json", recording(""));

@@ -253,7 +253,7 @@ fn asked(words: &str, goal: &Goal, counted: &mut Counted, unit: ErrorUnit) -> As
         asked,
         goal: match *goal {
             Goal::Left(most) => Limit::left(unit, most),
-            Goal::Taken { peak, .. } => Limit::LeftPercent(100.0 - peak),
+            Goal::Taken { peak, .. } => Limit::Percent(100.0 - peak),
         },
         worst: found,
         kept,

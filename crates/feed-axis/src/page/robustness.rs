@@ -45,22 +45,24 @@ pub struct Asked {
 
 /// The goal of the greatest error.
 #[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
 pub enum Limit {
     /// Share of what is there without compensation that may be left, %.
-    LeftPercent(f64),
+    #[serde(rename = "left_percent")]
+    Percent(f64),
     /// What may be left, µm.
-    LeftUm(f64),
+    #[serde(rename = "left_um")]
+    Micrometres(f64),
     /// The same of an axis that turns, µrad.
-    LeftUrad(f64),
+    #[serde(rename = "left_urad")]
+    Microradians(f64),
 }
 
 impl Limit {
     /// What may be left, in the unit of the axis' errors.
     pub fn left(unit: ErrorUnit, most: f64) -> Self {
         match unit {
-            ErrorUnit::Micrometre => Self::LeftUm(most),
-            ErrorUnit::Microradian => Self::LeftUrad(most),
+            ErrorUnit::Micrometre => Self::Micrometres(most),
+            ErrorUnit::Microradian => Self::Microradians(most),
         }
     }
 }
@@ -119,8 +121,8 @@ fn strips(made: &Robustness, shares: bool) -> Vec<Strip<'_>> {
         for (i, asked) in row.moves.iter().enumerate() {
             number += 1;
             let limit = match (asked.goal, shares) {
-                (Limit::LeftPercent(limit), true)
-                | (Limit::LeftUm(limit) | Limit::LeftUrad(limit), false) => limit,
+                (Limit::Percent(limit), true)
+                | (Limit::Micrometres(limit) | Limit::Microradians(limit), false) => limit,
                 _ => continue,
             };
             let left = row.points.iter().map(|p| match shares {
@@ -243,7 +245,10 @@ mod tests {
             quick: false,
             version: String::new(),
             unit: ErrorUnit::Micrometre,
-            rows: vec![row(Limit::LeftPercent(4.0), 20), row(Limit::LeftUm(0.6), 7)],
+            rows: vec![
+                row(Limit::Percent(4.0), 20),
+                row(Limit::Micrometres(0.6), 7),
+            ],
         };
         let html = render(&Page::new("").section(robustness(&made))).unwrap();
         // A dot is a line of no length.

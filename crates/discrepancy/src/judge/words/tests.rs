@@ -314,7 +314,7 @@ fn a_parameter_at_its_edge_and_an_effect_are_both_in_the_headline() {
     let said = |effects: &[EffectFound], next| {
         sentence(Verdict::Explained, effects, &gap, None, None, None, next)
     };
-    let both = said(&[effect.clone()], None);
+    let both = said(std::slice::from_ref(&effect), None);
     for part in [
         "viscous-friction (or nut-stiffness at the edge of its tolerance, -10 %: these logs cannot tell)",
         "What would decide: a measured value of nut-stiffness in the axis file.",
@@ -325,7 +325,7 @@ fn a_parameter_at_its_edge_and_an_effect_are_both_in_the_headline() {
         indistinguishable_from: vec!["payload-mass".to_owned()],
         ..viscous()
     };
-    let motion = said(&[alike.clone()], None);
+    let motion = said(std::slice::from_ref(&alike), None);
     assert!(
         motion.ends_with("motion that tells apart what they depend on (viscous-friction on speed, payload-mass on acceleration)."),
         "{motion}"

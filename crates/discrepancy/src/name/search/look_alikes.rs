@@ -75,7 +75,7 @@ impl Search<'_> {
         let alike = alike(&best.parts[0], &best, &holding, &screened, |rival| {
             let is_it = |name: &&str| *name == rival.effect.name;
             let fails = failing.iter().any(|r| is_it(&r.parts[0].effect.name));
-            let ended = may_end_unseen(rival.effect) && unseen.iter().any(|name| is_it(name));
+            let ended = may_end_unseen(rival.effect) && unseen.iter().any(is_it);
             !(fails || ended || self.is_unseen(rival))
         });
         (alike, at_edge)
