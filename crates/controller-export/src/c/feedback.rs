@@ -42,8 +42,8 @@ pub(super) fn add<T: Scalar>(draft: &mut Draft, feedback: &Feedback<T>) {
     draft.states.push(State {
         name: "feedback",
         declaration: include_str!("runtime/feedback.h").replace("@STATES@", &states.to_string()),
-        reals: 2 * states + 9,
-        integers: 2,
+        reals: 2 * states + 8,
+        integers: 1,
     });
 }
 
