@@ -70,7 +70,7 @@ impl LoggedReference {
         self.clone().with(position, velocity)
     }
 
-    /// The same without what is faster than a fifth of its rate, where of a motion's corners nothing is lost
+    /// The same without what is faster than a tenth of its rate, where of a motion's corners nothing is lost
     /// that matters, and of noise most of what its derivatives show.
     pub(super) fn smoothed(self) -> Self {
         let filter = LowPass::new(SMOOTH);
@@ -81,7 +81,7 @@ impl LoggedReference {
 }
 
 /// Cut-off of a smoothed reference, as a share of its rate.
-const SMOOTH: f64 = 0.2;
+const SMOOTH: f64 = 0.1;
 
 /// Slopes at its knots of the cubic spline through samples, at rest at both ends or, where
 /// it begins or ends in motion, with the slope of the first or last step there:
