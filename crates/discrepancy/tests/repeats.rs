@@ -86,17 +86,15 @@ fn cogging(discovery: &Discovery) -> Option<[f64; 2]> {
 /// of either is left. Inertia makes next to nothing of the torque, and the file's may be far off.
 #[test]
 fn cogging_is_named_at_one_speed_whatever_the_inertia_is_guessed_to_be() {
-    for guess in [INERTIA, 4e-7] {
-        for wave in [[12.0, 1.5e-3], [36.0, 1.2e-3]] {
-            let discovery = discover(&bench(guess, ""), wave);
-            let [order, size] = cogging(&discovery).unwrap();
-            assert!((order - wave[0]).abs() < 1e-2, "{order}");
-            assert!((size / wave[1] - 1.0).abs() < 0.05, "{size}");
-            let gap = &discovery.gap.check.channels[0];
-            assert!(
-                gap.after < 1.2 * gap.floor && gap.floor < 1.2 * gap.after,
-                "{gap:?}"
-            );
-        }
+    for (guess, wave) in [(INERTIA, [12.0, 1.5e-3]), (4e-7, [36.0, 1.2e-3])] {
+        let discovery = discover(&bench(guess, ""), wave);
+        let [order, size] = cogging(&discovery).unwrap();
+        assert!((order - wave[0]).abs() < 1e-2, "{order}");
+        assert!((size / wave[1] - 1.0).abs() < 0.05, "{size}");
+        let gap = &discovery.gap.check.channels[0];
+        assert!(
+            gap.after < 1.2 * gap.floor && gap.floor < 1.2 * gap.after,
+            "{gap:?}"
+        );
     }
 }

@@ -282,15 +282,22 @@ impl Matters<'_> {
         lost.max(of_far) > HARDLY * effort || noise > effort || hides
     }
 
-    /// Whether inertia makes more of the effort than hardly anything between two frequencies.
+    /// Whether inertia makes more of the effort than hardly anything between two frequencies: by what least
+    /// squares there have go with the acceleration, noise that draws on that counted in. Where it goes with less than half of
+    /// the least inertia that may be, what looks like acceleration is none.
     fn between(&self, [low, high]: [f64; 2]) -> bool {
-        let [below, all] = [low, high].map(|f| {
-            let [_, whole, moved, effort] = self.taken(f);
-            [(whole * moved).powi(2), effort]
-        });
-        (all[0] - below[0]).max(0.0).sqrt() > HARDLY * all[1]
+        let [below, all] = [low, high].map(|f| self.together.up_to(f));
+        let [square, product] = [0, 1].map(|i| all[i] - below[i]);
+        let found = product / (self.per_torque * square).max(f64::MIN_POSITIVE);
+        let least = self.inertia * (1.0 - self.reach);
+        let drawn = self.noise.attenuation(high).min(MOST_DRAWN);
+        let explained = product.powi(2) / square.max(f64::MIN_POSITIVE) / (1.0 - drawn);
+        found >= 0.5 * least && explained > HARDLY.powi(2) * all[2]
     }
 }
+
+/// Share of an inertia that noise draws at most of which something is left to be told.
+const MOST_DRAWN: f64 = 0.9;
 
 /// The frequency, Hz, below which one measured motion stands for that of motor and load:
 /// well below the first mode. Of two, each has its own inertia, up to the second.

@@ -14,7 +14,7 @@ use super::law::Motions;
 use super::motion::{Course, Measured, Whose};
 use super::orders::Order;
 use super::quality::BalanceQuality;
-use super::spectrum::{least_noise, passed};
+use super::spectrum::{least_noise, passed, passed_by_both};
 use super::unsure::Remeasured;
 use super::wind_up::WindUp;
 use crate::axis::Axis;
@@ -115,9 +115,13 @@ impl Balance {
         (decided, orders): (Cutoff, Vec<f64>),
     ) -> Result<Self, ReplayError> {
         let (cutoff, bound) = (decided.frequency, decided.bound);
-        // Up to where the motion's noise counts: both low-passes are passed, or the motion's alone.
-        let motion_cutoff = of_motion(cutoff, period).min(decided.of_motion);
-        let counts = cutoff.min(motion_cutoff);
+        let above = of_motion(cutoff, period);
+        let motion_cutoff = above.min(decided.of_motion);
+        // Up to where the motion's noise counts: above the comparison, its low-pass takes nothing of that.
+        let counts = match motion_cutoff < above {
+            true => cutoff * (passed_by_both(cutoff, motion_cutoff) / passed(4, cutoff)).powf(0.2),
+            false => cutoff,
+        };
         let motions = motions(axis, measured, period, motion_cutoff);
         let every = ((1.0 / (RATE * cutoff * period)).floor() as usize).max(1);
         let compared_period = every as f64 * period;

@@ -93,7 +93,7 @@ impl LoggedReference {
         )
     }
 
-    /// The same without what is faster than a fifth of its rate, where of a motion's corners nothing is lost
+    /// The same without what is faster than a tenth of its rate, where of a motion's corners nothing is lost
     /// that matters, and of noise most of what its derivatives show.
     pub(super) fn smoothed(&self) -> Self {
         let filter = LowPass::new(SMOOTH);
@@ -107,7 +107,7 @@ impl LoggedReference {
 }
 
 /// Cut-off of a smoothed reference, as a share of its rate.
-const SMOOTH: f64 = 0.2;
+const SMOOTH: f64 = 0.1;
 
 impl Motion for LoggedReference {
     fn duration(&self) -> f64 {
