@@ -161,6 +161,7 @@ fn searched(
         leftover: Vec::new(),
         refused: None,
         unseen: Vec::new(),
+        unfounded: Vec::new(),
         hum,
         fit_logs,
         check_logs,

@@ -88,14 +88,15 @@ impl Search<'_> {
     /// Takes out an effect that may be of no size at all, or that is as large as it may be; false where there
     /// is none.
     pub(super) fn drop_unsized(&mut self, intervals: &Intervals) -> bool {
-        let of_no_size = (0..self.named.len()).find(|&index| self.is_unfounded(index, intervals));
-        let without = of_no_size.and_then(|index| self.without(index));
-        if let Some(without) = without {
-            tracing::debug!(?of_no_size, "of no size, or at its bound");
-            *self = without;
-            return true;
-        }
-        false
+        let unfounded = (0..self.named.len()).find(|&index| self.is_unfounded(index, intervals));
+        let Some((index, without)) = unfounded.and_then(|i| Some((i, self.without(i)?))) else {
+            return false;
+        };
+        let name = self.named[index].name;
+        tracing::debug!(name, "of no size, or at its bound");
+        *self = without;
+        self.unfounded.push(name);
+        true
     }
 
     /// Whether the 95 % intervals of all sizes of a named effect hold zero, or one of them is as large as it

@@ -38,6 +38,8 @@ pub(super) struct Search<'a> {
     pub(super) refused: Option<Refused>,
     /// Effects that ended as a simpler one when they were added to what is named now.
     pub(super) unseen: Vec<&'static str>,
+    /// Effects that were taken out, as they may be of no size or are at their bound; they do not come back.
+    pub(super) unfounded: Vec<&'static str>,
     /// What was taken out of the logs.
     pub(super) hum: Hum,
     /// Root mean square of each channel's rest on the check logs before anything was named.
@@ -121,7 +123,9 @@ impl Search<'_> {
         // A second harmonic of the same kind may be there.
         let active = self.named.iter().any(|n| n.name == effect.name);
         let free = !active || effect.place_of(|n| n.is_order()).is_some();
-        let unseen = self.unseen.contains(&effect.name);
+        let unseen = [&self.unseen, &self.unfounded]
+            .iter()
+            .any(|all| all.contains(&effect.name));
         // What the file does not know at all is fitted, and no effect of the same quantity beside it.
         let unknown = !self.is_accepted(effect.name) && effect.changes_unknown(self.machine);
         free && !(rejected || unseen || unknown)
