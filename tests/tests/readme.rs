@@ -1,4 +1,4 @@
-//! Figures that the README quotes, against the program as it is.
+//! Figures that docs/paper.md quotes, against the program as it is.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ fn root(file: &str) -> PathBuf {
         .join(file)
 }
 
-/// Largest and mean tracking error of a trajectory, as the README prints them.
+/// Largest and mean tracking error of a trajectory, as the page prints them.
 fn printed(axis: &str, trajectory: usize) -> String {
     let axis = Axis::read(&root("data/axes").join(axis)).unwrap();
     let motion = axis.plan(&axis.trajectories[trajectory]).unwrap();
@@ -30,11 +30,11 @@ fn printed(axis: &str, trajectory: usize) -> String {
 
 #[test]
 fn tracking_errors_of_model_and_machine() {
-    let readme = std::fs::read_to_string(root("README.md")).unwrap();
-    let heading = readme
+    let page = std::fs::read_to_string(root("docs/paper.md")).unwrap();
+    let heading = page
         .lines()
-        .position(|l| l.starts_with("| trajectory | model |"));
-    let rows = readme.lines().skip(heading.unwrap() + 2);
+        .position(|l| l.starts_with("| trajectory | paper's model | ours |"));
+    let rows = page.lines().skip(heading.unwrap() + 2);
     let rows: Vec<Vec<&str>> = rows
         .take_while(|line| line.starts_with('|'))
         .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
@@ -42,9 +42,9 @@ fn tracking_errors_of_model_and_machine() {
     assert_eq!(rows.len(), 6);
     for (trajectory, row) in rows.iter().enumerate() {
         assert_eq!(row[0], (trajectory + 1).to_string());
-        assert_eq!(row[1], printed("liu2025.toml", trajectory), "{row:?}");
+        assert_eq!(row[2], printed("liu2025.toml", trajectory), "{row:?}");
         assert_eq!(
-            row[2],
+            row[5],
             printed("liu2025-machine.toml", trajectory),
             "{row:?}"
         );

@@ -1,7 +1,7 @@
 //! Limits, smooth switching and a watchdog around any compensator.
 //!
 //! ```text
-//! out = g · limited(correction)      g goes from 0 to 1 and back as sin²
+//! out = g · limited(correction)      g goes from 0 to 1 and back as s² (3 − 2 s), s in proportion to time
 //! ```
 //!
 //! The guard trips, fades the correction out and stays off until it is told otherwise
@@ -153,8 +153,8 @@ impl<T: Scalar> Guard<T> {
             (0, _) => T::ZERO,
             _ => T::of(f64::from(self.faded)) / T::of(f64::from(l.fade)),
         };
-        let (sin, _) = (T::HALF * T::PI * share).sin_cos();
-        let gain = sin * sin;
+        // Without slope at either end, and the same bits wherever it is computed.
+        let gain = share * share * (T::of(3.0) - T::TWO * share);
         Correction {
             position: gain * self.last.position,
             iq: gain * self.last.iq,

@@ -72,5 +72,5 @@ part!(ALONG, "along", [LEAST, GREATEST]);
 part!(FIELD_ORIENTED, "field_oriented", [LIMITED, ROOT]);
 part!(LAG, "lag", [LIMITED]);
 part!(FEEDBACK, "feedback", [FINITE, ROOT]);
-part!(each FADE, "fade", []);
+part!(FADE, "fade", []);
 part!(GUARD, "guard", [ABSOLUTE, LIMITED, FINITE, FADE]);
