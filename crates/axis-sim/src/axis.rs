@@ -371,14 +371,6 @@ impl Axis {
         of_role.map(|key| key.name).collect()
     }
 
-    /// Whether all parameters of that role that may be off may be anything.
-    pub(crate) fn knows_nothing_of(&self, role: Role) -> bool {
-        let known = self.known();
-        let keys = self.keys_of(role).into_iter();
-        let mut keys = keys.filter(|key| known.contains(key)).peekable();
-        keys.peek().is_some() && keys.all(|key| self.tolerances.of(key) >= Tolerances::UNKNOWN)
-    }
-
     /// As [`Axis::known`], with all that are exact unless the tolerances name them.
     pub(crate) fn may_be_known(&self) -> Vec<&'static Known> {
         let of_loads = self.loads.iter().flat_map(Part::known);

@@ -117,7 +117,7 @@ pub use axis::{
     Sensors, Simulation, Stroke, Tolerances, ValueRange,
 };
 pub use axis_file::{AxisFileError, Registry, TABLES_WITHOUT_PARTS};
-pub use balance::{Balance, BalanceError, BalanceQuality, CutoffBound};
+pub use balance::{Balance, BalanceError, BalanceQuality};
 pub use belief::{BeliefError, PositionErrors};
 pub use channels::{CHANNELS, ChannelPart, LogChannel, channels, position_in, reference_in};
 pub use closed_loop::{ClosedLoop, LoopState};

@@ -3,10 +3,9 @@
 use axis_sim::{Axis, ReplayError};
 use thiserror::Error;
 
-use crate::answers::{LogSet, Prepared, State};
+use crate::answers::{LogSet, Prepared};
 use crate::controller::{OwnController, better_than_own};
 use crate::judge::{Discovered, Verdict, discovery};
-use crate::late::{Late, is_better, late_reference, looks_late, note, note_beside};
 use crate::logs::{LogSetError, NamedLog, check_distinct, set_apart};
 use crate::name::search::{Found, SearchError, Settings, search};
 
@@ -73,30 +72,11 @@ impl Evidence {
         mut progress: impl FnMut(&str),
     ) -> Result<(Found, Discovered), SearchError> {
         let mut found = search(machine, &self.fit, &self.check, settings, &mut progress)?;
-        let mut discovered = self.judged(machine, &mut found, None, &mut progress)?;
-        if self.may_be_late(&found, &discovered) {
-            progress("a late reference");
-            match late_reference(machine, &found)? {
-                None => {}
-                Some(Late::OrEffect(by, effect)) => {
-                    let note = note_beside(by, effect, &self.fit);
-                    discovered.discovery.notes.push(note);
-                }
-                Some(Late::Plainly(by)) => {
-                    let [fit, check] = [&self.fit, &self.check].map(|set| {
-                        let mut set = set.with_references_late(by);
-                        set.correct_defects(machine, &State::initial(machine))?;
-                        Ok::<LogSet, ReplayError>(set)
-                    });
-                    let again = search(machine, &fit?, &check?, settings, &mut progress)?;
-                    if is_better(&found.fit, &again.fit) {
-                        found = again;
-                        discovered = self.judged(machine, &mut found, Some(by), &mut progress)?;
-                        discovered.discovery.notes.push(note(by, &self.fit));
-                    }
-                }
-            }
+        if let Some(test) = &self.test {
+            found = found.tested_on(machine, test.clone());
         }
+        progress("verdict");
+        let mut discovered = discovery(machine, &self.fit, &self.check, &found)?;
         let verdict = discovered.discovery.verdict;
         if !self.fit.is_balanced() && matches!(verdict, Verdict::Unknown | Verdict::PartlyExplained)
         {
@@ -104,30 +84,6 @@ impl Evidence {
             discovered.discovery.told.controller = self.other_controller(machine, &found);
         }
         Ok((found, discovered))
-    }
-
-    /// The verdict of a search, with the references of the logs `late` by some time, s.
-    fn judged(
-        &self,
-        machine: &Axis,
-        found: &mut Found,
-        late: Option<f64>,
-        mut progress: impl FnMut(&str),
-    ) -> Result<Discovered, ReplayError> {
-        let read =
-            |set: &LogSet| late.map_or_else(|| set.clone(), |by| set.with_references_late(by));
-        if let Some(test) = &self.test {
-            *found = found.clone().tested_on(machine, read(test));
-        }
-        progress("verdict");
-        discovery(machine, &read(&self.fit), &read(&self.check), found)
-    }
-
-    /// Whether it is worth a look: something is left, or what was named of the controller looks like it.
-    fn may_be_late(&self, found: &Found, discovered: &Discovered) -> bool {
-        let verdict = discovered.discovery.verdict;
-        let is_open = matches!(verdict, Verdict::Unknown | Verdict::PartlyExplained);
-        !self.fit.is_balanced() && (is_open || looks_late(&found.fit.state))
     }
 
     /// What another controller than that of the fitted machine would leave of the commands.

@@ -43,14 +43,13 @@ mod estimate;
 mod evidence;
 mod foresight;
 mod judge;
-mod late;
 pub mod logs;
 mod name;
 mod noise;
 mod spectrum;
 pub mod summary;
 
-pub use answers::{Answer, LogSet, Prepared, Repeats, State};
+pub use answers::{Answer, LogSet, Prepared, State};
 pub use estimate::columns::free_parameters;
 pub use estimate::fit::{Fit, Fitter};
 pub use estimate::interval::Spread;

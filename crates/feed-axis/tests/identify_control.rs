@@ -84,8 +84,7 @@ fn made(way: f64, seconds: f64) -> String {
         s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
     };
     let reference = |t: f64| 0.2 + way * (ramp(t - 0.3) - ramp(t - 0.6 - seconds));
-    // A shake tells the speed from the reference's.
-    let position = |t: f64| reference(t - 0.025) + 4e-4 * (27.0 * t).sin();
+    let position = |t: f64| reference(t - 0.025);
     let travel = 0.012 / std::f64::consts::TAU;
     let mut integral = 0.0;
     let mut lines = vec!["t_s,position_ref_m,position_m,torque_ref_n_m".to_owned()];

@@ -22,7 +22,7 @@ pub use quantum::Quantum;
 pub use relation::{Relation, RelationLaw};
 pub use sampling::{
     MAX_JITTER, MAX_RATE_HZ, MIN_RATE_HZ, MIN_SAMPLES, Sampling, SamplingError, check_sampling,
-    check_sampling_from, rate_of,
+    rate_of,
 };
 pub use unit_slip::{UnitSlip, unit_slip};
 

@@ -43,14 +43,12 @@ pub enum SamplingError {
     },
     /// A rate that is out of range.
     #[error(
-        "the sample rate is {} Hz: it must lie between {least} and {MAX_RATE_HZ} Hz{}",
+        "the sample rate is {} Hz: it must lie between {MIN_RATE_HZ} and {MAX_RATE_HZ} Hz{}",
         in_digits(*rate), rate_hint(*rate)
     )]
     Rate {
         /// The rate found, Hz.
         rate: f64,
-        /// The lowest that will do, Hz.
-        least: f64,
     },
     /// Samples are missing.
     #[error(
@@ -97,15 +95,6 @@ pub enum SamplingError {
 /// [`SamplingError::Jitter`], an instant more than [`MAX_JITTER`] periods off
 /// the grid.
 pub fn check_sampling(log: &Log) -> Result<Sampling, SamplingError> {
-    check_sampling_from(log, MIN_RATE_HZ)
-}
-
-/// As [`check_sampling`], of logs from another lowest rate on, Hz: where what is made of them says itself
-/// how slow they may be.
-///
-/// # Errors
-/// As [`check_sampling`].
-pub fn check_sampling_from(log: &Log, least: f64) -> Result<Sampling, SamplingError> {
     let time = log.time();
     if time.len() < MIN_SAMPLES {
         return Err(SamplingError::TooFew { found: time.len() });
@@ -118,7 +107,7 @@ pub fn check_sampling_from(log: &Log, least: f64) -> Result<Sampling, SamplingEr
         .fold((0.0, 0.0), |(sum, count), s| (sum + s, count + 1.0));
     // The median itself is no gap, so count is not 0.
     let period = sum / count;
-    check_rate(1.0 / period, least)?;
+    check_rate(1.0 / period)?;
     check_gaps(time, &steps, longest, period)?;
     fit_grid(time)
 }
@@ -134,15 +123,15 @@ fn median(steps: &[f64]) -> f64 {
 /// # Errors
 /// [`SamplingError::Rate`] outside [`MIN_RATE_HZ`] to [`MAX_RATE_HZ`] by more than 0.1 %.
 pub fn rate_of(period: f64) -> Result<f64, SamplingError> {
-    check_rate(1.0 / period, MIN_RATE_HZ).map(|()| 1.0 / period)
+    check_rate(1.0 / period).map(|()| 1.0 / period)
 }
 
-fn check_rate(rate: f64, least: f64) -> Result<(), SamplingError> {
-    let range = least * (1.0 - RATE_SLACK)..=MAX_RATE_HZ * (1.0 + RATE_SLACK);
+fn check_rate(rate: f64) -> Result<(), SamplingError> {
+    let range = MIN_RATE_HZ * (1.0 - RATE_SLACK)..=MAX_RATE_HZ * (1.0 + RATE_SLACK);
     if range.contains(&rate) {
         Ok(())
     } else {
-        Err(SamplingError::Rate { rate, least })
+        Err(SamplingError::Rate { rate })
     }
 }
 
@@ -207,7 +196,7 @@ fn in_digits(rate: f64) -> String {
 /// A rate that is right but for a factor of 1000, 10⁶ or 10⁹ has its time in another
 /// unit.
 fn rate_hint(rate: f64) -> &'static str {
-    let fits = |factor: f64| check_rate(rate * factor, MIN_RATE_HZ).is_ok();
+    let fits = |factor: f64| check_rate(rate * factor).is_ok();
     if fits(1e3) {
         "; the time may be in milliseconds"
     } else if fits(1e6) {

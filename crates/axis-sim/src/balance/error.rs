@@ -2,8 +2,6 @@
 
 use thiserror::Error;
 
-use super::quality::CutoffBound;
-
 /// Why the torque balance of a log cannot be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -38,21 +36,9 @@ pub enum BalanceError {
         /// As given, s.
         period: f64,
     },
-    /// A motion that is faster than its log.
-    #[error(
-        "the log has {rate:.4} samples a second, and most of its acceleration lies below {motion:.4} Hz only: a torque balance of it needs {least:.4} samples a second at least; log at a higher rate, or slower motion"
-    )]
-    Slow {
-        /// Samples a second, Hz.
-        rate: f64,
-        /// Frequency below which nine tenths of the acceleration's power lie, Hz.
-        motion: f64,
-        /// Lowest rate that would do, Hz.
-        least: f64,
-    },
     /// Hardly any sample in which the axis moves.
     #[error(
-        "only {kept} of {samples} samples are left for a torque balance, which compares what lies below {cutoff:.3} Hz ({bound}): in at least {least} of them the axis must move faster than {speed:.3e} {unit}, which its sensor tells from standstill, and farther than its friction's contact bends before it slides; a longer or faster log has more, and so has a higher [balance] cutoff_hz in the axis file"
+        "only {kept} of {samples} samples are left for a torque balance: in at least {least} of them the axis must move faster than {speed:.3e} {unit}, which its sensor tells from rest, and farther than its friction's contact bends before it slides"
     )]
     Standstill {
         /// Samples left.
@@ -65,9 +51,5 @@ pub enum BalanceError {
         speed: f64,
         /// Its unit.
         unit: &'static str,
-        /// Cut-off of the comparison, Hz.
-        cutoff: f64,
-        /// What bounds it.
-        bound: CutoffBound,
     },
 }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 /// A fourth-order Butterworth low-pass, run forward and back: gain 1/(1 + (f/f_c)⁸), no
 /// phase.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LowPass {
+pub(super) struct LowPass {
     sections: [Section; 2],
     /// Samples by which a series is continued at either end.
     reach: usize,
@@ -49,7 +49,10 @@ impl LowPass {
             return series.to_vec();
         }
         let reach = self.reach.min(n - 1);
-        let mut all = continued(series, reach);
+        let (first, last) = (series[0], series[n - 1]);
+        let before = (1..=reach).rev().map(|k| 2.0 * first - series[k]);
+        let after = (1..=reach).map(|k| 2.0 * last - series[n - 1 - k]);
+        let mut all: Vec<f64> = before.chain(series.iter().copied()).chain(after).collect();
         for _ in 0..2 {
             for section in &self.sections {
                 section.run(&mut all);
@@ -77,50 +80,20 @@ impl Section {
     }
 }
 
-/// Samples to either side of one that its derivative is made of.
-pub(super) const SIDE: usize = 16;
-
-/// Derivative by central differences of the highest order over [`SIDE`] samples to either side: off by
-/// less than 1e-12 of it up to a tenth of the sampling rate, by 4e-6 at a quarter and by 3e-4 at 0.3
-/// (Fornberg, Math. Comput. 51 (1988) 699, doi:10.1090/S0025-5718-1988-0935077-0). Ends are continued
-/// by their point reflection.
+/// Derivative by central differences over five points: off by (2πf h)⁴/30, 0.5 % at a tenth
+/// of the sampling rate and 0.01 % at a twenty-fifth. At the ends over fewer points.
 pub(super) fn derivative(series: &[f64], h: f64) -> Vec<f64> {
     let n = series.len();
-    if n < 2 {
-        return vec![0.0; n];
-    }
-    let side = SIDE.min(n - 1);
-    let all = continued(series, side);
-    let weights = weights(side);
     let at = |k: usize| {
-        let here = k + side;
-        let pairs = (1..).zip(&weights);
-        let sum: f64 = pairs
-            .map(|(j, w)| w * (all[here + j] - all[here - j]))
-            .sum();
-        sum / h
+        if k >= 2 && k + 2 < n {
+            let near = series[k + 1] - series[k - 1];
+            let far = series[k + 2] - series[k - 2];
+            return (8.0 * near - far) / (12.0 * h);
+        }
+        let (from, to) = (k.saturating_sub(1), (k + 1).min(n - 1));
+        (series[to] - series[from]) / (h * (to - from).max(1) as f64)
     };
     (0..n).map(at).collect()
-}
-
-/// Weights of central differences over so many samples to either side M, by distance j from 1 on:
-/// −(−1)^j M!² / (j (M − j)! (M + j)!).
-fn weights(side: usize) -> Vec<f64> {
-    let mut product = -1.0;
-    let one = |j: usize| {
-        product *= -((side + 1 - j) as f64) / (side + j) as f64;
-        product / j as f64
-    };
-    (1..=side).map(one).collect()
-}
-
-/// The series continued by so many samples at either end, by its point reflection there.
-fn continued(series: &[f64], reach: usize) -> Vec<f64> {
-    let n = series.len();
-    let (first, last) = (series[0], series[n - 1]);
-    let before = (1..=reach).rev().map(|k| 2.0 * first - series[k]);
-    let after = (1..=reach).map(|k| 2.0 * last - series[n - 1 - k]);
-    before.chain(series.iter().copied()).chain(after).collect()
 }
 
 /// Integral from the first sample on, by trapezoids.
@@ -208,21 +181,9 @@ mod tests {
 
     #[test]
     fn derivative_and_shift_are_those_of_a_sine() {
-        for (frequency, most) in [
-            (0.001, 1e-9),
-            (0.04, 1e-9),
-            (0.1, 1e-9),
-            (0.25, 5e-6),
-            (0.3, 4e-4),
-        ] {
-            let w = TAU * frequency;
-            let [re, im] = answer(frequency, |s| derivative(s, 1.0));
-            assert!(re.abs() < 1e-9, "{frequency}: {re}");
-            assert!((im / w - 1.0).abs() < most, "{frequency}: {}", im / w - 1.0);
-        }
-        let line: Vec<f64> = (0..60).map(|k| 3.0 - 0.7 * f64::from(k)).collect();
-        let off = derivative(&line, 0.1).into_iter().map(|s| (s + 7.0).abs());
-        assert!(off.fold(0.0, f64::max) < 1e-9);
+        let w = TAU * 0.04;
+        let [re, im] = answer(0.04, |s| derivative(s, 1.0));
+        assert!(re.abs() < 1e-9 && (im / w - 1.0).abs() < w.powi(4) / 29.0);
         let [re, im] = answer(0.02, |s| ahead(s.to_vec(), 2.5));
         let turned = TAU * 0.02 * 2.5;
         assert!((re - turned.cos()).abs() < 1e-4 && (im - turned.sin()).abs() < 1e-4);

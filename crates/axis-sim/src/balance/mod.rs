@@ -16,18 +16,14 @@
 //! formulas, what was decided, and the limits.
 
 mod channel;
-mod cutoff;
 mod error;
 mod filter;
-mod foreseen;
 mod law;
 mod motion;
-mod orders;
 mod prepared;
 mod quality;
 mod shown;
 mod spectrum;
-mod together;
 mod unsure;
 mod wind_up;
 
@@ -39,11 +35,9 @@ use crate::effects::ActiveEffect;
 use crate::replay::{Probe, ReplayError, Trace};
 use channel::TorqueChannel;
 pub use error::BalanceError;
-pub(crate) use filter::LowPass;
-use filter::{ahead, derivative};
-use foreseen::Foreseen;
+use filter::{LowPass, ahead, derivative};
 use law::{Motions, torque};
-pub use quality::{BalanceQuality, CutoffBound};
+pub use quality::BalanceQuality;
 pub use shown::{FrictionCourse, Shown};
 
 /// One log's measured motion and torque, ready to be compared with any model of the axis.
@@ -61,7 +55,6 @@ pub struct Balance {
     position: (&'static str, Vec<f64>),
     speed: Vec<f64>,
     compared: Log,
-    foreseen: Foreseen,
     quality: BalanceQuality,
 }
 
@@ -140,19 +133,6 @@ impl Balance {
     /// Correlation of white noise, as it is compared, over a time (s).
     pub fn correlation(&self, over: f64) -> f64 {
         spectrum::correlation(self.quality.cutoff, over)
-    }
-
-    /// Noise alone in the compared channel, RMS in its unit, of a log of this axis: the least that the
-    /// upper spectra of torque and motion leave possible. It is a guess: motion that goes on up there
-    /// passes for noise, and what repeats with the turn as well.
-    pub fn foreseen_noise(&self, axis: &Axis) -> f64 {
-        self.foreseen.noise(axis, self.channel)
-    }
-
-    /// Angle of the motor at the compared samples, rad.
-    pub fn motor_angle(&self) -> Vec<f64> {
-        let angle = &self.motions.motor.position;
-        self.kept.iter().map(|&k| angle[k]).collect()
     }
 
     /// What was decided for this log, and why.

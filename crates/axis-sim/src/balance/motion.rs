@@ -6,7 +6,6 @@ use super::channel::names;
 use super::error::BalanceError;
 use super::filter::{LowPass, derivative, integral};
 use super::spectrum::{Noise, Source};
-use super::together::Together;
 use crate::axis::{Axis, LoadSensor};
 use crate::mechanism::Freedom;
 
@@ -144,27 +143,6 @@ impl Measured {
     /// Its samples, in its own unit.
     pub fn samples(&self) -> &[f64] {
         &self.samples
-    }
-
-    /// Mean square of its speed, over steps of so many samples that noise hardly counts.
-    pub fn speed_square(&self, period: f64) -> f64 {
-        const OVER: usize = 25;
-        let mean = |squares: &mut dyn Iterator<Item = f64>| {
-            let (sum, count) = squares.fold((0.0, 0.0), |(sum, n), square| (sum + square, n + 1.0));
-            sum / f64::max(count, 1.0)
-        };
-        match self.source {
-            Source::Position => {
-                let steps = self.samples.windows(OVER + 1);
-                mean(&mut steps.map(|w| ((w[OVER] - w[0]) / (OVER as f64 * period)).powi(2)))
-            }
-            Source::Speed => mean(&mut self.samples.iter().map(|v| v * v)),
-        }
-    }
-
-    /// How its acceleration goes with an effort.
-    pub fn together(&self, effort: &[f64], period: f64) -> Together {
-        Together::of(&self.samples, self.source, effort, period)
     }
 
     /// Low-passed at `cutoff` (Hz), and differentiated.

@@ -1,33 +1,41 @@
 //! A log made ready for its torque balance.
 
-use std::f64::consts::PI;
-
 use axis_log::{Channel, Log};
 
 use super::Balance;
 use super::channel::TorqueChannel;
-use super::cutoff::{Cutoff, Sought};
 use super::error::BalanceError;
-use super::filter::{LowPass, SIDE};
-use super::foreseen::Foreseen;
+use super::filter::LowPass;
 use super::law::Motions;
 use super::motion::{Course, Measured, Whose};
-use super::orders::Order;
-use super::quality::BalanceQuality;
-use super::spectrum::{least_noise, passed, passed_by_both};
+use super::quality::{BalanceQuality, TOLERATED};
+use super::spectrum::{least_noise, passed};
 use super::unsure::Remeasured;
 use super::wind_up::WindUp;
 use crate::axis::Axis;
 use crate::replay::ReplayError;
 
-/// Cut-off of the comparison as a share of that of the motion, as warped frequencies.
-pub(super) const BELOW: f64 = 0.4;
+/// Highest cut-off of the motion, as a share of the sampling rate: above it, differences are
+/// no derivatives any more.
+const HIGHEST: f64 = 0.1;
+
+/// Cut-off of the comparison as a share of that of the motion: there the latter takes less
+/// than 0.1 % from the motion, 0.4⁸.
+const BELOW: f64 = 0.4;
 
 /// Compared samples per period of the cut-off.
-pub(super) const RATE: f64 = 2.5;
+const RATE: f64 = 2.5;
+
+/// Highest cut-off as a share of the natural frequency below which what is measured moves as
+/// one: there a two-mass drive's inertia seems greater by 4 %.
+const RIGID: f64 = 0.2;
+
+/// Highest cut-off as a share of the frequency at which a load that is not measured swings against
+/// the motor: what it does there is computed.
+const SOFT: f64 = 0.4;
 
 /// Speeds below so many deviations of its noise are not told from rest.
-pub(super) const DEVIATIONS: f64 = 3.0;
+const DEVIATIONS: f64 = 3.0;
 
 /// Way after which a contact slides for certain, as a multiple of that on which its bristles bend to
 /// their limit: twice for bristles bent the other way, and twice again for some half as stiff.
@@ -46,7 +54,7 @@ const MOST_SURE: f64 = 0.5;
 const MOST_SURE_OF: usize = LEAST + LEAST / 4;
 
 /// Fewest samples that are compared.
-pub(super) const LEAST: usize = 32;
+const LEAST: usize = 32;
 
 impl Balance {
     /// Prepares logs that are compared together, with their sampling periods (s): with one
@@ -64,37 +72,23 @@ impl Balance {
             Measured::of(log, *period, axis)
         });
         let measured: Vec<Vec<Measured>> = measured.collect::<Result<_, _>>()?;
-        let own = |(motions, (log, period)): (&Vec<Measured>, &(&Log, f64))| {
-            let sought = Sought {
-                axis,
-                measured: motions,
-                channel,
-                effort: log.channel(channel.name)?,
-                period: *period,
-            };
-            sought.check_rate()?;
-            Ok(sought.cutoff())
+        let own = |(motions, (_, period)): (&Vec<Measured>, &(&Log, f64))| {
+            let most = BELOW * HIGHEST / period;
+            let each = motions.iter().map(|m| m.noise.cutoff(most, TOLERATED));
+            let asked = axis.balance.cutoff.unwrap_or(f64::INFINITY);
+            let stiff = rigid_below(axis, motions);
+            let found = each.fold(most.min(stiff), f64::min);
+            match asked.is_finite() {
+                true => asked.min(0.5 * HIGHEST / BELOW / period),
+                false => found,
+            }
         };
-        let each = measured.iter().zip(logs).map(own);
-        let each: Vec<(Cutoff, Vec<Order>)> = each.collect::<Result<_, ReplayError>>()?;
-        let lowest = each.iter().map(|(cutoff, _)| *cutoff);
-        let lowest = lowest.reduce(Cutoff::lower);
-        // There are as many as logs, and without any log there is none to prepare.
-        let Some(lowest) = lowest else {
-            return Ok(Vec::new());
+        let cutoffs = measured.iter().zip(logs).map(own);
+        let cutoff = cutoffs.fold(f64::INFINITY, f64::min);
+        let one = |(motions, (log, period)): (Vec<Measured>, &(&Log, f64))| {
+            Self::prepared(log, *period, axis, channel, &motions, cutoff)
         };
-        let orders = each.into_iter().map(|(_, orders)| orders);
-        let one = |((motions, (log, period)), orders): ((_, &(&Log, f64)), Vec<Order>)| {
-            let motions: Vec<Measured> = motions;
-            let orders = orders.iter().map(|o| o.order).collect();
-            Self::prepared(log, *period, axis, channel, &motions, (lowest, orders))
-        };
-        measured
-            .into_iter()
-            .zip(logs)
-            .zip(orders)
-            .map(one)
-            .collect()
+        measured.into_iter().zip(logs).map(one).collect()
     }
 
     /// One log alone.
@@ -112,16 +106,9 @@ impl Balance {
         axis: &Axis,
         channel: TorqueChannel,
         measured: &[Measured],
-        (decided, orders): (Cutoff, Vec<f64>),
+        cutoff: f64,
     ) -> Result<Self, ReplayError> {
-        let (cutoff, bound) = (decided.frequency, decided.bound);
-        let above = of_motion(cutoff, period);
-        let motion_cutoff = above.min(decided.of_motion);
-        // Up to where the motion's noise counts: above the comparison, its low-pass takes nothing of that.
-        let counts = match motion_cutoff < above {
-            true => cutoff * (passed_by_both(cutoff, motion_cutoff) / passed(4, cutoff)).powf(0.2),
-            false => cutoff,
-        };
+        let motion_cutoff = cutoff / BELOW;
         let motions = motions(axis, measured, period, motion_cutoff);
         let every = ((1.0 / (RATE * cutoff * period)).floor() as usize).max(1);
         let compared_period = every as f64 * period;
@@ -133,12 +120,10 @@ impl Balance {
         let (moving, all) = moving(&motions.load, period, cutoff, every, standstill);
         let filter = LowPass::new(cutoff * period);
         let logged = log.channel(channel.name)?;
-        let foreseen = Foreseen {
-            effort: (least_noise(logged, period) * passed(0, cutoff)).sqrt(),
-            acceleration: measured[0].noise.least_acceleration(counts),
-            whose: measured[0].whose,
-        };
-        let floor = foreseen.noise(axis, channel);
+        let noise = &measured[0].noise;
+        let of_motion = noise.least_acceleration(cutoff) * inertia(axis, measured[0].whose);
+        let of_torque = least_noise(logged, period) * passed(0, cutoff);
+        let floor = (of_torque + (channel.per_torque(axis) * of_motion).powi(2)).sqrt();
         let remeasured = Remeasured {
             axis,
             measured: &measured[0],
@@ -159,8 +144,6 @@ impl Balance {
                 least: LEAST,
                 speed: standstill,
                 unit: axis.freedom().speed_unit(),
-                cutoff,
-                bound,
             };
             return Err(error.into());
         }
@@ -172,16 +155,15 @@ impl Balance {
             channel: channel.name,
             motion: measured.iter().map(|m| m.name).collect(),
             cutoff,
-            bound,
-            orders,
             motion_cutoff,
             attenuation: (measured.iter())
-                .map(|m| m.noise.attenuation(counts))
+                .map(|m| m.noise.attenuation(cutoff))
                 .fold(0.0, f64::max),
             standstill,
             compared_period,
             samples: [kept.len(), all],
             unsure: moving.len() - kept.len(),
+            floor,
             friction: per_force * rms(kept.iter().map(|&k| unsure[k])),
         };
         let compared = Log::new(vec![
@@ -198,17 +180,21 @@ impl Balance {
             position: (axis.position_channel(), position),
             speed,
             compared,
-            foreseen,
             quality,
         })
     }
 }
 
-/// Cut-off of the motion, Hz: there the bilinear low-pass is as far above that of the comparison, 1/0.4,
-/// as its warped frequencies go, and takes from what is compared less than 0.1 %, 0.4⁸, up to any rate.
-fn of_motion(cutoff: f64, period: f64) -> f64 {
-    let warped = (PI * cutoff * period).tan() / BELOW;
-    warped.atan() / (PI * period)
+/// The frequency, Hz, below which one measured motion stands for that of motor and load:
+/// well below the first mode. Of two, each has its own inertia, up to the second.
+///
+/// Of a load that is found by its swinging against the motor: below the frequency of that.
+fn rigid_below(axis: &Axis, measured: &[Measured]) -> f64 {
+    let highest = match (measured, wind_up(axis)) {
+        ([one], Some(wind_up)) if one.whose == Whose::Motor => SOFT * wind_up.swing(axis),
+        _ => RIGID * natural_frequency(axis, measured.len()),
+    };
+    highest / std::f64::consts::TAU
 }
 
 /// Root mean square.
@@ -224,7 +210,7 @@ fn middle(axis: &Axis) -> f64 {
 
 /// Natural frequency of the axis in the middle of its stroke, rad/s, the first being 1; infinite
 /// where there are fewer.
-pub(super) fn natural_frequency(axis: &Axis, place: usize) -> f64 {
+fn natural_frequency(axis: &Axis, place: usize) -> f64 {
     let mut modes = axis.mechanism.modes(middle(axis)).unwrap_or_default();
     modes.retain(|w| *w > 0.0);
     modes.sort_by(f64::total_cmp);
@@ -236,7 +222,7 @@ pub(super) fn natural_frequency(axis: &Axis, place: usize) -> f64 {
 
 /// The transmission's wind-up: that of the two-mass drive with this axis' inertias and first
 /// natural frequency; `None` of a stiff one.
-pub(super) fn wind_up(axis: &Axis) -> Option<WindUp> {
+fn wind_up(axis: &Axis) -> Option<WindUp> {
     let r = axis.travel_per_radian();
     let load = axis.mechanism.load_inertia();
     let motor = axis.mechanism.total_inertia() / (r * r) - load;
@@ -252,7 +238,7 @@ pub(super) fn wind_up(axis: &Axis) -> Option<WindUp> {
 }
 
 /// Motor torque per acceleration of what was measured.
-pub(super) fn inertia(axis: &Axis, whose: Whose) -> f64 {
+fn inertia(axis: &Axis, whose: Whose) -> f64 {
     match whose {
         Whose::Motor => axis.mechanism.total_inertia(),
         Whose::Load => axis.mechanism.total_inertia() / axis.travel_per_radian(),
@@ -351,7 +337,7 @@ fn moving(
 ) -> (Vec<usize>, usize) {
     let n = load.speed.len();
     let near = (0.25 / (cutoff * period)).ceil() as usize;
-    let edge = ((EDGE / (cutoff * period)).ceil() as usize).max(SIDE);
+    let edge = (EDGE / (cutoff * period)).ceil() as usize;
     let moves = |k: &usize| {
         let window = &load.speed[k.saturating_sub(near)..(k + near + 1).min(n)];
         *k >= edge && k + edge < n && window.iter().all(|v| v.abs() > standstill)

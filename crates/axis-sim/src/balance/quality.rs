@@ -1,39 +1,5 @@
 //! What was decided on a log, for messages.
 
-use std::fmt;
-
-/// What bounds the frequency up to which logs are balanced.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum CutoffBound {
-    /// The axis file's `[balance] cutoff_hz`.
-    Asked,
-    /// The sampling rate.
-    Rate,
-    /// Noise of the measured motion, differentiated.
-    Noise,
-    /// The transmission's give: beyond, motor and load move apart.
-    Stiffness,
-    /// Nothing: all that repeats with the motor's turn shows, and there are samples enough.
-    Needed,
-}
-
-impl fmt::Display for CutoffBound {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Asked => "as [balance] cutoff_hz of the axis file asks",
-            Self::Rate => "capped by the sampling rate; [balance] cutoff_hz sets it, up to a quarter of that",
-            Self::Noise => "capped by noise of the measured motion; [balance] cutoff_hz sets it",
-            Self::Stiffness => {
-                "capped by the transmission\u{2019}s natural frequency; [balance] cutoff_hz sets it"
-            }
-            Self::Needed => {
-                "for all that repeats with the motor\u{2019}s turn, and for samples enough; [balance] cutoff_hz sets it"
-            }
-        })
-    }
-}
-
 /// How a log was prepared for its torque balance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BalanceQuality {
@@ -43,12 +9,7 @@ pub struct BalanceQuality {
     pub motion: Vec<&'static str>,
     /// Cut-off of the low-pass that both sides go through, Hz.
     pub cutoff: f64,
-    /// What bounds it.
-    pub bound: CutoffBound,
-    /// Orders of the motor's turn with which the effort repeats, above the usual cut-off.
-    pub orders: Vec<f64>,
-    /// Cut-off of the low-pass of the motion before it is differentiated, Hz: above that of the comparison, or
-    /// below it where noise of the motion would matter and inertia does not.
+    /// Cut-off of the low-pass of the motion before it is differentiated, Hz.
     pub motion_cutoff: f64,
     /// Share by which noise of the acceleration draws an inertia towards zero.
     pub attenuation: f64,
@@ -61,6 +22,9 @@ pub struct BalanceQuality {
     pub samples: [usize; 2],
     /// Samples left out because friction hangs there on a motion finer than what was measured.
     pub unsure: usize,
+    /// Noise alone in the compared channel, RMS in its unit: the least that the upper
+    /// spectra of torque and motion leave possible.
+    pub floor: f64,
     /// What is unsure of the friction at the samples that are compared, RMS in that unit.
     pub friction: f64,
 }
@@ -75,11 +39,10 @@ impl BalanceQuality {
             false => "",
         };
         format!(
-            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz ({}), the motion at {:.3} Hz; noise of the acceleration takes {drawn:.2e} % from an inertia{beware}; {:.1} % of the samples are left out, where the speed is below {:.2e} (what its sensor tells from rest, or the axis file's slowest), at the ends, or (as many as {}) where friction hangs on a motion finer than the sensor shows",
+            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz (motion at {:.3} Hz); noise of the acceleration takes {drawn:.2e} % from an inertia{beware}; {:.1} % of the samples are left out, where the speed is below {:.2e} (what its sensor tells from rest, or the axis file's slowest), at the ends, or (as many as {}) where friction hangs on a motion finer than the sensor shows",
             self.channel,
             self.motion.join(" and "),
             self.cutoff,
-            self.bound,
             self.motion_cutoff,
             100.0 * (all - kept) as f64 / all.max(1) as f64,
             self.standstill,

@@ -14,7 +14,7 @@ pub(super) enum Source {
 
 impl Source {
     /// Derivatives to the acceleration.
-    pub fn order(self) -> i32 {
+    fn order(self) -> i32 {
         match self {
             Self::Position => 2,
             Self::Speed => 1,
@@ -28,18 +28,6 @@ impl Source {
 pub(super) fn passed(power: i32, cutoff: f64) -> f64 {
     let a = f64::from(power + 1) / 8.0;
     cutoff.powi(power + 1) * (1.0 - a) * PI / (8.0 * (PI * a).sin())
-}
-
-/// The same of f⁴ behind two low-passes, by the midpoint rule.
-pub(super) fn passed_by_both(first: f64, second: f64) -> f64 {
-    const STEPS: u32 = 2000;
-    let step = 4.0 * first.min(second) / f64::from(STEPS);
-    let at = |k: u32| {
-        let f = (f64::from(k) + 0.5) * step;
-        let gain = |cutoff: f64| 1.0 + (f / cutoff).powi(8);
-        f.powi(4) / (gain(first) * gain(second)).powi(2) * step
-    };
-    (0..STEPS).map(at).sum()
 }
 
 /// ∫ H² cos 2πfτ df / ∫ H² df with the low-pass H of a balance, by the midpoint rule up to four
@@ -206,18 +194,6 @@ impl Noise {
         }
     }
 
-    /// Frequency below which a share of the acceleration's power lies, were all of it motion that is
-    /// not noise, Hz.
-    pub fn holds(&self, share: f64) -> f64 {
-        let motion = |(k, power): (usize, &f64)| {
-            power - self.acceleration(k as f64 * self.bin, self.density[1])
-        };
-        let motion: Vec<f64> = self.power.iter().enumerate().map(motion).collect();
-        let most = motion.iter().copied().fold(0.0, f64::max);
-        let first = motion.iter().position(|power| *power >= share * most);
-        first.map_or(0.0, |k| k as f64 * self.bin)
-    }
-
     /// The highest frequency up to `most` below which noise takes no more than `share` of
     /// the acceleration's power; where there is none, that where it takes least.
     pub fn cutoff(&self, most: f64, share: f64) -> f64 {
@@ -244,7 +220,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::super::filter::LowPass;
-    use super::{correlation, passed, passed_by_both};
+    use super::{correlation, passed};
 
     /// Of 2·10⁵ numbers some 2·10⁴ are independent behind the filter: 0.02 is three deviations.
     #[test]
@@ -275,8 +251,5 @@ mod tests {
             let ratio = passed(power, 3.0) / (3.0_f64.powi(power + 1) * sum);
             assert!((ratio - 1.0).abs() < 1e-6, "{power}: {ratio}");
         }
-        let ratio = passed_by_both(3.0, 300.0) / passed(4, 3.0);
-        assert!((ratio - 1.0).abs() < 1e-4, "{ratio}");
-        assert!(passed_by_both(3.0, 3.0) < 0.8 * passed(4, 3.0));
     }
 }

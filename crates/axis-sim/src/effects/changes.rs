@@ -6,11 +6,10 @@ use std::sync::Arc;
 use foc_pmsm::{Dq, Phases};
 
 use super::memory::{MemoryLaw, MemoryLaws};
-use crate::SixDigits;
 use crate::axis::Axis;
 use crate::cycle::Measured;
 use crate::error::SetupError;
-use crate::part::{PartError, Role};
+use crate::part::Role;
 
 /// The load as a force on it sees it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -303,16 +302,7 @@ impl Changes<'_> {
     /// # Errors
     /// [`SetupError::Part`] where the part refuses the new value.
     pub fn add(&mut self, role: Role, value: f64) -> Result<(), SetupError> {
-        self.axis.change(role, |before| before + value)?;
-        let is_inertia = matches!(role, Role::LoadInertia | Role::MotorInertia);
-        match self.axis.mechanism.value(role) {
-            Some(left) if is_inertia && left < 0.0 => Err(PartError::together(
-                format!("an effect leaves a {} of {}", role.name(), SixDigits(left)),
-                "an effect that leaves none or more",
-            )
-            .into()),
-            _ => Ok(()),
-        }
+        self.axis.change(role, |before| before + value)
     }
 
     /// Changes the parameters of a role by a share of their values.

@@ -164,21 +164,6 @@ impl Effect {
         self.needs.iter().try_for_each(|need| need.met(axis))
     }
 
-    /// Whether it is the same quantity as a parameter of which nothing is known ([`Tolerances::UNKNOWN`]).
-    ///
-    /// [`Tolerances::UNKNOWN`]: crate::Tolerances::UNKNOWN
-    pub fn changes_unknown(&self, axis: &Axis) -> bool {
-        self.needs.iter().any(|need| match need {
-            EffectNeed::Role(role) => axis.knows_nothing_of(*role),
-            _ => false,
-        })
-    }
-
-    /// Whether it is a force of time alone, whatever the motion.
-    pub fn acts_in_time(&self) -> bool {
-        self.depends_on == "time"
-    }
-
     /// Its parameter of a nature.
     pub fn place_of(&self, nature: impl Fn(&Nature) -> bool) -> Option<usize> {
         self.parameters.iter().position(|p| nature(&p.nature))

@@ -42,11 +42,6 @@ impl Curve {
         &self.values
     }
 
-    /// Their slopes.
-    pub(super) fn slopes(&self) -> &[f64] {
-        &self.slopes
-    }
-
     /// From the first sample to the last, s.
     pub fn duration(&self) -> f64 {
         (self.values.len() - 1) as f64 * self.period

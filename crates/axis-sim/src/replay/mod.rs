@@ -123,21 +123,6 @@ impl Replay {
         Self { stored, ..self }
     }
 
-    /// The same with a reference that its log shows so much late, s: it is read so much later there.
-    #[must_use]
-    pub fn with_late_reference(mut self, by: f64) -> Self {
-        self.reference.late = by;
-        self
-    }
-
-    /// The same with a reference that was sampled so much after each instant of its log (s), and that is
-    /// smoothed, as of a log with uneven samples.
-    #[must_use]
-    pub fn with_reference_off(mut self, by: &[f64]) -> Self {
-        self.reference = self.reference.sampled_off(by).smoothed();
-        self
-    }
-
     /// What is stored at its start.
     pub fn stored(&self) -> Stored {
         self.stored

@@ -8,7 +8,7 @@ use super::set::{ANGLE, LogSet, Prepared, Rest};
 /// may differ, with other mesh and integrator. Between this one and a second program it is
 /// 1e-8 to 5e-6 with the same laws (`two_simulations_of_one_machine…` in `tests`); a
 /// machine's small laws are less alike than that.
-pub(crate) const INEXACT: f64 = 3e-4;
+const INEXACT: f64 = 3e-4;
 
 impl LogSet {
     /// What its channels show of the dynamics, per log and channel.

@@ -3,7 +3,6 @@
 pub mod effort;
 mod inexact;
 mod prepare;
-mod repeats;
 mod set;
 mod share;
 mod slack;
@@ -13,8 +12,6 @@ mod stored;
 use axis_sim::effects::ActiveEffect;
 use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
 
-pub(crate) use self::inexact::INEXACT;
-pub use self::repeats::Repeats;
 pub use self::set::{LogSet, Prepared, Rest};
 pub use self::state::State;
 pub(crate) use self::state::is_form_of;

@@ -8,12 +8,10 @@ use axis_sim::{
 use rayon::prelude::*;
 
 use super::inexact::inexactness;
-use super::repeats::Repeats;
 use super::set::{LogSet, Prepared, relative};
 use super::slack::{first_move, taken_up};
 use super::stored::{held_effort, storing};
 use super::{Answer, State};
-use crate::noise::jitter;
 use crate::spectrum::Layout;
 
 impl LogSet {
@@ -46,23 +44,14 @@ impl LogSet {
         let as_filed = ClosedLoop::new(machine)?;
         let prepare = |(name, log, period): (String, Log, f64)| {
             let channel = |name: &&str| Ok(relative(name, log.channel(name)?));
-            let jitter = jitter(&log, period, machine);
-            let replay = match jitter {
-                Some(jitter) if jitter.of_reference => {
-                    Replay::new(&log, period)?.with_reference_off(&[])
-                }
-                _ => Replay::new(&log, period)?,
-            };
-            let (replay, doubtful) = storing(replay, &log, period, &as_filed);
+            let (replay, doubtful) = storing(Replay::new(&log, period)?, &log, period, &as_filed);
             Ok(Prepared {
-                jitter,
                 taken_up: taken_up(&log, machine),
                 doubtful,
                 shown_effort: held_effort(&replay),
                 answer: Answer::Replay(replay),
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 hum: vec![Vec::new(); channels.len()],
-                repeats: of_reference(&log, period),
                 measured: channels
                     .iter()
                     .map(channel)
@@ -118,12 +107,10 @@ impl LogSet {
                     .map(channel)
                     .collect::<Result<_, ReplayError>>()?,
                 taken_up: 0.0,
-                jitter: None,
                 doubtful: None,
                 shown_effort: None,
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 hum: vec![Vec::new(); channels.len()],
-                repeats: of_motion(&balance, machine),
                 log,
                 answer: Answer::Balance(Box::new(balance)),
             })
@@ -211,22 +198,4 @@ impl LogSet {
         }
         Ok(())
     }
-}
-
-/// The period of a log's reference.
-fn of_reference(log: &Log, period: f64) -> Option<Repeats> {
-    let reference = reference_in(log).ok()?;
-    let speed = reference
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]) / period);
-    let speed: Vec<f64> = speed.collect();
-    let time: Vec<f64> = (0..speed.len()).map(|k| k as f64 * period).collect();
-    Repeats::of(&time, &speed, period)
-}
-
-/// The period of a balance's motion.
-fn of_motion(balance: &Balance, machine: &Axis) -> Option<Repeats> {
-    let trace = balance.run(machine, &[], None).ok()?;
-    let period = balance.compared_period();
-    Repeats::of(balance.compared().time(), &trace.speed, period)
 }

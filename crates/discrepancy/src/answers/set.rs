@@ -6,9 +6,7 @@ use axis_log::Log;
 use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
 use rayon::prelude::*;
 
-use super::repeats::Repeats;
 use super::{Answer, State};
-use crate::noise::Jitter;
 use crate::spectrum::{Amplitudes, Layout};
 
 /// Series per log, per channel; most often measured minus simulated.
@@ -34,12 +32,8 @@ pub struct Prepared {
     pub doubtful: Option<f64>,
     /// Command that the drive holds at its start as the log shows it, in the actuator's unit.
     pub shown_effort: Option<f64>,
-    /// By how much its samples lie off their stamps, where they do.
-    pub(crate) jitter: Option<Jitter>,
     /// What the fast simulation is short of beside the slow one, by channel.
     pub defect: Vec<Vec<f64>>,
-    /// The period with which the drive moves the axis to and fro, where it does.
-    pub repeats: Option<Repeats>,
     /// Hum that is taken out of it, by channel; empty where there is none.
     pub hum: Vec<Vec<f64>>,
 }
@@ -76,11 +70,11 @@ impl LogSet {
         self.logs.iter().filter_map(|l| l.answer.replay()).collect()
     }
 
-    /// What was decided for the torque balance of each log, and what is known of its instants, in words.
+    /// What was decided for the torque balance of each log, in words.
     pub fn notes(&self) -> Vec<String> {
-        let notes = self.logs.iter().filter_map(|log| match &log.answer {
-            Answer::Balance(balance) => Some(balance.quality().sentence(&log.name)),
-            Answer::Replay(_) => Some(log.jitter?.note(&log.name, log.period)),
+        let notes = self.logs.iter().filter_map(|log| {
+            let balance = log.answer.balance()?;
+            Some(balance.quality().sentence(&log.name))
         });
         notes.collect()
     }
@@ -162,22 +156,6 @@ impl LogSet {
         self.logs.iter().zip(traces).map(one).collect()
     }
 
-    /// Whether the drive moves the axis of any log to and fro with one period.
-    pub(crate) fn repeats(&self) -> bool {
-        self.logs.iter().any(|log| log.repeats.is_some())
-    }
-
-    /// Series per log and channel without what repeats with the drive.
-    pub(crate) fn apart(&self, mut series: Rest) -> Rest {
-        for (log, channels) in self.logs.iter().zip(&mut series) {
-            let Some(repeats) = log.repeats else { continue };
-            for channel in channels {
-                repeats.take_out(log.log.time(), channel);
-            }
-        }
-        series
-    }
-
     /// Difference of two simulations divided by `by`, as amplitudes.
     pub fn difference(&self, a: &[Trace], b: &[Trace], by: f64) -> Amplitudes {
         let free = self.free();
@@ -190,19 +168,6 @@ impl LogSet {
             self.layout.transform(i, &series, &free)
         };
         a.iter().zip(b).enumerate().map(one).collect()
-    }
-
-    /// As [`LogSet::difference`], without what repeats with the drive.
-    pub(crate) fn difference_apart(&self, [a, b]: [&[Trace]; 2], by: f64) -> Amplitudes {
-        if !self.repeats() {
-            return self.difference(a, b, by);
-        }
-        let mut series = self.simulated_all(a);
-        let others = self.simulated_all(b);
-        let values = series.iter_mut().flatten().flatten();
-        let others = others.iter().flatten().flatten();
-        values.zip(others).for_each(|(x, y)| *x = (*x - y) / by);
-        self.amplitudes(&self.apart(series))
     }
 
     /// Amplitudes of series per log and channel, of the channels that are fitted.

@@ -117,15 +117,6 @@ impl Fitter<'_> {
         fit.rest.iter().map(zeros).collect()
     }
 
-    /// The same without what repeats with the drive.
-    pub fn column_apart(&self, fit: &Fit, moved: &State, step: f64) -> Amplitudes {
-        let set = self.set;
-        let Ok(traces) = set.simulate(self.machine, moved) else {
-            return self.nothing(fit);
-        };
-        set.difference_apart([&traces, &fit.traces], step)
-    }
-
     /// A difference quotient; nothing where the simulation does not run.
     pub fn column(&self, fit: &Fit, moved: &State, step: f64) -> Amplitudes {
         let slope = self.slope(fit, moved, step);

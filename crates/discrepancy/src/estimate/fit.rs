@@ -63,18 +63,6 @@ impl Fitter<'_> {
         })
     }
 
-    /// D of what a fit leaves beside all that repeats with the drive.
-    pub fn deviance_apart(&self, fit: &Fit) -> f64 {
-        match self.set.repeats() {
-            true => {
-                let rest = self.set.apart(self.set.rest(&fit.traces));
-                let rest = self.set.amplitudes(&rest);
-                self.set.layout.deviance(&rest) + self.departure(&fit.state)
-            }
-            false => fit.deviance,
-        }
-    }
-
     /// What the known parameters' departures count in D.
     pub(super) fn departure(&self, state: &State) -> f64 {
         let pairs = state.shares.iter().zip(known_deviations(self.machine));
@@ -86,22 +74,17 @@ impl Fitter<'_> {
     /// are `given` and may be from a neighbouring state; the others are made anew. A trial
     /// step that does not run is shortened.
     pub fn refine(&self, fit: Fit, given: &Columns, rounds: usize) -> Fit {
-        self.refine_holding(fit, given, rounds, &[])
-    }
-
-    /// As [`Fitter::refine`], with those known parameters as they are that are `held`.
-    pub fn refine_holding(&self, fit: Fit, given: &Columns, rounds: usize, held: &[bool]) -> Fit {
         let of_effects = given.len() - fit.state.shares.len();
         let step = |fit: &Fit| {
             let new = self.effect_slopes(fit, of_effects);
             let columns: Columns = given.iter().cloned().chain(new).collect();
-            let solved = self.solve_holding(&fit.rest, fit, &columns, held);
+            let solved = self.solve(fit, &columns);
             (solved.promised >= ENOUGH).then_some((solved, columns))
         };
         let better = |fit: &Fit, (solved, columns): &(Solved, Columns), length: f64| {
             let along = |step: &DVector<f64>| {
                 let trial = self.at(self.moved(&fit.state, step, length)).ok()?;
-                self.below(fit, trial, columns, held)
+                self.below(fit, trial, columns)
             };
             let inside = || along(solved.inside.as_ref().filter(|_| length == 1.0)?);
             along(&solved.step).or_else(inside)
@@ -121,11 +104,11 @@ impl Fitter<'_> {
     /// two parameters do nearly the same, as a torque constant does through the known one,
     /// D is lowest along a narrow curve, and a step along its tangent leaves it
     /// (second-order correction: Nocedal and Wright, Numerical Optimization, 2nd ed., §15.6).
-    fn below(&self, fit: &Fit, trial: Fit, columns: &Columns, held: &[bool]) -> Option<Fit> {
+    fn below(&self, fit: &Fit, trial: Fit, columns: &Columns) -> Option<Fit> {
         if trial.deviance < fit.deviance {
             return Some(trial);
         }
-        let correction = self.solve_holding(&fit.rest, &trial, columns, held).step;
+        let correction = self.solve_beside(&fit.rest, &trial, columns).step;
         let corrected = self.at(self.moved(&trial.state, &correction, 1.0)).ok()?;
         (corrected.deviance < fit.deviance).then_some(corrected)
     }

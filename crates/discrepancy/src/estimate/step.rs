@@ -39,17 +39,6 @@ impl Fitter<'_> {
         fit: &Fit,
         columns: &Columns,
     ) -> Solved {
-        self.solve_holding(weighing, fit, columns, &[])
-    }
-
-    /// The same with those known parameters as they are that are `held`.
-    pub(super) fn solve_holding(
-        &self,
-        weighing: &Amplitudes,
-        fit: &Fit,
-        columns: &Columns,
-        held: &[bool],
-    ) -> Solved {
         let layout = &self.set.layout;
         let whitener = layout.whitener(&layout.spectral_matrices(weighing));
         let rest = layout.whiten(&whitener, &fit.rest);
@@ -70,10 +59,7 @@ impl Fitter<'_> {
         let of_effects = self.rooms_of_effects(&fit.state);
         let of_known = |i: usize| {
             let (share, most) = (fit.state.shares.get(i)?, tolerances[i]);
-            Some(match held.get(i) {
-                Some(true) => [0.0; 2],
-                _ => [-most - share, most - share],
-            })
+            Some([-most - share, most - share])
         };
         let step = bounded(&normal, &right, of_known);
         let mut pairs = of_effects.iter().zip(step.iter().skip(known));

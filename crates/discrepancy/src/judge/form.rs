@@ -5,8 +5,6 @@ use axis_sim::effects::{ActiveEffect, Measure, OnsetForm};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::units::ReadUnit;
-
 /// How a friction comes on and falls with speed, where that is not as in the model: the
 /// curve is its steady force over that of sliding.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -64,13 +62,12 @@ impl FormFound {
 
     /// In a sentence that follows another.
     pub(super) fn sentence(&self) -> String {
-        let unit = ReadUnit::of(&self.unit, self.below);
+        let (scale, unit) = match self.unit.as_str() {
+            "m/s" => (1e3, "mm/s"),
+            _ => (1e3, "mrad/s"),
+        };
         let how = match self.below > 0.0 {
-            true => format!(
-                "below {:.2} {} differs",
-                unit.factor * self.below,
-                unit.name
-            ),
+            true => format!("below {:.2} {unit} differs", scale * self.below),
             false => "before it slides differs".to_owned(),
         };
         format!(

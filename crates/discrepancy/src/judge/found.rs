@@ -4,9 +4,7 @@ use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, EffectParameter, Scales};
 
 use super::form::FormFound;
-use super::types::{
-    AtScrew, EffectFound, ParameterFound, Recalibrated, RefusedEffects, ReplacedEffect,
-};
+use super::types::{AtScrew, EffectFound, ParameterFound, RefusedEffects, ReplacedEffect};
 use crate::answers::is_form_of;
 use crate::estimate::columns::free_parameters;
 use crate::name::search::{Found, Named, RefusalReason, Refused, Replaced};
@@ -34,7 +32,6 @@ pub(super) fn effect_found(
             unit: spec.unit(&scales).to_owned(),
             ci95: [value - half, value + half],
             when_named: named.when_named.get(p).copied().unwrap_or(value),
-            at_bound: spec.is_size() && is_at_bound(spec, value, &scales),
             at_screw: at_screw(machine, value, spec.unit(&scales)),
         }
     };
@@ -46,7 +43,6 @@ pub(super) fn effect_found(
             .iter()
             .map(|a| a.fitted.effect.name.to_owned())
             .collect(),
-        or_at_edge: named.at_edge.iter().map(Recalibrated::of).collect(),
         parameters: (active.effect.parameters.iter().zip(&active.values))
             .enumerate()
             .map(parameter)
@@ -62,12 +58,6 @@ pub(super) fn effect_found(
             .collect(),
         form: form_of(machine, found, active),
     }
-}
-
-/// Whether a size is as large as it may be; nothing of one that cannot be negative is no bound.
-fn is_at_bound(spec: &EffectParameter, value: f64, scales: &Scales) -> bool {
-    let edges = spec.bounds(scales);
-    edges.iter().any(|edge| *edge != 0.0 && *edge == value)
 }
 
 /// The form of a named effect, where it has one.

@@ -11,7 +11,7 @@ use crate::name::search::Found;
 /// What must be known of the logs.
 pub(super) fn notes(machine: &Axis, found: &Found) -> Vec<String> {
     let mut notes: Vec<String> = sets(found).flat_map(|set| set.notes()).collect();
-    if found.fit_logs.is_balanced() {
+    if !notes.is_empty() {
         notes.push(FLOOR.to_owned());
     }
     notes.extend(slack_notes(machine, found));
@@ -19,7 +19,7 @@ pub(super) fn notes(machine: &Axis, found: &Found) -> Vec<String> {
 }
 
 /// How the noise of a torque balance is to be read.
-const FLOOR: &str = "the noise given of a torque balance is what its rest has from one sample to the next, without what repeats over the motor\u{2019}s turn or the way, or the least that the spectra of torque and motion leave possible, as no controller is known: a rest above it may be noise";
+const FLOOR: &str = "the noise given of a torque balance is the least that the spectra of torque and motion leave possible, as no controller is known: a rest above it may be noise";
 
 /// What must be known of a balance's rest that is taken for noise though it is above its floor.
 pub(super) fn slow_of_loop_note(check: &Gap) -> String {
@@ -27,14 +27,6 @@ pub(super) fn slow_of_loop_note(check: &Gap) -> String {
     let times = times.fold(0.0, f64::max);
     format!(
         "the rest is {times:.1} times the least noise, and no curve over the motion that is found on some logs tells anything of others: it is taken for noise that a controller made of that of its sensors; a replay with the gains of the controller would tell more"
-    )
-}
-
-/// Which log the model does not agree with, where others are at their noise.
-pub(super) fn above_noise_note(set: &LogSet, log: usize, times: f64) -> String {
-    let name = set.logs.get(log).map_or("a log", |log| log.name.as_str());
-    format!(
-        "{name}: the rest is {times:.1} times its noise, and no effect explains it: that nothing is missing would have to hold of every log, those that were fitted to as well"
     )
 }
 

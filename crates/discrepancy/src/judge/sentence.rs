@@ -1,7 +1,5 @@
 //! A result in one sentence.
 
-use axis_sim::effects::Effect;
-
 use super::form::FormFound;
 use super::types::{EffectFound, RefusedEffects, Verdict};
 use super::unknown::Unknown;
@@ -15,18 +13,18 @@ pub(super) fn sentence(
     unknown: Option<&Unknown>,
     refused: Option<&RefusedEffects>,
     own_form: Option<&FormFound>,
-    next: Option<&str>,
 ) -> String {
-    let name = |e: &EffectFound| match others(e) {
-        others if others.is_empty() => e.name.clone(),
-        others => format!(
-            "{} (or {}: these logs cannot tell)",
-            e.name,
-            others.join(", or ")
-        ),
-    };
-    let names: Vec<String> = effects.iter().map(name).collect();
-    let decides = decides(effects, next);
+    let names: Vec<String> = effects
+        .iter()
+        .map(|e| match e.indistinguishable_from.as_slice() {
+            [] => e.name.clone(),
+            others => format!(
+                "{} (or {}: these logs cannot tell)",
+                e.name,
+                others.join(", ")
+            ),
+        })
+        .collect();
     let forms = effects
         .iter()
         .filter_map(|e| e.form.as_ref())
@@ -42,7 +40,7 @@ pub(super) fn sentence(
             .as_ref()
             .map_or(String::new(), |f| format!(": {f}"));
         format!(
-            " It acts in the {} and depends on {}{formula}.",
+            " It sits in the {} and depends on {}{formula}.",
             u.channel, u.depends_on
         )
     });
@@ -54,67 +52,17 @@ pub(super) fn sentence(
             "Nothing is missing: the model and the logs agree to the noise, with known parameters inside their tolerance.{forms}"
         ),
         Verdict::Explained if check.stands_out() => {
-            format!("The model lacks {names}. With {it}, {gone}.{forms}{decides}")
+            format!("The model lacks {names}. With {it}, {gone}.{forms}")
         }
-        Verdict::Explained => format!("The model lacks {names}. {gone}.{forms}{decides}"),
+        Verdict::Explained => format!("The model lacks {names}. {gone}.{forms}"),
         Verdict::PartlyExplained if !check.stands_out() => format!(
-            "Partly explained, by {names}. {gone}. A residual remains that is not named.{place} What is named may stand for something that is not in the library.{refused}{forms}{decides}"
+            "Partly explained, by {names}. {gone}. A rest remains that is not named.{place} What is named may stand for something that is not in the library.{refused}{forms}"
         ),
         Verdict::PartlyExplained => format!(
-            "Partly explained: with {names}, {gone}, and a residual remains that is not named.{place} What is named may stand for something that is not in the library.{refused}{forms}{decides}"
+            "Partly explained: with {names}, {gone}, and a rest remains that is not named.{place} What is named may stand for something that is not in the library.{refused}{forms}"
         ),
         Verdict::Unknown => format!(
             "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}{refused}{forms}"
         ),
-    }
-}
-
-/// What these logs cannot tell from an effect.
-fn others(effect: &EffectFound) -> Vec<String> {
-    let parameters = effect.or_at_edge.iter().map(|p| p.at_its_edge());
-    let effects = effect.indistinguishable_from.iter().cloned();
-    effects.chain(parameters).collect()
-}
-
-/// What would decide between look-alikes: the `next` experiment, the value of a parameter, or motion in which
-/// what they depend on differs. Nothing where there are none.
-pub(super) fn decides(effects: &[EffectFound], next: Option<&str>) -> String {
-    let parameters = effects.iter().flat_map(|e| &e.or_at_edge);
-    let mut parameters: Vec<&str> = parameters.map(|p| p.name.as_str()).collect();
-    parameters.sort_unstable();
-    parameters.dedup();
-    let alike = effects
-        .iter()
-        .find(|e| !e.indistinguishable_from.is_empty());
-    let on = |name: &str| Effect::named(name).map_or("", |effect| effect.depends_on);
-    let motion = alike.map(|e| {
-        if let Some(next) = next {
-            return format!("the next experiment ({next})");
-        }
-        let others = e.indistinguishable_from.iter();
-        let others = others.filter(|name| on(name) != on(&e.name));
-        let names: Vec<&String> = std::iter::once(&e.name).chain(others).collect();
-        match names.as_slice() {
-            [own] => format!("more motion over what both depend on ({})", on(own)),
-            names => {
-                let each = names.iter().map(|name| format!("{name} on {}", on(name)));
-                let each: Vec<String> = each.collect();
-                format!(
-                    "motion that tells apart what they depend on ({})",
-                    each.join(", ")
-                )
-            }
-        }
-    });
-    let value = (!parameters.is_empty()).then(|| {
-        format!(
-            "a measured value of {} in the axis file",
-            parameters.join(", ")
-        )
-    });
-    let all: Vec<String> = motion.into_iter().chain(value).collect();
-    match all.is_empty() {
-        true => String::new(),
-        false => format!(" What would decide: {}.", all.join("; ")),
     }
 }

@@ -121,12 +121,6 @@ impl Short {
         &self.left
     }
 
-    /// Whether the 95 % interval of its number does not hold 0.
-    pub(super) fn is_of_some_size(&self) -> bool {
-        let [number, deviation] = self.number;
-        number.abs() > 1.96 * deviation
-    }
-
     /// In words, for a load that moves like this.
     pub(super) fn formula(&self, freedom: Freedom) -> String {
         let Term { words, unit, .. } = self.term;

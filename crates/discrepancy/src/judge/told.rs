@@ -8,8 +8,6 @@ use super::cost::Cost;
 use super::remedy::{DriveFunction, Remedy};
 use super::types::{EffectFound, Recalibrated, Verdict};
 use crate::controller::OwnController;
-use crate::estimate::known::shown;
-use crate::name::search::AtEdge;
 
 /// How far a verdict can be relied on.
 #[derive(
@@ -47,18 +45,14 @@ impl Level {
 pub struct Confidence {
     /// In what was named, or in that nothing is missing: high for a gap that is explained or
     /// is none, medium where a rest is left, low where nothing explains it; a step lower for
-    /// each of the four that follow, and where a rest above the floor is taken for noise.
+    /// each of the three that follow, and where a rest above the floor is taken for noise.
     pub level: Level,
     /// Known parameters that were moved to the edge of their tolerance.
     pub at_edge: Vec<Recalibrated>,
     /// Effect and size whose 95 % interval is wider than half of its value.
     pub wide: Vec<[String; 2]>,
-    /// Named effects that have others, or a known parameter at its edge, which these logs cannot tell
-    /// from them.
+    /// Named effects that have others which these logs cannot tell from them.
     pub ambiguous: Vec<String>,
-    /// Effect and size that is as large as is searched.
-    #[serde(default)]
-    pub at_bound: Vec<[String; 2]>,
 }
 
 /// What the first screen says beside the numbers of a discovery.
@@ -106,13 +100,8 @@ impl Confidence {
         let wide: Vec<[String; 2]> = effects.iter().flat_map(wide).collect();
         let alike = effects
             .iter()
-            .filter(|e| !(e.indistinguishable_from.is_empty() && e.or_at_edge.is_empty()));
+            .filter(|e| !e.indistinguishable_from.is_empty());
         let ambiguous: Vec<String> = alike.map(|e| e.name.clone()).collect();
-        let of_effect = |e: &EffectFound| -> Vec<[String; 2]> {
-            let at_bound = e.parameters.iter().filter(|p| p.at_bound);
-            at_bound.map(|p| [e.name.clone(), p.name.clone()]).collect()
-        };
-        let at_bound: Vec<[String; 2]> = effects.iter().flat_map(of_effect).collect();
         let from = match verdict {
             Verdict::Explained | Verdict::NothingMissing | Verdict::OtherForm => Level::High,
             Verdict::PartlyExplained => Level::Medium,
@@ -122,7 +111,6 @@ impl Confidence {
             at_edge.is_empty(),
             wide.is_empty(),
             ambiguous.is_empty(),
-            at_bound.is_empty(),
             !taken_for_noise,
         ];
         let steps = doubts.iter().filter(|none| !**none).count();
@@ -131,35 +119,11 @@ impl Confidence {
             at_edge,
             wide,
             ambiguous,
-            at_bound,
         }
-    }
-}
-
-impl Confidence {
-    /// Whether anything speaks against what was found.
-    pub(super) fn has_doubts(&self) -> bool {
-        let named = [&self.wide, &self.at_bound];
-        !(self.at_edge.is_empty() && self.ambiguous.is_empty())
-            || named.iter().any(|doubts| !doubts.is_empty())
     }
 }
 
 impl Recalibrated {
-    pub(super) fn of(parameter: &AtEdge) -> Self {
-        Self {
-            name: shown(parameter.name),
-            share: parameter.share,
-            tolerance: parameter.tolerance,
-        }
-    }
-
-    /// In words, as what may stand in the place of an effect.
-    pub(super) fn at_its_edge(&self) -> String {
-        let share = 100.0 * self.share;
-        format!("{} at the edge of its tolerance, {share:+.0} %", self.name)
-    }
-
     /// Whether it was moved as far as its tolerance lets it.
     pub fn is_at_edge(&self) -> bool {
         self.tolerance > 0.0 && self.share.abs() >= EDGE * self.tolerance

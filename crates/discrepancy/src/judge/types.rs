@@ -57,10 +57,6 @@ pub struct ParameterFound {
     pub ci95: [f64; 2],
     /// The value before further effects were added.
     pub when_named: f64,
-    /// Whether it is a size that is as large as it may be: then there is more of it, or it stands for
-    /// something else.
-    #[serde(default)]
-    pub at_bound: bool,
     /// A force or a coefficient at the table as a torque at the screw.
     pub at_screw: Option<AtScrew>,
 }
@@ -83,10 +79,6 @@ pub struct EffectFound {
     pub summary: String,
     /// Effects that these logs cannot tell from it.
     pub indistinguishable_from: Vec<String>,
-    /// Known parameters that would explain as much in its place at the edge of their tolerance, and are
-    /// inside it with the effect.
-    #[serde(default)]
-    pub or_at_edge: Vec<Recalibrated>,
     /// Its numbers.
     pub parameters: Vec<ParameterFound>,
     /// Where it shows first.
@@ -137,13 +129,8 @@ impl RefusedEffects {
     pub(super) fn sentence(&self) -> String {
         if let Some(share) = self.takes_away {
             return format!(
-                " {} {} tried and is not named: it takes away {:.0} % of the gap, too little to explain it.",
+                " {} would take away {:.0} % of the gap, which explains nothing, so it is not given.",
                 self.effects.join(" with "),
-                if self.effects.len() == 1 {
-                    "was"
-                } else {
-                    "were"
-                },
                 100.0 * share.max(0.0)
             );
         }
@@ -153,7 +140,7 @@ impl RefusedEffects {
                 _ => ("they", "explain", "are"),
             };
             return format!(
-                " {} {explains} no more than a force in proportion to {law} does with one number, so {it} {is} not named.",
+                " {} {explains} no more than a force in proportion to {law} does with one number, so {it} {is} not given.",
                 self.effects.join(" with ")
             );
         }
@@ -162,7 +149,7 @@ impl RefusedEffects {
             channels => format!("in {}", channels.join(", ")),
         };
         format!(
-            " {} fits the fit logs best but makes the residual of the check logs larger {where_}, so it is not named.",
+            " Of the fitted logs {} would explain most; with it, motion that was not fitted to is further off {where_} than without, so it is not given.",
             self.effects.join(" with ")
         )
     }
@@ -201,9 +188,9 @@ impl FigureLogs {
         let logs = self.logs.join(", ");
         (!self.logs.is_empty()).then(|| match self.took_part {
             true => format!(
-                "Figures are of {logs}, which also decided what is named; for figures that are independent of that, give a third log (--test)."
+                "Figures are of {logs}, on which what is named was chosen too: a third set of logs would give figures that owe nothing to that choice."
             ),
-            false => format!("Figures are of {logs}, held out: it took no part in any choice."),
+            false => format!("Figures are of {logs}, which took no part in any choice."),
         })
     }
 }

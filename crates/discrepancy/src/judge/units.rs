@@ -42,7 +42,6 @@ impl ReadUnit {
             "rad/s^2" => Self::new(1.0, "rad/s²"),
             "N*m" => Self::new(1.0, "N·m"),
             "N*s/m" => Self::new(1e-3, "N/(mm/s)"),
-            "N*m*s/rad" if below(1e-3) => Self::new(1e6, "µN·m·s/rad"),
             "N*m*s/rad" => Self::new(1.0, "N·m·s/rad"),
             "N/m" if below(1e6) => Self::new(1e-3, "N/mm"),
             "N/m" => Self::new(1e-6, "N/µm"),

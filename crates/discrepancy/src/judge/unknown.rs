@@ -145,7 +145,7 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
     }
     let (shape, freedom) = (&curves.shapes[index].0, machine.freedom());
     // One over something else says less than the curve, and would contradict it.
-    let short = short.filter(|(short, (of_it, ..))| *of_it == index && short.is_of_some_size());
+    let short = short.filter(|(_, (of_it, ..))| *of_it == index);
     Ok(Some(Unknown {
         channel: shape.place.name().to_owned(),
         depends_on: shape.depends_on(),

@@ -9,7 +9,6 @@ use super::types::{Discovery, EffectFound, ParameterFound, RefusedEffects, Verdi
 use super::units::ReadUnit;
 use super::unknown::Unknown;
 use crate::controller::OwnController;
-use crate::name::gap::ChannelGap;
 
 /// One question of a first screen, and its answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,23 +20,6 @@ pub struct Answered {
 }
 
 impl Discovery {
-    /// The gap between logs and model before and after, on motion that was not fitted to, in one line.
-    pub fn gap_line(&self) -> String {
-        let channel = |c: &ChannelGap| {
-            let unit = ReadUnit::of_channel(&c.channel, c.before.max(c.after));
-            let [before, after, noise] = [c.before, c.after, c.floor].map(|rms| unit.said(rms));
-            format!(
-                "{} {before} before, {after} after (noise {noise})",
-                c.channel
-            )
-        };
-        let channels: Vec<String> = self.gap.check.channels.iter().map(channel).collect();
-        format!(
-            "Gap between logs and model on motion that was not fitted to, RMS: {}.",
-            channels.join("; ")
-        )
-    }
-
     /// What a first screen says: what is missing, what it costs, how sure that is, what
     /// else it could be, and what to do next. Questions without an answer are left out.
     pub fn first_screen(&self) -> Vec<Answered> {
@@ -189,13 +171,9 @@ fn share(name: &str, cost: &Cost) -> String {
 fn sure(discovery: &Discovery) -> Vec<String> {
     let confidence = &discovery.told.confidence;
     let mut lines = vec![format!(
-        "Verdict: {}. Confidence: {}{}.",
-        verdict(discovery.verdict),
+        "Confidence: {} ({}).",
         confidence.level.word(),
-        match confidence.has_doubts() {
-            true => ", for what follows",
-            false => "",
-        }
+        verdict(discovery.verdict)
     )];
     if !discovery.effects.is_empty() {
         lines.push(format!("{}.", discovery.gap.check.gone()));
@@ -204,20 +182,13 @@ fn sure(discovery: &Discovery) -> Vec<String> {
     lines.push(answer(&discovery.answer).to_owned());
     let edges = confidence.at_edge.iter().map(|k| {
         let [share, tolerance] = [k.share, k.tolerance].map(|v| 100.0 * v);
-        format!("{} is at the edge of its tolerance ({share:+.2} % of ±{tolerance:.2} %): the logs ask for more than that, so it may stand for something else. Measure it, or widen its tolerance.", k.name)
+        format!("{} is at the edge of its tolerance ({share:+.2} % of ±{tolerance:.2} %): it may stand for something else. Measure it, or widen its tolerance.", k.name)
     });
     lines.extend(edges);
-    let at_bound = confidence.at_bound.iter();
-    lines.extend(at_bound.map(|[effect, p]| {
-        format!(
-            "The {} of {effect} is at the largest value that is searched: there is more of it, or it stands for something else.",
-            p.replace('_', " ")
-        )
-    }));
     let wide = confidence.wide.iter();
     lines.extend(wide.map(|[effect, p]| {
         format!(
-            "The {} of {effect} is known only roughly: its 95 % interval is more than half as wide as its value.",
+            "The {} of {effect} is known badly: its 95 % interval is wider than half of it.",
             p.replace('_', " ")
         )
     }));
@@ -258,9 +229,7 @@ fn alike(effects: &[EffectFound]) -> Vec<String> {
             let summary = Effect::named(name).map_or("", |e| e.summary);
             format!("{name} ({summary})")
         };
-        let effects = effect.indistinguishable_from.iter().map(plain);
-        let parameters = effect.or_at_edge.iter().map(|p| p.at_its_edge());
-        let others: Vec<String> = effects.chain(parameters).collect();
+        let others: Vec<String> = effect.indistinguishable_from.iter().map(plain).collect();
         (!others.is_empty()).then(|| {
             format!(
                 "These logs cannot tell {} from {}.",

@@ -6,7 +6,6 @@ use axis_log::Log;
 use axis_sim::{Axis, reference_in};
 
 use super::checks::check_log;
-use super::standstill::Standstill;
 use super::start::{REST_TIME, is_still};
 
 /// Where in a log it may be cut, as shares of its length: the search proves what it names on
@@ -36,18 +35,17 @@ pub fn set_apart(mut check: Vec<NamedLog>, machine: &Axis) -> (Vec<NamedLog>, Ve
     }
 }
 
-/// Both parts of a log, cut where reference and axis rest, where each is sound by itself.
+/// Both parts of a log, cut in the middle of a rest, where each is sound by itself.
 fn cut((name, log, period): &NamedLog, machine: &Axis) -> Option<[NamedLog; 2]> {
     let reference = reference_in(log).ok().filter(|_| machine.has_control())?;
     let rest = (REST_TIME / period).round() as usize;
     let length = reference.len() as f64;
     let share = |at: usize| (at + rest / 2) as f64 / length;
     let windows = reference.windows(rest + 1).enumerate();
-    let stands = Standstill::new(log, machine, rest / 2);
-    let is_rest = |(at, window): &(usize, &[f64])| {
-        CUT.contains(&share(*at)) && is_still(window) && stands.about(at + rest / 2)
-    };
-    let mut rests: Vec<usize> = windows.filter(is_rest).map(|(at, _)| at).collect();
+    let mut rests: Vec<usize> = windows
+        .filter(|(at, window)| CUT.contains(&share(*at)) && is_still(window))
+        .map(|(at, _)| at)
+        .collect();
     let off = |at: &usize| (share(*at) - BEST).abs();
     rests.sort_by(|a, b| off(a).total_cmp(&off(b)));
     // One try a rest.

@@ -2,7 +2,7 @@
 
 use axis_log::Log;
 use axis_log::intake::SHORT_GAP;
-use axis_log::quality::{check_sampling, check_sampling_from, constant_channels, unit_slip};
+use axis_log::quality::{check_sampling, constant_channels, unit_slip};
 use axis_sim::{Axis, Balance, ReplayError, position_in, reference_in};
 
 use super::error::LogSetError;
@@ -30,18 +30,10 @@ const COMPARED: [&str; 11] = [
 /// The first thing found that would make a verdict worthless.
 pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, LogSetError> {
     let file = || file.to_owned();
-    // How slow a log may be for a torque balance, the balance says itself.
     let sampling = check_sampling(log).map_err(|reason| LogSetError::Sampling {
         file: file(),
         reason,
     })?;
-    let is_slow = check_sampling_from(log, REPLAY_MIN_RATE_HZ).is_err();
-    if is_slow && machine.has_control() {
-        return Err(LogSetError::Slow {
-            file: file(),
-            rate: sampling.rate,
-        });
-    }
     if !machine.has_control() {
         return check_balanced(file(), log, sampling.period, machine);
     }
@@ -73,11 +65,6 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, LogSetErr
     moves_both_ways(&file(), reference)?;
     Ok(sampling.period)
 }
-
-/// Lowest rate of a log that is replayed, Hz: its reference is a spline through the samples, which
-/// has a wave of a tenth of the rate to 0.1 % ([`axis_sim::Curve::spline`]), and a loop's motion
-/// goes to some 10 Hz.
-pub const REPLAY_MIN_RATE_HZ: f64 = 100.0;
 
 /// Dry friction and a standing load look alike where the axis goes one way only.
 fn moves_both_ways(file: &str, reference: &[f64]) -> Result<(), LogSetError> {

@@ -1,9 +1,7 @@
 //! Why a log cannot be used.
 
 use axis_log::intake::SHORT_GAP;
-use axis_log::quality::{MAX_RATE_HZ, SamplingError};
-
-use super::checks::REPLAY_MIN_RATE_HZ;
+use axis_log::quality::SamplingError;
 use axis_sim::BalanceError;
 use thiserror::Error;
 
@@ -20,16 +18,6 @@ pub enum LogSetError {
         file: String,
         /// What is wrong.
         reason: SamplingError,
-    },
-    /// Too slow for a replay.
-    #[error(
-        "{file}: the sample rate is {rate:.6} Hz: a replay through the closed loop takes {REPLAY_MIN_RATE_HZ} to {MAX_RATE_HZ} Hz; a torque balance takes slower logs of slow motion (discover --balance, or an axis file without [control])"
-    )]
-    Slow {
-        /// The log.
-        file: String,
-        /// The rate found, Hz.
-        rate: f64,
     },
     /// No torque balance can be made of it.
     #[error("{file}: {reason}")]

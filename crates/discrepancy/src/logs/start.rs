@@ -4,13 +4,11 @@ use axis_log::Log;
 use axis_sim::{Axis, reference_in};
 
 use super::error::LogSetError;
-use super::standstill::Standstill;
 
 /// A log as a replay can begin it, and what was done for that, in words.
 ///
 /// A ball-screw loop begins at rest: of a log that starts in motion, what lies
-/// before the last 0.1 s of its first rest is left out. A reference that has stopped is no rest yet: the
-/// axis may still go on. A rigid machine begins with the position
+/// before the last 0.1 s of its first rest is left out. A rigid machine begins with the position
 /// and the speed of the log's first samples.
 ///
 /// # Errors
@@ -31,66 +29,39 @@ pub fn from_rest(
         Some(later) => (later - reference[0]) / (few as f64 * period),
         None => 0.0,
     };
-    let in_motion = speed.abs() > AT_REST;
-    let rest = (REST_TIME / period).round() as usize;
+    if speed.abs() <= AT_REST {
+        return Ok((log, None));
+    }
     if machine.control.starts_in_motion() {
         let words = format!(
             "{file} starts in motion; position and speed at its start ({speed:.4} m/s) are taken from its first samples"
         );
-        return Ok((log, in_motion.then_some(words)));
+        return Ok((log, Some(words)));
     }
-    let stands = Standstill::new(&log, machine, (SHORT_REST / period).round() as usize);
-    if !in_motion && stands.from(0) {
-        return Ok((log, None));
-    }
-    let first_rest = if in_motion {
-        0
-    } else {
-        still_from(reference, 0, period)
-    };
-    // Within the rest that the log begins with, as soon as the axis stands.
-    let soon = (0..first_rest.saturating_sub(stands.window())).find(|&k| stands.from(k));
-    let first = reference.windows(rest + 1).enumerate();
-    let mut first = first.filter(|(k, window)| is_still(window) && stands.about(k + rest / 2));
+    let rest = (REST_TIME / period).round() as usize;
+    let first = reference.windows(rest + 1).position(is_still);
     // So late that nothing follows is as good as never.
-    let left = soon.or_else(|| {
-        let (k, _) = first.next()?;
+    let left = first.and_then(|k| {
         // The later in the rest, the better the loop has settled.
         let middle = k + rest / 2;
-        let still = still_from(reference, middle, period);
-        Some(middle.max((middle + still).saturating_sub(rest / 2)))
+        let steps = reference[middle..].windows(2);
+        let still = steps.take_while(|w| (w[1] - w[0]).abs() <= AT_REST * period);
+        let at = middle.max((middle + still.count()).saturating_sub(rest / 2));
+        Some((at, log.skip(at).ok()?))
     });
-    let left = left.and_then(|at| Some((at, log.skip(at).ok()?)));
-    let what = match in_motion {
-        true => format!("starts in motion ({speed:.4} m/s)"),
-        false => "starts while the axis still moves, though its reference rests".to_owned(),
-    };
     match left {
         Some((at, left)) => {
             let from = log.time()[at];
             let words = format!(
-                "{file} {what}; what lies before its first rest, at t = {from:.3} s, is left out"
+                "{file} starts in motion ({speed:.4} m/s); what lies before its first rest, at t = {from:.3} s, is left out"
             );
             Ok((left, Some(words)))
         }
-        None if in_motion => Err(LogSetError::NeverRests {
+        None => Err(LogSetError::NeverRests {
             file: file.to_owned(),
             speed,
         }),
-        None => {
-            let words = format!(
-                "{file} {what}, and has no later rest: how the loop stands at its start is not in the log"
-            );
-            Ok((log, Some(words)))
-        }
     }
-}
-
-/// Samples from one on in which a reference does not move.
-fn still_from(reference: &[f64], from: usize, period: f64) -> usize {
-    let steps = reference[from..].windows(2);
-    let still = steps.take_while(|w| (w[1] - w[0]).abs() <= AT_REST * period);
-    still.count()
 }
 
 /// Whether the reference rests over [`REST_TIME`].
@@ -109,6 +80,3 @@ const START_TIME: f64 = 5e-3;
 
 /// How long a rest must be for the loop to have come to rest in its half, s.
 pub(super) const REST_TIME: f64 = 0.2;
-
-/// Shortest rest that a log may begin with, s.
-const SHORT_REST: f64 = 0.04;

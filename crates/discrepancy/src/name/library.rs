@@ -145,16 +145,7 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
                 None => starts.to_vec(),
             },
             Nature::Order([least, most]) => (least..=most).map(f64::from).collect(),
-            Nature::TurnOrder(low) => {
-                let mut all = turn_orders(low, fitter.machine.actuator.pole_pairs());
-                // With which the effort of balanced logs was seen to repeat.
-                let balances = fitter.set.balances();
-                let seen = balances.iter().flat_map(|b| b.quality().orders.iter());
-                all.extend(seen);
-                all.sort_by(f64::total_cmp);
-                all.dedup();
-                all
-            }
+            Nature::TurnOrder(low) => turn_orders(low, fitter.machine.actuator.pole_pairs()),
             Nature::Width(_) => vec![(high - low) / 16.0],
             Nature::Place(_) => (0..PLACES)
                 .map(|k| low + (high - low) * (k as f64 + 0.5) / PLACES as f64)
@@ -238,7 +229,7 @@ fn candidates(fitter: &Fitter<'_>, fit: &Fit, wanted: impl Fn(&Effect) -> bool) 
 }
 
 /// Secants at half of the typical size: derivatives would say nothing of
-/// gaps and dry friction. Those of a force in time are beside all that repeats with the drive.
+/// gaps and dry friction.
 pub fn responses(
     fitter: &Fitter<'_>,
     fit: &Fit,
@@ -266,10 +257,7 @@ pub fn responses(
             effect,
             values: tried,
         });
-        match effect.acts_in_time() {
-            true => fitter.column_apart(fit, &state, SHARE),
-            false => fitter.column(fit, &state, SHARE),
-        }
+        fitter.column(fit, &state, SHARE)
     };
     match phase {
         Some(_) => sizes

@@ -6,19 +6,16 @@ use axis_sim::{Axis, Balance, ClosedLoop, Replay, ReplayError, Trace};
 use rayon::prelude::*;
 
 use super::level::{noise_at, shows_noise, upper_level};
-use super::repeats::without_repeats;
 use super::{LogNoise, Rest, at_state, noise_series};
 use crate::answers::{LogSet, State};
 
 /// Noise alone in a channel.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Floor {
     /// Root mean square.
     pub rms: f64,
     /// The greatest root mean square of a run: what is slow differs from run to run.
     pub most: f64,
-    /// Root mean square in each log, of several runs the greatest.
-    pub by_log: Vec<f64>,
     /// Independent values that its samples are worth, where what is slow is averaged:
     /// their number times the variance over the spectral density at zero frequency.
     pub independent: f64,
@@ -44,14 +41,9 @@ impl Floor {
         } else {
             1.0
         };
-        let rms = |log: &Vec<f64>| {
-            let squares: f64 = log.iter().map(|v| v * v).sum();
-            (squares / log.len().max(1) as f64).sqrt()
-        };
         Self {
             rms: (squares / samples).sqrt(),
             most: (squares / samples).sqrt(),
-            by_log: series.iter().map(rms).collect(),
             independent: samples * worth.min(1.0),
         }
     }
@@ -62,27 +54,18 @@ impl Floor {
     fn of_runs(runs: &[Self]) -> Self {
         let count = runs.len().max(1) as f64;
         let mean = |value: fn(&Self) -> f64| runs.iter().map(value).sum::<f64>() / count;
-        let logs = runs.iter().map(|run| run.by_log.len()).max().unwrap_or(0);
-        // What is slow differs from run to run, of a single log the more.
-        let of_log = |log: usize| {
-            let each = runs.iter().filter_map(|run| run.by_log.get(log));
-            each.copied().fold(0.0, f64::max)
-        };
         Self {
             rms: mean(|f| f.rms * f.rms).sqrt(),
             most: runs.iter().map(|f| f.rms).fold(0.0, f64::max),
-            by_log: (0..logs).map(of_log).collect(),
             independent: mean(|f| f.independent),
         }
     }
 
     /// With this besides, RMS: what a simulation may be off by, or slow noise of a logger.
     pub(crate) fn beside(self, inexact: f64) -> Self {
-        let by_log = self.by_log.iter().map(|rms| rms.hypot(inexact));
         Self {
             rms: self.rms.hypot(inexact),
             most: self.most.hypot(inexact),
-            by_log: by_log.collect(),
             ..self
         }
     }
@@ -103,7 +86,7 @@ pub(crate) fn floors(
 ) -> Result<Vec<Floor>, ReplayError> {
     let axis = at_state(machine, state);
     if set.is_balanced() {
-        return Ok(vec![of_balances(&axis, &set.balances(), best)]);
+        return Ok(vec![of_balances(&set.balances(), best)]);
     }
     if !shows_noise(&axis, set) {
         let samples: usize = set.counted().iter().map(Range::len).sum();
@@ -112,7 +95,6 @@ pub(crate) fn floors(
             let white = Floor {
                 rms,
                 most: rms,
-                by_log: vec![rms; set.logs.len()],
                 independent: samples as f64,
             };
             white.beside(set.inexactness(machine, c))
@@ -168,51 +150,28 @@ fn floors_of(
     Ok((0..set.channels.len()).map(of).collect())
 }
 
-/// Noise of a balance's channel: what its rest has from one sample to the next, less what repeats over the
-/// turn or the way; or, where that is more, the least that its log leaves possible, with what is unsure of its friction.
-/// Nobody knows what its controller makes of its sensors' noise, nor what a current has above the rate of its
-/// log: that comes back anywhere below it. What is foreseen of the upper spectra is a guess: motion that
-/// goes on there passes for noise. Where the whole rest is less, it is wrong, and does not count.
-fn of_balances(axis: &Axis, balances: &[&Balance], rest: &Rest) -> Floor {
+/// Noise of a balance's channel: the least that its log leaves possible, with what is unsure of
+/// its friction, or, where that is more, what its rest has from one sample to the next. Nobody knows what its controller makes
+/// of its sensors' noise, nor what a current has above the rate of its log: that comes back
+/// anywhere below it.
+fn of_balances(balances: &[&Balance], rest: &Rest) -> Floor {
     let samples = balances.iter().map(|b| b.quality().samples[0] as f64);
-    let squares = balances.iter().zip(rest).map(|(balance, log)| {
-        let quality = balance.quality();
-        let foreseen = balance.foreseen_noise(axis).powi(2) + quality.friction.powi(2);
-        let seen = log.iter().map(|rest| seen(balance, rest));
-        let [noise, whole] = seen.fold([0.0_f64; 2], |[a, b], [c, d]| [a.max(c), b.max(d)]);
-        match foreseen <= whole {
-            true => noise.max(foreseen),
-            false => noise,
-        }
+    let squares = balances.iter().zip(rest).map(|(b, log)| {
+        let quality = b.quality();
+        let least = quality.floor.powi(2) + quality.friction.powi(2);
+        let (time, period) = (b.compared().time(), b.compared_period());
+        let unlike = |r: &Vec<f64>| unlike(r, time, period, b.correlation(period));
+        log.iter().map(unlike).fold(least, f64::max)
     });
-    let by_log: Vec<f64> = squares.collect();
-    let pairs = samples.clone().zip(&by_log);
-    let sum: f64 = pairs.map(|(n, s)| n * s).sum();
+    let sum: f64 = samples.clone().zip(squares).map(|(n, s)| n * s).sum();
     let independent: f64 = samples.sum();
     let rms = (sum / independent.max(1.0)).sqrt();
     Floor {
         rms,
         most: rms,
-        by_log: by_log.into_iter().map(f64::sqrt).collect(),
         independent,
     }
 }
-
-/// Variance of a balance's rest that is unlike from one sample to the next, and all of it, both without what
-/// repeats over the turn or the way.
-fn seen(balance: &Balance, rest: &[f64]) -> [f64; 2] {
-    let (time, period) = (balance.compared().time(), balance.compared_period());
-    let angle = balance.motor_angle();
-    let (left, fitted) = without_repeats(rest, &angle, time, NEIGHBOURS * period);
-    let count = left.len() as f64;
-    let free = count / (count - fitted as f64).max(1.0);
-    let whole = left.iter().map(|r| r * r).sum::<f64>() / count.max(1.0);
-    let unlike = unlike(&left, time, period, balance.correlation(period));
-    [(free * unlike).min(whole), whole]
-}
-
-/// Periods within which samples are neighbours.
-const NEIGHBOURS: f64 = 1.5;
 
 /// Variance of a rest, were all that is unlike from one sample to the next noise, flat up to the
 /// low-pass: half the mean square of neighbours' differences over 1 − ρ, ρ being such noise's
@@ -220,7 +179,7 @@ const NEIGHBOURS: f64 = 1.5;
 /// 12 (1941) 367, doi:10.1214/aoms/1177731677): what a law lacks goes on for many samples.
 fn unlike(rest: &[f64], time: &[f64], period: f64, correlation: f64) -> f64 {
     let pairs = rest.windows(2).zip(time.windows(2));
-    let neighbours = pairs.filter(|(_, t)| t[1] - t[0] < NEIGHBOURS * period);
+    let neighbours = pairs.filter(|(_, t)| t[1] - t[0] < 1.5 * period);
     let squares = neighbours.map(|(r, _)| (r[1] - r[0]).powi(2));
     let (sum, count) = squares.fold((0.0, 0.0), |(sum, n), square| (sum + square, n + 1.0));
     sum / f64::max(count, 1.0) / (2.0 * (1.0 - correlation))

@@ -46,7 +46,7 @@ impl<'a> Spectra<'a> {
     pub(super) fn of(axis: &Axis, set: &'a LogSet, rest: &Rest, quiet: &[Trace]) -> Self {
         let guess = Levels::of(set, rest).noise(axis);
         let bands = Bands::of(set);
-        let observed = without_jitter(axis, set, quiet, &bands, bands.powers(set, rest));
+        let observed = bands.powers(set, rest);
         let answers = answers(axis, set, quiet, &bands, guess, LogNoise::of_sensors);
         Self {
             set,
@@ -96,7 +96,6 @@ impl<'a> Spectra<'a> {
         let sensors = loop_noise.fold(self.guess, |noise, (s, p)| s.times(noise, p.sqrt()));
         let noise = LogNoise {
             logger: logger.map(|(&name, p)| (name, p.sqrt())).collect(),
-            is_off_stamps: true,
             ..LogNoise::of_sensors(sensors)
         };
         tracing::debug!(?noise, "noise of the logs");
@@ -147,43 +146,6 @@ fn answers(
     };
     Sensor::ALL.map(answer).into()
 }
-
-/// Powers of a rest without what samples off their stamps make, which is known already; a part is left in
-/// any case.
-fn without_jitter(
-    axis: &Axis,
-    set: &LogSet,
-    quiet: &[Trace],
-    bands: &Bands,
-    observed: Powers,
-) -> Powers {
-    if set.logs.iter().all(|log| log.jitter.is_none()) {
-        return observed;
-    }
-    let run = || -> Result<Rest, ReplayError> {
-        let closed_loop = ClosedLoop::new(axis)?.without_noise();
-        let none = LogNoise {
-            is_off_stamps: true,
-            ..LogNoise::of_sensors(SensorNoise::NONE)
-        };
-        noise_series(&closed_loop, set, quiet, &none, 0)
-    };
-    let Ok(of_jitter) = run() else {
-        return observed;
-    };
-    let of_jitter = bands.powers(set, &of_jitter);
-    let channels = observed.into_iter().zip(of_jitter);
-    let channel = |(all, known): (Vec<f64>, Vec<f64>)| {
-        let cells = all.into_iter().zip(known);
-        cells
-            .map(|(all, known)| (all - known).max(LEFT * all))
-            .collect()
-    };
-    channels.map(channel).collect()
-}
-
-/// Share of a rest's power that is left of it beside noise that is known: one run tells that to a tenth.
-const LEFT: f64 = 0.1;
 
 /// Least that a sensor's noise as guessed makes of a rest's power in some channel and band for it to be
 /// heard there. A sensor that the control does not read, and whose channel is compared without its noise, makes what

@@ -4,10 +4,8 @@ mod colour;
 mod excess;
 mod floor;
 mod hum;
-mod jitter;
 mod level;
 mod motion;
-mod repeats;
 mod sensor;
 mod slow;
 mod sources;
@@ -27,7 +25,6 @@ pub(crate) use self::colour::{coloured_noise, steady_bands};
 pub(crate) use self::excess::{Excess, excess};
 pub(crate) use self::floor::{Floor, floors, floors_with};
 pub(crate) use self::hum::Hum;
-pub(crate) use self::jitter::{Jitter, jitter};
 use self::level::{noise_at, shows_noise};
 pub(crate) use self::motion::{MotionAndRest, Simulated};
 pub use self::sensor::SensorNoise;
@@ -47,8 +44,6 @@ pub struct LogNoise {
     pub logger: BTreeMap<&'static str, f64>,
     /// What the sensors have beside their white noise.
     colour: Colour,
-    /// Whether samples lie off their stamps as those of the logs do.
-    is_off_stamps: bool,
 }
 
 impl LogNoise {
@@ -58,7 +53,6 @@ impl LogNoise {
             sensors,
             logger: BTreeMap::new(),
             colour: Colour::default(),
-            is_off_stamps: false,
         }
     }
 
@@ -131,43 +125,18 @@ fn noise_series(
     let one = |(l, (replay, quiet)): (usize, (&Replay, &Trace))| {
         let stream = 1000 * seed + l as u64 + 1;
         let sensors = noise.sensed(stream, closed_loop.axis().period);
-        let log = &set.logs[l];
-        let jitter = log.jitter.filter(|_| noise.is_off_stamps);
-        let off = jitter.map(|jitter| instants(jitter, stream, log.log.len()));
-        let of_reference = jitter.is_some_and(|jitter| jitter.of_reference);
-        let noisy = match off.as_ref().filter(|_| of_reference) {
-            Some(off) => (replay.clone().with_reference_off(off)).follow(closed_loop, sensors)?,
-            None => replay.follow(closed_loop, sensors)?,
-        };
+        let noisy = replay.follow(closed_loop, sensors)?;
         let channel = |(c, name): (usize, &&'static str)| -> Vec<f64> {
             let [a, b] = [&noisy, quiet].map(|t| t.channel(name).unwrap_or_default());
             let own_stream = (stream << 8) + c as u64;
             let logged = noise.logged(name, own_stream, a.len());
             let of_loop = a.iter().zip(b).map(|(a, b)| a - b);
-            let mut series: Vec<f64> = of_loop.zip(logged).map(|(n, l)| n + l).collect();
-            // What the log shows is taken at these instants, what is simulated at its stamps.
-            if let Some(off) = &off {
-                let ends = |k: usize| [k.saturating_sub(1), (k + 1).min(b.len() - 1)];
-                let rate = |[from, to]: [usize; 2]| {
-                    (b[to] - b[from]) / ((to - from).max(1) as f64 * log.period)
-                };
-                let all = series.iter_mut().zip(off).enumerate();
-                all.for_each(|(k, (value, by))| *value -= rate(ends(k)) * by);
-            }
-            series
+            of_loop.zip(logged).map(|(n, l)| n + l).collect()
         };
         Ok(set.channels.iter().enumerate().map(channel).collect())
     };
     let logs: Vec<(&Replay, &Trace)> = set.replays().into_iter().zip(quiet).collect();
     logs.into_par_iter().enumerate().map(one).collect()
-}
-
-/// Instants by which the samples of a log lie off their stamps, s.
-fn instants(jitter: Jitter, seed: u64, samples: usize) -> Vec<f64> {
-    // A stream that no sensor and no logger has.
-    let mut random = ChaCha8Rng::seed_from_u64(!seed);
-    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
-    (0..samples).map(|_| jitter.deviation * normal()).collect()
 }
 
 /// The same as amplitudes, with the machine at a state.

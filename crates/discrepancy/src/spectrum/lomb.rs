@@ -8,8 +8,7 @@ use nalgebra::{Matrix2, Vector2};
 ///
 /// Frequencies are the multiples of `1 / (length * period)` up to a quarter of the rate
 /// `1 / period`; samples go to the nearest multiple of `period` (s), and `length`, 1 or more, of
-/// these are as long as the series or longer. What is called time here may be any other variable, in any
-/// order. The sums over samples are
+/// these are as long as the series or longer. The sums over samples are
 /// transforms of the series and of the instants that have one, so that the cost is that of two
 /// transforms of `length` points (Press and Rybicki, Astrophys. J. 338 (1989) 277–280,
 /// doi:10.1086/167197).
@@ -21,7 +20,7 @@ pub(crate) fn waves(
 ) -> impl Iterator<Item = (f64, f64)> {
     let count = series.len() as f64;
     let mean = series.iter().sum::<f64>() / count.max(1.0);
-    let first = times.iter().copied().fold(f64::INFINITY, f64::min);
+    let first = times.first().copied().unwrap_or(0.0);
     let (mut values, mut instants) = (vec![0.0; length], vec![0.0; length]);
     let mut power = 0.0;
     for (t, value) in times.iter().zip(series) {

@@ -58,8 +58,7 @@ pub struct FoundInSummary<'a> {
 impl fmt::Display for Found<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let discovery = self.discovery;
-        writeln!(f, "\n{}", discovery.gap_line())?;
-        writeln!(f, "{}", discovery.sentence)?;
+        writeln!(f, "\n{}", discovery.sentence)?;
         for answered in discovery.first_screen() {
             writeln!(f, "\n{}", answered.question)?;
             for line in &answered.lines {
@@ -105,7 +104,7 @@ impl Found<'_> {
                 .collect();
             writeln!(
                 f,
-                "{} ({}) was named in an earlier round and replaced: beside the effects that came later, {} explains as much",
+                "{} ({}) was named on the way; beside the others, {} explains as much in its place",
                 effect.name,
                 values.join(", "),
                 effect.by
@@ -151,7 +150,7 @@ impl Found<'_> {
         ) {
             writeln!(
                 f,
-                "\nTo search again: --reject NAME leaves an effect out, --accept NAME takes one as present."
+                "\nWith an effect rejected (--reject NAME) or another accepted (--accept NAME) the search is made anew, with that."
             )?;
         }
         Ok(())

@@ -31,7 +31,6 @@ pub fn page(discovered: &Discovered) -> Result<String> {
     ];
     let page = Page::new(format!("What the model of {} lacks", discovery.axis))
         .lead(lead(discovery))
-        .first(Block::Paragraph(discovery.gap_line()))
         .first(Block::Notice(kind, discovery.sentence.clone()))
         .first(Block::Answers(answers));
     let page = notes.into_iter().fold(page, Page::first);
@@ -213,7 +212,7 @@ fn gaps(discovery: &Discovery) -> Section {
                 "{:.1} % of the gap above the noise is gone.",
                 100.0 * gap.reduction
             ),
-            false => "No channel's gap was more than 1.2 times its noise.".to_owned(),
+            false => "No channel stood out of its noise by more than a fifth.".to_owned(),
         })
     };
     Section::new("Gap, RMS")

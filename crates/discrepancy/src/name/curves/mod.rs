@@ -5,7 +5,7 @@ mod rest;
 mod shape;
 mod variable;
 
-use axis_sim::{Axis, Probe, ReplayError, Trace};
+use axis_sim::{Axis, Probe};
 use rayon::prelude::*;
 
 pub use self::course::{Course, STANDS, angles, courses, slope};
@@ -59,10 +59,7 @@ impl Curves {
         let answers = |shape: Shape| {
             let column = |j: usize| {
                 let series = courses.iter().map(|c| shape.hat(j, c)).collect();
-                match shape.is_in_time() {
-                    true => answer_apart(&fitter, fit, shape.place, series),
-                    false => answer(&fitter, fit, shape.place, series),
-                }
+                answer(&fitter, fit, shape.place, series)
             };
             let columns = (0..shape.knots.len()).into_par_iter().map(column).collect();
             (shape, columns)
@@ -76,30 +73,16 @@ impl Curves {
 /// What the loop makes of a disturbance of unit size with this course, one
 /// series a log.
 pub fn answer(fitter: &Fitter<'_>, fit: &Fit, place: Place, series: Vec<Vec<f64>>) -> Amplitudes {
-    match disturbed(fitter, fit, place, series) {
-        Ok(traces) => fitter.set.difference(&traces, &fit.traces, place.size()),
-        Err(_) => fitter.nothing(fit),
-    }
-}
-
-/// The same without what repeats with the drive.
-fn answer_apart(fitter: &Fitter<'_>, fit: &Fit, place: Place, series: Vec<Vec<f64>>) -> Amplitudes {
-    match disturbed(fitter, fit, place, series) {
-        Ok(traces) => (fitter.set).difference_apart([&traces, &fit.traces], place.size()),
-        Err(_) => fitter.nothing(fit),
-    }
-}
-
-fn disturbed(
-    fitter: &Fitter<'_>,
-    fit: &Fit,
-    place: Place,
-    series: Vec<Vec<f64>>,
-) -> Result<Vec<Trace>, ReplayError> {
     let size = place.size();
     let probes: Vec<Probe> = series
         .into_iter()
         .map(|s| place.probe(s.into_iter().map(|v| size * v).collect()))
         .collect();
-    (fitter.set).simulate_with(fitter.machine, &fit.state, Some(&probes))
+    let run = fitter
+        .set
+        .simulate_with(fitter.machine, &fit.state, Some(&probes));
+    match run {
+        Ok(traces) => fitter.set.difference(&traces, &fit.traces, size),
+        Err(_) => fitter.nothing(fit),
+    }
 }

@@ -65,11 +65,6 @@ impl Shape {
         is_over((self.variable, self.factor), variable)
     }
 
-    /// Whether it is a curve over time alone, whatever the motion.
-    pub fn is_in_time(&self) -> bool {
-        self.variable == Variable::Time && self.factor == Factor::One
-    }
-
     /// What is left on logs of which this is the fit with these values at the knots.
     ///
     /// # Errors

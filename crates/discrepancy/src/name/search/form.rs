@@ -163,8 +163,8 @@ impl Refined {
 }
 
 impl Search<'_> {
-    /// Whether a candidate leaves the axis less than no viscous friction, or less than no dry friction,
-    /// sliding or at break-away, in one direction: no contact does that, but an onset of another form may look like it.
+    /// Whether a candidate leaves the axis less than no dry friction, sliding or at break-away, in
+    /// one direction: no contact does that, but an onset of another form may look like it.
     /// Break-away below sliding friction does occur, as on plastic guideways, but not where the
     /// axis file tells of a fall.
     pub(super) fn leaves_no_friction(&self, candidate: &Refined) -> bool {
@@ -177,8 +177,7 @@ impl Search<'_> {
         // The lesser of the directions, where an effect tells them apart.
         let of = |name: &str| -> f64 {
             let there = effects.iter().filter(|a| a.effect.name == name);
-            let by_direction = [BY_DIRECTION, VISCOUS_BY_DIRECTION].contains(&name);
-            let values = |a: &ActiveEffect| match by_direction {
+            let values = |a: &ActiveEffect| match name == BY_DIRECTION {
                 true => a.values[0].min(a.values[1]),
                 false => a.values[0],
             };
@@ -188,9 +187,7 @@ impl Search<'_> {
         let own_fall = (own.stiction - own.coulomb) / lever;
         let fall = own_fall + of(FALL);
         let rises = own_fall > 0.0 && fall < 0.0;
-        let viscous = own.viscous / (lever * lever) + of(VISCOUS) + of(VISCOUS_BY_DIRECTION);
-        (has(VISCOUS) || has(VISCOUS_BY_DIRECTION)) && viscous < 0.0
-            || (has(PLAIN) || has(BY_DIRECTION)) && sliding < 0.0
+        (has(PLAIN) || has(BY_DIRECTION)) && sliding < 0.0
             || has(FALL) && (rises || sliding + fall < 0.0)
     }
 
@@ -207,10 +204,6 @@ impl Search<'_> {
 
 /// Dry friction.
 const PLAIN: &str = "coulomb-friction";
-
-/// Friction in proportion to the speed, alike both ways or not.
-const VISCOUS: &str = "viscous-friction";
-const VISCOUS_BY_DIRECTION: &str = "asymmetric-viscous-friction";
 
 /// Dry friction of one level, or of one a direction.
 const DRY: [&str; 2] = [PLAIN, BY_DIRECTION];

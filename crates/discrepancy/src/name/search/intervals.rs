@@ -25,17 +25,9 @@ pub(super) struct Intervals {
 }
 
 impl Intervals {
-    /// Half width of the 95 % interval of a parameter of this value, by its place, with those known
-    /// parameters as they are that are `held`.
-    pub(super) fn half_width(&self, index: usize, value: f64, held: &[bool]) -> f64 {
-        let mut spread = self.spreads[index].clone();
-        let held = spread
-            .of_known
-            .iter_mut()
-            .zip(held)
-            .filter(|(_, held)| **held);
-        held.for_each(|(lean, _)| *lean = 0.0);
-        spread.half_width(SIMULATED * value)
+    /// Half width of the 95 % interval of a parameter of this value, by its place.
+    pub(super) fn half_width(&self, index: usize, value: f64) -> f64 {
+        self.spreads[index].half_width(SIMULATED * value)
     }
 }
 

@@ -3,8 +3,8 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::state::Search;
-use crate::answers::{Prepared, Rest};
-use crate::spectrum::{Amplitudes, waves};
+use crate::answers::Prepared;
+use crate::spectrum::waves;
 
 /// Lines that are tried.
 const LINES: usize = 3;
@@ -19,8 +19,8 @@ pub(super) type Line = (f64, f64);
 pub(super) type Spectral = DMatrix<Complex<f64>>;
 
 impl Search<'_> {
-    /// Power of a rest in each bin beside that of these matrices in its band, over all channels.
-    pub(super) fn lines_of_replays(&self, rest: &Amplitudes, matrices: &[Spectral]) -> Vec<Line> {
+    /// Power of the rest in each bin beside that of these matrices in its band, over all channels.
+    pub(super) fn lines_of_replays(&self, matrices: &[Spectral]) -> Vec<Line> {
         let layout = &self.fit_logs.layout;
         let bands: Vec<[f64; 2]> = layout.bands().map(|(edges, _)| edges).collect();
         let of_bin = |(frequency, bin): (f64, &[Complex<f64>])| {
@@ -30,16 +30,17 @@ impl Search<'_> {
             let stands_out: f64 = all.map(|(c, value)| value.norm_sqr() / power(c)).sum();
             Some((frequency, stands_out))
         };
-        layout.bins(rest).filter_map(of_bin).collect()
+        layout.bins(&self.fit.rest).filter_map(of_bin).collect()
     }
 
-    /// What a wave takes of a rest by least squares, logs and channels added up.
-    pub(super) fn lines_of_balances(&self, rest: &Rest, longest: f64) -> Vec<Line> {
+    /// What a wave takes of the rest by least squares, logs and channels added up.
+    pub(super) fn lines_of_balances(&self, longest: f64) -> Vec<Line> {
         let set = &self.fit_logs;
+        let rest = set.rest(&self.fit.traces);
         let periods = set.logs.iter().map(|l| l.period);
         let period = periods.fold(f64::INFINITY, f64::min);
         let length = (FINER * longest / period).ceil().max(1.0) as usize;
-        let logs = set.logs.iter().zip(rest);
+        let logs = set.logs.iter().zip(&rest);
         let channels = logs.flat_map(|(log, rest)| rest.iter().map(move |r| (log.log.time(), r)));
         let mut lines: Vec<Line> = Vec::new();
         for (times, rest) in channels {

@@ -1,13 +1,11 @@
 //! Stepwise search: screen, refine the best few by simulation, add, drop.
 
-mod edge;
 mod evidence;
 mod force;
 mod form;
 mod free_curve;
 mod intervals;
 mod lines;
-mod look_alikes;
 mod one_law;
 mod promise;
 mod refined;
@@ -29,8 +27,8 @@ pub(crate) use self::form::is_form;
 pub(crate) use self::revise::ABOVE_NOISE;
 use self::state::{ANEW, Search, steady_noise};
 pub use self::types::{
-    Alike, AtEdge, Found, Named, ONE_CLASS, RefusalReason, Refused, Replaced, RunnerUp,
-    SearchError, Settings, SettingsError, Test,
+    Alike, Found, Named, ONE_CLASS, RefusalReason, Refused, Replaced, RunnerUp, SearchError,
+    Settings, SettingsError, Test,
 };
 use crate::answers::{LogSet, State};
 use crate::estimate::columns::Columns;
@@ -161,7 +159,6 @@ fn searched(
         leftover: Vec::new(),
         refused: None,
         unseen: Vec::new(),
-        unfounded: Vec::new(),
         hum,
         fit_logs,
         check_logs,
@@ -178,7 +175,7 @@ fn searched(
     }
     progress("intervals");
     let mut intervals = search.intervals()?;
-    while search.drop_noise(&intervals) || search.drop_unsized(&intervals) {
+    while search.drop_noise(&intervals) {
         // What was named together with it may be nothing without it.
         search.revise();
         intervals = search.intervals()?;
@@ -193,11 +190,10 @@ fn searched(
     if let Some(refused) = search.refused(as_filed, &without)? {
         search = without.with_refused(refused);
         intervals = search.intervals()?;
-    } else if search.lacks_evidence(&without)? {
+    } else if search.lacks_evidence(&without, &intervals)? {
         search = without.with_leftover(&search.named);
         intervals = search.intervals()?;
     }
-    search.tell_look_alikes();
     Ok(search.finish(base, intervals))
 }
 

@@ -1,6 +1,6 @@
 //! Candidates after refinement by simulation.
 
-use axis_sim::effects::{ActiveEffect, Nature, Scales};
+use axis_sim::effects::{ActiveEffect, Nature};
 
 use super::evidence::{EQUAL, enough};
 use super::types::{Alike, ONE_CLASS, RunnerUp};
@@ -24,6 +24,14 @@ pub(super) struct Refinement {
     pub(super) unseen: Vec<&'static str>,
 }
 
+impl Refinement {
+    /// Whether an effect ended, wherever it began, as a simpler one.
+    pub(super) fn ended_unseen(&self, name: &str) -> bool {
+        let is_it = |r: &Refined| r.parts.len() == 1 && r.parts[0].effect.name == name;
+        self.unseen.contains(&name) && !self.kept.iter().any(is_it)
+    }
+}
+
 impl Refined {
     /// The effects that it adds, one for each of its parts.
     pub(super) fn added(&self) -> &[ActiveEffect] {
@@ -37,11 +45,17 @@ impl Refined {
         all.filter(|p| p.nature != Nature::Held).count()
     }
 
-    /// Whether a size of what it adds is as large as it may be: it asks for more than there can be, and was
-    /// fitted to something else.
-    pub(super) fn ends_at_bound(&self) -> bool {
+    /// Whether a size is as large as it may be.
+    fn ends_at_bound(&self) -> bool {
         let mut pairs = self.added().iter().zip(&self.parts);
-        !self.is_form() && pairs.any(|(active, part)| is_at_bound(active, &part.scales))
+        pairs.any(|(active, part)| {
+            let mut sizes = active.effect.parameters.iter().zip(&active.values);
+            sizes.any(|(p, value)| {
+                let edges = p.bounds(&part.scales);
+                // Some sizes cannot be negative; nothing of them is no bound.
+                p.is_size() && edges.iter().any(|edge| *edge != 0.0 && edge == value)
+            })
+        })
     }
 
     pub(super) fn runner_up(&self) -> RunnerUp {
@@ -50,15 +64,6 @@ impl Refined {
             gain: self.gain,
         }
     }
-}
-
-/// Whether a size of an effect is as large as it may be; nothing of one that cannot be negative is no bound.
-pub(super) fn is_at_bound(active: &ActiveEffect, scales: &Scales) -> bool {
-    let mut sizes = active.effect.parameters.iter().zip(&active.values);
-    sizes.any(|(p, value)| {
-        let edges = p.bounds(scales);
-        p.is_size() && edges.iter().any(|edge| *edge != 0.0 && edge == value)
-    })
 }
 
 /// Effects that no axis file has a parameter for, and of which there cannot be less than none:
@@ -168,6 +173,26 @@ pub(super) fn simplest_first(mut refined: Vec<Refined>) -> Vec<Refined> {
         refined[..=at].rotate_right(1);
     }
     refined
+}
+
+/// Share of what an effect with a size at its bound explains that a simpler one must explain to be
+/// taken first: what asks for more than there can be was fitted to something else, as friction of
+/// a way back that was not run is to noise at rest.
+const INSIDE: f64 = 0.5;
+
+/// Simpler effects before one that ends at a bound.
+pub(super) fn inside_before_bound(refined: &mut [Refined]) {
+    let is_at_bound = |r: &&Refined| !r.is_form() && r.ends_at_bound();
+    let Some(first) = refined.first().filter(is_at_bound) else {
+        return;
+    };
+    let (least, most) = (INSIDE * first.gain, first.parameters());
+    let is_simpler = |r: &Refined| {
+        !r.is_form() && r.parameters() < most && r.gain >= least && !r.ends_at_bound()
+    };
+    if let Some(at) = refined.iter().position(is_simpler) {
+        refined[..=at].rotate_right(1);
+    }
 }
 
 /// Share of what two effects explain together that one must explain to be taken first: the

@@ -1,16 +1,13 @@
 //! What makes check motion worse is not given.
 
-use axis_sim::effects::Scales;
 use axis_sim::{ReplayError, Trace};
 
 use super::form::is_form;
 use super::intervals::Intervals;
-use super::refined::is_at_bound;
 use super::state::Search;
 use super::types::{Named, RefusalReason, Refused, RunnerUp};
 use crate::answers::{LogSet, State};
 use crate::estimate::columns::free_parameters;
-use crate::estimate::known::pinned;
 use crate::name::gap::{Gap, gap, worsened};
 use crate::noise::{Hum, MotionAndRest, floors};
 
@@ -42,10 +39,7 @@ impl Search<'_> {
         let before = |logs: &LogSet, traces: &[Trace]| Hum::as_in(set, logs).rest(traces);
         let befores = [
             before(as_filed, &as_filed.simulate(self.machine, &initial)?),
-            before(
-                &without.check_logs,
-                &without.beside(&self.fit.state).check.traces,
-            ),
+            before(&without.check_logs, &without.check.traces),
         ];
         for before in &befores {
             if let Some(channels) = worsened(set, before, &after, &floors) {
@@ -69,58 +63,44 @@ impl Search<'_> {
     }
 
     /// Whether the effects of a balance of which no channel stood out of its noise bring less than
-    /// is asked then: as if nothing had been named.
-    pub(super) fn lacks_evidence(&self, without: &Self) -> Result<bool, ReplayError> {
+    /// is asked then, or one of them may be of no size at all: as if nothing had been named.
+    pub(super) fn lacks_evidence(
+        &self,
+        without: &Self,
+        intervals: &Intervals,
+    ) -> Result<bool, ReplayError> {
         let set = &self.check_logs;
         if self.named.is_empty() || !set.is_balanced() || self.settings_ask_for_all() {
             return Ok(false);
         }
         let after = set.rest(&self.check.traces);
-        let beside = without.beside(&self.fit.state);
-        let before = without.check_logs.rest(&beside.check.traces);
+        let before = without.check_logs.rest(&without.check.traces);
         let floors = floors(self.machine, set, &self.check.state, &after)?;
-        let fall = beside.fit.deviance - self.fit.deviance;
+        let fall = without.fit.deviance - self.fit.deviance;
         let parameters = free_parameters(&self.fit.state).len();
-        let is_weak = fall < WITHOUT_GAP * self.needed(parameters, 1);
+        let is_weak =
+            fall < WITHOUT_GAP * self.needed(parameters, 1) || self.may_be_nothing(intervals);
         Ok(is_weak && !gap(set, &before, &after, &floors).stands_out())
     }
 
-    /// Takes out an effect that may be of no size at all, or that is as large as it may be; false where there
-    /// is none.
-    pub(super) fn drop_unsized(&mut self, intervals: &Intervals) -> bool {
-        let unfounded = (0..self.named.len()).find(|&index| self.is_unfounded(index, intervals));
-        let Some((index, without)) = unfounded.and_then(|i| Some((i, self.without(i)?))) else {
-            return false;
-        };
-        let name = self.named[index].name;
-        tracing::debug!(name, "of no size, or at its bound");
-        *self = without;
-        self.unfounded.push(name);
-        true
-    }
-
-    /// Whether the 95 % intervals of all sizes of a named effect hold zero, or one of them is as large as it
-    /// may be: then it is not named. Not zero by known parameters at their edge: inside their tolerance
-    /// there is more of it.
-    fn is_unfounded(&self, index: usize, intervals: &Intervals) -> bool {
+    /// Whether the 95 % intervals of all sizes of an effect hold zero.
+    fn may_be_nothing(&self, intervals: &Intervals) -> bool {
         let state = &self.fit.state;
-        let active = &state.effects[index];
-        if is_form(active) || self.is_accepted(active.effect.name) {
-            return false;
-        }
-        if is_at_bound(active, &Scales::of(self.machine)) {
-            return true;
-        }
-        let at_edge = pinned(self.machine, &state.shares);
-        let free = free_parameters(state).into_iter().enumerate();
-        let mut sizes = free.filter(|(_, (effect, parameter))| {
-            *effect == index && active.effect.parameters[*parameter].is_size()
+        let free = free_parameters(state);
+        let holds_zero = |(at, &(effect, parameter)): (usize, &(usize, usize))| {
+            let value = state.effects[effect].values[parameter];
+            value.abs() <= intervals.half_width(state.shares.len() + at, value)
+        };
+        let named = (0..state.effects.len()).filter(|&e| !is_form(&state.effects[e]));
+        let mut sizes = named.map(|e| {
+            let of_it = free
+                .iter()
+                .enumerate()
+                .filter(move |(_, (effect, _))| *effect == e);
+            let is_size = move |p: usize| state.effects[e].effect.parameters[p].is_size();
+            of_it.filter(move |(_, (_, p))| is_size(*p))
         });
-        sizes.all(|(at, (_, parameter))| {
-            let value = active.values[parameter];
-            let place = state.shares.len() + at;
-            value.abs() <= intervals.half_width(place, value, &at_edge)
-        })
+        sizes.any(|mut of_it| of_it.all(holds_zero))
     }
 
     /// Whether what is left follows the motion, in any band of a channel that stands out of

@@ -43,8 +43,7 @@ impl Search<'_> {
                 index += 1;
                 continue;
             };
-            let of_it = std::slice::from_ref(&self.fit.state.effects[index]);
-            let loss = without.fall_to(&self.fit, of_it);
+            let loss = without.fit.deviance - self.fit.deviance;
             let largest = self.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
             let dropped = self.fit.state.effects[index].effect;
             let needed = self.needed(dropped.parameters.iter().filter(|p| is_free(p)).count(), 1);
@@ -158,6 +157,7 @@ impl Search<'_> {
         }
         simpler.check = self.checker().at(simpler.fit.state.clone()).ok()?;
         let named = &mut simpler.named[index];
+        named.alike.retain(|a| a.fitted.effect.name != effect.name);
         *named = Named {
             name: effect.name,
             evidence: loss - lost,
@@ -178,14 +178,14 @@ impl Search<'_> {
         if rival.first()?.gain < RIVAL * loss {
             return None;
         }
-        let before = self.clone();
+        let before = self.fit.deviance;
         let known = self.named.len();
         let added = self.add_next();
         let by = self.named.get(known)?.name;
         let another = added
             && self.named.len() == known + 1
             && by != taken_out
-            && before.fall_to(&self.fit, self.fit.state.effects.get(known..)?) >= loss - BY_CHANCE;
+            && before - self.fit.deviance >= loss - BY_CHANCE;
         another.then_some((self, by))
     }
 }

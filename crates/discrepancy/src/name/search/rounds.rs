@@ -3,12 +3,14 @@
 use axis_sim::effects::{ActiveEffect, Effect};
 use rayon::prelude::*;
 
-use super::edge::{Beside, fall_beside};
 use super::evidence::{LEAST_HELD_OUT, MATERIAL, WORSE, enough};
 use super::form::own_before_directions;
 use super::free_curve::FreeCurves;
 use super::promise::{PROMISING, Promises, WORTH};
-use super::refined::{Refined, Refinement, best_of_each, simplest_first, single_before_pair};
+use super::refined::{
+    Refined, Refinement, alike, best_of_each, inside_before_bound, simplest_first,
+    single_before_pair,
+};
 use super::state::Search;
 use super::types::{Named, RunnerUp};
 use super::unseen::may_end_unseen;
@@ -60,6 +62,7 @@ impl Search<'_> {
         let refined = &mut of_all.kept;
         self.effects_before_forms(refined);
         single_before_pair(refined);
+        inside_before_bound(refined);
         own_before_directions(refined);
         let fitter = self.fitter();
         let curves = FreeCurves::new(self, &fitter, &own);
@@ -69,7 +72,6 @@ impl Search<'_> {
         let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
             let is_effect = awaited.is_empty() && !candidate.is_form();
             let is_nothing = candidate.is_below_none()
-                || candidate.ends_at_bound()
                 || candidate.bends_own_friction()
                 || self.leaves_no_friction(candidate)
                 || self.hardly_repeats(candidate);
@@ -77,11 +79,7 @@ impl Search<'_> {
                 return None;
             }
             let check = self.checker().at(candidate.fit.state.clone()).ok()?;
-            let beside = self.beside(&candidate.fit.state);
-            let inside = self.inside(&candidate.fit);
-            let inside = inside.and_then(|fit| self.checker().at(fit.state).ok());
-            let judged = inside.as_ref().unwrap_or(&check);
-            let held_out = self.held_out(candidate, &beside, judged);
+            let held_out = self.check.deviance - check.deviance;
             let is_other = || {
                 !curves.are_matched_by(candidate, held_out)
                     || self.is_out_of_phase(candidate, &check, held_out)
@@ -90,8 +88,7 @@ impl Search<'_> {
                 return None;
             }
             if awaited.is_empty() {
-                let holds = self.proves_itself(candidate, held_out)
-                    && self.worsens_none(&beside.check, judged);
+                let holds = self.proves_itself(candidate, held_out) && self.worsens_none(&check);
                 if !holds {
                     return None;
                 }
@@ -99,14 +96,14 @@ impl Search<'_> {
                 if immaterial.iter().any(|little| is_no_more(falls, *little)) {
                     return None;
                 }
-                if !self.is_material(candidate, &beside.check, judged) {
+                if !self.is_material(candidate, &check) {
                     immaterial.push(falls);
                     return None;
                 }
             }
-            Some((place, check, held_out))
+            Some((place, check))
         });
-        let Some((place, check, held_out)) = proven else {
+        let Some((place, check)) = proven else {
             let alone = refined
                 .iter()
                 .filter(|r| r.parts.len() == 1 && !r.is_form());
@@ -117,7 +114,7 @@ impl Search<'_> {
         let added = of_all.kept[place].added();
         let may_end = awaited.is_empty() && added.iter().any(|a| may_end_unseen(a.effect));
         let (before, count) = (may_end.then(|| self.clone()), added.len());
-        self.add(&of_all, place, check, held_out);
+        self.add(&of_all, place, check, &screened);
         if let Some(before) = before {
             let new = self.fit.state.effects.iter().rev().take(count);
             let unseen = new.filter(|active| self.is_unseen(active));
@@ -133,7 +130,7 @@ impl Search<'_> {
         true
     }
 
-    fn add(&mut self, of_all: &Refinement, place: usize, check: Fit, held_out: f64) {
+    fn add(&mut self, of_all: &Refinement, place: usize, check: Fit, screened: &[Screened]) {
         let refined = &of_all.kept;
         let best = &refined[place];
         let others = refined.iter().enumerate();
@@ -143,9 +140,13 @@ impl Search<'_> {
             self.named.push(Named {
                 name: part.effect.name,
                 evidence: best.gain,
-                held_out,
-                alike: Vec::new(),
-                at_edge: Vec::new(),
+                held_out: self.check.deviance - check.deviance,
+                alike: match best.is_form() {
+                    true => Vec::new(),
+                    false => alike(part, best, &refined[place..], screened, |rival| {
+                        !(self.is_unseen(rival) || of_all.ended_unseen(rival.effect.name))
+                    }),
+                },
                 when_named: Vec::new(),
                 runners_up: others.clone(),
             });
@@ -199,17 +200,15 @@ impl Search<'_> {
             })
         };
         let mut refined: Vec<Refined> = candidates.into_par_iter().filter_map(begin).collect();
-        let gain = |r: &Refined| self.fall_to(&r.fit, r.added());
-        refined.par_iter_mut().for_each(|r| r.gain = gain(r));
         // Where known parameters may be far off, they have made up for what is not named yet,
         // and D may be flat from there on.
         if let Some(noise) = &self.steady {
-            refined.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+            let gain = |r: &Refined| self.fit.deviance - r.fit.deviance;
+            refined.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
             refined.par_iter_mut().take(LED_FURTHER).for_each(|r| {
                 let near = fitter.by_least_squares(r.fit.clone(), self.known.clone(), noise, 0);
                 let near = fitter.refine(near, own, 2);
                 r.fit = r.fit.clone().better(near);
-                r.gain = gain(r);
             });
         }
         let stands = |r: &Refined| r.parts.len() == 1 && r.parts[0].effect.name == STANDING;
@@ -223,17 +222,19 @@ impl Search<'_> {
             }
             _ => true,
         });
+        let gain = |fit: &Fit| self.fit.deviance - fit.deviance;
         // What is far behind after two rounds, or far from enough, is not carried further.
-        let best = refined.iter().map(|r| r.gain).fold(0.0, f64::max);
+        let best = refined.iter().map(|r| gain(&r.fit)).fold(0.0, f64::max);
         let too_little = match asked.is_empty() {
             true => PROMISING * self.needed(1, 1).max(self.material()),
             false => 0.0,
         };
         refined.par_iter_mut().for_each(|r| {
-            if r.gain > 0.5 * best - 50.0 && r.gain > too_little {
+            let of_it = gain(&r.fit);
+            if of_it > 0.5 * best - 50.0 && of_it > too_little {
                 r.fit = fitter.refine(r.fit.clone(), own, 4);
-                r.gain = gain(r);
             }
+            r.gain = gain(&r.fit);
         });
         // Those that are near one another are compared where they end, with
         // derivatives of all effects as they are there, or a simple one that is
@@ -243,7 +244,7 @@ impl Search<'_> {
         if refined.iter().filter(|r| near(r)).count() > 1 {
             refined.par_iter_mut().filter(|r| near(r)).for_each(|r| {
                 r.fit = fitter.refine(r.fit.clone(), &self.known, 8);
-                r.gain = gain(r);
+                r.gain = gain(&r.fit);
             });
         }
         let mut unseen = Vec::new();
@@ -270,12 +271,7 @@ impl Search<'_> {
         Refinement { kept, unseen }
     }
 
-    /// By how much D of the check logs falls with a candidate, beside this search's fits.
-    pub(super) fn held_out(&self, candidate: &Refined, beside: &Beside, check: &Fit) -> f64 {
-        fall_beside(&self.checker(), [&beside.check, check], candidate.added())
-    }
-
-    pub(super) fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {
+    fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {
         let added = free_parameters(&best.fit.state).len() - free_parameters(&self.fit.state).len();
         let needed = self.needed(added, best.parts.len());
         tracing::debug!(gain = best.gain, held_out, needed, "on check logs");
@@ -292,9 +288,8 @@ impl Search<'_> {
         MATERIAL * largest
     }
 
-    /// Whether what a candidate adds to the fit `before` of the check logs, with `check` its own, is
-    /// material.
-    fn is_material(&self, candidate: &Refined, before: &Fit, check: &Fit) -> bool {
+    /// Whether what a candidate adds, with `check` its fit of the check logs, is material.
+    fn is_material(&self, candidate: &Refined, check: &Fit) -> bool {
         let set = &self.check_logs;
         let after = set.rest(&check.traces);
         let without = || {
@@ -305,13 +300,13 @@ impl Search<'_> {
             Some(set.rest(&traces))
         };
         let (machine, gap) = (self.machine, &self.gap_before);
-        is_material(machine, set, before, &after, without, gap).unwrap_or(true)
+        is_material(machine, set, &self.check, &after, without, gap).unwrap_or(true)
     }
 
     /// Whether no channel of the check logs, fitted or not, is so much further off than
-    /// `before` that no effect named later could make up for it.
-    pub(super) fn worsens_none(&self, before: &Fit, check: &Fit) -> bool {
-        let before = self.check_logs.rest(&before.traces);
+    /// before that no effect named later could make up for it.
+    fn worsens_none(&self, check: &Fit) -> bool {
+        let before = self.check_logs.rest(&self.check.traces);
         let after = self.check_logs.rest(&check.traces);
         let power = |rest: &[Vec<Vec<f64>>], c: usize| -> f64 {
             rest.iter().flat_map(|log| &log[c]).map(|r| r * r).sum()

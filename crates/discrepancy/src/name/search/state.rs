@@ -38,8 +38,6 @@ pub(super) struct Search<'a> {
     pub(super) refused: Option<Refused>,
     /// Effects that ended as a simpler one when they were added to what is named now.
     pub(super) unseen: Vec<&'static str>,
-    /// Effects that were taken out, as they may be of no size or are at their bound; they do not come back.
-    pub(super) unfounded: Vec<&'static str>,
     /// What was taken out of the logs.
     pub(super) hum: Hum,
     /// Root mean square of each channel's rest on the check logs before anything was named.
@@ -50,7 +48,7 @@ pub(super) struct Search<'a> {
 
 /// Tolerance of a known parameter beyond which what is linear about the file's values may lead
 /// astray.
-pub(super) const WIDE: f64 = 0.02;
+const WIDE: f64 = 0.02;
 
 /// Noise alone, as the logs of a fit show it, where a known parameter may be far off.
 pub(super) fn steady_noise(fitter: &Fitter<'_>, fit: &Fit) -> Option<Arc<Amplitudes>> {
@@ -123,12 +121,8 @@ impl Search<'_> {
         // A second harmonic of the same kind may be there.
         let active = self.named.iter().any(|n| n.name == effect.name);
         let free = !active || effect.place_of(|n| n.is_order()).is_some();
-        let unseen = [&self.unseen, &self.unfounded]
-            .iter()
-            .any(|all| all.contains(&effect.name));
-        // What the file does not know at all is fitted, and no effect of the same quantity beside it.
-        let unknown = !self.is_accepted(effect.name) && effect.changes_unknown(self.machine);
-        free && !(rejected || unseen || unknown)
+        let unseen = self.unseen.contains(&effect.name);
+        free && !(rejected || unseen)
             && !self.doubles_a_friction(effect)
             && (awaited.is_empty() || awaited.contains(&effect.name))
     }

@@ -30,9 +30,7 @@ impl Search<'_> {
         let longest = self.fit_logs.logs.iter().map(duration).fold(0.0, f64::max);
         let [least, _] = known.effect.parameters[at].bounds(&known.scales);
         let slowest = (RESONANCE_PERIODS / longest).max(least);
-        let lines = strongest(self.lines_of_replays(&self.fit.rest, noise), slowest, |f| {
-            WIDTH * f
-        });
+        let lines = strongest(self.lines_of_replays(noise), slowest, |f| WIDTH * f);
         tracing::debug!(?lines, "where a body may swing");
         let candidate = |(frequency, _): Line| self.begun_at(known, at, frequency);
         let bodies: Vec<Candidate> = lines.into_par_iter().map(candidate).collect();

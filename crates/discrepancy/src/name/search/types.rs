@@ -173,25 +173,11 @@ pub struct Named {
     pub held_out: f64,
     /// Effects that these logs cannot tell from it, the nearest first.
     pub alike: Vec<Alike>,
-    /// Known parameters that would explain as much in its place, at the edge of their tolerance, which
-    /// is no explanation; with it they are inside.
-    pub at_edge: Vec<AtEdge>,
     /// Its values when it had just been added: as a model without the effects
     /// that were added later has them.
     pub when_named: Vec<f64>,
     /// The others of the round in which it was added.
     pub runners_up: Vec<RunnerUp>,
-}
-
-/// A known parameter at the edge of its tolerance.
-#[derive(Clone, Debug)]
-pub struct AtEdge {
-    /// Name, as in `[tolerances]`.
-    pub name: &'static str,
-    /// Share of its value by which it is off.
-    pub share: f64,
-    /// Tolerance as a share.
-    pub tolerance: f64,
 }
 
 impl Named {

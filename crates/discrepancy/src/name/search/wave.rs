@@ -57,18 +57,13 @@ impl Search<'_> {
         self.screened_beside(own, &waves, known.effect.parameters.len())
     }
 
-    /// The strongest lines of the fitted logs' rest, beside all that repeats with the drive, the first
-    /// the strongest.
+    /// The strongest lines of the fitted logs' rest, the first the strongest.
     fn lines(&self) -> Vec<Line> {
         let set = &self.fit_logs;
-        let rest = set.apart(set.rest(&self.fit.traces));
         let longest = set.logs.iter().map(duration).fold(0.0, f64::max);
         let lines: Vec<Line> = match set.is_balanced() {
-            true => self.lines_of_balances(&rest, longest),
-            false => {
-                let rest = set.amplitudes(&rest);
-                self.lines_of_replays(&rest, &set.layout.spectral_matrices(&rest))
-            }
+            true => self.lines_of_balances(longest),
+            false => self.lines_of_replays(&set.layout.spectral_matrices(&self.fit.rest)),
         };
         strongest(lines, OF_LINE / longest, |_| 1.0 / longest)
     }
