@@ -58,7 +58,8 @@ def test_what_is_no_table_is_refused_in_words() -> None:
         trained(1.0, Y)
     with pytest.raises(fa.NetworkError, match=r"y has the shape \(1, 60, 1\)"):
         trained(X, Y[None, :, None])
-    for nothing in (["a"] * 60, "abc", None, {}, X + 1j, [[1.0], [1.0, 2.0]], [None, "a"]):
+    nothings: list[object] = [["a"] * 60, "abc", None, {}, X + 1j, [[1.0], [1.0, 2.0]], [None, "a"]]
+    for nothing in nothings:
         with pytest.raises(TypeError, match="^y .*; valid: real numbers"):
             trained(X, nothing)
     with pytest.raises(fa.NetworkError):
@@ -75,11 +76,12 @@ def test_speeds_are_a_line_or_one() -> None:
     assert np.array_equal(law.steady_state(speeds[4]), steady[4:5])
     assert np.array_equal(law.steady_state(speeds[::-2]), steady[::-2])
     assert np.array_equal(law.simulate(3.0, 1e-3), law.simulate([3], 1e-3))
-    for call in (lambda w: law.steady_state(w), lambda w: law.simulate(w, 1e-3)):
-        with pytest.raises(fa.ParameterError, match=r"speed_rad_s has the shape \(30, 1\); valid: an array of one"):
-            call(speeds[:, None])
-        with pytest.raises(TypeError, match="speed_rad_s holds"):
-            call(["fast"])
+    with pytest.raises(fa.ParameterError, match=r"speed_rad_s has the shape \(30, 1\); valid: an"):
+        law.steady_state(speeds[:, None])
+    with pytest.raises(fa.ParameterError, match=r"speed_rad_s has the shape \(30, 1\); valid: an"):
+        law.simulate(speeds[:, None], 1e-3)
+    with pytest.raises(TypeError, match="speed_rad_s holds"):
+        law.steady_state(["fast"])  # type: ignore[list-item,arg-type,unused-ignore]
 
 
 def test_bounds_are_pairs() -> None:
