@@ -127,7 +127,7 @@ pub use error::SetupError;
 pub use one_cycle::{CycleInput, OneCycle};
 pub use plant::Start;
 pub use recorder::{CsvRecorder, FlowRecorder, Recorder};
-pub use replay::{Curve, LoggedReference, Probe, Replay, ReplayError, Stored, Trace};
+pub use replay::{LoggedReference, Probe, Replay, ReplayError, SampledCurve, Stored, Trace};
 pub use six_digits::SixDigits;
 pub use work::{FREQUENCIES, MOST_STEPS};
 

@@ -10,11 +10,16 @@ use axis_sim::Axis;
 
 /// A log of a rest, a move, a rest, the way back and a rest at 1 kHz.
 fn lines() -> Vec<String> {
+    moved(0.05)
+}
+
+/// The same of a motion of so many metres.
+fn moved(distance: f64) -> Vec<String> {
     let ramp = |share: f64| {
         let s = share.clamp(0.0, 1.0);
         s * s * (3.0 - 2.0 * s)
     };
-    let reference = |t: f64| 0.7 + 0.05 * (ramp(2.0 * t - 1.0) - ramp(2.0 * t - 3.0));
+    let reference = |t: f64| 0.7 + distance * (ramp(2.0 * t - 1.0) - ramp(2.0 * t - 3.0));
     let row = |k: u32| {
         let t = f64::from(k) * 1e-3;
         let position = reference(t - 2e-3) + 1e-7 * (300.0 * t).sin();
@@ -25,13 +30,9 @@ fn lines() -> Vec<String> {
     std::iter::once(head).chain((0..2500).map(row)).collect()
 }
 
-/// The same, one sample changed.
+/// Another motion, of 40 mm.
 fn other() -> Vec<String> {
-    let mut lines = lines();
-    lines[1200] = with_cell(&lines[1200], 2, |x| {
-        format!("{}", x.parse::<f64>().unwrap() + 1e-9)
-    });
-    lines
+    moved(0.04)
 }
 
 fn write(folder: &Path, name: &str, lines: &[String]) -> String {

@@ -75,8 +75,9 @@ acceleration_mm_per_s2 = 3000
 jerk_mm_per_s3 = 60000
 "#;
 
-/// A log at 1 kHz: a there and back of a way, 25 ms late, and the command of a cascade with a velocity
-/// feed-forward of 17.6, which no axis file takes.
+/// A log at 1 kHz: there and back, 25 ms late and with a vibration of its own, without which a position error in
+/// proportion to the speed would pass for feed-forward; and the command of a cascade with a velocity feed-forward
+/// of 17.6, which no axis file takes.
 fn made(way: f64, seconds: f64) -> String {
     let period = 1e-3;
     let ramp = |t: f64| {
@@ -84,7 +85,9 @@ fn made(way: f64, seconds: f64) -> String {
         s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
     };
     let reference = |t: f64| 0.2 + way * (ramp(t - 0.3) - ramp(t - 0.6 - seconds));
-    let position = |t: f64| reference(t - 0.025);
+    let vibration =
+        |t: f64| 2e-3 * (45.0 * t).sin() * ramp(t - 0.3) * ramp(1.0 + 2.0 * seconds - t);
+    let position = |t: f64| reference(t - 0.025) + vibration(t);
     let travel = 0.012 / std::f64::consts::TAU;
     let mut integral = 0.0;
     let mut lines = vec!["t_s,position_ref_m,position_m,torque_ref_n_m".to_owned()];

@@ -1,7 +1,7 @@
 //! The experiments on a simulated machine, logged as a user would log them.
 
 use axis_log::{Log, LogError};
-use axis_sim::balance::Shown;
+use axis_sim::balance::ObservedMotion;
 use axis_sim::{Axis, ClosedLoop, Cycle, LoopState, Measured, Recorder, Start};
 use compensator::NoCompensation;
 use lugre::identify::StaticFit;
@@ -228,7 +228,7 @@ impl<'a, S: FnMut(&mut Measured)> Bench<'a, S> {
     fn swing(&self, from: usize) -> Result<f64, PipelineError> {
         let log = self.log()?.skip(from)?;
         let period = self.every as f64 * self.closed_loop.axis().period;
-        let shown = Shown::of(&log, period, self.axis).map_err(|reason| {
+        let shown = ObservedMotion::of(&log, period, self.axis).map_err(|reason| {
             super::IdentifyLogsError::Channels {
                 log: "the small motions".to_owned(),
                 reason,

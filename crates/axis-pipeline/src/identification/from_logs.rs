@@ -3,7 +3,7 @@
 use axis_log::Log;
 use axis_log::quality::check_sampling;
 use axis_sim::Axis;
-use axis_sim::balance::Shown;
+use axis_sim::balance::ObservedMotion;
 use lugre::identify::{ParameterEstimate, PreslidingFit, StaticFit};
 
 use super::curve::{self, Fitted, LEAST_SPEEDS};
@@ -109,7 +109,7 @@ fn record<'a>(
         log: name.to_owned(),
         reason,
     })?;
-    let shown = Shown::of(log, sampling.period, axis);
+    let shown = ObservedMotion::of(log, sampling.period, axis);
     let shown = shown.map_err(|reason| IdentifyLogsError::Channels {
         log: name.to_owned(),
         reason,

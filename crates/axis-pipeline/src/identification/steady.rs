@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use axis_sim::Axis;
-use axis_sim::balance::Shown;
+use axis_sim::balance::ObservedMotion;
 use lugre::identify::ConstantSpeedRun;
 
 use super::found::SpeedRun;
@@ -50,7 +50,7 @@ pub(super) struct Record<'a> {
     pub log: usize,
     /// Time of the first sample, s.
     pub start: f64,
-    pub shown: Shown,
+    pub shown: ObservedMotion,
     pub position: Vec<f64>,
     pub speed: Vec<f64>,
     /// Motor's force less the axis' own loads; inertia is still in it.
@@ -60,7 +60,7 @@ pub(super) struct Record<'a> {
 }
 
 impl<'a> Record<'a> {
-    pub fn of(axis: &'a Axis, log: usize, start: f64, shown: Shown) -> Self {
+    pub fn of(axis: &'a Axis, log: usize, start: f64, shown: ObservedMotion) -> Self {
         let position = shown.positions();
         let r = axis.travel_per_radian();
         let pairs = shown.torque().iter().zip(&position);

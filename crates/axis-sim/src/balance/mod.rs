@@ -38,7 +38,7 @@ pub use error::BalanceError;
 use filter::{LowPass, ahead, derivative};
 use law::{Motions, torque};
 pub use quality::BalanceQuality;
-pub use shown::{FrictionCourse, Shown};
+pub use shown::{FrictionCourse, ObservedMotion};
 
 /// One log's measured motion and torque, ready to be compared with any model of the axis.
 #[derive(Clone, Debug)]

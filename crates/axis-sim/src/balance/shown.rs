@@ -23,7 +23,7 @@ const TAKEN: f64 = 2e-3;
 ///
 /// Positions and forces are the load's, m and N or rad and N·m.
 #[derive(Clone, Debug)]
-pub struct Shown {
+pub struct ObservedMotion {
     measured: Vec<Measured>,
     channel: TorqueChannel,
     period: f64,
@@ -49,7 +49,7 @@ pub struct FrictionCourse {
     pub inertia: Vec<f64>,
 }
 
-impl Shown {
+impl ObservedMotion {
     /// Of a log with the sampling period `period`, s.
     ///
     /// # Errors

@@ -2,13 +2,13 @@
 
 /// Samples at even distances as a curve: cubic between them, through values and slopes.
 #[derive(Clone, Debug)]
-pub struct Curve {
+pub struct SampledCurve {
     pub(super) period: f64,
     values: Vec<f64>,
     slopes: Vec<f64>,
 }
 
-impl Curve {
+impl SampledCurve {
     /// The cubic spline through samples, one every `period` (s, above zero); 0 where there
     /// is none.
     ///

@@ -23,7 +23,7 @@ use crate::effects::{ActiveEffect, Hooks, Steepness};
 use crate::plant::Start;
 use crate::work::cycles_of;
 use crate::{ClosedLoop, Cycle, Measured, SetupError};
-pub use curve::Curve;
+pub use curve::SampledCurve;
 pub use error::ReplayError;
 use error::check_length;
 pub use reference::LoggedReference;

@@ -4,7 +4,7 @@ use axis_log::Log;
 use trajectories::{Motion, Setpoint};
 
 use super::ReplayError;
-use super::curve::{Curve, slopes};
+use super::curve::{SampledCurve, slopes};
 use super::smooth::smooth;
 use crate::channels::reference_in;
 
@@ -12,9 +12,9 @@ use crate::channels::reference_in;
 /// and velocities; its acceleration a spline.
 #[derive(Clone, Debug)]
 pub struct LoggedReference {
-    position: Curve,
+    position: SampledCurve,
     /// The acceleration, whose slope is the jerk.
-    acceleration: Curve,
+    acceleration: SampledCurve,
 }
 
 impl LoggedReference {
@@ -46,8 +46,8 @@ impl LoggedReference {
         };
         let velocity = velocity.map_or_else(|| slopes(position, period), <[f64]>::to_vec);
         Ok(Self {
-            position: Curve::through(position.to_vec(), velocity, period),
-            acceleration: Curve::spline(&acceleration, period),
+            position: SampledCurve::through(position.to_vec(), velocity, period),
+            acceleration: SampledCurve::spline(&acceleration, period),
         })
     }
 

@@ -2,7 +2,7 @@
 
 use axis_log::Log;
 use axis_sim::actuator::Effort;
-use axis_sim::{Axis, Curve, LoggedReference, Measured, Trace, position_in};
+use axis_sim::{Axis, LoggedReference, Measured, SampledCurve, Trace, position_in};
 use trajectories::{Motion, Setpoint};
 
 use super::error::ControllerError;
@@ -103,7 +103,7 @@ impl Seen {
         let (h, travel) = (axis.period, axis.travel_per_radian());
         let reference = LoggedReference::new(shown.log, shown.period)?;
         let cycles = (reference.duration() / h + 1e-6) as usize + 1;
-        let curve = |samples: &[f64]| Curve::spline(samples, shown.period);
+        let curve = |samples: &[f64]| SampledCurve::spline(samples, shown.period);
         let position = curve(shown.position);
         let angle = match shown.angle {
             Some(angle) => curve(angle),

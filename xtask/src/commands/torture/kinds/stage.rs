@@ -28,6 +28,9 @@ const FILES: [&str; 6] = [
     "train/manifest.json",
 ];
 
+/// Logs that friction was identified from, which no later stage reads.
+const LOGS: [&str; 2] = ["constant-speed.parquet", "pre-sliding.parquet"];
+
 struct StageFolder {
     context: Context,
     bases: Vec<Vec<u8>>,
@@ -85,8 +88,7 @@ fn make(context: &Context) -> Result<()> {
         },
     )?;
     stage.write_json("transfer_functions.json", &[transfer(), transfer()])?;
-    // Logs that nothing reads again.
-    for log in ["constant-speed.parquet", "pre-sliding.parquet"] {
+    for log in LOGS {
         write_whole(&stage.path(log), b"")?;
     }
     stage.finish()?;
@@ -157,15 +159,17 @@ impl Kind for StageFolder {
             return fault("a whole stage does not count as up to date");
         }
         let reads = if trained {
-            [
+            vec![
                 train::load_network(context).map(drop),
                 train::load_training(context).map(drop),
             ]
         } else {
-            [
+            let logs = LOGS.map(|log| stages[0].read(log).map(drop));
+            let results = [
                 identify::load_friction(context).map(drop),
                 identify::load_transfer(context).map(drop),
-            ]
+            ];
+            results.into_iter().chain(logs).collect()
         };
         let folder = PathBuf::from(&input.file);
         let folder = folder
