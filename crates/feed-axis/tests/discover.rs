@@ -13,7 +13,7 @@ fn lines() -> Vec<String> {
     moved(0.05)
 }
 
-/// The same of a motion of so many metres.
+/// The same of a motion of so many metres, beside noise of its own.
 fn moved(distance: f64) -> Vec<String> {
     let ramp = |share: f64| {
         let s = share.clamp(0.0, 1.0);
@@ -22,8 +22,8 @@ fn moved(distance: f64) -> Vec<String> {
     let reference = |t: f64| 0.7 + distance * (ramp(2.0 * t - 1.0) - ramp(2.0 * t - 3.0));
     let row = |k: u32| {
         let t = f64::from(k) * 1e-3;
-        let position = reference(t - 2e-3) + 1e-7 * (300.0 * t).sin();
-        let iq = (40.0 * t).sin();
+        let position = reference(t - 2e-3) + 1e-7 * (300.0 * t + 1e3 * distance).sin();
+        let iq = (40.0 * t + 1e3 * distance).sin();
         format!("{t},{},{position},{iq}", reference(t))
     };
     let head = "t_s,position_ref_m,position_m,iq_a".to_owned();
