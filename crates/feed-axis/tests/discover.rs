@@ -160,7 +160,12 @@ fn bad_logs_are_refused_with_file_and_place() {
             |l| l[700] = with_cell(&l[700], 3, |_| "much".to_owned()),
             &["line701", "iq_a"],
         ),
-        ("repeated.csv", |l| l[900] = l[899].clone(), &["line901"]),
+        // The same instant with two values; a row that is there twice is dropped.
+        (
+            "repeated.csv",
+            |l| l[900] = with_cell(&l[899], 3, |_| "0.125".to_owned()),
+            &["line901"],
+        ),
         ("unsorted.csv", |l| l.swap(400, 401), &["line402"]),
         (
             "gap.csv",
