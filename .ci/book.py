@@ -81,24 +81,34 @@ def shims(folder):
     cargo.chmod(0o755)
 
 
-def folders(page, scratch, made):
+def folders(page, scratch, made, wrong):
     """The folder of a page's commands, with what the page before it has made; and how many of its blocks ran."""
     if page in made:
         return made[page], 0
     text = page.read_text()
     before = re.search(r"<!-- goes on from (\S+\.md) -->", text)
     if before:
-        work, ran = folders((page.parent / before[1]).resolve(), scratch, made)
+        work, ran = folders((page.parent / before[1]).resolve(), scratch, made, wrong)
     else:
         work, ran = Path(tempfile.mkdtemp(prefix=f"{page.stem}-", dir=scratch)), 0
         for folder in FOLDERS:
             (work / folder).symlink_to(ROOT / folder)
     made[page] = work
-    return work, ran + run_page(page, text, work, scratch)
+    try:
+        ran += run_page(page, text, work, scratch, wrong)
+    except PageError as error:
+        wrong.append(str(error))
+        print(error, flush=True)
+    return work, ran
 
 
-def run_page(page, text, work, scratch):
-    """Runs a page's blocks; how many."""
+class PageError(Exception):
+    """A command that ends otherwise than its page says."""
+
+
+def run_page(page, text, work, scratch, wrong):
+    """Runs a page's blocks; how many. What a page shows and a command does not print goes into `wrong`, and the next
+    block runs, so that one run finds all of them."""
     name = page.relative_to(ROOT)
     begin, ran, output = time.monotonic(), 0, None
     left_out = re.findall(r"<!-- not run: `([^`]+)`: .+ -->", text)
@@ -110,7 +120,8 @@ def run_page(page, text, work, scratch):
             output, ran = run_block(where, "\n".join(lines), work, env, language == "sh,fails"), ran + 1
         elif language == "text" and follows and output is not None:
             if not pattern(block).search(output):
-                sys.exit(f"{where}: the page shows\n{block}\nthe command printed\n{output}")
+                wrong.append(f"{where}: the page shows\n{block}\nthe command printed\n{output}")
+                print(wrong[-1], flush=True)
         elif kept := re.fullmatch(r"toml,(save|append)=([\w.-]+)", language):
             with (work / kept[2]).open("w" if kept[1] == "save" else "a") as file:
                 file.write(block + "\n")
@@ -131,21 +142,23 @@ def run_block(where, text, work, env, fails):
     try:
         done = subprocess.run(command, cwd=work, env=env, capture_output=True, text=True, timeout=LONGEST_S)
     except subprocess.TimeoutExpired:
-        sys.exit(f"{where}: still running after {LONGEST_S} s\n{text}")
+        raise PageError(f"{where}: still running after {LONGEST_S} s\n{text}")
     if fails != bool(done.returncode):
-        sys.exit(f"{where}: ends with {done.returncode}\n{text}\n{done.stdout}{done.stderr}")
+        raise PageError(f"{where}: ends with {done.returncode}\n{text}\n{done.stdout}{done.stderr}")
     return done.stdout + done.stderr if fails else done.stdout
 
 
 def run(named):
     """Every page that has blocks, or those named."""
-    begin, total, made = time.monotonic(), 0, {}
+    begin, total, made, wrong = time.monotonic(), 0, {}, []
     with tempfile.TemporaryDirectory(prefix="book-") as scratch:
         programs = Path(scratch, "bin")
         programs.mkdir()
         shims(programs)
         for page in [Path(name).resolve() for name in named] or pages():
-            total += folders(page, Path(scratch), made)[1]
+            total += folders(page, Path(scratch), made, wrong)[1]
+    if wrong:
+        sys.exit(f"{len(wrong)} blocks did not do what the pages say, of {total}: above")
     print(f"{total} blocks of the pages did what the pages say, {time.monotonic() - begin:.0f} s")
 
 
