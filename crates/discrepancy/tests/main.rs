@@ -6,5 +6,6 @@ mod foresight;
 mod logs;
 #[path = "../../../tests/needs.rs"]
 mod needs;
+mod nothing_missing;
 mod settings;
 mod starts;

@@ -38,7 +38,7 @@ use self::law::{friction_law, steady};
 use self::left::Left;
 use self::likeness::likenesses;
 pub use self::likeness::{Likeness, Shown};
-use self::notes::{faster_notes, notes, slow_of_loop_note};
+use self::notes::{above_noise_note, faster_notes, notes, slow_of_loop_note};
 pub use self::overlay::Overlay;
 use self::overlay::overlays;
 pub use self::remedy::{DriveFunction, REMEDIES, Remedy};
@@ -57,7 +57,7 @@ use crate::answers::Rest;
 use crate::answers::{LogSet, State};
 use crate::estimate::fit::Fitter;
 use crate::estimate::known::{shown, tolerances};
-use crate::name::gap::gap;
+use crate::name::gap::{furthest_above, gap, is_more_than_noise};
 use crate::name::search::{Found, MATERIAL, is_form};
 use crate::noise::{
     Excess, Hum, MotionAndRest, excess, floors, log_noise, slow_noise, stays, steady_bands,
@@ -117,14 +117,15 @@ pub fn judged(
     let before_of = |set: &LogSet| -> Result<Rest, ReplayError> {
         Ok(set.rest(&set.simulate(machine, &initial)?))
     };
-    let fit = {
+    let (fit, fit_above) = {
         let set = &found.fit_logs;
         let traces = set.simulate(machine, full)?;
         let after = set.rest(&traces);
         let slow = slow_noise(machine, set, full, &traces)?;
         let floors = slow.beside_floors(set, floors(machine, set, full, &after)?);
         let as_filed = Hum::as_in(set, fit_logs);
-        gap(set, &before_of(&as_filed)?, &after, &floors)
+        let above = furthest_above(set, &after, &floors);
+        (gap(set, &before_of(&as_filed)?, &after, &floors), above)
     };
     let (as_filed, set) = match &found.test {
         Some(test) => (Cow::Borrowed(&test.as_filed), &test.fitted),
@@ -140,6 +141,7 @@ pub fn judged(
     let slow = slow_noise(machine, set, full, &traces)?;
     let fitted = (&found.fit_logs, found.fit.traces.as_slice());
     let floors = slow.beside_floors(set, floors(machine, set, full, &after)?);
+    let check_above = furthest_above(set, &after, &floors);
     let rests = [&before, &after];
     let left = Left::of(machine, full, fitted, (set, &traces), rests, floors, &slow)?;
     let (check, check_floors, loop_noise) = (left.gap, left.floors, left.loop_noise);
@@ -227,7 +229,20 @@ pub fn judged(
     let unknown = lack.or_else(|| following.map(in_frequency));
     let as_coloured = is_coloured && unknown.is_none();
     let is_noise = check.is_at_floor() || coloured.is_some() || slow_of_loop || as_coloured;
-    let rest_significant = !(is_noise || nearly_all) || unknown.is_some();
+    // That nothing is missing has to hold of every log. What is taken for noise on the check logs, though it
+    // is above their floor, is there on the others too, and not much more of it.
+    let of_check = match check.is_at_floor() {
+        true => 0.0,
+        false => check_above.map_or(0.0, |(_, times)| times),
+    };
+    let is_above = |above: Option<(usize, f64)>| {
+        above.filter(|(_, times)| is_more_than_noise(*times, of_check))
+    };
+    let more_than_noise = (is_above(fit_above).map(|(l, times)| (&found.fit_logs, l, times)))
+        .or_else(|| is_above(check_above).map(|(l, times)| (set, l, times)))
+        .filter(|_| effects.is_empty() && own_form.is_none());
+    let rest_significant =
+        !(is_noise || nearly_all) || unknown.is_some() || more_than_noise.is_some();
     // What takes away little of a rest that is noise was fitted to noise.
     let refused = found.refused.as_ref();
     let refused = refused.filter(|_| !(as_coloured && effects.is_empty()));
@@ -279,7 +294,8 @@ pub fn judged(
                 found.hum.notes(),
             ]
             .concat();
-            let known = known.into_iter().chain(note_of_loop);
+            let above = more_than_noise.map(|(set, l, times)| above_noise_note(set, l, times));
+            let known = known.into_iter().chain(note_of_loop).chain(above);
             let of_rest = coloured.chain(slow_of_loop);
             known.chain(of_rest).collect()
         },

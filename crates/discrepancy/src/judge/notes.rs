@@ -30,6 +30,14 @@ pub(super) fn slow_of_loop_note(check: &Gap) -> String {
     )
 }
 
+/// Which log the model does not agree with, where others are at their noise.
+pub(super) fn above_noise_note(set: &LogSet, log: usize, times: f64) -> String {
+    let name = set.logs.get(log).map_or("a log", |log| log.name.as_str());
+    format!(
+        "{name}: the residual is {times:.1} times its noise, and no effect explains it: \"nothing is missing\" would have to hold of every log, of those that were fitted as well"
+    )
+}
+
 /// Where a gap is so large that the logs do not say where the screw lay in it at their
 /// start.
 fn slack_notes(machine: &Axis, found: &Found) -> Vec<String> {

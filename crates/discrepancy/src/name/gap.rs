@@ -164,6 +164,33 @@ pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
     }
 }
 
+/// The log whose residual is furthest above its own noise in some channel: its place, and how many times.
+pub(crate) fn furthest_above(set: &LogSet, rest: &Rest, floors: &[Floor]) -> Option<(usize, f64)> {
+    let counted = set.counted();
+    let times = |l: usize, c: usize| {
+        let samples = counted[l].clone();
+        let count = samples.len().max(1) as f64;
+        let square = samples.map(|k| rest[l][c][k].powi(2)).sum::<f64>() / count;
+        let floor = floors[c].by_log.get(l).copied().unwrap_or(floors[c].rms);
+        square.sqrt() / floor.max(f64::MIN_POSITIVE)
+    };
+    let of_log = |l: usize| {
+        let channels = 0..set.channels.len();
+        (l, channels.map(|c| times(l, c)).fold(0.0, f64::max))
+    };
+    let logs = (0..set.logs.len()).map(of_log);
+    logs.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Whether logs hold more than noise, of which others with the same noise show so many times their floor:
+/// more than twice that, as noise may be twice as large where an axis moves in another range or faster.
+pub(crate) fn is_more_than_noise(times: f64, of_others: f64) -> bool {
+    times > REST.max(LIKE * of_others.min(APART_FROM_MOTION))
+}
+
+/// Times by which noise differs from log to log.
+const LIKE: f64 = 2.0;
+
 /// Least that something must change in a channel of the check logs, RMS, as a share of the
 /// channel's noise: left out, it would raise the RMS of what is left by 1.6 %, which no
 /// engineer would look for.
@@ -252,7 +279,7 @@ pub fn worsened(
     floors: &[Floor],
 ) -> Option<Vec<&'static str>> {
     let counted = set.counted();
-    let is_worse = |c: &usize| further_off(&counted, before, after, *c, floors[*c]);
+    let is_worse = |c: &usize| further_off(&counted, before, after, *c, &floors[*c]);
     let worse: Vec<usize> = (0..set.channels.len()).filter(is_worse).collect();
     let of_gap = gap(set, before, after, floors);
     // Rests of coloured noise trade a little here for a little there.
@@ -265,7 +292,7 @@ fn further_off(
     before: &Rest,
     after: &Rest,
     channel: usize,
-    floor: Floor,
+    floor: &Floor,
 ) -> bool {
     let change = |l: usize, k: usize| after[l][channel][k] - before[l][channel][k];
     let change = mean(counted, |l, k| change(l, k).powi(2)).sqrt();
@@ -311,7 +338,7 @@ mod tests {
             let floor = Floor::of(std::slice::from_ref(&noise));
             let quarter = std::f64::consts::FRAC_PI_2;
             let all = std::slice::from_ref(&(0..SAMPLES));
-            further_off(all, &gap(0.0, 1.0), &gap(quarter, factor), 0, floor)
+            further_off(all, &gap(0.0, 1.0), &gap(quarter, factor), 0, &floor)
         };
         (0..400).filter(case).count()
     }

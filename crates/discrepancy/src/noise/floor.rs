@@ -10,12 +10,14 @@ use super::{LogNoise, Rest, at_state, noise_series};
 use crate::answers::{LogSet, State};
 
 /// Noise alone in a channel.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Floor {
     /// Root mean square.
     pub rms: f64,
     /// The greatest root mean square of a run: what is slow differs from run to run.
     pub most: f64,
+    /// Root mean square in each log, of several runs the greatest.
+    pub by_log: Vec<f64>,
     /// Independent values that its samples are worth, where what is slow is averaged:
     /// their number times the variance over the spectral density at zero frequency.
     pub independent: f64,
@@ -41,9 +43,14 @@ impl Floor {
         } else {
             1.0
         };
+        let rms = |log: &Vec<f64>| {
+            let squares: f64 = log.iter().map(|v| v * v).sum();
+            (squares / log.len().max(1) as f64).sqrt()
+        };
         Self {
             rms: (squares / samples).sqrt(),
             most: (squares / samples).sqrt(),
+            by_log: series.iter().map(rms).collect(),
             independent: samples * worth.min(1.0),
         }
     }
@@ -54,18 +61,27 @@ impl Floor {
     fn of_runs(runs: &[Self]) -> Self {
         let count = runs.len().max(1) as f64;
         let mean = |value: fn(&Self) -> f64| runs.iter().map(value).sum::<f64>() / count;
+        let logs = runs.iter().map(|run| run.by_log.len()).max().unwrap_or(0);
+        // What is slow differs from run to run, of a single log the more.
+        let of_log = |log: usize| {
+            let each = runs.iter().filter_map(|run| run.by_log.get(log));
+            each.copied().fold(0.0, f64::max)
+        };
         Self {
             rms: mean(|f| f.rms * f.rms).sqrt(),
             most: runs.iter().map(|f| f.rms).fold(0.0, f64::max),
+            by_log: (0..logs).map(of_log).collect(),
             independent: mean(|f| f.independent),
         }
     }
 
     /// With this besides, RMS: what a simulation may be off by, or slow noise of a logger.
     pub(crate) fn beside(self, inexact: f64) -> Self {
+        let by_log = self.by_log.iter().map(|rms| rms.hypot(inexact));
         Self {
             rms: self.rms.hypot(inexact),
             most: self.most.hypot(inexact),
+            by_log: by_log.collect(),
             ..self
         }
     }
@@ -95,6 +111,7 @@ pub(crate) fn floors(
             let white = Floor {
                 rms,
                 most: rms,
+                by_log: vec![rms; set.logs.len()],
                 independent: samples as f64,
             };
             white.beside(set.inexactness(machine, c))
@@ -163,12 +180,15 @@ fn of_balances(balances: &[&Balance], rest: &Rest) -> Floor {
         let unlike = |r: &Vec<f64>| unlike(r, time, period, b.correlation(period));
         log.iter().map(unlike).fold(least, f64::max)
     });
-    let sum: f64 = samples.clone().zip(squares).map(|(n, s)| n * s).sum();
+    let by_log: Vec<f64> = squares.collect();
+    let pairs = samples.clone().zip(&by_log);
+    let sum: f64 = pairs.map(|(n, s)| n * s).sum();
     let independent: f64 = samples.sum();
     let rms = (sum / independent.max(1.0)).sqrt();
     Floor {
         rms,
         most: rms,
+        by_log: by_log.into_iter().map(f64::sqrt).collect(),
         independent,
     }
 }

@@ -4,6 +4,8 @@
 //! takes away some of a damping that grows along the stroke. A curve over the variables that
 //! the effect could stand for, which knows nothing of any law, then does far better.
 
+use std::sync::OnceLock;
+
 use nalgebra::DVector;
 use rayon::prelude::*;
 
@@ -27,24 +29,26 @@ const SHARE_OF_TWO: f64 = 0.9;
 /// Fall of D that a curve brings by chance, a knot.
 const BY_CHANCE: f64 = 4.0;
 
-/// Curves of which it is seen how much they tell of check motion.
+/// Curves over what an effect depends on, the best of them, of which it is seen how much they tell of
+/// check motion.
 const TOLD: usize = 4;
 
 /// What free curves explain beside a fit.
 pub(super) struct FreeCurves<'a> {
     search: &'a Search<'a>,
     rest: Rest<'a>,
-    best: Vec<Best<'a>>,
+    /// Those that explain most first.
+    all: Vec<Solved<'a>>,
 }
 
-/// One of the curves that explain most.
-struct Best<'a> {
+/// A curve, fitted.
+struct Solved<'a> {
     shape: &'a Shape,
-    /// By how much D falls beyond chance: as the linearised model of the fitted logs has it, and
-    /// no more than by simulation of the check logs.
+    values: DVector<f64>,
+    /// By how much D of the fitted logs falls beyond chance, as the linearised model has it.
     gain: f64,
-    /// By how much D of the check logs falls, by simulation.
-    told: f64,
+    /// By how much D of the check logs falls, by simulation; once that was asked.
+    told: OnceLock<f64>,
 }
 
 impl<'a> FreeCurves<'a> {
@@ -53,25 +57,33 @@ impl<'a> FreeCurves<'a> {
         let rest = Rest::new(fitter, &search.fit, own, &[]);
         let solved = |(shape, columns): &'a (Shape, Columns)| {
             let solved = rest.solve(columns);
-            let gain = solved.gain - BY_CHANCE * columns.len() as f64;
-            (shape, gain, solved.values)
-        };
-        let curves = &search.library.curves.shapes;
-        let mut all: Vec<_> = curves.par_iter().map(solved).collect();
-        all.sort_by(|a, b| b.1.total_cmp(&a.1));
-        all.truncate(TOLD);
-        // What does not hold on other motion explains nothing.
-        let told = |(shape, gain, values): (&'a Shape, f64, DVector<f64>)| {
-            let (set, fit) = (&search.check_logs, &search.check);
-            let told = shape.told(search.machine, set, fit, values.as_slice());
-            Best {
+            Solved {
                 shape,
-                gain: gain.min(told),
-                told,
+                gain: solved.gain - BY_CHANCE * columns.len() as f64,
+                values: solved.values,
+                told: OnceLock::new(),
             }
         };
-        let best = all.into_iter().map(told).collect();
-        Self { search, rest, best }
+        let curves = &search.library.curves.shapes;
+        let mut all: Vec<Solved<'a>> = curves.par_iter().map(solved).collect();
+        all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        Self { search, rest, all }
+    }
+
+    /// By how much D falls with the best curves over something that an effect depends on: on the fitted
+    /// logs, no more than on the check logs, as what does not hold on other motion explains nothing; and
+    /// on these.
+    fn best_over(&self, is_its_own: impl Fn(&Shape) -> bool) -> [f64; 2] {
+        let (set, check) = (&self.search.check_logs, &self.search.check);
+        let told = |curve: &Solved<'_>| {
+            let values = curve.values.as_slice();
+            *(curve.told).get_or_init(|| curve.shape.told(self.search.machine, set, check, values))
+        };
+        let own = self.all.iter().filter(|curve| is_its_own(curve.shape));
+        own.take(TOLD).fold([0.0_f64; 2], |[gain, most], curve| {
+            let told = told(curve);
+            [gain.max(curve.gain.min(told)), most.max(told)]
+        })
     }
 
     /// Whether what was refined explains about as much as the best curve over what it
@@ -88,10 +100,7 @@ impl<'a> FreeCurves<'a> {
             let mut parts = refined.parts.iter();
             parts.any(|part| shape.is_over(part.effect.shown_over))
         };
-        let of_its_own = self.best.iter().filter(|best| stands_for(best.shape));
-        let [curve, told] = of_its_own.fold([0.0_f64; 2], |[gain, told], best| {
-            [gain.max(best.gain), told.max(best.told)]
-        });
+        let [curve, told] = self.best_over(stands_for);
         let name = refined.parts.first().map_or("", |p| p.effect.name);
         tracing::debug!(name, gain, curve, held_out, told, "beside a free curve");
         match refined.parts.as_slice() {
