@@ -9,6 +9,8 @@ mod export_drive;
 mod export_fmu;
 mod identify;
 mod identify_control;
+mod log_convert;
+mod pages;
 mod schema;
 mod schema_of;
 mod stopped;

@@ -1,4 +1,4 @@
-//! The tables in docs/theory/axis-sim.md, made from the kinds, their keys and the effects.
+//! The tables in docs/axis-file.md and docs/effects.md, made from the kinds, their keys and the effects.
 
 use super::keys::keys;
 use super::layout::Layout;
@@ -10,7 +10,14 @@ use crate::effects::{EFFECTS, EffectParameter};
 use crate::mechanism::Freedom;
 use crate::part::{Key, Kind, PartKind, named};
 
-const PAGE: &str = include_str!("../../../../docs/theory/axis-sim.md");
+const KEYS: (&str, &str) = (
+    "docs/axis-file.md",
+    include_str!("../../../../docs/axis-file.md"),
+);
+const EFFECT_NUMBERS: (&str, &str) = (
+    "docs/effects.md",
+    include_str!("../../../../docs/effects.md"),
+);
 
 fn interval(limits: &ValueRange) -> String {
     format!("{} to {}", SixDigits(limits.least), SixDigits(limits.most))
@@ -49,12 +56,13 @@ fn rows(path: &str, keys: &[Key], rows: &mut Vec<String>) {
 
 const HEAD: &str = "| key | units | valid |\n|---|---|---|\n";
 
-fn kinds<P: ?Sized>(section: &str, kinds: &[&'static PartKind<P>], text: &mut String) {
+fn kinds<P: ?Sized>(sections: &str, kinds: &[&'static PartKind<P>], text: &mut String) {
+    *text += &format!("## {sections}\n\n");
     for kind in kinds {
         let mut lines = Vec::new();
         rows("", kind.keys, &mut lines);
         *text += &format!(
-            "#### [{section}] kind = \"{}\"\n{}.\n\n{HEAD}{}\n\n",
+            "### `{}`\n{}.\n\n{HEAD}{}\n\n",
             kind.name,
             kind.summary,
             lines.join("\n")
@@ -94,12 +102,16 @@ fn own() -> String {
 fn all_keys() -> String {
     let registry = Registry::default();
     let mut text = own();
-    kinds("mechanism", &registry.mechanisms, &mut text);
-    kinds("actuator", &registry.actuators, &mut text);
-    kinds("control", &registry.controls, &mut text);
-    kinds("friction", &registry.frictions, &mut text);
-    kinds("[load]", &registry.loads, &mut text);
-    kinds("sensors.load", &registry.sensors, &mut text);
+    kinds("`[mechanism]`", &registry.mechanisms, &mut text);
+    kinds("`[actuator]`", &registry.actuators, &mut text);
+    kinds("`[control]`", &registry.controls, &mut text);
+    kinds("`[friction]`", &registry.frictions, &mut text);
+    kinds("`[[load]]`", &registry.loads, &mut text);
+    kinds(
+        "`[sensors.load]`, `[sensors.motor]`",
+        &registry.sensors,
+        &mut text,
+    );
     text.truncate(text.trim_end().len());
     text + "\n"
 }
@@ -131,25 +143,21 @@ fn effects() -> String {
     text
 }
 
-fn check(mark: &str, expected: &str) {
-    let from = PAGE.find(&format!("<!-- {mark}:")).unwrap();
-    let page = &PAGE[from..];
-    let (_, page) = page.split_once("-->\n").unwrap();
+fn check((name, page): (&str, &str), mark: &str, expected: &str) {
+    let from = page.find(&format!("<!-- {mark}:")).unwrap();
+    let (_, page) = page[from..].split_once("-->\n").unwrap();
     let (page, _) = page.split_once("<!-- end -->").unwrap();
-    assert!(
-        page == expected,
-        "docs/theory/axis-sim.md must have:\n{expected}"
-    );
+    assert!(page == expected, "{name} must have:\n{expected}");
 }
 
 #[test]
 fn the_page_has_the_keys_of_the_code() {
-    check("keys", &all_keys());
+    check(KEYS, "keys", &all_keys());
 }
 
 #[test]
 fn the_page_has_the_effects_of_the_registry() {
-    check("effects", &effects());
+    check(EFFECT_NUMBERS, "effects", &effects());
 }
 
 /// The limits that a message shows in a unit are accepted in that unit, and

@@ -1,5 +1,6 @@
 //! `log`: what a drive's log holds, how good it is, and what its mapping should be.
 
+mod convert;
 mod page;
 mod words;
 
@@ -41,6 +42,8 @@ pub struct Options {
 enum Command {
     /// Channels, rates, gaps, units, levels and noise of logs, with a picture; changes nothing
     Inspect(Inspect),
+    /// Write a log in channels and SI units as CSV, Parquet or MAT, from any file that is read
+    Convert(convert::Options),
 }
 
 /// Which logs, and what is known of them.
@@ -94,6 +97,7 @@ struct SeenLog {
 pub fn command(options: &Options) -> Result<()> {
     match &options.command {
         Some(Command::Inspect(options)) => inspect(options),
+        Some(Command::Convert(options)) => convert::convert(options),
         None => pages(options),
     }
 }
@@ -126,14 +130,20 @@ fn write_page(path: &Path, page: &Page) -> Result<()> {
 }
 
 fn look_at(logs: &Logs) -> Result<Vec<Seen>> {
-    if let Some(rate) = logs.rate.filter(|rate| !(rate.is_finite() && *rate > 0.0)) {
-        return Err(wrong_use(format!(
-            "--rate {rate}: give a number above 0, in Hz"
-        )));
-    }
+    valid_rate(logs.rate)?;
     let axis = logs.axis.as_deref().map(Axis::read).transpose()?;
     let look = |path: &PathBuf| look(path, axis.as_ref(), logs.rate);
     logs.logs.iter().map(look).collect()
+}
+
+/// Refuses a rate that is none.
+fn valid_rate(rate: Option<f64>) -> Result<()> {
+    match rate.filter(|rate| !(rate.is_finite() && *rate > 0.0)) {
+        Some(rate) => Err(wrong_use(format!(
+            "--rate {rate}: give a number above 0, in Hz"
+        ))),
+        None => Ok(()),
+    }
 }
 
 fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> {

@@ -1,0 +1,144 @@
+//! `log convert`: a log in channels and SI units, whatever file it comes from.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use axis_log::intake::{Options as Intake, PreparedLog, files, prepare};
+use axis_log::quality::clock;
+use axis_log::{Mapping, TIME_CHANNEL, WriteProblem, columns, write};
+use axis_sim::Axis;
+use clap::Args;
+use discrepancy::logs::exact_channels;
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use serde::Serialize;
+
+use super::{LACKS_TIME, lacks_time, valid_rate};
+use crate::exit::wrong_use;
+use crate::output::print;
+
+/// Options of `log convert`.
+#[derive(Args)]
+pub struct Options {
+    /// Log, as `log inspect` reads it; several files of one log with + between
+    #[arg(value_name = "FILE")]
+    log: PathBuf,
+    /// Axis file, whose `[log]` maps columns
+    #[arg(long, value_name = "FILE")]
+    axis: Option<PathBuf>,
+    /// Sampling rate of the log, Hz [default: that of its slowest file]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    rate: Option<f64>,
+    /// Where to write the log: .csv, .parquet or .mat (version 5)
+    #[arg(long, value_name = "OUT")]
+    out: PathBuf,
+}
+
+/// What was written.
+#[derive(Serialize)]
+struct Converted<'a> {
+    log: String,
+    out: &'a Path,
+    samples: usize,
+    rate_hz: f64,
+    /// The channels with their units, the time first.
+    channels: Vec<Named>,
+    /// Columns that no line of the mapping names, and whose names end in no unit.
+    left_out: Vec<String>,
+    /// What was done to the samples.
+    done: Vec<String>,
+}
+
+/// A channel.
+#[derive(Serialize)]
+struct Named {
+    name: String,
+    unit: String,
+}
+
+impl fmt::Display for Converted<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for done in &self.done {
+            writeln!(f, "{done}")?;
+        }
+        if !self.left_out.is_empty() {
+            let names = self.left_out.join(", ");
+            writeln!(f, "left out, as no [[log.column]] names them: {names}")?;
+        }
+        let names: Vec<&str> = self.channels.iter().map(|c| c.name.as_str()).collect();
+        writeln!(
+            f,
+            "{}: {} samples at {:.4} Hz; {}",
+            self.out.display(),
+            self.samples,
+            self.rate_hz,
+            names.join(", ")
+        )
+    }
+}
+
+/// Runs the command.
+pub fn convert(options: &Options) -> Result<()> {
+    valid_rate(options.rate)?;
+    let axis = options.axis.as_deref().map(Axis::read).transpose()?;
+    let paths = files(&options.log);
+    let none = Mapping::default();
+    let mapping = axis.as_ref().map_or(&none, |a| &a.log);
+    let exact = axis.as_ref().map(exact_channels).unwrap_or_default();
+    let intake = Intake {
+        exact: &exact,
+        rate_hz: options.rate,
+        ..Intake::default()
+    };
+    let name = options.log.display().to_string();
+    let PreparedLog { log, done } =
+        prepare(&paths, mapping, &[], intake).map_err(|e| match lacks_time(&e) {
+            true => miette!("{name}: {LACKS_TIME}"),
+            false => miette!("{e}"),
+        })?;
+    let left_out = left_out(&paths, mapping, |name| log.has(name))?;
+    if log.channels().len() < 2 {
+        return Err(miette!(
+            "{name}: no column is a channel ({}); map them by [[log.column]] in an axis file and \
+             give it with --axis: log inspect {name} proposes the lines",
+            left_out.join(", ")
+        ));
+    }
+    write(&options.out, &log)
+        .map_err(|e| match e.problem {
+            WriteProblem::Extension { .. } => wrong_use(format!("--out {e}")),
+            _ => miette!(e),
+        })
+        .wrap_err_with(|| format!("cannot write the log {}", options.out.display()))?;
+    let named = |c: &axis_log::Channel| Named {
+        name: c.name.clone(),
+        unit: c.unit.clone(),
+    };
+    let converted = Converted {
+        log: name,
+        out: &options.out,
+        samples: log.len(),
+        rate_hz: clock(&log).map_or(0.0, |clock| 1.0 / clock.period),
+        channels: log.channels().iter().map(named).collect(),
+        left_out,
+        done: done.iter().map(ToString::to_string).collect(),
+    };
+    print("log", &converted)
+}
+
+/// Columns of the files that are not in the log.
+fn left_out(
+    paths: &[PathBuf],
+    mapping: &Mapping,
+    is_channel: impl Fn(&str) -> bool,
+) -> Result<Vec<String>> {
+    let mut names = Vec::new();
+    for path in paths {
+        for column in columns(path).into_diagnostic()?.columns {
+            let mapped = mapping.columns.iter().any(|map| map.source == column.name);
+            if !mapped && !is_channel(&column.name) && column.name != TIME_CHANNEL {
+                names.push(column.name);
+            }
+        }
+    }
+    Ok(names)
+}
