@@ -231,7 +231,7 @@ pub fn judged(
     let is_noise = check.is_at_floor() || coloured.is_some() || slow_of_loop || as_coloured;
     // That nothing is missing has to hold of every log. What is taken for noise on the check logs, though it
     // is above their floor, is there on the others too, and not much more of it.
-    let of_check = match check.is_at_floor() {
+    let of_check = match check.is_at_floor() && !is_coloured {
         true => 0.0,
         false => check_above.map_or(0.0, |(_, times)| times),
     };
