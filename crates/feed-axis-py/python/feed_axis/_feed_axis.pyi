@@ -64,43 +64,90 @@ class _Frame(Protocol):
 
 _Log: TypeAlias = _Path | Run | _Frame | Mapping[str, ArrayLike]
 
-class FeedAxisError(ValueError): ...
-class AxisError(FeedAxisError): ...
-class LogError(FeedAxisError): ...
-class MotionError(FeedAxisError): ...
-class NetworkError(FeedAxisError): ...
-class ParameterError(FeedAxisError): ...
-class SearchError(FeedAxisError): ...
-class SimulationError(FeedAxisError): ...
-class StrategyError(FeedAxisError): ...
+class FeedAxisError(ValueError):
+    """What every error of this module is. Its words say what is wrong, where, and what would be valid."""
+class AxisError(FeedAxisError):
+    """An axis file, or a dict in its place, that makes no axis. The words name file, line and field, and what would be valid."""
+class LogError(FeedAxisError):
+    """A log of which no conclusion would be worth anything, or a channel that is not there."""
+class MotionError(FeedAxisError):
+    """A motion that cannot be planned, or not on this axis."""
+class NetworkError(FeedAxisError):
+    """Samples, a network or a training that are not valid."""
+class ParameterError(FeedAxisError):
+    """A number outside its range: friction, beam or design."""
+class SearchError(FeedAxisError):
+    """A search that cannot be made as it was asked for."""
+class SimulationError(FeedAxisError):
+    """A run that did not come to its end: when, why, and in which state."""
+class StrategyError(FeedAxisError):
+    """A compensation, or an identification for one, that cannot be made for this axis."""
 
 @final
 class Axis:
+    """A feed axis: mechanism, motor, control, sensors, friction and loads, checked once.
+
+    Made by `load`, `from_toml` or `from_dict`; it cannot be changed afterwards.
+
+    >>> axis = fa.Axis.load("data/axes/liu2025.toml")
+    """
+
     @classmethod
-    def load(cls, path: _Path) -> Axis: ...
+    def load(cls, path: _Path) -> Axis:
+        """Reads an axis file.
+
+        Raises AxisError with file, line and what would be valid.
+        """
     @classmethod
-    def from_toml(cls, text: str, name: str = "<text>") -> Axis: ...
+    def from_toml(cls, text: str, name: str = "<text>") -> Axis:
+        """Reads the text of an axis file; `name` stands for the file in messages.
+
+        Raises AxisError.
+        """
     @classmethod
-    def from_dict(cls, values: Mapping[str, Any]) -> Axis: ...
-    def to_dict(self) -> dict[str, Any]: ...
-    def to_toml(self) -> str: ...
+    def from_dict(cls, values: Mapping[str, Any]) -> Axis:
+        """An axis from a dict with the keys of an axis file, as `to_dict` gives it.
+
+        Raises AxisError.
+
+        >>> values = axis.to_dict(); values["mechanism"]["table_mass_kg"] = 415.0
+        >>> lighter = fa.Axis.from_dict(values)
+        """
+    def to_dict(self) -> dict[str, Any]:
+        """The values of its file as a dict, to change and to give to `from_dict`."""
+    def to_toml(self) -> str:
+        """The text of its file."""
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Short name."""
     @property
-    def description(self) -> str: ...
+    def description(self) -> str:
+        """One line for people."""
     @property
-    def period_s(self) -> float: ...
+    def period_s(self) -> float:
+        """Control period, s."""
     @property
-    def unit(self) -> Literal["m", "rad"]: ...
+    def unit(self) -> Literal["m", "rad"]:
+        """Unit of the load's position: "m", or "rad" if it turns."""
     @property
-    def stroke(self) -> tuple[float, float, float]: ...
+    def stroke(self) -> tuple[float, float, float]:
+        """Least position, greatest position, and where motions start, m or rad."""
     @property
-    def channels(self) -> list[str]: ...
+    def channels(self) -> list[str]:
+        """Names of the channels that its runs and logs have, with their units as last part."""
     @property
-    def trajectories(self) -> list[Move]: ...
+    def trajectories(self) -> list[Move]:
+        """The moves on which it is judged: those of `[[trajectory]]`."""
     @property
-    def fingerprint(self) -> str: ...
-    def frequencies_hz(self, position: float | None = None) -> _Floats: ...
+    def fingerprint(self) -> str:
+        """Hash of all values: the same for files that differ in comments, units or order only."""
+    def frequencies_hz(self, position: float | None = None) -> _Floats:
+        """Natural frequencies without rigid motion, Hz, in an array of one dimension.
+
+        `position`: of the load, m or rad; where motions start, if it is left out.
+
+        Raises ParameterError.
+        """
     def simulate(
         self,
         motion: _Motion,
@@ -110,7 +157,20 @@ class Axis:
         exact: bool = False,
         seed: int = 1,
         progress: _Progress | None = None,
-    ) -> Run: ...
+    ) -> Run:
+        """Follows a motion in closed loop.
+
+        - `motion`: a Move, an SCurve or a Program, in the unit of the axis.
+        - `compensation`: a Compensator, or a function that is called with each cycle's Sample and gives a Correction.
+        - `noise`: noise of every sensor beside the axis file's own, in multiples of good sensors' noise, 0 or above.
+        - `exact`: simulate by the slow, exact method, to stand for a machine.
+        - `seed`: of the noise; the same seed gives the same bits.
+        - `progress`: called with (what, done, total) on this thread, at most every 50 ms; what it raises ends the work.
+
+        Raises MotionError if the axis cannot take the motion, SimulationError if the run does not come to its end, ValueError for a noise below 0.
+
+        >>> run = axis.simulate(axis.trajectories[0])
+        """
     def sample(
         self,
         count: int,
@@ -118,7 +178,13 @@ class Axis:
         seed: int = 1,
         near_zero: bool = False,
         progress: _Progress | None = None,
-    ) -> Samples: ...
+    ) -> Samples:
+        """Draws `count` one-cycle samples over a Latin hypercube of the axis' sample ranges.
+
+        `near_zero` makes speeds denser near zero, where friction changes most. `progress` as of `simulate`.
+
+        Raises NetworkError, also if the axis has neither `[samples]` nor trajectories.
+        """
     def train(
         self,
         samples: Samples,
@@ -128,20 +194,45 @@ class Axis:
         seed: int = 1,
         threads: int = 0,
         progress: _Progress | None = None,
-    ) -> Network: ...
+    ) -> Network:
+        """Trains the one-cycle predictor: a network for what the best linear map of the samples leaves.
+
+        `hidden`: neurons of the hidden layers, (34, 19, 8) if left out; `threads`: 0 for all cores, the result does not depend on it. `progress` as of `simulate`.
+
+        Raises NetworkError.
+        """
     def identify_friction(
         self,
         *,
         noise: float = 1.0,
         seed: int = 0,
         progress: _Progress | None = None,
-    ) -> LuGre: ...
+    ) -> LuGre:
+        """Identifies the friction of this axis from simulated experiments: constant speeds and small motions about a standstill.
+
+        `noise`: of scale, motor encoder and current sensor, in multiples of good sensors' noise. `progress` as of `simulate`.
+
+        Raises StrategyError.
+        """
     def identify_transfer(
         self, *, seed: int = 0, progress: _Progress | None = None
-    ) -> TransferFunctions: ...
+    ) -> TransferFunctions:
+        """Identifies transfer functions of this axis' tracking error from simulated moves.
+
+        `progress` as of `simulate`.
+
+        Raises StrategyError.
+        """
 
 @final
 class Move:
+    """A move from standstill to standstill, from where the axis' motions start.
+
+    A move along a line is made by the constructor, one about an axis by `turn`. The properties of the other unit raise AttributeError.
+
+    >>> move = fa.Move(distance_m=0.3, speed_m_s=0.1, acceleration_m_s2=0.225, jerk_m_s3=1.2)
+    """
+
     def __new__(
         cls,
         *,
@@ -149,7 +240,11 @@ class Move:
         speed_m_s: float,
         acceleration_m_s2: float,
         jerk_m_s3: float,
-    ) -> Self: ...
+    ) -> Self:
+        """A move along a line: distance with its sign, and the greatest speed, acceleration and jerk.
+
+        Raises MotionError for limits that are not finite and above 0.
+        """
     @staticmethod
     def turn(
         *,
@@ -157,26 +252,43 @@ class Move:
         speed_rad_s: float,
         acceleration_rad_s2: float,
         jerk_rad_s3: float,
-    ) -> Move: ...
+    ) -> Move:
+        """A move of an axis that turns, in rad.
+
+        Raises MotionError.
+        """
     @property
-    def distance_m(self) -> float: ...
+    def distance_m(self) -> float:
+        """Distance with its sign, m."""
     @property
-    def speed_m_s(self) -> float: ...
+    def speed_m_s(self) -> float:
+        """Greatest speed, m/s."""
     @property
-    def acceleration_m_s2(self) -> float: ...
+    def acceleration_m_s2(self) -> float:
+        """Greatest acceleration, m/s²."""
     @property
-    def jerk_m_s3(self) -> float: ...
+    def jerk_m_s3(self) -> float:
+        """Greatest jerk, m/s³."""
     @property
-    def distance_rad(self) -> float: ...
+    def distance_rad(self) -> float:
+        """Distance with its sign, rad."""
     @property
-    def speed_rad_s(self) -> float: ...
+    def speed_rad_s(self) -> float:
+        """Greatest speed, rad/s."""
     @property
-    def acceleration_rad_s2(self) -> float: ...
+    def acceleration_rad_s2(self) -> float:
+        """Greatest acceleration, rad/s²."""
     @property
-    def jerk_rad_s3(self) -> float: ...
+    def jerk_rad_s3(self) -> float:
+        """Greatest jerk, rad/s³."""
 
 @final
 class SCurve:
+    """The move in least time between two standstills within limits of speed, acceleration and jerk.
+
+    >>> fa.SCurve(0.0, 0.3, speed_m_s=0.1, acceleration_m_s2=0.225, jerk_m_s3=1.2).duration_s
+    """
+
     def __new__(
         cls,
         start_m: float,
@@ -185,7 +297,11 @@ class SCurve:
         speed_m_s: float,
         acceleration_m_s2: float,
         jerk_m_s3: float,
-    ) -> Self: ...
+    ) -> Self:
+        """From `start_m` to `end_m` along a line.
+
+        Raises MotionError.
+        """
     @staticmethod
     def turn(
         start_rad: float,
@@ -194,100 +310,179 @@ class SCurve:
         speed_rad_s: float,
         acceleration_rad_s2: float,
         jerk_rad_s3: float,
-    ) -> SCurve: ...
+    ) -> SCurve:
+        """The same of an axis that turns, in rad.
+
+        Raises MotionError.
+        """
     @property
-    def duration_s(self) -> float: ...
-    def sample(self, period_s: float) -> dict[str, _Floats]: ...
+    def duration_s(self) -> float:
+        """Time from standstill to standstill, s."""
+    def sample(self, period_s: float) -> dict[str, _Floats]:
+        """The motion every `period_s`: a dict of arrays of one dimension and one length.
+
+        Keys: `t_s`, `position_m`, `speed_m_s`, `acceleration_m_s2`, `jerk_m_s3`; of one that turns `position_rad` and so on.
+
+        Raises MotionError for a period that is not above 0, or that gives more than 1e8 samples.
+        """
 
 @final
 class Program:
+    """Moves, dwells, sines and chirps one after the other: a motion program.
+
+    >>> fa.Program.load("motion.toml").duration_s
+    """
+
     @classmethod
-    def load(cls, path: _Path) -> Program: ...
+    def load(cls, path: _Path) -> Program:
+        """Reads a motion program (TOML).
+
+        Raises MotionError, or OSError if the file cannot be read.
+        """
     @classmethod
-    def from_toml(cls, text: str) -> Program: ...
-    def to_toml(self) -> str: ...
+    def from_toml(cls, text: str) -> Program:
+        """Reads the text of a motion program.
+
+        Raises MotionError.
+        """
+    def to_toml(self) -> str:
+        """Its text, as `from_toml` reads it."""
     @property
-    def duration_s(self) -> float: ...
-    def sample(self, period_s: float) -> dict[str, _Floats]: ...
+    def duration_s(self) -> float:
+        """Time from the first to the last instant, s."""
+    def sample(self, period_s: float) -> dict[str, _Floats]:
+        """The motion every `period_s`, as `SCurve.sample`."""
 
 @final
 class Run:
-    def __getitem__(self, name: str, /) -> _Floats: ...
-    def __contains__(self, name: str, /) -> bool: ...
-    def __len__(self) -> int: ...
-    def __iter__(self) -> Iterator[str]: ...
-    def keys(self) -> list[str]: ...
+    """A simulated run: its channels as NumPy arrays, by name.
+
+    Arrays have one dimension, one number for each control cycle.
+
+    >>> run["position_m"]
+    """
+
+    def __getitem__(self, name: str, /) -> _Floats:
+        """The samples of a channel; the same array each time, on the memory that the simulation filled.
+
+        Raises KeyError with the names of the channels.
+        """
+    def __contains__(self, name: str, /) -> bool:
+        """Whether there is a channel of that name."""
+    def __len__(self) -> int:
+        """Number of channels."""
+    def __iter__(self) -> Iterator[str]:
+        """The names of the channels."""
+    def keys(self) -> list[str]:
+        """Names of the channels; the last part of each is its unit."""
     @property
-    def units(self) -> dict[str, str]: ...
+    def units(self) -> dict[str, str]:
+        """Unit of each channel, by its name."""
     @property
-    def cycles(self) -> int: ...
+    def cycles(self) -> int:
+        """Number of control cycles."""
     @property
-    def error(self) -> _Floats: ...
+    def error(self) -> _Floats:
+        """Tracking error, reference minus true position of the load, m or rad."""
     @property
-    def error_unit(self) -> str: ...
+    def error_unit(self) -> str:
+        """Unit of the errors: "m", or "rad" if the load turns."""
     @property
-    def max_error(self) -> float: ...
+    def max_error(self) -> float:
+        """Greatest absolute tracking error, m or rad."""
     @property
-    def mean_error(self) -> float: ...
-    def to_pandas(self) -> pd.DataFrame: ...
-    def to_polars(self) -> pl.DataFrame: ...
+    def mean_error(self) -> float:
+        """Mean absolute tracking error, m or rad."""
+    def to_pandas(self) -> pd.DataFrame:
+        """The channels as a pandas DataFrame. Needs pandas."""
+    def to_polars(self) -> pl.DataFrame:
+        """The channels as a polars DataFrame. Needs polars."""
     def _repr_html_(self) -> str: ...
 
 @final
 class Parameter:
+    """A number of an effect, with its 95 % interval."""
+
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Name, as in the axis file."""
     @property
-    def value(self) -> float: ...
+    def value(self) -> float:
+        """Estimate, in `unit`."""
     @property
-    def unit(self) -> str: ...
+    def unit(self) -> str:
+        """SI unit."""
     @property
-    def interval(self) -> tuple[float, float]: ...
+    def interval(self) -> tuple[float, float]:
+        """95 % interval: from, to."""
 
 @final
 class Effect:
+    """An effect that was named."""
+
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Name, as in the axis file."""
     @property
-    def summary(self) -> str: ...
+    def summary(self) -> str:
+        """One line for people."""
     @property
-    def parameters(self) -> list[Parameter]: ...
+    def parameters(self) -> list[Parameter]:
+        """Its numbers."""
     @property
-    def indistinguishable_from(self) -> list[str]: ...
+    def indistinguishable_from(self) -> list[str]:
+        """Effects that these logs cannot tell from it."""
     @property
-    def channel(self) -> str: ...
+    def channel(self) -> str:
+        """Where it shows first, such as "torque balance"."""
     @property
-    def share_of_gap(self) -> float: ...
+    def share_of_gap(self) -> float:
+        """Share of the check logs' gap that comes back without it."""
 
 @final
 class Discovery:
+    """What a model lacks: verdict, effects with their sizes, words, and the model with them."""
+
     @property
     def verdict(
         self,
-    ) -> Literal["explained", "partly-explained", "other-form", "nothing-missing", "unknown"]: ...
+    ) -> Literal["explained", "partly-explained", "other-form", "nothing-missing", "unknown"]:
+        """"explained", "partly-explained", "other-form", "nothing-missing" or "unknown"."""
     @property
-    def effects(self) -> list[Effect]: ...
+    def effects(self) -> list[Effect]:
+        """The named effects, largest share of the gap first."""
     @property
-    def names(self) -> list[str]: ...
+    def names(self) -> list[str]:
+        """Their names."""
     @property
-    def size(self) -> float | None: ...
+    def size(self) -> float | None:
+        """First number of the first effect, SI; None if nothing was named."""
     @property
-    def interval(self) -> tuple[float, float] | None: ...
+    def interval(self) -> tuple[float, float] | None:
+        """Its 95 % interval; None if nothing was named."""
     @property
-    def unit(self) -> str | None: ...
+    def unit(self) -> str | None:
+        """Its unit; None if nothing was named."""
     @property
-    def sentence(self) -> str: ...
+    def sentence(self) -> str:
+        """The verdict in a sentence."""
     @property
-    def words(self) -> str: ...
+    def words(self) -> str:
+        """The sentence, and what the command prints beside it."""
     @property
-    def notes(self) -> list[str]: ...
+    def notes(self) -> list[str]:
+        """What was done to the logs, and what must be known of them."""
     @property
-    def gap(self) -> list[tuple[str, float, float, float]]: ...
+    def gap(self) -> list[tuple[str, float, float, float]]:
+        """RMS gap on motion that was not fitted to: for each channel its name, before, after, and noise, in its SI unit."""
     @property
-    def axis(self) -> Axis: ...
+    def axis(self) -> Axis:
+        """The axis with what was found added to it."""
     @property
-    def next_experiment(self) -> Program | None: ...
-    def to_dict(self) -> dict[str, Any]: ...
+    def next_experiment(self) -> Program | None:
+        """The motion to record next if effects look alike; None otherwise."""
+    def to_dict(self) -> dict[str, Any]:
+        """All of it, as `discovery.json` of the command has it."""
     def _repr_html_(self) -> str: ...
 
 def discover(
@@ -300,10 +495,36 @@ def discover(
     reject: Sequence[str] = ...,
     balance: bool = False,
     progress: _Progress | None = None,
-) -> Discovery: ...
+) -> Discovery:
+    """Finds what an axis' model lacks beside measured logs.
+
+    - `fit`: logs to fit to.
+    - `check`: logs of other motion, on which what is named must prove itself.
+    - `test`: logs that take no part in any choice, for the figures.
+    - `accept`, `reject`: names of effects that are taken as present, or never named.
+    - `balance`: compare by torque balance, without the controller.
+    - `progress`: called with (what, stage, None).
+
+    A log is a path (`a.csv+b.csv` is one log in two files), a pandas or polars frame, a Run, or a dict of arrays. A path is read as
+    the axis file's `[log]` maps its columns; the others have channels as names, `t_s` among them, and NaN where there is no value.
+
+    Raises LogError for a log of which no conclusion would be worth anything, SearchError for an unknown effect, AxisError. Ctrl-C raises at
+    once; the search itself ends at its next stage.
+
+    >>> fa.discover(axis, fit=["fit.csv"], check=["check.csv"]).names
+    """
 
 @final
 class Sample:
+    """What a controller knows at the start of a control cycle. SI units, at the load; rad for m on an axis that turns.
+
+    - `reference`, `next_reference`: position, speed and acceleration of the reference now and one cycle ahead.
+    - `position_m`: measured position of the load.
+    - `motor_angle_rad`, `motor_speed_rad_s`: measured.
+    - `iq_a`: measured q current; 0 if the actuator has none.
+    - `iq_command_a`: command of the cycle before, in the actuator's unit.
+    """
+
     reference: _Reference
     next_reference: _Reference
     position_m: float
@@ -321,18 +542,33 @@ class Sample:
         motor_speed_rad_s: float = 0.0,
         iq_a: float = 0.0,
         iq_command_a: float = 0.0,
-    ) -> Self: ...
+    ) -> Self:
+        """A sample of these values; a reference is any three numbers."""
 
 @final
 class Correction:
-    def __new__(cls, position_m: float = 0.0, iq_a: float = 0.0) -> Self: ...
+    """What is added to the controller in a cycle.
+
+    >>> run = axis.simulate(axis.trajectories[0], compensation=lambda sample: fa.Correction(iq_a=0.1))
+    """
+
+    def __new__(cls, position_m: float = 0.0, iq_a: float = 0.0) -> Self:
+        """Position (m or rad) and current (A) to add."""
     @property
-    def position_m(self) -> float: ...
+    def position_m(self) -> float:
+        """Added to the position error, m or rad."""
     @property
-    def iq_a(self) -> float: ...
+    def iq_a(self) -> float:
+        """Added to the speed controller's command, A."""
 
 @final
 class Compensator:
+    """A compensation strategy on an axis.
+
+    >>> plan = fa.Compensator(axis, "plan")
+    >>> run = axis.simulate(axis.trajectories[0], compensation=plan)
+    """
+
     def __new__(
         cls,
         axis: Axis,
@@ -342,25 +578,48 @@ class Compensator:
         transfer: TransferFunctions | None = None,
         friction: LuGre | None = None,
         motion: _Motion | None = None,
-    ) -> Self: ...
-    def start(self, motion: _Motion) -> None: ...
-    def update(self, sample: Sample) -> Correction: ...
+    ) -> Self:
+        """The strategy of that name (a key of `STRATEGIES`), with what it needs.
+
+        `network` is of `Axis.train`, `transfer` of `Axis.identify_transfer`, `friction` of `Axis.identify_friction`. With `motion` it is started.
+
+        Raises StrategyError for an unknown name or for what is missing.
+        """
+    def start(self, motion: _Motion) -> None:
+        """Begins a motion from standstill: the next `update` is its first cycle.
+
+        Raises MotionError or StrategyError.
+        """
+    def update(self, sample: Sample) -> Correction:
+        """The correction for the cycle that begins with this sample.
+
+        Raises StrategyError if no motion was begun.
+        """
     @property
-    def strategy(self) -> str: ...
+    def strategy(self) -> str:
+        """Name of the strategy."""
 
 @final
-class TransferFunctions: ...
+class TransferFunctions:
+    """Linear models of an axis' tracking error, without and with friction feed-forward. Made by `Axis.identify_transfer`."""
 
 @final
 class Samples:
-    def __len__(self) -> int: ...
+    """One-cycle samples: state and command at the start of a cycle, and how far the load went. Made by `Axis.sample`."""
+
+    def __len__(self) -> int:
+        """Number of samples."""
     @property
-    def inputs(self) -> _Floats: ...
+    def inputs(self) -> _Floats:
+        """Position (m), speed (m/s), acceleration (m/s²) and commanded current (A): an array of shape (samples, 4)."""
     @property
-    def increments_m(self) -> _Floats: ...
+    def increments_m(self) -> _Floats:
+        """How far the load went in the cycle, m: an array of shape (samples,)."""
 
 @final
 class Network:
+    """A cascade-forward network."""
+
     @classmethod
     def train(
         cls,
@@ -372,19 +631,47 @@ class Network:
         seed: int = 1,
         threads: int = 0,
         progress: _Progress | None = None,
-    ) -> Network: ...
+    ) -> Network:
+        """Trains by Levenberg–Marquardt.
+
+        - `x`, `y`: inputs and targets, of shapes (samples, inputs) and (samples, outputs); of one variable also of one dimension.
+        - `hidden`: neurons of the hidden layers, 10 if left out.
+        - `threads`: 0 for all cores; the result does not depend on it.
+        - `progress`: called with ("train", epoch, epochs).
+
+        Raises NetworkError.
+
+        >>> network = fa.Network.train(x, y, hidden=[20, 10], epochs=200)
+        """
     @classmethod
-    def load(cls, path: _Path) -> Network: ...
-    def predict(self, x: ArrayLike) -> _Floats: ...
-    def test(self, samples: Samples) -> tuple[float, float]: ...
-    def to_bytes(self) -> bytes: ...
+    def load(cls, path: _Path) -> Network:
+        """Reads a network's file, also one of the stage `train`.
+
+        Raises NetworkError, or OSError if the file cannot be read.
+        """
+    def predict(self, x: ArrayLike) -> _Floats:
+        """The outputs for inputs `x` of shape (samples, inputs): an array of shape (samples, outputs).
+
+        One row, or inputs of one variable, may have one dimension. Raises NetworkError for another number of inputs.
+        """
+    def test(self, samples: Samples) -> tuple[float, float]:
+        """Maximum and mean absolute error on one-cycle samples, µm or µrad. Raises NetworkError."""
+    def to_bytes(self) -> bytes:
+        """The network as bytes with a hash, for a file that `load` reads."""
     @property
-    def losses(self) -> _Floats: ...
+    def losses(self) -> _Floats:
+        """Mean square of the scaled residuals after each epoch; empty for a network from a file."""
     @property
-    def shape(self) -> tuple[int, list[int], int]: ...
+    def shape(self) -> tuple[int, list[int], int]:
+        """Number of inputs, neurons of each hidden layer, number of outputs."""
 
 @final
 class LuGre:
+    """LuGre friction: bristles, Stribeck curve, viscous share. For a contact that slides along a line read N for N·m and m for rad.
+
+    >>> fa.LuGre.liu2025().steady_state([0.1, 1.0, 10.0])
+    """
+
     def __new__(
         cls,
         *,
@@ -394,26 +681,47 @@ class LuGre:
         stiffness_n_m_rad: float,
         damping_n_m_s_rad: float,
         viscous_n_m_s_rad: float,
-    ) -> Self: ...
+    ) -> Self:
+        """A law of these parameters.
+
+        Raises ParameterError.
+        """
     @classmethod
-    def liu2025(cls) -> LuGre: ...
+    def liu2025(cls) -> LuGre:
+        """The parameters that Liu et al. 2025 print, at the screw of their axis."""
     @property
-    def coulomb_n_m(self) -> float: ...
+    def coulomb_n_m(self) -> float:
+        """Coulomb level T_C, N·m."""
     @property
-    def stiction_n_m(self) -> float: ...
+    def stiction_n_m(self) -> float:
+        """Break-away torque T_S, N·m."""
     @property
-    def stribeck_speed_rad_s(self) -> float: ...
+    def stribeck_speed_rad_s(self) -> float:
+        """Stribeck speed Ω_S, rad/s."""
     @property
-    def stiffness_n_m_rad(self) -> float: ...
+    def stiffness_n_m_rad(self) -> float:
+        """Stiffness of the bristles σ0, N·m/rad."""
     @property
-    def damping_n_m_s_rad(self) -> float: ...
+    def damping_n_m_s_rad(self) -> float:
+        """Damping of the bristles σ1, N·m·s/rad."""
     @property
-    def viscous_n_m_s_rad(self) -> float: ...
-    def steady_state(self, speed_rad_s: ArrayLike) -> _Floats: ...
-    def simulate(self, speed_rad_s: ArrayLike, dt_s: float) -> _Floats: ...
+    def viscous_n_m_s_rad(self) -> float:
+        """Viscous friction σ2, N·m·s/rad."""
+    def steady_state(self, speed_rad_s: ArrayLike) -> _Floats:
+        """Friction at constant speeds (rad/s), N·m: an array of one dimension. Raises ParameterError."""
+    def simulate(self, speed_rad_s: ArrayLike, dt_s: float) -> _Floats:
+        """Friction (N·m) along speeds (rad/s) that lie `dt_s` apart, linear between; bristles at rest at the first.
+
+        Raises ParameterError.
+        """
 
 @final
 class Beam:
+    """A round solid shaft of Timoshenko elements.
+
+    >>> fa.Beam(length_m=1.5, diameter_m=0.04).frequencies_hz(8)
+    """
+
     def __new__(
         cls,
         *,
@@ -423,10 +731,18 @@ class Beam:
         youngs_modulus_pa: float = 206e9,
         poisson_ratio: float = 0.3,
         density_kg_m3: float = 7850.0,
-    ) -> Self: ...
+    ) -> Self:
+        """A shaft; the default material is steel.
+
+        Raises ParameterError.
+        """
     def frequencies_hz(
         self, count: int, *, supports: Literal["free", "pinned"] = "free"
-    ) -> _Floats: ...
+    ) -> _Floats:
+        """The `count` lowest natural frequencies, Hz; the rigid motions of a free beam are among them, as 0.
+
+        `supports`: "free", or "pinned", where both ends hold deflection, stretch and twist. Raises ParameterError.
+        """
 
 def latin_hypercube(
     n: int,
@@ -434,4 +750,12 @@ def latin_hypercube(
     *,
     seed: int = 1,
     centred: bool = False,
-) -> _Floats: ...
+) -> _Floats:
+    """`n` points between bounds: each of the n intervals of each variable holds exactly one. An array of shape (n, variables).
+
+    `bounds`: least and greatest value of each variable, of shape (variables, 2). `centred` puts points into the middle of their intervals.
+
+    Raises ParameterError.
+
+    >>> fa.latin_hypercube(5, [(0.0, 1.0), (-1.0, 1.0)])
+    """
