@@ -229,17 +229,11 @@ pub fn judged(
     let unknown = lack.or_else(|| following.map(in_frequency));
     let as_coloured = is_coloured && unknown.is_none();
     let is_noise = check.is_at_floor() || coloured.is_some() || slow_of_loop || as_coloured;
-    // That nothing is missing has to hold of every log. What is taken for noise on the check logs, though it
-    // is above their floor, is there on the others too, and not much more of it.
-    let of_check = match check.is_at_floor() && !is_coloured {
-        true => 0.0,
-        false => check_above.map_or(0.0, |(_, times)| times),
-    };
-    let is_above = |above: Option<(usize, f64)>| {
-        above.filter(|(_, times)| is_more_than_noise(*times, of_check))
-    };
-    let more_than_noise = (is_above(fit_above).map(|(l, times)| (&found.fit_logs, l, times)))
-        .or_else(|| is_above(check_above).map(|(l, times)| (set, l, times)))
+    // That nothing is missing has to hold of every log, of those that were fitted as well: there is no more noise
+    // in them than the check logs show, but for what differs from log to log.
+    let of_check = check_above.map_or(0.0, |(_, times)| times);
+    let more_than_noise = fit_above
+        .filter(|(_, times)| is_more_than_noise(*times, of_check))
         .filter(|_| effects.is_empty() && own_form.is_none());
     let rest_significant =
         !(is_noise || nearly_all) || unknown.is_some() || more_than_noise.is_some();
@@ -294,7 +288,8 @@ pub fn judged(
                 found.hum.notes(),
             ]
             .concat();
-            let above = more_than_noise.map(|(set, l, times)| above_noise_note(set, l, times));
+            let above =
+                more_than_noise.map(|(log, times)| above_noise_note(&found.fit_logs, log, times));
             let known = known.into_iter().chain(note_of_loop).chain(above);
             let of_rest = coloured.chain(slow_of_loop);
             known.chain(of_rest).collect()

@@ -182,10 +182,10 @@ pub(crate) fn furthest_above(set: &LogSet, rest: &Rest, floors: &[Floor]) -> Opt
     logs.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Whether logs hold more than noise, of which others with the same noise show so many times their floor:
-/// more than twice that, as noise may be twice as large where an axis moves in another range or faster.
+/// Whether a log holds more than noise, its residual so many times its floor, beside others that show so many
+/// times theirs: noise may be twice as large where an axis moves in another range or faster.
 pub(crate) fn is_more_than_noise(times: f64, of_others: f64) -> bool {
-    times > REST.max(LIKE * of_others.min(APART_FROM_MOTION))
+    times > LIKE * of_others.clamp(1.0, APART_FROM_MOTION)
 }
 
 /// Times by which noise differs from log to log.
