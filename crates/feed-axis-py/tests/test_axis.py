@@ -85,10 +85,11 @@ def test_motions_of_an_axis_that_turns_are_in_its_unit(root: Path, axis: fa.Axis
     assert run.error_unit == "rad" and run["position_rad"][-1] == pytest.approx(0.1, abs=1e-2)
     curve = fa.SCurve.turn(0.0, 0.1, **limits)
     assert curve.sample(1e-3)["position_rad"][-1] == pytest.approx(0.1)
-    for motion, other, words in [
+    cases: list[tuple[fa.Move | fa.SCurve, fa.Axis, str]] = [
         (move, axis, "moves along a line"),
         (curve, axis, "moves along a line"),
         (axis.trajectories[0], table, r"turns: give Move\.turn"),
-    ]:
+    ]
+    for motion, other, words in cases:
         with pytest.raises(fa.MotionError, match=words):
             other.simulate(motion)
