@@ -110,8 +110,8 @@ class Axis:
 
         Raises AxisError.
 
-        >>> values = axis.to_dict(); values["mechanism"]["table_mass_kg"] = 415.0
-        >>> lighter = fa.Axis.from_dict(values)
+        >>> values = axis.to_dict(); values["control"]["velocity_feedforward"] = 0.9
+        >>> other = fa.Axis.from_dict(values)
         """
     def to_dict(self) -> dict[str, Any]:
         """The values of its file as a dict, to change and to give to `from_dict`."""
