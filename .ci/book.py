@@ -81,6 +81,10 @@ def shims(folder):
     cargo.chmod(0o755)
 
 
+class PageError(Exception):
+    """A command that ends otherwise than its page says."""
+
+
 def folders(page, scratch, made, wrong):
     """The folder of a page's commands, with what the page before it has made; and how many of its blocks ran."""
     if page in made:
@@ -97,13 +101,9 @@ def folders(page, scratch, made, wrong):
     try:
         ran += run_page(page, text, work, scratch, wrong)
     except PageError as error:
-        wrong.append(str(error))
+        wrong.append(error)
         print(error, flush=True)
     return work, ran
-
-
-class PageError(Exception):
-    """A command that ends otherwise than its page says."""
 
 
 def run_page(page, text, work, scratch, wrong):
@@ -120,8 +120,8 @@ def run_page(page, text, work, scratch, wrong):
             output, ran = run_block(where, "\n".join(lines), work, env, language == "sh,fails"), ran + 1
         elif language == "text" and follows and output is not None:
             if not pattern(block).search(output):
-                wrong.append(f"{where}: the page shows\n{block}\nthe command printed\n{output}")
-                print(wrong[-1], flush=True)
+                wrong.append(where)
+                print(f"{where}: the page shows\n{block}\nthe command printed\n{output}", flush=True)
         elif kept := re.fullmatch(r"toml,(save|append)=([\w.-]+)", language):
             with (work / kept[2]).open("w" if kept[1] == "save" else "a") as file:
                 file.write(block + "\n")
@@ -158,7 +158,7 @@ def run(named):
         for page in [Path(name).resolve() for name in named] or pages():
             total += folders(page, Path(scratch), made, wrong)[1]
     if wrong:
-        sys.exit(f"{len(wrong)} blocks did not do what the pages say, of {total}: above")
+        sys.exit(f"{len(wrong)} blocks did not do what the pages say (above)")
     print(f"{total} blocks of the pages did what the pages say, {time.monotonic() - begin:.0f} s")
 
 

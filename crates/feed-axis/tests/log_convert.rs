@@ -85,4 +85,10 @@ fn log_convert_refuses_what_it_cannot_write() {
     let message = refuse(&["log", "convert", &log, "--rate", "-1", "--out", &out]);
     assert!(message.contains("a number above 0, in Hz"), "{message}");
     assert!(!path.exists());
+    let before = std::fs::read(&log).unwrap();
+    let again = folder.path().join(".").join("drive.csv");
+    let again = again.to_str().unwrap();
+    let message = refuse(&["log", "convert", &log, "--axis", &axis, "--out", again]);
+    assert!(message.contains("the log that is read"), "{message}");
+    assert_eq!(std::fs::read(&log).unwrap(), before);
 }

@@ -81,6 +81,7 @@ pub fn convert(options: &Options) -> Result<()> {
     valid_rate(options.rate)?;
     let axis = options.axis.as_deref().map(Axis::read).transpose()?;
     let paths = files(&options.log);
+    not_over_the_log(&options.out, &paths)?;
     let none = Mapping::default();
     let mapping = axis.as_ref().map_or(&none, |a| &a.log);
     let exact = axis.as_ref().map(exact_channels).unwrap_or_default();
@@ -123,6 +124,19 @@ pub fn convert(options: &Options) -> Result<()> {
         done: done.iter().map(ToString::to_string).collect(),
     };
     print("log", &converted)
+}
+
+/// Refuses to write over what is read: a measurement cannot be made again.
+fn not_over_the_log(out: &Path, logs: &[PathBuf]) -> Result<()> {
+    let there = |path: &Path| path.canonicalize().ok();
+    let is_read = |log: &PathBuf| there(out).is_some_and(|out| there(log) == Some(out));
+    match logs.iter().any(is_read) {
+        true => Err(wrong_use(format!(
+            "--out {}: this is the log that is read; give another file",
+            out.display()
+        ))),
+        false => Ok(()),
+    }
 }
 
 /// Columns of the files that are not in the log.
