@@ -81,9 +81,11 @@ fn a_law_of_no_library_is_said_in_a_formula_and_not_put_together_from_others() {
     let told = balanced("drag");
     assert_eq!(told.verdict, Verdict::Unknown, "{}", told.sentence);
     assert!(told.effects.is_empty());
+    let refused = told.refused.unwrap();
+    assert_eq!(refused.law.as_deref(), Some("|v|·v"));
     let unknown = told.unknown.unwrap();
     assert_eq!(unknown.depends_on, "speed");
-    // force = c · |v|·v, c = 39.98 N·s²/m² (95 %: 39.86 to 40.09) (empirical)
+    // force = c · |v|·v, c = 39.94 N·s²/m² (95 %: 39.78 to 40.11) (empirical)
     let formula = unknown.formula.unwrap();
     let [low, high] = ["95 %: ", " to "].map(|before| {
         let rest = formula.split(before).nth(1).unwrap();
