@@ -185,12 +185,12 @@ pub(crate) fn furthest_above(set: &LogSet, rest: &Rest, floors: &[Floor]) -> Opt
 /// Whether a log holds more than noise, its residual so many times its floor, beside others that show so many
 /// times theirs: noise may be twice as large where an axis moves in another range or faster.
 pub(crate) fn is_more_than_noise(times: f64, of_others: f64) -> bool {
-    times > LIKE * of_others.clamp(1.0, APART_FROM_MOTION)
+    times > BETWEEN_LOGS * of_others.clamp(1.0, APART_FROM_MOTION)
 }
 
 /// Times by which noise differs from log to log. Not calibrated: of a clean screw in coloured noise 1.2 was too
 /// little.
-const LIKE: f64 = 2.0;
+const BETWEEN_LOGS: f64 = 2.0;
 
 /// Least that something must change in a channel of the check logs, RMS, as a share of the
 /// channel's noise: left out, it would raise the RMS of what is left by 1.6 %, which no
