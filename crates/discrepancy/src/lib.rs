@@ -46,7 +46,6 @@ mod judge;
 pub mod logs;
 mod name;
 mod noise;
-mod posterior;
 mod spectrum;
 pub mod summary;
 
@@ -71,7 +70,6 @@ pub use name::search::{
     Settings, SettingsError, Test, search, search_with,
 };
 pub use noise::SensorNoise;
-pub use posterior::{Explained, Posterior};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

@@ -100,7 +100,7 @@ impl Discovery {
 
 #[pymethods]
 impl Discovery {
-    /// "explained", "partly-explained", "other-form", "nothing-missing", "unknown" or "undecided".
+    /// "explained", "partly-explained", "other-form", "nothing-missing" or "unknown".
     #[getter]
     fn verdict(&self) -> &'static str {
         self.found.verdict.name()

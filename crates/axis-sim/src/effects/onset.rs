@@ -27,14 +27,12 @@ pub const ONSET_KNOTS: usize = 9;
 /// Numbers of an effect that can have a form.
 const MOST_NUMBERS: usize = 6;
 
-/// First of the knots, of the deviations, and of the numbers that are fitted, among the values.
+/// First of the knots, and of the numbers that are fitted, among the values.
 const KNOTS_AT: usize = 1 + MOST_NUMBERS;
-const DEVIATIONS_AT: usize = KNOTS_AT + ONSET_KNOTS;
-const FORM_AT: usize = DEVIATIONS_AT + ONSET_KNOTS;
+const FORM_AT: usize = KNOTS_AT + ONSET_KNOTS;
 
 const HELD: EffectParameter = held("value", Measure::Ratio);
 const KNOT: EffectParameter = held("knot", Measure::Speed);
-const DEVIATION: EffectParameter = held("deviation", Measure::Ratio);
 const SHARE: EffectParameter = super::signed("share", Measure::Ratio, 0.5, 5.0);
 
 const fn held(name: &'static str, measure: Measure) -> EffectParameter {
@@ -48,11 +46,10 @@ pub static ONSET_FORM: Effect = Effect {
     channel: EffectChannel::Torque,
     depends_on: "low speed",
     shown_over: EffectVariable::Speed,
-    // Place of the effect and its values; knots; prior deviations; p and c_1 to c_8.
+    // Place of the effect and its values; knots; p and c_1 to c_8.
     parameters: &[
         HELD, HELD, HELD, HELD, HELD, HELD, HELD, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT,
-        KNOT, DEVIATION, DEVIATION, DEVIATION, DEVIATION, DEVIATION, DEVIATION, DEVIATION,
-        DEVIATION, DEVIATION, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE,
+        KNOT, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE,
     ],
     needs: &[],
     install,
@@ -80,31 +77,11 @@ impl<'a> OnsetForm<'a> {
         let mut values = vec![0.0; ONSET_FORM.parameters.len()];
         values[0] = place as f64;
         values[1..=of.values.len()].copy_from_slice(&of.values);
-        values[KNOTS_AT..DEVIATIONS_AT].copy_from_slice(&knots);
+        values[KNOTS_AT..FORM_AT].copy_from_slice(&knots);
         Some(ActiveEffect {
             effect: &ONSET_FORM,
             values,
         })
-    }
-
-    /// A form whose numbers, p and then c_j, are thought to be 0 beforehand but for these deviations.
-    ///
-    /// `None` of what is no form.
-    pub fn thought_of(
-        mut form: ActiveEffect,
-        deviations: [f64; ONSET_KNOTS],
-    ) -> Option<ActiveEffect> {
-        let held = form.values.get_mut(DEVIATIONS_AT..FORM_AT)?;
-        held.copy_from_slice(&deviations);
-        OnsetForm::of(&form).is_some().then_some(form)
-    }
-
-    /// Deviation of a number that is fitted, by its place among the values, as it is thought of beforehand;
-    /// `None` where nothing is.
-    pub fn deviation(&self, place: usize) -> Option<f64> {
-        let number = place.checked_sub(FORM_AT)?;
-        let held = self.0.values.get(DEVIATIONS_AT + number)?;
-        (*held > 0.0).then_some(*held)
     }
 
     /// The effect whose form it is, as it was when the form was made.
@@ -116,10 +93,7 @@ impl<'a> OnsetForm<'a> {
 
     /// Knots of speed.
     pub fn knots(&self) -> &'a [f64] {
-        self.0
-            .values
-            .get(KNOTS_AT..DEVIATIONS_AT)
-            .unwrap_or_default()
+        self.0.values.get(KNOTS_AT..FORM_AT).unwrap_or_default()
     }
 
     /// Steady friction at a speed above 0, over that of sliding.

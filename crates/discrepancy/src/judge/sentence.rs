@@ -13,7 +13,6 @@ pub(super) fn sentence(
     unknown: Option<&Unknown>,
     refused: Option<&RefusedEffects>,
     own_form: Option<&FormFound>,
-    probable: Option<String>,
 ) -> String {
     let names: Vec<String> = effects
         .iter()
@@ -62,7 +61,6 @@ pub(super) fn sentence(
         Verdict::PartlyExplained => format!(
             "Partly explained: with {names}, {gone}, and a rest remains that is not named.{place} What is named may stand for something that is not in the library.{refused}{forms}"
         ),
-        Verdict::Undecided => format!("Undecided: {}.{forms}", probable.unwrap_or_default()),
         Verdict::Unknown => format!(
             "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}{refused}{forms}"
         ),

@@ -12,7 +12,6 @@ use super::unknown::Unknown;
 use crate::answers::LogSet;
 use crate::name::gap::Gap;
 use crate::name::search::Found;
-use crate::posterior::Posterior;
 
 /// The verdict on a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -30,9 +29,6 @@ pub enum Verdict {
     OtherForm,
     /// A significant gap, and nothing in the library that explains it.
     Unknown,
-    /// Something is missing, or nothing, and these logs do not tell which: the notes have what is how
-    /// probable.
-    Undecided,
 }
 
 impl Verdict {
@@ -44,7 +40,6 @@ impl Verdict {
             Self::NothingMissing => "nothing-missing",
             Self::OtherForm => "other-form",
             Self::Unknown => "unknown",
-            Self::Undecided => "undecided",
         }
     }
 }
@@ -98,10 +93,6 @@ pub struct EffectFound {
     pub runners_up: Vec<(String, f64)>,
     /// In what its law differs from the library's; `None` where nothing shows that.
     pub form: Option<FormFound>,
-    /// Probability that it is there, or one of those that these logs cannot tell from it; `None` where
-    /// explanations were not weighed against each other.
-    #[serde(default)]
-    pub probability: Option<f64>,
 }
 
 /// An effect that was named on the way.
@@ -266,10 +257,6 @@ pub struct Discovery {
     pub not_added: Vec<(String, f64)>,
     /// What is left, is significant, and is nothing in the library.
     pub unknown: Option<Unknown>,
-    /// Probabilities of all explanations, before anything was named; `None` where these were not weighed
-    /// against each other.
-    #[serde(default)]
-    pub probable: Option<Posterior>,
     /// Gap before and after.
     pub gap: Gaps,
     /// Of which logs the figures are.

@@ -446,8 +446,8 @@ class Discovery:
     @property
     def verdict(
         self,
-    ) -> Literal["explained", "partly-explained", "other-form", "nothing-missing", "unknown", "undecided"]:
-        """"explained", "partly-explained", "other-form", "nothing-missing", "unknown" or "undecided"."""
+    ) -> Literal["explained", "partly-explained", "other-form", "nothing-missing", "unknown"]:
+        """"explained", "partly-explained", "other-form", "nothing-missing" or "unknown"."""
     @property
     def effects(self) -> list[Effect]:
         """The named effects, largest share of the gap first."""

@@ -146,7 +146,7 @@ impl Found<'_> {
         }
         if matches!(
             discovery.verdict,
-            Verdict::PartlyExplained | Verdict::Unknown | Verdict::Undecided
+            Verdict::PartlyExplained | Verdict::Unknown
         ) {
             writeln!(
                 f,

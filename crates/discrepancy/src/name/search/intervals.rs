@@ -122,7 +122,6 @@ impl Search<'_> {
             check_logs: self.check_logs,
             hum: self.hum,
             test: None,
-            answer: None,
         }
     }
 }

@@ -120,7 +120,7 @@ pub(super) fn alike(
             let more = other.basis.ncols() > own.basis.ncols();
             explains_more(other) || !(more && other.more_is_shown(own, best.gain, EQUAL))
         });
-    let mut all: Vec<(f64, Alike)> = others
+    let mut all: Vec<Alike> = others
         .filter_map(|other| {
             let fitted = fitted(other);
             let more = other.basis.ncols() > own.basis.ncols();
@@ -137,15 +137,15 @@ pub(super) fn alike(
             };
             let fitted = fitted.filter(|_| !more);
             let last = fitted.and_then(|r| r.fit.state.effects.last().cloned());
-            (sine < ONE_CLASS || equal).then(|| {
-                let fitted = last.unwrap_or_else(nearest);
-                (sine, Alike { fitted })
+            (sine < ONE_CLASS || equal).then(|| Alike {
+                fitted: last.unwrap_or_else(nearest),
+                sine,
             })
         })
-        .filter(|(_, alike)| is_other(&alike.fitted))
+        .filter(|alike| is_other(&alike.fitted))
         .collect();
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    all.into_iter().map(|(_, alike)| alike).collect()
+    all.sort_by(|a, b| a.sine.total_cmp(&b.sine));
+    all
 }
 
 /// Keeps the first of those that were begun with one effect in several shapes.
