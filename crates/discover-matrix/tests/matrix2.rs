@@ -243,6 +243,15 @@ fn slow_noise_in_the_loop_hides_no_effect() {
     assert!(single.is_first() && single.wrong_names().is_empty());
 }
 
+/// A clean joint of seed 2626 (which served) whose friction falls from break-away by another exponent: what the
+/// knots of the onset left of that was named as cogging.
+#[test]
+fn another_exponent_of_the_fall_is_a_form_and_no_cogging() {
+    let outcome = Trial::new(2626).of("p49-clean-3");
+    assert_eq!(outcome.verdict, Some(Verdict::OtherForm));
+    assert!(outcome.named.is_empty(), "{:?}", outcome.named);
+}
+
 /// Torque balances of seeds 1010 and 1111 in which no channel stands out of its noise. Both were refused
 /// as there is no gap to share out.
 #[test]

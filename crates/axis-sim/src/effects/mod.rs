@@ -31,6 +31,7 @@ mod cyclic_load;
 mod encoder_eccentricity;
 mod entry;
 mod force_ripple;
+mod forms;
 mod gravity_imbalance;
 mod hardening_stiffness;
 mod install;
@@ -41,7 +42,6 @@ mod load_dependent_friction;
 mod maxwell_slip_hysteresis;
 mod memory;
 mod motor_inertia;
-mod onset;
 mod parameter;
 mod payload_mass;
 mod periodic_lead_error;
@@ -63,10 +63,10 @@ mod warming_friction;
 
 pub(crate) use changes::Hooks;
 pub use changes::{Changes, CurrentOffset, ScrewState, SensorErrors, Steepness, TableState};
+pub use forms::{Formed, FrictionForm};
 pub(crate) use install::install;
 pub(crate) use memory::Memory;
 pub use memory::{MemoryLaw, TableStep};
-pub use onset::{ONSET_FORM, ONSET_KNOTS, OnsetForm};
 pub use parameter::{EffectNeed, EffectParameter, Measure, Nature, Scales};
 use parameter::{PHASE, positive, shape, signed, size};
 

@@ -1,7 +1,7 @@
 //! A point in the space of models.
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, OnsetForm};
+use axis_sim::effects::{ActiveEffect, FrictionForm};
 
 /// A point in the space of models.
 #[derive(Clone, Debug)]
@@ -36,6 +36,6 @@ impl State {
 
 /// Whether one active effect is a form of another.
 pub(crate) fn is_form_of(active: &ActiveEffect, other: &ActiveEffect) -> bool {
-    let base = OnsetForm::of(active).and_then(|form| form.base());
+    let base = FrictionForm::of(active).and_then(|form| form.base());
     base.is_some_and(|base| base.effect.name == other.effect.name)
 }

@@ -1,7 +1,7 @@
 //! How the law of a friction differs from the model's, in words and as a curve.
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, Measure, OnsetForm};
+use axis_sim::effects::{ActiveEffect, FrictionForm, Measure};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -25,8 +25,8 @@ pub struct FormFound {
     pub evidence: [f64; 2],
 }
 
-/// Speeds of the curve between two knots.
-const BETWEEN: usize = 8;
+/// Speeds of the curve.
+const SPEEDS: usize = 72;
 
 /// Departure from the model's law beyond which a form is said to differ.
 const DIFFERS: f64 = 0.1;
@@ -38,15 +38,13 @@ impl FormFound {
         of: &str,
         evidence: [f64; 2],
     ) -> Option<Self> {
-        let form = OnsetForm::of(form)?;
-        let knots = form.knots();
-        let (first, last) = (*knots.first()?, *knots.last()?);
-        let count = BETWEEN * knots.len();
+        let form = FrictionForm::of(form)?;
+        let [first, last] = form.speeds();
         let at = |k: usize| {
-            let share = k as f64 / (count - 1) as f64;
+            let share = k as f64 / (SPEEDS - 1) as f64;
             0.1 * first * (last / (0.1 * first)).powf(share)
         };
-        let speed: Vec<f64> = (0..count).map(at).collect();
+        let speed: Vec<f64> = (0..SPEEDS).map(at).collect();
         let ratio: Vec<f64> = speed.iter().map(|&v| form.at(v)).collect();
         let differs = ratio.iter().rposition(|r| (r - 1.0).abs() > DIFFERS);
         Some(Self {

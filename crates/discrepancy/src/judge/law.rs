@@ -1,6 +1,6 @@
 //! Friction over speed: the model's own law, the law with what was named, and the logs.
 
-use axis_sim::effects::{ActiveEffect, Measure, OnsetForm};
+use axis_sim::effects::{ActiveEffect, FrictionForm, Measure};
 use axis_sim::{Axis, Trace};
 
 use super::cost::effort;
@@ -66,7 +66,7 @@ pub(super) fn steady(active: &ActiveEffect, speed: f64) -> Option<f64> {
 
 /// By how much a form changes the steady force of its friction.
 fn formed(active: &ActiveEffect, speed: f64) -> Option<f64> {
-    let form = OnsetForm::of(active)?;
+    let form = FrictionForm::of(active)?;
     Some(steady(&form.base()?, speed)? * (form.at(speed.abs()) - 1.0))
 }
 
@@ -91,7 +91,7 @@ pub(super) fn friction_law(
     traces: &[Trace],
     rest: &Rest,
 ) -> Option<FrictionLaw> {
-    let is_form = |active: &ActiveEffect| OnsetForm::of(active).is_some();
+    let is_form = |active: &ActiveEffect| FrictionForm::of(active).is_some();
     let has_form = state.effects.iter().any(is_form);
     if !has_form && state.effects.iter().all(|a| steady(a, 1.0).is_none()) {
         return None;

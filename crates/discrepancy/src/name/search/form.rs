@@ -3,24 +3,20 @@
 //! Nature's friction is not that of the model with other numbers. Were only the library's
 //! effects tried, what is left of a friction whose onset differs would be named as a
 //! second effect. So a form of each friction that is there already, and of the axis' own,
-//! is tried beside them ([`OnsetForm`]), and is taken where it explains clearly more than
+//! is tried beside them ([`FrictionForm`]), and is taken where it explains clearly more than
 //! any effect.
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, Effect, ONSET_FORM, ONSET_KNOTS, OnsetForm, Scales};
+use axis_sim::effects::{ActiveEffect, Effect, Formed, FrictionForm, Scales};
 use rayon::prelude::*;
 
 use super::evidence::{BY_CHANCE, BY_ONE_NUMBER};
 use super::refined::Refined;
 use super::state::Search;
 use super::types::Named;
-use crate::estimate::columns::Columns;
+use crate::estimate::columns::{Columns, is_free};
 use crate::name::library::{Candidate, responses};
 use crate::name::screen::Screened;
-
-/// Knots of speed as shares of the greatest speed: of the onset, then of the fall after
-/// break-away, whose speed may be a hundredth of the greatest or a tenth.
-const KNOTS: [f64; ONSET_KNOTS] = [1e-4, 4e-4, 1.6e-3, 5e-3, 1.2e-2, 2.5e-2, 5e-2, 0.12, 0.3];
 
 /// Share of what a form explains that an effect of the library must explain to be taken
 /// instead: it says more, with fewer numbers.
@@ -36,7 +32,7 @@ const OF_ONE_LEVEL: f64 = 0.97;
 
 /// Whether an active effect is a form of another.
 pub(crate) fn is_form(active: &ActiveEffect) -> bool {
-    OnsetForm::of(active).is_some()
+    FrictionForm::of(active).is_some()
 }
 
 /// The axis' own dry friction as an effect; `None` where it has none.
@@ -76,7 +72,7 @@ impl Search<'_> {
         let speeds = self.fit.traces.iter().flat_map(|t| &t.speed);
         let fastest = speeds.fold(0.0_f64, |most, v| most.max(v.abs()));
         let there = |of: &ActiveEffect| {
-            let forms = self.fit.state.effects.iter().filter_map(OnsetForm::of);
+            let forms = self.fit.state.effects.iter().filter_map(FrictionForm::of);
             let mut bases = forms.filter_map(|form| form.base());
             bases.any(|base| base.effect.name == of.effect.name)
         };
@@ -84,7 +80,13 @@ impl Search<'_> {
         let all = all
             .chain(own_friction(self.machine))
             .filter(|of| !there(of));
-        let none = |of| OnsetForm::none(&of, KNOTS.map(|share| share * fastest));
+        let forms = all.flat_map(|friction| {
+            FrictionForm::all(&Formed {
+                fall: self.fall_of(&friction),
+                friction,
+                fastest,
+            })
+        });
         let fitter = self.fitter();
         let scales = Scales::of(self.machine);
         let candidate = |form: ActiveEffect| Candidate {
@@ -93,15 +95,34 @@ impl Search<'_> {
             values: form.values,
             scales,
         };
-        let forms: Vec<ActiveEffect> = all.filter_map(none).collect();
+        let forms: Vec<ActiveEffect> = forms.collect();
         let forms: Vec<Candidate> = forms.into_par_iter().map(candidate).collect();
-        self.screened_beside(own, &forms, ONSET_KNOTS)
+        let families = forms.chunk_by(|a, b| a.effect.name == b.effect.name);
+        let screened = families.map(|family| {
+            let free = family[0].effect.parameters.iter().filter(|p| is_free(p));
+            self.screened_beside(own, family, free.count())
+        });
+        screened.flatten().collect()
+    }
+
+    /// The fall of the axis' own friction from break-away to sliding, and its speed; `None` of any other.
+    fn fall_of(&self, friction: &ActiveEffect) -> Option<[f64; 2]> {
+        let own = self.machine.friction.law.parameters();
+        let lever = self
+            .machine
+            .friction
+            .lever(self.machine.travel_per_radian());
+        let fall = (own.stiction - own.coulomb) / lever;
+        let falls = friction.effect.name == PLAIN && fall > 0.0;
+        falls.then_some([fall, own.stribeck_speed * lever])
     }
 }
 
 impl Refined {
     pub(super) fn is_form(&self) -> bool {
-        self.parts.iter().any(|p| p.effect.name == ONSET_FORM.name)
+        self.parts
+            .iter()
+            .any(|p| FrictionForm::is_one(p.effect.name))
     }
 
     /// Whether it is a form, or a friction that is another one in another form: slip with a
@@ -132,7 +153,7 @@ impl Refined {
     /// Whether it is a form of the axis' own dry friction, and not of an effect that is there.
     fn is_form_of_own(&self) -> bool {
         let effects = &self.fit.state.effects;
-        let base = effects.last().and_then(|a| OnsetForm::of(a)?.base());
+        let base = effects.last().and_then(|a| FrictionForm::of(a)?.base());
         base.is_some_and(|base| effects.iter().all(|a| a.effect.name != base.effect.name))
     }
 

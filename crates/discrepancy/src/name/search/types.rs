@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, ONSET_FORM};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, FrictionForm};
 use axis_sim::{Axis, ReplayError};
 use nalgebra::DMatrix;
 use thiserror::Error;
@@ -183,7 +183,7 @@ pub struct Named {
 impl Named {
     /// Whether it is no effect, but says in which form one is there.
     pub fn is_form(&self) -> bool {
-        self.name == ONSET_FORM.name
+        FrictionForm::is_one(self.name)
     }
 }
 
