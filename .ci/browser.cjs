@@ -22,6 +22,16 @@ async function open(browser, file, options) {
 }
 
 const fits = page => page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth);
+
+// What is wider than its frame, so that a reader does not see all of it: tables, figures, answers, text.
+const cut = page => page.evaluate(() => [...document.querySelectorAll(".scroll,.table,figure,.plot,.u-legend,.answers,nav,pre")]
+  .filter(e => e.clientWidth > 0 && e.scrollWidth > e.clientWidth + 1)
+  .map(e => `${e.tagName}.${e.className} ${e.scrollWidth} > ${e.clientWidth}: ${e.innerText.slice(0, 60)}`));
+const unfold = page => page.evaluate(() => document.querySelectorAll("details").forEach(d => { d.open = true; }));
+
+// A legend names its curves, and shows values only under the pointer.
+const idle = figure => figure.locator(".u-legend").evaluate(legend => [...legend.querySelectorAll(".u-value")]
+  .filter(value => getComputedStyle(value).visibility !== "hidden").map(value => value.textContent));
 const range = (figure, key) => figure.evaluate((f, k) => [f.plot.scales[k].min, f.plot.scales[k].max], key);
 
 // Brings a figure into view and waits for its canvas.
@@ -44,6 +54,8 @@ async function drag(page, figure, from, to) {
 // Of one interactive figure: the pointer's values, a zoom and back, a series hidden.
 async function use(page, figure) {
   await drawn(figure);
+  await page.mouse.move(0, 0);
+  assert.deepEqual(await idle(figure), [], "no values where nothing points");
   const over = figure.locator(".u-over");
   await over.scrollIntoViewIfNeeded();
   const box = await over.boundingBox();
@@ -145,6 +157,8 @@ async function check(browser, file) {
     if (what !== "plain") {
       for (const figure of await opened.page.locator("figure:has(> script):visible").all()) await drawn(figure);
       assert.ok(await fits(opened.page), `${what}: no scrolling sideways`);
+      await unfold(opened.page);
+      assert.deepEqual(await cut(opened.page), [], `${what}: nothing is cut off`);
     } else if (figures.length > 0) {
       assert.ok(await opened.page.locator(".drawing svg:visible").count() > 0, "without scripts the pictures show");
     }

@@ -47,7 +47,7 @@ fn published_friction_of_a_real_stage_is_found_from_mass_and_viscous_friction_al
         effect.unwrap_or_else(|| panic!("no {name} in {:?}", found.sentence))
     };
     // As it was named first, alone: the published symmetric model has Coulomb
-    // friction of 20.3935 N and a standing load of −3.1648 N.
+    // friction of 20.3935 N and a constant load of −3.1648 N.
     let dry = &effect("asymmetric-friction").parameters;
     let (forward, backward) = (dry[0].when_named, dry[1].when_named);
     assert!(off(0.5 * (forward + backward), 20.3935) < 0.05, "{dry:?}");

@@ -11,7 +11,7 @@ pub enum Job {
     /// A job of users.
     #[command(flatten)]
     User(UserJob),
-    /// Hide effects in simulated machines, search for them blind, and score it
+    /// Hide effects in simulated machines, search for them blind, and score the answers
     DiscoverMatrix(discover_matrix::Options),
 }
 

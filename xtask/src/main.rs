@@ -15,7 +15,7 @@ use feed_axis::commands::export::drive;
 use commands::{bench, crates, independent, layers, names, peers_cases, publish, torture};
 use jobs::Job;
 
-/// Dynamic error of ball-screw axes: simulate, predict, compensate.
+/// Feed axes: the commands of feed-axis, and those for its developers.
 ///
 /// Start with `cargo xtask pipeline`: it takes the axis of Liu et al. 2025
 /// (Machines 13(5), 433) through every stage and writes a report to
@@ -36,17 +36,17 @@ enum Command {
     User(feed_axis::commands::Command<Job>),
     /// The same as `export drive`
     ExportDrive(drive::Options),
-    /// Search logs of a simulator that shares no code with this one, and score it
+    /// Search logs of a simulator that shares no code with this one, and score the answers
     Independent(independent::Options),
     /// Write cases of the second matrix as folders, for other programs to search (docs/peers.md)
     PeersCases(peers_cases::Options),
     /// Measure the speed of every hot path (docs/performance.md)
     Bench(bench::Options),
-    /// Try damaged inputs and disturbed runs, and judge what comes of them
+    /// Try damaged inputs and disturbed runs, and check how they end
     Torture(torture::Options),
     /// Check that every crate depends strictly downward
     Layers,
-    /// Check that no two crates give one name to different public types
+    /// Check that no two crates use one name for different public types
     Names,
     /// Check, or write, the table of crates (docs/crates.md) and the dependencies that READMEs name
     Crates(crates::Options),

@@ -20,7 +20,7 @@ pub struct Package {
     pub rust_version: Option<String>,
     pub keywords: Vec<String>,
     pub categories: Vec<String>,
-    /// Registries that it may go to; none where `publish = false`.
+    /// Registries that it may go to; none if `publish = false`.
     pub publish: Option<Vec<String>>,
     pub features: BTreeMap<String, Vec<String>>,
     pub dependencies: Vec<Dependency>,

@@ -55,7 +55,7 @@ pub enum PackageError {
 /// end there.
 ///
 /// # Errors
-/// [`PackageError::Platform`] where the library is not made: elsewhere arrays do not pass as
+/// [`PackageError::Platform`] if the library is not made: elsewhere arrays do not pass as
 /// its functions take them.
 pub fn platform() -> Result<(String, &'static str), PackageError> {
     let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
@@ -82,7 +82,7 @@ pub fn library_file() -> Result<String, PackageError> {
 /// `library`. The same inputs give the same bytes.
 ///
 /// # Errors
-/// [`PackageError`] where the axis cannot be simulated, or the library is of another version.
+/// [`PackageError`] if the axis cannot be simulated, or the library is of another version.
 pub fn package(name: &str, text: &str, library: &[u8]) -> Result<Vec<u8>, PackageError> {
     let (platform, end) = platform()?;
     let unit = Unit::new(name, text)?;

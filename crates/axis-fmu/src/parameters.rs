@@ -15,7 +15,7 @@ pub(crate) struct Parameter {
     pub key: String,
     /// In the key's unit, as the file has it.
     pub value: f64,
-    /// The unit that ends the key; empty where it has none.
+    /// The unit that ends the key; empty if it has none.
     pub unit: &'static str,
     /// What is valid, in words.
     pub valid: String,

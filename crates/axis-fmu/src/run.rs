@@ -28,7 +28,7 @@ impl Compensator for Offset {
     fn correct(&mut self, _: &Sample) -> Correction {
         Correction {
             position: 0.0,
-            iq: self.0,
+            command: self.0,
         }
     }
 }

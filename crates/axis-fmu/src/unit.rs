@@ -46,7 +46,7 @@ impl Unit {
     /// An instance of the axis whose file has this text; `name` stands for it in messages.
     ///
     /// # Errors
-    /// [`UnitError::Axis`], [`UnitError::Setup`] where it cannot be simulated.
+    /// [`UnitError::Axis`], [`UnitError::Setup`] if it cannot be simulated.
     pub fn new(name: &str, text: &str) -> Result<Self, UnitError> {
         let axis = Axis::parse(name, text)?;
         ClosedLoop::new(&axis)?;
@@ -92,7 +92,7 @@ impl Unit {
         self.span[0] + cycles as f64 * self.file.axis.period
     }
 
-    /// Begins the initialisation at `start` (s); no step goes beyond `stop` (s), where there is one.
+    /// Begins the initialisation at `start` (s); no step goes beyond `stop` (s), if there is one.
     ///
     /// # Errors
     /// [`UnitError::Order`] unless instantiated; [`UnitError::Time`] for a time that is not finite,
@@ -121,7 +121,7 @@ impl Unit {
     ///
     /// # Errors
     /// [`UnitError::Order`] unless in initialisation; [`UnitError::Axis`], [`UnitError::Setup`]
-    /// where the parameters make no axis, or it cannot be there.
+    /// if the parameters make no axis, or it cannot be there.
     pub fn exit_initialization(&mut self) -> Result<(), UnitError> {
         self.in_mode(
             "end of the initialization",
@@ -238,7 +238,7 @@ impl Unit {
     ///
     /// # Errors
     /// [`UnitError::Order`] unless in step mode; [`UnitError::Time`] for another time, and then
-    /// nothing has been done; [`UnitError::Stopped`] where the run had to be given up.
+    /// nothing has been done; [`UnitError::Stopped`] if the run had to be given up.
     pub fn step(&mut self, point: f64, step: f64) -> Result<f64, UnitError> {
         self.in_mode("a step", &[FmiMode::Step], "after the initialization")?;
         let cycles = self.cycles(point, step)?;

@@ -78,7 +78,7 @@ impl Variables {
     /// The variables of an axis, made of its file's text; `name` stands for it in messages.
     ///
     /// # Errors
-    /// [`UnitError::Axis`], [`UnitError::Text`] where the text is no axis file.
+    /// [`UnitError::Axis`], [`UnitError::Text`] if the text is no axis file.
     pub fn of(axis: &Axis, name: &str, text: &str) -> Result<Self, UnitError> {
         let mut all = Self(Vec::new());
         all.push("time", "", "s", VariableKind::Time, None);
@@ -134,7 +134,7 @@ impl Variables {
     /// The variable with that value reference.
     ///
     /// # Errors
-    /// [`UnitError::Reference`] where there is none.
+    /// [`UnitError::Reference`] if there is none.
     pub fn get(&self, reference: u32) -> Result<&Variable, UnitError> {
         let last = self.0.len().saturating_sub(1) as u32;
         let found = self.0.get(reference as usize);

@@ -19,7 +19,7 @@ impl Channel {
     /// A channel whose unit is read from the suffix of `name`.
     ///
     /// # Errors
-    /// [`LogError::UnitSuffix`] where the name has no known unit suffix. The
+    /// [`LogError::UnitSuffix`] if the name has no known unit suffix. The
     /// samples are checked when the channel joins a [`Log`](crate::Log).
     pub fn new(name: impl Into<String>, samples: Vec<f64>) -> Result<Self, LogError> {
         let name = name.into();

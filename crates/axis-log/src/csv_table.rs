@@ -124,7 +124,7 @@ fn are_units(row: &StringRecord, names: usize) -> bool {
     row.len() == names && row.iter().any(|f| is_unit(bare(f))) && !row.iter().any(is_number)
 }
 
-/// A unit without its brackets; none where it says that there is none.
+/// A unit without its brackets; none if it says that there is none.
 fn bare(unit: &str) -> &str {
     unit.trim_matches(['[', ']', '(', ')', '-', ' '])
 }

@@ -27,7 +27,7 @@ pub enum LogError {
         name: String,
     },
     /// The unit given and the suffix of the name disagree.
-    #[error("channel \"{name}\" says unit \"{unit}\", but its suffix means \"{expected}\"")]
+    #[error("channel \"{name}\" says unit \"{unit}\", but its suffix stands for \"{expected}\"")]
     UnitMismatch {
         /// Name of the channel.
         name: String,

@@ -15,7 +15,7 @@ pub const TIME_CHANNEL: &str = "t_s";
 /// increasing; all channels are equally long (at least one sample), finite,
 /// uniquely named, and their units agree with the suffixes of their names.
 ///
-/// Samples that were not measured, or not believed, may be marked as
+/// Samples that were not measured, or not trusted, may be marked as
 /// [missing](Self::missing): their values are interpolated, for display, and must be
 /// given no weight. CSV does not keep the marks.
 #[derive(Debug, Clone, PartialEq)]
@@ -141,7 +141,7 @@ impl Log {
     /// The log without its first `instants`; its times stay as they are.
     ///
     /// # Errors
-    /// [`LogError::Empty`] where nothing is left.
+    /// [`LogError::Empty`] if nothing is left.
     pub fn skip(&self, instants: usize) -> Result<Self, LogError> {
         if instants >= self.len() {
             return Err(LogError::Empty);
@@ -162,7 +162,7 @@ impl Log {
     /// The first `instants` of the log, or all of it where it has no more.
     ///
     /// # Errors
-    /// [`LogError::Empty`] where none is asked for.
+    /// [`LogError::Empty`] if none is asked for.
     pub fn first(&self, instants: usize) -> Result<Self, LogError> {
         let length = instants.min(self.len());
         if length == 0 {
@@ -186,7 +186,7 @@ impl Log {
     /// factor meets it.
     ///
     /// # Errors
-    /// [`LogError::Decimation`] where `every` is 0.
+    /// [`LogError::Decimation`] if `every` is 0.
     pub fn decimate(&self, every: usize) -> Result<Self, LogError> {
         if every == 0 {
             return Err(LogError::Decimation { every });

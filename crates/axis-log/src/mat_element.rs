@@ -48,7 +48,7 @@ pub(crate) struct Numbers {
 }
 
 /// An array, from what stands behind its tag, which is at `start` of `content`; numbers
-/// themselves need not be there. `None` where it is damaged.
+/// themselves need not be there. `None` if it is damaged.
 pub(crate) fn array(content: &[u8], start: usize, big: bool) -> Option<Array> {
     let mut reader = Reader {
         content,
@@ -145,7 +145,7 @@ impl Numbers {
         self.start as u64 + self.count * width(self.kind).unwrap_or(0) as u64
     }
 
-    /// The real parts, from what they were parsed of; `None` where they are cut off.
+    /// The real parts, from what they were parsed of; `None` if they are cut off.
     pub(crate) fn values(&self, content: &[u8], big: bool) -> Option<Vec<f64>> {
         let length = usize::try_from(self.count).ok()? * width(self.kind)?;
         let bytes = content.get(self.start..self.start.checked_add(length)?)?;

@@ -62,7 +62,7 @@ impl<'a> MatTable<'a> {
         Ok(table)
     }
 
-    /// What is in an element; `None` where it is damaged. What may be inflated of a struct is bound
+    /// What is in an element; `None` if it is damaged. What may be inflated of a struct is bound
     /// as what is read of a file: its arrays are only seen where all before them is there.
     fn vectors(&self, element: usize) -> Option<Vectors> {
         let element = &self.elements[element];
@@ -142,7 +142,7 @@ impl Table for MatTable<'_> {
 
 impl<'a> Element<'a> {
     /// What stands behind the tag of the array in it, to `most` bytes at least where
-    /// there are as many; `None` where it is no array or damaged.
+    /// there are as many; `None` if it is no array or damaged.
     fn array(&self, most: usize) -> Option<Cow<'a, [u8]>> {
         if self.kind == MATRIX {
             return Some(self.content.into());

@@ -59,7 +59,7 @@ impl ErrorSummary {
     /// The figures of `reference − actual`, sample by sample.
     ///
     /// # Errors
-    /// [`MetricError::Length`] where the two differ in length, and those of
+    /// [`MetricError::Length`] if the two differ in length, and those of
     /// [`of`](Self::of).
     pub fn between(reference: &[f64], actual: &[f64]) -> Result<Self, MetricError> {
         if reference.len() != actual.len() {

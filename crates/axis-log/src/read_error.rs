@@ -197,7 +197,7 @@ pub enum ReadProblem {
         name: String,
         /// Its samples.
         found: usize,
-        /// Name of the column that sets the length: the time, where there is one.
+        /// Name of the column that sets the length: the time, if there is one.
         other: String,
         /// Its samples.
         expected: usize,

@@ -13,7 +13,7 @@ pub(crate) struct Pick {
     pub column: usize,
     /// Name, scale and offset.
     pub map: ColumnMap,
-    /// Whether someone asked for it by name; otherwise it is left out where it
+    /// Whether someone asked for it by name; otherwise it is left out if it
     /// does not fit.
     pub asked: bool,
 }

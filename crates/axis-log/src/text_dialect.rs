@@ -16,7 +16,7 @@ pub(crate) struct Dialect<'a> {
 const SEPARATORS: [u8; 3] = [b';', b'\t', b','];
 
 impl<'a> Dialect<'a> {
-    /// Told from the names and the first row, or from a line `sep=;` before them.
+    /// Recognised from the names and the first row, or from a line `sep=;` before them.
     pub(crate) fn of(bytes: &'a [u8]) -> Result<Self, CsvProblem> {
         let text = Self::text_of(bytes)?;
         let (text, said) = without_separator_line(text);
@@ -79,7 +79,7 @@ impl<'a> Dialect<'a> {
             b';' => "semicolons",
             b'\t' => "tabs or blanks",
             b',' => "commas",
-            _ => "signs of its own",
+            _ => "other separators",
         }
     }
 

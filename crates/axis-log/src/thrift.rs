@@ -28,7 +28,7 @@ impl Integers {
 }
 
 /// The integers of the structure at the start of `bytes`, and what follows it;
-/// `None` where it is cut off or no such structure.
+/// `None` if it is cut off or no such structure.
 pub(crate) fn integers(bytes: &[u8]) -> Option<(Integers, &[u8])> {
     let mut reader = Reader { rest: bytes };
     let mut found = Integers::default();

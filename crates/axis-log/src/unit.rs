@@ -38,7 +38,7 @@ const UNITS: &[(&str, &str)] = &[
 ];
 
 /// The symbol of the unit that the suffix of `name` stands for, or `None`
-/// where the name has no known suffix.
+/// if the name has no known suffix.
 ///
 /// The suffix is what follows an underscore; the longest known one counts:
 /// `motor_speed_rad_s` is in rad/s, `torque_n_m` in N·m. `_1` marks a quantity

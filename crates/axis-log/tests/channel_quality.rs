@@ -241,7 +241,7 @@ fn degrees_counts_turns_millimetres_and_signs_are_recognised() {
             -180.0 / PI,
             0.0,
             "motor_angle_rad",
-            "sign turned",
+            "sign reversed",
             -PI / 180.0,
         ),
         (1.0, 1.0 / TAU, 0.0, "motor_angle_rad", "rev", TAU),
@@ -298,7 +298,7 @@ fn a_factor_that_no_unit_explains_is_unsure() {
     let found = findings(1.0, 1.37, 0.0);
     let odd: Vec<_> = found
         .iter()
-        .filter(|f| f.verdict == CrossCheckVerdict::Unsure)
+        .filter(|f| f.verdict == CrossCheckVerdict::Unclear)
         .collect();
     assert_eq!(odd.len(), 2, "{found:#?}");
     assert!(

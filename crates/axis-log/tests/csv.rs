@@ -1,4 +1,4 @@
-//! CSV in and out: what is read back, and what is refused where.
+//! CSV in and out: what is read back, and what is refused, with the place.
 
 use std::fs;
 use std::io::{self, Read, Write};

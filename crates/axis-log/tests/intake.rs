@@ -185,7 +185,7 @@ fn files_without_a_common_quantity_are_told() {
     let told = found
         .done
         .iter()
-        .any(|d| d.to_string().contains("give delay_ms"));
+        .any(|d| d.to_string().contains("set delay_ms"));
     assert!(told, "{:?}", found.done);
 }
 
@@ -266,7 +266,7 @@ fn holes_and_spikes_are_bridged_marked_and_told() {
         "3 rows missing in 1 place",
         "1 isolated outlier",
         "8 sample(s)",
-        "without weight",
+        "with zero weight",
     ] {
         assert!(told.contains(part), "{part}: {told}");
     }

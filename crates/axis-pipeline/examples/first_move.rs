@@ -1,5 +1,5 @@
 //! What limits a first move under a plan alone, of which nothing has been learned yet: the
-//! share of the peak that is left for each parameter that is believed wrong, the least that
+//! share of the peak that is left for each parameter that is assumed wrong, the least that
 //! any plan can leave, and what a short move before takes away.
 //!
 //! `cargo run --release -p axis-pipeline --example first_move`, from the project's folder.
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .map(PlannedTrajectory::named)
         .collect();
     println!(
-        "believed / true              peak left, worst of {}",
+        "assumed / true                    peak left, worst of {}",
         motions.len()
     );
     let names = ["friction level", "sigma0", "sigma1", "sigma2", "inertia"];
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let left = worst(&machine, &motions, [level, stiffness, 1.0, 1.0, 1.0])?;
         println!("level {level}, sigma0 {stiffness}      {left:6.2} %");
     }
-    println!("least that any plan from a belief within 20 % can leave, in the worst case:");
+    println!("least that any plan from a assumed within 20 % can leave, in the worst case:");
     for motion in &motions {
         println!(
             "  trajectory {:<10} {:6.2} %",
@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             least(&machine, motion)?
         );
     }
-    println!("after a move before it, level 1.2 and sigma0 0.8 believed:");
+    println!("after a move before it, level 1.2 and sigma0 0.8 assumed:");
     for way in [0.2e-3, 1e-3, 5e-3] {
         let mut most = 0.0_f64;
         for motion in &motions {
@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let before = pre_roll(start, way)?;
             let left = taken(
                 &machine,
-                &believed(&machine, [1.2, 0.8, 1.0, 1.0, 1.0])?,
+                &assumed_model(&machine, [1.2, 0.8, 1.0, 1.0, 1.0])?,
                 "adaptive",
                 &[before, motion.clone()],
             )?;
@@ -73,7 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// The machine's own model with factors.
-fn believed(machine: &Axis, factors: Factors) -> Result<DriveModel, Box<dyn Error>> {
+fn assumed_model(machine: &Axis, factors: Factors) -> Result<DriveModel, Box<dyn Error>> {
     let mut model = machine.drive_model()?;
     model.friction = law(&model.friction, factors)?;
     model.load_inertia *= factors[4];
@@ -93,7 +93,7 @@ fn law(of: &LuGre, factors: Factors) -> Result<LuGre, Box<dyn Error>> {
 }
 
 fn worst(machine: &Axis, motions: &[NamedMotion], factors: Factors) -> Result<f64, Box<dyn Error>> {
-    let model = believed(machine, factors)?;
+    let model = assumed_model(machine, factors)?;
     let mut most = 0.0_f64;
     for motion in motions {
         most = most.max(taken(
@@ -116,7 +116,7 @@ fn taken(
     let errors =
         |strategy: &mut dyn Strategy, motions: &[NamedMotion]| last(machine, strategy, motions);
     let predictors = Predictors {
-        believed: Some(*model),
+        assumed_model: Some(*model),
         ..Predictors::of(machine)
     };
     let kind = named(STRATEGIES, strategy).ok_or("no such strategy")?;
@@ -145,8 +145,8 @@ fn peak(errors: &[f64]) -> f64 {
 }
 
 /// Half the greatest difference between the errors of two machines under the same plan, both
-/// of which the belief allows: as the servo adds to them the same for both whatever the plan
-/// is, one of them is left with at least that. The truth is believed within 20 %, so that
+/// of which the assumed model allows: as the servo adds to them the same for both whatever the plan
+/// is, one of them is left with at least that. The truth is assumed within 20 %, so that
 /// level and σ0 are 1/1.2 to 1/0.8 of it.
 fn least(machine: &Axis, motion: &NamedMotion) -> Result<f64, Box<dyn Error>> {
     let model = machine.drive_model()?;
@@ -164,7 +164,7 @@ fn least(machine: &Axis, motion: &NamedMotion) -> Result<f64, Box<dyn Error>> {
             .collect();
         other = other.with_known(&shares);
         let predictors = Predictors {
-            believed: Some(model),
+            assumed_model: Some(model),
             ..Predictors::of(machine)
         };
         let kind = named(STRATEGIES, "plan").ok_or("no such strategy")?;

@@ -26,8 +26,8 @@ pub struct CompensatedRun {
 /// `each` is called once a run; [`runs`] tells how often.
 ///
 /// # Errors
-/// [`PipelineError::Missing`] where the predictors lack what a strategy needs,
-/// [`PipelineError::Run`] where a run diverges.
+/// [`PipelineError::Missing`] if the predictors lack what a strategy needs,
+/// [`PipelineError::Run`] if a run diverges.
 pub fn compensate(
     model: &Axis,
     machine: &Axis,
@@ -40,7 +40,7 @@ pub fn compensate(
 /// As [`compensate`], under the given strategies.
 ///
 /// # Errors
-/// As [`compensate`]; [`PipelineError::SameName`] where two strategies have one name, by
+/// As [`compensate`]; [`PipelineError::SameName`] if two strategies have one name, by
 /// which their results could not be told apart.
 pub fn compensate_with(
     model: &Axis,

@@ -35,8 +35,8 @@ impl Greatest {
 /// `machine` from rest. `each` is called once a trajectory.
 ///
 /// # Errors
-/// [`PipelineError::NoTrajectories`] where the axis file lists none, [`PipelineError::Run`]
-/// where a run does not come to its end, and what the strategy refuses.
+/// [`PipelineError::NoTrajectories`] if the axis file lists none, [`PipelineError::Run`]
+/// if a run does not come to its end, and what the strategy refuses.
 pub fn greatest(
     machine: &Axis,
     predictors: &Predictors,
@@ -78,7 +78,7 @@ impl Compensator for Watched<'_> {
         let made = self.inner.correct(sample);
         self.greatest = self.greatest.or(Greatest {
             position: made.position.abs(),
-            effort: made.iq.abs(),
+            effort: made.command.abs(),
             surprise: self.inner.surprise(),
         });
         made

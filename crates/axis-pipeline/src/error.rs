@@ -40,7 +40,7 @@ pub enum PipelineError {
     Compensator(#[from] compensator::CompensatorError),
     /// No plan can be made of the axis.
     #[error(transparent)]
-    Belief(#[from] axis_sim::BeliefError),
+    AssumedModel(#[from] axis_sim::PlanModelError),
     /// No feedback can be designed for the axis.
     #[error(
         "no feedback can be designed for this axis; valid: a strategy without one, such as plan or adaptive"
@@ -50,7 +50,7 @@ pub enum PipelineError {
     #[error("the model of this axis cannot be adapted: {0}")]
     Adapt(#[from] compensator::AdaptError),
     /// A strategy, or the validation, asks for what was not found before.
-    #[error("{by} needs {}, which is not among the predictors; valid: predictors that hold it, or strategies that do without", need.name())]
+    #[error("{by} needs {}, which is not among the predictors; valid: predictors that include it, or strategies that do not need it", need.name())]
     Missing {
         /// What is not there.
         need: Need,

@@ -54,7 +54,7 @@ pub enum LearningError {
     },
     /// Another move.
     #[error(
-        "the reference is not that of the move that the correction was learned on: it differs by {0:.3e} {1} and more wherever it is laid; valid: a log or motion of the same move, or a new correction file"
+        "the reference is not that of the move on which the correction was learned: however the two are aligned, they differ by at least {0:.3e} {1}; valid: a log or motion of the same move, or a new correction file"
     )]
     OtherMove(f64, &'static str),
     /// A stored correction that nothing can be made of.
@@ -118,7 +118,7 @@ impl StoredCorrection {
     /// Nothing learned yet, of the move of a log.
     ///
     /// # Errors
-    /// [`LearningError`] where the log lacks a channel or is too short.
+    /// [`LearningError`] if the log lacks a channel or is too short.
     pub fn of(axis: &Axis, log: &Log) -> Result<Self, LearningError> {
         let Cycles { reference, .. } = Cycles::of(axis, log)?;
         Ok(Self {
@@ -137,8 +137,8 @@ impl StoredCorrection {
     /// late, end early or lack samples.
     ///
     /// # Errors
-    /// [`LearningError::OtherMove`] where its reference is another; [`LearningError`]
-    /// where it lacks a channel or is too short.
+    /// [`LearningError::OtherMove`] if its reference is another; [`LearningError`]
+    /// if it lacks a channel or is too short.
     pub fn learn(&mut self, axis: &Axis, log: &Log) -> Result<Round, LearningError> {
         self.check(axis)?;
         let cycles = Cycles::of(axis, log)?;
@@ -164,7 +164,7 @@ impl StoredCorrection {
     /// learned it fades out.
     ///
     /// # Errors
-    /// [`LearningError::OtherMove`] where the motion is another.
+    /// [`LearningError::OtherMove`] if the motion is another.
     pub fn on(&self, axis: &Axis, motion: &dyn Motion) -> Result<LearnedMove, LearningError> {
         self.check(axis)?;
         let period = self.period_s;

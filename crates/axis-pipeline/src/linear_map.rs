@@ -81,6 +81,6 @@ pub(crate) fn input_row(input: &CycleInput) -> [f64; 4] {
         input.position,
         input.speed,
         input.acceleration,
-        input.iq_command,
+        input.command,
     ]
 }

@@ -65,7 +65,7 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
     /// axis is settled anew, its friction relaxed.
     ///
     /// # Errors
-    /// [`PipelineError::Run`] where the move does not come to its end, and what the
+    /// [`PipelineError::Run`] if the move does not come to its end, and what the
     /// strategy refuses.
     pub fn make(
         &mut self,
@@ -135,7 +135,7 @@ impl<'a, S: FnMut(&mut Measured)> Moves<'a, S> {
             let homed = continued.map(|before| before.homed);
             let here = samples.first().map_or_else(Homed::default, |first| Homed {
                 position: first.reference.position,
-                effort: first.iq_command,
+                effort: first.last_command,
             });
             self.left = Some(Left {
                 state,

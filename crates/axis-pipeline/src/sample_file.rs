@@ -61,8 +61,8 @@ pub enum SampleFileError {
 /// `each` is told how many rows a chunk had.
 ///
 /// # Errors
-/// [`SampleFileError::Io`] where the folder is not writable or the disk full;
-/// [`SampleFileError::Simulation`] where a sample cannot be simulated.
+/// [`SampleFileError::Io`] if the folder is not writable or the disk full;
+/// [`SampleFileError::Simulation`] if a sample cannot be simulated.
 pub fn write(
     path: &Path,
     sampler: &Sampler,
@@ -210,7 +210,7 @@ pub fn read(path: &Path, fingerprint: &str) -> Result<SampleSet, SampleFileError
             position: value(0),
             speed: value(1),
             acceleration: value(2),
-            iq_command: value(3),
+            command: value(3),
         });
         samples.increments.push(value(4));
     }

@@ -67,7 +67,7 @@ impl Sampler {
     /// Prepares a plan over the axis' sample ranges.
     ///
     /// # Errors
-    /// [`PipelineError`] where the plan has no sample or the axis cannot be
+    /// [`PipelineError`] if the plan has no sample or the axis cannot be
     /// set up.
     pub fn new(axis: &Axis, plan: &SamplePlan) -> Result<Self, PipelineError> {
         let uniform = |range: ValueRange| -> Result<Box<dyn Marginal>, PipelineError> {
@@ -99,8 +99,8 @@ impl Sampler {
     /// Sample `row`, from 0.
     ///
     /// # Errors
-    /// [`PipelineError::Design`] where there are not as many rows,
-    /// [`PipelineError::Setup`] where the cycle cannot be simulated.
+    /// [`PipelineError::Design`] if there are not as many rows,
+    /// [`PipelineError::Setup`] if the cycle cannot be simulated.
     pub fn sample(&self, row: usize) -> Result<(CycleInput, f64), PipelineError> {
         let mut cell = [0.0; 4];
         self.design.row(row, &mut cell)?;
@@ -109,7 +109,7 @@ impl Sampler {
             position: value(0),
             speed: value(1),
             acceleration: value(2),
-            iq_command: value(3),
+            command: value(3),
         };
         let change = input.acceleration * self.cycle.period();
         if self.keep_direction && input.speed * (input.speed + change) < 0.0 {

@@ -90,7 +90,7 @@ const UNSEEN: u64 = 0x5eed_0000_0000_0000;
 /// Nguyen–Widrow starting weights.
 ///
 /// # Errors
-/// [`PipelineError`] where the samples cannot be drawn or the training is not valid.
+/// [`PipelineError`] if the samples cannot be drawn or the training is not valid.
 pub fn network(
     axis: &Axis,
     setting: &Setting,

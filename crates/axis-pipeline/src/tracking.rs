@@ -47,8 +47,8 @@ impl PlannedTrajectory {
 /// Plans every trajectory of an axis.
 ///
 /// # Errors
-/// [`PipelineError::NoTrajectories`] where the axis file lists none,
-/// [`PipelineError::Trajectory`] where one cannot be planned.
+/// [`PipelineError::NoTrajectories`] if the axis file lists none,
+/// [`PipelineError::Trajectory`] if one cannot be planned.
 pub fn plan_all(axis: &Axis) -> Result<Vec<PlannedTrajectory>, PipelineError> {
     if axis.trajectories.is_empty() {
         return Err(PipelineError::NoTrajectories);
@@ -66,7 +66,7 @@ pub fn plan_all(axis: &Axis) -> Result<Vec<PlannedTrajectory>, PipelineError> {
 /// Follows a trajectory and keeps its error.
 ///
 /// # Errors
-/// [`PipelineError::Run`] where the run does not come to its end.
+/// [`PipelineError::Run`] if the run does not come to its end.
 pub fn track(
     closed_loop: &ClosedLoop,
     planned: &PlannedTrajectory,

@@ -46,7 +46,7 @@ impl Default for TransferPlan {
 /// transfer function beside that feed-forward has to predict.
 ///
 /// # Errors
-/// [`PipelineError`] where a run diverges or the fit has too little data.
+/// [`PipelineError`] if a run diverges or the fit has too little data.
 pub fn identify_transfer(
     axis: &Axis,
     plan: &TransferPlan,

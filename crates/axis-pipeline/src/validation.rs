@@ -2,7 +2,7 @@
 //! tracking error: Tables 13 and 14.
 
 use axis_sim::effects::Scales;
-use axis_sim::mechanism::Way;
+use axis_sim::mechanism::SolutionMethod;
 use axis_sim::{Axis, ClosedLoop, SetupError};
 use compensator::{Compensator, Correction, NoCompensation, Sample};
 use rayon::prelude::*;
@@ -53,9 +53,9 @@ pub struct ModesAt {
 pub struct NumericalChecks {
     /// Largest change of a maximum or mean when the internal step is halved.
     pub half_step: Figures,
-    /// Largest change of them from the mechanism's fast way to its exact one; none where
+    /// Largest change of them from the mechanism's fast method to its exact one; none if
     /// it has only one.
-    pub exact_way: Option<Figures>,
+    pub exact_method: Option<Figures>,
 }
 
 /// Everything that validation shows.
@@ -84,7 +84,7 @@ pub fn vibration_speeds(axis: &Axis) -> [f64; 10] {
     VIBRATION_SPEEDS.map(|speed| speed * length)
 }
 
-/// Step of the exact way, s: the paper's.
+/// Step of the exact method, s: the paper's.
 const EXACT_STEP: f64 = 1e-5;
 
 /// Elastic modes shown.
@@ -95,7 +95,7 @@ const MODES: usize = 4;
 ///
 /// # Errors
 /// [`PipelineError::Missing`] without a network or transfer functions,
-/// [`PipelineError::Run`] where a run diverges.
+/// [`PipelineError::Run`] if a run diverges.
 pub fn validate(
     model: &Axis,
     machine: &Axis,
@@ -223,13 +223,13 @@ fn checks(
 ) -> Result<NumericalChecks, PipelineError> {
     let mut halved = model.clone();
     halved.simulation.step = 0.5 * model.simulation.step.min(model.period);
-    // The other way than the file's.
-    let other = match (model.mechanism.exact_step(), model.simulation.way) {
+    // The other method than the file's.
+    let other = match (model.mechanism.exact_step(), model.simulation.method) {
         (None, _) => None,
-        (Some(_), Way::Fast) => Some(ClosedLoop::exact(model, EXACT_STEP)?),
-        (Some(_), Way::Exact) => {
+        (Some(_), SolutionMethod::Fast) => Some(ClosedLoop::exact(model, EXACT_STEP)?),
+        (Some(_), SolutionMethod::Exact) => {
             let mut fast = model.clone();
-            fast.simulation.way = Way::Fast;
+            fast.simulation.method = SolutionMethod::Fast;
             Some(ClosedLoop::new(&fast)?)
         }
     };
@@ -256,6 +256,6 @@ fn checks(
     };
     Ok(NumericalChecks {
         half_step: change(&ClosedLoop::new(&halved)?)?,
-        exact_way: other.as_ref().map(change).transpose()?,
+        exact_method: other.as_ref().map(change).transpose()?,
     })
 }

@@ -19,7 +19,7 @@ pub struct Vibration {
     /// Peak to peak of the tracking error.
     #[serde(flatten)]
     pub peak_to_peak: PeakToPeak<f64>,
-    /// Frequency from the crossings of the mean, Hz; none where it is quiet.
+    /// Frequency from the crossings of the mean, Hz; none if it is quiet.
     pub frequency_hz: Option<f64>,
 }
 
@@ -29,7 +29,7 @@ pub const QUIET: f64 = 0.5;
 /// Runs the axis at each of the speeds (mm/s or mrad/s) for 4 s and looks at the last second.
 ///
 /// # Errors
-/// [`PipelineError`] where a run diverges or does not fit the stroke.
+/// [`PipelineError`] if a run diverges or does not fit the stroke.
 pub fn vibration(axis: &Axis, speeds: &[f64]) -> Result<Vec<Vibration>, PipelineError> {
     let closed_loop = ClosedLoop::new(axis)?;
     let one = |&speed: &f64| one(&closed_loop, speed);

@@ -20,8 +20,8 @@ fn motion(axis: &Axis, trajectory: usize) -> SharedMotion {
     Arc::new(axis.plan(&axis.trajectories[trajectory]).unwrap())
 }
 
-/// What is believed: friction levels at 80 %.
-fn believed(axis: &Axis) -> Predictors {
+/// The model: friction levels at 80 %.
+fn assumed_model(axis: &Axis) -> Predictors {
     let p = axis.friction.law.parameters();
     let law = LuGre::new(Parameters {
         coulomb: 0.8 * p.coulomb,
@@ -45,7 +45,7 @@ impl Rig {
     fn new() -> Self {
         let axis = machine();
         Self {
-            predictors: believed(&axis),
+            predictors: assumed_model(&axis),
             closed_loop: ClosedLoop::new(&axis).unwrap(),
             motion: motion(&axis, 2),
             axis,

@@ -21,7 +21,7 @@ fn named_motion(motion: SharedMotion) -> NamedMotion {
     }
 }
 
-/// The runs of moves under a strategy that believes the axis of `predictors`.
+/// The runs of moves under a strategy that assumes the axis of `predictors`.
 fn made(
     predictors: &Predictors,
     machine: &Axis,

@@ -114,7 +114,7 @@ fn a_folded_network_is_map_plus_residual() {
 fn a_linear_map_is_found_exactly() {
     let mut set = sampler(40, SpeedDensity::Uniform).all().unwrap();
     set.increments = (set.inputs.iter())
-        .map(|i| 2.0 + 3.0 * i.position - i.speed + 0.5 * i.acceleration + 0.25 * i.iq_command)
+        .map(|i| 2.0 + 3.0 * i.position - i.speed + 0.5 * i.acceleration + 0.25 * i.command)
         .collect();
     let map = LinearMap::fit(&set).unwrap();
     assert!((map.offset - 2.0).abs() < 1e-13);

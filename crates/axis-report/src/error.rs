@@ -29,7 +29,7 @@ pub enum ReportError {
     /// A number in a table that is NaN or infinite.
     #[error(
         "table \"{table}\", row {row}, column {column} (\"{name}\"): {value} is not a finite \
-         number; use Cell::Missing where there is none"
+         number; use Cell::Missing for no value"
     )]
     TableValue {
         /// Caption of the table.

@@ -14,7 +14,7 @@ pub struct Figure {
     pub y_label: String,
     /// Unit of the horizontal coordinates, with or without SI prefix: `s`, `µm`. Where it is
     /// known, ticks and the value under the pointer take the prefix that reads best. Empty
-    /// where the label says all.
+    /// if the label says all.
     pub x_unit: String,
     /// Unit of the vertical coordinates, likewise.
     pub y_unit: String,
@@ -25,7 +25,7 @@ pub struct Figure {
     pub x_scale: Scale,
     /// Scale of the vertical axis.
     pub y_scale: Scale,
-    /// Names of the places 0, 1, 2, … of the vertical axis, from the top down; empty where
+    /// Names of the places 0, 1, 2, … of the vertical axis, from the top down; empty if
     /// it is one of numbers. A narrow drawing shows each up to its first space.
     pub rows: Vec<String>,
     /// The series, drawn in this order; later ones lie above earlier ones.

@@ -54,7 +54,7 @@ pub fn render(page: &Page) -> Result<String, ReportError> {
                 }
                 @if page.sections.len() > 1 { (contents(page)) }
                 @if numbers.figures > 0 {
-                    p.hint { "Figures: drag to zoom, double-click to show all, point for values, click a name to hide it." }
+                    p.hint { "Figures: drag to zoom, double-click to show all, point at a curve for its values, click a name to hide it." }
                 }
                 main {
                     @for (index, (section, body)) in page.sections.iter().zip(&sections).enumerate() {
@@ -159,11 +159,12 @@ impl Numbers {
         table.check()?;
         self.tables += 1;
         let heading = html! { b { "Table " (self.tables) } " " (table.caption) };
+        let labels = labels(table);
         let body = html! {
-            div.scroll tabindex="0" role="region" aria-label=(table.caption) {
+            div.scroll.stack[table.columns.len() > MOST_ON_A_PHONE] tabindex="0" role="region" aria-label=(table.caption) {
                 table {
                     thead { (table_head(table)) }
-                    tbody { @for row in &table.rows { (table_row(row)) } }
+                    tbody { @for row in &table.rows { (table_row(row, &labels)) } }
                 }
             }
             @for note in &table.notes { p.note { (note) } }
@@ -270,14 +271,32 @@ fn numeric(table: &Table, column: usize) -> bool {
         .any(|row| class(&row[column]).is_some_and(|_| row[column] != Cell::Missing))
 }
 
-fn table_row(row: &[Cell]) -> Markup {
+/// Columns that a phone's width shows beside each other. A table with more is stacked there: a row
+/// becomes a block, each value on a line of its own behind the name of its column.
+const MOST_ON_A_PHONE: usize = 4;
+
+/// What names each column where the header is not shown: its own text behind that of its group.
+fn labels(table: &Table) -> Vec<String> {
+    let spans = table.groups.iter();
+    let groups = spans.flat_map(|group| std::iter::repeat_n(group.label.as_str(), group.span));
+    let groups = groups.chain(std::iter::repeat(""));
+    let named = table.columns.iter().zip(groups);
+    named
+        .map(|(column, group)| match group {
+            "" => column.clone(),
+            _ => format!("{group}, {column}"),
+        })
+        .collect()
+}
+
+fn table_row(row: &[Cell], labels: &[String]) -> Markup {
     html! {
         tr {
             @for (index, cell) in row.iter().enumerate() {
                 @if index == 0 {
                     th scope="row" { (content(cell)) }
                 } @else {
-                    td class=[class(cell)] { (content(cell)) }
+                    td class=[class(cell)] data-label=(labels[index]) { (content(cell)) }
                 }
             }
         }

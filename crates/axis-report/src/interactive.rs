@@ -79,7 +79,7 @@ fn series_of(block: &Block, sizes: &mut Vec<(usize, f64)>) {
 }
 
 /// The points of a checked figure in units without prefix, and how many they are of how many;
-/// none where a line goes back, as a hysteresis loop does: such a figure stays a picture.
+/// none if a line goes back, as a hysteresis loop does: such a figure stays a picture.
 pub(crate) fn keep(figure: &Figure, canvas: Canvas, detail: Detail) -> Option<Markup> {
     let (x, y) = plot::fit(figure, canvas);
     let fine = detail.canvas(canvas);
@@ -113,7 +113,7 @@ pub(crate) fn keep(figure: &Figure, canvas: Canvas, detail: Detail) -> Option<Ma
     })
 }
 
-/// Indices of the points to keep, from left to right; none where the line goes back.
+/// Indices of the points to keep, from left to right; none if the line goes back.
 fn points(series: &Series, canvas: Canvas, x: &Fitted, y: &Fitted) -> Option<Vec<usize>> {
     let pixels = plot::pixels(series, canvas, x, y);
     if series.style == Style::Dots {
@@ -161,7 +161,7 @@ fn across(values: &[f64], kept: &[usize], scale: Scale) -> Option<Value> {
 }
 
 /// Values (on a logarithmic scale their logarithms to base 10) on a grid of so many steps;
-/// none where they lie too far apart for one.
+/// none if they lie too far apart for one.
 fn grid(values: &[f64], kept: &[usize], scale: Scale, levels: f64) -> Option<Value> {
     let value = |&k: &usize| match scale {
         Scale::Linear => values[k],

@@ -159,9 +159,9 @@
       if (k === 0) return;
       name.tabIndex = 0;
       name.setAttribute("role", "switch");
-      const told = () => name.setAttribute("aria-checked", String(u.series[k].show));
-      told();
-      name.addEventListener("click", told);
+      const announce = () => name.setAttribute("aria-checked", String(u.series[k].show));
+      announce();
+      name.addEventListener("click", announce);
       name.addEventListener("keydown", e => {
         if (e.key !== "Enter" && e.key !== " ") return;
         e.preventDefault();
@@ -182,6 +182,8 @@
     const u = new uPlot(options(figure, Math.floor(box.width), Math.round(box.height), data), data, live);
     holder.plot = u;
     reachable(u);
+    // Names alone until the pointer, or that of a linked figure, is over the curves.
+    u.hooks.setCursor = [() => u.root.classList.toggle("pointed", u.cursor.idx != null)];
     const group = linked.get(figure.link) ?? [];
     const zoomed = group.find(other => other.holder.classList.contains("zoomed"));
     group.push({ holder, u });

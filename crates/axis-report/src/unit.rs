@@ -46,7 +46,7 @@ pub(crate) struct Unit {
     pub base: String,
     /// Power of ten of the prefix that it was written with.
     pub exponent: i32,
-    /// Least and greatest power of ten of a prefix; both 0 where it takes none.
+    /// Least and greatest power of ten of a prefix; both 0 if it takes none.
     pub prefixes: (i32, i32),
 }
 

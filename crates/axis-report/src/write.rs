@@ -18,8 +18,8 @@ use crate::page::Page;
 /// that name.
 ///
 /// # Errors
-/// [`PageWriteError::Report`] where the page cannot be rendered, [`PageWriteError::Io`]
-/// where the folder is missing or not writable or the disk is full.
+/// [`PageWriteError::Report`] if the page cannot be rendered, [`PageWriteError::Io`]
+/// if the folder is missing or not writable or the disk is full.
 pub fn write_atomic(path: impl AsRef<Path>, page: &Page) -> Result<(), PageWriteError> {
     let path = path.as_ref();
     let text = render(page)?;

@@ -425,3 +425,27 @@ fn rows_have_names() {
         "{heights:?}"
     );
 }
+
+/// On a phone a wide table is stacked: each value says its column, and the group that this is in.
+#[test]
+fn a_wide_table_names_the_column_beside_each_value() {
+    let cells = |n| (0..n).map(|k| Cell::number(f64::from(k), 0));
+    let wide = Table::new("Wide", ["case", "max", "mean", "max", "mean"])
+        .group("", 1)
+        .group("Model", 2)
+        .group("Machine", 2)
+        .row(cells(5));
+    let small = Table::new("Small", ["case", "max", "mean", "RMS"]).row(cells(4));
+    let of = |table| render(&Page::new("").section(Section::new("").table(table))).unwrap();
+    let html = of(wide);
+    assert!(html.contains("class=\"scroll stack\""), "five columns");
+    for label in ["Model, max", "Model, mean", "Machine, max", "Machine, mean"] {
+        assert!(html.contains(&format!("data-label=\"{label}\"")), "{label}");
+    }
+    assert!(
+        !of(small).contains("class=\"scroll stack\""),
+        "four columns"
+    );
+    // Without the rule that shows them the names would be nowhere on a phone.
+    assert!(html.contains(".stack td::before{content:attr(data-label)"));
+}

@@ -92,7 +92,7 @@ fn inputs(axis: &Axis, count: usize) -> Vec<CycleInput> {
             position: within(s.position, part(2.0, i)),
             speed: within(s.speed, part(3.0, i)),
             acceleration: within(s.acceleration, part(5.0, i)),
-            iq_command: within(s.effort, part(7.0, i)),
+            command: within(s.effort, part(7.0, i)),
         })
         .collect()
 }

@@ -2,7 +2,7 @@
 //! move: `cargo run --release -p axis-sim --example adaptation [draws] [seed]`.
 //!
 //! The machine is the stand-in. Each draw begins with friction level, viscosity, bristle
-//! stiffness and damping believed wrong by up to 20 %, and mass by up to 10 %, and makes
+//! stiffness and damping assumed wrong by up to 20 %, and mass by up to 10 %, and makes
 //! four of the six trajectories in its own order, each from rest, none twice.
 
 use axis_sim::{Axis, ClosedLoop, Measured};
@@ -106,8 +106,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut random = ChaCha8Rng::seed_from_u64(1000 * seed + draw);
         let mut off = |share: f64| 1.0 + share * (2.0 * random.random::<f64>() - 1.0);
         let level = off(0.2);
-        let mut belief = model;
-        belief.friction = LuGre::new(Parameters {
+        let mut assumed = model;
+        assumed.friction = LuGre::new(Parameters {
             coulomb: p.coulomb * level,
             stiction: p.stiction * level,
             viscous: p.viscous * off(0.2),
@@ -115,10 +115,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             damping: p.damping * off(0.2),
             ..p
         })?;
-        belief.load_inertia *= off(0.1);
+        assumed.load_inertia *= off(0.1);
         let mut order: Vec<usize> = (0..motions.len()).collect();
         order.shuffle(&mut random);
-        let mut adaptation = Adaptation::new(&belief, &AdaptPrior::default())?;
+        let mut adaptation = Adaptation::new(&assumed, &AdaptPrior::default())?;
         for (errors, i) in moves.iter_mut().zip(order) {
             let motion = &motions[i];
             let (without, _) = run(&closed_loop, motion, NoCompensation, &mut random)?;

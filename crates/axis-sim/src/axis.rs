@@ -13,7 +13,7 @@ use crate::effects::{self, ActiveEffect, Hooks, TableState};
 use crate::error::SetupError;
 use crate::friction::Friction;
 use crate::load::Load;
-use crate::mechanism::{Freedom, Mechanism, Way};
+use crate::mechanism::{Freedom, Mechanism, SolutionMethod};
 use crate::part::{Known, Part, PartError, Role, Values};
 use crate::sensor::Sensor;
 
@@ -77,7 +77,7 @@ pub struct Axis {
 pub struct Sensors {
     /// At the load.
     pub load: LoadSensor,
-    /// At the motor; a perfect one where there is none in the file.
+    /// At the motor; a perfect one if there is none in the file.
     pub motor: Option<Part<dyn Sensor>>,
 }
 
@@ -96,9 +96,9 @@ pub enum LoadSensor {
 /// Settings of the torque balance of logs ([`crate::balance`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BalanceSettings {
-    /// Cut-off frequency of what is compared, Hz; taken from each log where there is none.
+    /// Cut-off frequency of what is compared, Hz; taken from each log if there is none.
     pub cutoff: Option<f64>,
-    /// Speed of the load up to which nothing is compared, m/s or rad/s; where there is none,
+    /// Speed of the load up to which nothing is compared, m/s or rad/s; if there is none,
     /// that which a log's sensor tells from rest.
     pub slowest: Option<f64>,
 }
@@ -110,7 +110,7 @@ pub struct Simulation {
     /// into the fewest equal steps that are no longer.
     pub step: f64,
     /// How the mechanism's equations are solved.
-    pub way: Way,
+    pub method: SolutionMethod,
 }
 
 /// Positions of the load, m or rad.
@@ -165,7 +165,7 @@ pub struct MoveSpec {
 /// What results are compared with.
 #[derive(Clone, Debug)]
 pub struct Experiment {
-    /// Axis file of what stands for the measured machine.
+    /// Axis file of the simulated machine that stands for the real one.
     pub machine: PathBuf,
     /// Folder with the paper's tables.
     pub paper_tables: Option<PathBuf>,
@@ -194,7 +194,7 @@ impl Tolerances {
 
     fn of_known(&self, known: &Known) -> f64 {
         let own = self.by_name.get(known.name).copied();
-        let usual = known.beside().map(|(share, _)| share);
+        let usual = known.own_tolerance().map(|(share, _)| share);
         own.or(usual).unwrap_or(self.default)
     }
 
@@ -295,7 +295,7 @@ impl Axis {
     /// The S-curve of a move that begins at the stroke's start.
     ///
     /// # Errors
-    /// [`TrajectoryError`] where the move has no S-curve.
+    /// [`TrajectoryError`] if the move has no S-curve.
     pub fn plan(&self, spec: &MoveSpec) -> Result<SCurve, TrajectoryError> {
         let start = self.stroke.start;
         SCurve::plan(start, start + spec.displacement, &spec.limits)
@@ -334,23 +334,23 @@ impl Axis {
     /// exact by itself ([`Known::exact`]) is among them where the tolerances name it.
     pub fn known(&self) -> Vec<&'static str> {
         let all = self.may_be_known().into_iter();
-        let free = all.filter(|known| self.lets_be_off(known));
+        let free = all.filter(|known| self.may_differ(known));
         free.map(|known| known.name).collect()
     }
 
     /// How far each of [`Axis::known`] may be off, as a share of its value.
     pub fn known_tolerances(&self) -> Vec<f64> {
         let all = self.may_be_known().into_iter();
-        let free = all.filter(|known| self.lets_be_off(known));
+        let free = all.filter(|known| self.may_differ(known));
         free.map(|known| self.tolerances.of_known(known)).collect()
     }
 
     /// Whether a parameter may be off at all.
-    fn lets_be_off(&self, known: &Known) -> bool {
+    fn may_differ(&self, known: &Known) -> bool {
         let named = self.tolerances.by_name.contains_key(known.name);
         named
             || !known.is_exact()
-                && known.beside().is_none_or(|(share, role)| {
+                && known.own_tolerance().is_none_or(|(share, role)| {
                     let of_role = role.map_or_else(Vec::new, |role| self.keys_of(role));
                     of_role
                         .into_iter()
@@ -387,7 +387,7 @@ impl Axis {
     #[must_use]
     pub fn with_known(&self, shares: &[f64]) -> Self {
         let mut axis = self.clone();
-        let free = |known: &Known| self.lets_be_off(known);
+        let free = |known: &Known| self.may_differ(known);
         let mut shares = shares.iter();
         off(&mut axis.mechanism, &free, &mut shares);
         off(&mut axis.actuator, &free, &mut shares);
@@ -410,7 +410,7 @@ impl Axis {
     /// Applies `to` to every parameter of that role.
     ///
     /// # Errors
-    /// [`SetupError::Part`] where a part refuses the new value.
+    /// [`SetupError::Part`] if a part refuses the new value.
     pub(crate) fn change(&mut self, role: Role, to: impl Fn(f64) -> f64) -> Result<(), SetupError> {
         self.mechanism.change_role(role, &to)?;
         self.actuator.change_role(role, &to)?;

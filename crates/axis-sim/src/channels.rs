@@ -104,7 +104,7 @@ pub const CHANNELS: &[LogChannel] = &[
     same(["force_ref_n", "N"], |a| a.actuator.effort() == Effort::Force, Made, |c| c.command.effort),
     same(["drive_command_v", "V"], |a| a.actuator.effort() == Effort::Voltage, Made, |c| c.command.effort),
     load(["correction_m", "m"], ["correction_rad", "rad"], Shown, |c| c.correction.position),
-    same(["iq_feedforward_a", "A"], has_currents, Shown, |c| c.correction.iq),
+    same(["iq_feedforward_a", "A"], has_currents, Shown, |c| c.correction.command),
 ];
 
 fn has_motor_encoder(axis: &Axis) -> bool {

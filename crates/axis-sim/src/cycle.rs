@@ -24,7 +24,7 @@ pub struct Cycle {
     pub motor_angle: f64,
     /// Motor speed, rad/s; m/s there.
     pub motor_speed: f64,
-    /// Currents, A; 0 where the actuator has none.
+    /// Currents, A; 0 if the actuator has none.
     pub current: Dq,
     /// Torque of the motor, N·m; its force, N, there.
     pub torque: f64,
@@ -39,11 +39,11 @@ pub struct Cycle {
 /// What controller and actuator ask for in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
-    /// Speed reference of the motor, rad/s; 0 where there is no speed loop.
+    /// Speed reference of the motor, rad/s; 0 if there is no speed loop.
     pub speed_ref: f64,
     /// Command of the actuator, in its unit: q current reference, torque, force, voltage.
     pub effort: f64,
-    /// Voltage that the actuator's controllers ask for, V; 0 where it has none.
+    /// Voltage that the actuator's controllers ask for, V; 0 if it has none.
     pub voltage: Dq,
     /// Whether a limit was active.
     pub saturated: bool,
@@ -94,7 +94,7 @@ pub enum StopReason {
     FollowingError(f64, Freedom),
     /// The load has left its stroke, or the mechanism's reach.
     LeftStroke,
-    /// No friction was found that goes with the load's motion at the end of a
+    /// No friction is consistent with the load's motion at the end of a
     /// step.
     LoadNotFound,
     /// The motion takes so many internal steps, more than [`MOST_STEPS`]: it
@@ -185,7 +185,7 @@ impl std::fmt::Display for StopReason {
             ),
             Self::LeftStroke => f.write_str("the load left its stroke"),
             Self::LoadNotFound => f.write_str(
-                "no friction goes with the load's motion at the end of a step (a load that jumps or falls with the speed, or a step too long for the load's mass)",
+                "no friction force is consistent with the load's motion at the end of a step (a load that jumps or falls with the speed, or a step too long for the load's mass)",
             ),
             Self::TooLong(steps) => write!(
                 f,
@@ -201,7 +201,7 @@ impl Outcome {
     /// The run as a success or the error that tells why it is none.
     ///
     /// # Errors
-    /// [`RunStopped`] where the run was given up.
+    /// [`RunStopped`] if the run was given up.
     pub fn completed(self) -> Result<(), RunStopped> {
         match self {
             Self::Completed => Ok(()),

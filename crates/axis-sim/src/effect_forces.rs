@@ -35,7 +35,7 @@ impl Axis {
     /// Torque and force of `effects`, as if the axis had these and no others.
     ///
     /// # Errors
-    /// [`SetupError`] where one does not fit the axis.
+    /// [`SetupError`] if one does not fit the axis.
     pub fn effect_forces(&self, effects: &[ActiveEffect]) -> Result<EffectForces, SetupError> {
         let mut axis = self.clone();
         axis.effects = effects.to_vec();

@@ -15,7 +15,7 @@ pub struct CycleInput {
     /// Its acceleration S̈(k), m/s² or rad/s².
     pub acceleration: f64,
     /// The actuator's command: I_qr(k), A, of a motor whose current is controlled.
-    pub iq_command: f64,
+    pub command: f64,
 }
 
 /// Longest internal step, s. What a cycle has beyond its linear map is some
@@ -43,7 +43,7 @@ impl OneCycle {
     /// As [`ClosedLoop::new`].
     pub fn new(axis: &Axis) -> Result<Self, SetupError> {
         let mut axis = axis.clone();
-        axis.simulation.way = crate::mechanism::Way::Fast;
+        axis.simulation.method = crate::mechanism::SolutionMethod::Fast;
         axis.simulation.step = axis.simulation.step.min(LONGEST_STEP);
         Ok(Self {
             closed_loop: ClosedLoop::new(&axis)?,
@@ -63,7 +63,7 @@ impl OneCycle {
     /// # Errors
     /// [`SetupError::Drive`] with `OffScrew` for a position off the screw (where the
     /// cycle carries the load over its end, the transmission stays there), with
-    /// `Parameter` for a motion that is not finite; [`SetupError::Cycle`] where no
+    /// `Parameter` for a motion that is not finite; [`SetupError::Cycle`] if no
     /// friction goes with the motion.
     pub fn increment(&self, input: &CycleInput) -> Result<f64, SetupError> {
         let start = Start {
@@ -74,6 +74,6 @@ impl OneCycle {
             friction: 0.0,
             held: false,
         };
-        self.closed_loop.one_cycle(&start, input.iq_command)
+        self.closed_loop.one_cycle(&start, input.command)
     }
 }

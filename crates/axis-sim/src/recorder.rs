@@ -47,7 +47,7 @@ impl Recorder {
     /// The log: one channel a signal, one sample a cycle.
     ///
     /// # Errors
-    /// [`LogError`] where there is no cycle, or one that is not finite.
+    /// [`LogError`] if there is no cycle, or one that is not finite.
     pub fn log(&self) -> Result<Log, LogError> {
         let one = |channel: &LogChannel| {
             let [name, unit] = channel.of_freedom(self.freedom);
@@ -112,7 +112,7 @@ impl<S: LogSink> FlowRecorder<S> {
     /// Writes what is left, and ends the sink: CSV text gives its writer back.
     ///
     /// # Errors
-    /// The sink's; [`io::ErrorKind::InvalidData`] where there was no cycle,
+    /// The sink's; [`io::ErrorKind::InvalidData`] if there was no cycle,
     /// or one that is not finite.
     pub fn finish(mut self) -> io::Result<S::End> {
         self.write_rest()?;

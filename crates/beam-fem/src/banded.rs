@@ -47,7 +47,7 @@ impl SymmetricBanded {
         self.half_bandwidth
     }
 
-    /// The entry at (row, column), 0 outside the band; none where the row or
+    /// The entry at (row, column), 0 outside the band; none if the row or
     /// column does not exist.
     pub fn get(&self, row: usize, column: usize) -> Option<f64> {
         let (low, high) = (row.min(column), row.max(column));
@@ -160,7 +160,7 @@ impl BandedMatrices {
     ///
     /// # Errors
     /// [`BeamError::Index`] for a degree of freedom that does not exist,
-    /// [`BeamError::Shape`] where M and K are not of one order.
+    /// [`BeamError::Shape`] if M and K are not of one order.
     pub fn fixed(&self, fixed: &[usize]) -> Result<Self, BeamError> {
         self.check_orders()?;
         let free = free_dofs(self.mass.order(), fixed)?;

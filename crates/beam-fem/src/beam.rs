@@ -143,7 +143,7 @@ impl BeamMatrices {
     ///
     /// # Errors
     /// [`BeamError::Index`] for a degree of freedom that does not exist,
-    /// [`BeamError::Shape`] where M and K are not square and of one order.
+    /// [`BeamError::Shape`] if M and K are not square and of one order.
     pub fn fixed(&self, fixed: &[usize]) -> Result<Self, BeamError> {
         let order = self.mass.nrows();
         check_square("mass", &self.mass, order)?;

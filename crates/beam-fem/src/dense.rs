@@ -14,7 +14,7 @@ pub(crate) const SPAN: f64 = (1_u64 << 26) as f64;
 pub(crate) const RESOLVED: f64 = 10.0;
 
 /// Where rounding can hide an ω² within this factor of the lowest one that is seen, a
-/// rigid motion is not believed: it may be a mode whose stiffness is lost. The lowest
+/// rigid motion is not trusted: it may be a mode whose stiffness is lost. The lowest
 /// two ω² of a beam are 39 apart at most (a cantilever's).
 pub(crate) const HIDDEN: f64 = 1e3;
 

@@ -32,8 +32,8 @@ impl Modes {
 ///
 /// # Errors
 /// [`BeamError::Shape`], [`BeamError::NotFinite`],
-/// [`BeamError::MassNotPositiveDefinite`]; [`BeamError::StiffnessNegative`] where a
-/// motion has an energy below −τ Σ K_ii x_i², [`BeamError::Unresolved`] where one has
+/// [`BeamError::MassNotPositiveDefinite`]; [`BeamError::StiffnessNegative`] if a
+/// motion has an energy below −τ Σ K_ii x_i², [`BeamError::Unresolved`] if one has
 /// one between τ and 10 τ times that sum, so that a tenth of its ω² may be rounding, or
 /// where rounding could hide, as a rigid mode, an ω² of a thousandth of the lowest one;
 /// [`BeamError::NotConverged`].

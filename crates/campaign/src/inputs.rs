@@ -27,7 +27,7 @@ impl Inputs {
         hasher.finalize().to_hex().to_string()
     }
 
-    /// What differs in `other`, in words; empty where nothing does.
+    /// What differs in `other`, in words; empty if nothing does.
     pub fn difference(&self, other: &Self) -> String {
         let names = self.0.keys().chain(other.0.keys());
         let differs = |name: &&String| self.0.get(*name) != other.0.get(*name);

@@ -33,7 +33,7 @@ pub(crate) struct Journal {
 impl Journal {
     /// Opens the journal in a file that this process has locked. What another key or no
     /// journal at all left there is removed where `replace` says so.
-    /// `None` where it does not.
+    /// `None` if it does not.
     pub(crate) fn open(mut file: File, key: &str, replace: bool) -> Result<Option<Self>> {
         let length = file.metadata()?.len();
         let mut header = Vec::from(*MAGIC);
@@ -113,7 +113,7 @@ impl Journal {
 }
 
 /// Reads a record of at most `left` bytes: its block, and how long its rows are. `None`
-/// where there is no whole one.
+/// if there is no whole one.
 fn record(from: &mut impl Read, left: u64) -> Result<Option<(u64, usize)>> {
     if left < (HEAD + HASH) as u64 {
         return Ok(None);

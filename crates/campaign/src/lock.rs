@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 
 /// Opens a file to read and write, made where it is not there, and locks it until the
-/// file is dropped or the process ends, however it ends. `None` where another process has it.
+/// file is dropped or the process ends, however it ends. `None` if another process has it.
 ///
 /// On a file system without locks the file comes unlocked: whoever uses one sees to it.
 ///

@@ -114,7 +114,7 @@ pub(crate) fn encode(rows: &[Row]) -> Vec<u8> {
     bytes
 }
 
-/// What [`encode`] made; `None` where it is something else.
+/// What [`encode`] made; `None` if it is something else.
 pub(crate) fn decode(columns: &[Column], mut bytes: &[u8]) -> Option<Vec<Row>> {
     let mut rows = Vec::new();
     while !bytes.is_empty() {

@@ -245,7 +245,7 @@ impl Work<'_> {
             let Some(block) = blocks.next() else { break };
             let found = self.locked(|journal| journal.block(block));
             let found = found.map_err(CampaignError::io("read", self.path))?;
-            let strange = || CampaignError::refused(self.path, "its rows do not read");
+            let strange = || CampaignError::refused(self.path, "its rows cannot be read");
             bytes += found.len();
             rows.extend(decode(self.job.columns(), &found).ok_or_else(strange)?);
         }

@@ -33,7 +33,7 @@ pub struct Submission {
     pub options: Vec<String>,
     /// Cores of a shard.
     pub cpus: usize,
-    /// Longest time of a shard, minutes; the scheduler's own limit where there is none.
+    /// Longest time of a shard, minutes; the scheduler's own limit if there is none.
     pub minutes: Option<u32>,
     /// Further options for the scheduler, like `--partition=long`.
     pub scheduler_options: Vec<String>,

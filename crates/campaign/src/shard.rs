@@ -27,7 +27,7 @@ impl Shard {
     /// All cases in one.
     pub const WHOLE: Self = Self { index: 1, count: 1 };
 
-    /// Shard `index`, from 1, of `count`; `None` where there is no such shard.
+    /// Shard `index`, from 1, of `count`; `None` if there is no such shard.
     pub fn new(index: usize, count: usize) -> Option<Self> {
         (1..=count)
             .contains(&index)

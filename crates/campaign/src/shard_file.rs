@@ -90,7 +90,7 @@ pub(crate) struct ShardFile {
 }
 
 impl ShardFile {
-    /// Opens a file after its hash was checked; `None` where there is none.
+    /// Opens a file after its hash was checked; `None` if there is none.
     pub(crate) fn open_checked(path: &Path) -> Result<Option<Self>, CampaignError> {
         let mut file = match File::open(path) {
             Ok(file) => file,
@@ -113,7 +113,7 @@ impl ShardFile {
         let metadata = reader.metadata().file_metadata().key_value_metadata();
         let label = metadata.into_iter().flatten().find(|m| m.key == LABEL);
         let json = label.and_then(|m| m.value.as_deref());
-        let json = json.ok_or_else(|| refused(&"it says nothing of what made it"))?;
+        let json = json.ok_or_else(|| refused(&"it does not say what made it"))?;
         let label = serde_json::from_str(json).map_err(|e| refused(&e))?;
         Ok(Self {
             path: path.to_owned(),

@@ -29,7 +29,7 @@ impl Network {
     /// crate's documentation).
     ///
     /// # Errors
-    /// What [`Shape::validate`] refuses, [`Error::Length`] where the scaling
+    /// What [`Shape::validate`] refuses, [`Error::Length`] if the scaling
     /// or the weights do not fit the shape, [`Error::NotFinite`] for a weight.
     pub fn new(shape: Shape, scaling: Scaling, weights: Vec<f64>) -> Result<Self, Error> {
         shape.validate()?;

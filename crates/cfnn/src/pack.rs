@@ -70,7 +70,7 @@ pub const fn packed_len(inputs: usize, hidden: &[usize], outputs: usize) -> usiz
 /// `packed` has [`packed_len`] elements.
 ///
 /// # Errors
-/// [`Error::Length`] where one of the slices does not fit the layer sizes.
+/// [`Error::Length`] if one of the slices does not fit the layer sizes.
 pub fn pack<T: NetworkScalar>(
     inputs: usize,
     hidden: &[usize],

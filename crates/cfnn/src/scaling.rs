@@ -15,7 +15,7 @@ impl Scaling {
     /// Scaling with given `(minimum, maximum)` of each input and output.
     ///
     /// # Errors
-    /// [`Error::Range`] where a range is empty or not finite.
+    /// [`Error::Range`] if a range is empty or not finite.
     pub fn from_ranges(input: &[(f64, f64)], output: &[(f64, f64)]) -> Result<Self, Error> {
         let ranges = |what, pairs: &[(f64, f64)]| {
             pairs

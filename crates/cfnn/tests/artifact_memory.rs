@@ -39,7 +39,7 @@ fn a_length_that_is_not_there_takes_no_memory() {
     for words in payloads {
         network_from_bytes(&artifact(words)).unwrap_err();
     }
-    // 0 kB measured; half a gigabyte and more if a length were believed.
+    // 0 kB measured; half a gigabyte and more if a length were assumed.
     let taken = peak() - before;
     assert!(taken < 16 * 1024, "{taken} kB for less than 200 bytes");
 }

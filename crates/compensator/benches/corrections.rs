@@ -44,7 +44,7 @@ fn cycles() -> Vec<Sample> {
             motor_angle: 0.0,
             motor_speed: reference(k).velocity / R,
             iq: 0.5,
-            iq_command: 0.5,
+            last_command: 0.5,
         })
         .collect()
 }

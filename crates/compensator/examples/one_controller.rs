@@ -46,7 +46,7 @@ fn run(friction: &LuGre, law: &mut impl Compensator, duration: f64, speed: f64) 
             motor_angle: 0.0,
             motor_speed: omega,
             iq,
-            iq_command: iq,
+            last_command: iq,
         });
         accelerations.push(now.acceleration);
         errors.push(now.position - position);
@@ -54,7 +54,7 @@ fn run(friction: &LuGre, law: &mut impl Compensator, duration: f64, speed: f64) 
         let position_input = now.position - position + correction.position;
         let deviation = P * position_input + now.velocity / R - omega;
         integral += SPEED_GAINS.1 * deviation * T;
-        iq = SPEED_GAINS.0 * deviation + integral + correction.iq;
+        iq = SPEED_GAINS.0 * deviation + integral + correction.command;
         // The axis: friction over a step of constant speed, then the momentum.
         let (next_bristle, drag) = friction.step_torque(bristle, omega, omega, T);
         let next_omega = omega + T * (KT * iq - drag) / INERTIA;

@@ -5,7 +5,7 @@
 //!
 //! The controller holds its own set points back by the planner's look-ahead (8 ms here). The
 //! axis is a few lines at the end: a carriage on a screw, its friction 15 % below what is
-//! believed, behind the P-PI drive whose offsets are corrected.
+//! assumed, behind the P-PI drive whose offsets are corrected.
 #![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use compensator::{
@@ -28,8 +28,8 @@ const P: f64 = 29_342.0;
 const SPEED: [f64; 2] = [0.647, 6.8];
 const LIMIT: f64 = 15.0;
 
-/// What is believed of the axis.
-fn believed() -> Result<DriveModel, Box<dyn std::error::Error>> {
+/// The model of the axis.
+fn assumed_model() -> Result<DriveModel, Box<dyn std::error::Error>> {
     let section = DriveSection {
         rotating: J,
         ..DriveSection::default()
@@ -95,7 +95,7 @@ fn single(model: &DriveModel) -> Result<DriveModel<f32>, Box<dyn std::error::Err
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Once, where there is time: the design, in double precision.
-    let model = believed()?;
+    let model = assumed_model()?;
     let whole = (J + M * R * R).sqrt();
     let rigid = Mode {
         motor: 1.0 / whole,
@@ -210,7 +210,7 @@ impl Axis {
             motor_angle: (self.position / R) as f32,
             motor_speed: (self.speed / R + noise[1]) as f32,
             iq: (self.current + noise[2]) as f32,
-            iq_command: held,
+            last_command: held,
             ..Sample::default()
         }
     }
@@ -221,7 +221,7 @@ impl Axis {
         let asked = P * error + f64::from(sample.reference.velocity) / R;
         let speed_error = asked - f64::from(sample.motor_speed);
         self.integral += SPEED[1] * speed_error * T;
-        let command = SPEED[0] * speed_error + self.integral + f64::from(correction.iq);
+        let command = SPEED[0] * speed_error + self.integral + f64::from(correction.command);
         let command = command.clamp(-LIMIT, LIMIT);
         let steps = 10;
         for _ in 0..steps {

@@ -33,7 +33,7 @@ where
         let (a, b) = (self.first.correct(sample), self.second.correct(sample));
         Correction {
             position: a.position + b.position,
-            iq: a.iq + b.iq,
+            command: a.command + b.command,
         }
     }
 

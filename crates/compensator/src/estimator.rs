@@ -198,7 +198,7 @@ impl<T: Scalar> MotionEstimator<T> {
     /// The same before its first sample, each number rounded to the nearest of another scalar.
     ///
     /// # Errors
-    /// [`CompensatorError::Setting`] where one leaves its range by that.
+    /// [`CompensatorError::Setting`] if one leaves its range by that.
     pub fn cast<U: Scalar>(&self) -> Result<MotionEstimator<U>, CompensatorError> {
         let cast = |value: T| U::of(value.to_f64());
         let (travel, period) = (cast(self.travel_per_radian), cast(self.period));

@@ -70,7 +70,7 @@ impl<T: Exponential> FrictionFeedforward<T> {
     /// scalar.
     ///
     /// # Errors
-    /// [`lugre::LugreError`] where a parameter leaves its range by that.
+    /// [`lugre::LugreError`] if a parameter leaves its range by that.
     pub fn cast<U: Exponential>(&self) -> Result<FrictionFeedforward<U>, lugre::LugreError> {
         let cast = |value: T| U::of(value.to_f64());
         Ok(FrictionFeedforward {
@@ -99,7 +99,7 @@ impl<T: Exponential> Compensator<T> for FrictionFeedforward<T> {
         self.speed = speed;
         Correction {
             position: T::ZERO,
-            iq: torque * self.per_torque,
+            command: torque * self.per_torque,
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Limits, smooth switching and a watchdog around any compensator.
 //!
 //! ```text
-//! out = g · limited(correction)      g goes from 0 to 1 and back as s² (3 − 2 s), s in proportion to time
+//! out = g · limited(correction)      g goes from 0 to 1 and back as s² (3 − 2 s), s in proportion
+//! to time
 //! ```
 //!
 //! The guard trips, fades the correction out and stays off until it is told otherwise
@@ -63,7 +64,7 @@ impl core::fmt::Display for Trip {
             Self::NotFinite => "the correction was not a number",
             Self::Position => "the offset of the position was at its limit for too long",
             Self::Effort => "the offset of the command was at its limit for too long",
-            Self::Surprise => "the axis was not where the observer expected it for too long",
+            Self::Surprise => "the axis was away from where the observer expected it for too long",
         })
     }
 }
@@ -138,10 +139,10 @@ impl<T: Scalar> Guard<T> {
             self.watch(asked, surprise);
         }
         // What is faded out after a trip is the last that was a number.
-        if asked.position.is_finite() && asked.iq.is_finite() {
+        if asked.position.is_finite() && asked.command.is_finite() {
             self.last = Correction {
                 position: asked.position.max(-l.position).min(l.position),
-                iq: asked.iq.max(-l.effort).min(l.effort),
+                command: asked.command.max(-l.effort).min(l.effort),
             };
         }
         self.faded = match self.status {
@@ -157,19 +158,19 @@ impl<T: Scalar> Guard<T> {
         let gain = share * share * (T::of(3.0) - T::TWO * share);
         Correction {
             position: gain * self.last.position,
-            iq: gain * self.last.iq,
+            command: gain * self.last.command,
         }
     }
 
     fn watch(&mut self, asked: &Correction<T>, surprise: T) {
         let l = self.limits;
-        if !(asked.position.is_finite() && asked.iq.is_finite()) {
+        if !(asked.position.is_finite() && asked.command.is_finite()) {
             self.status = Status::Tripped(Trip::NotFinite);
             return;
         }
         let watched = [
             (asked.position.abs(), l.position, Trip::Position),
-            (asked.iq.abs(), l.effort, Trip::Effort),
+            (asked.command.abs(), l.effort, Trip::Effort),
             (surprise.abs(), l.surprise, Trip::Surprise),
         ];
         for ((value, limit, trip), beyond) in watched.into_iter().zip(&mut self.beyond) {

@@ -95,7 +95,7 @@ pub struct TransferFunctionFit {
     pub model: TransferFunctionModel,
     /// Its row of [`TransferFunctionFit::trials`].
     pub chosen: Trial,
-    /// Standard errors of the direct feed-through (0 where it was not free)
+    /// Standard errors of the direct feed-through (0 if it was not free)
     /// and of each coefficient, s², as if the residuals were white noise.
     /// Friction and sampling make real residuals coloured: then they are too small.
     pub standard_errors: Vec<f64>,

@@ -146,7 +146,7 @@ pub trait Compensator<T: axis_scalar::Scalar = f64> {
     fn correct(&mut self, sample: &Sample<T>) -> Correction<T>;
 
     /// How far what it observed last is from what it expected, in deviations of its noise;
-    /// 0 where it observes nothing. What a [`Guard`] watches.
+    /// 0 if it observes nothing. What a [`Guard`] watches.
     fn surprise(&self) -> T {
         T::ZERO
     }

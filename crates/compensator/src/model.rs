@@ -1,4 +1,4 @@
-//! What a compensator believes of an axis: the numbers of its feed-forward.
+//! What a compensator assumes of an axis: the numbers of its feed-forward.
 //!
 //! ```text
 //! T = J a/r + r (m a + F) + (J − J_w) s̈        torque of the motor
@@ -46,7 +46,7 @@ impl<T: Scalar> Along<T> {
     /// `at`.
     ///
     /// # Errors
-    /// [`CompensatorError::Setting`] where the ends are not finite or not in order, or a
+    /// [`CompensatorError::Setting`] if the ends are not finite or not in order, or a
     /// section is not finite or has a negative compliance or inertia.
     pub fn new(
         [least, most]: [T; 2],
@@ -202,7 +202,7 @@ pub enum Drive<T = f64> {
 
 impl<T: Scalar> Drive<T> {
     /// Control periods from the sample of a current until the voltage made of it begins to
-    /// act; 0 where there is no current loop.
+    /// act; 0 if there is no current loop.
     #[must_use]
     pub fn late(&self) -> T {
         match self {
@@ -211,7 +211,7 @@ impl<T: Scalar> Drive<T> {
         }
     }
 
-    /// Each value rounded; none where the motor's leave their ranges by that.
+    /// Each value rounded; none if the motor's leave their ranges by that.
     fn cast<U: Scalar>(&self) -> Option<Drive<U>> {
         let to = |value: T| U::of(value.to_f64());
         Some(match self {
@@ -268,7 +268,7 @@ impl<T: Scalar> Cascade<T> {
 /// The drive's own position and speed loop, as far as corrections pass through it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cascade<T = f64> {
-    /// Speed of the motor per position error P, rad/s per m; 0 where a correction of the
+    /// Speed of the motor per position error P, rad/s per m; 0 if a correction of the
     /// position does not become a speed.
     pub position: T,
     /// Speed feed-forward that the drive has itself, as a share of v/r.
@@ -389,7 +389,7 @@ impl<T: Exponential> DriveModel<T> {
     /// The same model, each number rounded to the nearest of another scalar.
     ///
     /// # Errors
-    /// [`CompensatorError::Setting`] where friction or motor leave their ranges by that.
+    /// [`CompensatorError::Setting`] if friction or motor leave their ranges by that.
     pub fn cast<U: Exponential>(&self) -> Result<DriveModel<U>, CompensatorError> {
         let to = |value: T| U::of(value.to_f64());
         let outside = |name, value: T| CompensatorError::Setting {
@@ -443,7 +443,7 @@ impl<T: Exponential> DriveModel<T> {
         let cycles = self.delay / self.period;
         let together = cycles + self.drive.late();
         let inside = cycles >= T::ZERO && within(together, 0.0, MOST_DELAY as f64);
-        let valid = "from 0 to 16 control periods, with what a voltage is late";
+        let valid = "from 0 to 16 control periods, the delay of the voltage included";
         require(inside, "delay", self.delay, valid)?;
         let c = &self.cascade;
         let gains = [

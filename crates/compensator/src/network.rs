@@ -7,7 +7,7 @@ use crate::{Compensator, Correction, MotionEstimator, Sample};
 
 /// A model of one control cycle: how far the table moves in it.
 ///
-/// Implemented for closures `|position, speed, acceleration, iq_command|`,
+/// Implemented for closures `|position, speed, acceleration, command|`,
 /// for `cfnn::Predictor<4, 1>` (feature `alloc`, `f64`) and for
 /// [`cfnn::FixedNetwork`] with 4 inputs and 1 output in `f64` or `f32`. One in
 /// `f32` also serves a law in `f64`: it rounds the increment, 10 µm a cycle at
@@ -15,19 +15,19 @@ use crate::{Compensator, Correction, MotionEstimator, Sample};
 pub trait IncrementModel<T = f64> {
     /// S(k+1) − S(k) in m, from the table's position S (m), speed (m/s) and
     /// acceleration (m/s²) at t_k, and the q current command I_qr (A).
-    fn increment(&mut self, position: T, speed: T, acceleration: T, iq_command: T) -> T;
+    fn increment(&mut self, position: T, speed: T, acceleration: T, command: T) -> T;
 }
 
 impl<T, F: FnMut(T, T, T, T) -> T> IncrementModel<T> for F {
-    fn increment(&mut self, position: T, speed: T, acceleration: T, iq_command: T) -> T {
-        self(position, speed, acceleration, iq_command)
+    fn increment(&mut self, position: T, speed: T, acceleration: T, command: T) -> T {
+        self(position, speed, acceleration, command)
     }
 }
 
 #[cfg(feature = "alloc")]
 impl IncrementModel for cfnn::Predictor<4, 1> {
-    fn increment(&mut self, position: f64, speed: f64, acceleration: f64, iq_command: f64) -> f64 {
-        let [increment] = self.predict(&[position, speed, acceleration, iq_command]);
+    fn increment(&mut self, position: f64, speed: f64, acceleration: f64, command: f64) -> f64 {
+        let [increment] = self.predict(&[position, speed, acceleration, command]);
         increment
     }
 }
@@ -35,15 +35,15 @@ impl IncrementModel for cfnn::Predictor<4, 1> {
 impl<T: cfnn::NetworkScalar, const A: usize> IncrementModel<T>
     for cfnn::FixedNetwork<'_, T, 4, 1, A>
 {
-    fn increment(&mut self, position: T, speed: T, acceleration: T, iq_command: T) -> T {
-        let [increment] = self.evaluate(&[position, speed, acceleration, iq_command]);
+    fn increment(&mut self, position: T, speed: T, acceleration: T, command: T) -> T {
+        let [increment] = self.evaluate(&[position, speed, acceleration, command]);
         increment
     }
 }
 
 impl<const A: usize> IncrementModel for cfnn::FixedNetwork<'_, f32, 4, 1, A> {
-    fn increment(&mut self, position: f64, speed: f64, acceleration: f64, iq_command: f64) -> f64 {
-        let input = [position, speed, acceleration, iq_command].map(|x| x as f32);
+    fn increment(&mut self, position: f64, speed: f64, acceleration: f64, command: f64) -> f64 {
+        let input = [position, speed, acceleration, command].map(|x| x as f32);
         let [increment] = self.evaluate(&input);
         f64::from(increment)
     }
@@ -93,7 +93,7 @@ impl<M: IncrementModel<T>, T: Scalar> NetworkCompensation<M, T> {
             now.position,
             now.velocity,
             now.acceleration,
-            sample.iq_command,
+            sample.last_command,
         );
         // Eq. (36)
         remainder(sample.next_reference.position, now.position, increment)
@@ -127,7 +127,7 @@ impl<M: IncrementModel<T>, T: Scalar> Compensator<T> for NetworkCompensation<M, 
     fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
         Correction {
             position: self.predict_error(sample),
-            iq: T::ZERO,
+            command: T::ZERO,
         }
     }
 }

@@ -27,11 +27,11 @@ pub struct Sample<T = f64> {
     pub motor_angle: T,
     /// Measured motor speed, rad/s.
     pub motor_speed: T,
-    /// Measured q current, A; 0 where the actuator has no current that is measured.
+    /// Measured q current, A; 0 if the actuator has no measured current.
     pub iq: T,
     /// Command of the cycle before, in the actuator's unit: q current (A), torque (N·m), force
     /// (N) or voltage (V).
-    pub iq_command: T,
+    pub last_command: T,
 }
 
 /// What is added to the controller in this cycle.
@@ -40,7 +40,7 @@ pub struct Correction<T = f64> {
     /// Added to the position error, m or rad.
     pub position: T,
     /// Added to the speed controller's command, in the actuator's unit: A, N·m, N or V.
-    pub iq: T,
+    pub command: T,
 }
 
 impl<T: Scalar> Reference<T> {
@@ -66,7 +66,7 @@ impl<T: Scalar> Sample<T> {
             motor_angle: cast(self.motor_angle),
             motor_speed: cast(self.motor_speed),
             iq: cast(self.iq),
-            iq_command: cast(self.iq_command),
+            last_command: cast(self.last_command),
         }
     }
 }
@@ -77,7 +77,7 @@ impl<T: Scalar> Correction<T> {
     pub fn cast<U: Scalar>(&self) -> Correction<U> {
         Correction {
             position: cast(self.position),
-            iq: cast(self.iq),
+            command: cast(self.command),
         }
     }
 }

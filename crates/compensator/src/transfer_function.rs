@@ -124,7 +124,7 @@ impl<T: Scalar> TransferFunctionModel<T> {
         self.response(T::ZERO).0
     }
 
-    /// Real and imaginary part (s²) of H at `frequency` (Hz); NaN where that
+    /// Real and imaginary part (s²) of H at `frequency` (Hz); NaN if that
     /// is not finite.
     pub fn response(&self, frequency: T) -> (T, T) {
         let (sin, cos) = (T::of(TAU) * frequency * self.period).sin_cos();
@@ -284,7 +284,7 @@ impl<T: Scalar> Compensator<T> for TransferFunction<T> {
         let (next, present) = self.step(sample);
         Correction {
             position: next + self.lead / self.model.period * (next - present),
-            iq: T::ZERO,
+            command: T::ZERO,
         }
     }
 }

@@ -88,7 +88,7 @@ fn simulated() -> Vec<Sample> {
             motor_angle: angle,
             motor_speed: w,
             iq: 0.0,
-            iq_command: command,
+            last_command: command,
         });
         let r = at(k);
         let speed_error = 50.0 * (r.position - x) / TRAVEL + r.velocity / TRAVEL - w;
@@ -140,7 +140,7 @@ fn noisy(log: &[Sample], times: f64, draw: &mut Draw) -> Vec<Sample> {
     let noisy = log.iter().map(|s| Sample {
         position: s.position + 1e-8 * times * draw.gaussian(),
         motor_angle: s.motor_angle + 2e-6 * times * draw.gaussian(),
-        iq_command: s.iq_command + 1e-2 * times * draw.gaussian(),
+        last_command: s.last_command + 1e-2 * times * draw.gaussian(),
         ..*s
     });
     noisy.collect()
@@ -155,8 +155,8 @@ const DRAWN: [AdaptParameter; 6] = [
     AdaptParameter::Compliance,
 ];
 
-/// A belief that is off, and the relative errors that it has.
-fn belief(draw: &mut Draw) -> (DriveModel, [f64; 6]) {
+/// A model that is off, and the relative errors that it has.
+fn assumed(draw: &mut Draw) -> (DriveModel, [f64; 6]) {
     let f: [f64; 6] = std::array::from_fn(|i| draw.off(if i == 4 { 0.1 } else { 0.2 }));
     let mut model = truth();
     let p = model.friction.parameters();
@@ -183,7 +183,7 @@ fn one_log_tells_the_parameters_of_an_independent_simulation() {
     let log = simulated();
     for seed in 0..4 {
         let mut draw = Draw(seed);
-        let (model, errors) = belief(&mut draw);
+        let (model, errors) = assumed(&mut draw);
         let mut adaptation = adaptation(&model);
         let learned = adaptation.learn(&noisy(&log, 1.0, &mut draw)).unwrap();
         assert!(learned.torque_after < 0.1 * learned.torque_before);
@@ -219,7 +219,7 @@ fn intervals_hold_as_often_as_they_say() {
     let draws = 80;
     for seed in 0..draws {
         let mut draw = Draw(1000 + seed);
-        let (model, errors) = belief(&mut draw);
+        let (model, errors) = assumed(&mut draw);
         let mut adaptation = adaptation(&model);
         let learned = adaptation.learn(&noisy(&log, 20.0, &mut draw)).unwrap();
         for ((parameter, error), held) in DRAWN.iter().zip(errors).zip(&mut held) {
@@ -236,7 +236,7 @@ fn intervals_hold_as_often_as_they_say() {
 }
 
 #[test]
-fn a_load_far_beyond_the_prior_is_believed() {
+fn a_load_far_beyond_the_prior_is_learned() {
     let mut model = truth();
     model.load_inertia = 300.0;
     let mut adaptation = adaptation(&model);
@@ -266,7 +266,7 @@ fn a_bound_holds_and_is_told() {
 fn steps_can_be_taken_back_and_bits_depend_on_the_logs_alone() {
     let log = simulated();
     let mut draw = Draw(5);
-    let (model, _) = belief(&mut draw);
+    let (model, _) = assumed(&mut draw);
     let logs = [noisy(&log, 1.0, &mut draw), noisy(&log, 1.0, &mut draw)];
     let mut first = adaptation(&model);
     assert_eq!(first.model(), model);
@@ -305,10 +305,10 @@ fn hostile_logs_are_refused_and_change_nothing() {
         refused(&bad, "sample 777: motor_angle");
     }
     let mut limited = log.clone();
-    limited.iter_mut().for_each(|s| s.iq_command = 60.0);
+    limited.iter_mut().for_each(|s| s.last_command = 60.0);
     refused(&limited, "at its limit");
     let mut silent = log.clone();
-    silent.iter_mut().for_each(|s| s.iq_command = 0.0);
+    silent.iter_mut().for_each(|s| s.last_command = 0.0);
     refused(&silent, "explains too little");
     let mut draw = Draw(9);
     let garbage: Vec<Sample> = (0..5000)
@@ -316,7 +316,7 @@ fn hostile_logs_are_refused_and_change_nothing() {
             position: draw.gaussian(),
             motor_angle: 1e6 * draw.gaussian(),
             motor_speed: 1e9 * draw.uniform(),
-            iq_command: 40.0 * draw.uniform(),
+            last_command: 40.0 * draw.uniform(),
             ..Sample::default()
         })
         .collect();
@@ -328,7 +328,7 @@ fn hostile_logs_are_refused_and_change_nothing() {
 fn a_glitch_does_no_great_harm() {
     let mut log = simulated();
     log[2000].position += 1e-4;
-    log[3000].iq_command = 30.0;
+    log[3000].last_command = 30.0;
     let mut adaptation = adaptation(&truth());
     if adaptation.learn(&log).is_ok() {
         for found in adaptation.estimates() {

@@ -76,7 +76,7 @@ fn samples() -> Vec<Sample> {
             motor_angle: 0.0,
             motor_speed: pair[0].velocity / R + 0.1 * random.next(),
             iq: random.next(),
-            iq_command: 3.0 * random.next(),
+            last_command: 3.0 * random.next(),
         })
         .collect()
 }
@@ -107,7 +107,7 @@ fn double_precision_keeps_its_bits() {
         for sample in &samples {
             let correction = strategy.correct(sample);
             hash.add(correction.position);
-            hash.add(correction.iq);
+            hash.add(correction.command);
         }
     }
     let model = TransferFunctionModel::new(T, 1e-6, &[0.99, 0.9], &[1e-5, -2e-5]).expect("valid");

@@ -156,7 +156,7 @@ fn even_acceleration() {
         let (now, next) = (at(f64::from(last)), at(f64::from(last + 1)));
         let load = R * 20.0 * (next.position - 0.6);
         let torque = t.inertia * 0.05 / R + t.viscous * next.velocity / R + t.coulomb + load;
-        assert!((c.iq - torque / 1.641).abs() < 1e-9, "{c:?}");
+        assert!((c.command - torque / 1.641).abs() < 1e-9, "{c:?}");
         let s = |at: &Reference| {
             let b = t.viscous * at.velocity / R;
             let row = t.row(at.position);
@@ -194,7 +194,7 @@ fn pulse_of_a_reversal_is_twice_that_of_a_start() {
     let friction = |iq: f64, v: f64| iq * 1.641 - t.viscous * v / R;
     let mut run = |v: f64, cycles: usize| -> Vec<f64> {
         (0..cycles)
-            .map(|_| friction(law.correct(&crawl(v)).iq, v))
+            .map(|_| friction(law.correct(&crawl(v)).command, v))
             .collect()
     };
     let start = run(1e-3, 10_000);
@@ -208,7 +208,7 @@ fn pulse_of_a_reversal_is_twice_that_of_a_start() {
     assert!((height - 2.0 * t.pulse.amplitude).abs() < 0.02 * t.pulse.amplitude);
     // A drive that goes on from there starts with that level.
     let mut law = law.carried_on();
-    assert!((1.641 * law.correct(&crawl(0.0)).iq + t.coulomb).abs() < 1e-6);
+    assert!((1.641 * law.correct(&crawl(0.0)).command + t.coulomb).abs() < 1e-6);
 }
 
 /// Friction that comes up at once, or none, has no pulse.
@@ -238,7 +238,7 @@ fn no_pulse_without_presliding() {
         let mut law = DriveTermsFeedforward::new(DriveTerms::new(&model, &START).unwrap());
         for sample in samples() {
             let c = law.correct(&sample);
-            assert!(c.iq.is_finite() && c.position.is_finite());
+            assert!(c.command.is_finite() && c.position.is_finite());
         }
     }
 }
@@ -257,13 +257,16 @@ fn single_precision_follows_double() {
             let a: Correction = single.correct(&sample).cast();
             let b = double.correct(&sample.cast());
             off.position = f64::max(off.position, (a.position - b.position).abs());
-            off.iq = f64::max(off.iq, (a.iq - b.iq).abs());
+            off.command = f64::max(off.command, (a.command - b.command).abs());
             size.position = f64::max(size.position, b.position.abs());
-            size.iq = f64::max(size.iq, b.iq.abs());
+            size.command = f64::max(size.command, b.command.abs());
         }
         // Time since the change of direction is a sum of periods, which rounds.
         let epsilon = f64::from(f32::EPSILON);
-        assert!(off.iq < 80.0 * epsilon * size.iq, "{off:?} of {size:?}");
+        assert!(
+            off.command < 80.0 * epsilon * size.command,
+            "{off:?} of {size:?}"
+        );
         assert!(off.position < 1e-8, "{off:?} of {size:?}");
     }
 }
@@ -331,9 +334,9 @@ proptest! {
         let mut single = DriveTermsFeedforward::new(terms.cast::<f32>());
         for sample in &samples {
             let c = law.correct(sample);
-            prop_assert!(c.position.is_finite() && c.iq.abs() <= 15.0, "{c:?}");
+            prop_assert!(c.position.is_finite() && c.command.abs() <= 15.0, "{c:?}");
             let c = single.correct(&sample.cast());
-            prop_assert!(c.position.is_finite() && c.iq.abs() <= 15.0, "{c:?}");
+            prop_assert!(c.position.is_finite() && c.command.abs() <= 15.0, "{c:?}");
         }
         law.reset();
         for sample in self::samples().iter().take(50) {

@@ -135,14 +135,14 @@ fn run(feedback: &mut Feedback, force: f64, cycles: usize) -> (Machine, Vec<f64>
         let sample = Sample {
             position,
             motor_speed,
-            iq_command: command,
+            last_command: command,
             ..Sample::default()
         };
         let correction = feedback.correct(&sample, &Planned::default());
         // What the drive's own loop gives: nothing.
         let speed = CASCADE[1] * (correction.position - position) - motor_speed;
         assert!(speed.abs() < 1e-9, "{speed}");
-        command = correction.iq;
+        command = correction.command;
         commands.push(command);
         machine.cycle(&modes, command, force);
     }
@@ -192,10 +192,10 @@ fn a_guard_sees_the_surprise_of_plan_and_feedback() {
                 position: position + noisy.position + broken,
                 motor_speed: motor_speed + noisy.motor_speed - noisy.reference.velocity / R,
                 iq: command,
-                iq_command: command,
+                last_command: command,
                 ..Sample::default()
             };
-            command = guarded.correct(&sample).iq;
+            command = guarded.correct(&sample).command;
             machine.cycle(&modes, command, 0.0);
             if k < 1000 {
                 worst = worst.max(guarded.surprise());
@@ -221,7 +221,7 @@ fn riccati_equations_are_solved() {
     assert!(design().residual() < 1e-9, "{}", design().residual());
 }
 
-/// On the believed axis the loop is stable with room; with another delay it says so.
+/// On the assumed axis the loop is stable with room; with another delay it says so.
 #[test]
 fn margins_say_what_the_loop_has() {
     let design = design();
@@ -345,8 +345,8 @@ fn single_precision_follows() {
             sticking: f64::from(p32.sticking),
             ..Planned::default()
         };
-        let a = double.correct(&s.cast(), &p64).iq;
-        let b = f64::from(single.correct(&s, &p32).iq);
+        let a = double.correct(&s.cast(), &p64).command;
+        let b = f64::from(single.correct(&s, &p32).command);
         most = most.max(a.abs());
         off = off.max((a - b).abs());
     }
@@ -375,7 +375,7 @@ proptest! {
                 position: v[0],
                 motor_speed: v[1],
                 iq: v[2],
-                iq_command: v[3],
+                last_command: v[3],
                 ..Sample::default()
             };
             let planned = Planned {
@@ -386,12 +386,12 @@ proptest! {
                 ..Planned::default()
             };
             let correction = feedback.correct(&sample, &planned);
-            prop_assert!(correction.iq.is_finite() && correction.position.is_finite());
+            prop_assert!(correction.command.is_finite() && correction.position.is_finite());
             prop_assert!(feedback.states().iter().all(|x| x.is_finite()));
         }
         for _ in 0..20_000 {
             let correction = feedback.correct(&Sample::default(), &Planned::default());
-            prop_assert!(correction.iq.is_finite() && correction.iq.abs() <= 3.0 * LIMIT);
+            prop_assert!(correction.command.is_finite() && correction.command.abs() <= 3.0 * LIMIT);
         }
     }
 }

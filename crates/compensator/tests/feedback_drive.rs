@@ -173,7 +173,7 @@ fn growth(model: &DriveModel, modes: &[Mode], cycles: usize) -> f64 {
             motor_angle: angle,
             motor_speed: speed,
             iq: current,
-            iq_command: command,
+            last_command: command,
             reference: Reference::default(),
             ..Sample::default()
         };
@@ -189,7 +189,7 @@ fn growth(model: &DriveModel, modes: &[Mode], cycles: usize) -> f64 {
         }
         let error = set_point - filters[0].pass(passage.speed, seen);
         sum += SPEED[1] * T * error;
-        command = SPEED[0] * error + sum + correction.iq;
+        command = SPEED[0] * error + sum + correction.command;
         command = filters[1].pass(passage.command[0], command);
         command = filters[2].pass(passage.command[1], command);
         // The machine.

@@ -52,7 +52,7 @@ proptest! {
     fn odd(velocities in prop::collection::vec(-0.2..0.2f64, 1..200)) {
         let (mut there, mut back) = (friction(), friction());
         for v in velocities {
-            prop_assert_eq!(there.correct(&moving(v)).iq, -back.correct(&moving(-v)).iq);
+            prop_assert_eq!(there.correct(&moving(v)).command, -back.correct(&moving(-v)).command);
         }
     }
 
@@ -64,7 +64,7 @@ proptest! {
         let mut feedforward = friction();
         let mut iq = 0.0;
         for _ in 0..20_000 {
-            iq = feedforward.correct(&moving(v)).iq;
+            iq = feedforward.correct(&moving(v)).command;
         }
         prop_assert!(iq * v > 0.0);
         // 2 s settle the bristles (σ0 ω/G ≥ 60 /s) to e⁻¹²⁰; rounding is left, 3.6e-14
@@ -74,9 +74,9 @@ proptest! {
 
     #[test]
     fn combined_adds(p in prop::array::uniform2(-1e-4..1e-4f64), q in prop::array::uniform2(-5.0..5.0f64)) {
-        let [first, second] = [0, 1].map(|i| Fixed(Correction { position: p[i], iq: q[i] }));
+        let [first, second] = [0, 1].map(|i| Fixed(Correction { position: p[i], command: q[i] }));
         let sum = Combined::new(first, second).correct(&Sample::default());
-        prop_assert_eq!(sum, Correction { position: p[0] + p[1], iq: q[0] + q[1] });
+        prop_assert_eq!(sum, Correction { position: p[0] + p[1], command: q[0] + q[1] });
     }
 }
 
@@ -87,7 +87,10 @@ fn combined_resets_both() {
     both.correct(&moving(0.1));
     both.reset();
     assert_eq!(both.correct(&moving(0.1)), first);
-    assert_eq!(first.iq, 2.0 * friction().correct(&moving(0.1)).iq);
+    assert_eq!(
+        first.command,
+        2.0 * friction().correct(&moving(0.1)).command
+    );
 }
 
 #[test]

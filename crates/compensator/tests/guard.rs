@@ -14,8 +14,8 @@ const LIMITS: GuardLimits = GuardLimits {
     fade: 20,
 };
 
-fn correction(position: f64, iq: f64) -> Correction {
-    Correction { position, iq }
+fn correction(position: f64, command: f64) -> Correction {
+    Correction { position, command }
 }
 
 fn on() -> Guard {
@@ -37,7 +37,7 @@ fn it_fades_in_and_out_without_a_jump() {
         guard.switch(switched);
         for _ in 0..LIMITS.fade {
             let now = guard.pass(&asked, 0.0);
-            let step = (now.iq - before.iq).abs();
+            let step = (now.command - before.command).abs();
             // The steepest of s² (3 − 2 s), 1.5, over 20 cycles.
             assert!(step <= 2.0 * 1.5 / 20.0 + 1e-12, "{step}");
             before = now;
@@ -47,7 +47,7 @@ fn it_fades_in_and_out_without_a_jump() {
         } else {
             Correction::default()
         };
-        assert!((before.iq - whole.iq).abs() < 1e-12);
+        assert!((before.command - whole.command).abs() < 1e-12);
         assert!((before.position - whole.position).abs() < 1e-16);
     }
 }
@@ -87,7 +87,7 @@ fn what_is_no_number_trips_at_once_and_never_comes_out() {
     guard.pass(&correction(1e-5, 1.0), 0.0);
     for _ in 0..2 * LIMITS.fade {
         let out = guard.pass(&correction(f64::NAN, f64::INFINITY), 0.0);
-        assert!(out.position.is_finite() && out.iq.is_finite());
+        assert!(out.position.is_finite() && out.command.is_finite());
     }
     assert_eq!(guard.status(), Status::Tripped(Trip::NotFinite));
 }
@@ -186,7 +186,7 @@ proptest! {
             guard.switch(switches[i]);
             let out = guard.pass(&correction(position, iq), surprise);
             prop_assert!(out.position.abs() <= LIMITS.position);
-            prop_assert!(out.iq.abs() <= LIMITS.effort);
+            prop_assert!(out.command.abs() <= LIMITS.effort);
         }
     }
 }

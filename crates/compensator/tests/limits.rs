@@ -51,7 +51,7 @@ fn any_sample() -> impl Strategy<Value = Sample> {
             motor_angle: 0.0,
             motor_speed: v[7],
             iq: v[8],
-            iq_command: v[9],
+            last_command: v[9],
         }
     })
 }
@@ -73,7 +73,7 @@ fn is_sound(mut law: impl Compensator, samples: &[Sample]) -> bool {
     law.reset();
     (0..3).all(|_| {
         let correction = law.correct(&Sample::default());
-        correction.position.is_finite() && correction.iq.is_finite()
+        correction.position.is_finite() && correction.command.is_finite()
     })
 }
 

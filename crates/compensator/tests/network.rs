@@ -97,14 +97,14 @@ proptest! {
                 motor_angle: 0.0,
                 motor_speed: table.velocity / R,
                 iq: -1.0,
-                iq_command: iq,
+                last_command: iq,
             });
             let truth = at(k + 1, reference_a).position - at(k + 1, a).position;
             // The acceleration starts at 0 and closes in by γ = 5 % a cycle;
             // what is missing of it costs T²/2 times that.
             let tolerance = 0.5 * 3.0 * T * T * 0.95f64.powi(k as i32);
             prop_assert!((correction.position - truth).abs() <= tolerance * (1.0 + 1e-9) + 1e-14);
-            prop_assert_eq!(correction.iq, 0.0);
+            prop_assert_eq!(correction.command, 0.0);
         }
         prop_assert!(commands.iter().all(|&command| command == iq));
     }

@@ -135,7 +135,7 @@ fn noise_is_not_learned_and_what_stops_helping_is_not_used() {
     assert!(changed.model().is_none(), "{:?}", changed.explained());
 }
 
-/// A spring is foreseen, and with it most of the power; what changes within 10 ms, seven and a
+/// A spring is predicted, and with it most of the power; what changes within 10 ms, seven and a
 /// bit to a turn, is not.
 #[test]
 fn what_leaves_the_changes_is_not_used() {

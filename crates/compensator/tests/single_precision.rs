@@ -52,7 +52,7 @@ fn samples(row: [f64; 3]) -> Vec<Sample<f32>> {
                 motor_angle: 0.0,
                 motor_speed: 1.001 * now.velocity / f64::from(R),
                 iq,
-                iq_command: iq,
+                last_command: iq,
             };
             sample.cast()
         })
@@ -71,7 +71,7 @@ fn deviation(single: &mut dyn Compensator<f32>, double: &mut dyn Compensator) ->
                 double.correct(&sample.cast()),
             );
             worst.position = worst.position.max((a.position - b.position).abs());
-            worst.iq = worst.iq.max((a.iq - b.iq).abs());
+            worst.command = worst.command.max((a.command - b.command).abs());
         }
     }
     worst
@@ -145,7 +145,7 @@ fn friction_feedforward() {
     // The torque is a sum of T_S, σ1 ω and σ2 ω at 120 mm/s.
     let p = Parameters::LIU_2025;
     let size = p.stiction + (p.damping + p.viscous) * 0.12 / f64::from(R);
-    assert!(units("friction", worst.iq, size / f64::from(KT)) < 10.0); // 2.2 measured
+    assert!(units("friction", worst.command, size / f64::from(KT)) < 10.0); // 2.2 measured
     assert_eq!(worst.position, 0.0);
 }
 
@@ -166,7 +166,7 @@ fn transfer_function() {
     // The lead divides a difference of errors by 1/200 of itself.
     let size = peak * f64::from(lead / T);
     assert!(units("with lead", worst.position, size) < 10.0); // 2.8 measured
-    assert_eq!(worst.iq, 0.0);
+    assert_eq!(worst.command, 0.0);
 }
 
 #[test]
@@ -175,7 +175,7 @@ fn network_compensation() {
     let wide = narrow.map(f64::from);
     let deviation = |gains| {
         let worst = deviation(&mut network(&narrow, gains), &mut network(&wide, gains));
-        assert_eq!(worst.iq, 0.0);
+        assert_eq!(worst.command, 0.0);
         worst.position
     };
     // The scale as it is: only the increment rounds, 12 µm at 120 mm/s; 6.7 measured.
@@ -198,7 +198,10 @@ fn combined() {
         deviation(&mut network(&narrow, gains), &mut network(&wide, gains)),
         deviation(&mut friction(), &mut friction()),
     ];
-    assert_eq!((worst.position, worst.iq), (parts[0].position, parts[1].iq));
+    assert_eq!(
+        (worst.position, worst.command),
+        (parts[0].position, parts[1].command)
+    );
 }
 
 /// Speed and acceleration: differences of positions are exact, so what rounds is the way of a cycle, 12 µm at

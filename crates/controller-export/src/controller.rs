@@ -1,6 +1,6 @@
 //! A strategy with everything that its export needs.
 
-use axis_pipeline::strategies::{Predictors, believed_feedback};
+use axis_pipeline::strategies::{Predictors, assumed_feedback};
 use axis_sim::Axis;
 use compensator::{Guard, GuardLimits, Kinematics};
 
@@ -125,10 +125,10 @@ fn law(predictors: &Predictors, name: &str) -> Result<ExportedLaw, ExportError> 
     })
 }
 
-/// The plan of what is believed, with the feedback around it or without.
+/// The plan of the model, with the feedback around it or without.
 fn planned(predictors: &Predictors, name: &str) -> Result<ExportedLaw, ExportError> {
-    let believed = predictors.believed()?;
-    if believed.kinematics != Kinematics::default() {
+    let assumed_model = predictors.assumed_model()?;
+    if assumed_model.kinematics != Kinematics::default() {
         return Err(ExportError::Unsupported {
             name: name.to_owned(),
             what: "its model has free travel or a kinematic error of the transmission",
@@ -136,13 +136,13 @@ fn planned(predictors: &Predictors, name: &str) -> Result<ExportedLaw, ExportErr
         });
     }
     let feedback = match name {
-        "feedback" => Some(believed_feedback(predictors)?),
+        "feedback" => Some(assumed_feedback(predictors)?),
         _ => None,
     };
     Ok(ExportedLaw {
         position: Position::Nothing,
         friction: None,
-        plan: Some(PlanLaw::new(&believed, feedback)?),
+        plan: Some(PlanLaw::new(&assumed_model, feedback)?),
     })
 }
 

@@ -16,7 +16,7 @@ pub enum ExportError {
     },
     /// The strategy learns between moves, which is the work of a host.
     #[error(
-        "the strategy \"{name}\" learns between moves, from logs: that is the work of a host. What it has learned can be exported: the strategy {instead}, with the adapted model as what is believed; valid: {valid}"
+        "the strategy \"{name}\" learns between moves, from logs: that is the work of a host. What it has learned can be exported: the strategy {instead}, with the adapted model as its model; valid: {valid}"
     )]
     LearnsBetweenMoves {
         /// The name asked for.

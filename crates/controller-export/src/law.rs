@@ -81,7 +81,7 @@ impl<T: NetworkScalar + Exponential> ExportedLaw<T> {
     /// The same, each number rounded to the nearest of another scalar.
     ///
     /// # Errors
-    /// [`ExportError`] where one leaves its range by that: a pole that becomes 1, say.
+    /// [`ExportError`] if one leaves its range by that: a pole that becomes 1, say.
     pub fn cast<U: NetworkScalar + Exponential>(&self) -> Result<ExportedLaw<U>, ExportError> {
         let position = match &self.position {
             Position::Nothing => Position::Nothing,

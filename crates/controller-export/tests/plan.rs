@@ -34,7 +34,7 @@ fn streaming_is_the_strategy() -> Outcome<()> {
         };
         Sample {
             next_reference: next,
-            iq_command: 0.3,
+            last_command: 0.3,
             ..Sample::default()
         }
     };
@@ -47,7 +47,7 @@ fn streaming_is_the_strategy() -> Outcome<()> {
         } else {
             assert_eq!(now, whole.correct(&sample(k - ahead)), "cycle {k}");
         }
-        most = most.max(now.iq.abs());
+        most = most.max(now.command.abs());
     }
     assert!(most > 1.0, "{most} A");
     Ok(())

@@ -16,7 +16,7 @@ pub struct Evidence {
     pub fit: LogSet,
     /// Of other motion, on which what is named must prove itself.
     pub check: LogSet,
-    /// Without part in any choice, for the figures. `None` where there is none to spare: the
+    /// Without part in any choice, for the figures. `None` if there is none to spare: the
     /// figures then are of the check logs.
     pub test: Option<LogSet>,
 }
@@ -38,7 +38,7 @@ impl Evidence {
     /// of the check logs is set apart for it, if it can be ([`set_apart`]).
     ///
     /// # Errors
-    /// [`EvidenceError`] where samples were given twice, or a log cannot be compared.
+    /// [`EvidenceError`] if samples were given twice, or a log cannot be compared.
     pub fn new(
         machine: &Axis,
         fit: Vec<NamedLog>,

@@ -5,7 +5,7 @@
 //! Logs y of a closed loop, N samples of C channels each (m, rad, A, V), and a
 //! simulation ŷ(θ, e) of the same loop on the same reference, with known
 //! parameters θ inside their tolerance and effects e of a library
-//! ([`axis_sim::effects`]). With the rest r = y − ŷ in frequency,
+//! ([`axis_sim::effects`]). With the residual r = y − ŷ in frequency,
 //!
 //! ```text
 //! D(θ, e) = 2 Σ_b n_b log det S_b + Σ_i (θ_i / s_i)²,     S_b = Σ_{f in b} r(f) r(f)ᴴ / n_b
@@ -21,7 +21,7 @@
 //! - [`logs`]: whether logs can be compared at all: sampling, units, signs, holes.
 //! - `answers`: how a model answers a log, by closed-loop replay or torque balance; a
 //!   [`LogSet`] is logs that are compared together. `spectrum`: their rest in frequency, and D.
-//! - `noise`: how much of a rest is noise of sensors or of the logger.
+//! - `noise`: how much of a residual is noise of sensors or of the logger.
 //! - `estimate`: known parameters and sizes of effects, with intervals ([`Fitter`]).
 //! - `name`: [`search()`] screens all effects by what they would do to these logs, refines
 //!   the best few by simulation, adds the best, and begins again.

@@ -53,7 +53,7 @@ pub struct SummaryFound {
 /// Ranks the effects by how far each closes the gap to the measured figures.
 ///
 /// # Errors
-/// [`ReplayError`] where the axis as its file says does not run.
+/// [`ReplayError`] if the axis as its file says does not run.
 pub fn rank(
     axis: &Axis,
     measured: &[MeasuredError],

@@ -209,7 +209,10 @@ fn a_log_that_starts_in_motion_begins_at_its_first_rest_or_is_refused() {
     );
     let moving = log(0.6, 0.9, reference, followed, current);
     let error = from_rest("drive.csv", moving, PERIOD, &machine("liu2025")).unwrap_err();
-    assert!(error.to_string().contains("record from rest"), "{error}");
+    assert!(
+        error.to_string().contains("record from standstill"),
+        "{error}"
+    );
     // A rigid machine can begin anywhere.
     let (left, note) = from_rest("drive.csv", cut.clone(), PERIOD, &machine("emps")).unwrap();
     assert_eq!(left.len(), cut.len());
@@ -221,7 +224,7 @@ fn a_turned_sign_is_refused_with_the_lines_that_mend_it() {
     let turned = log(0.0, 2.5, reference, |t| -followed(t), current);
     let message = refusal(&turned);
     for part in [
-        "but for its sign",
+        "except for its sign",
         "[[log.column]]",
         "\"position_m\"",
         "factor = -1",

@@ -229,7 +229,7 @@ fn the_angle_counts_from_anywhere() {
     }
 }
 
-/// Cut in motion: what lies before the first rest is left out, and that rest has stored
+/// Cut in motion: what lies before the first standstill is left out, and that standstill has stored
 /// what the move before it has left.
 #[test]
 fn a_log_cut_in_motion_begins_with_what_its_first_rest_has_stored() {
@@ -241,7 +241,7 @@ fn a_log_cut_in_motion_begins_with_what_its_first_rest_has_stored() {
     let log = cut_out(&with(&machine, std::slice::from_ref(&hidden)), &far, &whole);
     let moving = log.skip((0.6 / machine.period) as usize).unwrap();
     let (left, note) = from_rest("cut.csv", moving, machine.period, &machine).unwrap();
-    assert!(note.unwrap().contains("first rest"));
+    assert!(note.unwrap().contains("first standstill"));
     let [stored, nothing] = departures(&machine, &left, vec![hidden]);
     println!("{stored:e} m, {nothing:e} m with nothing stored");
     // The loop has had half a second to settle, with a time constant of a fifth of it.

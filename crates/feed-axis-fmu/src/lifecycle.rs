@@ -5,7 +5,7 @@ use safer_ffi::prelude::*;
 use crate::call::{Address, Bool, Status, call, caught};
 use crate::instance::{Instance, Log, LogMessage, unit};
 
-/// A string of C as UTF-8; nothing where there is none.
+/// A string of C as UTF-8; nothing if there is none.
 fn text(string: Option<char_p::Ref<'_>>) -> String {
     let bytes = string.map(|string| string.to_bytes()).unwrap_or_default();
     String::from_utf8_lossy(bytes).into_owned()

@@ -80,7 +80,7 @@ impl Compensator for Function {
         match called {
             Ok(correction) => Correction {
                 position: correction.position_m,
-                iq: correction.iq_a,
+                command: correction.command,
             },
             Err(raised) => Hook::fail(raised),
         }
@@ -154,7 +154,7 @@ impl PyCompensator {
         let correction = law.correct(&sample.sample());
         Ok(PyCorrection {
             position_m: correction.position,
-            iq_a: correction.iq,
+            command: correction.command,
         })
     }
 

@@ -118,7 +118,7 @@ impl Discovery {
         self.effects.iter().map(|e| e.name.as_str()).collect()
     }
 
-    /// First number of the first effect, SI; `None` where nothing was named.
+    /// First number of the first effect, SI; `None` if nothing was named.
     #[getter]
     fn size(&self) -> Option<f64> {
         self.first().map(|p| p.value)

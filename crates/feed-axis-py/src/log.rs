@@ -15,7 +15,7 @@ use crate::errors::{LogError, raise};
 /// A log as a caller gives it, and what was done to it, in words.
 ///
 /// A path is read as the axis' `[log]` maps its columns, several with `+` between them as one log. A pandas or polars frame, a Run, or a
-/// dict of arrays has its columns named as channels, `t_s` among them, and NaN where there is no value.
+/// dict of arrays has its columns named as channels, `t_s` among them, and NaN if there is no value.
 pub(crate) fn log_of(
     given: &Bound<'_, PyAny>,
     name: &str,

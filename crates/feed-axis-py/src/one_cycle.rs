@@ -28,7 +28,7 @@ impl Samples {
     /// Position (m), speed (m/s), acceleration (m/s²) and commanded current (A), a row a sample.
     #[getter]
     fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let row = |i: &CycleInput| [i.position, i.speed, i.acceleration, i.iq_command];
+        let row = |i: &CycleInput| [i.position, i.speed, i.acceleration, i.command];
         let rows: Vec<f64> = self.0.inputs.iter().flat_map(row).collect();
         rows.into_pyarray(py).reshape([self.0.inputs.len(), 4])
     }

@@ -1,4 +1,4 @@
-//! What a compensator is told and what it answers, each cycle.
+//! What a compensator gets and what it answers, each cycle.
 
 use compensator::{Reference, Sample};
 use pyo3::prelude::*;
@@ -25,18 +25,18 @@ pub(crate) struct PySample {
     /// Measured motor speed, rad/s.
     #[pyo3(get, set)]
     motor_speed_rad_s: f64,
-    /// Measured q current, A; 0 where the actuator has none.
+    /// Measured q current, A; 0 if the actuator has none.
     #[pyo3(get, set)]
     iq_a: f64,
     /// Command of the cycle before in the actuator's unit: q current, A, of a motor with current control.
     #[pyo3(get, set)]
-    iq_command_a: f64,
+    last_command: f64,
 }
 
 #[pymethods]
 impl PySample {
     #[new]
-    #[pyo3(signature = (*, reference = Triple(0.0, 0.0, 0.0), next_reference = Triple(0.0, 0.0, 0.0), position_m = 0.0, motor_angle_rad = 0.0, motor_speed_rad_s = 0.0, iq_a = 0.0, iq_command_a = 0.0))]
+    #[pyo3(signature = (*, reference = Triple(0.0, 0.0, 0.0), next_reference = Triple(0.0, 0.0, 0.0), position_m = 0.0, motor_angle_rad = 0.0, motor_speed_rad_s = 0.0, iq_a = 0.0, last_command = 0.0))]
     fn new(
         reference: Triple,
         next_reference: Triple,
@@ -44,7 +44,7 @@ impl PySample {
         motor_angle_rad: f64,
         motor_speed_rad_s: f64,
         iq_a: f64,
-        iq_command_a: f64,
+        last_command: f64,
     ) -> Self {
         Self {
             reference: reference.tuple(),
@@ -53,7 +53,7 @@ impl PySample {
             motor_angle_rad,
             motor_speed_rad_s,
             iq_a,
-            iq_command_a,
+            last_command,
         }
     }
 
@@ -89,7 +89,7 @@ impl PySample {
             motor_angle: self.motor_angle_rad,
             motor_speed: self.motor_speed_rad_s,
             iq: self.iq_a,
-            iq_command: self.iq_command_a,
+            last_command: self.last_command,
         }
     }
 
@@ -102,7 +102,7 @@ impl PySample {
             motor_angle_rad: sample.motor_angle,
             motor_speed_rad_s: sample.motor_speed,
             iq_a: sample.iq,
-            iq_command_a: sample.iq_command,
+            last_command: sample.last_command,
         }
     }
 }
@@ -119,22 +119,25 @@ impl PySample {
 pub(crate) struct PyCorrection {
     /// Added to the position error, m or rad.
     pub(crate) position_m: f64,
-    /// Added to the speed controller's current command, A.
-    pub(crate) iq_a: f64,
+    /// Added to the speed controller's command, in the actuator's unit: A, N·m, N or V.
+    pub(crate) command: f64,
 }
 
 #[pymethods]
 impl PyCorrection {
     #[new]
-    #[pyo3(signature = (position_m = 0.0, iq_a = 0.0))]
-    fn new(position_m: f64, iq_a: f64) -> Self {
-        Self { position_m, iq_a }
+    #[pyo3(signature = (position_m = 0.0, command = 0.0))]
+    fn new(position_m: f64, command: f64) -> Self {
+        Self {
+            position_m,
+            command,
+        }
     }
 
     fn __repr__(&self) -> String {
         format!(
-            "Correction(position_m={}, iq_a={})",
-            self.position_m, self.iq_a
+            "Correction(position_m={}, command={})",
+            self.position_m, self.command
         )
     }
 }

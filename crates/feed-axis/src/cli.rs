@@ -25,13 +25,13 @@ pub struct Global {
         value_name = "FORMAT"
     )]
     format: Format,
-    /// Colour of help and messages; auto: on a terminal, where NO_COLOR is not set
+    /// Colour of help and messages; auto: on a terminal, if NO_COLOR is not set
     #[arg(long, default_value_t, global = true, value_name = "WHEN")]
     color: ColorChoice,
     /// Nothing but results and errors: no progress, no notes, no warnings
     #[arg(long, short, global = true, conflicts_with = "verbose")]
     quiet: bool,
-    /// Say on stderr what a search or a training tries; results are the same
+    /// Report on standard error what a search or a training tries; results are the same
     #[arg(long, short, global = true)]
     verbose: bool,
 }

@@ -22,11 +22,12 @@ pub struct Common {
     /// Axis file
     #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     pub axis: PathBuf,
-    /// Set a key of the axis file to another value for this run, such as mechanism.table_mass_kg=415
+    /// Set a key of the axis file to another value for this run, such as
+    /// mechanism.table_mass_kg=415
     /// (may be repeated); the file of --machine keeps its own
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<SetKey>,
-    /// Axis file of what stands for the measured machine [default: the one
+    /// Axis file of the simulated machine that stands for the real one [default: the one
     /// that the axis file names, or the axis itself]
     #[arg(long, value_name = "FILE")]
     pub machine: Option<PathBuf>,

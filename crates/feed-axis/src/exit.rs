@@ -31,8 +31,8 @@ impl Exit {
     /// What it means, for people.
     pub fn meaning(self) -> &'static str {
         match self {
-            Self::Done => "done; a verdict is a result, whatever it says",
-            Self::Failed => "failed: a file, a log or a machine did not allow the work",
+            Self::Done => "done, whatever the result or verdict says",
+            Self::Failed => "failed: an input was refused, or the work could not be done",
             Self::Usage => {
                 "wrong use: an option that does not exist, does not go with another, or has a \
                  value out of range"

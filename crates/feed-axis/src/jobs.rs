@@ -38,9 +38,10 @@ pub trait Jobs: Subcommand {
 pub enum UserJob {
     /// Simulate one-cycle samples over a Latin hypercube (Section 4.2)
     Sample(sample::Options),
-    /// Damping, layers, neurons and epochs over several seeds (Tables 7 to 10)
+    /// Train networks of other damping, layers, neurons and epochs over several seeds (Tables 7 to
+    /// 10)
     Study(study::Options),
-    /// What compensation leaves where what is believed is wrong, draw by draw
+    /// Tracking error that compensation leaves when its model is wrong, draw by draw
     Robustness(robustness::Options),
 }
 
@@ -71,8 +72,8 @@ pub trait JobOptions {
 /// Which part of a job is made.
 #[derive(Args, Clone)]
 pub struct Sharding {
-    /// Only make shard I of N (from 1) and write it to the folder `shards`, for the
-    /// command merge (docs/campaigns.md); one that is there is left alone
+    /// Only make shard I of N (from 1) and write it to the folder `shards`, for the command merge
+    /// (docs/campaigns.md); an existing one is kept
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
 }
@@ -80,7 +81,7 @@ pub struct Sharding {
 /// Makes all of a job in this process.
 pub fn whole(job: &dyn Job) -> Result<()> {
     let progress = bar(job.name(), job.cases() as u64);
-    run_whole(job, &|cases| progress.inc(cases as u64)).map_err(told)?;
+    run_whole(job, &|cases| progress.inc(cases as u64)).map_err(report)?;
     progress.finish_and_clear();
     Ok(())
 }
@@ -101,7 +102,7 @@ fn make(job: &dyn Job, shard: Shard) -> Result<()> {
     let made = run_shard(job, shard, IfOther::Refuse, &|cases| {
         progress.inc(cases as u64)
     });
-    let path = made.map_err(|error| told(error.into()))?;
+    let path = made.map_err(|error| report(error.into()))?;
     progress.finish_and_clear();
     let text = format!(
         "{}, shard {shard}: {cases} cases in {}",
@@ -118,7 +119,7 @@ fn make(job: &dyn Job, shard: Shard) -> Result<()> {
 }
 
 /// A failure with its causes, in one message; one that is a report of this program as it was.
-pub fn told(failure: campaign::Failure) -> miette::Report {
+pub fn report(failure: campaign::Failure) -> miette::Report {
     let failure = match failure.downcast::<Reported>() {
         Ok(reported) => return reported.0,
         Err(failure) => failure,

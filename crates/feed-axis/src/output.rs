@@ -33,7 +33,7 @@ impl Document {
         }
     }
 
-    /// The whole document; none where nothing was found.
+    /// The whole document; none if nothing was found.
     fn text(&self) -> Option<String> {
         if !self.by_name {
             return self.parts.first().map(|(_, json)| json.clone());

@@ -54,7 +54,7 @@ impl Terminal {
 }
 
 /// What `--color` of a command line says, before it is parsed: errors of parsing keep to it
-/// too. Nothing where it says nothing valid, which the parser then tells.
+/// too. Nothing if it says nothing valid, which the parser then tells.
 pub fn color_in(words: impl IntoIterator<Item = OsString>) -> ColorChoice {
     let mut choice = ColorChoice::Auto;
     let mut words = words.into_iter().peekable();

@@ -421,7 +421,7 @@ fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
     let message = refuse(&["compensate", "--quick", "--out", out, "--axis", other]);
     assert!(message.contains("another axis file"), "{message}");
 
-    // The pipeline mends what is damaged.
+    // The pipeline corrects what is damaged.
     succeed(&["pipeline", "--quick", "--out", out]);
     assert_eq!(std::fs::read(&samples).unwrap(), whole);
 }

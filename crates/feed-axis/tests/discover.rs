@@ -131,6 +131,16 @@ fn the_new_axis_file_is_the_machine_for_every_other_command() {
     // A table of errors leaves the logs' report where it is.
     let report = || std::fs::read(format!("{out}/report.html")).unwrap();
     let before = report();
+    // Its first section is the gap, its logs have no folder, and a figure names no column as a quantity.
+    let page = String::from_utf8(before.clone()).unwrap();
+    let section = page.split("<h2").nth(1).unwrap();
+    assert!(
+        section.contains("The gap before and after"),
+        "{section:.300}"
+    );
+    assert!(page.contains("</b> 2.csv: position (position_m)"));
+    assert!(page.contains("log − model: position") && !page.contains("log − model: position_m"));
+    assert!(!page.contains("-0.000"), "a share of nothing has no sign");
     let table = "data/reference/liu2025/table13_model_vs_experiment.csv";
     let said = succeed(&["discover", "--summary", table, "--out", &out]);
     assert!(said.contains("1. viscous-friction"), "{said}");
@@ -223,7 +233,7 @@ fn an_effect_that_the_machine_cannot_have_is_not_accepted() {
 #[test]
 fn accepting_and_rejecting_say_that_the_search_is_made_anew() {
     let help = succeed(&["discover", "--help"]);
-    assert_eq!(help.matches("Search anew").count(), 2, "{help}");
+    assert_eq!(help.matches("Search again").count(), 2, "{help}");
 }
 
 #[test]

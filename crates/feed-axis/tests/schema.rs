@@ -114,7 +114,7 @@ fn a_table_that_lacks_its_mapping_is_shown_with_one() {
     assert_eq!(found["logs"][0]["columns"][1]["greatest"], 619.5);
 }
 
-/// One that lacks its time is shown with the mapping that would mend that, as JSON too.
+/// One that lacks its time is shown with the mapping that would correct that, as JSON too.
 #[test]
 fn log_inspect_proposes_a_mapping_of_what_cannot_be_read_yet() {
     let file = "crates/axis-log/tests/data/sinumerik.json";

@@ -93,7 +93,7 @@ impl FeedDrive {
     /// M(x), C(x) = βK(x) and K(x) with the table at `x` metres from the driven end.
     ///
     /// # Errors
-    /// [`DriveError::OffScrew`] where `x` is not on the screw.
+    /// [`DriveError::OffScrew`] if `x` is not on the screw.
     pub fn matrices(&self, x: f64, coupling: NutCoupling) -> Result<DriveMatrices, DriveError> {
         self.check_position(x)?;
         let p = self.parameters();

@@ -19,7 +19,7 @@ impl FeedDrive {
     /// Natural modes with the table at `x` metres from the driven end.
     ///
     /// # Errors
-    /// [`DriveError::OffScrew`] where `x` is not on the screw.
+    /// [`DriveError::OffScrew`] if `x` is not on the screw.
     pub fn modes(&self, x: f64, coupling: NutCoupling) -> Result<DriveModes, DriveError> {
         let m = self.matrices(x, coupling)?;
         let modes = beam_fem::natural_modes(&m.mass, &m.stiffness)?;

@@ -45,7 +45,7 @@ impl FeedDrive {
     /// ```
     ///
     /// # Errors
-    /// [`DriveError::OffScrew`] where `x` is not on the screw;
+    /// [`DriveError::OffScrew`] if `x` is not on the screw;
     /// [`DriveError::Parameter`] for a screw node that does not exist and a frequency
     /// that is not finite; [`DriveError::Singular`] at zero frequency, where the axis is
     /// free, and at a resonance without damping.

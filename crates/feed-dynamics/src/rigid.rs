@@ -100,7 +100,7 @@ impl RigidStepper {
     /// Prepares steps of `step` seconds.
     ///
     /// # Errors
-    /// [`DriveError::Parameter`] where the step is not above zero and at most 1 s.
+    /// [`DriveError::Parameter`] if the step is not above zero and at most 1 s.
     pub fn new(drive: &RigidDrive, step: f64) -> Result<Self, DriveError> {
         check_step(step)?;
         Ok(Self {
@@ -210,7 +210,7 @@ impl TimeStepper for RigidStepper {
             motor_speed: state.speed / r,
             displacement: state.displacement,
             speed: state.speed,
-            nut_force: state.force,
+            transmission_force: state.force,
         }
     }
 

@@ -13,7 +13,7 @@ use axis_scalar::Scalar;
 use core::f64::consts::FRAC_2_PI;
 
 /// The mean fraction of a period that each leg is on the upper rail: always
-/// within \[0, 1\], or NaN where [`Svpwm`] was asked for a vector that is not
+/// within \[0, 1\], or NaN if [`Svpwm`] was asked for a vector that is not
 /// a number, so that a loop that has diverged shows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Duties<T = f64> {
@@ -76,7 +76,7 @@ impl<T: Scalar> Svpwm<T> {
     /// rails and splits the zero-vector time evenly, as space-vector
     /// modulation does (van der Broeck, Skudelny and Stanke, IEEE Trans. Ind.
     /// Appl. 24 (1988) 142–150). Outside the hexagon [`Overmodulation`]
-    /// decides. NaN where the phase voltages are not finite.
+    /// decides. NaN if the phase voltages are not finite.
     #[inline]
     pub fn duties(&self, u: AlphaBeta<T>) -> Duties<T> {
         let phases = u.inverse_clarke();

@@ -24,7 +24,7 @@ use crate::parameters::{LugreError, Parameters};
 )]
 pub struct LuGre<T = f64> {
     parameters: Parameters<T>,
-    /// σ0 of the bristles; 0 where they carry nothing.
+    /// σ0 of the bristles; 0 if they carry nothing.
     stiffness: T,
     /// 1 / σ0, rad/(N·m).
     compliance: T,
@@ -51,9 +51,9 @@ pub struct Constants<T = f64> {
     pub damping: T,
     /// `σ2`, N·m·s/rad.
     pub viscous: T,
-    /// `σ0` of the bristles, N·m/rad; 0 where they carry nothing.
+    /// `σ0` of the bristles, N·m/rad; 0 if they carry nothing.
     pub stiffness: T,
-    /// `1/σ0`, rad/(N·m); 0 where they carry nothing.
+    /// `1/σ0`, rad/(N·m); 0 if they carry nothing.
     pub compliance: T,
     /// `T_S − T_C`, N·m.
     pub rise: T,
@@ -63,7 +63,7 @@ pub struct Constants<T = f64> {
     pub flat_above: T,
     /// `T_C/σ0`, rad.
     pub coulomb_bristle: T,
-    /// `σ0/T_C`, 1/rad; 0 where the bristles carry nothing.
+    /// `σ0/T_C`, 1/rad; 0 if the bristles carry nothing.
     pub coulomb_decay: T,
 }
 
@@ -168,7 +168,7 @@ impl<T: Exponential> LuGre<T> {
     }
 
     /// Share of the Coulomb level that the bristles hold at the deflection `z`, from −1 to
-    /// 1; 0 where they carry nothing.
+    /// 1; 0 if they carry nothing.
     #[must_use]
     #[inline]
     pub fn coulomb_share(&self, z: T) -> T {
@@ -202,7 +202,7 @@ impl<T: Exponential> LuGre<T> {
             + self.parameters.viscous * speed
     }
 
-    /// `σ0`, or 0 where the bristles carry nothing.
+    /// `σ0`, or 0 if the bristles carry nothing.
     #[inline]
     pub(crate) fn bristle_stiffness(&self) -> T {
         self.stiffness

@@ -287,7 +287,7 @@ fn an_unknown_standard_error_gains_no_weight() {
     assert!(low > 0.95 && high < 1.03, "{low} {high}");
 }
 
-/// Zero is not a standard error: a fit would believe that run alone.
+/// Zero is not a standard error: a fit would assume that run alone.
 #[test]
 fn a_standard_error_of_zero_is_refused() {
     let mut runs = quiet_runs(&QUIET_MM_S, 100, 1);

@@ -44,7 +44,7 @@ fn plan(c: &mut Criterion) {
             SCurve::plan(black_box(0.6), black_box(0.9), &limits)
         });
     });
-    // Distances in a fixed random order, so that the ways through the planner cannot be foreseen.
+    // Distances in a fixed random order, so that the ways through the planner cannot be predicted.
     let distances: Vec<f64> = random().map(|u| 0.1 * u * u).take(INSTANTS).collect();
     group.throughput(Throughput::Elements(INSTANTS as u64));
     group.bench_function("mixed", |b| {

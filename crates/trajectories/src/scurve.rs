@@ -249,7 +249,7 @@ impl<T: Real> SCurve<T> {
     /// Index of the segment that holds `t` in `[0, duration)`; at a switch, of the later one.
     ///
     /// The cruise comes first, being the longest as a rule. Branches, because motions are mostly
-    /// sampled in order, and these are then foreseen; a search without branches measured half
+    /// sampled in order, and these are then predicted; a search without branches measured half
     /// as slow again in order, and a little faster at random.
     #[inline]
     fn segment(&self, t: T) -> usize {

@@ -15,9 +15,9 @@ pub struct Logger {
     pub current: f64,
     /// Share of the last sample's noise in the next one's, 0 (white) to below 1.
     pub colour: f64,
-    /// Steps of the position, m; none where 0.
+    /// Steps of the position, m; none if 0.
     pub position_step: f64,
-    /// Steps of the q current, A; none where 0.
+    /// Steps of the q current, A; none if 0.
     pub current_step: f64,
     /// Share of the q current's samples that are outliers.
     pub outliers: f64,

@@ -34,7 +34,7 @@ pub struct Machine {
     origin: f64,
     /// How far it was ahead of the screw there, m.
     ahead_at_start: f64,
-    /// s; before 0 where the log begins later.
+    /// s; before 0 if the log begins later.
     time: f64,
     /// Angles since the start, rad, and their rates.
     angles: DVector<f64>,

@@ -20,7 +20,7 @@ struct Options {
     /// A slide on a linear motor instead, with this hidden
     #[arg(long, value_name = "NAME", conflicts_with = "case", value_parser = SLIDE_CASES.map(|(name, _)| name))]
     slide: Option<String>,
-    /// Seed of noise and of parameters put off
+    /// Seed of noise and of parameter errors
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Folder for fit-1.csv, fit-2.csv, check-1.csv, check-2.csv, axis.toml, truth.json

@@ -10,7 +10,7 @@ use crate::random::Random;
 
 /// Steps of the machine in a control period.
 const STEPS: u32 = 10;
-/// Time before the log in which a standing load settles, s.
+/// Time before the log in which a constant load settles, s.
 const BEFORE: f64 = 1.5;
 
 /// Standard deviations of what the drive's own sensors add, white, every control period.

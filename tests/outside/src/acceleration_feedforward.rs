@@ -33,7 +33,7 @@ impl Compensator for AccelerationFeedforward {
     fn correct(&mut self, sample: &Sample) -> Correction {
         Correction {
             position: 0.0,
-            iq: self.per_acceleration * sample.reference.acceleration,
+            command: self.per_acceleration * sample.reference.acceleration,
         }
     }
 }

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use axis_sim::ValueRange;
-use axis_sim::mechanism::{Mechanism, Way};
+use axis_sim::mechanism::{Mechanism, SolutionMethod};
 use axis_sim::part::units::{FORCE, INERTIA, LENGTH, MASS, TIME};
 use axis_sim::part::{Known, PartError, PartKind, Role, Values, number, quantity};
 use axis_sim::plant::{Assembly, Plant};
@@ -103,7 +103,12 @@ impl Mechanism for ChainHoist {
         Ok(vec![self.drive.resonance(x)])
     }
 
-    fn plant(&self, _: Way, step: f64, assembly: Assembly) -> Result<Arc<dyn Plant>, DriveError> {
+    fn plant(
+        &self,
+        _: SolutionMethod,
+        step: f64,
+        assembly: Assembly,
+    ) -> Result<Arc<dyn Plant>, DriveError> {
         Ok(assembly.on(ElasticStepper::new(&self.drive, step)?))
     }
 }

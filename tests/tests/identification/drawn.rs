@@ -128,7 +128,7 @@ struct Machine {
     /// Load's way per radian of the motor, and its way per force by wind-up.
     travel: f64,
     compliance: f64,
-    /// Standing load as a function of the load's position.
+    /// constant load as a function of the load's position.
     load: fn(f64) -> f64,
     start: f64,
     /// Channel of the motion, its steps and noise; whether it is at the motor.

@@ -52,7 +52,7 @@ pub fn command(options: &Options) -> Result<()> {
             .map(|text| text.0.display().to_string())
             .collect();
         return Err(miette!(
-            "not as the crates are now (`cargo xtask crates --write` mends it):\n{}",
+            "not as the crates are now (`cargo xtask crates --write` corrects it):\n{}",
             files.join("\n")
         ));
     }
@@ -77,7 +77,8 @@ fn between(file: &Path, new: &str) -> Result<(PathBuf, String, String)> {
 
 /// How many other crates a crate needs.
 struct Counts {
-    /// Without features, with those that are on by default, with all; where there are none the same.
+    /// Without features, with those that are on by default, with all; if there are none the
+    /// same.
     bare: usize,
     default: usize,
     all: usize,

@@ -23,7 +23,8 @@ pub struct Options {
     /// Axis file: the machine in which effects are hidden (version 1)
     #[arg(long, value_name = "FILE", default_value = "data/axes/liu2025.toml")]
     axis: PathBuf,
-    /// 1: one machine, its truth like the model; 2: several, as hard as reality
+    /// 1: one machine that follows the model's laws; 2: several that differ from the model as real
+    /// machines do
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2))]
     version: u32,
     /// Axis files of version 2, taken in turn
@@ -37,7 +38,7 @@ pub struct Options {
     /// program ran them on this axis file
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Layout of the cases, noise and known parameters; 1 to 7 served development
+    /// Seed of the cases, noise and known parameters; 1 to 7 were used in development
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
     /// Some twenty cases, of every kind
@@ -49,10 +50,10 @@ pub struct Options {
     /// Only these cases, by their names (may be repeated)
     #[arg(long, value_name = "CASE", conflicts_with = "first")]
     pub(super) only: Vec<String>,
-    /// Also write the page of the full matrix here, where no page of another seed is
+    /// Also write the page of the full matrix here; a page of another seed is not overwritten
     #[arg(long, value_name = "FILE", conflicts_with_all = ["quick", "first", "only"])]
     pub(super) page: Option<PathBuf>,
-    /// Run nothing, and tell what was kept by any program on these cases (version 2)
+    /// Run nothing; show the kept results of these cases, whichever program made them (version 2)
     #[arg(long)]
     pub(super) tell: bool,
     /// Threads, 0 for all cores; results do not depend on it
@@ -213,7 +214,7 @@ impl Kept {
         Some((file.made_by, file.outcome))
     }
 
-    /// The outcome of a case; `None` where there is none of this program.
+    /// The outcome of a case; `None` if there is none of this program.
     pub(super) fn outcome(&self, case: &Case) -> Option<CaseOutcome> {
         let outcome: Option<CaseOutcome> = self.read(&case.id);
         outcome.filter(|o| o.case.is_same(case))

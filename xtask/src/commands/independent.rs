@@ -20,10 +20,10 @@ use feed_axis::output::{ready, say, write_whole};
 /// Options of the command.
 #[derive(Args)]
 pub struct Options {
-    /// Case (may be repeated); all where none is given
+    /// Case (may be repeated) [default: all]
     #[arg(long, value_name = "NAME")]
     case: Vec<String>,
-    /// Seed of noise and of parameters put off
+    /// Seed of noise and of parameter errors
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Folder for the logs, one result a case, independent.json and independent.md; cases
@@ -43,7 +43,7 @@ struct Size {
     unit: String,
     value: f64,
     ci95: [f64; 2],
-    /// `None` where the effect is not the hidden one.
+    /// `None` if the effect is not the hidden one.
     truth: Option<f64>,
 }
 
@@ -61,12 +61,12 @@ struct Outcome {
     /// Hash of the program that made it.
     made_by: String,
     truth: Truth,
-    /// `None` where the search failed.
+    /// `None` if the search failed.
     verdict: Option<Verdict>,
     effects: Vec<Name>,
     /// Variable and formula of what has no name.
     unknown: Option<[String; 2]>,
-    /// What is not as it should be; empty where all is right.
+    /// What is not as it should be; empty if all is right.
     wrong: Vec<String>,
     sentence: String,
     seconds: f64,

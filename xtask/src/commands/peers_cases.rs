@@ -27,7 +27,7 @@ pub struct Options {
     /// Cases, rounded up to a multiple of four
     #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u32).range(1..=400))]
     cases: u32,
-    /// Layout of the cases, noise and known parameters
+    /// Seed of the cases, noise and known parameters
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Only the first N of them
@@ -67,7 +67,7 @@ struct Number {
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct HiddenTruth {
     name: String,
-    /// The law in words, of one of no library.
+    /// The law in words, of one outside the library.
     law: Option<String>,
     /// On what it depends.
     depends_on: String,
@@ -109,7 +109,7 @@ struct Index<'a> {
 }
 
 const CHOSEN: &str = "four of each plot: clean; two effects that are sums of terms; by turns an effect that is none, \
-and a law of no library. Of 16 single effects drawn a plot those taken least often before, first drawn first";
+and a law outside the library. Of 16 single effects drawn a plot those taken least often before, first drawn first";
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {

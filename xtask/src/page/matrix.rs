@@ -69,12 +69,12 @@ pub fn figures(score: &Score) -> String {
         "",
     );
     rate(
-        "the others: unknown, partly explained, or by a foreseen look-alike",
+        "the others: unknown, partly explained, or by a predicted look-alike",
         &score.outside,
         "≥ 95 %",
     );
     rate(
-        "taken out of the library, seen: unknown, partly explained, or by a foreseen look-alike",
+        "taken out of the library, seen: unknown, partly explained, or by a predicted look-alike",
         &score.left_out,
         "≥ 95 %",
     );
@@ -100,7 +100,7 @@ pub fn figures(score: &Score) -> String {
     );
     for (name, errors, target) in [
         (
-            "error of sizes, known parameters told: median, 90 %",
+            "error of sizes, known parameters exact: median, 90 %",
             score.error,
             "≤ 2 %, ≤ 8 %",
         ),
@@ -141,7 +141,7 @@ pub fn page(axis: &Axis, seed: u64, all: usize, outcomes: &[CaseOutcome], score:
         "{TITLE}\n\nMachine: {}. Seed {seed}. {} of {all} cases run.\n\
         `cargo xtask discover-matrix --seed {seed} --page FILE` makes this page; docs/theory/discover-matrix.md says how cases\n\
         are made and counted. Intervals are Wilson's. Everything here is simulated.\n\n{}\n\
-        ## Each effect, hidden alone\n\nErrors are those of sizes where it was named first, known parameters told.\n\n\
+        ## Each effect, hidden alone\n\nErrors are those of sizes where it was named first, known parameters exact.\n\n\
         | effect | can be seen | named first | or in the class | error: median, largest | 95 % intervals |\n\
         |---|---|---|---|---|---|\n",
         axis.name,
@@ -178,7 +178,7 @@ pub fn page(axis: &Axis, seed: u64, all: usize, outcomes: &[CaseOutcome], score:
     let _ = writeln!(
         text,
         "\n## Cases\n\nGain: expected fall of D, known beforehand; in brackets where the effect cannot be seen.\n\
-        Class: effects foreseen to look alike.\n\n\
+        Class: effects predicted to look alike.\n\n\
         | case | motion | noise | hidden | gain | class | verdict | named (alike) | gap gone |\n|---|---|---|---|---|---|---|---|---|"
     );
     for outcome in sorted {
@@ -220,12 +220,12 @@ fn row(outcome: &CaseOutcome) -> String {
         let values: Vec<String> = h.values.iter().map(|v| format!("{v:.3e}")).collect();
         format!("{} {}", h.name, values.join(" "))
     });
-    let gains = outcome.foreseen.iter().map(|f| match f.detectable {
+    let gains = outcome.predicted.iter().map(|f| match f.detectable {
         true => format!("{:.0}", f.gain),
         false => format!("({:.0})", f.gain),
     });
-    let classes = outcome.foreseen.iter().flat_map(|f| f.class.clone());
-    let imitated = outcome.foreseen.iter().filter_map(|f| {
+    let classes = outcome.predicted.iter().flat_map(|f| f.class.clone());
+    let imitated = outcome.predicted.iter().filter_map(|f| {
         let imitation = f.imitation.as_ref().filter(|i| i.complete)?;
         Some(format!("imitated by {}", imitation.by.join(" + ")))
     });

@@ -127,7 +127,7 @@ fn against(target: &ScoreTarget, outcomes: &[CaseOutcome]) -> String {
         return text + "No case.\n";
     }
     hurt.sort_by(|a, b| a.case.id.cmp(&b.case.id));
-    text += "| case | machine, motion | tolerance | channels | noise | form, start | hidden (fall of D foreseen) | verdict | named (alike) | left over |\n\
+    text += "| case | machine, motion | tolerance | channels | noise | form, start | hidden (fall of D predicted) | verdict | named (alike) | left over |\n\
         |---|---|---|---|---|---|---|---|---|---|\n";
     for outcome in hurt {
         let _ = writeln!(text, "{}", row(outcome));
@@ -139,7 +139,7 @@ fn row(outcome: &CaseOutcome) -> String {
     let (case, setting) = (&outcome.case, &outcome.case.setting);
     let hidden = case.hidden.iter().enumerate().map(|(i, h)| {
         let law = case.law.as_ref().map(|law| law.name());
-        let gain = outcome.foreseen.get(i).map_or(0.0, |f| f.gain);
+        let gain = outcome.predicted.get(i).map_or(0.0, |f| f.gain);
         format!("{} ({gain:.0})", law.unwrap_or_else(|| h.name.clone()))
     });
     let hidden: Vec<String> = hidden.collect();

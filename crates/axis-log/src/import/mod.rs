@@ -47,7 +47,7 @@ const FORMATS: &[Format] = &[
 /// What a column seems to be.
 #[derive(Clone)]
 struct Found {
-    /// Which axis it is of; empty where nothing tells.
+    /// Which axis it is of; empty if nothing tells.
     axis: String,
     column: ProposedColumn,
     /// Whether the file itself says the unit, or it is only the usual one.
@@ -141,8 +141,9 @@ fn lines(columns: &[ProposedColumn]) -> String {
 }
 
 /// What a file is, by its content, and what mapping it could have: of a recording of another
-/// program by the names that this gives, of any other table by what names and units in it seem to say.
-/// `None` where nothing is left to map, and of files that are not read.
+/// program by the names that this gives, of any other table by what names and units in it seem to
+/// say.
+/// `None` if nothing is left to map, and of files that are not read.
 ///
 /// # Errors
 /// A [`ReadError`]: the file cannot be read, or is damaged.
@@ -174,7 +175,7 @@ fn proposal(path: &Path) -> Result<Option<MappingProposal>, ReadProblem> {
 
 /// What the caution of a proposal by names and units alone is.
 const BY_NAME: &str =
-    "a unit that no name says is a guess (mm, mm/s, A, N·m): compare with the numbers";
+    "a unit that no name states is a guess (mm, mm/s, A, N·m): compare with the numbers";
 
 /// The columns of a table that can be read, as `columns` tells what they are.
 fn proposed(

@@ -1,6 +1,7 @@
 //! CSV files of moteus controllers, as the maker's own example writes them.
 //!
-//! `CsvController` of [csv_output.py](https://github.com/mjbots/moteus/blob/main/lib/python/examples/csv_output.py)
+//! `CsvController` of
+//! [csv_output.py](https://github.com/mjbots/moteus/blob/main/lib/python/examples/csv_output.py)
 //! writes a line of names and a line for each answer of a controller:
 //!
 //! ```text
@@ -26,7 +27,7 @@ pub(super) const FORMAT: Format = Format {
         ))
     },
     columns: proposed,
-    caution: "times are those at which the computer had the answer, so uneven; position, velocity and torque are of the output, which is the motor's only without a gear in the controller's configuration; what an answer lacked is written as 0",
+    caution: "times are those at which the computer received the answers, so they are uneven; position, velocity and torque are of the output, which is the motor's only without a gear in the controller's configuration; what an answer lacked is written as 0",
 };
 
 const TIME: &str = "time";

@@ -202,11 +202,11 @@ impl fmt::Display for Done {
             ),
             Self::Held { file, rows } => write!(
                 f,
-                "{file}: {rows} rows that the control left out because nothing changed; values hold there"
+                "{file}: {rows} rows that the control left out because nothing changed; the last values are held there"
             ),
             Self::Repeated { file, rows, first } => write!(
                 f,
-                "{file}: {rows} row(s) that are there twice, the first at t = {first:.4} s; taken once"
+                "{file}: {rows} row(s) occur twice, the first at t = {first:.4} s; each is read once"
             ),
             Self::Unwrapped {
                 channel,
@@ -215,7 +215,7 @@ impl fmt::Display for Done {
                 unit,
             } => write!(
                 f,
-                "{channel}: it begins anew after {period:.6} {unit}, {jumps} time(s); it was made to go on"
+                "{channel}: it wraps around after {period:.6} {unit}, {jumps} time(s); unwrapped"
             ),
             Self::Shifted {
                 file,
@@ -236,7 +236,7 @@ impl fmt::Display for Done {
             Self::Rows { file, rows, gaps } => {
                 write!(
                     f,
-                    "{file}: {rows} rows missing in {gaps} place(s); put back without values"
+                    "{file}: {rows} rows missing in {gaps} place(s); inserted without values"
                 )
             }
             Self::Interpolated { file, jitter, rate } => write!(
@@ -265,7 +265,7 @@ impl fmt::Display for Done {
                 unit,
             } => write!(
                 f,
-                "{channel}: {samples} isolated outlier(s), the first at t = {first:.4} s, up to {farthest:.3e} {unit} from what stands around; taken out"
+                "{channel}: {samples} isolated outlier(s), the first at t = {first:.4} s, up to {farthest:.3e} {unit} from its neighbours; removed"
             ),
             Self::Bridged {
                 channel,
@@ -274,12 +274,12 @@ impl fmt::Display for Done {
                 at,
             } => write!(
                 f,
-                "{channel}: {samples} sample(s) without a value, at most {longest} in a row (from t = {at:.4} s); a straight line stands there, without weight"
+                "{channel}: {samples} sample(s) without a value, at most {longest} in a row (from t = {at:.4} s); interpolated there by a straight line, with zero weight"
             ),
             Self::Delayed { channel, delay } => {
                 write!(
                     f,
-                    "{channel}: moved by {:.4} ms, its delay_ms",
+                    "{channel}: shifted by {:.4} ms, its delay_ms",
                     -1e3 * delay
                 )
             }
@@ -297,7 +297,7 @@ impl fmt::Display for Done {
             ),
             Self::Aligned { file, found } => write!(
                 f,
-                "{file}: its clock is {:.4} ± {:.4} ms late ({} against {}, correlation {:.4}); taken out",
+                "{file}: its clock is {:.4} ± {:.4} ms late ({} against {}, correlation {:.4}); corrected",
                 1e3 * found.delay,
                 1e3 * found.standard_error,
                 found.channels[1],
@@ -306,7 +306,7 @@ impl fmt::Display for Done {
             ),
             Self::DelayDiffers { file, found } => write!(
                 f,
-                "{file}: after its delay_ms it is {:.4} ± {:.4} ms late ({} against {}); left as given",
+                "{file}: after its delay_ms it is {:.4} ± {:.4} ms late ({} against {}); left unchanged",
                 1e3 * found.delay,
                 1e3 * found.standard_error,
                 found.channels[1],
@@ -314,7 +314,7 @@ impl fmt::Display for Done {
             ),
             Self::DelayUnknown { file, against } => write!(
                 f,
-                "{file}: its delay against {against} is unknown, as they share no quantity; time stamps are taken as they are; if it is known, give delay_ms to its columns"
+                "{file}: its delay against {against} is unknown, as they share no quantity; time stamps are taken as they are; if it is known, set delay_ms of its columns"
             ),
             Self::Twice { file, channel } => {
                 write!(

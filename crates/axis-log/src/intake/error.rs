@@ -59,8 +59,7 @@ pub enum IntakeError {
     /// Files that share no time.
     #[error(
         "{files}: their channels, moved by their delays, share {overlap:.4} s: at least two \
-         periods of {period:.3e} s are needed; are the clocks of one start? Else give delay_ms \
-         to the columns of one file"
+         periods of {period:.3e} s are needed; do the clocks start together? If not, set delay_ms of the columns of one file"
     )]
     NoOverlap {
         /// The files.

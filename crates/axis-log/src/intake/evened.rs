@@ -4,8 +4,8 @@
 //! comes to it: stamps are right, samples uneven. Or a drive samples evenly, and what stamps its
 //! messages is late by turns: samples are even, stamps wrong. Or a program stamps what it read the
 //! round before: samples are those of the row before, or of the next. Which it is shows in what
-//! moves smoothly: each sample is foreseen from its neighbours, at the instants that are stamped,
-//! at those of the rows beside it, and at even ones, and the instants that foresee best are right.
+//! moves smoothly: each sample is predicted from its neighbours, at the instants that are stamped,
+//! at those of the rows beside it, and at even ones, and the instants that predict best are right.
 
 use super::recording::MOST_EMPTY;
 use crate::channel::Channel;
@@ -17,7 +17,7 @@ use crate::quality::MAX_JITTER;
 const CLEAR: f64 = 0.25;
 /// Longest step inside which there is something to interpolate, typical steps.
 const LONGEST: f64 = 2.5;
-/// How much better (logarithm of the RMS) one kind of instants must foresee to be believed.
+/// How much better (logarithm of the RMS) one kind of instants must predict to be trusted.
 const CLEARLY: f64 = 0.1;
 /// Steps whose standard deviation is more than this share of a period have no grid,
 const MOST_SPREAD: f64 = 0.75;
@@ -45,7 +45,7 @@ pub(super) struct Evened {
     pub time: Vec<f64>,
 }
 
-/// Puts channels (NaN where there is no value) with uneven stamps on an even grid; `None`,
+/// Puts channels (NaN if there is no value) with uneven stamps on an even grid; `None`,
 /// and nothing changed, where stamps are even, too wild, or mostly missing.
 pub(super) fn even_out(time: &[f64], channels: &mut [Channel]) -> Option<Evened> {
     let found = Grid::of(time)?;
@@ -206,7 +206,7 @@ fn beside(time: &[f64], rows: i64) -> Vec<f64> {
     (0..=last).map(|k| at(k - rows)).collect()
 }
 
-/// RMS of what the two neighbours on each side, at those instants, do not foresee.
+/// RMS of what the two neighbours on each side, at those instants, do not predict.
 fn surprise(time: &[f64], instants: &[f64], steps: &Steps, samples: &[f64]) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);
     for k in 2..samples.len().saturating_sub(2) {

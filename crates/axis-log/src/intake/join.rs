@@ -9,7 +9,7 @@ use crate::log::TIME_CHANNEL;
 use crate::numeric::holes::{bridge, runs};
 use crate::numeric::resample::{Resampler, SAME};
 
-/// Channels on one grid, the time first; NaN where there is no value.
+/// Channels on one grid, the time first; NaN if there is no value.
 pub(super) fn join(
     mut parts: Vec<Recording>,
     rate: Option<f64>,

@@ -73,10 +73,10 @@ pub fn prepare<P: AsRef<Path>>(
 }
 
 /// As [`prepare`], of channels that are there already under the `name` that messages give them,
-/// as a table of a program has them: the time first, NaN where there is no value.
+/// as a table of a program has them: the time first, NaN if there is no value.
 ///
 /// # Errors
-/// As [`prepare`]; [`IntakeError::Log`] where the channels are not of one length, the time does
+/// As [`prepare`]; [`IntakeError::Log`] if the channels are not of one length, the time does
 /// not rise, or a value is infinite.
 pub fn prepare_channels(
     name: &str,
@@ -149,7 +149,7 @@ fn prepared(
 }
 
 /// A whole part of the slowest recording's rate at which it has no more samples than these; `None`
-/// where it has no more.
+/// if it has no more.
 fn slowed(parts: &[Recording], most: usize, done: &mut Vec<Done>) -> Option<f64> {
     let of = |part: &Recording| Some((part.grid?.period, part.time.len(), part.name.clone()));
     let slowest = parts.iter().filter_map(of);

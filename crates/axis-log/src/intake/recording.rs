@@ -13,7 +13,7 @@ use crate::read::read;
 use crate::read_error::ReadError;
 use crate::table::Holes;
 
-/// Channels on one clock; NaN where there is no value.
+/// Channels on one clock; NaN if there is no value.
 pub(super) struct Recording {
     pub name: String,
     pub time: Vec<f64>,

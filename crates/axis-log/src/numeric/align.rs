@@ -38,7 +38,7 @@ const ROUNDS: usize = 12;
 /// rests that are not white: with gradients g and rests e,
 /// `G⁻¹ (Σ_|l|≤L w_l Σ_k g_k e_k e_{k+l} g_{k+l}ᵀ) G⁻¹`, w Bartlett's
 /// (W. Newey, K. West, Econometrica 55 (1987) 703–708, doi:10.2307/1913610).
-/// `None` where x or y does not vary.
+/// `None` if x or y does not vary.
 pub(crate) fn align(x: &[f64], y: &[f64], free: Free) -> Option<Fit> {
     let range = busiest(x, y);
     let (x, y) = (&x[range.clone()], &y[range]);

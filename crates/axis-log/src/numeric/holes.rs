@@ -15,7 +15,7 @@ pub(crate) fn runs(samples: &[f64]) -> Vec<Range<usize>> {
 }
 
 /// Puts a straight line across each run, and the nearest value where one reaches an end;
-/// 0 where there is no value at all.
+/// 0 if there is no value at all.
 pub(crate) fn bridge(samples: &mut [f64], runs: &[Range<usize>]) {
     for run in runs {
         let before = run.start.checked_sub(1).map(|k| samples[k]);

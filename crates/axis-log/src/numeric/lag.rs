@@ -16,7 +16,7 @@ pub(crate) struct Peak {
 ///
 /// each lag over its own overlap, which is at least `least` samples; a parabola through
 /// the three greatest values gives the part of a sample (C. Knapp, G. Carter, IEEE Trans.
-/// ASSP 24 (1976) 320–327, doi:10.1109/TASSP.1976.1162830, on the method). `None` where
+/// ASSP 24 (1976) 320–327, doi:10.1109/TASSP.1976.1162830, on the method). `None` if
 /// either does not vary.
 pub(crate) fn peak(x: &[f64], y: &[f64], most: usize, least: usize) -> Option<Peak> {
     let (x, y) = (centred(x)?, centred(y)?);

@@ -15,8 +15,8 @@ use crate::source_unit::slipped_unit;
 pub enum CrossCheckVerdict {
     /// The channels agree.
     Agrees,
-    /// They do not, and why is not sure, or not that they should: to be looked at.
-    Unsure,
+    /// They do not agree, and no unit, sign or zero explains why; or it is not certain that they should.
+    Unclear,
     /// They do not, and a unit, a sign or a zero says why: the mapping is wrong.
     Contradicts,
 }
@@ -61,7 +61,8 @@ const OFFSET: f64 = 0.1;
 /// channels that the log does not have, or that do not move, are passed over.
 ///
 /// Each is a least-squares fit `y = factor · x(t − delay) + offset`; x is the other channel,
-/// or its integral, times the factor that it should have. A factor within 3 % of 1 agrees; one within 3 % of
+/// or its integral, times the factor that it should have. A factor within 3 % of 1 agrees; one
+/// within 3 % of
 /// a unit's (1000 for millimetres, 180/π for degrees, 60/2π for revolutions a minute,
 /// encoder counts a turn), with either sign, contradicts where the correlation is above 0.99
 /// (0.9 for currents, which must come within 15 %). The slip is laid to the channel of which a unit
@@ -117,11 +118,11 @@ fn judge(relation: &Relation, fit: &Fit, x: &[f64], mapping: &Mapping) -> Judged
     };
     if fit.correlation < related {
         let words = format!(
-            "no multiple of {} (correlation {:.3})",
+            "not proportional to {} (correlation {:.3})",
             relation.from, fit.correlation
         );
         // A torque has friction and inertia beside current: no relation is no slip.
-        return (CrossCheckVerdict::Unsure, words, None);
+        return (CrossCheckVerdict::Unclear, words, None);
     }
     if let RelationLaw::About { within, .. } = relation.law
         && (1.0 / within..=within).contains(&fit.factor)
@@ -162,7 +163,7 @@ fn zero(relation: &Relation, fit: &Fit, x: &[f64], mapping: &Mapping) -> Judged 
         offset: map.offset - off,
         ..map
     };
-    let words = format!("{} counted from another zero, {off:.6} off", relation.from);
+    let words = format!("{} measured from another zero, {off:.6} off", relation.from);
     (CrossCheckVerdict::Contradicts, words, Some(repair))
 }
 
@@ -170,7 +171,7 @@ fn zero(relation: &Relation, fit: &Fit, x: &[f64], mapping: &Mapping) -> Judged 
 fn slip(relation: &Relation, factor: f64, near: f64, mapping: &Mapping) -> Judged {
     let size = factor.abs();
     let turned = if factor < 0.0 {
-        " with the sign turned"
+        " with the sign reversed"
     } else {
         ""
     };
@@ -186,7 +187,7 @@ fn slip(relation: &Relation, factor: f64, near: f64, mapping: &Mapping) -> Judge
         // Which of two is turned they cannot tell; the one that is judged is named.
         return (
             CrossCheckVerdict::Contradicts,
-            "right but for its sign".to_owned(),
+            "right except for its sign".to_owned(),
             Some(scaled(&relation.channel, -1.0)),
         );
     }
@@ -212,8 +213,8 @@ fn slip(relation: &Relation, factor: f64, near: f64, mapping: &Mapping) -> Judge
             Some(scaled(channel, factor.signum() / exact)),
         ),
         None => (
-            CrossCheckVerdict::Unsure,
-            format!("{factor:.5} times what it should be, which no unit explains"),
+            CrossCheckVerdict::Unclear,
+            format!("{factor:.5} times the expected value, which no unit explains"),
             Some(scaled(&relation.channel, 1.0 / factor)),
         ),
     }

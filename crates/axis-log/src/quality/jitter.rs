@@ -1,6 +1,6 @@
-//! Samples that jitter under even time stamps, told from a channel that moves.
+//! Samples that jitter under even time stamps, as distinct from a channel that moves.
 //!
-//! A sample that is taken δ late shows v δ too much: what its neighbours do not foresee of it grows
+//! A sample that is taken δ late shows v δ too much: what its neighbours do not predict of it grows
 //! with the speed v, while noise and quantisation do not. With the cubic through two samples on
 //! either side,
 //!
@@ -56,7 +56,7 @@ const INDEPENDENT: f64 = -0.5;
 
 /// By how much a channel's samples are off its even time stamps, where the channel tells it:
 /// where it moves at speeds that differ by three times or more, is not held, and what is not
-/// foreseen of it grows with speed, is independent from sample to sample and five standard errors
+/// predicted of it grows with speed, is independent from sample to sample and five standard errors
 /// from none. `None` otherwise, and for a channel that is not there.
 ///
 /// Samples marked as missing, and those beside them, are left out. Needs 40 bytes a sample.
@@ -93,7 +93,7 @@ pub fn sample_jitter(log: &Log, channel: &str) -> Option<SampleJitter> {
 /// Samples on either side of which the speed is taken.
 const REACH: usize = 4;
 
-/// What is not foreseen of the samples that move.
+/// What is not predicted of the samples that move.
 struct Rests {
     /// Speed in units a sample, and rest over the root of the gain; by speed.
     by_speed: Vec<[f64; 2]>,

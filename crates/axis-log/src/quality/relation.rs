@@ -22,7 +22,7 @@ pub enum RelationLaw {
     About {
         /// Channel units per unit of the other; not 0.
         factor: f64,
-        /// Greatest ratio that is believed, above 1.
+        /// Greatest ratio that is trusted, above 1.
         within: f64,
     },
 }

@@ -15,7 +15,7 @@ type Sink = Box<dyn LogSink<End = AtomicWriteFile>>;
 struct Format {
     /// Of its files, without the point; the name of its feature, where it has one.
     extension: &'static str,
-    /// None where the feature is left out.
+    /// None if the feature is left out.
     sink: Option<fn(AtomicWriteFile) -> Sink>,
 }
 
@@ -80,7 +80,7 @@ impl LogFile {
     /// Begins a file.
     ///
     /// # Errors
-    /// [`WriteProblem::Extension`], [`WriteProblem::LeftOut`], or [`WriteProblem::Io`] where
+    /// [`WriteProblem::Extension`], [`WriteProblem::LeftOut`], or [`WriteProblem::Io`] if
     /// nothing can be written to the folder.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, WriteError> {
         let path = path.as_ref();

@@ -31,7 +31,7 @@ pub trait LogSink {
     /// first one, in its order; marks of [missing](Log::missing) samples are not kept.
     ///
     /// # Errors
-    /// The writer's; [`io::ErrorKind::InvalidData`] where the channels are others.
+    /// The writer's; [`io::ErrorKind::InvalidData`] if the channels are others.
     fn write(&mut self, block: &Log) -> io::Result<()>;
 
     /// Says something of the whole log inside the file, behind the blocks, such as why its run stopped: in CSV
@@ -45,7 +45,7 @@ pub trait LogSink {
     /// Ends the file.
     ///
     /// # Errors
-    /// The writer's; [`io::ErrorKind::InvalidData`] where there was no block, or where the
+    /// The writer's; [`io::ErrorKind::InvalidData`] if there was no block, or where the
     /// format cannot hold what there was.
     fn finish(self: Box<Self>) -> io::Result<Self::End>;
 }

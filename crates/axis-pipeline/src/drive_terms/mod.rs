@@ -31,14 +31,14 @@ pub struct Loss {
 /// The terms of an axis as its file has it.
 ///
 /// # Errors
-/// [`PipelineError::Compensator`] where no terms can be made from it.
+/// [`PipelineError::Compensator`] if no terms can be made from it.
 pub fn of_axis(axis: &Axis) -> Result<DriveTerms, PipelineError> {
-    let model = Predictors::of(axis).believed()?;
+    let model = Predictors::of(axis).assumed_model()?;
     Ok(DriveTerms::new(&model, &reversal_start(axis))?)
 }
 
 /// Runs the trajectories of `model` on `machine` without compensation, with the drive terms
-/// and with the plan, both made from `model`; nothing where it has no trajectories.
+/// and with the plan, both made from `model`; nothing if it has no trajectories.
 ///
 /// # Errors
 /// As [`compensate_with`].

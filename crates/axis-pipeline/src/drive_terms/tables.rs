@@ -51,7 +51,7 @@ pub fn over_position(axis: &Axis, of: &DriveTerms, errors: &PositionErrors) -> T
 const IN_TURN: u32 = 128;
 
 /// The table over one turn of the motor: cogging torque, and what of the lead error repeats
-/// with the turn. None where the axis file has neither.
+/// with the turn. None if the axis file has neither.
 pub fn over_turn(axis: &Axis, errors: &PositionErrors) -> Option<TermTable> {
     let u = Units::of(axis);
     let at = |i: u32| {

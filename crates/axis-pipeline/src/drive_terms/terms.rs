@@ -65,14 +65,14 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
             of.inertia,
             u.inertia.into(),
             scaled(u.drive_inertia),
-            "inertia of all that moves, at the motor, for torque feed-forward",
+            "total moving inertia, referred to the motor, for torque feed-forward",
         ),
         (
             "inertia_rotating",
             of.rotating,
             u.inertia.into(),
             scaled(u.drive_inertia),
-            "what of it turns with the motor",
+            "the part of it that turns with the motor",
         ),
         (
             "inertia_ratio",
@@ -86,28 +86,28 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
             of.effort_per_acceleration,
             feeding.clone(),
             same(&feeding),
-            "command per acceleration of the load, in all",
+            "command per acceleration of the load, total",
         ),
         (
             "acceleration_feedforward_to_add",
             of.effort_per_acceleration - of.own_effort_per_acceleration(),
             feeding.clone(),
             same(&feeding),
-            "what of it the drive of the axis file does not have yet",
+            "the part of it that the axis file's drive does not have yet",
         ),
         (
             "velocity_feedforward",
             of.velocity_feedforward,
             "1".into(),
             share.clone(),
-            "share of the reference's speed that is fed forward, in all",
+            "share of the reference's speed that is fed forward, total",
         ),
         (
             "velocity_feedforward_to_add",
             of.velocity_feedforward - of.own_velocity_feedforward(),
             "1".into(),
             share,
-            "what of it the drive of the axis file does not have yet",
+            "the part of it that the axis file's drive does not have yet",
         ),
         (
             "viscous_friction",
@@ -177,7 +177,7 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
             of.winding_speed(),
             speed.clone(),
             scaled(u.speed),
-            "pulse of the motor's speed that winds the transmission up as the new level comes, after a start, with the same decay; for a position loop closed at the load",
+            "pulse on the motor's speed that winds the transmission up while friction rises to the new level, after a start, with the same decay; for a position loop closed at the load",
         ),
         (
             "standing_load",
@@ -212,7 +212,7 @@ pub fn terms(axis: &Axis, of: &DriveTerms) -> Vec<Term> {
             row.lost_motion,
             u.load.into(),
             (1e6, micro),
-            "way lost to wind-up by friction from one direction to the other, at mid-stroke; for a position loop closed at the motor",
+            "travel lost to wind-up by friction from one direction to the other, at mid-stroke; for a position loop closed at the motor",
         ),
     ];
     let term = |(name, value, unit, (factor, drive_unit), meaning): Line| Term {

@@ -37,7 +37,7 @@ pub(super) fn fit(runs: &[SpeedRun], unit: &str) -> Result<Fitted, IdentifyLogsE
         FrictionIdentifyError::NoStribeckEffect { .. } => (
             "friction does not fall with speed in these runs by more than their scatter".to_owned(),
             format!(
-                "where it should, run slower than {slowest:.3e} {unit} and at more speeds (each both ways)"
+                "if it should, run slower than {slowest:.3e} {unit} and at more speeds (each both ways)"
             ),
         ),
         FrictionIdentifyError::OneSideOfStribeckSpeed {
@@ -66,7 +66,8 @@ pub(super) fn fit(runs: &[SpeedRun], unit: &str) -> Result<Fitted, IdentifyLogsE
     Ok(Fitted { statics, open })
 }
 
-/// Standard errors widened where the runs' residuals are alike from one to the next, in their order of
+/// Standard errors widened where the runs' residuals are alike from one to the next, in their
+/// order of
 /// time: friction that changes with temperature or place is no noise of its own in each run.
 fn widen(fit: &mut StaticFit, runs: &[SpeedRun]) {
     let law = fit.parameters();

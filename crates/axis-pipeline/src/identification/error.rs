@@ -30,7 +30,7 @@ pub enum IdentifyLogsError {
     },
     /// Too little in the logs moves at a speed that friction can be read at.
     #[error(
-        "the logs show friction at {speeds} different speed(s) ({stretches} stretches of constant speed, {windows} short ones of slowly changing speed, {vibrating} left out for vibration or rest); at least {needed} are needed, better ten from the slowest to the fastest, each in both directions and for a second or more after the torque has settled"
+        "the logs show friction at {speeds} different speed(s) ({stretches} stretches of constant speed, {windows} short ones of slowly changing speed, {vibrating} left out for vibration or standstill); at least {needed} are needed, better ten from the slowest to the fastest, each in both directions and for a second or more after the torque has settled"
     )]
     TooFewSpeeds {
         /// Different speeds found.

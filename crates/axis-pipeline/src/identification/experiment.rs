@@ -35,7 +35,7 @@ const ROUNDS: usize = 3;
 /// `each` is called after every motion.
 ///
 /// # Errors
-/// [`PipelineError`] where a run diverges or leaves its stroke, or where the logs do not show a
+/// [`PipelineError`] if a run diverges or leaves its stroke, or where the logs do not show a
 /// parameter that any law needs.
 pub fn identify(
     machine: &Axis,

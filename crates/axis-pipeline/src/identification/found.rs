@@ -76,7 +76,7 @@ pub struct FoundParameter {
     pub name: &'static str,
     /// Its value, in the law's coordinate.
     pub value: f64,
-    /// Standard error; none where the logs do not tell the parameter.
+    /// Standard error; none if the logs do not tell the parameter.
     pub standard_error: Option<f64>,
     /// Interval that holds it in 95 % of such logs.
     pub interval: Option<[f64; 2]>,

@@ -19,7 +19,8 @@ use super::{presliding, varying};
 /// constant, loads, and the coordinate of the friction law. Its friction is not looked at,
 /// except for the bristles where the logs show no small motion, which is told.
 ///
-/// 1. Stretches of constant speed, both directions, give the steady-state curve. Where they show fewer
+/// 1. Stretches of constant speed, both directions, give the steady-state curve. Where they show
+/// fewer
 ///    than six different speeds, short stretches of slowly changing speed are taken as well.
 /// 2. Small motions about a standstill give the bristles' stiffness and damping.
 ///
@@ -46,7 +47,8 @@ pub fn identify_from_logs(
     gathered(axis, found, small)
 }
 
-/// Way since the last turn, in pre-sliding distances T_C/σ0, after which a contact slides: its bristles are
+/// Way since the last turn, in pre-sliding distances T_C/σ0, after which a contact slides: its
+/// bristles are
 /// bent to 1 − e⁻⁵, 0.7 % short of their limit.
 const SLIDES: f64 = 5.0;
 
@@ -249,7 +251,7 @@ fn one_way(runs: &[SpeedRun], statics: &StaticFit) -> Option<String> {
     let forward = used.clone().filter(|v| *v > 0.0).count();
     let back = used.count() - forward;
     (forward.min(back) < 2).then(|| {
-        "fewer than two runs go one of the two ways: a standing load or an offset of the torque's sensor is in T_C and cannot be told from it; run every speed both ways".to_owned()
+        "fewer than two runs go in one of the two directions: a constant load or an offset of the torque sensor adds to T_C and cannot be separated from it; run every speed in both directions".to_owned()
     })
 }
 

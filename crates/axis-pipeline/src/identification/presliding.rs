@@ -85,7 +85,7 @@ impl Level<'_> {
         let mut joined = self.joined(self.below());
         let period = record.shown.period();
         let shortest = ((SHORTEST / period).ceil() as usize).max(FEWEST);
-        let least_way = LEAST_WAY * record.shown.unsure_speed(1.0) / std::f64::consts::SQRT_2;
+        let least_way = LEAST_WAY * record.shown.speed_uncertainty(1.0) / std::f64::consts::SQRT_2;
         let tells = |samples: &Range<usize>| {
             let [way, change] = [&self.course.position, &self.course.force].map(|series| {
                 let part = &series[samples.clone()];

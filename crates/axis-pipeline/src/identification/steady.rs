@@ -105,14 +105,14 @@ impl<'a> Record<'a> {
     /// file asks for.
     pub fn moves(&self, speed: f64, time: f64) -> bool {
         let slowest = self.axis.balance.slowest.unwrap_or(0.0);
-        speed.abs() > (SURE * self.shown.unsure_speed(time)).max(slowest)
+        speed.abs() > (SURE * self.shown.speed_uncertainty(time)).max(slowest)
     }
 
     /// Way of the load from where it last turned to a sample.
     fn way_before(&self, sample: usize) -> f64 {
         let step = ((STEP_BACK / self.shown.period()).round() as usize).max(1);
         let here = self.position[sample];
-        let noise = SURE * self.shown.unsure_speed(1.0);
+        let noise = SURE * self.shown.speed_uncertainty(1.0);
         let mut farthest = here;
         for k in (0..sample).rev().step_by(step) {
             let x = self.position[k];
@@ -181,7 +181,7 @@ fn stretches(record: &Record<'_>, window: usize) -> Vec<Range<usize>> {
 fn is_even(record: &Record<'_>, k: usize, window: usize) -> bool {
     let time = window as f64 * record.shown.period();
     let [first, second] = [0, window].map(|at| record.mean_speed(k + at, k + at + window));
-    let noise = SURE * record.shown.unsure_speed(time);
+    let noise = SURE * record.shown.speed_uncertainty(time);
     let mean = 0.5 * (first + second);
     (second - first).abs() <= EVEN * mean.abs() + noise
         && record.moves(mean, time)
@@ -200,7 +200,7 @@ fn split(record: &Record<'_>, stretch: Range<usize>, window: usize) -> Vec<Range
     let ends = [(from, from + part), (to - part, to)];
     let [first, last] = ends.map(|(a, b)| record.mean_speed(a, b));
     let time = part as f64 * record.shown.period();
-    let noise = SURE * record.shown.unsure_speed(time);
+    let noise = SURE * record.shown.speed_uncertainty(time);
     if (last - first).abs() <= 2.0 * EVEN * (0.5 * (first + last)).abs() + noise {
         return vec![stretch];
     }
@@ -212,7 +212,7 @@ fn split(record: &Record<'_>, stretch: Range<usize>, window: usize) -> Vec<Range
 }
 
 /// A stretch as a run: where its torque has settled, over whole turns of the motor, less what
-/// inertia takes. `None` where inertia takes too much, or the torque goes on changing.
+/// inertia takes. `None` if inertia takes too much, or the torque goes on changing.
 fn run(record: &Record<'_>, stretch: &Range<usize>) -> Option<SpeedRun> {
     let settled = whole_turns(record, settled(record, stretch));
     if settled.len() < FEWEST || (settled.len() as f64) * record.shown.period() < SHORTEST {

@@ -130,7 +130,7 @@ fn windows(record: &Record<'_>) -> Vec<Window> {
 }
 
 /// The inertia that the windows show beside Coulomb's and viscous friction and an offset, with
-/// its standard error; `None` where they do not tell it.
+/// its standard error; `None` if they do not tell it.
 fn inertia(windows: &[Window]) -> Option<[f64; 2]> {
     type Row = SVector<f64, 4>;
     let count = windows.len();

@@ -13,7 +13,7 @@ use super::learner::AnyLearner;
 use super::named::NamedEffects;
 use crate::measured::{Left, WithoutCompensation};
 use crate::moves::{Moves, NamedMotion};
-use crate::robustness::{Sense, WRONG, random_program, room, wrong_belief};
+use crate::robustness::{Sense, WRONG, random_program, room, wrong_model};
 use crate::strategies::{NONE, Predictors, Strategy, adapted};
 use crate::tracking::{PlannedTrajectory, plan_all};
 use crate::{ErrorUnit, PipelineError};
@@ -53,9 +53,9 @@ impl ResidualMethod {
     }
 }
 
-/// One machine, what is believed of it, and its moves.
+/// One machine, the model of it, and its moves.
 pub struct Contest {
-    believed: DriveModel,
+    assumed_model: DriveModel,
     machine: Axis,
     named: Vec<ActiveEffect>,
     programs: Vec<NamedMotion>,
@@ -78,11 +78,11 @@ pub struct Compared {
     pub used: Vec<bool>,
 }
 
-/// `count` machines like `machine` with drawn effects, wrong beliefs and drawn moves. Counted
+/// `count` machines like `machine` with drawn effects, wrong models and drawn moves. Counted
 /// are two trajectories of the axis each, in turn.
 ///
 /// # Errors
-/// [`PipelineError`] where the axis has no trajectories or no plan can be made of it.
+/// [`PipelineError`] if the axis has no trajectories or no plan can be made of it.
 pub fn contests(
     axis: &Axis,
     machine: &Axis,
@@ -98,11 +98,11 @@ pub fn contests(
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(5000 + i as u64);
         let drawn = drawn_machine(machine, room(axis), &mut random);
-        let believed = wrong_belief(&truth, WRONG, &mut random)?;
+        let assumed_model = wrong_model(&truth, WRONG, &mut random)?;
         let programs = (0..PROGRAMS)
             .map(|k| random_program(&format!("program {}", k + 1), room(axis), &mut random));
         Ok(Contest {
-            believed,
+            assumed_model,
             machine: drawn.machine,
             named: drawn.named,
             programs: programs.collect::<Result<_, PipelineError>>()?,
@@ -123,7 +123,7 @@ pub fn contests(
 /// machine and way.
 ///
 /// # Errors
-/// [`PipelineError`] where a move does not come to its end.
+/// [`PipelineError`] if a move does not come to its end.
 pub fn compare(
     axis: &Axis,
     contests: &[Contest],
@@ -154,7 +154,7 @@ impl Contest {
         way: ResidualMethod,
         network: &NetworkBasis,
     ) -> Result<Option<AnyLearner>, PipelineError> {
-        let b = &self.believed;
+        let b = &self.assumed_model;
         let level = b.friction.parameters().coulomb * b.travel / b.lever;
         let stroke = [axis.stroke.minimum, axis.stroke.maximum];
         Ok(match way {
@@ -184,7 +184,7 @@ impl Contest {
     ) -> Result<Compared, PipelineError> {
         let (closed_loop, unit) = (ClosedLoop::new(&self.machine)?, ErrorUnit::of(axis));
         let predictors = Predictors {
-            believed: Some(self.believed),
+            assumed_model: Some(self.assumed_model),
             ..Predictors::of(axis)
         };
         let mut moves = Moves::new(&closed_loop, sense(self.seed));

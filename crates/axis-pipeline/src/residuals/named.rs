@@ -40,7 +40,7 @@ impl NamedEffects {
     /// one that changes a parameter of the model is the adaptation's.
     ///
     /// # Errors
-    /// [`PipelineError::Setup`] where an effect does not fit the axis.
+    /// [`PipelineError::Setup`] if an effect does not fit the axis.
     pub fn new(axis: &Axis, named: &[ActiveEffect]) -> Result<Self, PipelineError> {
         let mut free = Vec::new();
         for (effect, active) in named.iter().enumerate() {
@@ -104,7 +104,7 @@ impl NamedEffects {
     }
 }
 
-/// How far a number of a named effect may be off; none where it is held.
+/// How far a number of a named effect may be off; none if it is held.
 fn deviation(active: &ActiveEffect, parameter: usize) -> Option<f64> {
     let value = active.values[parameter];
     match active.effect.parameters.get(parameter)?.nature {

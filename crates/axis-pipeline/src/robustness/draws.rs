@@ -1,4 +1,4 @@
-//! Wrong beliefs and motions, drawn.
+//! wrong models and motions, drawn.
 
 use std::sync::Arc;
 
@@ -11,12 +11,12 @@ use trajectories::{Limits, Program, SCurve, Step};
 use crate::PipelineError;
 use crate::moves::NamedMotion;
 
-/// A belief whose friction levels, σ0, σ1 and σ2 are each off by up to `friction` of their
+/// A model whose friction levels, σ0, σ1 and σ2 are each off by up to `friction` of their
 /// values and whose load's inertia by up to `mass`, all evenly drawn.
 ///
 /// # Errors
-/// [`PipelineError::Friction`] where that makes no law.
-pub fn wrong_belief(
+/// [`PipelineError::Friction`] if that makes no law.
+pub fn wrong_model(
     truth: &DriveModel,
     [friction, mass]: [f64; 2],
     random: &mut ChaCha8Rng,
@@ -43,7 +43,7 @@ pub fn wrong_belief(
 /// between.
 ///
 /// # Errors
-/// [`PipelineError::Trajectory`] where the stroke is too short for them.
+/// [`PipelineError::Trajectory`] if the stroke is too short for them.
 pub fn random_program(
     name: &str,
     [least, most]: [f64; 2],
@@ -85,7 +85,7 @@ pub fn random_program(
 /// friction of the first move that counts can be learned.
 ///
 /// # Errors
-/// [`PipelineError::Trajectory`] where it cannot be planned.
+/// [`PipelineError::Trajectory`] if it cannot be planned.
 pub fn pre_roll(start: f64, way: f64) -> Result<NamedMotion, PipelineError> {
     let failed = |source| PipelineError::Trajectory { index: 0, source };
     let limits = Limits::new(0.02, 0.2, 5.0).map_err(failed)?;
@@ -108,7 +108,7 @@ pub fn pre_roll(start: f64, way: f64) -> Result<NamedMotion, PipelineError> {
 /// A move over `way` (m) from `start` at the constant speed `speed` (m/s).
 ///
 /// # Errors
-/// [`PipelineError::Trajectory`] where it cannot be planned.
+/// [`PipelineError::Trajectory`] if it cannot be planned.
 pub fn constant_speed(start: f64, way: f64, speed: f64) -> Result<NamedMotion, PipelineError> {
     let failed = |source| PipelineError::Trajectory { index: 0, source };
     let limits = Limits::new(speed, 0.1, 1.0).map_err(failed)?;

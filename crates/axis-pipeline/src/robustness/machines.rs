@@ -1,4 +1,4 @@
-//! Machines that are not what is believed of them.
+//! Machines that differ from their model.
 
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, EFFECTS};

@@ -1,6 +1,6 @@
-//! How compensation holds where what is believed is wrong: many draws, each a point.
+//! How compensation holds when the model is wrong: many draws, each a point.
 //!
-//! A [`Study`] is a list of draws. Each draws a belief, a machine or a motion from its own
+//! A [`Study`] is a list of draws. Each draws a model, a machine or a motion from its own
 //! seed and makes moves one after the other under one strategy; what it leaves is compared
 //! with the machine without compensation on the same moves.
 
@@ -12,7 +12,7 @@ use axis_sim::{Axis, ClosedLoop, Measured};
 use compensator::DriveModel;
 use serde::{Deserialize, Serialize};
 
-pub use draws::{constant_speed, pre_roll, random_program, wrong_belief};
+pub use draws::{constant_speed, pre_roll, random_program, wrong_model};
 pub use machines::{Machine, machines};
 pub(crate) use studies::WRONG;
 pub use studies::{Draws, Goal, Study, room, studies};
@@ -26,8 +26,8 @@ pub type Sense<'a> = &'a (dyn Fn(u64) -> Box<dyn FnMut(&mut Measured)> + Sync);
 
 /// One draw, ready to be made.
 pub struct Draw {
-    /// What the compensator believes.
-    pub believed: DriveModel,
+    /// What the compensator assumes.
+    pub assumed_model: DriveModel,
     /// What moves.
     pub machine: Axis,
     /// Moves in their order.
@@ -63,7 +63,7 @@ impl Point {
 /// have some.
 ///
 /// # Errors
-/// [`PipelineError`] where a move does not come to its end.
+/// [`PipelineError`] if a move does not come to its end.
 pub fn make(
     axis: &Axis,
     strategy: &str,
@@ -72,7 +72,7 @@ pub fn make(
 ) -> Result<Point, PipelineError> {
     let closed_loop = ClosedLoop::new(&draw.machine)?;
     let predictors = Predictors {
-        believed: Some(draw.believed),
+        assumed_model: Some(draw.assumed_model),
         ..Predictors::of(axis)
     };
     let kind = named(STRATEGIES, strategy)

@@ -6,7 +6,7 @@ use axis_sim::Axis;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::{Draw, Machine, constant_speed, machines, pre_roll, random_program, wrong_belief};
+use super::{Draw, Machine, constant_speed, machines, pre_roll, random_program, wrong_model};
 use crate::moves::NamedMotion;
 use crate::tracking::{PlannedTrajectory, plan_all};
 use crate::{ErrorUnit, PipelineError};
@@ -48,7 +48,7 @@ impl Study {
     /// Draw `i`, from 0, ready to be made. A draw follows from the seed and its number alone.
     ///
     /// # Errors
-    /// [`PipelineError`] where its moves cannot be planned.
+    /// [`PipelineError`] if its moves cannot be planned.
     pub fn draw(&self, i: usize) -> Result<Draw, PipelineError> {
         (self.draw)(i)
     }
@@ -57,8 +57,8 @@ impl Study {
 /// How many are drawn in the rows where chance draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Draws {
-    /// Wrong beliefs; each makes every trajectory.
-    pub beliefs: usize,
+    /// wrong models; each makes every trajectory.
+    pub models: usize,
     /// Random programs.
     pub programs: usize,
 }
@@ -66,12 +66,12 @@ pub struct Draws {
 impl Draws {
     /// Those of the table.
     pub const FULL: Self = Self {
-        beliefs: 50,
+        models: 50,
         programs: 12,
     };
     /// A few, for trying out.
     pub const QUICK: Self = Self {
-        beliefs: 2,
+        models: 2,
         programs: 2,
     };
 }
@@ -93,11 +93,11 @@ struct Ground {
     draws: Draws,
 }
 
-/// The rows for an axis and what stands for its machine. What is believed is right or wrong
+/// The rows for an axis and what stands for its machine. The model is right or wrong
 /// about the machine, not about the axis file.
 ///
 /// # Errors
-/// [`PipelineError`] where the axis has no trajectories or no plan can be made of it.
+/// [`PipelineError`] if the axis has no trajectories or no plan can be made of it.
 pub fn studies(
     axis: &Axis,
     machine: &Axis,
@@ -115,8 +115,8 @@ pub fn studies(
         draws,
     });
     let mut rows = vec![
-        ground.right("belief right, no noise", "plan", false, [99.9, 99.9]),
-        ground.right("belief right", "feedback", true, [99.85, 99.65]),
+        ground.right("model right, no noise", "plan", false, [99.9, 99.9]),
+        ground.right("assumed right", "feedback", true, [99.85, 99.65]),
         ground.wrong("adaptive", &[80.0, 90.0, 98.9, 99.7], 91.0)?,
         ground.rolled()?,
         ground.wrong("adaptive_feedback", &[96.0, 99.3, 99.8], 98.0)?,
@@ -144,10 +144,10 @@ impl Ground {
         ErrorUnit::of(&self.axis)
     }
 
-    /// A draw whose belief is right.
+    /// A draw whose assumed model is right.
     fn draw(&self, motions: Vec<NamedMotion>, counted: usize) -> Result<Draw, PipelineError> {
         Ok(Draw {
-            believed: self.machine.drive_model()?,
+            assumed_model: self.machine.drive_model()?,
             machine: self.machine.clone(),
             motions,
             counted,
@@ -197,7 +197,7 @@ impl Ground {
         let draw = move |at: usize| {
             let (i, first) = (at / ground.motions.len(), at % ground.motions.len());
             Ok(Draw {
-                believed: wrong_belief(&truth, WRONG, &mut ground.random(1, i))?,
+                assumed_model: wrong_model(&truth, WRONG, &mut ground.random(1, i))?,
                 seed: ground.seed.wrapping_add(i as u64),
                 ..ground.draw(ground.from(first, count), count)?
             })
@@ -208,33 +208,33 @@ impl Ground {
             median: (i == 0).then_some(median),
         });
         Ok(Study {
-            name: "belief wrong".to_owned(),
+            name: "assumed wrong".to_owned(),
             strategy,
             noise: true,
             moves: MOVES.into_iter().zip(goals).collect(),
-            draws: self.draws.beliefs * self.motions.len(),
+            draws: self.draws.models * self.motions.len(),
             draw: Box::new(draw),
         })
     }
 
-    /// The same beliefs as in [`Ground::wrong`], one trajectory each, after a pre-roll of a
+    /// The same models as in [`Ground::wrong`], one trajectory each, after a pre-roll of a
     /// millimetre that is learned from.
     fn rolled(self: &Arc<Self>) -> Result<Study, PipelineError> {
         let truth = self.machine.drive_model()?;
         let ground = Arc::clone(self);
         let draw = move |i: usize| {
-            let believed = wrong_belief(&truth, WRONG, &mut ground.random(1, i))?;
+            let assumed_model = wrong_model(&truth, WRONG, &mut ground.random(1, i))?;
             let counted = ground.from(i, 1);
             let start = counted[0].motion.at(0.0).position;
             let motions = std::iter::once(pre_roll(start, PRE_ROLL)?).chain(counted);
             Ok(Draw {
-                believed,
+                assumed_model,
                 seed: ground.seed.wrapping_add(i as u64),
                 ..ground.draw(motions.collect(), 1)?
             })
         };
         Ok(Study {
-            name: "belief wrong, pre-roll".to_owned(),
+            name: "model wrong, pre-roll".to_owned(),
             strategy: "adaptive",
             noise: true,
             moves: vec![(
@@ -245,16 +245,16 @@ impl Ground {
                     median: Some(91.0),
                 },
             )],
-            draws: self.draws.beliefs,
+            draws: self.draws.models,
             draw: Box::new(draw),
         })
     }
 
-    /// Friction believed at 1/0.8 of what it is; each move four times.
+    /// Friction assumed at 1/0.8 of what it is; each move four times.
     fn repeated(self: &Arc<Self>) -> Result<Study, PipelineError> {
-        let mut believed = self.machine.drive_model()?;
-        let p = believed.friction.parameters();
-        believed.friction = lugre::LuGre::new(lugre::Parameters {
+        let mut assumed_model = self.machine.drive_model()?;
+        let p = assumed_model.friction.parameters();
+        assumed_model.friction = lugre::LuGre::new(lugre::Parameters {
             coulomb: p.coulomb / 0.8,
             stiction: p.stiction / 0.8,
             ..p
@@ -262,7 +262,10 @@ impl Ground {
         let ground = Arc::clone(self);
         let draw = move |i: usize| {
             let draw = ground.draw(vec![ground.motions[i].clone(); 4], 1)?;
-            Ok(Draw { believed, ..draw })
+            Ok(Draw {
+                assumed_model,
+                ..draw
+            })
         };
         Ok(Study {
             name: "friction × 0.8".to_owned(),
@@ -296,7 +299,7 @@ impl Ground {
         let ground = Arc::clone(self);
         let draw = move |i: usize| {
             let random = &mut ground.random(2, i);
-            let believed = wrong_belief(&truth, WRONG, random)?;
+            let assumed_model = wrong_model(&truth, WRONG, random)?;
             let mut motions = ground.from(i, 3);
             motions.push(random_program(
                 &format!("program {}", i + 1),
@@ -304,10 +307,13 @@ impl Ground {
                 random,
             )?);
             let draw = ground.draw(motions, 1)?;
-            Ok(Draw { believed, ..draw })
+            Ok(Draw {
+                assumed_model,
+                ..draw
+            })
         };
         Ok(Study {
-            name: "random programs, belief wrong".to_owned(),
+            name: "random programs, model wrong".to_owned(),
             strategy: "adaptive_feedback",
             noise: true,
             moves: vec![("after 3 other moves", Goal::Left(0.6))],
@@ -324,10 +330,10 @@ impl Ground {
             false => (3, "adaptive_feedback"),
         };
         let ground = Arc::clone(self);
-        let name = format!("{}, belief wrong", machine.name);
+        let name = format!("{}, assumed wrong", machine.name);
         let draw = move |i: usize| {
             let random = &mut ground.random(row, i);
-            let believed = wrong_belief(&truth, WRONG, random)?;
+            let assumed_model = wrong_model(&truth, WRONG, random)?;
             let mut motions = match peculiar {
                 true => (0..ORDINARY)
                     .map(|k| {
@@ -339,7 +345,7 @@ impl Ground {
             motions.extend(ground.from(i, 1));
             let draw = ground.draw(motions, 1)?;
             Ok(Draw {
-                believed,
+                assumed_model,
                 machine: machine.axis.clone(),
                 ..draw
             })

@@ -1,21 +1,21 @@
-//! `adaptive`: the plan around an untouched drive, its model adapted between moves.
+//! `adaptive`: the plan, its model adapted between moves; the drive's own loops stay as they are.
 
-use super::ladder::{Ladder, Rungs};
+use super::plan_based::{PlanOptions, PlanStrategy};
 use super::{Build, ReportTable, StrategyKind};
 
 pub(super) static KIND: StrategyKind = StrategyKind {
     name: "adaptive",
     label: "adaptive",
     heading: "Plan, adapted between moves",
-    summary: "the plan around an untouched drive, its model adapted between moves",
+    summary: "the plan, its model adapted between moves; the drive's own loops stay as they are",
     table: ReportTable::More,
     needs: &[],
     build: Build::Carrying(|predictors| {
-        Ok(Box::new(Ladder::new(
+        Ok(Box::new(PlanStrategy::new(
             predictors,
-            Rungs {
+            PlanOptions {
                 adaptation: true,
-                ..Rungs::default()
+                ..PlanOptions::default()
             },
         )?))
     }),

@@ -1,6 +1,6 @@
 //! `adaptive_feedback`: plan and state feedback, the model adapted between moves.
 
-use super::ladder::{Ladder, Rungs};
+use super::plan_based::{PlanOptions, PlanStrategy};
 use super::{Build, ReportTable, StrategyKind};
 
 pub(super) static KIND: StrategyKind = StrategyKind {
@@ -11,12 +11,12 @@ pub(super) static KIND: StrategyKind = StrategyKind {
     table: ReportTable::More,
     needs: &[],
     build: Build::Carrying(|predictors| {
-        Ok(Box::new(Ladder::new(
+        Ok(Box::new(PlanStrategy::new(
             predictors,
-            Rungs {
+            PlanOptions {
                 feedback: true,
                 adaptation: true,
-                ..Rungs::default()
+                ..PlanOptions::default()
             },
         )?))
     }),

@@ -16,13 +16,13 @@ pub(super) static KIND: StrategyKind = StrategyKind {
     needs: &[],
     build: Build::Carrying(|predictors| {
         let start = reversal_start(&predictors.axis);
-        let terms = DriveTerms::new(&predictors.believed()?, &start)?;
+        let terms = DriveTerms::new(&predictors.assumed_model()?, &start)?;
         Ok(Box::new(Applied(DriveTermsFeedforward::new(terms))))
     }),
 };
 
 /// The start that the reversal pulse is fitted to: that of the axis' trajectories, with the
-/// mean of their jerks; 1 m/s³ where there are none.
+/// mean of their jerks; 1 m/s³ if there are none.
 pub fn reversal_start(axis: &Axis) -> ReversalStart {
     let jerks = axis.trajectories.iter().map(|t| t.limits.jerk());
     let mean = jerks.sum::<f64>() / axis.trajectories.len() as f64;

@@ -1,21 +1,21 @@
-//! `iterative`: the plan, corrected by what the same move was off by before.
+//! `iterative`: the plan, corrected by the error of earlier repetitions of the same move.
 
-use super::ladder::{Ladder, Rungs};
+use super::plan_based::{PlanOptions, PlanStrategy};
 use super::{Build, ReportTable, StrategyKind};
 
 pub(super) static KIND: StrategyKind = StrategyKind {
     name: "iterative",
     label: "iterative learning",
     heading: "Plan, iterative learning",
-    summary: "the plan, corrected by what the same move was off by before",
+    summary: "the plan, corrected by the error of earlier repetitions of the same move",
     table: ReportTable::More,
     needs: &[],
     build: Build::Carrying(|predictors| {
-        Ok(Box::new(Ladder::new(
+        Ok(Box::new(PlanStrategy::new(
             predictors,
-            Rungs {
+            PlanOptions {
                 repetition: true,
-                ..Rungs::default()
+                ..PlanOptions::default()
             },
         )?))
     }),

@@ -11,7 +11,6 @@ mod drive_terms;
 mod feedback;
 mod feedforward;
 mod iterative;
-mod ladder;
 mod learned;
 mod lugre;
 mod network;
@@ -19,6 +18,7 @@ mod network_lugre;
 mod network_lugre_printed;
 mod none;
 mod plan;
+mod plan_based;
 mod predictors;
 mod transfer_function;
 mod transfer_function_lugre;
@@ -33,10 +33,10 @@ use crate::PipelineError;
 use crate::residuals::AnyLearner;
 pub use drive_terms::reversal_start;
 pub use feedforward::Feedforward;
-pub use ladder::believed_feedback;
 pub use network::KIND as NETWORK;
 pub use network_lugre::KIND as NETWORK_LUGRE;
 pub use none::KIND as NONE;
+pub use plan_based::assumed_feedback;
 pub(crate) use predictors::BothPredictors;
 pub use predictors::{DesignOnce, NetworkStrategy, Predictors, TransferModels};
 
@@ -92,7 +92,7 @@ pub trait Strategy {
     /// The compensator of the coming move.
     ///
     /// # Errors
-    /// [`PipelineError`] where there is none for this axis or motion.
+    /// [`PipelineError`] if there is none for this axis or motion.
     fn compensator(
         &mut self,
         next: &NextMove,
@@ -101,7 +101,7 @@ pub trait Strategy {
     /// Learns from what a controller logged in the move that is over; what it knows now.
     ///
     /// # Errors
-    /// [`PipelineError`] where the record cannot be learned from.
+    /// [`PipelineError`] if the record cannot be learned from.
     fn learn(&mut self, _record: &[Sample]) -> Result<LearnedValues, PipelineError> {
         Ok(LearnedValues::default())
     }
@@ -112,7 +112,7 @@ pub trait Strategy {
 pub struct NextMove {
     /// Its motion.
     pub motion: SharedMotion,
-    /// Where the axis stands as the move before has left it; none where it was settled anew.
+    /// Where the axis stands as the move before has left it; none if it was settled anew.
     pub continued: Option<Continued>,
     /// What was learned from repetitions of this very move, where something was.
     pub learned: Option<Arc<LearnedMove>>,
@@ -191,7 +191,7 @@ impl StrategyKind {
     /// The strategy, which has not learned anything.
     ///
     /// # Errors
-    /// [`PipelineError::Missing`] where the predictors lack what it needs, and whatever
+    /// [`PipelineError::Missing`] if the predictors lack what it needs, and whatever
     /// its own making gives.
     pub fn strategy(&self, predictors: &Predictors) -> Result<Box<dyn Strategy>, PipelineError> {
         predictors.require(self.needs, &format!("the strategy \"{}\"", self.name))?;
@@ -233,13 +233,13 @@ pub fn adapted(
     predictors: &Predictors,
     learner: Option<AnyLearner>,
 ) -> Result<Box<dyn Strategy>, PipelineError> {
-    let rungs = ladder::Rungs {
+    let options = plan_based::PlanOptions {
         feedback: true,
         adaptation: true,
-        ..ladder::Rungs::default()
+        ..plan_based::PlanOptions::default()
     };
-    let ladder = ladder::Ladder::new(predictors, rungs)?;
-    Ok(Box::new(ladder.with_learner(learner)))
+    let strategy = plan_based::PlanStrategy::new(predictors, options)?;
+    Ok(Box::new(strategy.with_learner(learner)))
 }
 
 /// The strategy of that name among `strategies`.

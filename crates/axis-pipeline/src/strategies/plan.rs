@@ -19,7 +19,7 @@ pub(super) static KIND: StrategyKind = StrategyKind {
     needs: &[],
     build: Build::Carrying(|predictors| {
         Ok(Box::new(Planning {
-            model: predictors.believed()?,
+            model: predictors.assumed_model()?,
             left: Left::default(),
         }))
     }),

@@ -24,9 +24,9 @@ pub struct Predictors {
     pub transfer: Option<TransferModels>,
     /// Friction as identified on the machine.
     pub identified: Option<LuGre>,
-    /// What plans believe of the axis, where that is not what its file says.
-    pub believed: Option<DriveModel>,
-    /// The feedback for what is believed, designed when it is first asked for.
+    /// What plans assume of the axis, where that is not what its file says.
+    pub assumed_model: Option<DriveModel>,
+    /// The feedback for the model, designed when it is first asked for.
     pub design: DesignOnce,
 }
 
@@ -73,7 +73,7 @@ impl Predictors {
             network: None,
             transfer: None,
             identified: None,
-            believed: None,
+            assumed_model: None,
             design: DesignOnce::default(),
         }
     }
@@ -94,7 +94,7 @@ impl Predictors {
                 with_feedforward,
             }),
             identified: Some(identified),
-            believed: None,
+            assumed_model: None,
             design: DesignOnce::default(),
         }
     }
@@ -122,13 +122,13 @@ impl Predictors {
         }
     }
 
-    /// What plans believe of the axis: where nothing else is given its file, with the friction
+    /// What plans assume of the axis: if nothing else is given its file, with the friction
     /// identified on the machine where that is known.
     ///
     /// # Errors
-    /// [`PipelineError::Compensator`] where no plan can be made from it.
-    pub fn believed(&self) -> Result<DriveModel, PipelineError> {
-        if let Some(model) = self.believed {
+    /// [`PipelineError::Compensator`] if no plan can be made from it.
+    pub fn assumed_model(&self) -> Result<DriveModel, PipelineError> {
+        if let Some(model) = self.assumed_model {
             return Ok(model);
         }
         let mut model = self.axis.drive_model()?;

@@ -121,7 +121,7 @@ impl CurrentLoop {
     }
 
     /// The highest proportional gain, V/A, with which the loop is stable beside that integral;
-    /// 0 where there is none.
+    /// 0 if there is none.
     fn most(&self, integral: f64) -> f64 {
         let [a, newest, older] = self.winding();
         // Beyond (1 + a)/b, b = β₀ + β₁, a pole is left of −1 where nothing is late; late by a part f

@@ -114,7 +114,7 @@ pub trait Actuator: fmt::Debug + Send + Sync {
     }
 
     /// Voltage per current, as its d controller answers at once: the way by which noise of
-    /// the current comes into the voltage. None where it has no current controllers.
+    /// the current comes into the voltage. None if it has no current controllers.
     fn current_gain(&self) -> Option<f64> {
         None
     }
@@ -137,7 +137,7 @@ pub trait Actuator: fmt::Debug + Send + Sync {
     /// Whether its own controllers are stable where they run once in each period, s.
     ///
     /// # Errors
-    /// [`PartError`] where a gain is too high for so slow a controller.
+    /// [`PartError`] if a gain is too high for so slow a controller.
     fn runs_at(&self, _: f64) -> Result<(), PartError> {
         Ok(())
     }
@@ -145,7 +145,7 @@ pub trait Actuator: fmt::Debug + Send + Sync {
     /// An actuator at rest, without a command.
     ///
     /// # Errors
-    /// [`PartError`] where it does not fit its surroundings.
+    /// [`PartError`] if it does not fit its surroundings.
     fn start(&self, on: &Surroundings) -> Result<Box<dyn Actuating>, PartError>;
 }
 
@@ -155,7 +155,7 @@ pub trait Actuating: fmt::Debug + Send + Sync {
     /// `speed` (rad/s); the command that holds it there.
     fn settle(&mut self, torque: f64, speed: f64) -> f64;
 
-    /// Greatest command that it takes in the coming cycle: less than [`Actuator::limit`] where a
+    /// Greatest command that it takes in the coming cycle: less than [`Actuator::limit`] if a
     /// part of that is taken for something else. A control that is told keeps its integral
     /// from winding up. Infinite: that limit alone.
     fn available(&self) -> f64 {

@@ -323,7 +323,7 @@ impl<'a> Fields<'a> {
                 Ok(Some((number, unit.0)))
             }
             [_, (second, _), ..] => {
-                let what = "gives the same quantity a second time".to_owned();
+                let what = "states the same quantity a second time".to_owned();
                 let valid = format!("one of {}", key.spellings().join(", "));
                 Err(self.refuse_value(second, what, valid))
             }

@@ -42,7 +42,7 @@ pub(super) fn keys(layout: &Layout, freedom: Freedom, effort: Effort) -> Vec<Key
     }
     keys.extend(layout.tables(&[("control", loop_keys(freedom))]));
     let simulation = match layout.has_sections() {
-        true => WAYS,
+        true => METHODS,
         false => COUPLINGS,
     };
     keys.extend([
@@ -128,7 +128,7 @@ const COUPLINGS: &[Key] = &[
     STEP,
 ];
 
-const WAYS: &[Key] = &[word("way", &["fast", "exact"]).optional(), STEP];
+const METHODS: &[Key] = &[word("method", &["fast", "exact"]).optional(), STEP];
 
 const KIND: &[Key] = &[text("kind")];
 

@@ -146,7 +146,7 @@ impl Layout {
         }
     }
 
-    /// A file of the first schema, by its kind; none where the registry lacks one of its parts.
+    /// A file of the first schema, by its kind; none if the registry lacks one of its parts.
     pub fn short(
         kind: &str,
         registry: &Registry,

@@ -20,7 +20,7 @@ use crate::closed_loop::ClosedLoop;
 use crate::control::{Control, absent, gain_fits, gain_turns};
 use crate::friction::FrictionPlace;
 use crate::load::Load;
-use crate::mechanism::{Freedom, Mechanism, Way};
+use crate::mechanism::{Freedom, Mechanism, SolutionMethod};
 use crate::part::{Key, Part, PartKind, Values};
 use crate::sensor::Sensor;
 use crate::work::{MOST_STEPS, cycles_of, substeps_of};
@@ -32,7 +32,7 @@ const FOLLOWING_ANGLE_LIMIT: f64 = 0.1;
 /// Control period of an axis without control, s: what asks for one has nothing better.
 const PERIOD: f64 = 1e-3;
 
-/// Step of an exact way at which a whole file runs, s.
+/// Step of an exact method at which a whole file runs, s.
 const EXACT_STEP: f64 = 1e-5;
 
 /// What the rest of a file depends on, read first.
@@ -119,7 +119,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         true => simulation(&root, &layout, mechanism.exact_step().is_some())?,
         false => Simulation {
             step: PERIOD,
-            way: Way::Fast,
+            method: SolutionMethod::Fast,
         },
     };
     if root.has("simulation") {
@@ -195,7 +195,7 @@ fn check_gains(
             .filter(|s| s.strip_prefix(&prefix).is_some_and(fits));
         let valid: Vec<&str> = valid.map(String::as_str).collect();
         let valid = match valid.as_slice() {
-            [] => "another way to give it".to_owned(),
+            [] => "this gain under a key of another unit".to_owned(),
             valid => valid.join(", "),
         };
         let moves = if turns { "turns" } else { "moves along a line" };
@@ -289,7 +289,7 @@ fn sensors(
             return Ok(Some(part));
         }
         let what = format!(
-            "is \"{}\", a sensor in {}, where the position is in {}",
+            "is \"{}\", a sensor in {}, but the position is in {}",
             part.kind().name,
             part.freedom().unit(),
             of.unit()
@@ -356,7 +356,7 @@ fn sample_ranges(f: &Fields<'_>, axis: &Axis) -> Result<SampleRanges, AxisFileEr
 }
 
 /// Sample ranges of a file that has none: the stroke, and what the trajectories and the
-/// actuator reach. None where there are no trajectories.
+/// actuator reach. None if there are no trajectories.
 fn implied_ranges(axis: &Axis) -> Option<SampleRanges> {
     let most = |of: fn(&Limits) -> f64| {
         let all = axis.trajectories.iter().map(|t| of(&t.limits));
@@ -378,21 +378,21 @@ fn implied_ranges(axis: &Axis) -> Option<SampleRanges> {
 fn simulation(
     root: &Fields<'_>,
     layout: &Layout,
-    has_exact_way: bool,
+    has_exact: bool,
 ) -> Result<Simulation, AxisFileError> {
     let f = root.table("simulation")?;
-    let way = match layout.has_sections() {
-        true if !f.has("way") => Way::Fast,
-        true if f.word("way")? == "exact" => Way::Exact,
-        false if has_exact_way && f.word("nut_coupling")? == "moving-node" => Way::Exact,
-        _ => Way::Fast,
+    let method = match layout.has_sections() {
+        true if !f.has("method") => SolutionMethod::Fast,
+        true if f.word("method")? == "exact" => SolutionMethod::Exact,
+        false if has_exact && f.word("nut_coupling")? == "moving-node" => SolutionMethod::Exact,
+        _ => SolutionMethod::Fast,
     };
     let asked = f.number("step")?;
-    let step = match (way, has_exact_way) {
-        (Way::Exact, true) => asked.min(EXACT_STEP),
+    let step = match (method, has_exact) {
+        (SolutionMethod::Exact, true) => asked.min(EXACT_STEP),
         _ => asked,
     };
-    Ok(Simulation { step, way })
+    Ok(Simulation { step, method })
 }
 
 fn experiment(f: Option<Fields<'_>>) -> Result<Option<Experiment>, AxisFileError> {

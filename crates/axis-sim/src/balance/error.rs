@@ -38,7 +38,7 @@ pub enum BalanceError {
     },
     /// Hardly any sample in which the axis moves.
     #[error(
-        "only {kept} of {samples} samples are left for a torque balance: in at least {least} of them the axis must move faster than {speed:.3e} {unit}, which its sensor tells from rest, and farther than its friction's contact bends before it slides"
+        "only {kept} of {samples} samples are left for a torque balance: in at least {least} of them the axis must move faster than {speed:.3e} {unit}, the least that its sensor distinguishes from standstill, and farther than its friction's pre-sliding displacement"
     )]
     Standstill {
         /// Samples left.

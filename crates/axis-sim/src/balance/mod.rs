@@ -18,13 +18,13 @@
 mod channel;
 mod error;
 mod filter;
+mod friction_scatter;
 mod law;
 mod motion;
 mod prepared;
 mod quality;
 mod shown;
 mod spectrum;
-mod unsure;
 mod wind_up;
 
 use axis_log::Log;
@@ -63,7 +63,7 @@ impl Balance {
     /// position and speed as they were measured.
     ///
     /// # Errors
-    /// [`ReplayError::Setup`] where an effect does not fit the axis.
+    /// [`ReplayError::Setup`] if an effect does not fit the axis.
     pub fn run(
         &self,
         axis: &Axis,

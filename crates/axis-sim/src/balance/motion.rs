@@ -127,7 +127,7 @@ impl Measured {
     }
 
     /// How far a mean speed over `time` seconds may be off by noise and resolution.
-    pub fn unsure_speed(&self, period: f64, time: f64) -> f64 {
+    pub fn speed_uncertainty(&self, period: f64, time: f64) -> f64 {
         let deviation = self.noise.deviation(period);
         match self.source {
             Source::Position => deviation * std::f64::consts::SQRT_2 / time,
@@ -177,7 +177,7 @@ impl Measured {
 }
 
 impl Course {
-    /// Its first sample alone; `None` where it has none.
+    /// Its first sample alone; `None` if it has none.
     pub fn first(&self) -> Option<Self> {
         let of = |series: &[f64]| series.first().map(|value| vec![*value]);
         Some(Self {

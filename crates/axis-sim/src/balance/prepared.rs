@@ -6,11 +6,11 @@ use super::Balance;
 use super::channel::TorqueChannel;
 use super::error::BalanceError;
 use super::filter::LowPass;
+use super::friction_scatter::Remeasured;
 use super::law::Motions;
 use super::motion::{Course, Measured, Whose};
 use super::quality::{BalanceQuality, TOLERATED};
 use super::spectrum::{least_noise, passed};
-use super::unsure::Remeasured;
 use super::wind_up::WindUp;
 use crate::axis::Axis;
 use crate::replay::ReplayError;
@@ -133,10 +133,10 @@ impl Balance {
             cutoff: motion_cutoff,
         };
         let per_force = channel.per_torque(axis) * axis.travel_per_radian();
-        let unsure = remeasured.unsure(&filter);
+        let scatter = remeasured.friction_scatter(&filter);
         let near = (NEAR / (cutoff * period)).ceil() as usize;
         let creeps = creeps(axis, &motions.load, period, near);
-        let kept = sure(&moving, creeps, &unsure, near, floor / per_force);
+        let kept = resolved(&moving, creeps, &scatter, near, floor / per_force);
         if kept.len() < LEAST {
             let error = BalanceError::Standstill {
                 kept: kept.len(),
@@ -162,9 +162,9 @@ impl Balance {
             standstill,
             compared_period,
             samples: [kept.len(), all],
-            unsure: moving.len() - kept.len(),
+            unresolved: moving.len() - kept.len(),
             floor,
-            friction: per_force * rms(kept.iter().map(|&k| unsure[k])),
+            friction: per_force * rms(kept.iter().map(|&k| scatter[k])),
         };
         let compared = Log::new(vec![
             Channel::new("t_s", pick(log.time()))?,
@@ -285,17 +285,17 @@ fn motions(axis: &Axis, measured: &[Measured], period: f64, cutoff: f64) -> Moti
 }
 
 /// Of the samples at which the load moves and does not creep, those about which friction is
-/// `unsure` (at the load, by sample of the log) by less than noise of that size alone, `near` to either
+/// `scatter` (at the load, by sample of the log) by less than noise of that size alone, `near` to either
 /// side; where that would leave too few, the surest.
-fn sure(
+fn resolved(
     moving: &[usize],
     creeps: impl Fn(usize) -> bool,
-    unsure: &[f64],
+    scatter: &[f64],
     near: usize,
     noise: f64,
 ) -> Vec<usize> {
     let about = |k: &usize| {
-        let window = &unsure[k.saturating_sub(near)..(k + near + 1).min(unsure.len())];
+        let window = &scatter[k.saturating_sub(near)..(k + near + 1).min(scatter.len())];
         window.iter().copied().fold(0.0, f64::max)
     };
     let limit = |of: &[usize], least: usize| {

@@ -13,19 +13,19 @@ pub struct BalanceQuality {
     pub motion_cutoff: f64,
     /// Share by which noise of the acceleration draws an inertia towards zero.
     pub attenuation: f64,
-    /// Speed up to which nothing is compared, m/s or rad/s: that which the sensor tells from
-    /// rest, or the axis file's `slowest`.
+    /// Speed up to which nothing is compared, m/s or rad/s: that which the sensor distinguishes
+    /// from standstill, or the axis file's `slowest`.
     pub standstill: f64,
     /// Period of the compared samples, s.
     pub compared_period: f64,
     /// Samples compared, and how many there were at that rate.
     pub samples: [usize; 2],
-    /// Samples left out because friction hangs there on a motion finer than what was measured.
-    pub unsure: usize,
+    /// Samples left out because friction depends there on motion finer than what was measured.
+    pub unresolved: usize,
     /// Noise alone in the compared channel, RMS in its unit: the least that the upper
     /// spectra of torque and motion leave possible.
     pub floor: f64,
-    /// What is unsure of the friction at the samples that are compared, RMS in that unit.
+    /// Uncertainty of the friction at the samples that are compared, RMS in that unit.
     pub friction: f64,
 }
 
@@ -39,14 +39,14 @@ impl BalanceQuality {
             false => "",
         };
         format!(
-            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz (motion at {:.3} Hz); noise of the acceleration takes {drawn:.2e} % from an inertia{beware}; {:.1} % of the samples are left out, where the speed is below {:.2e} (what its sensor tells from rest, or the axis file's slowest), at the ends, or (as many as {}) where friction hangs on a motion finer than the sensor shows",
+            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz (motion at {:.3} Hz); noise of the acceleration lowers an inertia by {drawn:.2e} %{beware}; {:.1} % of the samples are left out, at speeds below {:.2e} (the least that the sensor distinguishes from standstill, or the axis file's slowest), at the ends, and ({} samples) where friction depends on motion finer than the sensor resolves",
             self.channel,
             self.motion.join(" and "),
             self.cutoff,
             self.motion_cutoff,
             100.0 * (all - kept) as f64 / all.max(1) as f64,
             self.standstill,
-            self.unsure,
+            self.unresolved,
         )
     }
 }

@@ -127,8 +127,8 @@ impl ObservedMotion {
 
     /// How far a mean of that speed over `time` seconds may be off by the sensor's noise and
     /// resolution, one standard deviation.
-    pub fn unsure_speed(&self, time: f64) -> f64 {
-        self.per_load() * self.nearest().unsure_speed(self.period, time)
+    pub fn speed_uncertainty(&self, time: f64) -> f64 {
+        self.per_load() * self.nearest().speed_uncertainty(self.period, time)
     }
 
     /// The lowest cut-off, Hz, that takes no more from motion and torque between two samples than

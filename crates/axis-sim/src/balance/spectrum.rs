@@ -195,7 +195,7 @@ impl Noise {
     }
 
     /// The highest frequency up to `most` below which noise takes no more than `share` of
-    /// the acceleration's power; where there is none, that where it takes least.
+    /// the acceleration's power; if there is none, that where it takes least.
     pub fn cutoff(&self, most: f64, share: f64) -> f64 {
         const STEPS: i32 = 200;
         // From the highest down, to a thousandth of it.

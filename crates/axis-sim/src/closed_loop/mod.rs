@@ -17,7 +17,7 @@ use crate::control::{Controller, Situation, absent};
 use crate::cycle::{Command, Cycle, Measured, Outcome, StopReason};
 use crate::effects::Hooks;
 use crate::error::SetupError;
-use crate::mechanism::Way;
+use crate::mechanism::SolutionMethod;
 use crate::part::PartError;
 use crate::plant::{Assembly, Plant, Running, Start};
 use crate::sensor::Sensing;
@@ -101,20 +101,20 @@ impl ClosedLoop {
     /// Prepares the axis as its file says.
     ///
     /// # Errors
-    /// [`SetupError`] where parts do not fit together, an effect carries a
+    /// [`SetupError`] if parts do not fit together, an effect carries a
     /// parameter out of its range, or the control period is outside 1 µs to 10 ms.
     pub fn new(axis: &Axis) -> Result<Self, SetupError> {
         Self::disturbed(axis, |_| ())
     }
 
-    /// Prepares the axis in its mechanism's exact way, whatever the file says, in
+    /// Prepares the axis by its mechanism's exact method, whatever the file says, in
     /// steps of at most `step` seconds.
     ///
     /// # Errors
     /// As [`ClosedLoop::new`].
     pub fn exact(axis: &Axis, step: f64) -> Result<Self, SetupError> {
         let mut axis = axis.clone();
-        axis.simulation.way = Way::Exact;
+        axis.simulation.method = SolutionMethod::Exact;
         axis.simulation.step = axis.simulation.step.min(step);
         Self::new(&axis)
     }
@@ -154,8 +154,8 @@ impl ClosedLoop {
             substeps,
         };
         let step = axis.period / f64::from(substeps);
-        let way = axis.simulation.way;
-        let plant = axis.mechanism.plant(way, step, assembly)?;
+        let method = axis.simulation.method;
+        let plant = axis.mechanism.plant(method, step, assembly)?;
         // Refused here, so that no run can be.
         axis.actuator.runs_at(axis.period)?;
         axis.actuator.start(&axis.surroundings())?;
@@ -205,7 +205,7 @@ impl ClosedLoop {
     /// this once a control period.
     ///
     /// # Errors
-    /// [`crate::RunStopped`] where the run must be given up; `state` is then of no use.
+    /// [`crate::RunStopped`] if the run must be given up; `state` is then of no use.
     pub fn step(
         &self,
         state: &mut LoopState,
@@ -241,7 +241,7 @@ impl ClosedLoop {
             motor_angle: measured.motor_angle,
             motor_speed: measured.motor_speed,
             iq: measured.current.q,
-            iq_command: state.last_effort,
+            last_command: state.last_effort,
         });
 
         // Control: position and speed, then the actuator's own.

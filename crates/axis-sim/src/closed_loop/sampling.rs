@@ -67,7 +67,7 @@ impl ClosedLoop {
     }
 
     /// The motor's angle as its sensor shows it, or as the load's does, which reads `load`,
-    /// where motor and load are one. None where nothing shows it but the motor itself.
+    /// where motor and load are one. None if nothing shows it but the motor itself.
     pub(super) fn angle_shown(
         &self,
         state: &mut LoopState,

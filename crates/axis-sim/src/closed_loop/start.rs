@@ -19,7 +19,7 @@ impl ClosedLoop {
     /// a speed. Integrators and currents hold what that takes.
     ///
     /// # Errors
-    /// [`SetupError`] where the load cannot be there.
+    /// [`SetupError`] if the load cannot be there.
     pub fn start(&self, start: &Start) -> Result<LoopState, SetupError> {
         let (axis, on) = (&self.axis, self.axis.surroundings());
         let (plant, actuator, effort) = self.settled(start)?;
@@ -92,14 +92,14 @@ impl ClosedLoop {
 
     /// A rest at `position` in which everything that acts, effects too, has been held for
     /// long, by the drive with the command `effort` (in the actuator's unit, as read) and by
-    /// the bristles with what is missing. `None` where the drive holds what the axis' own
+    /// the bristles with what is missing. `None` if the drive holds what the axis' own
     /// loads ask for, as at a start of its own.
     ///
     /// The bristles hold a share −1 to 1 of what they can: where more is missing, nothing
     /// would have held it.
     ///
     /// # Errors
-    /// [`SetupError`] where the load cannot be there.
+    /// [`SetupError`] if the load cannot be there.
     pub fn holding(&self, position: f64, effort: Option<f64>) -> Result<Start, SetupError> {
         let with = |friction: f64| Start {
             friction,
@@ -125,7 +125,7 @@ impl ClosedLoop {
     /// its own, bristles free, as read: in the actuator's unit.
     ///
     /// # Errors
-    /// [`SetupError`] where the load cannot be there.
+    /// [`SetupError`] if the load cannot be there.
     pub fn resting_effort(&self, position: f64) -> Result<f64, SetupError> {
         Ok(self.settled(&Start::at(position))?.2)
     }

@@ -9,19 +9,20 @@ use crate::part::{Known, Part, PartError, PartKind, Role, Values};
 /// What an axis has whose file leaves `[control]` out. No file can name it.
 pub(crate) static KIND: PartKind<dyn Control> = PartKind {
     name: "none",
-    summary: "no controller that is known",
+    summary: "unknown controller",
     keys: &[],
     known: &[
         Known::by(SAMPLED_INERTIA, |values, by| {
             values.set(SAMPLED_INERTIA, by * sampled(values));
         })
-        .within(0.1, Some(Role::LoadInertia)),
+        .with_own_tolerance(0.1, Some(Role::LoadInertia)),
         Known::by(COMMAND_HOLD, |values, by| {
             values.set(COMMAND_HOLD, by * hold(values));
         })
-        .within(1.0, None),
+        .with_own_tolerance(1.0, None),
         // Beside nothing: the share by which it is off is the skew.
-        Known::by(TORQUE_SKEW, |values, by| values.set(TORQUE_SKEW, by - 1.0)).within(0.5, None),
+        Known::by(TORQUE_SKEW, |values, by| values.set(TORQUE_SKEW, by - 1.0))
+            .with_own_tolerance(0.5, None),
     ],
     build: |_| Ok(Arc::new(Absent)),
 };

@@ -96,7 +96,7 @@ struct Cascade {
     acceleration_feedforward: f64,
     speed: [f64; 2],
     feedback: Feedback,
-    /// Hz; the control's own where there is none.
+    /// Hz; the control's own if there is none.
     speed_rate: Option<f64>,
     position_rate: Option<f64>,
     speed_lowpass: Option<f64>,
@@ -120,7 +120,7 @@ fn build(v: &Values) -> Result<Arc<dyn Control>, PartError> {
         (Some(_), Some(_)) => {
             return Err(PartError::of(
                 "kv",
-                "gives the position controller's gain a second time",
+                "states the position controller's gain a second time",
                 "one of position_gain and kv",
             ));
         }
@@ -133,7 +133,7 @@ fn build(v: &Values) -> Result<Arc<dyn Control>, PartError> {
         (Some(_), Some(_)) => {
             return Err(PartError::of(
                 "speed_integral_time",
-                "gives the integral's share a second time",
+                "states the integral gain a second time",
                 "one of speed_integral and speed_integral_time",
             ));
         }
@@ -368,7 +368,7 @@ impl Controller for State {
             if let Some(filter) = &mut self.speed_filter {
                 speed = filter.pass(speed);
             }
-            let mut fed = s.correction.iq;
+            let mut fed = s.correction.command;
             if self.acceleration_feedforward != 0.0 {
                 fed += self.acceleration_feedforward * s.reference.acceleration;
             }

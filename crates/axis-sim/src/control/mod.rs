@@ -37,7 +37,7 @@ pub struct Situation<'a> {
 /// What a controller asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
-    /// Speed reference of the motor, rad/s; 0 where there is no speed loop.
+    /// Speed reference of the motor, rad/s; 0 if there is no speed loop.
     pub speed_ref: f64,
     /// Command of the actuator, in its unit.
     pub effort: f64,
@@ -48,7 +48,7 @@ pub struct Demand {
 /// A control, immutable.
 pub trait Control: fmt::Debug + Send + Sync {
     /// Kv of the position loop on a load that moves by `travel` a radian: speed per
-    /// position error, 1/s. None where there is no such loop.
+    /// position error, 1/s. None if there is no such loop.
     fn velocity_gain(&self, travel: f64) -> Option<f64>;
 
     /// Whether a run can begin in motion from position and speed alone: there are no
@@ -57,20 +57,20 @@ pub trait Control: fmt::Debug + Send + Sync {
         false
     }
 
-    /// Whether an integrator holds what standing loads ask for, so that no error is left at
+    /// Whether an integrator holds what constant loads ask for, so that no error is left at
     /// rest.
     fn integrates(&self) -> bool {
         false
     }
 
     /// Effort per speed of the motor, as it acts at once: the way by which noise of the
-    /// speed comes into the command. None where no speed of the motor is read.
+    /// speed comes into the command. None if no speed of the motor is read.
     fn speed_gain(&self) -> Option<f64> {
         None
     }
 
     /// It as corrections pass through it, run once in each `period` (s) on a load that moves
-    /// by `travel` a radian. None where there is no speed loop to pass through.
+    /// by `travel` a radian. None if there is no speed loop to pass through.
     fn cascade(&self, _travel: f64, _period: f64) -> Option<Cascade> {
         None
     }
@@ -94,7 +94,7 @@ pub trait Control: fmt::Debug + Send + Sync {
     /// A controller at rest.
     ///
     /// # Errors
-    /// [`PartError`] where it does not fit its surroundings.
+    /// [`PartError`] if it does not fit its surroundings.
     fn start(&self, on: &Surroundings) -> Result<Box<dyn Controller>, PartError>;
 }
 

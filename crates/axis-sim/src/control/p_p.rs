@@ -103,7 +103,7 @@ impl Controller for State {
         ];
         let seen_speed = (filtered[0] - filtered[1]) / self.on.period;
         let wanted = self.law.position * (s.reference.position - x + s.correction.position);
-        let asked = self.law.speed * (wanted - seen_speed) + s.correction.iq;
+        let asked = self.law.speed * (wanted - seen_speed) + s.correction.command;
         let limited = Output::default().pass(asked, s.limit);
         self.before = [x, self.before[0]];
         Demand {

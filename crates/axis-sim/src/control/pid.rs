@@ -97,7 +97,7 @@ impl Controller for State {
         let damping = law.derivative * self.slope.pass(slope);
         self.before = Some(error);
         let sum = self.sum + law.integral * period * error;
-        let asked = law.proportional * error + sum + damping + s.correction.iq;
+        let asked = law.proportional * error + sum + damping + s.correction.command;
         let limited = Output::default().pass(asked, s.limit);
         if !limited.presses(error) {
             self.sum = sum;

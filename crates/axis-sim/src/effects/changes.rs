@@ -20,10 +20,10 @@ pub struct TableState {
     pub position: f64,
     /// m/s or rad/s.
     pub speed: f64,
-    /// Unit bristle, −1 to 1: the direction of sliding, without a jump. 0 where no force on
+    /// Unit bristle, −1 to 1: the direction of sliding, without a jump. 0 if no force on
     /// the load changes with it ([`Steepness::bristle`]).
     pub bristle: f64,
-    /// Share of a standing load that acts: it comes up over 20 ms, so that a
+    /// Share of a constant load that acts: it comes up over 20 ms, so that a
     /// log may start with the machine at rest under it.
     pub pressed: f64,
     /// Force of the transmission on the load at the start of the step, N or N·m.
@@ -118,7 +118,7 @@ pub struct CurrentOffset {
 }
 
 impl CurrentOffset {
-    /// It in the rotor's frame at a motor angle (rad), A; none where the sensors show nothing.
+    /// It in the rotor's frame at a motor angle (rad), A; none if the sensors show nothing.
     pub(crate) fn at(&self, motor_angle: f64) -> Option<Dq> {
         let [a, b] = self.phases;
         if [a, b] == [0.0; 2] {
@@ -300,7 +300,7 @@ impl Changes<'_> {
     /// Adds to the parameter of a role, in its SI unit.
     ///
     /// # Errors
-    /// [`SetupError::Part`] where the part refuses the new value.
+    /// [`SetupError::Part`] if the part refuses the new value.
     pub fn add(&mut self, role: Role, value: f64) -> Result<(), SetupError> {
         self.axis.change(role, |before| before + value)
     }
@@ -308,7 +308,7 @@ impl Changes<'_> {
     /// Changes the parameters of a role by a share of their values.
     ///
     /// # Errors
-    /// [`SetupError::Part`] where the part refuses the new value.
+    /// [`SetupError::Part`] if the part refuses the new value.
     pub fn scale(&mut self, role: Role, share: f64) -> Result<(), SetupError> {
         self.axis.change(role, |before| before * (1.0 + share))
     }
@@ -328,7 +328,7 @@ impl Changes<'_> {
         self.axis.stroke.start
     }
 
-    /// Stiffness of the transmission, N/m or N·m/rad at the load; infinite where motor and
+    /// Stiffness of the transmission, N/m or N·m/rad at the load; infinite if motor and
     /// load are one.
     pub fn stiffness(&self) -> f64 {
         self.axis.mechanism.stiffness().unwrap_or(f64::INFINITY)

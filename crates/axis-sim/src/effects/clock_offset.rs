@@ -1,11 +1,11 @@
-//! `clock-offset`: time by which the load's channel is late against those of the motor.
+//! `clock-offset`: delay of the load's channel relative to those of the motor.
 
 use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "clock-offset",
-    summary: "time by which the load's channel is late against those of the motor",
+    summary: "delay of the load's channel relative to those of the motor",
     channel: EffectChannel::Clock,
     depends_on: "speed",
     shown_over: EffectVariable::Speed,

@@ -1,8 +1,11 @@
-//! `cogging-torque`: torque that repeats with the motor's turn, at any current. Of a linear motor it is
+//! `cogging-torque`: torque that repeats with each turn of the motor, at any current. Of a linear
+//! motor it is
 //! `force-ripple`.
 //!
-//! With Q slots and p pole pairs the fundamental has the order lcm(Q, 2p), an even multiple of p (Zhu and
-//! Howe, IEEE Trans. Energy Conversion 15 (2000) 407–412, doi:10.1109/60.900501): 24 of 12 slots and 8
+//! With Q slots and p pole pairs the fundamental has the order lcm(Q, 2p), an even multiple of p
+//! (Zhu and
+//! Howe, IEEE Trans. Energy Conversion 15 (2000) 407–412, doi:10.1109/60.900501): 24 of 12 slots
+//! and 8
 //! poles, 60 of 12 and 10, 72 of 9 or 36 and 8. Tolerances of slots and magnets make lower orders.
 
 use super::{
@@ -12,7 +15,7 @@ use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "cogging-torque",
-    summary: "torque that repeats with the motor's turn, at any current",
+    summary: "torque that repeats with each turn of the motor, at any current",
     channel: EffectChannel::Torque,
     depends_on: "motor angle",
     shown_over: EffectVariable::MotorAngle,

@@ -1,4 +1,4 @@
-//! `control-delay`: time by which the current reference comes late.
+//! `control-delay`: delay of the current reference.
 
 use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, positive};
 use crate::error::SetupError;
@@ -6,7 +6,7 @@ use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "control-delay",
-    summary: "time by which the current reference comes late",
+    summary: "delay of the current reference",
     channel: EffectChannel::Controller,
     depends_on: "change of the current reference",
     shown_over: EffectVariable::Current,

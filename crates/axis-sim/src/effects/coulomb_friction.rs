@@ -1,11 +1,11 @@
-//! `coulomb-friction`: dry friction of one size in both directions.
+//! `coulomb-friction`: dry friction, equal in both directions.
 
 use super::{Effect, EffectChannel, EffectVariable, Measure, size};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "coulomb-friction",
-    summary: "dry friction of one size in both directions",
+    summary: "dry friction, equal in both directions",
     channel: EffectChannel::Torque,
     depends_on: "sign of speed",
     shown_over: EffectVariable::Speed,

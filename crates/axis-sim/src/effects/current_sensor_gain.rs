@@ -11,7 +11,7 @@ use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "current-sensor-gain",
-    summary: "share by which the current sensors show too much",
+    summary: "relative gain error of the current sensors",
     channel: EffectChannel::Torque,
     depends_on: "current",
     shown_over: EffectVariable::Current,

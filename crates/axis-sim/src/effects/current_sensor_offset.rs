@@ -1,4 +1,4 @@
-//! `current-sensor-offset`: what the current sensors of phases a and b show at no current.
+//! `current-sensor-offset`: reading of the current sensors of phases a and b at zero current.
 //!
 //! A drive measures two phases and has the third from their sum, so that offsets δ_a and δ_b are
 //! a vector that stands still in the stator,
@@ -23,7 +23,7 @@ use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "current-sensor-offset",
-    summary: "what the current sensors of phases a and b show at no current",
+    summary: "reading of the current sensors of phases a and b at zero current",
     channel: EffectChannel::Torque,
     depends_on: "motor angle",
     shown_over: EffectVariable::MotorAngle,

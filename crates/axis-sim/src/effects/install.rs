@@ -9,7 +9,7 @@ use crate::part::PartError;
 /// Makes the effects' changes to the axis, and gives their hooks.
 ///
 /// # Errors
-/// [`SetupError`] where a value is not a number, the axis has no part for an effect to
+/// [`SetupError`] if a value is not a number, the axis has no part for an effect to
 /// act on, or a parameter leaves its range.
 pub(crate) fn install(effects: &[ActiveEffect], axis: &mut Axis) -> Result<Hooks, SetupError> {
     let mut hooks = Hooks::default();

@@ -1,4 +1,4 @@
-//! `inverter-dead-time`: voltage that each phase loses against its current.
+//! `inverter-dead-time`: voltage error of each phase, opposite to its current.
 
 use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, size};
 use crate::error::SetupError;
@@ -6,7 +6,7 @@ use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "inverter-dead-time",
-    summary: "voltage that each phase loses against its current",
+    summary: "voltage error of each phase, opposite to its current",
     channel: EffectChannel::Voltage,
     depends_on: "sign of phase currents",
     shown_over: EffectVariable::Current,

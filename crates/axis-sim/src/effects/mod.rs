@@ -112,9 +112,9 @@ pub enum EffectVariable {
     MotorAngle,
     /// Acceleration of the load, which most of the force is for.
     Acceleration,
-    /// q current, where there is one; time otherwise.
+    /// q current, if there is one; time otherwise.
     Current,
-    /// Way travelled to and fro since the log began.
+    /// Distance travelled to and fro since the log began.
     Way,
     /// Time since the log began: also for what depends on nothing, or on no single number.
     Time,

@@ -368,7 +368,7 @@ impl EffectNeed {
             Self::Transmission => "transmission between motor and load",
             Self::MotorEncoder => "motor encoder apart from the load's position",
             Self::AnotherClock => {
-                "clock beside that of the load's position (a motor encoder, or a torque balance)"
+                "second clock besides that of the load's position (a motor encoder, or a torque balance)"
             }
             Self::Currents => "currents that are measured",
             Self::Poles => "motor poles",

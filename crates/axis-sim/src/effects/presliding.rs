@@ -1,4 +1,4 @@
-//! `presliding`: stiffness of the contact before it slides.
+//! `presliding`: pre-sliding stiffness of the friction contact.
 
 use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, size};
 use crate::error::SetupError;
@@ -6,7 +6,7 @@ use crate::part::Role;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "presliding",
-    summary: "stiffness of the contact before it slides",
+    summary: "pre-sliding stiffness of the friction contact",
     channel: EffectChannel::Torque,
     depends_on: "displacement after a reversal",
     shown_over: EffectVariable::Time,

@@ -1,4 +1,4 @@
-//! `structural-resonance`: a body on the load that swings by itself, as of its structure.
+//! `structural-resonance`: a body on the load that oscillates by itself, as of its structure.
 //!
 //! A modal mass m is held to the load by a spring and a damper of the natural frequency
 //! ω = 2π f and damping ratio ζ. With q its position against the load's y
@@ -23,7 +23,7 @@ use crate::plant::Start;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "structural-resonance",
-    summary: "a body on the load that swings by itself",
+    summary: "a body on the load that oscillates by itself",
     channel: EffectChannel::Torque,
     depends_on: "acceleration, near one frequency",
     shown_over: EffectVariable::Acceleration,

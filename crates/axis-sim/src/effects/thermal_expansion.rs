@@ -1,11 +1,11 @@
-//! `thermal-expansion`: growth of the transmission with time.
+//! `thermal-expansion`: thermal growth of the transmission over time.
 
 use super::{Effect, EffectChannel, EffectNeed, EffectVariable, Measure, Nature, shape, signed};
 use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "thermal-expansion",
-    summary: "growth of the transmission with time",
+    summary: "thermal growth of the transmission over time",
     channel: EffectChannel::Kinematics,
     depends_on: "time and position",
     shown_over: EffectVariable::Position,

@@ -14,9 +14,9 @@ use crate::error::SetupError;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "warming-friction",
-    summary: "dry friction that falls with the way travelled, as of warming",
+    summary: "dry friction that falls with the distance travelled, as by warming up",
     channel: EffectChannel::Torque,
-    depends_on: "way travelled and sign of speed",
+    depends_on: "distance travelled and sign of speed",
     shown_over: EffectVariable::Way,
     parameters: &[
         size("force", Measure::Force, 120.0, 5e3),

@@ -9,7 +9,7 @@ use crate::part::{Known, PartKind, quantity};
 
 pub(super) static KIND: PartKind<dyn Load> = PartKind {
     name: "gravity",
-    summary: "weight of a vertical axis that its counterweight leaves, down being positive",
+    summary: "weight of a vertical axis that its counterweight does not carry, positive downward",
     keys: &[quantity("weight", &FORCE, -1e7, 1e7)],
     known: &[Known::key("weight")],
     build: |v| Ok(Arc::new(Gravity(v.number("weight")?))),

@@ -10,7 +10,7 @@ use crate::part::{Known, PartKind, quantity};
 
 pub(super) static KIND: PartKind<dyn Load> = PartKind {
     name: "pendulum",
-    summary: "gravity on a joint, m g l sin(φ − φ₀): none where its arm hangs down",
+    summary: "gravity on a joint, m g l sin(φ − φ₀): zero with its arm hanging down",
     keys: &[
         quantity("torque", &TORQUE, 0.0, 1e7),
         quantity("hanging_at", &ANGLE, -TAU, TAU),

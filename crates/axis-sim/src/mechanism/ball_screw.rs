@@ -9,7 +9,7 @@ use feed_dynamics::{
     NutCoupling,
 };
 
-use super::{Mechanism, Way};
+use super::{Mechanism, SolutionMethod};
 use crate::axis::ValueRange;
 use crate::part::units::{DENSITY, INERTIA, LENGTH, MASS, PRESSURE, STIFFNESS, TIME, TORSION};
 use crate::part::{Known, PartError, PartKind, Role, Values, count, number, quantity, word};
@@ -194,11 +194,18 @@ impl Mechanism for BallScrew {
         Some(2e-5)
     }
 
-    fn plant(&self, way: Way, step: f64, assembly: Assembly) -> Result<Arc<dyn Plant>, DriveError> {
+    fn plant(
+        &self,
+        method: SolutionMethod,
+        step: f64,
+        assembly: Assembly,
+    ) -> Result<Arc<dyn Plant>, DriveError> {
         let coupling = NutCoupling::MovingNode;
-        Ok(match way {
-            Way::Fast => assembly.on(ModalStepper::new(&self.drive, step)?),
-            Way::Exact => assembly.on(ImplicitStepper::new(&self.drive, coupling, step)?),
+        Ok(match method {
+            SolutionMethod::Fast => assembly.on(ModalStepper::new(&self.drive, step)?),
+            SolutionMethod::Exact => {
+                assembly.on(ImplicitStepper::new(&self.drive, coupling, step)?)
+            }
         })
     }
 }

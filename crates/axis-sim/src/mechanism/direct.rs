@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use feed_dynamics::{DriveError, ForceCourse, RigidDrive, RigidStepper};
 
-use super::{Freedom, Mechanism, Way};
+use super::{Freedom, Mechanism, SolutionMethod};
 use crate::part::units::{INERTIA, MASS};
 use crate::part::{Known, PartError, PartKind, Role, quantity};
 use crate::plant::{Assembly, Plant};
@@ -67,7 +67,12 @@ impl Mechanism for Direct {
         Some(2e-5)
     }
 
-    fn plant(&self, _: Way, step: f64, assembly: Assembly) -> Result<Arc<dyn Plant>, DriveError> {
+    fn plant(
+        &self,
+        _: SolutionMethod,
+        step: f64,
+        assembly: Assembly,
+    ) -> Result<Arc<dyn Plant>, DriveError> {
         let stepper = RigidStepper::new(&self.drive, step)?;
         Ok(assembly.on(stepper.with_course(ForceCourse::Linear)))
     }

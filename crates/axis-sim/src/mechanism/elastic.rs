@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use feed_dynamics::{DriveError, ElasticDrive, ElasticDriveParameters, ElasticStepper, Stiffness};
 
-use super::{Freedom, KinematicError, Mechanism, Way};
+use super::{Freedom, KinematicError, Mechanism, SolutionMethod};
 use crate::axis::ValueRange;
 use crate::part::{PartError, Values};
 use crate::plant::{Assembly, Plant};
@@ -116,7 +116,12 @@ impl Mechanism for Elastic {
         Some(2e-5)
     }
 
-    fn plant(&self, _: Way, step: f64, assembly: Assembly) -> Result<Arc<dyn Plant>, DriveError> {
+    fn plant(
+        &self,
+        _: SolutionMethod,
+        step: f64,
+        assembly: Assembly,
+    ) -> Result<Arc<dyn Plant>, DriveError> {
         Ok(assembly.on(ElasticStepper::new(&self.drive, step)?))
     }
 }

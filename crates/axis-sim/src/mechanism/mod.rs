@@ -70,12 +70,12 @@ impl Freedom {
 
 /// How a mechanism's equations are solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Way {
-    /// As fast as it can be: what everything runs on.
+pub enum SolutionMethod {
+    /// The fast method: the default of every simulation.
     #[default]
     Fast,
-    /// As exactly as it can be, by another method where there is one: to check
-    /// the fast one against, and for what stands for a real machine.
+    /// The most exact method, another one than the fast if the mechanism has one: to check
+    /// the fast method, and to simulate what stands for a real machine.
     Exact,
 }
 
@@ -106,7 +106,7 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
     /// Inertia of all that moves, seen at the motor, kg·m² (kg where r is 1 m).
     fn total_inertia(&self) -> f64;
 
-    /// Stiffness that decides on positioning, seen at the load; none where motor
+    /// Stiffness that decides on positioning, seen at the load; none if motor
     /// and load are one.
     fn stiffness(&self) -> Option<f64>;
 
@@ -128,7 +128,7 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
     /// Natural frequencies with the load at `x`, rigid motion left out, rad/s.
     ///
     /// # Errors
-    /// [`DriveError`] where the load cannot be at `x`.
+    /// [`DriveError`] if the load cannot be at `x`.
     fn modes(&self, x: f64) -> Result<Vec<f64>, DriveError>;
 
     /// What turns with the motor, near the position `x`: inertia at the motor (kg·m²), and
@@ -142,7 +142,7 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
     fn load_inertia(&self) -> f64;
 
     /// Compliance from motor to load with the load at `x`, seen at the motor, rad/(N·m);
-    /// 0 where they are one.
+    /// 0 if they are one.
     fn compliance(&self, _x: f64) -> f64 {
         let r = self.travel_per_radian();
         self.stiffness().map_or(0.0, |k| 1.0 / (k * r * r))
@@ -195,12 +195,12 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
     }
 
     /// The same where it is a sin(n θ + φ) of the motor's angle θ: a (m or rad at the load), n
-    /// and φ (rad). What a plan can foresee.
+    /// and φ (rad). What a plan can predict.
     fn kinematic_harmonic(&self) -> Option<[f64; 3]> {
         None
     }
 
-    /// Longest step of its exact way, s, where that differs from the fast one, be it by the
+    /// Longest step of its exact method, s, where that differs from the fast one, be it by the
     /// step alone.
     fn exact_step(&self) -> Option<f64> {
         None
@@ -210,6 +210,11 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
     /// `assembly.on(stepper)` with the mechanism's [`feed_dynamics::TimeStepper`].
     ///
     /// # Errors
-    /// [`DriveError`] where the stepper cannot be made.
-    fn plant(&self, way: Way, step: f64, assembly: Assembly) -> Result<Arc<dyn Plant>, DriveError>;
+    /// [`DriveError`] if the stepper cannot be made.
+    fn plant(
+        &self,
+        method: SolutionMethod,
+        step: f64,
+        assembly: Assembly,
+    ) -> Result<Arc<dyn Plant>, DriveError>;
 }

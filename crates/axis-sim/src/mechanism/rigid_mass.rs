@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use feed_dynamics::{DriveError, RigidDrive, RigidStepper};
 
-use super::{Mechanism, Way};
+use super::{Mechanism, SolutionMethod};
 use crate::part::units::{LENGTH, MASS};
 use crate::part::{Known, PartError, PartKind, Role, Values, quantity};
 use crate::plant::{Assembly, Plant};
 
 pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
     name: "rigid-mass",
-    summary: "everything that moves as one mass on a screw of a lead",
+    summary: "one rigid mass on a screw, by its lead",
     keys: &[
         quantity("mass", &MASS, 1e-3, 1e6).role(Role::LoadInertia),
         quantity("lead", &LENGTH, 1e-4, 10.0),
@@ -49,7 +49,12 @@ impl Mechanism for RigidMass {
         Ok(Vec::new())
     }
 
-    fn plant(&self, _: Way, step: f64, assembly: Assembly) -> Result<Arc<dyn Plant>, DriveError> {
+    fn plant(
+        &self,
+        _: SolutionMethod,
+        step: f64,
+        assembly: Assembly,
+    ) -> Result<Arc<dyn Plant>, DriveError> {
         Ok(assembly.on(RigidStepper::new(&self.0, step)?))
     }
 }

@@ -220,7 +220,7 @@ impl Key {
         self.optional
     }
 
-    /// What a number is where it is left out, in SI units; none where it then has no value.
+    /// What a number is where it is left out, in SI units; none if it then has no value.
     pub fn default(&self) -> Option<f64> {
         self.default
     }

@@ -111,7 +111,7 @@ pub struct Known {
     pub name: &'static str,
     scale: Option<fn(&mut Values, f64)>,
     exact: bool,
-    beside: Option<(f64, Option<Role>)>,
+    own_tolerance: Option<(f64, Option<Role>)>,
 }
 
 impl Known {
@@ -121,7 +121,7 @@ impl Known {
             name,
             scale: None,
             exact: false,
-            beside: None,
+            own_tolerance: None,
         }
     }
 
@@ -145,23 +145,25 @@ impl Known {
             name,
             scale: Some(scale),
             exact: false,
-            beside: None,
+            own_tolerance: None,
         }
     }
 
-    /// Off by up to this share unless `[tolerances]` names it, whatever these say of all others;
-    /// but exact where parameters of that role, if there is one, may be off by as much, which then
-    /// take what it would do.
-    pub const fn within(self, share: f64, beside: Option<Role>) -> Self {
+    /// With a tolerance of its own, `share` of its value, which replaces the default tolerance of
+    /// `[tolerances]` unless that table names the parameter.
+    ///
+    /// With a role in `covered_by`, the parameter is exact if every parameter of that role has a
+    /// tolerance of `share` or more: those then account for its error.
+    pub const fn with_own_tolerance(self, share: f64, covered_by: Option<Role>) -> Self {
         Self {
-            beside: Some((share, beside)),
+            own_tolerance: Some((share, covered_by)),
             ..self
         }
     }
 
-    /// Its own tolerance, and whose do as much ([`Known::within`]).
-    pub fn beside(&self) -> Option<(f64, Option<Role>)> {
-        self.beside
+    /// Its own tolerance, and the role whose parameters can cover it ([`Known::with_own_tolerance`]).
+    pub fn own_tolerance(&self) -> Option<(f64, Option<Role>)> {
+        self.own_tolerance
     }
 
     /// Whether these values have it: a parameter that is 0 has no share to be off by.
@@ -169,7 +171,7 @@ impl Known {
         self.scale.is_some() || values.optional(self.name).is_some_and(|value| value != 0.0)
     }
 
-    /// Multiplies it by a factor; nothing where the values do not have it.
+    /// Multiplies it by a factor; nothing if the values do not have it.
     pub(crate) fn scale(&self, values: &mut Values, by: f64) {
         match self.scale {
             Some(scale) => scale(values, by),
@@ -194,7 +196,7 @@ pub struct PartKind<P: ?Sized> {
 
 impl<P: ?Sized> PartKind<P> {
     /// A part of this kind with the least values that its keys take, to see how parts of
-    /// it move; none where they make no part.
+    /// it move; none if they make no part.
     pub(crate) fn example(&self) -> Option<Arc<P>> {
         let mut values = Values::default();
         for key in self.keys.iter().filter(|key| !key.optional) {
@@ -247,7 +249,7 @@ impl<P: ?Sized> Part<P> {
     /// Makes a part.
     ///
     /// # Errors
-    /// [`PartError`] where the values make none.
+    /// [`PartError`] if the values make none.
     pub fn new(kind: &'static PartKind<P>, values: Values) -> Result<Self, PartError> {
         let built = (kind.build)(&values)?;
         Ok(Self {
@@ -282,7 +284,7 @@ impl<P: ?Sized> Part<P> {
     /// Changes values and makes the part anew; where that fails it stays as it was.
     ///
     /// # Errors
-    /// [`PartError`] where the new values make no part.
+    /// [`PartError`] if the new values make no part.
     pub fn change(&mut self, change: impl FnOnce(&mut Values)) -> Result<(), PartError> {
         let mut values = self.values.clone();
         change(&mut values);

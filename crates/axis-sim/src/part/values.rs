@@ -42,7 +42,7 @@ impl Values {
         self.0.insert(key, Value::Word(word));
     }
 
-    /// Multiplies a number, where there is one.
+    /// Multiplies a number, if there is one.
     pub fn scale(&mut self, key: &'static str, by: f64) {
         if let Some(Value::Number(number, _)) = self.0.get_mut(key) {
             *number *= by;
@@ -52,7 +52,7 @@ impl Values {
     /// A number that must be there, in SI units.
     ///
     /// # Errors
-    /// [`PartError`] where it is not.
+    /// [`PartError`] if it is not.
     pub fn number(&self, key: &'static str) -> Result<f64, PartError> {
         self.optional(key).ok_or_else(|| missing(key, "a number"))
     }
@@ -73,7 +73,7 @@ impl Values {
     /// A whole number that must be there.
     ///
     /// # Errors
-    /// [`PartError`] where it is not.
+    /// [`PartError`] if it is not.
     pub fn count(&self, key: &'static str) -> Result<u32, PartError> {
         self.optional_count(key)
             .ok_or_else(|| missing(key, "a whole number"))
@@ -95,7 +95,7 @@ impl Values {
         }
     }
 
-    /// The unit in which a number was given in the file; empty where it was not.
+    /// The unit in which a number was given in the file; empty if it was not.
     pub fn unit(&self, key: &str) -> &'static str {
         match self.0.get(key) {
             Some(Value::Number(_, unit)) => unit,

@@ -144,7 +144,7 @@ impl<S: TimeStepper> Law<S> {
             let Ok(drive) = self.stepper.settled(start.position, &motion) else {
                 break;
             };
-            let force = self.stepper.observe(&drive).nut_force;
+            let force = self.stepper.observe(&drive).transmission_force;
             let next = self.settled_under(start, force);
             let done = (next.load - motion.load).abs() <= f64::EPSILON * next.load.abs();
             motion = next;

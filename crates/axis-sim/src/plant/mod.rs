@@ -66,7 +66,7 @@ pub enum AdvanceError {
     Drive(#[from] DriveError),
     /// No force on the load was found that goes with the motion that it leads to.
     #[error(
-        "no force on the load was found that goes with its motion after {rounds} tries, the last off by {residual} of it: friction, loads and effects must be finite, and bounded or growing with the speed"
+        "no force on the load is consistent with its motion after {rounds} iterations (relative residual {residual}): friction, loads and effects must be finite, and bounded or growing with the speed"
     )]
     LoadNotFound {
         /// Forces that were tried.
@@ -139,7 +139,7 @@ impl Seen {
             speed: at.speed,
             motor_angle: origins[1] + at.motor_angle,
             motor_speed: at.motor_speed,
-            transmission_force: at.nut_force,
+            transmission_force: at.transmission_force,
             torque,
             load,
         }

@@ -10,7 +10,7 @@ use super::{AdvanceError, Running, Seen};
 use crate::actuator::{Actuating, MotorMotion};
 use crate::effects::{Memory, TableState, TableStep};
 
-/// Time over which a standing load comes up, s.
+/// Time over which a constant load comes up, s.
 const STANDING_LOAD_RISE: f64 = 0.02;
 
 /// The machine's inner state, which no controller sees.
@@ -36,7 +36,7 @@ pub(super) struct State<S: TimeStepper> {
     pub(super) force_change: f64,
     /// Motor acceleration over the last step, rad/s².
     pub(super) motor_acceleration: f64,
-    /// Whether standing loads act from the start on.
+    /// Whether constant loads act from the start on.
     pub(super) pressed: bool,
     pub(super) seen: Seen,
 }

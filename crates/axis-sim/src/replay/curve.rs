@@ -9,7 +9,7 @@ pub struct SampledCurve {
 }
 
 impl SampledCurve {
-    /// The cubic spline through samples, one every `period` (s, above zero); 0 where there
+    /// The cubic spline through samples, one every `period` (s, above zero); 0 if there
     /// is none.
     ///
     /// It is at rest at both ends or, where it begins or ends in motion, has the slope of the

@@ -102,7 +102,7 @@ impl Replay {
     /// ([`Control::starts_in_motion`](crate::control::Control::starts_in_motion)).
     ///
     /// # Errors
-    /// [`ReplayError::Log`] where a channel is missing; [`ReplayError::Period`].
+    /// [`ReplayError::Log`] if a channel is missing; [`ReplayError::Period`].
     pub fn new(log: &Log, period: f64) -> Result<Self, ReplayError> {
         let position = position_in(log)?;
         let few = position.len().min(6) - 1;
@@ -163,8 +163,8 @@ impl Replay {
     /// [`ClosedLoop::run_sensed`].
     ///
     /// # Errors
-    /// [`ReplayError::Stopped`] where the loop does not hold;
-    /// [`ReplayError::TooLong`] where the log is longer than can be held.
+    /// [`ReplayError::Stopped`] if the loop does not hold;
+    /// [`ReplayError::TooLong`] if the log is longer than can be held.
     pub fn follow(
         &self,
         closed_loop: &ClosedLoop,
@@ -277,7 +277,7 @@ impl Compensator for Added<'_> {
         self.cycle += 1;
         Correction {
             position: 0.0,
-            iq: added.get(at.round() as usize).copied().unwrap_or(0.0),
+            command: added.get(at.round() as usize).copied().unwrap_or(0.0),
         }
     }
 }

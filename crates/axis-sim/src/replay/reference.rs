@@ -23,7 +23,7 @@ impl LoggedReference {
     ///
     /// Without `velocity_ref_m_s` the velocity is that of the cubic spline through the
     /// positions. Without `acceleration_ref_m_s2` the acceleration is that of the spline
-    /// through the velocities or, where there are none, that of the spline through the
+    /// through the velocities or, if there are none, that of the spline through the
     /// velocities of the positions. As a derivative makes much of the last digit that a log
     /// has, it is taken of the smoothest series that is as far from the logged one as this
     /// is noisy: one in steps of 1 µm at 1 kHz has its acceleration to some mm/s², where

@@ -1,7 +1,7 @@
 //! Adaptation between moves, on simulated axes: what a plan made with the adapted model
 //! leaves of the tracking error on motions that it has never seen.
 //!
-//! The machine is the stand-in, the belief its model with each of friction level, viscosity,
+//! The machine is the stand-in, the assumed model its model with each of friction level, viscosity,
 //! bristle stiffness and damping off by up to 20 %, mass by up to 10 %; sensors have noise of
 //! 10 nm, 2 µrad, 0.01 rad/s and 5 mA. Every motion begins at rest and relaxed.
 
@@ -124,8 +124,8 @@ fn one_move_is_enough_on_the_machine() {
     let (model, motions) = (axis.drive_model().unwrap(), motions(&axis));
     for seed in 0..6 {
         let mut random = ChaCha8Rng::seed_from_u64(31_000 + seed);
-        let belief = times(&model, drawn(&mut random));
-        let mut adaptation = Adaptation::new(&belief, &AdaptPrior::default()).unwrap();
+        let assumed = times(&model, drawn(&mut random));
+        let mut adaptation = Adaptation::new(&assumed, &AdaptPrior::default()).unwrap();
         let first = seed as usize % 6;
         for (move_, leave) in [1.0, 0.005, 0.005].into_iter().enumerate() {
             let motion = &motions[(first + move_) % 6];
@@ -141,12 +141,12 @@ fn one_move_is_enough_on_the_machine() {
     }
 }
 
-/// The machine is another than the believed one: a payload four deviations of the prior
+/// The machine is another than the assumed one: a payload four deviations of the prior
 /// away, a softer nut, another shape of the Stribeck curve.
 #[test]
 fn other_machines_are_learned_in_three_moves() {
     let axis = axis(MACHINE);
-    let belief = axis.drive_model().unwrap();
+    let assumed = axis.drive_model().unwrap();
     let with = |name: &str, value: f64| {
         let mut axis = axis.clone();
         axis.effects.push(ActiveEffect {
@@ -168,7 +168,7 @@ fn other_machines_are_learned_in_three_moves() {
     ];
     for (k, machine) in machines.iter().enumerate() {
         let closed_loop = ClosedLoop::new(machine).unwrap();
-        let mut adaptation = Adaptation::new(&belief, &AdaptPrior::default()).unwrap();
+        let mut adaptation = Adaptation::new(&assumed, &AdaptPrior::default()).unwrap();
         for (i, motion) in motions(&axis).iter().take(4).enumerate() {
             let noise = Some((100 * k + i) as u64);
             let (most, log) = planned(&closed_loop, &adaptation.model(), motion, noise);
@@ -189,8 +189,8 @@ fn what_was_learned_holds_for_a_program() {
     let axis = axis(MACHINE);
     let closed_loop = ClosedLoop::new(&axis).unwrap();
     let model = axis.drive_model().unwrap();
-    let belief = times(&model, [0.85, 1.15, 1.1, 0.9, 1.05]);
-    let mut adaptation = Adaptation::new(&belief, &AdaptPrior::default()).unwrap();
+    let assumed = times(&model, [0.85, 1.15, 1.1, 0.9, 1.05]);
+    let mut adaptation = Adaptation::new(&assumed, &AdaptPrior::default()).unwrap();
     for (i, motion) in motions(&axis).iter().take(3).enumerate() {
         let (_, log) = planned(&closed_loop, &adaptation.model(), motion, Some(i as u64));
         adaptation.learn(&log).unwrap();
@@ -228,16 +228,16 @@ fn parameters_beside_a_residual_are_those_without_it() {
         }
     }
     let mut axis = axis(MACHINE);
-    let belief = axis.drive_model().unwrap();
+    let assumed = axis.drive_model().unwrap();
     axis.effects.push(ActiveEffect {
         effect: Effect::named("position-dependent-friction").unwrap(),
         values: vec![120.0, 0.85, 0.1],
     });
     let closed_loop = ClosedLoop::new(&axis).unwrap();
     let motion = &motions(&axis)[0];
-    let (_, log) = planned(&closed_loop, &belief, motion, Some(3));
+    let (_, log) = planned(&closed_loop, &assumed, motion, Some(3));
     let [mut alone, mut beside] =
-        [(); 2].map(|()| Adaptation::new(&belief, &AdaptPrior::default()).unwrap());
+        [(); 2].map(|()| Adaptation::new(&assumed, &AdaptPrior::default()).unwrap());
     alone.learn(&log).unwrap();
     beside.learn_beside(&log, &mut Bump).unwrap();
     let worst = |adaptation: &Adaptation| {
@@ -260,8 +260,8 @@ fn axes_of_every_kind_are_learned() {
         let axis = axis(name);
         let closed_loop = ClosedLoop::new(&axis).unwrap();
         let (model, motions) = (axis.drive_model().unwrap(), motions(&axis));
-        let belief = times(&model, [0.85, 0.85, 1.15, 0.9, 0.92]);
-        let mut adaptation = Adaptation::new(&belief, &AdaptPrior::default()).unwrap();
+        let assumed = times(&model, [0.85, 0.85, 1.15, 0.9, 0.92]);
+        let mut adaptation = Adaptation::new(&assumed, &AdaptPrior::default()).unwrap();
         for motion in motions.iter().take(2) {
             let (_, log) = planned(&closed_loop, &adaptation.model(), motion, None);
             adaptation
@@ -269,10 +269,10 @@ fn axes_of_every_kind_are_learned() {
                 .unwrap_or_else(|e| panic!("{name}: {e}"));
         }
         for motion in &motions {
-            let errors = [&adaptation.model(), &model, &belief]
+            let errors = [&adaptation.model(), &model, &assumed]
                 .map(|model| planned(&closed_loop, model, motion, None).0);
-            let [adapted, known, believed] = errors;
-            let most = (1.1 * known).max(known + 0.03 * (believed - known));
+            let [adapted, known, assumed_model] = errors;
+            let most = (1.1 * known).max(known + 0.03 * (assumed_model - known));
             assert!(adapted <= most, "{name}: {errors:?}");
         }
     }

@@ -365,15 +365,15 @@ fn what_friction_does_beneath_a_sensors_noise_is_left_out() {
     let share = unbalanced(&axis, &log);
     println!(
         "{} left out of {:?}: {share:.2e}",
-        quality.unsure, quality.samples
+        quality.unresolved, quality.samples
     );
-    assert!(quality.unsure > 0);
+    assert!(quality.unresolved > 0);
     // They lie where the axis starts and stops, and nowhere between.
     let (time, period) = (balance.compared().time(), balance.compared_period());
     let even = |t: &[f64]| t[1] - t[0] < 1.5 * period;
     assert!(time.windows(2).all(even));
     let [compared, _] = quality.samples;
-    assert!(8 * quality.unsure < compared);
+    assert!(8 * quality.unresolved < compared);
     // With these samples, 1.65e-3 of the current is left.
     assert!(share < 6e-4, "{share}");
 }

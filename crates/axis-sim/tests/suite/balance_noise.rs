@@ -10,7 +10,7 @@ use crate::balance::{bench, log_of, motion};
 const INERTIA: f64 = 0.3;
 
 /// Least-squares inertia from a motion with white noise (rad), as a share of the true one,
-/// and the share that is foretold to be lost; the mean of some runs.
+/// and the share that is predicted to be lost; the mean of some runs.
 fn fitted(noise: f64, cutoff: &str) -> [f64; 2] {
     const RUNS: u64 = 10;
     let axis = bench(INERTIA, cutoff);
@@ -37,7 +37,7 @@ fn fitted(noise: f64, cutoff: &str) -> [f64; 2] {
     sums.map(|sum| sum / RUNS as f64)
 }
 
-/// With a cut-off where noise counts, an inertia comes out too small by what is foretold;
+/// With a cut-off where noise counts, an inertia comes out too small by what is predicted;
 /// with the one that is taken from the log, by less than 0.2 %.
 #[test]
 fn noise_draws_an_inertia_by_what_is_foretold() {

@@ -17,13 +17,13 @@ impl Compensator for Kick {
         self.0 = true;
     }
     fn correct(&mut self, _: &Sample) -> Correction {
-        let iq = if std::mem::take(&mut self.0) {
+        let command = if std::mem::take(&mut self.0) {
             0.1
         } else {
             0.0
         };
         Correction {
-            iq,
+            command,
             ..Correction::default()
         }
     }

@@ -53,7 +53,7 @@ impl<F: FnMut(u32) -> f64> Compensator for Asked<F> {
         self.1 += 1;
         Correction {
             position: 0.0,
-            iq: (self.0)(self.1 - 1),
+            command: (self.0)(self.1 - 1),
         }
     }
 }
@@ -204,14 +204,14 @@ fn the_angle_is_compensated() {
     assert!((none[0] - late[0]).abs() < 1e-3 && (none[1] - late[1]).abs() < 1e-3);
 }
 
-/// Peak error of a plan in which the axis is as believed but for what the voltage is late, µm, its
+/// Peak error of a plan in which the axis is as assumed but for what the voltage is late, µm, its
 /// sensors perfect.
-fn planned(delay: &str, believed_late: f64) -> f64 {
+fn planned(delay: &str, assumed_late: f64) -> f64 {
     let mut axis = changed("linear-motor.toml", &[("current_delay_periods = 0", delay)]);
     axis.sensors = Sensors::default();
     let mut model = axis.drive_model().unwrap();
     if let Drive::FieldOriented { late, .. } = &mut model.drive {
-        *late = believed_late;
+        *late = assumed_late;
     }
     let motion = axis.plan(&axis.trajectories[1]).unwrap();
     let targets = |k: usize| {

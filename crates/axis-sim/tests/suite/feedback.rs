@@ -1,5 +1,5 @@
 //! The plan with a feedback around it on simulated axes, sensors with noise: what it takes of
-//! the error where the axis is as believed, and where friction and mass are not.
+//! the error where the axis is as assumed, and where friction and mass are not.
 
 use std::path::Path;
 
@@ -48,7 +48,7 @@ impl Bench {
         }
     }
 
-    /// As the axis is believed to be, with margins over the whole stroke.
+    /// As the axis is assumed to be, with margins over the whole stroke.
     fn design(&self, settings: &FeedbackSettings) -> Result<FeedbackDesign, DesignError> {
         let elsewhere = [0.02, 0.25, 0.75, 0.98].map(|share| self.modes(share));
         let elsewhere = elsewhere.each_ref().map(Vec::as_slice);
@@ -72,7 +72,7 @@ impl Bench {
 
     fn plan(
         &self,
-        believed: &DriveModel,
+        assumed_model: &DriveModel,
         motion: &SCurve,
     ) -> Plan<impl FnMut(usize) -> Target + use<>> {
         let (motion, period) = (*motion, self.model.period);
@@ -84,7 +84,7 @@ impl Bench {
                 acceleration: s.acceleration,
             })
         };
-        Plan::new(believed, &PlanSettings::default(), targets).unwrap()
+        Plan::new(assumed_model, &PlanSettings::default(), targets).unwrap()
     }
 }
 
@@ -105,7 +105,7 @@ fn noise(seed: u64) -> impl FnMut(&mut Measured) {
 }
 
 #[test]
-fn six_moves_as_believed() {
+fn six_moves_as_assumed() {
     let bench = Bench::new("liu2025-machine");
     let design = bench.design(&bench.settings()).unwrap();
     // Nothing had to be made softer.
@@ -156,11 +156,11 @@ fn left(draws: u64) -> Vec<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(42);
     let mut left: Vec<f64> = (0..draws)
         .map(|draw| {
-            let believed = wrong(&bench, &mut rng);
+            let assumed_model = wrong(&bench, &mut rng);
             let design =
-                FeedbackDesign::new(&believed, &bench.modes(0.5), &bench.settings()).unwrap();
+                FeedbackDesign::new(&assumed_model, &bench.modes(0.5), &bench.settings()).unwrap();
             let share = |(i, motion): (usize, &SCurve)| {
-                let plan = bench.plan(&believed, motion);
+                let plan = bench.plan(&assumed_model, motion);
                 let mut with = PlanWithFeedback::new(plan, design.feedback());
                 bench.run(motion, &mut with, 100 + 10 * draw + i as u64)[0] / none[i]
             };
@@ -177,14 +177,14 @@ fn left(draws: u64) -> Vec<f64> {
 }
 
 #[test]
-fn wrong_beliefs() {
+fn wrong_model() {
     let left = left(8);
     assert!(left[7] < 0.04 && left[4] < 0.02, "{left:?}");
 }
 
 #[test]
 #[ignore = "half a minute: 300 moves"]
-fn fifty_wrong_beliefs() {
+fn fifty_wrong_models() {
     let left = left(50);
     assert!(left[49] < 0.04 && left[25] < 0.02, "{left:?}");
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use axis_sim::mechanism::Way;
+use axis_sim::mechanism::SolutionMethod;
 use axis_sim::{Axis, AxisFileError};
 
 use crate::{MACHINE, PRINTED, axis, data, number, text};
@@ -51,7 +51,7 @@ fn printed_values_in_si() {
     near(samples.speed.least, -0.333);
     near(samples.acceleration.most, 1.0);
     near(samples.effort.most, 15.0);
-    assert_eq!(axis.simulation.way, Way::Fast);
+    assert_eq!(axis.simulation.method, SolutionMethod::Fast);
     assert_eq!(axis.trajectories.len(), 6);
     near(axis.trajectories[4].displacement, 0.3);
     assert_eq!(axis.name, "liu2025");

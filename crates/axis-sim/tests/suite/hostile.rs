@@ -3,7 +3,7 @@
 
 use axis_log::{Channel, Log};
 use axis_sim::effects::{ActiveEffect, EFFECTS};
-use axis_sim::mechanism::Way;
+use axis_sim::mechanism::SolutionMethod;
 use axis_sim::{Axis, ClosedLoop, CycleInput, LoggedReference, OneCycle, Probe, Replay, SixDigits};
 use compensator::NoCompensation;
 use proptest::prelude::*;
@@ -55,10 +55,10 @@ proptest! {
     #[test]
     fn single_cycles(
         position in any_number(), speed in any_number(),
-        acceleration in any_number(), iq_command in any_number()
+        acceleration in any_number(), command in any_number()
     ) {
         let one = OneCycle::new(&axis(PRINTED)).unwrap();
-        let _ = one.increment(&CycleInput { position, speed, acceleration, iq_command });
+        let _ = one.increment(&CycleInput { position, speed, acceleration, command });
     }
 
     #[test]
@@ -103,9 +103,9 @@ proptest! {
     ) {
         let limits = Limits::new(1.0, 100.0, 1e5).unwrap();
         let motion = SCurve::plan(0.6, 0.6001, &limits).unwrap();
-        for way in [Way::Fast, Way::Exact] {
+        for method in [SolutionMethod::Fast, SolutionMethod::Exact] {
             let mut axis = axis(PRINTED);
-            (axis.period, axis.simulation.step, axis.simulation.way) = (period, step, way);
+            (axis.period, axis.simulation.step, axis.simulation.method) = (period, step, method);
             if let Ok(closed_loop) = ClosedLoop::new(&axis)
                 && closed_loop.steps(&motion) < 1e6
             {

@@ -24,7 +24,7 @@ impl Compensator for BangBang {
         self.cycle += 1;
         Correction {
             position: 0.0,
-            iq: if back { -self.most } else { self.most },
+            command: if back { -self.most } else { self.most },
         }
     }
 }

@@ -8,7 +8,6 @@ mod axis_files;
 mod bad_files;
 mod balance;
 mod balance_noise;
-mod belief;
 mod belt;
 mod closed_loop;
 mod controls;
@@ -32,6 +31,7 @@ mod other_effects;
 mod outcome;
 mod plain;
 mod plain_loops;
+mod plan_model;
 mod published;
 mod recorder;
 mod refusals;
@@ -161,7 +161,7 @@ fn bits(c: &Cycle) -> [u64; 21] {
         c.command.voltage.d,
         c.command.voltage.q,
         c.correction.position,
-        c.correction.iq,
+        c.correction.command,
     ]
     .map(f64::to_bits)
 }

@@ -52,7 +52,7 @@ fn points(axis: &Axis, count: usize, fastest: f64, balanced: bool) -> Vec<CycleI
             position: 1.5 * x,
             speed,
             acceleration,
-            iq_command: if balanced {
+            command: if balanced {
                 balance(axis, speed, acceleration)
             } else {
                 30.0 * current - 15.0
@@ -121,12 +121,12 @@ proptest! {
         x in 0.01..1.49, speed in -0.333..0.333, acceleration in -1.0..1.0, iq in -15.0..15.0
     ) {
         let one = OneCycle::new(&axis(PRINTED)).unwrap();
-        let input = CycleInput { position: x, speed, acceleration, iq_command: iq };
+        let input = CycleInput { position: x, speed, acceleration, command: iq };
         let mirrored = CycleInput {
             position: x,
             speed: -speed,
             acceleration: -acceleration,
-            iq_command: -iq,
+            command: -iq,
         };
         let sum = one.increment(&input).unwrap() + one.increment(&mirrored).unwrap();
         // Only the nut's place on the screw differs, by 33 µm either way: the
@@ -151,12 +151,12 @@ fn rest_stays_rest() {
 #[test]
 fn a_command_does_not_reach_the_table_within_its_cycle() {
     let one = OneCycle::new(&axis(PRINTED)).unwrap();
-    let at = |iq_command| {
+    let at = |command| {
         one.increment(&CycleInput {
             position: 0.6,
             speed: 0.1,
             acceleration: 0.0,
-            iq_command,
+            command,
         })
         .unwrap()
     };

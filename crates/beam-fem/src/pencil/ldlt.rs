@@ -46,7 +46,7 @@ impl Ldlt {
     }
 
     /// Factorises K − μ M; returns the number of negative pivots, which is
-    /// that of eigenvalues below μ. None where small pivots have made it
+    /// that of eigenvalues below μ. None if small pivots have made it
     /// unreliable: another μ beside this one will do.
     pub fn factorise(
         &mut self,

@@ -42,8 +42,8 @@ const MOST_MOVES: usize = 32;
 /// # Errors
 /// [`BeamError::Shape`], [`BeamError::NotFinite`], [`BeamError::ModeCount`],
 /// [`BeamError::TooLarge`], [`BeamError::MassNotPositiveDefinite`];
-/// [`BeamError::StiffnessNegative`] where a motion has an energy below −τ Σ K_ii x_i²,
-/// [`BeamError::Unresolved`] where one has one between τ and 10 τ times that sum, so that
+/// [`BeamError::StiffnessNegative`] if a motion has an energy below −τ Σ K_ii x_i²,
+/// [`BeamError::Unresolved`] if one has one between τ and 10 τ times that sum, so that
 /// a tenth of its ω² may be rounding, or where rounding could hide, as a rigid mode, an ω²
 /// of a thousandth of the lowest one of its part; [`BeamError::NotConverged`].
 pub fn lowest_modes(matrices: &BandedMatrices, count: usize) -> Result<Modes, BeamError> {

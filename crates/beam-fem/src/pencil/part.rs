@@ -54,7 +54,7 @@ impl Part {
         })
     }
 
-    /// Number of eigenvalues below `mu`; none where it is not reliable.
+    /// Number of eigenvalues below `mu`; none if it is not reliable.
     pub fn count(&mut self, mu: f64) -> Option<usize> {
         let (mass, stiffness) = (&self.component.mass, &self.component.stiffness);
         self.factor.factorise(mass, stiffness, mu)

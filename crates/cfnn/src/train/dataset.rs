@@ -18,7 +18,7 @@ impl Dataset {
     ///
     /// # Errors
     /// [`Error::EmptyLayer`] for zero inputs, outputs or samples,
-    /// [`Error::Length`] where a table does not divide into rows or the
+    /// [`Error::Length`] if a table does not divide into rows or the
     /// tables differ in their number of rows, [`Error::NotFinite`].
     pub fn new(
         inputs: usize,
@@ -68,13 +68,13 @@ impl Dataset {
         self.outputs
     }
 
-    /// The inputs of one sample; none where there is no such sample.
+    /// The inputs of one sample; none if there is no such sample.
     #[must_use]
     pub fn input(&self, sample: usize) -> Option<&[f64]> {
         self.input_rows.chunks_exact(self.inputs).nth(sample)
     }
 
-    /// The targets of one sample; none where there is no such sample.
+    /// The targets of one sample; none if there is no such sample.
     #[must_use]
     pub fn target(&self, sample: usize) -> Option<&[f64]> {
         self.target_rows.chunks_exact(self.outputs).nth(sample)

@@ -96,7 +96,7 @@ impl Engine {
         }
     }
 
-    /// Solves `(factor JᵀJ + damping I) step = -factor Jᵀ r`; none where the
+    /// Solves `(factor JᵀJ + damping I) step = -factor Jᵀ r`; none if the
     /// matrix is not positive definite to working precision.
     pub fn step(&mut self, factor: f64, damping: f64) -> Option<Vec<f64>> {
         self.gram

@@ -27,7 +27,7 @@ pub struct EpochReport {
     /// Mean square of the scaled residuals after the epoch, over the training
     /// samples and all outputs.
     pub loss: f64,
-    /// The same over the validation samples, where there are any.
+    /// The same over the validation samples, if there are any.
     pub validation_loss: Option<f64>,
     /// Norm of the gradient before the step (see `TrainingSettings::min_gradient`).
     pub gradient: f64,

@@ -40,9 +40,9 @@ impl Trainer {
     ///
     /// # Errors
     /// What [`TrainingSettings::validate`] and [`Shape::validate`] refuse,
-    /// [`Error::TrainingMemory`], [`Error::Length`] where shape, scaling and
+    /// [`Error::TrainingMemory`], [`Error::Length`] if shape, scaling and
     /// data do not fit, or where the validation split leaves one side empty,
-    /// [`Error::NotFinite`] where starting weights fitted to the data overflow;
+    /// [`Error::NotFinite`] if starting weights fitted to the data overflow;
     /// [`Error::Threads`].
     pub fn new(
         shape: Shape,

@@ -5,7 +5,7 @@
 //! e₂ = θ − x/r − c − b sat(T_t) − C T_t                                    rad
 //! ```
 //!
-//! F₀ is a standing load, T_t = T − (J − J_w) θ̈ the torque through the transmission, c the
+//! F₀ is a constant load, T_t = T − (J − J_w) θ̈ the torque through the transmission, c the
 //! angle between the two scales, b half the free travel.
 
 use std::vec::Vec;
@@ -14,7 +14,7 @@ use libm::exp;
 use lugre::LuGre;
 use nalgebra::SVector;
 
-use super::belief::Belief;
+use super::assumed::AssumedModel;
 use super::parameter::{AdaptParameter, COUNT, Theta};
 use super::record::Record;
 use super::residual::{GAP, HELD, OFFSET};
@@ -34,21 +34,21 @@ pub(super) struct Balance {
 
 /// The first: torques.
 pub(super) fn torque<const N: usize>(
-    belief: &Belief,
+    assumed: &AssumedModel,
     record: &Record,
     at: &SVector<f64, N>,
     free: &[usize],
 ) -> Balance {
     let theta: Theta = std::array::from_fn(|i| at[i]);
-    let (model, points) = (&belief.model, &record.points);
+    let (model, points) = (&assumed.model, &record.points);
     let travel = model.travel;
     let friction = |theta: &Theta, share: f64| {
-        let held = held(belief, record, theta, share);
-        forces(&belief.friction(theta), record, held)
+        let held = held(assumed, record, theta, share);
+        forces(&assumed.friction(theta), record, held)
     };
     let own = friction(&theta, at[HELD]);
     let mass = model.load_inertia * exp(theta[AdaptParameter::LoadInertia.index()]);
-    let standing = belief.standing_load(&theta);
+    let standing = assumed.standing_load(&theta);
     let pairs = points.iter().zip(&own);
     let values = pairs.map(|(p, friction)| {
         p.left - travel * (mass * p.acceleration + friction / model.lever + standing)
@@ -74,7 +74,7 @@ pub(super) fn torque<const N: usize>(
         }
         Some(AdaptParameter::StandingLoad) => {
             // It acts, and changes what friction holds at the start.
-            let direct = travel * belief.value(AdaptParameter::StandingLoad);
+            let direct = travel * assumed.value(AdaptParameter::StandingLoad);
             let by_start = by_parameter(i);
             Some(by_start.iter().map(|by| by + direct).collect())
         }
@@ -94,7 +94,7 @@ pub(super) fn torque<const N: usize>(
 
 /// The second: wind-up, where the load is seen.
 pub(super) fn wind_up<const N: usize>(
-    belief: &Belief,
+    assumed: &AssumedModel,
     record: &Record,
     at: &SVector<f64, N>,
     free: &[usize],
@@ -104,7 +104,7 @@ pub(super) fn wind_up<const N: usize>(
     }
     let compliance = AdaptParameter::Compliance.index();
     let factor = exp(at[compliance]);
-    let level = belief.model.travel * belief.value(AdaptParameter::StandingLoad);
+    let level = assumed.model.travel * assumed.value(AdaptParameter::StandingLoad);
     let points = record.points.iter();
     // Side of a free travel of 2: 1 is half of it.
     let two = Kinematics {
@@ -135,9 +135,9 @@ pub(super) fn wind_up<const N: usize>(
 
 /// The bristles' force at the start: what the torque there leaves to friction, and `share`
 /// of the break-away level more.
-fn held(belief: &Belief, record: &Record, theta: &Theta, share: f64) -> f64 {
-    let most = belief.model.friction.parameters().stiction;
-    let left = record.held - belief.model.lever * belief.standing_load(theta);
+fn held(assumed: &AssumedModel, record: &Record, theta: &Theta, share: f64) -> f64 {
+    let most = assumed.model.friction.parameters().stiction;
+    let left = record.held - assumed.model.lever * assumed.standing_load(theta);
     left.clamp(-most, most) + share * most
 }
 

@@ -5,8 +5,8 @@ use crate::{DriveModel, Sample};
 
 /// Greatest magnitude of a sample.
 const LARGEST: f64 = 1e9;
-/// Least way, in deflections at which friction breaks away.
-const LEAST_WAY: f64 = 3.0;
+/// Least travel, in deflections at which friction breaks away.
+const LEAST_TRAVEL: f64 = 3.0;
 
 /// Refuses a log with fewer than `least` samples, with values that no sensor shows, or of
 /// an axis that stands.
@@ -21,7 +21,7 @@ pub(super) fn check(model: &DriveModel, log: &[Sample], least: usize) -> Result<
             ("motor_angle", s.motor_angle),
             ("motor_speed", s.motor_speed),
             ("iq", s.iq),
-            ("iq_command", s.iq_command),
+            ("last_command", s.last_command),
         ];
         // Written so that NaN is caught too.
         let inside = |value: f64| value.abs() <= LARGEST;
@@ -35,10 +35,10 @@ pub(super) fn check(model: &DriveModel, log: &[Sample], least: usize) -> Result<
     }
     let positions = log.iter().map(|s| s.position);
     let most = positions.clone().fold(f64::MIN, f64::max);
-    let way = most - positions.fold(f64::MAX, f64::min);
-    let least = LEAST_WAY * model.friction.bristle_limit() * model.lever;
-    if way > least {
+    let travel = most - positions.fold(f64::MAX, f64::min);
+    let least = LEAST_TRAVEL * model.friction.bristle_limit() * model.lever;
+    if travel > least {
         return Ok(());
     }
-    Err(AdaptError::Standstill { way, least })
+    Err(AdaptError::Standstill { travel, least })
 }

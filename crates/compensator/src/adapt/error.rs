@@ -31,11 +31,11 @@ pub enum AdaptError {
     },
     /// The axis hardly moved.
     #[error(
-        "the load moved by {way} (m or rad): learning takes at least {least}, several times what friction needs to break away"
+        "the load moved by {travel} (m or rad): learning takes at least {least}, several times what friction needs to break away"
     )]
     Standstill {
         /// Greatest distance between two measured positions, m or rad.
-        way: f64,
+        travel: f64,
         /// How much it takes, m or rad.
         least: f64,
     },
@@ -52,7 +52,7 @@ pub enum AdaptError {
     Nothing,
     /// The motion and the torque do not belong together as in the model.
     #[error(
-        "the model explains too little of the log: a torque of {residual} N·m RMS is left of {torque} N·m; the log may belong to another axis, or the belief is far off"
+        "the model explains too little of the log: a residual of {residual} N·m RMS remains of {torque} N·m; the log may belong to another axis, or the model is far off"
     )]
     Unexplained {
         /// RMS of what is left, N·m.

@@ -39,7 +39,7 @@ impl Known<'_> {
         }
         at[GAP] = self.gap[0];
         let free: Vec<usize> = (0..ALL).filter(|&i| self.free(record, i)).collect();
-        let start = Residuals::at(self.belief, record, &at, &free);
+        let start = Residuals::at(self.assumed, record, &at, &free);
         let mut weights = start.weights(free.len(), true);
         let mut residuals = start.clone();
         let mut settled = 0;
@@ -63,7 +63,7 @@ impl Known<'_> {
                     let [least, most] = self.bounds(i);
                     next[i] = next[i].clamp(least, most);
                 }
-                let there = Residuals::at(self.belief, record, &next, &free);
+                let there = Residuals::at(self.assumed, record, &next, &free);
                 let cost = self.cost(record, [&next, &at], &free) + there.square(&weights);
                 // Not a number is no improvement.
                 if cost <= before {

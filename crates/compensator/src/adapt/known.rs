@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::belief::Belief;
+use super::assumed::AssumedModel;
 use super::parameter::{AdaptParameter, COUNT, Theta};
 use super::record::Record;
 use super::residual::{GAP, NUISANCES, Residuals};
@@ -21,7 +21,7 @@ const GIVES_WAY: f64 = 2.0;
 
 /// What was known before the record.
 pub(super) struct Known<'a> {
-    pub belief: &'a Belief,
+    pub assumed: &'a AssumedModel,
     /// Estimate that `information` is about.
     pub estimate: Theta,
     pub information: Information,
@@ -34,10 +34,10 @@ impl Known<'_> {
     pub fn free(&self, record: &Record, i: usize) -> bool {
         match AdaptParameter::ALL.get(i) {
             Some(AdaptParameter::Compliance) => {
-                record.sees_load && self.belief.adapts(AdaptParameter::Compliance)
+                record.sees_load && self.assumed.adapts(AdaptParameter::Compliance)
             }
-            Some(&parameter) => self.belief.adapts(parameter),
-            None => Residuals::has_nuisance(self.belief, record, i),
+            Some(&parameter) => self.assumed.adapts(parameter),
+            None => Residuals::has_nuisance(self.assumed, record, i),
         }
     }
 
@@ -45,18 +45,18 @@ impl Known<'_> {
     /// falls with the distance, so that data which insist win.
     pub fn precision(&self, record: &Record, i: usize, value: f64) -> f64 {
         let deviation = match AdaptParameter::ALL.get(i) {
-            Some(&parameter) => self.belief.prior.of(parameter).deviation,
-            None => Residuals::nuisance_deviation(self.belief, record, i),
+            Some(&parameter) => self.assumed.prior.of(parameter).deviation,
+            None => Residuals::nuisance_deviation(self.assumed, record, i),
         };
         let far = ((value - self.mean(i)).abs() / deviation / GIVES_WAY).max(1.0);
         let spread = deviation * far;
         1.0 / (spread * spread)
     }
 
-    /// Mean of the prior of a coordinate: 0 but for half the free travel that is believed.
+    /// Mean of the prior of a coordinate: 0 but for half the free travel that is assumed.
     fn mean(&self, i: usize) -> f64 {
         match i {
-            GAP => self.belief.half_gap(),
+            GAP => self.assumed.half_gap(),
             _ => 0.0,
         }
     }
@@ -64,7 +64,7 @@ impl Known<'_> {
     /// Least and greatest value of a coordinate.
     pub fn bounds(&self, i: usize) -> [f64; 2] {
         match AdaptParameter::ALL.get(i) {
-            Some(&parameter) => self.belief.bounds(parameter),
+            Some(&parameter) => self.assumed.bounds(parameter),
             None => [f64::NEG_INFINITY, f64::INFINITY],
         }
     }

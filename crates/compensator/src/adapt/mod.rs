@@ -16,8 +16,8 @@
 //! values as their correlation leaves independent, so that structure which the model does
 //! not have makes estimates uncertain, not wrong and sure.
 
+mod assumed;
 mod balance;
-mod belief;
 mod check;
 mod error;
 mod fit;
@@ -39,7 +39,7 @@ use libm::{exp, expm1};
 
 use crate::error::{require, within};
 use crate::{DriveModel, Residual, Sample};
-use belief::Belief;
+use assumed::AssumedModel;
 pub use error::AdaptError;
 use known::{Information, Known};
 pub use parameter::{AdaptParameter, AdaptPrior, PriorSpread};
@@ -63,7 +63,7 @@ const CLEAR: f64 = 3.0;
 /// The parameters of a model, adapted from move to move.
 #[derive(Clone, Debug)]
 pub struct Adaptation {
-    belief: Belief,
+    assumed: AssumedModel,
     states: Vec<State>,
 }
 
@@ -73,7 +73,7 @@ struct State {
     estimate: Theta,
     information: Information,
     variances: Theta,
-    /// Half the free travel and its variance, rad at the motor; infinite where no move told.
+    /// Half the free travel and its variance, rad at the motor; infinite if no move told.
     gap: [f64; 2],
 }
 
@@ -82,7 +82,7 @@ impl Adaptation {
     ///
     /// # Errors
     /// [`AdaptError::Setting`] for a model that no plan can be made from, a prior out of
-    /// its range or a control period above 2 ms; [`AdaptError::Nothing`] where nothing is
+    /// its range or a control period above 2 ms; [`AdaptError::Nothing`] if nothing is
     /// free.
     pub fn new(model: &DriveModel, prior: &AdaptPrior) -> Result<Self, AdaptError> {
         model.check()?;
@@ -94,7 +94,7 @@ impl Adaptation {
             model.period,
             "from 1e-6 to 2e-3 s to adapt",
         )?;
-        let belief = Belief {
+        let assumed = AssumedModel {
             model: *model,
             prior: *prior,
         };
@@ -102,13 +102,13 @@ impl Adaptation {
             estimate: [0.0; COUNT],
             information: Information::zeros(),
             variances: prior.spreads.map(|s| s.deviation * s.deviation),
-            gap: [belief.half_gap(), f64::INFINITY],
+            gap: [assumed.half_gap(), f64::INFINITY],
         };
-        if !AdaptParameter::ALL.iter().any(|&p| belief.adapts(p)) {
+        if !AdaptParameter::ALL.iter().any(|&p| assumed.adapts(p)) {
             return Err(AdaptError::Nothing);
         }
         Ok(Self {
-            belief,
+            assumed,
             states: Vec::from([state]),
         })
     }
@@ -139,12 +139,12 @@ impl Adaptation {
 
     fn learn_from(&mut self, log: &[Sample], besides: &[[f64; 2]]) -> Result<Learned, AdaptError> {
         let state = self.state();
-        let record = Record::new(&self.belief, log, self.belief.smoothing(), besides)?;
+        let record = Record::new(&self.assumed, log, self.assumed.smoothing(), besides)?;
         let known = Known {
-            belief: &self.belief,
+            assumed: &self.assumed,
             estimate: state.estimate,
-            information: state.information * self.belief.prior.retention,
-            gap: [state.gap[0], state.gap[1] / self.belief.prior.retention],
+            information: state.information * self.assumed.prior.retention,
+            gap: [state.gap[0], state.gap[1] / self.assumed.prior.retention],
         };
         let fit = known.fit(&record);
         let (torque, [before, after]) = (record.torque, fit.weighed);
@@ -167,7 +167,7 @@ impl Adaptation {
             gap: match fit.gap {
                 Some([gap, error]) => {
                     // A transmission is not as linear as its model.
-                    let blunt = NOT_LINEAR * self.belief.wound();
+                    let blunt = NOT_LINEAR * self.assumed.wound();
                     [0.5 * gap, 0.25 * error * error + blunt * blunt]
                 }
                 None => state.gap,
@@ -181,13 +181,13 @@ impl Adaptation {
             torque,
             free_travel: fit
                 .gap
-                .map(|gap| gap.map(|by| by * self.belief.model.travel)),
+                .map(|gap| gap.map(|by| by * self.assumed.model.travel)),
         })
     }
 
     /// The model with the present estimates.
     pub fn model(&self) -> DriveModel {
-        let mut model = self.belief.at(&self.state().estimate);
+        let mut model = self.assumed.at(&self.state().estimate);
         let [half, variance] = self.state().gap;
         // Less than three standard errors is none; and none is negative.
         if half > CLEAR * variance.sqrt() {
@@ -203,7 +203,7 @@ impl Adaptation {
         self.states.len() - 1
     }
 
-    /// Takes the last move back; false where there is none.
+    /// Takes the last move back; false if there is none.
     pub fn step_back(&mut self) -> bool {
         let some = self.moves() > 0;
         if some {
@@ -212,7 +212,7 @@ impl Adaptation {
         some
     }
 
-    /// Takes all moves back: the model is the belief again.
+    /// Takes all moves back: the model is the first one again.
     pub fn forget(&mut self) {
         self.states.truncate(1);
     }
@@ -221,22 +221,26 @@ impl Adaptation {
     pub fn estimates(&self) -> Vec<Estimated> {
         let state = self.state();
         let adapted = AdaptParameter::ALL.into_iter();
-        let adapted = adapted.filter(|&parameter| self.belief.adapts(parameter));
+        let adapted = adapted.filter(|&parameter| self.assumed.adapts(parameter));
         let estimated = adapted.map(|parameter| {
             let i = parameter.index();
             let (theta, deviation) = (state.estimate[i], state.variances[i].sqrt());
-            let believed = self.belief.value(parameter);
+            let assumed_model = self.assumed.value(parameter);
             let (relative, standard_error, value) = match parameter.is_ratio() {
-                true => (expm1(theta), exp(theta) * deviation, believed * exp(theta)),
-                false => (theta, deviation, believed * theta),
+                true => (
+                    expm1(theta),
+                    exp(theta) * deviation,
+                    assumed_model * exp(theta),
+                ),
+                false => (theta, deviation, assumed_model * theta),
             };
-            let [least, most] = self.belief.bounds(parameter);
+            let [least, most] = self.assumed.bounds(parameter);
             Estimated {
                 parameter,
                 relative,
                 standard_error,
                 value,
-                value_error: believed * standard_error,
+                value_error: assumed_model * standard_error,
                 at_bound: theta <= least || theta >= most,
             }
         });
@@ -244,7 +248,7 @@ impl Adaptation {
     }
 
     fn state(&self) -> &State {
-        // There is always the belief at the bottom.
+        // There is always the assumed model at the bottom.
         &self.states[self.states.len() - 1]
     }
 }

@@ -64,8 +64,8 @@ impl AdaptParameter {
         self as usize
     }
 
-    /// Whether it is estimated as the logarithm of its ratio to the belief, which keeps
-    /// its sign; a standing load is a share of the Coulomb level instead.
+    /// Whether it is estimated as the logarithm of its ratio to the assumed model, which keeps
+    /// its sign; a constant load is a share of the Coulomb level instead.
     pub(super) const fn is_ratio(self) -> bool {
         !matches!(self, Self::StandingLoad)
     }
@@ -75,9 +75,9 @@ impl AdaptParameter {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PriorSpread {
     /// Standard deviation of its relative error; 0 holds it fixed. Larger errors are
-    /// believed where the data insist: beyond two deviations the prior gives way.
+    /// accepted if the data insist: beyond two deviations the prior gives way.
     pub deviation: f64,
-    /// Bound: the estimate stays from 1/bound to bound times the belief (a standing load
+    /// Bound: the estimate stays from 1/bound to bound times the assumed model (a constant load
     /// within ± (bound − 1) Coulomb levels). At least 1.
     pub bound: f64,
 }
@@ -98,7 +98,8 @@ pub struct AdaptPrior {
 
 impl Default for AdaptPrior {
     /// Settings of friction and compliance known to 20 %, inertia and break-away ratio to
-    /// 10 %, viscosity to a half and within a factor of 100. A standing load of 1 % of the Coulomb level: in moves of one direction it looks
+    /// 10 %, viscosity to a half and within a factor of 100. A constant load of 1 % of the Coulomb
+    /// level: in moves of one direction it looks
     /// like friction, which is the likelier of the two; a reversal tells them apart.
     fn default() -> Self {
         let spread = |parameter| {

@@ -4,7 +4,7 @@
 use std::vec::Vec;
 
 use super::AdaptError;
-use super::belief::Belief;
+use super::assumed::AssumedModel;
 use super::check::check;
 use super::kernel::{Kernel, mean};
 use super::smooth::{Point, Smooth};
@@ -32,7 +32,7 @@ pub(super) struct Record {
     pub speeds: Vec<f64>,
     /// What friction computed of the velocity is smoothed with.
     pub kernel: Kernel,
-    /// What the torque at the start leaves to friction and standing load, in the
+    /// What the torque at the start leaves to friction and constant load, in the
     /// friction's coordinate.
     pub held: f64,
     /// Whether the load's position was measured apart from the motor's angle.
@@ -46,17 +46,17 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// Of a log of the axis that is believed, behind a Gaussian of the deviation `smoothing`
+    /// Of a log of the axis that is assumed, behind a Gaussian of the deviation `smoothing`
     /// (s). `besides` is what something that the model does not have took of the torque at
-    /// each sample: at the motor, and on the load (both N·m at the motor). Empty where there is
+    /// each sample: at the motor, and on the load (both N·m at the motor). Empty if there is
     /// no such thing.
     pub fn new(
-        belief: &Belief,
+        assumed: &AssumedModel,
         log: &[Sample],
         smoothing: f64,
         besides: &[[f64; 2]],
     ) -> Result<Self, AdaptError> {
-        let model = &belief.model;
+        let model = &assumed.model;
         let period = model.period;
         // Few samples a deviation make no Gaussian.
         let cycles = |time: f64| (time / period).max(1.0);
@@ -89,7 +89,7 @@ impl Record {
 
         let limit = 0.999 * model.effort_limit;
         let commands = log.iter().enumerate();
-        let limited = commands.filter(|(_, s)| s.iq_command.abs() >= limit);
+        let limited = commands.filter(|(_, s)| s.last_command.abs() >= limit);
         let limited: Vec<usize> = limited.map(|(k, _)| k).collect();
         let near_limit = |k: usize| {
             let next = limited.partition_point(|&at| at + edge < k);

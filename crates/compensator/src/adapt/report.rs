@@ -9,13 +9,14 @@ use super::AdaptParameter;
 pub struct Estimated {
     /// Which.
     pub parameter: AdaptParameter,
-    /// Relative error of the belief: value over belief − 1; of a standing load, its share
-    /// of the believed Coulomb force.
+    /// Relative error of the assumed model: value over assumed model − 1; of a constant load, its
+    /// share
+    /// of the assumed Coulomb force.
     pub relative: f64,
     /// Standard error of `relative`.
     pub standard_error: f64,
     /// In the model's unit: friction in its own coordinate, inertia in kg or kg·m², the
-    /// greatest compliance along the stroke in rad/(N·m), a standing load in N or N·m.
+    /// greatest compliance along the stroke in rad/(N·m), a constant load in N or N·m.
     pub value: f64,
     /// Standard error of `value`.
     pub value_error: f64,
@@ -38,7 +39,7 @@ pub struct Learned {
     /// RMS of the motor's torque, N·m.
     pub torque: f64,
     /// Free travel between motor and load that the log seems to show, and its standard
-    /// error, m or rad at the load; none where the load has no sensor of its own. The model
+    /// error, m or rad at the load; none if the load has no sensor of its own. The model
     /// has it where it is above three of them.
     pub free_travel: Option<[f64; 2]>,
 }

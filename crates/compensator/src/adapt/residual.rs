@@ -4,8 +4,8 @@ use std::vec::Vec;
 
 use nalgebra::{SMatrix, SVector};
 
+use super::assumed::AssumedModel;
 use super::balance::{Balance, torque, wind_up};
-use super::belief::Belief;
 use super::parameter::{AdaptParameter, COUNT};
 use super::record::Record;
 use super::smooth::Point;
@@ -24,7 +24,7 @@ pub(super) const GAP: usize = COUNT + 2;
 const HELD_DEVIATION: f64 = 0.1;
 /// That of [`GAP`], in wind-ups by the Coulomb level.
 const FREE: f64 = 0.2;
-/// A residual below this share of the whole is not believed.
+/// A residual below this share of the whole is not trusted.
 const FINEST: f64 = 1e-4;
 
 /// Weight of each value of the two balances.
@@ -36,8 +36,8 @@ pub(super) type Weights = [Vec<f64>; 2];
 const ON_A_SIDE: f64 = 0.1;
 const POINTS: usize = 10;
 
-fn both_sides(belief: &Belief, record: &Record) -> bool {
-    let level = belief.model.travel * belief.value(AdaptParameter::StandingLoad);
+fn both_sides(assumed: &AssumedModel, record: &Record) -> bool {
+    let level = assumed.model.travel * assumed.value(AdaptParameter::StandingLoad);
     let side = |sign: f64| {
         let lies = |p: &&Point| sign * p.transmitted > ON_A_SIDE * level;
         record.points.iter().filter(lies).count()
@@ -52,30 +52,30 @@ pub(super) struct Residuals([Balance; 2]);
 impl Residuals {
     /// At parameters and nuisances.
     pub fn at<const N: usize>(
-        belief: &Belief,
+        assumed: &AssumedModel,
         record: &Record,
         at: &SVector<f64, N>,
         free: &[usize],
     ) -> Self {
         Self([
-            torque(belief, record, at, free),
-            wind_up(belief, record, at, free),
+            torque(assumed, record, at, free),
+            wind_up(assumed, record, at, free),
         ])
     }
 
     /// Whether a record has this nuisance.
-    pub fn has_nuisance(belief: &Belief, record: &Record, i: usize) -> bool {
-        let friction = belief.model.friction.parameters().coulomb > 0.0;
+    pub fn has_nuisance(assumed: &AssumedModel, record: &Record, i: usize) -> bool {
+        let friction = assumed.model.friction.parameters().coulomb > 0.0;
         match i {
             HELD => friction,
             OFFSET => record.sees_load,
-            _ => record.sees_load && friction && both_sides(belief, record),
+            _ => record.sees_load && friction && both_sides(assumed, record),
         }
     }
 
     /// Deviation of a nuisance, in its unit.
-    pub fn nuisance_deviation(belief: &Belief, record: &Record, i: usize) -> f64 {
-        let wound = belief.wound();
+    pub fn nuisance_deviation(assumed: &AssumedModel, record: &Record, i: usize) -> f64 {
+        let wound = assumed.wound();
         let leads = record.points.iter().map(|p| p.lead.abs());
         match i {
             HELD => HELD_DEVIATION,

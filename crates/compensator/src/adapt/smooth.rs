@@ -10,7 +10,7 @@ use crate::DriveModel;
 pub(super) struct Point {
     /// Sample that it is at.
     pub sample: usize,
-    /// Torque that is left for inertia of the load, friction and standing load.
+    /// Torque that is left for inertia of the load, friction and constant load.
     pub left: f64,
     /// Acceleration of the load.
     pub acceleration: f64,
@@ -29,7 +29,7 @@ pub(super) struct Smooth<'a> {
     pub model: &'a DriveModel,
     pub balance: &'a Kernel,
     pub torques: Vec<f64>,
-    /// What something besides the model took, at the motor and on the load; empty where there
+    /// What something besides the model took, at the motor and on the load; empty if there
     /// is no such thing.
     pub besides: [Vec<f64>; 2],
     pub angles: Vec<f64>,

@@ -8,7 +8,7 @@ use libm::exp;
 use crate::{Drive, DriveModel, Sample};
 
 /// Torque of the motor at each sample, N·m, from the measured current; from the command
-/// through the believed delay and lag where there is no current.
+/// through the assumed delay and lag where there is no current.
 pub(super) fn torques(model: &DriveModel, log: &[Sample]) -> Vec<f64> {
     match model.drive {
         Drive::Lag { gain, bandwidth } => {
@@ -16,7 +16,7 @@ pub(super) fn torques(model: &DriveModel, log: &[Sample]) -> Vec<f64> {
             let cycles = model.delay / model.period;
             let (whole, part) = (cycles.floor(), cycles - cycles.floor());
             // A sample has the command of the cycle before it.
-            let commanded = |k: usize, late: usize| log[k.saturating_sub(late)].iq_command;
+            let commanded = |k: usize, late: usize| log[k.saturating_sub(late)].last_command;
             let acting = |k: usize| {
                 let late = whole as usize;
                 gain * ((1.0 - part) * commanded(k, late) + part * commanded(k, late + 1))
@@ -41,7 +41,7 @@ pub(super) fn torques(model: &DriveModel, log: &[Sample]) -> Vec<f64> {
             ..
         } => {
             // The d current is not logged, and makes torque where the motor is salient:
-            // it is that of the believed motor under its controller.
+            // it is that of the assumed motor under its controller.
             let h = model.period;
             let (mut id, mut integral) = (0.0, 0.0);
             let at = log.iter().map(|sample| {

@@ -3,7 +3,7 @@
 
 use std::vec::Vec;
 
-use super::belief::Belief;
+use super::assumed::AssumedModel;
 use super::known::Column;
 use super::record::Record;
 use super::residual::Residuals;
@@ -50,10 +50,10 @@ impl Adaptation {
     }
 
     fn unexplained_of(&self, log: &[Sample], besides: &[[f64; 2]]) -> Result<Rest, AdaptError> {
-        let belief = self.now();
-        let record = Record::new(&belief, log, SMOOTHING, besides)?;
-        let residuals = Residuals::at(&belief, &record, &Column::zeros(), &[]);
-        let along = along(&belief, &record, log);
+        let assumed = self.now();
+        let record = Record::new(&assumed, log, SMOOTHING, besides)?;
+        let residuals = Residuals::at(&assumed, &record, &Column::zeros(), &[]);
+        let along = along(&assumed, &record, log);
         let points = record.points.iter().zip(residuals.torque());
         let instants = points.map(|(point, &torque)| {
             let at = along[point.sample];
@@ -82,19 +82,19 @@ impl Adaptation {
         log: &[Sample],
         residual: &mut impl Residual,
     ) -> Result<Vec<[f64; 2]>, AdaptError> {
-        let belief = self.now();
-        let record = Record::new(&belief, log, SMOOTHING, &[])?;
-        let travel = belief.model.travel;
-        let taken = along(&belief, &record, log).into_iter().map(|at| {
+        let assumed = self.now();
+        let record = Record::new(&assumed, log, SMOOTHING, &[])?;
+        let travel = assumed.model.travel;
+        let taken = along(&assumed, &record, log).into_iter().map(|at| {
             let [torque, force] = residual.besides(&at);
             [torque, travel * force]
         });
         Ok(taken.collect())
     }
 
-    /// The present model as a belief.
-    fn now(&self) -> Belief {
-        Belief {
+    /// The present model as the assumed one.
+    fn now(&self) -> AssumedModel {
+        AssumedModel {
             model: self.model(),
             prior: AdaptPrior::default(),
         }
@@ -103,8 +103,8 @@ impl Adaptation {
 
 /// Where a residual is asked for, at each sample of a log. The bristles begin as at a start
 /// that has relaxed.
-fn along(belief: &Belief, record: &Record, log: &[Sample]) -> Vec<ResidualAt> {
-    let model = &belief.model;
+fn along(assumed: &AssumedModel, record: &Record, log: &[Sample]) -> Vec<ResidualAt> {
+    let model = &assumed.model;
     let law = &model.friction;
     let mut bristle = 0.0;
     let mut before = 0.0;

@@ -88,8 +88,8 @@ fn long_run_variance(values: &[f64], fitted: usize) -> f64 {
     let near = total(SMOOTHED, &|share| (2.0 * (1.0 - share)).min(1.0));
     let far = total(most, &|share| 1.0 - share);
     // A variance that is itself estimated counts as one standard error more.
-    let unsure = 1.0 + (4.0 / 3.0 * SMOOTHED as f64 / count as f64).sqrt();
-    let total = unsure * near.max(far).max(own);
+    let margin = 1.0 + (4.0 / 3.0 * SMOOTHED as f64 / count as f64).sqrt();
+    let total = margin * near.max(far).max(own);
     // What was fitted has taken its share of the independent values.
     let independent = count as f64 * own / total.max(f64::MIN_POSITIVE);
     total * independent.max(fitted as f64 + 1.0) / (independent - fitted as f64).max(1.0)

@@ -143,7 +143,7 @@ impl<T: Exponential> DriveTermsFeedforward<T> {
             + torque / t.torque_constant;
         Correction {
             position,
-            iq: effort,
+            command: effort,
         }
     }
 }
@@ -161,11 +161,11 @@ impl<T: Exponential> Compensator<T> for DriveTermsFeedforward<T> {
         if finite(now) && finite(next) {
             let before = self.state;
             let made = self.cycle(now, next);
-            if made.position.is_finite() && made.iq.is_finite() {
+            if made.position.is_finite() && made.command.is_finite() {
                 let limit = self.terms.effort_limit;
                 self.state.last = Correction {
                     position: made.position,
-                    iq: made.iq.max(-limit).min(limit),
+                    command: made.command.max(-limit).min(limit),
                 };
             } else {
                 // Beyond the scalar's range: as if it had not come.

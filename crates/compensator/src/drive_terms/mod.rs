@@ -213,7 +213,7 @@ impl<T: Exponential> DriveTerms<T> {
         self.own.acceleration
     }
 
-    /// Speed of the motor per position error P, rad/s per m; 0 where no offset of the
+    /// Speed of the motor per position error P, rad/s per m; 0 if no offset of the
     /// position becomes a speed.
     #[must_use]
     pub fn position_gain(&self) -> T {
@@ -227,7 +227,7 @@ impl<T: Exponential> DriveTerms<T> {
     }
 
     /// The pulse as a jump of the speed reference, a/(K k_p), which the speed controller of
-    /// gain k_p makes the pulse's torque of, rad/s; 0 where there is no speed controller.
+    /// gain k_p makes the pulse's torque of, rad/s; 0 if there is no speed controller.
     #[must_use]
     pub fn speed_injection(&self) -> T {
         let per_speed = self.torque_constant * self.own.speed;
@@ -240,7 +240,7 @@ impl<T: Exponential> DriveTerms<T> {
 
     /// The jump of the speed with which the motor is to wind the transmission up as the
     /// friction level comes after a start, C T_C/decay at mid-stroke, rad/s; twice that
-    /// after a reversal. 0 where the level comes at once.
+    /// after a reversal. 0 if the level comes at once.
     #[must_use]
     pub fn winding_speed(&self) -> T {
         let [least, most] = self.along.ends();

@@ -28,9 +28,9 @@ pub struct ReversalPulse<T = f64> {
 /// The motion that the pulse is fitted to: a start from rest, or what follows a reversal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReversalStart {
-    /// Acceleration from the first instant on, m/s²; 0 where the jerk is limited.
+    /// Acceleration from the first instant on, m/s²; 0 if the jerk is limited.
     pub acceleration: f64,
-    /// Jerk, m/s³; 0 where the acceleration is constant.
+    /// Jerk, m/s³; 0 if the acceleration is constant.
     pub jerk: f64,
 }
 
@@ -40,7 +40,7 @@ impl ReversalStart {
             require(within(value, 0.0, 1e9), name, value, "from 0 to 1e9")?;
         }
         let moves = self.acceleration + self.jerk >= 1e-9;
-        let valid = "at least 1e-9 where the acceleration is 0";
+        let valid = "at least 1e-9 if the acceleration is 0";
         require(moves, "jerk", self.jerk, valid).map(|_| ())
     }
 

@@ -26,7 +26,7 @@
 //! makes its speed error zero, so that its proportional part gives nothing and its integrator
 //! holds what it has; the offset of the command is the plan's and u. What the drive commanded
 //! besides (a position loop at a lower rate leaves something) is taken off again, and the
-//! observer goes by [`Sample::iq_command`].
+//! observer goes by [`Sample::last_command`].
 
 #[cfg(feature = "design")]
 mod design;
@@ -56,11 +56,11 @@ const OWN: f64 = 1.0 / 16.0;
 /// The same for how that changes in a cycle: twice the root of it is [`OWN`], so that both settle
 /// as fast as they can without swinging.
 const OWN_RATE: f64 = 0.25 * OWN * OWN;
-/// Greatest state that is believed, in its unit: what the greatest force moves in a cycle, or
+/// Greatest state that is trusted, in its unit: what the greatest force moves in a cycle, or
 /// that force, or the greatest command.
 const MOST: f64 = 1e6;
 
-/// What a feedback believes of the axis' deviations from the plan, after a cycle's sample.
+/// What a feedback assumes of the axis' deviations from the plan, after a cycle's sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Deviations<T = f64> {
     /// Load's position, m (rad).
@@ -71,7 +71,7 @@ pub struct Deviations<T = f64> {
     /// positive motion, and as [`crate::Target::force`] is.
     pub force: T,
     /// What the measurements were off what was expected of them: position (m), motor speed
-    /// (rad/s), q current (A; 0 where it is not measured).
+    /// (rad/s), q current (A; 0 if it is not measured).
     pub innovation: [T; MOST_MEASURED],
     /// The same as one number: √(Σ (νᵢ/sᵢ)²/m) over m measurements, sᵢ being the deviation of
     /// the innovation νᵢ that the Kalman filter reckons with. About 1 while its noise is what it
@@ -159,7 +159,7 @@ impl<T: Scalar> Feedback<T> {
         self.last = Deviations::default();
     }
 
-    /// What it believed in the last cycle.
+    /// What it assumed in the last cycle.
     pub fn deviations(&self) -> &Deviations<T> {
         &self.last
     }
@@ -172,7 +172,7 @@ impl<T: Scalar> Feedback<T> {
     /// The correction of the cycle that begins with `sample` and that the plan has as
     /// `planned`. It replaces the plan's own and the drive's loops.
     pub fn correct(&mut self, sample: &Sample<T>, planned: &Planned<T>) -> Correction<T> {
-        self.predict(sample.iq_command);
+        self.predict(sample.last_command);
         let g = &self.gains;
         let c = &g.cascade;
         let mut position = planned.position;
@@ -190,7 +190,7 @@ impl<T: Scalar> Feedback<T> {
             sample.motor_speed - speed,
             sample.iq - planned.current,
         ];
-        let planned_well = [planned.sticking, planned.effort, planned.correction.iq];
+        let planned_well = [planned.sticking, planned.effort, planned.correction.command];
         let mut known = deviations[..g.measured].iter().chain(&planned_well);
         if !known.all(|value| value.is_finite()) {
             return self.without_sample(planned);
@@ -213,11 +213,11 @@ impl<T: Scalar> Feedback<T> {
         let correction = Correction {
             position: (sample.motor_speed - fed) / c.position
                 - (sample.reference.position - sample.position),
-            iq: planned.correction.iq + (effort - planned.effort) - self.own,
+            command: planned.correction.command + (effort - planned.effort) - self.own,
         };
         // Beyond this nothing was measured: the sample was wrong.
         let sound = x.iter().all(|x| x.abs() <= T::of(MOST)) && correction.position.is_finite();
-        if !sound || !correction.iq.is_finite() {
+        if !sound || !correction.command.is_finite() {
             return self.without_sample(planned);
         }
         self.last = Deviations {
@@ -280,7 +280,7 @@ impl<T: Scalar> Feedback<T> {
         let finite = |value: T| if value.is_finite() { value } else { T::ZERO };
         Correction {
             position: finite(planned.correction.position),
-            iq: finite(planned.correction.iq + self.last.effort - self.own),
+            command: finite(planned.correction.command + self.last.effort - self.own),
         }
     }
 }

@@ -29,7 +29,7 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> PlanWithFeedb
         self.plan.planned()
     }
 
-    /// What the feedback believed last.
+    /// What the feedback assumed last.
     pub fn deviations(&self) -> &Deviations<T> {
         self.feedback.deviations()
     }

@@ -68,7 +68,7 @@ impl Triangle {
         Self { r, rows: self.rows }
     }
 
-    /// Least squares on the leading columns; none where they do not determine
+    /// Least squares on the leading columns; none if they do not determine
     /// their coefficients.
     pub fn solve(&self, columns: usize) -> Option<Solution> {
         let r = self.r.view((0, 0), (columns, columns));

@@ -127,7 +127,7 @@ impl LearnedMove {
     /// it was learned with the learnable parts of the first and the best of them.
     ///
     /// # Errors
-    /// [`CompensatorError::Setting`] where a value is not finite or beyond the limit.
+    /// [`CompensatorError::Setting`] if a value is not finite or beyond the limit.
     pub fn stored(
         period: f64,
         settings: &LearningSettings,
@@ -149,7 +149,7 @@ impl LearnedMove {
         Ok(learned)
     }
 
-    /// Learns from the errors e of the move, m or rad, one a control cycle; none where a
+    /// Learns from the errors e of the move, m or rad, one a control cycle; none if a
     /// sample is missing: there the errors beside it count. Before the first sample and
     /// after the last nothing is learned.
     ///

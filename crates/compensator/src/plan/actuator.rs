@@ -72,7 +72,7 @@ impl<T: Exponential> Inverse<T> {
     }
 
     /// q current along the plan at the start of the coming cycle, A; the command that
-    /// would hold the torque where there is none.
+    /// would hold the torque if there is none.
     pub fn effort_now(&self) -> T {
         match &self.drive {
             Drive::FieldOriented { .. } => self.past[0].q,

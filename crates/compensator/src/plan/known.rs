@@ -61,7 +61,7 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> Plan<F, T, R>
     /// left is taken as held by the drive's integrator.
     #[must_use]
     pub fn after(mut self, own: &Correction<T>) -> Self {
-        self.own = own.iq;
+        self.own = own.command;
         self
     }
 
@@ -89,7 +89,7 @@ impl<T: Exponential, F: FnMut(usize) -> Target<T>, R: Residual<T>> Plan<F, T, R>
             self.planner.begin(
                 first.reference.position,
                 &Standstill {
-                    effort: sample.iq_command,
+                    effort: sample.last_command,
                     own: self.own,
                     motor_angle: sample.motor_angle,
                     homed: self.homed,

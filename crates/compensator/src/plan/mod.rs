@@ -546,7 +546,7 @@ impl<T: Exponential, R: Residual<T>> Planner<T, R> {
             limited: commanded.limited,
             correction: Correction {
                 position,
-                iq: effort,
+                command: effort,
             },
         }
     }

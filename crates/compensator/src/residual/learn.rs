@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{ResidualBasis, ResidualRow, ResidualTables};
 
 /// Part of the power of a move not learned from that must be explained for use, and of the
-/// power of its changes. A peak hangs on a few milliseconds of a move: what explains less than
+/// power of its changes. A peak depends on a few milliseconds of a move: what explains less than
 /// half may add to it there.
 const LEAST_EXPLAINED: f64 = 0.5;
 /// Over how long changes are taken, s. A servo takes slow torque away by itself: what follows
@@ -45,7 +45,7 @@ pub struct Unexplained {
     pub torque: f64,
 }
 
-/// Learns a residual from move to move, a [`super::ResidualModel`] where nothing else is
+/// Learns a residual from move to move, a [`super::ResidualModel`] if nothing else is
 /// named.
 #[derive(Clone, Debug)]
 pub struct ResidualLearner<B: ResidualBasis = ResidualTables> {
@@ -200,7 +200,7 @@ impl<B: ResidualBasis> ResidualLearner<B> {
     }
 
     /// Share of the power of each move, and of its changes over 10 ms, the lesser of both, that
-    /// was explained before learning from it; 0 where that was too little to matter, or would
+    /// was explained before learning from it; 0 if that was too little to matter, or would
     /// have done harm somewhere.
     #[must_use]
     pub fn explained(&self) -> &[f64] {

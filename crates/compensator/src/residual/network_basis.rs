@@ -226,7 +226,7 @@ impl ResidualBasis for NetworkBasis {
         }
     }
 
-    /// None where the coefficients have become no numbers.
+    /// None if the coefficients have become no numbers.
     fn model(&self, coefficients: &[f64]) -> Option<ResidualNetwork> {
         let (torque, force) = coefficients.split_at(self.seen.values.len());
         let mut weights = hidden(&self.trained).to_vec();

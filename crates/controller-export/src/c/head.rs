@@ -177,8 +177,8 @@ fn top(
         constants = memory.constants,
         stack = memory.stack,
         library = match draft.needs_library() {
-            true => "of the library only sqrt (and memset, memcpy where a compiler calls them)",
-            false => "no library (but memset, memcpy where a compiler calls them)",
+            true => "of the library only sqrt (and memset, memcpy if a compiler calls them)",
+            false => "no library (but memset, memcpy if a compiler calls them)",
         },
         time = plain(step_time.unwrap_or("not measured")),
     )

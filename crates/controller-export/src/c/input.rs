@@ -60,9 +60,9 @@ impl Input {
             Self::AheadAcceleration => "@L@/s^2: of the newest set point",
             Self::Position => "@L@: measured position of the load",
             Self::MotorSpeed => "rad/s: measured speed of the motor",
-            Self::Current => "A: measured q current; not read where the actuator has none",
+            Self::Current => "A: measured q current; not read if the actuator has none",
             Self::EffortCommand => {
-                "@E@: what the actuator was commanded in the cycle before, this correction included"
+                "@E@: the actuator's command in the cycle before, this correction included"
             }
         }
     }
@@ -79,7 +79,7 @@ impl Input {
             Self::Position => sample.position,
             Self::MotorSpeed => sample.motor_speed,
             Self::Current => sample.iq,
-            Self::EffortCommand => sample.iq_command,
+            Self::EffortCommand => sample.last_command,
         }
     }
 }

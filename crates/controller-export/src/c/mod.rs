@@ -94,7 +94,7 @@ pub struct CSource {
 /// take, and on which machine; without it "not measured" stands there.
 ///
 /// # Errors
-/// [`ExportError`] where a number leaves its range in this precision.
+/// [`ExportError`] if a number leaves its range in this precision.
 pub fn export(
     controller: &ExportedController,
     precision: Precision,

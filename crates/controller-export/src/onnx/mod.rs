@@ -50,7 +50,7 @@ pub struct Description {
 /// The one-cycle network of the predictors, with its description.
 ///
 /// # Errors
-/// [`ExportError::Pipeline`] where there is none.
+/// [`ExportError::Pipeline`] if there is none.
 pub fn one_cycle(predictors: &Predictors) -> Result<Vec<u8>, ExportError> {
     let network = predictors.network.as_ref().ok_or(PipelineError::Missing {
         need: Need::Network,
@@ -87,7 +87,7 @@ pub fn one_cycle(predictors: &Predictors) -> Result<Vec<u8>, ExportError> {
 /// A network as the bytes of an ONNX file.
 ///
 /// # Errors
-/// [`ExportError::Network`] where the description has another number of inputs or outputs.
+/// [`ExportError::Network`] if the description has another number of inputs or outputs.
 pub fn export(network: &Network, description: &Description) -> Result<Vec<u8>, ExportError> {
     let shape = network.shape();
     let counts = [

@@ -126,7 +126,7 @@ impl<T: Exponential> Runs<T> for Streaming<T> {
         let newest = sample.next_reference;
         if !self.started {
             let standstill = Standstill {
-                effort: sample.iq_command,
+                effort: sample.last_command,
                 own: self.own,
                 motor_angle: sample.motor_angle,
                 homed: None,
@@ -154,7 +154,7 @@ impl<T: Exponential> Runs<T> for Streaming<T> {
     }
 
     fn passed(&mut self, correction: &Correction<T>) {
-        self.own = correction.iq;
+        self.own = correction.command;
     }
 }
 

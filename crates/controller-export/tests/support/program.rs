@@ -115,10 +115,10 @@ fn cases<'a, T: Scalar>(
             push(&mut bytes, input.of(&sample));
         }
         push(&mut bytes, made.position);
-        push(&mut bytes, made.iq);
+        push(&mut bytes, made.command);
         let done = status(guard.status()) as usize;
         seen[done] += 1;
-        corrected += usize::from(made.position != T::ZERO || made.iq != T::ZERO);
+        corrected += usize::from(made.position != T::ZERO || made.command != T::ZERO);
     }
     if !course.strict {
         return Ok(bytes);

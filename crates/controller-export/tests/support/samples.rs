@@ -91,7 +91,7 @@ pub fn samples(axis: &Axis, count: usize, ahead: usize) -> Outcome<Vec<Sample>> 
                 motor_angle: pair.0.position / axis.travel_per_radian(),
                 motor_speed: speed + 0.05 * random.next(),
                 iq: before,
-                iq_command: command,
+                last_command: command,
             };
             before = command;
             sample

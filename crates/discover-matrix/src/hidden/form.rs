@@ -197,7 +197,7 @@ static ONSET: Effect = form(
 /// F (e^(−(|v| / v_s)^δ) − e^(−(v / v_s)²)) u.
 static EXPONENT: Effect = form(
     "stribeck-exponent",
-    "dry friction that falls with speed in another way",
+    "dry friction that falls with speed by another law",
     &[
         number("force", Measure::Force),
         number("velocity", Measure::Speed),

@@ -1,4 +1,4 @@
-//! Effects that are in no library: what a search must not give a wrong name.
+//! Effects that are outside the library: what a search must not give a wrong name.
 
 use axis_sim::effects::{
     Changes, Effect, EffectChannel, EffectParameter, EffectVariable, Measure, MemoryLaw, Nature,

@@ -12,7 +12,7 @@ use super::{Noise, Rough, late, made, recorded};
 /// A machine with effects hidden in it, and how its logs are taken.
 #[derive(Clone, Debug)]
 pub struct Truth {
-    /// What is hidden, forms of laws and laws of no library among it.
+    /// What is hidden, forms of laws and laws outside the library among it.
     pub effects: Vec<ActiveEffect>,
     /// Shares by which its known parameters are off, in the order of [`Axis::known`].
     pub shares: Vec<f64>,

@@ -16,7 +16,7 @@ pub enum CaseKind {
     Pair,
     /// Three.
     Triple,
-    /// One that is in no library.
+    /// One that is outside the library.
     Outside,
     /// One of the library, taken out of it before the search.
     LeftOut,

@@ -21,7 +21,7 @@ pub struct Sizes {
     pub pairs: usize,
     /// Three effects.
     pub triples: usize,
-    /// Effects of no library.
+    /// Effects outside the library.
     pub outside: usize,
     /// Effects taken out of the library, once each.
     pub left_out: usize,

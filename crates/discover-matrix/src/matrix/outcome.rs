@@ -46,7 +46,7 @@ pub struct NamedEffect {
 pub struct Split {
     /// The pair that it was to separate, the hidden one first.
     pub pair: [String; 2],
-    /// Foreseen fall of D between the two.
+    /// Predicted fall of D between the two.
     pub foreseen: f64,
     /// What that search named, in the order of evidence.
     pub named: Vec<NamedEffect>,
@@ -82,7 +82,7 @@ pub struct CaseOutcome {
     pub reduction: f64,
     /// The gap on check motion, channel by channel.
     pub check: Vec<ChannelGap>,
-    /// What was found that is in no library.
+    /// What was found that is outside the library.
     pub unknown: Option<Unknown>,
     /// The experiment that was proposed, run.
     pub split: Option<Split>,

@@ -73,7 +73,7 @@ pub struct OfEffect {
     pub first: Rate,
     /// In the class of the first, of those.
     pub in_class: Rate,
-    /// Known parameters told: relative error of sizes where it was named first, median
+    /// Known parameters exact: relative error of sizes where it was named first, median
     /// and largest; `None` where it never was.
     pub error: Option<[f64; 2]>,
     /// Its 95 % intervals that hold the truth.
@@ -117,7 +117,7 @@ pub struct Score {
     /// Of the detectable single effects named first: that the verdict was explained.
     pub explained: Rate,
     /// Machines with library effects in which any name is given that is neither
-    /// hidden nor alike to what is, by the search's word or foreseen.
+    /// hidden nor alike to what is, by the search's word or predicted.
     pub confident_wrong: Rate,
     /// Undetectable single effects on which nothing wrong was said.
     pub silence: Rate,
@@ -130,14 +130,14 @@ pub struct Score {
     pub outside: Rate,
     /// Outside the library and seen: what the library's effects imitate.
     pub imitated: Rate,
-    /// Taken out of the library, seen: not called explained, or by a foreseen
+    /// Taken out of the library, seen: not called explained, or by a predicted
     /// look-alike.
     pub left_out: Rate,
     /// One effect on poor motion, seen: named first, or in the class of the first.
     pub poor: Rate,
     /// Hidden effects in a class: that an experiment was proposed for.
     pub proposed: Rate,
-    /// Known parameters told: relative errors of sizes, median and 90 %; `None` where
+    /// Known parameters exact: relative errors of sizes, median and 90 %; `None` where
     /// none was named, here and below.
     pub error: Option<[f64; 2]>,
     /// The same of the estimates as they are.

@@ -60,13 +60,13 @@ impl CaseOutcome {
         })
     }
 
-    /// Whether the library's effects can imitate what is in no library.
+    /// Whether the library's effects can imitate what is outside the library.
     pub(super) fn is_imitated(&self) -> bool {
         let complete = |f: &Foreseen| f.imitation.as_ref().is_some_and(|i| i.complete);
         self.foreseen.iter().any(complete)
     }
 
-    /// Not called explained; or by an effect that was foreseen to look the same.
+    /// Not called explained; or by an effect that was predicted to look the same.
     pub(super) fn is_honest(&self) -> bool {
         match self.verdict {
             Some(Verdict::Unknown | Verdict::PartlyExplained) => true,

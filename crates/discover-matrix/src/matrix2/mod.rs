@@ -1,6 +1,6 @@
 //! A matrix as hard as reality: several machines, laws of another form than the model's,
 //! noise that is coloured, quantised or in the logger, logs with few channels, known
-//! parameters off by up to a fifth, and laws of no library drawn from a grammar.
+//! parameters off by up to a fifth, and laws outside the library drawn from a grammar.
 //!
 //! [`cases`] lays out a split plot; a [`Bench`] holds what is the same for all cases of a
 //! plot; [`Bench::try_case`] makes a case's logs, searches them blind and keeps what was

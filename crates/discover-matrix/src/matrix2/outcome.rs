@@ -26,7 +26,7 @@ pub struct CaseOutcome {
     pub estimates: Vec<ScoredEstimate>,
     /// Share of the gap on check motion that is gone.
     pub reduction: f64,
-    /// What was found that is in no library.
+    /// What was found that is outside the library.
     pub unknown: Option<Unknown>,
     /// D of the fitted logs: with the truth, and with what was found.
     pub deviance: Option<Deviance>,

@@ -18,7 +18,7 @@ pub enum Reach {
     /// acceleration and torque at the same instant ([`IN_TERMS`]).
     InTerms,
     /// What is hidden is no such sum: it acts between the channels, in the controller or in
-    /// time, has a memory, or is a law of no library.
+    /// time, has a memory, or is a law outside the library.
     Beyond,
 }
 

@@ -39,7 +39,7 @@ impl Answer {
     /// The answer of a machine with effects and, where asked, a disturbance.
     ///
     /// # Errors
-    /// [`ReplayError`] where the machine cannot be set up, or its loop does not hold.
+    /// [`ReplayError`] if the machine cannot be set up, or its loop does not hold.
     pub fn run(
         &self,
         machine: &Axis,

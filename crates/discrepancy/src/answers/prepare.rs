@@ -19,7 +19,7 @@ impl LogSet {
     /// control is compared by torque balance.
     ///
     /// # Errors
-    /// [`ReplayError::Log`] where a channel that must be there is missing.
+    /// [`ReplayError::Log`] if a channel that must be there is missing.
     pub fn new(logs: Vec<(String, Log, f64)>, machine: &Axis) -> Result<Self, ReplayError> {
         let mut set = Self::prepared(logs, machine)?;
         set.correct_defects(machine, &State::initial(machine))?;
@@ -165,7 +165,7 @@ impl LogSet {
     /// its nodes by nanometres, and these would be found as an effect.
     ///
     /// # Errors
-    /// [`ReplayError`] where the machine does not run at this state.
+    /// [`ReplayError`] if the machine does not run at this state.
     pub fn correct_defects(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
         let known = machine.with_known(&state.shares);
         let Some(step) = known.mechanism.exact_step().filter(|_| !self.is_balanced()) else {

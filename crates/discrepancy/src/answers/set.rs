@@ -34,7 +34,7 @@ pub struct Prepared {
     pub shown_effort: Option<f64>,
     /// What the fast simulation is short of beside the slow one, by channel.
     pub defect: Vec<Vec<f64>>,
-    /// Hum that is taken out of it, by channel; empty where there is none.
+    /// Hum that is taken out of it, by channel; empty if there is none.
     pub hum: Vec<Vec<f64>>,
 }
 
@@ -133,7 +133,7 @@ impl LogSet {
         self.logs.par_iter().enumerate().map(run).collect()
     }
 
-    /// Measured minus simulated, per log and channel; 0 where nothing was measured, so that
+    /// Measured minus simulated, per log and channel; 0 if nothing was measured, so that
     /// what was put there has no weight.
     pub fn rest(&self, traces: &[Trace]) -> Rest {
         let channel = |log: &Prepared, trace: &Trace, c: usize| {

@@ -3,7 +3,7 @@
 //! Where the drive's command is not shown, one unknown a log, s in −1 ≤ s ≤ 1, beside the
 //! parameters of the machine: nothing but the first move tells it, and it tells nothing of any
 //! other motion. All of that range is possible, and equally likely. Where the command is shown,
-//! its mean over the rest has an error where its noise is slow, and the first move tells that.
+//! its mean over the standstill has an error where its noise is slow, and the first move tells that.
 
 use axis_sim::{Axis, ReplayError, Stored};
 
@@ -37,7 +37,7 @@ impl LogSet {
     /// they do not show it, and defects.
     ///
     /// # Errors
-    /// [`ReplayError`] where the machine does not run at this state.
+    /// [`ReplayError`] if the machine does not run at this state.
     pub(crate) fn follow(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
         self.find_stored(machine, state)?;
         self.find_beginning(machine, state)?;
@@ -49,7 +49,7 @@ impl LogSet {
     /// this state.
     ///
     /// # Errors
-    /// [`ReplayError`] where the machine does not run.
+    /// [`ReplayError`] if the machine does not run.
     pub fn find_stored(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
         if self.shares().iter().all(Option::is_none) {
             return Ok(());
@@ -103,7 +103,7 @@ impl LogSet {
     /// moved on when a mean would tell.
     ///
     /// # Errors
-    /// [`ReplayError`] where the machine does not run.
+    /// [`ReplayError`] if the machine does not run.
     fn find_beginning(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
         if state.effects.is_empty() || self.logs.iter().all(|log| log.doubtful.is_none()) {
             return Ok(());
@@ -145,7 +145,7 @@ impl LogSet {
     /// three points, from where the last one led, by no more than [`REACH`] from what is shown.
     ///
     /// # Errors
-    /// [`ReplayError`] where the machine does not run.
+    /// [`ReplayError`] if the machine does not run.
     fn find_effort(&mut self, machine: &Axis, state: &State) -> Result<(), ReplayError> {
         let shown = self.efforts_shown(machine).into_iter();
         let noise: Vec<f64> = shown.map(|s| s.map_or(0.0, |s| s.noise)).collect();
@@ -200,7 +200,7 @@ impl LogSet {
     }
 
     /// How well each log shows the command with which its drive holds the axis at its start;
-    /// `None` where that is not held, or not shown.
+    /// `None` if that is not held, or not shown.
     fn efforts_shown(&self, machine: &Axis) -> Vec<Option<EffortShown>> {
         let of = |log: &Prepared| {
             held_effort(log.answer.replay()?)?;
@@ -210,7 +210,7 @@ impl LogSet {
     }
 
     /// Least and most by which what the drive holds at the start of each log may be moved, in the
-    /// actuator's unit: none where its command is not coarse. `None` where no log's is.
+    /// actuator's unit: none if its command is not coarse. `None` if no log's is.
     pub(crate) fn coarse_efforts(&self, machine: &Axis) -> Option<Vec<[f64; 2]>> {
         let room = |(log, shown): (&Prepared, Option<EffortShown>)| {
             let most = REACH * shown.filter(|s| s.is_coarse)?.noise;
@@ -272,12 +272,12 @@ impl LogSet {
 }
 
 /// By how much what the drive holds at the start of a log is more than the log shows, in the actuator's
-/// unit; `None` where that is not held, or not shown.
+/// unit; `None` if that is not held, or not shown.
 fn effort_moved(log: &Prepared) -> Option<f64> {
     Some(held_effort(log.answer.replay()?)? - log.shown_effort?)
 }
 
-/// Minus twice the log-likelihood of channels with white rests of unknown variance, but for
+/// Minus twice the log-likelihood of channels with white residuals of unknown variance, but for
 /// a constant.
 fn misfit(log: &[Vec<f64>]) -> f64 {
     let channel = |rest: &Vec<f64>| {

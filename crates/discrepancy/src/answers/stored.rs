@@ -28,7 +28,7 @@ const BEGINNING: f64 = 0.003;
 /// Share of the reference's way that is no motion: of files, and of the end of a curve.
 const STILL: f64 = 1e-7;
 
-/// Longest part of a rest that is looked at, s.
+/// Longest part of a standstill that is looked at, s.
 const LONGEST: f64 = 2.0;
 
 /// Standard deviations of a mean beyond which it is not chance.
@@ -37,11 +37,11 @@ const DEVIATIONS: f64 = 8.0;
 /// Time over which noise in a loop remembers itself, s: samples nearer than that are one.
 const MEMORY: f64 = 1e-3;
 
-/// Share of the command of a rest, against what the axis' own loads ask for, that its
+/// Share of the command of a standstill, against what the axis' own loads ask for, that its
 /// beginning shows at most where what acts came up with the log.
 const COMES_UP: f64 = 0.3;
 
-/// Largest part of a rest's power that its beginning may have, as that of the rest of it,
+/// Largest part of a standstill's power that its beginning may have, as that of the rest of it,
 /// where nothing happens there.
 const QUIET: f64 = 4.0;
 
@@ -77,7 +77,7 @@ pub(super) fn storing(
     (replay.storing(stored), doubtful)
 }
 
-/// Command that the drive holds at the start of a replay, in the actuator's unit; `None` where
+/// Command that the drive holds at the start of a replay, in the actuator's unit; `None` if
 /// that is not what is stored.
 pub(super) fn held_effort(replay: &Replay) -> Option<f64> {
     match replay.stored() {
@@ -86,17 +86,19 @@ pub(super) fn held_effort(replay: &Replay) -> Option<f64> {
     }
 }
 
-/// How well a log shows the command of the rest that it begins with.
+/// How well a log shows the command of the standstill that it begins with.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EffortShown {
     /// Noise, RMS, or one step of a coarser command, in the actuator's unit.
     pub(super) noise: f64,
-    /// Whether the command is coarser than its noise: the mean of a rest is then off by what it
+    /// Whether the command is coarser than its noise: the mean of a standstill is then off by what
+    /// it
     /// was rounded by.
     pub(super) is_coarse: bool,
 }
 
-/// How well a log shows the command of its first rest; `None` where it has no such rest, or does
+/// How well a log shows the command of its first standstill; `None` if it has no such rest, or
+/// does
 /// not show the command.
 pub(super) fn effort_shown(log: &Log, period: f64, machine: &Axis) -> Option<EffortShown> {
     let rest = first_rest(log, period)?;
@@ -148,7 +150,7 @@ fn power(samples: &[f64]) -> f64 {
     samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples.len().max(1) as f64
 }
 
-/// By the commands of a rest, of which the first `few` are its beginning and `memory`
+/// By the commands of a standstill, of which the first `few` are its beginning and `memory`
 /// samples on end count as one; and whether its beginning tells.
 fn by_command(
     rest: &[f64],
@@ -183,7 +185,7 @@ fn by_command(
     (effort, begins > chance(few).max(least))
 }
 
-/// Where no command is logged: a rest in which nothing happens has something stored, and
+/// Where no command is logged: a standstill in which nothing happens has something stored, and
 /// what the bristles hold is to be found.
 fn by_position(log: &Log, rest: usize, few: usize) -> Stored {
     let Ok(position) = position_in(log) else {

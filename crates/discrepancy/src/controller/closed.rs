@@ -30,7 +30,7 @@ const REACH: f64 = 0.5;
 /// which the estimate does not: where both disagree, the model lacks something.
 ///
 /// # Errors
-/// [`ControllerError::Replay`] where the loop does not run with these gains.
+/// [`ControllerError::Replay`] if the loop does not run with these gains.
 pub fn closed_loop(
     machine: &Axis,
     estimate: &ControllerEstimate,

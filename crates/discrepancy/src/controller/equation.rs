@@ -62,7 +62,7 @@ impl<'a> Equation<'a> {
     }
 
     /// What the law commands on the signals `shown` in the place of the logged ones; none
-    /// where it cannot.
+    /// if it cannot.
     fn model(&self, law: &Law, at: &[f64], shown: &[Seen]) -> Option<DVector<f64>> {
         let delay = *at.last()?;
         let one = |(log, shown): (&Seen, &Seen)| {

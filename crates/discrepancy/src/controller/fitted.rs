@@ -161,7 +161,7 @@ pub fn all(
     (fitted, failed)
 }
 
-/// A structure by least squares; none where it cannot give these commands.
+/// A structure by least squares; none if it cannot give these commands.
 fn squares(fit: &Equation<'_>, check: &Equation<'_>, structure: Structure) -> Option<Fitted> {
     let begin = start(fit, structure.form, structure.reads_motor())?;
     let law = structure.law(fit.axis, begin);
@@ -177,7 +177,7 @@ fn squares(fit: &Equation<'_>, check: &Equation<'_>, structure: Structure) -> Op
 }
 
 /// What the controller would see in a closed-loop simulation of the logs, which carries no
-/// noise; none where the loop does not hold.
+/// noise; none if the loop does not hold.
 fn instruments(
     machine: &Axis,
     law: &Law,

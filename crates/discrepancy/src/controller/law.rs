@@ -44,7 +44,7 @@ impl Free {
     }
 
     /// Whether a value is at an edge of what is accepted: the logs ask for more than that. A value of 0
-    /// where there cannot be less is nothing of it, and no edge.
+    /// if there cannot be less is nothing of it, and no edge.
     pub fn is_at_edge(&self, value: f64) -> bool {
         let near = |edge: &f64| *edge != 0.0 && (value - edge).abs() <= EDGE * edge.abs();
         self.room.iter().any(near)
@@ -102,7 +102,7 @@ impl Law {
     }
 
     /// What it commands in every control cycle of a log, shown what the log shows; none
-    /// where the values make no control.
+    /// if the values make no control.
     pub fn command(&self, axis: &Axis, at: &[f64], seen: &Seen) -> Option<Vec<f64>> {
         let on = Surroundings {
             period: axis.period,
@@ -114,7 +114,7 @@ impl Law {
         let cycle = |((reference, measured), added): ((_, _), &f64)| {
             let correction = Correction {
                 position: 0.0,
-                iq: *added,
+                command: *added,
             };
             let situation = Situation {
                 reference,

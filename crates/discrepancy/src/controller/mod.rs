@@ -31,7 +31,7 @@
 //! 1251–1271, doi:10.2307/1913827).
 //!
 //! # Intervals
-//! From the scatter of the score over blocks of the logs, so that a rest that is not white
+//! From the scatter of the score over blocks of the logs, so that a residual that is not white
 //! widens them: cluster-robust covariance (K.-Y. Liang, S. L. Zeger, Biometrika 73 (1986)
 //! 13–22, doi:10.1093/biomet/73.1.13).
 
@@ -84,7 +84,7 @@ impl Gain {
 pub struct Tried {
     /// Its name, such as "p-pi, feedback load".
     pub name: String,
-    /// Share of the check logs' command, in mean square, that it leaves; none where it could
+    /// Share of the check logs' command, in mean square, that it leaves; none if it could
     /// not be fitted.
     pub left: Option<f64>,
     /// Whether the check logs tell it from the chosen one.

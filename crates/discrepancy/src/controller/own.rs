@@ -29,7 +29,7 @@ pub(super) const BETTER: f64 = 0.1;
 const GIVES_IT: f64 = 1e-6;
 
 /// Whether another controller than the machine's gives the commands of logs ten times as well;
-/// `None` where it does not, or where they do not show a command.
+/// `None` if it does not, or where they do not show a command.
 pub fn better_than_own(machine: &Axis, fit: &Logs, check: &Logs) -> Option<OwnController> {
     let law = own(machine)?;
     let see = |logs: &Logs| -> Option<Vec<Seen>> {

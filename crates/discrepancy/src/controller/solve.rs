@@ -85,7 +85,7 @@ impl Problem<'_> {
     }
 
     /// A step of Levenberg–Marquardt: damped as a whole, so that neither length nor a bound
-    /// turns it away from its descent. None where no step leads down.
+    /// turns it away from its descent. None if no step leads down.
     fn step(&self, at: &[f64], damping: f64) -> Option<Step> {
         let rest = self.rest(at)?;
         let columns = self.equation.columns(self.law, at, &self.equation.logs)?;
@@ -103,7 +103,7 @@ impl Problem<'_> {
 }
 
 impl Equation<'_> {
-    /// The values of least squares, or, on `instruments`, those at which the rest has nothing
+    /// The values of least squares, or, on `instruments`, those at which the residual has nothing
     /// in common with them: least squares of its projection (two-stage least squares). None
     /// where nothing can be compared.
     pub fn solve(&self, law: &Law, start: &[f64], instruments: Option<&[Seen]>) -> Option<Solved> {

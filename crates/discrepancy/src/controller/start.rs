@@ -29,7 +29,7 @@ struct Products {
 }
 
 /// The gains of a form that leave least of the command, those of a cascade at the motor in
-/// effort per rad/s; none where none are above zero.
+/// effort per rad/s; none if none are above zero.
 pub fn start(equation: &Equation<'_>, form: Form, from_motor: bool) -> Option<[f64; 4]> {
     let mut products = Products {
         all: Matrix6::zeros(),

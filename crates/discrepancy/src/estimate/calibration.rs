@@ -48,8 +48,9 @@ impl Fitter<'_> {
         (fit, known)
     }
 
-    /// Fitted by least squares, the rest weighed by the spectral matrices of this `noise`,
-    /// which do not change: D is flat where a rest is large, as the rest is then its own weight,
+    /// Fitted by least squares, the residual weighed by the spectral matrices of this `noise`,
+    /// which do not change: D is flat where a residual is large, as the residual is then its own
+    /// weight,
     /// and has minima of its own there; a sum of squares has not. `known` are the derivatives
     /// with respect to the known parameters where it begins; they are made anew `anew` times at
     /// most.

@@ -97,7 +97,7 @@ impl Fitter<'_> {
         free.into_par_iter().skip(given).map(column).collect()
     }
 
-    /// A difference quotient; `None` where the simulation does not run.
+    /// A difference quotient; `None` if the simulation does not run.
     fn slope(&self, fit: &Fit, moved: &State, by: f64) -> Option<Amplitudes> {
         let traces = self.set.simulate(self.machine, moved).ok()?;
         Some(self.set.difference(&traces, &fit.traces, by))
@@ -117,7 +117,7 @@ impl Fitter<'_> {
         fit.rest.iter().map(zeros).collect()
     }
 
-    /// A difference quotient; nothing where the simulation does not run.
+    /// A difference quotient; nothing if the simulation does not run.
     pub fn column(&self, fit: &Fit, moved: &State, step: f64) -> Amplitudes {
         let slope = self.slope(fit, moved, step);
         slope.unwrap_or_else(|| self.nothing(fit))

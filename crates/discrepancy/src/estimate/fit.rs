@@ -20,7 +20,7 @@ pub struct Fit {
     pub traces: Vec<Trace>,
     /// What they leave.
     pub rest: Amplitudes,
-    /// D of the rest, and the known parameters' departures.
+    /// D of the residual, and the known parameters' departures.
     pub deviance: f64,
 }
 
@@ -50,7 +50,7 @@ impl Fitter<'_> {
     /// The model at a state.
     ///
     /// # Errors
-    /// [`ReplayError`] where a simulation does not run.
+    /// [`ReplayError`] if a simulation does not run.
     pub fn at(&self, state: State) -> Result<Fit, ReplayError> {
         let traces = self.set.simulate(self.machine, &state)?;
         let rest = self.set.amplitudes(&self.set.rest(&traces));

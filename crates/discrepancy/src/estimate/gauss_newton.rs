@@ -13,7 +13,7 @@ pub struct Descent {
 }
 
 impl Descent {
-    /// Goes downhill from `start`. `step` solves the linearised problem, `None` where
+    /// Goes downhill from `start`. `step` solves the linearised problem, `None` if
     /// nothing is to be gained; `better` is the point a share of the step on, where that
     /// is lower; `goes_on` compares a point with the one before.
     pub fn from<P, S>(

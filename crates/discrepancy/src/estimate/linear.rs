@@ -1,6 +1,6 @@
 //! The linearised model, and D at its minimum without the bins.
 //!
-//! With columns c_i the rest is r − Σ x_i c_i, and the spectral matrix of a band
+//! With columns c_i the residual is r − Σ x_i c_i, and the spectral matrix of a band
 //! Σ y_i y_j P_ij / n with y = (1, −x) and P_ij = Σ c_i c_jᴴ summed over its bins
 //! once. D = 2 Σ n log det S is concave in S: least squares weighed by the last S
 //! lowers it in every round. The fall of D of effects whose answer grows with their
@@ -37,7 +37,7 @@ pub struct Products {
 }
 
 impl Products {
-    /// Of all these columns, the rest first.
+    /// Of all these columns, the residual first.
     pub fn new(layout: &Layout, columns: &[&Amplitudes]) -> Self {
         let (m, n) = (layout.channels(), columns.len());
         let band = |(b, &count): (usize, &usize)| {
@@ -86,10 +86,10 @@ impl Products {
 /// Least and most that a column may count, where it has bounds.
 pub type Room = Option<[f64; 2]>;
 
-/// A fit of the rest by some of the columns.
+/// A fit of the residual by some of the columns.
 pub struct Problem<'a> {
     products: &'a Products,
-    /// Columns: the rest, those of known parameters, others.
+    /// Columns: the residual, those of known parameters, others.
     places: Vec<usize>,
     /// Of the sum of some others, which is the last column: its blocks with all
     /// before it and with itself.
@@ -118,7 +118,7 @@ pub struct Minimum {
 }
 
 impl<'a> Problem<'a> {
-    /// Of these columns: the rest, those of the known parameters, which are at
+    /// Of these columns: the residual, those of the known parameters, which are at
     /// `shares` now, and others, of which the last have these bounds.
     pub fn new(
         machine: &Axis,
@@ -162,7 +162,7 @@ impl<'a> Problem<'a> {
         Self { sum, ..self }
     }
 
-    /// Number of columns beside the rest.
+    /// Number of columns beside the residual.
     fn unknowns(&self) -> usize {
         self.places.len() - usize::from(self.sum.is_empty())
     }
@@ -196,7 +196,7 @@ impl<'a> Problem<'a> {
         self.products.values.iter().enumerate().map(one).collect()
     }
 
-    /// Products of all columns, the rest's among them, whitened by these matrices.
+    /// Products of all columns, the residual's among them, whitened by these matrices.
     fn weighed(&self, matrices: &[DMatrix<C64>]) -> DMatrix<f64> {
         let n = self.unknowns() + 1;
         let mut all = DMatrix::zeros(n, n);
@@ -218,7 +218,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The least D, sought from `start` on, the known parameters inside their
-    /// tolerance. The rest's spectrum is estimated anew in every round: with the
+    /// tolerance. The residual's spectrum is estimated anew in every round: with the
     /// rest as it is at the start in the weights, where an effect acts hardly
     /// counts.
     pub fn minimum(&self, start: &DVector<f64>) -> Minimum {
@@ -226,8 +226,8 @@ impl<'a> Problem<'a> {
     }
 
     /// The least D, sought from least squares on that are weighed by these spectral
-    /// matrices. D has two minima where what is left with half of an effect is not
-    /// less than with nothing, as of a gap: from a rest without it on, nothing goes
+    /// matrices. D has two minima where the residual with half of an effect is not
+    /// less than with nothing, as of a gap: from a residual without it on, nothing goes
     /// downhill.
     pub fn minimum_weighed(&self, matrices: &[DMatrix<C64>]) -> Minimum {
         self.descend(DVector::zeros(self.unknowns()), matrices.to_vec())
@@ -289,7 +289,7 @@ mod tests {
         let axis = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
         let axis = axis_sim::Axis::read(axis.as_ref()).unwrap();
         let machine = axis;
-        // The rest, one column, and the sum of two of three slots.
+        // The residual, one column, and the sum of two of three slots.
         let problem = Problem::new(&machine, &products, vec![0, 1], Vec::new(), &[]);
         let problem = problem.with_sum(3..5);
         let direct = |x: &DVector<f64>| {

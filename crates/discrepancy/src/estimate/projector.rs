@@ -10,7 +10,7 @@ use crate::estimate::thin::products;
 ///
 /// Known parameters have a price, (s/σ)². It is one more row of the problem for
 /// each of them: columns of known parameters end in 1/σ there, what is
-/// explained ends in 0, and a rest at shares s in −s/σ. So an effect that a
+/// explained ends in 0, and a residual at shares s in −s/σ. So an effect that a
 /// known parameter could do, were it allowed to move so far, shows in these rows.
 pub struct Projector {
     columns: DMatrix<f64>,

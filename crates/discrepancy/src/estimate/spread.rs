@@ -51,7 +51,7 @@ fn inexact(fitter: &Fitter<'_>) -> Vec<Amplitudes> {
 /// what it leaves, drawn anew. None of a rigid machine, whose sensors are not in its logs.
 ///
 /// # Errors
-/// [`ReplayError`] where the machine does not run with noise.
+/// [`ReplayError`] if the machine does not run with noise.
 pub(crate) fn drawn(fitter: &Fitter<'_>, fit: &Fit) -> Result<Vec<Amplitudes>, ReplayError> {
     let (machine, set) = (fitter.machine, fitter.set);
     if set.is_balanced() {

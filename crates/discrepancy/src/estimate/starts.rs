@@ -18,7 +18,7 @@ const STEP: f64 = 0.1;
 /// Fall of D that is not worth another round.
 const ENOUGH: f64 = 2.0;
 
-/// The logs with the starts that bring D down, and the fit there; `None` where no command is
+/// The logs with the starts that bring D down, and the fit there; `None` if no command is
 /// coarse, or no other start helps. With `own`, the derivatives with respect to all parameters of
 /// the fit, these move as well.
 pub fn with_starts(fitter: &Fitter<'_>, fit: &Fit, own: Option<&Columns>) -> Option<(LogSet, Fit)> {

@@ -16,7 +16,7 @@ pub struct Solved {
     /// To its minimum inside the known parameters' tolerance.
     pub step: DVector<f64>,
     /// The same where the parameters of effects, too, move no farther than their derivatives hold;
-    /// `None` where they do so anyway. Of two that do nearly the same, as a force and the way over
+    /// `None` if they do so anyway. Of two that do nearly the same, as a force and the way over
     /// which it comes, one that is cut short afterwards leaves the other where it is of no use.
     pub inside: Option<DVector<f64>>,
     /// By how much D falls on the way, if the problem is as linear as that.

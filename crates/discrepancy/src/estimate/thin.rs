@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// rounding and count as none.
 #[derive(Clone, Debug)]
 pub struct Thin {
-    /// Orthonormal columns, the strongest first; 0 where there is no strength.
+    /// Orthonormal columns, the strongest first; 0 if there is no strength.
     pub basis: DMatrix<f64>,
     /// Singular values.
     pub strengths: DVector<f64>,

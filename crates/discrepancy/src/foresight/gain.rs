@@ -18,7 +18,7 @@ impl Foresight {
         needed(&self.logs.layout, effect.parameters.len(), tried, 0.01)
     }
 
-    /// What is left of a response beside others and known parameters.
+    /// Residual of a response beside others and known parameters.
     pub(super) fn beside(
         &self,
         supposed: &Hypothesis,
@@ -46,7 +46,7 @@ impl Foresight {
         }
     }
 
-    /// Power of a rest in the channel that shows it most, over what is material beside noise.
+    /// Power of a residual in the channel that shows it most, over what is material beside noise.
     fn material(&self, rest: &Amplitudes, supposed: &Hypothesis) -> f64 {
         let powers = self.logs.layout.power(std::slice::from_ref(rest));
         let over = |(c, own): (usize, f64)| {
@@ -93,7 +93,7 @@ impl Foresight {
         self.logs.layout.whiten(&self.whitener, amplitudes) / noise
     }
 
-    /// What an effect does to the nominal machine's logs; `None` where that does not run.
+    /// What an effect does to the nominal machine's logs; `None` if that does not run.
     pub(super) fn response(&self, effect: &ActiveEffect) -> Option<Amplitudes> {
         let mut state = State::initial(&self.machine);
         state.effects.push(effect.clone());
@@ -102,7 +102,7 @@ impl Foresight {
     }
 }
 
-/// What is left of a response beside others.
+/// Residual of a response beside others.
 pub(super) struct Beside {
     /// Expected fall of D.
     pub(super) gain: f64,

@@ -53,7 +53,7 @@ impl Foresight {
     /// this noise. Of the logs only motion, length and channels count.
     ///
     /// # Errors
-    /// [`ReplayError`] where the machine as its file says does not run them.
+    /// [`ReplayError`] if the machine as its file says does not run them.
     pub fn new(machine: &Axis, logs: &LogSet, noise: SensorNoise) -> Result<Self, ReplayError> {
         let fitter = Fitter { machine, set: logs };
         let nominal = fitter.at(State::initial(machine))?;
@@ -105,7 +105,7 @@ impl Foresight {
 
     /// Expected fall of D of the first effect that is supposed, alone, over what naming it
     /// takes, or, where that is less, the power by which it brings a channel nearer, over what
-    /// is material; infinite where there is none, or none that runs.
+    /// is material; infinite if there is none, or none that runs.
     pub fn gain_over_needed(&self, supposed: &Hypothesis) -> f64 {
         let only = supposed.effects.first().and_then(|active| {
             let response = self.response(active)?;
@@ -171,7 +171,7 @@ impl Foresight {
         class
     }
 
-    /// What the others make of an effect that the search does not have; `None` where it
+    /// What the others make of an effect that the search does not have; `None` if it
     /// has it.
     fn imitation_of(
         &self,

@@ -14,7 +14,7 @@ pub struct Hypothesis {
     /// Noise of its sensors, as a multiple above 0 of that of the [`super::Foresight`].
     pub noise: f64,
     /// Noise of each channel that is fitted, RMS, likewise: what is too small beside it is
-    /// not named. Empty where that is as `noise` says.
+    /// not named. Empty if that is as `noise` says.
     pub of_channels: Vec<f64>,
     /// Names of effects that the search may not name.
     pub rejected: Vec<String>,

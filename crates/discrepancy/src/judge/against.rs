@@ -42,8 +42,8 @@ const EACH: usize = 10;
 /// Fewest samples of which a mean is shown.
 const LEAST: usize = 5;
 
-/// Looks at the rests of `set` without and with an effect, simulated as
-/// `traces` with it. `None` where the motion holds its variable still, or there are too few
+/// Looks at the residuals of `set` without and with an effect, simulated as
+/// `traces` with it. `None` if the motion holds its variable still, or there are too few
 /// samples to show anything.
 pub(super) fn against(
     machine: &Axis,
@@ -146,12 +146,12 @@ fn variable(
     };
     let of = |measure: Measure| measure.unit(machine.freedom());
     let words = match over {
-        EffectVariable::MotorAngle => ["motor angle in its turn", "rad"],
+        EffectVariable::MotorAngle => ["motor angle within a turn", "rad"],
         EffectVariable::Speed => ["speed", of(Measure::Speed)],
         EffectVariable::Position => ["position", of(Measure::Travel)],
         EffectVariable::Acceleration => ["acceleration", of(Measure::Acceleration)],
         EffectVariable::Current => ["current iq", "A"],
-        EffectVariable::Way => ["way travelled", of(Measure::Travel)],
+        EffectVariable::Way => ["distance travelled", of(Measure::Travel)],
         EffectVariable::Time => ["time", "s"],
     };
     let courses = traces.iter().enumerate().map(course).collect();

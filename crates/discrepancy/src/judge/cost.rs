@@ -63,9 +63,9 @@ pub struct EffortCost {
 /// What an effect, or all of them together, costs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Cost {
-    /// `None` where no position is compared, as in a torque balance.
+    /// `None` if no position is compared, as in a torque balance.
     pub tracking: Option<TrackingCost>,
-    /// `None` where no channel shows what the drive gives.
+    /// `None` if no channel shows what the drive gives.
     pub effort: Option<EffortCost>,
 }
 
@@ -83,7 +83,7 @@ pub(super) fn effort(machine: &Axis, set: &LogSet) -> Option<(usize, f64)> {
     Some((at, force))
 }
 
-/// The cost of what makes the difference between two rests of the check logs.
+/// The cost of what makes the difference between two residuals of the check logs.
 pub(super) fn cost(machine: &Axis, set: &LogSet, without: &Rest, with: &Rest) -> Cost {
     Cost {
         tracking: tracking(machine, set, without, with),
@@ -116,7 +116,7 @@ pub(super) fn whole_cost(
 fn tracking(machine: &Axis, set: &LogSet, without: &Rest, with: &Rest) -> Option<TrackingCost> {
     let name = machine.position_channel();
     let at = set.channels.iter().position(|channel| *channel == name)?;
-    // The model's position is the measured one less the rest.
+    // The model's position is the measured one less the residual.
     let errors = |rest: Option<&Rest>| -> Option<Vec<f64>> {
         let mut all = Vec::new();
         for (l, log) in set.logs.iter().enumerate() {

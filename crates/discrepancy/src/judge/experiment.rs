@@ -41,7 +41,7 @@ pub struct Proposal {
 const SEPARATES: f64 = 25.0;
 
 /// The motion that best separates the first named effect with a class from
-/// its nearest rival; `None` where no effect has one, where the rival does not run beside what else is
+/// its nearest rival; `None` if no effect has one, where the rival does not run beside what else is
 /// named (two changes of one resistance may leave less than none), or where no motion does.
 pub fn propose(machine: &Axis, found: &Found, noise: &LogNoise) -> Option<Proposal> {
     let index = found.named.iter().position(|n| !n.alike.is_empty())?;
@@ -150,7 +150,7 @@ impl<'a> Question<'a> {
         Ok(self.left_of(&apart, &new))
     }
 
-    /// What is left of a difference on the new motion, the second explanation
+    /// Residual of a difference on the new motion, the second explanation
     /// fitted to both: on the old logs the two are alike.
     fn left_of(&self, apart: &DVector<f64>, new: &[DVector<f64>]) -> f64 {
         let n = new.len();

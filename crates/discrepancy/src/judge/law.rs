@@ -20,11 +20,11 @@ pub struct FrictionLaw {
     pub own: Vec<f64>,
     /// The same with the friction effects that were named.
     pub with: Vec<f64>,
-    /// That in the form that was found; empty where none was.
+    /// That in the form that was found; empty if none was.
     pub formed: Vec<f64>,
     /// Mean speeds of the check motion in bins, and the mean of what the drive gave against
-    /// friction there: the law with all that was named, and what is left of the effort
-    /// channel as a force. Empty where no channel shows what the drive gives.
+    /// friction there: the law with all that was named, and the residual of the effort
+    /// channel as a force. Empty if no channel shows what the drive gives.
     pub measured: [Vec<f64>; 2],
     /// Whether the law was found to differ at low speed, where a linear axis hides it.
     pub at_low_speed: bool,
@@ -83,7 +83,7 @@ fn at(machine: &Axis, state: &State, speed: f64) -> [f64; 3] {
     [own, with, with + of(&state.effects, formed)]
 }
 
-/// The law as found; `None` where no friction over speed was named.
+/// The law as found; `None` if no friction over speed was named.
 pub(super) fn friction_law(
     machine: &Axis,
     set: &LogSet,

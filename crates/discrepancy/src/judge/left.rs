@@ -1,4 +1,4 @@
-//! What is left on check logs, and the noise that it is judged by.
+//! The residual on check logs, and the noise that it is judged by.
 
 use axis_sim::{Axis, ReplayError};
 
@@ -6,7 +6,7 @@ use crate::answers::{Rest, State};
 use crate::name::gap::{Gap, gap};
 use crate::noise::{Floor, LogNoise, Simulated, SlowNoise, coloured_noise, floors_with};
 
-/// Times the noise, as it is known with its colour, beyond which what is left in a channel is
+/// Times the noise, as it is known with its colour, beyond which the residual in a channel is
 /// something else, and the colour is not to be trusted either.
 const EXPLAINS: f64 = 2.0;
 
@@ -15,13 +15,14 @@ pub(super) struct Left {
     pub(super) gap: Gap,
     /// Noise alone, by channel.
     pub(super) floors: Vec<Floor>,
-    /// Noise of sensors that is not white, where what is left shows it.
+    /// Noise of sensors that is not white, where the residual shows it.
     pub(super) loop_noise: Option<LogNoise>,
 }
 
 impl Left {
     /// Of a machine at a `state`, its simulations of the logs that were fitted and of `check` logs,
-    /// the rests of these before and after, their `floors` as of white noise, and slow noise of their
+    /// the residuals of these before and after, their `floors` as of white noise, and slow noise of
+    /// their
     /// logger, which is in these already.
     pub(super) fn of(
         machine: &Axis,

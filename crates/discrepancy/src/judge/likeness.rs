@@ -20,7 +20,7 @@ pub struct Likeness {
     /// The effect.
     pub name: String,
     /// Smallest size that these logs show, of an effect with one size: from the
-    /// response at half the typical size, taken for linear. `None` where ten
+    /// response at half the typical size, taken for linear. `None` if ten
     /// times the typical size would not show.
     pub shown_from: Option<Shown>,
     /// Effects that do all that it does, with the sine of the largest angle

@@ -72,7 +72,7 @@ pub struct Discovered {
     pub overlays: Vec<Overlay>,
     /// The check logs' rest against what each named effect depends on.
     pub against: Vec<Against>,
-    /// Friction over speed; `None` where none was named.
+    /// Friction over speed; `None` if none was named.
     pub friction: Option<FrictionLaw>,
     /// The next experiment, with the values of both rivals.
     pub proposal: Option<Proposal>,
@@ -81,14 +81,14 @@ pub struct Discovered {
 /// Share of the gap on check motion that named effects must take away to explain it.
 const EXPLAINED: f64 = 0.9;
 
-/// Share beyond which what is left is of no use to name: a fiftieth of the gap.
+/// Share beyond which the residual is of no use to name: a fiftieth of the gap.
 const NEARLY_ALL: f64 = 0.98;
 
 /// Puts a search's result into words and figures. These are of the logs that took no part
 /// in the search, where there are such ([`Found::tested_on`]), or else of the check logs.
 ///
 /// # Errors
-/// [`ReplayError`] where a simulation that ran before does not run again.
+/// [`ReplayError`] if a simulation that ran before does not run again.
 pub fn discovery(
     machine: &Axis,
     fit_logs: &LogSet,
@@ -194,11 +194,11 @@ pub fn judged(
     let is_coloured = loop_noise.is_some();
     let noise = loop_noise.or_else(|| log_noise(machine, set, full, &traces));
     let excess = match (&lack, &noise) {
-        // Beside effects that leave next to nothing, a rest without a curve is small change.
+        // Beside effects that leave next to nothing, a residual without a curve is small change.
         (None, Some(noise)) if !nearly_all => excess(machine, set, full, &traces, noise, &slow)?,
         _ => None,
     };
-    // A rest that is neither a curve over the motion nor follows it is noise, whatever its
+    // A residual that is neither a curve over the motion nor follows it is noise, whatever its
     // colour; but it may be what an imitation leaves of a gap, be that a form of friction.
     let imitates = !effects.is_empty() && check.stands_out();
     let is_small = match found.named.is_empty() {
@@ -237,7 +237,7 @@ pub fn judged(
         .filter(|_| effects.is_empty() && own_form.is_none());
     let rest_significant =
         !(is_noise || nearly_all) || unknown.is_some() || more_than_noise.is_some();
-    // What takes away little of a rest that is noise was fitted to noise.
+    // What takes away little of a residual that is noise was fitted to noise.
     let refused = found.refused.as_ref();
     let refused = refused.filter(|_| !(as_coloured && effects.is_empty()));
     let verdict = match (effects.is_empty(), rest_significant) {
@@ -245,7 +245,7 @@ pub fn judged(
         (true, false) if own_form.is_some() && check.stands_out() => Verdict::OtherForm,
         (true, false) => Verdict::NothingMissing,
         (true, true) => Verdict::Unknown,
-        // What was refused beside what is named is a rest that has no name.
+        // What was refused beside what is named is a residual that has no name.
         _ if refused.is_some() => Verdict::PartlyExplained,
         // No share of a gap can be asked for where none stood out.
         (false, false) if check.reduction >= EXPLAINED || !check.stands_out() => Verdict::Explained,

@@ -78,7 +78,7 @@ pub(super) fn motions(axis: &Axis) -> Result<Vec<(&'static str, Program)>, Traje
     for share in [0.15, 0.3, 0.15, 0.0] {
         halting.extend([rest(0.5), to(share, medium)?]);
     }
-    all.push(("in steps with rests of half a second", halting));
+    all.push(("in steps with pauses of half a second", halting));
     let mut mixed = there_and_back(0.06, 0.03 * of_speed)?;
     mixed.extend(there_and_back(0.3, fastest)?);
     mixed.extend([chirp(small), rest(0.2)]);

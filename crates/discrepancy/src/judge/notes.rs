@@ -1,4 +1,4 @@
-//! What must be known of the logs to read a result.
+//! Notes on the logs to read a result.
 
 use axis_sim::effects::Measure;
 use axis_sim::{Axis, Trace};
@@ -8,7 +8,7 @@ use crate::answers::{LogSet, Prepared};
 use crate::name::gap::Gap;
 use crate::name::search::Found;
 
-/// What must be known of the logs.
+/// Notes on the logs.
 pub(super) fn notes(machine: &Axis, found: &Found) -> Vec<String> {
     let mut notes: Vec<String> = sets(found).flat_map(|set| set.notes()).collect();
     if !notes.is_empty() {
@@ -19,14 +19,14 @@ pub(super) fn notes(machine: &Axis, found: &Found) -> Vec<String> {
 }
 
 /// How the noise of a torque balance is to be read.
-const FLOOR: &str = "the noise given of a torque balance is the least that the spectra of torque and motion leave possible, as no controller is known: a rest above it may be noise";
+const FLOOR: &str = "the noise stated for a torque balance is a lower bound from the spectra of torque and motion, as no controller is known: a residual above it may still be noise";
 
 /// What must be known of a balance's rest that is taken for noise though it is above its floor.
 pub(super) fn slow_of_loop_note(check: &Gap) -> String {
     let times = check.channels.iter().map(|c| c.after / c.floor);
     let times = times.fold(0.0, f64::max);
     format!(
-        "the rest is {times:.1} times the least noise, and no curve over the motion that is found on some logs tells anything of others: it is taken for noise that a controller made of that of its sensors; a replay with the gains of the controller would tell more"
+        "the residual is {times:.1} times that lower bound, and no curve over the motion that is fitted on some logs predicts others: it is taken for sensor noise that passed through the controller; a replay with the controller's gains would show more"
     )
 }
 
@@ -34,7 +34,7 @@ pub(super) fn slow_of_loop_note(check: &Gap) -> String {
 pub(super) fn above_noise_note(set: &LogSet, log: usize, times: f64) -> String {
     let name = set.logs.get(log).map_or("a log", |log| log.name.as_str());
     format!(
-        "{name}: the residual is {times:.1} times its noise, and no effect explains it: \"nothing is missing\" would have to hold of every log, of those that were fitted as well"
+        "{name}: the residual is {times:.1} times its noise, and no effect explains it: the verdict \"nothing is missing\" must hold for every log, the fitted ones included"
     )
 }
 
@@ -46,7 +46,7 @@ fn slack_notes(machine: &Axis, found: &Found) -> Vec<String> {
     let unit = machine.freedom().unit();
     let note = |(gap, log): (f64, &Prepared)| {
         format!(
-            "{} counts from where its reference has moved by {:.3e} {unit}; of a gap of {gap:.3e} {unit} that takes up a part, and the motor\u{2019}s place in the rest is not known: record a longer first move",
+            "{} is compared only after its reference has moved by {:.3e} {unit}, which takes up a part of a gap of {gap:.3e} {unit}; where the motor stood in the remainder is not known: record a longer first move",
             log.name, log.taken_up
         )
     };
@@ -72,7 +72,7 @@ pub(super) fn faster_notes(
         let unit = ReadUnit::of(si, own);
         (own > FASTER * seen).then(|| {
             format!(
-                "{} goes {words} at up to {}, the fitted logs at up to {}: what depends on the speed is drawn further there than it was seen; fit to motion as fast",
+                "{} goes {words} at up to {}, the fitted logs at up to {}: effects that depend on speed are extrapolated there; fit to motion as fast",
                 log.name,
                 unit.said(own),
                 unit.said(seen)

@@ -18,7 +18,7 @@ pub struct Overlay {
     pub after: Vec<f64>,
 }
 
-/// Every channel of every log, with its rests before and after.
+/// Every channel of every log, with its residuals before and after.
 pub(super) fn overlays(set: &LogSet, before: &Rest, after: &Rest) -> Vec<Overlay> {
     let mut all = Vec::new();
     for (l, log) in set.logs.iter().enumerate() {

@@ -47,7 +47,7 @@ impl DriveFunction {
             Self::FrictionCompensation => "friction compensation",
             Self::ViscousFeedForward => "speed-proportional torque feed-forward",
             Self::AccelerationFeedForward => "acceleration (torque) feed-forward",
-            Self::StandingLoad => "weight compensation (standing load)",
+            Self::StandingLoad => "weight compensation (constant load)",
             Self::CoggingTable => "cogging table over the motor angle",
             Self::PositionTable => "torque table over the position",
             Self::BacklashCompensation => "backlash compensation",
@@ -74,7 +74,7 @@ pub struct Remedy {
 }
 
 impl Remedy {
-    /// The line of an effect; `None` for a name that is in no library.
+    /// The line of an effect; `None` for a name that the library does not have.
     pub fn of(effect: &str) -> Option<&'static Self> {
         REMEDIES.iter().find(|remedy| remedy.effect == effect)
     }
@@ -104,7 +104,7 @@ pub const REMEDIES: &[Remedy] = &[
     line("stribeck-friction", FrictionCompensation, "a table of torque over speed, dense at low speed"),
     line("presliding", FrictionCompensation, "delay and decay of the pulse after a reversal"),
     line("position-dependent-friction", PositionTable, "the level over the position; look at guide and transmission there"),
-    line("load-dependent-friction", FrictionCompensation, "a level that grows with the acceleration, where the drive has one"),
+    line("load-dependent-friction", FrictionCompensation, "a level that grows with the acceleration, if the drive has one"),
     line("warming-friction", MechanicalRepair, "a warm-up run, or a level that is adapted as the machine warms"),
     line("maxwell-slip-hysteresis", FrictionCompensation, "delay and decay of the pulse after a reversal"),
     line("constant-load", StandingLoad, "the force as motor torque, with its sign"),

@@ -5,7 +5,7 @@ use super::types::{EffectFound, RefusedEffects, Verdict};
 use super::unknown::Unknown;
 use crate::name::gap::Gap;
 
-/// A verdict in words, with what was named, what is left, and where.
+/// A verdict in words, with what was named, the residual, and where.
 pub(super) fn sentence(
     verdict: Verdict,
     effects: &[EffectFound],
@@ -40,7 +40,7 @@ pub(super) fn sentence(
             .as_ref()
             .map_or(String::new(), |f| format!(": {f}"));
         format!(
-            " It sits in the {} and depends on {}{formula}.",
+            " It acts in the {} and depends on {}{formula}.",
             u.channel, u.depends_on
         )
     });
@@ -56,10 +56,10 @@ pub(super) fn sentence(
         }
         Verdict::Explained => format!("The model lacks {names}. {gone}.{forms}"),
         Verdict::PartlyExplained if !check.stands_out() => format!(
-            "Partly explained, by {names}. {gone}. A rest remains that is not named.{place} What is named may stand for something that is not in the library.{refused}{forms}"
+            "Partly explained, by {names}. {gone}. A residual remains that has no name.{place} The named effects may stand for something that is not in the library.{refused}{forms}"
         ),
         Verdict::PartlyExplained => format!(
-            "Partly explained: with {names}, {gone}, and a rest remains that is not named.{place} What is named may stand for something that is not in the library.{refused}{forms}"
+            "Partly explained: with {names}, {gone}, and a residual remains that has no name.{place} The named effects may stand for something that is not in the library.{refused}{forms}"
         ),
         Verdict::Unknown => format!(
             "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}{refused}{forms}"

@@ -35,7 +35,7 @@ pub(super) struct Short {
     gain: f64,
     /// The term's number, and its standard deviation.
     number: [f64; 2],
-    /// What is left with it on the check logs.
+    /// The residual with it on the check logs.
     left: answers::Rest,
 }
 
@@ -116,7 +116,7 @@ impl Short {
         self.gain
     }
 
-    /// What is left with it on the check logs.
+    /// The residual with it on the check logs.
     pub(super) fn left(&self) -> &answers::Rest {
         &self.left
     }

@@ -44,8 +44,8 @@ impl Level {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Confidence {
     /// In what was named, or in that nothing is missing: high for a gap that is explained or
-    /// is none, medium where a rest is left, low where nothing explains it; a step lower for
-    /// each of the three that follow, and where a rest above the floor is taken for noise.
+    /// is none, medium where a residual is left, low where nothing explains it; a step lower for
+    /// each of the three that follow, and where a residual above the floor is taken for noise.
     pub level: Level,
     /// Known parameters that were moved to the edge of their tolerance.
     pub at_edge: Vec<Recalibrated>,
@@ -66,7 +66,7 @@ pub struct Told {
     pub confidence: Confidence,
     /// What compensates each named effect.
     pub remedies: Vec<RemedyTold>,
-    /// Where a replay leaves a rest: another controller than the file's, which gives the logged
+    /// Where a replay leaves a residual: another controller than the file's, which gives the logged
     /// commands better.
     #[serde(default)]
     pub controller: Option<OwnController>,

@@ -91,7 +91,7 @@ pub struct EffectFound {
     pub evidence: [f64; 2],
     /// What else was tried in its place, with the fall that it reached.
     pub runners_up: Vec<(String, f64)>,
-    /// In what its law differs from the library's; `None` where nothing shows that.
+    /// In what its law differs from the library's; `None` if nothing shows that.
     pub form: Option<FormFound>,
 }
 
@@ -113,12 +113,13 @@ pub struct ReplacedEffect {
 pub struct RefusedEffects {
     /// Names.
     pub effects: Vec<String>,
-    /// Channels that are further off; none where they are so in total only, or in none.
+    /// Channels that are further off; none if they are so in total only, or in none.
     pub channels: Vec<String>,
     /// Share of the gap on check motion that they take away, where that is too little.
     #[serde(default)]
     pub takes_away: Option<f64>,
-    /// The law that explains as much or more, where they are not given for that: a force in proportion
+    /// The law that explains as much or more, where they are not given for that: a force in
+    /// proportion
     /// to this, of time t, position x and speed v.
     #[serde(default)]
     pub law: Option<String>,
@@ -129,7 +130,7 @@ impl RefusedEffects {
     pub(super) fn sentence(&self) -> String {
         if let Some(share) = self.takes_away {
             return format!(
-                " {} would take away {:.0} % of the gap, which explains nothing, so it is not given.",
+                " {} would take away {:.0} % of the gap, which explains nothing, so it is not named.",
                 self.effects.join(" with "),
                 100.0 * share.max(0.0)
             );
@@ -140,7 +141,7 @@ impl RefusedEffects {
                 _ => ("they", "explain", "are"),
             };
             return format!(
-                " {} {explains} no more than a force in proportion to {law} does with one number, so {it} {is} not given.",
+                " {} {explains} no more than a force in proportion to {law} does with one number, so {it} {is} not named.",
                 self.effects.join(" with ")
             );
         }
@@ -149,7 +150,7 @@ impl RefusedEffects {
             channels => format!("in {}", channels.join(", ")),
         };
         format!(
-            " Of the fitted logs {} would explain most; with it, motion that was not fitted to is further off {where_} than without, so it is not given.",
+            " {} would explain most of the fitted logs, but with it the model is further off {where_} on motion not used in the fit than without, so it is not named.",
             self.effects.join(" with ")
         )
     }
@@ -183,14 +184,14 @@ impl FigureLogs {
         }
     }
 
-    /// In a sentence; `None` where the logs are not known, as in older files.
+    /// In a sentence; `None` if the logs are not known, as in older files.
     pub fn sentence(&self) -> Option<String> {
         let logs = self.logs.join(", ");
         (!self.logs.is_empty()).then(|| match self.took_part {
             true => format!(
-                "Figures are of {logs}, on which what is named was chosen too: a third set of logs would give figures that owe nothing to that choice."
+                "Figures are from {logs}, which also served to choose what is named: a third set of logs (--test) would give independent figures."
             ),
-            false => format!("Figures are of {logs}, which took no part in any choice."),
+            false => format!("Figures are from {logs}, which took no part in any choice."),
         })
     }
 }
@@ -237,7 +238,7 @@ pub struct Discovery {
     /// `controller-estimated`, a replay with gains that were estimated from logs.
     #[serde(default = "replayed")]
     pub answer: String,
-    /// What must be known of the logs beside the verdict; whoever reads them adds what
+    /// Notes on the logs beside the verdict; whoever reads them adds what
     /// was done to them.
     pub notes: Vec<String>,
     /// Verdict.
@@ -247,7 +248,7 @@ pub struct Discovery {
     /// Named effects, largest share first.
     pub effects: Vec<EffectFound>,
     /// In what the law of the axis' own dry friction differs from the model's; `None`
-    /// where nothing shows that.
+    /// if nothing shows that.
     pub own_form: Option<FormFound>,
     /// Effects that were named on the way, until another took their place.
     pub replaced: Vec<ReplacedEffect>,
@@ -255,7 +256,7 @@ pub struct Discovery {
     pub refused: Option<RefusedEffects>,
     /// Best candidates that were not added.
     pub not_added: Vec<(String, f64)>,
-    /// What is left, is significant, and is nothing in the library.
+    /// The residual is significant, and is nothing in the library.
     pub unknown: Option<Unknown>,
     /// Gap before and after.
     pub gap: Gaps,
@@ -267,7 +268,7 @@ pub struct Discovery {
     /// What a first screen says beside: costs, confidence, remedies.
     #[serde(default)]
     pub told: Told,
-    /// What these logs can tell of each effect of the library.
+    /// What these logs can show of each effect of the library.
     pub likenesses: Vec<Likeness>,
     /// What to run next, where effects look alike.
     pub next_experiment: Option<NextExperiment>,

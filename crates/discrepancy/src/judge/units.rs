@@ -88,7 +88,7 @@ impl ReadUnit {
     }
 }
 
-/// SI unit of a channel of logs; empty where its name does not say it.
+/// SI unit of a channel of logs; empty if its name does not say it.
 pub(super) fn channel_unit(channel: &str) -> &'static str {
     const ENDS: [(&str, &str); 9] = [
         ("_rad_s", "rad/s"),

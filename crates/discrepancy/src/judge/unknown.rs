@@ -1,4 +1,4 @@
-//! What is left and fits nothing in the library: where it sits, on what it
+//! The residual and fits nothing in the library: where it sits, on what it
 //! depends, and a curve.
 //!
 //! A force on the table, or a displacement between screw and table, is let
@@ -6,7 +6,7 @@
 //! answers to each hat (by simulation), known parameters and named effects are
 //! fitted out, and what a curve explains beyond chance, on logs that were not
 //! fitted as well, is not in the model. The curve with the most is reported,
-//! and a short term that does as much, where there is one. Terms are empirical.
+//! and a short term that does as much, if there is one. Terms are empirical.
 
 use axis_sim::{Axis, ReplayError};
 use schemars::JsonSchema;
@@ -26,7 +26,7 @@ pub struct Unknown {
     pub channel: String,
     /// On what it depends, as far as one variable shows it.
     pub depends_on: String,
-    /// A short term over the same with its number, empirical; `None` where none does
+    /// A short term over the same with its number, empirical; `None` if none does
     /// nearly as much as the curve.
     pub formula: Option<String>,
     /// The curve.
@@ -47,7 +47,7 @@ pub struct Curve {
     pub at: Vec<f64>,
     /// Value there.
     pub value: Vec<f64>,
-    /// Half-width of its 95 % interval; 0 where there is none.
+    /// Half-width of its 95 % interval; 0 if there is none.
     pub within: Vec<f64>,
 }
 
@@ -55,7 +55,7 @@ pub struct Curve {
 /// and `material` at least.
 ///
 /// # Errors
-/// [`ReplayError`] where the fitted machine no longer runs the check logs.
+/// [`ReplayError`] if the fitted machine no longer runs the check logs.
 pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unknown>, ReplayError> {
     let fitter = Fitter {
         machine,
@@ -80,7 +80,8 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
         shape.told(machine, &found.check_logs, &check, s.values.as_slice())
     };
     // What noise alone brings is not known of a balance, whose runs are its own rest, drawn anew,
-    // with all that it lacks: other logs may say as much as is asked of those that it was fitted to.
+    // with all that it lacks: other logs may say as much as is asked of those that it was fitted
+    // to.
     let balanced = found.fit_logs.is_balanced();
     let is_above_noise = |s: &Solved| s.gain >= ABOVE * s.of_noise;
     let least = |i: usize, s: &Solved| match is_above_noise(s) {
@@ -176,7 +177,7 @@ const ABOUT: f64 = 0.9;
 /// near zero frequency that is far above its average in a band.
 const ABOVE: f64 = 8.0;
 
-/// What is known of a rest that shows in no curve over the motion.
+/// What is known of a residual that shows in no curve over the motion.
 pub fn in_frequency(excess: Excess) -> Unknown {
     let (worst, fall) = excess.out[0];
     let ([low, high], _) = excess.bands[worst];
@@ -186,7 +187,7 @@ pub fn in_frequency(excess: Excess) -> Unknown {
         .map(|([low, high], _)| 0.5 * (low + high));
     let values: Vec<f64> = excess.bands.iter().map(|(_, v)| *v).collect();
     Unknown {
-        channel: "rest of all channels together".to_owned(),
+        channel: "residual of all channels together".to_owned(),
         depends_on: format!("frequency, most from {low:.0} to {high:.0} Hz"),
         formula: None,
         curve: Curve {

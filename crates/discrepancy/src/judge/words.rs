@@ -115,7 +115,7 @@ fn costs(discovery: &Discovery) -> Vec<String> {
         lines.push(tracking(t, discovery.effects.len()));
     } else if discovery.answer == "torque-balance" {
         lines.push(
-            "The tracking error is not known: a torque balance takes the measured motion as given."
+            "The tracking error is not known: a torque balance takes the measured motion as it is."
                 .to_owned(),
         );
     }
@@ -145,7 +145,7 @@ fn effort(e: &EffortCost) -> String {
     let unit = ReadUnit::of(&e.unit, e.measured.rms);
     let force = ReadUnit::of(&e.force_unit, e.force.rms);
     format!(
-        "It takes {} RMS ({} peak) at the load: {} RMS of {}, of {} in all.",
+        "It takes {0} RMS ({1} peak) at the load: {2} RMS of the {4} in {3}.",
         force.said(e.force.rms),
         force.said(e.force.peak),
         unit.said(e.taken.rms),
@@ -188,7 +188,7 @@ fn sure(discovery: &Discovery) -> Vec<String> {
     let wide = confidence.wide.iter();
     lines.extend(wide.map(|[effect, p]| {
         format!(
-            "The {} of {effect} is known badly: its 95 % interval is wider than half of it.",
+            "The {} of {effect} is poorly determined: its 95 % interval is wider than half its value.",
             p.replace('_', " ")
         )
     }));
@@ -246,7 +246,7 @@ fn next(discovery: &Discovery) -> Vec<String> {
     if let Some(next) = &discovery.next_experiment {
         let [a, b] = &next.separates;
         lines.push(format!(
-            "Run the next experiment: {}; it tells {a} from {b}.",
+            "Run the next experiment: {}; it separates {a} from {b}.",
             next.what
         ));
     }
@@ -274,13 +274,13 @@ fn of_unknown(unknown: &Unknown) -> Option<String> {
         _ => return None,
     };
     Some(format!(
-        "What has no name: enter its curve where the drive takes a table ({table}). Motion that is slower, faster and longer shows more of it."
+        "What has no name: enter its curve if the drive takes a table ({table}). Slower, faster and longer motion shows more of it."
     ))
 }
 
 fn other_controller(own: &OwnController) -> String {
     format!(
-        "The controller of the file does not give the logged command: it leaves {} of it (mean square), where {} leaves {}. Estimate it (identify-control) and search with the file that this writes; or leave the controller out (--balance), which shows forces.",
+        "The controller of the file does not reproduce the logged command: it leaves {} of it unexplained (mean square), while {} leaves {}. Estimate it (identify-control) and search with the file that this writes; or leave the controller out (--balance), which compares forces.",
         percent(own.left),
         own.better,
         percent(own.better_left)

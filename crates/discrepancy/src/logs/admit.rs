@@ -29,7 +29,7 @@ pub fn most_samples(machine: &Axis) -> Option<usize> {
     (!machine.has_control()).then_some(BALANCED)
 }
 
-/// Looks at a log and takes it from its first rest on. What must be known of it goes to
+/// Looks at a log and takes it from its first standstill on. What must be known of it goes to
 /// `notes`: channels that agree only nearly, and what was cut away.
 ///
 /// # Errors
@@ -42,8 +42,8 @@ pub fn admit(
 ) -> Result<NamedLog, LogSetError> {
     let period = check_log(&name, &log, machine)?;
     let findings = cross_checks(&log, machine).into_iter();
-    let unsure = findings.filter(|finding| finding.verdict == CrossCheckVerdict::Unsure);
-    notes.extend(unsure.map(|finding| format!("{name}: to be looked at: {finding}")));
+    let unclear = findings.filter(|finding| finding.verdict == CrossCheckVerdict::Unclear);
+    notes.extend(unclear.map(|finding| format!("{name}: check this: {finding}")));
     let (log, note) = from_rest(&name, log, period, machine)?;
     notes.extend(note);
     Ok((name, log, period))

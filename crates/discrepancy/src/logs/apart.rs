@@ -19,8 +19,8 @@ const BEST: f64 = 2.0 / 3.0;
 pub type NamedLog = (String, Log, f64);
 
 /// Splits check logs into those that a search proves on what it names, and those from which
-/// only figures are taken: the last log, or of a single one what comes after a rest near
-/// two thirds of its length. Empty where neither is possible: the figures then come from
+/// only figures are taken: the last log, or of a single one what comes after a standstill near
+/// two thirds of its length. Empty if neither is possible: the figures then come from
 /// logs that took part.
 pub fn set_apart(mut check: Vec<NamedLog>, machine: &Axis) -> (Vec<NamedLog>, Vec<NamedLog>) {
     let Some(last) = check.pop() else {
@@ -35,7 +35,7 @@ pub fn set_apart(mut check: Vec<NamedLog>, machine: &Axis) -> (Vec<NamedLog>, Ve
     }
 }
 
-/// Both parts of a log, cut in the middle of a rest, where each is sound by itself.
+/// Both parts of a log, cut in the middle of a standstill, where each is sound by itself.
 fn cut((name, log, period): &NamedLog, machine: &Axis) -> Option<[NamedLog; 2]> {
     let reference = reference_in(log).ok().filter(|_| machine.has_control())?;
     let rest = (REST_TIME / period).round() as usize;
@@ -48,7 +48,7 @@ fn cut((name, log, period): &NamedLog, machine: &Axis) -> Option<[NamedLog; 2]> 
         .collect();
     let off = |at: &usize| (share(*at) - BEST).abs();
     rests.sort_by(|a, b| off(a).total_cmp(&off(b)));
-    // One try a rest.
+    // One try a standstill.
     let mut tried: Vec<usize> = Vec::new();
     rests.retain(|&at| {
         let new = tried.iter().all(|&other| at.abs_diff(other) > 2 * rest);

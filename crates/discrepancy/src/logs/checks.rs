@@ -66,7 +66,7 @@ pub fn check_log(file: &str, log: &Log, machine: &Axis) -> Result<f64, LogSetErr
     Ok(sampling.period)
 }
 
-/// Dry friction and a standing load look alike where the axis goes one way only.
+/// Dry friction and a constant load look alike where the axis goes one way only.
 fn moves_both_ways(file: &str, reference: &[f64]) -> Result<(), LogSetError> {
     let step = |w: &[f64]| w[1] - w[0];
     let moved = |sign: f64| {
@@ -81,7 +81,9 @@ fn moves_both_ways(file: &str, reference: &[f64]) -> Result<(), LogSetError> {
     let missing = match (forward > 1e-4, back > 1e-4) {
         (true, true) => return Ok(()),
         (false, false) => "the reference moves by less than 0.1 mm",
-        _ => "the axis moves in one direction only, so dry friction and a standing load look alike",
+        _ => {
+            "the axis moves in one direction only, so dry friction and a constant load look the same"
+        }
     };
     Err(LogSetError::Poor {
         file: file.to_owned(),

@@ -48,12 +48,12 @@ pub enum LogSetError {
         factor: f64,
         /// In words.
         guess: &'static str,
-        /// What would mend it.
+        /// What would correct it.
         scale: f64,
     },
     /// Samples too far apart for a replay.
     #[error(
-        "{file}: {rate:.4} Hz: a replay of a controller needs {least} Hz at least, as between slower samples a reference is not what the controller was given; record faster, or leave [control] out of the axis file (or give --balance) where the log has a torque, force or current"
+        "{file}: {rate:.4} Hz: a replay of a controller needs {least} Hz at least, as slower samples do not show the reference that the controller followed; record faster, or, if the log has a torque, force or current, leave [control] out of the axis file (or use --balance)"
     )]
     TooSlow {
         /// The log.
@@ -78,7 +78,7 @@ pub enum LogSetError {
         time: f64,
     },
     /// Channels that do not agree with each other, by a unit, a sign or a zero.
-    #[error("{file}: {what}; if that is so, this in the axis file mends it:\n{lines}")]
+    #[error("{file}: {what}; if that is so, these lines in the axis file correct it:\n{lines}")]
     Mapping {
         /// The log.
         file: String,
@@ -125,7 +125,7 @@ pub enum LogSetError {
     },
     /// Nothing moves, or only one way.
     #[error(
-        "{file}: the motion is too poor to tell effects apart: {missing}; record a move and the way back, with a rest between"
+        "{file}: the motion is too poor to tell effects apart: {missing}; record a move and its return, with a standstill between"
     )]
     Poor {
         /// The log.
@@ -135,7 +135,7 @@ pub enum LogSetError {
     },
     /// It never stands still, so a simulation cannot begin like it.
     #[error(
-        "{file}: starts in motion, at {speed:.4} m/s, and never rests for {REST_TIME} s: where the loop stands at its start is not in the log; record from rest"
+        "{file}: starts in motion, at {speed:.4} m/s, and never stands still for {REST_TIME} s: the log does not show the loop's state at its start; record from standstill"
     )]
     NeverRests {
         /// The log.
@@ -145,7 +145,7 @@ pub enum LogSetError {
     },
     /// The same samples to fit and to check, or to test.
     #[error(
-        "{check} holds the same samples as {fit}: what is checked or tested on must be motion that was used for nothing before; give another log"
+        "{check} holds the same samples as {fit}: check and test logs must be motion that no other log shows; give another log"
     )]
     SameLog {
         /// Given to fit.
@@ -155,7 +155,7 @@ pub enum LogSetError {
     },
     /// A part of one log in the other.
     #[error(
-        "{check} holds {samples} samples of {fit}, from t = {from:.4} to {to:.4} s: what is checked or tested on must be motion that was used for nothing before; give another log, or cut that part out of one of them"
+        "{check} holds {samples} samples of {fit}, from t = {from:.4} to {to:.4} s: check and test logs must be motion that no other log shows; give another log, or cut that part out of one of them"
     )]
     SharedPart {
         /// Given to fit.

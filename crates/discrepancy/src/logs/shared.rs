@@ -7,7 +7,7 @@ use axis_log::{Channel, Log};
 
 /// Steps that are looked for at once.
 const WINDOW: usize = 16;
-/// Of these as many that are not 0: a rest is like any other.
+/// Of these as many that are not 0: a standstill is like any other.
 const MOVING: usize = 8;
 /// Moving samples that both must have one after another: noise and quantisation of two runs do
 /// not repeat so long, in no channel.
@@ -20,7 +20,7 @@ const SHARE: f64 = 0.05;
 const FINE: f64 = 1e-9;
 
 /// The longest run of samples in the second log that the first has too, in every channel that is
-/// in both and moves; zeros may differ. `None` where fewer than [`LEAST`] samples in which the
+/// in both and moves; zeros may differ. `None` if fewer than [`LEAST`] samples in which the
 /// first of these channels moves are shared, or too small a part of the second log's.
 pub(super) fn shared(first: &Log, second: &Log) -> Option<Range<usize>> {
     let pairs = pairs(first, second);

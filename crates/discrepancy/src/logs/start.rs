@@ -8,7 +8,8 @@ use super::error::LogSetError;
 /// A log as a replay can begin it, and what was done for that, in words.
 ///
 /// A ball-screw loop begins at rest: of a log that starts in motion, what lies
-/// before the last 0.1 s of its first rest is left out. A rigid machine begins with the position
+/// before the last 0.1 s of its first standstill is left out. A rigid machine begins with the
+/// position
 /// and the speed of the log's first samples.
 ///
 /// # Errors
@@ -42,7 +43,7 @@ pub fn from_rest(
     let first = reference.windows(rest + 1).position(is_still);
     // So late that nothing follows is as good as never.
     let left = first.and_then(|k| {
-        // The later in the rest, the better the loop has settled.
+        // The later in the standstill, the better the loop has settled.
         let middle = k + rest / 2;
         let steps = reference[middle..].windows(2);
         let still = steps.take_while(|w| (w[1] - w[0]).abs() <= AT_REST * period);
@@ -53,7 +54,7 @@ pub fn from_rest(
         Some((at, left)) => {
             let from = log.time()[at];
             let words = format!(
-                "{file} starts in motion ({speed:.4} m/s); what lies before its first rest, at t = {from:.3} s, is left out"
+                "{file} starts in motion ({speed:.4} m/s); what lies before its first standstill, at t = {from:.3} s, is left out"
             );
             Ok((left, Some(words)))
         }
@@ -78,5 +79,5 @@ const AT_REST: f64 = 1e-3;
 /// Over what time a log's first speed is taken, s.
 const START_TIME: f64 = 5e-3;
 
-/// How long a rest must be for the loop to have come to rest in its half, s.
+/// How long a standstill must be for the loop to have come to rest in its half, s.
 pub(super) const REST_TIME: f64 = 0.2;

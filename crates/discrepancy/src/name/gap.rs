@@ -21,7 +21,7 @@ pub struct ChannelGap {
     pub before: f64,
     /// With the effects.
     pub after: f64,
-    /// Of noise alone: sensors and logger as noisy as the rest shows.
+    /// Of noise alone: sensors and logger as noisy as the residual shows.
     pub floor: f64,
     /// The most of it in any of a few simulated runs.
     pub floor_most: f64,
@@ -33,7 +33,7 @@ impl ChannelGap {
         self.before > REST * self.floor
     }
 
-    /// Whether what is left is noise.
+    /// Whether the residual is noise.
     pub(crate) fn is_at_floor(&self) -> bool {
         self.after <= (REST * self.floor).max(OF_RUNS * self.floor_most)
     }
@@ -56,12 +56,13 @@ impl Gap {
         self.channels.iter().any(ChannelGap::stood_out)
     }
 
-    /// Whether what is left is noise in all channels.
+    /// Whether the residual is noise in all channels.
     pub(crate) fn is_at_floor(&self) -> bool {
         self.channels.iter().all(ChannelGap::is_at_floor)
     }
 
-    /// Whether what is left may be noise of another colour than that of the floors, whatever else is
+    /// Whether the residual may be noise of another colour than that of the floors, whatever else
+    /// is
     /// known of it.
     pub(crate) fn may_be_coloured(&self) -> bool {
         self.is_within(COLOURED)
@@ -82,10 +83,10 @@ impl Gap {
     pub fn gone(&self) -> String {
         match self.stands_out() {
             true => format!(
-                "{:.1} % of the gap above the noise is gone on motion that it was not fitted to",
+                "{:.1} % of the gap above the noise is gone on motion not used in the fit",
                 100.0 * self.reduction
             ),
-            false => "No channel stood out of its noise by more than a fifth: the evidence is that of all samples together, on motion that it was not fitted to as well".to_owned(),
+            false => "No channel exceeded its noise by more than a fifth: the evidence is from all samples together, on motion not used in the fit as well".to_owned(),
         }
     }
 }
@@ -93,18 +94,20 @@ impl Gap {
 /// A channel's rest is significant beyond this multiple of its floor.
 const REST: f64 = 1.2;
 
-/// Multiple of the floor, as it is told from high frequencies, beyond which a
-/// rest is no noise, whatever its colour, unless more is known of it.
+/// Multiple of the floor, as it is taken from high frequencies, beyond which a
+/// residual is no noise, whatever its colour, unless more is known of it.
 const COLOURED: f64 = 4.0;
 
-/// The same of a rest that does not follow the motion: noise of a low corner, or of steps in what the
+/// The same of a residual that does not follow the motion: noise of a low corner, or of steps in
+/// what
+/// the
 /// controller reads, has most of its power where the loop answers, and little above.
 const APART_FROM_MOTION: f64 = 20.0;
 
 /// And beyond this multiple of the noisiest of the runs.
 const OF_RUNS: f64 = 1.1;
 
-/// A rest within this multiple of its floor is noise: where nothing was left in
+/// A residual within this multiple of its floor is noise: where nothing was left in
 /// simulated logs, it came out between 0.79 (a motor angle, else 0.90) and 1.05
 /// of it.
 const FLOOR: f64 = 1.05;
@@ -126,7 +129,7 @@ fn mean_square(counted: &[Range<usize>], rest: &Rest, channel: usize) -> f64 {
     mean(counted, |l, k| rest[l][channel][k].powi(2))
 }
 
-/// The gap of a set's logs, with rests before and after something was done.
+/// The gap of a set's logs, with residuals before and after something was done.
 pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
     let counted = set.counted();
     let rms = |rest: &Rest, c: usize| mean_square(&counted, rest, c).sqrt();
@@ -164,7 +167,8 @@ pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
     }
 }
 
-/// The log whose residual is furthest above its own noise in some channel: its place, and how many times.
+/// The log whose residual is furthest above its own noise in some channel: its place, and how many
+/// times.
 pub(crate) fn furthest_above(set: &LogSet, rest: &Rest, floors: &[Floor]) -> Option<(usize, f64)> {
     let counted = set.counted();
     let times = |l: usize, c: usize| {
@@ -182,18 +186,20 @@ pub(crate) fn furthest_above(set: &LogSet, rest: &Rest, floors: &[Floor]) -> Opt
     logs.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Whether a log holds more than noise, its residual so many times its floor, beside others that show so many
+/// Whether a log holds more than noise, its residual so many times its floor, beside others that
+/// show so many
 /// times theirs: noise may be twice as large where an axis moves in another range or faster.
 pub(crate) fn is_more_than_noise(times: f64, of_others: f64) -> bool {
     times > BETWEEN_LOGS * of_others.clamp(1.0, APART_FROM_MOTION)
 }
 
-/// Times by which noise differs from log to log. Not calibrated: of a clean screw in coloured noise 1.2 was too
+/// Times by which noise differs from log to log. Not calibrated: of a clean screw in coloured
+/// noise 1.2 was too
 /// little.
 const BETWEEN_LOGS: f64 = 2.0;
 
 /// Least that something must change in a channel of the check logs, RMS, as a share of the
-/// channel's noise: left out, it would raise the RMS of what is left by 1.6 %, which no
+/// channel's noise: left out, it would raise the RMS of the residual by 1.6 %, which no
 /// engineer would look for.
 pub const MATERIAL_OF_NOISE: f64 = 0.18;
 
@@ -208,11 +214,13 @@ pub(crate) fn sizes(set: &LogSet, rest: &Rest) -> Vec<f64> {
     all.map(|c| mean_square(&counted, rest, c).sqrt()).collect()
 }
 
-/// Share of what is left above the noise, as power, that something may leave which takes the rest of
+/// Share of the residual above the noise, as power, that something may leave which takes the
+/// residual
+/// of
 /// a gap.
 const OF_REST: f64 = 0.5;
 
-/// Whether what brought the rest from `before` to `after` is not small in some channel beside
+/// Whether what brought the residual from `before` to `after` is not small in some channel beside
 /// its noise, nor beside the `gap` that there was. D counts evidence, not size: it falls with
 /// the length of the logs, for what is far beneath their noise as well. Whether a channel came
 /// nearer is not asked: in noise that is common to several channels something may be plain by
@@ -220,10 +228,10 @@ const OF_REST: f64 = 0.5;
 ///
 /// What was named before may have made up for most of it, as dry friction does for viscous. So
 /// beside the gap it counts by its own size where it takes most of what stands out of the noise
-/// yet: the rest would be `without` it if nothing else were changed.
+/// yet: the residual would be `without` it if nothing else were changed.
 ///
 /// # Errors
-/// [`ReplayError`] where the machine does not run with noise.
+/// [`ReplayError`] if the machine does not run with noise.
 pub(crate) fn is_material(
     machine: &Axis,
     set: &LogSet,
@@ -260,9 +268,9 @@ pub(crate) fn is_material(
 }
 
 /// Channels that are further off after something was done than before, beyond what noise
-/// explains; `None` where none is, and neither is the whole.
+/// explains; `None` if none is, and neither is the whole.
 ///
-/// Both rests hold the same noise n, so their difference δ holds none, and the mean
+/// Both residuals hold the same noise n, so their difference δ holds none, and the mean
 /// squares differ by what the model did and by twice the mean of n·δ. Of N samples of noise
 /// with the standard deviation σ that are worth N′ independent ones, that mean has the
 /// deviation σ·RMS(δ)/√N′, and a channel is further off where
@@ -271,7 +279,7 @@ pub(crate) fn is_material(
 /// mean square after − mean square before > 4 · 2 σ RMS(δ) / √N′
 /// ```
 ///
-/// unless it is noise alone. In total no allowance is made where the rest is far above the
+/// unless it is noise alone. In total no allowance is made where the residual is far above the
 /// noise: the gap above the floor may not be larger than before.
 pub fn worsened(
     set: &LogSet,

@@ -32,7 +32,7 @@ impl Library {
     /// these logs; a search with it names no other, and looks for nothing that is no effect.
     ///
     /// # Errors
-    /// [`ReplayError`] where the machine as its file says does not run the logs.
+    /// [`ReplayError`] if the machine as its file says does not run the logs.
     pub fn of_effects(
         machine: &Axis,
         logs: &LogSet,

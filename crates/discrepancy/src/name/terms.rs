@@ -1,4 +1,4 @@
-//! Short laws that are in no library: forces and displacements with one number, or with one and
+//! Short laws outside the library: forces and displacements with one number, or with one and
 //! a zero of their own.
 //!
 //! They say in a formula what a curve says in knots, and go on where a curve ends. They are

@@ -1,8 +1,9 @@
 //! Coloured noise that sensors bring into the loop.
 //!
 //! A sensor's noise need not be white: hum, a fan, an interpolation that beats with the sampling.
-//! A line that stands out is taken from the logs before ([`Hum`](super::Hum)). Where such noise goes round the loop, it shows in all channels, as a force does. In a band in which
-//! the rest neither follows the motion ([`MotionAndRest`]) nor asks whether the axis moves
+//! A line that stands out is taken from the logs before ([`Hum`](super::Hum)). Where such noise
+//! goes round the loop, it shows in all channels, as a force does. In a band in which
+//! the residual neither follows the motion ([`MotionAndRest`]) nor asks whether the axis moves
 //! ([`Steadiness`]), what is above the white noise is taken for noise of the sensors, shared among
 //! them as their white noise would have to be to show so in all channels. Below the second band
 //! nobody can tell noise from what the model lacks: there it is taken to go on as in the quietest
@@ -46,11 +47,11 @@ const NOTHING: f64 = 1e-3;
 /// below.
 const TOLD: std::ops::Range<usize> = 1..4;
 
-/// Noise of the `check` logs (with their simulations) with its colour; `None` where no band of
+/// Noise of the `check` logs (with their simulations) with its colour; `None` if no band of
 /// them shows any. Filters from motion to rest are sought on the `fit` logs too.
 ///
 /// # Errors
-/// [`ReplayError`] where the machine does not run with noise.
+/// [`ReplayError`] if the machine does not run with noise.
 pub(crate) fn coloured_noise(
     machine: &Axis,
     state: &State,
@@ -93,8 +94,10 @@ pub(crate) fn coloured_noise(
     Ok(Some(noise))
 }
 
-/// Of a band (`[low, high]`, Hz): whether what the logs' rest has there beside white noise is there while the
-/// axis stands. What repeats with its way does not follow its motion as filters do, but comes with it.
+/// Of a band (`[low, high]`, Hz): whether what the logs' rest has there beside white noise is
+/// there while the
+/// axis stands. What repeats with its way does not follow its motion as filters do, but comes with
+/// it.
 pub(crate) fn steady_bands(
     machine: &Axis,
     state: &State,
@@ -119,7 +122,8 @@ pub(crate) fn steady_bands(
 }
 
 /// Deviations of each sensor's noise beside its white noise, a row a band, by the powers of their
-/// `answers` to noise in the bands and those `foreseen` of white noise. In bands that are none of noise
+/// `answers` to noise in the bands and those `predicted` of white noise. In bands that are none of
+/// noise
 /// there is none.
 fn coloured(
     spectra: &Spectra,
@@ -176,7 +180,7 @@ impl Colour {
         }
     }
 
-    /// What must be known of it to read a result; `None` where there is nothing.
+    /// What must be known of it to read a result; `None` if there is nothing.
     pub(super) fn note(&self, machine: &Axis) -> Option<String> {
         let named = [
             ("a position sensor", Measure::Travel.unit(machine.freedom())),
@@ -201,14 +205,14 @@ impl Colour {
         let all: Vec<String> = named.into_iter().enumerate().filter_map(of).collect();
         (!all.is_empty()).then(|| {
             format!(
-                "noise in the loop is not white: beside white noise there is as much as would come of {}; it does not follow the motion, is there while the axis stands too, and is taken for noise",
+                "noise in the loop is not white: beside white noise there is as much as {} would cause; it does not follow the motion, is there at standstill too, and is taken for noise",
                 all.join(", ")
             )
         })
     }
 
     /// Noise beside the white noise, one sample every `period` seconds without end, of the sensors
-    /// of [`Sensor::ALL`], the current's on the q axis, and then on the d axis; none where there is
+    /// of [`Sensor::ALL`], the current's on the q axis, and then on the d axis; none if there is
     /// not any.
     pub(super) fn samples(&self, seed: u64, period: f64) -> Samples {
         let mut samples = Samples {
@@ -334,7 +338,8 @@ mod tests {
         assert!(column(1).iter().chain(&column(2)).all(|v| *v == 0.0));
     }
 
-    /// σ √(2 · width · period): of the current 3 A · √(2 · 46.5 Hz · 1e-4 s), at the control rate of this axis.
+    /// σ √(2 · width · period): of the current 3 A · √(2 · 46.5 Hz · 1e-4 s), at the control rate
+    /// of this axis.
     #[test]
     fn one_note_gives_the_size_of_each_sensors_noise() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");

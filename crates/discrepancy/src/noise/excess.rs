@@ -1,4 +1,4 @@
-//! A rest's spectrum beside that of noise alone.
+//! A residual's spectrum beside that of noise alone.
 
 use axis_sim::{Axis, ReplayError, Trace};
 use nalgebra::{Complex, DMatrix};
@@ -8,19 +8,19 @@ use super::{LogNoise, SlowNoise, noise_on};
 use crate::answers::{LogSet, State};
 use crate::spectrum::Layout;
 
-/// A band of frequencies in which a rest is not noise.
+/// A band of frequencies in which a residual is not noise.
 #[derive(Clone, Debug)]
 pub struct Excess {
     /// Edges of all bands, Hz, and power in the direction between the channels
     /// that is the furthest above the noise, as a multiple of it.
     pub bands: Vec<([f64; 2], f64)>,
-    /// Those that stand out, the worst first, and the fall of D, were the rest there given a
+    /// Those that stand out, the worst first, and the fall of D, were the residual there given a
     /// spectrum of its own.
     pub out: Vec<(usize, f64)>,
 }
 
 impl Excess {
-    /// The same of the bands that stand out with these edges (Hz); none where none is left.
+    /// The same of the bands that stand out with these edges (Hz); none if none is left.
     pub(crate) fn only(&self, mut keep: impl FnMut([f64; 2]) -> bool) -> Option<Self> {
         let mut only = self.clone();
         only.out.retain(|(band, _)| keep(self.bands[*band].0));
@@ -31,7 +31,7 @@ impl Excess {
     pub(crate) fn note(&self) -> String {
         let ([low, high], times) = self.bands[self.out[0].0];
         format!(
-            "from {low:.0} to {high:.0} Hz the rest has up to {times:.1} times the power of the noise that the sensors show at high frequency, and does not follow the motion; it is taken for noise"
+            "from {low:.0} to {high:.0} Hz the residual has up to {times:.1} times the power of the noise that the sensors show at high frequency, and does not follow the motion; it is taken for noise"
         )
     }
 }
@@ -49,7 +49,7 @@ const UNLIKE: f64 = 0.5;
 /// In the first band the spectrum of noise is steep, and not one number.
 const UNLIKE_FIRST: f64 = 2.0;
 
-/// Times the divergence of any noise run from the others, below which a rest may
+/// Times the divergence of any noise run from the others, below which a residual may
 /// be one more of them. On a move there and back friction sticks or not, and of 96
 /// runs three quarters had less than 0.1 in the first band, one in five 0.3 to 2, one
 /// 3.4. Were that distributed exponentially, one rest of noise in 560 were beyond
@@ -61,12 +61,12 @@ const SPREAD: f64 = 2.0;
 ///
 /// With λ the eigenvalues of the one relative to the other, the divergence of a
 /// band per bin is Σ (λ − 1 − ln λ) over those above 1, that of Kullback and
-/// Leibler between two Gaussian rests but for what is quieter than foreseen. What it
+/// Leibler between two Gaussian residuals but for what is quieter than predicted. What it
 /// is between a run with noise and others says how much of it means nothing.
-/// `None` where no band stands out.
+/// `None` if no band stands out.
 ///
 /// # Errors
-/// [`ReplayError`] where the machine does not run with noise.
+/// [`ReplayError`] if the machine does not run with noise.
 pub(crate) fn excess(
     machine: &Axis,
     set: &LogSet,

@@ -129,7 +129,7 @@ pub(crate) fn floors(
 /// Noise alone in each channel of logs that are replayed, with sensors and a logger like these.
 ///
 /// # Errors
-/// [`ReplayError`] where the machine does not run with noise.
+/// [`ReplayError`] if the machine does not run with noise.
 pub(crate) fn floors_with(
     machine: &Axis,
     set: &LogSet,
@@ -167,8 +167,9 @@ fn floors_of(
     Ok((0..set.channels.len()).map(of).collect())
 }
 
-/// Noise of a balance's channel: the least that its log leaves possible, with what is unsure of
-/// its friction, or, where that is more, what its rest has from one sample to the next. Nobody knows what its controller makes
+/// Noise of a balance's channel: the least that its log leaves possible, with the uncertainty of
+/// its friction, or, where that is more, what its residual has from one sample to the next. Nobody
+/// knows what its controller makes
 /// of its sensors' noise, nor what a current has above the rate of its log: that comes back
 /// anywhere below it.
 fn of_balances(balances: &[&Balance], rest: &Rest) -> Floor {
@@ -193,7 +194,8 @@ fn of_balances(balances: &[&Balance], rest: &Rest) -> Floor {
     }
 }
 
-/// Variance of a rest, were all that is unlike from one sample to the next noise, flat up to the
+/// Variance of a residual, were all that is unlike from one sample to the next noise, flat up to
+/// the
 /// low-pass: half the mean square of neighbours' differences over 1 − ρ, ρ being such noise's
 /// correlation over a sample. The variance over this is von Neumann's ratio (Ann. Math. Statist.
 /// 12 (1941) 367, doi:10.1214/aoms/1177731677): what a law lacks goes on for many samples.

@@ -1,11 +1,17 @@
 //! A hum in the loop: noise at one frequency.
 //!
 //! The spectrum of noise is taken as constant over bands, and a line in one of them would be the
-//! weight of all its bins: what is missing there is not seen beside it, while an effect that happens to
-//! take a twentieth of the line seems to explain a great deal. So where the rest has a line above the first
-//! band on both sets of logs, which does not follow the motion and is there while the axis stands, its
-//! wave is taken out of all channels of each log, by least squares, with a phase of its own in each.
-//! What is missing may look like a line, or hide one: after each effect that is named, the hum is sought anew.
+//! weight of all its bins: what is missing there is not seen beside it, while an effect that
+//! happens to
+//! take a twentieth of the line seems to explain a great deal. So where the residual has a line
+//! above
+//! the first
+//! band on both sets of logs, which does not follow the motion and is there while the axis stands,
+//! its
+//! wave is taken out of all channels of each log, by least squares, with a phase of its own in
+//! each.
+//! What is missing may look like a line, or hide one: after each effect that is named, the hum is
+//! sought anew.
 
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -26,7 +32,8 @@ pub(crate) struct Hum {
 /// Most lines.
 const LINES: usize = 3;
 
-/// Power of a bin, as a multiple of the median of its band and channel, mean of all channels, that a line
+/// Power of a bin, as a multiple of the median of its band and channel, mean of all channels, that
+/// a line
 /// has on the fitted logs: of noise, one in a million.
 const LINE: f64 = 20.0;
 
@@ -43,7 +50,8 @@ const WIDTH: f64 = 6.0;
 const SAME: f64 = 1.0;
 
 impl Hum {
-    /// Of logs that are fitted and others, with their simulations. What is `known` for a hum is one where
+    /// Of logs that are fitted and others, with their simulations. What is `known` for a hum is
+    /// one where
     /// it still stands out.
     pub(crate) fn of(fit: Simulated, check: Simulated, known: &Self) -> Self {
         let mut hum = Self::default();
@@ -94,7 +102,7 @@ impl Hum {
     /// The logs without it, as a machine at this state leaves it.
     ///
     /// # Errors
-    /// [`ReplayError`] where the machine does not run.
+    /// [`ReplayError`] if the machine does not run.
     pub(crate) fn out_of<'a>(
         &self,
         machine: &Axis,
@@ -130,7 +138,8 @@ impl Hum {
         set
     }
 
-    /// These logs without what was taken out of `other`, which are the same ones: what two machines leave of
+    /// These logs without what was taken out of `other`, which are the same ones: what two
+    /// machines leave of
     /// them is compared without one and the same hum.
     pub(crate) fn as_in(other: &LogSet, set: &LogSet) -> LogSet {
         let mut set = set.clone();
@@ -153,7 +162,7 @@ impl Hum {
     pub(crate) fn notes(&self) -> Vec<String> {
         let one = |frequency: &f64| {
             format!(
-                "the logs have a hum of {frequency:.2} Hz, which does not follow the motion and is there while the axis stands; it was taken out of them. A load that repeats as fast would look alike"
+                "the logs have a hum of {frequency:.2} Hz, which does not follow the motion and is there at standstill; it was removed. A load that repeats at that frequency would look the same"
             )
         };
         self.frequencies.iter().map(one).collect()
@@ -192,7 +201,7 @@ fn wave(series: &[f64], turn: f64) -> Complex<f64> {
     found.map_or(Complex::new(0.0, 0.0), |w| Complex::new(w[0], w[1]))
 }
 
-/// Powers of a rest's bins beside the medians of their bands, mean of the channels.
+/// Powers of a residual's bins beside the medians of their bands, mean of the channels.
 struct Lines {
     /// Frequency, Hz, and power; the first band is left out.
     bins: Vec<(f64, f64)>,
@@ -249,7 +258,7 @@ impl Lines {
         near.map(|(_, power)| *power).fold(0.0, f64::max)
     }
 
-    /// The frequency near a bin's at which waves take most of the rest.
+    /// The frequency near a bin's at which waves take most of the residual.
     fn refined(&self, set: &LogSet, rest: &Rest, peak: f64) -> f64 {
         let longest = set.logs.iter().map(|l| l.log.len() as f64 * l.period);
         let width = 1.0 / longest.fold(f64::MIN_POSITIVE, f64::max);
@@ -338,7 +347,8 @@ mod tests {
         (machine, set)
     }
 
-    /// A log that rests too little to tell a hum from what comes with motion; but what was known for
+    /// A log that rests too little to tell a hum from what comes with motion; but what was known
+    /// for
     /// one is one, as long as it stands out, and what was taken out is put back.
     #[test]
     fn a_hum_that_is_known_stays_out_while_it_stands_out() {

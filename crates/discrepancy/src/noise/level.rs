@@ -23,18 +23,18 @@ pub fn shows_noise(axis: &Axis, set: &LogSet) -> bool {
 /// position and the angle show their own noise, the command that of the speed through the
 /// speed controller, the d voltage that of the current through the current controller: by
 /// how much is first guessed from the proportional gains. Then each sensor's noise is run
-/// through the loop by itself, and what each of them and the logger make of the rest is
+/// through the loop by itself, and what each of them and the logger make of the residual is
 /// found from all channels and bands together ([`variances`]): no channel's noise is taken
 /// from another alone.
 pub fn noise_at(axis: &Axis, set: &LogSet, rest: &Rest, quiet: &[Trace]) -> LogNoise {
     Spectra::of(axis, set, rest, quiet).white()
 }
 
-/// Powers of a rest by channel and band, and of what each sensor's noise does there.
+/// Powers of a residual by channel and band, and of what each sensor's noise does there.
 pub(super) struct Spectra<'a> {
     set: &'a LogSet,
     pub(super) bands: Bands,
-    /// Of the rest.
+    /// Of the residual.
     pub(super) observed: Powers,
     /// Noise of the sensors, guessed.
     pub(super) guess: SensorNoise,
@@ -66,7 +66,8 @@ impl<'a> Spectra<'a> {
         heard(answers, &self.observed)
     }
 
-    /// What all sources make of the rest: the sensors as they were guessed, then loggers of unit
+    /// What all sources make of the residual: the sensors as they were guessed, then loggers of
+    /// unit
     /// variance.
     fn sources(&self) -> Vec<Powers> {
         let of_logger = |c: usize| {
@@ -147,9 +148,11 @@ fn answers(
     Sensor::ALL.map(answer).into()
 }
 
-/// Least that a sensor's noise as guessed makes of a rest's power in some channel and band for it to be
+/// Least that a sensor's noise as guessed makes of a residual's power in some channel and band for
+/// it to be
 /// heard there. A sensor that the control does not read, and whose channel is compared without its noise, makes what
-/// rounding makes of it: that would be amplified until it explains the rest, by 10¹⁴⁰ of a joint's load sensor.
+/// rounding makes of it: that would be amplified until it explains the residual, by 10¹⁴⁰ of a
+/// joint's load sensor.
 const HEARD: f64 = 1e-9;
 
 /// What sensors do to the logs, and nothing of those that are not heard.
@@ -196,7 +199,7 @@ impl Bands {
         vec![vec![0.0; self.values.len()]; set.channels.len()]
     }
 
-    /// Mean power of a rest in each channel and band.
+    /// Mean power of a residual in each channel and band.
     pub(super) fn powers(&self, set: &LogSet, rest: &Rest) -> Powers {
         let channel = |c: usize| {
             let amplitudes = rest.iter().enumerate().map(|(l, log)| {

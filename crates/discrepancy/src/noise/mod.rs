@@ -1,4 +1,4 @@
-//! How much of a rest is noise: what goes round the loop, and what the logger adds.
+//! How much of a residual is noise: what goes round the loop, and what the logger adds.
 
 mod colour;
 mod excess;

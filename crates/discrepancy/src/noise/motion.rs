@@ -1,15 +1,15 @@
-//! Whether a rest follows the motion.
+//! Whether a residual follows the motion.
 //!
 //! What a machine lacks answers to how it is moved, on any log; noise of whatever colour does
 //! not. So in a band, linear filters from the simulated channels u (which are without noise) to
-//! the rest r are found on one set of logs,
+//! the residual r are found on one set of logs,
 //!
 //! ```text
 //! r(f) ≈ Σ_c (a_c + b_c jf/f_m + d_c (jf/f_m)²) u_c(f)          f_m: middle of the band
 //! ```
 //!
-//! by least squares, and judged on another by the share of the rest's power there that they
-//! foretell. Either set is foretold from the other: slow noise has few independent bins, and may
+//! by least squares, and judged on another by the share of the residual's power there that they
+//! predicts. Either set is predicted from the other: slow noise has few independent bins, and may
 //! by chance look like the motion in one direction.
 
 use axis_sim::Trace;
@@ -17,12 +17,13 @@ use nalgebra::{Complex, DMatrix};
 
 use crate::answers::LogSet;
 
-/// Share of the power in a band, on logs that the filters were not found on, from which a rest
-/// follows the motion. Filters found in noise foretell less than nothing: on simulated logs of a
+/// Share of the power in a band, on logs that the filters were not found on, from which a residual
+/// follows the motion. Filters found in noise predicts less than nothing: on simulated logs of a
 /// joint −0.04 to 0.02 of it; what a law left out leaves, 0.05 and more.
 const FOLLOWS: f64 = 0.03;
 
-/// Share that filters foretell by chance of a rest whose power is in a single bin, as of a hum: any filter
+/// Share that filters predicts by chance of a residual whose power is in a single bin, as of a hum:
+/// any filter
 /// meets it, and half of the phases help. Of more bins it is as much less. Below the second band
 /// motion too has its power in few bins.
 const BY_CHANCE: f64 = 0.6;
@@ -55,8 +56,8 @@ impl MotionAndRest {
         }
     }
 
-    /// Whether the rest in a band (`[low, high]`, Hz) follows the motion: filters found on
-    /// either set of logs foretell it on the other. Where a set has too few bins to tell, it does.
+    /// Whether the residual in a band (`[low, high]`, Hz) follows the motion: filters found on
+    /// either set of logs predicts it on the other. Where a set has too few bins to tell, it does.
     pub(crate) fn follows(&self, band: [f64; 2]) -> bool {
         self.follows_in(band, |_| true)
     }
@@ -72,7 +73,7 @@ impl MotionAndRest {
                 false => FOLLOWS,
             }
         };
-        tracing::debug!(?band, ?shares, "of the rest follows the motion");
+        tracing::debug!(?band, ?shares, "of the residual follows the motion");
         shares.is_none_or(|shares| {
             let mut wanted = shares.iter().enumerate().filter(|(c, _)| wanted(*c));
             wanted.any(|(c, share)| *share >= least(c))
@@ -94,7 +95,7 @@ fn bins((set, traces): Simulated) -> Vec<Bin> {
     bin.collect()
 }
 
-/// Motion and rest in a band: a row a bin; each column of the rest has unit power.
+/// Motion and rest in a band: a row a bin; each column of the residual has unit power.
 struct Equations {
     motion: DMatrix<Complex<f64>>,
     rest: DMatrix<Complex<f64>>,
@@ -129,8 +130,8 @@ fn equations(bins: &[Bin], [low, high]: [f64; 2]) -> Equations {
     }
 }
 
-/// Share of the power of one rest that filters found on the other foretell, one a channel; none
-/// where there are fewer bins than coefficients.
+/// Share of the power of one rest that filters found on the other predicts, one a channel; none
+/// if there are fewer bins than coefficients.
 fn foretold(fit: &Equations, check: &Equations) -> Option<Vec<f64>> {
     let unknowns = fit.motion.ncols();
     if fit.rest.nrows() <= unknowns || check.rest.nrows() == 0 {
@@ -154,7 +155,7 @@ fn foretold(fit: &Equations, check: &Equations) -> Option<Vec<f64>> {
     Some(shares.collect())
 }
 
-/// The lesser of what either rest's filters foretell of the other; none where one set has too few
+/// The lesser of what either rest's filters predicts of the other; none if one set has too few
 /// bins to find any.
 fn foretold_either_way(a: &Equations, b: &Equations) -> Option<Vec<f64>> {
     let pairs = foretold(a, b)?.into_iter().zip(foretold(b, a)?);
@@ -173,7 +174,7 @@ mod tests {
     const BINS: usize = 120;
     const REGRESSORS: usize = 6;
 
-    /// Motion, and a rest of unit power in two channels of which `share` is a filter of it.
+    /// Motion, and a residual of unit power in two channels of which `share` is a filter of it.
     fn equations(share: f64, random: &mut ChaCha8Rng) -> Equations {
         let mut normal = |rows: usize, columns: usize| {
             DMatrix::from_fn(rows, columns, |_, _| {
@@ -207,7 +208,8 @@ mod tests {
         assert!(follow(0.2) >= 198);
     }
 
-    /// A hum is in one bin of each log, at a phase of its own; motion has most of its power at the lower
+    /// A hum is in one bin of each log, at a phase of its own; motion has most of its power at the
+    /// lower
     /// edge of a band. Measured, of 200 pairs: by [`FOLLOWS`] 30 would follow, by [`BY_CHANCE`] 5.
     #[test]
     fn a_hum_does_not_follow_the_motion() {

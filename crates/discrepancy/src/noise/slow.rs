@@ -3,8 +3,8 @@
 //! A converter that drifts, or mains hum on its line, is not white, and low frequencies are
 //! where a model lacks what it lacks. Both are told apart by the loop: it answers to all that
 //! is there, and not to what was added behind it. A load that moves makes the controller ask
-//! for current, and the current follows what is asked for. So of the rest's spectral matrix S
-//! in a band, what channel c shows beside what the others foretell,
+//! for current, and the current follows what is asked for. So of the residual's spectral matrix S
+//! in a band, what channel c shows beside what the others predicts,
 //!
 //! ```text
 //! d(c) = 1 / (S⁻¹)cc − 1 / (N⁻¹)cc,
@@ -25,7 +25,7 @@ use crate::answers::{LogSet, State};
 /// Slow noise of a logger.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SlowNoise {
-    /// Variance per value in each band, by fitted channel; empty where none is known.
+    /// Variance per value in each band, by fitted channel; empty if none is known.
     powers: Vec<Vec<f64>>,
 }
 
@@ -44,7 +44,7 @@ const SHOWS: f64 = 0.5;
 /// That of these logs, beside simulations of them without noise.
 ///
 /// # Errors
-/// [`ReplayError`] where the machine does not run with noise.
+/// [`ReplayError`] if the machine does not run with noise.
 pub(crate) fn slow_noise(
     machine: &Axis,
     set: &LogSet,
@@ -115,7 +115,7 @@ fn position_alone(all: &SensorNoise) -> SensorNoise {
 }
 
 /// Power that a `channel` shows beside the known noise and that the `command` does not answer,
-/// though it would with `answer` times as much; 0 where it does, or where that would not stand
+/// though it would with `answer` times as much; 0 if it does, or where that would not stand
 /// out. Of the spectral matrices that are `seen` and `known`.
 fn unanswered([seen, known]: [&Matrix; 2], [channel, command]: [usize; 2], answer: f64) -> f64 {
     let [all, noise] = [seen, known].map(|m| beside_others(m, channel));
@@ -129,7 +129,7 @@ fn unanswered([seen, known]: [&Matrix; 2], [channel, command]: [usize; 2], answe
     }
 }
 
-/// Power of a channel that the others do not foretell.
+/// Power of a channel that the others do not predicts.
 fn beside_others(spectral: &Matrix, channel: usize) -> f64 {
     let inverse = spectral.clone().cholesky().map(|c| c.inverse());
     inverse.map_or(0.0, |i| 1.0 / i[(channel, channel)].re)

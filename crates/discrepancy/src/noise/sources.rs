@@ -1,8 +1,8 @@
-//! How much of a rest's spectrum each source of noise makes.
+//! How much of a residual's spectrum each source of noise makes.
 //!
 //! Sensors' noise goes round the loop and shows in many channels; what a logger adds (its
 //! own converter, an unshielded line) shows in one, and there as white noise. With the
-//! powers O(c, b) of a rest in channel c and band b, the powers G(s, c, b) that source s
+//! powers O(c, b) of a residual in channel c and band b, the powers G(s, c, b) that source s
 //! of unit variance makes there, and variances p(s) ≥ 0, the powers' likelihood is that of
 //! Whittle,
 //!
@@ -10,8 +10,8 @@
 //! Σ n(b) [ O / P − ln(O / P) − 1 ],      P(c, b) = Σ p(s) G(s, c, b)
 //! ```
 //!
-//! Two things are asked for besides. Below the upper half of the bands the rest may hold
-//! what the model lacks, so more power than foreseen hardly counts there, while less of it
+//! Two things are asked for besides. Below the upper half of the bands the residual may hold
+//! what the model lacks, so more power than predicted hardly counts there, while less of it
 //! says that the noise is not there. And of two explanations that are equally good, the one
 //! with fewer sources is taken by steps that shrink what nothing asks for
 //! (multiplicative updates for the Itakura–Saito divergence: Févotte, Bertin, Durrieu,
@@ -20,24 +20,24 @@
 /// Powers by channel and band.
 pub(super) type Powers = Vec<Vec<f64>>;
 
-/// Weight of a band below the upper half, unless there is clearly less than foreseen.
+/// Weight of a band below the upper half, unless there is clearly less than predicted.
 const MAY_BE_MORE: f64 = 0.05;
 
-/// Times what is there that may be foreseen: both come of one run, and below 25 Hz the
+/// Times what is there that may be predicted: both come of one run, and below 25 Hz the
 /// spectrum is steep.
 const SCATTER: f64 = 1.5;
 
 /// Share with which a source begins that is taken last: it grows where no other does.
 const LAST: f64 = 1e-2;
 
-/// Times what is foreseen beyond which power in such a band does not count.
+/// Times what is predicted beyond which power in such a band does not count.
 const BEYOND: f64 = 2.0;
 
 /// Rounds of updates: powers of ten in a variance are gained in a few dozen, and two sources
 /// that look alike are told apart in a thousand.
 const ROUNDS: usize = 3000;
 
-/// Variances of the sources, from a rest's powers. `values` are the independent values of
+/// Variances of the sources, from a residual's powers. `values` are the independent values of
 /// each band; bands from `upper` on hold noise alone. Of sources that explain as much, those
 /// from `last` on are taken last.
 pub(super) fn variances(
@@ -74,7 +74,7 @@ pub(super) fn variances(
         for (p, source) in all.iter_mut().zip(sources) {
             let (mut asked, mut given) = (0.0, 0.0);
             for ((&(c, b), by), w) in cells.iter().zip(&foreseen).zip(&weights) {
-                // Far more than foreseen is of no noise, and asks for nothing.
+                // Far more than predicted is of no noise, and asks for nothing.
                 let seen = match b < upper && observed[c][b] > BEYOND * by {
                     true => *by,
                     false => observed[c][b],

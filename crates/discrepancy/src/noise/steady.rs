@@ -1,4 +1,4 @@
-//! Whether a rest is there whether the axis moves or not.
+//! Whether a residual is there whether the axis moves or not.
 //!
 //! What a machine lacks comes with its motion; noise that a sensor brings into the loop, or a
 //! disturbance from outside, does not ask whether the axis stands.
@@ -27,11 +27,13 @@ const STANDS_OUT: f64 = 1.5;
 /// Periods of a band's width that each of the three must last, in all logs together.
 const LONG: f64 = 5.0;
 
-/// Share of the power of a rest that its mean has at least where it stays. Of noise with a low corner the
+/// Share of the power of a residual that its mean has at least where it stays. Of noise with a low
+/// corner the
 /// mean over a log of seconds has a hundredth.
 const STAYS: f64 = 0.5;
 
-/// Whether the rest of some channel is mostly one value in each log of both sets, of the same sign in all: an
+/// Whether the residual of some channel is mostly one value in each log of both sets, of the same
+/// sign in all: an
 /// offset, or a force that does not change, is no noise, and does not follow the motion either.
 pub(crate) fn stays(sets: [Simulated; 2]) -> bool {
     let logs = sets.iter().flat_map(|(set, traces)| {
@@ -73,7 +75,8 @@ impl<'a> Steadiness<'a> {
         Self { set, rest, groups }
     }
 
-    /// Whether the rest in a band (`[low, high]`, Hz), above its `white` noise (power by channel,
+    /// Whether the residual in a band (`[low, high]`, Hz), above its `white` noise (power by
+    /// channel,
     /// as a variance), is there while the axis stands as while it moves, slowly or fast, in some channel in
     /// which it stands out; not where the logs show too little of one of the three.
     ///
@@ -108,7 +111,7 @@ fn is_there_too(powers: [f64; 3], white: f64) -> bool {
     standing.max(moving) > (STANDS_OUT - 1.0) * white && standing >= STANDING * moving
 }
 
-/// What the axis does at each sample of each log: 0 where it stands, 1 where it moves slowly, 2
+/// What the axis does at each sample of each log: 0 if it stands, 1 where it moves slowly, 2
 /// where it moves fast; none before a log counts.
 fn groups(set: &LogSet, traces: &[Trace]) -> Vec<Vec<Option<usize>>> {
     let all = traces.iter().flat_map(|t| &t.speed);
@@ -208,7 +211,7 @@ mod tests {
         assert!(is_there_too([6.0, 1.6, 2.0], 1.0));
         assert!(!is_there_too([1.2, 3.0, 4.0], 1.0));
         assert!(is_there_too([9.0, 1.1, 4.0], 1.0));
-        // A rest that is there where the axis moves alone, and one that is hardly there.
+        // A residual that is there where the axis moves alone, and one that is hardly there.
         assert!(!is_there_too([1.0, 1.6, 1.7], 1.0));
         assert!(!is_there_too([1.3, 1.4, 1.4], 1.0));
     }

@@ -8,7 +8,7 @@ use super::Rest;
 /// Parts of a log that are turned round, or not, as a whole.
 const BLOCKS: usize = 32;
 
-/// A rest as it may as well have been: each of its parts with a sign by chance.
+/// A residual as it may as well have been: each of its parts with a sign by chance.
 ///
 /// What a balance leaves is what the model lacks as well as noise, strong here and weak
 /// there, and slow. Parts that are longer than its memory keep all that (the wild

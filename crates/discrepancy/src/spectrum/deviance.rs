@@ -31,7 +31,7 @@ impl Layout {
         regular(s, &self.inexact)
     }
 
-    /// D for the rest, S estimated from it.
+    /// D for the residual, S estimated from it.
     pub fn deviance(&self, rest: &Amplitudes) -> f64 {
         let matrices = self.spectral_matrices(rest);
         matrices.iter().zip(&self.values).map(deviance_of).sum()

@@ -1,5 +1,5 @@
 //! Residuals in frequency: complex amplitudes per channel, and the spectral
-//! matrix of what is left.
+//! matrix of the residual.
 //!
 //! Noise in a closed loop is coloured, and common to all channels: sensor
 //! noise goes round the loop. For a stationary Gaussian rest the transformed
@@ -12,7 +12,7 @@
 //! ```
 //!
 //! S is taken constant over bands of neighbouring frequencies and estimated
-//! from the rest itself, S_b = Σ r rᴴ / n_b; then D = 2 Σ_b n_b log det S_b
+//! from the residual itself, S_b = Σ r rᴴ / n_b; then D = 2 Σ_b n_b log det S_b
 //! but for a constant.
 //!
 //! An amplitude at zero frequency is real: it adds log det S + rᵀ S⁻¹ r, half of

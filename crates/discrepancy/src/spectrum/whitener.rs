@@ -14,7 +14,7 @@ pub struct Whitener {
 }
 
 impl Layout {
-    /// What makes the rest white, for the spectral matrices given.
+    /// What makes the residual white, for the spectral matrices given.
     pub fn whitener(&self, matrices: &[DMatrix<Complex<f64>>]) -> Whitener {
         let identity = DMatrix::<Complex<f64>>::identity(self.channels, self.channels);
         let inverse = |s: &DMatrix<Complex<f64>>| {

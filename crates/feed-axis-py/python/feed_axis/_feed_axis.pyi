@@ -522,7 +522,7 @@ class Sample:
     - `position_m`: measured position of the load.
     - `motor_angle_rad`, `motor_speed_rad_s`: measured.
     - `iq_a`: measured q current; 0 if the actuator has none.
-    - `iq_command_a`: command of the cycle before, in the actuator's unit.
+    - `last_command`: command of the cycle before, in the actuator's unit.
     """
 
     reference: _Reference
@@ -531,7 +531,7 @@ class Sample:
     motor_angle_rad: float
     motor_speed_rad_s: float
     iq_a: float
-    iq_command_a: float
+    last_command: float
     def __new__(
         cls,
         *,
@@ -541,7 +541,7 @@ class Sample:
         motor_angle_rad: float = 0.0,
         motor_speed_rad_s: float = 0.0,
         iq_a: float = 0.0,
-        iq_command_a: float = 0.0,
+        last_command: float = 0.0,
     ) -> Self:
         """A sample of these values; a reference is any three numbers."""
 
@@ -549,17 +549,17 @@ class Sample:
 class Correction:
     """What is added to the controller in a cycle.
 
-    >>> run = axis.simulate(axis.trajectories[0], compensation=lambda sample: fa.Correction(iq_a=0.1))
+    >>> run = axis.simulate(axis.trajectories[0], compensation=lambda sample: fa.Correction(command=0.1))
     """
 
-    def __new__(cls, position_m: float = 0.0, iq_a: float = 0.0) -> Self:
-        """Position (m or rad) and current (A) to add."""
+    def __new__(cls, position_m: float = 0.0, command: float = 0.0) -> Self:
+        """Position (m or rad) and command (A, N·m, N or V, as the actuator takes) to add."""
     @property
     def position_m(self) -> float:
         """Added to the position error, m or rad."""
     @property
-    def iq_a(self) -> float:
-        """Added to the speed controller's command, A."""
+    def command(self) -> float:
+        """Added to the speed controller's command, in the actuator's unit: A, N·m, N or V."""
 
 @final
 class Compensator:

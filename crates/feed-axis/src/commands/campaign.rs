@@ -29,7 +29,7 @@ pub struct Options {
     #[arg(long)]
     submit: bool,
     /// Longest time of a shard, minutes, 3 at least [default: the scheduler's]; under Slurm a
-    /// shard goes back to the queue a minute before, and on where it was
+    /// shard returns to the queue a minute before its end and later continues where it was
     #[arg(long, value_name = "MINUTES", value_parser = clap::value_parser!(u32).range(3..))]
     time: Option<u32>,
     /// Cores of a shard

@@ -27,14 +27,14 @@ use crate::strategy_name::strategy_name;
 #[derive(Args)]
 #[group(id = "moves-options")]
 pub struct Options {
-    /// Make moves under this strategy, which keeps what it learns from move to move,
-    /// instead of every trajectory under every strategy. The axis file is what the
-    /// strategy believes, the machine's is what moves
+    /// Make the moves of --moves with this strategy, which keeps what it learns from move to move.
+    /// Without it, every trajectory runs with every strategy. The axis file is the strategy's
+    /// model; the file of --machine is what moves
     #[arg(long, value_name = "NAME", value_parser = strategy_name(), requires = "moves")]
     pub strategy: Option<&'static StrategyKind>,
     /// Moves in their order: a trajectory's number in the axis file, or the file of a
-    /// motion program. A move that begins where the last has ended goes on from the
-    /// state that the axis was left in; before any other it is settled anew
+    /// motion program. A move that begins where the last one ended starts from the state in which
+    /// that one left the axis; before any other move the axis settles to standstill
     #[arg(long, value_name = "MOVE", num_args = 1.., requires = "strategy")]
     moves: Vec<String>,
     #[arg(

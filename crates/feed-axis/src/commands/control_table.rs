@@ -27,7 +27,7 @@ pub fn spelling(machine: &Axis, control: &Part<dyn Control>, key: &str) -> (Stri
     }
 }
 
-/// The tolerance of a gain, by its interval, as `[tolerances]` has it; none where it is exact.
+/// The tolerance of a gain, by its interval, as `[tolerances]` has it; none if it is exact.
 pub fn tolerance(gain: &Gain) -> Option<String> {
     let half = 0.5 * (gain.ci95[1] - gain.ci95[0]);
     let share = half / gain.value.abs();
@@ -40,7 +40,7 @@ pub fn tolerance(gain: &Gain) -> Option<String> {
 
 /// The axis file's text with the controller in its `[control]` and the gains' intervals in
 /// `[tolerances]`; all else as it was. The control runs at `frequency` (Hz), or as the file says
-/// where there is none.
+/// if there is none.
 pub fn with_control(
     text: &str,
     machine: &Axis,
@@ -103,7 +103,7 @@ fn write_tolerances(document: &mut DocumentMut, found: &ControllerEstimate) -> R
     Ok(())
 }
 
-/// The table of that name, new at the end where there is none.
+/// The table of that name, new at the end if there is none.
 fn table<'a>(document: &'a mut DocumentMut, name: &str) -> Result<&'a mut Table> {
     let entry = document
         .entry(name)

@@ -35,27 +35,27 @@ pub struct Options {
     /// Logs of other motion, to check on; never fitted to
     #[arg(long, value_name = "LOG", num_args = 1.., required_unless_present = "summary")]
     check: Vec<PathBuf>,
-    /// Logs that take no part in any choice, from which the figures are. Without them the
-    /// last check log is taken, or the last part of a single one, where it can be cut
+    /// Logs for the reported figures, used for no choice. Without them the last check log is
+    /// taken, or the last part of a single one if it can be cut
     #[arg(long, value_name = "LOG", num_args = 1.., requires = "check")]
     test: Vec<PathBuf>,
     /// Instead of logs: CSV with the columns trajectory, experiment_max_um and
-    /// experiment_mean_um (or max_um, mean_um; of an axis that turns, _urad), one row a
+    /// experiment_mean_um (or max_um, mean_um; of an axis that turns, _urad), one row for each
     /// trajectory of the axis file
     #[arg(long, value_name = "TABLE", conflicts_with_all = ["fit", "check", "test", "accept", "reject"])]
     summary: Option<PathBuf>,
-    /// Folder for discovery.json, report.html and axis.toml, or for ranking.json and
-    /// ranking.html [default: runs/, the name of the axis, /discover]
+    /// Folder for discovery.json, report.html and axis.toml (with --summary: ranking.json and
+    /// ranking.html) [default: runs/NAME/discover, NAME being that of the axis]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Search anew with this effect taken as there from the start (may be repeated)
+    /// Search again with this effect in the model from the start (may be repeated)
     #[arg(long, value_name = "NAME")]
     accept: Vec<String>,
-    /// Search anew, and never name this effect (may be repeated)
+    /// Search again and never name this effect (may be repeated)
     #[arg(long, value_name = "NAME")]
     reject: Vec<String>,
-    /// Compare by torque balance, as if the axis file had no `[control]`: measured motion in,
-    /// the torque that the model needs for it out
+    /// Compare by torque balance, as if the axis file had no `[control]`: the torque that the
+    /// model needs for the measured motion, with the logged torque
     #[arg(long, conflicts_with = "summary")]
     balance: bool,
     /// Threads, 0 for all cores; results do not depend on it
@@ -108,7 +108,7 @@ fn from_logs(options: &Options, machine: &Axis, out: &Path) -> Result<()> {
     };
     let (found, mut discovered) = (evidence.discover(machine, &settings, say))
         .into_diagnostic()
-        .wrap_err("the axis as its file says does not run these logs")?;
+        .wrap_err("the axis, as its file describes it, cannot run these logs")?;
     discovered.discovery.notes.iter().for_each(note);
     notes.append(&mut discovered.discovery.notes);
     discovered.discovery.notes = notes;

@@ -68,7 +68,7 @@ impl fmt::Display for Found<'_> {
         self.numbers(f)?;
         self.gaps(f)?;
         if !self.added.is_empty() {
-            writeln!(f, "\nadded to the axis file, there with all digits:")?;
+            writeln!(f, "\nadded to the axis file (which has all digits):")?;
             for line in self.added.trim_start().lines() {
                 writeln!(f, "+ {line}")?;
             }
@@ -104,7 +104,7 @@ impl Found<'_> {
                 .collect();
             writeln!(
                 f,
-                "{} ({}) was named on the way; beside the others, {} explains as much in its place",
+                "{} ({}) was named at first; beside the other effects, {} explains as much in its place",
                 effect.name,
                 values.join(", "),
                 effect.by
@@ -117,7 +117,7 @@ impl Found<'_> {
     fn gaps(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "\nRMS gap on motion not fitted    before        after        noise"
+            "\nRMS gap, motion not in the fit    before        after        noise"
         )?;
         for c in &self.discovery.gap.check.channels {
             writeln!(
@@ -150,7 +150,7 @@ impl Found<'_> {
         ) {
             writeln!(
                 f,
-                "\nWith an effect rejected (--reject NAME) or another accepted (--accept NAME) the search is made anew, with that."
+                "\n--reject NAME searches again without an effect, --accept NAME with another one from the start."
             )?;
         }
         Ok(())

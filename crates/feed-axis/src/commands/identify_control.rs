@@ -32,10 +32,10 @@ pub struct Options {
     /// Axis file to write, with the gains in `[control]` and their intervals in `[tolerances]`
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// Control frequency, Hz; must be given where the axis file has no `[control]`
+    /// Control frequency, Hz; required if the axis file has no `[control]`
     #[arg(long, value_name = "HZ")]
     frequency_hz: Option<f64>,
-    /// Leave out the fit by closed-loop replay, which is shown beside and never written
+    /// Leave out the fit by closed-loop replay, which is shown for comparison and never written
     #[arg(long)]
     no_replay: bool,
 }
@@ -43,7 +43,8 @@ pub struct Options {
 /// Longest internal step of a file that had no `[simulation]`, s.
 const STEP: f64 = 5e-5;
 
-/// Share of the command that a controller which is there gives, as discovery asks it of named effects.
+/// Share of the command that a controller which is there gives, as discovery asks it of named
+/// effects.
 const EXPLAINED: f64 = 0.9;
 
 /// Runs the command.
@@ -159,7 +160,7 @@ struct Identified<'a> {
     /// Structures that these logs do not tell from the one that was chosen.
     not_told_apart: Vec<String>,
     notes: Vec<String>,
-    /// None where it could not be written.
+    /// None if it could not be written.
     axis_file: Option<&'a Path>,
 }
 
@@ -254,7 +255,7 @@ fn words(found: &ControllerEstimate, machine: &Axis) -> String {
     let alike = not_told_apart(found);
     if !alike.is_empty() {
         lines.push(format!(
-            "  not told from it by these logs: {}. Motion that is faster, and at several speeds, tells more",
+            "  not separated from it by these logs: {}. Faster motion, at several speeds, shows more",
             alike.join("; ")
         ));
     }

@@ -26,7 +26,7 @@ pub struct Options {
     /// of the load, as `[log]` of the axis file names them
     #[arg(long, value_name = "FILE")]
     log: PathBuf,
-    /// The correction: read where it exists, and written for the next repetition
+    /// The correction: read if the file exists, then written for the next repetition
     #[arg(long, value_name = "FILE")]
     correction: PathBuf,
 }
@@ -56,7 +56,7 @@ fn tell(axis: &Axis, round: &Round, file: &Path) -> Result<()> {
     let unit = ErrorUnit::of(axis);
     let micro = |value: f64| SixDigits((1e10 * value).round() / 1e4);
     let error = format!(
-        "round {}: tracking error up to {} {unit}; of it {} {unit} (RMS) can be learned, noise leaves {} {unit} there",
+        "round {}: tracking error up to {} {unit}; of which {} {unit} (RMS) can be learned; noise there is {} {unit}",
         round.rounds,
         micro(round.peak),
         micro(round.learnable),
@@ -67,7 +67,7 @@ fn tell(axis: &Axis, round: &Round, file: &Path) -> Result<()> {
             "{} holds the next correction: make the move again",
             file.display()
         ),
-        Advice::Done => "what is left is noise: keep the correction, and stop".to_owned(),
+        Advice::Done => "the residual is noise: keep the correction, and stop".to_owned(),
         Advice::Enough => "more rounds would learn noise: keep the correction, and stop".to_owned(),
         Advice::Restarted => format!(
             "the move has become worse than without the correction: something has changed. {} is empty again: make the move with it",

@@ -22,7 +22,7 @@ pub struct Completions {
 /// Options of `man`.
 #[derive(Args)]
 pub struct Pages {
-    /// Folder for all pages, one a command [default: the first page, to standard output]
+    /// Folder for all pages, one for each command [default: the first page, to standard output]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }

@@ -5,15 +5,15 @@ use clap::Args;
 use miette::{Result, miette};
 
 use crate::exit::wrong_use;
-use crate::jobs::{Jobs, told};
+use crate::jobs::{Jobs, report};
 
 /// Options of the command.
 #[derive(Args)]
 pub struct Options<J: Jobs> {
-    /// Number of shards [default: that of the files that are there]
+    /// Number of shards [default: as the existing files say]
     #[arg(long, value_name = "N")]
     shards: Option<usize>,
-    /// Take shards from processors of different instruction sets: last bits may differ
+    /// Accept shards from processors of different instruction sets: last bits may differ
     #[arg(long)]
     any_cpu: bool,
     /// The command that made the shards, with the same options
@@ -35,8 +35,8 @@ pub fn command<J: Jobs>(options: &Options<J>) -> Result<()> {
         None => found(&*job)?,
     };
     let _claim = of_job.claim()?;
-    let merged = Merged::open(&*job, shards, options.any_cpu).map_err(|e| told(e.into()))?;
-    job.finish(&merged).map_err(told)
+    let merged = Merged::open(&*job, shards, options.any_cpu).map_err(|e| report(e.into()))?;
+    job.finish(&merged).map_err(report)
 }
 
 /// The number of shards that the files say.

@@ -43,35 +43,35 @@ pub enum Command<J: Jobs> {
     Job(J),
     /// Train the cascade-forward network on the samples (Section 4.3)
     Train(Common),
-    /// Identify friction from logs of the axis, or from a simulated machine's, and the transfer
-    /// function from the model
+    /// Identify friction from logs of the axis or of a simulated machine, and the transfer
+    /// function of the tracking error from the model
     Identify(identify::Options),
-    /// Structure, gains and delay of an unknown controller, from logs
+    /// Estimate structure, gains and delay of an unknown controller from logs
     IdentifyControl(identify_control::Options),
-    /// Model against machine, and both predictors against the machine (Tables 13, 14)
+    /// Compare the model and both predictors of the error with the machine (Tables 13, 14)
     Validate(Common),
-    /// Run the machine under every compensation (Tables 15, 16), or moves under one
+    /// Run the machine with every compensation (Tables 15, 16), or a sequence of moves with one
     Compensate(compensate::Options),
     /// Write summary.json and report.html from the stages' results, or compare two runs
     Report(report::Options),
-    /// Learn what no parameter holds by tables, a network and named effects, side by side
+    /// Compare tables, a network and named effects as models of forces that no parameter describes
     Residuals(Common),
     /// Learn the correction of a move from the log of a repetition
     Learn(learn::Options),
-    /// Simulate one motion, write its log and show it
+    /// Simulate one motion, write its log and a page of figures
     Simulate(simulate::Options),
     /// Name what a model lacks, from logs of the real axis
     Discover(discover::Options),
-    /// Look at a log: channels, sampling, noise, and what its mapping should be
+    /// Inspect a log (channels, sampling, noise, a proposed mapping) or convert it
     Log(log::Options),
     /// Write and submit the scripts that run a job's shards on a cluster (docs/campaigns.md)
     Campaign(campaign::Options),
     /// Write a job's results from its shards
     Merge(merge::Options<J>),
-    /// Write what other programs and machines can use
+    /// Export a compensation or a model for controllers, drives and other simulators
     #[command(subcommand)]
     Export(export::Export),
-    /// Write the JSON Schema of a file, by which editors complete and check it
+    /// Write the JSON Schema of a file, with which editors complete and check it
     Schema(schema::Options),
 }
 

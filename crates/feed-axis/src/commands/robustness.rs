@@ -1,4 +1,4 @@
-//! `robustness`: what compensation leaves where what is believed is wrong, draw by draw.
+//! `robustness`: what compensation leaves when the model is wrong, draw by draw.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,8 @@ const PAGE: &str = "robustness.html";
 pub struct Options {
     #[command(flatten)]
     common: Common,
-    /// Wrong beliefs in the rows where chance draws them, and random programs [default: 50
+    /// Number of wrong models in the rows that draw them at random, and of random programs
+    /// [default: 50
     /// and 12]
     #[arg(long, value_name = "N")]
     draws: Option<usize>,
@@ -41,7 +42,7 @@ impl JobOptions for Options {
         let context = self.common.open()?;
         let draws = match (self.draws, context.quick) {
             (Some(n), _) => Draws {
-                beliefs: n.max(1),
+                models: n.max(1),
                 programs: n.max(1),
             },
             (None, true) => Draws::QUICK,

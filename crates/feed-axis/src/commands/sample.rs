@@ -218,7 +218,7 @@ fn of_row(row: &Row) -> std::result::Result<(CycleInput, f64), Failure> {
         position: number(0)?,
         speed: number(1)?,
         acceleration: number(2)?,
-        iq_command: number(3)?,
+        command: number(3)?,
     };
     Ok((input, number(4)?))
 }
@@ -273,7 +273,7 @@ impl Job for Samples {
                     input.position,
                     input.speed,
                     input.acceleration,
-                    input.iq_command,
+                    input.command,
                     increment,
                 ];
                 made.push(numbers.map(Value::Number).to_vec());

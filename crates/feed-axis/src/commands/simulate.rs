@@ -51,7 +51,7 @@ pub struct Options {
     noise: f64,
     #[arg(long, help = EXACT)]
     exact: bool,
-    /// Where to write the log, a row each control cycle: .csv, .parquet or .mat (version 5)
+    /// Where to write the log, one row for each control cycle: .csv, .parquet or .mat (version 5)
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
     /// Where to write a page of the motion: position and error, speed, current or torque
@@ -61,13 +61,10 @@ pub struct Options {
 }
 
 /// What `--noise` is, of every command that has it.
-pub(super) const NOISE: &str = "Noise of every sensor beside the axis file's own, in multiples of a good one's: \
-of a scale 10 nm (0.1 µrad of a load that turns), of a motor encoder 2 µrad and 0.01 rad/s, of a current sensor \
-1/3000 of the greatest command; 0 for none";
+pub(super) const NOISE: &str = "Noise of every sensor, added to that of the axis file, in multiples of a good sensor's: scale 10 nm (0.1 µrad if the load turns), motor encoder 2 µrad and 0.01 rad/s, current sensor 1/3000 of the greatest command; 0 for none";
 
 /// What `--exact` is, of every command that has it.
-pub(super) const EXACT: &str = "Simulate what moves in its mechanism's slow, exact way, by another method or in \
-shorter steps than models are: to stand for a machine";
+pub(super) const EXACT: &str = "Simulate by the mechanism's slow, exact method, which is another one than the model's or takes shorter steps: for logs that stand for those of a real machine";
 
 /// Runs the command: the axis file itself is simulated, not its machine.
 pub fn command(options: &Options) -> Result<()> {
@@ -180,7 +177,7 @@ fn write_page(
     stopped: Option<&RunStopped>,
 ) -> Result<()> {
     let next = match options.compensation.name {
-        _ if stopped.is_some() => "Mend what stopped it, and run it again.",
+        _ if stopped.is_some() => "Correct what stopped it, and run it again.",
         "none" => {
             "Run it again with --compensation, such as plan or drive-terms, and compare the peaks."
         }
@@ -189,7 +186,7 @@ fn write_page(
     let mut next = vec![next.to_owned()];
     next.extend(options.log.as_ref().map(|log| {
         format!(
-            "The log is {}; log inspect tells what it holds.",
+            "The log is {}; log inspect shows what it holds.",
             log.display()
         )
     }));

@@ -99,7 +99,7 @@ fn next(context: &Context, trajectory: usize, best: Option<Left>) -> Vec<String>
         (false, None) => format!("Run {program} compensate: no strategy has results here."),
     };
     let then = format!(
-        "{program} robustness shows what is left where what is believed is wrong; with logs of the real axis, {program} discover names what the model lacks."
+        "{program} robustness shows the error that remains when the model is wrong; with logs of the real axis, {program} discover names what the model lacks."
     );
     vec![first, then]
 }

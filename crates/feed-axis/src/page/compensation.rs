@@ -45,7 +45,7 @@ pub fn compensation(results: &Results) -> Section {
     let grid = grid.collect();
     let left_out = left_out(&results.compensation);
     let section = Section::new("Compensation")
-        .paragraph("On the simulated machine. The compensator sees what a controller samples: reference, position of the load, motor speed, currents. Network: ΔS = S_ref − S + Ê, Ê predicted for the end of the cycle (Section 4.4). Transfer function: a linear model of the tracking error, driven by the reference and led by the position loop's time constant; beside LuGre, the model of the error that LuGre leaves. LuGre: current for the friction along the reference, with the parameters identified on the machine. A figure is marked where its peak is at or below the paper's.");
+        .paragraph("On the simulated machine. The compensator sees what a controller samples: reference, position of the load, motor speed, currents. Network: ΔS = S_ref − S + Ê, Ê predicted for the end of the cycle (Section 4.4). Transfer function: a linear model of the tracking error, driven by the reference and led by the position loop's time constant; with LuGre, the model of the error that LuGre leaves. LuGre: current for the friction along the reference, with the parameters identified on the machine. A figure is marked where its peak is at or below the paper's.");
     let section = match left_out.is_empty() {
         true => section,
         false => section.paragraph(format!(
@@ -53,7 +53,7 @@ pub fn compensation(results: &Results) -> Section {
             left_out.join(", ")
         )),
     };
-    section
+    let section = section
         .table(beside_paper(
             results,
             format!("Without friction feed-forward, {unit} (Table 16)"),
@@ -63,13 +63,12 @@ pub fn compensation(results: &Results) -> Section {
             results,
             format!("With LuGre feed-forward, identified parameters, {unit} (Table 15)"),
             &with,
-        ))
-        .table(more(
-            &results.validation.trajectories,
-            &results.compensation,
-            &ran(&of_table(STRATEGIES, Group::More), &results.compensation),
-            unit,
-        ))
+        ));
+    let others = ran(&of_table(STRATEGIES, Group::More), &results.compensation);
+    let trajectories = &results.validation.trajectories;
+    more(trajectories, &results.compensation, &others, unit)
+        .into_iter()
+        .fold(section, Section::table)
         .table(transfer_models(results))
         .figure_grid(grid, 2)
 }
@@ -118,17 +117,32 @@ fn beside_paper(results: &Results, caption: String, strategies: &[&StrategyKind]
     table
 }
 
+/// Strategies of one table, each with two columns: as many as a page is wide.
+const MOST_BESIDE: usize = 5;
+
 /// Strategies that the paper does not have.
 fn more(
     trajectories: &[ValidatedTrajectory],
     runs: &[CompensatedRun],
     strategies: &[&StrategyKind],
     unit: ErrorUnit,
-) -> Table {
-    let caption = match strategies.len() {
-        2 => format!("Two more strategies, {unit}"),
-        _ => format!("More strategies, {unit}"),
+) -> Vec<Table> {
+    let parts = strategies.chunks(MOST_BESIDE);
+    let count = parts.len();
+    let caption = |part: usize| match count {
+        1 => format!("More strategies, {unit}"),
+        _ => format!("More strategies, {unit} ({} of {count})", part + 1),
     };
+    let table = |(part, kinds)| one_more(caption(part), trajectories, runs, kinds);
+    parts.enumerate().map(table).collect()
+}
+
+fn one_more(
+    caption: String,
+    trajectories: &[ValidatedTrajectory],
+    runs: &[CompensatedRun],
+    strategies: &[&StrategyKind],
+) -> Table {
     let mut table = Table::new(caption, columns(strategies.len())).group("", 1);
     for kind in strategies {
         table = table.group(kind.heading, 2);
@@ -246,13 +260,14 @@ mod tests {
         }];
         let mut strategies = STRATEGIES.to_vec();
         strategies.push(&NEW);
-        let table = more(
-            &[trajectory],
-            &runs,
-            &of_table(&strategies, Group::More),
-            ErrorUnit::Microradian,
-        );
-        let page = Page::new("").section(Section::new("").table(table));
+        let strategies = of_table(&strategies, Group::More);
+        let tables = more(&[trajectory], &runs, &strategies, ErrorUnit::Microradian);
+        // Eleven columns at most: more do not fit beside each other on a page.
+        assert!(tables.iter().all(|table| table.columns.len() <= 11));
+        let columns: usize = tables.iter().map(|table| table.columns.len() - 1).sum();
+        assert_eq!(columns, 2 * strategies.len());
+        let section = tables.into_iter().fold(Section::new(""), Section::table);
+        let page = Page::new("").section(section);
         let html = render(&page).unwrap();
         for text in [
             "More strategies, µrad",

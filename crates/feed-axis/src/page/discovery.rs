@@ -9,6 +9,8 @@ use discrepancy::{
 };
 use miette::{IntoDiagnostic, Result};
 
+use super::channel::{files, words};
+
 /// The page as HTML.
 pub fn page(discovered: &Discovered) -> Result<String> {
     let discovery = &discovered.discovery;
@@ -21,7 +23,7 @@ pub fn page(discovered: &Discovered) -> Result<String> {
     let notes = match discovery.notes.as_slice() {
         [] => None,
         notes => Some(Block::Folded {
-            summary: "What must be known of the logs".to_owned(),
+            summary: "Notes on the logs".to_owned(),
             blocks: vec![Block::List(notes.iter().map(|n| format!("{n}.")).collect())],
         }),
     };
@@ -34,13 +36,13 @@ pub fn page(discovered: &Discovered) -> Result<String> {
         .first(Block::Notice(kind, discovery.sentence.clone()))
         .first(Block::Answers(answers));
     let page = notes.into_iter().fold(page, Page::first);
-    let page = [discovered.friction.as_ref().map(friction)]
-        .into_iter()
-        .flatten()
-        .fold(page, Page::section)
-        .section(effects(discovery))
+    // What a reader looks for first: what was off, and what is now.
+    let page = page
+        .section(pictures(&discovered.overlays))
         .section(gaps(discovery))
-        .section(pictures(&discovered.overlays));
+        .section(effects(discovery));
+    let friction = discovered.friction.as_ref().map(friction);
+    let page = friction.into_iter().fold(page, Page::section);
     let against = Some(&discovered.against).filter(|all| !all.is_empty());
     let page = [against.map(|all| dependences(all))]
         .into_iter()
@@ -55,10 +57,10 @@ pub fn page(discovered: &Discovered) -> Result<String> {
 fn lead(discovery: &Discovery) -> &'static str {
     match discovery.answer.as_str() {
         "torque-balance" => {
-            "The torque that the model needs for the logged motion, beside the one that was logged; what is left, and which effect explains it."
+            "The torque that the model needs for the logged motion, compared with the logged torque: the residual, and which effect explains it."
         }
         _ => {
-            "Logs replayed through the simulated closed loop; what is left, and which effect explains it."
+            "Logs replayed through the simulated closed loop: the residual, and which effect explains it."
         }
     }
 }
@@ -81,7 +83,7 @@ fn friction(law: &FrictionLaw) -> Section {
         true => vec![both, low],
         false => vec![both],
     };
-    let section = Section::new("Friction over speed").paragraph("Steady force on the load against its motion. Dots: what the drive gave against friction on check motion, mean over a range of speeds: the law with all that was named, and what is left of the log above the model.");
+    let section = Section::new("Friction over speed").paragraph("Steady force on the load against its motion. Dots: friction as the check logs show it, the law with all named effects plus the mean residual over a range of speeds.");
     match figures.len() {
         1 => figures.into_iter().fold(section, Section::figure),
         columns => section.figure_grid(figures, columns),
@@ -102,8 +104,8 @@ fn friction_over(law: &FrictionLaw, kept: fn(f64) -> bool, title: &str) -> Figur
     let dots = series("from the logs", speeds, forces);
     let dots = Series::dots(dots.name, dots.x, dots.y);
     let all = [
-        series("model as in its file", &law.speed, &law.own).dashed(),
-        series("with what was named", &law.speed, &law.with),
+        series("model as in the axis file", &law.speed, &law.own).dashed(),
+        series("with the named effects", &law.speed, &law.with),
         series("in the form found", &law.speed, &law.formed),
         dots,
     ];
@@ -122,7 +124,7 @@ fn effects(discovery: &Discovery) -> Section {
             "parameter",
             "value and 95 % interval",
             "share of gap",
-            "not told apart from",
+            "look-alikes",
             "in SI",
         ],
     );
@@ -143,10 +145,10 @@ fn effects(discovery: &Discovery) -> Section {
         }
     }
     let mut others = Table::new(
-        "What else was tried in its place, and what was left out",
+        "What else was tried, and what was left out",
         ["In place of", "effect", "fall of −2 log L"],
     )
-    .note("The fall on the fit logs; the effect named reached the most, or about as much with fewer parameters.");
+    .note("Fall of −2 log L on the fit logs. The named effect reached the greatest fall, or about as much with fewer parameters.");
     for effect in &discovery.effects {
         for (name, gain) in &effect.runners_up {
             others = others.row([
@@ -178,10 +180,10 @@ fn effects(discovery: &Discovery) -> Section {
         return section;
     }
     let mut replaced = Table::new(
-        "What was named on the way",
+        "Named at first, then replaced",
         ["Effect", "parameter", "value then", "replaced by"],
     )
-    .note("Beside the effects that were named later, the other explains as much in its place.");
+    .note("With the effects that were named later, the other one explains as much.");
     for effect in &discovery.replaced {
         for (name, value, unit) in &effect.when_named {
             replaced = replaced.row([
@@ -212,11 +214,11 @@ fn gaps(discovery: &Discovery) -> Section {
                 "{:.1} % of the gap above the noise is gone.",
                 100.0 * gap.reduction
             ),
-            false => "No channel stood out of its noise by more than a fifth.".to_owned(),
+            false => "No channel exceeded its noise by more than a fifth.".to_owned(),
         })
     };
     Section::new("Gap, RMS")
-        .table(table("Motion that was not fitted to", &discovery.gap.check))
+        .table(table("Motion not used in the fit", &discovery.gap.check))
         .table(table("Fit motion", &discovery.gap.fit))
 }
 
@@ -224,19 +226,25 @@ fn pictures(overlays: &[Overlay]) -> Section {
     let figure = |o: &Overlay| {
         let most = o.before.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         let unit = ReadUnit::of_channel(&o.channel, most);
-        let series = |name, rest: &[f64]| Series::line(name, o.time.clone(), read(rest, &unit));
+        let series = |name, gap: &[f64]| Series::line(name, o.time.clone(), read(gap, &unit));
+        let log = o.title.trim_end_matches(&o.channel);
+        let name = words(&o.channel);
         Figure::new(
-            o.title.clone(),
+            format!(
+                "{}: {name} ({})",
+                files(log.trim_end_matches(": ")),
+                o.channel
+            ),
             "time",
-            format!("log − model: {}", o.channel),
+            format!("log − model: {name}"),
         )
         .units("s", &unit.name)
-        .linked(o.title.trim_end_matches(&o.channel))
+        .linked(log)
         .series(series("before", &o.before))
         .series(series("after", &o.after))
     };
-    Section::new("Motion that was not fitted to, channel by channel")
-        .paragraph("Before: known parameters moved inside their tolerance, no effect added.")
+    Section::new("The gap before and after, on motion not used in the fit")
+        .paragraph("Before: known parameters moved within their tolerances, no effect added. After: with the named effects.")
         .figure_grid(overlays.iter().map(figure).collect(), 2)
 }
 
@@ -249,13 +257,13 @@ fn dependences(all: &[Against]) -> Section {
         Figure::new(
             a.effect.clone(),
             a.variable.clone(),
-            format!("log − model: {}", a.channel),
+            format!("log − model: {}", words(&a.channel)),
         )
         .units(&over.name, &unit.name)
         .series(series("without it", &a.without))
         .series(series("with it", &a.with))
     };
-    Section::new("What is left, against what the effect depends on")
+    Section::new("The residual, against what each effect depends on")
         .paragraph("Check motion, means over ranges of that variable, a torque as the force on the load; all other named effects are in the model both times.")
         .figure_grid(all.iter().map(figure).collect(), 2)
 }
@@ -263,9 +271,9 @@ fn dependences(all: &[Against]) -> Section {
 fn likenesses(discovery: &Discovery) -> Section {
     let mut table = Table::new(
         "Every effect of the library on the fit motion",
-        ["Effect", "shown from about", "all that it does is done by"],
+        ["Effect", "detection limit, about", "its response is reproduced by"],
     )
-    .note("Shown from: what the search would name beside noise and known parameters, the response taken for linear; a dash where an effect has several sizes, or where ten times its typical size would not show. In brackets the sine of the largest angle between the two; below 0.15 they are one class.");
+    .note("Detection limit: the size that the search would name despite noise and uncertain known parameters, if the response is linear; a dash if an effect has several sizes, or if ten times its typical size would not show. In brackets the sine of the largest angle between the two responses; below 0.15 they form one class.");
     for l in &discovery.likenesses {
         let shown = l.shown_from.as_ref().map_or("–".to_owned(), |s| {
             ReadUnit::of_parameter(&s.parameter, &s.unit, s.value).said(s.value)
@@ -280,7 +288,7 @@ fn likenesses(discovery: &Discovery) -> Section {
             Cell::text(alike.collect::<Vec<_>>().join(", ")),
         ]);
     }
-    Section::new("What these logs can tell").table(table)
+    Section::new("What these logs can show").table(table)
 }
 
 fn unknown(unknown: &Unknown) -> Section {
@@ -316,7 +324,7 @@ fn unknown(unknown: &Unknown) -> Section {
     };
     Section::new("What no effect of the library explains")
         .paragraph(format!(
-            "It sits in the {} and depends on {}. {}",
+            "It acts in the {} and depends on {}. {}",
             unknown.channel,
             unknown.depends_on,
             unknown
@@ -343,14 +351,14 @@ fn capital(text: &str) -> String {
 
 fn known(discovery: &Discovery) -> Section {
     let mut table = Table::new(
-        "Known parameters, moved inside their tolerance",
-        ["Parameter", "moved by", "tolerance"],
+        "Known parameters, moved within their tolerances",
+        ["Parameter", "moved by, %", "tolerance, ± %"],
     );
     for k in &discovery.recalibrated {
         table = table.row([
             Cell::text(k.name.clone()),
-            Cell::text(format!("{:+.3} %", 100.0 * k.share)),
-            Cell::text(format!("± {:.1} %", 100.0 * k.tolerance)),
+            Cell::number(100.0 * k.share, 3),
+            Cell::number(100.0 * k.tolerance, 1),
         ]);
     }
     Section::new("Known parameters").table(table)

@@ -16,7 +16,7 @@ pub fn friction(context: &Context, results: &Results) -> Section {
     };
     let mut table = Table::new(
         of,
-        ["Parameter", "found", "95 % from", "to", "true", "off by"],
+        ["Parameter", "found", "95 % from", "to", "true", "off by, %"],
     );
     for p in &friction.parameters {
         let end = |place: usize| match p.interval_95 {
@@ -28,7 +28,7 @@ pub fn friction(context: &Context, results: &Results) -> Section {
                 Cell::quantity(truth, &p.unit, 5),
                 match truth {
                     0.0 => Cell::Missing,
-                    _ => Cell::text(format!("{:+.2} %", 100.0 * (p.value / truth - 1.0))),
+                    _ => Cell::number(100.0 * (p.value / truth - 1.0), 2),
                 },
             ],
             None => [Cell::text("not known"), Cell::text("")],

@@ -1,6 +1,7 @@
 //! The report: results to a page. Order and words are here, looks in `axis-report`.
 
 mod answers;
+pub mod channel;
 pub mod compare;
 mod compensation;
 pub mod discovery;
@@ -13,7 +14,7 @@ mod tracking;
 
 use axis_pipeline::strategies::{NETWORK, NETWORK_LUGRE, StrategyKind};
 use axis_report::{Block, Cell, KeyValues, Mark, Notice, Page, Section, Table};
-use axis_sim::mechanism::Way;
+use axis_sim::mechanism::SolutionMethod;
 
 use crate::context::Context;
 use crate::paper::Pair;
@@ -111,18 +112,18 @@ fn settings(context: &Context, results: &Results) -> Section {
         .entry("Version", env!("CARGO_PKG_VERSION"))
         .entry(
             "Control period",
-            format!("{} µs", 1e6 * context.axis.period),
+            axis_report::engineering(context.axis.period, "s", 4),
         )
         .entry(
             "Internal step",
-            format!("{} µs", 1e6 * context.axis.simulation.step),
+            axis_report::engineering(context.axis.simulation.step, "s", 4),
         )
         .entry("Mechanism", context.axis.mechanism.kind().summary)
         .entry(
-            "Its equations are solved",
-            match context.axis.simulation.way {
-                Way::Fast => "as fast as it can be",
-                Way::Exact => "as exactly as it can be",
+            "Method of solution",
+            match context.axis.simulation.method {
+                SolutionMethod::Fast => "fast",
+                SolutionMethod::Exact => "exact",
             },
         )
         .entry(
@@ -133,8 +134,8 @@ fn settings(context: &Context, results: &Results) -> Section {
             ),
         )
         .entry(
-            "The mechanism's other way of being solved moves them by at most",
-            match checks.exact_way {
+            "The mechanism's other method moves them by at most",
+            match checks.exact_method {
                 Some(by) => format!("{:.1e} {unit} (max), {:.1e} {unit} (mean)", by.max, by.mean),
                 None => "it has none".to_owned(),
             },

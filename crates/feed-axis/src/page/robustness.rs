@@ -1,4 +1,4 @@
-//! What compensation leaves where the belief is wrong: every draw a point.
+//! What compensation leaves where the assumed model is wrong: every draw a point.
 
 use axis_pipeline::ErrorUnit;
 use axis_pipeline::robustness::Point;
@@ -92,8 +92,8 @@ struct Strip<'a> {
 /// The section.
 pub fn robustness(made: &Robustness) -> Section {
     let [shares, sizes] = [true, false].map(|shares| strips(made, shares));
-    let mut section = Section::new("Compensation where the belief is wrong").paragraph(format!(
-        "Simulated, seed {}. Each point is the peak of the tracking error in one draw of belief, machine, motion and sensor noise; the black one is the goal, which all points of its row are to be left of.",
+    let mut section = Section::new("Compensation when the model is wrong").paragraph(format!(
+        "Simulated, seed {}. Each point is the peak of the tracking error in one draw of model, machine, motion and sensor noise; the black one is the goal: all points of its row should lie to its left.",
         made.seed
     ));
     let left = format!("peak left, {}", made.unit);
@@ -130,7 +130,7 @@ fn strips(made: &Robustness, shares: bool) -> Vec<Strip<'_>> {
                 false => p.compensated[i].max,
             });
             // In what all such rows share there is nothing to tell them apart by.
-            let what = row.what.trim_end_matches(", belief wrong");
+            let what = row.what.trim_end_matches(", assumed wrong");
             let name = match row.moves.len() {
                 1 => format!("{number} {what}"),
                 _ => format!("{number} {what}, {}", asked.counted),
@@ -173,7 +173,7 @@ fn figure(strips: &[Strip<'_>], title: &str, label: &str) -> Figure {
     let rows = (0..strips.len()).map(|row| row as f64).collect();
     figure
         .series(Series::dots("goal", goals, rows).colour(6))
-        .caption("Each draw is a point; above and below in its row means nothing.")
+        .caption("Each draw is a point; its height within a row has no meaning.")
 }
 
 fn table<'a>(strips: impl Iterator<Item = &'a Strip<'a>>) -> Table {
@@ -224,7 +224,7 @@ mod tests {
             compensated: figures(0.5 * 1.1_f64.powi(k as i32)),
         };
         let row = |goal, count: usize| Row {
-            what: "belief wrong".to_owned(),
+            what: "assumed wrong".to_owned(),
             strategy: "adaptive_feedback".to_owned(),
             noise: true,
             moves: vec![Asked {
@@ -254,6 +254,6 @@ mod tests {
         // A dot is a line of no length.
         let points = html.matches("h0").count();
         assert_eq!(points, 2 * (20 + 1 + 7 + 1), "{points}");
-        assert!(html.contains("1 belief wrong"));
+        assert!(html.contains("1 assumed wrong"));
     }
 }

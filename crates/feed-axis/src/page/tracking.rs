@@ -121,7 +121,7 @@ pub fn prediction(results: &Results) -> Section {
     .group("Transfer function", 2)
     .group("Paper's transfer f.", 2);
     let mut missed = Table::new(
-        format!("What the predictions miss of the machine's error, {unit}"),
+        format!("Error of the predictions of the machine's error, {unit}"),
         ["Trajectory", "max", "mean", "max", "mean"],
     )
     .group("", 1)

@@ -78,18 +78,18 @@ impl ElasticDrive {
     }
 
     /// Angular frequency at which motor and load swing against each other without
-    /// damping, √(k(x) (1/m + r²/J)), rad/s; NaN where `x` is not finite.
+    /// damping, √(k(x) (1/m + r²/J)), rad/s; NaN if `x` is not finite.
     pub fn resonance(&self, x: f64) -> f64 {
         (self.stiffness_at(x) * self.mobility()).sqrt()
     }
 
     /// Angular frequency at which the load alone swings and the motor, driven,
-    /// stands still without damping, √(k(x)/m), rad/s; NaN where `x` is not finite.
+    /// stands still without damping, √(k(x)/m), rad/s; NaN if `x` is not finite.
     pub fn antiresonance(&self, x: f64) -> f64 {
         (self.stiffness_at(x) / self.parameters.load_inertia).sqrt()
     }
 
-    /// k(x); NaN where `x` is not finite, though a constant stiffness is the same there.
+    /// k(x); NaN if `x` is not finite, though a constant stiffness is the same there.
     fn stiffness_at(&self, x: f64) -> f64 {
         if x.is_finite() {
             self.parameters.stiffness.at(x)

@@ -26,7 +26,7 @@ impl ElasticDrive {
     /// ```
     ///
     /// # Errors
-    /// [`DriveError::Parameter`] where `x` or a frequency is not finite or the stiffness
+    /// [`DriveError::Parameter`] if `x` or a frequency is not finite or the stiffness
     /// there is not valid; [`DriveError::Singular`] at zero frequency, where the axis is free,
     /// and at a resonance without damping.
     pub fn receptance(

@@ -69,7 +69,7 @@ impl ElasticStepper {
     /// Prepares steps of `step` seconds.
     ///
     /// # Errors
-    /// [`DriveError::Parameter`] where the step is not above zero and at most 1 s.
+    /// [`DriveError::Parameter`] if the step is not above zero and at most 1 s.
     pub fn new(drive: &ElasticDrive, step: f64) -> Result<Self, DriveError> {
         check_step(step)?;
         let p = drive.parameters();
@@ -212,7 +212,7 @@ impl TimeStepper for ElasticStepper {
             motor_speed: (y.rate + compression.rate) * self.radians_per_travel,
             displacement: y.value,
             speed: y.rate,
-            nut_force: state.force,
+            transmission_force: state.force,
         }
     }
 

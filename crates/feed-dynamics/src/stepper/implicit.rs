@@ -57,7 +57,7 @@ impl ImplicitStepper {
     /// Prepares steps of `step` seconds with the given nut coupling.
     ///
     /// # Errors
-    /// [`DriveError::Parameter`] where the step is not positive and finite.
+    /// [`DriveError::Parameter`] if the step is not positive and finite.
     pub fn new(drive: &FeedDrive, coupling: NutCoupling, step: f64) -> Result<Self, DriveError> {
         check_step(step)?;
         Ok(Self {
@@ -302,7 +302,7 @@ impl TimeStepper for ImplicitStepper {
             motor_speed: state.v[0],
             displacement: state.q[last],
             speed: state.v[last],
-            nut_force: state.nut_force,
+            transmission_force: state.nut_force,
         }
     }
 

@@ -51,7 +51,7 @@ pub fn find_load(
 }
 
 /// As [`find_load`], of a law whose load changes by at most `steepness` newtons for
-/// each metre a second of the end speed, rising or falling; infinite where nobody
+/// each metre a second of the end speed, rising or falling; infinite if nobody
 /// knows.
 ///
 /// With L = `steepness` · `compliance` what the law gives is then within

@@ -42,8 +42,8 @@ pub struct Observation {
     pub displacement: f64,
     /// Its speed, m/s.
     pub speed: f64,
-    /// Force of the nut, or of another transmission, on the load, N.
-    pub nut_force: f64,
+    /// Force of the transmission (the nut of a ball screw) on the load, N.
+    pub transmission_force: f64,
 }
 
 /// Uniformly accelerated motion in which every deflection has settled.
@@ -73,7 +73,7 @@ impl Settled {
 
 /// How a step went.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[must_use = "a step that did not converge, or left the screw, is not to be gone on from"]
+#[must_use = "a step that did not converge, or left the screw, must not be continued from"]
 pub struct StepReport {
     /// How the load at the step's end was found.
     pub load: LoadSearch,
@@ -119,7 +119,7 @@ pub trait TimeStepper {
     /// settled motion; the default of [`Settled`] is rest.
     ///
     /// # Errors
-    /// [`DriveError::OffScrew`] where `x` is not on the screw;
+    /// [`DriveError::OffScrew`] if `x` is not on the screw;
     /// [`DriveError::Parameter`] for a motion or, without a screw, a position that is
     /// not finite.
     fn settled(&self, x: f64, motion: &Settled) -> Result<Self::State, DriveError>;

@@ -98,7 +98,7 @@ impl ModalStepper {
     /// Prepares steps of `step` seconds.
     ///
     /// # Errors
-    /// [`DriveError::Parameter`] where the step is not positive and finite.
+    /// [`DriveError::Parameter`] if the step is not positive and finite.
     pub fn new(drive: &FeedDrive, step: f64) -> Result<Self, DriveError> {
         check_step(step)?;
         let p = drive.parameters();
@@ -281,7 +281,7 @@ impl TimeStepper for ModalStepper {
             motor_speed: state.motor[1],
             displacement: state.displacement,
             speed: state.speed,
-            nut_force: state.nut_force,
+            transmission_force: state.nut_force,
         }
     }
 

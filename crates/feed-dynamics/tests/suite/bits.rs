@@ -31,7 +31,7 @@ fn end<S: TimeStepper>(stepper: &S, gap: f64) -> Bits {
         o.motor_speed,
         o.displacement,
         o.speed,
-        o.nut_force,
+        o.transmission_force,
     ];
     seen.map(f64::to_bits)
 }

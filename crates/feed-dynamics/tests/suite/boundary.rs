@@ -39,7 +39,7 @@ fn handing_the_node_over_is_not_felt() {
             let apart = moving.iter().zip(&fixed).map(|(a, b)| (f(a) - f(b)).abs());
             apart.fold(0.0, f64::max)
         };
-        let force = most(|o| o.nut_force);
+        let force = most(|o| o.transmission_force);
         let speed = most(|o| o.motor_speed);
         let table = most(|o| o.speed);
 
@@ -48,12 +48,12 @@ fn handing_the_node_over_is_not_felt() {
             let steps = seen.windows(2).map(|w| (f(&w[1]) - f(&w[0])).abs());
             steps.fold(0.0, f64::max)
         };
-        let force_jump = jump(&moving, |o| o.nut_force);
+        let force_jump = jump(&moving, |o| o.transmission_force);
         let speed_jump = jump(&moving, |o| o.motor_speed);
         println!(
             "{sign}: apart {force:.2e} N {speed:.2e} rad/s {table:.2e} m/s; \
              a step {force_jump:.2e} N {speed_jump:.2e} rad/s (fixed mesh {:.2e} {:.2e})",
-            jump(&fixed, |o| o.nut_force),
+            jump(&fixed, |o| o.transmission_force),
             jump(&fixed, |o| o.motor_speed),
         );
         assert!(force < 0.05, "{force}");

@@ -134,7 +134,7 @@ fn a_drive_that_runs_free_keeps_its_speed_to_the_bit() {
     for i in 1..=5000 {
         assert!(stepper.step(&mut state, 0.0, |_| 0.0).load.converged);
         let (o, way) = (stepper.observe(&state), 0.7e-4 * f64::from(i));
-        assert_eq!([o.speed, o.nut_force], [0.7, 0.0]);
+        assert_eq!([o.speed, o.transmission_force], [0.7, 0.0]);
         assert_eq!(o.motor_speed, before.motor_speed);
         off = off.max((o.displacement / way - 1.0).abs());
         off = off.max((o.motor_angle * 0.02 / way - 1.0).abs());

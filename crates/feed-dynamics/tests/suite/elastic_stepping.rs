@@ -161,7 +161,8 @@ fn settled_motion_stays_settled() {
             let rotation = o.motor_speed * plant.ratio;
             speed_off = speed_off.max((o.speed / speed - 1.0).abs());
             speed_off = speed_off.max((rotation / speed - 1.0).abs());
-            force_off = force_off.max((o.nut_force / (plant.load * 2.0 + 40.0) - 1.0).abs());
+            force_off =
+                force_off.max((o.transmission_force / (plant.load * 2.0 + 40.0) - 1.0).abs());
         }
         println!("settled: speed {speed_off:e}, force {force_off:e}");
         // 6.7e-14 and 8.9e-15.

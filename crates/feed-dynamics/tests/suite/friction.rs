@@ -73,11 +73,11 @@ fn run<S: TimeStepper>(
         let o = stepper.observe(&state);
         check(
             [before.speed, o.speed],
-            [before.nut_force, o.nut_force],
+            [before.transmission_force, o.transmission_force],
             [load0, load],
         );
         if i % every == 0 {
-            seen.push([o.motor_speed, o.displacement, o.speed, o.nut_force]);
+            seen.push([o.motor_speed, o.displacement, o.speed, o.transmission_force]);
         }
     }
     Run {

@@ -119,7 +119,7 @@ fn a_gap_is_crossed_as_in_the_obvious_integration() {
     }
 }
 
-/// Under a standing load an offset carries the table along, and half the gap
+/// Under a constant load an offset carries the table along, and half the gap
 /// lets it back.
 #[test]
 fn a_constant_shift_moves_the_motor_by_as_much() {
@@ -152,12 +152,12 @@ fn a_constant_shift_moves_the_motor_by_as_much() {
             println!(
                 "{errors:?}: {:.1e} {:.1e}",
                 moved - shift,
-                with.nut_force - 800.0
+                with.transmission_force - 800.0
             );
             // The wind-up grows with x, by 1e-7 of the shift; 5e-13 m and 3e-11 N
             // as measured.
             assert!((moved - shift).abs() < 4e-12, "{errors:?}: {moved:e}");
-            assert!((with.nut_force - 800.0).abs() < 2e-10, "{with:?}");
+            assert!((with.transmission_force - 800.0).abs() < 2e-10, "{with:?}");
         }
     }
     check(&modal(1e-4));

@@ -131,7 +131,7 @@ fn over_the_end<S: TimeStepper>(stepper: &S, end: f64) {
         // From 1 mm before the end: beyond it after 10 ms, back before 40 ms.
         let report = stepper.step(&mut state, -3.0 * out, |_| 0.0);
         let at = end - 1e-3 * out + stepper.observe(&state).displacement;
-        assert!(report.load.converged && stepper.observe(&state).nut_force.is_finite());
+        assert!(report.load.converged && stepper.observe(&state).transmission_force.is_finite());
         assert_eq!(report.on_screw, (0.0..=1.5).contains(&at), "{at}");
         off += usize::from(!report.on_screw);
     }

@@ -25,7 +25,10 @@ fn a_constant_force_accelerates_evenly() {
         for (off, found) in off.iter_mut().zip(found) {
             *off = off.max((found - 1.0).abs());
         }
-        assert_eq!([o.nut_force, o.motor_speed], [150.0, o.speed / 0.002]);
+        assert_eq!(
+            [o.transmission_force, o.motor_speed],
+            [150.0, o.speed / 0.002]
+        );
         // The documented law, to the bit.
         let before = speed;
         speed = before + 1e-3 * (0.3 / 0.002 - 55.0) / 95.0;
@@ -83,7 +86,7 @@ fn settled_motion_goes_on_and_errors_of_a_transmission_do_nothing() {
     assert!((torque - 0.002 * (40.0 - 9.5)).abs() < 1e-16);
     assert_eq!([s.travel_per_radian(), s.step_length()], [0.002, 1e-3]);
     let start = s.settled(-4.0, &motion).unwrap();
-    assert!((s.observe(&start).nut_force - 30.5).abs() < 1e-13);
+    assert!((s.observe(&start).transmission_force - 30.5).abs() < 1e-13);
     let (mut plain, mut erring) = (start, start);
     let errors = NutErrors::new(1e-3, 0.2, 1e-3).unwrap();
     for i in 1..=1000 {

@@ -65,7 +65,7 @@ fn statics_are_those_of_springs_in_series() {
                 "{name} {x}: {seen:?} {angle}"
             );
             assert_eq!(seen.displacement, 0.0);
-            assert!(relative(seen.nut_force, load) < 1e-15);
+            assert!(relative(seen.transmission_force, load) < 1e-15);
         });
     }
 }
@@ -91,7 +91,10 @@ fn a_loaded_axis_at_rest_stays_at_rest() {
                 relative(o.motor_angle, seen[0].motor_angle) < 1e-10,
                 "{name}: {o:?}"
             );
-            assert!(relative(o.nut_force, 750.0) < 1e-12, "{name}: {o:?}");
+            assert!(
+                relative(o.transmission_force, 750.0) < 1e-12,
+                "{name}: {o:?}"
+            );
         }
     });
 }
@@ -133,7 +136,10 @@ fn accelerated_motion_stays_settled() {
             // k (rθ − y) loses the digits of y: 7.45e7 N/m × 1e-17 m = 1e-9 N. 1.4e-9,
             // 1.8e-8 and 1.8e-6 N as measured.
             let lost = 1e-8_f64.max(2e4 * rounding);
-            assert!((o.nut_force - 888.5).abs() < lost, "{name} {t}: {o:?}");
+            assert!(
+                (o.transmission_force - 888.5).abs() < lost,
+                "{name} {t}: {o:?}"
+            );
         }
     });
 }

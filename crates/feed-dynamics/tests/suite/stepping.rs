@@ -50,7 +50,7 @@ pub fn stepped<S: TimeStepper>(
         assert!(report.load.converged && report.on_screw, "{report:?}");
         if i % part == 0 {
             let o = stepper.observe(&state);
-            seen.push([o.motor_speed, o.displacement, o.speed, o.nut_force]);
+            seen.push([o.motor_speed, o.displacement, o.speed, o.transmission_force]);
         }
     }
     seen

@@ -37,7 +37,7 @@ impl<'a> Curve<'a> {
     }
 
     /// The minimum, with the runs of unknown standard error weighted by what
-    /// they scatter about it; `None` where no falling curve fits.
+    /// they scatter about it; `None` if no falling curve fits.
     pub fn fit(&mut self) -> Option<Minimum<5>> {
         const ROUNDS: usize = 10;
         let mut minimum = self.refine(self.search()?);

@@ -98,7 +98,7 @@ pub enum FrictionIdentifyError {
         parameter: &'static str,
         /// The value that fits best.
         value: f64,
-        /// Its standard error (infinite where the data say nothing).
+        /// Its standard error (infinite if the data say nothing).
         standard_error: f64,
     },
     /// Parameters that make no law were given or found.

@@ -20,7 +20,7 @@ pub(super) struct Problem<'a, const N: usize> {
     pub count: usize,
     /// A typical magnitude of each parameter, for steps and convergence.
     pub scale: [f64; N],
-    /// Lower bounds; −∞ where there is none.
+    /// Lower bounds; −∞ if there is none.
     pub lower: [f64; N],
     /// Parameters that take part; the others keep their starting values.
     pub free: [bool; N],

@@ -8,18 +8,18 @@ use super::series::Series;
 pub struct ConstantSpeedRun {
     /// Mean speed with its sign, rad/s.
     pub speed: f64,
-    /// Standard error of `speed`, rad/s, greater than 0; `None` where it is not
+    /// Standard error of `speed`, rad/s, greater than 0; `None` if it is not
     /// known.
     pub speed_standard_error: Option<f64>,
     /// Mean friction torque with its sign, N·m.
     pub torque: f64,
-    /// Standard error of `torque`, N·m, greater than 0; `None` where it is not
+    /// Standard error of `torque`, N·m, greater than 0; `None` if it is not
     /// known.
     pub torque_standard_error: Option<f64>,
     /// Amplitude of the coherent oscillation of the speed, as a fraction of
-    /// the mean speed; 0 where there is nothing but noise.
+    /// the mean speed; 0 if there is nothing but noise.
     pub vibration: f64,
-    /// Frequency of that oscillation, Hz; 0 where there is none.
+    /// Frequency of that oscillation, Hz; 0 if there is none.
     pub vibration_frequency: f64,
 }
 

@@ -70,7 +70,7 @@ pub enum Reason {
     Vibrates {
         /// Relative amplitude, as in [`super::ConstantSpeedRun::vibration`].
         amplitude: f64,
-        /// Hz, 0 where it is not known.
+        /// Hz, 0 if it is not known.
         frequency: f64,
     },
     /// The mean speed cannot be told from zero

@@ -77,7 +77,7 @@ pub fn identify_static_within(
 }
 
 pub(super) fn check_runs(runs: &[ConstantSpeedRun]) -> Result<(), FrictionIdentifyError> {
-    const POSITIVE: &str = "greater than 0 and at most 1e100 (none where it is not known)";
+    const POSITIVE: &str = "greater than 0 and at most 1e100 (none if it is not known)";
     let bad = |index, quantity, value, valid| FrictionIdentifyError::BadNumber {
         quantity,
         index,

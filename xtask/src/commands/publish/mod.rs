@@ -21,10 +21,11 @@ use crate::packages::{Package, cargo, workspace};
 /// Options of `publish`.
 #[derive(Args)]
 pub struct Options {
-    /// Check and package everything, publish nothing; there is no other way
+    /// Check and package everything, publish nothing; required, as a person publishes
     #[arg(long)]
     dry_run: bool,
-    /// Package without building what was packaged: quick, but a file outside of its crate is not noticed
+    /// Package without building what was packaged: quick, but a file outside of its crate is not
+    /// noticed
     #[arg(long)]
     no_verify: bool,
 }

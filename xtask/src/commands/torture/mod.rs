@@ -32,7 +32,7 @@ pub struct Options {
     /// How many runs to kill, if the time is enough; with 0, stages are left alone
     #[arg(long, value_name = "COUNT", default_value_t = u64::MAX)]
     kills: u64,
-    /// Disturb a run once in each way, of those but kills, and not at every stage and size
+    /// Disturb one run by each kind of disturbance but kills, and not at every stage and size
     #[arg(long)]
     once: bool,
     /// Number of the first input: with --inputs 1, a single one again

@@ -16,7 +16,7 @@ impl Source {
         Self(ChaCha8Rng::from_seed(*hasher.finalize().as_bytes()))
     }
 
-    /// A whole number below `n`; 0 where there is none.
+    /// A whole number below `n`; 0 if there is none.
     pub fn below(&mut self, n: usize) -> usize {
         if n == 0 { 0 } else { self.0.random_range(0..n) }
     }

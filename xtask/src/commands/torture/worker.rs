@@ -122,7 +122,7 @@ pub fn keep(options: &Options, index: u64, kind: &str, input: &Input, what: &str
     std::fs::write(folder.join("fault.txt"), text).into_diagnostic()
 }
 
-/// Limits this process to its present size and [`MEMORY`]; `false` where the system has
+/// Limits this process to its present size and [`MEMORY`]; `false` if the system has
 /// no `prlimit`.
 fn limit(now: u64) -> bool {
     if now == 0 {
@@ -137,7 +137,7 @@ fn limit(now: u64) -> bool {
     status.is_ok_and(|status| status.success())
 }
 
-/// A line of the process's status, kB; 0 where the system has none.
+/// A line of the process's status, kB; 0 if the system has none.
 fn status(line: &str) -> u64 {
     let text = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let found = text.lines().find_map(|l| l.strip_prefix(line));

@@ -68,7 +68,7 @@ pub(super) fn checked(table: &mut dyn Table, found: &mut Vec<Found>) -> Numbers 
     numbers
 }
 
-/// The numbers of a column; none where it cannot be read.
+/// The numbers of a column; none if it cannot be read.
 fn column(table: &mut dyn Table, name: &str) -> Option<Vec<f64>> {
     let index = table.heads().iter().position(|head| head.name == name)?;
     table.read(&[index], Holes::Kept).ok()?.pop()

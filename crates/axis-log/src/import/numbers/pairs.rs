@@ -125,7 +125,7 @@ fn turned(
     (found.column.channel, found.column.unit, found.is_said) = (angle, unit, true);
     let source = &found.column.source;
     remarks.push(format!(
-        "{source}: it begins anew after {period:.6}, so it is an angle in {unit}"
+        "{source}: it wraps around after {period:.6}, so it is an angle in {unit}"
     ));
     Some(unit)
 }

@@ -1,11 +1,13 @@
 //! Recordings of SINUMERIK Data Recorder (SINUMERIK Edge, Analyze MyWorkpiece /Capture).
 //!
-//! [Siemens describes](https://docs.industrial-operations-x.siemens.cloud/r/es-es/1.0.0/sinumerik-data-recorder/accessing-recorded-data/data-output-format/data-output-format-overview)
+//! [Siemens
+//! describes](https://docs.industrial-operations-x.siemens.cloud/r/es-es/1.0.0/sinumerik-data-recorder/accessing-recorded-data/data-output-format/data-output-format-overview)
 //! a JSON object with header, payload and footer; the header stands first:
 //!
 //! ```text
 //! { "Header": { "SignalListHFData": [ { "Name": …, "Type": …, "Axis": …, "Address": "ENC_POS|1" }, … ], … },
-//!   "Payload": [ { "HFTimestamp": … }, { "HFData": [ [ 4817081, 12.5, … ], … ] }, { "LFData": … }, … ],
+//!   "Payload": [ { "HFTimestamp": … }, { "HFData": [ [ 4817081, 12.5, … ], … ] }, { "LFData": …
+//! }, … ],
 //!   "Footer": { "ErrorMessages": [], … } }
 //! ```
 //!
@@ -30,7 +32,7 @@ pub(super) const FORMAT: Format = Format {
     is_it,
     open: |bytes| Ok(Box::new(Recording::read(bytes)?)),
     columns: proposed,
-    caution: "positions are in mm, of an axis that turns in deg (A, B, C and SP by their names); where the header has no CycleTimeMs, map CYCLE to \"t_s\" with the position control cycle in s as factor",
+    caution: "positions are in mm, of an axis that turns in deg (A, B, C and SP by their names); if the header has no CycleTimeMs, map CYCLE to \"t_s\" with the position control cycle in s as factor",
 };
 
 /// The signal that counts position control cycles.
@@ -103,7 +105,7 @@ impl Recording {
         }
         if !file.footer.errors.is_empty() {
             return Err(refused(format!(
-                "the recorder tells of errors ({}); to read the file all the same, empty ErrorMessages in its footer",
+                "the recorder reports errors ({}); to read the file all the same, empty ErrorMessages in its footer",
                 crate::error::clip(&file.footer.errors.join("; "))
             )));
         }

@@ -18,7 +18,8 @@
 //! a `rec` does not have is as it was: a value holds until the next, and before the first there
 //! is none. A `rec` that would have no value is left out: where `datapointCount` and `interval` of
 //! the signals count more instants than there are, or none is counted and `dropOuts` is 0, those
-//! between are put back and values hold there too. Numbers from [`NOT_MEASURED`](record::NOT_MEASURED) on stand for no value. Columns are
+//! between are put back and values hold there too. Numbers from
+//! [`NOT_MEASURED`](record::NOT_MEASURED) on stand for no value. Columns are
 //! named by `description` where it is there and no other has it, by `name` otherwise.
 
 mod record;
@@ -37,7 +38,7 @@ pub(super) const FORMAT: Format = Format {
     is_it: xml::is_it,
     open: |bytes| Ok(Box::new(Trace::read(bytes)?)),
     columns: proposed,
-    caution: "the format is read as readers of others do, not by a description of Siemens: compare a value with the control's screen; units are those of the machine, mm (or inch) or deg",
+    caution: "no document of Siemens describes the format; it is read as other programs read it: compare a value with the control's screen; units are those of the machine, mm (or inch) or deg",
 };
 
 /// Channels, signals of an axis that are it, and their unit on a linear axis in mm, as those

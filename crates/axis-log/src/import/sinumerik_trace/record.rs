@@ -135,7 +135,7 @@ impl Record {
         whole - rows
     }
 
-    /// The shortest interval of the signals, and where on it each `rec` lies; `None` where one
+    /// The shortest interval of the signals, and where on it each `rec` lies; `None` if one
     /// lies beside it.
     fn places(&self) -> Option<(f64, Vec<usize>)> {
         let intervals = self.signals.iter().filter_map(|signal| signal.interval);

@@ -7,7 +7,7 @@ use super::header::KEYS;
 use super::line::NAME;
 use super::number::value;
 
-/// The names, as many as the rows have fields; `None` where a name cannot be told from the next.
+/// The names, as many as the rows have fields; `None` if a name cannot be told from the next.
 /// `below` are the lines below that of the names.
 pub(super) fn names<'a>(line: &'a str, below: &[&'a str]) -> Option<Vec<&'a str>> {
     let words: Vec<&str> = line.split_whitespace().collect();

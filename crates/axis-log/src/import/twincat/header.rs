@@ -14,7 +14,7 @@ use crate::read_error::ReadProblem;
 
 /// Lines in which a header ends.
 const MOST_LINES: usize = 1000;
-const BLANKS: &str = "blanks separate the fields, and names have blanks, so that one cannot be told from the next: export with a tab or \";\"";
+const BLANKS: &str = "spaces separate the fields and also stand in names, so that fields cannot be separated: export with a tab or \";\"";
 
 const SYMBOL: &str = "SymbolName";
 /// Keys of the other lines that a header may have.
@@ -50,7 +50,7 @@ pub(super) struct Header<'a> {
     pub names: HashMap<usize, String>,
     /// Fields of the line of names.
     found: Vec<&'a str>,
-    /// Fields of the line of symbols; none where it is missing or does not fit.
+    /// Fields of the line of symbols; none if it is missing or does not fit.
     symbols: Vec<&'a str>,
     /// Number of the lines that stand above the values.
     pub lines: usize,

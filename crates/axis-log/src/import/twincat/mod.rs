@@ -23,7 +23,7 @@
 //! → is a tab, `;`, `,`, `:` or a blank. The key of a header line stands above a column of times, and
 //! what is behind it, above channels that were sampled then ("timelines": for each channel,
 //! or for each sample time). Times are ms, or 100 ns ticks since 1601 ("full timestamp").
-//! A timeline that has ended leaves blank fields, or none where no other is behind it.
+//! A timeline that has ended leaves blank fields, or none if no other is behind it.
 //!
 //! A table has one time: that of the timeline with the most samples. Channels on others are
 //! among the heads, with a fault that says so.

@@ -17,7 +17,7 @@ pub(super) struct Row<'a> {
 }
 
 impl<'a> Row<'a> {
-    /// A field; empty where the row has ended.
+    /// A field; empty if the row has ended.
     pub(super) fn field(&self, index: usize) -> &'a str {
         self.fields.get(index).copied().unwrap_or_default()
     }
@@ -125,7 +125,7 @@ impl<'a> Rows<'a> {
             });
         }
         let reason = format!(
-            "{found} fields, the header has {expected}: where the decimal mark is a comma, export with a tab or \";\" between fields"
+            "{found} fields, the header has {expected}: if the decimal mark is a comma, export with a tab or \";\" between fields"
         );
         refused(line, &reason)
     }

@@ -113,7 +113,7 @@ fn effects(all: &[&'static Effect], defs: &mut Map<String, Value>) -> Value {
     let tables = all.iter().map(|effect| {
         let number = |p: &crate::effects::EffectParameter| {
             let unit = p.measure.unit(Freedom::Linear);
-            let what = format!("a number in SI units, {unit} where the load moves along a line");
+            let what = format!("a number in SI units, {unit} if the load moves along a line");
             let what = match unit {
                 "" => "a number".to_owned(),
                 _ => what,

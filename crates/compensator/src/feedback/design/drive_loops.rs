@@ -33,7 +33,7 @@ pub(super) fn check(passage: &Passage) -> Result<(), DesignError> {
         ),
         (
             passage.other_position,
-            "its position controller goes by another position than the measured one (feedback = \"blend\", or \"motor\" beside a sensor at the load)",
+            "its position controller uses another position than the measured one (feedback = \"blend\", or \"motor\" beside a sensor at the load)",
         ),
     ];
     match refused.into_iter().find(|(found, _)| *found) {

@@ -38,12 +38,12 @@ pub(super) fn stribeck_damping(model: &DriveModel, modes: &[Mode]) -> f64 {
 /// Speeds, up to four Stribeck speeds, at which that is looked for.
 const SPEEDS: u32 = 100;
 
-/// An axis as a linear model may have it, off the believed one.
+/// An axis as a linear model may have it, off the assumed one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Situation {
     /// Share of bristles that follow the motion.
     pub sticking: f64,
-    /// Shares of the believed load's inertia, and of σ0, σ1 and σ2.
+    /// Shares of the assumed load's inertia, and of σ0, σ1 and σ2.
     pub mass: f64,
     pub friction: f64,
     /// Share of σ0 and σ1 besides.
@@ -64,7 +64,7 @@ pub(super) struct Linear {
     pub load: RowDVector<f64>,
     pub load_speed: RowDVector<f64>,
     /// Position and speed that the state feedback weighs: the load's, or the motor's as the
-    /// load's where nothing else is measured, so that sensor and actuator are at one place.
+    /// load's if nothing else is measured, so that sensor and actuator are at one place.
     pub weighed: [RowDVector<f64>; 2],
     /// What one unit of each state is in SI.
     pub units: DVector<f64>,

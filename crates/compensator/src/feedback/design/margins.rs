@@ -1,4 +1,4 @@
-//! Margins of a designed feedback, on the believed axis or on another one.
+//! Margins of a designed feedback, on the assumed axis or on another one.
 //!
 //! The loop is cut at the plant's input, the command: one signal, whatever is measured. With
 //! L(z) = −(command that comes back)/(command that goes in), S = 1/(1 + L). What comes back has passed the
@@ -10,19 +10,19 @@ use super::linear::{Linear, Situation};
 use super::{DesignError, FeedbackDesign, FeedbackSettings, STICKING};
 use crate::model::Mode;
 
-/// An axis that is not the believed one.
+/// An axis that is not the assumed one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variation<'a> {
     /// Its modes: those of another position. As many as it has; none: those of the design.
     pub modes: &'a [Mode],
-    /// Its load's inertia as a share of the believed one; the modes are those without it.
+    /// Its load's inertia as a share of the assumed one; the modes are those without it.
     pub mass: f64,
     /// Its bristles' stiffness and damping and its viscous friction, as shares.
     pub friction: f64,
     /// Its χ as a share of the one that the feedback goes by, at most 1 in all.
     pub sticking: f64,
     /// Share of the least damping of slow sliding, which is negative; 1 where the load slides
-    /// at about half the Stribeck speed and more, 0 where it slides fast.
+    /// at about half the Stribeck speed and more, 0 if it slides fast.
     pub stribeck: f64,
 }
 
@@ -41,7 +41,7 @@ impl Default for Variation<'_> {
 /// How far a loop is from instability; the worst over χ of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margins {
-    /// Greatest sensitivity at the plant's input; infinite where the loop is not stable.
+    /// Greatest sensitivity at the plant's input; infinite if the loop is not stable.
     pub sensitivity: f64,
     /// χ where that is.
     pub sticking: f64,
@@ -60,13 +60,13 @@ impl FeedbackDesign {
     /// Margins on the axis that `on` says.
     ///
     /// # Errors
-    /// [`DesignError`] where that has more states than there is room for.
+    /// [`DesignError`] if that has more states than there is room for.
     pub fn margins(&self, on: &Variation<'_>) -> Result<Margins, DesignError> {
         self.worst(on, true)
     }
 
     /// The margins; of a loop that repeats after several periods the delay takes long, and is
-    /// left out where nobody asks for it.
+    /// left out if nobody asks for it.
     fn worst(&self, on: &Variation<'_>, with_delay: bool) -> Result<Margins, DesignError> {
         let mut all = Margins {
             sensitivity: 0.0,

@@ -47,9 +47,9 @@ pub struct FeedbackSettings {
     pub sensitivity_late: f64,
     /// Both of them where the load slides so slowly that friction feeds vibrations; 2.
     pub sensitivity_slow: f64,
-    /// Shares of the believed load's inertia for which the two must hold; 0.9 and 1.4.
+    /// Shares of the assumed load's inertia for which the two must hold; 0.9 and 1.4.
     pub mass: [f64; 2],
-    /// Shares of the believed σ0, σ1 and σ2 for which they must hold; 0.5 and 2.
+    /// Shares of the assumed σ0, σ1 and σ2 for which they must hold; 0.5 and 2.
     pub friction: [f64; 2],
 }
 

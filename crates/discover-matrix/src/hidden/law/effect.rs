@@ -28,7 +28,7 @@ const fn held(name: &'static str) -> EffectParameter {
 /// half range.
 pub(crate) static LAW: Effect = Effect {
     name: LAW_NAME,
-    summary: "a law of no library",
+    summary: "a law outside the library",
     channel: EffectChannel::Torque,
     depends_on: "its variables",
     shown_over: Shown::Time,

@@ -42,10 +42,10 @@ impl LawVariable {
         match self {
             Self::Speed => "speed",
             Self::Position => "position",
-            Self::Angle => "motor angle in its turn",
+            Self::Angle => "motor angle within a turn",
             Self::Acceleration => "acceleration",
             Self::Time => "time",
-            Self::Current | Self::Force => "what the drive gives",
+            Self::Current | Self::Force => "force or torque of the drive",
         }
     }
 

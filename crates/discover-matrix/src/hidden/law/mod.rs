@@ -1,8 +1,8 @@
-//! Laws of no library, drawn from a grammar.
+//! Laws outside the library, drawn from a grammar.
 //!
 //! A force on the load, or a torque on the motor, `c · f(a) · g(b)`: a and b are variables of
 //! the motion, each from −1 to 1 over it, f and g shapes over them. [`Law::draw`] makes one
-//! of a seed, so that laws can be had that nobody looked at before. What an effect of the
+//! of a seed, so that laws can be had that nobody seen before. What an effect of the
 //! library is by itself is not drawn: what is left out is left out of the table of shapes.
 
 mod effect;
@@ -27,7 +27,7 @@ pub struct Factor {
     pub number: f64,
 }
 
-/// A law of no library.
+/// A law outside the library.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Law {
     /// One factor, or two.

@@ -101,7 +101,7 @@ fn known(share: f64) -> Recalibrated {
     }
 }
 
-/// The lines under a question; none where it is not there.
+/// The lines under a question; none if it is not there.
 fn lines(discovery: &Discovery, question: &str) -> Vec<String> {
     let all = discovery.first_screen();
     let found = all.into_iter().find(|a| a.question.starts_with(question));
@@ -121,7 +121,7 @@ fn an_effect_is_told_with_its_cost_confidence_and_remedy() {
         lines(&made, "What it costs"),
         [
             "Tracking error: 6.10 µm RMS, 55.0 µm peak as measured. Model: 6.00 µm RMS, 54.0 µm peak with it; 4.20 µm RMS, 50.0 µm peak without it.",
-            "It takes 103 N RMS (206 N peak) at the load: 100 mA RMS of iq_a, of 500 mA in all.",
+            "It takes 103 N RMS (206 N peak) at the load: 100 mA RMS of the 500 mA in iq_a.",
         ]
     );
     let sure = lines(&made, "How sure");
@@ -129,7 +129,7 @@ fn an_effect_is_told_with_its_cost_confidence_and_remedy() {
     assert!(sure[1].starts_with("99.7 % of the gap"));
     let mut small = made.clone();
     small.gap.check.channels[0].before = 1.1e-8;
-    assert!(lines(&small, "How sure")[1].starts_with("No channel stood out"));
+    assert!(lines(&small, "How sure")[1].starts_with("No channel exceeded"));
     assert!(lines(&made, "What else").is_empty());
     let next = lines(&made, "What to do next");
     assert!(
@@ -246,10 +246,10 @@ fn pieces_of_one_law_are_said_beside_what_is_named() {
     made.refused = Some(refused(&["coulomb-friction", "stribeck-friction"]));
     assert_eq!(
         lines(&made, "What is missing")[1],
-        "coulomb-friction with stribeck-friction explain no more than a force in proportion to |v|·v does with one number, so they are not given."
+        "coulomb-friction with stribeck-friction explain no more than a force in proportion to |v|·v does with one number, so they are not named."
     );
     made.refused = Some(refused(&["coulomb-friction"]));
-    assert!(lines(&made, "What is missing")[1].ends_with("so it is not given."));
+    assert!(lines(&made, "What is missing")[1].ends_with("so it is not named."));
 }
 
 #[test]
@@ -287,7 +287,7 @@ fn another_controller_is_told_before_remedies() {
     let said = lines(&found, "What to do next");
     assert_eq!(
         said[0],
-        "The controller of the file does not give the logged command: it leaves 208 % of it (mean square), where p-pi, speed_lowpass leaves 0.00015 %. Estimate it (identify-control) and search with the file that this writes; or leave the controller out (--balance), which shows forces."
+        "The controller of the file does not reproduce the logged command: it leaves 208 % of it unexplained (mean square), while p-pi, speed_lowpass leaves 0.00015 %. Estimate it (identify-control) and search with the file that this writes; or leave the controller out (--balance), which compares forces."
     );
     assert_eq!(said.len(), 2);
 }

@@ -14,7 +14,7 @@ pub struct Course {
     /// In [0, 2π).
     pub angle: Vec<f64>,
     pub acceleration: Vec<f64>,
-    /// Empty where no channel shows it.
+    /// Empty if no channel shows it.
     pub effort: Vec<f64>,
 }
 

@@ -17,7 +17,7 @@ pub struct Rest<'a> {
     noise: Vec<DVector<f64>>,
 }
 
-/// What columns explain of a rest.
+/// What columns explain of a residual.
 pub struct Solved {
     /// Fall of D.
     pub gain: f64,

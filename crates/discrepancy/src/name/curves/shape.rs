@@ -65,10 +65,10 @@ impl Shape {
         is_over((self.variable, self.factor), variable)
     }
 
-    /// What is left on logs of which this is the fit with these values at the knots.
+    /// The residual on logs of which this is the fit with these values at the knots.
     ///
     /// # Errors
-    /// [`ReplayError`] where the machine does not run with it.
+    /// [`ReplayError`] if the machine does not run with it.
     pub fn rest(
         &self,
         machine: &Axis,
@@ -92,7 +92,7 @@ impl Shape {
     }
 
     /// Fall of D on logs that were not fitted, of which this is the fit, with these values at
-    /// the knots; nothing where it does not run. Motion beyond the outermost knots does not
+    /// the knots; nothing if it does not run. Motion beyond the outermost knots does not
     /// count: nothing tells how the curve goes on there.
     pub fn told(&self, machine: &Axis, set: &LogSet, fit: &Fit, values: &[f64]) -> f64 {
         let Ok(mut after) = self.rest(machine, set, fit, values) else {

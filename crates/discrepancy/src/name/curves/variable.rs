@@ -55,9 +55,9 @@ impl Variable {
             Self::Speed => "speed",
             Self::Position => "position",
             Self::Time => "time",
-            Self::Angle => "motor angle in its turn",
+            Self::Angle => "motor angle within a turn",
             Self::Acceleration => "acceleration",
-            Self::Effort => "what the drive gives",
+            Self::Effort => "force or torque of the drive",
         }
     }
 

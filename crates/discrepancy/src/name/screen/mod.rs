@@ -1,4 +1,4 @@
-//! Screening: how much of a rest each effect of the library explains, and each
+//! Screening: how much of a residual each effect of the library explains, and each
 //! pair, and how near some together come to it.
 
 mod imitation;

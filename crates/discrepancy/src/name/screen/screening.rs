@@ -1,4 +1,4 @@
-//! What candidates explain of a rest, alone and in pairs.
+//! What candidates explain of a residual, alone and in pairs.
 
 use axis_sim::effects::Effect;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -14,7 +14,7 @@ use crate::estimate::thin::{Thin, products};
 use crate::name::library::{Candidate, values_at};
 use crate::spectrum::Amplitudes;
 
-/// A rest, and what the candidates can do about it, both without what the
+/// A residual, and what the candidates can do about it, both without what the
 /// fit's own parameters can.
 pub struct Screening {
     rest: DVector<f64>,
@@ -22,7 +22,7 @@ pub struct Screening {
 }
 
 impl Screening {
-    /// Of the candidates that are `wanted`, beside the rest of `fit` and the
+    /// Of the candidates that are `wanted`, beside the residual of `fit` and the
     /// columns of its own parameters (`own`), weighed by these spectral matrices.
     pub fn new(
         fitter: &Fitter<'_>,
@@ -46,7 +46,7 @@ impl Screening {
         Self::of(library, wanted, seen, rest)
     }
 
-    /// Of the candidates that are `wanted`, `seen` through some projection, beside a rest
+    /// Of the candidates that are `wanted`, `seen` through some projection, beside a residual
     /// that was seen so.
     pub fn of(
         library: &[Candidate],
@@ -144,7 +144,7 @@ impl Screening {
         }
     }
 
-    /// Fall of D where this much of the rest's whitened power goes.
+    /// Fall of D where this much of the residual's whitened power goes.
     fn gain_of(&self, explained: f64) -> f64 {
         let share = (explained / self.rest.norm_squared()).clamp(0.0, 0.999_999);
         -(self.rest.len() as f64) * (1.0 - share).ln()
@@ -155,7 +155,7 @@ impl Screening {
 const PAIRS: usize = 12;
 
 /// Sizes at which some columns explain most, and how much, from the normal
-/// equations of all; `None` where they are one and the same.
+/// equations of all; `None` if they are one and the same.
 fn solved(
     normal: &DMatrix<f64>,
     right: &DVector<f64>,

@@ -32,7 +32,7 @@ pub struct Results {
     /// Axis file
     #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     pub axis: PathBuf,
-    /// Axis file of the machine that the results are of [default: the one that the axis
+    /// Axis file of the machine with which the results were made [default: the one that the axis
     /// file names, or the axis itself]
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
@@ -70,8 +70,8 @@ impl Results {
 pub struct Options {
     #[command(flatten)]
     results: Results,
-    /// Strategy that the controller runs. A network needs `train` first, transfer functions
-    /// and identified friction `identify`; plan and feedback are made of the axis file alone
+    /// Strategy that the controller runs. A network needs `train` first, transfer functions and
+    /// identified friction need `identify`; plan and feedback need the axis file alone
     #[arg(long, value_name = "NAME", value_parser = strategy_name_of(EXPORTED))]
     strategy: &'static StrategyKind,
     #[command(flatten)]

@@ -21,15 +21,16 @@ const OVER_TURN: &str = "drive-turn.csv";
 /// Options of `export drive`.
 #[derive(Args)]
 pub struct Options {
-    /// Axis file: what the terms are made from
+    /// Axis file: the model from which the terms are computed
     #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
     axis: PathBuf,
-    /// Axis file of the machine on which the loss is computed [default: the one that the
+    /// Axis file of the machine on which the terms are compared with the full correction,
+    /// simulated [default: the one that the
     /// axis file names, or the axis itself]
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
-    /// Folder for drive.json, drive.csv (over the position) and, where the axis has cogging
-    /// or periodic lead errors, drive-turn.csv (over the motor's turn)
+    /// Folder for drive.json, drive.csv (over the position) and, if the axis has cogging or
+    /// periodic lead errors, drive-turn.csv (over the motor's turn)
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
 }
@@ -49,7 +50,7 @@ struct Export<'a> {
     tables: Vec<&'a str>,
     loss_unit: ErrorUnit,
     loss: &'a [Loss],
-    /// Why there is no loss, where there is none.
+    /// Why there is no loss; `None` if there is no such reason.
     loss_missing: Option<String>,
 }
 

@@ -34,7 +34,8 @@ pub struct Options {
     /// Greatest offset of the command, in the actuator's unit: A, N·m, N, V [default: likewise]
     #[arg(help_heading = "Guard", long = "limit-effort", value_name = "SI", value_parser = positive, allow_negative_numbers = true)]
     effort: Option<f64>,
-    /// Greatest surprise of a feedback's observer, in standard deviations [default: likewise,
+    /// Greatest deviation of the measurement from what a feedback's observer expects, in standard
+    /// deviations [default: likewise,
     /// at least 10]
     #[arg(help_heading = "Guard", long = "limit-surprise", value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true)]
     surprise: Option<f64>,
@@ -140,7 +141,7 @@ impl Guarded {
             units.effort
         );
         if self.is_simulated {
-            words += ", twice the greatest on the trajectories (simulated) where not given";
+            words += ", twice the greatest on the trajectories (simulated) if not stated";
         }
         words
     }

@@ -20,7 +20,8 @@ pub enum Export {
     Linuxcnc(linuxcnc::Options),
     /// Write the trained network as an ONNX file (docs/controller-export.md)
     Onnx(onnx::Options),
-    /// Write what of the correction a drive or CNC can be given (docs/drive-terms.md)
+    /// Write the part of the correction that a drive or CNC can take, as constants and tables
+    /// (docs/drive-terms.md)
     Drive(drive::Options),
     /// Write the axis as an FMI 3.0 co-simulation unit for other simulators (docs/fmu.md)
     Fmu(fmu::Options),

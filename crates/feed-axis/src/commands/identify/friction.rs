@@ -35,7 +35,7 @@ pub struct RunPoint {
     pub speed: f64,
     /// N·m or N.
     pub torque: f64,
-    /// Standard error of it, where it is known.
+    /// Standard error of it, if known.
     pub standard_error: Option<f64>,
     /// Whether the speed is constant; else it changes slowly, and inertia was taken off.
     pub constant_speed: bool,

@@ -34,7 +34,7 @@ pub(super) fn list(context: &Context) -> PathBuf {
     context.out.join("identify").join(LIST)
 }
 
-/// The list as it stands; none where there is none.
+/// The list as it stands; none if there is none.
 pub(super) fn remembered(context: &Context) -> Option<String> {
     let bytes = std::fs::read(list(context)).ok()?;
     Some(String::from_utf8_lossy(&bytes).into_owned())

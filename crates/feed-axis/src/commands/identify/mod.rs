@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 pub use self::friction::{Found, Friction, RunPoint, SmallMotionPoint};
 use self::simulated::{PRESLIDING, SPEEDS};
-use self::words::Told;
+use self::words::Identified;
 use crate::context::{Common, Context};
 use crate::output::{print, remove};
 use crate::progress::bar;
@@ -32,9 +32,9 @@ pub(super) const TRANSFER: &str = "transfer_functions.json";
 pub struct Options {
     #[command(flatten)]
     common: Common,
-    /// Logs of the axis itself, of constant speeds both ways and of small motions about a standstill,
-    /// as `log inspect` reads them; a log in several files as their paths with + between. Without
-    /// any, both are made on the simulated machine, and kept beside the results
+    /// Logs of the axis at constant speeds in both directions and of small motions about a
+    /// standstill, in any format that `log inspect` reads; a log in several files as their paths
+    /// with + between. Without any, both are simulated and kept beside the results
     #[arg(long, value_name = "LOG", num_args = 1..)]
     log: Vec<PathBuf>,
 }
@@ -113,12 +113,12 @@ fn finish(context: &Context, found: &Friction) -> Result<()> {
     let fits = transfer(context)?;
     stage.write_json(TRANSFER, &fits)?;
     stage.finish()?;
-    let told = Told {
+    let identified = Identified {
         units: context.axis.friction.at.units(),
         friction: found,
         transfer_functions: &fits,
     };
-    print("identify", &told)
+    print("identify", &identified)
 }
 
 /// The transfer functions without and with friction feed-forward; none of an axis whose

@@ -11,7 +11,7 @@ use super::friction::{Found, Friction};
 
 /// What was identified.
 #[derive(Serialize)]
-pub(super) struct Told<'a> {
+pub(super) struct Identified<'a> {
     #[serde(skip)]
     pub units: FrictionUnits,
     pub friction: &'a Friction,
@@ -19,15 +19,15 @@ pub(super) struct Told<'a> {
     pub transfer_functions: &'a [Transfer],
 }
 
-impl fmt::Display for Told<'_> {
+impl fmt::Display for Identified<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let friction = self.friction;
         let used = friction.runs.iter().filter(|run| run.left_out.is_none());
         let constant = used.clone().filter(|run| run.constant_speed).count();
         let varying = used.count() - constant;
         let left_out = friction.runs.len() - constant - varying;
-        let told = friction.small_motions.iter();
-        let told = told.filter(|motion| motion.left_out.is_none()).count();
+        let small = friction.small_motions.iter();
+        let small = small.filter(|motion| motion.left_out.is_none()).count();
         write!(
             f,
             "identify: friction at {} from {constant} stretches of constant speed",
@@ -36,11 +36,11 @@ impl fmt::Display for Told<'_> {
         if varying > 0 {
             write!(f, ", {varying} speeds at which it changes slowly")?;
         }
-        write!(f, " and {told} small motion(s) about a standstill")?;
+        write!(f, " and {small} small motion(s) about a standstill")?;
         if left_out > 0 {
             write!(
                 f,
-                "; {left_out} stretches left out for vibration, rest, or bristles that still bend"
+                "; {left_out} stretches left out for vibration, standstill or bristles that still bend"
             )?;
         }
         let simulated = if friction.simulated {

@@ -55,7 +55,8 @@ struct Logs {
     /// several files of one log with + between
     #[arg(required = true, value_name = "FILE")]
     logs: Vec<PathBuf>,
-    /// Axis file: its `[log]` maps columns, its sizes tell what channels should be of each other
+    /// Axis file: its `[log]` maps columns, its parameters give the expected ratios between
+    /// channels
     #[arg(long, value_name = "FILE")]
     axis: Option<PathBuf>,
     /// Sampling rate of the log, Hz [default: that of its slowest file]

@@ -5,15 +5,19 @@ use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table};
 
 use super::words::{file_words, heading};
 use super::{Seen, SeenLog};
+use crate::page::channel;
 
 /// The page of one log.
 pub fn of_one(seen: &Seen) -> Page {
-    sections(seen, Page::new(format!("Log {}", seen.name)))
+    sections(
+        seen,
+        Page::new(format!("Log {}", channel::files(&seen.name))),
+    )
 }
 
 /// One page of all logs.
 pub fn of_all(seen: &[Seen]) -> Page {
-    let names: Vec<&str> = seen.iter().map(|seen| seen.name.as_str()).collect();
+    let names: Vec<String> = seen.iter().map(|seen| channel::files(&seen.name)).collect();
     let page = Page::new(format!("Logs {}", names.join(", ")));
     seen.iter().fold(page, |page, seen| sections(seen, page))
 }
@@ -29,7 +33,7 @@ fn sections(seen: &Seen, page: Page) -> Page {
         Ok(log) => of_log(&seen.name, log, page),
         Err(lacks) => {
             let files = seen.files.iter();
-            let section = Section::new(format!("{}: {lacks}", seen.name));
+            let section = Section::new(format!("{}: {lacks}", channel::files(&seen.name)));
             page.section(files.fold(section, |section, (path, file)| {
                 section.paragraph(file_words(path, file))
             }))
@@ -39,14 +43,14 @@ fn sections(seen: &Seen, page: Page) -> Page {
 
 /// The sections of a log.
 fn of_log(name: &str, seen: &SeenLog, page: Page) -> Page {
-    let mut checks = Section::new("What was done, and what channels say of each other");
+    let mut checks = Section::new("What was done, and how channels agree with each other");
     for line in &seen.done {
         checks = checks.notice(Notice::Info, line);
     }
     for f in &seen.findings {
         let kind = match f.verdict {
             CrossCheckVerdict::Agrees => Notice::Good,
-            CrossCheckVerdict::Unsure | CrossCheckVerdict::Contradicts => Notice::Warn,
+            CrossCheckVerdict::Unclear | CrossCheckVerdict::Contradicts => Notice::Warn,
         };
         let lines = f.lines().map_or(String::new(), |l| {
             format!(" Proposed: {}", l.replace('\n', "  "))
@@ -56,10 +60,11 @@ fn of_log(name: &str, seen: &SeenLog, page: Page) -> Page {
     let mut figures = Section::new("Channels");
     for (quality, channel) in seen.channels.iter().zip(&seen.log.channels()[1..]) {
         let (time, samples) = (seen.log.time().to_vec(), channel.samples.clone());
-        let mut figure = Figure::new(&channel.name, "time", &channel.name)
+        let words = channel::words(&channel.name);
+        let mut figure = Figure::new(format!("{words} ({})", channel.name), "time", &words)
             .units("s", &channel.unit)
             .linked(name)
-            .series(Series::line(&channel.name, time, samples))
+            .series(Series::line(&words, time, samples))
             .caption(quality.to_string());
         // A straight line stands in a gap.
         let marked = seen.log.missing(&channel.name).iter().cloned().flatten();
@@ -71,7 +76,7 @@ fn of_log(name: &str, seen: &SeenLog, page: Page) -> Page {
         }
         figures = figures.figure(figure);
     }
-    let title = format!("Log {name}: table of channels");
+    let title = format!("Log {}: table of channels", channel::files(name));
     page.section(
         Section::new(title)
             .paragraph(heading(name, seen))

@@ -68,7 +68,7 @@ struct OneColumn<'a> {
 #[derive(Serialize)]
 struct Imported<'a> {
     format: &'static str,
-    /// Lines for the axis file; none where all is mapped.
+    /// Lines for the axis file; none if all is mapped.
     proposed: Option<String>,
     /// The sampling rate that the file has so.
     rate_hz: Option<f64>,
@@ -132,10 +132,10 @@ struct Gap {
 /// What two channels say of each other.
 #[derive(Serialize)]
 struct Found {
-    /// agrees, unsure or contradicts.
+    /// agrees, unclear or contradicts.
     verdict: &'static str,
     what: String,
-    /// Lines for the axis file that would mend it.
+    /// Lines for the axis file that would correct it.
     proposed: Option<String>,
 }
 
@@ -185,7 +185,7 @@ impl<'a> OneLog<'a> {
         let found = |finding: &axis_log::quality::Finding| Found {
             verdict: match finding.verdict {
                 CrossCheckVerdict::Agrees => "agrees",
-                CrossCheckVerdict::Unsure => "unsure",
+                CrossCheckVerdict::Unclear => "unclear",
                 CrossCheckVerdict::Contradicts => "contradicts",
             },
             what: finding.to_string(),

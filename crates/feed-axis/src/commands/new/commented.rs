@@ -201,7 +201,7 @@ impl File {
     }
 }
 
-/// The unit of a key under a spelling, with its factor to SI; none where it is another key's.
+/// The unit of a key under a spelling, with its factor to SI; none if it is another key's.
 fn unit(key: &Key, spelling: &str) -> Option<Option<(&'static str, f64)>> {
     let place = key.spellings().iter().position(|own| own == spelling)?;
     Some(key.units().get(place).copied())

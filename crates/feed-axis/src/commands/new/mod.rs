@@ -32,13 +32,13 @@ const EXAMPLES: [&str; 8] = [
 pub struct Options {
     /// Name of the axis; the file is NAME.toml
     name: String,
-    /// Mechanism, with an actuator, a controller, friction and sensors that go with it
+    /// Mechanism, with an actuator, a controller, friction and sensors that suit it
     #[arg(long, value_parser = kinds())]
     kind: String,
     /// Folder for the file [default: the one in which the command runs]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write over a file that is there
+    /// Overwrite an existing file
     #[arg(long)]
     force: bool,
 }
@@ -63,7 +63,7 @@ pub fn command(options: &Options) -> Result<()> {
     let is_name = !name.is_empty() && !name.contains(['/', '\\', '\0', '\n']) && name != "..";
     if !is_name {
         return Err(wrong_use(format!(
-            "\"{name}\" is no name of an axis: give one without / and \\, and the folder with --out"
+            "\"{name}\" is not a name for an axis: give one without / and \\, and the folder with --out"
         )));
     }
     let file = PathBuf::from(format!("{name}.toml"));
@@ -73,7 +73,7 @@ pub fn command(options: &Options) -> Result<()> {
     };
     if file.exists() && !options.force {
         return Err(miette!(
-            "{} is there already; give another name, or --force to write over it",
+            "{} exists already; give another name, or --force to overwrite it",
             file.display()
         ));
     }

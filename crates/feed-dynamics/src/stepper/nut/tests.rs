@@ -150,7 +150,7 @@ pub(crate) fn obeys_its_law<S: TimeStepper>(
         assert!(report.load.converged && report.on_screw);
         let [delta, rate] = compression(&state);
         let (delta, rate) = (delta + 3e-6, rate + 2e-4);
-        let force = stepper.observe(&state).nut_force;
+        let force = stepper.observe(&state).transmission_force;
         // Rounding of r θ − y, of angles and travels up to 10 rad and 20 mm.
         let [least, most] = law(&contact, delta, rate, 1e-16);
         let rounding = contact.damping * 1e-12 + contact.stiffness * 2e-16 + 1e-9 * force.abs();

@@ -125,7 +125,7 @@ fn pipeline(bench: &Bench, tally: &mut Tally, random: &mut Source, left: u64) ->
     Ok(())
 }
 
-/// Kills the child after `delay`; `false` where it had ended before.
+/// Kills the child after `delay`; `false` if it had ended before.
 fn kill(child: &mut Child, delay: Duration) -> Result<bool> {
     let ended = wait(child, delay)?;
     // A child that has ended by now is not hurt by it.

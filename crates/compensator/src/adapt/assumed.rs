@@ -1,4 +1,4 @@
-//! A believed model, and what it is at other parameters.
+//! An assumed model, and what it is at other parameters.
 
 use libm::{exp, log, sqrt};
 use lugre::{LuGre, Parameters};
@@ -9,14 +9,14 @@ use crate::DriveModel;
 /// Slowest natural motion of a transmission that is waited for, s.
 const SLOWEST: f64 = 2e-2;
 
-/// A believed model with the parameters that it has.
+/// An assumed model with the parameters that it has.
 #[derive(Clone, Debug)]
-pub(super) struct Belief {
+pub(super) struct AssumedModel {
     pub model: DriveModel,
     pub prior: AdaptPrior,
 }
 
-impl Belief {
+impl AssumedModel {
     /// Deviation of the Gaussian over all signals, s.
     pub fn smoothing(&self) -> f64 {
         let m = &self.model;
@@ -56,7 +56,7 @@ impl Belief {
         }
     }
 
-    /// The parameter as believed, in its unit; of a standing load, the Coulomb force.
+    /// The parameter as assumed, in its unit; of a constant load, the Coulomb force.
     pub fn value(&self, parameter: AdaptParameter) -> f64 {
         let (m, p) = (&self.model, self.model.friction.parameters());
         match parameter {
@@ -90,7 +90,7 @@ impl Belief {
         LuGre::new(changed).unwrap_or(self.model.friction)
     }
 
-    /// Half the believed free travel, rad at the motor.
+    /// Half the assumed free travel, rad at the motor.
     pub fn half_gap(&self) -> f64 {
         0.5 * self.model.kinematics.free_travel / self.model.travel
     }
@@ -101,7 +101,7 @@ impl Belief {
         self.value(AdaptParameter::Compliance) * level
     }
 
-    /// Force of the standing load at `theta`, N or N·m.
+    /// Force of the constant load at `theta`, N or N·m.
     pub fn standing_load(&self, theta: &Theta) -> f64 {
         let share = theta[AdaptParameter::StandingLoad.index()];
         match share {

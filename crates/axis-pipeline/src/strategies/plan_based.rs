@@ -1,4 +1,4 @@
-//! What plan, feedback, adaptation and learning share: one strategy with its rungs.
+//! What plan, feedback, adaptation and learning share: one strategy with options.
 //!
 //! ```text
 //! axis file ─► model ─► plan (+ feedback) ─► move ─► log ─► adaptation, residual, repetition
@@ -21,9 +21,9 @@ use super::{DesignOnce, LearnedValues, NextMove, Predictors, SharedMotion, Strat
 use crate::residuals::{AnyLearner, AnyResidual};
 use crate::{ErrorUnit, PipelineError};
 
-/// Which rungs a strategy has above the plan.
+/// What a strategy adds to the plan.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Rungs {
+pub(super) struct PlanOptions {
     /// State feedback that knows the friction's state.
     pub feedback: bool,
     /// Adaptation of the model's parameters between moves.
@@ -34,15 +34,15 @@ pub(super) struct Rungs {
     pub repetition: bool,
 }
 
-/// The plan and what stands on it.
-pub(super) struct Ladder {
+/// The plan, and what the options add to it.
+pub(super) struct PlanStrategy {
     axis: Axis,
-    believed: DriveModel,
+    assumed_model: DriveModel,
     /// The feedback for that.
     first_design: DesignOnce,
-    rungs: Rungs,
+    options: PlanOptions,
     adaptation: Option<Adaptation>,
-    residual: Option<Beside>,
+    residual: Option<ResidualModel>,
     /// The feedback, and the model that it was designed for.
     design: Option<(FeedbackDesign, DriveModel)>,
     repeated: Vec<Repeated>,
@@ -51,8 +51,8 @@ pub(super) struct Ladder {
     left: Left,
 }
 
-/// What no parameter holds, and the parameters beside it.
-struct Beside {
+/// Learned forces that no parameter describes, and the parameters adapted together with them.
+struct ResidualModel {
     learner: AnyLearner,
     adaptation: Adaptation,
 }
@@ -60,29 +60,31 @@ struct Beside {
 /// A move that has been made before.
 struct Repeated {
     motion: SharedMotion,
-    /// Believed since its first repetition: what is learned of a move holds beside one
+    /// Assumed since its first repetition: what is learned of a move holds beside one
     /// model.
     frozen: Option<(DriveModel, Option<AnyResidual>)>,
     learned: LearnedMove,
 }
 
-impl Ladder {
+impl PlanStrategy {
     /// For the axis of the predictors.
-    pub fn new(predictors: &Predictors, rungs: Rungs) -> Result<Self, PipelineError> {
+    pub fn new(predictors: &Predictors, options: PlanOptions) -> Result<Self, PipelineError> {
         let axis = predictors.axis.clone();
-        let believed = predictors.believed()?;
-        let adaptation = match rungs.adaptation {
-            true => Some(Adaptation::new(&believed, &AdaptPrior::default())?),
+        let assumed_model = predictors.assumed_model()?;
+        let adaptation = match options.adaptation {
+            true => Some(Adaptation::new(&assumed_model, &AdaptPrior::default())?),
             false => None,
         };
         let stroke = [axis.stroke.minimum, axis.stroke.maximum];
-        let level = believed.friction.parameters().coulomb * believed.travel / believed.lever;
-        let tables = || AnyLearner::Tables(ResidualLearner::new(stroke, believed.travel, level));
-        let mut ladder = Self {
+        let level = assumed_model.friction.parameters().coulomb * assumed_model.travel
+            / assumed_model.lever;
+        let tables =
+            || AnyLearner::Tables(ResidualLearner::new(stroke, assumed_model.travel, level));
+        let mut strategy = Self {
             axis,
-            believed,
+            assumed_model,
             first_design: predictors.design.clone(),
-            rungs,
+            options,
             adaptation,
             residual: None,
             design: None,
@@ -90,30 +92,30 @@ impl Ladder {
             now: None,
             left: Left::default(),
         }
-        .with_learner(rungs.residual.then(tables));
-        if rungs.feedback {
+        .with_learner(options.residual.then(tables));
+        if options.feedback {
             // Refused before anything is computed.
-            ladder.feedback(&believed)?;
+            strategy.feedback(&assumed_model)?;
         }
-        Ok(ladder)
+        Ok(strategy)
     }
 
     /// The same with another learner of what no parameter holds.
     pub fn with_learner(mut self, learner: Option<AnyLearner>) -> Self {
         let beside = learner.zip(self.adaptation.clone());
-        self.residual = beside.map(|(learner, adaptation)| Beside {
+        self.residual = beside.map(|(learner, adaptation)| ResidualModel {
             learner,
             adaptation,
         });
         self
     }
 
-    /// What is believed after all moves so far: parameters, and what none of them holds.
+    /// The model after all moves so far: parameters, and what none of them holds.
     fn model(&self) -> (DriveModel, Option<AnyResidual>) {
         let beside = self.residual.as_ref();
         let used = beside.and_then(|b| Some((b.adaptation.model(), Some(b.learner.model()?))));
         let adapted = self.adaptation.as_ref().map(Adaptation::model);
-        used.unwrap_or((adapted.unwrap_or(self.believed), None))
+        used.unwrap_or((adapted.unwrap_or(self.assumed_model), None))
     }
 
     /// The feedback for a model. It is designed anew where the model has left what the margins
@@ -146,7 +148,7 @@ impl Ladder {
         };
         let elsewhere: [&[_]; 2] = [&near, &far];
         let design = || FeedbackDesign::within_margins(model, &middle, &elsewhere, &settings);
-        Ok(match *model == self.believed {
+        Ok(match *model == self.assumed_model {
             true => self.first_design.get(design)?,
             false => design()?,
         })
@@ -162,20 +164,20 @@ impl Ladder {
         self.repeated.push(Repeated {
             motion: motion.clone(),
             frozen: None,
-            learned: LearnedMove::new(self.believed.period, &settings)?,
+            learned: LearnedMove::new(self.assumed_model.period, &settings)?,
         });
         Ok(self.repeated.len() - 1)
     }
 }
 
-/// The state feedback around a plan of what is believed.
+/// The state feedback around a plan of the model.
 ///
 /// # Errors
-/// [`PipelineError`] where the axis has none within the margins.
-pub fn believed_feedback(predictors: &Predictors) -> Result<Feedback, PipelineError> {
-    let mut ladder = Ladder::new(predictors, Rungs::default())?;
-    let believed = ladder.believed;
-    ladder.feedback(&believed)
+/// [`PipelineError`] if the axis has none within the margins.
+pub fn assumed_feedback(predictors: &Predictors) -> Result<Feedback, PipelineError> {
+    let mut strategy = PlanStrategy::new(predictors, PlanOptions::default())?;
+    let assumed_model = strategy.assumed_model;
+    strategy.feedback(&assumed_model)
 }
 
 /// Whether a feedback designed for one model holds for another: well inside the shares of
@@ -203,7 +205,7 @@ fn same(a: &dyn Motion, b: &dyn Motion) -> bool {
         })
 }
 
-impl Beside {
+impl ResidualModel {
     /// Learns from a move; what the residual explained of it before, where that could be told.
     /// `alone` are the parameters without it, which have not learned of the move yet.
     fn learn(&mut self, record: &[Sample], alone: &Adaptation) -> Option<f64> {
@@ -235,17 +237,17 @@ impl Beside {
     }
 }
 
-impl Strategy for Ladder {
+impl Strategy for PlanStrategy {
     fn compensator(
         &mut self,
         next: &NextMove,
     ) -> Result<Box<dyn Compensator + Send>, PipelineError> {
         let mut next = next.clone();
         let (mut model, mut residual) = self.model();
-        if self.rungs.repetition {
+        if self.options.repetition {
             let made = self.repeated.len();
             let now = self.repeats(&next.motion)?;
-            if now < made || !self.rungs.adaptation {
+            if now < made || !self.options.adaptation {
                 // Beside one model: from its first repetition on where that is adapted.
                 let repeated = &mut self.repeated[now];
                 (model, residual) = repeated.frozen.get_or_insert((model, residual)).clone();
@@ -254,7 +256,7 @@ impl Strategy for Ladder {
             self.now = Some(now);
         }
         let plan = plan(&model, &next, &self.left)?.with_residual(residual);
-        if !self.rungs.feedback {
+        if !self.options.feedback {
             return Ok(Box::new(self.left.watching(plan, |plan| plan.planned())));
         }
         let law = PlanWithFeedback::new(plan, self.feedback(&model)?);
@@ -285,7 +287,7 @@ impl Strategy for Ladder {
                 f64::from(u8::from(refused.is_some())),
             );
             if let Some(refused) = refused {
-                tracing::warn!("nothing learned of this move: {refused}");
+                tracing::warn!("nothing learned from this move: {refused}");
             }
             let used = residual.filter(|beside| beside.learner.model().is_some());
             let told = used.map_or(&*adaptation, |beside| &beside.adaptation);

@@ -1,9 +1,9 @@
-//! Where friction hangs on what a measured motion does not tell.
+//! Samples at which friction depends on motion that the sensor does not resolve.
 //!
 //! Close to a reversal, and where an axis sticks and slips, friction depends on a motion that is
-//! finer than the noise of its sensor, or faster than the low-pass. How much shows where the
-//! motion is measured once more: with the same noise added, behind the same low-pass, friction
-//! comes out otherwise where it hangs on these, and the same elsewhere (simulation and
+//! finer than the noise of its sensor, or faster than the low-pass. To find out how
+//! much, the motion is measured once more: with the same noise added, behind the same low-pass,
+//! friction comes out differently where it depends on these, and the same elsewhere (simulation and
 //! extrapolation: Cook, Stefanski, J. Am. Stat. Assoc. 89 (1994) 1314,
 //! doi:10.1080/01621459.1994.10476871).
 
@@ -39,9 +39,9 @@ pub(super) struct Remeasured<'a> {
 }
 
 impl Remeasured<'_> {
-    /// By how much that changes the friction at the load, RMS, sample by sample, behind the
+    /// Change of the friction at the load by that, RMS, sample by sample, behind the
     /// `filter` of the comparison, N or N·m.
-    pub fn unsure(&self, filter: &LowPass) -> Vec<f64> {
+    pub fn friction_scatter(&self, filter: &LowPass) -> Vec<f64> {
         let friction = self.axis.friction.share();
         let lever = friction.lever(self.axis.travel_per_radian());
         let own = behind_a_spring(&friction.law, self.spring, lever);

@@ -1,4 +1,4 @@
-//! What plans believe of an axis with effects, against formulas written down here, and what
+//! What plans assume of an axis with effects, against formulas written down here, and what
 //! such a plan leaves on the machine that has them.
 
 use axis_sim::effects::{ActiveEffect, Effect};
@@ -19,13 +19,13 @@ fn with(axis: &Axis, effects: &[(&str, &[f64])]) -> Axis {
     axis
 }
 
-/// Force of the believed friction at a steady speed of the load.
+/// Force of the assumed friction at a steady speed of the load.
 fn steady(model: &DriveModel, speed: f64) -> f64 {
     model.friction.steady_state(speed / model.lever) / model.lever
 }
 
 #[test]
-fn an_effect_that_is_a_number_of_a_part_is_believed_as_if_the_file_said_it() {
+fn an_effect_that_is_a_number_of_a_part_is_assumed_as_if_the_file_said_it() {
     let lever = 0.010 / std::f64::consts::TAU;
     let more = 0.0003 / (std::f64::consts::PI / 30.0) + 8000.0 * lever * lever;
     let told = changed(
@@ -95,7 +95,7 @@ fn steady_friction_is_the_mean_of_both_directions_of_what_is_there() {
 
 /// As a search gives it: dry friction that the bristle has no more, and Maxwell's slip of its level.
 #[test]
-fn friction_with_a_memory_is_believed_by_its_level() {
+fn friction_with_a_memory_is_assumed_by_its_level() {
     let bare = axis(PRINTED);
     let level = 0.5 * bare.friction.law.parameters().coulomb
         / bare.friction.lever(bare.travel_per_radian());
@@ -115,7 +115,7 @@ fn friction_with_a_memory_is_believed_by_its_level() {
 }
 
 #[test]
-fn a_load_along_the_stroke_is_believed_where_it_is() {
+fn a_load_along_the_stroke_is_assumed_where_it_is() {
     let bare = axis(PRINTED);
     let effects: [(&str, &[f64]); 2] = [("constant-load", &[-40.0]), ("spring-force", &[600.0])];
     let [own, model] = [bare.clone(), with(&bare, &effects)].map(|a| a.drive_model().unwrap());
@@ -135,7 +135,7 @@ fn a_load_along_the_stroke_is_believed_where_it_is() {
 }
 
 #[test]
-fn a_wave_of_the_transmission_is_believed_and_planned_for() {
+fn a_wave_of_the_transmission_is_assumed_and_planned_for() {
     let bare = axis(PRINTED);
     let waves: [(&str, &[f64]); 3] = [
         ("kinematic-error-harmonic", &[2e-6, 7.0, 0.4]),
@@ -184,7 +184,7 @@ fn effects_that_leave_less_than_no_friction_are_refused() {
 }
 
 /// Greatest tracking error along the axis' first trajectory, without a plan or with one.
-fn greatest(closed: &ClosedLoop, believed: Option<&DriveModel>) -> f64 {
+fn greatest(closed: &ClosedLoop, assumed_model: Option<&DriveModel>) -> f64 {
     let axis = closed.axis();
     let motion = axis.plan(&axis.trajectories[0]).unwrap();
     let targets = |k: usize| {
@@ -197,7 +197,7 @@ fn greatest(closed: &ClosedLoop, believed: Option<&DriveModel>) -> f64 {
     };
     let mut most = 0.0_f64;
     let see = |cycle: &axis_sim::Cycle| most = most.max(cycle.error().abs());
-    match believed {
+    match assumed_model {
         None => closed.run(&motion, &mut NoCompensation, see),
         Some(model) => {
             let mut plan = Plan::new(model, &PlanSettings::default(), targets).unwrap();
@@ -224,7 +224,7 @@ fn a_plan_that_is_told_what_was_found_does_as_well_as_on_the_machine_of_the_file
         let [as_filed, changed] = [&bare, &machine].map(|axis| ClosedLoop::new(axis).unwrap());
         let none = greatest(&changed, None);
         let [untold, told] =
-            [&own, &model].map(|believed| greatest(&changed, Some(believed)) / none);
+            [&own, &model].map(|assumed_model| greatest(&changed, Some(assumed_model)) / none);
         let ideal = greatest(&as_filed, Some(&own)) / greatest(&as_filed, None);
         println!("{name}: {untold:.4} untold, {told:.4} told, {ideal:.4} as filed");
         assert!(

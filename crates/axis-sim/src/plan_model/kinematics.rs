@@ -1,4 +1,4 @@
-//! What of a transmission's errors a plan foresees: one wave over the motor's turn.
+//! What of a transmission's errors a plan predicts: one wave over the motor's turn.
 
 use std::f64::consts::TAU;
 

@@ -1,4 +1,4 @@
-//! What a compensator may believe of an axis: its parts and effects as a feed-forward sees them.
+//! What a compensator may assume of an axis: its parts and effects as a feed-forward sees them.
 
 mod friction;
 mod kinematics;
@@ -22,7 +22,7 @@ use crate::plant::Start;
 /// Why no plan can be made of an axis.
 #[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum BeliefError {
+pub enum PlanModelError {
     /// The axis cannot have one of its effects.
     #[error(transparent)]
     Setup(#[from] SetupError),
@@ -75,8 +75,8 @@ impl Axis {
     /// a learned shift of the position and the torque only.
     ///
     /// # Errors
-    /// [`BeliefError`] where no plan can be made from these parts and effects.
-    pub fn drive_model(&self) -> Result<DriveModel, BeliefError> {
+    /// [`PlanModelError`] if no plan can be made from these parts and effects.
+    pub fn drive_model(&self) -> Result<DriveModel, PlanModelError> {
         let (axis, hooks) = self.followed(|p| !p.nature.is_order())?;
         let (_, with_waves) = self.followed(|_| true)?;
         axis.planned(&hooks, &with_waves)
@@ -86,7 +86,7 @@ impl Axis {
     /// effects.
     ///
     /// # Errors
-    /// [`SetupError`] where an effect does not fit the axis.
+    /// [`SetupError`] if an effect does not fit the axis.
     pub fn planned_mechanism(&self) -> Result<Part<dyn Mechanism>, SetupError> {
         Ok(self.followed(|_| true)?.0.mechanism)
     }
@@ -108,7 +108,7 @@ impl Axis {
 
     /// The plan's model of these parts, loaded by `hooks`; a wave of the transmission is among
     /// `with_waves`. Those of a load are finer than a plan's stroke.
-    fn planned(&self, hooks: &Hooks, with_waves: &Hooks) -> Result<DriveModel, BeliefError> {
+    fn planned(&self, hooks: &Hooks, with_waves: &Hooks) -> Result<DriveModel, PlanModelError> {
         let travel = self.travel_per_radian();
         let (drive, delay) = self.actuator.inverse(travel);
         let reach = self.mechanism.reach();

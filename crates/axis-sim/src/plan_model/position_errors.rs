@@ -57,7 +57,7 @@ impl Axis {
     /// What its effects do that depends on the position alone.
     ///
     /// # Errors
-    /// [`SetupError`] where an effect does not fit the axis.
+    /// [`SetupError`] if an effect does not fit the axis.
     pub fn position_errors(&self) -> Result<PositionErrors, SetupError> {
         let (axis, hooks) = self.with_effects()?;
         Ok(PositionErrors {

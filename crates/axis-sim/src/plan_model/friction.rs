@@ -61,7 +61,7 @@ impl Added<'_> {
 /// 1/e of the whole at the speed at which both together are.
 ///
 /// # Errors
-/// [`LugreError`] where less than no friction is left.
+/// [`LugreError`] if less than no friction is left.
 pub(super) fn with_effects(axis: &Axis, hooks: &Hooks) -> Result<LuGre, LugreError> {
     let own = axis.friction.law;
     let added = Added {
