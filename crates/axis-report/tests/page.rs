@@ -305,18 +305,16 @@ fn figures_are_shown_as_written() {
     ];
     let table = Table::new("t", ["", "a", "b", "c", "d", "e", "f"]).row(row);
     let html = render(&Page::new("p").section(Section::new("s").table(table))).unwrap();
-    for shown in [
-        "0.00",
-        "\u{2212}1234.5",
-        "\u{2212}1.7·10⁻⁵",
-        "2.0",
-        "–",
-        "\u{2212}12.3 µm",
+    for (column, shown) in [
+        ("a", "0.00"),
+        ("b", "\u{2212}1234.5"),
+        ("c", "\u{2212}1.7·10⁻⁵"),
+        ("d", "2.0"),
+        ("e", "–"),
+        ("f", "\u{2212}12.3 µm"),
     ] {
-        assert!(
-            html.contains(&format!("<td class=\"n\">{shown}</td>")),
-            "{shown}"
-        );
+        let cell = format!("<td class=\"n\" data-label=\"{column}\">{shown}</td>");
+        assert!(html.contains(&cell), "{shown}");
     }
 }
 

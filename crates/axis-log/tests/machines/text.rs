@@ -150,7 +150,7 @@ fn a_row_that_is_there_twice_is_taken_once_and_another_at_its_time_refused() {
     let mapped = mapping(&[("time", "t_s", 1.0), ("x", "position_m", 1.0)], None);
     let log = given("log.csv", text("0.2,6,b")).mapped(&mapped);
     assert_eq!(log.log.channel("position_m").unwrap(), [5.0, 6.0, 7.0]);
-    assert!(told(&log).contains("1 row(s) that are there twice, the first at t = 0.2000 s"));
+    assert!(told(&log).contains("1 row(s) occur twice, the first at t = 0.2000 s"));
     // Also where a column that is not read differs: the stamp is wrong then.
     for second in ["0.2,6.5,b", "0.2,6,c"] {
         let path = given("log.csv", text(second));

@@ -35,9 +35,9 @@ const fn case(
 const CASES: &[Case] = &[
     // Sensors where they cannot be.
     case(["joint.toml", "[sensors.motor]", "[sensors.load]\nkind = \"scale\"\n[sensors.motor]"], "kind = \"scale\"", "sensors.load.kind",
-        &["\"scale\"", "a sensor in m, where the position is in rad", "valid: encoder, resolver"]),
+        &["\"scale\"", "a sensor in m, but the position is in rad", "valid: encoder, resolver"]),
     case(["rack.toml", "kind = \"scale\"\nresolution_um = 0.1\nsignal_period_um = 40\nperiodic_error_um = 0.2", "kind = \"encoder\"\nlines = 2048"],
-        "kind = \"encoder\"", "sensors.load.kind", &["a sensor in rad, where the position is in m", "valid: scale"]),
+        "kind = \"encoder\"", "sensors.load.kind", &["a sensor in rad, but the position is in m", "valid: scale"]),
     case(["linear-motor.toml", "[stroke]", "[sensors.motor]\nkind = \"encoder\"\nlines = 1024\n[stroke]"], "[sensors.load]", "sensors",
         &["\"linear-motor\" moves as one with it", "[sensors.load] alone"]),
     // Filters above what a sampled loop can hold.

@@ -94,7 +94,7 @@ fn what_is_missing_from_an_export_is_told() {
         ),
         (
             export("Name\tA", "0,1,5\n1,2,5\n").replace('\t', ","),
-            "line 7: 3 fields, the header has 2: where the decimal mark is a comma",
+            "line 7: 3 fields, the header has 2: if the decimal mark is a comma",
         ),
         (
             export("Name\tA b\tc", "0\t1\t2\n").replace('\t', " "),
