@@ -43,7 +43,7 @@
 //! The machine that follows the motion: no axis, stroke, control period, controller or error
 //! enters here. Callers compare [`Extremes`] with their own stroke and sample at their own
 //! instants. There is one axis and rest at both ends of each step: no blending between moves, no
-//! synchronisation of axes, no start from a state in motion.
+//! synchronisation of axes. A start in motion is what [`VelocityChange`] takes: it ends at a velocity, not at a position.
 //!
 //! # Scalar
 //! All motions are generic over their scalar, planning included: `f64` where none is named, `f32`
@@ -75,6 +75,7 @@ mod real;
 mod scurve;
 mod step;
 mod sweep;
+mod velocity_change;
 
 pub use error::TrajectoryError;
 pub use extremes::Extremes;
@@ -87,6 +88,7 @@ pub use real::Real;
 pub use scurve::{SCurve, Segment};
 pub use step::Step;
 pub use sweep::Sweep;
+pub use velocity_change::{VelocityChange, VelocityLimits};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

@@ -6,3 +6,4 @@ mod limits;
 mod program;
 mod scurve;
 mod single_precision;
+mod velocity_change;
