@@ -29,12 +29,13 @@ fn stops_are_those_of_closed_forms() {
     let stop = VelocityChange::stop(&state(0.0, 0.1, 0.0), &limits).unwrap();
     assert!(close(stop.duration(), 0.1) && close(stop.end().position, 0.005));
     // Speeding up at 2 m/s² with a velocity that falls to zero just as the acceleration does:
-    // v = −a²/2J; the way is that of a cubic, −a³/6J².
+    // v = −a²/2J; the distance is that of a cubic, −a³/6J².
     let stop = VelocityChange::stop(&state(0.0, -0.05, 2.0), &limits).unwrap();
     assert!(close(stop.duration(), 0.05) && close(stop.end().position, -8.0 / 9600.0));
-    // Beyond the limit: 6 to 2 m/s² takes 0.1 s and gains 0.4 m/s, then 2 to 0 takes 0.05 s and gains 0.05 m/s.
-    let change = VelocityChange::plan(&state(0.0, 0.0, 6.0), 0.45, &limits).unwrap();
-    assert!(close(change.duration(), 0.15));
+    // Beyond the limit: 6 to 2 m/s² takes 0.1 s and gains 0.4 m/s; 0.1 s at 2 m/s² gains 0.2 m/s, and 2 to 0 takes
+    // 0.05 s and gains 0.05 m/s.
+    let change = VelocityChange::plan(&state(0.0, 0.0, 6.0), 0.65, &limits).unwrap();
+    assert!(close(change.duration(), 0.25));
     // Nothing to do.
     let still = VelocityChange::stop(&state(3.0, 0.0, 0.0), &limits).unwrap();
     assert_eq!((still.duration(), still.at(0.0).position), (0.0, 3.0));

@@ -98,7 +98,7 @@ fn what_is_missing_from_an_export_is_told() {
         ),
         (
             export("Name\tA b\tc", "0\t1\t2\n").replace('\t', " "),
-            "line 5: blanks separate the fields, and names have blanks",
+            "line 5: spaces separate the fields and also stand in names",
         ),
         (
             export(&format!("Name{}", "\tA".repeat(5000)), "0\t1\n"),
