@@ -87,7 +87,7 @@ struct Piece<T> {
 /// use trajectories::{Setpoint, VelocityChange, VelocityLimits};
 ///
 /// // Brakes harder (4 m/s²) than it speeds up (2 m/s²).
-/// let limits = VelocityLimits::new(-4.0, 2.0, 40.0)?;
+/// let limits = VelocityLimits::<f64>::new(-4.0, 2.0, 40.0)?;
 /// let start = Setpoint { position: 1.0, velocity: 0.8, ..Setpoint::default() };
 /// let stop = VelocityChange::stop(&start, &limits)?;
 /// assert!((stop.duration() - (0.8 / 4.0 + 4.0 / 40.0)).abs() < 1e-15);
