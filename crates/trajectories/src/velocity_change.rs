@@ -241,7 +241,8 @@ impl<T: Real> VelocityChange<T> {
                 ..self.end
             };
         }
-        if !(t >= T::ZERO) {
+        let has_begun = t >= T::ZERO;
+        if !has_begun {
             return Setpoint {
                 jerk: T::ZERO,
                 ..self.start

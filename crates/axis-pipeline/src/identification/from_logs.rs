@@ -16,12 +16,11 @@ use super::{presliding, varying};
 ///
 /// Of each log the motion is read (position or speed of load or motor) and the motor's torque (its
 /// current, its command, or a measured torque); `axis` gives inertia, transmission, torque
-/// constant, loads, and the coordinate of the friction law. Its friction is not looked at,
-/// except for the bristles where the logs show no small motion, which is told.
+/// constant, loads, and the coordinate of the friction law. Its friction is not read,
+/// except for the bristles if the logs show no small motion, which is reported.
 ///
-/// 1. Stretches of constant speed, both directions, give the steady-state curve. Where they show
-/// fewer
-///    than six different speeds, short stretches of slowly changing speed are taken as well.
+/// 1. Stretches of constant speed, both directions, give the steady-state curve. If they show
+///    fewer than six different speeds, short stretches of slowly changing speed are taken as well.
 /// 2. Small motions about a standstill give the bristles' stiffness and damping.
 ///
 /// # Errors
