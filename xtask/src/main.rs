@@ -12,7 +12,7 @@ use clap::{Parser, Subcommand};
 use feed_axis::cli::{Global, finish, parse, start};
 use feed_axis::commands::export::drive;
 
-use commands::{bench, crates, independent, layers, names, peers_cases, publish, torture};
+use commands::{bench, crates, independent, layers, names, peers_cases, publish, torture, tuning};
 use jobs::Job;
 
 /// Feed axes: the commands of feed-axis, and those for its developers.
@@ -42,6 +42,8 @@ enum Command {
     PeersCases(peers_cases::Options),
     /// Measure the speed of every hot path (docs/performance.md)
     Bench(bench::Options),
+    /// Tune the example axes, and compare with the figures of an independent search
+    Tuning(tuning::Options),
     /// Try damaged inputs and disturbed runs, and check how they end
     Torture(torture::Options),
     /// Check that every crate depends strictly downward
@@ -63,6 +65,7 @@ fn main() -> ExitCode {
         Command::Independent(options) => independent::command(options),
         Command::PeersCases(options) => peers_cases::command(options),
         Command::Bench(options) => bench::command(options),
+        Command::Tuning(options) => tuning::command(options),
         Command::Torture(options) => torture::command(options),
         Command::Layers => layers::command(),
         Command::Names => names::command(),

@@ -104,7 +104,10 @@ pub use drive_terms::{
 pub use error::CompensatorError;
 pub use estimator::{MotionEstimate, MotionEstimator, NoiseGains, ObserverGains};
 #[cfg(feature = "design")]
-pub use feedback::{DesignError, FeedbackDesign, FeedbackSettings, Margins, Variation};
+pub use feedback::{
+    DesignError, DriveSituation, FeedbackDesign, FeedbackSettings, Margins, SampledDrive,
+    SampledResponse, Variation,
+};
 pub use feedback::{
     Deviations, Feedback, Gains as FeedbackGains, MOST_MEASURED, MOST_STATES, Node as FeedbackNode,
     PlanWithFeedback, States,

@@ -30,6 +30,9 @@ pub struct Passage<T = f64> {
     /// Whether the position controller goes by another position than
     /// [`crate::Sample::position`]: the motor's beside a sensor at the load, or both blended.
     pub other_position: bool,
+    /// Where that is both blended: the low pass of the load's position less the motor's, run with
+    /// the position controller, that is added to the motor's.
+    pub blend: Option<DriveFilter<T>>,
 }
 
 impl<T> Default for Passage<T> {
@@ -41,6 +44,7 @@ impl<T> Default for Passage<T> {
             speed_of_position: false,
             command: [None, None],
             other_position: false,
+            blend: None,
         }
     }
 }
@@ -61,6 +65,7 @@ impl<T: Scalar> Passage<T> {
             speed_of_position: self.speed_of_position,
             command: self.command.map(|f| f.map(filter)),
             other_position: self.other_position,
+            blend: self.blend.map(filter),
         }
     }
 }

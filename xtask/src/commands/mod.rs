@@ -11,3 +11,4 @@ pub mod names;
 pub mod peers_cases;
 pub mod publish;
 pub mod torture;
+pub mod tuning;

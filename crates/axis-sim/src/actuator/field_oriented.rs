@@ -103,6 +103,9 @@ const DELAY: Key = quantity("command_delay", &TIME, 0.0, 0.1)
 
 /// Half a control period: that for which a voltage is held, in its mean.
 const HELD: f64 = 0.5;
+/// Control periods that the sum of small delays is at least taken for: k_p = 0.4 L/T then, which a
+/// winding of half the inductance still bears.
+const SHORTEST: f64 = 1.25;
 const CURRENT_DELAY: Key = number("current_delay_periods", 0.0, 8.0).or(1.5).counted();
 
 /// Field weakening is on where its gain is given.
@@ -247,6 +250,26 @@ impl Actuator for FieldOriented {
             late: self.late,
         };
         (field_oriented, self.delay)
+    }
+
+    /// k_p = L/(2 T_σ) and k_i = k_p R/L: the integral takes away the winding's own time, and the
+    /// loop that is left is damped by 1/√2 (C. Kessler, "Über die Vorausberechnung optimal
+    /// abgestimmter Regelkreise III", Regelungstechnik 3 (1955) 40–49). T_σ is the delay of the
+    /// voltage with its hold, and at least [`SHORTEST`] periods, as no winding is known to better
+    /// than that asks for.
+    fn with_magnitude_optimum(&self, values: &Values, period: f64) -> Option<Values> {
+        let motor = self.motor.parameters();
+        let lag = (self.late + HELD).max(SHORTEST) * period;
+        let mut values = values.clone();
+        let axes = [
+            (motor.inductance_d, D_PROPORTIONAL.name, D_INTEGRAL.name),
+            (motor.inductance_q, Q_PROPORTIONAL.name, Q_INTEGRAL.name),
+        ];
+        for (inductance, proportional, integral) in axes {
+            values.set(proportional, 0.5 * inductance / lag);
+            values.set(integral, 0.5 * motor.resistance / lag);
+        }
+        Some(values)
     }
 
     fn runs_at(&self, period: f64) -> Result<(), PartError> {

@@ -13,7 +13,7 @@ use compensator::Drive;
 use foc_pmsm::Dq;
 
 use crate::cycle::Measured;
-use crate::part::{PartError, PartKind};
+use crate::part::{PartError, PartKind, Values};
 
 /// All kinds of actuator, one line each.
 pub const ACTUATORS: &[&PartKind<dyn Actuator>] = &[
@@ -132,6 +132,13 @@ pub trait Actuator: fmt::Debug + Send + Sync {
             bandwidth: f64::INFINITY,
         };
         (lag, 0.0)
+    }
+
+    /// The values of an actuator of this kind whose current controllers follow the magnitude
+    /// optimum where they run once in each `period` (s), all else as in `values`, those that it is
+    /// made from. None where it has no current controllers.
+    fn with_magnitude_optimum(&self, _values: &Values, _period: f64) -> Option<Values> {
+        None
     }
 
     /// Whether its own controllers are stable where they run once in each period, s.

@@ -18,7 +18,7 @@ use foc_pmsm::{Pi, PiParameters, PiState};
 
 use super::filter::Filter;
 use super::output::Output;
-use super::{Control, Controller, Demand, Situation};
+use super::{CascadeGains, Control, Controller, Demand, Situation};
 use crate::SixDigits;
 use crate::actuator::{Effort, Surroundings};
 use crate::cycle::Measured;
@@ -198,6 +198,30 @@ impl Control for Cascade {
         })
     }
 
+    fn retuned(&self, values: &Values, gains: &CascadeGains, travel: f64) -> Option<Values> {
+        let mut values = values.clone();
+        match self.position {
+            PositionGain::AtMotor(_) => values.set("position_gain", gains.position / travel),
+            PositionGain::AtLoad(_) => values.set("kv", gains.position),
+        }
+        values.set("speed_proportional", gains.speed);
+        match (values.optional("speed_integral_time"), gains.speed_integral) {
+            (Some(_), integral) if integral > 0.0 => {
+                values.set("speed_integral_time", gains.speed / integral);
+            }
+            (_, integral) => values.set("speed_integral", integral),
+        }
+        if let Some(fed) = gains.acceleration_feedforward {
+            values.set("acceleration_feedforward", fed);
+        }
+        if let Some([frequency, damping, depth]) = gains.notch {
+            values.set("notch", frequency);
+            values.set("notch_damping", damping);
+            values.set("notch_depth", depth);
+        }
+        Some(values)
+    }
+
     fn effort(&self) -> Option<Effort> {
         self.effort
     }
@@ -219,13 +243,7 @@ impl Control for Cascade {
         })
         .map_err(|e| PartError::together(e, "other control parameters"))?;
         let [speed_filter, command_filter, notch] = self.filters(speed_period)?;
-        let blend = match self.feedback {
-            Feedback::Blend(frequency) => Some(Filter::low_pass(
-                frequency,
-                on.period * f64::from(position_every),
-            )?),
-            _ => None,
-        };
+        let blend = self.blend(on.period * f64::from(position_every))?;
         Ok(Box::new(State {
             position_gain: match self.position {
                 PositionGain::AtMotor(gain) => gain,
@@ -264,6 +282,15 @@ impl Cascade {
         ])
     }
 
+    /// The low pass of the load's position less the motor's, for a position loop with that
+    /// period, s; none where only one of both counts.
+    fn blend(&self, period: f64) -> Result<Option<Filter>, PartError> {
+        match self.feedback {
+            Feedback::Blend(frequency) => Filter::low_pass(frequency, period).map(Some),
+            _ => Ok(None),
+        }
+    }
+
     /// What lies between a correction and the command. Rates and filters that the period
     /// does not go with are refused at the start.
     fn passage(&self, period: f64) -> Passage {
@@ -271,12 +298,15 @@ impl Cascade {
         let filters = self.filters(period * f64::from(speed_every));
         let [speed, low_pass, notch] = filters.unwrap_or_default();
         let law = |filter: Option<Filter>| filter.map(|filter| filter.law());
+        let position_every = every("position_rate", self.position_rate, period).unwrap_or(1);
+        let blend = self.blend(period * f64::from(position_every));
         Passage {
-            position_every: every("position_rate", self.position_rate, period).unwrap_or(1),
+            position_every,
             speed_every,
             speed: law(speed),
             command: [law(low_pass), law(notch)],
             other_position: matches!(self.feedback, Feedback::Blend(_)),
+            blend: law(blend.unwrap_or_default()),
             ..Passage::default()
         }
     }

@@ -15,7 +15,7 @@ use trajectories::Setpoint;
 use crate::actuator::{Effort, Surroundings};
 use crate::cycle::Measured;
 use crate::mechanism::{Freedom, Mechanism};
-use crate::part::{Key, PartError, PartKind};
+use crate::part::{Key, PartError, PartKind, Values};
 
 /// All kinds of control, one line each.
 pub const CONTROLS: &[&PartKind<dyn Control>] = &[&cascade::KIND, &p_p::KIND, &pid::KIND];
@@ -45,6 +45,22 @@ pub struct Demand {
     pub saturated: bool,
 }
 
+/// CascadeGains of a position controller over a speed controller, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CascadeGains {
+    /// Kv, speed of the load per position error, 1/s.
+    pub position: f64,
+    /// Command per speed error of the motor, unit of the command per rad/s.
+    pub speed: f64,
+    /// Command per angle error of the motor, unit of the command per rad. A control without an
+    /// integral passes it over.
+    pub speed_integral: f64,
+    /// Command per acceleration of the load; none: as it is.
+    pub acceleration_feedforward: Option<f64>,
+    /// Frequency (Hz), damping and depth of a notch of the command; none: as it is.
+    pub notch: Option<[f64; 3]>,
+}
+
 /// A control, immutable.
 pub trait Control: fmt::Debug + Send + Sync {
     /// Kv of the position loop on a load that moves by `travel` a radian: speed per
@@ -72,6 +88,13 @@ pub trait Control: fmt::Debug + Send + Sync {
     /// It as corrections pass through it, run once in each `period` (s) on a load that moves
     /// by `travel` a radian. None if there is no speed loop to pass through.
     fn cascade(&self, _travel: f64, _period: f64) -> Option<Cascade> {
+        None
+    }
+
+    /// The values of a control of this kind with other gains, what `gains` leaves out as in
+    /// `values`, those that it is made from, on a load that moves by `travel` a radian. None where
+    /// it is no position controller over a speed controller.
+    fn retuned(&self, _values: &Values, _gains: &CascadeGains, _travel: f64) -> Option<Values> {
         None
     }
 

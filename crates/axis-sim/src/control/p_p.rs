@@ -11,11 +11,11 @@ use std::sync::Arc;
 use compensator::{Cascade, Passage};
 
 use super::output::Output;
-use super::{Control, Controller, Demand, Situation};
+use super::{CascadeGains, Control, Controller, Demand, Situation};
 use crate::actuator::{Effort, Surroundings};
 use crate::cycle::Measured;
 use crate::part::units::{SPEED_GAIN, VELOCITY_GAIN};
-use crate::part::{Known, PartError, PartKind, Role, quantity};
+use crate::part::{Known, PartError, PartKind, Role, Values, quantity};
 
 pub(super) static KIND: PartKind<dyn Control> = PartKind {
     name: "p-p",
@@ -61,6 +61,13 @@ impl Control for PP {
                 ..Passage::default()
             },
         })
+    }
+
+    fn retuned(&self, values: &Values, gains: &CascadeGains, travel: f64) -> Option<Values> {
+        let mut values = values.clone();
+        values.set("position_gain", gains.position);
+        values.set("speed_gain", gains.speed / travel);
+        Some(values)
     }
 
     fn starts_in_motion(&self) -> bool {

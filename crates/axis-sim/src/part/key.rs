@@ -143,6 +143,11 @@ impl Key {
         self
     }
 
+    /// Whether the parameter has that role.
+    pub fn has_role(&self, role: Role) -> bool {
+        self.role == Some(role)
+    }
+
     /// Its name, without a unit.
     pub fn name(&self) -> &'static str {
         self.name

@@ -310,11 +310,7 @@ impl<P: ?Sized> Part<P> {
     ///
     /// # Errors
     /// As [`Part::change`].
-    pub(crate) fn change_role(
-        &mut self,
-        role: Role,
-        to: impl Fn(f64) -> f64,
-    ) -> Result<(), PartError> {
+    pub fn change_role(&mut self, role: Role, to: impl Fn(f64) -> f64) -> Result<(), PartError> {
         let keys = self.kind.keys;
         self.change(|values| {
             for key in keys.iter().filter(|key| key.role == Some(role)) {

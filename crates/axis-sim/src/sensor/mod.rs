@@ -18,6 +18,16 @@ pub trait Sensor: fmt::Debug + Send + Sync {
     /// What it measures: a position along a line, or an angle.
     fn freedom(&self) -> Freedom;
 
+    /// Step of what it shows, m or rad; 0 for none.
+    fn resolution(&self) -> f64 {
+        0.0
+    }
+
+    /// Time by which what it shows is late, s.
+    fn delay(&self) -> f64 {
+        0.0
+    }
+
     /// The sensor at work, sampled every `period` seconds. `noise` is the seed of its noise;
     /// without one it has neither noise nor steps, but all that repeats and delays.
     fn start(&self, period: f64, noise: Option<u64>) -> Box<dyn Sensing>;

@@ -32,6 +32,14 @@ impl Sensor for Signal {
         self.freedom
     }
 
+    fn resolution(&self) -> f64 {
+        self.resolution
+    }
+
+    fn delay(&self) -> f64 {
+        self.delay
+    }
+
     fn start(&self, period: f64, noise: Option<u64>) -> Box<dyn Sensing> {
         let exact = Self {
             resolution: 0.0,

@@ -38,7 +38,10 @@ use axis_scalar::Scalar;
 use crate::plan::Planned;
 use crate::{Correction, Sample};
 #[cfg(feature = "design")]
-pub use design::{DesignError, FeedbackDesign, FeedbackSettings, Margins, Variation};
+pub use design::{
+    DesignError, DriveSituation, FeedbackDesign, FeedbackSettings, Margins, SampledDrive,
+    SampledResponse, Variation,
+};
 pub use gains::{Gains, Node, States};
 use gains::{add, dot};
 pub use with_plan::PlanWithFeedback;

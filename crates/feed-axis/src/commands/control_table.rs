@@ -7,6 +7,8 @@ use discrepancy::controller::{ControllerEstimate, Gain};
 use miette::{IntoDiagnostic, Result, miette};
 use toml_edit::{DocumentMut, Item, Table, Value};
 
+use super::tune::TunedKey;
+
 /// Half width of an interval, as a share, up to which a gain is written as exact.
 const EXACT: f64 = 1e-3;
 /// Greatest tolerance that an axis file takes.
@@ -84,6 +86,49 @@ pub fn with_control(
         set(table(&mut document, "simulation")?, "step_us", step.into());
     }
     Ok(document.to_string())
+}
+
+/// The axis file's text with what is other in `tuned`'s control and actuator than in `axis`', and
+/// the keys that were set.
+pub fn with_tuned(text: &str, axis: &Axis, tuned: &Axis) -> Result<(String, Vec<TunedKey>)> {
+    let mut document: DocumentMut = text.parse().into_diagnostic()?;
+    // A file of schema 1 has the current controllers among the others.
+    let of_actuator = match document.contains_key("actuator") {
+        true => "actuator",
+        false => "control",
+    };
+    let mut all = Vec::new();
+    let own = |before: Option<f64>, after: Option<f64>| after.filter(|_| before != after);
+    for key in tuned.control.kind().keys {
+        let [before, after] = [axis, tuned].map(|a| a.control.values().optional(key.name()));
+        if let Some(after) = own(before, after) {
+            let (name, factor) = spelling(axis, &axis.control, key.name());
+            let value = written(after, factor, key.limits());
+            set(table(&mut document, "control")?, &name, value.into());
+            all.push(TunedKey {
+                key: name,
+                before: before.map(|before| digits(before / factor)),
+                value,
+            });
+        }
+    }
+    for key in tuned.actuator.kind().keys {
+        let [before, after] = [axis, tuned].map(|a| a.actuator.values().optional(key.name()));
+        if let Some(after) = own(before, after) {
+            let unit = axis.actuator.values().unit(key.name());
+            let factor = key.units().iter().find(|(name, _)| *name == unit);
+            let factor = factor.map_or(1.0, |(_, factor)| *factor);
+            let name = format!("{}_{unit}", key.name());
+            let value = written(after, factor, key.limits());
+            set(table(&mut document, of_actuator)?, &name, value.into());
+            all.push(TunedKey {
+                key: name,
+                before: before.map(|before| digits(before / factor)),
+                value,
+            });
+        }
+    }
+    Ok((document.to_string(), all))
 }
 
 /// The gains' own lines in `[tolerances]`; those of the controller that was there are gone.

@@ -1,5 +1,6 @@
 //! One file a command.
 
+pub(crate) mod analyse;
 pub(crate) mod campaign;
 pub(crate) mod compensate;
 mod compensate_moves;
@@ -23,6 +24,7 @@ pub mod schema;
 pub mod simulate;
 pub(crate) mod study;
 pub mod train;
+pub mod tune;
 pub(crate) mod validate;
 
 use clap::Subcommand;
@@ -58,6 +60,10 @@ pub enum Command<J: Jobs> {
     Residuals(Common),
     /// Learn the correction of a move from the log of a repetition
     Learn(learn::Options),
+    /// Margins, bandwidths and compliance of the drive's loops, over stroke, mass, friction and delay
+    Analyse(analyse::Options),
+    /// Gains of the drive's loops within limits of the sensitivity; writes an axis file
+    Tune(tune::Options),
     /// Simulate one motion, write its log and a page of figures
     Simulate(simulate::Options),
     /// Name what a model lacks, from logs of the real axis
@@ -90,6 +96,8 @@ impl<J: Jobs> Command<J> {
             Self::Report(options) => report::command(options),
             Self::Residuals(common) => residuals::command(common),
             Self::Learn(options) => learn::command(options),
+            Self::Analyse(options) => analyse::command(options),
+            Self::Tune(options) => tune::command(options),
             Self::Simulate(options) => simulate::command(options),
             Self::Discover(options) => discover::command(options),
             Self::Log(options) => log::command(options),

@@ -6,11 +6,13 @@ use axis_pipeline::summary::Summary;
 use axis_sim::Registry;
 use clap::{Args, ValueEnum};
 use discrepancy::Discovery;
+use drive_loop::LoopAnalysis;
 use miette::{IntoDiagnostic, Result};
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
 
 use super::manual;
+use super::tune::TuneFound;
 use crate::output::{note, write_whole};
 
 /// Options of `schema`.
@@ -32,6 +34,10 @@ pub enum File {
     Summary,
     /// discovery.json of `discover`
     Discovery,
+    /// What `analyse --format json` writes
+    Loops,
+    /// What `tune --format json` writes
+    Tuning,
 }
 
 impl File {
@@ -42,6 +48,8 @@ impl File {
         match self {
             Self::Axis => Registry::default().json_schema(),
             Self::Summary => generator.into_root_schema_for::<Summary>().to_value(),
+            Self::Loops => generator.into_root_schema_for::<LoopAnalysis>().to_value(),
+            Self::Tuning => generator.into_root_schema_for::<TuneFound>().to_value(),
             Self::Discovery => generator.into_root_schema_for::<Discovery>().to_value(),
         }
     }

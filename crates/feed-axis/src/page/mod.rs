@@ -6,6 +6,7 @@ pub mod compare;
 mod compensation;
 pub mod discovery;
 mod envelope;
+pub mod loops;
 mod mechanics;
 pub mod motion;
 mod network;

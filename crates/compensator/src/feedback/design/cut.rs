@@ -12,8 +12,8 @@ use std::vec::Vec;
 
 use super::Design;
 use super::drive_loops::{Commanding, phases};
-use super::hessenberg::Response;
-use super::linear::Linear;
+use super::hessenberg::SampledResponse;
+use super::linear::SampledDrive;
 use crate::model::DriveModel;
 
 /// Frequencies, evenly spread over the logarithm up to half the rate at which the loop repeats.
@@ -25,7 +25,7 @@ const MOST_CYCLES: usize = 16;
 
 /// A plant under an observer, a state feedback and the drive's loops.
 pub(super) struct Loop<'a> {
-    plant: &'a Linear,
+    plant: &'a SampledDrive,
     phases: Vec<Commanding>,
 }
 
@@ -37,7 +37,7 @@ struct Open {
 }
 
 impl<'a> Loop<'a> {
-    pub fn new(plant: &'a Linear, model: &DriveModel, design: &Design) -> Self {
+    pub fn new(plant: &'a SampledDrive, model: &DriveModel, design: &Design) -> Self {
         Self {
             plant,
             phases: phases(model, design),
@@ -148,7 +148,7 @@ impl<'a> Loop<'a> {
 }
 
 /// All periods until it repeats as one step with as many inputs and outputs.
-fn lifted(open: &Open) -> Response {
+fn lifted(open: &Open) -> SampledResponse {
     let (size, n) = (open.g.len(), open.f.len());
     let mut from_start = DMatrix::identity(size, size);
     // What each input has done to the state so far.
@@ -161,7 +161,7 @@ fn lifted(open: &Open) -> Response {
         b = f * b;
         b.set_column(i, &open.g);
     }
-    Response::new(from_start, &b, &c, d)
+    SampledResponse::new(from_start, &b, &c, d)
 }
 
 /// Least singular value of 1 + L.

@@ -6,9 +6,9 @@ use std::vec::Vec;
 
 type Number = Complex<f64>;
 
-/// x(k+1) = A x + B v, w = C x + D v.
+/// Frequency response of x(k+1) = A x + B v, w = C x + D v.
 #[derive(Clone, Debug)]
-pub(super) struct Response {
+pub struct SampledResponse {
     /// Qᵀ A Q, nought below its first subdiagonal, Qᵀ B and C Q.
     h: DMatrix<f64>,
     b: DMatrix<f64>,
@@ -16,7 +16,8 @@ pub(super) struct Response {
     d: DMatrix<f64>,
 }
 
-impl Response {
+impl SampledResponse {
+    /// Of the system with these matrices.
     pub fn new(a: DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>, d: DMatrix<f64>) -> Self {
         if a.nrows() < 2 {
             return Self {
@@ -112,7 +113,7 @@ mod tests {
             let complex = |m: &DMatrix<f64>| m.map(|v| Complex::new(v, 0.0));
             let left = DMatrix::identity(n, n) * z - complex(&a);
             let expected = complex(&d) + complex(&c) * left.lu().solve(&complex(&b)).unwrap();
-            let found = Response::new(a, &b, &c, d).at(z).unwrap();
+            let found = SampledResponse::new(a, &b, &c, d).at(z).unwrap();
             let off = (found - expected).map(|v| v.norm_sqr()).sum().sqrt();
             assert!(off < 1e-11, "{n}: {off:e}");
         }

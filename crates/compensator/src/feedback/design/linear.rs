@@ -15,7 +15,7 @@
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-use super::{DesignError, FeedbackSettings};
+use super::DesignError;
 use crate::feedback::MOST_STATES;
 use crate::model::{Drive, DriveModel, Mode};
 
@@ -38,13 +38,14 @@ pub(super) fn stribeck_damping(model: &DriveModel, modes: &[Mode]) -> f64 {
 /// Speeds, up to four Stribeck speeds, at which that is looked for.
 const SPEEDS: u32 = 100;
 
-/// An axis as a linear model may have it, off the assumed one.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Situation {
-    /// Share of bristles that follow the motion.
+/// A drive as a linear model may have it, off the one that is assumed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveSituation {
+    /// Share of bristles that follow the motion: 0 where the load slides, 1 where it sticks.
     pub sticking: f64,
-    /// Shares of the assumed load's inertia, and of σ0, σ1 and σ2.
+    /// The load's inertia, as a share of the assumed one.
     pub mass: f64,
+    /// σ0, σ1 and σ2 of the friction, as a share of the assumed ones.
     pub friction: f64,
     /// Share of σ0 and σ1 besides.
     pub bristles: f64,
@@ -52,17 +53,25 @@ pub(super) struct Situation {
     pub sliding: f64,
 }
 
-/// x(k+1) = A x + b u, y = C x. States are in units of their own; u is in units of the effort
-/// limit. The last state is the disturbance.
+/// A drive without its position and speed controllers, sampled once in each control period:
+/// x(k+1) = A x + B u, y = C x. States are in units of their own; u is in units of the effort
+/// limit. The last state is the force that acts against the load, held over a period.
 #[derive(Clone, Debug)]
-pub(super) struct Linear {
+pub struct SampledDrive {
+    /// A.
     pub a: DMatrix<f64>,
+    /// B.
     pub b: DVector<f64>,
     /// Rows: position that is measured (m), motor speed (rad/s), current (A) where measured.
     pub c: DMatrix<f64>,
-    /// Load's position and speed.
+    /// Load's position, m or rad.
     pub load: RowDVector<f64>,
+    /// Its speed, per second.
     pub load_speed: RowDVector<f64>,
+    /// Motor's angle, rad.
+    pub motor: RowDVector<f64>,
+    /// Its speed, rad/s.
+    pub motor_speed: RowDVector<f64>,
     /// Position and speed that the state feedback weighs: the load's, or the motor's as the
     /// load's if nothing else is measured, so that sensor and actuator are at one place.
     pub weighed: [RowDVector<f64>; 2],
@@ -70,13 +79,15 @@ pub(super) struct Linear {
     pub units: DVector<f64>,
 }
 
-impl Linear {
+impl SampledDrive {
+    /// The drive of `model` with these natural modes, the rigid motion first. Where
+    /// `speed_by_differences`, C's speed is the mean over the last period.
     pub fn new(
         model: &DriveModel,
         modes: &[Mode],
-        settings: &FeedbackSettings,
-        at: &Situation,
-    ) -> Result<Self, DesignError> {
+        speed_by_differences: bool,
+        at: &DriveSituation,
+    ) -> Self {
         let n = modes.len();
         let (constant, h, limit) = (model.torque_constant(), model.period, model.effort_limit);
         let cycles = model.delay / h;
@@ -87,18 +98,12 @@ impl Linear {
             Drive::FieldOriented { .. } => (1, 1),
             Drive::Lag { bandwidth, .. } => (usize::from(bandwidth.is_finite()), 0),
         };
-        let angles = usize::from(settings.speed_by_differences);
+        let angles = usize::from(speed_by_differences);
         // Voltages under way: whole periods, and the part of one more.
         let v_late = model.drive.late();
         let (v_whole, v_part) = (v_late as usize, v_late - (v_late as usize) as f64);
         let under_way = v_whole + usize::from(v_part > 0.0);
         let size = 2 * n + inner + held + under_way + late + angles + 1;
-        if size > MOST_STATES {
-            return Err(DesignError::Size {
-                states: size,
-                most: MOST_STATES,
-            });
-        }
         let flow = 2 * n + inner;
         let motor = DVector::from_iterator(n, modes.iter().map(|m| m.motor));
         let load = DVector::from_iterator(n, modes.iter().map(|m| m.load));
@@ -273,18 +278,32 @@ impl Linear {
                 if j == 2 * n { limit } else { 0.0 }
             }));
         }
-        Ok(Self {
+        Self {
             a,
             b,
             c: DMatrix::from_rows(&rows),
             weighed,
             load: load_at,
             load_speed,
+            motor: row(&motor, 0),
+            motor_speed: row(&motor, n),
             units,
-        })
+        }
     }
 
+    /// Number of states.
     pub fn size(&self) -> usize {
         self.b.len()
+    }
+
+    /// Refused where a feedback has no room for as many states.
+    pub(super) fn fits(self) -> Result<Self, DesignError> {
+        match self.size() {
+            states if states > MOST_STATES => Err(DesignError::Size {
+                states,
+                most: MOST_STATES,
+            }),
+            _ => Ok(self),
+        }
     }
 }

@@ -6,7 +6,7 @@
 //! command: its filters, and a position controller at a rate of its own.
 
 use super::cut::Loop;
-use super::linear::{Linear, Situation};
+use super::linear::{DriveSituation, SampledDrive};
 use super::{DesignError, FeedbackDesign, FeedbackSettings, STICKING};
 use crate::model::Mode;
 
@@ -103,19 +103,25 @@ impl FeedbackDesign {
         Ok(all)
     }
 
-    fn plant(&self, on: &Variation<'_>, sticking: f64) -> Result<Linear, DesignError> {
+    fn plant(&self, on: &Variation<'_>, sticking: f64) -> Result<SampledDrive, DesignError> {
         let modes = match on.modes {
             [] => &self.modes,
             modes => &self.settings.used(modes)?,
         };
-        let situation = Situation {
+        let situation = DriveSituation {
             sticking: (sticking * on.sticking).clamp(0.0, 1.0),
             mass: on.mass,
             friction: on.friction,
             bristles: 1.0,
             sliding: on.stribeck * self.stribeck,
         };
-        Linear::new(&self.model, modes, &self.settings, &situation)
+        SampledDrive::new(
+            &self.model,
+            modes,
+            self.settings.speed_by_differences,
+            &situation,
+        )
+        .fits()
     }
 
     /// Refuses a design whose margins are not those that its settings ask for, with the load

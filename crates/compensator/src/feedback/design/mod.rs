@@ -16,7 +16,9 @@ use super::gains::{Gains, Node, States};
 use super::{Feedback, MOST_MEASURED, MOST_STATES, NODES};
 use crate::model::{DriveModel, Mode};
 pub use error::DesignError;
-use linear::{Linear, Situation, stribeck_damping};
+pub use hessenberg::SampledResponse;
+use linear::stribeck_damping;
+pub use linear::{DriveSituation, SampledDrive};
 pub use margins::{Margins, Variation};
 pub use settings::FeedbackSettings;
 
@@ -44,7 +46,7 @@ const TRIED: [[f64; 3]; 12] = [
 /// Gains at one χ.
 #[derive(Clone, Debug)]
 struct Design {
-    linear: Linear,
+    linear: SampledDrive,
     /// State feedback, the disturbance's cancellation last; u and states in their own units.
     k: DVector<f64>,
     l: DMatrix<f64>,
@@ -197,14 +199,20 @@ impl FeedbackDesign {
 
     fn design(&self, sticking: f64) -> Result<(Design, f64), DesignError> {
         let (model, settings) = (&self.model, &self.settings);
-        let situation = Situation {
+        let situation = DriveSituation {
             sticking,
             mass: 1.0,
             friction: 1.0,
             bristles: settings.bristles,
             sliding: settings.stribeck * self.stribeck,
         };
-        let linear = Linear::new(model, &self.modes, settings, &situation)?;
+        let linear = SampledDrive::new(
+            model,
+            &self.modes,
+            settings.speed_by_differences,
+            &situation,
+        )
+        .fits()?;
         let n = linear.size() - 1;
         let riccati = |what| {
             move |residual| DesignError::Riccati {

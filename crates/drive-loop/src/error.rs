@@ -1,0 +1,67 @@
+//! Why a loop has no margins, or no gains.
+
+use axis_sim::{PlanModelError, SetupError};
+use feed_dynamics::DriveError;
+use thiserror::Error;
+
+/// Why a loop cannot be analysed or tuned.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum LoopError {
+    /// The axis makes no linear model.
+    #[error(transparent)]
+    Model(#[from] PlanModelError),
+    /// A part does not fit the axis.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The load cannot be at a position.
+    #[error("the load cannot be at {position}: {error}")]
+    Position {
+        /// m or rad.
+        position: f64,
+        /// Why not.
+        error: DriveError,
+    },
+    /// The control has no loops that could be cut.
+    #[error(
+        "the axis has no position controller over a speed controller ([control] is {kind}), so it has no two loops to cut; valid: kind = \"p-pi\" or \"p-p\""
+    )]
+    Control {
+        /// Its kind.
+        kind: &'static str,
+    },
+    /// A setting is not valid.
+    #[error("{name} is {value}; valid: {valid}")]
+    Setting {
+        /// Of the setting.
+        name: &'static str,
+        /// As given.
+        value: f64,
+        /// What would be valid.
+        valid: &'static str,
+    },
+    /// No gains keep the constraints.
+    #[error(
+        "no gains were found that keep the sensitivity at {most} and at {most_late} with one more cycle of delay: the best have {found:.3} and {found_late:.3}; valid: a larger limit, a narrower range of mass, or a drive with less delay"
+    )]
+    NoGains {
+        /// Limit of the sensitivity.
+        most: f64,
+        /// With one more cycle.
+        most_late: f64,
+        /// What the best have.
+        found: f64,
+        /// With one more cycle.
+        found_late: f64,
+    },
+    /// The nonlinear simulation shows what the linear model does not.
+    #[error(
+        "with the tuned gains the simulated axis {what}, and it does not with those of the file; the limit of the sensitivity was lowered to {most:.3} without cure. Effects of the axis file that the linear model lacks (a body that swings, backlash) may be the cause: remove them, or tune with a lower limit"
+    )]
+    Simulation {
+        /// What it does.
+        what: String,
+        /// Lowest limit that was tried.
+        most: f64,
+    },
+}

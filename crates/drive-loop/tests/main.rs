@@ -1,0 +1,6 @@
+//! One test program.
+
+mod analytic;
+mod support;
+mod sweep;
+mod tune;

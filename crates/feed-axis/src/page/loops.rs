@@ -1,0 +1,209 @@
+//! The page of the drive's loops: margins, Bode's and Nyquist's plots, sensitivities, compliance.
+
+use axis_report::{Cell, Figure, Mark, Notice, Page, Section, Series, Table};
+use drive_loop::{CornerMargins, LoopAnalysis, LoopCurves};
+
+use crate::commands::analyse::{compliance_unit, place};
+
+/// Figures share the frequency.
+const FREQUENCY: &str = "frequency";
+/// Nyquist's plot shows gains up to this one.
+const SHOWN: f64 = 3.0;
+
+/// The page.
+pub fn page(found: &LoopAnalysis) -> Page {
+    let page = Page::new(format!("Loops of {}", found.axis))
+        .lead("The linear loop of the drive, sampled as in the axis file, with filters, delays and loops at their own rates. Computed, not measured.");
+    sections(found)
+        .into_iter()
+        .fold(page, |page, section| page.section(section))
+}
+
+/// Its sections.
+pub fn sections(found: &LoopAnalysis) -> Vec<Section> {
+    vec![
+        margins(found),
+        bode(found),
+        sensitivity(found),
+        compliance(found),
+    ]
+}
+
+/// Margins of all corners.
+pub fn margins(found: &LoopAnalysis) -> Section {
+    let heads = [
+        "case",
+        "sensitivity, command",
+        "position",
+        "late, command",
+        "position",
+        "gain up",
+        "gain down",
+        "phase, °",
+        "delay, ms",
+        "speed, Hz",
+        "position, Hz",
+        "compliance peak",
+    ];
+    let table = Table::new("Margins of each case", heads).note(
+        "Sensitivity: greatest 1/|1 + L|, of the loop cut at the command and of the position loop; late: with one more cycle of delay. Gain, phase and delay: of the loop cut at the command. Speed and position: frequencies up to which they follow to −3 dB.",
+    );
+    let table = found
+        .corners
+        .iter()
+        .fold(table, |table, corner| table.row(row(found, corner)));
+    let mut section = Section::new("The loop's margins");
+    section = match found.worst.sensitivity {
+        Some(most) => section.notice(
+            if most <= 1.605 { Notice::Good } else { Notice::Warn },
+            format!("The greatest sensitivity over {} cases is {most:.2}; 1.6 leaves a drive room for what the model lacks, from 2 on it rings.", found.corners.len()),
+        ),
+        None => section.notice(
+            Notice::Warn,
+            format!("{} of {} cases are not stable.", found.worst.unstable, found.corners.len()),
+        ),
+    };
+    let section = found
+        .notes
+        .iter()
+        .fold(section, |section, note| section.paragraph(note.clone()));
+    section.table(table)
+}
+
+fn row(found: &LoopAnalysis, m: &CornerMargins) -> Vec<Cell> {
+    let number =
+        |value: Option<f64>, digits| value.map_or(Cell::Missing, |v| Cell::number(v, digits));
+    let sensitivity = |value: Option<f64>, most: f64| match value {
+        Some(v) if v > most => Cell::number(v, 2).marked(Mark::Failing),
+        Some(v) => Cell::number(v, 2),
+        None => Cell::text("not stable"),
+    };
+    let cut = &m.command;
+    vec![
+        Cell::text(place(&m.at, &found.position_unit)),
+        sensitivity(m.command.sensitivity, 1.605),
+        sensitivity(m.position.sensitivity, 1.605),
+        sensitivity(m.command.sensitivity_late, 2.005),
+        sensitivity(m.position.sensitivity_late, 2.005),
+        number(cut.gain_up, 2),
+        number(cut.gain_down, 2),
+        number(cut.phase_deg, 1),
+        number(cut.delay_s.map(|s| 1e3 * s), 3),
+        number(m.speed_bandwidth_hz, 1),
+        number(m.position_bandwidth_hz, 1),
+        Cell::quantity(m.compliance_peak, compliance_unit(found), 3),
+    ]
+}
+
+fn state(curves: &LoopCurves) -> &'static str {
+    if curves.stuck { "stuck" } else { "sliding" }
+}
+
+fn sizes(values: &[[f64; 2]]) -> Vec<f64> {
+    values.iter().map(|[re, im]| re.hypot(*im)).collect()
+}
+
+/// Phases in degrees, without jumps.
+fn phases(values: &[[f64; 2]]) -> Vec<f64> {
+    let mut turns = 0.0;
+    let mut before: Option<f64> = None;
+    let mut all = Vec::with_capacity(values.len());
+    for [re, im] in values {
+        let phase = im.atan2(*re).to_degrees();
+        if let Some(before) = before {
+            turns -= 360.0 * ((phase - before) / 360.0).round();
+        }
+        before = Some(phase);
+        all.push(phase + turns);
+    }
+    all
+}
+
+/// Bode's plots and Nyquist's.
+fn bode(found: &LoopAnalysis) -> Section {
+    let size = Figure::new("Open loop, cut at the command: gain", "frequency", "gain");
+    let phase = Figure::new("Open loop, cut at the command: phase", "frequency", "phase");
+    let nyquist = Figure::new("Nyquist's plot", "real part", "imaginary part")
+        .caption("The point −1 is where the loop would be unstable; its distance from the curve is the inverse of the greatest sensitivity.");
+    let speed = Figure::new(
+        "Speed per set point of the speed controller",
+        "frequency",
+        "gain",
+    );
+    let mut size = size.units("Hz", "").log_x().log_y().linked(FREQUENCY);
+    let mut phase = phase.units("Hz", "°").log_x().linked(FREQUENCY);
+    let mut speed = speed.units("Hz", "").log_x().log_y().linked(FREQUENCY);
+    let mut nyquist = nyquist.series(Series::dots("−1", vec![-1.0], vec![0.0]));
+    for curves in &found.curves {
+        let f = || curves.frequency_hz.clone();
+        let name = |what: &str| format!("{what}, {}", state(curves));
+        for (what, open) in [
+            ("whole loop", &curves.open_command),
+            ("position loop", &curves.open_position),
+        ] {
+            size = size.series(Series::line(name(what), f(), sizes(open)));
+            phase = phase.series(Series::line(name(what), f(), phases(open)));
+            let near: Vec<[f64; 2]> = open
+                .iter()
+                .copied()
+                .filter(|[re, im]| re.hypot(*im) <= SHOWN)
+                .collect();
+            nyquist = nyquist.series(Series::line(
+                name(what),
+                near.iter().map(|v| v[0]).collect(),
+                near.iter().map(|v| v[1]).collect(),
+            ));
+        }
+        speed = speed.series(Series::line(
+            state(curves),
+            f(),
+            sizes(&curves.speed_followed),
+        ));
+    }
+    Section::new("Open and closed loop")
+        .figure(size)
+        .figure(phase)
+        .figure(nyquist)
+        .figure(speed)
+}
+
+/// 1/|1 + L| of both cuts.
+fn sensitivity(found: &LoopAnalysis) -> Section {
+    let mut figure = Figure::new("Sensitivity", "frequency", "1/|1 + L|")
+        .units("Hz", "")
+        .log_x()
+        .log_y()
+        .linked(FREQUENCY);
+    for curves in &found.curves {
+        for (what, open) in [
+            ("command", &curves.open_command),
+            ("position", &curves.open_position),
+        ] {
+            let of = open.iter().map(|[re, im]| 1.0 / (re + 1.0).hypot(*im));
+            figure = figure.series(Series::line(
+                format!("at the {what}, {}", state(curves)),
+                curves.frequency_hz.clone(),
+                of.collect(),
+            ));
+        }
+    }
+    Section::new("Sensitivity").figure(figure)
+}
+
+fn compliance(found: &LoopAnalysis) -> Section {
+    let mut figure = Figure::new("Compliance at the load", "frequency", "motion per force")
+        .units("Hz", compliance_unit(found))
+        .log_x()
+        .log_y()
+        .linked(FREQUENCY);
+    for curves in &found.curves {
+        figure = figure.series(Series::line(
+            state(curves),
+            curves.frequency_hz.clone(),
+            sizes(&curves.compliance),
+        ));
+    }
+    Section::new("Compliance")
+        .paragraph("How far the load gives way to a force on it, the loops closed.")
+        .figure(figure)
+}
