@@ -22,6 +22,18 @@ pub enum LoopError {
         /// Why not.
         error: DriveError,
     },
+    /// A position is not on the axis' stroke.
+    #[error(
+        "position {position} is outside the axis' stroke; valid: from {least} to {most} (m or rad)"
+    )]
+    OutsideStroke {
+        /// m or rad.
+        position: f64,
+        /// Least position of the stroke.
+        least: f64,
+        /// Greatest.
+        most: f64,
+    },
     /// The control has no loops that could be cut.
     #[error(
         "the axis has no position controller over a speed controller ([control] is {kind}), so it has no two loops to cut; valid: kind = \"p-pi\" or \"p-p\""
@@ -56,7 +68,7 @@ pub enum LoopError {
     },
     /// The nonlinear simulation shows what the linear model does not.
     #[error(
-        "with the tuned gains the simulated axis {what}, and it does not with those of the file; the limit of the sensitivity was lowered to {most:.3} without cure. Effects of the axis file that the linear model lacks (a body that swings, backlash) may be the cause: remove them, or tune with a lower limit"
+        "with the tuned gains the simulated axis {what}, and it does not with those of the file; the limit of the sensitivity was lowered to {most:.3}, which did not help. Effects of the axis file that the linear model lacks (a body that swings, backlash) may be the cause: remove them, or tune with a lower limit"
     )]
     Simulation {
         /// What it does.

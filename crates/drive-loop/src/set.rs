@@ -37,7 +37,7 @@ impl Default for LoopSet {
 }
 
 impl LoopSet {
-    /// The axis as its file says, at the start of its stroke alone.
+    /// The load's mass as the file says, alone.
     #[must_use]
     pub fn nominal() -> Self {
         Self {
@@ -46,7 +46,7 @@ impl LoopSet {
         }
     }
 
-    fn check(&self) -> Result<(), LoopError> {
+    fn check(&self, axis: &Axis) -> Result<(), LoopError> {
         let refused = |name, value, valid| Err(LoopError::Setting { name, value, valid });
         for (name, shares) in [("mass", &self.masses), ("friction", &self.frictions)] {
             if shares.is_empty() {
@@ -62,8 +62,13 @@ impl LoopSet {
             return refused("delay", self.delay, "from 0 to 16 control cycles");
         }
         for position in &self.positions {
-            if !position.is_finite() {
-                return refused("position", *position, "a number of m or rad");
+            let [least, most] = [axis.stroke.minimum, axis.stroke.maximum];
+            if !(least..=most).contains(position) {
+                return Err(LoopError::OutsideStroke {
+                    position: *position,
+                    least,
+                    most,
+                });
             }
         }
         Ok(())
@@ -107,7 +112,7 @@ impl AxisLoops {
 
     /// Of an axis whose drive is that of another model.
     pub fn of_model(axis: &Axis, mut model: LoopModel, set: &LoopSet) -> Result<Self, LoopError> {
-        set.check()?;
+        set.check(axis)?;
         model.model.delay += set.delay * axis.period;
         let places = set.positions(axis);
         let mut modes: Vec<(f64, Vec<Mode>)> = Vec::new();

@@ -10,6 +10,7 @@ mod export_fmu;
 mod identify;
 mod identify_control;
 mod log_convert;
+mod loops;
 mod pages;
 mod schema;
 mod schema_of;
