@@ -187,11 +187,11 @@ fn what_is_wrong_is_said() {
         positions: vec![f64::NAN],
         ..LoopSet::default()
     };
-    assert!(said(nowhere).contains("position is NaN"));
+    assert!(said(nowhere).contains("position NaN is outside"));
     let far = LoopSet {
         positions: vec![7.0],
         ..LoopSet::nominal()
     };
     let error = LoopAnalysis::of(&example("liu2025"), &far).unwrap_err();
-    assert!(matches!(error, LoopError::Position { .. }), "{error}");
+    assert!(matches!(error, LoopError::OutsideStroke { .. }), "{error}");
 }
