@@ -116,7 +116,7 @@ fn a_table_that_does_not_follow_is_another_axis() {
 fn a_motion_too_poor_says_what_it_lacks() {
     let message = refusal(&log(0.0, 1.25, reference, followed, current));
     assert!(
-        message.contains("one direction only") && message.contains("the way back"),
+        message.contains("one direction only") && message.contains("its return"),
         "{message}"
     );
     let shaking = |t: f64| 0.7 + 1e-8 * (30.0 * t).sin();
