@@ -139,7 +139,7 @@ fn the_new_axis_file_is_the_machine_for_every_other_command() {
         "{section:.300}"
     );
     assert!(page.contains("</b> 2.csv: position (position_m)"));
-    assert!(page.contains("log − model: position") && !page.contains("log − model: position_m"));
+    assert!(page.contains("log − model") && !page.contains("log − model: position_m"));
     // Of what is shown: coordinates of curves are data.
     let parts = page.split("<script");
     let shown: String = parts

@@ -236,7 +236,8 @@ fn pictures(overlays: &[Overlay]) -> Section {
                 o.channel
             ),
             "time",
-            format!("log − model: {name}"),
+            // The title has the quantity; a phone has no room for it beside the axis.
+            "log − model",
         )
         .units("s", &unit.name)
         .linked(log)
@@ -255,9 +256,9 @@ fn dependences(all: &[Against]) -> Section {
         let series =
             |name, means: &[f64]| Series::line(name, read(&a.at, &over), read(means, &unit));
         Figure::new(
-            a.effect.clone(),
+            format!("{}: {} ({})", a.effect, words(&a.channel), a.channel),
             a.variable.clone(),
-            format!("log − model: {}", words(&a.channel)),
+            "log − model",
         )
         .units(&over.name, &unit.name)
         .series(series("without it", &a.without))
