@@ -59,7 +59,7 @@
 //! sample.reference.velocity = 0.1;
 //! let mut iq = 0.0;
 //! for _ in 0..1000 {
-//!     iq = law.correct(&sample).iq;
+//!     iq = law.correct(&sample).command;
 //! }
 //! assert!((iq - (0.6757 + 0.0298 * 62.83) / 1.641).abs() < 1e-3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
