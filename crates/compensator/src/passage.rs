@@ -12,6 +12,17 @@ pub struct DriveFilter<T = f64> {
     pub a: [T; 2],
 }
 
+impl<T: Scalar> DriveFilter<T> {
+    /// The next sample through the filter, in direct form II transposed; `memory` is what it keeps from
+    /// one sample to the next, zeros at standstill.
+    pub fn step(&self, memory: &mut [T; 2], input: T) -> T {
+        let output = self.b[0] * input + memory[0];
+        memory[0] = self.b[1] * input - self.a[0] * output + memory[1];
+        memory[1] = self.b[2] * input - self.a[1] * output;
+        output
+    }
+}
+
 /// Rates and filters of a drive's own loops. None by default: each loop runs once in a control
 /// period, and reads what the correction was made from.
 #[derive(Clone, Copy, Debug, PartialEq)]

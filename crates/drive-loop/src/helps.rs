@@ -7,10 +7,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::LoopError;
+use crate::gains::Limits;
 use crate::law::LoopGains;
 use crate::plant::LoopModel;
 use crate::set::AxisLoops;
-use crate::tune::{Limits, TuneSettings, with_quick_current};
+use crate::tune::{TuneSettings, with_quick_current};
 
 /// Share by which a change must improve the loop to be told.
 const TOLD: f64 = 0.02;

@@ -36,12 +36,14 @@
 
 mod analysis;
 mod error;
+mod gains;
 mod helps;
 mod law;
 mod loops;
 mod margins;
 mod moves;
 mod plant;
+mod report;
 mod search;
 mod set;
 mod tune;

@@ -215,13 +215,15 @@ fn delayed(x: &mut DVector<f64>, from: usize, count: usize, delay: f64, now: f64
     shown
 }
 
-/// A sample through a filter, in direct form II transposed.
+/// A sample through a filter whose memory is part of a state; as it is without one.
 fn filtered(filter: Option<&DriveFilter>, at: [usize; 2], x: &mut DVector<f64>, input: f64) -> f64 {
-    let Some(DriveFilter { b, a }) = filter else {
+    let Some(filter) = filter else {
         return input;
     };
-    let output = b[0] * input + x[at[0]];
-    x[at[0]] = b[1] * input - a[0] * output + x[at[1]];
-    x[at[1]] = b[2] * input - a[1] * output;
+    let mut memory = at.map(|place| x[place]);
+    let output = filter.step(&mut memory, input);
+    for (place, value) in at.into_iter().zip(memory) {
+        x[place] = value;
+    }
     output
 }

@@ -45,7 +45,7 @@ pub struct Demand {
     pub saturated: bool,
 }
 
-/// CascadeGains of a position controller over a speed controller, SI.
+/// Gains of a position controller over a speed controller, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CascadeGains {
     /// Kv, speed of the load per position error, 1/s.

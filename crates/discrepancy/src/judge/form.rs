@@ -11,6 +11,8 @@ use serde::{Deserialize, Serialize};
 pub struct FormFound {
     /// The friction whose form it is, in words.
     pub of: String,
+    /// What of its law differs: the onset, or the fall with speed.
+    pub differs_in: String,
     /// Speed below which it differs by more than a tenth of the sliding force.
     pub below: f64,
     /// Unit of the speeds.
@@ -49,6 +51,7 @@ impl FormFound {
         let differs = ratio.iter().rposition(|r| (r - 1.0).abs() > DIFFERS);
         Some(Self {
             of: of.to_owned(),
+            differs_in: form.differs_in().to_owned(),
             below: differs.map_or(0.0, |k| speed[k]),
             unit: Measure::Speed.unit(machine.freedom()).to_owned(),
             with_speed: form.with_speed(),
@@ -64,13 +67,13 @@ impl FormFound {
             "m/s" => (1e3, "mm/s"),
             _ => (1e3, "mrad/s"),
         };
-        let how = match self.below > 0.0 {
-            true => format!("below {:.2} {unit} differs", scale * self.below),
-            false => "before it slides differs".to_owned(),
+        let below = match self.below > 0.0 {
+            true => format!(" below {:.2} {unit}", scale * self.below),
+            false => String::new(),
         };
         format!(
-            " The onset of the {} {how} from the model\u{2019}s; the report has the curve.",
-            self.of
+            " The {} of the {}{below} differs from the model\u{2019}s; the report has the curve.",
+            self.differs_in, self.of
         )
     }
 }

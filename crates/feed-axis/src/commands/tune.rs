@@ -228,7 +228,9 @@ fn report_page(found: &TuneFound, loops: &LoopAnalysis) -> Page {
     let section = Section::new("Tuned gains").table(table);
     let section = lines(&found.tuning)
         .into_iter()
-        .fold(section, |section, line| section.paragraph(line));
+        .fold(section, |section, line| {
+            section.paragraph(page::loops::sentence(&line))
+        });
     let page = Page::new(format!("{}, tuned", found.tuning.axis))
         .lead("Gains within limits of the sensitivity over stroke, mass and one more cycle of delay. Computed and simulated, not measured.")
         .section(section);

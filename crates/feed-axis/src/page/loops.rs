@@ -31,27 +31,33 @@ pub fn sections(found: &LoopAnalysis) -> Vec<Section> {
 
 /// Margins of all corners.
 pub fn margins(found: &LoopAnalysis) -> Section {
-    let heads = [
-        "case",
-        "sensitivity, command",
-        "position",
-        "late, command",
-        "position",
-        "gain up",
-        "gain down",
-        "phase, °",
-        "delay, ms",
-        "speed, Hz",
-        "position, Hz",
-        "compliance peak",
-    ];
-    let table = Table::new("Margins of each case", heads).note(
-        "Sensitivity: greatest 1/|1 + L|, of the loop cut at the command and of the position loop; late: with one more cycle of delay. Gain, phase and delay: of the loop cut at the command. Speed and position: frequencies up to which they follow to −3 dB.",
-    );
-    let table = found
-        .corners
-        .iter()
-        .fold(table, |table, corner| table.row(row(found, corner)));
+    let margins = Table::new(
+        "Margins of each case",
+        [
+            "case",
+            "sensitivity, command",
+            "sensitivity, position",
+            "late, command",
+            "late, position",
+            "gain up",
+            "gain down",
+            "phase, °",
+            "delay, ms",
+        ],
+    )
+    .note("Sensitivity: greatest 1/|1 + L|, of the loop cut at the command and of the position loop; late: with one more cycle of delay. Gain, phase and delay: of the loop cut at the command.");
+    let others = Table::new(
+        "Bandwidths and compliance of each case",
+        ["case", "speed, Hz", "position, Hz", "compliance peak"],
+    )
+    .note("Speed and position: frequencies up to which they follow to −3 dB.");
+    let corners = found.corners.iter();
+    let [margins, others] = corners.fold([margins, others], |[margins, others], corner| {
+        [
+            margins.row(margins_of(found, corner)),
+            others.row(others_of(found, corner)),
+        ]
+    });
     let mut section = Section::new("The loop's margins");
     section = match found.worst.sensitivity {
         Some(most) => section.notice(
@@ -66,20 +72,29 @@ pub fn margins(found: &LoopAnalysis) -> Section {
     let section = found
         .notes
         .iter()
-        .fold(section, |section, note| section.paragraph(note.clone()));
-    section.table(table)
+        .fold(section, |section, note| section.paragraph(sentence(note)));
+    section.table(margins).table(others)
 }
 
-fn row(found: &LoopAnalysis, m: &CornerMargins) -> Vec<Cell> {
-    let number =
-        |value: Option<f64>, digits| value.map_or(Cell::Missing, |v| Cell::number(v, digits));
+/// A line of the terminal as a sentence of a page.
+pub fn sentence(line: &str) -> String {
+    let mut letters = line.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string());
+    format!("{}{}.", first.unwrap_or_default(), letters.as_str())
+}
+
+fn number(value: Option<f64>, digits: usize) -> Cell {
+    value.map_or(Cell::Missing, |v| Cell::number(v, digits))
+}
+
+fn margins_of(found: &LoopAnalysis, m: &CornerMargins) -> [Cell; 9] {
     let sensitivity = |value: Option<f64>, most: f64| match value {
         Some(v) if v > most => Cell::number(v, 2).marked(Mark::Failing),
         Some(v) => Cell::number(v, 2),
         None => Cell::text("not stable"),
     };
     let cut = &m.command;
-    vec![
+    [
         Cell::text(place(&m.at, &found.position_unit)),
         sensitivity(m.command.sensitivity, 1.605),
         sensitivity(m.position.sensitivity, 1.605),
@@ -89,6 +104,12 @@ fn row(found: &LoopAnalysis, m: &CornerMargins) -> Vec<Cell> {
         number(cut.gain_down, 2),
         number(cut.phase_deg, 1),
         number(cut.delay_s.map(|s| 1e3 * s), 3),
+    ]
+}
+
+fn others_of(found: &LoopAnalysis, m: &CornerMargins) -> [Cell; 4] {
+    [
+        Cell::text(place(&m.at, &found.position_unit)),
         number(m.speed_bandwidth_hz, 1),
         number(m.position_bandwidth_hz, 1),
         Cell::quantity(m.compliance_peak, compliance_unit(found), 3),

@@ -42,6 +42,7 @@ static EXPONENT_FORM: Effect = Effect {
 
 pub(super) const FAMILY: Family = Family {
     effect: &EXPONENT_FORM,
+    differs_in: "fall with speed",
     begins: |of| {
         let form = of.fall.and_then(|[fall, velocity]| {
             let level = of.friction.values.first().copied()?;

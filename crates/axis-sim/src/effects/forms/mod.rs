@@ -21,6 +21,8 @@ use crate::part::PartError;
 /// A family of forms: one file each, and one line in [`FAMILIES`].
 struct Family {
     effect: &'static Effect,
+    /// What of the law differs, in words.
+    differs_in: &'static str,
     /// Forms from which a search begins; none of a friction that cannot have it.
     begins: fn(&Formed) -> Vec<ActiveEffect>,
     /// Steady friction at a speed above 0, over that of sliding.
@@ -85,6 +87,11 @@ impl<'a> FrictionForm<'a> {
     /// The effect whose form it is, as it was when the form was made.
     pub fn base(&self) -> Option<ActiveEffect> {
         base(&self.active.values)
+    }
+
+    /// What of the law differs, in words: its onset, or its fall with speed.
+    pub fn differs_in(&self) -> &'static str {
+        self.family.differs_in
     }
 
     /// Speeds between which it differs from the law of the library, m/s or rad/s.

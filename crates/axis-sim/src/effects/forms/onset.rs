@@ -50,6 +50,7 @@ static ONSET_FORM: Effect = Effect {
 
 pub(super) const FAMILY: Family = Family {
     effect: &ONSET_FORM,
+    differs_in: "onset",
     begins: |of| {
         let knots = KNOTS.map(|share| share * of.fastest);
         let rising = knots.windows(2).all(|w| 0.0 < w[0] && w[0] < w[1]);

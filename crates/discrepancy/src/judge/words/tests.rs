@@ -197,6 +197,7 @@ fn nothing_and_the_unknown_are_said_so() {
     let mut bent = discovery(Verdict::OtherForm, Vec::new(), Vec::new());
     bent.own_form = Some(FormFound {
         of: "dry friction of the axis".to_owned(),
+        differs_in: "onset".to_owned(),
         below: 2e-4,
         unit: "m/s".to_owned(),
         with_speed: 1.0,

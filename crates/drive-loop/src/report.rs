@@ -1,0 +1,142 @@
+//! What is reported of gains that were found: figures, what limits them, what would help.
+
+use axis_sim::Axis;
+use rayon::prelude::*;
+
+use crate::error::LoopError;
+use crate::gains::Limits;
+use crate::helps::helps;
+use crate::law::LoopGains;
+use crate::margins::CutMargins;
+use crate::set::AxisLoops;
+use crate::tune::{Found, Limiting, MoveCheck, TuneSettings, Tuning};
+
+/// Of an axis as its file says, and of what was found for it.
+pub(crate) fn report(
+    axis: &Axis,
+    settings: &TuneSettings,
+    file: &AxisLoops,
+    found: &Found,
+    limits: &Limits,
+    tuned: &Axis,
+    moves: Vec<MoveCheck>,
+) -> Result<Tuning, LoopError> {
+    let (loops, gains) = (&found.loops, &found.gains);
+    let fed = |axis: &Axis| {
+        let cascade = axis.control.cascade(axis.travel_per_radian(), axis.period);
+        cascade.map_or(0.0, |cascade| cascade.acceleration_feedforward)
+    };
+    let radii: Vec<f64> = loops
+        .corners
+        .par_iter()
+        .map(|corner| crate::turn::radius(&loops.model, corner, gains))
+        .collect();
+    let mut notes = Vec::new();
+    if limits.sensitivity[0] < settings.sensitivity {
+        notes.push(format!(
+            "the limit of the sensitivity was lowered from {} to {:.3}, as the simulated axis rang or saturated above",
+            settings.sensitivity, limits.sensitivity[0]
+        ));
+    }
+    if axis.trajectories.is_empty() {
+        notes.push("the axis file has no [[trajectory]], so no move was simulated".to_owned());
+    }
+    if !axis.effects.is_empty() {
+        notes.push("bodies that swing, waves and errors of sensors among the file's effects count in the simulated moves only".to_owned());
+    }
+    Ok(Tuning {
+        schema: Tuning::SCHEMA,
+        axis: axis.name.clone(),
+        axis_fingerprint: axis.fingerprint.clone(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        position_unit: axis.freedom().unit().to_owned(),
+        limits: limits.sensitivity,
+        file_gains: file.shown(&file.gains(), fed(axis), None),
+        tuned_gains: loops.shown(gains, fed(tuned), found.notch),
+        file: file.figures(&file.gains()),
+        tuned: loops.figures(gains),
+        proven_stable: radii.iter().all(|radius| *radius < 1.0),
+        limiting: limiting(loops, gains, limits),
+        helps: helps(&found.axis, settings, loops, gains, limits)?,
+        moves,
+        evaluations: found.evaluations,
+        notes,
+    })
+}
+
+/// The constraints, the nearest first.
+fn limiting(loops: &AxisLoops, gains: &LoopGains, limits: &Limits) -> Vec<Limiting> {
+    let margins: Vec<_> = loops
+        .corners
+        .par_iter()
+        .map(|corner| corner.margins(&loops.model, gains))
+        .collect();
+    let late = "with one more cycle of delay";
+    // Height and frequency of a peak.
+    type Of = fn(&CutMargins) -> (Option<f64>, f64);
+    let now: Of = |cut| (cut.sensitivity, cut.sensitivity_at_hz);
+    let later: Of = |cut| (cut.sensitivity_late, cut.sensitivity_late_at_hz);
+    let kinds = [
+        (
+            "sensitivity at the command".to_owned(),
+            0,
+            now,
+            limits.sensitivity[0],
+        ),
+        (
+            "sensitivity at the position".to_owned(),
+            1,
+            now,
+            limits.sensitivity[0],
+        ),
+        (
+            format!("sensitivity at the command {late}"),
+            0,
+            later,
+            limits.sensitivity[1],
+        ),
+        (
+            format!("sensitivity at the position {late}"),
+            1,
+            later,
+            limits.sensitivity[1],
+        ),
+    ];
+    let mut all = Vec::new();
+    for (what, place, of, limit) in kinds {
+        let worst = margins
+            .iter()
+            .map(|m| (m, of([&m.command, &m.position][place])))
+            .map(|(m, (height, at))| (m, height.unwrap_or(f64::MAX), at))
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((corner, value, at)) = worst else {
+            continue;
+        };
+        let near = |w: &f64| {
+            let ratio = at / crate::loops::hertz(*w);
+            (0.8..=1.25).contains(&ratio)
+        };
+        all.push(Limiting {
+            what,
+            value,
+            limit,
+            corner: Some(corner.at),
+            frequency_hz: Some(at),
+            mode: loops.modes.iter().position(near).map(|i| i + 1),
+        });
+    }
+    let ripple = loops.corners[0].ripple(&loops.model, gains);
+    if ripple > 0.0 && limits.ripple.is_finite() {
+        all.push(Limiting {
+            what: "ripple of the command by the steps of the sensor that the speed is derived from"
+                .to_owned(),
+            value: ripple,
+            limit: limits.ripple,
+            corner: None,
+            frequency_hz: None,
+            mode: None,
+        });
+    }
+    all.sort_by(|a, b| (b.value / b.limit).total_cmp(&(a.value / a.limit)));
+    all
+}
