@@ -1,5 +1,6 @@
 //! The log: channels over one time axis.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -17,7 +18,7 @@ pub const TIME_CHANNEL: &str = "t_s";
 ///
 /// Samples that were not measured, or not trusted, may be marked as
 /// [missing](Self::missing): their values are interpolated, for display, and must be
-/// given no weight. CSV does not keep the marks.
+/// given no weight. Files have NaN in their place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
     channels: Vec<Channel>,
@@ -120,6 +121,19 @@ impl Log {
             self.missing.insert(name.to_owned(), merged);
         }
         Ok(())
+    }
+
+    /// The samples of a channel of the log as files have them: NaN where they are missing.
+    pub(crate) fn with_holes<'a>(&self, channel: &'a Channel) -> Cow<'a, [f64]> {
+        let missing = self.missing(&channel.name);
+        if missing.is_empty() {
+            return Cow::Borrowed(&channel.samples);
+        }
+        let mut samples = channel.samples.clone();
+        for run in missing {
+            samples[run.clone()].fill(f64::NAN);
+        }
+        Cow::Owned(samples)
     }
 
     /// All channels in their order, the time first.

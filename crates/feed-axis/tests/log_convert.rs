@@ -92,3 +92,39 @@ fn log_convert_refuses_what_it_cannot_write() {
     assert!(message.contains("the log that is read"), "{message}");
     assert_eq!(std::fs::read(&log).unwrap(), before);
 }
+
+/// What was not measured is not made up: it stays without a value in every format, and is counted.
+#[test]
+fn log_convert_leaves_holes_as_holes() {
+    let folder = tempfile::tempdir().unwrap();
+    let put = folder.path().join("holes.csv");
+    // Two cells without a value, and a row that is not there at all (t = 0.625 s).
+    let text = "t_s,position_m,torque_n_m\n0,0,1\n0.125,0.25,\n0.25,,2\n0.375,0.5,3\n0.5,1,4\n0.75,2,5\n0.875,3,6\n";
+    std::fs::write(&put, text).unwrap();
+    let log = put.to_str().unwrap();
+    let expected = "t_s,position_m,torque_n_m\n0,0,1\n0.125,0.25,NaN\n0.25,NaN,2\n0.375,0.5,3\n0.5,1,4\n0.625,NaN,NaN\n0.75,2,5\n0.875,3,6\n";
+    let mut from = log.to_owned();
+    for name in ["out.parquet", "out.mat", "out.csv"] {
+        let (path, out) = at(folder.path(), name);
+        let output = run(&["log", "convert", &from, "--out", &out, "--format", "json"]);
+        let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let holes = &told["without_value"];
+        for (k, channel) in ["position_m", "torque_n_m"].into_iter().enumerate() {
+            assert_eq!(holes[k]["channel"], channel, "{name}: {told}");
+            assert_eq!(holes[k]["samples"], 2, "{name}: {told}");
+        }
+        if name == "out.csv" {
+            assert_eq!(std::fs::read_to_string(path).unwrap(), expected);
+        }
+        from = out;
+    }
+    let (_, out) = at(folder.path(), "said.csv");
+    let output = run(&["log", "convert", log, "--out", &out]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let line = "position_m: 2 sample(s) without a value";
+    assert!(
+        said.contains(line) && said.contains("NaN stands there"),
+        "{said}"
+    );
+    assert!(!said.contains("straight line"), "{said}");
+}

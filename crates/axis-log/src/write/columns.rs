@@ -55,7 +55,7 @@ impl Columns {
                 .collect();
         }
         for ((.., samples), channel) in self.all.iter_mut().zip(block.channels()) {
-            samples.extend_from_slice(&channel.samples);
+            samples.extend_from_slice(&block.with_holes(channel));
         }
         Ok(is_first)
     }

@@ -11,7 +11,8 @@ use crate::error::{CsvError, CsvProblem};
 use crate::log::Log;
 
 /// Writes a log as a CSV file that [`read_csv`](crate::read_csv) reads back to
-/// the same bits, whatever the file's extension.
+/// the same bits, whatever the file's extension, unless samples are
+/// [missing](Log::missing): they are `NaN`, which [`intake`](crate::intake) reads.
 ///
 /// The file appears whole or not at all: the text is written to a temporary
 /// file in the same folder, flushed to the disk and renamed, and the folder is
@@ -32,7 +33,8 @@ pub fn write_csv(path: impl AsRef<Path>, log: &Log) -> Result<(), CsvError> {
 
 /// Writes a log as CSV text: one header line, one line for each instant.
 ///
-/// Numbers take the fewest digits that read back to the same `f64`.
+/// Numbers take the fewest digits that read back to the same `f64`; a [missing](Log::missing)
+/// sample is `NaN`.
 ///
 /// # Errors
 /// Those of the writer.
@@ -66,12 +68,17 @@ impl<W: Write> LogSink for CsvSink<W> {
         if is_first {
             write_header(&mut out, block)?;
         }
+        let columns: Vec<_> = block
+            .channels()
+            .iter()
+            .map(|c| block.with_holes(c))
+            .collect();
         for k in 0..block.len() {
-            for (index, channel) in block.channels().iter().enumerate() {
+            for (index, samples) in columns.iter().enumerate() {
                 if index > 0 {
                     out.write_all(b",")?;
                 }
-                write_number(&mut out, channel.samples[k])?;
+                write_number(&mut out, samples[k])?;
             }
             out.write_all(b"\n")?;
         }
@@ -102,7 +109,7 @@ fn write_header(out: &mut impl Write, log: &Log) -> io::Result<()> {
 /// small and very large magnitudes from becoming rows of zeros.
 fn write_number(out: &mut impl Write, value: f64) -> io::Result<()> {
     let magnitude = value.abs();
-    if magnitude == 0.0 || (1e-5..1e16).contains(&magnitude) {
+    if value.is_nan() || magnitude == 0.0 || (1e-5..1e16).contains(&magnitude) {
         write!(out, "{value}")
     } else {
         write!(out, "{value:e}")

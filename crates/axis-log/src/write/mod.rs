@@ -28,7 +28,7 @@ pub trait LogSink {
     type End;
 
     /// Adds the instants of `block` behind those before. Every block has the channels of the
-    /// first one, in its order; marks of [missing](Log::missing) samples are not kept.
+    /// first one, in its order. [Missing](Log::missing) samples are NaN.
     ///
     /// # Errors
     /// The writer's; [`io::ErrorKind::InvalidData`] if the channels are others.
@@ -52,7 +52,8 @@ pub trait LogSink {
 
 /// Writes a log as CSV, Parquet or MAT version 5, by the extension of the file (`.csv`,
 /// `.parquet`, `.mat`, in any case). [`read_log`](crate::read_log) reads it back to the same
-/// bits; marks of [missing](Log::missing) samples are not kept.
+/// bits. [Missing](Log::missing) samples are NaN in all three: `read_log` refuses such a file,
+/// [`intake`](crate::intake) reads it with the same marks.
 ///
 /// - **CSV**: the units are the suffixes of the names.
 /// - **Parquet** (feature `parquet`): a required `DOUBLE` a channel, Snappy, row groups of

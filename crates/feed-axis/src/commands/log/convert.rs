@@ -3,9 +3,9 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use axis_log::intake::{Options as Intake, PreparedLog, files, prepare};
+use axis_log::intake::{Done, Options as Intake, PreparedLog, files, prepare};
 use axis_log::quality::clock;
-use axis_log::{Mapping, TIME_CHANNEL, WriteProblem, columns, write};
+use axis_log::{Log, Mapping, TIME_CHANNEL, WriteProblem, columns, write};
 use axis_sim::Axis;
 use clap::Args;
 use discrepancy::logs::exact_channels;
@@ -44,8 +44,17 @@ struct Converted<'a> {
     channels: Vec<Named>,
     /// Columns that no line of the mapping names, and whose names end in no unit.
     left_out: Vec<String>,
+    /// Channels with samples that have no value, which stay NaN.
+    without_value: Vec<Holes>,
     /// What was done to the samples.
     done: Vec<String>,
+}
+
+/// Samples of a channel without a value.
+#[derive(Serialize)]
+struct Holes {
+    channel: String,
+    samples: usize,
 }
 
 /// A channel.
@@ -121,9 +130,38 @@ pub fn convert(options: &Options) -> Result<()> {
         rate_hz: clock(&log).map_or(0.0, |clock| 1.0 / clock.period),
         channels: log.channels().iter().map(named).collect(),
         left_out,
-        done: done.iter().map(ToString::to_string).collect(),
+        without_value: log
+            .channels()
+            .iter()
+            .filter_map(|c| holes(&log, &c.name))
+            .collect(),
+        done: done.iter().map(said).collect(),
     };
     print("log", &converted)
+}
+
+/// The samples of a channel that have no value; none where all have one.
+fn holes(log: &Log, channel: &str) -> Option<Holes> {
+    let samples: usize = log.missing(channel).iter().map(|run| run.len()).sum();
+    (samples > 0).then(|| Holes {
+        channel: channel.to_owned(),
+        samples,
+    })
+}
+
+/// What was done, of a log that is written and not used: what has no value is not bridged.
+fn said(done: &Done) -> String {
+    match done {
+        Done::Bridged {
+            channel,
+            samples,
+            longest,
+            at,
+        } => format!(
+            "{channel}: {samples} sample(s) without a value, at most {longest} in a row (from t = {at:.4} s); NaN stands there"
+        ),
+        other => other.to_string(),
+    }
 }
 
 /// Refuses to write over what is read: a measurement cannot be made again.
