@@ -100,6 +100,7 @@ mod effect_forces;
 pub mod effects;
 mod error;
 pub mod friction;
+mod late_clock;
 pub mod load;
 pub mod mechanism;
 mod one_cycle;

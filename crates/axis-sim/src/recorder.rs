@@ -1,12 +1,15 @@
 //! Cycles to a log with named channels.
 
 use std::io::{self, Write};
+use std::mem;
 
 use axis_log::{Channel, CsvSink, Log, LogError, LogSink};
 
 use crate::axis::Axis;
 use crate::channels::{LogChannel, channels};
 use crate::cycle::{Cycle, RunStopped};
+use crate::error::SetupError;
+use crate::late_clock::LateClock;
 use crate::mechanism::Freedom;
 
 /// Collects the cycles of a run, in memory.
@@ -14,17 +17,34 @@ use crate::mechanism::Freedom;
 pub struct Recorder {
     channels: Vec<LogChannel>,
     freedom: Freedom,
+    /// By how many cycles the load's channel is late.
+    late: f64,
     cycles: Vec<Cycle>,
 }
 
 impl Recorder {
-    /// For runs of this axis: the channels of [`CHANNELS`](crate::CHANNELS) that it has.
+    /// For runs of this axis: the channels of [`CHANNELS`](crate::CHANNELS) that it has, all on
+    /// one clock.
     pub fn new(axis: &Axis) -> Self {
         Self {
             channels: channels(axis),
             freedom: axis.freedom(),
+            late: 0.0,
             cycles: Vec::new(),
         }
+    }
+
+    /// The same as this axis' log shows them: the load's channel late by what its effects say
+    /// (`clock-offset`). `period` is that of the cycles it is given, s.
+    ///
+    /// # Errors
+    /// [`SetupError`] where an effect does not fit the axis.
+    pub fn as_logged(axis: &Axis, period: f64) -> Result<Self, SetupError> {
+        let (_, hooks) = axis.with_effects()?;
+        Ok(Self {
+            late: hooks.clock_offset / period,
+            ..Self::new(axis)
+        })
     }
 
     /// With a channel more.
@@ -39,7 +59,7 @@ impl Recorder {
         self.cycles.push(*cycle);
     }
 
-    /// The cycles so far.
+    /// The cycles so far, as they were.
     pub fn cycles(&self) -> &[Cycle] {
         &self.cycles
     }
@@ -49,12 +69,26 @@ impl Recorder {
     /// # Errors
     /// [`LogError`] if there is no cycle, or one that is not finite.
     pub fn log(&self) -> Result<Log, LogError> {
+        if self.late == 0.0 {
+            return self.log_of(&self.cycles);
+        }
+        let mut shown = Vec::with_capacity(self.cycles.len());
+        let mut clock = LateClock::new(self.late);
+        for cycle in &self.cycles {
+            clock.push(cycle, |c| shown.push(c));
+        }
+        clock.finish(|c| shown.push(c));
+        self.log_of(&shown)
+    }
+
+    /// The log of cycles as they are shown.
+    fn log_of(&self, cycles: &[Cycle]) -> Result<Log, LogError> {
         let one = |channel: &LogChannel| {
             let [name, unit] = channel.of_freedom(self.freedom);
             Channel {
                 name: name.to_owned(),
                 unit: unit.to_owned(),
-                samples: self.cycles.iter().map(channel.read).collect(),
+                samples: cycles.iter().map(channel.read).collect(),
             }
         };
         Log::new(self.channels.iter().map(one).collect())
@@ -71,6 +105,7 @@ const BLOCK: usize = 4096;
 #[derive(Debug)]
 pub struct FlowRecorder<S> {
     sink: Box<S>,
+    clock: LateClock,
     block: Recorder,
     is_begun: bool,
     failed: Option<io::Error>,
@@ -91,6 +126,7 @@ impl<S: LogSink> FlowRecorder<S> {
     pub fn to(sink: S, recorder: Recorder) -> Self {
         Self {
             sink: Box::new(sink),
+            clock: LateClock::new(recorder.late),
             block: recorder,
             is_begun: false,
             failed: None,
@@ -103,8 +139,9 @@ impl<S: LogSink> FlowRecorder<S> {
         if self.failed.is_some() {
             return;
         }
-        self.block.push(cycle);
-        if self.block.cycles.len() == BLOCK {
+        let block = &mut self.block.cycles;
+        self.clock.push(cycle, |shown| block.push(shown));
+        if self.block.cycles.len() >= BLOCK {
             self.failed = self.write_block().err();
         }
     }
@@ -134,6 +171,8 @@ impl<S: LogSink> FlowRecorder<S> {
         if let Some(error) = self.failed.take() {
             return Err(error);
         }
+        let block = &mut self.block.cycles;
+        mem::replace(&mut self.clock, LateClock::new(0.0)).finish(|shown| block.push(shown));
         if !self.is_begun || !self.block.cycles.is_empty() {
             self.write_block()?;
         }
@@ -142,7 +181,8 @@ impl<S: LogSink> FlowRecorder<S> {
 
     fn write_block(&mut self) -> io::Result<()> {
         let invalid = |error| io::Error::new(io::ErrorKind::InvalidData, error);
-        self.sink.write(&self.block.log().map_err(invalid)?)?;
+        self.sink
+            .write(&self.block.log_of(&self.block.cycles).map_err(invalid)?)?;
         self.is_begun = true;
         self.block.cycles.clear();
         Ok(())

@@ -113,6 +113,8 @@ struct Bench<'a, S> {
     axis: &'a Axis,
     plan: &'a IdentificationPlan,
     sense: &'a mut S,
+    /// Of no cycle yet, and of those of the log that is being made.
+    empty: Recorder,
     recorder: Recorder,
     /// Cycles since the log began, and cycles a sample.
     cycles: u64,
@@ -134,8 +136,10 @@ impl<'a, S: FnMut(&mut Measured)> Bench<'a, S> {
         let home = 0.5 * (stroke.minimum + stroke.maximum - travel);
         let state = closed_loop.start(&Start::at(home))?;
         let every = (1.0 / (plan.log_rate * machine.period)).round().max(1.0);
+        let empty = Recorder::as_logged(machine, every * machine.period)?;
         Ok(Self {
-            recorder: Recorder::new(closed_loop.axis()),
+            recorder: empty.clone(),
+            empty,
             closed_loop,
             state,
             axis,
@@ -252,7 +256,7 @@ impl<'a, S: FnMut(&mut Measured)> Bench<'a, S> {
 
     /// Begins a new log.
     fn forget(&mut self) {
-        self.recorder = Recorder::new(self.closed_loop.axis());
+        self.recorder = self.empty.clone();
         self.cycles = 0;
     }
 }

@@ -278,7 +278,8 @@ fn begun(path: &Path, axis: &Axis) -> Result<FlowRecorder<LogFile>> {
         _ => miette!(e),
     });
     let file = file.wrap_err_with(|| unwritten(path))?;
-    Ok(FlowRecorder::to(file, Recorder::new(axis)))
+    let recorder = Recorder::as_logged(axis, axis.period).into_diagnostic()?;
+    Ok(FlowRecorder::to(file, recorder))
 }
 
 fn unwritten(path: &Path) -> String {
