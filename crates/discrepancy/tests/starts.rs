@@ -277,3 +277,59 @@ fn figures_come_from_logs_that_took_no_part_where_there_can_be_such() {
     assert_eq!((check.len(), test.len()), (1, 0));
     assert_eq!(check[0].1.len(), short.len());
 }
+
+/// A log at 1 kHz of an axis that follows a motion with a lag of the first order.
+fn lagging(motion: &Program, lag: f64) -> Log {
+    let period = 1e-3;
+    let samples = (trajectories::Motion::duration(motion) / period).round() as usize;
+    let time: Vec<f64> = (0..samples).map(|k| k as f64 * period).collect();
+    let at = |t: &f64| trajectories::Motion::at(motion, *t).position;
+    let reference: Vec<f64> = time.iter().map(at).collect();
+    let mut now = reference[0];
+    let follow = |to: &f64| {
+        now += (to - now) * (1.0 - (-period / lag).exp());
+        now
+    };
+    let position: Vec<f64> = reference.iter().map(follow).collect();
+    let channel = |name: &str, samples| Channel::new(name, samples).unwrap();
+    Log::new(vec![
+        channel("t_s", time),
+        channel("position_ref_m", reference),
+        channel("position_m", position),
+    ])
+    .unwrap()
+}
+
+/// The best place of a cut by its share of the log is where the reference has just stopped. The axis
+/// follows it with a lag of 30 ms, and stands a quarter of a second later.
+#[test]
+fn a_log_is_cut_and_begun_where_the_axis_stands_and_not_its_reference_alone() {
+    let machine = machine("rack");
+    let (x, lag) = (machine.stroke.start, 0.03);
+    let short = 0.01;
+    let before = [(x + 0.04, 1.4), (x, short)];
+    let stops = trajectories::Motion::duration(&program(x, &before)) - short;
+    let whole = |last: f64| program(x, &[before[0], (x, 0.6), (x + 0.02, short), (x, last)]);
+    let rest = 1.5 * (stops + 0.05) - trajectories::Motion::duration(&whole(short)) + short;
+    let log = lagging(&whole(rest), lag);
+    assert!((1.5 * (stops + 0.05) - log.time()[log.len() - 1]).abs() < 2e-3);
+
+    let (check, test) = set_apart(vec![("a".to_owned(), log.clone(), 1e-3)], &machine);
+    assert_eq!((check.len(), test.len()), (1, 1));
+    let cut = test[0].1.time()[0];
+    assert!(cut > stops && cut < stops + 0.5, "{cut} {stops}");
+    let left = |log: &Log| {
+        let first = log.first(1).unwrap();
+        let [r, x] = ["position_ref_m", "position_m"].map(|n| first.channel(n).unwrap()[0]);
+        (r - x).abs()
+    };
+    // It trails by 1.5 mm while it moves.
+    assert!(left(&test[0].1) < 5e-6, "{:e} m", left(&test[0].1));
+
+    let paper = self::machine("liu2025");
+    let from = (stops - 0.3) / 1e-3;
+    let moving = log.skip(from as usize).unwrap();
+    let (begun, note) = from_rest("cut.csv", moving, 1e-3, &paper).unwrap();
+    assert!(note.unwrap().contains("first rest"));
+    assert!(left(&begun) < 5e-6, "{:e} m", left(&begun));
+}

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use axis_log::Log;
-use axis_sim::{Axis, reference_in};
+use axis_sim::Axis;
 
 use super::checks::check_log;
-use super::start::{REST_TIME, is_still};
+use super::standstill::Standstill;
 
 /// Where in a log it may be cut, as shares of its length: the search proves what it names on
 /// more than half of it.
@@ -19,9 +19,9 @@ const BEST: f64 = 2.0 / 3.0;
 pub type NamedLog = (String, Log, f64);
 
 /// Splits check logs into those that a search proves on what it names, and those from which
-/// only figures are taken: the last log, or of a single one what comes after a standstill near
-/// two thirds of its length. Empty if neither is possible: the figures then come from
-/// logs that took part.
+/// only figures are taken: the last log, or of a single one what comes after a standstill of
+/// reference and measured channels near two thirds of its length. Empty if neither is possible:
+/// the figures then come from logs that took part.
 pub fn set_apart(mut check: Vec<NamedLog>, machine: &Axis) -> (Vec<NamedLog>, Vec<NamedLog>) {
     let Some(last) = check.pop() else {
         return (check, Vec::new());
@@ -37,15 +37,13 @@ pub fn set_apart(mut check: Vec<NamedLog>, machine: &Axis) -> (Vec<NamedLog>, Ve
 
 /// Both parts of a log, cut in the middle of a standstill, where each is sound by itself.
 fn cut((name, log, period): &NamedLog, machine: &Axis) -> Option<[NamedLog; 2]> {
-    let reference = reference_in(log).ok().filter(|_| machine.has_control())?;
-    let rest = (REST_TIME / period).round() as usize;
-    let length = reference.len() as f64;
+    let standstill = Standstill::of(log, *period, machine).ok();
+    let standstill = standstill.filter(|_| machine.has_control())?;
+    let rest = standstill.length;
+    let length = log.len() as f64;
     let share = |at: usize| (at + rest / 2) as f64 / length;
-    let windows = reference.windows(rest + 1).enumerate();
-    let mut rests: Vec<usize> = windows
-        .filter(|(at, window)| CUT.contains(&share(*at)) && is_still(window))
-        .map(|(at, _)| at)
-        .collect();
+    let mut rests = standstill.starts;
+    rests.retain(|&at| CUT.contains(&share(at)));
     let off = |at: &usize| (share(*at) - BEST).abs();
     rests.sort_by(|a, b| off(a).total_cmp(&off(b)));
     // One try a standstill.

@@ -5,7 +5,7 @@ use axis_log::quality::SamplingError;
 use axis_sim::BalanceError;
 use thiserror::Error;
 
-use super::start::REST_TIME;
+use super::standstill::REST_TIME;
 
 /// Why a log cannot be used. The message names the file first.
 #[derive(Debug, Error)]

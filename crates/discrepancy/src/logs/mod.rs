@@ -6,6 +6,7 @@ mod checks;
 mod error;
 mod relations;
 mod shared;
+mod standstill;
 mod start;
 
 pub use self::admit::{admit, most_samples, needed_channels};

@@ -4,13 +4,13 @@ use axis_log::Log;
 use axis_sim::{Axis, reference_in};
 
 use super::error::LogSetError;
+use super::standstill::{AT_REST, Standstill};
 
 /// A log as a replay can begin it, and what was done for that, in words.
 ///
 /// A ball-screw loop begins at rest: of a log that starts in motion, what lies
-/// before the last 0.1 s of its first standstill is left out. A rigid machine begins with the
-/// position
-/// and the speed of the log's first samples.
+/// before the last 0.1 s of its first standstill of reference and measured channels is left
+/// out. A rigid machine begins with the position and the speed of the log's first samples.
 ///
 /// # Errors
 /// [`LogSetError::NeverRests`].
@@ -39,15 +39,16 @@ pub fn from_rest(
         );
         return Ok((log, Some(words)));
     }
-    let rest = (REST_TIME / period).round() as usize;
-    let first = reference.windows(rest + 1).position(is_still);
+    let standstill = Standstill::of(&log, period, machine);
     // So late that nothing follows is as good as never.
-    let left = first.and_then(|k| {
+    let left = standstill.ok().and_then(|standstill| {
+        let half = standstill.length / 2;
+        let first = *standstill.starts.first()?;
         // The later in the standstill, the better the loop has settled.
-        let middle = k + rest / 2;
+        let middle = first + half;
         let steps = reference[middle..].windows(2);
         let still = steps.take_while(|w| (w[1] - w[0]).abs() <= AT_REST * period);
-        let at = middle.max((middle + still.count()).saturating_sub(rest / 2));
+        let at = middle.max((middle + still.count()).saturating_sub(half));
         Some((at, log.skip(at).ok()?))
     });
     match left {
@@ -65,19 +66,5 @@ pub fn from_rest(
     }
 }
 
-/// Whether the reference rests over [`REST_TIME`].
-pub(super) fn is_still(window: &[f64]) -> bool {
-    let ends = window
-        .iter()
-        .fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
-    ends.1 - ends.0 <= AT_REST * REST_TIME
-}
-
-/// Reference speed below which a log is at rest, m/s.
-const AT_REST: f64 = 1e-3;
-
 /// Over what time a log's first speed is taken, s.
 const START_TIME: f64 = 5e-3;
-
-/// How long a standstill must be for the loop to have come to rest in its half, s.
-pub(super) const REST_TIME: f64 = 0.2;
