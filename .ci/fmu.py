@@ -191,8 +191,8 @@ def check_orders(fmu, _):
     unit.refuses("initialization mode", slave.enterInitializationMode)
     unit.refuses("initialization mode", unit.step, 0)
     slave.exitInitializationMode()
-    for step in (0.0, -size, 0.5 * size, float("nan"), float("inf")):
-        unit.refuses("multiple of the control period", slave.doStep, 0.0, step)
+    for step in (0.0, -size, float("nan"), float("inf")):
+        unit.refuses("above 0", slave.doStep, 0.0, step)
     unit.refuses("where the unit is", slave.doStep, size, size)
     unit.refuses("stop time", slave.doStep, 0.0, 101 * size)
     for reference in (len(unit.references), 2**32 - 1):
@@ -305,6 +305,25 @@ def check_fmpys_own_run(fmu, _):
         assert "instantiate" in str(error), error
     else:
         raise AssertionError("event mode was accepted")
+
+
+def check_plain_calls(fmu, log):
+    """As the first lines of a user are: whatever stop time, whatever output interval, none at all."""
+    size = float(read_model_description(str(fmu)).coSimulation.fixedInternalStepSize)
+    with contextlib.redirect_stdout(io.StringIO()):
+        for stop in (2.5, 3, 3.632, 5, 7, 0.00305, 1 / 3):
+            result = simulate_fmu(str(fmu), stop_time=stop)
+            assert abs(result["time"][-1] - stop) <= 1e-9 * stop, (stop, result["time"][-1])
+        result = simulate_fmu(str(fmu))
+        # To the end of the axis' first trajectory, which is at or behind the log's last sample.
+        assert -1e-9 <= result["time"][-1] - log["t_s"][-1] <= 1.01 * size, result["time"][-1]
+        # Steps that no control period divides, the machine held or as it is between two samples.
+        for exact in (0, 1):
+            result = simulate_fmu(
+                str(fmu), stop_time=0.01, output_interval=0.37 * size,
+                start_values={"unit.exact_between_samples": exact},
+            )
+            assert abs(result["time"][-1] - 0.01) < 1e-12, result["time"][-1]
 
 
 def main():

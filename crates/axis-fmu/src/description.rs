@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use axis_sim::Axis;
+use trajectories::Motion;
 
 use crate::measure::{BASE, UnitDefinition};
 use crate::package::MODEL_IDENTIFIER;
@@ -38,8 +39,10 @@ pub fn description(axis: &Axis, variables: &Variables) -> String {
     }
     text += "</UnitDefinitions>\n\
              <LogCategories><Category name=\"logStatusError\" description=\"what is refused, and why\"/></LogCategories>\n";
-    text +=
-        &format!("<DefaultExperiment startTime=\"0\" stepSize=\"{period}\"/>\n<ModelVariables>\n");
+    text += &format!(
+        "<DefaultExperiment startTime=\"0\" stopTime=\"{}\" stepSize=\"{period}\"/>\n<ModelVariables>\n",
+        stop_time(axis)
+    );
     for variable in variables.iter() {
         text += &float64(variable);
     }
@@ -54,6 +57,21 @@ pub fn description(axis: &Axis, variables: &Variables) -> String {
     }
     text += "</ModelStructure>\n</fmiModelDescription>\n";
     text
+}
+
+/// When an importer stops that was not told: after the axis' first trajectory, on a control cycle;
+/// after 1 s where it has none.
+fn stop_time(axis: &Axis) -> f64 {
+    let first = axis.trajectories.first();
+    let planned = first.and_then(|spec| axis.plan(spec).ok());
+    let duration = planned.map_or(1.0, |motion| motion.duration());
+    // Whole periods per second and not seconds per period, so that the number is a short one.
+    let frequency = (1.0 / axis.period).round();
+    let cycles = (duration / axis.period * (1.0 - 1e-9)).ceil().max(1.0);
+    match (frequency * axis.period - 1.0).abs() < 1e-12 {
+        true => cycles / frequency,
+        false => cycles * axis.period,
+    }
 }
 
 fn is_output(variable: &Variable) -> bool {
@@ -95,7 +113,7 @@ fn float64(variable: &Variable) -> String {
         VariableKind::Output(_) => {
             "causality=\"output\" variability=\"continuous\" initial=\"calculated\""
         }
-        VariableKind::Parameter { .. } => {
+        VariableKind::Parameter { .. } | VariableKind::ExactBetween => {
             "causality=\"parameter\" variability=\"fixed\" initial=\"exact\""
         }
     };

@@ -9,6 +9,10 @@ use trajectories::Setpoint;
 use crate::error::UnitError;
 use crate::outputs::is_force;
 
+/// Share of the control period within which a point of time is that of a sample: more than
+/// rounding makes of times that are added up.
+pub(crate) const SAME_POINT: f64 = 1e-3;
+
 /// A run between two communication steps.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
@@ -16,7 +20,13 @@ pub(crate) struct Run {
     pub state: LoopState,
     /// What the drive did last.
     pub cycle: Cycle,
+    /// Control cycles that are over.
     pub cycles: u64,
+    /// Share of the control period that has passed of the next one; off by rounding.
+    pub past: f64,
+    /// Of a cycle that has begun: what its sample took, and the state where it is looked at between
+    /// samples.
+    begun: Option<(Given, Option<LoopState>)>,
 }
 
 /// What is added to the controller: the motor's input.
@@ -34,6 +44,7 @@ impl Compensator for Offset {
 }
 
 /// What is given to the loop in a cycle.
+#[derive(Clone, Debug)]
 pub(crate) struct Given {
     pub reference: Setpoint,
     /// N·m at the motor, or N at a load that is one with it.
@@ -52,6 +63,8 @@ impl Run {
             state,
             cycle: Cycle::default(),
             cycles: 0,
+            past: 0.0,
+            begun: None,
         };
         let mut ahead = run.clone();
         ahead.cycle(given)?;
@@ -59,18 +72,57 @@ impl Run {
         Ok(run)
     }
 
+    /// The machine as outputs show it.
+    pub fn shown(&self) -> &LoopState {
+        let between = self.begun.as_ref().and_then(|(_, state)| state.as_ref());
+        between.unwrap_or(&self.state)
+    }
+
+    /// Runs on by `periods` control periods, not necessarily a whole number. Each control cycle
+    /// takes the inputs at its beginning and holds them: one that began in an earlier step has
+    /// those of then. In a cycle that is not over at the end the machine is shown as of its
+    /// beginning, or as it is there where that is asked for (`exact`).
+    pub fn run_on(&mut self, periods: f64, given: &Given, exact: bool) -> Result<(), UnitError> {
+        let target = self.past + periods;
+        let whole = (target + SAME_POINT).floor();
+        for _ in 0..whole as u64 {
+            match self.begun.take() {
+                Some((begun, _)) => self.cycle(&begun)?,
+                None => self.cycle(given)?,
+            }
+        }
+        self.past = target - whole;
+        if self.past > SAME_POINT {
+            let given = self.begun.take().map_or(given.clone(), |(begun, _)| begun);
+            let share = if exact { self.past } else { 0.0 };
+            let mut offset = self.offset(&given);
+            let references = [&given.reference; 2];
+            let mut from = self.state.clone();
+            from.set_outer_load(given.load);
+            let (state, cycle) =
+                (self.closed_loop).within(&from, references, &mut offset, share)?;
+            self.cycle = cycle;
+            self.begun = Some((given, exact.then_some(state)));
+        }
+        Ok(())
+    }
+
     /// One control cycle.
-    pub fn cycle(&mut self, given: &Given) -> Result<(), UnitError> {
-        let axis = self.closed_loop.axis();
-        let torque = match is_force(axis) {
-            true => given.motor * axis.travel_per_radian(),
-            false => given.motor,
-        };
-        let mut offset = Offset(torque / axis.torque_constant());
+    fn cycle(&mut self, given: &Given) -> Result<(), UnitError> {
+        let mut offset = self.offset(given);
         let references = [&given.reference; 2];
         self.state.set_outer_load(given.load);
         self.cycle = (self.closed_loop).step(&mut self.state, references, &mut offset, |_| ())?;
         self.cycles += 1;
         Ok(())
+    }
+
+    fn offset(&self, given: &Given) -> Offset {
+        let axis = self.closed_loop.axis();
+        let torque = match is_force(axis) {
+            true => given.motor * axis.travel_per_radian(),
+            false => given.motor,
+        };
+        Offset(torque / axis.torque_constant())
     }
 }

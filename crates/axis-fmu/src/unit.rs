@@ -15,8 +15,9 @@ use crate::variables::{Input, VariableKind, Variables};
 /// of a time that is added up.
 const POINT_TOLERANCE: f64 = 1e-2;
 
-/// Share of the control period by which a communication step may be no multiple of it.
-const STEP_TOLERANCE: f64 = 1e-4;
+/// Share of the stop time by which a step may end behind it: importers compare times to about
+/// nine digits.
+const STOP_TOLERANCE: f64 = 1e-9;
 
 /// Most control cycles in one communication step.
 const MOST_CYCLES: f64 = 1e9;
@@ -88,8 +89,11 @@ impl Unit {
 
     /// Time that it has reached, s.
     pub fn time(&self) -> f64 {
-        let cycles = self.run.as_ref().map_or(0, |run| run.cycles);
-        self.span[0] + cycles as f64 * self.file.axis.period
+        let periods = self
+            .run
+            .as_ref()
+            .map_or(0.0, |run| run.cycles as f64 + run.past);
+        self.span[0] + periods * self.file.axis.period
     }
 
     /// Begins the initialisation at `start` (s); no step goes beyond `stop` (s), if there is one.
@@ -170,7 +174,9 @@ impl Unit {
         let output = match &self.file.variables.get(reference)?.kind {
             VariableKind::Time => return Ok(self.time()),
             VariableKind::Output(output) => output.0,
-            VariableKind::Input(_) | VariableKind::Parameter { .. } => {
+            VariableKind::Input(_)
+            | VariableKind::Parameter { .. }
+            | VariableKind::ExactBetween => {
                 return Ok(self
                     .values
                     .get(reference as usize)
@@ -182,7 +188,7 @@ impl Unit {
             self.settled()?;
         }
         match &self.run {
-            Some(run) => Ok(output.read(&run.state, &run.cycle)),
+            Some(run) => Ok(output.read(run.shown(), &run.cycle)),
             None => Err(self.order("reading an output", "from the initialization on")),
         }
     }
@@ -214,12 +220,17 @@ impl Unit {
         match &set.kind {
             VariableKind::Time => return Err(refused("the steps make it")),
             VariableKind::Output(_) => return Err(refused("it is an output")),
-            VariableKind::Parameter { .. } if !is_before => {
+            VariableKind::Parameter { .. } | VariableKind::ExactBetween if !is_before => {
                 return Err(refused(
                     "it is fixed; valid: before the initialization ends",
                 ));
             }
-            VariableKind::Parameter { .. } | VariableKind::Input(_) => {}
+            VariableKind::ExactBetween if value != 0.0 && value != 1.0 => {
+                return Err(refused(&format!("{value} is neither; valid: 0 or 1")));
+            }
+            VariableKind::Parameter { .. }
+            | VariableKind::ExactBetween
+            | VariableKind::Input(_) => {}
         }
         if !value.is_finite() {
             return Err(refused(&format!("{value} is no finite number")));
@@ -233,30 +244,31 @@ impl Unit {
         Ok(())
     }
 
-    /// Runs the control cycles from `point` (s), where the unit is, over `step` (s), a multiple of
-    /// the control period; the inputs are held. Gives the time reached, s.
+    /// Goes from `point` (s), where the unit is, over `step` (s), of any length; the inputs are
+    /// held. A control cycle takes those of the point where it begins. Where the step ends between
+    /// two samples, outputs show the machine as of the last one, or, with the parameter
+    /// `unit.exact_between_samples`, as it is. Gives the time reached, s.
     ///
     /// # Errors
-    /// [`UnitError::Order`] unless in step mode; [`UnitError::Time`] for another time, and then
-    /// nothing has been done; [`UnitError::Stopped`] if the run had to be given up.
+    /// [`UnitError::Order`] unless in step mode; [`UnitError::Time`] for another point, a step that
+    /// is not above 0 or ends behind the stop time, and then nothing has been done;
+    /// [`UnitError::Stopped`] if the run had to be given up.
     pub fn step(&mut self, point: f64, step: f64) -> Result<f64, UnitError> {
         self.in_mode("a step", &[FmiMode::Step], "after the initialization")?;
-        let cycles = self.cycles(point, step)?;
-        let given = self.given();
+        let periods = self.periods(point, step)?;
+        let (given, exact) = (self.given(), self.is_exact());
         let Some(run) = &mut self.run else {
             return Err(self.order("a step", "after the initialization"));
         };
-        for _ in 0..cycles {
-            if let Err(stopped) = run.cycle(&given) {
-                self.mode = FmiMode::Failed;
-                return Err(stopped);
-            }
+        if let Err(stopped) = run.run_on(periods, &given, exact) {
+            self.mode = FmiMode::Failed;
+            return Err(stopped);
         }
         Ok(self.time())
     }
 
-    /// Control cycles of a communication step.
-    fn cycles(&self, point: f64, step: f64) -> Result<u64, UnitError> {
+    /// Control periods of a communication step.
+    fn periods(&self, point: f64, step: f64) -> Result<f64, UnitError> {
         let (now, period) = (self.time(), self.file.axis.period);
         let refused = |what, value, valid| Err(UnitError::Time { what, value, valid });
         let is_here = (point - now).abs() <= POINT_TOLERANCE * period;
@@ -267,18 +279,25 @@ impl Unit {
                 format!("where the unit is, {now} s"),
             );
         }
-        let cycles = (step / period).round();
-        let is_multiple = (step - cycles * period).abs() <= STEP_TOLERANCE * period;
-        if !(is_multiple && (1.0..=MOST_CYCLES).contains(&cycles)) {
-            let valid = format!("a multiple of the control period, {period} s, above 0");
+        let most = MOST_CYCLES * period;
+        if !(step > 0.0 && step <= most) {
+            let valid = format!("above 0 and at most {most} s");
             return refused("communication step", step, valid);
         }
-        let left = self.span[1] - now;
-        if step > left + POINT_TOLERANCE * period {
-            let valid = format!("up to the stop time, {} s", self.span[1]);
+        let (left, stop) = (self.span[1] - now, self.span[1]);
+        if step > left + (POINT_TOLERANCE * period).max(STOP_TOLERANCE * stop.abs()) {
+            let valid = format!("up to the stop time, {stop} s");
             return refused("communication step", step, valid);
         }
-        Ok(cycles as u64)
+        Ok(step / period)
+    }
+
+    /// Whether outputs show the machine between two samples as it is there.
+    fn is_exact(&self) -> bool {
+        let mut all = self.file.variables.iter().zip(&self.values);
+        all.any(|(variable, value)| {
+            matches!(variable.kind, VariableKind::ExactBetween) && *value != 0.0
+        })
     }
 
     /// The inputs as the loop takes them.

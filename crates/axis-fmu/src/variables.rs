@@ -8,6 +8,11 @@ use crate::measure::UnitDefinition;
 use crate::outputs::{Source, is_force, outputs};
 use crate::parameters::parameters;
 
+/// The parameter of what outputs show between two samples.
+const EXACT_BETWEEN: &str = "unit.exact_between_samples";
+const EXACT_MEANING: &str = "0 or 1: at a communication point between two samples of the controller, \
+     machine outputs are those of the last sample (0) or of that point (1)";
+
 /// A variable of a unit; all are 64-bit floating-point numbers.
 #[derive(Clone, Debug)]
 pub struct Variable {
@@ -42,6 +47,9 @@ pub enum VariableKind {
         /// Key in it, with its unit.
         key: String,
     },
+    /// A parameter: 1 where outputs at a point between two samples show the machine as it is there,
+    /// 0 where they show it as of the last sample. Set before the initialisation ends.
+    ExactBetween,
 }
 
 /// An input.
@@ -100,6 +108,8 @@ impl Variables {
                 last.measure = UnitDefinition::spelled(parameter.unit);
             }
         }
+        let kind = VariableKind::ExactBetween;
+        all.push(EXACT_BETWEEN, EXACT_MEANING, "", kind, Some(0.0));
         Ok(all)
     }
 

@@ -134,6 +134,10 @@ impl TimeStepper for RigidStepper {
         self.step
     }
 
+    fn of_length(&self, step: f64) -> Result<Self, DriveError> {
+        Ok(Self::new(&self.drive, step)?.with_course(self.course))
+    }
+
     fn travel_per_radian(&self) -> f64 {
         self.drive.travel_per_radian
     }

@@ -38,6 +38,9 @@ fn the_archive_holds_description_axis_file_and_library() {
         "fmiVersion=\"3.0\"",
         &format!("instantiationToken=\"{token}\""),
         "fixedInternalStepSize=\"0.000125\"",
+        // The log of trajectory 1 has 7814 samples, the last at the end of 7813 periods; the move
+        // ends within the next.
+        "<DefaultExperiment startTime=\"0\" stopTime=\"0.97675\" stepSize=\"0.000125\"/>",
         "canSerializeFMUState=\"false\"",
         "<Unit name=\"A/(rpm.s)\">",
     ] {

@@ -99,6 +99,117 @@ fn long_steps_are_many_short_ones() {
     }
 }
 
+/// Steps that are no multiples of the period: the controller samples where it would, and between
+/// two samples outputs are those of the last one.
+#[test]
+fn steps_of_any_length_sample_and_hold() {
+    for name in FILES {
+        let [mut whole, mut parts] = [ready(name), ready(name)];
+        let period = whole.axis().period;
+        let start = whole.axis().stroke.start;
+        let reference = whole.variables().iter().nth(1).unwrap().name.clone();
+        for unit in [&mut whole, &mut parts] {
+            set(unit, &reference, start + 1e-4);
+        }
+        let outputs: Vec<String> = (whole.variables().iter())
+            .filter(|v| matches!(v.kind, VariableKind::Output(_)))
+            .map(|v| v.name.clone())
+            .collect();
+        let mut held = Vec::new();
+        for k in 0..200_u32 {
+            // Two periods in five steps: at 0.4, 0.8, 1.2, 1.6 and 2.
+            let time = parts.time();
+            parts.step(time, 0.4 * period).unwrap();
+            if k % 5 == 4 {
+                for _ in 0..2 {
+                    let time = whole.time();
+                    whole.step(time, period).unwrap();
+                }
+                for name in &outputs {
+                    assert_eq!(
+                        get(&mut parts, name),
+                        get(&mut whole, name),
+                        "{name} at {k}"
+                    );
+                }
+            }
+            // The points at 0.4 and 0.8 show the sample before them, those at 1.2 and 1.6 the next.
+            let shown = get(&mut parts, &outputs[0]);
+            match k % 5 {
+                1 | 3 => assert_eq!(Some(&shown), held.last()),
+                _ => held.push(shown),
+            }
+        }
+        held.dedup();
+        assert!(held.len() > 20, "{name}: it did not move");
+    }
+}
+
+/// A control cycle takes the inputs of the point where it begins, though the next point comes
+/// before its end.
+#[test]
+fn a_cycle_has_the_inputs_of_its_beginning() {
+    let [mut early, mut late, mut never] = [(); 3].map(|()| ready("liu2025.toml"));
+    set(&mut early, "position_ref_m", 0.6001);
+    let mut point = 0.0;
+    for (changed, step) in [(false, 0.5), (true, 0.5), (true, 1.0)] {
+        if changed {
+            set(&mut late, "position_ref_m", 0.6001);
+        }
+        for unit in [&mut early, &mut late, &mut never] {
+            unit.step(point, step * PERIOD).unwrap();
+        }
+        point += step * PERIOD;
+        let of = |unit: &mut Unit| get(unit, "drive.iq_ref_a");
+        let (e, l, n) = (of(&mut early), of(&mut late), of(&mut never));
+        assert_ne!(e, n);
+        // Set at half of the first cycle, it counts in the second.
+        assert_eq!(l == n, point < 1.5 * PERIOD, "{point}");
+    }
+}
+
+/// The state between two samples is on the curve through both that has their speeds: by
+/// Hermite's formula y(1/2) = (y0 + y1)/2 + T (v0 - v1)/8, off by T^4/384 times the fourth derivative.
+#[test]
+fn the_exact_state_between_samples_is_on_the_motions_curve() {
+    for name in FILES {
+        let (mut samples, mut between) = (ready(name), unit(name));
+        set(&mut between, "unit.exact_between_samples", 1.0);
+        between.enter_initialization(0.0, None).unwrap();
+        between.exit_initialization().unwrap();
+        let axis = samples.axis().clone();
+        let period = axis.period;
+        let motion = axis.plan(&axis.trajectories[0]).unwrap();
+        let names: Vec<String> = (samples.variables().iter())
+            .filter(|v| v.name.starts_with("machine."))
+            .map(|v| v.name.clone())
+            .take(2)
+            .collect();
+        let (mut worst, mut moved) = (0.0_f64, 0.0_f64);
+        for k in 0..400_u32 {
+            let before = [0, 1].map(|i| get(&mut samples, &names[i]));
+            follow(&mut samples, &motion, k);
+            let after = [0, 1].map(|i| get(&mut samples, &names[i]));
+            let now = motion.at(f64::from(k) * period);
+            for (i, value) in (1..).zip([now.position, now.velocity, now.acceleration]) {
+                between.set(i, value).unwrap();
+            }
+            let time = between.time();
+            between.step(time, 0.5 * period).unwrap();
+            let there = get(&mut between, &names[0]);
+            let time = between.time();
+            between.step(time, 0.5 * period).unwrap();
+            let end = get(&mut between, &names[0]);
+            assert_eq!(end, after[0], "{name}: looking at it changed the run");
+            let curve = 0.5 * (before[0] + after[0]) + period * (before[1] - after[1]) / 8.0;
+            worst = worst.max((there - curve).abs());
+            moved = moved.max((after[0] - before[0]).abs());
+        }
+        println!("{name}: off by {worst:e} of {moved:e} in a cycle");
+        assert!(worst < 1e-6 * moved, "{name}: {worst} of {moved}");
+    }
+}
+
 /// What an output shows on the mean of the last half of two seconds of even motion under a
 /// load, N or N·m.
 fn at_speed(name: &str, output: &str, speed: f64, load: f64) -> f64 {

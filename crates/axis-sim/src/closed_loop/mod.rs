@@ -19,7 +19,7 @@ use crate::effects::Hooks;
 use crate::error::SetupError;
 use crate::mechanism::SolutionMethod;
 use crate::part::PartError;
-use crate::plant::{Assembly, Plant, Running, Start};
+use crate::plant::{AdvanceError, Assembly, Plant, Running, Start};
 use crate::sensor::Sensing;
 use crate::work::{MOST_STEPS, check_period, cycles_of, substeps};
 
@@ -219,6 +219,28 @@ impl ClosedLoop {
         Ok(cycle)
     }
 
+    /// The cycle that begins at `state`, and the state in it after `share` of the control period (0
+    /// to 1), under the command that [`ClosedLoop::step`] gives there. The run goes on from
+    /// `state`, not from the result, which is between two samples.
+    ///
+    /// # Errors
+    /// As [`ClosedLoop::step`].
+    pub fn within(
+        &self,
+        state: &LoopState,
+        references: [&Setpoint; 2],
+        compensator: &mut (impl Compensator + ?Sized),
+        share: f64,
+    ) -> Result<(LoopState, Cycle), crate::RunStopped> {
+        let (mut state, mut cycle) = (state.clone(), Cycle::default());
+        self.decide(&mut state, references, compensator, |_| (), &mut cycle)?;
+        if share > 0.0 {
+            let ran = state.plant.advance_part(share, &mut *state.actuator);
+            ran.map_err(|error| self.not_advanced(&state, &cycle, &error))?;
+        }
+        Ok((state, cycle))
+    }
+
     /// Sample, correct and control; what comes of it is `cycle`, whatever it was before.
     fn decide(
         &self,
@@ -280,21 +302,30 @@ impl ClosedLoop {
 
     /// Lets the machine run on, the actuator's command held.
     fn advance(&self, state: &mut LoopState, cycle: &Cycle) -> Result<(), crate::RunStopped> {
-        if let Err(error) = state.plant.advance(&mut *state.actuator) {
-            let seen = state.plant.seen();
-            let at = Cycle {
-                time: seen.time,
-                position: seen.position,
-                motor_speed: seen.motor_speed,
-                torque: seen.torque,
-                current: state.actuator.electrical().current,
-                ..*cycle
-            };
-            return Err(self.stopped(reason_of(&error, &at), &at));
-        }
+        let ran = state.plant.advance(&mut *state.actuator);
+        ran.map_err(|error| self.not_advanced(state, cycle, &error))?;
         state.cycles += 1;
         state.last_effort = cycle.command.effort;
         Ok(())
+    }
+
+    /// The end of a run whose machine could not go on in `cycle`.
+    fn not_advanced(
+        &self,
+        state: &LoopState,
+        cycle: &Cycle,
+        error: &AdvanceError,
+    ) -> crate::RunStopped {
+        let seen = state.plant.seen();
+        let at = Cycle {
+            time: seen.time,
+            position: seen.position,
+            motor_speed: seen.motor_speed,
+            torque: seen.torque,
+            current: state.actuator.electrical().current,
+            ..*cycle
+        };
+        self.stopped(reason_of(error, &at), &at)
     }
 
     /// Follows `motion` from rest at its start, and shows every cycle at a

@@ -49,7 +49,7 @@ impl Assembly {
 
     /// Most by which the force on the load changes with its speed at the end of a step of
     /// `h` seconds, N·s/m, where the load moves by `travel` a radian.
-    fn steepness(&self, h: f64, travel: f64) -> f64 {
+    pub(super) fn steepness(&self, h: f64, travel: f64) -> f64 {
         let (friction, lever) = (&self.friction, self.friction.lever(travel));
         let own = friction.law.steepness(h) / (lever * lever);
         let others = self.beside_friction();

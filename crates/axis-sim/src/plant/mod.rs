@@ -38,6 +38,18 @@ pub trait Running: fmt::Debug + Send + Sync {
     /// failed.
     fn advance(&mut self, actuator: &mut dyn Actuating) -> Result<(), AdvanceError>;
 
+    /// A part of a control cycle: `share` of it, above 0 and at most 1, in equal steps that are no
+    /// longer than those of [`Running::advance`]. What comes of it shows the machine between two
+    /// samples; a whole cycle in parts is not the cycle to the last bit.
+    ///
+    /// # Errors
+    /// As [`Running::advance`].
+    fn advance_part(
+        &mut self,
+        share: f64,
+        actuator: &mut dyn Actuating,
+    ) -> Result<(), AdvanceError>;
+
     /// What can be seen of it.
     fn seen(&self) -> &Seen;
 

@@ -58,14 +58,16 @@ impl<S: TimeStepper> fmt::Debug for State<S> {
     }
 }
 
-impl<S> Running for State<S>
-where
-    S: TimeStepper + fmt::Debug + Send + Sync + 'static,
-    S::State: fmt::Debug + Send + Sync + 'static,
-{
-    fn advance(&mut self, actuator: &mut dyn Actuating) -> Result<(), AdvanceError> {
-        let law = &*self.law;
-        let (stepper, assembly) = (&law.stepper, &law.assembly);
+impl<S: TimeStepper> State<S> {
+    /// Runs on by `steps` steps of `stepper`, which is `law`'s or one of another length.
+    fn run_on(
+        &mut self,
+        law: &Law<S>,
+        stepper: &S,
+        steps: u32,
+        actuator: &mut dyn Actuating,
+    ) -> Result<(), AdvanceError> {
+        let assembly = &law.assembly;
         let (friction, hooks) = (&assembly.friction, &assembly.hooks);
         let h = stepper.step_length();
         let has_loads = hooks.has_loads() || !assembly.loads.is_empty();
@@ -75,7 +77,7 @@ where
             STANDING_LOAD_RISE
         };
         let mut errors = NutErrors::new(0.0, 0.0, assembly.backlash)?;
-        for _ in 0..assembly.substeps {
+        for _ in 0..steps {
             // The actuator, over the mean motor speed of the step.
             let start = self.seen;
             let mean_speed = start.motor_speed + 0.5 * h * self.motor_acceleration;
@@ -158,6 +160,32 @@ where
             self.force_change = self.seen.transmission_force - start.transmission_force;
         }
         Ok(())
+    }
+}
+
+impl<S> Running for State<S>
+where
+    S: TimeStepper + fmt::Debug + Send + Sync + 'static,
+    S::State: fmt::Debug + Send + Sync + 'static,
+{
+    fn advance(&mut self, actuator: &mut dyn Actuating) -> Result<(), AdvanceError> {
+        let law = self.law.clone();
+        self.run_on(&law, &law.stepper, law.assembly.substeps, actuator)
+    }
+
+    fn advance_part(
+        &mut self,
+        share: f64,
+        actuator: &mut dyn Actuating,
+    ) -> Result<(), AdvanceError> {
+        let law = self.law.clone();
+        let (length, travel) = (law.stepper.step_length(), law.travel);
+        let steps = share * f64::from(law.assembly.substeps);
+        let count = (steps * (1.0 - 1e-9)).ceil().max(1.0);
+        let length = length * steps / count;
+        let stepper = law.stepper.of_length(length)?;
+        let stepper = stepper.with_steepest_load(law.assembly.steepness(length, travel));
+        self.run_on(&law, &stepper, count as u32, actuator)
     }
 
     fn seen(&self) -> &Seen {

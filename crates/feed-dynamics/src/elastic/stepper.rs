@@ -153,6 +153,10 @@ impl TimeStepper for ElasticStepper {
         self.step
     }
 
+    fn of_length(&self, step: f64) -> Result<Self, DriveError> {
+        Self::new(&self.drive, step)
+    }
+
     fn travel_per_radian(&self) -> f64 {
         self.drive.parameters().travel_per_radian
     }

@@ -142,6 +142,10 @@ impl TimeStepper for ImplicitStepper {
         self.step
     }
 
+    fn of_length(&self, step: f64) -> Result<Self, DriveError> {
+        Self::new(&self.drive, self.coupling, step)
+    }
+
     fn travel_per_radian(&self) -> f64 {
         self.drive.travel_per_radian()
     }

@@ -109,6 +109,16 @@ pub trait TimeStepper {
     /// Length of a step, s.
     fn step_length(&self) -> f64;
 
+    /// The same stepper with steps of `step` seconds, to which a state of this one can go over:
+    /// what a state holds does not depend on the length of the steps that led to it. A
+    /// [steepest load](TimeStepper::with_steepest_load) has to be stated anew.
+    ///
+    /// # Errors
+    /// [`DriveError::Parameter`] unless the step is above zero and at most 1 s.
+    fn of_length(&self, step: f64) -> Result<Self, DriveError>
+    where
+        Self: Sized;
+
     /// Load travel per radian of the motor r, m/rad, or rad/rad where the load turns.
     fn travel_per_radian(&self) -> f64;
 

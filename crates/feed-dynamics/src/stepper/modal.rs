@@ -168,6 +168,10 @@ impl TimeStepper for ModalStepper {
         self.step
     }
 
+    fn of_length(&self, step: f64) -> Result<Self, DriveError> {
+        Self::new(&self.drive, step)
+    }
+
     fn travel_per_radian(&self) -> f64 {
         self.r
     }

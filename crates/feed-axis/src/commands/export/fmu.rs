@@ -47,7 +47,7 @@ impl fmt::Display for Exported<'_> {
         write!(
             f,
             "FMI {} co-simulation unit of {} for {}: {} inputs, {} outputs, {} parameters, \
-             steps of multiples of {} s\nwritten to {}",
+             control period {} s\nwritten to {}",
             self.fmi_version,
             self.axis,
             self.platform,
