@@ -9,7 +9,7 @@ out=$PWD/target/controller-export
 rm -rf "$out"
 cargo run --quiet --locked -p controller-export --example export_c -- "$out" 20000 >/dev/null
 
-warnings=(-std=c99 -O2 -Wall -Wextra -Wpedantic -Werror)
+warnings=(-std=c99 -O2 -Wall -Wextra -Wpedantic -Wfloat-equal -Werror)
 # name, what is compiled where; then the program's own line
 said() { printf '%-34s%-12s%s\n' "$1" "$2" "$3"; }
 
@@ -19,7 +19,8 @@ for compiler in gcc clang; do
   for folder in "$out"/*/; do
     case=$(basename "$folder")
     "$compiler" "${warnings[@]}" "$folder/${case%-*}.c" "$folder/check.c" -o "$folder/check" -lm
-    said "$case" "$compiler" "$(cd "$folder" && ./check)"
+    "$compiler" "${warnings[@]}" "$folder/${case%-*}.c" "$folder/stack.c" -o "$folder/stack" -lm
+    said "$case" "$compiler" "$(cd "$folder" && ./check), stack painted and most instructions: $(cd "$folder" && ./stack)"
   done
 done
 
@@ -31,7 +32,9 @@ if have arm-none-eabi-gcc gcc-arm-none-eabi libnewlib-arm-none-eabi && have qemu
   for folder in "$out"/*/; do
     case=$(basename "$folder")
     arm-none-eabi-gcc "${warnings[@]}" "${arm[@]}" "$folder/${case%-*}.c" "$folder/check.c" -o "$folder/check-m4" -lm
-    said "$case" cortex-m4f "$(cd "$folder" && "${qemu[@]}")"
+    checked=$(cd "$folder" && "${qemu[@]}")
+    arm-none-eabi-gcc "${warnings[@]}" "${arm[@]}" "$folder/${case%-*}.c" "$folder/stack.c" -o "$folder/check-m4" -lm
+    said "$case" cortex-m4f "$checked, stack painted and most instructions: $(cd "$folder" && "${qemu[@]}")"
   done
 else
   skipped "arm-none-eabi-gcc or qemu-system-arm is not there: nothing was tried on a Cortex-M4F"

@@ -9,6 +9,9 @@
 //! where a correction is no number, where one is at its limit for longer than a while, or
 //! where the compensator is surprised by what it observes for as long. The drive's own
 //! loops then have the axis alone.
+//!
+//! What a compensator asks for may jump where it begins anew, or where its limits change. The guard
+//! then goes over from what it let through last, in the same time and by the same curve.
 
 use axis_scalar::Scalar;
 
@@ -31,6 +34,19 @@ pub struct GuardLimits<T = f64> {
 }
 
 impl<T: Scalar> GuardLimits<T> {
+    fn check(&self) -> Result<(), CompensatorError> {
+        let named = [
+            ("position", self.position),
+            ("effort", self.effort),
+            ("surprise", self.surprise),
+        ];
+        for (name, limit) in named {
+            let inside = limit > T::ZERO && !within(limit, -1.0, 0.0);
+            require(inside, name, limit, "above 0")?;
+        }
+        Ok(())
+    }
+
     /// Each limit rounded to the nearest number of another scalar.
     #[must_use]
     pub fn cast<U: Scalar>(&self) -> GuardLimits<U> {
@@ -80,7 +96,7 @@ pub enum Status {
     Tripped(Trip),
 }
 
-/// Limits, fading and watchdog. 56 bytes in `f32`, no allocation.
+/// Limits, fading and watchdog. 76 bytes in `f32`, no allocation.
 #[derive(Clone, Copy, Debug)]
 pub struct Guard<T = f64> {
     limits: GuardLimits<T>,
@@ -90,6 +106,10 @@ pub struct Guard<T = f64> {
     /// Cycles for which each limit was exceeded.
     beyond: [u32; 3],
     last: Correction<T>,
+    /// What was let through last, and what is gone over from, in so many cycles more.
+    passed: Correction<T>,
+    from: Correction<T>,
+    blend: u32,
 }
 
 impl<T: Scalar> Guard<T> {
@@ -103,22 +123,36 @@ impl<T: Scalar> Guard<T> {
     /// # Errors
     /// [`CompensatorError::Setting`] for a limit that is not above 0.
     pub fn new(limits: GuardLimits<T>) -> Result<Self, CompensatorError> {
-        let named = [
-            ("position", limits.position),
-            ("effort", limits.effort),
-            ("surprise", limits.surprise),
-        ];
-        for (name, limit) in named {
-            let inside = limit > T::ZERO && !within(limit, -1.0, 0.0);
-            require(inside, name, limit, "above 0")?;
-        }
+        limits.check()?;
         Ok(Self {
             limits,
             status: Status::Off,
             faded: 0,
             beyond: [0; 3],
             last: Correction::default(),
+            passed: Correction::default(),
+            from: Correction::default(),
+            blend: 0,
         })
+    }
+
+    /// Other limits from now on, at any moment: what they let through is gone over to.
+    ///
+    /// # Errors
+    /// As [`Guard::new`]; the limits are then those of before.
+    pub fn set_limits(&mut self, limits: GuardLimits<T>) -> Result<(), CompensatorError> {
+        limits.check()?;
+        self.limits = limits;
+        self.faded = self.faded.min(limits.fade);
+        self.restart();
+        Ok(())
+    }
+
+    /// The compensator begins anew: from what was let through last the guard goes over to what
+    /// it lets through from now on, without a jump.
+    pub fn restart(&mut self) {
+        self.from = self.passed;
+        self.blend = self.limits.fade;
     }
 
     /// Fades in or out, at any moment. Switching on takes back a trip.
@@ -155,11 +189,21 @@ impl<T: Scalar> Guard<T> {
             _ => T::of(f64::from(self.faded)) / T::of(f64::from(l.fade)),
         };
         // Without slope at either end, and the same bits wherever it is computed.
-        let gain = share * share * (T::of(3.0) - T::TWO * share);
-        Correction {
+        let gain = smooth(share);
+        let mut out = Correction {
             position: gain * self.last.position,
             command: gain * self.last.command,
+        };
+        if self.blend > 0 {
+            let before = smooth(T::of(f64::from(self.blend)) / T::of(f64::from(l.fade)));
+            out = Correction {
+                position: out.position + before * (self.from.position - out.position),
+                command: out.command + before * (self.from.command - out.command),
+            };
+            self.blend -= 1;
         }
+        self.passed = out;
+        out
     }
 
     fn watch(&mut self, asked: &Correction<T>, surprise: T) {
@@ -181,6 +225,10 @@ impl<T: Scalar> Guard<T> {
             }
         }
     }
+}
+
+fn smooth<T: Scalar>(share: T) -> T {
+    share * share * (T::of(3.0) - T::TWO * share)
 }
 
 /// A compensator behind a guard. It goes on observing while it is off, so that it can be
@@ -214,14 +262,22 @@ impl<T: Scalar, C: Compensator<T>> Guarded<C, T> {
 }
 
 impl<T: Scalar, C: Compensator<T>> Compensator<T> for Guarded<C, T> {
-    /// The guard keeps its state: a trip is not taken back by a new motion.
+    /// The guard keeps its state: a trip is not taken back by a new motion. It goes over from the
+    /// last correction to those of the new motion.
     fn reset(&mut self) {
         self.inner.reset();
+        self.guard.restart();
     }
 
+    /// After a correction that was no number the compensator begins anew: what it has
+    /// in its state would be none for ever, and switching on could not take the trip back.
     fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
         let asked = self.inner.correct(sample);
-        self.guard.pass(&asked, self.inner.surprise())
+        let passed = self.guard.pass(&asked, self.inner.surprise());
+        if !(asked.position.is_finite() && asked.iq.is_finite()) {
+            self.reset();
+        }
+        passed
     }
 
     fn surprise(&self) -> T {

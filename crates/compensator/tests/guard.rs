@@ -190,3 +190,96 @@ proptest! {
         }
     }
 }
+
+/// A compensator that begins anew asks for something else: the guard goes over to it by
+/// s² (3 − 2 s), also while it fades out.
+#[test]
+fn a_restart_is_no_jump() {
+    for switched_off in [false, true] {
+        let mut guard = on();
+        let mut before = guard.pass(&correction(5e-5, 2.0), 0.0);
+        assert_eq!(before, correction(5e-5, 2.0));
+        guard.restart();
+        guard.switch(!switched_off);
+        let asked = correction(-5e-5, 0.0);
+        for k in 0..LIMITS.fade {
+            let now = guard.pass(&asked, 0.0);
+            // The steepest of the curve is 1.5, over 20 cycles; twice, where it fades out too.
+            let steepest = 1.5 / 20.0 * if switched_off { 2.0 } else { 1.0 };
+            assert!((now.iq - before.iq).abs() <= 2.0 * steepest + 1e-12, "{k}");
+            assert!(
+                (now.position - before.position).abs() <= 1e-4 * steepest + 1e-16,
+                "{k}"
+            );
+            before = now;
+        }
+        let last = guard.pass(&asked, 0.0);
+        assert_eq!(
+            last,
+            if switched_off {
+                Correction::default()
+            } else {
+                asked
+            }
+        );
+    }
+}
+
+/// Limits that are set while it runs let through what the old ones did not, without a jump; ones
+/// that are none are refused and change nothing.
+#[test]
+fn limits_are_set_at_run_time() {
+    let mut guard = on();
+    let asked = correction(0.0, 10.0);
+    let mut before = guard.pass(&asked, 0.0);
+    assert_eq!(before.iq, 3.0);
+    let wide = GuardLimits {
+        effort: 20.0,
+        ..LIMITS
+    };
+    let none = GuardLimits {
+        effort: f64::NAN,
+        ..wide
+    };
+    assert!(guard.set_limits(none).is_err());
+    assert_eq!(guard.limits(), &LIMITS);
+    guard.set_limits(wide).unwrap();
+    for _ in 0..LIMITS.fade + 1 {
+        let now = guard.pass(&asked, 0.0);
+        assert!((now.iq - before.iq).abs() <= 7.0 * 1.5 / 20.0 + 1e-12);
+        before = now;
+    }
+    assert_eq!((before.iq, guard.status()), (10.0, Status::On));
+}
+
+/// Asks for what it was given, and for no number for ever after one.
+struct Poisoned(f64);
+
+impl Compensator for Poisoned {
+    fn reset(&mut self) {
+        self.0 = 0.0;
+    }
+
+    fn correct(&mut self, sample: &Sample) -> Correction {
+        self.0 += sample.iq;
+        correction(0.0, self.0)
+    }
+}
+
+/// One sample that is no number trips the guard; switched on again it stays on.
+#[test]
+fn a_trip_by_one_nan_is_taken_back() {
+    let mut law = Guarded::new(Poisoned(0.0), on());
+    let sample = |iq: f64| Sample {
+        iq,
+        ..Sample::default()
+    };
+    assert_eq!(law.correct(&sample(1.0)).iq, 1.0);
+    law.correct(&sample(f64::NAN));
+    assert_eq!(law.guard().status(), Status::Tripped(Trip::NotFinite));
+    law.guard_mut().switch(true);
+    for _ in 0..100 {
+        assert!(law.correct(&sample(0.0)).iq.is_finite());
+    }
+    assert_eq!(law.guard().status(), Status::On);
+}

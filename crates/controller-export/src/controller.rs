@@ -4,8 +4,8 @@ use axis_pipeline::strategies::{Predictors, assumed_feedback};
 use axis_sim::Axis;
 use compensator::{Guard, GuardLimits, Kinematics};
 
-use crate::ExportError;
 use crate::law::{ExportedLaw, NetworkLaw, PlanLaw, Position};
+use crate::{ExportError, c};
 
 /// Names of the strategies that can be exported.
 pub const EXPORTED: &[&str] = &[
@@ -39,8 +39,11 @@ pub struct Units {
 /// A compensator to export: the law, its guard, and where it comes from.
 #[derive(Clone, Debug)]
 pub struct ExportedController {
-    /// Name of the strategy: words in lower case, `_` between them.
+    /// Name of files, types and functions: that of the strategy, or another one
+    /// ([`ExportedController::named`]).
     pub name: String,
+    /// Name of the strategy: words in lower case, `_` between them.
+    pub strategy: String,
     /// Name of the axis.
     pub axis: String,
     /// The axis in a line.
@@ -74,6 +77,7 @@ impl ExportedController {
         let law = law(predictors, &name)?;
         let axis = &predictors.axis;
         Ok(Self {
+            strategy: name.clone(),
             name,
             axis: axis.name.clone(),
             description: axis.description.clone(),
@@ -82,6 +86,19 @@ impl ExportedController {
             period: axis.period,
             law,
             limits: *Guard::new(limits)?.limits(),
+        })
+    }
+
+    /// The same with another name of files, types and functions, so that several can stand in
+    /// one firmware.
+    ///
+    /// # Errors
+    /// [`ExportError::Name`] for one that cannot stand in C.
+    pub fn named(self, name: &str) -> Result<Self, ExportError> {
+        c::check_name(name)?;
+        Ok(Self {
+            name: name.to_owned(),
+            ..self
         })
     }
 }

@@ -36,6 +36,16 @@ pub enum ExportError {
         /// Names that can be exported.
         valid: String,
     },
+    /// The name cannot stand in C.
+    #[error(
+        "the name \"{name}\" cannot be that of the code: {why}; valid: lower-case letters, digits and _, a letter first, at most 31, no word of C or C++"
+    )]
+    Name {
+        /// The name.
+        name: String,
+        /// What is wrong with it.
+        why: String,
+    },
     /// Something of the strategy has no counterpart in C.
     #[error("the strategy \"{name}\" of this axis cannot be exported: {what}; valid: {valid}")]
     Unsupported {

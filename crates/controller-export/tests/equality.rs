@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::support::program::{compare, compilers, write, write_one};
+use crate::support::program::{compare, compilers, stack, write, write_one};
 use crate::support::{Outcome, laws, samples};
 use axis_pipeline::strategies::Predictors;
 use axis_sim::Axis;
@@ -50,6 +50,35 @@ fn c_is_rust(names: &[&str]) -> Outcome<()> {
             let folder = tempfile::tempdir()?;
             let source = write(folder.path(), &predictors, name, precision, cycles(name))?;
             same_bits(folder.path(), name, cycles(name), &source, &compilers())?;
+        }
+    }
+    Ok(())
+}
+
+/// A step takes at least its greatest array of the stack, and what the header says of the stack is
+/// no number that a build could exceed.
+#[test]
+fn the_stack_is_measured_and_not_promised() -> Outcome<()> {
+    let predictors = laws::predictors(&samples::axis()?)?;
+    for &name in EXPORTED {
+        for precision in BOTH {
+            let folder = tempfile::tempdir()?;
+            let source = write(folder.path(), &predictors, name, precision, 2000)?;
+            let header = &source.header.text;
+            let mut lines = header.lines();
+            let said = lines
+                .find(|line| line.contains("stack"))
+                .ok_or("no word of the stack")?;
+            assert!(!said.contains(|c: char| c.is_ascii_digit()), "{said}");
+            for compiler in compilers() {
+                let painted = stack(folder.path(), compiler, name)?;
+                println!(
+                    "{name:<24}{compiler:<6} {painted} bytes of stack, {:?}",
+                    source.memory
+                );
+                assert!(painted >= source.memory.greatest_array, "{name}: {painted}");
+                assert!(painted < 16384, "{name}: {painted}");
+            }
         }
     }
     Ok(())

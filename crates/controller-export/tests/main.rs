@@ -1,6 +1,7 @@
 //! One test program: exports against the Rust code.
 
 mod equality;
+mod firmware;
 mod linuxcnc;
 #[path = "../../../tests/needs.rs"]
 mod needs;

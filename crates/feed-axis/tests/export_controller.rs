@@ -214,12 +214,14 @@ fn plans_are_of_the_axis_file_and_others_are_refused() {
     }
     let message = refused("data/axes/joint.toml", &["--strategy", "plan"]);
     assert!(message.contains("kinematic error"), "{message}");
-    // Without a trajectory the guard's limits must be given.
-    let message = refused("data/axes/emps.toml", &["--strategy", "plan"]);
-    assert!(
-        message.contains("--limit-position and --limit-effort"),
-        "{message}"
-    );
+    // Names that C cannot have.
+    for name in ["x-axis", "int", "X"] {
+        let message = refused(AXIS, &["--strategy", "plan", "--name", name]);
+        assert!(
+            message.contains("--name") && message.contains("lower-case letters"),
+            "{message}"
+        );
+    }
     assert!(!Path::new(out).exists());
     let given = [
         "--strategy",
@@ -233,6 +235,12 @@ fn plans_are_of_the_axis_file_and_others_are_refused() {
     let said = succeed(&all.iter().map(String::as_str).collect::<Vec<_>>());
     assert!(said.contains("at most 2000 µm and 50"), "{said}");
     assert!(said.contains("control cycles ahead"), "{said}");
+    // Not given, they are those of the axis file, whatever its trajectories.
+    let all = c(AXIS, &["--strategy", "plan", "--name", "x_axis"]);
+    let said = succeed(&all.iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(said.contains("x_axis.h, x_axis.c"), "{said}");
+    // following_error_limit_mm = 2, force_limit_n = 250.
+    assert!(said.contains("at most 2000 µm and 250 N"), "{said}");
     let message = refused(AXIS, &["--strategy", "plan", "--limit-effort", "-1"]);
     assert!(message.contains("above 0"), "{message}");
 }

@@ -32,6 +32,8 @@ pub(super) struct Draft {
     /// For a plan, which steps otherwise: its look-ahead in cycles, and whether a feedback
     /// stands around it.
     pub plan: Option<(usize, bool)>,
+    /// The guard's limits as C.
+    pub limits: String,
     /// Numbers in constants and tables, and 32-bit counts.
     pub constants: usize,
     pub counts: usize,
@@ -50,6 +52,7 @@ impl Draft {
             position: None,
             effort: None,
             plan: None,
+            limits: String::new(),
             constants: 0,
             counts: 0,
             stack: 0,
@@ -73,9 +76,10 @@ impl Draft {
         let word = self.precision.bytes();
         let state = |s: &State| (s.reals * word + s.integers * 4).next_multiple_of(word);
         Memory {
-            state: self.states.iter().map(state).sum(),
+            // And the word that says that it was inited.
+            state: self.states.iter().map(state).sum::<usize>() + word,
             constants: self.constants * word + self.counts * 4,
-            stack: self.stack * word,
+            greatest_array: self.stack * word,
         }
     }
 }

@@ -3,23 +3,27 @@
 use std::fmt::Write;
 
 use super::draft::Draft;
+use super::name::check_free;
 use super::part::Part;
 use super::{CSource, Precision};
-use crate::{ExportedController, NamedText};
+use crate::{ExportError, ExportedController, NamedText};
 
 /// Puts the texts together.
 pub(super) fn finish(
     controller: &ExportedController,
     draft: Draft,
     step_time: Option<&str>,
-) -> CSource {
+) -> Result<CSource, ExportError> {
     let code = draft
         .parts
         .iter()
         .map(|part| Part::code(part, draft.precision));
     let body: Vec<&str> = code.collect();
     let declarations = declarations(&draft);
+    // The limits are numbers too.
+    let limits = format!("/* Limits: {} */\n", draft.limits);
     let body = [
+        &*limits,
         &*base(draft.precision),
         &*draft.data,
         &*body.join("\n"),
@@ -27,6 +31,7 @@ pub(super) fn finish(
         &*functions(&draft),
     ];
     let body = body.concat();
+    check_free(&controller.name, &body)?;
     let hash = blake3::hash(
         [&*controller.fingerprint, &*controller.name, &*body]
             .concat()
@@ -46,7 +51,7 @@ pub(super) fn finish(
     let library = draft.needs_library();
     let library = if library { "#include <math.h>\n" } else { "" };
     let source = format!("@TOP@\n{library}#include \"@X@.h\"\n\n{body}");
-    CSource {
+    Ok(CSource {
         header: NamedText {
             name: fill("@X@.h"),
             text: fill(include_str!("runtime/header.h")),
@@ -59,7 +64,7 @@ pub(super) fn finish(
         look_ahead: draft.plan.map(|(cycles, _)| cycles),
         inputs: draft.inputs.into_iter().collect(),
         hash,
-    }
+    })
 }
 
 /// Types of the numbers.
@@ -93,6 +98,7 @@ fn declarations(draft: &Draft) -> String {
         .replace("@OUTPUTS@", &outputs(draft))
         .replace("@STATES@", &states)
         .replace("@MEMBERS@", &members)
+        .replace("@LIMITS@", &draft.limits)
 }
 
 fn functions(draft: &Draft) -> String {
@@ -105,7 +111,7 @@ fn functions(draft: &Draft) -> String {
     };
     let (feedback, surprise) = match draft.plan {
         Some((_, true)) => (
-            "        feedback_correct(&x->feedback, in, &p);\n",
+            "            feedback_correct(&x->feedback, in, &p);\n",
             "x->feedback.surprise",
         ),
         _ => ("", "R(0.0)"),
@@ -155,12 +161,13 @@ fn top(
     // Two ends of a comment in a text of the user's would let the rest become code.
     let plain = |text: &str| text.replace("*/", "* /").replace(['\n', '\r'], " ");
     format!(
-        "/* Compensator \"{name}\" of the axis \"{axis}\" ({description}).\n\
+        "/* Compensator \"{name}\", strategy {strategy}, of the axis \"{axis}\" ({description}).\n\
          \x20* Generated: change the axis or the strategy and export anew.\n\
          \x20*\n\
          \x20* precision     {precision}\n\
          \x20* control cycle {period:?} s: call the step once in each\n\
-         \x20* memory        state {state} bytes an axis, constants {constants} bytes, stack {stack} bytes and a few dozen\n\
+         \x20* memory        state {state} bytes an axis, constants {constants} bytes\n\
+         \x20* stack         the compiler's: build with -fstack-usage\n\
          \x20* time a step   {time}\n\
          \x20* inputs        {hash} (BLAKE3 of axis, strategy, precision and numbers)\n\
          \x20*\n\
@@ -170,12 +177,12 @@ fn top(
          \x20* after each operation (not x87).\n\
          \x20*/\n",
         name = controller.name,
+        strategy = controller.strategy,
         axis = plain(&controller.axis),
         description = plain(&controller.description),
         period = controller.period,
         state = memory.state,
         constants = memory.constants,
-        stack = memory.stack,
         library = match draft.needs_library() {
             true => "of the library only sqrt (and memset, memcpy if a compiler calls them)",
             false => "no library (but memset, memcpy if a compiler calls them)",

@@ -10,6 +10,7 @@
 //! network_lugre_switch(&law, 1);         /* fades in; 0 fades out */
 //! network_lugre_step(&law, &in, &out);   /* each control cycle */
 //! network_lugre_reset(&law);             /* before the first motion after a stop that was no rest */
+//! network_lugre_limit(&law, &limits);    /* other limits of the guard, at any moment */
 //! ```
 //!
 //! Operations stand in the order of the Rust code and are not contracted, so results are the
@@ -22,6 +23,7 @@ mod friction;
 mod guard;
 mod head;
 mod input;
+mod name;
 mod network;
 mod part;
 mod plan;
@@ -31,6 +33,7 @@ use cfnn::NetworkScalar;
 use lugre::Exponential;
 
 pub use input::Input;
+pub(crate) use name::check_name;
 
 use crate::{ExportError, ExportedController, ExportedLaw, NamedText, Position};
 use draft::Draft;
@@ -69,8 +72,9 @@ pub struct Memory {
     pub state: usize,
     /// Constant tables, once.
     pub constants: usize,
-    /// The greatest array on the stack.
-    pub stack: usize,
+    /// The greatest array on the stack. What a step takes of the stack is the compiler's, and
+    /// more: a few hundred bytes (docs/controller-export.md has measurements).
+    pub greatest_array: usize,
 }
 
 /// A compensator in C.
@@ -94,7 +98,8 @@ pub struct CSource {
 /// take, and on which machine; without it "not measured" stands there.
 ///
 /// # Errors
-/// [`ExportError`] if a number leaves its range in this precision.
+/// [`ExportError`] if a number leaves its range in this precision, or the name is one that the
+/// code has inside.
 pub fn export(
     controller: &ExportedController,
     precision: Precision,
@@ -104,7 +109,7 @@ pub fn export(
         Precision::F64 => drafted(controller, precision, &controller.law),
         Precision::F32 => drafted(controller, precision, &controller.law.cast::<f32>()?),
     };
-    Ok(head::finish(controller, draft, step_time))
+    head::finish(controller, draft, step_time)
 }
 
 fn drafted<T: NetworkScalar + Exponential>(

@@ -53,24 +53,31 @@ macro_rules! part {
 
 part!(ABSOLUTE, "absolute", []);
 part!(WITH_SIGN, "with_sign", []);
-part!(GREATEST, "greatest", []);
-part!(LEAST, "least", []);
+part!(IS_NAN, "is_nan", []);
+part!(IS_ZERO, "is_zero", []);
+part!(GREATEST, "greatest", [IS_NAN]);
+part!(LEAST, "least", [IS_NAN]);
 part!(LIMITED, "limited", [GREATEST, LEAST]);
 part!(FINITE, "finite", []);
+part!(NOT_A_NUMBER, "not_a_number", []);
 part!(each REMAINDER, "remainder", []);
 part!(each TANSIG, "tansig", [ABSOLUTE, WITH_SIGN]);
 part!(FORWARD, "forward", [TANSIG]);
 part!(ESTIMATOR, "estimator", [REMAINDER, FORWARD]);
 part!(TRANSFER, "transfer", []);
-part!(each DECAYS, "decays", []);
+part!(each DECAYS, "decays", [IS_NAN]);
 part!(LUGRE, "lugre", [DECAYS, ABSOLUTE, WITH_SIGN]);
 // The actuator's part stands before it.
-part!(PLAN, "plan", [ALONG, LUGRE, LIMITED]);
+part!(
+    PLAN,
+    "plan",
+    [IS_ZERO, ALONG, LUGRE, LIMITED, FINITE, NOT_A_NUMBER]
+);
 part!(FRICTION, "friction", [LUGRE]);
 part!(each ROOT, "root", []);
 part!(ALONG, "along", [LEAST, GREATEST]);
 part!(FIELD_ORIENTED, "field_oriented", [LIMITED, ROOT]);
-part!(LAG, "lag", [LIMITED]);
+part!(LAG, "lag", [IS_ZERO, LIMITED]);
 part!(FEEDBACK, "feedback", [FINITE, ROOT]);
 part!(FADE, "fade", []);
 part!(GUARD, "guard", [ABSOLUTE, LIMITED, FINITE, FADE]);

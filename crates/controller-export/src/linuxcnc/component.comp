@@ -1,4 +1,4 @@
-component @X@ "@AXIS@: offsets of position and command by the strategy @X@.";
+component @X@ "@AXIS@: offsets of position and command by the strategy @STRATEGY@.";
 description """
 @TOP@
 Stands between motion and PID, as offset.comp does. The command is held back by @HELD@ servo period(s), so
@@ -18,6 +18,9 @@ pin in bit enable-in "Fades the offsets in and out. Rising takes back a trip.";
 pin out bit fault "The guard has tripped, or the thread has another period than the strategy.";
 pin out s32 status-out "0 off, 1 on; tripped: 2 not a number, 3 position, 4 effort, 5 surprise; 6 period.";
 param rw float units-per-si = @UNITS@ "Machine units per @L@.";
+param rw float limit-position = @POSITION_LIMIT@ "The guard's: greatest offset of the position, machine units. One that is not above 0 changes nothing.";
+param rw float limit-effort = @EFFORT_LIMIT@ "Greatest offset of the command, @E@; likewise.";
+param rw float limit-surprise = @SURPRISE_LIMIT@ "Greatest deviation of the observer, in standard deviations; likewise.";
 variable double held_cycle[@ROOM@];
 function update_feedback;
 function update;
@@ -33,6 +36,7 @@ typedef struct {
     @X@ law;
     double at[3]; /* @L@, @L@/s, @L@/s^2 */
     double offset;
+    double limits[3]; /* as the parameters were */
     int started, on;
 } kept_cycle;
 typedef char kept_cycle_has_room[sizeof(kept_cycle) <= @ROOM@ * sizeof(double) ? 1 : -1];
@@ -52,7 +56,8 @@ FUNCTION(update)
     const int on = enable_in && in_time;
     @X@_input in;
     @X@_output out;
-    int i;
+    const double asked[3] = {limit_position * si, limit_effort, limit_surprise};
+    int i, changed = 0;
 
     if (!kept->started) {
         @X@_init(&kept->law);
@@ -60,6 +65,19 @@ FUNCTION(update)
             kept->at[i] = next[i];
         }
         kept->started = 1;
+    }
+    for (i = 0; i < 3; i++) {
+        if (asked[i] < kept->limits[i] || asked[i] > kept->limits[i]) {
+            changed = 1;
+        }
+        kept->limits[i] = asked[i];
+    }
+    if (changed) {
+        @X@_limits limits = @U@_LIMITS;
+        limits.position = asked[0];
+        limits.effort = asked[1];
+        limits.surprise = asked[2];
+        (void)@X@_limit(&kept->law, &limits);
     }
     if (on != kept->on) {
         if (on) {

@@ -26,8 +26,10 @@ pub struct Component {
 pub fn export(controller: &ExportedController) -> Result<Component, ExportError> {
     let source = c::export(controller, Precision::F64, None)?;
     let code = inlined(&source, &controller.name);
-    // Beside the law's state four numbers and two integers.
-    let room = (source.memory.state + 4 * 8 + 2 * 4).div_ceil(8) + 1;
+    // Beside the law's state seven numbers and two integers.
+    let room = (source.memory.state + 7 * 8 + 2 * 4).div_ceil(8) + 1;
+    let limits = &controller.limits;
+    let per_si: f64 = units_per_si(&controller.units.load).parse().unwrap_or(1.0);
     let (held, reference, velocity) = match source.look_ahead {
         Some(cycles) => (cycles, "out.reference_position", "out.reference_velocity"),
         None => (1, "kept->at[0]", "kept->at[1]"),
@@ -45,7 +47,14 @@ pub fn export(controller: &ExportedController) -> Result<Component, ExportError>
             .replace("@ASSIGN@", &assignments(&source.inputs))
             .replace("@TOP@", &about(controller, &source.hash))
             .replace("@AXIS@", &plain(&controller.axis))
+            .replace("@STRATEGY@", &controller.strategy)
             .replace("@ROOM@", &room.to_string())
+            .replace(
+                "@POSITION_LIMIT@",
+                &format!("{:?}", limits.position * per_si),
+            )
+            .replace("@EFFORT_LIMIT@", &format!("{:?}", limits.effort))
+            .replace("@SURPRISE_LIMIT@", &format!("{:?}", limits.surprise))
             .replace("@UNITS@", units_per_si(&controller.units.load))
             .replace("@PERIOD@", &format!("{:?}", controller.period))
             .replace("@X@", &controller.name)
@@ -114,10 +123,10 @@ fn inlined(source: &c::CSource, name: &str) -> String {
     let types = from(&source.header.text, begin, "/* Everything forgotten");
     let include = format!("#include \"{name}.h\"\n");
     let functions = from(&source.source.text, &include, "\u{0}");
-    let functions = functions.replace(
-        &format!("\nvoid {name}_"),
-        &format!("\nstatic void {name}_"),
-    );
+    let functions = ["void", "int"].iter().fold(functions, |text, kind| {
+        let begins = |before: &str| format!("\n{before}{kind} {name}_");
+        text.replace(&begins(""), &begins("static "))
+    });
     format!("#include <stdint.h>\n\n{begin}{types}{functions}")
 }
 
@@ -144,8 +153,9 @@ fn assignments(inputs: &[Input]) -> String {
 
 fn about(controller: &ExportedController, hash: &str) -> String {
     format!(
-        "Compensator \"{}\" of the axis \"{}\" ({}).\nControl period {:?} s; inputs {hash}.",
+        "Compensator \"{}\", strategy {}, of the axis \"{}\" ({}).\nControl period {:?} s; inputs {hash}.",
         controller.name,
+        controller.strategy,
         plain(&controller.axis),
         plain(&controller.description),
         controller.period,

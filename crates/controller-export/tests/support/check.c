@@ -23,10 +23,10 @@ typedef struct {
 static double deviation(REAL is, REAL expected)
 {
     const double d = (double)is - (double)expected, e = (double)expected;
-    if (d == 0.0) {
-        return 0.0;
+    if (!(d < 0.0) && !(d > 0.0)) {
+        return d >= 0.0 ? 0.0 : 1e300; /* equal, or not a number */
     }
-    return (d != d || e == 0.0) ? 1e300 : (d < 0.0 ? -d : d) / (e < 0.0 ? -e : e);
+    return !(e < 0.0) && !(e > 0.0) ? 1e300 : (d < 0.0 ? -d : d) / (e < 0.0 ? -e : e);
 }
 
 int main(int count, char **arguments)
@@ -59,7 +59,7 @@ int main(int count, char **arguments)
         for (i = 0; i < read; i++) {
             const double p = deviation(outs[i].position, cycles[i].position);
             const double e = deviation(outs[i].effort, cycles[i].effort);
-            equal += p == 0.0 && e == 0.0;
+            equal += p <= 0.0 && e <= 0.0;
             worst = p > worst ? p : worst;
             worst = e > worst ? e : worst;
             statuses += outs[i].status != (int32_t)cycles[i].status;

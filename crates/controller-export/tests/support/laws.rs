@@ -6,7 +6,7 @@ use axis_sim::Axis;
 use cfnn::{FixedNetwork, Network, Scaling, Shape};
 use compensator::{
     Combined, Compensator, Correction, Feedback, GuardLimits, NetworkCompensation, NoCompensation,
-    Planner, Sample, Standstill, Target, TransferFunctionModel,
+    Planner, Reference, Sample, Standstill, Target, TransferFunctionModel,
 };
 use controller_export::{ExportedLaw, NetworkLaw, PlanLaw, Position};
 use lugre::Exponential;
@@ -76,6 +76,18 @@ pub trait Runs<T: Scalar> {
     fn correct(&mut self, sample: &Sample<T>) -> Correction<T>;
     /// What a guard watches.
     fn surprise(&self) -> T;
+    /// Whether there is anything to ask for yet.
+    fn is_planned(&self) -> bool {
+        true
+    }
+    /// After a correction that was no number: whether the state is none either, and begins anew.
+    fn begins_anew(&mut self, asked: &Correction<T>) -> bool {
+        let anew = !(asked.position.is_finite() && asked.iq.is_finite());
+        if anew {
+            self.reset();
+        }
+        anew
+    }
     /// What went to the drive.
     fn passed(&mut self, _: &Correction<T>) {}
 }
@@ -100,6 +112,10 @@ pub struct Streaming<T: Exponential> {
     planner: Planner<T>,
     feedback: Option<Feedback<T>>,
     started: bool,
+    planned: bool,
+    sound: bool,
+    /// The last set point that was a number.
+    last: Reference<T>,
     own: T,
 }
 
@@ -109,6 +125,9 @@ impl<T: Exponential> Streaming<T> {
             planner: (*law.planner).clone(),
             feedback: law.feedback.as_deref().cloned(),
             started: false,
+            planned: false,
+            sound: true,
+            last: Reference::default(),
             own: T::ZERO,
         }
     }
@@ -116,15 +135,25 @@ impl<T: Exponential> Streaming<T> {
 
 impl<T: Exponential> Runs<T> for Streaming<T> {
     fn reset(&mut self) {
-        self.started = false;
+        (self.started, self.planned) = (false, false);
         if let Some(feedback) = &mut self.feedback {
             feedback.reset();
         }
     }
 
     fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
-        let newest = sample.next_reference;
+        let mut newest = sample.next_reference;
+        let numbers = [newest.position, newest.velocity, newest.acceleration];
+        let known = numbers.iter().all(|x| x.is_finite());
+        (self.planned, self.sound) = (false, true);
+        let none = Correction {
+            position: T::ZERO,
+            iq: T::ZERO / T::ZERO,
+        };
         if !self.started {
+            if !(known && sample.iq_command.is_finite()) {
+                return none;
+            }
             let standstill = Standstill {
                 effort: sample.last_command,
                 own: self.own,
@@ -134,18 +163,39 @@ impl<T: Exponential> Runs<T> for Streaming<T> {
             };
             self.planner.begin(newest.position, &standstill);
             self.started = true;
+        } else if !known {
+            newest = self.last;
         }
+        self.last = newest;
         let Some(planned) = self.planner.push(Target::of(newest)) else {
-            return Correction::default();
+            return if known { Correction::default() } else { none };
         };
+        self.planned = true;
         let now = Sample {
             reference: planned.reference,
             ..*sample
         };
-        match &mut self.feedback {
-            Some(feedback) => feedback.correct(&now, &planned),
-            None => planned.correction,
+        let asked = planned.correction;
+        self.sound = asked.position.is_finite() && asked.iq.is_finite();
+        let mut asked = match &mut self.feedback {
+            Some(feedback) if self.sound => feedback.correct(&now, &planned),
+            _ => asked,
+        };
+        if !known {
+            asked.iq = none.iq;
         }
+        asked
+    }
+
+    fn is_planned(&self) -> bool {
+        self.planned
+    }
+
+    fn begins_anew(&mut self, _: &Correction<T>) -> bool {
+        if !self.sound {
+            self.reset();
+        }
+        !self.sound
     }
 
     fn surprise(&self) -> T {

@@ -77,9 +77,11 @@ pub fn write_course(
     };
     std::fs::create_dir_all(folder)?;
     let check = include_str!("check.c").replace("@X@", name);
+    let stack = include_str!("stack.c").replace("@X@", name);
     let real = format!("#define REAL {}\n", precision.name());
     std::fs::write(folder.join(&source.header.name), &source.header.text)?;
     std::fs::write(folder.join(&source.source.name), &source.source.text)?;
+    std::fs::write(folder.join("stack.c"), real.clone() + &stack)?;
     std::fs::write(folder.join("check.c"), real + &check)?;
     std::fs::write(folder.join("cases.bin"), cases)?;
     Ok(())
@@ -103,11 +105,24 @@ fn cases<'a, T: Scalar>(
             Event::None => {}
             Event::On => guard.switch(true),
             Event::Off => guard.switch(false),
-            Event::Reset => law.reset(),
+            Event::Reset => {
+                law.reset();
+                guard.restart();
+            }
         }
         let sample = sample.cast::<T>();
+        let was_planned = law.is_planned();
         let asked = law.correct(&sample);
+        if law.is_planned() && !was_planned {
+            guard.restart();
+        }
         let made = guard.pass(&asked, law.surprise());
+        if !law.is_planned() && guard.status() == Status::On {
+            guard.restart();
+        }
+        if law.begins_anew(&asked) {
+            guard.restart();
+        }
         law.passed(&made);
         bytes.extend((happens as u32).to_le_bytes());
         bytes.extend(status(guard.status()).to_le_bytes());
@@ -173,9 +188,15 @@ pub fn compilers() -> Vec<&'static str> {
     ["gcc", "clang"].into_iter().filter(there).collect()
 }
 
-/// Compiles a case with warnings as errors, and runs it.
-pub fn compare(folder: &Path, compiler: &str, name: &str, flags: &[&str]) -> Outcome<Compared> {
-    let program = folder.join(format!("check-{compiler}"));
+/// Compiles a program of a case with warnings as errors, and runs it: the numbers that it prints.
+fn numbers(
+    folder: &Path,
+    compiler: &str,
+    name: &str,
+    program: &str,
+    flags: &[&str],
+) -> Outcome<Vec<f64>> {
+    let made = folder.join(format!("{program}-{compiler}"));
     let compiled = Command::new(compiler)
         .args([
             "-std=c99",
@@ -183,28 +204,38 @@ pub fn compare(folder: &Path, compiler: &str, name: &str, flags: &[&str]) -> Out
             "-Wall",
             "-Wextra",
             "-Wpedantic",
+            "-Wfloat-equal",
             "-Werror",
         ])
         .args(flags)
         .arg(folder.join(format!("{name}.c")))
-        .arg(folder.join("check.c"))
+        .arg(folder.join(format!("{program}.c")))
         .arg("-o")
-        .arg(&program)
+        .arg(&made)
         .arg("-lm")
         .output()?;
     if !compiled.status.success() {
         return Err(String::from_utf8_lossy(&compiled.stderr).into());
     }
-    let run = Command::new(&program)
-        .arg(folder.join("cases.bin"))
-        .output()?;
+    let run = Command::new(&made).arg(folder.join("cases.bin")).output()?;
     let said = String::from_utf8_lossy(&run.stdout).into_owned();
-    let numbers: Vec<f64> = said
-        .split_whitespace()
-        .filter_map(|w| w.parse().ok())
-        .collect();
-    let [cycles, equal, worst, statuses, state, time] = numbers[..] else {
-        return Err(format!("{name}: {said}").into());
+    let words = said.split_whitespace();
+    Ok(words.filter_map(|w| w.parse().ok()).collect())
+}
+
+/// Bytes of the stack that the steps of a case take at most, painted.
+pub fn stack(folder: &Path, compiler: &str, name: &str) -> Outcome<usize> {
+    match numbers(folder, compiler, name, "stack", &[])?[..] {
+        [bytes, _] => Ok(bytes as usize),
+        ref said => Err(format!("{name}: {said:?}").into()),
+    }
+}
+
+/// Compiles a case with warnings as errors, and runs it.
+pub fn compare(folder: &Path, compiler: &str, name: &str, flags: &[&str]) -> Outcome<Compared> {
+    let said = numbers(folder, compiler, name, "check", flags)?;
+    let [cycles, equal, worst, statuses, state, time] = said[..] else {
+        return Err(format!("{name}: {said:?}").into());
     };
     Ok(Compared {
         cycles: cycles as usize,

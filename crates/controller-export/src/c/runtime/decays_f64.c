@@ -42,5 +42,5 @@ static real one_minus_exp(real a)
     if (a < R(38.0)) {
         return R(1.0) - exp_minus(a);
     }
-    return (a != a) ? a : R(1.0);
+    return is_nan(a) ? a : R(1.0);
 }

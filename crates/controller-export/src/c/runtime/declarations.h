@@ -19,6 +19,19 @@ typedef struct {
     int32_t status;  /* of enum @X@_status */
 @OUTPUTS@} @X@_output;
 
+/* What the guard keeps to: from @U@_LIMITS on, or set by @X@_limit. */
+typedef struct {
+    @real@ position;   /* @L@: greatest offset of the position */
+    @real@ effort;     /* @E@: greatest offset of the command */
+    @real@ surprise;   /* greatest deviation of the observer, in standard deviations */
+    uint32_t patience; /* cycles for which a limit may be exceeded before it trips */
+    uint32_t fade;     /* cycles of fading in and out, and of going over; 0: at once */
+} @X@_limits;
+
+/* Position (@L@), effort (@E@), surprise, patience, fade. */
+#define @U@_LIMITS {@LIMITS@}
+
 @STATES@/* The state, the caller's: once for each axis. */
 typedef struct {
-@MEMBERS@} @X@;
+@MEMBERS@    uint32_t initialised; /* of @X@_init */
+} @X@;

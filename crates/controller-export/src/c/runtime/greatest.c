@@ -1,5 +1,5 @@
 /* The greater of two; the other one where one is not a number. */
 static real greatest(real a, real b)
 {
-    return (a > b || b != b) ? a : b;
+    return ((a > b) || is_nan(b)) ? a : b;
 }

@@ -13,7 +13,7 @@ static real actuator_now(const @X@_plan *s)
 static real actuator_towards(@X@_plan *s, real torque, real speed)
 {
     /* Without a lag the torque acts over the whole cycle: its mean counts. */
-    const int at_once = KEPT == R(0.0);
+    const int at_once = is_zero(KEPT);
     const real wanted = at_once ? R(0.5) * (s->torque + torque) : (torque - KEPT * s->torque) / (R(1.0) - KEPT);
     const real asked = wanted / GAIN;
     const real effort = limited(asked, ACTUATOR_LIMIT);
@@ -22,7 +22,7 @@ static real actuator_towards(@X@_plan *s, real torque, real speed)
     if (!at_once) {
         s->torque = KEPT * s->torque + (R(1.0) - KEPT) * GAIN * effort;
     } else {
-        s->torque = (effort != asked) ? GAIN * effort : torque;
+        s->torque = is_zero(effort - asked) ? torque : (GAIN * effort);
     }
     return effort;
 }

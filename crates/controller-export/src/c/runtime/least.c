@@ -1,5 +1,5 @@
 /* The lesser of two; the other one where one is not a number. */
 static real least(real a, real b)
 {
-    return (a < b || b != b) ? a : b;
+    return ((a < b) || is_nan(b)) ? a : b;
 }

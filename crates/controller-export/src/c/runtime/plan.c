@@ -32,12 +32,12 @@ static real plan_sticking(const @X@_plan *s)
 {
     real bristle, decay, steady;
 
-    if (s->speed == R(0.0)) {
+    if (is_zero(s->speed)) {
         return R(1.0);
     }
     friction_curve(absolute(s->speed), &bristle, &decay);
     steady = with_sign(bristle, s->speed);
-    if (steady == R(0.0)) {
+    if (is_zero(steady)) {
         return R(1.0);
     }
     return least(greatest(R(1.0) - s->bristle / steady, R(0.0)), R(1.0));
@@ -120,18 +120,31 @@ static void plan_cycle(@X@_plan *s, const @X@_wound *start, const @X@_wound *bef
     p->effort_offset = p->effort - s->held - ACCELERATION_FEEDFORWARD * start->at.acceleration;
 }
 
+/* The newest set point; the one before where it is not a number, which would stay in the plan. Says
+ * whether it is one. */
+static int plan_set_point(const @X@_plan *s, const @X@_input *in, @X@_ahead *to)
+{
+    const int known = is_finite(in->ahead_position) && is_finite(in->ahead_velocity) && is_finite(in->ahead_acceleration);
+
+    if (!known && s->started) {
+        *to = s->ahead[(s->ahead_at + HALF + 1u) % (HALF + 2u)];
+    } else {
+        to->position = in->ahead_position;
+        to->velocity = in->ahead_velocity;
+        to->acceleration = in->ahead_acceleration;
+    }
+    return known;
+}
+
 /* Takes the newest set point; says whether there is a plan yet, of LOOK_AHEAD cycles before. */
-static int plan_push(@X@_plan *s, const @X@_input *in, planned_cycle *p)
+static int plan_push(@X@_plan *s, const @X@_ahead *newest_set_point, planned_cycle *p)
 {
     const @X@_ahead *middle;
     const @X@_wound *start, *before;
     @X@_wound *newest;
     const real *window;
-    @X@_ahead to;
+    @X@_ahead to = *newest_set_point;
 
-    to.position = in->ahead_position;
-    to.velocity = in->ahead_velocity;
-    to.acceleration = in->ahead_acceleration;
     s->samples[s->sample_at] = s->samples[s->sample_at + WINDOW] = plan_forces(s, &to);
     s->sample_at = (s->sample_at + 1) % WINDOW;
     window = &s->samples[s->sample_at];
@@ -154,6 +167,7 @@ static int plan_push(@X@_plan *s, const @X@_input *in, planned_cycle *p)
         s->pushed++;
         return 0;
     }
+    s->pushed = LOOK_AHEAD + 1u;
     plan_cycle(s, start, before, newest, p);
     return 1;
 }

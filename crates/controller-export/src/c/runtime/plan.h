@@ -28,6 +28,6 @@ typedef struct {
     @real@ torque, integral_d, integral_q; /* of the actuator: N m, V */
     @real@ past_d[@SAMPLED@], past_q[@SAMPLED@]; /* A: its currents, the newest first */
     uint32_t ahead_at, wound_at, sample_at; /* where the next one goes */
-    uint32_t pushed;                        /* set points since the start, as far as they count */
+    uint32_t pushed;                        /* set points since the start, up to the first planned one */
     int32_t started;
 } @X@_plan;

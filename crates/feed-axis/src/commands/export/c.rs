@@ -45,7 +45,7 @@ struct Exported<'a> {
     look_ahead_cycles: Option<usize>,
     state_bytes: usize,
     constant_bytes: usize,
-    stack_bytes: usize,
+    greatest_array_bytes: usize,
     guard: Guard,
     #[serde(skip)]
     guard_words: String,
@@ -59,13 +59,13 @@ impl fmt::Display for Exported<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{} of {} in C99, {}: {} bytes of state, {} of constants, {} of stack",
+            "{} of {} in C99, {}: {} bytes of state, {} of constants, a greatest array of {} on the stack",
             self.strategy,
             self.axis,
             self.number,
             self.state_bytes,
             self.constant_bytes,
-            self.stack_bytes
+            self.greatest_array_bytes
         )?;
         if let Some(cycles) = self.look_ahead_cycles {
             writeln!(f, "  set points must come {cycles} control cycles ahead")?;
@@ -91,13 +91,13 @@ pub fn command(options: &Options) -> Result<()> {
         &Exported {
             axis: &controller.axis,
             axis_fingerprint: &controller.fingerprint,
-            strategy: &controller.name,
+            strategy: &controller.strategy,
             number: precision.name(),
             period_s: controller.period,
             look_ahead_cycles: code.look_ahead,
             state_bytes: code.memory.state,
             constant_bytes: code.memory.constants,
-            stack_bytes: code.memory.stack,
+            greatest_array_bytes: code.memory.greatest_array,
             guard: made.guard(),
             guard_words: made.words(),
             inputs: &code.hash,

@@ -74,6 +74,10 @@ pub struct Options {
     /// identified friction need `identify`; plan and feedback need the axis file alone
     #[arg(long, value_name = "NAME", value_parser = strategy_name_of(EXPORTED))]
     strategy: &'static StrategyKind,
+    /// Name of the files, and of all types and functions in them: several axes in one
+    /// firmware have one each [default: that of the strategy]
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
     #[command(flatten)]
     limits: guard::Options,
     /// Folder for the files
@@ -94,7 +98,11 @@ impl Options {
         let mut controller = made.wrap_err_with(failed)?;
         let simulated = self.limits.simulated(&context, &predictors, self.strategy);
         let simulated = simulated.wrap_err_with(failed)?;
-        controller.limits = self.limits.of(simulated, controller.period);
+        if let Some(name) = &self.name {
+            let named = controller.named(name);
+            controller = named.map_err(|error| wrong_use(format!("--name: {error}")))?;
+        }
+        controller.limits = self.limits.of(simulated, &context.axis);
         Ok(Guarded {
             controller,
             is_simulated: simulated.is_some(),

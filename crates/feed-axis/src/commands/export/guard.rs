@@ -1,9 +1,9 @@
-//! The guard of an exported compensator: its limits, as given or found in simulation.
+//! The guard of an exported compensator: its limits, as given, or the axis' own.
 
 use axis_pipeline::PipelineError;
 use axis_pipeline::corrections::{Greatest, greatest};
 use axis_pipeline::strategies::{Predictors, StrategyKind};
-use axis_sim::SixDigits;
+use axis_sim::{Axis, SixDigits};
 use clap::Args;
 use compensator::GuardLimits;
 use controller_export::ExportedController;
@@ -20,23 +20,25 @@ const MARGIN: f64 = 2.0;
 const LEAST_OFFSET: f64 = 1e-6;
 /// Least limit of the surprise, which is about 1 where the axis is as it was designed for.
 const LEAST_SURPRISE: f64 = 10.0;
-/// The options of the limits.
-const NAMES: [&str; 3] = ["--limit-position", "--limit-effort", "--limit-surprise"];
+/// Options of limits that an axis need not have.
+const EFFORT: &str = "--limit-effort";
+const SURPRISE: &str = "--limit-surprise";
 
 /// What the guard keeps to.
 #[derive(Args)]
 #[group(id = "guard-options")]
 pub struct Options {
-    /// Greatest offset of the position, m or rad [default: twice the greatest on the axis
-    /// file's trajectories, simulated]
+    /// Greatest offset of the position, m or rad [default: the axis' following_error_limit]
     #[arg(help_heading = "Guard", long = "limit-position", value_name = "SI", value_parser = positive, allow_negative_numbers = true)]
     position: Option<f64>,
-    /// Greatest offset of the command, in the actuator's unit: A, N·m, N, V [default: likewise]
+    /// Greatest offset of the command, in the actuator's unit: A, N·m, N, V [default: the
+    /// actuator's limit; twice the greatest on the axis file's trajectories, simulated, where
+    /// it has none]
     #[arg(help_heading = "Guard", long = "limit-effort", value_name = "SI", value_parser = positive, allow_negative_numbers = true)]
     effort: Option<f64>,
     /// Greatest deviation of the measurement from what a feedback's observer expects, in standard
-    /// deviations [default: likewise,
-    /// at least 10]
+    /// deviations [default: twice the greatest on the axis file's trajectories, simulated, at
+    /// least 10]
     #[arg(help_heading = "Guard", long = "limit-surprise", value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true)]
     surprise: Option<f64>,
     /// Time for which a limit may be exceeded before the guard trips, s
@@ -58,10 +60,8 @@ impl Options {
         predictors: &Predictors,
         kind: &StrategyKind,
     ) -> Result<Option<Greatest>> {
-        let given = [self.position, self.effort, self.surprise];
-        // Without an observer there is no surprise.
-        let asked = if kind.name == "feedback" { 3 } else { 2 };
-        if given[..asked].iter().all(Option::is_some) {
+        let names = self.missing(&context.axis, kind);
+        if names.is_empty() {
             return Ok(None);
         }
         let progress = bar("limits", context.axis.trajectories.len() as u64);
@@ -73,27 +73,50 @@ impl Options {
             Err(PipelineError::NoTrajectories) => Err(wrong_use(format!(
                 "the axis file has no [[trajectory]] on which the guard's limits could be found; \
                  give {}",
-                NAMES[..asked].join(" and ")
+                names.join(" and ")
             ))),
             found => found.into_diagnostic().map(Some),
         }
     }
 
-    /// The limits for a control period (s).
-    pub fn of(&self, simulated: Option<Greatest>, period: f64) -> GuardLimits {
+    /// Options of limits that are neither given nor the axis' own.
+    fn missing(&self, axis: &Axis, kind: &StrategyKind) -> Vec<&'static str> {
+        let mut names = Vec::new();
+        if self.effort.is_none() && own_effort(axis).is_none() {
+            names.push(EFFORT);
+        }
+        // Without an observer there is no surprise.
+        if self.surprise.is_none() && kind.name == "feedback" {
+            names.push(SURPRISE);
+        }
+        names
+    }
+
+    /// The limits for an axis: what it may be off by at most, and what its actuator takes. A move
+    /// that the axis can make stays within them, however fast.
+    pub fn of(&self, simulated: Option<Greatest>, axis: &Axis) -> GuardLimits {
         let simulated = simulated.unwrap_or_default();
-        let cycles = |time: f64| (time / period).round() as u32;
+        let cycles = |time: f64| (time / axis.period).round() as u32;
         let of = |given: Option<f64>, greatest: f64, least: f64| {
             given.unwrap_or((MARGIN * greatest).max(least))
         };
         GuardLimits {
-            position: of(self.position, simulated.position, LEAST_OFFSET),
-            effort: of(self.effort, simulated.effort, LEAST_OFFSET),
+            position: self.position.unwrap_or(axis.following_error_limit),
+            effort: of(
+                self.effort.or(own_effort(axis)),
+                simulated.effort,
+                LEAST_OFFSET,
+            ),
             surprise: of(self.surprise, simulated.surprise, LEAST_SURPRISE),
             patience: cycles(self.patience),
             fade: cycles(self.fade),
         }
     }
+}
+
+/// What the actuator takes at most, where that is limited.
+fn own_effort(axis: &Axis) -> Option<f64> {
+    Some(axis.actuator.limit()).filter(|limit| limit.is_finite())
 }
 
 /// A compensator with its guard.
@@ -140,8 +163,9 @@ impl Guarded {
             SixDigits(limits.effort),
             units.effort
         );
+        words += ", the axis' own limits where not given";
         if self.is_simulated {
-            words += ", twice the greatest on the trajectories (simulated) if not stated";
+            words += "; twice the greatest on the trajectories (simulated) where it has none";
         }
         words
     }

@@ -61,7 +61,7 @@ pub fn command(options: &Options) -> Result<()> {
         &Exported {
             axis: &controller.axis,
             axis_fingerprint: &controller.fingerprint,
-            strategy: &controller.name,
+            strategy: &controller.strategy,
             period_s: controller.period,
             guard: made.guard(),
             guard_words: made.words(),
