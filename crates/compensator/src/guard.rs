@@ -274,7 +274,7 @@ impl<T: Scalar, C: Compensator<T>> Compensator<T> for Guarded<C, T> {
     fn correct(&mut self, sample: &Sample<T>) -> Correction<T> {
         let asked = self.inner.correct(sample);
         let passed = self.guard.pass(&asked, self.inner.surprise());
-        if !(asked.position.is_finite() && asked.iq.is_finite()) {
+        if !(asked.position.is_finite() && asked.command.is_finite()) {
             self.reset();
         }
         passed

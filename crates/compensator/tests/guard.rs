@@ -206,7 +206,10 @@ fn a_restart_is_no_jump() {
             let now = guard.pass(&asked, 0.0);
             // The steepest of the curve is 1.5, over 20 cycles; twice, where it fades out too.
             let steepest = 1.5 / 20.0 * if switched_off { 2.0 } else { 1.0 };
-            assert!((now.iq - before.iq).abs() <= 2.0 * steepest + 1e-12, "{k}");
+            assert!(
+                (now.command - before.command).abs() <= 2.0 * steepest + 1e-12,
+                "{k}"
+            );
             assert!(
                 (now.position - before.position).abs() <= 1e-4 * steepest + 1e-16,
                 "{k}"
@@ -232,7 +235,7 @@ fn limits_are_set_at_run_time() {
     let mut guard = on();
     let asked = correction(0.0, 10.0);
     let mut before = guard.pass(&asked, 0.0);
-    assert_eq!(before.iq, 3.0);
+    assert_eq!(before.command, 3.0);
     let wide = GuardLimits {
         effort: 20.0,
         ..LIMITS
@@ -246,10 +249,10 @@ fn limits_are_set_at_run_time() {
     guard.set_limits(wide).unwrap();
     for _ in 0..LIMITS.fade + 1 {
         let now = guard.pass(&asked, 0.0);
-        assert!((now.iq - before.iq).abs() <= 7.0 * 1.5 / 20.0 + 1e-12);
+        assert!((now.command - before.command).abs() <= 7.0 * 1.5 / 20.0 + 1e-12);
         before = now;
     }
-    assert_eq!((before.iq, guard.status()), (10.0, Status::On));
+    assert_eq!((before.command, guard.status()), (10.0, Status::On));
 }
 
 /// Asks for what it was given, and for no number for ever after one.
@@ -274,12 +277,12 @@ fn a_trip_by_one_nan_is_taken_back() {
         iq,
         ..Sample::default()
     };
-    assert_eq!(law.correct(&sample(1.0)).iq, 1.0);
+    assert_eq!(law.correct(&sample(1.0)).command, 1.0);
     law.correct(&sample(f64::NAN));
     assert_eq!(law.guard().status(), Status::Tripped(Trip::NotFinite));
     law.guard_mut().switch(true);
     for _ in 0..100 {
-        assert!(law.correct(&sample(0.0)).iq.is_finite());
+        assert!(law.correct(&sample(0.0)).command.is_finite());
     }
     assert_eq!(law.guard().status(), Status::On);
 }

@@ -330,6 +330,6 @@ fn a_log_is_cut_and_begun_where_the_axis_stands_and_not_its_reference_alone() {
     let from = (stops - 0.3) / 1e-3;
     let moving = log.skip(from as usize).unwrap();
     let (begun, note) = from_rest("cut.csv", moving, 1e-3, &paper).unwrap();
-    assert!(note.unwrap().contains("first rest"));
+    assert!(note.unwrap().contains("first standstill"));
     assert!(left(&begun) < 5e-6, "{:e} m", left(&begun));
 }

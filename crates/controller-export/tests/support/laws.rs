@@ -82,7 +82,7 @@ pub trait Runs<T: Scalar> {
     }
     /// After a correction that was no number: whether the state is none either, and begins anew.
     fn begins_anew(&mut self, asked: &Correction<T>) -> bool {
-        let anew = !(asked.position.is_finite() && asked.iq.is_finite());
+        let anew = !(asked.position.is_finite() && asked.command.is_finite());
         if anew {
             self.reset();
         }
@@ -148,10 +148,10 @@ impl<T: Exponential> Runs<T> for Streaming<T> {
         (self.planned, self.sound) = (false, true);
         let none = Correction {
             position: T::ZERO,
-            iq: T::ZERO / T::ZERO,
+            command: T::ZERO / T::ZERO,
         };
         if !self.started {
-            if !(known && sample.iq_command.is_finite()) {
+            if !(known && sample.last_command.is_finite()) {
                 return none;
             }
             let standstill = Standstill {
@@ -176,13 +176,13 @@ impl<T: Exponential> Runs<T> for Streaming<T> {
             ..*sample
         };
         let asked = planned.correction;
-        self.sound = asked.position.is_finite() && asked.iq.is_finite();
+        self.sound = asked.position.is_finite() && asked.command.is_finite();
         let mut asked = match &mut self.feedback {
             Some(feedback) if self.sound => feedback.correct(&now, &planned),
             _ => asked,
         };
         if !known {
-            asked.iq = none.iq;
+            asked.command = none.command;
         }
         asked
     }

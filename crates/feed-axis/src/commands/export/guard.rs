@@ -32,7 +32,7 @@ pub struct Options {
     #[arg(help_heading = "Guard", long = "limit-position", value_name = "SI", value_parser = positive, allow_negative_numbers = true)]
     position: Option<f64>,
     /// Greatest offset of the command, in the actuator's unit: A, N·m, N, V [default: the
-    /// actuator's limit; twice the greatest on the axis file's trajectories, simulated, where
+    /// actuator's limit; twice the greatest on the axis file's trajectories, simulated, if
     /// it has none]
     #[arg(help_heading = "Guard", long = "limit-effort", value_name = "SI", value_parser = positive, allow_negative_numbers = true)]
     effort: Option<f64>,
@@ -163,10 +163,12 @@ impl Guarded {
             SixDigits(limits.effort),
             units.effort
         );
-        words += ", the axis' own limits where not given";
+        words += " (the axis' own limits unless an option sets them";
         if self.is_simulated {
-            words += "; twice the greatest on the trajectories (simulated) where it has none";
+            words +=
+                "; without a limit of its own, twice the greatest of the simulated trajectories";
         }
+        words.push(')');
         words
     }
 }
