@@ -371,6 +371,12 @@ impl Axis {
         of_role.map(|key| key.name).collect()
     }
 
+    /// Whether the tolerances say of a parameter of that role that nothing is known but what it is.
+    pub fn is_unknown(&self, role: Role) -> bool {
+        let mut keys = self.keys_of(role).into_iter();
+        keys.any(|key| self.tolerances.of(key) >= Tolerances::UNKNOWN)
+    }
+
     /// As [`Axis::known`], with all that are exact unless the tolerances name them.
     pub(crate) fn may_be_known(&self) -> Vec<&'static Known> {
         let of_loads = self.loads.iter().flat_map(Part::known);

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use super::quality::CutoffReason;
+
 /// Why the torque balance of a log cannot be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -38,7 +40,7 @@ pub enum BalanceError {
     },
     /// Hardly any sample in which the axis moves.
     #[error(
-        "only {kept} of {samples} samples are left for a torque balance: in at least {least} of them the axis must move faster than {speed:.3e} {unit}, the least that its sensor distinguishes from standstill, and farther than its friction's pre-sliding displacement"
+        "only {kept} of {samples} samples are left for a torque balance: in at least {least} of them the axis must move faster than {speed:.3e} {unit}, the least that its sensor distinguishes from standstill, and farther than its friction's pre-sliding displacement; both sides are low-passed at {cutoff:.3} Hz, set by {reason}: valid is a longer log, a faster motion or a higher [balance] cutoff_hz in the axis file"
     )]
     Standstill {
         /// Samples left.
@@ -51,5 +53,9 @@ pub enum BalanceError {
         speed: f64,
         /// Its unit.
         unit: &'static str,
+        /// Cut-off of the comparison, Hz.
+        cutoff: f64,
+        /// What sets it.
+        reason: CutoffReason,
     },
 }

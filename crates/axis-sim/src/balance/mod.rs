@@ -37,7 +37,8 @@ use channel::TorqueChannel;
 pub use error::BalanceError;
 use filter::{LowPass, ahead, derivative};
 use law::{Motions, torque};
-pub use quality::BalanceQuality;
+use prepared::BalanceNoise;
+pub use quality::{BalanceQuality, CutoffReason};
 pub use shown::{FrictionCourse, ObservedMotion};
 
 /// One log's measured motion and torque, ready to be compared with any model of the axis.
@@ -56,6 +57,7 @@ pub struct Balance {
     speed: Vec<f64>,
     compared: Log,
     quality: BalanceQuality,
+    noise: BalanceNoise,
 }
 
 impl Balance {
@@ -133,6 +135,12 @@ impl Balance {
     /// Correlation of white noise, as it is compared, over a time (s).
     pub fn correlation(&self, over: f64) -> f64 {
         spectrum::correlation(self.quality.cutoff, over)
+    }
+
+    /// Noise alone in the compared channel with the inertia of this axis, RMS in its unit: the
+    /// least that the upper spectra of torque and motion leave possible.
+    pub fn least_noise(&self, axis: &Axis) -> f64 {
+        self.noise.rms(axis)
     }
 
     /// What was decided for this log, and why.

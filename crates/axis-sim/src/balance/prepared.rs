@@ -1,5 +1,7 @@
 //! A log made ready for its torque balance.
 
+use std::ops::Range;
+
 use axis_log::{Channel, Log};
 
 use super::Balance;
@@ -9,7 +11,7 @@ use super::filter::LowPass;
 use super::friction_scatter::Remeasured;
 use super::law::Motions;
 use super::motion::{Course, Measured, Whose};
-use super::quality::{BalanceQuality, TOLERATED};
+use super::quality::{BalanceQuality, CutoffReason, TOLERATED};
 use super::spectrum::{least_noise, passed};
 use super::wind_up::WindUp;
 use crate::axis::Axis;
@@ -72,19 +74,33 @@ impl Balance {
             Measured::of(log, *period, axis)
         });
         let measured: Vec<Vec<Measured>> = measured.collect::<Result<_, _>>()?;
-        let own = |(motions, (_, period)): (&Vec<Measured>, &(&Log, f64))| {
+        let own = |(motions, (log, period)): (&Vec<Measured>, &(&Log, f64))| {
             let most = BELOW * HIGHEST / period;
-            let each = motions.iter().map(|m| m.noise.cutoff(most, TOLERATED));
-            let asked = axis.balance.cutoff.unwrap_or(f64::INFINITY);
-            let stiff = rigid_below(axis, motions);
-            let found = each.fold(most.min(stiff), f64::min);
-            match asked.is_finite() {
-                true => asked.min(0.5 * HIGHEST / BELOW / period),
-                false => found,
+            if let Some(asked) = axis.balance.cutoff {
+                let sampled = 0.5 * HIGHEST / BELOW / period;
+                return Ok(Cutoff::lower(
+                    Cutoff(asked, CutoffReason::Asked),
+                    Cutoff(sampled, CutoffReason::Sampling),
+                ));
             }
+            // A constant torque is known as well as this by the log, one standard deviation.
+            let logged = log.channel(channel.name)?;
+            let time = *period * log.len() as f64;
+            let least = (0.5 * least_noise(logged, *period) / time).sqrt();
+            let acceleration =
+                |m: &Measured| least / (channel.per_torque(axis) * inertia(axis, m.whose)).abs();
+            let each = motions.iter().map(|m| {
+                let cutoff = m.noise.cutoff(most, TOLERATED, acceleration(m));
+                Cutoff(cutoff, CutoffReason::Noise)
+            });
+            let stiff = Cutoff(rigid_below(axis, motions), CutoffReason::Resonance);
+            let first = Cutoff::lower(Cutoff(most, CutoffReason::Sampling), stiff);
+            Ok(each.fold(first, Cutoff::lower))
         };
         let cutoffs = measured.iter().zip(logs).map(own);
-        let cutoff = cutoffs.fold(f64::INFINITY, f64::min);
+        let cutoffs: Vec<Cutoff> = cutoffs.collect::<Result<_, ReplayError>>()?;
+        let cutoff = cutoffs.into_iter().reduce(Cutoff::lower);
+        let cutoff = cutoff.unwrap_or(Cutoff(f64::INFINITY, CutoffReason::Sampling));
         let one = |(motions, (log, period)): (Vec<Measured>, &(&Log, f64))| {
             Self::prepared(log, *period, axis, channel, &motions, cutoff)
         };
@@ -106,7 +122,7 @@ impl Balance {
         axis: &Axis,
         channel: TorqueChannel,
         measured: &[Measured],
-        cutoff: f64,
+        Cutoff(cutoff, reason): Cutoff,
     ) -> Result<Self, ReplayError> {
         let motion_cutoff = cutoff / BELOW;
         let motions = motions(axis, measured, period, motion_cutoff);
@@ -117,13 +133,22 @@ impl Balance {
             .balance
             .slowest
             .map_or(told, |slowest| slowest.max(told));
-        let (moving, all) = moving(&motions.load, period, cutoff, every, standstill);
+        let (mut moving, all) = moving(&motions.load, period, cutoff, every, standstill);
+        let names = measured.iter().map(|m| m.name).chain([channel.name]);
+        let holes = names.flat_map(|name| log.missing(name).iter().cloned());
+        without_holes(
+            &mut moving,
+            holes,
+            (EDGE / (cutoff * period)).ceil() as usize,
+        );
         let filter = LowPass::new(cutoff * period);
         let logged = log.channel(channel.name)?;
-        let noise = &measured[0].noise;
-        let of_motion = noise.least_acceleration(cutoff) * inertia(axis, measured[0].whose);
-        let of_torque = least_noise(logged, period) * passed(0, cutoff);
-        let floor = (of_torque + (channel.per_torque(axis) * of_motion).powi(2)).sqrt();
+        let noise = BalanceNoise {
+            channel,
+            torque: (least_noise(logged, period) * passed(0, cutoff)).sqrt(),
+            whose: measured[0].whose,
+            acceleration: measured[0].noise.least_acceleration(cutoff),
+        };
         let remeasured = Remeasured {
             axis,
             measured: &measured[0],
@@ -136,7 +161,7 @@ impl Balance {
         let scatter = remeasured.friction_scatter(&filter);
         let near = (NEAR / (cutoff * period)).ceil() as usize;
         let creeps = creeps(axis, &motions.load, period, near);
-        let kept = resolved(&moving, creeps, &scatter, near, floor / per_force);
+        let kept = resolved(&moving, creeps, &scatter, near, noise.rms(axis) / per_force);
         if kept.len() < LEAST {
             let error = BalanceError::Standstill {
                 kept: kept.len(),
@@ -144,6 +169,8 @@ impl Balance {
                 least: LEAST,
                 speed: standstill,
                 unit: axis.freedom().speed_unit(),
+                cutoff,
+                reason,
             };
             return Err(error.into());
         }
@@ -155,6 +182,7 @@ impl Balance {
             channel: channel.name,
             motion: measured.iter().map(|m| m.name).collect(),
             cutoff,
+            reason,
             motion_cutoff,
             attenuation: (measured.iter())
                 .map(|m| m.noise.attenuation(cutoff))
@@ -163,7 +191,6 @@ impl Balance {
             compared_period,
             samples: [kept.len(), all],
             unresolved: moving.len() - kept.len(),
-            floor,
             friction: per_force * rms(kept.iter().map(|&k| scatter[k])),
         };
         let compared = Log::new(vec![
@@ -181,7 +208,50 @@ impl Balance {
             speed,
             compared,
             quality,
+            noise,
         })
+    }
+}
+
+/// Least noise of a balance's channel, as the upper spectra of torque and motion leave it possible.
+#[derive(Clone, Debug)]
+pub(super) struct BalanceNoise {
+    channel: TorqueChannel,
+    /// Of the channel, RMS in its unit.
+    torque: f64,
+    whose: Whose,
+    /// Of the acceleration of what was measured, RMS, m/s² or rad/s².
+    acceleration: f64,
+}
+
+impl BalanceNoise {
+    /// RMS in the channel's unit, with the inertia of this axis: a model makes torque of the
+    /// acceleration's noise.
+    pub(super) fn rms(&self, axis: &Axis) -> f64 {
+        let of_motion = self.acceleration * inertia(axis, self.whose);
+        self.torque.hypot(self.channel.per_torque(axis) * of_motion)
+    }
+}
+
+/// A cut-off of the comparison, Hz, and what sets it.
+#[derive(Clone, Copy, Debug)]
+struct Cutoff(f64, CutoffReason);
+
+impl Cutoff {
+    fn lower(self, other: Self) -> Self {
+        match other.0 < self.0 {
+            true => other,
+            false => self,
+        }
+    }
+}
+
+/// Drops the samples of which a hole is within `reach`: what stands in it is interpolated, and the
+/// filters spread that.
+fn without_holes(kept: &mut Vec<usize>, holes: impl Iterator<Item = Range<usize>>, reach: usize) {
+    for hole in holes {
+        let touched = hole.start.saturating_sub(reach)..hole.end + reach;
+        kept.retain(|k| !touched.contains(k));
     }
 }
 

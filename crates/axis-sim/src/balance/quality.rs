@@ -9,6 +9,8 @@ pub struct BalanceQuality {
     pub motion: Vec<&'static str>,
     /// Cut-off of the low-pass that both sides go through, Hz.
     pub cutoff: f64,
+    /// What sets it.
+    pub reason: CutoffReason,
     /// Cut-off of the low-pass of the motion before it is differentiated, Hz.
     pub motion_cutoff: f64,
     /// Share by which noise of the acceleration draws an inertia towards zero.
@@ -22,10 +24,7 @@ pub struct BalanceQuality {
     pub samples: [usize; 2],
     /// Samples left out because friction depends there on motion finer than what was measured.
     pub unresolved: usize,
-    /// Noise alone in the compared channel, RMS in its unit: the least that the upper
-    /// spectra of torque and motion leave possible.
-    pub floor: f64,
-    /// Uncertainty of the friction at the samples that are compared, RMS in that unit.
+    /// Uncertainty of the friction at the samples that are compared, RMS in the channel's unit.
     pub friction: f64,
 }
 
@@ -39,15 +38,41 @@ impl BalanceQuality {
             false => "",
         };
         format!(
-            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz (motion at {:.3} Hz); noise of the acceleration lowers an inertia by {drawn:.2e} %{beware}; {:.1} % of the samples are left out, at speeds below {:.2e} (the least that the sensor distinguishes from standstill, or the axis file's slowest), at the ends, and ({} samples) where friction depends on motion finer than the sensor resolves",
+            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz, set by {} (motion at {:.3} Hz); noise of the acceleration lowers an inertia by {drawn:.2e} %{beware}; {:.1} % of the samples are left out, at speeds below {:.2e} (the least that the sensor distinguishes from standstill, or the axis file's slowest), at the ends, and ({} samples) where friction depends on motion finer than the sensor resolves",
             self.channel,
             self.motion.join(" and "),
             self.cutoff,
+            self.reason,
             self.motion_cutoff,
             100.0 * (all - kept) as f64 / all.max(1) as f64,
             self.standstill,
             self.unresolved,
         )
+    }
+}
+
+/// What sets the cut-off of a torque balance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CutoffReason {
+    /// The rate of the samples.
+    Sampling,
+    /// A resonance, below which the axis moves as one body.
+    Resonance,
+    /// Noise of the acceleration.
+    Noise,
+    /// The axis file.
+    Asked,
+}
+
+impl std::fmt::Display for CutoffReason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Sampling => "the rate of the samples",
+            Self::Resonance => "the axis' lowest resonance",
+            Self::Noise => "noise of the acceleration",
+            Self::Asked => "[balance] cutoff_hz of the axis file",
+        })
     }
 }
 

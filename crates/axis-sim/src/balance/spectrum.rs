@@ -182,11 +182,7 @@ impl Noise {
     /// Share by which noise of the acceleration draws an inertia towards zero, where all
     /// below a frequency is compared: E[n²] / E[a²].
     pub fn attenuation(&self, frequency: f64) -> f64 {
-        let bins = self.power.len();
-        let Some(last) = bins.checked_sub(1) else {
-            return 1.0;
-        };
-        let total = self.power[((frequency / self.bin) as usize).min(last)];
+        let total = self.acceleration_below(frequency).powi(2);
         let noise = self.acceleration(frequency, self.density[1]);
         match noise < total {
             true => noise / total,
@@ -196,21 +192,30 @@ impl Noise {
 
     /// The highest frequency up to `most` below which noise takes no more than `share` of
     /// the acceleration's power; if there is none, that where it takes least.
-    pub fn cutoff(&self, most: f64, share: f64) -> f64 {
+    ///
+    /// Higher where that is of no weight: noise draws an inertia by the share that it takes, and
+    /// leaves that share of what the acceleration is for certain, that is below the frequency
+    /// found first. With less than `error` (RMS, m/s² or rad/s²) left, it may take any share.
+    pub fn cutoff(&self, most: f64, share: f64, error: f64) -> f64 {
         const STEPS: i32 = 200;
         // From the highest down, to a thousandth of it.
         let tried = (0..=STEPS).map(|k| most * 1e-3_f64.powf(f64::from(k) / f64::from(STEPS)));
-        let mut best = (f64::INFINITY, most);
-        for frequency in tried {
-            let attenuation = self.attenuation(frequency);
-            if attenuation <= share {
-                return frequency;
-            }
-            if attenuation < best.0 {
-                best = (attenuation, frequency);
-            }
-        }
-        best.1
+        let tried: Vec<[f64; 2]> = tried.map(|f| [f, self.attenuation(f)]).collect();
+        let within = |share: f64| tried.iter().find(|[_, taken]| *taken <= share);
+        let least = || tried.iter().min_by(|a, b| a[1].total_cmp(&b[1]));
+        let Some([found, _]) = within(share).or_else(least) else {
+            return most;
+        };
+        let certain = self.acceleration_below(*found);
+        let higher = within(error / certain.max(f64::MIN_POSITIVE));
+        higher.map_or(*found, |[frequency, _]| frequency.max(*found))
+    }
+
+    /// The acceleration below a frequency, its noise included, RMS, m/s² or rad/s².
+    fn acceleration_below(&self, frequency: f64) -> f64 {
+        let last = self.power.len().saturating_sub(1);
+        let bin = ((frequency / self.bin) as usize).min(last);
+        self.power.get(bin).copied().unwrap_or(0.0).sqrt()
     }
 }
 

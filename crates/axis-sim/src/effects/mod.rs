@@ -72,6 +72,7 @@ use parameter::{PHASE, positive, shape, signed, size};
 
 use crate::axis::Axis;
 use crate::error::SetupError;
+use crate::part::Role;
 
 /// Where in the machine an effect shows itself first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,6 +163,14 @@ impl Effect {
     /// The reason, as a sentence without its stop.
     pub fn applies_to(&self, axis: &Axis) -> Result<(), String> {
         self.needs.iter().try_for_each(|need| need.met(axis))
+    }
+
+    /// Roles of the axis' own parameters that it needs, and changes.
+    pub fn roles(&self) -> impl Iterator<Item = Role> {
+        self.needs.iter().filter_map(|need| match need {
+            EffectNeed::Role(role) => Some(*role),
+            _ => None,
+        })
     }
 
     /// Its parameter of a nature.

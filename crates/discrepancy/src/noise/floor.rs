@@ -102,7 +102,7 @@ pub(crate) fn floors(
 ) -> Result<Vec<Floor>, ReplayError> {
     let axis = at_state(machine, state);
     if set.is_balanced() {
-        return Ok(vec![of_balances(&set.balances(), best)]);
+        return Ok(vec![of_balances(&axis, &set.balances(), best)]);
     }
     if !shows_noise(&axis, set) {
         let samples: usize = set.counted().iter().map(Range::len).sum();
@@ -167,19 +167,20 @@ fn floors_of(
     Ok((0..set.channels.len()).map(of).collect())
 }
 
-/// Noise of a balance's channel: the least that its log leaves possible, with the uncertainty of
-/// its friction, or, where that is more, what its residual has from one sample to the next. Nobody
-/// knows what its controller makes
-/// of its sensors' noise, nor what a current has above the rate of its log: that comes back
-/// anywhere below it.
-fn of_balances(balances: &[&Balance], rest: &Rest) -> Floor {
+/// Noise of a balance's channel: the least that its log leaves possible with the inertia that was
+/// fitted, and the uncertainty of its friction, or, where that is more, what its residual has from
+/// one sample to the next. Nobody knows what its controller makes of its sensors' noise, nor what a
+/// current has above the rate of its log: that comes back anywhere below it. All of it is in the
+/// residual, so it is never more than that.
+fn of_balances(axis: &Axis, balances: &[&Balance], rest: &Rest) -> Floor {
     let samples = balances.iter().map(|b| b.quality().samples[0] as f64);
     let squares = balances.iter().zip(rest).map(|(b, log)| {
-        let quality = b.quality();
-        let least = quality.floor.powi(2) + quality.friction.powi(2);
+        let least = b.least_noise(axis).powi(2) + b.quality().friction.powi(2);
+        let whole = |r: &Vec<f64>| r.iter().map(|v| v * v).sum::<f64>() / r.len().max(1) as f64;
+        let most = log.iter().map(whole).fold(f64::INFINITY, f64::min);
         let (time, period) = (b.compared().time(), b.compared_period());
         let unlike = |r: &Vec<f64>| unlike(r, time, period, b.correlation(period));
-        log.iter().map(unlike).fold(least, f64::max)
+        log.iter().map(unlike).fold(least, f64::max).min(most)
     });
     let by_log: Vec<f64> = squares.collect();
     let pairs = samples.clone().zip(&by_log);

@@ -31,7 +31,7 @@ use nalgebra::Complex;
 
 pub(crate) use self::deviance::{deviance_of, regular};
 pub use self::layout::Layout;
-pub(crate) use self::lomb::waves;
+pub(crate) use self::lomb::{share_of_wave, waves};
 pub use self::whitener::Whitener;
 
 /// Amplitudes of all channels of all logs: `bins[log][bin * channels + channel]`.

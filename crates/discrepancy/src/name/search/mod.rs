@@ -14,6 +14,7 @@ mod revise;
 mod rounds;
 mod state;
 mod swing;
+mod turn;
 mod types;
 mod unseen;
 mod wave;

@@ -1,5 +1,6 @@
 //! Candidates after refinement by simulation.
 
+use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Nature};
 
 use super::evidence::{EQUAL, enough};
@@ -75,8 +76,19 @@ const NEVER_BELOW_NONE: [&str; 3] = [
 ];
 
 impl Refined {
-    /// Whether it is less than none of something.
-    pub(super) fn is_below_none(&self) -> bool {
+    /// Whether it is less than none of something, or takes more of a parameter of this machine that
+    /// is not known than all but its tenth, which its tolerance takes already: noise of the
+    /// acceleration draws an inertia that far.
+    pub(super) fn is_below_none(&self, machine: &Axis) -> bool {
+        let is_unknown = |a: &&ActiveEffect| a.effect.roles().any(|role| machine.is_unknown(role));
+        if self
+            .added()
+            .iter()
+            .filter(is_unknown)
+            .any(|a| a.values[0] < 0.0)
+        {
+            return true;
+        }
         let mut never = self
             .added()
             .iter()

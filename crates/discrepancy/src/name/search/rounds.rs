@@ -48,7 +48,12 @@ impl Search<'_> {
                 worth.extend(with_memory.filter(|pair| promises.are_worth_it(pair, most)));
             }
             let resonances = self.resonances(&own, promises.of_noise());
-            let beside = [self.forms(&own), self.waves(&own), resonances];
+            let beside = [
+                self.forms(&own),
+                self.waves(&own),
+                self.turns(&own),
+                resonances,
+            ];
             let beside = beside
                 .into_iter()
                 .flatten()
@@ -71,10 +76,11 @@ impl Search<'_> {
         // Where the best does not hold on other motion, the next may.
         let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
             let is_effect = awaited.is_empty() && !candidate.is_form();
-            let is_nothing = candidate.is_below_none()
+            let is_nothing = candidate.is_below_none(self.machine)
                 || candidate.bends_own_friction()
                 || self.leaves_no_friction(candidate)
-                || self.hardly_repeats(candidate);
+                || self.hardly_repeats(candidate)
+                || self.repeats_with_the_drive(candidate);
             if is_effect && is_nothing {
                 return None;
             }

@@ -5,15 +5,19 @@
 //! truth. But a load that repeats leaves a line in the rest, so the frequencies of its strongest
 //! lines are tried beside the library's.
 
+use axis_sim::Trace;
+
 use super::evidence::HELD_OUT;
 use super::lines::{Line, duration, strongest};
 use super::refined::Refined;
 use super::state::Search;
+use crate::answers::Prepared;
 use crate::estimate::columns::{Columns, free_parameters};
 use crate::estimate::fit::Fit;
 use crate::estimate::thin::Thin;
 use crate::name::library::Candidate;
 use crate::name::screen::Screened;
+use crate::spectrum::share_of_wave;
 
 /// A load with a period of its own, which is its second number.
 const REPEATS: &str = "cyclic-load";
@@ -29,6 +33,9 @@ const OF_LINE: f64 = 3.0;
 /// Share of the fall of D on the fitted logs, log for log of the same length, that it must bring
 /// on others: it acts alike whatever the motion.
 const HELD_OUT_OF_WAVE: f64 = 0.5;
+
+/// Share of the speed's power in a wave from which the motion is that wave: most of it.
+const DRIVEN: f64 = 0.5;
 
 /// Fall of D on check logs by another amplitude and phase there, beside which a hum is no load: of two
 /// numbers by chance, or this share of what the load brings, which is a phase off by 13 degrees.
@@ -84,6 +91,27 @@ impl Search<'_> {
         let longest = all.map(duration).fold(0.0, f64::max);
         let mut added = candidate.added().iter();
         added.any(|a| a.effect.name == REPEATS && REPEATED * a.values[PERIOD] > longest)
+    }
+
+    /// Whether a candidate is a load that would repeat with the motion of all logs: whatever depends on
+    /// that, as friction and inertia, is then the same wave.
+    pub(super) fn repeats_with_the_drive(&self, candidate: &Refined) -> bool {
+        let sets = [
+            (&self.fit_logs, &self.fit.traces),
+            (&self.check_logs, &self.check.traces),
+        ];
+        let logs = || {
+            sets.iter()
+                .flat_map(|(set, traces)| set.logs.iter().zip(*traces))
+        };
+        let is_driven = |frequency: f64| {
+            let share = |(log, trace): (&Prepared, &Trace)| {
+                share_of_wave(log.log.time(), &trace.speed, frequency)
+            };
+            logs().all(|one| share(one) > DRIVEN)
+        };
+        let mut added = candidate.added().iter();
+        added.any(|a| a.effect.name == REPEATS && is_driven(1.0 / a.values[PERIOD]))
     }
 
     /// Whether a candidate is a load that would repeat faster than motion does, and has another phase or
