@@ -10,3 +10,4 @@ mod needs;
 mod readme;
 mod rigid_stand_in;
 mod slide;
+mod spin;

@@ -23,7 +23,7 @@
 //! ```
 //!
 //! [`slide_log`] is another machine, a slide on a linear motor whose drive has more in it than its axis file
-//! says. [`bench_log`] is a motor on a bench that never rests.
+//! says. [`bench_log`] is a motor on a bench that never rests, [`spun_log`] a small one that is spun slowly.
 //!
 //! [`cases`] holds the table of what is hidden; [`write_case`] writes one as two logs to
 //! fit, two to check, the axis file and the truth.
@@ -44,6 +44,7 @@ mod parameters;
 mod random;
 mod run;
 mod slide;
+mod spin;
 mod truth;
 
 pub use bench::{BenchFriction, bench_log};
@@ -58,4 +59,5 @@ pub use parameters::Parameters;
 pub use random::Random;
 pub use run::{LoopNoise, Sample, run};
 pub use slide::{SLIDE_CASES, SlideDrive, SlideHidden, slide_log, slide_motions};
+pub use spin::{SpunBy, SpunMotor, spun_log};
 pub use truth::{TrueEffect, Truth, Wanted};
