@@ -75,11 +75,28 @@ const NEVER_BELOW_NONE: [&str; 3] = [
     "load-dependent-friction",
 ];
 
+/// Share of the bound of what an effect may change a parameter of the axis by that is taken for the
+/// bound: derivatives are of no use there, and a fit may end a little inside.
+const NEAR_BOUND: f64 = 0.95;
+
 impl Refined {
-    /// Whether it is less than none of something, or takes more of a parameter of this machine that
-    /// is not known than all but its tenth, which its tolerance takes already: noise of the
-    /// acceleration draws an inertia that far.
+    /// Whether it is less than none of something, or changes a parameter of this machine to the
+    /// bound of what is plausible: then it stands for something else. Of a parameter that is not
+    /// known the tolerance is a bound downward already, to which noise of the acceleration draws an
+    /// inertia.
     pub(super) fn is_below_none(&self, machine: &Axis) -> bool {
+        let mut added = self.added().iter().zip(&self.parts);
+        let ends_at_bound = added.any(|(active, part)| {
+            let mut sizes = active.effect.parameters.iter().zip(&active.values);
+            active.effect.roles().next().is_some()
+                && sizes.any(|(p, value)| {
+                    let edges = p.bounds(&part.scales);
+                    p.is_size() && edges.iter().any(|edge| value / edge > NEAR_BOUND)
+                })
+        });
+        if ends_at_bound {
+            return true;
+        }
         let is_unknown = |a: &&ActiveEffect| a.effect.roles().any(|role| machine.is_unknown(role));
         if self
             .added()

@@ -20,6 +20,9 @@ use crate::spectrum::waves;
 /// Turns that a log must show for their orders to be told apart.
 const LEAST_TURNS: f64 = 2.0;
 
+/// Samples that a wave must have.
+const SAMPLES: f64 = 2.5;
+
 /// Orders that are looked at, per resolved step.
 const FINER: f64 = 2.0;
 
@@ -51,7 +54,8 @@ impl Search<'_> {
     }
 
     /// What a wave over the motor's angle takes of the residual by least squares, in waves a turn,
-    /// logs and channels added up, up to the order that the samples show at the median speed.
+    /// logs and channels added up, up to the order that the samples show at the median speed: with
+    /// 2.5 samples a wave, as balances have of their low-pass.
     fn lines_over_turns(&self) -> Vec<Line> {
         let set = &self.fit_logs;
         let per_turn = TAU * self.machine.travel_per_radian();
@@ -69,7 +73,7 @@ impl Search<'_> {
         };
         let longest = logs.iter().map(range).fold(0.0, f64::max);
         let steps = logs.iter().map(|turns| median_step(turns));
-        let step = 0.5 * steps.fold(f64::INFINITY, f64::min);
+        let step = 0.25 * SAMPLES * steps.fold(f64::INFINITY, f64::min);
         if !(longest >= LEAST_TURNS && step > 0.0 && step.is_finite()) {
             return Vec::new();
         }
