@@ -14,17 +14,23 @@ pub(super) fn sentence(
     refused: Option<&RefusedEffects>,
     own_form: Option<&FormFound>,
 ) -> String {
-    let names: Vec<String> = effects
-        .iter()
-        .map(|e| match e.indistinguishable_from.as_slice() {
-            [] => e.name.clone(),
-            others => format!(
-                "{} (or {}: these logs cannot tell)",
-                e.name,
-                others.join(", ")
-            ),
+    // Only what repeats is named more than once, with another order each time.
+    let own_name = |e: &EffectFound| {
+        let is_again = effects.iter().filter(|o| o.name == e.name).count() > 1;
+        let order = e.parameters.iter().find(|p| is_again && p.name == "order");
+        order.map_or(e.name.clone(), |order| {
+            format!("{} of order {:.0}", e.name, order.value)
         })
-        .collect();
+    };
+    let name = |e: &EffectFound| match e.indistinguishable_from.as_slice() {
+        [] => own_name(e),
+        others => format!(
+            "{} (or {}: these logs cannot tell)",
+            own_name(e),
+            others.join(", ")
+        ),
+    };
+    let names: Vec<String> = effects.iter().map(name).collect();
     let forms = effects
         .iter()
         .filter_map(|e| e.form.as_ref())

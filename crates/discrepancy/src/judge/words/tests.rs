@@ -1,6 +1,7 @@
 //! What a first screen says of made discoveries.
 
 use crate::controller::OwnController;
+use crate::judge::sentence::sentence;
 use crate::judge::told::{Confidence, Level, remedies};
 use crate::judge::{
     Cost, Discovery, EffectFound, EffortCost, FigureLogs, FormFound, Gaps, ParameterFound,
@@ -186,6 +187,28 @@ fn all_parameters_at_their_edge_are_listed() {
     assert_eq!(at_edge.len(), 2);
     assert!(at_edge[0].contains("+10.00 % of ±10.00 %"), "{sure:?}");
     assert!(at_edge[1].starts_with("table-mass"));
+}
+
+#[test]
+fn what_is_named_twice_is_told_apart_by_its_order() {
+    let cogging = |order: f64| {
+        let mut one = viscous();
+        one.name = "cogging-torque".to_owned();
+        one.parameters[0].name = "order".to_owned();
+        one.parameters[0].value = order;
+        one
+    };
+    let said = |effects: &[EffectFound]| {
+        let gap = discovery(Verdict::Explained, Vec::new(), Vec::new())
+            .gap
+            .check;
+        sentence(Verdict::Explained, effects, &gap, None, None, None)
+    };
+    let two = said(&[cogging(72.0), viscous(), cogging(12.0)]);
+    let names =
+        "cogging-torque of order 72; viscous-friction; cogging-torque of order 12. With them";
+    assert!(two.contains(names), "{two}");
+    assert!(said(&[cogging(72.0)]).contains("lacks cogging-torque. With it"));
 }
 
 #[test]
