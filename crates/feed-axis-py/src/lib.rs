@@ -13,7 +13,7 @@
 //! - `compensation`, `sample`, `identify`: corrections, cycle by cycle and on whole moves.
 //! - `network`, `one_cycle`: training and prediction; samples of one control cycle.
 //! - `lugre_law`, `beam`, `design`: the parts for themselves.
-//! - `arrays`, `dict`: conversion. `errors`: exceptions. `html`: tables of notebooks. `long`: long work.
+//! - `arrays`, `dict`: conversion. `value`: equality, copies and pickles. `errors`: exceptions. `html`: tables of notebooks. `long`: long work.
 //!
 //! # Long work
 //! It runs on a thread of its own, without Python's lock; the calling thread looks for
@@ -42,6 +42,7 @@ mod one_cycle;
 mod run;
 mod sample;
 mod simulate;
+mod value;
 
 use pyo3::prelude::*;
 
@@ -62,8 +63,8 @@ mod _feed_axis {
     use crate::discovery::{Discovery, Effect, Parameter};
     #[pymodule_export]
     use crate::errors::{
-        AxisError, FeedAxisError, LogError, MotionError, NetworkError, ParameterError, SearchError,
-        SimulationError, StrategyError,
+        AxisError, FeedAxisError, LogError, MotionError, NetworkError, ParameterError,
+        SearchError, SimulationError, StrategyError,
     };
     #[pymodule_export]
     use crate::identify::TransferFunctions;
