@@ -148,13 +148,14 @@ impl Value for PyCompensator {
     }
 
     fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
-        let (axis, strategy, network, transfer, friction): (
-            PyRef<'_, PyAxis>,
+        type State<'py> = (
+            PyRef<'py, PyAxis>,
             String,
-            Option<PyRef<'_, PyNetwork>>,
-            Option<PyRef<'_, TransferFunctions>>,
-            Option<PyRef<'_, PyLuGre>>,
-        ) = state.extract()?;
+            Option<PyRef<'py, PyNetwork>>,
+            Option<PyRef<'py, TransferFunctions>>,
+            Option<PyRef<'py, PyLuGre>>,
+        );
+        let (axis, strategy, network, transfer, friction): State<'_> = state.extract()?;
         let (network, transfer) = (network.as_deref(), transfer.as_deref());
         Self::of(&axis, &strategy, network, transfer, friction.as_deref())
     }

@@ -48,6 +48,12 @@ create_exception!(
 );
 create_exception!(
     feed_axis,
+    LoopError,
+    FeedAxisError,
+    "Loops that cannot be analysed or tuned, or not as it was asked for."
+);
+create_exception!(
+    feed_axis,
     StrategyError,
     FeedAxisError,
     "A compensation, or an identification for one, that cannot be made for this axis."

@@ -7,6 +7,7 @@
 //! every equation, and every word of an error, is that of the crate below it.
 //!
 //! # Rooms
+//! - `begin`: axes to begin with. `loops`: margins and tuning of an axis' loops.
 //! - `axis`, `motion`, `simulate`, `run`: an axis from a file or a dict, along a motion, to
 //!   arrays.
 //! - `log`, `discover`, `discovery`: what a model lacks, from files, frames or arrays.
@@ -25,6 +26,7 @@
 mod arrays;
 mod axis;
 mod beam;
+mod begin;
 mod compensation;
 mod design;
 mod dict;
@@ -35,6 +37,7 @@ mod html;
 mod identify;
 mod log;
 mod long;
+mod loops;
 mod lugre_law;
 mod motion;
 mod network;
@@ -54,6 +57,8 @@ mod _feed_axis {
     #[pymodule_export]
     use crate::beam::PyBeam;
     #[pymodule_export]
+    use crate::begin::{examples, new};
+    #[pymodule_export]
     use crate::compensation::PyCompensator;
     #[pymodule_export]
     use crate::design::latin_hypercube;
@@ -63,7 +68,7 @@ mod _feed_axis {
     use crate::discovery::{Discovery, Effect, Parameter};
     #[pymodule_export]
     use crate::errors::{
-        AxisError, FeedAxisError, LogError, MotionError, NetworkError, ParameterError,
+        AxisError, FeedAxisError, LogError, LoopError, MotionError, NetworkError, ParameterError,
         SearchError, SimulationError, StrategyError,
     };
     #[pymodule_export]

@@ -22,6 +22,7 @@ __all__ = [
     "Effect",
     "FeedAxisError",
     "LogError",
+    "LoopError",
     "LuGre",
     "MotionError",
     "Move",
@@ -40,7 +41,9 @@ __all__ = [
     "TransferFunctions",
     "__version__",
     "discover",
+    "examples",
     "latin_hypercube",
+    "new",
 ]
 
 __version__: Final[str]
@@ -81,6 +84,8 @@ class AxisError(FeedAxisError):
     """An axis file, or a dict in its place, that makes no axis. The words name file, line and field, and what would be valid."""
 class LogError(FeedAxisError):
     """A log of which no conclusion would be worth anything, or a channel that is not there."""
+class LoopError(FeedAxisError):
+    """Loops that cannot be analysed or tuned, or not as it was asked for."""
 class MotionError(FeedAxisError):
     """A motion that cannot be planned, or not on this axis."""
 class NetworkError(FeedAxisError):
@@ -158,6 +163,59 @@ class Axis:
         `position`: of the load, m or rad; where motions start, if it is left out.
 
         Raises ParameterError.
+        """
+    def analyse(
+        self,
+        *,
+        positions: ArrayLike | None = None,
+        masses: ArrayLike | None = None,
+        frictions: ArrayLike | None = None,
+        delay_cycles: float = 0.0,
+    ) -> dict[str, Any]:
+        """Margins of the drive's sampled position and speed loops, with the load sliding and stuck, as plain dicts, lists and numbers.
+
+        - `positions`: of the load, m or rad; start, ends and middle of the stroke, if left out.
+        - `masses`: of the load, as shares of the file's; 0.9, 1 and 1.4, if left out.
+        - `frictions`: as shares of the file's; 1, if left out.
+        - `delay_cycles`: delay besides the file's, control cycles.
+
+        Its keys are those of `feed-axis analyse --format json`: `worst` has the greatest sensitivities, `corners` the margins of each case,
+        `curves` the frequency responses of the first two cases: `frequency_hz`, and pairs of real and imaginary part in `open_command`,
+        `open_position`, `speed_followed` and `compliance` (the load's motion per force on it).
+
+        Raises LoopError.
+
+        >>> curve = axis.analyse()["curves"][0]
+        >>> response = np.array(curve["compliance"]) @ [1, 1j]
+        """
+    def tune(
+        self,
+        *,
+        sensitivity: float = 1.6,
+        sensitivity_late: float = 2.0,
+        ripple: float = 0.02,
+        positions: ArrayLike | None = None,
+        masses: ArrayLike | None = None,
+        frictions: ArrayLike | None = None,
+        acceleration: bool = True,
+        notch: bool = True,
+        current: bool = False,
+    ) -> tuple[Axis, dict[str, Any]]:
+        """Gains of the loops that hold the load best within limits of the sensitivity: the axis that has them, and what was found.
+
+        - `sensitivity`: greatest sensitivity at the command and at the position, in every case.
+        - `sensitivity_late`: the same with one more cycle of delay.
+        - `ripple`: greatest ripple of the command by the steps of the speed's sensor, as a share of the greatest command (RMS).
+        - `positions`, `masses`, `frictions`: the cases, as of `analyse`.
+        - `acceleration`: whether the acceleration is fed forward; `notch`: whether a notch may be set; `current`: whether the current
+          controllers are set too.
+
+        What was found has the keys of `feed-axis tune --format json`: `keys` has the keys of the axis file that were set, `limiting` what
+        limits the gains, `helps` what would help, `moves` the moves of the file simulated before and after.
+
+        Raises LoopError.
+
+        >>> tuned, found = axis.tune(sensitivity=1.5)
         """
     def simulate(
         self,
@@ -810,6 +868,21 @@ class Beam:
         """
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
+
+def examples() -> dict[str, Axis]:
+    """Axes to begin with, by kind: "liu2025" is the paper's, the others are one for each mechanism.
+
+    >>> fa.examples()["belt"]
+    """
+
+def new(kind: str, name: str | None = None) -> Axis:
+    """The example of a kind (a key of `examples()`), under a name of one's own.
+
+    Raises AxisError for an unknown kind.
+
+    >>> axis = fa.new("ball-screw", "x-axis")
+    >>> Path("x-axis.toml").write_text(axis.to_toml())
+    """
 
 def latin_hypercube(
     n: _Whole,
