@@ -106,6 +106,11 @@ pub(crate) struct PyCompensator {
 }
 
 impl PyCompensator {
+    /// Name of the strategy, and what it is made of.
+    pub(crate) fn parts(&self) -> (&'static str, &Predictors) {
+        (self.strategy.kind.name, &self.strategy.predictors)
+    }
+
     fn of(
         axis: &PyAxis,
         strategy: &str,

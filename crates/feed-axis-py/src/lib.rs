@@ -11,7 +11,7 @@
 //! - `axis`, `motion`, `simulate`, `run`: an axis from a file or a dict, along a motion, to
 //!   arrays.
 //! - `log`, `discover`, `discovery`: what a model lacks, from files, frames or arrays.
-//! - `compensation`, `sample`, `identify`: corrections, cycle by cycle and on whole moves.
+//! - `compensation`, `sample`, `identify`, `export`: corrections, cycle by cycle, on whole moves, and for controllers.
 //! - `network`, `one_cycle`: training and prediction; samples of one control cycle.
 //! - `lugre_law`, `beam`, `design`: the parts for themselves.
 //! - `arrays`, `dict`: conversion. `value`: equality, copies and pickles. `errors`: exceptions. `html`: tables of notebooks. `long`: long work.
@@ -33,6 +33,7 @@ mod dict;
 mod discover;
 mod discovery;
 mod errors;
+mod export;
 mod html;
 mod identify;
 mod log;

@@ -705,6 +705,33 @@ class Compensator:
 
         Raises StrategyError if no motion was begun.
         """
+    def export(
+        self,
+        folder: _Path,
+        *,
+        target: Literal["c", "linuxcnc", "onnx"] = "c",
+        name: str | None = None,
+        precision: Literal["f32", "f64"] = "f64",
+        limit_position: float | None = None,
+        limit_command: float | None = None,
+        limit_surprise: float | None = None,
+        patience_s: float = 0.002,
+        fade_s: float = 0.1,
+    ) -> list[str]:
+        """Writes the strategy for a controller into a folder that exists, and gives the paths of the files.
+
+        - `target`: "c" (C99 without allocation: NAME.h, NAME.c), "linuxcnc" (NAME.comp, NAME.hal), or "onnx" (the one-cycle network of the
+          strategy alone: NAME.onnx).
+        - `name`: of files, types and functions; the strategy's (of ONNX "network"), if left out.
+        - `precision`: of the C code's numbers.
+        - `limit_position` (m or rad), `limit_command` (A, N·m, N or V), `limit_surprise` (standard deviations; of the strategy "feedback"): at
+          what the guard trips. The axis' own, if left out and the axis has them.
+        - `patience_s`: how long a limit may be exceeded; `fade_s`: time in which corrections are faded in and out.
+
+        Raises StrategyError for a strategy that no controller can run, or a limit that is missing; ValueError; OSError.
+
+        >>> fa.Compensator(axis, "plan").export(".", target="linuxcnc", name="x_plan")
+        """
     @property
     def strategy(self) -> str:
         """Name of the strategy."""
