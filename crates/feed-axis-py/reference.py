@@ -24,12 +24,16 @@ WORDS = {
     "_Floats": "array",
     "_Path": "path",
     "_Progress": "function",
-    "_Motion": "Move | SCurve | Program",
+    "_Motion": "Move | SCurve | Program | array | (array, array)",
+    "_Columns": "dict",
+    "_Whole": "int",
     "_Layers": "int | ints",
     "_Reference": "(float, float, float)",
     "_Log": "log",
     "ArrayLike": "array-like",
 }
+# What the pages of classes say in a sentence, if anything.
+UNWRITTEN = {"__eq__", "__hash__"}
 
 
 def words(node):
@@ -83,7 +87,7 @@ def is_property(node):
 
 
 def public(body):
-    shown = [n for n in body if isinstance(n, (ast.ClassDef, ast.FunctionDef))]
+    shown = [n for n in body if isinstance(n, (ast.ClassDef, ast.FunctionDef)) and n.name not in UNWRITTEN]
     return [n for n in shown if not n.name.startswith("_") or n.name.startswith("__")]
 
 

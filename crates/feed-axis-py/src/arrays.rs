@@ -4,6 +4,7 @@ use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::type_object::PyTypeInfo;
+use pyo3::types::{PyDict, PyString};
 
 /// Numbers and their shape, the last dimension running fastest.
 struct Numbers {
@@ -24,6 +25,7 @@ impl Numbers {
         };
         let words =
             |error: PyErr| refused(format!("makes no array of numbers ({})", error.value(py)));
+        let given = &without_masks(given).map_err(words)?;
         let array = numpy.call_method1("asarray", (given,)).map_err(words)?;
         let dtype = array.getattr("dtype")?;
         let kind: String = dtype.getattr("kind")?.extract()?;
@@ -64,6 +66,30 @@ impl Numbers {
             self.shape()
         ))
     }
+}
+
+/// What stands behind a mask or for a missing value, as NaN; all else as it was.
+fn without_masks<'py>(given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let masked = given.py().import("numpy")?.getattr("ma")?;
+    if given.is_instance(&masked.getattr("MaskedArray")?)? {
+        let kind: String = given.getattr("dtype")?.getattr("kind")?.extract()?;
+        if "biuf".contains(&kind) {
+            let numbers = given.call_method1("astype", ("float64",))?;
+            return numbers.call_method1("filled", (f64::NAN,));
+        }
+    }
+    // Columns of pandas whose kind knows missing values: NumPy would make objects of them.
+    if given.hasattr("isna")? && given.hasattr("to_numpy")? {
+        let is_own = given.getattr("dtype")?.hasattr("na_value")?;
+        let is_number = is_own && given.getattr("dtype")?.hasattr("numpy_dtype")?;
+        if is_number {
+            let how = PyDict::new(given.py());
+            how.set_item("dtype", "float64")?;
+            how.set_item("na_value", f64::NAN)?;
+            return given.call_method("to_numpy", (), Some(&how));
+        }
+    }
+    Ok(given.clone())
 }
 
 /// Numbers in a row: an array of one dimension, or one number.
@@ -151,13 +177,98 @@ impl FromPyObject<'_, '_> for Layers {
 
     fn extract(given: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
         let sizes = line::<PyValueError>(&given, "hidden")?;
-        let whole = |size: &f64| size.fract() == 0.0 && (1.0..=1e9).contains(size);
+        let whole = |size: &f64| size.fract() == 0.0 && (1.0..=1e4).contains(size);
         match sizes.iter().find(|size| !whole(size)) {
             None => Ok(Self(sizes.iter().map(|size| *size as usize).collect())),
             Some(bad) => Err(PyValueError::new_err(format!(
-                "a hidden layer has {bad} neurons; valid: whole numbers from 1 on"
+                "a hidden layer has {bad} neurons; valid: whole numbers from 1 to 10000"
             ))),
         }
+    }
+}
+
+macro_rules! whole {
+    ($($name:ident: $kind:ty, up to $most:expr;)*) => {$(
+        /// The argument of that name, a whole number.
+        pub(crate) fn $name(given: &Bound<'_, PyAny>) -> PyResult<$kind> {
+            whole(given, stringify!($name), $most)
+        }
+    )*};
+}
+
+// What takes memory by its size ends where no machine has that much.
+whole! {
+    count: usize, up to 100_000_000;
+    elements: usize, up to 100_000;
+    epochs: usize, up to 1_000_000_000;
+    n: usize, up to 100_000_000;
+    seed: u64, up to u64::MAX;
+    threads: usize, up to 1024;
+}
+
+/// A whole number of Python or NumPy. What is none is Python's own `TypeError`; one that is not
+/// in its range is a `ValueError`, as a number out of any other range is.
+fn whole<T: TryFrom<u64>>(given: &Bound<'_, PyAny>, name: &str, most: u64) -> PyResult<T> {
+    let number = given
+        .py()
+        .import("operator")?
+        .call_method1("index", (given,))?;
+    let found = number.extract::<u64>().ok().filter(|found| *found <= most);
+    found
+        .and_then(|found| T::try_from(found).ok())
+        .ok_or_else(|| {
+            PyValueError::new_err(format!(
+                "{name} is {number}; valid: a whole number from 0 to {most}"
+            ))
+        })
+}
+
+/// Noise of the sensors, in multiples of good ones.
+pub(crate) fn noise(given: &Bound<'_, PyAny>) -> PyResult<f64> {
+    let noise = given.extract::<f64>()?;
+    match noise.is_finite() && noise >= 0.0 {
+        true => Ok(noise),
+        false => Err(PyValueError::new_err(format!(
+            "noise is {noise}, but must be 0 or a finite factor above it"
+        ))),
+    }
+}
+
+/// The key of a dict or the name of a column, which must be a string.
+pub(crate) fn key(given: &Bound<'_, PyAny>, of: &str) -> PyResult<String> {
+    let refused = |_| {
+        let shown = given
+            .repr()
+            .map_or_else(|_| "one".to_owned(), |r| r.to_string());
+        PyTypeError::new_err(format!("{of} has the key {shown}; valid: strings as keys"))
+    };
+    given.extract::<String>().map_err(refused)
+}
+
+/// Several names, such as those of effects.
+pub(crate) struct Names(pub Vec<String>);
+
+impl FromPyObject<'_, '_> for Names {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        let refused =
+            |words: String| PyTypeError::new_err(format!("{words}; valid: a list of names"));
+        let kind = |thing: &Bound<'_, PyAny>| Ok::<_, PyErr>(thing.get_type().name()?.to_string());
+        if given.is_instance_of::<PyString>() {
+            return Err(refused(format!("{} is one name", given.repr()?)));
+        }
+        let Ok(names) = given.try_iter() else {
+            return Err(refused(format!("a {} is no list", kind(&given)?)));
+        };
+        let name = |name: PyResult<Bound<'_, PyAny>>| {
+            let name = name?;
+            match name.extract::<String>() {
+                Ok(name) => Ok(name),
+                Err(_) => Err(refused(format!("a {} is no name", kind(&name)?))),
+            }
+        };
+        names.map(name).collect::<PyResult<_>>().map(Self)
     }
 }
 
@@ -176,8 +287,9 @@ impl<'py> FromPyObject<'_, 'py> for Logs<'py> {
             )));
         }
         let logs = given.try_iter().map_err(|_| {
-            let kind = given.get_type();
-            PyTypeError::new_err(format!("{kind} is no list; valid: a list of logs"))
+            let kind = given.get_type().name();
+            let kind = kind.map_or_else(|_| "this".to_owned(), |kind| kind.to_string());
+            PyTypeError::new_err(format!("a {kind} is no list; valid: a list of logs"))
         })?;
         logs.collect::<PyResult<_>>().map(Self)
     }

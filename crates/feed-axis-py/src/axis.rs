@@ -6,12 +6,13 @@ use std::sync::Arc;
 use axis_sim::{Axis, channels};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyMapping, PyType};
+use pyo3::types::{PyDict, PyMapping, PyTuple, PyType};
 use toml::Table;
 
 use crate::dict::{dict_of, table_of};
-use crate::errors::{AxisError, ParameterError, raise};
+use crate::errors::{AxisError, ParameterError, raise, text_of};
 use crate::motion::Move;
+use crate::value::{Value, value};
 
 /// A feed axis: mechanism, motor, control, sensors, friction and loads, checked once.
 #[pyclass(module = "feed_axis", name = "Axis", frozen, skip_from_py_object)]
@@ -32,15 +33,33 @@ impl PyAxis {
     }
 }
 
+impl Value for PyAxis {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        (&self.text,).into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (text,) = state.extract()?;
+        Self::parsed("<text>", text)
+    }
+
+    fn key<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        (&self.axis.fingerprint,).into_pyobject(py)
+    }
+}
+
+value!(PyAxis, hash);
+
 #[pymethods]
 impl PyAxis {
     /// Reads an axis file.
     #[classmethod]
-    fn load(_: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
-        let axis = Axis::read(&path).map_err(raise::<AxisError>)?;
+    fn load(kind: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
+        let text = text_of::<AxisError>(kind.py(), &path)?;
+        let axis = Axis::read_changed(&path, &text).map_err(raise::<AxisError>)?;
         Ok(Self {
             axis: Arc::new(axis),
-            text: std::fs::read_to_string(&path)?,
+            text,
         })
     }
 

@@ -3,12 +3,33 @@
 use beam_fem::{Beam, BeamError, CrossSection, Dof, Material, Mesh, lowest_modes};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
+use crate::arrays;
 use crate::errors::{ParameterError, raise};
+use crate::value::{Value, value};
 
 /// A round solid shaft of Timoshenko elements.
 #[pyclass(module = "feed_axis", name = "Beam", frozen)]
-pub(crate) struct PyBeam(Beam, [f64; 2]);
+pub(crate) struct PyBeam {
+    beam: Beam,
+    elements: usize,
+    /// Length, diameter, Young's modulus, Poisson's ratio, density.
+    given: [f64; 5],
+}
+
+impl Value for PyBeam {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        (self.elements, PyTuple::new(py, self.given)?).into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (elements, (length, diameter, modulus, poisson, density)) = state.extract()?;
+        Self::new(length, diameter, elements, modulus, poisson, density)
+    }
+}
+
+value!(PyBeam, hash);
 
 #[pymethods]
 impl PyBeam {
@@ -18,7 +39,7 @@ impl PyBeam {
     fn new(
         length_m: f64,
         diameter_m: f64,
-        elements: usize,
+        #[pyo3(from_py_with = arrays::elements)] elements: usize,
         youngs_modulus_pa: f64,
         poisson_ratio: f64,
         density_kg_m3: f64,
@@ -33,7 +54,18 @@ impl PyBeam {
             ))
         };
         let beam = made().map_err(raise::<ParameterError>)?;
-        Ok(Self(beam, [length_m, diameter_m]))
+        let given = [
+            length_m,
+            diameter_m,
+            youngs_modulus_pa,
+            poisson_ratio,
+            density_kg_m3,
+        ];
+        Ok(Self {
+            beam,
+            elements,
+            given,
+        })
     }
 
     /// The lowest natural frequencies, Hz; the rigid motions of a free beam among them, as 0.
@@ -42,10 +74,10 @@ impl PyBeam {
     fn frequencies_hz<'py>(
         &self,
         py: Python<'py>,
-        count: usize,
+        #[pyo3(from_py_with = arrays::count)] count: usize,
         supports: &str,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let last = self.0.order() / 6 - 1;
+        let last = self.beam.order() / 6 - 1;
         let held: Vec<usize> = match supports {
             "free" => Vec::new(),
             "pinned" => {
@@ -59,7 +91,7 @@ impl PyBeam {
                 )));
             }
         };
-        let matrices = self.0.assemble_banded();
+        let matrices = self.beam.assemble_banded();
         let fixed = matrices.fixed(&held).map_err(raise::<ParameterError>)?;
         let modes = py.detach(|| lowest_modes(&fixed, count));
         let modes = modes.map_err(raise::<ParameterError>)?;
@@ -67,10 +99,10 @@ impl PyBeam {
     }
 
     fn __repr__(&self) -> String {
-        let Self(beam, [length, diameter]) = self;
+        let [length, diameter, modulus, poisson, density] = self.given;
         format!(
-            "Beam(length_m={length}, diameter_m={diameter}, elements={})",
-            beam.order() / 6 - 1
+            "Beam(length_m={length}, diameter_m={diameter}, elements={}, youngs_modulus_pa={modulus}, poisson_ratio={poisson}, density_kg_m3={density})",
+            self.elements
         )
     }
 }

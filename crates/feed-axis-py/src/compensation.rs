@@ -4,7 +4,9 @@ use std::sync::{Mutex, PoisonError};
 
 use axis_pipeline::strategies::{Predictors, STRATEGIES, SharedMotion, StrategyKind, named};
 use compensator::{Compensator, Correction, Sample};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use crate::axis::PyAxis;
 use crate::errors::{StrategyError, raise};
@@ -14,6 +16,7 @@ use crate::lugre_law::PyLuGre;
 use crate::motion::AnyMotion;
 use crate::network::PyNetwork;
 use crate::sample::{PyCorrection, PySample};
+use crate::value::{Value, value};
 
 /// How a compensator is made for a motion.
 #[derive(Clone)]
@@ -57,7 +60,7 @@ impl Given<'_> {
                 Recipe::Function(function.unbind())
             }
             Self::Function(other) => {
-                return Err(pyo3::exceptions::PyTypeError::new_err(format!(
+                return Err(PyTypeError::new_err(format!(
                     "compensation is a {}; valid: a Compensator, or a function from Sample to Correction",
                     other.get_type().name()?
                 )));
@@ -74,8 +77,14 @@ impl Compensator for Function {
 
     fn correct(&mut self, sample: &Sample) -> Correction {
         let called = Python::attach(|py| -> PyResult<PyCorrection> {
-            let given = self.0.call1(py, (PySample::of(sample),))?;
-            Ok(given.extract(py)?)
+            let given = self.0.bind(py).call1((PySample::of(sample),))?;
+            let Ok(correction) = given.cast::<PyCorrection>() else {
+                return Err(PyTypeError::new_err(format!(
+                    "the compensation gave a {}; valid: a Correction",
+                    given.get_type().name()?
+                )));
+            };
+            Ok(correction.get().clone())
         });
         match called {
             Ok(correction) => Correction {
@@ -96,18 +105,18 @@ pub(crate) struct PyCompensator {
     running: Mutex<Option<Box<dyn Compensator + Send>>>,
 }
 
-#[pymethods]
 impl PyCompensator {
-    /// The strategy of that name (`feed_axis.STRATEGIES`) for an axis, with what it needs.
-    #[new]
-    #[pyo3(signature = (axis, strategy, *, network = None, transfer = None, friction = None, motion = None))]
-    fn new(
-        axis: PyRef<'_, PyAxis>,
+    /// Name of the strategy, and what it is made of.
+    pub(crate) fn parts(&self) -> (&'static str, &Predictors) {
+        (self.strategy.kind.name, &self.strategy.predictors)
+    }
+
+    fn of(
+        axis: &PyAxis,
         strategy: &str,
-        network: Option<PyRef<'_, PyNetwork>>,
-        transfer: Option<PyRef<'_, TransferFunctions>>,
-        friction: Option<PyRef<'_, PyLuGre>>,
-        motion: Option<AnyMotion<'_>>,
+        network: Option<&PyNetwork>,
+        transfer: Option<&TransferFunctions>,
+        friction: Option<&PyLuGre>,
     ) -> PyResult<Self> {
         let Some(kind) = named(STRATEGIES, strategy) else {
             let names: Vec<_> = STRATEGIES.iter().map(|kind| kind.name).collect();
@@ -122,11 +131,58 @@ impl PyCompensator {
         predictors.identified = friction.map(|friction| friction.0);
         // Refused here, so that no run can be for what is missing.
         kind.strategy(&predictors).map_err(raise::<StrategyError>)?;
-        let made = Self {
+        Ok(Self {
             strategy: Strategy { kind, predictors },
             axis: axis.clone(),
             running: Mutex::new(None),
-        };
+        })
+    }
+}
+
+/// A copy has not begun a motion, whatever the original does.
+impl Value for PyCompensator {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let Strategy { kind, predictors } = &self.strategy;
+        let network = predictors.network.clone().map(|network| PyNetwork {
+            network,
+            losses: Vec::new(),
+        });
+        let transfer = predictors.transfer.clone().map(TransferFunctions);
+        let friction = predictors.identified.map(PyLuGre);
+        (self.axis.clone(), kind.name, network, transfer, friction).into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        type State<'py> = (
+            PyRef<'py, PyAxis>,
+            String,
+            Option<PyRef<'py, PyNetwork>>,
+            Option<PyRef<'py, TransferFunctions>>,
+            Option<PyRef<'py, PyLuGre>>,
+        );
+        let (axis, strategy, network, transfer, friction): State<'_> = state.extract()?;
+        let (network, transfer) = (network.as_deref(), transfer.as_deref());
+        Self::of(&axis, &strategy, network, transfer, friction.as_deref())
+    }
+}
+
+value!(PyCompensator);
+
+#[pymethods]
+impl PyCompensator {
+    /// The strategy of that name (`feed_axis.STRATEGIES`) for an axis, with what it needs.
+    #[new]
+    #[pyo3(signature = (axis, strategy, *, network = None, transfer = None, friction = None, motion = None))]
+    fn new(
+        axis: PyRef<'_, PyAxis>,
+        strategy: &str,
+        network: Option<PyRef<'_, PyNetwork>>,
+        transfer: Option<PyRef<'_, TransferFunctions>>,
+        friction: Option<PyRef<'_, PyLuGre>>,
+        motion: Option<AnyMotion<'_>>,
+    ) -> PyResult<Self> {
+        let (network, transfer) = (network.as_deref(), transfer.as_deref());
+        let made = Self::of(&axis, strategy, network, transfer, friction.as_deref())?;
         if let Some(motion) = motion {
             made.start(motion)?;
         }

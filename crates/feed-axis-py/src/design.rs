@@ -4,6 +4,7 @@ use lhs::{LatinHypercube, LhsError, Marginal, Uniform, map};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
+use crate::arrays;
 use crate::arrays::rows_of;
 use crate::errors::{ParameterError, raise};
 
@@ -13,9 +14,9 @@ use crate::errors::{ParameterError, raise};
 #[pyo3(signature = (n, bounds, *, seed = 1, centred = false))]
 pub(crate) fn latin_hypercube<'py>(
     py: Python<'py>,
-    n: usize,
+    #[pyo3(from_py_with = arrays::n)] n: usize,
     bounds: &Bound<'py, PyAny>,
-    seed: u64,
+    #[pyo3(from_py_with = arrays::seed)] seed: u64,
     centred: bool,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let bounds = rows_of::<ParameterError>(bounds, "bounds", 2)?;

@@ -5,11 +5,14 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyMapping, PySequence, PyString};
 use toml::{Table, Value};
 
+use crate::arrays::key as key_of;
+
 /// A mapping as a table; keys of which the value is `None` are left out.
 pub(crate) fn table_of(mapping: &Bound<'_, PyMapping>) -> PyResult<Table> {
     let mut table = Table::new();
     for pair in mapping.items()? {
-        let (key, value): (String, Bound<'_, PyAny>) = pair.extract()?;
+        let (key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>) = pair.extract()?;
+        let key = key_of(&key, "a dict of an axis")?;
         if !value.is_none() {
             let value = value_of(&key, &value)?;
             table.insert(key, value);

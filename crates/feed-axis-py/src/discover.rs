@@ -9,11 +9,11 @@ use discrepancy::{Evidence, Found, Settings};
 use pyo3::prelude::*;
 use toml::Table;
 
-use crate::arrays::Logs;
+use crate::arrays::{Logs, Names};
 use crate::axis::PyAxis;
 use crate::discovery::Discovery;
 use crate::errors::{AxisError, LogError, SearchError, raise};
-use crate::log::log_of;
+use crate::log::{Renamed, log_of};
 use crate::long::long;
 
 /// Finds what an axis' model lacks beside measured logs.
@@ -21,11 +21,12 @@ use crate::long::long;
 /// `fit` are logs to fit to, `check` logs of other motion on which what is named must prove
 /// itself, `test` logs that take no part in any choice, for the figures. Each log is a path, a
 /// pandas or polars frame, a Run, or a dict of arrays with channels as names.
+/// `columns` has names of columns of frames and dicts with the channels that they are.
 /// `progress(what, stage, None)`.
 ///
 /// Ctrl-C raises at once; the search itself ends at its next stage.
 #[pyfunction]
-#[pyo3(signature = (axis, fit, check, *, test = Logs(Vec::new()), accept = Vec::new(), reject = Vec::new(), balance = false, progress = None))]
+#[pyo3(signature = (axis, fit, check, *, test = Logs(Vec::new()), accept = Names(Vec::new()), reject = Names(Vec::new()), balance = false, columns = Renamed::default(), progress = None))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn discover(
     py: Python<'_>,
@@ -33,24 +34,35 @@ pub(crate) fn discover(
     fit: Logs<'_>,
     check: Logs<'_>,
     test: Logs<'_>,
-    accept: Vec<String>,
-    reject: Vec<String>,
+    accept: Names,
+    reject: Names,
     balance: bool,
+    columns: Renamed,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Discovery> {
+    for (kind, logs) in [("fit", &fit.0), ("check", &check.0)] {
+        if logs.is_empty() {
+            return Err(LogError::new_err(format!(
+                "{kind} holds no log; valid: one at least"
+            )));
+        }
+    }
     let mut machine = (*axis.axis).clone();
     if balance {
         machine = machine.without_control().map_err(raise::<AxisError>)?;
     }
     let settings = Settings {
-        accepted: accept,
-        rejected: reject,
+        accepted: accept.0,
+        rejected: reject.0,
         ..Settings::default()
     };
     settings.check(&machine).map_err(raise::<SearchError>)?;
     let mut notes = Vec::new();
     let mut read = |kind: &str, logs: &[Bound<'_, PyAny>]| -> PyResult<Vec<NamedLog>> {
-        let one = |(i, log)| log_of(log, &format!("{kind} {}", i + 1), &machine, &mut notes);
+        let one = |(i, log)| {
+            let name = format!("{kind} {}", i + 1);
+            log_of(log, &name, &machine, &columns, &mut notes)
+        };
         logs.iter().enumerate().map(one).collect()
     };
     let logs = [

@@ -1,12 +1,13 @@
 //! What a search found.
 
 use pyo3::prelude::*;
-use pyo3::types::PyModule;
+use pyo3::types::{PyDict, PyModule, PyTuple};
 
 use crate::axis::PyAxis;
-use crate::errors::{SearchError, raise};
+use crate::errors::{SearchError, package, raise};
 use crate::html::table;
 use crate::motion::Program;
+use crate::value::{Value, value};
 
 /// A number of an effect, with its 95 % interval.
 #[pyclass(module = "feed_axis", frozen, get_all, skip_from_py_object)]
@@ -98,6 +99,21 @@ impl Discovery {
     }
 }
 
+impl Value for Discovery {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let json = serde_json::to_string(&self.found).map_err(raise::<SearchError>)?;
+        (json, &self.text).into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (json, text): (String, String) = state.extract()?;
+        let found = serde_json::from_str(&json).map_err(raise::<SearchError>)?;
+        Self::new(found, text)
+    }
+}
+
+value!(Discovery, hash);
+
 #[pymethods]
 impl Discovery {
     /// "explained", "partly-explained", "other-form", "nothing-missing" or "unknown".
@@ -178,15 +194,44 @@ impl Discovery {
 
     /// The motion to run next, where effects look alike.
     #[getter]
-    fn next_experiment(&self) -> Option<Program> {
-        let next = self.found.next_experiment.as_ref()?;
-        Some(Program(next.program.clone()))
+    fn next_experiment(&self) -> PyResult<Option<Program>> {
+        let next = self.found.next_experiment.as_ref();
+        next.map(|next| Program::of(&next.program)).transpose()
     }
 
     /// All of it, as `discovery.json` of the command has it.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let text = serde_json::to_string(&self.found).map_err(raise::<SearchError>)?;
         PyModule::import(py, "json")?.call_method1("loads", (text,))
+    }
+
+    /// The numbers of the effects as a pandas DataFrame, a row each.
+    fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let rows = || {
+            let effects = self.effects.iter();
+            effects.flat_map(|e| e.parameters.iter().map(move |p| (e, p)))
+        };
+        let columns = PyDict::new(py);
+        let texts = |of: fn((&Effect, &Parameter)) -> String| rows().map(of).collect::<Vec<_>>();
+        let numbers = |of: fn(&Parameter) -> f64| rows().map(|(_, p)| of(p)).collect::<Vec<_>>();
+        columns.set_item("effect", texts(|(effect, _)| effect.name.clone()))?;
+        columns.set_item("parameter", texts(|(_, p)| p.name.clone()))?;
+        columns.set_item("value", numbers(|p| p.value))?;
+        columns.set_item("from", numbers(|p| p.interval.0))?;
+        columns.set_item("to", numbers(|p| p.interval.1))?;
+        columns.set_item("unit", texts(|(_, p)| p.unit.clone()))?;
+        let pandas = package(py, "pandas", "to_pandas")?;
+        pandas.getattr("DataFrame")?.call1((columns,))
+    }
+
+    /// Draws the gap before and after, and the noise, with matplotlib.
+    #[pyo3(signature = (*, ax = None))]
+    fn plot<'py>(
+        slf: &Bound<'py, Self>,
+        ax: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let plots = slf.py().import("feed_axis._plot")?;
+        plots.call_method1("plot_discovery", (slf, ax))
     }
 
     fn _repr_html_(&self) -> String {

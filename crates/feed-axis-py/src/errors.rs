@@ -1,9 +1,12 @@
 //! Exceptions: the library's words, by kind.
 
 use std::error::Error;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
 
 use pyo3::create_exception;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyImportError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::type_object::PyTypeInfo;
 
@@ -45,6 +48,12 @@ create_exception!(
 );
 create_exception!(
     feed_axis,
+    LoopError,
+    FeedAxisError,
+    "Loops that cannot be analysed or tuned, or not as it was asked for."
+);
+create_exception!(
+    feed_axis,
     StrategyError,
     FeedAxisError,
     "A compensation, or an identification for one, that cannot be made for this axis."
@@ -72,4 +81,59 @@ pub(crate) fn raise<K: PyTypeInfo>(error: impl Error) -> PyErr {
         Python::attach(|py| raised.set_cause(py, Some(FeedAxisError::new_err(cause))));
     }
     raised
+}
+
+/// Python's own error of a file: FileNotFoundError, IsADirectoryError, PermissionError, with the
+/// file's name.
+pub(crate) fn of_file(py: Python<'_>, error: &io::Error, path: &Path) -> PyErr {
+    let Some(number) = error.raw_os_error() else {
+        return PyValueError::new_err(format!("{}: {error}", path.display()));
+    };
+    let made = || {
+        let words = py.import("os")?.call_method1("strerror", (number,))?;
+        py.get_type::<PyOSError>()
+            .call1((number, words, path.as_os_str()))
+    };
+    match made() {
+        Ok(made) => PyErr::from_value(made),
+        Err(error) => error,
+    }
+}
+
+/// Refuses a file that cannot be read at all, as Python does.
+pub(crate) fn readable(py: Python<'_>, path: &Path) -> PyResult<()> {
+    // A folder opens, but is not read; what is no plain file must keep what it has.
+    let tried = File::open(path).and_then(|mut file| match file.metadata()?.is_dir() {
+        true => file.read(&mut [0]),
+        false => Ok(0),
+    });
+    tried.map(drop).map_err(|error| of_file(py, &error, path))
+}
+
+/// The bytes of a file.
+pub(crate) fn bytes_of(py: Python<'_>, path: &Path) -> PyResult<Vec<u8>> {
+    std::fs::read(path).map_err(|error| of_file(py, &error, path))
+}
+
+/// The text of a file; one that is no text is refused as `K`.
+pub(crate) fn text_of<K: PyTypeInfo>(py: Python<'_>, path: &Path) -> PyResult<String> {
+    let text = String::from_utf8(bytes_of(py, path)?);
+    text.map_err(|_| {
+        let path = path.display();
+        PyErr::new::<K, _>(format!("{path} is no text in UTF-8; valid: a file in TOML"))
+    })
+}
+
+/// A package that only some calls need; without it the error says how it comes.
+pub(crate) fn package<'py>(
+    py: Python<'py>,
+    name: &str,
+    call: &str,
+) -> PyResult<Bound<'py, PyModule>> {
+    py.import(name).map_err(|error| {
+        let words = format!("{call} needs {name}; install it: pip install {name}");
+        let raised = PyImportError::new_err(words);
+        raised.set_cause(py, Some(error));
+        raised
+    })
 }

@@ -5,18 +5,54 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use axis_pipeline::identification::{IdentificationPlan, identify};
 use axis_pipeline::strategies::TransferModels;
 use axis_pipeline::transfer::{TransferPlan, identify_transfer};
+use compensator::TransferFunctionModel;
 use discover_matrix::hidden::Noise;
 use lugre::LuGre;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
+use crate::arrays;
 use crate::axis::PyAxis;
 use crate::errors::{StrategyError, raise};
 use crate::long::{Hook, long};
 use crate::lugre_law::PyLuGre;
+use crate::value::{Value, value};
 
 /// Linear models of an axis' tracking error, without and with friction feed-forward.
 #[pyclass(module = "feed_axis", frozen)]
 pub(crate) struct TransferFunctions(pub(crate) TransferModels);
+
+/// Period, direct feed-through, poles, coefficients.
+type Numbers = (f64, f64, Vec<f64>, Vec<f64>);
+
+impl Value for TransferFunctions {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let numbers = |model: &TransferFunctionModel| {
+            let poles = PyTuple::new(py, model.poles())?;
+            let coefficients = PyTuple::new(py, model.coefficients())?;
+            (model.period(), model.direct(), poles, coefficients).into_pyobject(py)
+        };
+        let TransferModels {
+            alone,
+            with_feedforward,
+        } = &self.0;
+        (numbers(alone)?, numbers(with_feedforward)?).into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (alone, with_feedforward): (Numbers, Numbers) = state.extract()?;
+        let model = |(period, direct, poles, coefficients): Numbers| {
+            let model = TransferFunctionModel::new(period, direct, &poles, &coefficients);
+            model.map_err(raise::<StrategyError>)
+        };
+        Ok(Self(TransferModels {
+            alone: model(alone)?,
+            with_feedforward: model(with_feedforward)?,
+        }))
+    }
+}
+
+value!(TransferFunctions, hash);
 
 #[pymethods]
 impl TransferFunctions {
@@ -47,8 +83,8 @@ impl PyAxis {
     fn identify_friction(
         &self,
         py: Python<'_>,
-        noise: f64,
-        seed: u64,
+        #[pyo3(from_py_with = arrays::noise)] noise: f64,
+        #[pyo3(from_py_with = arrays::seed)] seed: u64,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyLuGre> {
         let axis = self.axis.clone();
@@ -71,7 +107,7 @@ impl PyAxis {
     fn identify_transfer(
         &self,
         py: Python<'_>,
-        seed: u64,
+        #[pyo3(from_py_with = arrays::seed)] seed: u64,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<TransferFunctions> {
         let axis = self.axis.clone();

@@ -7,13 +7,14 @@
 //! every equation, and every word of an error, is that of the crate below it.
 //!
 //! # Rooms
+//! - `begin`: axes to begin with. `loops`: margins and tuning of an axis' loops.
 //! - `axis`, `motion`, `simulate`, `run`: an axis from a file or a dict, along a motion, to
 //!   arrays.
 //! - `log`, `discover`, `discovery`: what a model lacks, from files, frames or arrays.
-//! - `compensation`, `sample`, `identify`: corrections, cycle by cycle and on whole moves.
+//! - `compensation`, `sample`, `identify`, `export`: corrections, cycle by cycle, on whole moves, and for controllers.
 //! - `network`, `one_cycle`: training and prediction; samples of one control cycle.
 //! - `lugre_law`, `beam`, `design`: the parts for themselves.
-//! - `arrays`, `dict`: conversion. `errors`: exceptions. `html`: tables of notebooks. `long`: long work.
+//! - `arrays`, `dict`: conversion. `value`: equality, copies and pickles. `errors`: exceptions. `html`: tables of notebooks. `long`: long work.
 //!
 //! # Long work
 //! It runs on a thread of its own, without Python's lock; the calling thread looks for
@@ -25,16 +26,19 @@
 mod arrays;
 mod axis;
 mod beam;
+mod begin;
 mod compensation;
 mod design;
 mod dict;
 mod discover;
 mod discovery;
 mod errors;
+mod export;
 mod html;
 mod identify;
 mod log;
 mod long;
+mod loops;
 mod lugre_law;
 mod motion;
 mod network;
@@ -42,6 +46,7 @@ mod one_cycle;
 mod run;
 mod sample;
 mod simulate;
+mod value;
 
 use pyo3::prelude::*;
 
@@ -53,6 +58,8 @@ mod _feed_axis {
     #[pymodule_export]
     use crate::beam::PyBeam;
     #[pymodule_export]
+    use crate::begin::{examples, new};
+    #[pymodule_export]
     use crate::compensation::PyCompensator;
     #[pymodule_export]
     use crate::design::latin_hypercube;
@@ -62,8 +69,8 @@ mod _feed_axis {
     use crate::discovery::{Discovery, Effect, Parameter};
     #[pymodule_export]
     use crate::errors::{
-        AxisError, FeedAxisError, LogError, MotionError, NetworkError, ParameterError, SearchError,
-        SimulationError, StrategyError,
+        AxisError, FeedAxisError, LogError, LoopError, MotionError, NetworkError, ParameterError,
+        SearchError, SimulationError, StrategyError,
     };
     #[pymodule_export]
     use crate::identify::TransferFunctions;

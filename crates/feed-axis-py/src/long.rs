@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 
 /// How often signals are looked for, and how often counts are told.
@@ -71,6 +71,12 @@ pub(crate) fn long<T: Send + 'static>(
     progress: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(&Hook) -> PyResult<T> + Send + 'static,
 ) -> PyResult<T> {
+    if let Some(other) = progress.filter(|progress| !progress.is_callable()) {
+        return Err(PyTypeError::new_err(format!(
+            "progress is a {}; valid: a function of (what, done, total)",
+            other.get_type().name()?
+        )));
+    }
     let (news, heard) = channel();
     let hook = Hook {
         given_up: Arc::new(AtomicBool::new(false)),

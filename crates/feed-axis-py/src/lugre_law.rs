@@ -3,15 +3,38 @@
 use lugre::{LuGre, Parameters};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
-use pyo3::types::PyType;
+use pyo3::types::{PyTuple, PyType};
 
 use crate::arrays::line;
 use crate::errors::{ParameterError, raise};
+use crate::value::{Value, value};
 
 /// LuGre friction: bristles, Stribeck curve, viscous share. For a contact that slides along a
 /// line read N for N·m and m for rad.
 #[pyclass(module = "feed_axis", name = "LuGre", frozen)]
 pub(crate) struct PyLuGre(pub(crate) LuGre);
+
+impl Value for PyLuGre {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let p = self.0.parameters();
+        (
+            p.coulomb,
+            p.stiction,
+            p.stribeck_speed,
+            p.stiffness,
+            p.damping,
+            p.viscous,
+        )
+            .into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (coulomb, stiction, stribeck, stiffness, damping, viscous) = state.extract()?;
+        Self::new(coulomb, stiction, stribeck, stiffness, damping, viscous)
+    }
+}
+
+value!(PyLuGre, hash);
 
 #[pymethods]
 impl PyLuGre {

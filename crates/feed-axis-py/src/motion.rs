@@ -3,16 +3,19 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use axis_log::{Channel, Log, TIME_CHANNEL};
 use axis_pipeline::strategies::SharedMotion;
 use axis_sim::mechanism::Freedom;
-use axis_sim::{Axis, MoveSpec};
+use axis_sim::{Axis, LoggedReference, MoveSpec};
 use numpy::IntoPyArray;
-use pyo3::exceptions::PyAttributeError;
+use pyo3::exceptions::{PyAttributeError, PyTypeError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyType};
+use pyo3::types::{PyDict, PyString, PyTuple, PyType};
 use trajectories::{Limits, Motion, ProgramUnit, SCurve};
 
-use crate::errors::{MotionError, raise};
+use crate::arrays::samples;
+use crate::errors::{MotionError, raise, text_of};
+use crate::value::{Value, value};
 
 /// A move from rest to rest, from where the axis' motions start: along a line, or with
 /// `Move.turn` about an axis.
@@ -34,6 +37,12 @@ impl Move {
         [speed, acceleration, jerk]: [f64; 3],
         freedom: Freedom,
     ) -> PyResult<Self> {
+        if !displacement.is_finite() {
+            let unit = freedom.unit();
+            return Err(MotionError::new_err(format!(
+                "distance_{unit} is {displacement}; valid: a finite number"
+            )));
+        }
         let limits = Limits::new(speed, acceleration, jerk).map_err(raise::<MotionError>)?;
         let spec = MoveSpec {
             displacement,
@@ -53,6 +62,37 @@ impl Move {
         }
     }
 }
+
+/// Freedom of a state.
+fn freedom_of(turns: bool) -> Freedom {
+    match turns {
+        true => Freedom::Rotary,
+        false => Freedom::Linear,
+    }
+}
+
+impl Value for Move {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let MoveSpec {
+            displacement,
+            limits,
+        } = &self.spec;
+        let turns = self.freedom == Freedom::Rotary;
+        (turns, *displacement, numbers(limits)).into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (turns, displacement, limits): (bool, f64, (f64, f64, f64)) = state.extract()?;
+        Self::new_of(displacement, limits.into(), freedom_of(turns))
+    }
+}
+
+/// Speed, acceleration and jerk.
+fn numbers(limits: &Limits) -> (f64, f64, f64) {
+    (limits.velocity(), limits.acceleration(), limits.jerk())
+}
+
+value!(Move, hash);
 
 #[pymethods]
 impl Move {
@@ -153,7 +193,25 @@ impl Move {
 pub(crate) struct PySCurve {
     curve: SCurve,
     freedom: Freedom,
+    /// From and to.
+    ends: [f64; 2],
+    limits: Limits,
 }
+
+impl Value for PySCurve {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let turns = self.freedom == Freedom::Rotary;
+        let [from, to] = self.ends;
+        (turns, (from, to), numbers(&self.limits)).into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (turns, ends, limits): (bool, (f64, f64), (f64, f64, f64)) = state.extract()?;
+        Self::new_of(ends.into(), limits.into(), freedom_of(turns))
+    }
+}
+
+value!(PySCurve, hash);
 
 impl PySCurve {
     fn new_of(
@@ -163,7 +221,12 @@ impl PySCurve {
     ) -> PyResult<Self> {
         let limits = Limits::new(speed, acceleration, jerk).map_err(raise::<MotionError>)?;
         let curve = SCurve::plan(start, end, &limits).map_err(raise::<MotionError>)?;
-        Ok(Self { curve, freedom })
+        Ok(Self {
+            curve,
+            freedom,
+            ends: [start, end],
+            limits,
+        })
     }
 }
 
@@ -218,45 +281,79 @@ impl PySCurve {
 
 /// Moves, dwells, sines and chirps one after the other.
 #[pyclass(module = "feed_axis", frozen)]
-pub(crate) struct Program(pub(crate) trajectories::Program);
+pub(crate) struct Program {
+    program: trajectories::Program,
+    /// From which it was read, so that a copy has the same numbers to the last bit.
+    text: String,
+}
+
+impl Program {
+    fn parsed(text: String) -> PyResult<Self> {
+        let program = toml::from_str(&text).map_err(raise::<MotionError>)?;
+        Ok(Self { program, text })
+    }
+
+    /// As it comes back from its own text.
+    pub(crate) fn of(program: &trajectories::Program) -> PyResult<Self> {
+        Self::parsed(toml::to_string(program).map_err(raise::<MotionError>)?)
+    }
+}
+
+impl Value for Program {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        (&self.text,).into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (text,) = state.extract()?;
+        Self::parsed(text)
+    }
+
+    /// Comments and order do not count.
+    fn key<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        (self.to_toml()?,).into_pyobject(py)
+    }
+}
+
+value!(Program, hash);
 
 #[pymethods]
 impl Program {
     /// Reads a motion program (TOML).
     #[classmethod]
     fn load(kind: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
-        Self::from_toml(kind, &std::fs::read_to_string(path)?)
+        Self::parsed(text_of::<MotionError>(kind.py(), &path)?)
     }
 
     /// Reads the text of a motion program.
     #[classmethod]
-    fn from_toml(_: &Bound<'_, PyType>, text: &str) -> PyResult<Self> {
-        toml::from_str(text).map(Self).map_err(raise::<MotionError>)
+    fn from_toml(_: &Bound<'_, PyType>, text: String) -> PyResult<Self> {
+        Self::parsed(text)
     }
 
     /// Its text, as `from_toml` reads it.
     fn to_toml(&self) -> PyResult<String> {
-        toml::to_string(&self.0).map_err(raise::<MotionError>)
+        toml::to_string(&self.program).map_err(raise::<MotionError>)
     }
 
     /// Time from the first to the last instant, s.
     #[getter]
     fn duration_s(&self) -> f64 {
-        self.0.duration()
+        self.program.duration()
     }
 
     /// The motion every `period_s`, as `SCurve.sample`.
     fn sample<'py>(&self, py: Python<'py>, period_s: f64) -> PyResult<Bound<'py, PyDict>> {
-        let freedom = match self.0.unit() {
+        let freedom = match self.program.unit() {
             ProgramUnit::Millimetres => Freedom::Linear,
             ProgramUnit::Degrees => Freedom::Rotary,
         };
-        sampled(py, &self.0, period_s, freedom)
+        sampled(py, &self.program, period_s, freedom)
     }
 
     fn __repr__(&self) -> String {
-        let steps = self.0.steps().len();
-        format!("Program({steps} steps, {:.6} s)", self.0.duration())
+        let steps = self.program.steps().len();
+        format!("Program({steps} steps, {:.6} s)", self.program.duration())
     }
 }
 
@@ -272,7 +369,7 @@ fn sampled<'py>(
     let count = motion.duration() / period;
     if !(period > 0.0 && count < MOST_SAMPLES) {
         return Err(MotionError::new_err(format!(
-            "period_s is {period}, but must be greater than 0 and give at most {MOST_SAMPLES:e} samples"
+            "period_s is {period:?}, but must be greater than 0 and give at most {MOST_SAMPLES:e} samples"
         )));
     }
     // An end that rounding has put a hair before its instant is one.
@@ -321,11 +418,53 @@ fn check(freedom: Freedom, axis: &Axis, class: &str) -> PyResult<()> {
 }
 
 /// A motion as a caller may give it.
-#[derive(FromPyObject)]
 pub(crate) enum AnyMotion<'py> {
     Move(PyRef<'py, Move>),
     SCurve(PyRef<'py, PySCurve>),
     Program(PyRef<'py, Program>),
+    /// Positions at instants that lie evenly, or at each control cycle.
+    Sampled {
+        instants: Option<Vec<f64>>,
+        positions: Vec<f64>,
+    },
+}
+
+impl<'py> FromPyObject<'_, 'py> for AnyMotion<'py> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(one) = given.extract() {
+            return Ok(Self::Move(one));
+        }
+        if let Ok(curve) = given.extract() {
+            return Ok(Self::SCurve(curve));
+        }
+        if let Ok(program) = given.extract() {
+            return Ok(Self::Program(program));
+        }
+        // An array, a list, a series: what has a length, and is neither words nor a mapping.
+        let is_array = given.len().is_ok() && !given.hasattr("keys")?;
+        if !is_array || given.is_instance_of::<PyString>() {
+            return Err(PyTypeError::new_err(format!(
+                "a {} is no motion; valid: a Move, an SCurve, a Program, positions (one each control period), or a tuple (t_s, positions)",
+                given.get_type().name()?
+            )));
+        }
+        let pair: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)> = match given.cast::<PyTuple>() {
+            Ok(pair) if pair.len() == 2 => Some(pair.extract()?),
+            _ => None,
+        };
+        match pair.filter(|(instants, _)| instants.len().is_ok()) {
+            Some((instants, positions)) => Ok(Self::Sampled {
+                instants: Some(samples::<MotionError>(&instants, "t_s")?),
+                positions: samples::<MotionError>(&positions, "positions")?,
+            }),
+            None => Ok(Self::Sampled {
+                instants: None,
+                positions: samples::<MotionError>(&given, "positions")?,
+            }),
+        }
+    }
 }
 
 impl AnyMotion<'_> {
@@ -341,10 +480,74 @@ impl AnyMotion<'_> {
                 check(curve.freedom, axis, "SCurve")?;
                 Arc::new(curve.curve)
             }
-            Self::Program(program) => {
-                axis.takes(&program.0).map_err(MotionError::new_err)?;
-                Arc::new(program.0.clone())
+            Self::Program(one) => {
+                axis.takes(&one.program).map_err(MotionError::new_err)?;
+                Arc::new(one.program.clone())
             }
+            Self::Sampled {
+                instants,
+                positions,
+            } => Arc::new(sampled_reference(axis, instants.as_deref(), positions)?),
         })
     }
+}
+
+/// Share of a period by which time stamps may be off an even grid: what printing them with four
+/// digits a period leaves.
+const UNEVEN: f64 = 1e-3;
+
+/// The motion through positions, as a log's reference is taken.
+fn sampled_reference(
+    axis: &Axis,
+    instants: Option<&[f64]>,
+    positions: &[f64],
+) -> PyResult<LoggedReference> {
+    let refused = |words: String| Err(MotionError::new_err(words));
+    let count = positions.len();
+    if count < 2 {
+        return refused(format!(
+            "there are {count} positions; valid: two at least, one each period"
+        ));
+    }
+    for (name, numbers) in [("positions", positions), ("t_s", instants.unwrap_or(&[]))] {
+        if let Some(k) = numbers.iter().position(|x| !x.is_finite()) {
+            let bad = numbers[k];
+            return refused(format!(
+                "{name}[{k}] is {bad}; valid: finite numbers, without holes"
+            ));
+        }
+    }
+    let period = match instants {
+        None => axis.period,
+        Some(instants) if instants.len() != count => {
+            let stamps = instants.len();
+            return refused(format!(
+                "there are {stamps} instants t_s and {count} positions; valid: as many of both"
+            ));
+        }
+        Some(instants) => {
+            let period = (instants[count - 1] - instants[0]) / (count - 1) as f64;
+            let off = |(k, t): (usize, &f64)| (t - instants[0] - k as f64 * period).abs();
+            if period <= 0.0 {
+                return refused("t_s does not rise; valid: instants in s, evenly apart".to_owned());
+            }
+            let uneven = instants.iter().enumerate();
+            if let Some((k, t)) = uneven.into_iter().find(|at| off(*at) > UNEVEN * period) {
+                return refused(format!(
+                    "t_s[{k}] is {t}, off the even grid of {period} s that the ends of t_s give; valid: instants evenly apart (numpy.interp makes them so)"
+                ));
+            }
+            period
+        }
+    };
+    let instants = (0..count).map(|k| k as f64 * period).collect();
+    let name = match axis.freedom() {
+        Freedom::Linear => "position_ref_m",
+        Freedom::Rotary => "position_ref_rad",
+    };
+    let channels = [(TIME_CHANNEL, instants), (name, positions.to_vec())];
+    let channels = channels.map(|(name, samples)| Channel::new(name, samples));
+    let channels = channels.into_iter().collect::<Result<Vec<_>, _>>();
+    let log = Log::new(channels.map_err(raise::<MotionError>)?).map_err(raise::<MotionError>)?;
+    LoggedReference::new(&log, period).map_err(raise::<MotionError>)
 }

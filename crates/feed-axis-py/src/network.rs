@@ -8,12 +8,14 @@ use cfnn::train::{Dataset, Trainer, TrainingSettings};
 use cfnn::{Network, Shape};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyType;
+use pyo3::types::{PyBytes, PyTuple, PyType};
 
+use crate::arrays;
 use crate::arrays::{Layers, rows, rows_of};
-use crate::errors::{NetworkError, raise};
+use crate::errors::{NetworkError, bytes_of, of_file, raise};
 use crate::long::long;
 use crate::one_cycle::Samples;
+use crate::value::{Value, value};
 
 /// A cascade-forward network.
 #[pyclass(module = "feed_axis", name = "Network", frozen)]
@@ -22,6 +24,36 @@ pub(crate) struct PyNetwork {
     /// Mean square of the scaled residuals after each epoch.
     pub(crate) losses: Vec<f64>,
 }
+
+impl PyNetwork {
+    fn bytes(&self) -> PyResult<Vec<u8>> {
+        network_to_bytes(&self.network, "feed_axis").map_err(raise::<NetworkError>)
+    }
+
+    fn of_bytes(bytes: &[u8], losses: Vec<f64>) -> PyResult<Self> {
+        let (network, _) = network_from_bytes(bytes).map_err(raise::<NetworkError>)?;
+        Ok(Self { network, losses })
+    }
+}
+
+impl Value for PyNetwork {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let losses = PyTuple::new(py, &self.losses)?;
+        (PyBytes::new(py, &self.bytes()?), losses).into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (bytes, losses): (Bound<'_, PyBytes>, Vec<f64>) = state.extract()?;
+        Self::of_bytes(bytes.as_bytes(), losses)
+    }
+
+    /// How it was trained does not count.
+    fn key<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        (PyBytes::new(py, &self.bytes()?),).into_pyobject(py)
+    }
+}
+
+value!(PyNetwork, hash);
 
 #[pymethods]
 impl PyNetwork {
@@ -37,9 +69,9 @@ impl PyNetwork {
         x: &Bound<'py, PyAny>,
         y: &Bound<'py, PyAny>,
         hidden: Layers,
-        epochs: usize,
-        seed: u64,
-        threads: usize,
+        #[pyo3(from_py_with = arrays::epochs)] epochs: usize,
+        #[pyo3(from_py_with = arrays::seed)] seed: u64,
+        #[pyo3(from_py_with = arrays::threads)] threads: usize,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Self> {
         let (x, inputs) = rows::<NetworkError>(x, "x")?;
@@ -108,19 +140,20 @@ impl PyNetwork {
     }
 
     /// The network as bytes with a hash, for a file.
-    fn to_bytes(&self) -> PyResult<Vec<u8>> {
-        network_to_bytes(&self.network, "feed_axis").map_err(raise::<NetworkError>)
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &self.bytes()?))
     }
 
     /// Reads a network's file, also one of the stage `train`.
     #[classmethod]
-    fn load(_: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
-        let read = network_from_bytes(&std::fs::read(path)?);
-        let (network, _) = read.map_err(raise::<NetworkError>)?;
-        Ok(Self {
-            network,
-            losses: Vec::new(),
-        })
+    fn load(kind: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
+        Self::of_bytes(&bytes_of(kind.py(), &path)?, Vec::new())
+    }
+
+    /// Writes the network to a file, which `load` reads.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let written = std::fs::write(&path, self.bytes()?);
+        written.map_err(|error| of_file(py, &error, &path))
     }
 
     fn __repr__(&self) -> String {

@@ -5,12 +5,15 @@ use axis_pipeline::training::{INITIAL_DAMPING, NetworkPlan, train};
 use axis_sim::CycleInput;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
 
+use crate::arrays;
 use crate::arrays::Layers;
 use crate::axis::PyAxis;
 use crate::errors::{NetworkError, raise};
 use crate::long::long;
 use crate::network::PyNetwork;
+use crate::value::{Value, value};
 
 /// Rows that are simulated between two looks at the hook.
 const ROWS: usize = 256;
@@ -18,6 +21,37 @@ const ROWS: usize = 256;
 /// One-cycle samples: state and command at the start of a cycle, and how far the load went.
 #[pyclass(module = "feed_axis", frozen)]
 pub(crate) struct Samples(pub(crate) SampleSet);
+
+/// As bytes of little-endian numbers, five a sample: equal to the bit, and small.
+impl Value for Samples {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let all = self.0.inputs.iter().zip(&self.0.increments);
+        let row =
+            |(i, s): (&CycleInput, &f64)| [i.position, i.speed, i.acceleration, i.command, *s];
+        let numbers = all.flat_map(row).flat_map(f64::to_le_bytes);
+        (PyBytes::new(py, &numbers.collect::<Vec<u8>>()),).into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (bytes,): (Bound<'_, PyBytes>,) = state.extract()?;
+        let (numbers, _) = bytes.as_bytes().as_chunks::<8>();
+        let numbers: Vec<f64> = numbers.iter().map(|n| f64::from_le_bytes(*n)).collect();
+        let mut all = SampleSet::default();
+        for row in numbers.as_chunks::<5>().0 {
+            let [position, speed, acceleration, command, increment] = *row;
+            all.inputs.push(CycleInput {
+                position,
+                speed,
+                acceleration,
+                command,
+            });
+            all.increments.push(increment);
+        }
+        Ok(Self(all))
+    }
+}
+
+value!(Samples);
 
 #[pymethods]
 impl Samples {
@@ -52,8 +86,8 @@ impl PyAxis {
     fn sample(
         &self,
         py: Python<'_>,
-        count: usize,
-        seed: u64,
+        #[pyo3(from_py_with = arrays::count)] count: usize,
+        #[pyo3(from_py_with = arrays::seed)] seed: u64,
         near_zero: bool,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Samples> {
@@ -91,9 +125,9 @@ impl PyAxis {
         py: Python<'_>,
         samples: PyRef<'_, Samples>,
         hidden: Layers,
-        epochs: usize,
-        seed: u64,
-        threads: usize,
+        #[pyo3(from_py_with = arrays::epochs)] epochs: usize,
+        #[pyo3(from_py_with = arrays::seed)] seed: u64,
+        #[pyo3(from_py_with = arrays::threads)] threads: usize,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyNetwork> {
         let (axis, samples) = (self.axis.clone(), samples.0.clone());

@@ -4,9 +4,11 @@ use axis_sim::{Axis, Cycle, LogChannel, channels};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 
+use crate::errors::package;
 use crate::html::table;
+use crate::value::{Value, value};
 
 /// The samples of a run, a column a channel.
 pub(crate) struct Columns {
@@ -39,36 +41,71 @@ impl Columns {
     }
 }
 
-/// A simulated run: its channels as NumPy arrays, by name (`run["position_m"]`).
+/// A simulated run: its channels as NumPy arrays, by name (`run["position_m"]`), which cannot be
+/// written to.
 #[pyclass(module = "feed_axis", frozen, mapping)]
 pub(crate) struct Run {
-    pub(crate) channels: Vec<(&'static str, &'static str, Py<PyArray1<f64>>)>,
+    channels: Vec<RunChannel>,
     error: Py<PyArray1<f64>>,
     most: f64,
     mean: f64,
     axis: String,
-    unit: &'static str,
-    pub(crate) cycles: usize,
+    unit: String,
+    cycles: usize,
+}
+
+/// Name, unit, samples.
+type RunChannel = (String, String, Py<PyArray1<f64>>);
+
+/// An array that refuses to be written to: the run stays what was simulated.
+fn still(array: Bound<'_, PyArray1<f64>>) -> PyResult<Py<PyArray1<f64>>> {
+    let how = PyDict::new(array.py());
+    how.set_item("write", false)?;
+    array.call_method("setflags", (), Some(&how))?;
+    Ok(array.unbind())
 }
 
 impl Run {
     /// The columns become NumPy's where they lie.
-    pub(crate) fn new(py: Python<'_>, axis: &Axis, columns: Columns) -> Self {
-        let cycles = columns.errors.len();
-        let sizes = columns.errors.iter().map(|e| e.abs());
-        let (most, sum) = sizes.fold((0.0_f64, 0.0), |(m, s), e| (m.max(e), s + e));
+    pub(crate) fn new(py: Python<'_>, axis: &Axis, columns: Columns) -> PyResult<Self> {
         let named = columns.names.into_iter().zip(columns.samples);
-        Self {
-            channels: named
-                .map(|([name, unit], samples)| (name, unit, samples.into_pyarray(py).unbind()))
-                .collect(),
-            error: columns.errors.into_pyarray(py).unbind(),
+        let channels = named.map(|([name, unit], samples)| {
+            let samples = still(samples.into_pyarray(py))?;
+            Ok((name.to_owned(), unit.to_owned(), samples))
+        });
+        let error = columns.errors.into_pyarray(py);
+        let unit = axis.freedom().unit().to_owned();
+        Self::of(
+            channels.collect::<PyResult<_>>()?,
+            error,
+            axis.name.clone(),
+            unit,
+        )
+    }
+
+    fn of(
+        channels: Vec<RunChannel>,
+        error: Bound<'_, PyArray1<f64>>,
+        axis: String,
+        unit: String,
+    ) -> PyResult<Self> {
+        let (most, sum, cycles) = {
+            let errors = error.try_readonly()?;
+            let sizes = errors.as_array();
+            let sizes = sizes.iter().map(|e| e.abs());
+            sizes.fold((0.0_f64, 0.0, 0_usize), |(m, s, n), e| {
+                (m.max(e), s + e, n + 1)
+            })
+        };
+        Ok(Self {
+            channels,
+            error: still(error)?,
             most,
             mean: sum / cycles.max(1) as f64,
-            axis: axis.name.clone(),
-            unit: axis.freedom().unit(),
+            axis,
+            unit,
             cycles,
-        }
+        })
     }
 
     fn dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -80,11 +117,46 @@ impl Run {
     }
 }
 
+impl Value for Run {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let channels = (self.channels.iter())
+            .map(|(name, unit, samples)| (name, unit, samples.bind(py)).into_pyobject(py));
+        let channels = PyTuple::new(py, channels.collect::<PyResult<Vec<_>>>()?)?;
+        (channels, self.error.bind(py), &self.axis, &self.unit).into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        type State<'py> = (
+            Vec<(String, String, Bound<'py, PyArray1<f64>>)>,
+            Bound<'py, PyArray1<f64>>,
+            String,
+            String,
+        );
+        let (channels, error, axis, unit): State<'_> = state.extract()?;
+        let channels = channels
+            .into_iter()
+            .map(|(name, unit, samples)| Ok((name, unit, still(samples)?)));
+        Self::of(channels.collect::<PyResult<_>>()?, error, axis, unit)
+    }
+
+    /// Samples as bytes: equal are runs that are equal to the bit.
+    fn key<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let channels = self.channels.iter().map(|(name, unit, samples)| {
+            let bytes = samples.bind(py).call_method0("tobytes")?;
+            (name, unit, bytes).into_pyobject(py)
+        });
+        let channels = PyTuple::new(py, channels.collect::<PyResult<Vec<_>>>()?)?;
+        (channels, &self.axis, &self.unit).into_pyobject(py)
+    }
+}
+
+value!(Run);
+
 #[pymethods]
 impl Run {
     /// The samples of a channel, one a control cycle; the same array each time.
     fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyArray1<f64>>> {
-        let found = self.channels.iter().find(|(n, ..)| *n == name);
+        let found = self.channels.iter().find(|(n, ..)| n == name);
         let found = found.map(|(.., samples)| samples.clone_ref(py));
         found.ok_or_else(|| {
             PyKeyError::new_err(format!(
@@ -109,8 +181,11 @@ impl Run {
     }
 
     /// Names of the channels; the last part of each is its unit.
-    fn keys(&self) -> Vec<&'static str> {
-        self.channels.iter().map(|(name, ..)| *name).collect()
+    fn keys(&self) -> Vec<&str> {
+        self.channels
+            .iter()
+            .map(|(name, ..)| name.as_str())
+            .collect()
     }
 
     /// Unit of each channel.
@@ -137,8 +212,8 @@ impl Run {
 
     /// Unit of the errors: m, or rad where the load turns.
     #[getter]
-    fn error_unit(&self) -> &'static str {
-        self.unit
+    fn error_unit(&self) -> &str {
+        &self.unit
     }
 
     /// Greatest absolute tracking error, m or rad.
@@ -155,16 +230,27 @@ impl Run {
 
     /// The channels as a pandas DataFrame.
     fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        py.import("pandas")?
+        package(py, "pandas", "to_pandas")?
             .getattr("DataFrame")?
             .call1((self.dict(py)?,))
     }
 
     /// The channels as a polars DataFrame.
     fn to_polars<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        py.import("polars")?
+        package(py, "polars", "to_polars")?
             .getattr("DataFrame")?
             .call1((self.dict(py)?,))
+    }
+
+    /// Draws channels over time with matplotlib; the tracking error if none is named.
+    #[pyo3(signature = (*channels, ax = None))]
+    fn plot<'py>(
+        slf: &Bound<'py, Self>,
+        channels: &Bound<'py, PyTuple>,
+        ax: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let plots = slf.py().import("feed_axis._plot")?;
+        plots.call_method1("plot_run", (slf, channels, ax))
     }
 
     fn _repr_html_(&self, py: Python<'_>) -> String {
@@ -175,7 +261,7 @@ impl Run {
                     (least.min(x), most.max(x))
                 });
             let (least, most) = (format!("{:.5e}", ends.0), format!("{:.5e}", ends.1));
-            vec![(*name).to_owned(), least, most, (*unit).to_owned()]
+            vec![name.clone(), least, most, unit.clone()]
         });
         let heads = ["channel", "least", "greatest", "unit"];
         table(&self.__repr__(), &heads, &rows.collect::<Vec<_>>())

@@ -2,8 +2,10 @@
 
 use compensator::{Reference, Sample};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use crate::arrays::Triple;
+use crate::value::{Value, value};
 
 /// What a controller knows at the start of a control cycle. SI units, at the load; rad for m
 /// on an axis that turns.
@@ -32,6 +34,44 @@ pub(crate) struct PySample {
     #[pyo3(get, set)]
     last_command: f64,
 }
+
+impl Value for PySample {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        (
+            self.reference,
+            self.next_reference,
+            self.position_m,
+            self.motor_angle_rad,
+            self.motor_speed_rad_s,
+            self.iq_a,
+            self.last_command,
+        )
+            .into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (
+            reference,
+            next_reference,
+            position_m,
+            motor_angle_rad,
+            motor_speed_rad_s,
+            iq_a,
+            last_command,
+        ) = state.extract()?;
+        Ok(Self {
+            reference,
+            next_reference,
+            position_m,
+            motor_angle_rad,
+            motor_speed_rad_s,
+            iq_a,
+            last_command,
+        })
+    }
+}
+
+value!(PySample);
 
 #[pymethods]
 impl PySample {
@@ -122,6 +162,19 @@ pub(crate) struct PyCorrection {
     /// Added to the speed controller's command, in the actuator's unit: A, N·m, N or V.
     pub(crate) command: f64,
 }
+
+impl Value for PyCorrection {
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        (self.position_m, self.command).into_pyobject(py)
+    }
+
+    fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (position_m, command) = state.extract()?;
+        Ok(Self::new(position_m, command))
+    }
+}
+
+value!(PyCorrection, hash);
 
 #[pymethods]
 impl PyCorrection {

@@ -3,9 +3,9 @@
 use axis_sim::{ClosedLoop, Cycle, Measured};
 use compensator::{Compensator, NoCompensation};
 use discover_matrix::hidden::{MACHINE_STEP, Noise};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::arrays;
 use crate::axis::PyAxis;
 use crate::errors::{SimulationError, raise};
 use crate::long::{Hook, long};
@@ -31,16 +31,11 @@ impl PyAxis {
         py: Python<'_>,
         motion: AnyMotion<'_>,
         compensation: Option<crate::compensation::Given<'_>>,
-        noise: f64,
+        #[pyo3(from_py_with = arrays::noise)] noise: f64,
         exact: bool,
-        seed: u64,
+        #[pyo3(from_py_with = arrays::seed)] seed: u64,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Run> {
-        if !(noise.is_finite() && noise >= 0.0) {
-            return Err(PyValueError::new_err(format!(
-                "noise is {noise}, but must be 0 or a finite factor above it"
-            )));
-        }
         let motion = motion.on(&self.axis)?;
         let law = compensation.map(|given| given.recipe()).transpose()?;
         let axis = self.axis.clone();
@@ -73,7 +68,7 @@ impl PyAxis {
             outcome.completed().map_err(raise::<SimulationError>)?;
             Ok(columns)
         })?;
-        Ok(Run::new(py, &self.axis, columns))
+        Run::new(py, &self.axis, columns)
     }
 }
 

@@ -1,5 +1,6 @@
 """What a model lacks, from logs as frames, runs, files and arrays."""
 
+import pickle
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -39,12 +40,17 @@ def test_hidden_viscous_friction_is_found_in_frames(
     axis: fa.Axis, machine: fa.Axis, logs: list[fa.Run]
 ) -> None:
     pytest.importorskip("pandas")
-    pytest.importorskip("polars")
+    polars = pytest.importorskip("polars")
     stages: list[str] = []
+    # The frame's columns have other names and units; one that is no number is none of a log's.
+    frame = logs[0].to_pandas().rename(columns={"t_s": "time", "position_m": "x"})
+    frame["x"] *= 1e3
+    frame["comment"] = "none"
     found = fa.discover(
         axis,
-        fit=[logs[0].to_pandas()],
-        check=[logs[1].to_polars()],
+        fit=[frame],
+        check=[logs[1].to_polars().rename({"t_s": "time", "position_m": "x"}).with_columns(polars.col("x") * 1e3)],
+        columns={"time": "t_s", "x": ("position_m", 1e-3)},
         progress=lambda what, done, total: stages.append(what),
     )
     assert found.verdict == "explained" and found.names == ["viscous-friction"]
@@ -53,6 +59,16 @@ def test_hidden_viscous_friction_is_found_in_frames(
     assert "screening all effects" in stages and stages[-1] == "verdict"
     assert "viscous-friction" in found._repr_html_() and found.sentence in found.words
     assert found.to_dict()["effects"][0]["name"] == "viscous-friction"
+    table_of_effects = found.to_pandas()
+    assert list(table_of_effects["effect"]) == ["viscous-friction"]
+    first = table_of_effects.iloc[0]
+    assert (first["value"], first["from"], first["to"]) == (found.size, *found.interval)
+    again_found = pickle.loads(pickle.dumps(found))
+    assert again_found == found and again_found.to_dict() == found.to_dict()
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    bars = found.plot()
+    assert [label.get_text() for label in bars.get_xticklabels()] == [name for name, *_ in found.gap]
     # The model with what was found follows the machine.
     again = found.axis.simulate(axis.trajectories[0])
     there = machine.simulate(axis.trajectories[0])
@@ -73,11 +89,11 @@ def test_a_log_says_what_is_wrong_with_it(
     axis: fa.Axis, logs: list[fa.Run], tmp_path: Path
 ) -> None:
     with pytest.raises(fa.LogError, match="unit"):
-        fa.discover(axis, fit=[{"t_s": [0.0, 1.0], "speed": [0.0, 1.0]}], check=[])
+        fa.discover(axis, fit=[{"t_s": [0.0, 1.0], "speed": [0.0, 1.0]}], check=[logs[1]])
     with pytest.raises(TypeError, match="a int is no log"):
-        fa.discover(axis, fit=[3], check=[])  # type: ignore[list-item]
-    with pytest.raises(fa.LogError, match="none.csv"):
-        fa.discover(axis, fit=[tmp_path / "none.csv"], check=[])
+        fa.discover(axis, fit=[3], check=[logs[1]])  # type: ignore[list-item]
+    with pytest.raises(FileNotFoundError, match="none.csv"):
+        fa.discover(axis, fit=[tmp_path / "none.csv"], check=[logs[1]])
     columns = {name: logs[0][name] for name in logs[0]}
     columns["position_m"] = 1e3 * columns["position_m"]
     with pytest.raises(fa.LogError, match="fit 1"):

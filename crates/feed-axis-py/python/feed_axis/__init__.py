@@ -14,6 +14,7 @@ from ._feed_axis import (
     Effect,
     FeedAxisError,
     LogError,
+    LoopError,
     LuGre,
     MotionError,
     Move,
@@ -32,7 +33,9 @@ from ._feed_axis import (
     TransferFunctions,
     __version__,
     discover,
+    examples,
     latin_hypercube,
+    new,
 )
 
 __all__ = [
@@ -46,6 +49,7 @@ __all__ = [
     "Effect",
     "FeedAxisError",
     "LogError",
+    "LoopError",
     "LuGre",
     "MotionError",
     "Move",
@@ -64,5 +68,7 @@ __all__ = [
     "TransferFunctions",
     "__version__",
     "discover",
+    "examples",
     "latin_hypercube",
+    "new",
 ]

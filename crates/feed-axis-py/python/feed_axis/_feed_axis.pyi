@@ -2,11 +2,12 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any, Final, Literal, Protocol, TypeAlias, final, type_check_only
+from typing import Any, Final, Literal, Protocol, SupportsIndex, TypeAlias, final, type_check_only
 
 import numpy as np
 import pandas as pd
 import polars as pl
+from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self
 
@@ -21,6 +22,7 @@ __all__ = [
     "Effect",
     "FeedAxisError",
     "LogError",
+    "LoopError",
     "LuGre",
     "MotionError",
     "Move",
@@ -39,7 +41,9 @@ __all__ = [
     "TransferFunctions",
     "__version__",
     "discover",
+    "examples",
     "latin_hypercube",
+    "new",
 ]
 
 __version__: Final[str]
@@ -49,7 +53,13 @@ _Floats: TypeAlias = NDArray[np.float64]
 _Path: TypeAlias = str | os.PathLike[str]
 # What is done, how much of it, of how much: None where that is not known.
 _Progress: TypeAlias = Callable[[str, int, int | None], object]
-_Motion: TypeAlias = Move | SCurve | Program
+# Positions, one each control period; or instants evenly apart, and positions.
+_Positions: TypeAlias = Sequence[float] | NDArray[Any] | pd.Series[Any] | pl.Series
+_Motion: TypeAlias = Move | SCurve | Program | _Positions | tuple[_Positions, _Positions]
+# A channel, or a channel and the factor to its unit.
+_Columns: TypeAlias = Mapping[str, str | tuple[str, float]]
+# An int, of Python or NumPy.
+_Whole: TypeAlias = SupportsIndex
 # Neurons of the hidden layers.
 _Layers: TypeAlias = int | Sequence[int] | NDArray[np.integer[Any]]
 # Position, speed, acceleration.
@@ -65,11 +75,17 @@ class _Frame(Protocol):
 _Log: TypeAlias = _Path | Run | _Frame | Mapping[str, ArrayLike]
 
 class FeedAxisError(ValueError):
-    """What every error of this module is. Its words say what is wrong, where, and what would be valid."""
+    """What every error of this module is, but those that are Python's own: TypeError for what is of a wrong type, FileNotFoundError and other
+    OSErrors for a file that cannot be read or written, ValueError for a number out of its range.
+
+    Its words say what is wrong, where, and what would be valid.
+    """
 class AxisError(FeedAxisError):
     """An axis file, or a dict in its place, that makes no axis. The words name file, line and field, and what would be valid."""
 class LogError(FeedAxisError):
     """A log of which no conclusion would be worth anything, or a channel that is not there."""
+class LoopError(FeedAxisError):
+    """Loops that cannot be analysed or tuned, or not as it was asked for."""
 class MotionError(FeedAxisError):
     """A motion that cannot be planned, or not on this axis."""
 class NetworkError(FeedAxisError):
@@ -96,7 +112,7 @@ class Axis:
     def load(cls, path: _Path) -> Axis:
         """Reads an axis file.
 
-        Raises AxisError with file, line and what would be valid.
+        Raises AxisError with file, line and what would be valid; FileNotFoundError, or another OSError, if the file cannot be read.
         """
     @classmethod
     def from_toml(cls, text: str, name: str = "<text>") -> Axis:
@@ -148,6 +164,59 @@ class Axis:
 
         Raises ParameterError.
         """
+    def analyse(
+        self,
+        *,
+        positions: ArrayLike | None = None,
+        masses: ArrayLike | None = None,
+        frictions: ArrayLike | None = None,
+        delay_cycles: float = 0.0,
+    ) -> dict[str, Any]:
+        """Margins of the drive's sampled position and speed loops, with the load sliding and stuck, as plain dicts, lists and numbers.
+
+        - `positions`: of the load, m or rad; start, ends and middle of the stroke, if left out.
+        - `masses`: of the load, as shares of the file's; 0.9, 1 and 1.4, if left out.
+        - `frictions`: as shares of the file's; 1, if left out.
+        - `delay_cycles`: delay besides the file's, control cycles.
+
+        Its keys are those of `feed-axis analyse --format json`: `worst` has the greatest sensitivities, `corners` the margins of each case,
+        `curves` the frequency responses of the first two cases: `frequency_hz`, and pairs of real and imaginary part in `open_command`,
+        `open_position`, `speed_followed` and `compliance` (the load's motion per force on it).
+
+        Raises LoopError.
+
+        >>> curve = axis.analyse()["curves"][0]
+        >>> response = np.array(curve["compliance"]) @ [1, 1j]
+        """
+    def tune(
+        self,
+        *,
+        sensitivity: float = 1.6,
+        sensitivity_late: float = 2.0,
+        ripple: float = 0.02,
+        positions: ArrayLike | None = None,
+        masses: ArrayLike | None = None,
+        frictions: ArrayLike | None = None,
+        acceleration: bool = True,
+        notch: bool = True,
+        current: bool = False,
+    ) -> tuple[Axis, dict[str, Any]]:
+        """Gains of the loops that hold the load best within limits of the sensitivity: the axis that has them, and what was found.
+
+        - `sensitivity`: greatest sensitivity at the command and at the position, in every case.
+        - `sensitivity_late`: the same with one more cycle of delay.
+        - `ripple`: greatest ripple of the command by the steps of the speed's sensor, as a share of the greatest command (RMS).
+        - `positions`, `masses`, `frictions`: the cases, as of `analyse`.
+        - `acceleration`: whether the acceleration is fed forward; `notch`: whether a notch may be set; `current`: whether the current
+          controllers are set too.
+
+        What was found has the keys of `feed-axis tune --format json`: `keys` has the keys of the axis file that were set, `limiting` what
+        limits the gains, `helps` what would help, `moves` the moves of the file simulated before and after.
+
+        Raises LoopError.
+
+        >>> tuned, found = axis.tune(sensitivity=1.5)
+        """
     def simulate(
         self,
         motion: _Motion,
@@ -155,12 +224,14 @@ class Axis:
         compensation: Compensator | Callable[[Sample], Correction] | None = None,
         noise: float = 0.0,
         exact: bool = False,
-        seed: int = 1,
+        seed: _Whole = 1,
         progress: _Progress | None = None,
     ) -> Run:
         """Follows a motion in closed loop.
 
-        - `motion`: a Move, an SCurve or a Program, in the unit of the axis.
+        - `motion`: a Move, an SCurve or a Program, in the unit of the axis; or an array of positions (m or rad), one each control period; or
+          a tuple of arrays (t_s, positions), with instants evenly apart. Speed and acceleration of positions are those of a spline through
+          them.
         - `compensation`: a Compensator, or a function that is called with each cycle's Sample and gives a Correction.
         - `noise`: noise of every sensor beside the axis file's own, in multiples of good sensors' noise, 0 or above.
         - `exact`: simulate by the slow, exact method, to stand for a machine.
@@ -173,9 +244,9 @@ class Axis:
         """
     def sample(
         self,
-        count: int,
+        count: _Whole,
         *,
-        seed: int = 1,
+        seed: _Whole = 1,
         near_zero: bool = False,
         progress: _Progress | None = None,
     ) -> Samples:
@@ -190,9 +261,9 @@ class Axis:
         samples: Samples,
         *,
         hidden: _Layers = ...,
-        epochs: int = 500,
-        seed: int = 1,
-        threads: int = 0,
+        epochs: _Whole = 500,
+        seed: _Whole = 1,
+        threads: _Whole = 0,
         progress: _Progress | None = None,
     ) -> Network:
         """Trains the one-cycle predictor: a network for what the best linear map of the samples leaves.
@@ -205,7 +276,7 @@ class Axis:
         self,
         *,
         noise: float = 1.0,
-        seed: int = 0,
+        seed: _Whole = 0,
         progress: _Progress | None = None,
     ) -> LuGre:
         """Identifies the friction of this axis from simulated experiments: constant speeds and small motions about a standstill.
@@ -215,7 +286,7 @@ class Axis:
         Raises StrategyError.
         """
     def identify_transfer(
-        self, *, seed: int = 0, progress: _Progress | None = None
+        self, *, seed: _Whole = 0, progress: _Progress | None = None
     ) -> TransferFunctions:
         """Identifies transfer functions of this axis' tracking error from simulated moves.
 
@@ -223,6 +294,8 @@ class Axis:
 
         Raises StrategyError.
         """
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
 
 @final
 class Move:
@@ -281,6 +354,8 @@ class Move:
     @property
     def jerk_rad_s3(self) -> float:
         """Greatest jerk, rad/s³."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
 
 @final
 class SCurve:
@@ -325,6 +400,8 @@ class SCurve:
 
         Raises MotionError for a period that is not above 0, or that gives more than 1e8 samples.
         """
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
 
 @final
 class Program:
@@ -337,7 +414,7 @@ class Program:
     def load(cls, path: _Path) -> Program:
         """Reads a motion program (TOML).
 
-        Raises MotionError, or OSError if the file cannot be read.
+        Raises MotionError; FileNotFoundError, or another OSError, if the file cannot be read.
         """
     @classmethod
     def from_toml(cls, text: str) -> Program:
@@ -352,12 +429,15 @@ class Program:
         """Time from the first to the last instant, s."""
     def sample(self, period_s: float) -> dict[str, _Floats]:
         """The motion every `period_s`, as `SCurve.sample`."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
 
 @final
 class Run:
     """A simulated run: its channels as NumPy arrays, by name.
 
-    Arrays have one dimension, one number for each control cycle.
+    Arrays have one dimension, one number for each control cycle. They cannot be written to, so that a run stays what was simulated: change a
+    copy. Runs are equal if all their samples are, to the bit.
 
     >>> run["position_m"]
     """
@@ -394,10 +474,18 @@ class Run:
     def mean_error(self) -> float:
         """Mean absolute tracking error, m or rad."""
     def to_pandas(self) -> pd.DataFrame:
-        """The channels as a pandas DataFrame. Needs pandas."""
+        """The channels as a pandas DataFrame. Needs pandas; ImportError without."""
     def to_polars(self) -> pl.DataFrame:
-        """The channels as a polars DataFrame. Needs polars."""
+        """The channels as a polars DataFrame. Needs polars; ImportError without."""
+    def plot(self, *channels: str, ax: Axes | None = None) -> Axes:
+        """Draws channels over time with matplotlib, into `ax` or a new figure; the tracking error if none is named.
+
+        Raises KeyError for a channel that is not there, ImportError without matplotlib.
+
+        >>> run.plot("position_ref_m", "position_m")
+        """
     def _repr_html_(self) -> str: ...
+    def __eq__(self, other: object, /) -> bool: ...
 
 @final
 class Parameter:
@@ -483,7 +571,19 @@ class Discovery:
         """The motion to record next if effects look alike; None otherwise."""
     def to_dict(self) -> dict[str, Any]:
         """All of it, as `discovery.json` of the command has it."""
+    def to_pandas(self) -> pd.DataFrame:
+        """The numbers of the effects as a pandas DataFrame, a row each: effect, parameter, value, 95 % interval (from, to), unit.
+
+        Needs pandas; ImportError without.
+        """
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draws the RMS gap before and after, and the noise, for each channel, with matplotlib, into `ax` or a new figure.
+
+        Raises ImportError without matplotlib.
+        """
     def _repr_html_(self) -> str: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
 
 def discover(
     axis: Axis,
@@ -494,6 +594,7 @@ def discover(
     accept: Sequence[str] = ...,
     reject: Sequence[str] = ...,
     balance: bool = False,
+    columns: _Columns = ...,
     progress: _Progress | None = None,
 ) -> Discovery:
     """Finds what an axis' model lacks beside measured logs.
@@ -503,12 +604,15 @@ def discover(
     - `test`: logs that take no part in any choice, for the figures.
     - `accept`, `reject`: names of effects that are taken as present, or never named.
     - `balance`: compare by torque balance, without the controller.
+    - `columns`: of frames and dicts whose columns have other names than their channels: `{"time": "t_s", "x": ("position_m", 1e-3)}` says
+      which channel a column is, and by which factor its numbers come to the channel's unit. Columns that it does not name count if their
+      names are channels', and are left out otherwise.
     - `progress`: called with (what, stage, None).
 
     A log is a path (`a.csv+b.csv` is one log in two files), a pandas or polars frame, a Run, or a dict of arrays. A path is read as
-    the axis file's `[log]` maps its columns; the others have channels as names, `t_s` among them, and NaN where there is no value.
+    the axis file's `[log]` maps its columns; the others have channels as names, `t_s` among them, and NaN, or a mask, where there is no value.
 
-    Raises LogError for a log of which no conclusion would be worth anything, SearchError for an unknown effect, AxisError. Ctrl-C raises at
+    Raises LogError for a log of which no conclusion would be worth anything, SearchError for an unknown effect, AxisError, FileNotFoundError. Ctrl-C raises at
     once; the search itself ends at its next stage.
 
     >>> fa.discover(axis, fit=["fit.csv"], check=["check.csv"]).names
@@ -544,6 +648,7 @@ class Sample:
         last_command: float = 0.0,
     ) -> Self:
         """A sample of these values; a reference is any three numbers."""
+    def __eq__(self, other: object, /) -> bool: ...
 
 @final
 class Correction:
@@ -560,10 +665,15 @@ class Correction:
     @property
     def command(self) -> float:
         """Added to the speed controller's command, in the actuator's unit: A, N·m, N or V."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
 
 @final
 class Compensator:
     """A compensation strategy on an axis.
+
+    Equal are compensators of one strategy on equal axes with equal predictors. A copy, or one from a pickle, has not begun a motion, whatever
+    the original is doing.
 
     >>> plan = fa.Compensator(axis, "plan")
     >>> run = axis.simulate(axis.trajectories[0], compensation=plan)
@@ -595,13 +705,43 @@ class Compensator:
 
         Raises StrategyError if no motion was begun.
         """
+    def export(
+        self,
+        folder: _Path,
+        *,
+        target: Literal["c", "linuxcnc", "onnx"] = "c",
+        name: str | None = None,
+        precision: Literal["f32", "f64"] = "f64",
+        limit_position: float | None = None,
+        limit_command: float | None = None,
+        limit_surprise: float | None = None,
+        patience_s: float = 0.002,
+        fade_s: float = 0.1,
+    ) -> list[str]:
+        """Writes the strategy for a controller into a folder that exists, and gives the paths of the files.
+
+        - `target`: "c" (C99 without allocation: NAME.h, NAME.c), "linuxcnc" (NAME.comp, NAME.hal), or "onnx" (the one-cycle network of the
+          strategy alone: NAME.onnx).
+        - `name`: of files, types and functions; the strategy's (of ONNX "network"), if left out.
+        - `precision`: of the C code's numbers.
+        - `limit_position` (m or rad), `limit_command` (A, N·m, N or V), `limit_surprise` (standard deviations; of the strategy "feedback"): at
+          what the guard trips. The axis' own, if left out and the axis has them.
+        - `patience_s`: how long a limit may be exceeded; `fade_s`: time in which corrections are faded in and out.
+
+        Raises StrategyError for a strategy that no controller can run, or a limit that is missing; ValueError; OSError.
+
+        >>> fa.Compensator(axis, "plan").export(".", target="linuxcnc", name="x_plan")
+        """
     @property
     def strategy(self) -> str:
         """Name of the strategy."""
+    def __eq__(self, other: object, /) -> bool: ...
 
 @final
 class TransferFunctions:
     """Linear models of an axis' tracking error, without and with friction feed-forward. Made by `Axis.identify_transfer`."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
 
 @final
 class Samples:
@@ -615,6 +755,7 @@ class Samples:
     @property
     def increments_m(self) -> _Floats:
         """How far the load went in the cycle, m: an array of shape (samples,)."""
+    def __eq__(self, other: object, /) -> bool: ...
 
 @final
 class Network:
@@ -627,9 +768,9 @@ class Network:
         y: ArrayLike,
         *,
         hidden: _Layers = ...,
-        epochs: int = 100,
-        seed: int = 1,
-        threads: int = 0,
+        epochs: _Whole = 100,
+        seed: _Whole = 1,
+        threads: _Whole = 0,
         progress: _Progress | None = None,
     ) -> Network:
         """Trains by Levenberg–Marquardt.
@@ -647,7 +788,7 @@ class Network:
     def load(cls, path: _Path) -> Network:
         """Reads a network's file, also one of the stage `train`.
 
-        Raises NetworkError, or OSError if the file cannot be read.
+        Raises NetworkError; FileNotFoundError, or another OSError, if the file cannot be read.
         """
     def predict(self, x: ArrayLike) -> _Floats:
         """The outputs for inputs `x` of shape (samples, inputs): an array of shape (samples, outputs).
@@ -656,14 +797,21 @@ class Network:
         """
     def test(self, samples: Samples) -> tuple[float, float]:
         """Maximum and mean absolute error on one-cycle samples, µm or µrad. Raises NetworkError."""
+    def save(self, path: _Path) -> None:
+        """Writes the network to a file that `load` reads.
+
+        Raises OSError if the file cannot be written.
+        """
     def to_bytes(self) -> bytes:
-        """The network as bytes with a hash, for a file that `load` reads."""
+        """The network as bytes with a hash: what `save` writes."""
     @property
     def losses(self) -> _Floats:
         """Mean square of the scaled residuals after each epoch; empty for a network from a file."""
     @property
     def shape(self) -> tuple[int, list[int], int]:
         """Number of inputs, neurons of each hidden layer, number of outputs."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
 
 @final
 class LuGre:
@@ -714,6 +862,8 @@ class LuGre:
 
         Raises ParameterError.
         """
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
 
 @final
 class Beam:
@@ -727,7 +877,7 @@ class Beam:
         *,
         length_m: float,
         diameter_m: float,
-        elements: int = 10,
+        elements: _Whole = 10,
         youngs_modulus_pa: float = 206e9,
         poisson_ratio: float = 0.3,
         density_kg_m3: float = 7850.0,
@@ -737,18 +887,35 @@ class Beam:
         Raises ParameterError.
         """
     def frequencies_hz(
-        self, count: int, *, supports: Literal["free", "pinned"] = "free"
+        self, count: _Whole, *, supports: Literal["free", "pinned"] = "free"
     ) -> _Floats:
         """The `count` lowest natural frequencies, Hz; the rigid motions of a free beam are among them, as 0.
 
         `supports`: "free", or "pinned", where both ends hold deflection, stretch and twist. Raises ParameterError.
         """
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+def examples() -> dict[str, Axis]:
+    """Axes to begin with, by kind: "liu2025" is the paper's, the others are one for each mechanism.
+
+    >>> fa.examples()["belt"]
+    """
+
+def new(kind: str, name: str | None = None) -> Axis:
+    """The example of a kind (a key of `examples()`), under a name of one's own.
+
+    Raises AxisError for an unknown kind.
+
+    >>> axis = fa.new("ball-screw", "x-axis")
+    >>> Path("x-axis.toml").write_text(axis.to_toml())
+    """
 
 def latin_hypercube(
-    n: int,
+    n: _Whole,
     bounds: ArrayLike,
     *,
-    seed: int = 1,
+    seed: _Whole = 1,
     centred: bool = False,
 ) -> _Floats:
     """`n` points between bounds: each of the n intervals of each variable holds exactly one. An array of shape (n, variables).
