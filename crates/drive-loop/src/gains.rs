@@ -5,11 +5,12 @@ use rayon::prelude::*;
 
 use crate::error::LoopError;
 use crate::law::LoopGains;
-use crate::loops::Sensitivities;
+use crate::loops::{CornerLoop, Sensitivities};
 use crate::plant::Corner;
 use crate::search::least;
 use crate::set::AxisLoops;
 use crate::tune::{LoopFigures, TuneSettings, TunedGains};
+use crate::turn::radius;
 
 /// Widths of the symmetric optimum from which the search starts.
 const WIDTHS: [f64; 3] = [2.5, 4.0, 7.0];
@@ -79,9 +80,9 @@ impl AxisLoops {
             }
         }
         let mut gains = self.gains_of(&best.0);
-        // What little of a limit the cost leaves.
+        // What little of a limit the cost leaves, and peaks between two frequencies of the grid.
         for _ in 0..40 {
-            if self.excess(&gains, limits) <= 0.0 {
+            if self.keeps(&gains, limits) {
                 return Ok((gains, evaluations));
             }
             gains.speed *= 0.99;
@@ -163,6 +164,30 @@ impl AxisLoops {
         worst.ln()
     }
 
+    /// Whether these gains are within the limits, peaks between the frequencies of the grid
+    /// included, with the greatest eigenvalue below 1 in every corner.
+    fn keeps(&self, gains: &LoopGains, limits: &Limits) -> bool {
+        if self.excess(gains, limits) > 0.0 {
+            return false;
+        }
+        let [now, late] = self.peaks(gains);
+        let [most, most_late] = limits.sensitivity;
+        let is_stable = |corner: &CornerLoop| radius(&self.model, corner, gains) < 1.0;
+        now <= most && late <= most_late && self.corners.par_iter().all(is_stable)
+    }
+
+    /// Greatest sensitivity of all corners at either cut, and with one more cycle of delay;
+    /// infinite where one is unstable.
+    fn peaks(&self, gains: &LoopGains) -> [f64; 2] {
+        let all: Vec<[f64; 2]> = self
+            .corners
+            .par_iter()
+            .map(|corner| corner.peaks(&self.model, gains))
+            .collect();
+        let most = |[now, late]: [f64; 2], peaks: [f64; 2]| [now.max(peaks[0]), late.max(peaks[1])];
+        all.into_iter().fold([0.0; 2], most)
+    }
+
     /// Mean over the file's mass of the logarithm of the compliance.
     fn compliance(&self, gains: &LoopGains) -> f64 {
         let own = |at: &Corner| at.mass == self.corners[0].at.mass;
@@ -188,14 +213,7 @@ impl AxisLoops {
 
     /// Figures of these gains.
     pub fn figures(&self, gains: &LoopGains) -> LoopFigures {
-        let all = self.corners.iter().map(|c| c.sensitivities(gains));
-        let most = all.fold([0.0_f64; 2], |most, s| {
-            [
-                most[0].max(s.now[0]).max(s.now[1]),
-                most[1].max(s.late[0]).max(s.late[1]),
-            ]
-        });
-        let [now, late] = most.map(|s| s.is_finite().then_some(s));
+        let [now, late] = self.peaks(gains).map(|s| s.is_finite().then_some(s));
         let own = &self.corners[0];
         let peak = own.points.iter().map(|p| p.compliance(gains).norm());
         LoopFigures {

@@ -121,12 +121,8 @@ impl CornerLoop {
         place: usize,
         stable: bool,
     ) -> CutMargins {
-        let sensitivity = |is_late: bool| {
-            let of = |p: &LoopAt| 1.0 / (p.cut(gains, is_late)[place] + 1.0).norm();
-            self.peak(model, &of)
-        };
-        let (at, peak) = sensitivity(false);
-        let (late_at, late) = sensitivity(true);
+        let (at, peak) = self.sensitivity(model, gains, place, false);
+        let (late_at, late) = self.sensitivity(model, gains, place, true);
         let l = |p: &LoopAt| p.cut(gains, false)[place];
         let late_stable = stable && self.sensitivities(gains).late[0].is_finite();
         let mut found = CutMargins {
@@ -165,6 +161,31 @@ impl CornerLoop {
             found.gain(end);
         }
         found
+    }
+
+    /// Greatest sensitivity at either cut, and with one more cycle of delay; infinite where the loop
+    /// is unstable.
+    pub(crate) fn peaks(&self, model: &LoopModel, gains: &LoopGains) -> [f64; 2] {
+        let on_grid = self.sensitivities(gains);
+        [(on_grid.now, false), (on_grid.late, true)].map(|(grid, is_late)| {
+            if !grid[0].is_finite() {
+                return f64::INFINITY;
+            }
+            let peak = |place: usize| self.sensitivity(model, gains, place, is_late).1;
+            peak(0).max(peak(1))
+        })
+    }
+
+    /// Frequency (rad/s) and height of the sensitivity's peak at a cut.
+    fn sensitivity(
+        &self,
+        model: &LoopModel,
+        gains: &LoopGains,
+        place: usize,
+        is_late: bool,
+    ) -> (f64, f64) {
+        let of = |p: &LoopAt| 1.0 / (p.cut(gains, is_late)[place] + 1.0).norm();
+        self.peak(model, &of)
     }
 
     /// Where `of` is 0 between two points of the grid.
