@@ -147,7 +147,7 @@ fn a_hole_in_a_balanced_log_is_left_out() {
     let mut log = as_log(&table);
     let whole = Balance::new(&log, PERIOD, &machine).unwrap();
     for channel in ["position_rad", "torque_n_m"] {
-        log.mark_missing(channel, [4000..4012]).unwrap();
+        log.mark_missing(channel, Some(4000..4012)).unwrap();
     }
     assert!(check_log("log", &log, &machine).is_ok());
     let holed = Balance::new(&log, PERIOD, &machine).unwrap();

@@ -148,7 +148,7 @@ impl<T: Exponential> Runs<T> for Streaming<T> {
         (self.planned, self.sound) = (false, true);
         let none = Correction {
             position: T::ZERO,
-            command: T::ZERO / T::ZERO,
+            command: T::of(f64::NAN),
         };
         if !self.started {
             if !(known && sample.last_command.is_finite()) {
