@@ -91,7 +91,9 @@ impl Refined {
             active.effect.roles().next().is_some()
                 && sizes.any(|(p, value)| {
                     let edges = p.bounds(&part.scales);
-                    p.is_size() && edges.iter().any(|edge| value / edge > NEAR_BOUND)
+                    // Nothing of what cannot be negative is no bound.
+                    let is_near = |edge: &f64| *edge != 0.0 && value / edge > NEAR_BOUND;
+                    p.is_size() && edges.iter().any(is_near)
                 })
         });
         if ends_at_bound {
