@@ -9,7 +9,7 @@ Blocks of a page:
   ```sh,fails   likewise, of commands that must fail; what they print is standard error as well.
   ```text       straight behind such a block: what it prints. Every line must be there, in this order;
                 three dots stand for the rest of a line, or alone for any number of lines; spaces count as one.
-  ```toml,save=FILE, ```toml,append=FILE
+  ```toml,save=FILE, ```toml,append=FILE, ```csv,save=FILE
                 blocks that a reader saves as a file, or adds to its end.
   ```sh,ignore  does not run; a comment before it says why: <!-- not run: ... -->
 A line with a command that a page names as <!-- not run: `COMMAND`: why --> is left out of its blocks.
@@ -122,7 +122,7 @@ def run_page(page, text, work, scratch, wrong):
             if not pattern(block).search(output):
                 wrong.append(where)
                 print(f"{where}: the page shows\n{block}\nthe command printed\n{output}", flush=True)
-        elif kept := re.fullmatch(r"toml,(save|append)=([\w.-]+)", language):
+        elif kept := re.fullmatch(r"(?:toml|csv),(save|append)=([\w.-]+)", language):
             with (work / kept[2]).open("w" if kept[1] == "save" else "a") as file:
                 file.write(block + "\n")
         elif language in ("bash", "shell", "console"):

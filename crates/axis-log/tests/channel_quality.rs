@@ -294,13 +294,14 @@ fn another_zero_is_told_with_the_offset_that_mends_it() {
 }
 
 #[test]
-fn a_factor_that_no_unit_explains_is_unsure() {
+fn a_factor_that_no_unit_explains_is_unclear_and_proposes_nothing() {
     let found = findings(1.0, 1.37, 0.0);
     let odd: Vec<_> = found
         .iter()
         .filter(|f| f.verdict == CrossCheckVerdict::Unclear)
         .collect();
     assert_eq!(odd.len(), 2, "{found:#?}");
+    assert!(odd.iter().all(|f| f.repair.is_none()), "{odd:#?}");
     assert!(
         found
             .iter()

@@ -38,6 +38,18 @@ pub(crate) fn report(
             settings.sensitivity, limits.sensitivity[0]
         ));
     }
+    let before = file.figures(&file.gains());
+    let exceeds = |peak: Option<f64>, limit: f64| peak.is_none_or(|peak| peak > limit);
+    let [limit, limit_late] = limits.sensitivity;
+    if exceeds(before.sensitivity, limit) || exceeds(before.sensitivity_late, limit_late) {
+        let said =
+            |peak: Option<f64>| peak.map_or("not stable".to_owned(), |peak| format!("{peak:.3}"));
+        notes.push(format!(
+            "the gains of the file do not keep these limits (sensitivity {}, with one more cycle of delay {}): the tuned loop may hold the load less firmly",
+            said(before.sensitivity),
+            said(before.sensitivity_late)
+        ));
+    }
     if axis.trajectories.is_empty() {
         notes.push("the axis file has no [[trajectory]], so no move was simulated".to_owned());
     }
@@ -53,7 +65,7 @@ pub(crate) fn report(
         limits: limits.sensitivity,
         file_gains: file.shown(&file.gains(), fed(axis), None),
         tuned_gains: loops.shown(gains, fed(tuned), found.notch),
-        file: file.figures(&file.gains()),
+        file: before,
         tuned: loops.figures(gains),
         proven_stable: radii.iter().all(|radius| *radius < 1.0),
         limiting: limiting(loops, gains, limits),

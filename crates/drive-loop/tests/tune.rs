@@ -96,6 +96,8 @@ fn an_unstable_start_is_no_obstacle() {
     let found = Tuning::of(&axis, &TuneSettings::default()).unwrap();
     assert!(found.report.file.sensitivity.is_none());
     assert!(found.report.tuned.sensitivity.unwrap() <= 1.6);
+    let note = "do not keep these limits (sensitivity not stable,";
+    assert!(found.report.notes.iter().any(|said| said.contains(note)));
 }
 
 #[test]

@@ -10,10 +10,10 @@ use feed_axis::jobs::UserJob;
 
 /// Feed axes: simulate, identify, find what a model lacks, compensate.
 ///
-/// Start with `feed-axis pipeline`: it takes the axis of Liu et al. 2025
-/// (Machines 13(5), 433) through every stage and writes a report to
-/// runs/liu2025/report.html. The stages can also be run one by one; each needs
-/// the results of those above it.
+/// Start with `feed-axis new my-axis --kind rack`, which writes an axis file, and `feed-axis
+/// simulate --axis my-axis.toml --trajectory 1`. `feed-axis pipeline` takes an axis through
+/// every stage of Liu et al. 2025 (Machines 13(5), 433) and writes a report; its stages can
+/// also be run one by one, each with the results of those above it.
 #[derive(Parser)]
 #[command(name = "feed-axis", version)]
 struct Cli {

@@ -215,7 +215,8 @@ fn slip(relation: &Relation, factor: f64, near: f64, mapping: &Mapping) -> Judge
         None => (
             CrossCheckVerdict::Unclear,
             format!("{factor:.5} times the expected value, which no unit explains"),
-            Some(scaled(&relation.channel, 1.0 / factor)),
+            // What one channel does to the other is as good a cause as a wrong scale.
+            None,
         ),
     }
 }

@@ -29,7 +29,7 @@ pub enum LogSetError {
     },
     /// A channel that never changes.
     #[error(
-        "{file}: channel \"{channel}\" has the same value in every sample: it is not connected, or belongs to another axis; leave the column out, or map another one to it in [log]"
+        "{file}: channel \"{channel}\" has the same value in every sample: it is not connected, or belongs to another axis; leave the column out, or map another one to it in a [[log.column]]"
     )]
     Constant {
         /// The log.
@@ -89,7 +89,7 @@ pub enum LogSetError {
     },
     /// Positions that the axis cannot take.
     #[error(
-        "{file}: the {channel} is {position:.6} at t = {time:.4} s, outside the axis' stroke of {minimum} to {maximum} {unit}: the log belongs to another axis, is in another unit, or counts from another zero (offset in [log])"
+        "{file}: the {channel} is {position:.6} at t = {time:.4} s, outside the axis' stroke of {minimum} to {maximum} {unit}: the log belongs to another axis, is in another unit, or counts from another zero (offset of its [[log.column]])"
     )]
     OffStroke {
         /// The log.

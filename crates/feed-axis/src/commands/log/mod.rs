@@ -172,7 +172,7 @@ fn look(path: &Path, axis: Option<&Axis>, rate_hz: Option<f64>) -> Result<Seen> 
 }
 
 /// What a file lacks that is read, and is no log.
-const LACKS_TIME: &str = "no log yet, as it has no time: map a column to \"t_s\" in [log] of the axis file, or give sample_rate_hz there";
+const LACKS_TIME: &str = "no log yet, as it has no time: map a column to \"t_s\" in a [[log.column]] of the axis file, or give sample_rate_hz in its [log]";
 
 fn lacks_time(error: &IntakeError) -> bool {
     matches!(
