@@ -14,7 +14,7 @@ use crate::errors::{StrategyError, of_file, raise};
 /// What `export` writes.
 const TARGETS: [&str; 3] = ["c", "linuxcnc", "onnx"];
 
-/// Limits of the guard as a caller gives them; what is left out is the axis' own.
+/// Limits of the guard; the default of each is the axis' own limit.
 struct Limits {
     position: Option<f64>,
     command: Option<f64>,

@@ -1,10 +1,8 @@
 //! Margins of an axis' loops, and gains that have them.
 
-use axis_sim::control::units_of_gain;
-use axis_sim::part::{Key, Values};
-use drive_loop::{LoopAnalysis, LoopSet, TuneSettings, Tuned, Tuning};
+use drive_loop::{LoopAnalysis, LoopSet, TuneSettings, TunedKey, Tuning};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyModule};
+use pyo3::types::PyModule;
 use serde::Serialize;
 use toml::{Table, Value};
 
@@ -13,7 +11,7 @@ use crate::axis::PyAxis;
 use crate::errors::{AxisError, LoopError, raise};
 use crate::long::long;
 
-/// The cases over which margins are computed: what is left out is as the command has it.
+/// The cases over which margins are computed; the defaults are those of the command.
 fn set_of(
     positions: Option<&Bound<'_, PyAny>>,
     masses: Option<&Bound<'_, PyAny>>,
@@ -88,84 +86,32 @@ impl PyAxis {
             simulated: true,
         };
         let axis = self.axis.clone();
-        let Tuned { axis, report } = long(py, None, move |_| {
+        let tuned = long(py, None, move |_| {
             Tuning::of(&axis, &settings).map_err(raise::<LoopError>)
         })?;
-        let (axis, keys) = self.with_gains(&axis)?;
-        let found = plain(py, &report)?;
-        let list = keys.into_iter().map(|(key, before, value)| {
-            let dict = PyDict::new(py);
-            dict.set_item("key", key)?;
-            dict.set_item("before", before)?;
-            dict.set_item("value", value)?;
-            Ok(dict)
-        });
-        found.set_item("keys", list.collect::<PyResult<Vec<_>>>()?)?;
+        let keys = tuned.keys(&self.axis);
+        let axis = self.with_keys(&keys)?;
+        let found = plain(py, &tuned.report)?;
+        found.set_item("keys", plain(py, &keys)?)?;
         Ok((axis, found))
     }
 }
 
-/// A key with its unit, its value before, and now.
-type SetKey = (String, Option<f64>, f64);
-
 impl PyAxis {
-    /// This axis with what is other in the tuned one's control and actuator, and the keys that were
-    /// set, in the units of its file.
-    fn with_gains(&self, tuned: &axis_sim::Axis) -> PyResult<(Self, Vec<SetKey>)> {
-        let axis = &self.axis;
+    /// This axis with the keys of its file that were set.
+    fn with_keys(&self, keys: &[TunedKey]) -> PyResult<Self> {
         let mut table: Table = self.text.parse().map_err(raise::<AxisError>)?;
         // A file of schema 1 has the current controllers among the others.
-        let of_actuator = match table.contains_key("actuator") {
-            true => "actuator",
-            false => "control",
-        };
-        let effort = axis.actuator.effort();
-        let gain = |key: &Key| units_of_gain(&*axis.control, key, effort, &*axis.mechanism);
-        let of_control = other_keys(
-            tuned.control.kind().keys,
-            axis.control.values(),
-            tuned.control.values(),
-            gain,
-        );
-        let of_drive = other_keys(
-            tuned.actuator.kind().keys,
-            axis.actuator.values(),
-            tuned.actuator.values(),
-            |key| key.units().to_vec(),
-        );
-        let mut all = Vec::new();
-        for (section, keys) in [("control", of_control), (of_actuator, of_drive)] {
-            for (key, before, value) in keys {
-                let section = table
-                    .entry(section)
-                    .or_insert_with(|| Value::Table(Table::new()));
-                if let Some(section) = section.as_table_mut() {
-                    section.insert(key.clone(), Value::Float(value));
-                }
-                all.push((key, before, value));
+        let has_actuator = table.contains_key("actuator");
+        for key in keys {
+            let section = if has_actuator { key.section } else { "control" };
+            let section = table
+                .entry(section)
+                .or_insert_with(|| Value::Table(Table::new()));
+            if let Some(section) = section.as_table_mut() {
+                section.insert(key.key.clone(), Value::Float(key.value));
             }
         }
-        Ok((Self::parsed("<tuned axis>", table.to_string())?, all))
+        Self::parsed("<tuned axis>", table.to_string())
     }
-}
-
-/// What one set of values has other than another.
-fn other_keys(
-    keys: &[Key],
-    before: &Values,
-    after: &Values,
-    units: impl Fn(&Key) -> Vec<(&'static str, f64)>,
-) -> Vec<SetKey> {
-    let one = |key: &Key| {
-        let [old, new] = [before, after].map(|values| values.optional(key.name()));
-        let new = new.filter(|_| new != old)?;
-        let (units, own) = (units(key), before.unit(key.name()));
-        let unit = units.iter().find(|(unit, _)| *unit == own);
-        let (name, factor) = match unit.or(units.first()) {
-            Some((unit, factor)) => (format!("{}_{unit}", key.name()), *factor),
-            None => (key.name().to_owned(), 1.0),
-        };
-        Some((name, old.map(|old| old / factor), new / factor))
-    };
-    keys.iter().filter_map(one).collect()
 }

@@ -4,10 +4,9 @@ use axis_sim::Axis;
 use axis_sim::control::{CONTROLS, Control, units_of_gain};
 use axis_sim::part::{Key, Part};
 use discrepancy::controller::{ControllerEstimate, Gain};
+use drive_loop::TunedKey;
 use miette::{IntoDiagnostic, Result, miette};
 use toml_edit::{DocumentMut, Item, Table, Value};
-
-use super::tune::TunedKey;
 
 /// Half width of an interval, as a share, up to which a gain is written as exact.
 const EXACT: f64 = 1e-3;
@@ -88,45 +87,22 @@ pub fn with_control(
     Ok(document.to_string())
 }
 
-/// The axis file's text with what is other in `tuned`'s control and actuator than in `axis`', and
-/// the keys that were set.
-pub fn with_tuned(text: &str, axis: &Axis, tuned: &Axis) -> Result<(String, Vec<TunedKey>)> {
+/// The axis file's text with the keys of a tuned axis, to seven digits, and the keys as they stand
+/// there.
+pub fn with_tuned(text: &str, keys: Vec<TunedKey>) -> Result<(String, Vec<TunedKey>)> {
     let mut document: DocumentMut = text.parse().into_diagnostic()?;
     // A file of schema 1 has the current controllers among the others.
-    let of_actuator = match document.contains_key("actuator") {
-        true => "actuator",
-        false => "control",
-    };
+    let has_actuator = document.contains_key("actuator");
     let mut all = Vec::new();
-    let own = |before: Option<f64>, after: Option<f64>| after.filter(|_| before != after);
-    for key in tuned.control.kind().keys {
-        let [before, after] = [axis, tuned].map(|a| a.control.values().optional(key.name()));
-        if let Some(after) = own(before, after) {
-            let (name, factor) = spelling(axis, &axis.control, key.name());
-            let value = written(after, factor, key.limits());
-            set(table(&mut document, "control")?, &name, value.into());
-            all.push(TunedKey {
-                key: name,
-                before: before.map(|before| digits(before / factor)),
-                value,
-            });
-        }
-    }
-    for key in tuned.actuator.kind().keys {
-        let [before, after] = [axis, tuned].map(|a| a.actuator.values().optional(key.name()));
-        if let Some(after) = own(before, after) {
-            let unit = axis.actuator.values().unit(key.name());
-            let factor = key.units().iter().find(|(name, _)| *name == unit);
-            let factor = factor.map_or(1.0, |(_, factor)| *factor);
-            let name = format!("{}_{unit}", key.name());
-            let value = written(after, factor, key.limits());
-            set(table(&mut document, of_actuator)?, &name, value.into());
-            all.push(TunedKey {
-                key: name,
-                before: before.map(|before| digits(before / factor)),
-                value,
-            });
-        }
+    for key in keys {
+        let section = if has_actuator { key.section } else { "control" };
+        let value = written(key.value, 1.0, key.limits);
+        set(table(&mut document, section)?, &key.key, value.into());
+        all.push(TunedKey {
+            before: key.before.map(digits),
+            value,
+            ..key
+        });
     }
     Ok((document.to_string(), all))
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use axis_report::{Cell, Page, Section, Table, engineering};
 use axis_sim::{Axis, SixDigits};
 use clap::Args;
-use drive_loop::{LoopAnalysis, TuneSettings, Tuned, Tuning};
+use drive_loop::{LoopAnalysis, TuneSettings, TunedKey, Tuning};
 use miette::{IntoDiagnostic, Result};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -58,17 +58,6 @@ pub struct Options {
     report: Option<PathBuf>,
 }
 
-/// A key of the axis file that was set.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct TunedKey {
-    /// With its unit, as in the file.
-    pub key: String,
-    /// Before; none where the file had none.
-    pub before: Option<f64>,
-    /// Now.
-    pub value: f64,
-}
-
 /// What `tune` writes as JSON.
 #[derive(Serialize, JsonSchema)]
 pub struct TuneFound {
@@ -98,17 +87,14 @@ pub fn command(options: &Options) -> Result<()> {
         current: options.current,
         simulated: true,
     };
-    let Tuned {
-        axis: tuned,
-        report,
-    } = Tuning::of(&axis, &settings).into_diagnostic()?;
+    let tuned = Tuning::of(&axis, &settings).into_diagnostic()?;
     let text = with_keys(&read_text(&options.axis)?, &options.set)?;
     let text = moved(&text, &options.axis, &folder)?;
-    let (text, keys) = with_tuned(&text, &axis, &tuned)?;
+    let (text, keys) = with_tuned(&text, tuned.keys(&axis))?;
     let written = Axis::parse(&options.out.display().to_string(), &text)?;
     write_whole(&options.out, text.as_bytes())?;
     let found = TuneFound {
-        tuning: report,
+        tuning: tuned.report,
         keys,
         axis_file: options.out.clone(),
     };

@@ -44,16 +44,17 @@ impl Search<'_> {
         let channels = logs.flat_map(|(log, rest)| rest.iter().map(move |r| (log.log.time(), r)));
         let mut lines: Vec<Line> = Vec::new();
         for (times, rest) in channels {
-            let waves = waves(times, rest, period, length);
-            match lines.is_empty() {
-                true => lines = waves.collect(),
-                false => lines
-                    .iter_mut()
-                    .zip(waves)
-                    .for_each(|(all, one)| all.1 += one.1),
-            }
+            add(&mut lines, waves(times, rest, period, length));
         }
         lines
+    }
+}
+
+/// Adds lines of the same frequencies, or of the same orders, to those of other series.
+pub(super) fn add(lines: &mut Vec<Line>, more: impl Iterator<Item = Line>) {
+    match lines.is_empty() {
+        true => lines.extend(more),
+        false => (lines.iter_mut().zip(more)).for_each(|(all, one)| all.1 += one.1),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Candidates after refinement by simulation.
 
 use axis_sim::Axis;
-use axis_sim::effects::{ActiveEffect, Nature};
+use axis_sim::effects::{ActiveEffect, Effect, Nature};
 
 use super::evidence::{EQUAL, enough};
 use super::types::{Alike, ONE_CLASS, RunnerUp};
@@ -48,14 +48,20 @@ impl Refined {
 
     /// Whether a size is as large as it may be.
     fn ends_at_bound(&self) -> bool {
+        self.reaches_bound(1.0, |_| true)
+    }
+
+    /// Whether a size of one of these effects reaches that share of its bound.
+    fn reaches_bound(&self, share: f64, of: impl Fn(&Effect) -> bool) -> bool {
         let mut pairs = self.added().iter().zip(&self.parts);
         pairs.any(|(active, part)| {
             let mut sizes = active.effect.parameters.iter().zip(&active.values);
-            sizes.any(|(p, value)| {
-                let edges = p.bounds(&part.scales);
-                // Some sizes cannot be negative; nothing of them is no bound.
-                p.is_size() && edges.iter().any(|edge| *edge != 0.0 && edge == value)
-            })
+            of(active.effect)
+                && sizes.any(|(p, value)| {
+                    // Some sizes cannot be negative; nothing of them is no bound.
+                    let is_near = |edge: &f64| *edge != 0.0 && value / edge >= share;
+                    p.is_size() && p.bounds(&part.scales).iter().any(is_near)
+                })
         })
     }
 
@@ -85,18 +91,7 @@ impl Refined {
     /// known the tolerance is a bound downward already, to which noise of the acceleration draws an
     /// inertia.
     pub(super) fn is_below_none(&self, machine: &Axis) -> bool {
-        let mut added = self.added().iter().zip(&self.parts);
-        let ends_at_bound = added.any(|(active, part)| {
-            let mut sizes = active.effect.parameters.iter().zip(&active.values);
-            active.effect.roles().next().is_some()
-                && sizes.any(|(p, value)| {
-                    let edges = p.bounds(&part.scales);
-                    // Nothing of what cannot be negative is no bound.
-                    let is_near = |edge: &f64| *edge != 0.0 && value / edge > NEAR_BOUND;
-                    p.is_size() && edges.iter().any(is_near)
-                })
-        });
-        if ends_at_bound {
+        if self.reaches_bound(NEAR_BOUND, |effect| effect.roles().next().is_some()) {
             return true;
         }
         let is_unknown = |a: &&ActiveEffect| a.effect.roles().any(|role| machine.is_unknown(role));

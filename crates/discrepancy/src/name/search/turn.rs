@@ -10,7 +10,7 @@ use axis_sim::effects::Nature;
 use axis_sim::position_in;
 use rayon::prelude::*;
 
-use super::lines::{Line, strongest};
+use super::lines::{Line, add, strongest};
 use super::state::Search;
 use crate::estimate::columns::Columns;
 use crate::name::library::Candidate;
@@ -86,15 +86,7 @@ impl Search<'_> {
                 |series: &[f64]| -> Vec<f64> { order.iter().map(|&k| series[k]).collect() };
             let places = sorted(turns);
             for channel in rest {
-                let over_turns = sorted(channel);
-                let found = waves(&places, &over_turns, step, length);
-                match lines.is_empty() {
-                    true => lines = found.collect(),
-                    false => lines
-                        .iter_mut()
-                        .zip(found)
-                        .for_each(|(all, one)| all.1 += one.1),
-                }
+                add(&mut lines, waves(&places, &sorted(channel), step, length));
             }
         }
         lines
