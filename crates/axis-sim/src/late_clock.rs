@@ -1,44 +1,94 @@
-//! The load's channel on a clock of its own.
+//! Channels of a log on a clock of their own.
 
 use std::collections::VecDeque;
 
+use trajectories::Setpoint;
+
 use crate::cycle::Cycle;
 
-/// Passes cycles on with the position that a log shows beside them, where the load's channel is
-/// late against the others: linear between cycles, the first or the last one beyond the run's ends.
+/// What shares a clock.
+pub(crate) trait Timed: Copy {
+    fn of(cycle: &Cycle) -> Self;
+
+    /// This much of the way from `self` to the next, 0 to 1.
+    fn towards(self, next: Self, part: f64) -> Self;
+
+    fn show(self, cycle: &mut Cycle);
+}
+
+/// The load's position as it is measured.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LoadPosition(f64);
+
+impl Timed for LoadPosition {
+    fn of(cycle: &Cycle) -> Self {
+        Self(cycle.measured.position)
+    }
+
+    fn towards(self, next: Self, part: f64) -> Self {
+        Self((1.0 - part) * self.0 + part * next.0)
+    }
+
+    fn show(self, cycle: &mut Cycle) {
+        cycle.measured.position = self.0;
+    }
+}
+
+impl Timed for Setpoint {
+    fn of(cycle: &Cycle) -> Self {
+        cycle.reference
+    }
+
+    fn towards(self, next: Self, part: f64) -> Self {
+        let between = |a: f64, b: f64| (1.0 - part) * a + part * b;
+        Self {
+            position: between(self.position, next.position),
+            velocity: between(self.velocity, next.velocity),
+            acceleration: between(self.acceleration, next.acceleration),
+            jerk: between(self.jerk, next.jerk),
+        }
+    }
+
+    fn show(self, cycle: &mut Cycle) {
+        cycle.reference = self;
+    }
+}
+
+/// Passes cycles on with what a log shows beside them, where some channels are late against the
+/// others: linear between cycles, the first or the last one beyond the run's ends.
 /// It holds as many cycles as the clock is off by.
 #[derive(Clone, Debug)]
-pub(crate) struct LateClock {
+pub(crate) struct LateClock<T> {
     /// By how much it is late, cycles.
     late: f64,
-    /// Positions as measured, from that of cycle `first` on.
-    positions: VecDeque<f64>,
+    /// Those of the channels, from that of cycle `first` on.
+    values: VecDeque<T>,
     first: usize,
-    /// Cycles whose position is not known yet, from cycle `next` on.
+    /// Cycles whose value is not known yet, from cycle `next` on.
     waiting: VecDeque<Cycle>,
     next: usize,
 }
 
-impl LateClock {
+impl<T: Timed> LateClock<T> {
     /// One that is late by so many cycles; early where negative.
     pub(crate) fn new(late: f64) -> Self {
         Self {
             late,
-            positions: VecDeque::new(),
+            values: VecDeque::new(),
             first: 0,
             waiting: VecDeque::new(),
             next: 0,
         }
     }
 
-    /// Takes the next cycle, and gives those whose position is known by now.
+    /// Takes the next cycle, and gives those whose value is known by now.
     pub(crate) fn push(&mut self, cycle: &Cycle, mut to: impl FnMut(Cycle)) {
         if self.late == 0.0 {
             return to(*cycle);
         }
-        self.positions.push_back(cycle.measured.position);
+        self.values.push_back(T::of(cycle));
         self.waiting.push_back(*cycle);
-        let newest = (self.first + self.positions.len() - 1) as f64;
+        let newest = (self.first + self.values.len() - 1) as f64;
         while self.along() <= newest {
             let Some(cycle) = self.pass() else { break };
             to(cycle);
@@ -52,7 +102,7 @@ impl LateClock {
         }
     }
 
-    /// Where the position lies that is shown beside the next cycle.
+    /// Where the value lies that is shown beside the next cycle.
     fn along(&self) -> f64 {
         (self.next as f64 - self.late).max(0.0)
     }
@@ -61,26 +111,61 @@ impl LateClock {
     fn pass(&mut self) -> Option<Cycle> {
         let mut cycle = self.waiting.pop_front()?;
         let along = self.along();
-        let last = self.positions.len() - 1;
+        let last = self.values.len() - 1;
         let at = (along as usize).saturating_sub(self.first).min(last);
-        self.positions.drain(..at);
+        self.values.drain(..at);
         self.first += at;
         let part = (along - self.first as f64).clamp(0.0, 1.0);
-        let after = self.positions.get(1).unwrap_or(&self.positions[0]);
-        cycle.measured.position = (1.0 - part) * self.positions[0] + part * after;
+        let after = *self.values.get(1).unwrap_or(&self.values[0]);
+        self.values[0].towards(after, part).show(&mut cycle);
         self.next += 1;
         Some(cycle)
     }
 }
 
+/// The clocks of a log: the load's channel, and the reference's, against all others.
+#[derive(Clone, Debug)]
+pub(crate) struct LateClocks {
+    load: LateClock<LoadPosition>,
+    reference: LateClock<Setpoint>,
+}
+
+/// By how many cycles the channels of each are late.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Lateness {
+    pub(crate) load: f64,
+    pub(crate) reference: f64,
+}
+
+impl LateClocks {
+    pub(crate) fn new(late: Lateness) -> Self {
+        Self {
+            load: LateClock::new(late.load),
+            reference: LateClock::new(late.reference),
+        }
+    }
+
+    /// Takes the next cycle, and gives those that the log shows by now.
+    pub(crate) fn push(&mut self, cycle: &Cycle, mut to: impl FnMut(Cycle)) {
+        let reference = &mut self.reference;
+        self.load.push(cycle, |c| reference.push(&c, &mut to));
+    }
+
+    /// Gives the rest, after the last cycle.
+    pub(crate) fn finish(mut self, mut to: impl FnMut(Cycle)) {
+        self.load.finish(|c| self.reference.push(&c, &mut to));
+        self.reference.finish(to);
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::LateClock;
+    use super::{LateClock, LoadPosition};
     use crate::Cycle;
 
     /// What is shown of a run whose position is the square of the cycle's number.
     fn shown(late: f64, cycles: usize) -> Vec<(f64, f64)> {
-        let mut clock = LateClock::new(late);
+        let mut clock = LateClock::<LoadPosition>::new(late);
         let mut shown = Vec::new();
         let mut keep = |c: Cycle| shown.push((c.time, c.measured.position));
         for k in 0..cycles {

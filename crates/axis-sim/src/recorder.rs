@@ -9,7 +9,7 @@ use crate::axis::Axis;
 use crate::channels::{LogChannel, channels};
 use crate::cycle::{Cycle, RunStopped};
 use crate::error::SetupError;
-use crate::late_clock::LateClock;
+use crate::late_clock::{LateClocks, Lateness};
 use crate::mechanism::Freedom;
 
 /// Collects the cycles of a run, in memory.
@@ -17,8 +17,7 @@ use crate::mechanism::Freedom;
 pub struct Recorder {
     channels: Vec<LogChannel>,
     freedom: Freedom,
-    /// By how many cycles the load's channel is late.
-    late: f64,
+    late: Lateness,
     cycles: Vec<Cycle>,
 }
 
@@ -29,20 +28,24 @@ impl Recorder {
         Self {
             channels: channels(axis),
             freedom: axis.freedom(),
-            late: 0.0,
+            late: Lateness::default(),
             cycles: Vec::new(),
         }
     }
 
-    /// The same as this axis' log shows them: the load's channel late by what its effects say
-    /// (`clock-offset`). `period` is that of the cycles it is given, s.
+    /// The same as this axis' log shows them: the load's channel and the reference's late by what
+    /// its effects say (`clock-offset`, `reference-delay`). `period` is that of the cycles it is
+    /// given, s.
     ///
     /// # Errors
     /// [`SetupError`] where an effect does not fit the axis.
     pub fn as_logged(axis: &Axis, period: f64) -> Result<Self, SetupError> {
         let (_, hooks) = axis.with_effects()?;
         Ok(Self {
-            late: hooks.clock_offset / period,
+            late: Lateness {
+                load: hooks.clock_offset / period,
+                reference: hooks.reference_delay / period,
+            },
             ..Self::new(axis)
         })
     }
@@ -69,11 +72,11 @@ impl Recorder {
     /// # Errors
     /// [`LogError`] if there is no cycle, or one that is not finite.
     pub fn log(&self) -> Result<Log, LogError> {
-        if self.late == 0.0 {
+        if self.late == Lateness::default() {
             return self.log_of(&self.cycles);
         }
         let mut shown = Vec::with_capacity(self.cycles.len());
-        let mut clock = LateClock::new(self.late);
+        let mut clock = LateClocks::new(self.late);
         for cycle in &self.cycles {
             clock.push(cycle, |c| shown.push(c));
         }
@@ -105,7 +108,7 @@ const BLOCK: usize = 4096;
 #[derive(Debug)]
 pub struct FlowRecorder<S> {
     sink: Box<S>,
-    clock: LateClock,
+    clock: LateClocks,
     block: Recorder,
     is_begun: bool,
     failed: Option<io::Error>,
@@ -126,7 +129,7 @@ impl<S: LogSink> FlowRecorder<S> {
     pub fn to(sink: S, recorder: Recorder) -> Self {
         Self {
             sink: Box::new(sink),
-            clock: LateClock::new(recorder.late),
+            clock: LateClocks::new(recorder.late),
             block: recorder,
             is_begun: false,
             failed: None,
@@ -172,7 +175,8 @@ impl<S: LogSink> FlowRecorder<S> {
             return Err(error);
         }
         let block = &mut self.block.cycles;
-        mem::replace(&mut self.clock, LateClock::new(0.0)).finish(|shown| block.push(shown));
+        mem::replace(&mut self.clock, LateClocks::new(Lateness::default()))
+            .finish(|shown| block.push(shown));
         if !self.is_begun || !self.block.cycles.is_empty() {
             self.write_block()?;
         }

@@ -2,16 +2,30 @@
 //! than the model: other mesh, integrator and step, noise in the loop, known
 //! parameters off by up to 1 %.
 
+use std::sync::{Arc, OnceLock};
+
 use axis_log::{Channel, Log};
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, Scales};
 use discover_matrix::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
-use discrepancy::{Discovery, Fitter, LogSet, Settings, State, Verdict, discovery, search};
-use trajectories::{Limits, Program, Step};
+use discrepancy::{
+    Discovery, Fitter, Foresight, Library, LogSet, Settings, State, Verdict, discovery, search,
+    search_with,
+};
+use trajectories::{Limits, Motion, Program, Setpoint, Step};
 
 fn axis() -> Axis {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
-    Axis::read(file.as_ref()).unwrap()
+    named("liu2025")
+}
+
+/// A stage without a transmission, which is simulated in a tenth of a screw's time.
+fn stage() -> Axis {
+    named("linear-stage")
+}
+
+fn named(name: &str) -> Axis {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes");
+    Axis::read(format!("{folder}/{name}.toml").as_ref()).unwrap()
 }
 
 fn hide(name: Option<&str>, seed: u64) -> Hidden {
@@ -25,6 +39,10 @@ fn hide(name: Option<&str>, seed: u64) -> Hidden {
 }
 
 fn hide_all(effects: Vec<(&str, Vec<f64>)>, seed: u64) -> Hidden {
+    hide_in(&axis(), effects, seed)
+}
+
+fn hide_in(axis: &Axis, effects: Vec<(&str, Vec<f64>)>, seed: u64) -> Hidden {
     let active = |(name, values)| ActiveEffect {
         effect: Effect::named(name).unwrap(),
         values,
@@ -32,10 +50,10 @@ fn hide_all(effects: Vec<(&str, Vec<f64>)>, seed: u64) -> Hidden {
     Hidden {
         effects: effects.into_iter().map(active).collect(),
         shares: Vec::new(),
-        noise: Noise::GOOD,
+        noise: Noise::good(axis),
         seed,
     }
-    .with_known_off_by(&axis(), 0.01)
+    .with_known_off_by(axis, 0.01)
 }
 
 /// A rest, a move of 60 mm, a rest, the way back and a rest.
@@ -62,14 +80,30 @@ fn over(length: f64, check: bool) -> Program {
 }
 
 fn logs(hidden: &Hidden, motion: &Program, check: bool) -> LogSet {
-    let axis = axis();
-    let machine = axis.clone();
+    logs_of(&axis(), hidden, motion, check)
+}
+
+fn logs_of(axis: &Axis, hidden: &Hidden, motion: &Program, check: bool) -> LogSet {
     let mut hidden = hidden.clone();
     // Noise of its own, known parameters as they are.
     hidden.seed += u64::from(check);
-    // 2 kHz, so that logs slower than the control cycle are in the test.
-    let log = hidden.log(&axis, motion, 5).unwrap();
-    LogSet::new(vec![("log".to_owned(), log, 5.0 * axis.period)], &machine).unwrap()
+    // Every fifth cycle, so that logs slower than the control cycle are in the test.
+    let log = hidden.log(axis, motion, 5).unwrap();
+    LogSet::new(vec![("log".to_owned(), log, 5.0 * axis.period)], axis).unwrap()
+}
+
+/// What the library does on the screw's motion there and back over 60 or 100 mm, once for all tests.
+fn library_on(motion: &Program) -> Option<Arc<Library>> {
+    static LIBRARIES: [OnceLock<Arc<Library>>; 2] = [const { OnceLock::new() }; 2];
+    let place = [0.06, 0.1]
+        .iter()
+        .position(|&l| over(l, false) == *motion)?;
+    let made = LIBRARIES[place].get_or_init(|| {
+        let set = logs(&hide(None, 1), motion, false);
+        let noise = Noise::good(&axis()).into();
+        Foresight::new(&axis(), &set, noise).unwrap().library()
+    });
+    Some(made.clone())
 }
 
 fn find(hidden: &Hidden, settings: &Settings) -> Discovery {
@@ -85,6 +119,21 @@ fn find_on(motions: [Program; 2], hidden: [&Hidden; 2], settings: &Settings) -> 
     let machine = axis();
     let fit = logs(hidden[0], &motions[0], false);
     let check = logs(hidden[1], &motions[1], true);
+    let found = match library_on(&motions[0]) {
+        Some(library) => search_with(&machine, &fit, &check, settings, library, |_| ()),
+        None => search(&machine, &fit, &check, settings, |_| ()),
+    };
+    let found = found.unwrap();
+    discovery(&machine, &fit, &check, &found).unwrap().discovery
+}
+
+/// Of the stage, on an exercise.
+fn find_on_stage(hidden: &Hidden, kind: Exercise, settings: &Settings) -> Discovery {
+    let machine = stage();
+    let [fit, check] = [false, true].map(|check| {
+        let motion = exercise(&machine, kind, check).unwrap();
+        logs_of(&machine, hidden, &motion, check)
+    });
     let found = search(&machine, &fit, &check, settings, |_| ()).unwrap();
     discovery(&machine, &fit, &check, &found).unwrap().discovery
 }
@@ -171,6 +220,55 @@ fn a_force_in_time_is_found_with_its_edges() {
     );
 }
 
+/// A reference that is logged late, by more than a sample and by a part of one, is no velocity
+/// feed-forward: the delay is told, and nothing else.
+#[test]
+fn a_late_reference_is_a_delay() {
+    let machine = stage();
+    for late in [1.5e-3, -0.3e-3] {
+        let hidden = hide_in(&machine, Vec::new(), 17);
+        let [fit, check] = [false, true].map(|check| {
+            let motion = exercise(&machine, Exercise::ThereAndBack, check).unwrap();
+            let set = logs_of(&machine, &hidden, &motion, check);
+            let log = with_late_reference(&set.logs[0].log, &motion, late);
+            LogSet::new(
+                vec![("log".to_owned(), log, 5.0 * machine.period)],
+                &machine,
+            )
+            .unwrap()
+        });
+        let found = search(&machine, &fit, &check, &Settings::default(), |_| ()).unwrap();
+        let found = discovery(&machine, &fit, &check, &found).unwrap().discovery;
+        let named: Vec<&str> = found.effects.iter().map(|e| e.name.as_str()).collect();
+        assert_eq!(named, ["reference-delay"], "{}", found.sentence);
+        assert_eq!(found.verdict, Verdict::Explained);
+        let time = &found.effects[0].parameters[0];
+        let [low, high] = time.ci95;
+        // A fiftieth of a sample.
+        let is_near = (time.value - late).abs() < 2e-5;
+        assert!(is_near && low < late && late < high, "{time:?}");
+    }
+}
+
+/// The log with the motion of some time before as its reference: evaluated anew, not interpolated.
+fn with_late_reference(log: &Log, motion: &Program, late: f64) -> Log {
+    let at = |of: fn(Setpoint) -> f64| -> Vec<f64> {
+        let before = |t: &f64| motion.at((t - late).max(0.0));
+        log.time().iter().map(|t| of(before(t))).collect()
+    };
+    let shown = |channel: &Channel| {
+        let mut channel = channel.clone();
+        match channel.name.as_str() {
+            "position_ref_m" => channel.samples = at(|s| s.position),
+            "velocity_ref_m_s" => channel.samples = at(|s| s.velocity),
+            "acceleration_ref_m_s2" => channel.samples = at(|s| s.acceleration),
+            _ => {}
+        }
+        channel
+    };
+    Log::new(log.channels().iter().map(shown).collect()).unwrap()
+}
+
 /// A load that came up with the log, and is hardly more than noise in its first 3 ms: its mean over
 /// the rest was taken for held, and 0.1 µm RMS was left, nearly all before the first move.
 #[test]
@@ -183,6 +281,16 @@ fn a_load_that_repeats_is_not_held_before_it_acts() {
     assert!(found.gap.check.reduction > 0.98, "{:?}", found.gap.check);
 }
 
+/// A stage whose loop follows a chirp is logged every fifth cycle: between the samples a cubic was off by
+/// so much that a delay of 5 µs was named, and nothing is missing.
+#[test]
+fn a_reference_is_followed_between_the_samples_of_a_log() {
+    let settings = with_only(&["control-delay", "controller-gain", "reference-delay"]);
+    let clean = hide_in(&stage(), Vec::new(), 4);
+    let found = find_on_stage(&clean, Exercise::WithChirp, &settings);
+    assert_eq!(found.verdict, Verdict::NothingMissing, "{}", found.sentence);
+}
+
 /// What the engineer takes as there is there, whatever speaks for it: nothing
 /// promises a force in time here.
 #[test]
@@ -191,7 +299,8 @@ fn an_accepted_force_is_there_where_nothing_is_missing() {
         accepted: vec!["process-force".to_owned()],
         ..Settings::default()
     };
-    let found = find(&hide(None, 11), &settings);
+    let clean = hide_in(&stage(), Vec::new(), 11);
+    let found = find_on_stage(&clean, Exercise::ThereAndBack, &settings);
     let names: Vec<&str> = found.effects.iter().map(|e| e.name.as_str()).collect();
     assert_eq!(names, ["process-force"], "{found:?}");
 }
@@ -233,7 +342,17 @@ fn what_was_named_too_widely_is_named_again_beside_the_others() {
     ];
     let hidden = hide_all(three, 3_030_010);
     let motions = [false, true].map(|check| over(0.1, check));
-    let found = find_on(motions, [&hidden, &hidden], &Settings::default());
+    let settings = with_only(&[
+        "position-dependent-friction",
+        "controller-gain",
+        "viscous-friction",
+        "asymmetric-viscous-friction",
+        "asymmetric-friction",
+        "stribeck-friction",
+        "velocity-feedforward",
+        "torque-constant",
+    ]);
+    let found = find_on(motions, [&hidden, &hidden], &settings);
     let mut names: Vec<&str> = found.effects.iter().map(|e| e.name.as_str()).collect();
     names.sort_unstable();
     assert_eq!(
@@ -377,7 +496,8 @@ fn what_is_rejected_is_not_named() {
         most_effects: 1,
         ..Settings::default()
     };
-    let found = find(&hide(Some("viscous-friction"), 13), &settings);
+    let hidden = hide_in(&stage(), vec![("viscous-friction", vec![20.0])], 13);
+    let found = find_on_stage(&hidden, Exercise::SlowAndFast, &settings);
     assert!(found.effects.iter().all(|e| e.name != "viscous-friction"));
     assert_ne!(found.verdict, Verdict::Explained, "{found:?}");
     assert_ne!(found.verdict, Verdict::NothingMissing, "{found:?}");
@@ -414,14 +534,13 @@ fn a_fall_of_the_own_friction_is_another_form_of_it() {
 /// A body that swings as fast as the library has it does what a mass does, and is none beside it.
 #[test]
 fn a_body_that_swings_too_fast_to_be_seen_is_no_name() {
-    let hidden = hide_all(vec![("payload-mass", vec![30.0])], 47);
+    let hidden = hide_in(&stage(), vec![("payload-mass", vec![0.6])], 47);
     let found = |library: &[&str]| {
-        let motions = [false, true].map(|c| exercise(&axis(), Exercise::WithChirp, c).unwrap());
         let settings = Settings {
             most_effects: 1,
             ..with_only(library)
         };
-        find_on(motions, [&hidden, &hidden], &settings)
+        find_on_stage(&hidden, Exercise::WithChirp, &settings)
     };
     let (mass, swings) = ("payload-mass", "structural-resonance");
     let without = found(&[swings]);

@@ -198,6 +198,11 @@ impl ClosedLoop {
         self.hooks.clock_offset
     }
 
+    /// By how much a log shows the reference late, s.
+    pub(crate) fn reference_delay(&self) -> f64 {
+        self.hooks.reference_delay
+    }
+
     /// One control cycle: sample, correct, control, and let the machine run on until the
     /// next sample. `reference` is the set point now, `next` the one a cycle ahead.
     ///

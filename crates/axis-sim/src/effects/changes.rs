@@ -168,6 +168,7 @@ pub(crate) struct Hooks {
     offsets: Vec<Offset>,
     pub(crate) sensors: SensorErrors,
     pub(crate) clock_offset: f64,
+    pub(crate) reference_delay: f64,
 }
 
 impl fmt::Debug for Hooks {
@@ -295,6 +296,11 @@ impl Changes<'_> {
     /// Makes the load's channel of a log late by `time` seconds.
     pub fn clock_offset(&mut self, time: f64) {
         self.hooks.clock_offset += time;
+    }
+
+    /// Makes the reference's channels of a log late by `time` seconds.
+    pub fn reference_delay(&mut self, time: f64) {
+        self.hooks.reference_delay += time;
     }
 
     /// Adds to the parameter of a role, in its SI unit.

@@ -48,6 +48,7 @@ mod periodic_lead_error;
 mod position_dependent_friction;
 mod presliding;
 mod process_force;
+mod reference_delay;
 mod speed_controller_gain;
 mod spring_force;
 mod stator_resistance;
@@ -240,4 +241,5 @@ pub const EFFECTS: &[&Effect] = &[
     &speed_controller_gain::EFFECT,
     &velocity_feedforward::EFFECT,
     &clock_offset::EFFECT,
+    &reference_delay::EFFECT,
 ];

@@ -348,6 +348,8 @@ pub enum EffectNeed {
     /// A channel beside the load's position in its log, that another clock may have timed: a motor
     /// encoder, or the torque that it is balanced with where no control is known.
     AnotherClock,
+    /// A controller, which a logged reference drives.
+    Reference,
     /// Currents that are measured.
     Currents,
     /// Poles.
@@ -370,6 +372,7 @@ impl EffectNeed {
             Self::AnotherClock => {
                 "second clock besides that of the load's position (a motor encoder, or a torque balance)"
             }
+            Self::Reference => "controller that follows a reference",
             Self::Currents => "currents that are measured",
             Self::Poles => "motor poles",
             Self::Turning => "load that turns",
@@ -385,6 +388,7 @@ impl EffectNeed {
             Self::Transmission => axis.mechanism.stiffness().is_some(),
             Self::MotorEncoder => axis.mechanism.has_motor_encoder(),
             Self::AnotherClock => axis.mechanism.has_motor_encoder() || !axis.has_control(),
+            Self::Reference => axis.has_control(),
             Self::Currents => axis.actuator.has_currents(),
             Self::Poles => axis.actuator.pole_pairs().is_some(),
             Self::Turning => axis.freedom() == Freedom::Rotary,

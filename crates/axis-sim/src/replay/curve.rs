@@ -1,11 +1,14 @@
 //! Samples as a curve.
 
-/// Samples at even distances as a curve: cubic between them, through values and slopes.
+/// Samples at even distances as a curve: cubic between them, through values and slopes, or of the
+/// fifth degree through curvatures as well.
 #[derive(Clone, Debug)]
 pub struct SampledCurve {
     pub(super) period: f64,
     values: Vec<f64>,
     slopes: Vec<f64>,
+    /// As many; none of a cubic.
+    curvatures: Vec<f64>,
 }
 
 impl SampledCurve {
@@ -25,15 +28,26 @@ impl SampledCurve {
             period,
             values,
             slopes,
+            curvatures: Vec::new(),
         }
     }
 
-    /// Through samples that have these slopes, as many.
-    pub(super) fn through(values: Vec<f64>, slopes: Vec<f64>, period: f64) -> Self {
+    /// Through samples that have these slopes and curvatures, as many.
+    ///
+    /// A wave of the frequency ω comes out off by (ω h)⁶/46080 between samples, where a cubic is
+    /// off by (ω h)⁴/384: 3e-6 instead of 8e-4 at 120 Hz and 1 kHz, of which a fast loop would
+    /// make a delay of its command.
+    pub(super) fn through(
+        values: Vec<f64>,
+        slopes: Vec<f64>,
+        curvatures: Vec<f64>,
+        period: f64,
+    ) -> Self {
         Self {
             period,
             values,
             slopes,
+            curvatures,
         }
     }
 
@@ -67,6 +81,9 @@ impl SampledCurve {
         let (p0, p1) = (self.values[k], self.values[k + 1]);
         let (m0, m1) = (h * self.slopes[k], h * self.slopes[k + 1]);
         let (s2, s3) = (s * s, s * s * s);
+        if let [c0, c1, ..] = self.curvatures.get(k..).unwrap_or_default() {
+            return self.quintic(s, [p0, m0, h * h * c0], [p1, m1, h * h * c1]);
+        }
         let value = (2.0 * s3 - 3.0 * s2 + 1.0) * p0
             + (s3 - 2.0 * s2 + s) * m0
             + (3.0 * s2 - 2.0 * s3) * p1
@@ -76,6 +93,21 @@ impl SampledCurve {
             + (3.0 * s2 - 2.0 * s) * m1)
             / h;
         [value, slope]
+    }
+
+    /// Value and slope at this share of the way from one sample to the next, both with slope and
+    /// curvature per sample.
+    fn quintic(&self, s: f64, [p0, m0, c0]: [f64; 3], [p1, m1, c1]: [f64; 3]) -> [f64; 2] {
+        // What a parabola from the first sample lacks of the second's value, slope and curvature.
+        let value = p1 - (p0 + m0 + 0.5 * c0);
+        let slope = m1 - (m0 + c0);
+        let curvature = c1 - c0;
+        let third = 10.0 * value - 4.0 * slope + 0.5 * curvature;
+        let fourth = -15.0 * value + 7.0 * slope - curvature;
+        let fifth = 6.0 * value - 3.0 * slope + 0.5 * curvature;
+        let at = p0 + s * (m0 + s * (0.5 * c0 + s * (third + s * (fourth + s * fifth))));
+        let along = m0 + s * (c0 + s * (3.0 * third + s * (4.0 * fourth + s * 5.0 * fifth)));
+        [at, along / self.period]
     }
 }
 
@@ -114,7 +146,29 @@ pub(super) fn slopes(samples: &[f64], period: f64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::slopes;
+    use super::{SampledCurve, slopes};
+
+    /// Its own interpolation, as bounded in Hermite's remainder.
+    #[test]
+    fn a_wave_is_off_by_the_sixth_order_between_samples() {
+        let (h, omega) = (1e-3_f64, 120.0 * std::f64::consts::TAU);
+        let sampled = |of: &dyn Fn(f64) -> f64| (0..100).map(|k| of(f64::from(k) * h)).collect();
+        let wave = |t: f64| (omega * t).sin();
+        let curve = SampledCurve::through(
+            sampled(&wave),
+            sampled(&|t| omega * (omega * t).cos()),
+            sampled(&|t| -omega * omega * wave(t)),
+            h,
+        );
+        let remainder = (omega * h).powi(6) / 46_080.0;
+        for k in 0..900 {
+            let t = f64::from(k) * 0.11 * h;
+            let [at, along] = curve.at(t);
+            assert!((at - wave(t)).abs() < 1.01 * remainder, "{k}");
+            let exact = omega * (omega * t).cos();
+            assert!((along - exact).abs() < 1e-4 * omega, "{k}");
+        }
+    }
 
     #[test]
     fn slopes_of_a_wave_are_off_by_the_fourth_order() {

@@ -193,8 +193,9 @@ impl Replay {
             period,
             cycle: 0,
         };
+        let reference = self.reference.ahead_by(closed_loop.reference_delay());
         closed_loop
-            .run_from(&mut state, &self.reference, &mut added, sense, |c| {
+            .run_from(&mut state, &reference, &mut added, sense, |c| {
                 positions.take(c);
                 others.take(c);
             })

@@ -8,8 +8,8 @@ use super::curve::{SampledCurve, slopes};
 use super::smooth::smooth;
 use crate::channels::reference_in;
 
-/// A logged reference as a motion: cubic between samples, through positions
-/// and velocities; its acceleration a spline.
+/// A logged reference as a motion: of the fifth degree between samples, through positions,
+/// velocities and the slopes of these; its acceleration a spline.
 #[derive(Clone, Debug)]
 pub struct LoggedReference {
     position: SampledCurve,
@@ -38,17 +38,22 @@ impl LoggedReference {
         let position = reference_in(log)?;
         let of = |linear: &str, rotary: &str| log.channel(linear).or(log.channel(rotary)).ok();
         let velocity = of("velocity_ref_m_s", "velocity_ref_rad_s");
-        let acceleration = of("acceleration_ref_m_s2", "acceleration_ref_rad_s2");
-        let acceleration = match (acceleration, velocity) {
-            (Some(logged), _) => logged.to_vec(),
-            (None, Some(velocity)) => slopes(&smooth(velocity, 2), period),
-            (None, None) => slopes(&slopes(&smooth(position, 3), period), period),
+        let curvatures = match velocity {
+            Some(velocity) => slopes(&smooth(velocity, 2), period),
+            None => slopes(&slopes(&smooth(position, 3), period), period),
         };
+        let acceleration = of("acceleration_ref_m_s2", "acceleration_ref_rad_s2");
+        let acceleration = SampledCurve::spline(acceleration.unwrap_or(&curvatures), period);
         let velocity = velocity.map_or_else(|| slopes(position, period), <[f64]>::to_vec);
         Ok(Self {
-            position: SampledCurve::through(position.to_vec(), velocity, period),
-            acceleration: SampledCurve::spline(&acceleration, period),
+            position: SampledCurve::through(position.to_vec(), velocity, curvatures, period),
+            acceleration,
         })
+    }
+
+    /// The reference that the drive had, where the log shows it late by `time` (s).
+    pub(super) fn ahead_by(&self, time: f64) -> Ahead<'_> {
+        Ahead { logged: self, time }
     }
 
     /// Its sampling period, s.
@@ -78,5 +83,22 @@ impl Motion for LoggedReference {
             acceleration,
             jerk,
         }
+    }
+}
+
+/// A logged reference some time before the log shows it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ahead<'a> {
+    logged: &'a LoggedReference,
+    time: f64,
+}
+
+impl Motion for Ahead<'_> {
+    fn duration(&self) -> f64 {
+        self.logged.duration()
+    }
+
+    fn at(&self, t: f64) -> Setpoint {
+        self.logged.at(t + self.time)
     }
 }

@@ -24,7 +24,7 @@ pub use truth::Truth;
 
 use axis_log::{Channel, Log};
 use axis_sim::effects::{ActiveEffect, EffectChannel};
-use axis_sim::{Axis, ClosedLoop, Measured, Recorder, ReplayError, Start, position_in};
+use axis_sim::{Axis, ClosedLoop, Measured, Recorder, ReplayError, Start};
 use compensator::NoCompensation;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -109,33 +109,43 @@ fn recorded(
     Ok(recorder.log()?)
 }
 
-/// The log with its clock off by what the effects say.
+/// The log with its clocks off by what the effects say.
 fn late(effects: &[ActiveEffect], log: Log) -> Result<Log, ReplayError> {
-    let clock = effects
+    let clocks = effects
         .iter()
         .filter(|a| a.effect.channel == EffectChannel::Clock);
-    let late: f64 = clock.map(|a| a.values[0]).sum();
-    if late == 0.0 {
-        Ok(log)
-    } else {
-        shifted(&log, late)
-    }
+    clocks.into_iter().try_fold(log, |log, clock| {
+        let (of_load, of_reference) = (["position_m", "position_rad"], REFERENCES);
+        match clock.effect.name {
+            "reference-delay" => shifted(&log, &of_reference, clock.values[0]),
+            _ => shifted(&log, &of_load, clock.values[0]),
+        }
+    })
 }
 
-/// The log with the table's channel late by a time.
-fn shifted(log: &Log, late: f64) -> Result<Log, ReplayError> {
+/// Channels of the reference.
+const REFERENCES: [&str; 6] = [
+    "position_ref_m",
+    "velocity_ref_m_s",
+    "acceleration_ref_m_s2",
+    "position_ref_rad",
+    "velocity_ref_rad_s",
+    "acceleration_ref_rad_s2",
+];
+
+/// The log with these channels late by a time.
+fn shifted(log: &Log, channels: &[&str], late: f64) -> Result<Log, ReplayError> {
     let time = log.time();
     let period = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-    let position = position_in(log)?;
-    let last = (position.len() - 1) as f64;
-    let at = |k: usize| {
+    let last = (time.len() - 1) as f64;
+    let at = |samples: &[f64], k: usize| {
         let along = (k as f64 - late / period).clamp(0.0, last);
-        let i = (along as usize).min(position.len() - 2);
-        position[i] + (along - i as f64) * (position[i + 1] - position[i])
+        let i = (along as usize).min(samples.len() - 2);
+        samples[i] + (along - i as f64) * (samples[i + 1] - samples[i])
     };
     let channel = |c: &Channel| {
-        let samples = if ["position_m", "position_rad"].contains(&c.name.as_str()) {
-            (0..position.len()).map(at).collect()
+        let samples = if channels.contains(&c.name.as_str()) {
+            (0..c.samples.len()).map(|k| at(&c.samples, k)).collect()
         } else {
             c.samples.clone()
         };

@@ -1,5 +1,6 @@
 //! Notes on the logs to read a result.
 
+use axis_log::quality::sample_jitter;
 use axis_sim::effects::Measure;
 use axis_sim::{Axis, Trace};
 
@@ -15,7 +16,28 @@ pub(super) fn notes(machine: &Axis, found: &Found) -> Vec<String> {
         notes.push(FLOOR.to_owned());
     }
     notes.extend(slack_notes(machine, found));
+    notes.extend(sets(found).flat_map(jitter_notes));
     notes
+}
+
+/// Of logs whose samples are off their even time stamps: what that adds to a channel is noise that
+/// grows with its speed, and the noise that the residual is compared with holds it.
+fn jitter_notes(set: &LogSet) -> impl Iterator<Item = String> {
+    let of_log = |log: &Prepared| {
+        let channels = set.channels.iter();
+        let jitter = channels.filter_map(|name| Some((*name, sample_jitter(&log.log, name)?)));
+        let largest = jitter.max_by(|(_, a), (_, b)| a.rms.total_cmp(&b.rms));
+        largest.map(|(channel, jitter)| {
+            format!(
+                "{}: samples jitter by {:.1} % of a period ({:.3} ms) under even time stamps, as {channel} shows: that is noise in proportion to speed, and counted in the noise stated here; stamps taken where the samples are taken would show smaller effects",
+                log.name,
+                100.0 * jitter.share,
+                1e3 * jitter.rms
+            )
+        })
+    };
+    let replayed = set.logs.iter().filter(|log| log.answer.replay().is_some());
+    replayed.filter_map(of_log).collect::<Vec<_>>().into_iter()
 }
 
 /// How the noise of a torque balance is to be read.

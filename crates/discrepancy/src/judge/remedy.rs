@@ -136,6 +136,7 @@ pub const REMEDIES: &[Remedy] = &[
     line("speed-controller-gain", Setting, "gain of the speed controller, here and in the axis file"),
     line("velocity-feedforward", Setting, "weight of the velocity feed-forward: 100 % unless meant otherwise"),
     line("clock-offset", Setting, "delay of the channel, in the [log] part of the axis file: an error of the log, not of the motion"),
+    line("reference-delay", Setting, "delay of the logged reference, in the [log] part of the axis file: an error of the log, not of the motion"),
 ];
 
 #[cfg(test)]

@@ -128,21 +128,27 @@ pub struct RefusedEffects {
 impl RefusedEffects {
     /// In a sentence that follows another.
     pub(super) fn sentence(&self) -> String {
+        let (names, it, is, explains) = match self.effects.as_slice() {
+            // Only how the axis' own friction acts was another.
+            [] => (
+                "Another form of the friction".to_owned(),
+                "it",
+                "is",
+                "explains",
+            ),
+            [one] => (one.clone(), "it", "is", "explains"),
+            several => (several.join(" with "), "them", "are", "explain"),
+        };
+        let they = if it == "them" { "they" } else { it };
         if let Some(share) = self.takes_away {
             return format!(
-                " {} would take away {:.0} % of the gap, which explains nothing, so it is not named.",
-                self.effects.join(" with "),
+                " {names} would take away {:.0} % of the gap, which explains nothing, so {they} {is} not named.",
                 100.0 * share.max(0.0)
             );
         }
         if let Some(law) = &self.law {
-            let (it, explains, is) = match self.effects.len() {
-                1 => ("it", "explains", "is"),
-                _ => ("they", "explain", "are"),
-            };
             return format!(
-                " {} {explains} no more than a force in proportion to {law} does with one number, so {it} {is} not named.",
-                self.effects.join(" with ")
+                " {names} {explains} no more than a force in proportion to {law} does with one number, so {they} {is} not named."
             );
         }
         let where_ = match self.channels.as_slice() {
@@ -150,8 +156,7 @@ impl RefusedEffects {
             channels => format!("in {}", channels.join(", ")),
         };
         format!(
-            " {} would explain most of the fitted logs, but with it the model is further off {where_} on motion not used in the fit than without, so it is not named.",
-            self.effects.join(" with ")
+            " {names} would explain most of the fitted logs, but with {it} the model is further off {where_} on motion not used in the fit than without, so {they} {is} not named."
         )
     }
 }

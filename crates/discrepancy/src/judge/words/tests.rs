@@ -274,6 +274,22 @@ fn pieces_of_one_law_are_said_beside_what_is_named() {
     );
     made.refused = Some(refused(&["coulomb-friction"]));
     assert!(lines(&made, "What is missing")[1].ends_with("so it is not named."));
+    // Where only the friction's own form was another, no name stands there.
+    let form = lines(&discovery_refusing(&[]), "What is missing")[1].clone();
+    assert!(
+        form.starts_with("Another form of the friction would explain"),
+        "{form}"
+    );
+}
+
+fn discovery_refusing(effects: &[&str]) -> Discovery {
+    let mut made = discovery(Verdict::Unknown, Vec::new(), Vec::new());
+    made.refused = Some(RefusedEffects {
+        effects: effects.iter().map(|name| (*name).to_owned()).collect(),
+        channels: vec!["force_ref_n".to_owned()],
+        ..RefusedEffects::default()
+    });
+    made
 }
 
 #[test]

@@ -22,13 +22,13 @@ const WITHOUT_GAP: f64 = 1.5;
 impl Search<'_> {
     /// The effects, where check motion is further off with them than without: than with
     /// the machine as its file says (`as_filed`), or with its known parameters fitted
-    /// (`without`).
+    /// (`without`). Never what the engineer takes as there.
     pub(super) fn refused(
         &self,
         as_filed: &LogSet,
         without: &Self,
     ) -> Result<Option<Refused>, ReplayError> {
-        if self.named.is_empty() {
+        if self.named.is_empty() || self.settings_ask_for_all() {
             return Ok(None);
         }
         let set = &self.check_logs;
@@ -51,7 +51,7 @@ impl Search<'_> {
         let of_gap = gap(set, calibrated, &after, &floors);
         tracing::debug!(?of_gap, "of the gap on check motion");
         let share = of_gap.reduction;
-        let is_little = share < LEAST_SHARE && !self.settings_ask_for_all();
+        let is_little = share < LEAST_SHARE;
         // Where no channel stood out of its noise, evidence alone speaks; and what is left of a
         // replay is no gap where it is noise of another colour. In a balance noise of the motion
         // passes through the model, and follows it.
