@@ -1,0 +1,5 @@
+//! One test program: geometry, contour error, figures of circles, feed, programs in G-code.
+
+mod circle;
+mod contour;
+mod geometry;
