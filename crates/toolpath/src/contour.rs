@@ -63,7 +63,7 @@ pub(crate) struct Cell {
     pub(crate) to: f64,
     pub(crate) segment: usize,
     /// Greatest |x″|, 1/m.
-    second: f64,
+    pub(crate) second: f64,
     /// Greatest |x‴|, 1/m².
     third: f64,
 }

@@ -21,9 +21,6 @@ pub(crate) fn scaled<const D: usize>(k: f64, a: &[f64; D]) -> [f64; D] {
     a.map(|x| k * x)
 }
 
-pub(crate) fn is_finite<const D: usize>(a: &[f64; D]) -> bool {
-    a.iter().all(|x| x.is_finite())
-}
 
 /// `k x³` and the like, without `powi`, whose rounding is not specified.
 pub(crate) fn cube(x: f64) -> f64 {

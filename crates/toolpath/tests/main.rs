@@ -2,4 +2,5 @@
 
 mod circle;
 mod contour;
+mod feed;
 mod geometry;
