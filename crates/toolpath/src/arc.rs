@@ -42,7 +42,12 @@ impl<const D: usize> Arc<D> {
         coordinates("towards", towards)?;
         if !(1e-9..=1e6).contains(&sweep) {
             let (field, unit, valid) = ("sweep", "rad", "from 1e-9 to 1e6");
-            return Err(ToolpathError::Invalid { field, value: sweep, unit, valid });
+            return Err(ToolpathError::Invalid {
+                field,
+                value: sweep,
+                unit,
+                valid,
+            });
         }
         let spoke = sub(&start, &centre);
         let radius = positive("radius of an arc", norm(&spoke), "m")?;
@@ -53,12 +58,25 @@ impl<const D: usize> Arc<D> {
         if !(share > 1e-9) {
             let field = "part of `towards` across the radius";
             let valid = "greater than 1e-9 of its length";
-            return Err(ToolpathError::Invalid { field, value: share, unit: "", valid });
+            return Err(ToolpathError::Invalid {
+                field,
+                value: share,
+                unit: "",
+                valid,
+            });
         }
         // Twice, for a right angle to the last bit.
         let v = scaled(1.0 / size, &across);
         let v = add_scaled(&v, -dot(&v, &u), &u);
-        Ok(Self { centre, radius, u, v, rise: [0.0; D], sweep, speed: radius })
+        Ok(Self {
+            centre,
+            radius,
+            u,
+            v,
+            rise: [0.0; D],
+            sweep,
+            speed: radius,
+        })
     }
 
     /// The same as a helix that advances by `advance` (m) over its whole sweep.
@@ -71,10 +89,20 @@ impl<const D: usize> Arc<D> {
         let inside = libm::hypot(dot(&advance, &self.u), dot(&advance, &self.v));
         let share = inside / norm(&advance).max(f64::MIN_POSITIVE);
         let valid = "at most 1e-9 of its length";
-        within("part of `advance` in the plane of the arc", share, "", 1e-9, valid)?;
+        within(
+            "part of `advance` in the plane of the arc",
+            share,
+            "",
+            1e-9,
+            valid,
+        )?;
         let rise = scaled(1.0 / self.sweep, &advance);
         let speed = libm::hypot(self.radius, norm(&rise));
-        Ok(Self { rise, speed, ..self })
+        Ok(Self {
+            rise,
+            speed,
+            ..self
+        })
     }
 
     /// Centre of its beginning, m.

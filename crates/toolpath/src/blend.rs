@@ -42,14 +42,21 @@ impl Blend {
         let corner = before.to();
         let gap = norm(&sub(&corner, &after.from()));
         if !(gap <= 1e-9) {
-            return Err(ToolpathError::Gap { number: 2, gap, tolerance: 1e-9 });
+            return Err(ToolpathError::Gap {
+                number: 2,
+                gap,
+                tolerance: 1e-9,
+            });
         }
         let (t0, t1) = (before.direction(), after.direction());
         let chord = norm(&sub(&t1, &t0)); // 2 sin(θ/2)
         let half = libm::atan2(chord, norm(&add_scaled(&t1, 1.0, &t0)));
         if !(5e-7..=std::f64::consts::FRAC_PI_2 - 5e-4).contains(&half) {
             let valid = "from 1e-6 to 3.1406";
-            return Err(ToolpathError::Blend { angle: 2.0 * half, valid });
+            return Err(ToolpathError::Blend {
+                angle: 2.0 * half,
+                valid,
+            });
         }
         let (sin, cos) = libm::sincos(half);
         let per_distance = match self {
@@ -80,7 +87,11 @@ impl Blend {
                 Segment::bezier(points)?
             }
         };
-        Ok((shortened(before.from(), begin), curve, shortened(end, after.to())))
+        Ok((
+            shortened(before.from(), begin),
+            curve,
+            shortened(end, after.to()),
+        ))
     }
 }
 
@@ -93,6 +104,11 @@ impl<const D: usize> Segment<D> {
         let n = points.len();
         let knots = (0..2 * n).map(|i| if i < n { 0.0 } else { 1.0 }).collect();
         let (degree, weights) = (n.saturating_sub(1), Vec::new());
-        Ok(Self::from(Nurbs::new(&NurbsData { degree, points, weights, knots })?))
+        Ok(Self::from(Nurbs::new(&NurbsData {
+            degree,
+            points,
+            weights,
+            knots,
+        })?))
     }
 }

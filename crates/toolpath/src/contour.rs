@@ -22,7 +22,11 @@ impl<const D: usize> Foot<D> {
 
     fn of(path: &Path<D>, position: &[f64; D], s: f64) -> Self {
         let point = path.at(s);
-        Self { s, point, error: sub(position, &point.position) }
+        Self {
+            s,
+            point,
+            error: sub(position, &point.position),
+        }
     }
 }
 
@@ -33,7 +37,8 @@ impl Foot<2> {
     /// length counts, and the side alone is that of the tangent after the corner.
     pub fn signed(&self) -> f64 {
         let [tx, ty] = self.point.tangent;
-        self.length().copysign(tx * self.error[1] - ty * self.error[0])
+        self.length()
+            .copysign(tx * self.error[1] - ty * self.error[0])
     }
 }
 
@@ -51,7 +56,11 @@ impl Foot<3> {
             return None;
         }
         let n = across.map(|x| x / size);
-        let b = [t[1] * n[2] - t[2] * n[1], t[2] * n[0] - t[0] * n[2], t[0] * n[1] - t[1] * n[0]];
+        let b = [
+            t[1] * n[2] - t[2] * n[1],
+            t[2] * n[0] - t[0] * n[2],
+            t[0] * n[1] - t[1] * n[0],
+        ];
         Some([dot(&self.error, &n), dot(&self.error, &b)])
     }
 }
@@ -100,7 +109,11 @@ impl<'a, const D: usize> Follower<'a, D> {
     /// A follower whose first foot is near arc length `s` (m) of `path`; NaN is taken as 0.
     pub fn new(path: &'a Path<D>, s: f64) -> Self {
         let s = if s > 0.0 { s.min(path.length()) } else { 0.0 };
-        Self { path, cells: cells(path), s }
+        Self {
+            path,
+            cells: cells(path),
+            s,
+        }
     }
 
     /// Arc length of the last foot, m.
@@ -135,7 +148,13 @@ impl<'a, const D: usize> Follower<'a, D> {
                     continue;
                 }
             }
-            let Cell { from, to, second, third, .. } = self.cells[cell];
+            let Cell {
+                from,
+                to,
+                second,
+                third,
+                ..
+            } = self.cells[cell];
             let ahead = direction * g;
             if ahead < -least {
                 break;
@@ -148,7 +167,11 @@ impl<'a, const D: usize> Follower<'a, D> {
             let next = self.s + direction * step;
             if direction * (next - edge) >= 0.0 {
                 self.s = edge;
-                let along = if direction > 0.0 { cell + 1 } else { cell.wrapping_sub(1) };
+                let along = if direction > 0.0 {
+                    cell + 1
+                } else {
+                    cell.wrapping_sub(1)
+                };
                 if along >= self.cells.len() {
                     return self.finish(&position);
                 }
@@ -184,7 +207,11 @@ impl<'a, const D: usize> Follower<'a, D> {
     fn seen(&self, position: &[f64; D], index: usize, s: f64) -> Foot<D> {
         let segment = self.cells[index].segment;
         let point = self.path.segments()[segment].at(s - self.path.starts()[segment]);
-        Foot { s, point, error: sub(position, &point.position) }
+        Foot {
+            s,
+            point,
+            error: sub(position, &point.position),
+        }
     }
 
     fn cell(&self, s: f64) -> usize {
@@ -198,7 +225,11 @@ fn safe_step(g: f64, slope: f64, second: f64, third: f64) -> f64 {
     let first_order = g / (1.0 + second);
     // g + slope h − ½ third h² = 0, without cancellation.
     let root = (slope * slope + 2.0 * third * g).sqrt();
-    let second_order = if slope < 0.0 { 2.0 * g / (root - slope) } else { 0.0 };
+    let second_order = if slope < 0.0 {
+        2.0 * g / (root - slope)
+    } else {
+        0.0
+    };
     first_order.max(second_order)
 }
 
@@ -211,14 +242,41 @@ pub(crate) fn cells<const D: usize>(path: &Path<D>) -> Vec<Cell> {
         let Segment::Nurbs(curve) = piece else {
             let point = piece.at(0.0);
             let (second, third) = (norm(&point.curvature), norm(&point.third));
-            cells.push(Cell { from, to, segment, second, third });
+            cells.push(Cell {
+                from,
+                to,
+                segment,
+                second,
+                third,
+            });
             continue;
         };
         let knots = curve.knots();
-        let edges: Vec<f64> = std::iter::once(0.0).chain(knots).chain([curve.length()]).collect();
+        let edges: Vec<f64> = std::iter::once(0.0)
+            .chain(knots)
+            .chain([curve.length()])
+            .collect();
         for (k, pair) in edges.windows(2).enumerate() {
-            let (a, b) = (from + pair[0], if k + 2 == edges.len() { to } else { from + pair[1] });
-            divide(path, Cell { from: a, to: b, segment, second: 0.0, third: 0.0 }, 12, &mut cells);
+            let (a, b) = (
+                from + pair[0],
+                if k + 2 == edges.len() {
+                    to
+                } else {
+                    from + pair[1]
+                },
+            );
+            divide(
+                path,
+                Cell {
+                    from: a,
+                    to: b,
+                    segment,
+                    second: 0.0,
+                    third: 0.0,
+                },
+                12,
+                &mut cells,
+            );
         }
     }
     cells
@@ -234,7 +292,10 @@ fn divide<const D: usize>(path: &Path<D>, mut cell: Cell, depth: usize, cells: &
         // Just inside: at the edges the derivatives of a neighbour may be meant.
         let share = (f64::from(i) / f64::from(SAMPLES)).clamp(1e-9, 1.0 - 1e-9);
         let point = path.segments()[cell.segment].at(cell.from - start + share * length);
-        for (k, value) in [norm(&point.curvature), norm(&point.third)].into_iter().enumerate() {
+        for (k, value) in [norm(&point.curvature), norm(&point.third)]
+            .into_iter()
+            .enumerate()
+        {
             least[k] = least[k].min(value);
             greatest[k] = greatest[k].max(value);
         }
@@ -250,7 +311,15 @@ fn divide<const D: usize>(path: &Path<D>, mut cell: Cell, depth: usize, cells: &
     } else {
         let middle = 0.5 * (cell.from + cell.to);
         divide(path, Cell { to: middle, ..cell }, depth - 1, cells);
-        divide(path, Cell { from: middle, ..cell }, depth - 1, cells);
+        divide(
+            path,
+            Cell {
+                from: middle,
+                ..cell
+            },
+            depth - 1,
+            cells,
+        );
     }
 }
 

@@ -94,7 +94,12 @@ pub(crate) fn positive(
         Ok(value)
     } else {
         let valid = "from 1e-9 to 1e9";
-        Err(ToolpathError::Invalid { field, value, unit, valid })
+        Err(ToolpathError::Invalid {
+            field,
+            value,
+            unit,
+            valid,
+        })
     }
 }
 
@@ -120,6 +125,11 @@ pub(crate) fn within(
     if value.abs() <= most {
         Ok(value)
     } else {
-        Err(ToolpathError::Invalid { field, value, unit, valid })
+        Err(ToolpathError::Invalid {
+            field,
+            value,
+            unit,
+            valid,
+        })
     }
 }

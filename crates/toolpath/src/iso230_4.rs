@@ -80,7 +80,10 @@ pub fn figures(
     clockwise: &[[f64; 2]],
     counterclockwise: &[[f64; 2]],
 ) -> Result<CircleFigures, ToolpathError> {
-    let (there, back) = (polar("clockwise", nominal, clockwise)?, polar("counterclockwise", nominal, counterclockwise)?);
+    let (there, back) = (
+        polar("clockwise", nominal, clockwise)?,
+        polar("counterclockwise", nominal, counterclockwise)?,
+    );
     let both: Vec<[f64; 2]> = clockwise.iter().chain(counterclockwise).copied().collect();
     let squares = least_squares_circle(nominal, &both)?;
     Ok(CircleFigures {
@@ -100,8 +103,15 @@ fn direction(
 ) -> Result<DirectionFigures, ToolpathError> {
     let zone = minimum_zone_circle(nominal, points)?;
     let radii = polar.iter().map(|p| p.1 - nominal.radius);
-    let (f_min, f_max) = radii.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| (a.min(r), b.max(r)));
-    Ok(DirectionFigures { g: zone.range, f_max, f_min, zone_centre: zone.centre })
+    let (f_min, f_max) = radii.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), r| {
+        (a.min(r), b.max(r))
+    });
+    Ok(DirectionFigures {
+        g: zone.range,
+        f_max,
+        f_min,
+        zone_centre: zone.centre,
+    })
 }
 
 /// Angle (rad, 0 to 2π) and distance (m) of each point from the nominal centre, by angle.
@@ -117,15 +127,29 @@ fn polar(
         coordinates(field, *point)?;
         let [x, y] = sub(point, &nominal.centre);
         let angle = libm::atan2(y, x);
-        let r = positive("distance of a point from the nominal centre", libm::hypot(x, y), "m")?;
+        let r = positive(
+            "distance of a point from the nominal centre",
+            libm::hypot(x, y),
+            "m",
+        )?;
         polar.push((if angle < 0.0 { angle + TAU } else { angle }, r));
     }
     polar.sort_by(|a, b| a.0.total_cmp(&b.0));
     let round = polar.first().map(|p| (p.0 + TAU, p.1));
-    let gap = polar.iter().skip(1).copied().chain(round).zip(&polar).map(|(b, a)| b.0 - a.0);
+    let gap = polar
+        .iter()
+        .skip(1)
+        .copied()
+        .chain(round)
+        .zip(&polar)
+        .map(|(b, a)| b.0 - a.0);
     if polar.len() < 8 || gap.fold(0.0, f64::max) > TAU / 8.0 {
         let valid = "at least 8, and no gap of more than an eighth of the circle".to_owned();
-        return Err(ToolpathError::Count { field, count: points.len(), valid });
+        return Err(ToolpathError::Count {
+            field,
+            count: points.len(),
+            valid,
+        });
     }
     Ok(polar)
 }
@@ -133,7 +157,9 @@ fn polar(
 /// Greatest |a(θ) − b(θ)|, each linear in θ between its points: at a point of one of the two.
 fn hysteresis(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
     let one = |from: &[(f64, f64)], to: &[(f64, f64)]| {
-        from.iter().map(|&(angle, r)| (r - radius_at(to, angle)).abs()).fold(0.0, f64::max)
+        from.iter()
+            .map(|&(angle, r)| (r - radius_at(to, angle)).abs())
+            .fold(0.0, f64::max)
     };
     one(a, b).max(one(b, a))
 }
@@ -149,7 +175,11 @@ fn radius_at(polar: &[(f64, f64)], angle: f64) -> f64 {
         high.0 += TAU;
     }
     let width = high.0 - low.0;
-    let share = if width > 0.0 { (angle - low.0) / width } else { 0.0 };
+    let share = if width > 0.0 {
+        (angle - low.0) / width
+    } else {
+        0.0
+    };
     low.1 + share * (high.1 - low.1)
 }
 
@@ -177,7 +207,9 @@ pub fn least_squares_circle(
                 normal[i][3] += row[i] * r;
             }
         }
-        let Some([next, x, y]) = solve(normal) else { break };
+        let Some([next, x, y]) = solve(normal) else {
+            break;
+        };
         centre = [centre[0] + x, centre[1] + y];
         radius = next;
         if libm::hypot(x, y) <= 1e-15 * radius {
@@ -197,8 +229,14 @@ fn spoke(point: &[f64; 2], centre: &[f64; 2]) -> (f64, [f64; 3]) {
 
 fn fitted(points: &[[f64; 2]], centre: [f64; 2], radius: f64) -> FittedCircle {
     let radii = points.iter().map(|p| spoke(p, &centre).0);
-    let (least, most) = radii.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), r| (a.min(r), b.max(r)));
-    FittedCircle { centre, radius, range: most - least }
+    let (least, most) = radii.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), r| {
+        (a.min(r), b.max(r))
+    });
+    FittedCircle {
+        centre,
+        radius,
+        range: most - least,
+    }
 }
 
 /// The two concentric circles of least radial distance that hold the points (m).
@@ -218,7 +256,9 @@ pub fn minimum_zone_circle(
     let mut best = least_squares_circle(nominal, points)?;
     for _ in 0..100 {
         let spokes: Vec<(f64, [f64; 3])> = points.iter().map(|p| spoke(p, &best.centre)).collect();
-        let Some([radius, x, y]) = chebyshev(&spokes) else { break };
+        let Some([radius, x, y]) = chebyshev(&spokes) else {
+            break;
+        };
         let centre = [best.centre[0] + x, best.centre[1] + y];
         let next = fitted(points, centre, radius);
         // Newton's method on the active points: once it brings nothing, rounding is all there is.
@@ -289,7 +329,13 @@ fn leaving(
     };
     let lambda = system([0.0, 0.0, 0.0, 1.0])?;
     let mu = system([row(enters, 0), row(enters, 1), row(enters, 2), 1.0])?;
-    let ratio = |j: usize| if mu[j] > 1e-12 { lambda[j] / mu[j] } else { f64::INFINITY };
+    let ratio = |j: usize| {
+        if mu[j] > 1e-12 {
+            lambda[j] / mu[j]
+        } else {
+            f64::INFINITY
+        }
+    };
     let best = (1..4).fold(0, |a, b| if ratio(b) < ratio(a) { b } else { a });
     ratio(best).is_finite().then_some(best)
 }
@@ -352,7 +398,12 @@ pub fn quadrant_glitches(
     positive("radius", nominal.radius, "m")?;
     if !(1e-6..=0.25 * PI).contains(&window) {
         let (field, unit, valid) = ("window", "rad", "from 1e-6 to pi/4");
-        return Err(ToolpathError::Invalid { field, value: window, unit, valid });
+        return Err(ToolpathError::Invalid {
+            field,
+            value: window,
+            unit,
+            valid,
+        });
     }
     let trace = unwrapped(nominal, points)?;
     let (Some(first), Some(last)) = (trace.first(), trace.last()) else {
@@ -370,12 +421,21 @@ pub fn quadrant_glitches(
         let (count, sum) = inside(at - window, at).fold((0.0, 0.0), |(n, s), p| (n + 1.0, s + p.1));
         let base = if count > 0.0 { sum / count } else { 0.0 };
         let peak = inside(at, at + window).map(|p| (p.1 - base, p.0 - at));
-        let peak = peak.fold((0.0f64, 0.0), |a, b| if b.0.abs() > a.0.abs() { b } else { a });
+        let peak = peak.fold(
+            (0.0f64, 0.0),
+            |a, b| if b.0.abs() > a.0.abs() { b } else { a },
+        );
         let angle = (sign * at).rem_euclid(TAU) + 0.0;
         let entered = (sign * at + sign * 0.25 * PI).rem_euclid(TAU);
         let axis = (k.rem_euclid(2.0)) as usize;
         let quadrant = (entered / FRAC_PI_2) as u8 + 1;
-        glitches.push(QuadrantGlitch { axis, quadrant, angle, peak: peak.0, delay: peak.1 });
+        glitches.push(QuadrantGlitch {
+            axis,
+            quadrant,
+            angle,
+            peak: peak.0,
+            delay: peak.1,
+        });
         k += 1.0;
     }
     Ok(glitches)

@@ -7,6 +7,8 @@ mod blend;
 mod contour;
 mod error;
 mod feed;
+#[cfg(feature = "gcode")]
+pub mod gcode;
 pub mod iso230_4;
 mod line;
 pub mod named;

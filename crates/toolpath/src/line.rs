@@ -24,7 +24,11 @@ impl<const D: usize> Line<D> {
         let offset = sub(&to, &from);
         let length = positive("length of a line", norm(&offset), "m")?;
         let direction = scaled(1.0 / length, &offset);
-        Ok(Self { from, direction, length })
+        Ok(Self {
+            from,
+            direction,
+            length,
+        })
     }
 
     /// Length, m.

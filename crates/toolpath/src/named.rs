@@ -85,8 +85,20 @@ impl CircleTest {
         positive("radius", self.radius, "m")?;
         within("start", self.start, "rad", 1e3, "from -1e3 to 1e3")?;
         within("run_in", self.run_in - 500.0, "rad", 500.0, "from 0 to 1e3")?;
-        within("turns", self.turns - 500.0005, "", 499.9995, "from 1e-3 to 1e3")?;
-        within("run_out", self.run_out - 500.0, "rad", 500.0, "from 0 to 1e3")?;
+        within(
+            "turns",
+            self.turns - 500.0005,
+            "",
+            499.9995,
+            "from 1e-3 to 1e3",
+        )?;
+        within(
+            "run_out",
+            self.run_out - 500.0,
+            "rad",
+            500.0,
+            "from 0 to 1e3",
+        )?;
         let sign = match self.direction {
             Direction::Clockwise => -1.0,
             Direction::Counterclockwise => 1.0,
@@ -100,7 +112,10 @@ impl CircleTest {
         let sweep = self.run_in + self.turns * TAU + self.run_out;
         let path = Path::new(vec![Arc::new(centre, start, towards, sweep)?.into()])?;
         let from = self.radius * self.run_in;
-        Ok(CirclePath { path, counted: (from, from + self.radius * self.turns * TAU) })
+        Ok(CirclePath {
+            path,
+            counted: (from, from + self.radius * self.turns * TAU),
+        })
     }
 }
 
@@ -116,11 +131,19 @@ pub fn rounded_rectangle(
     radius: f64,
     corners: Blend,
 ) -> Result<Path<2>, ToolpathError> {
-    let half = [0.5 * positive("size", size[0], "m")?, 0.5 * positive("size", size[1], "m")?];
+    let half = [
+        0.5 * positive("size", size[0], "m")?,
+        0.5 * positive("size", size[1], "m")?,
+    ];
     positive("radius", radius, "m")?;
     if !(radius <= 0.999 * half[0].min(half[1])) {
         let (field, valid) = ("radius", "at most 0.999 of half of the shorter side");
-        return Err(ToolpathError::Invalid { field, value: radius, unit: "m", valid });
+        return Err(ToolpathError::Invalid {
+            field,
+            value: radius,
+            unit: "m",
+            valid,
+        });
     }
     let [a, b] = half;
     let ring = [[0.0, -b], [a, -b], [a, b], [-a, b], [-a, -b], [0.0, -b]];
@@ -163,9 +186,16 @@ pub fn rounded_rectangle(
 pub fn butterfly() -> Result<Path<2>, ToolpathError> {
     let data = NurbsData {
         degree: 3,
-        points: BUTTERFLY.iter().map(|&[x, y, _]| [1e-3 * x, 1e-3 * y]).collect(),
+        points: BUTTERFLY
+            .iter()
+            .map(|&[x, y, _]| [1e-3 * x, 1e-3 * y])
+            .collect(),
         weights: BUTTERFLY.iter().map(|&[_, _, w]| w).collect(),
-        knots: [0.0; 3].into_iter().chain(BUTTERFLY_KNOTS).chain([1.0; 3]).collect(),
+        knots: [0.0; 3]
+            .into_iter()
+            .chain(BUTTERFLY_KNOTS)
+            .chain([1.0; 3])
+            .collect(),
     };
     Path::new(vec![Nurbs::new(&data)?.into()])
 }
@@ -227,9 +257,9 @@ const BUTTERFLY: [[f64; 3]; 51] = [
 
 /// Its knots; the first and the last stand four times.
 const BUTTERFLY_KNOTS: [f64; 49] = [
-    0.0, 0.0083, 0.015, 0.0361, 0.0855, 0.1293, 0.1509, 0.1931, 0.2273, 0.2435,
-    0.2561, 0.2692, 0.2889, 0.317, 0.3316, 0.3482, 0.3553, 0.3649, 0.3837, 0.4005,
-    0.4269, 0.451, 0.466, 0.4891, 0.5, 0.5109, 0.534, 0.5489, 0.5731, 0.5994,
-    0.6163, 0.6351, 0.6447, 0.6518, 0.6683, 0.683, 0.7111, 0.7307, 0.7439, 0.7565,
-    0.7729, 0.8069, 0.8491, 0.8707, 0.9145, 0.9639, 0.985, 0.9917, 1.0,
+    0.0, 0.0083, 0.015, 0.0361, 0.0855, 0.1293, 0.1509, 0.1931, 0.2273, 0.2435, 0.2561, 0.2692,
+    0.2889, 0.317, 0.3316, 0.3482, 0.3553, 0.3649, 0.3837, 0.4005, 0.4269, 0.451, 0.466, 0.4891,
+    0.5, 0.5109, 0.534, 0.5489, 0.5731, 0.5994, 0.6163, 0.6351, 0.6447, 0.6518, 0.6683, 0.683,
+    0.7111, 0.7307, 0.7439, 0.7565, 0.7729, 0.8069, 0.8491, 0.8707, 0.9145, 0.9639, 0.985, 0.9917,
+    1.0,
 ];

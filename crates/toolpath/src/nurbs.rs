@@ -64,7 +64,11 @@ impl<const D: usize> Nurbs<D> {
             .filter(|&k| data.knots[k + 1] > data.knots[k])
             .map(|k| piece(k, p, &data.knots, &homogeneous))
             .collect();
-        let mut curve = Self { degree: p, pieces, panels: Panels::default() };
+        let mut curve = Self {
+            degree: p,
+            pieces,
+            panels: Panels::default(),
+        };
         curve.panels = curve.measure()?;
         positive("length of a NURBS", curve.length(), "m")?;
         Ok(curve)
@@ -89,7 +93,10 @@ impl<const D: usize> Nurbs<D> {
     /// Arc lengths (m) of the knots inside, where the third derivative may jump, and the second
     /// and the first too if the knot is repeated.
     pub fn knots(&self) -> Vec<f64> {
-        self.pieces[1..].iter().map(|piece| self.length_at(piece.from)).collect()
+        self.pieces[1..]
+            .iter()
+            .map(|piece| self.length_at(piece.from))
+            .collect()
     }
 
     /// Position and derivatives by the parameter, `[C, C′, C″, C‴]`, at `u`; outside of the
@@ -102,7 +109,8 @@ impl<const D: usize> Nurbs<D> {
 
     /// The parameter at arc length `s` (m), between the ends.
     pub fn parameter(&self, s: f64) -> f64 {
-        self.panels.invert(s, |a, b| self.arc(a, b), |u| self.speed(u))
+        self.panels
+            .invert(s, |a, b| self.arc(a, b), |u| self.speed(u))
     }
 
     /// Arc length (m) from the beginning to `u`.
@@ -216,13 +224,20 @@ fn difference<const D: usize>(
 }
 
 fn mix<const D: usize>(a: &([f64; D], f64), b: &([f64; D], f64), t: f64) -> ([f64; D], f64) {
-    (std::array::from_fn(|i| (1.0 - t) * a.0[i] + t * b.0[i]), (1.0 - t) * a.1 + t * b.1)
+    (
+        std::array::from_fn(|i| (1.0 - t) * a.0[i] + t * b.0[i]),
+        (1.0 - t) * a.1 + t * b.1,
+    )
 }
 
 /// `C = A/w` and its derivatives: C⁽ᵏ⁾ = (A⁽ᵏ⁾ − Σ binom(k, i) w⁽ⁱ⁾ C⁽ᵏ⁻ⁱ⁾)/w.
 fn quotient<const D: usize>(a: &[([f64; D], f64); 4]) -> [[f64; D]; 4] {
-    const BINOMIAL: [[f64; 4]; 4] =
-        [[1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 2.0, 1.0, 0.0], [1.0, 3.0, 3.0, 1.0]];
+    const BINOMIAL: [[f64; 4]; 4] = [
+        [1.0, 0.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0, 0.0],
+        [1.0, 2.0, 1.0, 0.0],
+        [1.0, 3.0, 3.0, 1.0],
+    ];
     let mut c = [[0.0; D]; 4];
     for k in 0..4 {
         let mut x = a[k].0;
@@ -256,7 +271,11 @@ fn piece<const D: usize>(
             d[p]
         })
         .collect();
-    Piece { from, to, points: bezier }
+    Piece {
+        from,
+        to,
+        points: bezier,
+    }
 }
 
 /// The weights, if all of `data` is valid.
@@ -264,27 +283,49 @@ fn check<const D: usize>(data: &NurbsData<D>) -> Result<Vec<f64>, ToolpathError>
     let (p, n) = (data.degree, data.points.len());
     if !(1..=MAX_DEGREE).contains(&p) {
         let (field, valid) = ("degree", "from 1 to 15");
-        return Err(ToolpathError::Invalid { field, value: p as f64, unit: "", valid });
+        return Err(ToolpathError::Invalid {
+            field,
+            value: p as f64,
+            unit: "",
+            valid,
+        });
     }
     if n <= p {
         let valid = format!("at least degree + 1 = {}", p + 1);
-        return Err(ToolpathError::Count { field: "points", count: n, valid });
+        return Err(ToolpathError::Count {
+            field: "points",
+            count: n,
+            valid,
+        });
     }
     if data.knots.len() != n + p + 1 {
         let (field, count) = ("knots", data.knots.len());
         let valid = format!("points + degree + 1 = {}", n + p + 1);
-        return Err(ToolpathError::Count { field, count, valid });
+        return Err(ToolpathError::Count {
+            field,
+            count,
+            valid,
+        });
     }
     if !data.weights.is_empty() && data.weights.len() != n {
         let (field, count) = ("weights", data.weights.len());
         let valid = format!("one for each of the {n} points, or none");
-        return Err(ToolpathError::Count { field, count, valid });
+        return Err(ToolpathError::Count {
+            field,
+            count,
+            valid,
+        });
     }
     for point in &data.points {
         coordinates("points", *point)?;
     }
     let element = |field, i: usize, value, valid| {
-        Err(ToolpathError::Element { field, number: i + 1, value, valid })
+        Err(ToolpathError::Element {
+            field,
+            number: i + 1,
+            value,
+            valid,
+        })
     };
     for (i, &w) in data.weights.iter().enumerate() {
         if !(1e-6..=1e6).contains(&w) {
@@ -292,7 +333,11 @@ fn check<const D: usize>(data: &NurbsData<D>) -> Result<Vec<f64>, ToolpathError>
         }
     }
     check_knots(p, n, &data.knots)?;
-    if data.weights.is_empty() { Ok(vec![1.0; n]) } else { Ok(data.weights.clone()) }
+    if data.weights.is_empty() {
+        Ok(vec![1.0; n])
+    } else {
+        Ok(data.weights.clone())
+    }
 }
 
 fn check_knots(p: usize, n: usize, knots: &[f64]) -> Result<(), ToolpathError> {
@@ -313,7 +358,12 @@ fn check_knots(p: usize, n: usize, knots: &[f64]) -> Result<(), ToolpathError> {
         } else {
             continue;
         };
-        return Err(ToolpathError::Element { field, number, value, valid });
+        return Err(ToolpathError::Element {
+            field,
+            number,
+            value,
+            valid,
+        });
     }
     Ok(())
 }

@@ -16,7 +16,10 @@ pub struct PathTolerances {
 impl Default for PathTolerances {
     /// 1e-9 m and 1e-6 rad.
     fn default() -> Self {
-        Self { position: 1e-9, tangent: 1e-6 }
+        Self {
+            position: 1e-9,
+            tangent: 1e-6,
+        }
     }
 }
 
@@ -73,13 +76,33 @@ impl<const D: usize> Path<D> {
         tolerances: &PathTolerances,
     ) -> Result<Self, ToolpathError> {
         let PathTolerances { position, tangent } = *tolerances;
-        within("position tolerance", position - 5e-4, "m", 5e-4, "from 0 to 1e-3")?;
-        within("tangent tolerance", tangent - 0.05, "rad", 0.05, "from 0 to 0.1")?;
+        within(
+            "position tolerance",
+            position - 5e-4,
+            "m",
+            5e-4,
+            "from 0 to 1e-3",
+        )?;
+        within(
+            "tangent tolerance",
+            tangent - 0.05,
+            "rad",
+            0.05,
+            "from 0 to 0.1",
+        )?;
         if segments.is_empty() {
             let valid = "at least one".to_owned();
-            return Err(ToolpathError::Count { field: "segments", count: 0, valid });
+            return Err(ToolpathError::Count {
+                field: "segments",
+                count: 0,
+                valid,
+            });
         }
-        let mut path = Self { segments, starts: vec![0.0], junctions: Vec::new() };
+        let mut path = Self {
+            segments,
+            starts: vec![0.0],
+            junctions: Vec::new(),
+        };
         for i in 0..path.segments.len() {
             let start = path.starts[i];
             if i > 0 {
@@ -88,14 +111,20 @@ impl<const D: usize> Path<D> {
                 let gap = norm(&sub(&before.position, &after.position));
                 if !(gap <= position) {
                     let number = i + 1;
-                    return Err(ToolpathError::Gap { number, gap, tolerance: position });
+                    return Err(ToolpathError::Gap {
+                        number,
+                        gap,
+                        tolerance: position,
+                    });
                 }
-                path.junctions.push(Junction::new(start, before, after, tangent));
+                path.junctions
+                    .push(Junction::new(start, before, after, tangent));
             }
             if let Segment::Nurbs(curve) = &path.segments[i] {
                 for (k, s) in curve.knots().into_iter().enumerate() {
                     let (before, after) = (curve.beside_knot(k, false), curve.beside_knot(k, true));
-                    path.junctions.push(Junction::new(start + s, before, after, tangent));
+                    path.junctions
+                        .push(Junction::new(start + s, before, after, tangent));
                 }
             }
             path.starts.push(start + path.segments[i].length());
@@ -109,7 +138,9 @@ impl<const D: usize> Path<D> {
     /// # Errors
     /// [`ToolpathError::Count`] for fewer than two points, and as [`Line::new`](crate::Line::new).
     pub fn polyline(points: &[[f64; D]]) -> Result<Self, ToolpathError> {
-        let lines = points.windows(2).map(|p| Ok(crate::Line::new(p[0], p[1])?.into()));
+        let lines = points
+            .windows(2)
+            .map(|p| Ok(crate::Line::new(p[0], p[1])?.into()));
         Self::new(lines.collect::<Result<_, ToolpathError>>()?)
     }
 
@@ -136,7 +167,10 @@ impl<const D: usize> Path<D> {
 
     /// Arc lengths (m) of the corners, at which the feed must be zero.
     pub fn corners(&self) -> Vec<f64> {
-        let corners = self.junctions.iter().filter(|j| j.kind == JunctionKind::Corner);
+        let corners = self
+            .junctions
+            .iter()
+            .filter(|j| j.kind == JunctionKind::Corner);
         corners.map(|j| j.s).collect()
     }
 
@@ -158,7 +192,12 @@ impl<const D: usize> Junction<D> {
     fn new(s: f64, before: PathPoint<D>, after: PathPoint<D>, tangent: f64) -> Self {
         let sizes = before.curvature_size() + after.curvature_size();
         let step = norm(&sub(&before.curvature, &after.curvature));
-        let mut junction = Self { s, before, after, kind: JunctionKind::Third };
+        let mut junction = Self {
+            s,
+            before,
+            after,
+            kind: JunctionKind::Third,
+        };
         // Curvatures that are equal come out equal to about 1e-12; 1e-9 1/m is a straight line.
         junction.kind = if !(junction.angle() <= tangent) {
             JunctionKind::Corner

@@ -31,7 +31,8 @@ impl<const D: usize> PathPoint<D> {
         let u1 = 1.0 / speed;
         let along = dot(&tangent, &c[2]) * u1 * u1; // C'·C''/σ³
         let u2 = -along * u1;
-        let u3 = u1 * (4.0 * along * along - (dot(&c[2], &c[2]) + dot(&c[1], &c[3])) * u1 * u1 * u1 * u1);
+        let u3 = u1
+            * (4.0 * along * along - (dot(&c[2], &c[2]) + dot(&c[1], &c[3])) * u1 * u1 * u1 * u1);
         let curvature = add_scaled(&scaled(u1 * u1, &c[2]), u2, &c[1]);
         let third = add_scaled(&scaled(cube(u1), &c[3]), 3.0 * u1 * u2, &c[2]);
         Self {

@@ -91,7 +91,11 @@ impl Panels {
 
     /// The integral from the first edge to `u`.
     pub(crate) fn value(&self, u: f64, integral: impl Fn(f64, f64) -> f64) -> f64 {
-        let i = self.edges.partition_point(|&edge| edge <= u).clamp(1, self.edges.len() - 1) - 1;
+        let i = self
+            .edges
+            .partition_point(|&edge| edge <= u)
+            .clamp(1, self.edges.len() - 1)
+            - 1;
         self.sums[i] + integral(self.edges[i], u)
     }
 
@@ -124,7 +128,11 @@ impl Panels {
             }
             let next = u - excess / f(u);
             // Outside of the bracket Newton has failed: the middle is nearer.
-            let next = if next >= low && next <= high { next } else { 0.5 * (low + high) };
+            let next = if next >= low && next <= high {
+                next
+            } else {
+                0.5 * (low + high)
+            };
             let step = (next - u).abs();
             u = next;
             // The error after a step is about (step/width)² of the width.

@@ -21,7 +21,6 @@ pub(crate) fn scaled<const D: usize>(k: f64, a: &[f64; D]) -> [f64; D] {
     a.map(|x| k * x)
 }
 
-
 /// `k x³` and the like, without `powi`, whose rounding is not specified.
 pub(crate) fn cube(x: f64) -> f64 {
     x * x * x

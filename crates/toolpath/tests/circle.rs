@@ -8,14 +8,20 @@ use toolpath::iso230_4::{
 };
 
 const R: f64 = 0.05;
-const NOMINAL: NominalCircle = NominalCircle { centre: [0.01, -0.02], radius: R };
+const NOMINAL: NominalCircle = NominalCircle {
+    centre: [0.01, -0.02],
+    radius: R,
+};
 
 fn trace(n: usize, radial: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
     (0..n)
         .map(|i| {
             let angle = TAU * i as f64 / n as f64;
             let r = R + radial(angle);
-            [NOMINAL.centre[0] + r * angle.cos(), NOMINAL.centre[1] + r * angle.sin()]
+            [
+                NOMINAL.centre[0] + r * angle.cos(),
+                NOMINAL.centre[1] + r * angle.sin(),
+            ]
         })
         .collect()
 }
@@ -29,13 +35,21 @@ fn back(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 #[test]
 fn squareness_is_an_ellipse() {
     let phi = 20e-6;
-    let square = trace(3600, |_| 0.0).into_iter().map(|[x, y]| [x + phi * (y - NOMINAL.centre[1]), y]);
+    let square = trace(3600, |_| 0.0)
+        .into_iter()
+        .map(|[x, y]| [x + phi * (y - NOMINAL.centre[1]), y]);
     let points: Vec<[f64; 2]> = square.collect();
     let f = figures(&NOMINAL, &back(points.clone()), &points).unwrap();
     for side in [f.clockwise, f.counterclockwise] {
         assert!((side.g - phi * R).abs() < 1e-5 * phi * R, "{side:?}");
-        assert!((side.f_max - 0.5 * phi * R).abs() < 3e-5 * phi * R, "{side:?}");
-        assert!((side.f_min + 0.5 * phi * R).abs() < 3e-5 * phi * R, "{side:?}");
+        assert!(
+            (side.f_max - 0.5 * phi * R).abs() < 3e-5 * phi * R,
+            "{side:?}"
+        );
+        assert!(
+            (side.f_min + 0.5 * phi * R).abs() < 3e-5 * phi * R,
+            "{side:?}"
+        );
     }
     assert!(f.h < 1e-15 && f.d.abs() < phi * phi * R, "{f:?}");
 }
@@ -50,7 +64,10 @@ fn scales_that_differ() {
         .map(|[x, y]| [cx + (1.0 + a) * (x - cx), cy + (1.0 + b) * (y - cy)])
         .collect();
     let f = figures(&NOMINAL, &points, &back(points.clone())).unwrap();
-    assert!((f.g_bidirectional - 40e-6 * R).abs() < 1e-5 * 40e-6 * R, "{f:?}");
+    assert!(
+        (f.g_bidirectional - 40e-6 * R).abs() < 1e-5 * 40e-6 * R,
+        "{f:?}"
+    );
     assert!((f.d - 10e-6 * R).abs() < 1e-4 * 10e-6 * R, "{f:?}");
     assert!((f.clockwise.f_max - a * R).abs() < 1e-12 && (f.clockwise.f_min - b * R).abs() < 1e-12);
 }
@@ -63,9 +80,17 @@ fn a_shifted_centre_and_backlash() {
     let still = minimum_zone_circle(&NOMINAL, &points).unwrap();
     let shifted: Vec<[f64; 2]> = points.iter().map(|p| [p[0] + 2e-4, p[1] - 1e-4]).collect();
     let moved = minimum_zone_circle(&NOMINAL, &shifted).unwrap();
-    assert!((moved.range - still.range).abs() < 1e-15, "{moved:?} {still:?}");
+    assert!(
+        (moved.range - still.range).abs() < 1e-15,
+        "{moved:?} {still:?}"
+    );
     assert!((moved.centre[0] - still.centre[0] - 2e-4).abs() < 1e-14);
-    let f = figures(&NOMINAL, &trace(1000, |_| 2e-6), &trace(1500, |a| 2e-6 * a.cos())).unwrap();
+    let f = figures(
+        &NOMINAL,
+        &trace(1000, |_| 2e-6),
+        &trace(1500, |a| 2e-6 * a.cos()),
+    )
+    .unwrap();
     assert!((f.h - 4e-6).abs() < 1e-11, "{}", f.h);
     // Radius of both together: 2 µm on 1000 points, on the others a mere shift of the centre.
     assert!((f.counterclockwise.g) < 1e-10, "{f:?}");
@@ -84,8 +109,12 @@ fn lobes_have_twice_their_amplitude() {
 /// Least range over the centre by a nested search in two directions.
 fn searched(points: &[[f64; 2]]) -> f64 {
     let range = |c: [f64; 2]| {
-        let radii = points.iter().map(|p| ((p[0] - c[0]).powi(2) + (p[1] - c[1]).powi(2)).sqrt());
-        let (a, b) = radii.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), r| (a.min(r), b.max(r)));
+        let radii = points
+            .iter()
+            .map(|p| ((p[0] - c[0]).powi(2) + (p[1] - c[1]).powi(2)).sqrt());
+        let (a, b) = radii.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), r| {
+            (a.min(r), b.max(r))
+        });
         b - a
     };
     let golden = |f: &dyn Fn(f64) -> f64, middle: f64| {
@@ -96,7 +125,10 @@ fn searched(points: &[[f64; 2]]) -> f64 {
         }
         f(0.5 * (a + b))
     };
-    golden(&|x| golden(&|y| range([x, y]), NOMINAL.centre[1]), NOMINAL.centre[0])
+    golden(
+        &|x| golden(&|y| range([x, y]), NOMINAL.centre[1]),
+        NOMINAL.centre[0],
+    )
 }
 
 proptest! {
@@ -142,17 +174,37 @@ fn glitches_by_axis_and_quadrant() {
             .map(|i| {
                 let angle = sign * (-PI / 3.0 + (TAU + 0.7 * PI) * f64::from(i) / 72_000.0);
                 let after = |at: f64| (sign * (angle - at)).rem_euclid(TAU);
-                let bump = |d: f64| if d < 0.2 { (PI * d / 0.2).sin().powi(2) } else { 0.0 };
-                let r = R + (0..4).map(|k| heights[k] * bump(after(k as f64 * PI / 2.0))).sum::<f64>();
-                [NOMINAL.centre[0] + r * angle.cos(), NOMINAL.centre[1] + r * angle.sin()]
+                let bump = |d: f64| {
+                    if d < 0.2 {
+                        (PI * d / 0.2).sin().powi(2)
+                    } else {
+                        0.0
+                    }
+                };
+                let r = R
+                    + (0..4)
+                        .map(|k| heights[k] * bump(after(k as f64 * PI / 2.0)))
+                        .sum::<f64>();
+                [
+                    NOMINAL.centre[0] + r * angle.cos(),
+                    NOMINAL.centre[1] + r * angle.sin(),
+                ]
             })
             .collect();
         let glitches = quadrant_glitches(&NOMINAL, &points, FRAC_PI_4).unwrap();
-        let expected: [usize; 5] = if sign > 0.0 { [0, 1, 2, 3, 0] } else { [0, 3, 2, 1, 0] };
+        let expected: [usize; 5] = if sign > 0.0 {
+            [0, 1, 2, 3, 0]
+        } else {
+            [0, 3, 2, 1, 0]
+        };
         assert_eq!(glitches.len(), 5, "{glitches:?}");
         for (g, k) in glitches.iter().zip(expected) {
             assert_eq!(g.axis, k % 2);
-            let quadrant = if sign > 0.0 { [1, 2, 3, 4][k] } else { [4, 1, 2, 3][k] };
+            let quadrant = if sign > 0.0 {
+                [1, 2, 3, 4][k]
+            } else {
+                [4, 1, 2, 3][k]
+            };
             assert_eq!(g.quadrant, quadrant, "{g:?}");
             // The peak lies within half of a step of 90 µrad: h (π δ/0.2)² lower at most.
             assert!((g.peak - heights[k]).abs() < 4e-12, "{g:?}");
@@ -165,6 +217,14 @@ fn glitches_by_axis_and_quadrant() {
 fn what_is_wrong_is_said() {
     let half: Vec<[f64; 2]> = trace(100, |_| 0.0).into_iter().take(50).collect();
     let text = figures(&NOMINAL, &half, &half).unwrap_err().to_string();
-    assert!(text.contains("clockwise") && text.contains("an eighth"), "{text}");
-    assert!(quadrant_glitches(&NOMINAL, &half, 1.0).unwrap_err().to_string().contains("pi/4"));
+    assert!(
+        text.contains("clockwise") && text.contains("an eighth"),
+        "{text}"
+    );
+    assert!(
+        quadrant_glitches(&NOMINAL, &half, 1.0)
+            .unwrap_err()
+            .to_string()
+            .contains("pi/4")
+    );
 }

@@ -6,7 +6,11 @@ use toolpath::{Arc, Follower, Path, nearest_point, tangent_estimate};
 
 fn distance<const D: usize>(path: &Path<D>, s: f64, p: &[f64; D]) -> f64 {
     let x = path.at(s).position;
-    x.iter().zip(p).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
+    x.iter()
+        .zip(p)
+        .map(|(x, y)| (x - y) * (x - y))
+        .sum::<f64>()
+        .sqrt()
 }
 
 /// The first minimum of the distance from `s`, walked to in steps of `step` and refined by the
@@ -54,7 +58,12 @@ fn the_foot_is_that_of_a_walk_at_tips_of_20_um() {
         let foot = follower.follow(p);
         walked = walk(&path, walked, &p, 1e-6);
         let truth = distance(&path, walked, &p);
-        assert!((foot.length() - truth).abs() < 1e-9, "{} m: {} for {truth}", foot.s, foot.length());
+        assert!(
+            (foot.length() - truth).abs() < 1e-9,
+            "{} m: {} for {truth}",
+            foot.s,
+            foot.length()
+        );
         assert!((foot.s - walked).abs() < 2e-6, "{} for {walked}", foot.s);
         assert!((foot.signed().abs() - truth).abs() < 1e-9);
         if i % 30 == 0 {
@@ -129,7 +138,11 @@ fn corners_hold_the_foot() {
     assert!((follower.follow([0.4, -0.1]).s - 0.4).abs() < 1e-12);
     // Beyond the ends.
     assert_eq!(follower.follow([-5.0, 1.0]).s, 0.0);
-    assert_eq!(follower.follow([-1.0, 9.0]).s, 0.0, "the distance rises first");
+    assert_eq!(
+        follower.follow([-1.0, 9.0]).s,
+        0.0,
+        "the distance rises first"
+    );
     let mut late = Follower::new(&path, 1.5);
     assert_eq!(late.follow([1.0, 9.0]).s, 2.0);
     assert!(late.follow([f64::NAN, 0.0]).length().is_nan());
@@ -144,7 +157,10 @@ fn three_dimensions_have_two_components() {
     assert!((foot.length() - 5e-6).abs() < 1e-17);
     // Up is +Z; tangent (−Y) × up is −X, outward here.
     let [up, out] = foot.components([0.0, 0.0, 2.0]).unwrap();
-    assert!((up - 4e-6).abs() < 1e-17 && (out - 3e-6).abs() < 1e-16, "{up} {out}");
+    assert!(
+        (up - 4e-6).abs() < 1e-17 && (out - 3e-6).abs() < 1e-16,
+        "{up} {out}"
+    );
     assert_eq!(foot.components([0.0, 1.0, 0.0]), None);
 }
 

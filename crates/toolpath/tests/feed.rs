@@ -41,7 +41,11 @@ fn the_butterfly_keeps_every_limit() {
     within_limits(&profile, &limits, 400_000);
     // Not less than the length at the feed; tips cost less than 10 % of that.
     let least = path.length() / 0.05;
-    assert!(profile.duration() > least && profile.duration() < 1.1 * least, "{}", profile.duration());
+    assert!(
+        profile.duration() > least && profile.duration() < 1.1 * least,
+        "{}",
+        profile.duration()
+    );
     assert_eq!(profile.stops().len(), 2);
     let twice = FeedProfile::plan(&path, &limits).unwrap();
     assert_eq!(profile, twice);
@@ -81,7 +85,11 @@ fn a_line_takes_its_least_time() {
 #[test]
 fn a_circle_both_ways() {
     let limits = FeedLimits::equal(0.1, 1.0, 1.0, 20.0);
-    let test = CircleTest { run_in: 0.0, run_out: 0.0, ..CircleTest::new(0.02) };
+    let test = CircleTest {
+        run_in: 0.0,
+        run_out: 0.0,
+        ..CircleTest::new(0.02)
+    };
     let path = test.path().unwrap().path;
     let arc = FeedProfile::plan(&path, &limits).unwrap();
     within_limits(&arc, &limits, 40_000);
@@ -89,8 +97,19 @@ fn a_circle_both_ways() {
         let corner = [a[0] + b[0], a[1] + b[1]];
         let weights = vec![1.0, 0.5f64.sqrt(), 1.0];
         let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-        let points = vec![a, corner, b].iter().map(|p| p.map(|x| 0.02 * x)).collect();
-        Segment::from(Nurbs::new(&NurbsData { degree: 2, points, weights, knots }).unwrap())
+        let points = vec![a, corner, b]
+            .iter()
+            .map(|p| p.map(|x| 0.02 * x))
+            .collect();
+        Segment::from(
+            Nurbs::new(&NurbsData {
+                degree: 2,
+                points,
+                weights,
+                knots,
+            })
+            .unwrap(),
+        )
     };
     let ring = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 0.0]];
     let quarters = ring.windows(2).map(|r| quarter(r[0], r[1])).collect();
@@ -102,7 +121,13 @@ fn a_circle_both_ways() {
     let ratio = curve.duration() / arc.duration();
     assert!((0.95..1.003).contains(&ratio), "{ratio}");
     let circle = CircleTest::new(0.05).path_tilted(0.6).unwrap();
-    let limits = FeedLimits { feed: 0.05, velocity: [1.0; 3], acceleration: [1.0, 0.5, 2.0], jerk: [20.0, 30.0, 10.0], acceleration_step: [0.0; 3] };
+    let limits = FeedLimits {
+        feed: 0.05,
+        velocity: [1.0; 3],
+        acceleration: [1.0, 0.5, 2.0],
+        jerk: [20.0, 30.0, 10.0],
+        acceleration_step: [0.0; 3],
+    };
     let profile = FeedProfile::plan(&circle.path, &limits).unwrap();
     within_limits(&profile, &limits, 40_000);
     // The counted turn is at the feed.
@@ -118,7 +143,10 @@ fn stops_at_corners_and_jumps_of_curvature() {
     assert_eq!(profile.stops().len(), 4);
     for (i, &t) in profile.stops().iter().enumerate() {
         let point = profile.at(t);
-        assert!(point.feed.abs() < 1e-12 && (point.s - 0.1 * i as f64).abs() < 1e-12, "{point:?}");
+        assert!(
+            point.feed.abs() < 1e-12 && (point.s - 0.1 * i as f64).abs() < 1e-12,
+            "{point:?}"
+        );
     }
     let one = 0.1 / 0.1 + 0.1 / 1.0 + 1.0 / 20.0;
     assert!((profile.duration() - 3.0 * one).abs() < 1e-12);
@@ -126,7 +154,10 @@ fn stops_at_corners_and_jumps_of_curvature() {
     let arcs = rounded_rectangle([0.2, 0.1], 0.01, Blend::Arc).unwrap();
     let stopping = FeedProfile::plan(&arcs, &limits).unwrap();
     assert_eq!(stopping.stops().len(), 10);
-    let limits = FeedLimits { acceleration_step: [0.5; 2], ..limits };
+    let limits = FeedLimits {
+        acceleration_step: [0.5; 2],
+        ..limits
+    };
     let running = FeedProfile::plan(&arcs, &limits).unwrap();
     assert_eq!(running.stops().len(), 2);
     within_limits(&running, &limits, 40_000);
@@ -163,10 +194,16 @@ fn what_comes_out_is_one_motion() {
             let a = slope([low.velocity[k], high.velocity[k]]);
             let j = slope([low.acceleration[k], high.acceleration[k]]);
             assert!((v - here.velocity[k]).abs() < 1e-9, "{t}: {v} {here:?}");
-            assert!((a - here.acceleration[k]).abs() < 1e-6 * 15.0, "{t}: {a} {here:?}");
+            assert!(
+                (a - here.acceleration[k]).abs() < 1e-6 * 15.0,
+                "{t}: {a} {here:?}"
+            );
             // Jerk jumps at knots of the spline: there the mean of both sides is seen.
             let sides = [low.jerk[k], here.jerk[k], high.jerk[k]];
-            let (min, max) = (sides.iter().copied().fold(f64::MAX, f64::min), sides.iter().copied().fold(f64::MIN, f64::max));
+            let (min, max) = (
+                sides.iter().copied().fold(f64::MAX, f64::min),
+                sides.iter().copied().fold(f64::MIN, f64::max),
+            );
             assert!(j > min - 0.02 && j < max + 0.02, "{t}: {j} {sides:?}");
         }
         let s = profile.at(t).s;
@@ -184,14 +221,20 @@ fn limits_scaled_in_time_scale_the_time() {
     let path = rounded_rectangle([0.05, 0.03], 0.005, Blend::Quintic).unwrap();
     let one = FeedLimits::equal(0.1, 0.06, 0.7, 15.0);
     let two = FeedLimits::equal(0.2, 0.12, 2.8, 120.0);
-    let (one, two) = (FeedProfile::plan(&path, &one).unwrap(), FeedProfile::plan(&path, &two).unwrap());
+    let (one, two) = (
+        FeedProfile::plan(&path, &one).unwrap(),
+        FeedProfile::plan(&path, &two).unwrap(),
+    );
     assert!((one.duration() / two.duration() - 2.0).abs() < 1e-3);
 }
 
 #[test]
 fn what_is_wrong_is_said() {
     let path = Path::polyline(&[[0.0, 0.0], [1.0, 0.0]]).unwrap();
-    let limits = FeedLimits { jerk: [20.0, -1.0], ..FeedLimits::equal(0.05, 1.0, 1.0, 20.0) };
+    let limits = FeedLimits {
+        jerk: [20.0, -1.0],
+        ..FeedLimits::equal(0.05, 1.0, 1.0, 20.0)
+    };
     let text = FeedProfile::plan(&path, &limits).unwrap_err().to_string();
     assert_eq!(text, "jerk is -1 m/s³, but must be from 1e-9 to 1e9");
 }

@@ -9,7 +9,11 @@ use toolpath::{
 };
 
 fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
+    a.iter()
+        .zip(b)
+        .map(|(x, y)| (x - y) * (x - y))
+        .sum::<f64>()
+        .sqrt()
 }
 
 /// x′, x″ and x‴ against central differences of x, x′ and x″ over ± h.
@@ -70,10 +74,16 @@ fn a_rational_quadratic_is_a_circle() {
 fn length_of_a_parabola() {
     let exact = 0.5 * 5f64.sqrt() + 0.25 * 2f64.asinh();
     let b2 = vec![[0.0, 0.0], [0.5, 0.0], [1.0, 1.0]];
-    let b5 = (0..6).map(|i| [f64::from(i) / 5.0, f64::from(i * (i - 1)) / 20.0]).collect();
+    let b5 = (0..6)
+        .map(|i| [f64::from(i) / 5.0, f64::from(i * (i - 1)) / 20.0])
+        .collect();
     for points in [b2, b5] {
         let segment = Segment::bezier(points).unwrap();
-        assert!((segment.length() - exact).abs() < 2e-15, "{}", segment.length() - exact);
+        assert!(
+            (segment.length() - exact).abs() < 2e-15,
+            "{}",
+            segment.length() - exact
+        );
         // At x = 1/2: s = √2/4 + asinh(1)/4, κ = 2/(1 + 4x²)^1.5.
         let s = 2f64.sqrt() / 4.0 + 0.25 * 1f64.asinh();
         let point = segment.at(s);
@@ -86,9 +96,15 @@ fn length_of_a_parabola() {
 fn derivatives_of_the_butterfly() {
     let path = butterfly().unwrap();
     // Length and least radius by an independent program: tests/independent_geometry.py.
-    assert!((path.length() - BUTTERFLY_LENGTH).abs() < 1e-12, "{:?}", path.length());
+    assert!(
+        (path.length() - BUTTERFLY_LENGTH).abs() < 1e-12,
+        "{:?}",
+        path.length()
+    );
     let least = (0..400_000).map(|i| path.at(f64::from(i) * path.length() / 4e5));
-    let least = least.map(|p| 1.0 / p.curvature_size()).fold(f64::INFINITY, f64::min);
+    let least = least
+        .map(|p| 1.0 / p.curvature_size())
+        .fold(f64::INFINITY, f64::min);
     assert!((least / BUTTERFLY_RADIUS - 1.0).abs() < 1e-3, "{least:?}");
     for i in 0..1000 {
         let s = path.length() * (f64::from(i) + 0.37) / 1000.0;
@@ -97,19 +113,30 @@ fn derivatives_of_the_butterfly() {
             differences_agree(|s| path.at(s), s, 2e-8, 2e-4);
         }
     }
-    assert!(path.junctions().iter().all(|j| j.kind == JunctionKind::Third));
+    assert!(
+        path.junctions()
+            .iter()
+            .all(|j| j.kind == JunctionKind::Third)
+    );
     assert_eq!(path.junctions().len(), 47);
     assert!(distance(&path.at(0.0).position, &path.at(1.0).position) < 1e-16);
 }
 
 #[test]
 fn a_tilted_helix_has_its_curvature() {
-    let circle = CircleTest { start: 0.4, ..CircleTest::new(0.03) };
+    let circle = CircleTest {
+        start: 0.4,
+        ..CircleTest::new(0.03)
+    };
     let tilted = circle.path_tilted(0.6).unwrap();
     assert!((tilted.path.length() - 0.06 * TAU).abs() < 1e-15);
     assert!((tilted.counted.1 - tilted.counted.0 - 0.03 * TAU).abs() < 1e-15);
     let first = tilted.path.at(tilted.counted.0).position;
-    let expected = [0.03 * 0.4f64.cos(), 0.03 * 0.4f64.sin() * 0.6f64.cos(), 0.03 * 0.4f64.sin() * 0.6f64.sin()];
+    let expected = [
+        0.03 * 0.4f64.cos(),
+        0.03 * 0.4f64.sin() * 0.6f64.cos(),
+        0.03 * 0.4f64.sin() * 0.6f64.sin(),
+    ];
     assert!(distance(&first, &expected) < 1e-16);
     // Curvature r/(r² + p²) and torsion p/(r² + p²) of a helix that rises p per rad.
     let arc = Arc::new([0.0; 3], [0.02, 0.0, 0.0], [0.0, 1.0, 0.0], TAU).unwrap();
@@ -124,11 +151,19 @@ fn a_tilted_helix_has_its_curvature() {
 #[test]
 fn circles_run_both_ways() {
     for direction in [Direction::Clockwise, Direction::Counterclockwise] {
-        let test = CircleTest { direction, centre: [0.1, -0.2], ..CircleTest::new(0.05) };
+        let test = CircleTest {
+            direction,
+            centre: [0.1, -0.2],
+            ..CircleTest::new(0.05)
+        };
         let circle = test.path().unwrap();
         let first = circle.path.at(circle.counted.0);
         assert!(distance(&first.position, &[0.15, -0.2]) < 1e-15);
-        let up = if direction == Direction::Clockwise { -1.0 } else { 1.0 };
+        let up = if direction == Direction::Clockwise {
+            -1.0
+        } else {
+            1.0
+        };
         assert!((first.tangent[1] - up).abs() < 1e-15);
     }
 }
@@ -146,10 +181,16 @@ fn blends_keep_their_tolerance() {
             let nearest = (0..=20_000)
                 .map(|i| distance(&curve.at(length * f64::from(i) / 2e4).position, &[0.0; 3]))
                 .fold(f64::INFINITY, f64::min);
-            assert!((nearest - 1e-4).abs() < 1e-10, "{shape:?} {turn}: {nearest}");
+            assert!(
+                (nearest - 1e-4).abs() < 1e-10,
+                "{shape:?} {turn}: {nearest}"
+            );
             let path = Path::new(vec![a.unwrap().into(), curve, b.unwrap().into()]).unwrap();
             assert!(path.corners().is_empty(), "{shape:?} {turn}");
-            let breaks = path.junctions().iter().filter(|j| j.kind == JunctionKind::Curvature);
+            let breaks = path
+                .junctions()
+                .iter()
+                .filter(|j| j.kind == JunctionKind::Curvature);
             let expected = if shape == Blend::Arc { 2 } else { 0 };
             assert_eq!(breaks.count(), expected, "{shape:?} {turn}");
         }
@@ -159,7 +200,10 @@ fn blends_keep_their_tolerance() {
         let (_, _, b) = shape.between(&before, &after, 1.0).unwrap();
         assert!((b.unwrap().length() - 0.5e-3).abs() < 1e-12);
         let back = Line::new([0.0, 0.0], [-1.0, 0.0]).unwrap();
-        assert!(matches!(shape.between(&before, &back, 1e-4), Err(ToolpathError::Blend { .. })));
+        assert!(matches!(
+            shape.between(&before, &back, 1e-4),
+            Err(ToolpathError::Blend { .. })
+        ));
     }
 }
 
@@ -170,7 +214,12 @@ fn a_rounded_rectangle_is_closed() {
     assert!((path.length() - exact).abs() < 1e-14);
     assert!(path.corners().is_empty());
     let smooth = rounded_rectangle([0.2, 0.1], 0.01, Blend::Quintic).unwrap();
-    assert!(smooth.junctions().iter().all(|j| j.kind == JunctionKind::Third));
+    assert!(
+        smooth
+            .junctions()
+            .iter()
+            .all(|j| j.kind == JunctionKind::Third)
+    );
     assert!(rounded_rectangle([0.2, 0.1], 0.05, Blend::Arc).is_err());
 }
 
@@ -185,38 +234,84 @@ fn corners_and_repeated_knots_are_found() {
     let curve = |knots: &[f64]| {
         let points = (0..knots.len() - 4).map(|i| [i as f64, [0.0, 1.0, 3.0, 2.0][i % 4]]);
         let points = points.collect();
-        let data = NurbsData { degree: 3, points, weights: vec![], knots: knots.to_vec() };
+        let data = NurbsData {
+            degree: 3,
+            points,
+            weights: vec![],
+            knots: knots.to_vec(),
+        };
         Path::new(vec![Nurbs::new(&data).unwrap().into()]).unwrap()
     };
-    let kinds = |knots: &[f64]| curve(knots).junctions().iter().map(|j| j.kind).collect::<Vec<_>>();
+    let kinds = |knots: &[f64]| {
+        curve(knots)
+            .junctions()
+            .iter()
+            .map(|j| j.kind)
+            .collect::<Vec<_>>()
+    };
     let (a, b) = ([0.0; 4], [1.0; 4]);
-    assert_eq!(kinds(&[&a[..], &[0.5; 3], &b].concat()), vec![JunctionKind::Corner]);
-    assert_eq!(kinds(&[&a[..], &[0.5; 2], &b].concat()), vec![JunctionKind::Curvature]);
-    assert_eq!(kinds(&[&a[..], &[0.5; 1], &b].concat()), vec![JunctionKind::Third]);
+    assert_eq!(
+        kinds(&[&a[..], &[0.5; 3], &b].concat()),
+        vec![JunctionKind::Corner]
+    );
+    assert_eq!(
+        kinds(&[&a[..], &[0.5; 2], &b].concat()),
+        vec![JunctionKind::Curvature]
+    );
+    assert_eq!(
+        kinds(&[&a[..], &[0.5; 1], &b].concat()),
+        vec![JunctionKind::Third]
+    );
 }
 
 #[test]
 fn what_is_wrong_is_said() {
     let line = |a, b| Segment::from(Line::<2>::new(a, b).unwrap());
-    let gap = Path::new(vec![line([0.0, 0.0], [1.0, 0.0]), line([1.0, 1e-6], [2.0, 0.0])]);
+    let gap = Path::new(vec![
+        line([0.0, 0.0], [1.0, 0.0]),
+        line([1.0, 1e-6], [2.0, 0.0]),
+    ]);
     let text = gap.unwrap_err().to_string();
-    assert!(text.contains("segment 2") && text.contains("at most 0.000000001 m"), "{text}");
-    assert!(Path::<2>::new(vec![]).unwrap_err().to_string().contains("at least one"));
+    assert!(
+        text.contains("segment 2") && text.contains("at most 0.000000001 m"),
+        "{text}"
+    );
+    assert!(
+        Path::<2>::new(vec![])
+            .unwrap_err()
+            .to_string()
+            .contains("at least one")
+    );
     assert!(Line::new([0.0], [0.0]).is_err());
     assert!(Line::new([f64::NAN, 0.0], [0.0, 1.0]).is_err());
     assert!(Arc::new([0.0; 2], [1.0, 0.0], [1.0, 0.0], PI).is_err());
     // Two control points in one place: no tangent at the begin.
     let cusp = Segment::bezier(vec![[0.0, 0.0], [0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]);
-    assert!(matches!(cusp, Err(ToolpathError::Cusp { u: 0.0 })), "{cusp:?}");
+    assert!(
+        matches!(cusp, Err(ToolpathError::Cusp { u: 0.0 })),
+        "{cusp:?}"
+    );
     // A semicubical cusp inside, x = τ², y = τ³ with τ = t − ½, and with τ = t − 0.3.
     let inside = |c: f64| {
-        let x = [c * c, c * c - 2.0 / 3.0 * c, c * c - 4.0 / 3.0 * c + 1.0 / 3.0, (1.0 - c) * (1.0 - c)];
-        let y = [-c * c * c, -c * c * c + c * c, -c * c * c + 2.0 * c * c - c, (1.0 - c).powi(3)];
+        let x = [
+            c * c,
+            c * c - 2.0 / 3.0 * c,
+            c * c - 4.0 / 3.0 * c + 1.0 / 3.0,
+            (1.0 - c) * (1.0 - c),
+        ];
+        let y = [
+            -c * c * c,
+            -c * c * c + c * c,
+            -c * c * c + 2.0 * c * c - c,
+            (1.0 - c).powi(3),
+        ];
         Segment::bezier((0..4).map(|i| [x[i], y[i]]).collect())
     };
     for c in [0.5, 0.3] {
         let refused = inside(c).unwrap_err();
-        let ToolpathError::Cusp { u } = refused else { panic!("{refused}") };
+        let ToolpathError::Cusp { u } = refused else {
+            panic!("{refused}")
+        };
         assert!((u - c).abs() < 1e-8, "{u} for {c}");
     }
 }

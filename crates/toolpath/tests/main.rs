@@ -3,4 +3,6 @@
 mod circle;
 mod contour;
 mod feed;
+#[cfg(feature = "gcode")]
+mod gcode;
 mod geometry;

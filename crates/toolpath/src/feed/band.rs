@@ -8,7 +8,9 @@ pub(super) struct Pentadiagonal {
 
 impl Pentadiagonal {
     pub(super) fn zeros(n: usize) -> Self {
-        Self { rows: vec![[0.0; 3]; n] }
+        Self {
+            rows: vec![[0.0; 3]; n],
+        }
     }
 
     pub(super) fn clear(&mut self) {
@@ -38,7 +40,11 @@ impl Pentadiagonal {
                 d -= l2 * self.rows[i][2];
             }
             if i > 0 {
-                let coupled = if i > 1 { self.rows[i][2] * self.rows[i - 1][1] } else { 0.0 };
+                let coupled = if i > 1 {
+                    self.rows[i][2] * self.rows[i - 1][1]
+                } else {
+                    0.0
+                };
                 let a1 = self.rows[i][1] - coupled;
                 l1 = a1 / self.rows[i - 1][0];
                 d -= l1 * a1;
@@ -82,7 +88,9 @@ mod tests {
             let (i, j) = (i.max(j), i.min(j));
             if i - j < 3 { a.rows[i][i - j] } else { 0.0 }
         };
-        let mut x: Vec<f64> = (0..n).map(|i| (0..n).map(|j| entry(i, j) * wanted[j]).sum()).collect();
+        let mut x: Vec<f64> = (0..n)
+            .map(|i| (0..n).map(|j| entry(i, j) * wanted[j]).sum())
+            .collect();
         a.clone().solve(&mut x);
         for (x, w) in x.iter().zip(&wanted) {
             assert!((x - w).abs() < 1e-10, "{x} {w}");

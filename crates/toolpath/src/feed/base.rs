@@ -4,13 +4,21 @@
 /// second derivatives by x.
 pub(super) fn basis(x: f64) -> [[f64; 3]; 3] {
     let y = 1.0 - x;
-    [[0.5 * y * y, 0.5 + x * y, 0.5 * x * x], [-y, 1.0 - 2.0 * x, x], [1.0, -2.0, 1.0]]
+    [
+        [0.5 * y * y, 0.5 + x * y, 0.5 * x * x],
+        [-y, 1.0 - 2.0 * x, x],
+        [1.0, -2.0, 1.0],
+    ]
 }
 
 /// Their integrals from 0 to `x`.
 fn integrals(x: f64) -> [f64; 3] {
     let y = 1.0 - x;
-    [(1.0 - y * y * y) / 6.0, x * (0.5 + x * (0.5 - x / 3.0)), x * x * x / 6.0]
+    [
+        (1.0 - y * y * y) / 6.0,
+        x * (0.5 + x * (0.5 - x / 3.0)),
+        x * x * x / 6.0,
+    ]
 }
 
 /// Sum of three coefficients times three basis values.
@@ -93,16 +101,27 @@ impl Base {
         let b = basis(x);
         let c = &self.slopes[k..];
         let s = self.knots[k] + sum(c, &integrals(x));
-        BasePoint { s, d: [sum(c, &b[0]), sum(c, &b[1]), sum(c, &b[2])] }
+        BasePoint {
+            s,
+            d: [sum(c, &b[0]), sum(c, &b[1]), sum(c, &b[2])],
+        }
     }
 
     /// Interval and place in it of arc length `s`.
     pub(super) fn place(&self, s: f64) -> (usize, f64) {
-        let k = self.knots.partition_point(|&knot| knot <= s).clamp(1, self.intervals()) - 1;
+        let k = self
+            .knots
+            .partition_point(|&knot| knot <= s)
+            .clamp(1, self.intervals())
+            - 1;
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..60 {
             let x = 0.5 * (low + high);
-            if self.at(k, x).s > s { high = x } else { low = x }
+            if self.at(k, x).s > s {
+                high = x
+            } else {
+                low = x
+            }
         }
         (k, 0.5 * (low + high))
     }

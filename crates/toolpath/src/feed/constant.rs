@@ -30,7 +30,9 @@ pub(super) fn plan<const D: usize>(
         Segment::Line(line) => {
             let direction = line.direction();
             let least = |values: &[f64; D]| {
-                (0..D).map(|i| values[i] / direction[i].abs()).fold(f64::INFINITY, f64::min)
+                (0..D)
+                    .map(|i| values[i] / direction[i].abs())
+                    .fold(f64::INFINITY, f64::min)
             };
             let feed = least(&limits.velocity).min(limits.feed);
             let (acceleration, jerk) = (least(&limits.acceleration), least(&limits.jerk));
@@ -40,10 +42,15 @@ pub(super) fn plan<const D: usize>(
         Segment::Arc(arc) => {
             let amplitudes: [[f64; 3]; D] = std::array::from_fn(|i| arc.amplitudes(i));
             let most = |order: usize, values: &[f64; D]| {
-                (0..D).map(|i| values[i] / amplitudes[i][order]).fold(f64::INFINITY, f64::min)
+                (0..D)
+                    .map(|i| values[i] / amplitudes[i][order])
+                    .fold(f64::INFINITY, f64::min)
             };
             // In units of s: limits of the axis with the least room for each.
-            let kappa = amplitudes.iter().map(|a| a[1] / a[0].max(1e-300)).fold(0.0, f64::max);
+            let kappa = amplitudes
+                .iter()
+                .map(|a| a[1] / a[0].max(1e-300))
+                .fold(0.0, f64::max);
             let a = most(0, &limits.acceleration);
             let j = most(0, &limits.jerk);
             let feed = limits.feed.min(most(0, &limits.velocity));
@@ -61,7 +68,9 @@ fn fastest(
     kappa: f64,
 ) -> Result<Option<SCurve<f64>>, ToolpathError> {
     const STEPS: u32 = 40;
-    let most = feed.min((a / kappa).sqrt()).min(libm::cbrt(j / (kappa * kappa)));
+    let most = feed
+        .min((a / kappa).sqrt())
+        .min(libm::cbrt(j / (kappa * kappa)));
     let mut best: Option<SCurve<f64>> = None;
     for m in 1..=STEPS {
         let v = most * f64::from(m) / f64::from(STEPS);
@@ -74,9 +83,14 @@ fn fastest(
             if !(jerk > 0.0 && along > 0.0) {
                 continue;
             }
-            let Ok(limits) = Limits::<f64>::new(v, along, jerk) else { continue };
+            let Ok(limits) = Limits::<f64>::new(v, along, jerk) else {
+                continue;
+            };
             let curve = SCurve::plan(from, to, &limits)?;
-            if best.as_ref().is_none_or(|best| curve.duration() < best.duration()) {
+            if best
+                .as_ref()
+                .is_none_or(|best| curve.duration() < best.duration())
+            {
                 best = Some(curve);
             }
         }

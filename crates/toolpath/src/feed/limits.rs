@@ -38,7 +38,13 @@ impl<const D: usize> FeedLimits<D> {
             positive("acceleration", self.acceleration[i], "m/s²")?;
             positive("jerk", self.jerk[i], "m/s³")?;
             let step = self.acceleration_step[i];
-            within("acceleration_step", step - 5e8, "m/s²", 5e8, "from 0 to 1e9")?;
+            within(
+                "acceleration_step",
+                step - 5e8,
+                "m/s²",
+                5e8,
+                "from 0 to 1e9",
+            )?;
         }
         Ok(())
     }

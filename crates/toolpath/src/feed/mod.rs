@@ -68,7 +68,12 @@ impl Part {
         match self {
             Self::Constant(curve) => {
                 let p = curve.at(t);
-                FeedPoint { s: p.position, feed: p.velocity, acceleration: p.acceleration, jerk: p.jerk }
+                FeedPoint {
+                    s: p.position,
+                    feed: p.velocity,
+                    acceleration: p.acceleration,
+                    jerk: p.jerk,
+                }
             }
             Self::Optimised(stretch) => stretch.at(t),
         }
@@ -86,7 +91,11 @@ impl<'a, const D: usize> FeedProfile<'a, D> {
         limits.check()?;
         let stops = stops(path, limits);
         let cells = cells(path);
-        let mut profile = Self { path, parts: Vec::new(), starts: vec![0.0] };
+        let mut profile = Self {
+            path,
+            parts: Vec::new(),
+            starts: vec![0.0],
+        };
         for pair in stops.windows(2) {
             let range = (pair[0], pair[1]);
             let part = match constant::plan(path, limits, range)? {
@@ -117,7 +126,12 @@ impl<'a, const D: usize> FeedProfile<'a, D> {
 
     /// The axes at time `t` (s).
     pub fn axes(&self, t: f64) -> AxesPoint<D> {
-        let FeedPoint { s, feed, acceleration, jerk } = self.at(t);
+        let FeedPoint {
+            s,
+            feed,
+            acceleration,
+            jerk,
+        } = self.at(t);
         let p = self.path.at(s);
         let of = |f: &dyn Fn(f64, f64, f64) -> f64| {
             std::array::from_fn(|i| f(p.tangent[i], p.curvature[i], p.third[i]))
@@ -138,9 +152,19 @@ impl<'a, const D: usize> FeedProfile<'a, D> {
             return (0, FeedPoint::default());
         }
         if t >= self.duration() {
-            return (last, FeedPoint { s: self.path.length(), ..FeedPoint::default() });
+            return (
+                last,
+                FeedPoint {
+                    s: self.path.length(),
+                    ..FeedPoint::default()
+                },
+            );
         }
-        let part = self.starts.partition_point(|&start| start <= t).clamp(1, last + 1) - 1;
+        let part = self
+            .starts
+            .partition_point(|&start| start <= t)
+            .clamp(1, last + 1)
+            - 1;
         (part, self.parts[part].at(t - self.starts[part]))
     }
 }
@@ -148,14 +172,17 @@ impl<'a, const D: usize> FeedProfile<'a, D> {
 /// Arc lengths at which the feed is zero: begin, corners, jumps of curvature without an allowed
 /// step, end.
 fn stops<const D: usize>(path: &Path<D>, limits: &FeedLimits<D>) -> Vec<f64> {
-    let stopping = path.junctions().iter().filter(|junction| match junction.kind {
-        JunctionKind::Corner => true,
-        JunctionKind::Curvature => (0..D).any(|i| {
-            let step = junction.after.curvature[i] - junction.before.curvature[i];
-            step != 0.0 && limits.acceleration_step[i] == 0.0
-        }),
-        JunctionKind::Third => false,
-    });
+    let stopping = path
+        .junctions()
+        .iter()
+        .filter(|junction| match junction.kind {
+            JunctionKind::Corner => true,
+            JunctionKind::Curvature => (0..D).any(|i| {
+                let step = junction.after.curvature[i] - junction.before.curvature[i];
+                step != 0.0 && limits.acceleration_step[i] == 0.0
+            }),
+            JunctionKind::Third => false,
+        });
     let mut stops = vec![0.0];
     stops.extend(stopping.map(|junction| junction.s));
     stops.push(path.length());

@@ -48,7 +48,14 @@ impl<const D: usize> Held<D> {
             slowness = slowness.max(x1.abs() / limits.velocity[i]);
         }
         let v = d1 * d1 * slowness * slowness;
-        Self { k, b: b[0], weight: 0.0, a, j, v }
+        Self {
+            k,
+            b: b[0],
+            weight: 0.0,
+            a,
+            j,
+            v,
+        }
     }
 
     /// By which factor the rate q must be multiplied so that the greatest of velocity,
@@ -98,12 +105,19 @@ impl<const D: usize> Problem<D> {
                 held.push(place);
             }
         }
-        Self { base, held, n: n + 2 }
+        Self {
+            base,
+            held,
+            n: n + 2,
+        }
     }
 
     /// The greatest factor by which `q` may be multiplied.
     pub(super) fn factor(&self, q: &[f64]) -> f64 {
-        self.held.iter().map(|h| h.factor(q)).fold(f64::INFINITY, f64::min)
+        self.held
+            .iter()
+            .map(|h| h.factor(q))
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The greatest uniform rate, less a margin.
@@ -114,7 +128,10 @@ impl<const D: usize> Problem<D> {
 
     /// Time, s, by Simpson's rule.
     fn time(&self, q: &[f64]) -> f64 {
-        self.held.iter().map(|h| h.weight / sum(&q[h.k..], &h.b).sqrt()).sum()
+        self.held
+            .iter()
+            .map(|h| h.weight / sum(&q[h.k..], &h.b).sqrt())
+            .sum()
     }
 
     /// Improves the strictly feasible `q` until the time is within about `gap` of the least, of

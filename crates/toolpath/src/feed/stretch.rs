@@ -81,7 +81,12 @@ pub(super) fn plan<const D: usize>(
     Err(ToolpathError::Feed { from, to, reason })
 }
 
-fn sides<const D: usize>(path: &Path<D>, limits: &FeedLimits<D>, from: f64, to: f64) -> Vec<Side<D>> {
+fn sides<const D: usize>(
+    path: &Path<D>,
+    limits: &FeedLimits<D>,
+    from: f64,
+    to: f64,
+) -> Vec<Side<D>> {
     let mut sides = Vec::new();
     for junction in path.junctions().iter().filter(|j| j.s > from && j.s < to) {
         let mut speed = f64::INFINITY;
@@ -94,7 +99,11 @@ fn sides<const D: usize>(path: &Path<D>, limits: &FeedLimits<D>, from: f64, to: 
             }
         }
         for point in [junction.before, junction.after] {
-            sides.push(Side { s: junction.s, point, speed });
+            sides.push(Side {
+                s: junction.s,
+                point,
+                speed,
+            });
         }
     }
     sides
@@ -129,7 +138,11 @@ fn speeds<const D: usize>(
         let point = path.at(s);
         let mut speed = limits.feed;
         for i in 0..D {
-            let sizes = [point.tangent[i].abs(), point.curvature[i].abs(), point.third[i].abs()];
+            let sizes = [
+                point.tangent[i].abs(),
+                point.curvature[i].abs(),
+                point.third[i].abs(),
+            ];
             speed = speed
                 .min(limits.velocity[i] / sizes[0])
                 .min((limits.acceleration[i] / sizes[1]).sqrt())
@@ -153,10 +166,14 @@ fn ramps<const D: usize>(table: &mut [(f64, f64)], limits: &FeedLimits<D>) {
     }
     let after = |v: f64, d: f64| (v * v + 2.0 * acceleration * d).sqrt();
     for i in 1..n {
-        table[i].1 = table[i].1.min(after(table[i - 1].1, table[i].0 - table[i - 1].0));
+        table[i].1 = table[i]
+            .1
+            .min(after(table[i - 1].1, table[i].0 - table[i - 1].0));
     }
     for i in (0..n - 1).rev() {
-        table[i].1 = table[i].1.min(after(table[i + 1].1, table[i + 1].0 - table[i].0));
+        table[i].1 = table[i]
+            .1
+            .min(after(table[i + 1].1, table[i + 1].0 - table[i].0));
     }
 }
 
@@ -207,7 +224,10 @@ fn hold_peaks<const D: usize>(
 ) -> Stretch {
     for round in 0..3 {
         let peaks = peaks(path, limits, &problem.base, &rates);
-        let worst = peaks.iter().map(|p| p.1).fold(problem.factor(&rates), f64::min);
+        let worst = peaks
+            .iter()
+            .map(|p| p.1)
+            .fold(problem.factor(&rates), f64::min);
         let scale = worst.min(1.0) * (1.0 - 1e-12);
         if round == 2 || worst > 1.0 - 1e-5 {
             rates.iter_mut().for_each(|q| *q *= scale);
@@ -246,14 +266,22 @@ fn peaks<const D: usize>(
             ((k, worst.0), worst.1)
         })
         .collect();
-    let least = peaks.iter().map(|p| p.1).fold(f64::INFINITY, f64::min).min(1.0);
+    let least = peaks
+        .iter()
+        .map(|p| p.1)
+        .fold(f64::INFINITY, f64::min)
+        .min(1.0);
     for peak in peaks.iter_mut().filter(|p| p.1 < least * (1.0 + 1e-2)) {
         let (k, x) = peak.0;
         let width = 1.0 / SAMPLES as f64;
         let (mut a, mut b) = ((x - width).max(0.0), (x + width).min(1.0));
         for _ in 0..40 {
             let (c, d) = (b - 0.618_034 * (b - a), a + 0.618_034 * (b - a));
-            if factor(k, c) < factor(k, d) { b = d } else { a = c }
+            if factor(k, c) < factor(k, d) {
+                b = d
+            } else {
+                a = c
+            }
         }
         let refined = factor(k, 0.5 * (a + b));
         if refined < peak.1 {
@@ -265,7 +293,11 @@ fn peaks<const D: usize>(
 
 impl Stretch {
     fn new(base: Base, rates: Vec<f64>) -> Self {
-        let mut stretch = Self { base, rates, time: Panels::default() };
+        let mut stretch = Self {
+            base,
+            rates,
+            time: Panels::default(),
+        };
         let edges = (0..=stretch.base.intervals()).map(|k| k as f64);
         stretch.time = Panels::fixed(edges, |tau| stretch.slowness(tau));
         stretch
@@ -328,7 +360,9 @@ impl Stretch {
     /// small feed.
     fn speeds(&self) -> Vec<(f64, f64)> {
         let n = self.base.intervals();
-        let inner = (0..n).flat_map(|k| [(k, 0.0), (k, 0.5)]).chain([(n - 1, 1.0)]);
+        let inner = (0..n)
+            .flat_map(|k| [(k, 0.0), (k, 0.5)])
+            .chain([(n - 1, 1.0)]);
         let mut table: Vec<(f64, f64)> = Vec::with_capacity(2 * n + 1);
         for (k, x) in inner {
             let point = self.inside(k, x);
@@ -337,7 +371,9 @@ impl Stretch {
             }
         }
         let most = table.iter().map(|row| row.1).fold(0.0, f64::max);
-        table.iter_mut().for_each(|row| row.1 = row.1.max(1e-4 * most));
+        table
+            .iter_mut()
+            .for_each(|row| row.1 = row.1.max(1e-4 * most));
         table
     }
 }
