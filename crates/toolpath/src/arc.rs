@@ -55,7 +55,9 @@ impl<const D: usize> Arc<D> {
         let across = add_scaled(&towards, -dot(&towards, &u), &u);
         let size = norm(&across);
         let share = size / norm(&towards);
-        if !(share > 1e-9) {
+        // False for a NaN too.
+        let holds = share > 1e-9;
+        if !holds {
             let field = "part of `towards` across the radius";
             let valid = "greater than 1e-9 of its length";
             return Err(ToolpathError::Invalid {

@@ -41,7 +41,9 @@ impl Blend {
         positive("tolerance of a blend", tolerance, "m")?;
         let corner = before.to();
         let gap = norm(&sub(&corner, &after.from()));
-        if !(gap <= 1e-9) {
+        // False for a NaN too.
+        let holds = gap <= 1e-9;
+        if !holds {
             return Err(ToolpathError::Gap {
                 number: 2,
                 gap,

@@ -52,7 +52,9 @@ impl Foot<3> {
         let t = &self.point.tangent;
         let across = add_scaled(&up, -dot(&up, t), t);
         let size = norm(&across);
-        if !(size > 1e-9 * norm(&up) && size.is_finite()) {
+        // False for a NaN too.
+        let holds = size > 1e-9 * norm(&up) && size.is_finite();
+        if !holds {
             return None;
         }
         let n = across.map(|x| x / size);

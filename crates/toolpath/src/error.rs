@@ -83,7 +83,7 @@ pub enum ToolpathError {
     Motion(#[from] trajectories::TrajectoryError),
 }
 
-/// `value` if it is greater than zero and at most `most`.
+/// `value` if it lies from 1e-9 to 1e9.
 pub(crate) fn positive(
     field: &'static str,
     value: f64,

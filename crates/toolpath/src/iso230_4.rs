@@ -346,7 +346,9 @@ fn solve<const N: usize, const M: usize>(mut a: [[f64; M]; N]) -> Option<[f64; N
         let pivot = (k..N).fold(k, |p, i| if a[i][k].abs() > a[p][k].abs() { i } else { p });
         a.swap(k, pivot);
         let row = a[k];
-        if !(row[k].abs() > 1e-14) {
+        // False for a NaN too.
+        let holds = row[k].abs() > 1e-14;
+        if !holds {
             return None;
         }
         for next in a.iter_mut().skip(k + 1) {

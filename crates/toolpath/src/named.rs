@@ -136,7 +136,9 @@ pub fn rounded_rectangle(
         0.5 * positive("size", size[1], "m")?,
     ];
     positive("radius", radius, "m")?;
-    if !(radius <= 0.999 * half[0].min(half[1])) {
+    // False for a NaN too.
+    let holds = radius <= 0.999 * half[0].min(half[1]);
+    if !holds {
         let (field, valid) = ("radius", "at most 0.999 of half of the shorter side");
         return Err(ToolpathError::Invalid {
             field,

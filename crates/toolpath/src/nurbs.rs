@@ -151,7 +151,9 @@ impl<const D: usize> Nurbs<D> {
         let mean = rough / (self.range().1 - self.range().0);
         for piece in &self.pieces {
             for u in [piece.from, piece.to] {
-                if !(norm(&piece.derivatives(u)[1]) > 1e-9 * mean) {
+                // False for a NaN too.
+                let holds = norm(&piece.derivatives(u)[1]) > 1e-9 * mean;
+                if !holds {
                     return Err(ToolpathError::Cusp { u });
                 }
             }
@@ -345,7 +347,8 @@ fn check_knots(p: usize, n: usize, knots: &[f64]) -> Result<(), ToolpathError> {
     let range = knots[n] - knots[p];
     for (i, &value) in knots.iter().enumerate() {
         let number = i + 1;
-        let valid = if !(value.abs() <= 1e9) {
+        let sized = value.abs() <= 1e9;
+        let valid = if !sized {
             "from -1e9 to 1e9"
         } else if i > 0 && value < knots[i - 1] {
             "at least the one before"
@@ -353,7 +356,7 @@ fn check_knots(p: usize, n: usize, knots: &[f64]) -> Result<(), ToolpathError> {
             "equal to the one before, or greater by 1e-9 of the range"
         } else if i > p && i < n && value == knots[i - p] {
             "greater than the one `degree` places before: the curve would break here"
-        } else if i == n && !(range > 0.0) {
+        } else if i == n && range <= 0.0 {
             "greater than the knot number degree + 1"
         } else {
             continue;

@@ -109,7 +109,9 @@ impl<const D: usize> Path<D> {
                 let before = path.segments[i - 1].at(f64::INFINITY);
                 let after = path.segments[i].at(0.0);
                 let gap = norm(&sub(&before.position, &after.position));
-                if !(gap <= position) {
+                // False for a NaN too.
+                let holds = gap <= position;
+                if !holds {
                     let number = i + 1;
                     return Err(ToolpathError::Gap {
                         number,
@@ -199,9 +201,9 @@ impl<const D: usize> Junction<D> {
             kind: JunctionKind::Third,
         };
         // Curvatures that are equal come out equal to about 1e-12; 1e-9 1/m is a straight line.
-        junction.kind = if !(junction.angle() <= tangent) {
+        junction.kind = if junction.angle() > tangent {
             JunctionKind::Corner
-        } else if !(step <= 1e-7 * sizes + 1e-9) {
+        } else if step > 1e-7 * sizes + 1e-9 {
             JunctionKind::Curvature
         } else {
             JunctionKind::Third

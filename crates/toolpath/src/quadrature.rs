@@ -52,7 +52,9 @@ impl Panels {
                 // Rounding of a sum of ten terms is the floor below which no halving helps.
                 let floor = 1e-15 * whole;
                 let share = tolerance * ((b - a) / range);
-                if !(f(middle) > least) {
+                // False for a NaN too.
+                let holds = f(middle) > least;
+                if !holds {
                     return Err(middle);
                 } else if (left + right - whole).abs() <= share.max(floor) {
                     panels.push(middle, left, f(middle));
@@ -108,7 +110,9 @@ impl Panels {
         f: impl Fn(f64) -> f64,
     ) -> f64 {
         let last = self.edges.len() - 1;
-        if !(s > 0.0) {
+        // False for a NaN too.
+        let holds = s > 0.0;
+        if !holds {
             return self.edges[0];
         }
         if s >= self.sums[last] {

@@ -38,7 +38,7 @@ fn the_butterfly_keeps_every_limit() {
     let path = butterfly().unwrap();
     let limits = FeedLimits::equal(0.05, 1.0, 1.0, 20.0);
     let profile = FeedProfile::plan(&path, &limits).unwrap();
-    within_limits(&profile, &limits, 400_000);
+    within_limits(&profile, &limits, 200_000);
     // Not less than the length at the feed; tips cost less than 10 % of that.
     let least = path.length() / 0.05;
     assert!(
@@ -47,8 +47,6 @@ fn the_butterfly_keeps_every_limit() {
         profile.duration()
     );
     assert_eq!(profile.stops().len(), 2);
-    let twice = FeedProfile::plan(&path, &limits).unwrap();
-    assert_eq!(profile, twice);
 }
 
 /// d/V + V/A + A/J with the limits of the axis that has the least room, in closed form.
@@ -97,10 +95,7 @@ fn a_circle_both_ways() {
         let corner = [a[0] + b[0], a[1] + b[1]];
         let weights = vec![1.0, 0.5f64.sqrt(), 1.0];
         let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-        let points = vec![a, corner, b]
-            .iter()
-            .map(|p| p.map(|x| 0.02 * x))
-            .collect();
+        let points = [a, corner, b].iter().map(|p| p.map(|x| 0.02 * x)).collect();
         Segment::from(
             Nurbs::new(&NurbsData {
                 degree: 2,
@@ -183,6 +178,7 @@ fn what_comes_out_is_one_motion() {
     let path = rounded_rectangle([0.05, 0.03], 0.005, Blend::Quintic).unwrap();
     let limits = FeedLimits::equal(0.1, 0.06, 0.7, 15.0);
     let profile = FeedProfile::plan(&path, &limits).unwrap();
+    assert_eq!(profile, FeedProfile::plan(&path, &limits).unwrap());
     let h = 1e-6;
     let mut before = 0.0;
     for i in 1..2000 {
@@ -240,7 +236,7 @@ fn what_is_wrong_is_said() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(8))]
+    #![proptest_config(ProptestConfig::with_cases(5))]
 
     /// Random curves, random limits per axis.
     #[test]
@@ -258,7 +254,7 @@ proptest! {
         let path = Path::new(vec![Nurbs::new(&data).unwrap().into()]).unwrap();
         let limits = FeedLimits { feed, velocity: [0.2; 3], acceleration, jerk, acceleration_step: [0.0; 3] };
         let profile = FeedProfile::plan(&path, &limits).unwrap();
-        let most = extremes(&profile, &limits, 40_000);
+        let most = extremes(&profile, &limits, 20_000);
         prop_assert!(most.iter().all(|m| *m <= 1.0 + 1e-9), "{most:?}");
         // Something is at its limit.
         let feed = (0..1000).map(|i| profile.at(profile.duration() * f64::from(i) / 1e3).feed / limits.feed);

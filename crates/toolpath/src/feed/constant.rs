@@ -80,7 +80,9 @@ fn fastest(
             let along = room * f64::from(n) / f64::from(STEPS);
             let cross = 3.0 * kappa * v * along;
             let jerk = (j * j - cross * cross).max(0.0).sqrt() - kappa * kappa * v * v * v;
-            if !(jerk > 0.0 && along > 0.0) {
+            // False for a NaN too.
+            let holds = jerk > 0.0 && along > 0.0;
+            if !holds {
                 continue;
             }
             let Ok(limits) = Limits::<f64>::new(v, along, jerk) else {

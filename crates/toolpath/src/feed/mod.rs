@@ -52,7 +52,7 @@ pub struct FeedProfile<'a, const D: usize> {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Part {
-    Constant(SCurve<f64>),
+    Constant(Box<SCurve<f64>>),
     Optimised(Box<Stretch>),
 }
 
@@ -99,7 +99,7 @@ impl<'a, const D: usize> FeedProfile<'a, D> {
         for pair in stops.windows(2) {
             let range = (pair[0], pair[1]);
             let part = match constant::plan(path, limits, range)? {
-                Some(curve) => Part::Constant(curve),
+                Some(curve) => Part::Constant(Box::new(curve)),
                 None => Part::Optimised(Box::new(stretch::plan(path, &cells, limits, range)?)),
             };
             let start = profile.starts[profile.starts.len() - 1];
@@ -148,7 +148,9 @@ impl<'a, const D: usize> FeedProfile<'a, D> {
 
     fn locate(&self, t: f64) -> (usize, FeedPoint) {
         let last = self.parts.len() - 1;
-        if !(t > 0.0) {
+        // False for a NaN too.
+        let holds = t > 0.0;
+        if !holds {
             return (0, FeedPoint::default());
         }
         if t >= self.duration() {

@@ -164,7 +164,9 @@ impl<const D: usize> Problem<D> {
             hessian.solve(&mut step);
             let slope: f64 = step.iter().zip(&gradient).map(|(s, g)| s * g).sum();
             // A decrement of less than one constraint in a thousand is no part of the gap.
-            if !(slope < -1e-3 * self.held.len() as f64) {
+            // False for a NaN too.
+            let holds = slope < -1e-3 * self.held.len() as f64;
+            if !holds {
                 break;
             }
             let mut length = 1.0;
@@ -186,7 +188,7 @@ impl<const D: usize> Problem<D> {
 
     /// Time times weight less the logarithms of all slacks; infinite outside.
     fn merit(&self, q: &[f64], weight: f64) -> f64 {
-        if q.iter().any(|q| !(*q > 0.0)) {
+        if !q.iter().all(|q| *q > 0.0) {
             return f64::INFINITY;
         }
         // The coefficients are positive, and with them the rate between all places.

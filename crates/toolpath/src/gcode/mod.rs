@@ -207,7 +207,8 @@ impl State {
                 }
                 'X' | 'Y' | 'Z' | 'I' | 'J' | 'K' | 'R' | 'F' | 'N' | 'S' | 'T' => {}
                 _ => {
-                    return block.refuse(&word.text, "one of the letters F G I J K M N R S T X Y Z");
+                    return block
+                        .refuse(&word.text, "one of the letters F G I J K M N R S T X Y Z");
                 }
             }
         }
@@ -234,7 +235,9 @@ impl State {
             // Tenths: 90.1 is 901.
             let tenths = word.value * 10.0;
             let code = tenths.round();
-            if !((0.0..1000.0).contains(&code) && (tenths - code).abs() < 1e-9) {
+            // False for a NaN too.
+            let holds = (0.0..1000.0).contains(&code) && (tenths - code).abs() < 1e-9;
+            if !holds {
                 return block.refuse(&word.text, KNOWN);
             }
             let group = match code as u32 {
@@ -397,7 +400,9 @@ impl State {
             return Ok(centre);
         }
         let (begin, last) = (norm(&sub(&start, &centre)), norm(&sub(&end, &centre)));
-        if !((begin - last).abs() <= RADIUS_TOLERANCE) {
+        // False for a NaN too.
+        let holds = (begin - last).abs() <= RADIUS_TOLERANCE;
+        if !holds {
             let (line, word) = (block.line, block.text("IJK"));
             return Err(GcodeError::Radii {
                 line,
@@ -429,10 +434,14 @@ impl State {
         }
         let chord = sub(&end, &start);
         let half = 0.5 * norm(&chord);
-        if !(half > 0.0) {
+        // False for a NaN too.
+        let holds = half > 0.0;
+        if !holds {
             return block.refuse(&block.text("R"), "a centre (I J K) for a full circle");
         }
-        if !(radius.abs() >= half - RADIUS_TOLERANCE) {
+        // False for a NaN too.
+        let holds = radius.abs() >= half - RADIUS_TOLERANCE;
+        if !holds {
             return block.refuse(
                 &block.text("R"),
                 "a radius of at least half of the distance to the end",
