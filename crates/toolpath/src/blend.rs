@@ -2,7 +2,7 @@
 
 use crate::error::{ToolpathError, positive};
 use crate::vector::{add_scaled, dot, norm, sub};
-use crate::{Arc, Line, Nurbs, NurbsData, Segment};
+use crate::{Arc, Line, Nurbs, NurbsData, PathSegment};
 
 /// Shape of a blend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +37,7 @@ impl Blend {
         before: &Line<D>,
         after: &Line<D>,
         tolerance: f64,
-    ) -> Result<(Option<Line<D>>, Segment<D>, Option<Line<D>>), ToolpathError> {
+    ) -> Result<(Option<Line<D>>, PathSegment<D>, Option<Line<D>>), ToolpathError> {
         positive("tolerance of a blend", tolerance, "m")?;
         let corner = before.to();
         let gap = norm(&sub(&corner, &after.from()));
@@ -75,7 +75,7 @@ impl Blend {
                 let radius = d * cos / sin;
                 let out = add_scaled(&t1, -dot(&t1, &t0), &t0);
                 let centre = add_scaled(&begin, radius / norm(&out), &out);
-                Segment::Arc(Arc::new(centre, begin, t0, 2.0 * half)?)
+                PathSegment::Arc(Arc::new(centre, begin, t0, 2.0 * half)?)
             }
             Self::Quintic => {
                 let points = vec![
@@ -86,7 +86,7 @@ impl Blend {
                     add_scaled(&corner, 0.5 * d, &t1),
                     end,
                 ];
-                Segment::bezier(points)?
+                PathSegment::bezier(points)?
             }
         };
         Ok((
@@ -97,7 +97,7 @@ impl Blend {
     }
 }
 
-impl<const D: usize> Segment<D> {
+impl<const D: usize> PathSegment<D> {
     /// The Bézier curve of the given control points, m.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! Contour error: the distance of a position from the path.
 
 use crate::vector::{add_scaled, dot, norm, sub};
-use crate::{Path, PathPoint, Segment};
+use crate::{Path, PathPoint, PathSegment};
 
 /// The foot of a position on the path, and how far off it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -241,7 +241,7 @@ pub(crate) fn cells<const D: usize>(path: &Path<D>) -> Vec<Cell> {
     let mut cells = Vec::new();
     for (segment, piece) in path.segments().iter().enumerate() {
         let (from, to) = (path.starts()[segment], path.starts()[segment + 1]);
-        let Segment::Nurbs(curve) = piece else {
+        let PathSegment::Nurbs(curve) = piece else {
             let point = piece.at(0.0);
             let (second, third) = (norm(&point.curvature), norm(&point.third));
             cells.push(Cell {

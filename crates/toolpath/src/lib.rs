@@ -81,7 +81,7 @@ pub use line::Line;
 pub use nurbs::{MAX_DEGREE, Nurbs, NurbsData};
 pub use path::{Junction, JunctionKind, Path, PathTolerances};
 pub use point::PathPoint;
-pub use segment::Segment;
+pub use segment::PathSegment;
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

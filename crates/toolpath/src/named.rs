@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::error::{ToolpathError, coordinates, positive, within};
-use crate::{Arc, Blend, Line, Nurbs, NurbsData, Path, Segment};
+use crate::{Arc, Blend, Line, Nurbs, NurbsData, Path, PathSegment};
 
 /// Sense of a circle, seen against the third axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,7 +149,7 @@ pub fn rounded_rectangle(
     }
     let [a, b] = half;
     let ring = [[0.0, -b], [a, -b], [a, b], [-a, b], [-a, -b], [0.0, -b]];
-    let mut segments: Vec<Segment<2>> = Vec::new();
+    let mut segments: Vec<PathSegment<2>> = Vec::new();
     let mut from = ring[0];
     for i in 1..5 {
         let corner = ring[i];
@@ -167,7 +167,7 @@ pub fn rounded_rectangle(
             }
             Blend::Quintic => {
                 let half = |p: [f64; 2]| [0.5 * (p[0] + corner[0]), 0.5 * (p[1] + corner[1])];
-                Segment::bezier(vec![begin, half(begin), corner, corner, half(end), end])?
+                PathSegment::bezier(vec![begin, half(begin), corner, corner, half(end), end])?
             }
         });
         from = end;

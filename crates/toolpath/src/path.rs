@@ -2,7 +2,7 @@
 
 use crate::error::{ToolpathError, within};
 use crate::vector::{add_scaled, norm, sub};
-use crate::{PathPoint, Segment};
+use crate::{PathPoint, PathSegment};
 
 /// How far two segments that meet may differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +51,7 @@ pub enum JunctionKind {
 /// A path in `D` dimensions: segments that follow one another, by arc length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path<const D: usize> {
-    segments: Vec<Segment<D>>,
+    segments: Vec<PathSegment<D>>,
     /// Arc length at which each segment begins, and that of the end.
     starts: Vec<f64>,
     junctions: Vec<Junction<D>>,
@@ -62,7 +62,7 @@ impl<const D: usize> Path<D> {
     ///
     /// # Errors
     /// As [`Path::with_tolerances`].
-    pub fn new(segments: Vec<Segment<D>>) -> Result<Self, ToolpathError> {
+    pub fn new(segments: Vec<PathSegment<D>>) -> Result<Self, ToolpathError> {
         Self::with_tolerances(segments, &PathTolerances::default())
     }
 
@@ -72,7 +72,7 @@ impl<const D: usize> Path<D> {
     /// [`ToolpathError::Count`] without a segment, [`ToolpathError::Gap`] if two do not meet,
     /// [`ToolpathError::Invalid`] for a tolerance.
     pub fn with_tolerances(
-        segments: Vec<Segment<D>>,
+        segments: Vec<PathSegment<D>>,
         tolerances: &PathTolerances,
     ) -> Result<Self, ToolpathError> {
         let PathTolerances { position, tangent } = *tolerances;
@@ -122,7 +122,7 @@ impl<const D: usize> Path<D> {
                 path.junctions
                     .push(Junction::new(start, before, after, tangent));
             }
-            if let Segment::Nurbs(curve) = &path.segments[i] {
+            if let PathSegment::Nurbs(curve) = &path.segments[i] {
                 for (k, s) in curve.knots().into_iter().enumerate() {
                     let (before, after) = (curve.beside_knot(k, false), curve.beside_knot(k, true));
                     path.junctions
@@ -152,7 +152,7 @@ impl<const D: usize> Path<D> {
     }
 
     /// Its segments.
-    pub fn segments(&self) -> &[Segment<D>] {
+    pub fn segments(&self) -> &[PathSegment<D>] {
         &self.segments
     }
 

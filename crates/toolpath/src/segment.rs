@@ -7,7 +7,7 @@ use crate::{Arc, Line, Nurbs, PathPoint};
 /// One piece of a path.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Segment<const D: usize> {
+pub enum PathSegment<const D: usize> {
     /// A straight line.
     Line(Line<D>),
     /// A circular arc or a helix.
@@ -16,7 +16,7 @@ pub enum Segment<const D: usize> {
     Nurbs(Shared<Nurbs<D>>),
 }
 
-impl<const D: usize> Segment<D> {
+impl<const D: usize> PathSegment<D> {
     /// Length, m.
     pub fn length(&self) -> f64 {
         match self {
@@ -37,19 +37,19 @@ impl<const D: usize> Segment<D> {
     }
 }
 
-impl<const D: usize> From<Line<D>> for Segment<D> {
+impl<const D: usize> From<Line<D>> for PathSegment<D> {
     fn from(line: Line<D>) -> Self {
         Self::Line(line)
     }
 }
 
-impl<const D: usize> From<Arc<D>> for Segment<D> {
+impl<const D: usize> From<Arc<D>> for PathSegment<D> {
     fn from(arc: Arc<D>) -> Self {
         Self::Arc(arc)
     }
 }
 
-impl<const D: usize> From<Nurbs<D>> for Segment<D> {
+impl<const D: usize> From<Nurbs<D>> for PathSegment<D> {
     fn from(curve: Nurbs<D>) -> Self {
         Self::Nurbs(Shared::new(curve))
     }

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use proptest::prelude::*;
 use toolpath::named::{CircleTest, butterfly, rounded_rectangle};
-use toolpath::{Blend, FeedLimits, FeedProfile, Nurbs, NurbsData, Path, Segment};
+use toolpath::{Blend, FeedLimits, FeedProfile, Nurbs, NurbsData, Path, PathSegment};
 
 /// Greatest velocity, acceleration and jerk of an axis, over their limits, at `n` times that are
 /// no multiple of anything.
@@ -30,7 +30,7 @@ fn within_limits<const D: usize>(profile: &FeedProfile<D>, limits: &FeedLimits<D
 
 /// A curve that is a straight line, of degree 1, so that it is planned as a curve.
 fn line_as_curve(to: [f64; 2]) -> Path<2> {
-    Path::new(vec![Segment::bezier(vec![[0.0, 0.0], to]).unwrap()]).unwrap()
+    Path::new(vec![PathSegment::bezier(vec![[0.0, 0.0], to]).unwrap()]).unwrap()
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn a_circle_both_ways() {
         let weights = vec![1.0, 0.5f64.sqrt(), 1.0];
         let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         let points = [a, corner, b].iter().map(|p| p.map(|x| 0.02 * x)).collect();
-        Segment::from(
+        PathSegment::from(
             Nurbs::new(&NurbsData {
                 degree: 2,
                 points,
@@ -266,7 +266,7 @@ proptest! {
     #[test]
     fn any_limits_are_taken(sizes in prop::collection::vec(-9..9i32, 4)) {
         let value = |i: usize| 10f64.powi(sizes[i]);
-        let path = Path::new(vec![Segment::bezier(vec![[0.0, 0.0], [0.01, 0.0], [0.01, 0.01]]).unwrap()]).unwrap();
+        let path = Path::new(vec![PathSegment::bezier(vec![[0.0, 0.0], [0.01, 0.0], [0.01, 0.01]]).unwrap()]).unwrap();
         let limits = FeedLimits::equal(value(0), value(1), value(2), value(3));
         if let Ok(profile) = FeedProfile::plan(&path, &limits) {
             let most = extremes(&profile, &limits, 2_000);

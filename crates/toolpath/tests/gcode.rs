@@ -3,10 +3,10 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use proptest::prelude::*;
-use toolpath::gcode::{GcodeError, Run, read};
-use toolpath::{PathTolerances, Segment};
+use toolpath::gcode::{GcodeError, ProgramRun, read};
+use toolpath::{PathSegment, PathTolerances};
 
-fn program(text: &str) -> Vec<Run> {
+fn program(text: &str) -> Vec<ProgramRun> {
     read(text, [0.0; 3], &PathTolerances::default()).unwrap()
 }
 
@@ -81,7 +81,7 @@ fn each_plane() {
 fn full_circles_long_arcs_and_helices() {
     let runs = program("G0 X10\nG2 I-10 F100\nG3 X0 Y10 R-10\nG3 X-10 Y0 Z5 I0 J-10");
     let sweeps = runs[1].path.segments().iter().map(|s| match s {
-        Segment::Arc(arc) => arc.sweep(),
+        PathSegment::Arc(arc) => arc.sweep(),
         other => panic!("{other:?}"),
     });
     let sweeps: Vec<f64> = sweeps.collect();
@@ -90,7 +90,7 @@ fn full_circles_long_arcs_and_helices() {
     }
     near(runs[1].path.at(1.0).position, [-0.01, 0.0, 0.005]);
     // R-10 from (10, 0) to (0, 10): centre at (10, 10), by the longer arc.
-    let Segment::Arc(long) = &runs[1].path.segments()[1] else {
+    let PathSegment::Arc(long) = &runs[1].path.segments()[1] else {
         unreachable!()
     };
     near(long.centre(), [0.01, 0.01, 0.0]);

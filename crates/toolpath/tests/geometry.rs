@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use proptest::prelude::*;
 use toolpath::named::{CircleTest, Direction, butterfly, rounded_rectangle};
 use toolpath::{
-    Arc, Blend, JunctionKind, Line, Nurbs, NurbsData, Path, PathPoint, Segment, ToolpathError,
+    Arc, Blend, JunctionKind, Line, Nurbs, NurbsData, Path, PathPoint, PathSegment, ToolpathError,
 };
 
 fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
@@ -78,7 +78,7 @@ fn length_of_a_parabola() {
         .map(|i| [f64::from(i) / 5.0, f64::from(i * (i - 1)) / 20.0])
         .collect();
     for points in [b2, b5] {
-        let segment = Segment::bezier(points).unwrap();
+        let segment = PathSegment::bezier(points).unwrap();
         assert!(
             (segment.length() - exact).abs() < 2e-15,
             "{}",
@@ -266,7 +266,7 @@ fn corners_and_repeated_knots_are_found() {
 
 #[test]
 fn what_is_wrong_is_said() {
-    let line = |a, b| Segment::from(Line::<2>::new(a, b).unwrap());
+    let line = |a, b| PathSegment::from(Line::<2>::new(a, b).unwrap());
     let gap = Path::new(vec![
         line([0.0, 0.0], [1.0, 0.0]),
         line([1.0, 1e-6], [2.0, 0.0]),
@@ -286,7 +286,7 @@ fn what_is_wrong_is_said() {
     assert!(Line::new([f64::NAN, 0.0], [0.0, 1.0]).is_err());
     assert!(Arc::new([0.0; 2], [1.0, 0.0], [1.0, 0.0], PI).is_err());
     // Two control points in one place: no tangent at the begin.
-    let cusp = Segment::bezier(vec![[0.0, 0.0], [0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]);
+    let cusp = PathSegment::bezier(vec![[0.0, 0.0], [0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]);
     assert!(
         matches!(cusp, Err(ToolpathError::Cusp { u: 0.0 })),
         "{cusp:?}"
@@ -305,7 +305,7 @@ fn what_is_wrong_is_said() {
             -c * c * c + 2.0 * c * c - c,
             (1.0 - c).powi(3),
         ];
-        Segment::bezier((0..4).map(|i| [x[i], y[i]]).collect())
+        PathSegment::bezier((0..4).map(|i| [x[i], y[i]]).collect())
     };
     for c in [0.5, 0.3] {
         let refused = inside(c).unwrap_err();
@@ -350,7 +350,7 @@ proptest! {
         let v = |i: usize| [values[i], values[i + 1]];
         let line = Line::new(v(0), v(2));
         let arc = Arc::new(v(0), v(2), v(4), values[6]);
-        let segments = line.map(Segment::from).into_iter().chain(arc.map(Segment::from));
+        let segments = line.map(PathSegment::from).into_iter().chain(arc.map(PathSegment::from));
         if let Ok(path) = Path::new(segments.collect()) {
             path.at(values[7]);
         }

@@ -4,7 +4,7 @@ use trajectories::{Limits, Motion, SCurve};
 
 use super::FeedLimits;
 use crate::error::ToolpathError;
-use crate::{Path, Segment};
+use crate::{Path, PathSegment};
 
 /// The S-curve over `from` to `to` (m), if that is one segment of constant curvature.
 ///
@@ -27,7 +27,7 @@ pub(super) fn plan<const D: usize>(
         return Ok(None);
     }
     match &path.segments()[index] {
-        Segment::Line(line) => {
+        PathSegment::Line(line) => {
             let direction = line.direction();
             let least = |values: &[f64; D]| {
                 (0..D)
@@ -39,7 +39,7 @@ pub(super) fn plan<const D: usize>(
             let limits = Limits::<f64>::new(feed, acceleration, jerk)?;
             Ok(Some(SCurve::plan(from, to, &limits)?))
         }
-        Segment::Arc(arc) => {
+        PathSegment::Arc(arc) => {
             let amplitudes: [[f64; 3]; D] = std::array::from_fn(|i| arc.amplitudes(i));
             let most = |order: usize, values: &[f64; D]| {
                 (0..D)
@@ -56,7 +56,7 @@ pub(super) fn plan<const D: usize>(
             let feed = limits.feed.min(most(0, &limits.velocity));
             fastest((from, to), feed, a, j, kappa)
         }
-        Segment::Nurbs(_) => Ok(None),
+        PathSegment::Nurbs(_) => Ok(None),
     }
 }
 

@@ -23,7 +23,7 @@ use std::f64::consts::TAU;
 
 use crate::error::ToolpathError;
 use crate::vector::{norm, sub};
-use crate::{Arc, Line, Path, PathTolerances, Segment};
+use crate::{Arc, Line, Path, PathSegment, PathTolerances};
 use words::{Word, words};
 
 /// Why a program was refused.
@@ -71,7 +71,7 @@ pub const RADIUS_TOLERANCE: f64 = 2e-6;
 
 /// A path at one feed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Run {
+pub struct ProgramRun {
     /// The path, m.
     pub path: Path<3>,
     /// Feed, m/s; `None` for rapids.
@@ -89,7 +89,7 @@ pub fn read(
     text: &str,
     start: [f64; 3],
     tolerances: &PathTolerances,
-) -> Result<Vec<Run>, GcodeError> {
+) -> Result<Vec<ProgramRun>, GcodeError> {
     let mut state = State {
         position: start,
         ..State::default()
@@ -115,14 +115,14 @@ pub fn read(
                 line: lines.0,
                 source,
             })?;
-        runs.push(Run { path, feed, lines });
+        runs.push(ProgramRun { path, feed, lines });
         i += count;
     }
     Ok(runs)
 }
 
 struct Move {
-    segment: Segment<3>,
+    segment: PathSegment<3>,
     feed: Option<f64>,
     line: usize,
 }
@@ -327,7 +327,7 @@ impl State {
         block: &Block,
         target: [f64; 3],
         counterclockwise: bool,
-    ) -> Result<Segment<3>, GcodeError> {
+    ) -> Result<PathSegment<3>, GcodeError> {
         let [a, b, c] = self.plane;
         let start = [self.position[a], self.position[b]];
         let end = [target[a], target[b]];
