@@ -54,7 +54,7 @@ fn the_foot_is_that_of_a_walk_at_tips_of_20_um() {
     let mut follower = Follower::new(&path, 0.0);
     let mut walked = 0.0;
     let mut other_branch = 0;
-    for (i, p) in measured(&path, 6_000).into_iter().enumerate() {
+    for (i, p) in measured(&path, 3_000).into_iter().enumerate() {
         let foot = follower.follow(p);
         walked = walk(&path, walked, &p, 1e-6);
         let truth = distance(&path, walked, &p);
@@ -66,7 +66,7 @@ fn the_foot_is_that_of_a_walk_at_tips_of_20_um() {
         );
         assert!((foot.s - walked).abs() < 2e-6, "{} for {walked}", foot.s);
         assert!((foot.signed().abs() - truth).abs() < 1e-9);
-        if i % 60 == 0 {
+        if i % 30 == 0 {
             other_branch += usize::from(nearest_point(&path, p, 3000).length() < truth - 1e-6);
         }
     }

@@ -38,7 +38,7 @@ fn the_butterfly_keeps_every_limit() {
     let path = butterfly().unwrap();
     let limits = FeedLimits::equal(0.05, 1.0, 1.0, 20.0);
     let profile = FeedProfile::plan(&path, &limits).unwrap();
-    within_limits(&profile, &limits, 200_000);
+    within_limits(&profile, &limits, 100_000);
     // Not less than the length at the feed; tips cost less than 10 % of that.
     let least = path.length() / 0.05;
     assert!(
@@ -236,7 +236,7 @@ fn what_is_wrong_is_said() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(5))]
+    #![proptest_config(ProptestConfig::with_cases(3))]
 
     /// Random curves, random limits per axis.
     #[test]

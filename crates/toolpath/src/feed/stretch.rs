@@ -49,12 +49,7 @@ pub(super) fn plan<const D: usize>(
     (from, to): (f64, f64),
 ) -> Result<Stretch, ToolpathError> {
     let sides = sides(path, limits, from, to);
-    let mut table = speeds(path, cells, limits, (from, to));
-    for side in &sides {
-        if let Some(row) = table.iter_mut().find(|row| row.0 >= side.s) {
-            row.1 = row.1.min(side.speed);
-        }
-    }
+    let mut table = places(cells, limits.feed, (from, to));
     ramps(&mut table, limits);
     // A first answer shows where the feed is low; the second is made on a base that follows it, and
     // is better at sharp tips. The problem is not convex, so that it may also be worse.
@@ -109,48 +104,28 @@ fn sides<const D: usize>(
     sides
 }
 
-/// Greatest feed that each place allows by itself.
-fn speeds<const D: usize>(
-    path: &Path<D>,
-    cells: &[Cell],
-    limits: &FeedLimits<D>,
-    (from, to): (f64, f64),
-) -> Vec<(f64, f64)> {
-    const SAMPLES: usize = 8;
-    let mut table = Vec::new();
+/// Places close enough to show the path's shape, each with the feed.
+///
+/// A first base with the feed that each place allows by itself was tried: its low places stay in
+/// the answer where they need not.
+fn places(cells: &[Cell], feed: f64, (from, to): (f64, f64)) -> Vec<(f64, f64)> {
+    let mut places = vec![to];
     for cell in cells.iter().filter(|c| c.to > from && c.from < to) {
         let (a, b) = (cell.from.max(from), cell.to.min(to));
         // A long line still needs room for its ramps.
-        let samples = if cell.second == 0.0 { 64 } else { SAMPLES };
+        let samples = if cell.second == 0.0 { 64 } else { 8 };
         for m in 0..samples {
-            table.push(a + (b - a) * m as f64 / samples as f64);
+            places.push(a + (b - a) * f64::from(m) / f64::from(samples));
         }
     }
-    table.push(to);
     // Close to the ends, where speeds grow as s^(2/3).
     for m in 1..=40 {
         let d = (to - from) / (1u64 << m) as f64;
-        table.extend([from + d, to - d]);
+        places.extend([from + d, to - d]);
     }
-    table.sort_by(f64::total_cmp);
-    table.dedup();
-    let speed = |s: f64| {
-        let point = path.at(s);
-        let mut speed = limits.feed;
-        for i in 0..D {
-            let sizes = [
-                point.tangent[i].abs(),
-                point.curvature[i].abs(),
-                point.third[i].abs(),
-            ];
-            speed = speed
-                .min(limits.velocity[i] / sizes[0])
-                .min((limits.acceleration[i] / sizes[1]).sqrt())
-                .min(libm::cbrt(limits.jerk[i] / sizes[2]));
-        }
-        speed
-    };
-    table.into_iter().map(|s| (s, speed(s))).collect()
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    places.into_iter().map(|s| (s, feed)).collect()
 }
 
 /// Lowers the speeds to what ramps from standstill to standstill reach, roughly.
