@@ -85,7 +85,8 @@ pub fn cases(machines: &[Axis], plan: &MatrixPlan, seed: u64) -> Result<Vec<Case
     for plot in 0..plan.plots {
         hypercube.row(plot, &mut row)?;
         let axis = &machines[plot % machines.len()];
-        plots.push((axis, setting(axis, &row)));
+        let setting = setting(axis, &row);
+        plots.push(Plot::new(axis, setting));
     }
     for (k, &(kind, n)) in plan.each.iter().enumerate() {
         let count = n * plan.plots;
@@ -98,7 +99,6 @@ pub fn cases(machines: &[Axis], plan: &MatrixPlan, seed: u64) -> Result<Vec<Case
         for i in 0..count {
             hypercube.row(i, &mut row)?;
             let plot = i % plan.plots;
-            let (axis, setting) = &plots[plot];
             let number = i / plan.plots;
             let drawn = Drawn {
                 id: format!("p{plot:02}-{}-{number}", kind.name()),
@@ -106,7 +106,7 @@ pub fn cases(machines: &[Axis], plan: &MatrixPlan, seed: u64) -> Result<Vec<Case
                 plot,
             };
             let place = (number as f64 + 0.5) / n as f64;
-            all.push((place, case(axis, setting, kind, drawn, &row)));
+            all.push((place, case(&plots[plot], kind, drawn, &row)));
         }
     }
     // Within a plot every kind comes up early.
@@ -148,21 +148,34 @@ fn setting(axis: &Axis, row: &[f64; PLOT]) -> CaseSetting {
     }
 }
 
+/// What the cases of a plot share.
+struct Plot {
+    /// As the setting has it.
+    axis: Axis,
+    setting: CaseSetting,
+    ranges: Ranges,
+}
+
+impl Plot {
+    fn new(axis: &Axis, setting: CaseSetting) -> Self {
+        let axis = started(axis, &setting);
+        Self {
+            ranges: ranges(&axis, &setting),
+            axis,
+            setting,
+        }
+    }
+}
+
 struct Drawn {
     id: String,
     seed: u64,
     plot: usize,
 }
 
-fn case(
-    axis: &Axis,
-    setting: &CaseSetting,
-    kind: CaseKind,
-    drawn: Drawn,
-    row: &[f64; CASE],
-) -> Case {
+fn case(on: &Plot, kind: CaseKind, drawn: Drawn, row: &[f64; CASE]) -> Case {
     let mut random = ChaCha8Rng::seed_from_u64(drawn.seed ^ 0x6361_7365);
-    let axis = &started(axis, setting);
+    let Plot { axis, setting, .. } = on;
     let library = shown(axis, setting.channels);
     let mut hide = |effect: &Effect| HiddenEffect {
         name: effect.name.to_owned(),
@@ -172,7 +185,7 @@ fn case(
     match kind {
         CaseKind::Clean => {}
         CaseKind::Outside => {
-            let drawn = Law::draw(axis, &ranges(axis, setting), [row[0], row[1], row[2]]);
+            let drawn = Law::draw(axis, &on.ranges, [row[0], row[1], row[2]]);
             hidden.push(HiddenEffect {
                 name: LAW_NAME.to_owned(),
                 values: drawn.active(drawn.typical(axis)).values,
