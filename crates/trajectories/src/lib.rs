@@ -75,6 +75,7 @@ mod real;
 mod scurve;
 mod step;
 mod sweep;
+mod transfer;
 mod velocity_change;
 
 pub use error::TrajectoryError;
@@ -88,6 +89,7 @@ pub use real::Real;
 pub use scurve::{SCurve, Segment};
 pub use step::Step;
 pub use sweep::Sweep;
+pub use transfer::{Transfer, TransferLimits};
 pub use velocity_change::{VelocityChange, VelocityLimits};
 
 /// The README's example, run as a test.

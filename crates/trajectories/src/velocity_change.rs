@@ -48,6 +48,15 @@ impl<T: Real> VelocityLimits<T> {
         })
     }
 
+    /// The same for both signs, of values that are known to be valid.
+    pub(crate) fn symmetric(acceleration: T, jerk: T) -> Self {
+        Self {
+            least: -acceleration,
+            greatest: acceleration,
+            jerk,
+        }
+    }
+
     /// Least acceleration allowed, m/s²; below zero.
     #[inline]
     pub const fn acceleration_min(&self) -> T {
@@ -223,6 +232,40 @@ impl<T: Real> VelocityChange<T> {
     #[inline]
     pub const fn end(&self) -> Setpoint<T> {
         self.end
+    }
+
+    /// Where an axis in the state `start` comes to a standstill, m, if it is stopped as fast as `limits` allow.
+    ///
+    /// ```
+    /// use trajectories::{Setpoint, VelocityChange, VelocityLimits};
+    ///
+    /// let limits = VelocityLimits::<f64>::new(-4.0, 2.0, 40.0)?;
+    /// let start = Setpoint { position: 1.0, velocity: 0.8, ..Setpoint::default() };
+    /// let place = VelocityChange::stopping_place(&start, &limits)?;
+    /// assert!((place - 1.12).abs() < 1e-15); // 0.8 m/s for half of 0.3 s
+    /// # Ok::<(), trajectories::TrajectoryError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    #[inline]
+    pub fn stopping_place(
+        start: &Setpoint<T>,
+        limits: &VelocityLimits<T>,
+    ) -> Result<T, TrajectoryError> {
+        Ok(Self::stop(start, limits)?.end.position)
+    }
+
+    /// Jerk (m/s³), duration (s), and accelerations (m/s²) at both ends, of each stretch.
+    pub(crate) fn stretches(&self) -> [(T, T, T, T); 4] {
+        let mut next = self.duration;
+        let mut stretches = [(T::ZERO, T::ZERO, T::ZERO, T::ZERO); 4];
+        for (stretch, piece) in stretches.iter_mut().zip(&self.pieces).rev() {
+            let first = piece.state.acceleration;
+            *stretch = (piece.state.jerk, next - piece.begin, first, piece.last);
+            next = piece.begin;
+        }
+        stretches
     }
 
     /// State at `t` (s) after the start: the start for `t < 0` and NaN; from the duration on, the
