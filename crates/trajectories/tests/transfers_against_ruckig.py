@@ -13,7 +13,7 @@ import random
 import subprocess
 import sys
 
-from ruckig import InputParameter, Result, Ruckig, Trajectory
+from ruckig import InputParameter, Result, Ruckig, RuckigError, Trajectory
 
 
 def case(draw, kind):
@@ -63,7 +63,7 @@ def ruckig_of(cases):
         given.minimum_duration = lasting or None
         try:
             solved = planner.calculate(given, trajectory) in (Result.Working, Result.Finished)
-        except RuntimeError:
+        except RuckigError:
             solved = False
         yield trajectory.duration if solved else None
 
@@ -88,7 +88,7 @@ def main(example, count=100_000, seed=1, kind="inside"):
         if plan:
             total, p, v, a = plan
             # A rounding of time before the end, in distances the motion covers.
-            size = [abs(one[2]) + max(abs(one[0]), 3) * total, max(abs(one[0]), 3), max(abs(one[1]), 6)]
+            size = [1e-3 + abs(one[2]) + max(abs(one[0]), 3) * total, max(abs(one[0]), 3), max(abs(one[1]), 6)]
             missed = max([missed] + [abs(x - y) / s for x, y, s in zip((p, v, a), one[2:5], size)])
         if plan is None or theirs is None:
             alone += plan is not None

@@ -363,6 +363,10 @@ impl<T: Real> Side<T> {
         let (first, last) = (roots(from, k), roots(-to, -k));
         let (edge, gap) = if upward { (last, first) } else { (first, last) };
         low = low.max(edge.1).max(zero);
+        if k == zero {
+            // a = −b = u/2: what lies below the upper roots has none, but for u = 0, the single segment.
+            return [(low.max(gap.1), high), none];
+        }
         if gap.1 > low && gap.1 > gap.0 {
             [(low, high.min(gap.0)), (low.max(gap.1), high)]
         } else {
