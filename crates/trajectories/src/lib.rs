@@ -59,11 +59,13 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+mod axes;
 mod envelope;
 mod error;
 mod extremes;
 #[cfg(feature = "serde")]
 mod file;
+mod follow;
 mod limits;
 pub mod maximum;
 mod motion;
@@ -78,8 +80,10 @@ mod sweep;
 mod transfer;
 mod velocity_change;
 
+pub use axes::{Axes, AxisError, AxisTask};
 pub use error::TrajectoryError;
 pub use extremes::Extremes;
+pub use follow::Follow;
 pub use limits::Limits;
 pub use motion::{Motion, Setpoint};
 pub use oscillation::{Chirp, Oscillation, Sine};

@@ -199,24 +199,16 @@ impl<T: Real> Transfer<T> {
         }
         let mut task = task(start, target, limits);
         let mut course = Course::new(start);
-        bring_back(&mut task, &mut course, jerk);
-        let within = course.now;
-        let wanted = (duration - within).max(T::ZERO);
-
-        let (up, down) = (Side::new(&task), Side::new(&task.mirror()));
-        if wanted > T::ZERO && mix(&up, &down, wanted, jerk, &mut course) {
-            return Self::finish(course, (start, target), limits, within);
-        }
-        let mut best = Best::none(wanted);
-        up.search(false, &mut best);
-        down.search(true, &mut best);
-        let Some(shape) = best.shape else {
-            return Err(unrepresentable::<T>("the duration of the transfer"));
-        };
-        let side = if best.mirrored { &down } else { &up };
-        let sign = if best.mirrored { -T::ONE } else { T::ONE };
-        for (unit, time, last) in segments(side, &shape) {
-            course.lay(sign * unit * jerk, time, sign * last * jerk);
+        // The target may be reached before a limit is exceeded that the start would have to exceed later.
+        let direct = brake::is_within(&task) && complete(&task, &mut course, duration, jerk);
+        let mut within = T::ZERO;
+        if !direct {
+            bring_back(&mut task, &mut course, jerk);
+            within = course.now;
+            let wanted = (duration - within).max(T::ZERO);
+            if !complete(&task, &mut course, wanted, jerk) {
+                return Err(unrepresentable::<T>("the duration of the transfer"));
+            }
         }
         Self::finish(course, (start, target), limits, within)
     }
@@ -296,6 +288,19 @@ impl<T: Real> Transfer<T> {
             position_min: position_min.to_f64(),
             position_max: position_max.to_f64(),
         })
+    }
+
+    /// Standing still at zero.
+    pub(crate) fn at_rest() -> Self {
+        let rest = Setpoint::at_rest(T::ZERO);
+        Self {
+            course: Course::new(&rest),
+            start: rest,
+            end: rest,
+            low: -T::INFINITY,
+            high: T::INFINITY,
+            within: T::ZERO,
+        }
     }
 
     /// The same motion along another axis, on which all distances are `factor` times as long.
@@ -425,12 +430,37 @@ fn task<T: Real>(
         start: [start.velocity / jerk, start.acceleration / jerk],
         end: [target.velocity / jerk, target.acceleration / jerk],
         distance: (target.position - start.position) / jerk,
-        distance_noise: T::TWO * T::EPSILON * (from / jerk),
+        velocity_noise: T::ZERO,
+        distance_noise: T::ZERO,
         most: change.acceleration_max() / jerk,
         brake: -change.acceleration_min() / jerk,
         fast: limits.fast / jerk,
         back: -limits.back / jerk,
     }
+    .with_noise(from / jerk)
+}
+
+/// Lays the motion of the least time that is not below `wanted` (s); nothing if there is none.
+fn complete<T: Real>(task: &Task<T>, course: &mut Course<T>, wanted: T, jerk: T) -> bool {
+    let (up, down) = (Side::new(task), Side::new(&task.mirror()));
+    if wanted > T::ZERO && mix(&up, &down, wanted, jerk, course) {
+        return true;
+    }
+    let mut best = Best::none(wanted);
+    up.search(false, &mut best);
+    down.search(true, &mut best);
+    let Some(shape) = best.shape else {
+        return false;
+    };
+    let (side, sign) = if best.mirrored {
+        (&down, -T::ONE)
+    } else {
+        (&up, T::ONE)
+    };
+    for (unit, time, last) in segments(side, &shape) {
+        course.lay(sign * unit * jerk, time, sign * last * jerk);
+    }
+    true
 }
 
 /// Lays what brings the start within the limits, and begins the task there.

@@ -6,4 +6,5 @@ mod limits;
 mod program;
 mod scurve;
 mod single_precision;
+mod transfer;
 mod velocity_change;

@@ -39,14 +39,17 @@ def case(draw, kind):
 
 
 def corner(draw):
-    """As `case`, of whole numbers: limits of 1 or 2, values from limit to limit."""
+    """As `case`, of whole numbers: limits of 1 or 2, values from limit to limit.
+
+    A start and an end at limits of both velocity and acceleration make ruckig end the process in places: not both.
+    """
     while True:
         fast, back, greatest, least = (s * draw.choice([1.0, 2.0]) for s in (1, -1, 1, -1))
         jerk = draw.choice([1.0, 2.0, 4.0, 100.0])
         v0, v1 = draw.choice([0.0, back, fast, 0.5]), draw.choice([0.0, 0.0, back, fast, 0.5])
         a0, a1 = draw.choice([0.0, least, greatest, 0.5]), draw.choice([0.0, 0.0, least, greatest, 0.5])
         before, after = v1 - a1 * abs(a1) / (2 * jerk), v0 + a0 * abs(a0) / (2 * jerk)
-        if back <= before <= fast and back <= after <= fast:
+        if back <= before <= fast and back < after < fast:
             p1 = draw.choice([0.0, 0.25, 0.5, 1.0, 2.0, 5.0, -0.25, -0.5, -1.0, -2.0, -5.0])
             return [v0, a0, p1, v1, a1, back, fast, least, greatest, jerk, 0.0]
 

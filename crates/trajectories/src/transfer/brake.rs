@@ -29,11 +29,18 @@ pub(super) fn brake<T: Real>(task: &Task<T>) -> [Stretch<T>; 2] {
     }
 }
 
+/// Whether the start itself is within all limits, so that a target may be reached before one is exceeded.
+pub(super) fn is_within<T: Real>(task: &Task<T>) -> bool {
+    let [v, a] = task.start;
+    let noise = task.velocity_noise;
+    a <= task.most && -a <= task.brake && v <= task.fast + noise && -v <= task.back + noise
+}
+
 /// Whether the velocity is, or unavoidably comes to be, above its limit by more than rounding, and the one backwards
 /// is not exceeded unavoidably.
 fn too_fast<T: Real>(task: &Task<T>) -> bool {
     let [v, a] = task.start;
-    let noise = T::of(16.0) * T::EPSILON * (v.abs() + a * a);
+    let noise = task.velocity_noise;
     let swing = T::HALF * a * a;
     let returns = a >= T::ZERO || v - swing > -task.back;
     (v > task.fast + noise && returns) || (a > T::ZERO && v + swing > task.fast + noise)

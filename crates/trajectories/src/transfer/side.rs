@@ -45,6 +45,8 @@ pub(super) struct Side<T> {
     /// Wanted displacement, and how far it is known, s³.
     distance: T,
     distance_noise: T,
+    /// Whether the first segment must not cross zero acceleration: the velocity would be below its limit there.
+    one_way: bool,
 }
 
 /// What a transfer is made for, divided by J.
@@ -54,6 +56,8 @@ pub(super) struct Task<T> {
     pub start: [T; 2],
     pub end: [T; 2],
     pub distance: T,
+    /// Differences of velocity and of distance that count as rounding: see `with_noise`.
+    pub velocity_noise: T,
     pub distance_noise: T,
     /// Greatest acceleration, deceleration, velocity, and greatest velocity backwards; all above zero.
     pub most: T,
@@ -70,12 +74,28 @@ impl<T: Real> Task<T> {
             start: turn(self.start),
             end: turn(self.end),
             distance: -self.distance,
-            distance_noise: self.distance_noise,
             most: self.brake,
             brake: self.most,
             fast: self.back,
             back: self.fast,
+            ..*self
         }
+    }
+
+    /// Sets what counts as rounding, with the positions (s³) between which the task is.
+    ///
+    /// Where one duration alone leads from a state to another, as on the last segments of every motion, the displacement
+    /// must fit to the last place, and a state that a plan has led to does so to rounding only. That rounding is of
+    /// the size of what went before: of a motion that reaches an acceleration p as the limits allow, a velocity w,
+    /// and w²/p of distance. A velocity limit that is none, far above p², does not count in full.
+    pub fn with_noise(mut self, positions: T) -> Self {
+        let p = self.most.max(self.brake).min(self.fast.max(self.back).sqrt());
+        let w = self.fast.max(self.back).min(T::of(32.0) * p * p);
+        let [v0, a0] = self.start;
+        let [v1, a1] = self.end;
+        self.velocity_noise = T::END_MARGIN * (v0.abs() + v1.abs() + a0 * a0 + a1 * a1 + w);
+        self.distance_noise = T::END_MARGIN * (w * (w / p) + positions);
+        self
     }
 }
 
@@ -133,7 +153,7 @@ impl<T: Real> Side<T> {
         let ([v0, a0], [v1, a1]) = (task.start, task.end);
         let (c, e) = (v0 - T::HALF * a0 * a0, v1 - T::HALF * a1 * a1);
         let sixth = T::of(1.0 / 6.0);
-        let k_noise = T::of(16.0) * T::EPSILON * (v0.abs() + v1.abs() + a0 * a0 + a1 * a1);
+        let k_noise = task.velocity_noise;
         let k = (v1 - v0) + T::HALF * (a0 - a1) * (a0 + a1);
         Self {
             from: a0,
@@ -148,6 +168,7 @@ impl<T: Real> Side<T> {
             fast: task.fast,
             distance: task.distance,
             distance_noise: task.distance_noise,
+            one_way: a0 < T::ZERO && c < -task.back - k_noise,
         }
     }
 
@@ -288,7 +309,12 @@ impl<T: Real> Side<T> {
 
     /// Deceleration, and acceleration, whose peak of velocity is the greatest allowed.
     fn peak_of(&self, crossing: T) -> T {
-        (self.fast - crossing).max(T::ZERO).sqrt()
+        let square = self.fast - crossing;
+        if square > self.k_noise {
+            square.sqrt()
+        } else {
+            T::ZERO
+        }
     }
 
     /// Stretches of the variable, each with the lesser end first, in which a family obeys all limits; an empty one
@@ -306,12 +332,13 @@ impl<T: Real> Side<T> {
         };
         match family {
             Family::Free => self.free(),
+            Family::First | Family::Both if self.one_way => [none; 2],
             Family::First => {
                 let high = brake.min(self.peak_of(self.e));
                 about(-self.to.min(most), high, most * most - k)
             }
             Family::Second => {
-                let high = most.min(self.peak_of(self.c));
+                let high = self.highest().min(self.peak_of(self.c));
                 about(self.from.max(-brake), high, brake * brake + k)
             }
             Family::Both => {
@@ -322,6 +349,11 @@ impl<T: Real> Side<T> {
         }
     }
 
+    /// Greatest acceleration at which the first segment may end.
+    fn highest(&self) -> T {
+        if self.one_way { T::ZERO } else { self.most }
+    }
+
     /// As [`stretches`](Self::stretches), of u = a − b: each limit is a quadratic inequality in u.
     fn free(&self) -> Stretches<T> {
         let (zero, none) = (T::ZERO, (T::ONE, T::ZERO));
@@ -329,9 +361,9 @@ impl<T: Real> Side<T> {
         let upward = k >= zero;
         // A velocity has a peak where a > 0 > b; with k ≥ 0, a cannot be below zero, nor else b above.
         let (most, brake) = if upward {
-            (self.most, self.brake.min(self.peak_of(self.e)))
+            (self.highest(), self.brake.min(self.peak_of(self.e)))
         } else {
-            (self.most.min(self.peak_of(self.c)), self.brake)
+            (self.highest().min(self.peak_of(self.c)), self.brake)
         };
         // a ≤ most: u² − 2 most u + k ≤ 0; b ≥ −brake: u² − 2 brake u − k ≤ 0.
         let (rise, fall) = (most * most - k, brake * brake + k);
@@ -400,7 +432,8 @@ impl<T: Real> Side<T> {
 
     /// A single segment of full jerk, on which no turn is to be found.
     fn straight(&self, best: &mut Best<T>) {
-        if self.k == T::ZERO && self.to >= self.from {
+        let crosses = self.one_way && self.to > T::ZERO;
+        if self.k == T::ZERO && self.to >= self.from && !crosses {
             let shape = self.line();
             let (miss, noise) = self.miss(&shape);
             if miss.abs() <= noise {
@@ -492,8 +525,13 @@ impl<T: Real> Side<T> {
         x
     }
 
-    /// To the greatest velocity and from it, with no time at it.
-    fn halves(&self) -> Shape<T> {
+    /// To the greatest velocity and from it, with no time at it; none if the start must exceed it.
+    fn halves(&self) -> Option<Shape<T>> {
+        let exceeds = self.from > T::ZERO
+            && self.c + self.from * self.from > self.fast + self.k_noise;
+        if exceeds || self.one_way {
+            return None;
+        }
         let half = |limit: T, crossing: T| {
             let peak = self.peak_of(crossing);
             if peak > limit {
@@ -504,17 +542,19 @@ impl<T: Real> Side<T> {
         };
         let (a, at_a) = half(self.most, self.c);
         let (b, at_b) = half(self.brake, self.e);
-        Shape {
+        Some(Shape {
             a: a.max(self.from),
             b: (-b).min(self.to),
             at_a,
             at_b,
             cruise: T::ZERO,
-        }
+        })
     }
 
     fn cruising(&self, best: &mut Best<T>) {
-        let mut shape = self.halves();
+        let Some(mut shape) = self.halves() else {
+            return;
+        };
         let (miss, noise) = self.miss(&shape);
         if miss <= noise {
             shape.cruise = (-miss).max(T::ZERO) / self.fast;
@@ -526,10 +566,11 @@ impl<T: Real> Side<T> {
     /// duration admits no motion between the two states.
     pub fn farthest(&self, total: T) -> Option<(Shape<T>, T, T)> {
         let rounding = T::of(16.0) * T::EPSILON;
-        let halves = self.halves();
-        let cruise = total - self.total(&halves);
-        if cruise >= T::ZERO {
-            return Some(self.with_miss(Shape { cruise, ..halves }));
+        if let Some(halves) = self.halves() {
+            let cruise = total - self.total(&halves);
+            if cruise >= T::ZERO {
+                return Some(self.with_miss(Shape { cruise, ..halves }));
+            }
         }
         let swing = total - (self.to - self.from);
         let (most, brake, k) = (self.most, self.brake, self.k);
