@@ -1,6 +1,6 @@
 //! Several axes that start and end together.
 
-use crate::{Motion, Real, Setpoint, Transfer, TrajectoryError, TransferLimits, VelocityLimits};
+use crate::{Motion, Real, Setpoint, TrajectoryError, Transfer, TransferLimits, VelocityLimits};
 
 /// A motion of several axes was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -148,7 +148,11 @@ impl<T: Real, const N: usize> Axes<T, N> {
         let over = t >= self.duration;
         self.axes.each_ref().map(|axis| {
             let end = axis.duration();
-            axis.at(if over { end + (t - self.duration) } else { t.min(end) })
+            axis.at(if over {
+                end + (t - self.duration)
+            } else {
+                t.min(end)
+            })
         })
     }
 
@@ -214,7 +218,8 @@ fn shared<T: Real, const N: usize>(
     ratios: &[T; N],
 ) -> Result<TransferLimits<T>, TrajectoryError> {
     let most = T::MAX;
-    let (mut back, mut fast, mut least, mut greatest, mut jerk) = (-most, most, -most, most, T::INFINITY);
+    let (mut back, mut fast, mut least, mut greatest, mut jerk) =
+        (-most, most, -most, most, T::INFINITY);
     for (task, &ratio) in tasks.iter().zip(ratios) {
         if ratio == T::ZERO {
             continue;

@@ -33,7 +33,9 @@ pub enum TrajectoryError {
         bits: usize,
     },
     /// A motion leaves the positions that it is allowed.
-    #[error("the motion reaches {position} m, but must stay from {position_min} to {position_max} m")]
+    #[error(
+        "the motion reaches {position} m, but must stay from {position_min} to {position_max} m"
+    )]
     LeavesRange {
         /// The farthest position that lies outside, m.
         position: f64,

@@ -1,11 +1,12 @@
 //! A target that may change in every cycle of a controller.
 
-use crate::error::{check, duration};
-use crate::{Motion, Real, Setpoint, Transfer, TrajectoryError, TransferLimits, maximum};
+use crate::error::{duration, position};
+use crate::{Motion, Real, Setpoint, TrajectoryError, Transfer, TransferLimits};
 
 /// Follows a target that may change in every cycle, each time by the [`Transfer`] of least time from where it is.
 ///
-/// It allocates nothing. A target that stays the same is planned for once; one that changes, once per change.
+/// It allocates nothing. A target that stays the same is planned for once; one that changes, once per change; one that moves
+/// ([`track`](Self::track)), in every cycle.
 ///
 /// ```
 /// use trajectories::{Follow, Limits, Setpoint};
@@ -32,6 +33,8 @@ pub struct Follow<T = f64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Plan<T> {
     transfer: Transfer<T>,
+    /// What it was planned for; none if that moves.
+    to: Option<Setpoint<T>>,
     cycles: u32,
 }
 
@@ -39,7 +42,7 @@ impl<T: Real> Follow<T> {
     /// From `start`, with a setpoint every `cycle` (s).
     ///
     /// # Errors
-    /// [`TrajectoryError::Invalid`] for a cycle that is not above zero, or is above [`maximum::DURATION`].
+    /// [`TrajectoryError::Invalid`] for a cycle that is not above zero, or is above [`maximum::DURATION`](crate::maximum::DURATION).
     pub fn new(
         start: Setpoint<T>,
         limits: TransferLimits<T>,
@@ -55,6 +58,8 @@ impl<T: Real> Follow<T> {
 
     /// The setpoint one cycle on, under way to `target`.
     ///
+    /// The target is where it is: one that moves on is met by [`track`](Self::track).
+    ///
     /// # Errors
     /// As [`Transfer::plan`]. A refused target changes nothing: the last one that was not refused can be gone on to.
     pub fn step(&mut self, target: &Setpoint<T>) -> Result<Setpoint<T>, TrajectoryError> {
@@ -62,22 +67,33 @@ impl<T: Real> Follow<T> {
             jerk: T::ZERO,
             ..*target
         };
-        let mut plan = match self.plan {
-            Some(plan) if plan.transfer.end() == wanted && plan.cycles < u32::MAX => plan,
+        let plan = match self.plan {
+            Some(plan) if plan.to == Some(wanted) && plan.cycles < u32::MAX => plan,
             _ => Plan {
                 transfer: Transfer::plan(&self.state, &wanted, &self.limits)?,
+                to: Some(wanted),
                 cycles: 0,
             },
         };
+        self.advance(plan)
+    }
+
+    /// The setpoint one cycle on, under way to meet a target that is at its position now, and moves on with its velocity.
+    ///
+    /// # Errors
+    /// As [`Transfer::meet`]. A refused target changes nothing.
+    pub fn track(&mut self, target: &Setpoint<T>) -> Result<Setpoint<T>, TrajectoryError> {
+        self.advance(Plan {
+            transfer: Transfer::meet(&self.state, target, &self.limits)?,
+            to: None,
+            cycles: 0,
+        })
+    }
+
+    fn advance(&mut self, mut plan: Plan<T>) -> Result<Setpoint<T>, TrajectoryError> {
         plan.cycles += 1;
         let state = plan.transfer.at(T::count(plan.cycles) * self.cycle);
-        check(
-            state.position.abs() <= T::of(maximum::POSITION),
-            "position",
-            state.position,
-            "m",
-            "from -1e6 to 1e6",
-        )?;
+        position("position", state.position)?;
         self.plan = Some(plan);
         self.state = state;
         Ok(state)

@@ -16,7 +16,7 @@ pub trait Real: Scalar {
     const BOUND_MARGIN: Self;
 
     /// Which fraction of a motion's own distances and velocities counts as rounding at its end, when a motion is planned
-    /// anew from a state on it: some hundred times what one evaluation rounds, in `f32` sixteen times.
+    /// anew from a state on it: some hundred times what one evaluation rounds, in `f32` some times.
     const END_MARGIN: Self;
 
     /// Whether `0 ≤ self < end`, for an `end` that is not negative; false for NaN and for a zero
@@ -82,7 +82,7 @@ macro_rules! real {
 
 real!(f64, log1p, libm::hypot, turn_f64, 1e9, 1e-12, 1e-13);
 // libm's hypotf and sincosf compute in f64, which a controller does in software.
-real!(f32, log1pf, hypot_f32, turn_f32, 1e4, 1e-5, 2e-6);
+real!(f32, log1pf, hypot_f32, turn_f32, 1e4, 1e-5, 5e-7);
 
 #[inline]
 fn turn_f64(x: f64) -> (f64, f64) {

@@ -6,9 +6,7 @@ mod jumps;
 mod side;
 
 use crate::error::{bounded, check, position, unrepresentable};
-use crate::{
-    Extremes, Limits, Motion, Real, Setpoint, TrajectoryError, VelocityLimits, maximum,
-};
+use crate::{Extremes, Limits, Motion, Real, Setpoint, TrajectoryError, VelocityLimits, maximum};
 use course::Course;
 use side::{Best, Shape, Side, Task};
 
@@ -136,16 +134,79 @@ impl<T: Real> Transfer<T> {
         Self::lasting(start, target, limits, T::ZERO)
     }
 
+    /// In least time to a target that moves on from its position with its velocity, to be with it from then on: a belt, a
+    /// rotating table, an axis that leads. Its acceleration must be zero.
+    ///
+    /// It is the transfer to standstill for one who moves with the target.
+    ///
+    /// ```
+    /// use trajectories::{Limits, Motion, Setpoint, Transfer};
+    ///
+    /// let limits = Limits::<f64>::new(1.0, 2.0, 40.0)?.into();
+    /// let part = Setpoint { position: 0.1, velocity: 0.3, ..Setpoint::default() }; // m, m/s
+    /// let meet = Transfer::meet(&Setpoint::at_rest(0.0), &part, &limits)?;
+    /// let then = meet.at(2.0); // s
+    /// assert!(meet.duration() < 2.0 && (then.position - (0.1 + 0.3 * 2.0)).abs() < 1e-12);
+    /// # Ok::<(), trajectories::TrajectoryError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan); the target's velocity must lie between the limits, not at one.
+    pub fn meet(
+        start: &Setpoint<T>,
+        target: &Setpoint<T>,
+        limits: &TransferLimits<T>,
+    ) -> Result<Self, TrajectoryError> {
+        state(start, ["position", "velocity", "acceleration"])?;
+        state(target, TARGET)?;
+        let (velocity, a) = (target.velocity, target.acceleration);
+        check(
+            a == T::ZERO,
+            TARGET[2],
+            a,
+            "m/s²",
+            "zero for a target that moves on",
+        )?;
+        check(
+            velocity > limits.back && velocity < limits.fast,
+            TARGET[1],
+            velocity,
+            "m/s",
+            "between the velocity limits, not at one",
+        )?;
+        let seen = TransferLimits {
+            back: limits.back - velocity,
+            fast: limits.fast - velocity,
+            change: limits.change,
+        };
+        let from = Setpoint {
+            velocity: start.velocity - velocity,
+            ..*start
+        };
+        let plan = Self::plan(&from, &Setpoint::at_rest(target.position), &seen)?;
+        let duration = plan.duration();
+        let end = target.position + velocity * duration;
+        Ok(Self {
+            course: plan.course.drifting(velocity),
+            start: *start,
+            end: Setpoint {
+                position: position("position at the end", end)?,
+                jerk: T::ZERO,
+                ..*target
+            },
+            low: limits.back,
+            high: limits.fast,
+            within: plan.within,
+        })
+    }
+
     /// To standstill as fast as possible, wherever that is: [`end`](Self::end) says where.
     ///
     /// A velocity limit that the start exceeds, or must exceed, does not delay it.
     ///
     /// # Errors
     /// As [`VelocityChange::plan`](crate::VelocityChange::plan).
-    pub fn stop(
-        start: &Setpoint<T>,
-        limits: &VelocityLimits<T>,
-    ) -> Result<Self, TrajectoryError> {
+    pub fn stop(start: &Setpoint<T>, limits: &VelocityLimits<T>) -> Result<Self, TrajectoryError> {
         let change = crate::VelocityChange::stop(start, limits)?;
         let mut course = Course::new(start);
         if limits.jerk() == T::INFINITY {
@@ -204,8 +265,8 @@ impl<T: Real> Transfer<T> {
         let mut within = T::ZERO;
         if !direct {
             bring_back(&mut task, &mut course, jerk);
-            within = course.now;
-            let wanted = (duration - within).max(T::ZERO);
+            let wanted = (duration - course.now).max(T::ZERO);
+            within = course.now + brake::return_time(&task);
             if !complete(&task, &mut course, wanted, jerk) {
                 return Err(unrepresentable::<T>("the duration of the transfer"));
             }
@@ -418,11 +479,7 @@ fn reachable<T: Real>(
 }
 
 /// What is asked, divided by the jerk.
-fn task<T: Real>(
-    start: &Setpoint<T>,
-    target: &Setpoint<T>,
-    limits: &TransferLimits<T>,
-) -> Task<T> {
+fn task<T: Real>(start: &Setpoint<T>, target: &Setpoint<T>, limits: &TransferLimits<T>) -> Task<T> {
     let change = &limits.change;
     let jerk = change.jerk();
     let from = start.position.abs() + target.position.abs();
@@ -511,7 +568,11 @@ fn mix<T: Real>(up: &Side<T>, down: &Side<T>, total: T, jerk: T, course: &mut Co
     }
     let (over, under) = (over.max(T::ZERO), under.max(T::ZERO));
     let span = over + under;
-    let share = if span > T::ZERO { under / span } else { T::HALF };
+    let share = if span > T::ZERO {
+        under / span
+    } else {
+        T::HALF
+    };
     let (far, near) = (segments(up, &far), segments(down, &near));
     let (mut i, mut j) = (0, 0);
     let (mut far_left, mut near_left) = (far[0].1, near[0].1);

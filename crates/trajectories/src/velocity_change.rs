@@ -1,7 +1,7 @@
 //! From any state in motion to a velocity: stop, speed up, slow down.
 
 use crate::error::{check, position, unrepresentable};
-use crate::{Real, Setpoint, TrajectoryError, maximum};
+use crate::{Motion, Real, Setpoint, TrajectoryError, maximum};
 
 /// Limits of a [`VelocityChange`]: one for each sign of the acceleration, and the jerk.
 ///
@@ -302,6 +302,18 @@ impl<T: Real> VelocityChange<T> {
         // The time may exceed its piece by rounding: the limits hold all the same.
         state.acceleration = clamp(state.acceleration, first.min(last), first.max(last));
         state
+    }
+}
+
+impl<T: Real> Motion<T> for VelocityChange<T> {
+    #[inline]
+    fn duration(&self) -> T {
+        self.duration
+    }
+
+    #[inline]
+    fn at(&self, t: T) -> Setpoint<T> {
+        Self::at(self, t)
     }
 }
 

@@ -1,5 +1,6 @@
 //! One test program: S-curves, programs and their files.
 
+mod axes;
 mod bits;
 mod file;
 mod limits;

@@ -5,15 +5,20 @@
     python3 crates/trajectories/tests/transfers_against_ruckig.py target/debug/examples/transfers [COUNT] [SEED] [KIND]
 
 KIND: `inside` (start within its limits), `beyond` (start beyond one or more), `corners` (whole numbers, many of them
-zero or at a limit), `lasting` (a least duration up to twice the least), `f32` (as `inside`, planned in f32). Prints how many each solves, how the durations compare, and how far the end
+zero or at a limit), `lasting` (a least duration up to twice the least), `f32` (as `inside`, planned in f32), `jumps`
+(infinite jerk), `together` (three axes that end together), `straight` (three axes on a line, standing still at both ends;
+ruckig leaves the line where an axis would have to be slower than its limits, and is faster then).
+Prints how many each solves, how the durations compare, and how far the end
 is missed; lists the cases that differ most. Exit 1 if a duration in f64 is longer than ruckig's by more than 1e-9 relative.
+
+    python3 crates/trajectories/tests/transfers_against_ruckig.py golden > crates/trajectories/tests/golden/transfers.txt
 """
 
 import random
 import subprocess
 import sys
 
-from ruckig import InputParameter, Result, Ruckig, RuckigError, Trajectory
+from ruckig import InputParameter, Result, Ruckig, RuckigError, Synchronization, Trajectory
 
 
 def case(draw, kind):
@@ -34,6 +39,10 @@ def case(draw, kind):
             v0, a0 = draw.uniform(back, fast), draw.choice([0.0, draw.uniform(least, greatest)])
         after = v0 + a0 * abs(a0) / (2 * jerk)
         inside = back < after < fast and back <= v0 <= fast and least <= a0 <= greatest
+        if kind == "jumps":
+            return [v0, 0.0, p1, v1, 0.0, back, fast, least, greatest, float("inf"), 0.0]
+        if kind == "straight":
+            return [0.0, 0.0, p1, 0.0, 0.0, back, fast, least, greatest, jerk, 0.0]
         if inside != (kind == "beyond"):
             return [v0, a0, p1, v1, a1, back, fast, least, greatest, jerk, 0.0]
 
@@ -71,10 +80,45 @@ def ruckig_of(cases):
         yield trajectory.duration if solved else None
 
 
+def ruckig_of_axes(cases, kind):
+    """Durations of every three cases together."""
+    planner, given, trajectory = Ruckig(3), InputParameter(3), Trajectory(3)
+    given.current_position = [0.0] * 3
+    given.synchronization = Synchronization.Phase if kind == "straight" else Synchronization.Time
+    for three in zip(cases[::3], cases[1::3], cases[2::3]):
+        v0, a0, p1, v1, a1, back, fast, least, greatest, jerk, _ = map(list, zip(*three))
+        given.current_velocity, given.current_acceleration = v0, a0
+        given.target_position, given.target_velocity, given.target_acceleration = p1, v1, a1
+        given.min_velocity, given.max_velocity = back, fast
+        given.min_acceleration, given.max_acceleration, given.max_jerk = least, greatest, jerk
+        try:
+            solved = planner.calculate(given, trajectory) in (Result.Working, Result.Finished)
+        except RuckigError:
+            solved = False
+        yield trajectory.duration if solved else None
+
+
 def ours_of(example, cases, *options):
     lines = "".join(" ".join(map(repr, case)) + "\n" for case in cases)
     answer = subprocess.run([example, *options], input=lines, capture_output=True, text=True, check=True).stdout
     return [None if line == "-" else [float(x) for x in line.split()] for line in answer.splitlines()]
+
+
+def golden(count):
+    """Lines of cases and ruckig's durations: what `tests/golden/transfers.txt` holds."""
+    draw = random.Random(5)
+    for kind in ("inside", "beyond", "corners", "jumps", "lasting"):
+        cases = [corner(draw) if kind == "corners" else case(draw, kind) for _ in range(count)]
+        durations = list(ruckig_of(cases))
+        if kind == "lasting":
+            for one, least in zip(cases, durations):
+                one[-1] = least * draw.uniform(1, 2)
+            durations = list(ruckig_of(cases))
+        for one, duration in zip(cases, durations):
+            # ruckig turns away from a target it stands at, in motion.
+            there = kind == "corners" and one[2] == 0.0 and one[:2] == one[3:5]
+            if duration is not None and not there:
+                print(*map(repr, one), repr(duration))
 
 
 def main(example, count=100_000, seed=1, kind="inside"):
@@ -83,13 +127,15 @@ def main(example, count=100_000, seed=1, kind="inside"):
     if kind == "lasting":
         for one, plan in zip(cases, ours_of(example, cases)):
             one[-1] = plan[0] * draw.uniform(1, 2)
-    ours = ours_of(example, cases, *(["f32"] if kind == "f32" else []))
+    axes = kind in ("together", "straight")
+    ours = ours_of(example, cases, *([kind] if axes or kind == "f32" else []))
     tolerance = 1e-4 if kind == "f32" else 1e-9
     equal = longer = shorter = alone = only_ruckig = neither = 0
     worst, missed, off = [], 0.0, []
-    for one, plan, theirs in zip(cases, ours, ruckig_of(cases)):
-        if plan:
+    for one, plan, theirs in zip(cases[::3] if axes else cases, ours, ruckig_of_axes(cases, kind) if axes else ruckig_of(cases)):
+        if plan and not axes:
             total, p, v, a = plan
+            a = one[4] if kind == "jumps" else a
             # A rounding of time before the end, in distances the motion covers.
             size = [1e-3 + abs(one[2]) + max(abs(one[0]), 3) * total, max(abs(one[0]), 3), max(abs(one[1]), 6)]
             missed = max([missed] + [abs(x - y) / s for x, y, s in zip((p, v, a), one[2:5], size)])
@@ -108,7 +154,7 @@ def main(example, count=100_000, seed=1, kind="inside"):
         longer += difference > 0
         shorter += difference < 0
         worst.append((difference, one, plan, theirs))
-    print(f"{kind}: {len(cases)} states (seed {seed}); both solve {equal + longer + shorter}, "
+    print(f"{kind}: {len(ours)} tasks (seed {seed}); both solve {equal + longer + shorter}, "
           f"only here {alone}, only ruckig {only_ruckig}, neither {neither}")
     print(f"durations equal to {tolerance:g} relative: {equal}; longer here: {longer}; shorter here: {shorter}")
     off.sort()
@@ -117,8 +163,10 @@ def main(example, count=100_000, seed=1, kind="inside"):
     worst.sort(key=lambda w: -w[0])
     for difference, one, plan, theirs in worst[:5] + worst[max(5, len(worst) - 5):]:
         print(f"  {difference:+.3e} here {plan and plan[0]} ruckig {theirs}: {' '.join(map(repr, one))}")
-    return kind != "f32" and (longer > 0 or only_ruckig > 0)
+    return kind not in ("f32", "straight") and (longer > 0 or only_ruckig > 0)
 
 
 if __name__ == "__main__":
+    if sys.argv[1] == "golden":
+        sys.exit(golden(200))
     sys.exit(main(*sys.argv[1:]))

@@ -46,6 +46,23 @@ fn too_fast<T: Real>(task: &Task<T>) -> bool {
     (v > task.fast + noise && returns) || (a > T::ZERO && v + swing > task.fast + noise)
 }
 
+/// Time after braking (s) at which the velocity is back within its limits, if the opposite limit has ended the braking
+/// before: the jerk must then be a full one against the acceleration until they are.
+pub(super) fn return_time<T: Real>(task: &Task<T>) -> T {
+    let late = |task: &Task<T>| {
+        let [v, a] = task.start;
+        let excess = v - task.fast;
+        if excess > task.velocity_noise && a < T::ZERO {
+            let square = (a * a - T::TWO * excess).max(T::ZERO);
+            // The lesser root of v + a t + t²/2 = fast.
+            T::TWO * excess / (square.sqrt() - a)
+        } else {
+            T::ZERO
+        }
+    };
+    late(task).max(late(&task.mirror()))
+}
+
 /// From an acceleration above its limit.
 fn down_to_limit<T: Real>(task: &Task<T>) -> [Stretch<T>; 2] {
     let [v, a] = task.start;
@@ -71,10 +88,7 @@ fn slow_down<T: Real>(task: &Task<T>) -> [Stretch<T>; 2] {
     let reached = there.min(no_longer);
     if reached <= brake {
         let time = (a + reached).max(T::ZERO);
-        return [
-            (-T::ONE, time, a - time),
-            (T::ZERO, T::ZERO, a - time),
-        ];
+        return [(-T::ONE, time, a - time), (T::ZERO, T::ZERO, a - time)];
     }
     let at_limit = top - T::HALF * brake * brake;
     let there = (at_limit - task.fast) / brake;

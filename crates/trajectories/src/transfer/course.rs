@@ -86,6 +86,19 @@ impl<T: Real> Course<T> {
         scaled
     }
 
+    /// The same motion as seen by one who moves at `-velocity` (m/s) from the same start.
+    pub fn drifting(mut self, velocity: T) -> Self {
+        let drift = |s: &mut Setpoint<T>, t: T| {
+            s.position += velocity * t;
+            s.velocity += velocity;
+        };
+        for piece in &mut self.pieces[..self.count] {
+            drift(&mut piece.state, piece.begin);
+        }
+        drift(&mut self.state, self.now);
+        self
+    }
+
     /// How far the pieces go, both ends of each and what lies between.
     pub fn extremes(&self, mut found: Extremes<T>) -> Extremes<T> {
         for (i, piece) in self.pieces[..self.count].iter().enumerate() {
@@ -97,11 +110,12 @@ impl<T: Real> Course<T> {
                     found.position_min = found.position_min.min(s.position);
                     found.position_max = found.position_max.max(s.position);
                     found.velocity = found.velocity.max(s.velocity.abs());
-                    found.acceleration = found.acceleration.max(s.acceleration.abs());
                 }
             };
             note(T::ZERO);
             note(time);
+            let ends = piece.state.acceleration.abs().max(piece.last.abs());
+            found.acceleration = found.acceleration.max(ends);
             let (v, a, j) = (
                 piece.state.velocity,
                 piece.state.acceleration,

@@ -68,8 +68,9 @@ impl<T: Real> Side<T> {
         };
         // (p² − v₀²)/2A + (p² − v₁²)/2B = d
         let (a, b) = (self.most, self.brake);
-        let square = (T::TWO * self.distance + self.from * (self.from / a) + self.to * (self.to / b))
-            / (T::ONE / a + T::ONE / b);
+        let square =
+            (T::TWO * self.distance + self.from * (self.from / a) + self.to * (self.to / b))
+                / (T::ONE / a + T::ONE / b);
         let straight = self.shape(least, T::ZERO);
         if self.miss(&straight).abs() <= self.noise(&straight) {
             try_one(straight);
@@ -161,11 +162,7 @@ pub(super) fn plan<T: Real>(
 
 fn rates<T: Real>(side: &Side<T>, shape: &Shape<T>) -> [(T, T); 3] {
     let [first, cruise, last] = shape.times;
-    [
-        (side.most, first),
-        (T::ZERO, cruise),
-        (-side.brake, last),
-    ]
+    [(side.most, first), (T::ZERO, cruise), (-side.brake, last)]
 }
 
 /// Goes on at an acceleration.
@@ -185,7 +182,11 @@ fn mix<T: Real>(up: &Side<T>, down: &Side<T>, total: T, course: &mut Course<T>) 
     }
     let (over, under) = (over.max(T::ZERO), under.max(T::ZERO));
     let span = over + under;
-    let share = if span > T::ZERO { under / span } else { T::HALF };
+    let share = if span > T::ZERO {
+        under / span
+    } else {
+        T::HALF
+    };
     let (far, near) = (rates(up, &far), rates(down, &near));
     let (mut i, mut j) = (0, 0);
     let (mut far_left, mut near_left) = (far[0].1, near[0].1);
@@ -203,7 +204,11 @@ fn mix<T: Real>(up: &Side<T>, down: &Side<T>, total: T, course: &mut Course<T>) 
         if !ongoing {
             return true;
         }
-        run(course, share * far[i].0 - (T::ONE - share) * near[j].0, time);
+        run(
+            course,
+            share * far[i].0 - (T::ONE - share) * near[j].0,
+            time,
+        );
         far_left = far_left - time;
         near_left = near_left - time;
     }

@@ -89,7 +89,10 @@ impl<T: Real> Task<T> {
     /// the size of what went before: of a motion that reaches an acceleration p as the limits allow, a velocity w,
     /// and w²/p of distance. A velocity limit that is none, far above p², does not count in full.
     pub fn with_noise(mut self, positions: T) -> Self {
-        let p = self.most.max(self.brake).min(self.fast.max(self.back).sqrt());
+        let p = self
+            .most
+            .max(self.brake)
+            .min(self.fast.max(self.back).sqrt());
         let w = self.fast.max(self.back).min(T::of(32.0) * p * p);
         let [v0, a0] = self.start;
         let [v1, a1] = self.end;
@@ -527,8 +530,8 @@ impl<T: Real> Side<T> {
 
     /// To the greatest velocity and from it, with no time at it; none if the start must exceed it.
     fn halves(&self) -> Option<Shape<T>> {
-        let exceeds = self.from > T::ZERO
-            && self.c + self.from * self.from > self.fast + self.k_noise;
+        let exceeds =
+            self.from > T::ZERO && self.c + self.from * self.from > self.fast + self.k_noise;
         if exceeds || self.one_way {
             return None;
         }
