@@ -65,6 +65,7 @@
 extern crate alloc;
 
 mod axes;
+mod course;
 mod envelope;
 mod error;
 mod extremes;

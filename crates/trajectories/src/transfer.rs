@@ -1,13 +1,12 @@
 //! From any state to any other in least time, or in a duration that is asked for.
 
 mod brake;
-mod course;
 mod jumps;
 mod side;
 
+use crate::course::{self, Course};
 use crate::error::{bounded, check, position, unrepresentable};
 use crate::{Extremes, Limits, Motion, Real, Setpoint, TrajectoryError, VelocityLimits, maximum};
-use course::Course;
 use side::{Best, Shape, Side, Task};
 
 /// Limits of a [`Transfer`]: a velocity and an acceleration for each sign, and the jerk.
@@ -536,7 +535,7 @@ fn bring_back<T: Real>(task: &mut Task<T>, course: &mut Course<T>, jerk: T) {
         course.lay(sign * jerk, time, last * jerk);
     }
     task.start = [v, a];
-    task.distance = task.distance - travel;
+    task.distance -= travel;
 }
 
 /// Signs of the jerk, durations (s) and accelerations (s) at the end of the segments of a motion.
@@ -573,29 +572,13 @@ fn mix<T: Real>(up: &Side<T>, down: &Side<T>, total: T, jerk: T, course: &mut Co
     } else {
         T::HALF
     };
-    let (far, near) = (segments(up, &far), segments(down, &near));
-    let (mut i, mut j) = (0, 0);
-    let (mut far_left, mut near_left) = (far[0].1, near[0].1);
+    let unit = |(sign, time, _): (T, T, T)| (sign, time);
+    let far = segments(up, &far).map(unit);
+    let near = segments(down, &near).map(unit);
     let mut a = course.state.acceleration;
-    loop {
-        while i < 6 && far_left <= T::ZERO {
-            i += 1;
-            far_left = far[i].1;
-        }
-        while j < 6 && near_left <= T::ZERO {
-            j += 1;
-            near_left = near[j].1;
-        }
-        let time = match (far_left > T::ZERO, near_left > T::ZERO) {
-            (true, true) => far_left.min(near_left),
-            // The two durations may differ by rounding.
-            _ => break,
-        };
-        let mixed = jerk * (share * far[i].0 - (T::ONE - share) * near[j].0);
-        a += mixed * time;
-        course.lay(mixed, time, a);
-        far_left = far_left - time;
-        near_left = near_left - time;
-    }
+    course::mixed((&far, &near), share, |sign, time| {
+        a += jerk * sign * time;
+        course.lay(jerk * sign, time, a);
+    });
     true
 }

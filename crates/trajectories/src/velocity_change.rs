@@ -1,5 +1,6 @@
 //! From any state in motion to a velocity: stop, speed up, slow down.
 
+use crate::course::after;
 use crate::error::{check, position, unrepresentable};
 use crate::{Motion, Real, Setpoint, TrajectoryError, maximum};
 
@@ -352,18 +353,6 @@ impl<T: Real> Course<T> {
             ..after(&state, time)
         };
         Piece { begin, state, last }
-    }
-}
-
-/// The state after `dt` of constant jerk.
-#[inline]
-fn after<T: Real>(state: &Setpoint<T>, dt: T) -> Setpoint<T> {
-    let (v, a, j) = (state.velocity, state.acceleration, state.jerk);
-    Setpoint {
-        position: state.position + dt * (v + dt * (T::HALF * a + dt * j * T::of(1.0 / 6.0))),
-        velocity: v + dt * (a + T::HALF * dt * j),
-        acceleration: a + dt * j,
-        jerk: j,
     }
 }
 

@@ -6,7 +6,7 @@
 
 KIND: `inside` (start within its limits), `beyond` (start beyond one or more), `corners` (whole numbers, many of them
 zero or at a limit), `lasting` (a least duration up to twice the least), `f32` (as `inside`, planned in f32), `jumps`
-(infinite jerk), `together` (three axes that end together), `straight` (three axes on a line, standing still at both ends;
+(infinite jerk), `together` (three axes that end together), `wide` (limits over seven to nine orders of magnitude), `straight` (three axes on a line, standing still at both ends;
 ruckig leaves the line where an axis would have to be slower than its limits, and is faster then).
 Prints how many each solves, how the durations compare, and how far the end
 is missed; lists the cases that differ most. Exit 1 if a duration in f64 is longer than ruckig's by more than 1e-9 relative.
@@ -27,6 +27,10 @@ def case(draw, kind):
         fast, back = draw.uniform(0.2, 3), -draw.uniform(0.2, 3)
         greatest, least = draw.uniform(0.5, 6), -draw.uniform(0.5, 6)
         jerk = 10 ** draw.uniform(0, 3)
+        if kind == "wide":
+            fast, back = 10 ** draw.uniform(-4, 3), -10 ** draw.uniform(-4, 3)
+            greatest, least = 10 ** draw.uniform(-3, 4), -10 ** draw.uniform(-3, 4)
+            jerk = 10 ** draw.uniform(-2, 7)
         v1 = draw.choice([0.0, draw.uniform(back, fast)])
         a1 = 0.0 if v1 == 0.0 and draw.random() < 0.5 else draw.choice([0.0, draw.uniform(least, greatest)])
         before = v1 - a1 * abs(a1) / (2 * jerk)

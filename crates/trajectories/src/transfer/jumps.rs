@@ -1,7 +1,7 @@
 //! Transfers whose acceleration may jump: velocities are trapezoids.
 
-use super::course::Course;
 use super::{Transfer, TransferLimits};
+use crate::course::{self, Course};
 use crate::error::unrepresentable;
 use crate::{Real, Setpoint, TrajectoryError};
 
@@ -95,7 +95,7 @@ impl<T: Real> Side<T> {
         let peak = (total + self.from / a + self.to / b) / (T::ONE / a + T::ONE / b);
         let least = self.from.max(self.to);
         let slack = T::of(16.0) * T::EPSILON * (least.abs() + a.max(b) * total);
-        if !(peak >= least - slack) {
+        if peak < least - slack {
             return None;
         }
         if peak <= self.fast {
@@ -188,28 +188,6 @@ fn mix<T: Real>(up: &Side<T>, down: &Side<T>, total: T, course: &mut Course<T>) 
         T::HALF
     };
     let (far, near) = (rates(up, &far), rates(down, &near));
-    let (mut i, mut j) = (0, 0);
-    let (mut far_left, mut near_left) = (far[0].1, near[0].1);
-    loop {
-        while i < 2 && far_left <= T::ZERO {
-            i += 1;
-            far_left = far[i].1;
-        }
-        while j < 2 && near_left <= T::ZERO {
-            j += 1;
-            near_left = near[j].1;
-        }
-        let time = far_left.min(near_left);
-        let ongoing = time > T::ZERO;
-        if !ongoing {
-            return true;
-        }
-        run(
-            course,
-            share * far[i].0 - (T::ONE - share) * near[j].0,
-            time,
-        );
-        far_left = far_left - time;
-        near_left = near_left - time;
-    }
+    course::mixed((&far, &near), share, |rate, time| run(course, rate, time));
+    true
 }

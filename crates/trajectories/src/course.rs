@@ -134,6 +134,33 @@ impl<T: Real> Course<T> {
     }
 }
 
+/// Rates (of velocity or acceleration) and how long each lasts, s.
+pub(crate) type Rates<'a, T> = &'a [(T, T)];
+
+/// Two motions of the same duration, each a list of rates and the times (s) that they last, in a constant ratio: `share` of
+/// the first, the remainder of the second, which counts the other way round. `lay` gets the rates and times that result.
+///
+/// Where the durations differ by rounding, the shorter one counts.
+pub(crate) fn mixed<T: Real>(
+    (first, second): (Rates<'_, T>, Rates<'_, T>),
+    share: T,
+    mut lay: impl FnMut(T, T),
+) {
+    let ongoing = |&(_, time): &(T, T)| time > T::ZERO;
+    let (mut first, mut second) = (
+        first.iter().copied().filter(ongoing),
+        second.iter().copied().filter(ongoing),
+    );
+    let (mut one, mut two) = (first.next(), second.next());
+    while let (Some((rate, left)), Some((other, other_left))) = (one, two) {
+        let time = left.min(other_left);
+        lay(share * rate - (T::ONE - share) * other, time);
+        let on = |rate, left: T| (left > time).then(|| (rate, left - time));
+        one = on(rate, left).or_else(|| first.next());
+        two = on(other, other_left).or_else(|| second.next());
+    }
+}
+
 /// The state after `dt` of constant jerk.
 #[inline]
 pub(crate) fn after<T: Real>(state: &Setpoint<T>, dt: T) -> Setpoint<T> {
