@@ -155,6 +155,29 @@ fn durations_are_those_of_ruckig() {
     assert!(count > 950, "{count}");
 }
 
+/// Where velocity and acceleration are the same at both ends, no change of velocity is the shortest.
+#[test]
+fn the_same_velocity_and_acceleration_at_both_ends_take_a_turn() {
+    // v, a; limits of v and a; duration by ruckig 0.19.4. Over 1 m, at 1 m/s³.
+    for (v, a, fast, most, theirs) in [
+        (0.5, 1.0, [-1.0, 2.0], [-2.0, 1.0], 5.150_770_243_157_544),
+        (0.5, -1.0, [-1.0, 2.0], [-1.0, 1.0], 5.236_067_977_499_79),
+    ] {
+        let case = Case {
+            start: state(0.0, v, a),
+            target: state(1.0, v, a),
+            limits: limits(fast, most, 1.0),
+        };
+        let plan = Transfer::plan(&case.start, &case.target, &case.limits).unwrap();
+        assert!(
+            (plan.duration() - theirs).abs() < 1e-12,
+            "{}",
+            plan.duration()
+        );
+        check_motion(&plan, &case).unwrap();
+    }
+}
+
 #[test]
 fn rest_to_rest_is_the_s_curve() {
     let limits = Limits::<f64>::new(0.1, 0.225, 1.2).unwrap();
