@@ -84,8 +84,17 @@ def ruckig_of(cases):
         yield trajectory.duration if solved else None
 
 
-def ruckig_of_axes(cases, kind):
-    """Durations of every three cases together."""
+def leaves_line(trajectory, p1):
+    """Whether three axes are ever at different shares of their distances."""
+    for i in range(1, 20):
+        shares = [x / y for x, y in zip(trajectory.at_time(trajectory.duration * i / 20)[0], p1)]
+        if max(shares) - min(shares) > 1e-9:
+            return True
+    return False
+
+
+def ruckig_of_axes(cases, kind, off_line):
+    """Durations of every three cases together; to `off_line`, whether ruckig leaves the line that it is to keep."""
     planner, given, trajectory = Ruckig(3), InputParameter(3), Trajectory(3)
     given.current_position = [0.0] * 3
     given.synchronization = Synchronization.Phase if kind == "straight" else Synchronization.Time
@@ -99,6 +108,7 @@ def ruckig_of_axes(cases, kind):
             solved = planner.calculate(given, trajectory) in (Result.Working, Result.Finished)
         except RuckigError:
             solved = False
+        off_line.append(kind == "straight" and solved and leaves_line(trajectory, p1))
         yield trajectory.duration if solved else None
 
 
@@ -135,8 +145,8 @@ def main(example, count=100_000, seed=1, kind="inside"):
     ours = ours_of(example, cases, *([kind] if axes or kind == "f32" else []))
     tolerance = 1e-4 if kind == "f32" else 1e-9
     equal = longer = shorter = alone = only_ruckig = neither = 0
-    worst, missed, off = [], 0.0, []
-    for one, plan, theirs in zip(cases[::3] if axes else cases, ours, ruckig_of_axes(cases, kind) if axes else ruckig_of(cases)):
+    worst, missed, off, off_line, longer_off_line = [], 0.0, [], [], 0
+    for one, plan, theirs in zip(cases[::3] if axes else cases, ours, ruckig_of_axes(cases, kind, off_line) if axes else ruckig_of(cases)):
         if plan and not axes:
             total, p, v, a = plan
             a = one[4] if kind == "jumps" else a
@@ -156,11 +166,14 @@ def main(example, count=100_000, seed=1, kind="inside"):
             equal += 1
             continue
         longer += difference > 0
+        longer_off_line += bool(axes and difference > 0 and off_line[-1])
         shorter += difference < 0
         worst.append((difference, one, plan, theirs))
     print(f"{kind}: {len(ours)} tasks (seed {seed}); both solve {equal + longer + shorter}, "
           f"only here {alone}, only ruckig {only_ruckig}, neither {neither}")
     print(f"durations equal to {tolerance:g} relative: {equal}; longer here: {longer}; shorter here: {shorter}")
+    if kind == "straight":
+        print(f"ruckig leaves the line in {sum(off_line)}, {longer_off_line} of which are longer here")
     off.sort()
     print(f"difference, median {off[len(off) // 2]:.1e}, 99.9 % below {off[int(0.999 * len(off))]:.1e}; "
           f"end missed by at most {missed:.1e} of the motion's size")
