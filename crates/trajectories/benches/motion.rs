@@ -3,7 +3,10 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use trajectories::{Chirp, Limits, Motion, Program, Real, SCurve, Setpoint, Sine, Step, Sweep};
+use trajectories::{
+    Chirp, Limits, Motion, Program, Real, SCurve, Setpoint, Sine, Step, Sweep, Transfer,
+    TransferLimits,
+};
 
 /// Instants per pass: enough that no branch predictor learns a random order by heart.
 const INSTANTS: usize = 100_000;
@@ -67,6 +70,45 @@ fn random() -> impl Iterator<Item = f64> {
             .wrapping_add(1);
         (state >> 11) as f64 / (1u64 << 53) as f64
     })
+}
+
+fn transfer(c: &mut Criterion) {
+    let mut group = c.benchmark_group("transfer");
+    let limits = limits().into();
+    let mut numbers = random();
+    let mut draw = |size: f64| size * (2.0 * numbers.next().expect("endless") - 1.0);
+    // Within the limits of 0.1 m/s and 0.225 m/s², whatever the signs.
+    let tasks: Vec<[Setpoint; 2]> = (0..INSTANTS)
+        .map(|_| {
+            [0.0, draw(0.5)].map(|position| Setpoint {
+                position,
+                velocity: draw(0.08),
+                acceleration: draw(0.2),
+                jerk: 0.0,
+            })
+        })
+        .collect();
+    group.throughput(Throughput::Elements(INSTANTS as u64));
+    group.bench_function("plan", |b| b.iter(|| plan_all(&tasks, &limits)));
+    let single = |s: &Setpoint| Setpoint {
+        position: s.position as f32,
+        velocity: s.velocity as f32,
+        acceleration: s.acceleration as f32,
+        jerk: 0.0,
+    };
+    let tasks: Vec<_> = tasks
+        .iter()
+        .map(|ends| ends.each_ref().map(single))
+        .collect();
+    let limits = self::limits().cast::<f32>().expect("positive").into();
+    group.bench_function("plan, f32", |b| b.iter(|| plan_all(&tasks, &limits)));
+    group.finish();
+}
+
+fn plan_all<T: Real>(tasks: &[[Setpoint<T>; 2]], limits: &TransferLimits<T>) {
+    for [start, target] in tasks {
+        black_box(Transfer::plan(start, target, limits).expect("valid"));
+    }
 }
 
 fn program() -> Program {
@@ -150,6 +192,6 @@ criterion_group! {
     config = Criterion::default()
         .warm_up_time(std::time::Duration::from_millis(500))
         .measurement_time(std::time::Duration::from_secs(2));
-    targets = plan, sample
+    targets = plan, transfer, sample
 }
 criterion_main!(benches);

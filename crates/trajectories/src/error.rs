@@ -32,6 +32,18 @@ pub enum TrajectoryError {
         /// Size of the scalar, bits.
         bits: usize,
     },
+    /// A motion leaves the positions that it is allowed.
+    #[error(
+        "the motion reaches {position} m, but must stay from {position_min} to {position_max} m"
+    )]
+    LeavesRange {
+        /// The farthest position that lies outside, m.
+        position: f64,
+        /// Least position allowed, m.
+        position_min: f64,
+        /// Greatest position allowed, m.
+        position_max: f64,
+    },
     /// A step of a program was refused.
     #[cfg(feature = "alloc")]
     #[error("step {number} ({kind}): {source}")]
@@ -49,6 +61,17 @@ pub enum TrajectoryError {
 pub(crate) fn position<T: Scalar>(field: &'static str, value: T) -> Result<T, TrajectoryError> {
     let inside = value.abs() <= T::of(maximum::POSITION);
     check(inside, field, value, "m", "from -1e6 to 1e6")
+}
+
+/// `value` if its magnitude is at most `most`.
+pub(crate) fn bounded<T: Scalar>(
+    field: &'static str,
+    value: T,
+    most: f64,
+    unit: &'static str,
+    valid: &'static str,
+) -> Result<T, TrajectoryError> {
+    check(value.abs() <= T::of(most), field, value, unit, valid)
 }
 
 /// `value` (Hz) if it is a frequency of an oscillation.

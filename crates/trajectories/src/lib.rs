@@ -42,8 +42,13 @@
 //! # What it deliberately knows nothing of
 //! The machine that follows the motion: no axis, stroke, control period, controller or error
 //! enters here. Callers compare [`Extremes`] with their own stroke and sample at their own
-//! instants. There is one axis and rest at both ends of each step: no blending between moves, no
-//! synchronisation of axes. A start in motion is what [`VelocityChange`] takes: it ends at a velocity, not at a position.
+//! instants. Steps of a program are of one axis, with rest at both ends: no blending between moves.
+//!
+//! # In motion
+//! [`Transfer`] leads from any position, velocity and acceleration to any other in least time, or in a longer one that is
+//! asked for; [`VelocityChange`] to a velocity, wherever that is reached, for instance to a stop. [`Axes`] makes several axes start
+//! and end together, on a straight line if they can. [`Follow`] takes a target that may change in every cycle of a
+//! controller.
 //!
 //! # Scalar
 //! All motions are generic over their scalar, planning included: `f64` where none is named, `f32`
@@ -59,11 +64,14 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+mod axes;
+mod course;
 mod envelope;
 mod error;
 mod extremes;
 #[cfg(feature = "serde")]
 mod file;
+mod follow;
 mod limits;
 pub mod maximum;
 mod motion;
@@ -75,10 +83,13 @@ mod real;
 mod scurve;
 mod step;
 mod sweep;
+mod transfer;
 mod velocity_change;
 
+pub use axes::{Axes, AxisError, AxisTask};
 pub use error::TrajectoryError;
 pub use extremes::Extremes;
+pub use follow::Follow;
 pub use limits::Limits;
 pub use motion::{Motion, Setpoint};
 pub use oscillation::{Chirp, Oscillation, Sine};
@@ -88,6 +99,7 @@ pub use real::Real;
 pub use scurve::{SCurve, Segment};
 pub use step::Step;
 pub use sweep::Sweep;
+pub use transfer::{Transfer, TransferLimits};
 pub use velocity_change::{VelocityChange, VelocityLimits};
 
 /// The README's example, run as a test.

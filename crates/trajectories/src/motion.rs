@@ -28,7 +28,8 @@ impl<T: Scalar> Setpoint<T> {
     }
 }
 
-/// A motion from rest to rest. Object safe.
+/// A motion, from standstill to standstill except for those of [`Transfer`](crate::Transfer) and
+/// [`VelocityChange`](crate::VelocityChange), which may start and end in motion. Object safe.
 ///
 /// `T` is the scalar that it computes in: `f64` where none is named, as in `dyn Motion`, or `f32`.
 ///
@@ -47,8 +48,8 @@ pub trait Motion<T = f64> {
 
     /// Setpoint at time `t` (s) after the start.
     ///
-    /// For `t < 0` and for NaN it is rest at the start, for `t >= duration()` rest at the end,
-    /// exactly. Any `t` is allowed, in any order; the result depends on `t` alone.
+    /// For `t < 0` and for NaN it is the start, for `t = duration()` the end, exactly. After that it is the end
+    /// too; a motion that ends with a velocity goes on with it, without acceleration. Any `t` is allowed, in any order; the result depends on `t` alone.
     fn at(&self, t: T) -> Setpoint<T>;
 }
 

@@ -15,6 +15,10 @@ pub trait Real: Scalar {
     /// rounds.
     const BOUND_MARGIN: Self;
 
+    /// Which fraction of a motion's own distances and velocities counts as rounding at its end, when a motion is planned
+    /// anew from a state on it: some hundred times what one evaluation rounds, in `f32` some times.
+    const END_MARGIN: Self;
+
     /// Whether `0 ≤ self < end`, for an `end` that is not negative; false for NaN and for a zero
     /// with its sign set.
     ///
@@ -41,11 +45,12 @@ pub trait Real: Scalar {
 }
 
 macro_rules! real {
-    ($t:ident, $log1p:ident, $hypot:path, $turn:path, $cycles:literal, $margin:literal) => {
+    ($t:ident, $log1p:ident, $hypot:path, $turn:path, $cycles:literal, $margin:literal, $end:literal) => {
         impl Real for $t {
             const MAX_CYCLES: Self = $cycles;
             const VALID_CYCLES: &'static str = concat!("at most ", stringify!($cycles));
             const BOUND_MARGIN: Self = $margin;
+            const END_MARGIN: Self = $end;
 
             #[inline(always)]
             fn is_before(self, end: Self) -> bool {
@@ -75,9 +80,9 @@ macro_rules! real {
     };
 }
 
-real!(f64, log1p, libm::hypot, turn_f64, 1e9, 1e-12);
+real!(f64, log1p, libm::hypot, turn_f64, 1e9, 1e-12, 1e-13);
 // libm's hypotf and sincosf compute in f64, which a controller does in software.
-real!(f32, log1pf, hypot_f32, turn_f32, 1e4, 1e-5);
+real!(f32, log1pf, hypot_f32, turn_f32, 1e4, 1e-5, 5e-7);
 
 #[inline]
 fn turn_f64(x: f64) -> (f64, f64) {

@@ -1,7 +1,8 @@
 //! From any state in motion to a velocity: stop, speed up, slow down.
 
+use crate::course::after;
 use crate::error::{check, position, unrepresentable};
-use crate::{Real, Setpoint, TrajectoryError, maximum};
+use crate::{Motion, Real, Setpoint, TrajectoryError, maximum};
 
 /// Limits of a [`VelocityChange`]: one for each sign of the acceleration, and the jerk.
 ///
@@ -46,6 +47,15 @@ impl<T: Real> VelocityLimits<T> {
                 "greater than zero and at most 1e15, or infinite",
             )?,
         })
+    }
+
+    /// The same for both signs, of values that are known to be valid.
+    pub(crate) fn symmetric(acceleration: T, jerk: T) -> Self {
+        Self {
+            least: -acceleration,
+            greatest: acceleration,
+            jerk,
+        }
     }
 
     /// Least acceleration allowed, m/s²; below zero.
@@ -225,6 +235,40 @@ impl<T: Real> VelocityChange<T> {
         self.end
     }
 
+    /// Where an axis in the state `start` comes to a standstill, m, if it is stopped as fast as `limits` allow.
+    ///
+    /// ```
+    /// use trajectories::{Setpoint, VelocityChange, VelocityLimits};
+    ///
+    /// let limits = VelocityLimits::<f64>::new(-4.0, 2.0, 40.0)?;
+    /// let start = Setpoint { position: 1.0, velocity: 0.8, ..Setpoint::default() };
+    /// let place = VelocityChange::stopping_place(&start, &limits)?;
+    /// assert!((place - 1.12).abs() < 1e-15); // 0.8 m/s for half of 0.3 s
+    /// # Ok::<(), trajectories::TrajectoryError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    #[inline]
+    pub fn stopping_place(
+        start: &Setpoint<T>,
+        limits: &VelocityLimits<T>,
+    ) -> Result<T, TrajectoryError> {
+        Ok(Self::stop(start, limits)?.end.position)
+    }
+
+    /// Jerk (m/s³), duration (s), and accelerations (m/s²) at both ends, of each stretch.
+    pub(crate) fn stretches(&self) -> [(T, T, T, T); 4] {
+        let mut next = self.duration;
+        let mut stretches = [(T::ZERO, T::ZERO, T::ZERO, T::ZERO); 4];
+        for (stretch, piece) in stretches.iter_mut().zip(&self.pieces).rev() {
+            let first = piece.state.acceleration;
+            *stretch = (piece.state.jerk, next - piece.begin, first, piece.last);
+            next = piece.begin;
+        }
+        stretches
+    }
+
     /// State at `t` (s) after the start: the start for `t < 0` and NaN; from the duration on, the
     /// wanted velocity exactly, and a position that goes on with it.
     pub fn at(&self, t: T) -> Setpoint<T> {
@@ -259,6 +303,18 @@ impl<T: Real> VelocityChange<T> {
         // The time may exceed its piece by rounding: the limits hold all the same.
         state.acceleration = clamp(state.acceleration, first.min(last), first.max(last));
         state
+    }
+}
+
+impl<T: Real> Motion<T> for VelocityChange<T> {
+    #[inline]
+    fn duration(&self) -> T {
+        self.duration
+    }
+
+    #[inline]
+    fn at(&self, t: T) -> Setpoint<T> {
+        Self::at(self, t)
     }
 }
 
@@ -297,18 +353,6 @@ impl<T: Real> Course<T> {
             ..after(&state, time)
         };
         Piece { begin, state, last }
-    }
-}
-
-/// The state after `dt` of constant jerk.
-#[inline]
-fn after<T: Real>(state: &Setpoint<T>, dt: T) -> Setpoint<T> {
-    let (v, a, j) = (state.velocity, state.acceleration, state.jerk);
-    Setpoint {
-        position: state.position + dt * (v + dt * (T::HALF * a + dt * j * T::of(1.0 / 6.0))),
-        velocity: v + dt * (a + T::HALF * dt * j),
-        acceleration: a + dt * j,
-        jerk: j,
     }
 }
 
