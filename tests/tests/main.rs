@@ -2,6 +2,7 @@
 
 mod balance;
 mod bench;
+mod contour;
 mod emps;
 mod identification;
 mod independent_logs;

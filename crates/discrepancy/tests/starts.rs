@@ -106,7 +106,7 @@ fn departures(machine: &Axis, log: &Log, effects: Vec<ActiveEffect>) -> [f64; 2]
     };
     let stored = most(&set);
     let replay = Replay::new(log, machine.period).unwrap();
-    set.logs[0].answer = Answer::Replay(replay);
+    set.logs[0].answer = Answer::Replay(Box::new(replay));
     [stored, most(&set)]
 }
 

@@ -3,6 +3,7 @@
 mod campaign;
 mod cli;
 mod common;
+mod contour;
 mod discover;
 mod export_controller;
 mod export_drive;

@@ -25,7 +25,7 @@ pub enum AnyResidual {
     /// A network.
     Network(ResidualNetwork),
     /// Effects.
-    Named(NamedResidual),
+    Named(Box<NamedResidual>),
 }
 
 impl AnyLearner {
@@ -57,7 +57,7 @@ impl AnyLearner {
         match self {
             Self::Tables(learner) => Some(AnyResidual::Tables(learner.latest().clone())),
             Self::Network(learner) => learner.latest().clone().map(AnyResidual::Network),
-            Self::Named(learner) => Some(AnyResidual::Named(learner.latest().clone())),
+            Self::Named(learner) => Some(AnyResidual::Named(Box::new(learner.latest().clone()))),
         }
     }
 
@@ -70,7 +70,11 @@ impl AnyLearner {
                 let network = learner.model().cloned().flatten();
                 network.map(AnyResidual::Network)
             }
-            Self::Named(learner) => learner.model().cloned().map(AnyResidual::Named),
+            Self::Named(learner) => learner
+                .model()
+                .cloned()
+                .map(Box::new)
+                .map(AnyResidual::Named),
         }
     }
 }

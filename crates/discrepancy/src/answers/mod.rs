@@ -21,7 +21,7 @@ pub(crate) use self::state::is_form_of;
 pub enum Answer {
     /// The logged reference goes through the simulated closed loop: for machines whose
     /// controller is known.
-    Replay(Replay),
+    Replay(Box<Replay>),
     /// The measured motion asks for a motor torque, which is compared with what the log
     /// shows of it: for all others.
     Balance(Box<Balance>),

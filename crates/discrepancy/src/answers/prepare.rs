@@ -49,7 +49,7 @@ impl LogSet {
                 taken_up: taken_up(&log, machine),
                 doubtful,
                 shown_effort: held_effort(&replay),
-                answer: Answer::Replay(replay),
+                answer: Answer::Replay(Box::new(replay)),
                 defect: vec![vec![0.0; log.len()]; channels.len()],
                 hum: vec![Vec::new(); channels.len()],
                 measured: channels

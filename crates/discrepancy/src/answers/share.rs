@@ -135,7 +135,7 @@ impl LogSet {
                 (Stored::Nothing, Some(effort)) => Stored::Effort(effort),
                 _ => continue,
             };
-            log.answer = Answer::Replay(replay.clone().storing(other));
+            log.answer = Answer::Replay(Box::new(replay.as_ref().clone().storing(other)));
         }
         set
     }
@@ -243,7 +243,9 @@ impl LogSet {
             if let Answer::Replay(replay) = &log.answer
                 && let Stored::Effort(effort) = replay.stored()
             {
-                log.answer = Answer::Replay(replay.clone().storing(Stored::Effort(effort + by)));
+                log.answer = Answer::Replay(Box::new(
+                    replay.as_ref().clone().storing(Stored::Effort(effort + by)),
+                ));
             }
         }
         set
@@ -264,7 +266,9 @@ impl LogSet {
             if let Answer::Replay(replay) = &log.answer
                 && let Stored::Share(_) = replay.stored()
             {
-                log.answer = Answer::Replay(replay.clone().storing(Stored::Share(share)));
+                log.answer = Answer::Replay(Box::new(
+                    replay.as_ref().clone().storing(Stored::Share(share)),
+                ));
             }
         }
         set

@@ -4,6 +4,7 @@ pub(crate) mod analyse;
 pub(crate) mod campaign;
 pub(crate) mod compensate;
 mod compensate_moves;
+pub(crate) mod contour;
 mod control_table;
 pub mod discover;
 mod discover_words;
@@ -66,6 +67,8 @@ pub enum Command<J: Jobs> {
     Tune(tune::Options),
     /// Simulate one motion, write its log and a page of figures
     Simulate(simulate::Options),
+    /// Simulate two axes on a circle: contour error and figures in the manner of ISO 230-4
+    Contour(contour::Options),
     /// Name what a model lacks, from logs of the real axis
     Discover(discover::Options),
     /// Inspect a log (channels, sampling, noise, a proposed mapping) or convert it
@@ -99,6 +102,7 @@ impl<J: Jobs> Command<J> {
             Self::Analyse(options) => analyse::command(options),
             Self::Tune(options) => tune::command(options),
             Self::Simulate(options) => simulate::command(options),
+            Self::Contour(options) => contour::command(options),
             Self::Discover(options) => discover::command(options),
             Self::Log(options) => log::command(options),
             Self::Campaign(options) => campaign::command::<J>(options),

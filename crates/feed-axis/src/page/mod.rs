@@ -4,6 +4,7 @@ mod answers;
 pub mod channel;
 pub mod compare;
 mod compensation;
+pub mod contour;
 pub mod discovery;
 mod envelope;
 pub mod loops;

@@ -43,8 +43,8 @@ pub struct AxesPoint<const D: usize> {
 ///   splines themselves: peaks between the places at which they are held are looked for, and the
 ///   whole is slowed by what remains.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FeedProfile<'a, const D: usize> {
-    path: &'a Path<D>,
+pub struct FeedProfile<const D: usize> {
+    path: Path<D>,
     parts: Vec<Part>,
     /// Time at which each part begins, and that of the end, s.
     starts: Vec<f64>,
@@ -80,19 +80,19 @@ impl Part {
     }
 }
 
-impl<'a, const D: usize> FeedProfile<'a, D> {
+impl<const D: usize> FeedProfile<D> {
     /// Plans the motion along `path` within `limits`.
     ///
     /// # Errors
     /// [`ToolpathError::Invalid`] for a limit that is not from 1e-9 to 1e9,
     /// [`ToolpathError::Feed`] or [`ToolpathError::Motion`] if they are too far apart in
     /// magnitude.
-    pub fn plan(path: &'a Path<D>, limits: &FeedLimits<D>) -> Result<Self, ToolpathError> {
+    pub fn plan(path: &Path<D>, limits: &FeedLimits<D>) -> Result<Self, ToolpathError> {
         limits.check()?;
         let stops = stops(path, limits);
         let cells = cells(path);
         let mut profile = Self {
-            path,
+            path: path.clone(),
             parts: Vec::new(),
             starts: vec![0.0],
         };
@@ -107,6 +107,11 @@ impl<'a, const D: usize> FeedProfile<'a, D> {
             profile.parts.push(part);
         }
         Ok(profile)
+    }
+
+    /// The path.
+    pub fn path(&self) -> &Path<D> {
+        &self.path
     }
 
     /// Duration, s.

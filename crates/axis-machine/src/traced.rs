@@ -1,0 +1,63 @@
+//! Where a machine was.
+
+use std::sync::Arc;
+
+use toolpath::{FeedProfile, Follower, Foot};
+
+/// Positions of a machine along a path, at even times from 0 on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traced<const D: usize> {
+    profile: Arc<FeedProfile<D>>,
+    period: f64,
+    positions: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Traced<D> {
+    pub(crate) fn new(profile: Arc<FeedProfile<D>>, period: f64, columns: &[Vec<f64>; D]) -> Self {
+        let count = columns.iter().map(Vec::len).min().unwrap_or(0);
+        let at = |k: usize| std::array::from_fn(|axis| columns[axis][k]);
+        Self {
+            profile,
+            period,
+            positions: (0..count).map(at).collect(),
+        }
+    }
+
+    /// The motion along the path that was asked for.
+    pub fn profile(&self) -> &FeedProfile<D> {
+        &self.profile
+    }
+
+    /// Time between two positions, s.
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// Where the machine was, m, in the path's coordinates.
+    pub fn positions(&self) -> &[[f64; D]] {
+        &self.positions
+    }
+
+    /// The feet of all positions on the path, one after the other: each has the contour error.
+    pub fn contour_error(&self) -> impl Iterator<Item = Foot<D>> {
+        let mut follower = Follower::new(self.profile.path(), 0.0);
+        self.positions.iter().map(move |p| follower.follow(*p))
+    }
+
+    /// Positions while the reference is between two arc lengths (m): the counted turn of a circle, for instance.
+    pub fn between(&self, (from, to): (f64, f64)) -> &[[f64; D]] {
+        let passed = |s: f64| {
+            let (mut low, mut high) = (0, self.positions.len());
+            while low < high {
+                let middle = low.midpoint(high);
+                match self.profile.at(middle as f64 * self.period).s < s {
+                    true => low = middle + 1,
+                    false => high = middle,
+                }
+            }
+            low
+        };
+        let (first, last) = (passed(from), passed(to));
+        &self.positions[first..last.max(first)]
+    }
+}

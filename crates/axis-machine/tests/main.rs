@@ -1,0 +1,104 @@
+//! Stages of a kind along paths.
+
+use axis_machine::{AxisMotion, Driven, MachineError, trace};
+use axis_sim::{Axis, ClosedLoop};
+use compensator::NoCompensation;
+use std::sync::Arc;
+use toolpath::named::CircleTest;
+use toolpath::{FeedLimits, FeedProfile, Path};
+use trajectories::Motion;
+
+fn stage(change: impl Fn(String) -> String) -> ClosedLoop {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../data/axes/linear-stage.toml"
+    );
+    let text = change(std::fs::read_to_string(file).unwrap());
+    ClosedLoop::new(&Axis::parse("stage.toml", &text).unwrap()).unwrap()
+}
+
+fn same(text: String) -> String {
+    text
+}
+
+/// Two stages of one kind, equally loaded, along a diagonal: both are late alike, so they stay on it.
+#[test]
+fn equal_axes_stay_on_a_diagonal() {
+    let stage = stage(same);
+    let path = Path::polyline(&[[0.0, 0.0], [0.02, 0.02]]).unwrap();
+    let profile = FeedProfile::plan(&path, &FeedLimits::equal(0.1, 1.0, 2.0, 50.0)).unwrap();
+    let traced = trace(
+        &profile,
+        [0, 1].map(|_| Driven::new(&stage, Box::new(NoCompensation))),
+    )
+    .unwrap();
+    let worst = traced
+        .contour_error()
+        .map(|f| f.length())
+        .fold(0.0, f64::max);
+    assert!(worst < 1e-15, "{worst}");
+    // It is late nevertheless.
+    let late = |k: usize| {
+        let t = k as f64 * traced.period();
+        (profile.axes(t).position[0] - traced.positions()[k][0]).abs()
+    };
+    let most = (0..traced.positions().len()).map(late).fold(0.0, f64::max);
+    assert!(most > 1e-6, "{most}");
+}
+
+/// With one period twice the other, positions are those of the same axis alone.
+#[test]
+fn a_slower_axis_sets_the_instants() {
+    let (fast, slow) = (
+        stage(same),
+        stage(|text| text.replace("frequency_khz = 5", "frequency_khz = 2.5")),
+    );
+    let circle = CircleTest::new(0.01).path().unwrap();
+    let limits = FeedLimits::equal(0.05, 1.0, 1.0, 20.0);
+    let profile = FeedProfile::plan(&circle.path, &limits).unwrap();
+    let driven = [&fast, &slow].map(|stage| Driven::new(stage, Box::new(NoCompensation)));
+    let traced = trace(&profile, driven).unwrap();
+    assert_eq!(traced.period(), 4e-4);
+    let mut alone = Vec::new();
+    let motion = AxisMotion::new(Arc::new(profile.clone()), 0, fast.axis().stroke.start);
+    let outcome = fast.run(&motion, &mut NoCompensation, |cycle| {
+        alone.push(cycle.position)
+    });
+    outcome.completed().unwrap();
+    for (k, [x, _]) in traced.positions().iter().enumerate() {
+        assert_eq!(*x, alone[2 * k] - motion.zero());
+    }
+    // The counted turn is one turn: its ends lie together.
+    let turn = traced.between(circle.counted);
+    let [first, last] = [turn[0], turn[turn.len() - 1]];
+    assert!(
+        (0..2).all(|i| (first[i] - last[i]).abs() < 1e-3),
+        "{first:?} {last:?}"
+    );
+    assert!((turn.len() as f64 * 4e-4 - std::f64::consts::TAU * 0.01 / 0.05).abs() < 0.01);
+    assert_eq!(motion.duration(), profile.duration());
+}
+
+#[test]
+fn what_does_not_run_is_said() {
+    let (fast, odd) = (
+        stage(same),
+        stage(|text| text.replace("frequency_khz = 5", "frequency_khz = 4")),
+    );
+    let path = Path::polyline(&[[0.0, 0.0], [0.02, 0.02]]).unwrap();
+    let profile = FeedProfile::plan(&path, &FeedLimits::equal(0.1, 1.0, 2.0, 50.0)).unwrap();
+    let driven = [&fast, &odd].map(|stage| Driven::new(stage, Box::new(NoCompensation)));
+    let text = trace(&profile, driven).unwrap_err().to_string();
+    assert_eq!(
+        text,
+        "axis 1 (from 1) has a control period of 0.0002 s, and the slowest of all has 0.00025 s; valid: whole parts of the slowest"
+    );
+    let far = Path::polyline(&[[0.0, 0.0], [0.0, 5.0]]).unwrap();
+    let profile = FeedProfile::plan(&far, &FeedLimits::equal(0.1, 1.0, 2.0, 50.0)).unwrap();
+    let driven = [0, 1].map(|_| Driven::new(&fast, Box::new(NoCompensation)));
+    let error = trace(&profile, driven).unwrap_err();
+    assert!(
+        matches!(error, MachineError::Stopped { axis: 2, .. }),
+        "{error}"
+    );
+}

@@ -1,0 +1,358 @@
+//! `contour`: two axes on a circle, in both directions.
+
+use std::f64::consts::FRAC_PI_4;
+use std::fmt::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use axis_machine::{AxisMotion, Driven, Traced, trace};
+use axis_pipeline::strategies::{Predictors, StrategyKind};
+use axis_sim::mechanism::Freedom;
+use axis_sim::{Axis, ClosedLoop, Measured};
+use clap::Args;
+use discover_matrix::hidden::Noise;
+use miette::{IntoDiagnostic, Result, WrapErr};
+use serde::Serialize;
+use toolpath::iso230_4::{
+    CircleFigures, DirectionFigures, NominalCircle, figures, quadrant_glitches,
+};
+use toolpath::named::{CirclePath, CircleTest, Direction};
+use toolpath::{FeedLimits, FeedProfile};
+
+use super::simulate::{NOISE, factor};
+use crate::context::read_axis;
+use crate::exit::wrong_use;
+use crate::output::print;
+use crate::page::contour as contour_page;
+use crate::strategy_name::strategy_name;
+
+/// Options of `contour`.
+#[derive(Args)]
+pub struct Options {
+    /// Axis file of X
+    #[arg(long, value_name = "FILE")]
+    x: PathBuf,
+    /// Axis file of Y
+    #[arg(long, value_name = "FILE")]
+    y: PathBuf,
+    /// Radius of the circle, mm
+    #[arg(
+        long,
+        value_name = "MM",
+        default_value_t = 50.0,
+        allow_negative_numbers = true
+    )]
+    radius: f64,
+    /// Feed along the circle, m/min
+    #[arg(
+        long,
+        value_name = "M_PER_MIN",
+        default_value_t = 3.0,
+        allow_negative_numbers = true
+    )]
+    feed: f64,
+    /// Greatest acceleration of each axis, m/s²
+    #[arg(
+        long,
+        value_name = "M_PER_S2",
+        default_value_t = 1.0,
+        allow_negative_numbers = true
+    )]
+    acceleration: f64,
+    /// Greatest jerk of each axis, m/s³
+    #[arg(
+        long,
+        value_name = "M_PER_S3",
+        default_value_t = 20.0,
+        allow_negative_numbers = true
+    )]
+    jerk: f64,
+    /// Compensation of both axes, of those that need nothing from other commands
+    #[arg(long, value_parser = strategy_name(), default_value = "none")]
+    compensation: &'static StrategyKind,
+    #[arg(long, help = NOISE, value_name = "FACTOR", default_value_t = 0.0, value_parser = factor, allow_negative_numbers = true)]
+    noise: f64,
+    /// Seed of the noise
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Where to write a page of both turns
+    #[arg(long, value_name = "OUT.html")]
+    report: Option<PathBuf>,
+}
+
+/// Window after a reversal in which its glitch is sought, rad.
+const AFTER_REVERSAL: f64 = 0.35;
+
+/// Runs the command.
+pub fn command(options: &Options) -> Result<()> {
+    if let [need, ..] = options.compensation.needs {
+        return Err(wrong_use(format!(
+            "--compensation: {} needs {}; give one that needs nothing, such as plan, feedback or drive-terms",
+            options.compensation.label,
+            need.name()
+        )));
+    }
+    let axes = [read(&options.x, "--x")?, read(&options.y, "--y")?];
+    let turns = [Direction::Clockwise, Direction::Counterclockwise];
+    let turns = turns.map(|direction| turn(options, &axes, direction));
+    let [clockwise, counterclockwise] = turns;
+    let turns = [clockwise?, counterclockwise?];
+    let nominal = options.nominal();
+    let [there, back] = turns.each_ref().map(|t| t.counted.as_slice());
+    let figures = figures(&nominal, there, back).into_diagnostic()?;
+    let [x, y] = axes.each_ref().map(|axis| axis.name.as_str());
+    let value = Contoured {
+        x,
+        y,
+        compensation: options.compensation.name,
+        radius_mm: options.radius,
+        feed_m_per_min: options.feed,
+        duration_s: turns[1].duration,
+        clockwise: Turned::of(&turns[0], &figures.clockwise, &nominal)?,
+        counterclockwise: Turned::of(&turns[1], &figures.counterclockwise, &nominal)?,
+        both: Both::of(&figures),
+        report: options.report.as_deref(),
+    };
+    if let Some(path) = &options.report {
+        let page = contour_page::page(&value, &nominal, [there, back]);
+        axis_report::write_atomic(path, &page).into_diagnostic()?;
+    }
+    print("contour", &value)
+}
+
+fn read(file: &Path, option: &str) -> Result<Axis> {
+    let axis = read_axis(file)?;
+    match axis.freedom() {
+        Freedom::Linear => Ok(axis),
+        Freedom::Rotary => Err(wrong_use(format!(
+            "{option}: the load of {} turns; a circle needs two axes that move along lines",
+            file.display()
+        ))),
+    }
+}
+
+impl Options {
+    fn nominal(&self) -> NominalCircle {
+        NominalCircle {
+            centre: [0.0; 2],
+            radius: 1e-3 * self.radius,
+        }
+    }
+
+    fn circle(&self, direction: Direction) -> Result<CirclePath<2>> {
+        // Between two reversals, so that all four lie in the counted turn.
+        let circle = CircleTest {
+            start: FRAC_PI_4,
+            direction,
+            ..CircleTest::new(1e-3 * self.radius)
+        };
+        circle.path().into_diagnostic().wrap_err("--radius")
+    }
+}
+
+/// One direction, as it was run.
+struct Turn {
+    duration: f64,
+    /// Greatest contour error of the counted turn, m.
+    worst: f64,
+    /// Positions of it, m.
+    counted: Vec<[f64; 2]>,
+}
+
+fn turn(options: &Options, axes: &[Axis; 2], direction: Direction) -> Result<Turn> {
+    let circle = options.circle(direction)?;
+    let feed = options.feed / 60.0;
+    // What an axis has to do at the feed wanted is not limited further.
+    let limits = FeedLimits::equal(feed, feed, options.acceleration, options.jerk);
+    let profile = FeedProfile::plan(&circle.path, &limits).into_diagnostic()?;
+    let profile = Arc::new(profile);
+    let [x, y] = axes.each_ref().map(ClosedLoop::new);
+    let loops = [x.into_diagnostic()?, y.into_diagnostic()?];
+    let driven = |i: usize| -> Result<Driven<'_>> {
+        let motion = AxisMotion::new(profile.clone(), i, axes[i].stroke.start);
+        let law = (options.compensation)
+            .compensator(&Predictors::of(&axes[i]), Arc::new(motion))
+            .into_diagnostic()?;
+        let mut sensors = Noise::good(&axes[i])
+            .scaled(options.noise)
+            .sensors(options.seed.wrapping_mul(2).wrapping_add(i as u64));
+        let noisy = options.noise > 0.0;
+        let sense = move |seen: &mut Measured| {
+            if noisy {
+                sensors(seen);
+            }
+        };
+        Ok(Driven::new(&loops[i], law).sensing(sense))
+    };
+    let traced = trace(&profile, [driven(0)?, driven(1)?]).into_diagnostic()?;
+    Ok(Turn {
+        duration: profile.duration(),
+        worst: worst(&traced, circle.counted),
+        counted: traced.between(circle.counted).to_vec(),
+    })
+}
+
+/// Greatest contour error while the reference is in the counted turn, m.
+fn worst(traced: &Traced<2>, (from, to): (f64, f64)) -> f64 {
+    let counted = |k: usize| {
+        let s = traced.profile().at(k as f64 * traced.period()).s;
+        (from..to).contains(&s)
+    };
+    let feet = traced.contour_error().enumerate();
+    let errors = feet.filter(|(k, _)| counted(*k));
+    errors.map(|(_, foot)| foot.length()).fold(0.0, f64::max)
+}
+
+/// What was found, in µm.
+#[derive(Serialize)]
+pub struct Contoured<'a> {
+    /// Names of the axes.
+    pub x: &'a str,
+    pub y: &'a str,
+    pub compensation: &'a str,
+    pub radius_mm: f64,
+    pub feed_m_per_min: f64,
+    /// Of one direction, run-in and run-out included.
+    pub duration_s: f64,
+    pub clockwise: Turned,
+    pub counterclockwise: Turned,
+    pub both: Both,
+    report: Option<&'a Path>,
+}
+
+/// One direction.
+#[derive(Serialize)]
+pub struct Turned {
+    /// Greatest distance from the circle.
+    pub contour_error_um: f64,
+    /// Circular deviation G.
+    pub g_um: f64,
+    /// Radial deviations F.
+    pub f_max_um: f64,
+    pub f_min_um: f64,
+    /// Peaks of the radial deviation after an axis has reversed.
+    pub reversals: Vec<Reversal>,
+}
+
+/// The peak after a reversal.
+#[derive(Serialize)]
+pub struct Reversal {
+    pub axis: &'static str,
+    /// Where the axis reverses, from +X towards +Y.
+    pub angle_deg: f64,
+    pub peak_um: f64,
+}
+
+/// Both directions together.
+#[derive(Serialize)]
+pub struct Both {
+    /// Bidirectional circular deviation G(b).
+    pub g_um: f64,
+    /// Circular hysteresis H.
+    pub h_um: f64,
+    /// Mean bidirectional radial deviation D.
+    pub d_um: f64,
+}
+
+impl Turned {
+    fn of(turn: &Turn, found: &DirectionFigures, nominal: &NominalCircle) -> Result<Self> {
+        let glitches = quadrant_glitches(nominal, &turn.counted, AFTER_REVERSAL);
+        let reversal = |glitch: &toolpath::iso230_4::QuadrantGlitch| Reversal {
+            axis: ["X", "Y"][glitch.axis.min(1)],
+            angle_deg: glitch.angle.to_degrees(),
+            peak_um: 1e6 * glitch.peak,
+        };
+        Ok(Self {
+            contour_error_um: 1e6 * turn.worst,
+            g_um: 1e6 * found.g,
+            f_max_um: 1e6 * found.f_max,
+            f_min_um: 1e6 * found.f_min,
+            reversals: glitches.into_diagnostic()?.iter().map(reversal).collect(),
+        })
+    }
+}
+
+impl Both {
+    fn of(found: &CircleFigures) -> Self {
+        Self {
+            g_um: 1e6 * found.g_bidirectional,
+            h_um: 1e6 * found.h,
+            d_um: 1e6 * found.d,
+        }
+    }
+}
+
+impl Contoured<'_> {
+    /// What was run, in one line.
+    pub fn title(&self) -> String {
+        format!(
+            "X {}, Y {}: circle of {} mm at {} m/min, compensation {} (simulated)",
+            self.x,
+            self.y,
+            self.radius_mm,
+            self.feed_m_per_min,
+            self.compensation.replace('_', "-")
+        )
+    }
+
+    /// The figures of both directions: name, clockwise, counterclockwise, µm.
+    pub fn rows(&self) -> [(&'static str, f64, f64); 4] {
+        let (a, b) = (&self.clockwise, &self.counterclockwise);
+        [
+            (
+                "contour error, greatest",
+                a.contour_error_um,
+                b.contour_error_um,
+            ),
+            ("circular deviation G", a.g_um, b.g_um),
+            ("radial deviation F max", a.f_max_um, b.f_max_um),
+            ("radial deviation F min", a.f_min_um, b.f_min_um),
+        ]
+    }
+
+    /// Those of both together.
+    pub fn together(&self) -> [(&'static str, f64); 3] {
+        let both = &self.both;
+        [
+            ("bidirectional circular deviation G(b)", both.g_um),
+            ("circular hysteresis H", both.h_um),
+            ("mean bidirectional radial deviation D", both.d_um),
+        ]
+    }
+}
+
+impl fmt::Display for Contoured<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.title())?;
+        writeln!(
+            f,
+            "{:<40}{:>12}{:>20}",
+            "um", "clockwise", "counterclockwise"
+        )?;
+        for (name, there, back) in self.rows() {
+            writeln!(f, "{name:<40}{there:>12.3}{back:>20.3}")?;
+        }
+        for (name, value) in self.together() {
+            writeln!(f, "{name:<40}{value:>12.3}")?;
+        }
+        let turns = [
+            ("clockwise", &self.clockwise),
+            ("counterclockwise", &self.counterclockwise),
+        ];
+        for (name, turn) in turns {
+            let mut peaks = String::new();
+            for r in &turn.reversals {
+                let _ = write!(
+                    peaks,
+                    "; {} at {:.0}°: {:.3} um",
+                    r.axis, r.angle_deg, r.peak_um
+                );
+            }
+            writeln!(f, "after a reversal, {name}{}", peaks.replacen(';', ":", 1))?;
+        }
+        match self.report {
+            Some(path) => write!(f, "{}", path.display()),
+            None => Ok(()),
+        }
+    }
+}
