@@ -143,7 +143,8 @@ fn polar(
         .chain(round)
         .zip(&polar)
         .map(|(b, a)| b.0 - a.0);
-    if polar.len() < 8 || gap.fold(0.0, f64::max) > TAU / 8.0 {
+    // Eight points evenly spaced are an eighth apart but for rounding.
+    if polar.len() < 8 || gap.fold(0.0, f64::max) > TAU / 8.0 * (1.0 + 1e-9) {
         let valid = "at least 8, and no gap of more than an eighth of the circle".to_owned();
         return Err(ToolpathError::Count {
             field,

@@ -65,7 +65,7 @@
 extern crate alloc;
 
 mod axes;
-mod course;
+mod constant_jerk;
 mod envelope;
 mod error;
 mod extremes;

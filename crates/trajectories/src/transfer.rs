@@ -4,7 +4,7 @@ mod brake;
 mod jumps;
 mod side;
 
-use crate::course::{self, Course};
+use crate::constant_jerk::{self, Course};
 use crate::error::{bounded, check, position, unrepresentable};
 use crate::{Extremes, Limits, Motion, Real, Setpoint, TrajectoryError, VelocityLimits, maximum};
 use side::{Best, Shape, Side, Task};
@@ -530,7 +530,7 @@ fn bring_back<T: Real>(task: &mut Task<T>, course: &mut Course<T>, jerk: T) {
             acceleration: a,
             jerk: sign,
         };
-        let next = course::after(&unit, time);
+        let next = constant_jerk::after(&unit, time);
         (travel, v, a) = (next.position, next.velocity, last);
         course.lay(sign * jerk, time, last * jerk);
     }
@@ -565,18 +565,12 @@ fn mix<T: Real>(up: &Side<T>, down: &Side<T>, total: T, jerk: T, course: &mut Co
     if over < -noise || under < -near_noise {
         return false;
     }
-    let (over, under) = (over.max(T::ZERO), under.max(T::ZERO));
-    let span = over + under;
-    let share = if span > T::ZERO {
-        under / span
-    } else {
-        T::HALF
-    };
+    let share = constant_jerk::share(over, under);
     let unit = |(sign, time, _): (T, T, T)| (sign, time);
     let far = segments(up, &far).map(unit);
     let near = segments(down, &near).map(unit);
     let mut a = course.state.acceleration;
-    course::mixed((&far, &near), share, |sign, time| {
+    constant_jerk::mixed((&far, &near), share, |sign, time| {
         a += jerk * sign * time;
         course.lay(jerk * sign, time, a);
     });

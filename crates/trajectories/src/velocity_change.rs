@@ -1,6 +1,6 @@
 //! From any state in motion to a velocity: stop, speed up, slow down.
 
-use crate::course::after;
+use crate::constant_jerk::after;
 use crate::error::{check, position, unrepresentable};
 use crate::{Motion, Real, Setpoint, TrajectoryError, maximum};
 

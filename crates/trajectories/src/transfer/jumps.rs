@@ -1,7 +1,7 @@
 //! Transfers whose acceleration may jump: velocities are trapezoids.
 
 use super::{Transfer, TransferLimits};
-use crate::course::{self, Course};
+use crate::constant_jerk::{self, Course};
 use crate::error::unrepresentable;
 use crate::{Real, Setpoint, TrajectoryError};
 
@@ -180,14 +180,8 @@ fn mix<T: Real>(up: &Side<T>, down: &Side<T>, total: T, course: &mut Course<T>) 
     if over < -up.noise(&far) || under < -down.noise(&near) {
         return false;
     }
-    let (over, under) = (over.max(T::ZERO), under.max(T::ZERO));
-    let span = over + under;
-    let share = if span > T::ZERO {
-        under / span
-    } else {
-        T::HALF
-    };
+    let share = constant_jerk::share(over, under);
     let (far, near) = (rates(up, &far), rates(down, &near));
-    course::mixed((&far, &near), share, |rate, time| run(course, rate, time));
+    constant_jerk::mixed((&far, &near), share, |rate, time| run(course, rate, time));
     true
 }

@@ -137,6 +137,17 @@ impl<T: Real> Course<T> {
 /// Rates (of velocity or acceleration) and how long each lasts, s.
 pub(crate) type Rates<'a, T> = &'a [(T, T)];
 
+/// Share of the motion that goes `over` too far, beside one that goes `under` too little; half of each if both fit.
+pub(crate) fn share<T: Real>(over: T, under: T) -> T {
+    let (over, under) = (over.max(T::ZERO), under.max(T::ZERO));
+    let span = over + under;
+    if span > T::ZERO {
+        under / span
+    } else {
+        T::HALF
+    }
+}
+
 /// Two motions of the same duration, each a list of rates and the times (s) that they last, in a constant ratio: `share` of
 /// the first, the remainder of the second, which counts the other way round. `lay` gets the rates and times that result.
 ///
