@@ -1,12 +1,13 @@
 //! Two axes on a circle, beside figures of another simulation of them.
 //!
 //! X is the stand-in for the paper's machine, Y the same with another screw, table, friction and gains; R 50 mm at
-//! 3 m/min, 1 m/s² and 20 m/s³ for each axis. A simulation of two masses with LuGre friction, which shares nothing with
+//! 3 m/min, 1 m/s² and 20 m/s³ for each axis, with noise of 10 nm, 2 µrad, 0.01 rad/s and 5 mA. A simulation of two masses with LuGre friction, which shares nothing with
 //! this project, has a contour error of 113.3 µm without compensation and 0.18 µm under a plan that knows both axes.
 
 use axis_machine::{AxisMotion, Driven, Traced, trace};
 use axis_pipeline::strategies::{NONE, Predictors, STRATEGIES, StrategyKind, named};
 use axis_sim::{Axis, ClosedLoop};
+use discover_matrix::hidden::Noise;
 use std::sync::Arc;
 use toolpath::iso230_4::{CircleFigures, NominalCircle, figures};
 use toolpath::named::{CircleTest, Direction};
@@ -89,16 +90,11 @@ fn circle(strategy: &StrategyKind, direction: Direction) -> (f64, Vec<[f64; 2]>)
         let motion = AxisMotion::new(profile.clone(), i, axes[i].stroke.start);
         let predictors = Predictors::of(&axes[i]);
         let law = strategy.compensator(&predictors, Arc::new(motion)).unwrap();
-        Driven::new(&loops[i], law)
+        Driven::new(&loops[i], law).sensing(Noise::GOOD.sensors(7 + i as u64))
     });
     let traced: Traced<2> = trace(&profile, driven).unwrap();
-    let (from, to) = circle.counted;
-    let counted = |t: f64| (from..to).contains(&profile.at(t).s);
-    let feet = traced.contour_error().enumerate();
-    let worst = feet
-        .filter(|(k, _)| counted(*k as f64 * traced.period()))
-        .map(|(_, foot)| foot.length())
-        .fold(0.0, f64::max);
+    let feet = traced.contour_error_between(circle.counted);
+    let worst = feet.map(|foot| foot.length()).fold(0.0, f64::max);
     (1e6 * worst, traced.between(circle.counted).to_vec())
 }
 
@@ -130,6 +126,11 @@ fn two_axes_on_a_circle_leave_what_another_simulation_leaves() {
     }
     assert!((1e6 * none.h - 112.0).abs() < 0.5, "{none:?}");
     let (worst, plan) = round(named(STRATEGIES, "plan").unwrap());
-    assert!(worst.iter().all(|w| *w < 0.18), "{worst:?}");
-    assert!(plan.h < 0.18e-6, "{plan:?}");
+    // 0.17 µm and G 0.29: what is left is noise, whose peaks differ from draw to draw.
+    for worst in worst {
+        assert!((0.1..0.18).contains(&worst), "{worst}");
+    }
+    for of in [&plan.clockwise, &plan.counterclockwise] {
+        assert!((1e6 * of.g - 0.29).abs() < 0.08, "{of:?}");
+    }
 }

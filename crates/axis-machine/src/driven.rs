@@ -15,12 +15,12 @@ use crate::traced::Traced;
 #[non_exhaustive]
 pub enum MachineError {
     /// An axis stopped on its way.
-    #[error("axis {axis} (from 1): {source}")]
+    #[error("axis {axis} (from 1): {why}")]
     Stopped {
         /// Which axis, from 1.
         axis: usize,
         /// When and why.
-        source: RunStopped,
+        why: RunStopped,
     },
     /// Control periods that share no instants.
     #[error(
@@ -123,9 +123,9 @@ pub fn trace<const D: usize>(
             &mut driven.sense,
             observe,
         );
-        let stopped = |source| MachineError::Stopped {
+        let stopped = |why| MachineError::Stopped {
             axis: axis + 1,
-            source,
+            why,
         };
         outcome.completed().map_err(stopped)?;
     }

@@ -1,5 +1,6 @@
 //! Where a machine was.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use toolpath::{FeedProfile, Follower, Foot};
@@ -44,8 +45,20 @@ impl<const D: usize> Traced<D> {
         self.positions.iter().map(move |p| follower.follow(*p))
     }
 
-    /// Positions while the reference is between two arc lengths (m): the counted turn of a circle, for instance.
-    pub fn between(&self, (from, to): (f64, f64)) -> &[[f64; D]] {
+    /// Those of the positions while the reference is between two arc lengths (m): of the counted turn of a circle, for
+    /// instance.
+    pub fn contour_error_between(&self, counted: (f64, f64)) -> impl Iterator<Item = Foot<D>> {
+        let range = self.range(counted);
+        self.contour_error().skip(range.start).take(range.len())
+    }
+
+    /// The positions while the reference is between two arc lengths, m.
+    pub fn between(&self, counted: (f64, f64)) -> &[[f64; D]] {
+        &self.positions[self.range(counted)]
+    }
+
+    /// Which positions these are.
+    fn range(&self, (from, to): (f64, f64)) -> Range<usize> {
         let passed = |s: f64| {
             let (mut low, mut high) = (0, self.positions.len());
             while low < high {
@@ -58,6 +71,6 @@ impl<const D: usize> Traced<D> {
             low
         };
         let (first, last) = (passed(from), passed(to));
-        &self.positions[first..last.max(first)]
+        first..last.max(first)
     }
 }

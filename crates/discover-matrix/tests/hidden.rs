@@ -12,20 +12,12 @@ use discrepancy::{
     Discovery, Fitter, Foresight, Library, LogSet, Settings, State, Verdict, discovery, search,
     search_with,
 };
-use trajectories::{Limits, Motion, Program, Setpoint, Step};
+use trajectories::{Limits, Program, Step};
+
+use crate::machines::{find_on_stage, hide_in, logs_of, named, stage, with_only};
 
 fn axis() -> Axis {
     named("liu2025")
-}
-
-/// A stage without a transmission, which is simulated in a tenth of a screw's time.
-fn stage() -> Axis {
-    named("linear-stage")
-}
-
-fn named(name: &str) -> Axis {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes");
-    Axis::read(format!("{folder}/{name}.toml").as_ref()).unwrap()
 }
 
 fn hide(name: Option<&str>, seed: u64) -> Hidden {
@@ -40,20 +32,6 @@ fn hide(name: Option<&str>, seed: u64) -> Hidden {
 
 fn hide_all(effects: Vec<(&str, Vec<f64>)>, seed: u64) -> Hidden {
     hide_in(&axis(), effects, seed)
-}
-
-fn hide_in(axis: &Axis, effects: Vec<(&str, Vec<f64>)>, seed: u64) -> Hidden {
-    let active = |(name, values)| ActiveEffect {
-        effect: Effect::named(name).unwrap(),
-        values,
-    };
-    Hidden {
-        effects: effects.into_iter().map(active).collect(),
-        shares: Vec::new(),
-        noise: Noise::good(axis),
-        seed,
-    }
-    .with_known_off_by(axis, 0.01)
 }
 
 /// A rest, a move of 60 mm, a rest, the way back and a rest.
@@ -81,15 +59,6 @@ fn over(length: f64, check: bool) -> Program {
 
 fn logs(hidden: &Hidden, motion: &Program, check: bool) -> LogSet {
     logs_of(&axis(), hidden, motion, check)
-}
-
-fn logs_of(axis: &Axis, hidden: &Hidden, motion: &Program, check: bool) -> LogSet {
-    let mut hidden = hidden.clone();
-    // Noise of its own, known parameters as they are.
-    hidden.seed += u64::from(check);
-    // Every fifth cycle, so that logs slower than the control cycle are in the test.
-    let log = hidden.log(axis, motion, 5).unwrap();
-    LogSet::new(vec![("log".to_owned(), log, 5.0 * axis.period)], axis).unwrap()
 }
 
 /// What the library does on the screw's motion there and back over 60 or 100 mm, once for all tests.
@@ -125,27 +94,6 @@ fn find_on(motions: [Program; 2], hidden: [&Hidden; 2], settings: &Settings) -> 
     };
     let found = found.unwrap();
     discovery(&machine, &fit, &check, &found).unwrap().discovery
-}
-
-/// Of the stage, on an exercise.
-fn find_on_stage(hidden: &Hidden, kind: Exercise, settings: &Settings) -> Discovery {
-    let machine = stage();
-    let [fit, check] = [false, true].map(|check| {
-        let motion = exercise(&machine, kind, check).unwrap();
-        logs_of(&machine, hidden, &motion, check)
-    });
-    let found = search(&machine, &fit, &check, settings, |_| ()).unwrap();
-    discovery(&machine, &fit, &check, &found).unwrap().discovery
-}
-
-/// A search that may name these effects and no others.
-fn with_only(library: &[&str]) -> Settings {
-    let all = axis_sim::effects::EFFECTS.iter().map(|e| e.name);
-    let rejected = all.filter(|name| !library.contains(name));
-    Settings {
-        rejected: rejected.map(str::to_owned).collect(),
-        ..Settings::default()
-    }
 }
 
 #[test]
@@ -220,55 +168,6 @@ fn a_force_in_time_is_found_with_its_edges() {
     );
 }
 
-/// A reference that is logged late, by more than a sample and by a part of one, is no velocity
-/// feed-forward: the delay is told, and nothing else.
-#[test]
-fn a_late_reference_is_a_delay() {
-    let machine = stage();
-    for late in [1.5e-3, -0.3e-3] {
-        let hidden = hide_in(&machine, Vec::new(), 17);
-        let [fit, check] = [false, true].map(|check| {
-            let motion = exercise(&machine, Exercise::ThereAndBack, check).unwrap();
-            let set = logs_of(&machine, &hidden, &motion, check);
-            let log = with_late_reference(&set.logs[0].log, &motion, late);
-            LogSet::new(
-                vec![("log".to_owned(), log, 5.0 * machine.period)],
-                &machine,
-            )
-            .unwrap()
-        });
-        let found = search(&machine, &fit, &check, &Settings::default(), |_| ()).unwrap();
-        let found = discovery(&machine, &fit, &check, &found).unwrap().discovery;
-        let named: Vec<&str> = found.effects.iter().map(|e| e.name.as_str()).collect();
-        assert_eq!(named, ["reference-delay"], "{}", found.sentence);
-        assert_eq!(found.verdict, Verdict::Explained);
-        let time = &found.effects[0].parameters[0];
-        let [low, high] = time.ci95;
-        // A fiftieth of a sample.
-        let is_near = (time.value - late).abs() < 2e-5;
-        assert!(is_near && low < late && late < high, "{time:?}");
-    }
-}
-
-/// The log with the motion of some time before as its reference: evaluated anew, not interpolated.
-fn with_late_reference(log: &Log, motion: &Program, late: f64) -> Log {
-    let at = |of: fn(Setpoint) -> f64| -> Vec<f64> {
-        let before = |t: &f64| motion.at((t - late).max(0.0));
-        log.time().iter().map(|t| of(before(t))).collect()
-    };
-    let shown = |channel: &Channel| {
-        let mut channel = channel.clone();
-        match channel.name.as_str() {
-            "position_ref_m" => channel.samples = at(|s| s.position),
-            "velocity_ref_m_s" => channel.samples = at(|s| s.velocity),
-            "acceleration_ref_m_s2" => channel.samples = at(|s| s.acceleration),
-            _ => {}
-        }
-        channel
-    };
-    Log::new(log.channels().iter().map(shown).collect()).unwrap()
-}
-
 /// A load that came up with the log, and is hardly more than noise in its first 3 ms: its mean over
 /// the rest was taken for held, and 0.1 µm RMS was left, nearly all before the first move.
 #[test]
@@ -279,16 +178,6 @@ fn a_load_that_repeats_is_not_held_before_it_acts() {
     assert_eq!(found.effects[0].name, "cyclic-load");
     assert_eq!(found.verdict, Verdict::Explained, "{:?}", found.gap.check);
     assert!(found.gap.check.reduction > 0.98, "{:?}", found.gap.check);
-}
-
-/// A stage whose loop follows a chirp is logged every fifth cycle: between the samples a cubic was off by
-/// so much that a delay of 5 µs was named, and nothing is missing.
-#[test]
-fn a_reference_is_followed_between_the_samples_of_a_log() {
-    let settings = with_only(&["control-delay", "controller-gain", "reference-delay"]);
-    let clean = hide_in(&stage(), Vec::new(), 4);
-    let found = find_on_stage(&clean, Exercise::WithChirp, &settings);
-    assert_eq!(found.verdict, Verdict::NothingMissing, "{}", found.sentence);
 }
 
 /// What the engineer takes as there is there, whatever speaks for it: nothing

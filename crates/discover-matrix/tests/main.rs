@@ -1,5 +1,7 @@
 //! One test program: searches on machines with something hidden in them.
 
+mod clocks;
 mod hidden;
+mod machines;
 mod matrix;
 mod matrix2;

@@ -14,10 +14,7 @@ use discover_matrix::matrix2::{
 use discrepancy::Verdict;
 use trajectories::{Limits, Program, Step};
 
-fn axis(name: &str) -> Axis {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes");
-    Axis::read(format!("{folder}/{name}.toml").as_ref()).unwrap()
-}
+use crate::machines::named as axis;
 
 fn machines() -> Vec<Axis> {
     ["liu2025", "joint", "linear-motor"].map(axis).to_vec()

@@ -51,7 +51,12 @@ fn what_cannot_run_a_circle_is_refused() {
     assert!(message.contains("the trained network"), "{message}");
     let message = refuse(&["contour", "--x", STAGE, "--y", STAGE, "--radius", "-1"]);
     assert!(message.contains("radius"), "{message}");
-    // 100 mm on either side of the start: a circle of 50 mm begins at its edge, and leaves by 100 mm.
+    let message = refuse(&["contour", "--x", STAGE, "--y", STAGE, "--feed", "-1"]);
+    assert!(
+        message.contains("--feed") && message.contains("m/s"),
+        "{message}"
+    );
+    // The stage goes 100 mm to either side of where it begins; the circle asks for 1.7 radii.
     let message = refuse(&["contour", "--x", STAGE, "--y", STAGE, "--radius", "60"]);
     assert!(
         message.contains("axis 1") && message.contains("valid"),

@@ -9,7 +9,7 @@ use crate::{Arc, Line, Nurbs, NurbsData, PathSegment};
 #[non_exhaustive]
 pub enum Blend {
     /// A circular arc: its curvature jumps at both ends, so that a feed of limited jerk must
-    /// stop there, unless `AxisLimits::acceleration_step` allows a step.
+    /// stop there, unless [`FeedLimits::acceleration_step`](crate::FeedLimits::acceleration_step) allows a step.
     Arc,
     /// A Bézier curve of degree 5 whose curvature is zero at both ends.
     Quintic,

@@ -4,12 +4,12 @@
 //! |---|---|
 //! | G | circular deviation: least radial distance of two concentric circles that hold the path (minimum zone) |
 //! | G(b) | bidirectional circular deviation: the same of both paths together |
-//! | H | circular hysteresis: greatest radial difference of the two directions at one angle (in the edition of 1996) |
+//! | H | circular hysteresis: greatest radial difference of the two directions at one angle |
 //! | D | mean bidirectional radial deviation: radius of the least-squares circle of both paths less the nominal radius |
 //! | F max, F min | radial deviation: extremes of the distance from the nominal centre, less the nominal radius |
 //!
-//! The scope of the later editions names G(b), D, G and F; the symbols and H are as generally
-//! cited, not compared with the standard's own text.
+//! The scope of the later editions names G(b), D, G and F; the symbols and H, of an earlier
+//! edition, are as generally cited, not compared with the standard's own text.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -2,7 +2,7 @@
 
 use axis_scalar::Scalar;
 
-use crate::maximum;
+use crate::{Real, maximum};
 
 /// Why limits, a step or a program were refused. All checks are made at construction: evaluation
 /// cannot fail.
@@ -85,6 +85,15 @@ pub(crate) fn duration<T: Scalar>(value: T) -> Result<T, TrajectoryError> {
     let inside = value > T::ZERO && value <= T::of(maximum::DURATION);
     let valid = "greater than zero and at most 1e7";
     check(inside, "duration", value, "s", valid)
+}
+
+/// `value` (s) if it is the duration of a motion that was planned; `what` says which.
+pub(crate) fn planned<T: Real>(value: T, what: &'static str) -> Result<T, TrajectoryError> {
+    if !value.is_finite() {
+        return Err(unrepresentable::<T>(what));
+    }
+    let inside = value <= T::of(maximum::DURATION);
+    check(inside, "duration", value, "s", "at most 1e7")
 }
 
 /// `value` if `holds`, else an error that says what would be valid.

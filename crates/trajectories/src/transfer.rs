@@ -1,90 +1,18 @@
 //! From any state to any other in least time, or in a duration that is asked for.
 
 mod brake;
+mod checks;
 mod jumps;
+mod lay;
+mod limits;
 mod side;
 
-use crate::constant_jerk::{self, Course};
-use crate::error::{bounded, check, position, unrepresentable};
-use crate::{Extremes, Limits, Motion, Real, Setpoint, TrajectoryError, VelocityLimits, maximum};
-use side::{Best, Shape, Side, Task};
-
-/// Limits of a [`Transfer`]: a velocity and an acceleration for each sign, and the jerk.
-///
-/// ```
-/// use trajectories::{TransferLimits, VelocityLimits};
-///
-/// // Down faster than up; brakes harder than it speeds up.
-/// let acceleration = VelocityLimits::<f64>::new(-4.0, 2.0, 40.0)?; // m/s², m/s², m/s³
-/// let limits = TransferLimits::new(-1.0, 0.5, acceleration)?; // m/s
-/// assert_eq!(limits.velocity_max(), 0.5);
-/// # Ok::<(), trajectories::TrajectoryError>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TransferLimits<T = f64> {
-    back: T,
-    fast: T,
-    change: VelocityLimits<T>,
-}
-
-impl<T: Real> TransferLimits<T> {
-    /// Least velocity (below zero) and greatest (above zero), m/s, and what limits their change.
-    ///
-    /// # Errors
-    /// [`TrajectoryError::Invalid`] for a value of the wrong sign, zero, NaN, or beyond that of
-    /// [`maximum`].
-    pub fn new(
-        velocity_min: T,
-        velocity_max: T,
-        change: VelocityLimits<T>,
-    ) -> Result<Self, TrajectoryError> {
-        let most = T::of(maximum::VELOCITY);
-        let back = check(
-            velocity_min < T::ZERO && velocity_min >= -most,
-            "velocity_min",
-            velocity_min,
-            "m/s",
-            "less than zero and at least -1e6",
-        )?;
-        let fast = check(
-            velocity_max > T::ZERO && velocity_max <= most,
-            "velocity_max",
-            velocity_max,
-            "m/s",
-            "greater than zero and at most 1e6",
-        )?;
-        Ok(Self { back, fast, change })
-    }
-
-    /// Least velocity allowed, m/s; below zero.
-    #[inline]
-    pub const fn velocity_min(&self) -> T {
-        self.back
-    }
-
-    /// Greatest velocity allowed, m/s.
-    #[inline]
-    pub const fn velocity_max(&self) -> T {
-        self.fast
-    }
-
-    /// Limits of acceleration and jerk.
-    #[inline]
-    pub const fn change(&self) -> &VelocityLimits<T> {
-        &self.change
-    }
-}
-
-impl<T: Real> From<Limits<T>> for TransferLimits<T> {
-    fn from(limits: Limits<T>) -> Self {
-        let (v, a) = (limits.velocity(), limits.acceleration());
-        Self {
-            back: -v,
-            fast: v,
-            change: VelocityLimits::symmetric(a, limits.jerk()),
-        }
-    }
-}
+use crate::constant_jerk::Course;
+use crate::error::{check, planned, position, unrepresentable};
+use crate::{Extremes, Motion, Real, Setpoint, TrajectoryError, VelocityLimits, maximum};
+use checks::{TARGET, reachable, state};
+use lay::{bring_back, complete, task};
+pub use limits::TransferLimits;
 
 /// Motion in least time from any position, velocity and acceleration to any other. It allocates nothing, and may be
 /// planned anew in every cycle.
@@ -280,17 +208,7 @@ impl<T: Real> Transfer<T> {
         limits: &TransferLimits<T>,
         within: T,
     ) -> Result<Self, TrajectoryError> {
-        let duration = course.now;
-        if !duration.is_finite() {
-            return Err(unrepresentable::<T>("the duration of the transfer"));
-        }
-        check(
-            duration <= T::of(maximum::DURATION),
-            "duration",
-            duration,
-            "s",
-            "at most 1e7",
-        )?;
+        planned(course.now, "the duration of the transfer")?;
         let end = Setpoint {
             jerk: T::ZERO,
             ..*target
@@ -416,163 +334,4 @@ impl<T: Real> Motion<T> for Transfer<T> {
         }
         state
     }
-}
-
-/// Names of a target's values in errors.
-const TARGET: [&str; 3] = ["target position", "target velocity", "target acceleration"];
-
-fn state<T: Real>(state: &Setpoint<T>, names: [&'static str; 3]) -> Result<(), TrajectoryError> {
-    position(names[0], state.position)?;
-    bounded(
-        names[1],
-        state.velocity,
-        maximum::VELOCITY,
-        "m/s",
-        "from -1e6 to 1e6",
-    )?;
-    bounded(
-        names[2],
-        state.acceleration,
-        maximum::ACCELERATION,
-        "m/s²",
-        "from -1e9 to 1e9",
-    )?;
-    Ok(())
-}
-
-/// Whether a target can be reached within the limits.
-fn reachable<T: Real>(
-    target: &Setpoint<T>,
-    limits: &TransferLimits<T>,
-) -> Result<(), TrajectoryError> {
-    let (v, a) = (target.velocity, target.acceleration);
-    let change = &limits.change;
-    check(
-        v >= limits.back && v <= limits.fast,
-        TARGET[1],
-        v,
-        "m/s",
-        "within the velocity limits",
-    )?;
-    if change.jerk() == T::INFINITY {
-        return Ok(());
-    }
-    check(
-        a >= change.acceleration_min() && a <= change.acceleration_max(),
-        TARGET[2],
-        a,
-        "m/s²",
-        "within the acceleration limits",
-    )?;
-    // A velocity that rises at the end was lower by a²/2J where the acceleration was zero.
-    let before = v - T::HALF * a * (a.abs() / change.jerk());
-    let rounding = T::of(16.0) * T::EPSILON * (v.abs() + before.abs());
-    check(
-        before >= limits.back - rounding && before <= limits.fast + rounding,
-        TARGET[2],
-        a,
-        "m/s²",
-        "so small that it can be built up within the velocity limits: a²/2J at most the distance of the velocity from the limit it comes from",
-    )?;
-    Ok(())
-}
-
-/// What is asked, divided by the jerk.
-fn task<T: Real>(start: &Setpoint<T>, target: &Setpoint<T>, limits: &TransferLimits<T>) -> Task<T> {
-    let change = &limits.change;
-    let jerk = change.jerk();
-    let from = start.position.abs() + target.position.abs();
-    Task {
-        start: [start.velocity / jerk, start.acceleration / jerk],
-        end: [target.velocity / jerk, target.acceleration / jerk],
-        distance: (target.position - start.position) / jerk,
-        velocity_noise: T::ZERO,
-        distance_noise: T::ZERO,
-        most: change.acceleration_max() / jerk,
-        brake: -change.acceleration_min() / jerk,
-        fast: limits.fast / jerk,
-        back: -limits.back / jerk,
-    }
-    .with_noise(from / jerk)
-}
-
-/// Lays the motion of the least time that is not below `wanted` (s); nothing if there is none.
-fn complete<T: Real>(task: &Task<T>, course: &mut Course<T>, wanted: T, jerk: T) -> bool {
-    let (up, down) = (Side::new(task), Side::new(&task.mirror()));
-    if wanted > T::ZERO && mix(&up, &down, wanted, jerk, course) {
-        return true;
-    }
-    let mut best = Best::none(wanted);
-    up.search(false, &mut best);
-    down.search(true, &mut best);
-    let Some(shape) = best.shape else {
-        return false;
-    };
-    let (side, sign) = if best.mirrored {
-        (&down, -T::ONE)
-    } else {
-        (&up, T::ONE)
-    };
-    for (unit, time, last) in segments(side, &shape) {
-        course.lay(sign * unit * jerk, time, sign * last * jerk);
-    }
-    true
-}
-
-/// Lays what brings the start within the limits, and begins the task there.
-fn bring_back<T: Real>(task: &mut Task<T>, course: &mut Course<T>, jerk: T) {
-    let [mut v, mut a] = task.start;
-    let mut travel = T::ZERO;
-    for (sign, time, last) in brake::brake(task) {
-        let unit = Setpoint {
-            position: travel,
-            velocity: v,
-            acceleration: a,
-            jerk: sign,
-        };
-        let next = constant_jerk::after(&unit, time);
-        (travel, v, a) = (next.position, next.velocity, last);
-        course.lay(sign * jerk, time, last * jerk);
-    }
-    task.start = [v, a];
-    task.distance -= travel;
-}
-
-/// Signs of the jerk, durations (s) and accelerations (s) at the end of the segments of a motion.
-fn segments<T: Real>(side: &Side<T>, shape: &Shape<T>) -> [(T, T, T); 7] {
-    let (one, zero) = (T::ONE, T::ZERO);
-    let t = side.times(shape);
-    let turn = if shape.cruise > zero { zero } else { shape.b };
-    [
-        (one, t[0], shape.a),
-        (zero, t[1], shape.a),
-        (-one, t[2], turn),
-        (zero, t[3], turn),
-        (-one, t[4], shape.b),
-        (zero, t[5], shape.b),
-        (one, t[6], side.to),
-    ]
-}
-
-/// Lays the motion between the farthest and the least far in a given time, if they include what is wanted.
-fn mix<T: Real>(up: &Side<T>, down: &Side<T>, total: T, jerk: T, course: &mut Course<T>) -> bool {
-    let (Some((far, over, noise)), Some((near, under, near_noise))) =
-        (up.farthest(total), down.farthest(total))
-    else {
-        return false;
-    };
-    // The mirrored one goes backwards: its excess counts the other way.
-    if over < -noise || under < -near_noise {
-        return false;
-    }
-    let share = constant_jerk::share(over, under);
-    let unit = |(sign, time, _): (T, T, T)| (sign, time);
-    let far = segments(up, &far).map(unit);
-    let near = segments(down, &near).map(unit);
-    let mut a = course.state.acceleration;
-    constant_jerk::mixed((&far, &near), share, |sign, time| {
-        a += jerk * sign * time;
-        course.lay(jerk * sign, time, a);
-    });
-    true
 }

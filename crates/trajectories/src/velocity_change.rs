@@ -1,7 +1,7 @@
 //! From any state in motion to a velocity: stop, speed up, slow down.
 
 use crate::constant_jerk::after;
-use crate::error::{check, position, unrepresentable};
+use crate::error::{check, planned, position, unrepresentable};
 use crate::{Motion, Real, Setpoint, TrajectoryError, maximum};
 
 /// Limits of a [`VelocityChange`]: one for each sign of the acceleration, and the jerk.
@@ -197,17 +197,10 @@ impl<T: Real> VelocityChange<T> {
         let steady = course.hold(held);
         let falling = course.towards(T::ZERO, jerk);
 
-        let duration = course.now;
-        if !duration.is_finite() || (duration == T::ZERO && velocity != start.velocity) {
+        let duration = planned(course.now, "the duration of the change")?;
+        if duration == T::ZERO && velocity != start.velocity {
             return Err(unrepresentable::<T>("the duration of the change"));
         }
-        check(
-            duration <= T::of(maximum::DURATION),
-            "duration",
-            duration,
-            "s",
-            "at most 1e7",
-        )?;
         let pieces = [brought_back, rising, steady, falling];
         let end = Setpoint {
             velocity,

@@ -111,20 +111,23 @@ fn recorded(
 
 /// The log with its clocks off by what the effects say.
 fn late(effects: &[ActiveEffect], log: Log) -> Result<Log, ReplayError> {
-    let clocks = effects
+    let mut clocks = effects
         .iter()
         .filter(|a| a.effect.channel == EffectChannel::Clock);
-    clocks.into_iter().try_fold(log, |log, clock| {
-        let (of_load, of_reference) = (["position_m", "position_rad"], REFERENCES);
-        match clock.effect.name {
-            "reference-delay" => shifted(&log, &of_reference, clock.values[0]),
-            _ => shifted(&log, &of_load, clock.values[0]),
-        }
+    clocks.try_fold(log, |log, clock| {
+        let channels = match clock.effect.name {
+            "reference-delay" => &OF_REFERENCE[..],
+            _ => &OF_LOAD[..],
+        };
+        shifted(&log, channels, clock.values[0])
     })
 }
 
+/// The load's channels.
+const OF_LOAD: [&str; 2] = ["position_m", "position_rad"];
+
 /// Channels of the reference.
-const REFERENCES: [&str; 6] = [
+const OF_REFERENCE: [&str; 6] = [
     "position_ref_m",
     "velocity_ref_m_s",
     "acceleration_ref_m_s2",

@@ -128,18 +128,15 @@ pub struct RefusedEffects {
 impl RefusedEffects {
     /// In a sentence that follows another.
     pub(super) fn sentence(&self) -> String {
-        let (names, it, is, explains) = match self.effects.as_slice() {
-            // Only how the axis' own friction acts was another.
-            [] => (
-                "Another form of the friction".to_owned(),
-                "it",
-                "is",
-                "explains",
-            ),
-            [one] => (one.clone(), "it", "is", "explains"),
-            several => (several.join(" with "), "them", "are", "explain"),
+        let (it, they, is, explains) = match self.effects.len() > 1 {
+            true => ("them", "they", "are", "explain"),
+            false => ("it", "it", "is", "explains"),
         };
-        let they = if it == "them" { "they" } else { it };
+        let names = match self.effects.as_slice() {
+            // Only how the axis' own friction acts was another.
+            [] => "Another form of the friction".to_owned(),
+            names => names.join(" with "),
+        };
         if let Some(share) = self.takes_away {
             return format!(
                 " {names} would take away {:.0} % of the gap, which explains nothing, so {they} {is} not named.",

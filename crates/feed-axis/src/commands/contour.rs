@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use axis_machine::{AxisMotion, Driven, Traced, trace};
+use axis_machine::{AxisMotion, Driven, trace};
 use axis_pipeline::strategies::{Predictors, StrategyKind};
 use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, ClosedLoop, Measured};
@@ -164,7 +164,9 @@ fn turn(options: &Options, axes: &[Axis; 2], direction: Direction) -> Result<Tur
     let feed = options.feed / 60.0;
     // What an axis has to do at the feed wanted is not limited further.
     let limits = FeedLimits::equal(feed, feed, options.acceleration, options.jerk);
-    let profile = FeedProfile::plan(&circle.path, &limits).into_diagnostic()?;
+    let profile = FeedProfile::plan(&circle.path, &limits)
+        .into_diagnostic()
+        .wrap_err("--feed, --acceleration or --jerk")?;
     let profile = Arc::new(profile);
     let [x, y] = axes.each_ref().map(ClosedLoop::new);
     let loops = [x.into_diagnostic()?, y.into_diagnostic()?];
@@ -185,22 +187,12 @@ fn turn(options: &Options, axes: &[Axis; 2], direction: Direction) -> Result<Tur
         Ok(Driven::new(&loops[i], law).sensing(sense))
     };
     let traced = trace(&profile, [driven(0)?, driven(1)?]).into_diagnostic()?;
+    let errors = traced.contour_error_between(circle.counted);
     Ok(Turn {
         duration: profile.duration(),
-        worst: worst(&traced, circle.counted),
+        worst: errors.map(|foot| foot.length()).fold(0.0, f64::max),
         counted: traced.between(circle.counted).to_vec(),
     })
-}
-
-/// Greatest contour error while the reference is in the counted turn, m.
-fn worst(traced: &Traced<2>, (from, to): (f64, f64)) -> f64 {
-    let counted = |k: usize| {
-        let s = traced.profile().at(k as f64 * traced.period()).s;
-        (from..to).contains(&s)
-    };
-    let feet = traced.contour_error().enumerate();
-    let errors = feet.filter(|(k, _)| counted(*k));
-    errors.map(|(_, foot)| foot.length()).fold(0.0, f64::max)
 }
 
 /// What was found, in µm.
@@ -327,7 +319,7 @@ impl fmt::Display for Contoured<'_> {
         writeln!(
             f,
             "{:<40}{:>12}{:>20}",
-            "um", "clockwise", "counterclockwise"
+            "µm", "clockwise", "counterclockwise"
         )?;
         for (name, there, back) in self.rows() {
             writeln!(f, "{name:<40}{there:>12.3}{back:>20.3}")?;
@@ -344,7 +336,7 @@ impl fmt::Display for Contoured<'_> {
             for r in &turn.reversals {
                 let _ = write!(
                     peaks,
-                    "; {} at {:.0}°: {:.3} um",
+                    "; {} at {:.0}°: {:.3} µm",
                     r.axis, r.angle_deg, r.peak_um
                 );
             }
