@@ -3,7 +3,7 @@
 use crate::error::check;
 use crate::{Limits, Real, TrajectoryError, VelocityLimits, maximum};
 
-/// Limits of a [`Transfer`]: a velocity and an acceleration for each sign, and the jerk.
+/// Limits of a [`Transfer`](crate::Transfer): a velocity and an acceleration for each sign, and the jerk.
 ///
 /// ```
 /// use trajectories::{TransferLimits, VelocityLimits};
