@@ -46,6 +46,7 @@ mod judge;
 pub mod logs;
 mod name;
 mod noise;
+mod posterior;
 mod spectrum;
 pub mod summary;
 
@@ -70,6 +71,7 @@ pub use name::search::{
     Settings, SettingsError, Test, search, search_with,
 };
 pub use noise::SensorNoise;
+pub use posterior::{Explained, Posterior};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

@@ -116,7 +116,7 @@ value!(Discovery, hash);
 
 #[pymethods]
 impl Discovery {
-    /// "explained", "partly-explained", "other-form", "nothing-missing" or "unknown".
+    /// "explained", "partly-explained", "other-form", "nothing-missing", "unknown" or "undecided".
     #[getter]
     fn verdict(&self) -> &'static str {
         self.found.verdict.name()

@@ -50,7 +50,10 @@ pub struct Options {
     /// Only these cases, by their names (may be repeated)
     #[arg(long, value_name = "CASE", conflicts_with = "first")]
     pub(super) only: Vec<String>,
-    /// Also write the page of the full matrix here; a page of another seed is not overwritten
+    /// Only the torque balances of version 2: cases that log position and current
+    #[arg(long)]
+    pub(super) balances: bool,
+    /// Also write the page of the full matrix here, where no page of another seed is
     #[arg(long, value_name = "FILE", conflicts_with_all = ["quick", "first", "only"])]
     pub(super) page: Option<PathBuf>,
     /// Run nothing; show the kept results of these cases, whichever program made them (version 2)

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use axis_sim::Axis;
 use campaign::{Column, Failure, Inputs, Job, Merged, Row, Value};
-use discover_matrix::matrix2::{Bench, Case, CaseOutcome, MatrixPlan, cases};
+use discover_matrix::matrix2::{Bench, Case, CaseOutcome, Channels, MatrixPlan, cases};
 use miette::{IntoDiagnostic, Result};
 
 use super::discover_matrix::{Kept, Options, replaceable};
@@ -34,6 +34,8 @@ pub(super) fn job(options: &Options) -> Result<Matrix2> {
         None => MatrixPlan::full(),
     };
     let mut cases = cases(&machines, &plan, options.seed).into_diagnostic()?;
+    let is_balance = |case: &Case| case.setting.channels == Channels::Balance;
+    cases.retain(|case| !options.balances || is_balance(case));
     options.chosen(&mut cases, |c| &c.id)?;
     let name = format!("seed-{}-of-{}", options.seed, plan.cases());
     let default = || Path::new("runs/discover-matrix-2").join(name);

@@ -1,6 +1,6 @@
 //! What came out of a case.
 
-use discrepancy::{Foreseen, Unknown, Verdict};
+use discrepancy::{Foreseen, Posterior, Unknown, Verdict};
 use serde::{Deserialize, Serialize};
 
 use super::case::Case;
@@ -28,6 +28,9 @@ pub struct CaseOutcome {
     pub reduction: f64,
     /// What was found that is outside the library.
     pub unknown: Option<Unknown>,
+    /// What is how probable, where the search says so.
+    #[serde(default)]
+    pub posterior: Option<Posterior>,
     /// D of the fitted logs: with the truth, and with what was found.
     pub deviance: Option<Deviance>,
     /// The experiment that was proposed, run, and searched with the whole library.
@@ -55,6 +58,7 @@ impl CaseOutcome {
             estimates: Vec::new(),
             reduction: 0.0,
             unknown: None,
+            posterior: None,
             deviance: None,
             split: None,
         }

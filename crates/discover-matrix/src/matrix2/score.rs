@@ -1,5 +1,7 @@
 //! Counting: targets and groups, a line each.
 
+use discrepancy::Verdict;
+
 use super::outcome::CaseOutcome;
 use crate::matrix::{CaseKind, Rate, covered};
 
@@ -140,6 +142,10 @@ pub const TARGETS: &[ScoreTarget] = &[
         |o| Rate::one(is_taken_out(o), o.is_unknown_of_right_variable())),
     target("proposed experiments, run, whole library: the class is split", Limit::Told,
         |o| Rate::one(o.split.is_some(), o.split.as_ref().is_some_and(|s| s.succeeded()))),
+    target("clean machines: undecided", Limit::Told,
+        |o| Rate::one(is(o, CaseKind::Clean), o.verdict == Some(Verdict::Undecided))),
+    target("one hidden, seen and told apart: undecided", Limit::Told,
+        |o| Rate::one(is(o, CaseKind::Single) && o.is_seen() && o.is_told_apart(), o.verdict == Some(Verdict::Undecided))),
     target("cases that could not be run", Limit::Told,
         |o| Rate::one(true, o.failed.is_some())),
 ];

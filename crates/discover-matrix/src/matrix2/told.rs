@@ -50,7 +50,10 @@ impl CaseOutcome {
     /// Whether a clean machine was given a name that is not there, or, where its laws are
     /// those of the model, anything was said of it.
     pub fn is_false_alarm(&self) -> bool {
-        let silent = self.verdict == Some(Verdict::NothingMissing);
+        let silent = matches!(
+            self.verdict,
+            Some(Verdict::NothingMissing | Verdict::Undecided)
+        );
         let as_model = self.case.form == Form::Same;
         !self.wrong_names().is_empty() || as_model && !silent
     }

@@ -73,6 +73,7 @@ impl Bench {
         let [fit, check] = &logs;
         let settings = Settings {
             rejected: case.rejected.clone(),
+            supposed: vec![truth.effects[..case.hidden.len().min(truth.effects.len())].to_vec()],
             ..Settings::default()
         };
         let found = match &self.foresight {
@@ -104,6 +105,7 @@ impl Bench {
         outcome.verdict = Some(told.verdict);
         outcome.reduction = told.gap.check.reduction;
         outcome.unknown.clone_from(&told.unknown);
+        outcome.posterior = found.posterior().cloned();
         outcome.named = named(found);
         outcome.estimates = estimates(found, hidden, &self.as_known(&truth.shares));
         let own = told.own_form.as_ref().map(|_| "own".to_owned());

@@ -7,7 +7,7 @@ use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
 use rayon::prelude::*;
 
 use super::{Answer, State};
-use crate::spectrum::{Amplitudes, Layout};
+use crate::spectrum::{Amplitudes, Layout, waves};
 
 /// Series per log, per channel; most often measured minus simulated.
 pub type Rest = Vec<Vec<Vec<f64>>>;
@@ -38,6 +38,15 @@ pub struct Prepared {
     pub hum: Vec<Vec<f64>>,
 }
 
+impl Prepared {
+    /// From the log's start to its last sample that is compared, s: of a balance, samples are left out in
+    /// between.
+    pub(crate) fn duration(&self) -> f64 {
+        let time = self.log.time();
+        time.last().map_or(0.0, |last| last - time[0].min(0.0))
+    }
+}
+
 /// Logs that are compared together.
 #[derive(Clone, Debug)]
 pub struct LogSet {
@@ -52,6 +61,12 @@ pub struct LogSet {
     /// Bins and bands.
     pub layout: Layout,
 }
+
+/// Share of an effort's power in one wave from which it is a wave, the harmonics that count with it, and
+/// frequencies that are looked at per resolved step.
+const A_WAVE: f64 = 0.5;
+const HARMONICS: f64 = 5.0;
+const FINER: f64 = 2.0;
 
 /// The channel that counts from wherever the encoder was.
 pub(super) const ANGLE: &str = "motor_angle_rad";
@@ -95,6 +110,21 @@ impl LogSet {
     /// Whether its logs are answered by torque balance.
     pub fn is_balanced(&self) -> bool {
         !self.balances().is_empty()
+    }
+
+    /// Whether a drive's own excitation is a wave of this frequency (Hz), or of a part of it: nothing tells
+    /// what repeats with it in time from what goes with the motion.
+    pub(crate) fn is_driven_at(&self, frequency: f64) -> bool {
+        let wave = |log: &Prepared| {
+            let time = log.log.time();
+            let length = (FINER * log.duration() / log.period).ceil().max(1.0) as usize;
+            let lines = waves(time, log.measured.first()?, log.period, length);
+            let (strongest, share) = lines.max_by(|a, b| a.1.total_cmp(&b.1))?;
+            let apart = frequency / strongest;
+            let near = apart.round().clamp(1.0, HARMONICS) * strongest;
+            Some(share >= A_WAVE && (frequency - near).abs() * log.duration() < 1.0)
+        };
+        self.logs.iter().filter_map(wave).any(|driven| driven)
     }
 
     /// Samples of each log that count: what lies before is neither fitted nor judged.

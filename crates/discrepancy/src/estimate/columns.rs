@@ -1,6 +1,6 @@
 //! Derivatives of what a model leaves, by simulation.
 
-use axis_sim::effects::{ActiveEffect, EffectParameter, Nature, Scales};
+use axis_sim::effects::{ActiveEffect, EffectParameter, FrictionForm, Nature, Scales};
 use rayon::prelude::*;
 
 use crate::answers::State;
@@ -37,6 +37,17 @@ pub fn free_parameters(state: &State) -> Vec<(usize, usize)> {
         free.map(move |p| (e, p)).collect::<Vec<_>>()
     };
     state.effects.iter().enumerate().flat_map(of).collect()
+}
+
+/// Priors of what a fit moves, in the same order: by how much each is off its mean of 0, and the deviation;
+/// `None` of what nothing is thought of beforehand.
+pub fn priors_of_effects(state: &State) -> Vec<Option<(f64, f64)>> {
+    let of = |(e, p): (usize, usize)| {
+        let active = &state.effects[e];
+        let deviation = FrictionForm::of(active)?.deviation(p)?;
+        Some((active.values[p], deviation))
+    };
+    free_parameters(state).into_iter().map(of).collect()
 }
 
 impl Fitter<'_> {

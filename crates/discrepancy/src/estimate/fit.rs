@@ -5,7 +5,7 @@ use axis_sim::{Axis, ReplayError, Trace};
 use nalgebra::DVector;
 
 use crate::answers::{LogSet, State};
-use crate::estimate::columns::Columns;
+use crate::estimate::columns::{Columns, priors_of_effects};
 use crate::estimate::gauss_newton::Descent;
 use crate::estimate::known::known_deviations;
 use crate::estimate::step::Solved;
@@ -63,9 +63,16 @@ impl Fitter<'_> {
         })
     }
 
-    /// What the known parameters' departures count in D.
+    /// What departures from what is thought of beforehand count in D: of the known parameters, and of
+    /// numbers of effects that have a prior.
     pub(super) fn departure(&self, state: &State) -> f64 {
-        let pairs = state.shares.iter().zip(known_deviations(self.machine));
+        let known = state
+            .shares
+            .iter()
+            .copied()
+            .zip(known_deviations(self.machine));
+        let of_effects = priors_of_effects(state).into_iter().flatten();
+        let pairs = known.chain(of_effects);
         pairs.map(|(s, deviation)| (s / deviation).powi(2)).sum()
     }
 

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::answers::State;
 use crate::estimate::bounded::{bounded, inverse_of};
-use crate::estimate::columns::{Columns, free_parameters};
+use crate::estimate::columns::{Columns, free_parameters, priors_of_effects};
 use crate::estimate::fit::{Fit, Fitter};
 use crate::estimate::known::{known_deviations, tolerances};
 use crate::estimate::thin::products;
@@ -54,6 +54,12 @@ impl Fitter<'_> {
             let weight = deviation.powi(-2);
             normal[(i, i)] += weight;
             right[i] -= weight * fit.state.shares[i];
+        }
+        let of_effects = priors_of_effects(&fit.state).into_iter().enumerate();
+        for (i, (value, deviation)) in of_effects.filter_map(|(i, prior)| Some((i, prior?))) {
+            let weight = deviation.powi(-2);
+            normal[(known + i, known + i)] += weight;
+            right[known + i] -= weight * value;
         }
         let tolerances = tolerances(self.machine);
         let of_effects = self.rooms_of_effects(&fit.state);

@@ -57,6 +57,7 @@ pub(super) fn effect_found(
             .map(|r| (r.name.to_owned(), r.gain))
             .collect(),
         form: form_of(machine, found, active),
+        probability: found.probability(active.effect.name),
     }
 }
 

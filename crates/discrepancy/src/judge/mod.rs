@@ -51,7 +51,7 @@ pub use self::types::{
 };
 pub use self::units::ReadUnit;
 pub use self::unknown::{Curve, Unknown};
-use self::unknown::{in_frequency, lack};
+use self::unknown::{in_frequency, lack, lack_of};
 pub use self::words::Answered;
 use crate::answers::Rest;
 use crate::answers::{LogSet, State};
@@ -189,7 +189,10 @@ pub fn judged(
     let base = checker.at(found.base.state.clone())?;
     let largest = found.named.iter().map(|n| n.evidence).fold(0.0, f64::max);
     let nearly_all = check.reduction >= NEARLY_ALL && !effects.is_empty();
-    let lack = lack(machine, found, MATERIAL * largest)?;
+    let lack = match &found.answer {
+        Some(answer) => lack_of(machine, found, answer)?,
+        None => lack(machine, found, MATERIAL * largest)?,
+    };
     let note_of_loop = loop_noise.as_ref().and_then(|n| n.note(machine));
     let is_coloured = loop_noise.is_some();
     let noise = loop_noise.or_else(|| log_noise(machine, set, full, &traces));
@@ -241,6 +244,20 @@ pub fn judged(
     let refused = found.refused.as_ref();
     let refused = refused.filter(|_| !(as_coloured && effects.is_empty()));
     let verdict = match (effects.is_empty(), rest_significant) {
+        (none, _) if let Some(answer) = &found.answer => {
+            let fits = check.may_be_coloured() && more_than_noise.is_none();
+            let is_form = own_form.is_some() && check.stands_out();
+            match none {
+                true if answer.law.is_some() || refused.is_some() => Verdict::Unknown,
+                true if !fits && !answer.undecided => Verdict::Unknown,
+                true if answer.undecided => Verdict::Undecided,
+                true if is_form => Verdict::OtherForm,
+                true => Verdict::NothingMissing,
+                false if answer.law.is_some() => Verdict::PartlyExplained,
+                false if check.reduction >= EXPLAINED || !check.stands_out() => Verdict::Explained,
+                false => Verdict::PartlyExplained,
+            }
+        }
         (true, _) if refused.is_some() => Verdict::Unknown,
         (true, false) if own_form.is_some() && check.stands_out() => Verdict::OtherForm,
         (true, false) => Verdict::NothingMissing,
@@ -301,6 +318,10 @@ pub fn judged(
             unknown.as_ref(),
             refused.as_ref(),
             own_form.as_ref(),
+            found
+                .answer
+                .as_ref()
+                .map(|answer| answer.posterior.sentence()),
         ),
         verdict,
         effects,
@@ -317,6 +338,7 @@ pub fn judged(
             .map(|r| (r.name.to_owned(), r.gain))
             .collect(),
         unknown,
+        probable: found.posterior().cloned(),
         gap: Gaps { fit, check },
         figures: FigureLogs::of(found, set),
         recalibrated,

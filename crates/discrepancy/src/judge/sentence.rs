@@ -13,6 +13,7 @@ pub(super) fn sentence(
     unknown: Option<&Unknown>,
     refused: Option<&RefusedEffects>,
     own_form: Option<&FormFound>,
+    probable: Option<String>,
 ) -> String {
     // Only what repeats is named more than once, with another order each time.
     let own_name = |e: &EffectFound| {
@@ -67,6 +68,7 @@ pub(super) fn sentence(
         Verdict::PartlyExplained => format!(
             "Partly explained: with {names}, {gone}, and a residual remains that has no name.{place} The named effects may stand for something that is not in the library.{refused}{forms}"
         ),
+        Verdict::Undecided => format!("Undecided: {}.{forms}", probable.unwrap_or_default()),
         Verdict::Unknown => format!(
             "Unknown: the model and the logs disagree, and no effect of the library explains it.{place}{refused}{forms}"
         ),

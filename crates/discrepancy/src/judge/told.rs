@@ -105,7 +105,7 @@ impl Confidence {
         let from = match verdict {
             Verdict::Explained | Verdict::NothingMissing | Verdict::OtherForm => Level::High,
             Verdict::PartlyExplained => Level::Medium,
-            Verdict::Unknown => Level::Low,
+            Verdict::Unknown | Verdict::Undecided => Level::Low,
         };
         let doubts = [
             at_edge.is_empty(),

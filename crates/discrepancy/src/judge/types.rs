@@ -12,6 +12,7 @@ use super::unknown::Unknown;
 use crate::answers::LogSet;
 use crate::name::gap::Gap;
 use crate::name::search::Found;
+use crate::posterior::Posterior;
 
 /// The verdict on a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -29,6 +30,9 @@ pub enum Verdict {
     OtherForm,
     /// A significant gap, and nothing in the library that explains it.
     Unknown,
+    /// Something is missing, or nothing, and these logs do not tell which: the notes have what is how
+    /// probable.
+    Undecided,
 }
 
 impl Verdict {
@@ -40,6 +44,7 @@ impl Verdict {
             Self::NothingMissing => "nothing-missing",
             Self::OtherForm => "other-form",
             Self::Unknown => "unknown",
+            Self::Undecided => "undecided",
         }
     }
 }
@@ -93,6 +98,10 @@ pub struct EffectFound {
     pub runners_up: Vec<(String, f64)>,
     /// In what its law differs from the library's; `None` if nothing shows that.
     pub form: Option<FormFound>,
+    /// Probability that it is there, or one of those that these logs cannot tell from it; `None` where
+    /// explanations were not weighed against each other.
+    #[serde(default)]
+    pub probability: Option<f64>,
 }
 
 /// An effect that was named on the way.
@@ -260,6 +269,10 @@ pub struct Discovery {
     pub not_added: Vec<(String, f64)>,
     /// The residual is significant, and is nothing in the library.
     pub unknown: Option<Unknown>,
+    /// Probabilities of all explanations, before anything was named; `None` where these were not weighed
+    /// against each other.
+    #[serde(default)]
+    pub probable: Option<Posterior>,
     /// Gap before and after.
     pub gap: Gaps,
     /// Of which logs the figures are.

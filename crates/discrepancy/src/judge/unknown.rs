@@ -18,6 +18,7 @@ use crate::name::curves::{Place, Rest, Solved};
 use crate::name::gap::is_material;
 use crate::name::search::{Found, needed};
 use crate::noise::Excess;
+use crate::posterior::Answer;
 
 /// Something that is in the logs, and neither in the model nor in the library.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -79,23 +80,16 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
         let shape = &curves.shapes[i].0;
         shape.told(machine, &found.check_logs, &check, s.values.as_slice())
     };
-    // What noise alone brings is not known of a balance, whose runs are its own rest, drawn anew,
-    // with all that it lacks: other logs may say as much as is asked of those that it was fitted
-    // to.
-    let balanced = found.fit_logs.is_balanced();
     let is_above_noise = |s: &Solved| s.gain >= ABOVE * s.of_noise;
-    let least = |i: usize, s: &Solved| match is_above_noise(s) {
-        true => (0.1 * s.gain).max(25.0),
-        false => needed(knots(i)),
-    };
-    let tried = solved.iter().filter(|(_, s)| balanced || is_above_noise(s));
+    let least = |s: &Solved| (0.1 * s.gain).max(25.0);
+    let tried = solved.iter().filter(|(_, s)| is_above_noise(s));
     let told = tried.take(TOLD).map(|(i, s)| (*i, s, held_out(*i, s)));
     let told: Vec<(usize, &Solved, f64)> = told.collect();
     tracing::debug!(curves = ?told.iter().map(|(i, s, told)| (curves.shapes[*i].0.place, curves.shapes[*i].0.depends_on(), s.gain, s.of_noise, told)).collect::<Vec<_>>(), "what depends on what");
     // Of those that are significant, the one that tells most of other motion.
     let holds = told
         .iter()
-        .filter(|(i, s, told)| *told >= least(*i, s))
+        .filter(|(_, s, told)| *told >= least(s))
         .copied();
     let holds: Vec<(usize, &Solved, f64)> = holds.collect();
     let most = holds.iter().map(|t| t.2).fold(f64::NEG_INFINITY, f64::max);
@@ -125,7 +119,7 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
         let left = set.amplitudes(short.left());
         let told = set.layout.deviance(&check.rest) - set.layout.deviance(&left);
         tracing::debug!(over = ?short.over(), gain = short.gain(), told, "a short term");
-        (told >= least(*i, solution)).then_some((short, (*i, solution, told)))
+        (told >= least(solution)).then_some((short, (*i, solution, told)))
     });
     // A term with its one number that does as much as the knots of any curve says better on what it
     // depends.
@@ -163,6 +157,55 @@ pub fn lack(machine: &Axis, found: &Found, material: f64) -> Result<Option<Unkno
             within: solution.deviations.iter().map(|d| 1.96 * d).collect(),
         },
         evidence: [solution.gain, told],
+    }))
+}
+
+/// The law outside the library that is probable, in words and figures.
+///
+/// # Errors
+/// As [`lack`].
+pub fn lack_of(
+    machine: &Axis,
+    found: &Found,
+    answer: &Answer,
+) -> Result<Option<Unknown>, ReplayError> {
+    let Some(law) = &answer.law else {
+        return Ok(None);
+    };
+    let [fitter, checker] = [&found.fit_logs, &found.check_logs].map(|set| Fitter { machine, set });
+    let check = checker.at(found.fit.state.clone())?;
+    let (shape, columns) = &found.library.curves.shapes[law.law];
+    let rest = Rest::new(&fitter, &found.fit, &found.columns, &found.noise);
+    let gain = rest.solve(columns).gain;
+    let as_good = Sought::AsGoodAs(gain);
+    let short = Short::of(
+        [&fitter, &checker],
+        found,
+        &check,
+        &rest,
+        shape.place,
+        as_good,
+    );
+    let short = short.filter(|short| short.over() == (shape.variable, shape.factor));
+    let values: Vec<f64> = law.values.iter().map(|v| v[0]).collect();
+    let told = shape.told(machine, &found.check_logs, &check, &values);
+    let freedom = machine.freedom();
+    Ok(Some(Unknown {
+        channel: shape.place.name().to_owned(),
+        depends_on: shape.depends_on(),
+        formula: short.map(|short| short.formula(freedom)),
+        curve: Curve {
+            variable: format!(
+                "{}, {}",
+                shape.variable.name(),
+                shape.variable.unit(freedom)
+            ),
+            unit: shape.unit(freedom).to_owned(),
+            at: shape.knots.clone(),
+            within: law.values.iter().map(|v| 1.96 * v[1]).collect(),
+            value: values,
+        },
+        evidence: [gain, told],
     }))
 }
 

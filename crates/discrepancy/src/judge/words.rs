@@ -55,6 +55,9 @@ fn missing(discovery: &Discovery) -> Vec<String> {
             .as_ref()
             .map(|u| unknown(u, !discovery.effects.is_empty())),
     );
+    if let (Verdict::Undecided, Some(probable)) = (discovery.verdict, &discovery.probable) {
+        lines.push(format!("Undecided: {}.", probable.sentence()));
+    }
     if discovery.verdict == Verdict::Unknown && discovery.unknown.is_none() {
         lines.push("Unknown: model and logs disagree by more than noise and tolerances, and no effect of the library explains it.".to_owned());
     }
@@ -178,6 +181,15 @@ fn sure(discovery: &Discovery) -> Vec<String> {
     if !discovery.effects.is_empty() {
         lines.push(format!("{}.", discovery.gap.check.gone()));
     }
+    let probable = |e: &EffectFound| {
+        let (name, others) = (&e.name, &e.indistinguishable_from);
+        let class = [std::slice::from_ref(name), others].concat().join(" or ");
+        Some(format!(
+            "Probability of {class}: {}.",
+            said_probability(e.probability?)
+        ))
+    };
+    lines.extend(discovery.effects.iter().filter_map(probable));
     lines.extend(discovery.figures.sentence());
     lines.push(answer(&discovery.answer).to_owned());
     let edges = confidence.at_edge.iter().map(|k| {
@@ -195,6 +207,14 @@ fn sure(discovery: &Discovery) -> Vec<String> {
     lines
 }
 
+/// A probability without more nines than it is worth.
+fn said_probability(probability: f64) -> String {
+    match probability > 0.999 {
+        true => "above 0.999".to_owned(),
+        false => format!("{probability:.3}"),
+    }
+}
+
 fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Explained => "the gap is explained",
@@ -206,6 +226,7 @@ fn verdict(verdict: Verdict) -> &'static str {
             "the gap is explained by another form of the axis\u{2019} own friction"
         }
         Verdict::Unknown => "there is a gap, and nothing in the library explains it",
+        Verdict::Undecided => "these logs do not tell what is missing, if anything is",
     }
 }
 

@@ -1,6 +1,6 @@
 //! What each effect of the library does on a set of logs.
 
-use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectParameter, Nature, Scales};
+use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, EffectParameter, Measure, Nature, Scales};
 use axis_sim::{Axis, ReplayError, position_in};
 use rayon::prelude::*;
 
@@ -11,7 +11,7 @@ use crate::estimate::linear::Room;
 use crate::name::curves::Curves;
 
 /// What all effects, and curves for what is no effect, do on a set of logs.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Library {
     pub(crate) candidates: Vec<Candidate>,
     pub(crate) curves: Curves,
@@ -124,13 +124,19 @@ fn turn_orders([least, most]: [u8; 2], pole_pairs: Option<f64>) -> Vec<f64> {
 /// for, a width being a part of the stroke that the logs cover, an end the end of the
 /// slot that it begins with.
 fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
-    let duration = |l: &Prepared| l.log.len() as f64 * l.period;
-    let end = fitter.set.logs.iter().map(duration).fold(0.0, f64::max);
+    let end = fitter
+        .set
+        .logs
+        .iter()
+        .map(Prepared::duration)
+        .fold(0.0, f64::max);
     let logs = fitter.set.logs.iter();
     let positions = logs.flat_map(|l| position_in(&l.log).unwrap_or(&[]));
     let (low, high) = positions.fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
     let scales = Scales::of(fitter.machine);
     let slot = end / SLOTS as f64;
+    // A balance costs no simulation of the loop: more starts may be tried.
+    let is_cheap = fitter.set.is_balanced();
     let mut all = vec![effect.typical(&scales)];
     for (i, p) in effect.parameters.iter().enumerate() {
         let begins: Vec<f64> = match p.nature {
@@ -138,7 +144,10 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
             Nature::Speed(starts, _) => starts.map(|v| v * scales.ratio(p.measure)).to_vec(),
             Nature::Time(starts, _) => starts.to_vec(),
             Nature::Extent(starts, _) => {
-                starts.iter().map(|v| v * scales.ratio(p.measure)).collect()
+                match periods_side_by_side(fitter.set, effect, p.measure) {
+                    Some(periods) => periods,
+                    None => starts.iter().map(|v| v * scales.ratio(p.measure)).collect(),
+                }
             }
             Nature::Frequency(starts, _) => match side_by_side(fitter.set, p.bounds(&scales)) {
                 Some(frequencies) => frequencies,
@@ -146,10 +155,13 @@ fn shapes(fitter: &Fitter<'_>, effect: &Effect) -> Vec<Vec<f64>> {
             },
             Nature::Order([least, most]) => (least..=most).map(f64::from).collect(),
             Nature::TurnOrder(low) => turn_orders(low, fitter.machine.actuator.pole_pairs()),
+            Nature::Width(_) if is_cheap => WIDTHS.map(|share| share * (high - low)).to_vec(),
             Nature::Width(_) => vec![(high - low) / 16.0],
-            Nature::Place(_) => (0..PLACES)
-                .map(|k| low + (high - low) * (k as f64 + 0.5) / PLACES as f64)
-                .collect(),
+            Nature::Place(_) => {
+                let count = if is_cheap { 2 * PLACES } else { PLACES };
+                let place = |k: usize| low + (high - low) * (k as f64 + 0.5) / count as f64;
+                (0..count).map(place).collect()
+            }
             Nature::Begin(_) => (0..SLOTS).map(|k| slot * k as f64).collect(),
         };
         let with = |values: &Vec<f64>| -> Vec<Vec<f64>> {
@@ -179,18 +191,41 @@ fn side_by_side(set: &LogSet, [least, most]: [f64; 2]) -> Option<Vec<f64>> {
     if !set.is_balanced() {
         return None;
     }
-    let longest = set.logs.iter().map(|l| l.log.len() as f64 * l.period);
+    let longest = set.logs.iter().map(Prepared::duration);
     let low = (RESONANCE_PERIODS / longest.fold(0.0, f64::max)).max(least);
     let highest = set.logs.iter().map(|l| 0.5 / l.period);
     let high = highest.fold(0.0, f64::max).min(most);
     let all = std::iter::successors(Some(low), |f| Some(f * RESONANCES_APART));
-    Some(all.take_while(|f| *f <= high).collect())
+    let all = all.take_while(|f| *f <= high);
+    Some(all.filter(|f| !set.is_driven_at(*f)).collect())
 }
+
+/// Periods beside each other, s, of a phase that a log of the longest duration T tells apart: steps of
+/// 0.7/T in frequency, from one and a half periods on; `None` where each would take a simulation of the
+/// loop, or of what is no period.
+fn periods_side_by_side(set: &LogSet, effect: &Effect, measure: Measure) -> Option<Vec<f64>> {
+    let repeats = measure == Measure::Time && phase_of(effect).is_some();
+    if !repeats || !set.is_balanced() {
+        return None;
+    }
+    let longest = set.logs.iter().map(Prepared::duration).fold(0.0, f64::max);
+    let step = 0.7 / longest;
+    let fastest = set.logs.iter().map(|l| 0.4 / l.period).fold(0.0, f64::max);
+    let all = (0..MOST_PERIODS).map(|k| 1.5 / longest + step * k as f64);
+    let periods = all.take_while(|f| *f < fastest).map(|f| 1.0 / f);
+    Some(periods.filter(|p| !set.is_driven_at(1.0 / p)).collect())
+}
+
+/// Most of these periods.
+const MOST_PERIODS: usize = 80;
 
 /// Whether an effect is a force in time, of which begin and end are sought together.
 pub fn is_force_in_time(effect: &Effect) -> bool {
     (effect.place_of(|n| matches!(n, Nature::Begin(_)))).is_some()
 }
+
+/// Widths along the stroke at which it starts where starts cost little, as shares of it.
+const WIDTHS: [f64; 3] = [1.0 / 40.0, 1.0 / 16.0, 1.0 / 6.0];
 
 /// Places along the stroke at which a search starts.
 const PLACES: usize = 8;

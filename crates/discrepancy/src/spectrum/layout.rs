@@ -145,6 +145,68 @@ impl Layout {
         edges.zip(self.values.iter().copied())
     }
 
+    /// The same bins in other bands: between these edges, Hz, as far as each has so many complex
+    /// values at least.
+    pub(crate) fn in_bands(&self, edges: &[f64], least: f64) -> Self {
+        let width = |l: usize| 1.0 / (self.logs[l].1 as f64 * self.periods[l]);
+        let frequencies: Vec<Vec<f64>> = (0..self.bands.len())
+            .map(|l| {
+                (0..self.bands[l].len())
+                    .map(|k| k as f64 * width(l))
+                    .collect()
+            })
+            .collect();
+        let end = self.edges.last().copied().unwrap_or(0.0);
+        let values = |low: f64, high: f64| -> f64 {
+            let all = frequencies
+                .iter()
+                .flatten()
+                .filter(|f| (low..high).contains(*f));
+            all.map(|f| if *f == 0.0 { 0.5 } else { 1.0 }).sum()
+        };
+        let mut kept = vec![0.0];
+        for &edge in edges.iter().filter(|e| **e < end) {
+            let from = kept[kept.len() - 1];
+            if edge > from && values(from, edge) >= least && values(edge, end) >= least {
+                kept.push(edge);
+            }
+        }
+        kept.push(end);
+        let band = |f: &f64| kept.partition_point(|e| e <= f).clamp(1, kept.len() - 1) - 1;
+        let bands: Vec<Vec<usize>> = frequencies
+            .iter()
+            .map(|log| log.iter().map(band).collect())
+            .collect();
+        let mut counts = vec![0; kept.len() - 1];
+        bands.iter().flatten().for_each(|&b| counts[b] += 1);
+        let mut values: Vec<f64> = counts.iter().map(|&n| n as f64).collect();
+        values[0] -= 0.5 * begun(&bands) as f64;
+        Self {
+            bands,
+            counts,
+            values,
+            edges: kept,
+            ..self.clone()
+        }
+    }
+
+    /// Band and channel, as one number, of each real number that [`Layout::whiten`] gives.
+    pub(crate) fn groups(&self) -> Vec<usize> {
+        let mut groups = Vec::with_capacity(self.size());
+        for bands in &self.bands {
+            for (k, &band) in bands.iter().enumerate() {
+                for channel in 0..self.channels {
+                    let group = band * self.channels + channel;
+                    groups.push(group);
+                    if k > 0 {
+                        groups.push(group);
+                    }
+                }
+            }
+        }
+        groups
+    }
+
     /// Number of channels.
     pub fn channels(&self) -> usize {
         self.channels

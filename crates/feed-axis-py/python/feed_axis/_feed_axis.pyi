@@ -534,8 +534,8 @@ class Discovery:
     @property
     def verdict(
         self,
-    ) -> Literal["explained", "partly-explained", "other-form", "nothing-missing", "unknown"]:
-        """"explained", "partly-explained", "other-form", "nothing-missing" or "unknown"."""
+    ) -> Literal["explained", "partly-explained", "other-form", "nothing-missing", "unknown", "undecided"]:
+        """"explained", "partly-explained", "other-form", "nothing-missing", "unknown" or "undecided"."""
     @property
     def effects(self) -> list[Effect]:
         """The named effects, largest share of the gap first."""

@@ -146,7 +146,7 @@ impl Found<'_> {
         }
         if matches!(
             discovery.verdict,
-            Verdict::PartlyExplained | Verdict::Unknown
+            Verdict::PartlyExplained | Verdict::Unknown | Verdict::Undecided
         ) {
             writeln!(
                 f,

@@ -16,7 +16,7 @@ pub fn page(discovered: &Discovered) -> Result<String> {
     let discovery = &discovered.discovery;
     let kind = match discovery.verdict {
         Verdict::Explained | Verdict::NothingMissing | Verdict::OtherForm => Notice::Good,
-        Verdict::PartlyExplained | Verdict::Unknown => Notice::Warn,
+        Verdict::PartlyExplained | Verdict::Unknown | Verdict::Undecided => Notice::Warn,
     };
     let answers = discovery.first_screen().into_iter();
     let answers = answers.map(|a| (a.question.to_owned(), a.lines)).collect();

@@ -59,6 +59,7 @@ pub(super) const FAMILY: Family = Family {
         let law = Law::new(&active.values);
         1.0 + law.at(speed) / law.level
     },
+    priors: None,
     with_speed: |_| 0.0,
     speeds: |active| [0.01, 3.0].map(|by| by * Law::new(&active.values).velocity),
 };

@@ -27,6 +27,8 @@ struct Family {
     begins: fn(&Formed) -> Vec<ActiveEffect>,
     /// Steady friction at a speed above 0, over that of sliding.
     at: fn(&ActiveEffect, f64) -> f64,
+    /// Where values mark that its numbers have priors, and the deviations of these about 0.
+    priors: Option<(usize, &'static [f64])>,
     /// Share of the onset that comes with speed instead of displacement.
     with_speed: fn(&ActiveEffect) -> f64,
     /// Speeds between which it differs from the law of the library.
@@ -87,6 +89,40 @@ impl<'a> FrictionForm<'a> {
     /// The effect whose form it is, as it was when the form was made.
     pub fn base(&self) -> Option<ActiveEffect> {
         base(&self.active.values)
+    }
+
+    /// A form whose numbers have the prior of its family in a fit; unchanged if that has none.
+    pub fn with_prior(mut form: ActiveEffect) -> ActiveEffect {
+        let priors = family_of(form.effect.name).and_then(|family| family.priors);
+        if let Some((mark, _)) = priors {
+            form.values[mark] = 1.0;
+        }
+        form
+    }
+
+    /// The same form of another friction, its numbers that are fitted `by` times as large; `None` of a friction
+    /// that cannot have it.
+    pub fn tied(&self, friction: &ActiveEffect, by: f64) -> Option<ActiveEffect> {
+        let mut tied = self.active.clone();
+        tied.values
+            .iter_mut()
+            .zip(tied.effect.parameters)
+            .filter(|(_, p)| !matches!(p.nature, Nature::Held))
+            .for_each(|(value, _)| *value *= by);
+        let head = begun(friction)?;
+        tied.values[..OWN].copy_from_slice(&head);
+        Some(tied)
+    }
+
+    /// Prior deviation about 0 of the value at a place; `None` of one without a prior.
+    pub fn deviation(&self, place: usize) -> Option<f64> {
+        let (mark, deviations) = self.family.priors?;
+        let is_marked = self.active.values.get(mark).is_some_and(|m| *m > 0.0);
+        let first = self.active.values.len() - deviations.len();
+        deviations
+            .get(place.checked_sub(first)?)
+            .copied()
+            .filter(|_| is_marked)
     }
 
     /// What of the law differs, in words: its onset, or its fall with speed.

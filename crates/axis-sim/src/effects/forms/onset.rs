@@ -25,9 +25,14 @@ const ONSET_KNOTS: usize = 9;
 /// hundredth of the greatest or a tenth.
 const KNOTS: [f64; ONSET_KNOTS] = [1e-4, 4e-4, 1.6e-3, 5e-3, 1.2e-2, 2.5e-2, 5e-2, 0.12, 0.3];
 
-/// First of the knots, and of the numbers that are fitted, among the values.
+/// First of the knots, the mark of a prior, and the first of the numbers that are fitted, among the values.
 const KNOTS_AT: usize = OWN;
-const FORM_AT: usize = KNOTS_AT + ONSET_KNOTS;
+const PRIOR_AT: usize = KNOTS_AT + ONSET_KNOTS;
+const FORM_AT: usize = PRIOR_AT + 1;
+
+/// Prior deviations of the numbers, over the level of sliding: near standstill friction may be anything, above
+/// a hundredth of the greatest speed it is close to the model's, or it would take up a Stribeck effect.
+const DEVIATIONS: [f64; ONSET_KNOTS] = [0.5, 0.35, 0.35, 0.25, 0.1, 0.03, 0.025, 0.025, 0.02];
 
 const KNOT: EffectParameter = held("knot", Measure::Speed);
 const SHARE: EffectParameter = signed("share", Measure::Ratio, 0.5, 5.0);
@@ -39,10 +44,10 @@ static ONSET_FORM: Effect = Effect {
     channel: EffectChannel::Torque,
     depends_on: "low speed",
     shown_over: EffectVariable::Speed,
-    // Place of the effect and its values; knots; p and c_1 to c_8.
+    // Place of the effect and its values; knots; mark of a prior; p and c_1 to c_8.
     parameters: &[
         HELD, HELD, HELD, HELD, HELD, HELD, HELD, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT, KNOT,
-        KNOT, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE,
+        KNOT, HELD, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE, SHARE,
     ],
     needs: &[],
     install,
@@ -65,6 +70,7 @@ pub(super) const FAMILY: Family = Family {
         form.into_iter().collect()
     },
     at: |active, speed| Curve::new(&active.values).bristle(1.0, speed),
+    priors: Some((PRIOR_AT, &DEVIATIONS)),
     with_speed: |active| Curve::new(&active.values).share,
     speeds: |active| {
         let knots = Curve::new(&active.values).knots;

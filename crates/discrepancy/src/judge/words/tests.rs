@@ -41,6 +41,7 @@ fn discovery(verdict: Verdict, effects: Vec<EffectFound>, known: Vec<Recalibrate
         refused: None,
         not_added: Vec::new(),
         unknown: None,
+        probable: None,
         gap: Gaps {
             fit: gap.clone(),
             check: gap,
@@ -91,6 +92,7 @@ fn viscous() -> EffectFound {
         evidence: [1e5, 1e5],
         runners_up: Vec::new(),
         form: None,
+        probability: None,
     }
 }
 

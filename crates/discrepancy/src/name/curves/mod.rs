@@ -40,7 +40,7 @@ const CURVES: &[(Place, Factor, Variable)] = &[
 ];
 
 /// The loop's answers to all curves on a set of logs.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Curves {
     pub shapes: Vec<(Shape, Columns)>,
 }
@@ -53,7 +53,7 @@ impl Curves {
         let moves = |v: Variable| courses.iter().all(|c| !c.of(v).is_empty());
         let all = CURVES.iter().filter(|(_, _, v)| moves(*v));
         let shapes: Vec<Shape> = all
-            .map(|&(place, factor, v)| Shape::new(place, factor, v, &courses))
+            .map(|&(place, factor, v)| Shape::new(place, factor, v, &courses, set.is_balanced()))
             .collect();
         let fitter = Fitter { machine, set };
         let answers = |shape: Shape| {

@@ -10,7 +10,7 @@ use crate::answers::{self, LogSet};
 use crate::estimate::fit::Fit;
 
 /// A curve: where it acts, on what it depends, and its hats' places.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Shape {
     pub place: Place,
     pub factor: Factor,
@@ -28,7 +28,14 @@ const KNOTS_OF_PRODUCT: usize = 6;
 const BEYOND: f64 = 0.1;
 
 impl Shape {
-    pub fn new(place: Place, factor: Factor, variable: Variable, courses: &[Course]) -> Self {
+    /// `finer` of logs on which a hat costs no simulation of the loop.
+    pub fn new(
+        place: Place,
+        factor: Factor,
+        variable: Variable,
+        courses: &[Course],
+        finer: bool,
+    ) -> Self {
         let all = courses.iter().flat_map(|c| c.of(variable));
         let (low, high) = all.fold((f64::MAX, f64::MIN), |(a, b), &x| (a.min(x), b.max(x)));
         let count = if factor == Factor::One {
@@ -36,6 +43,7 @@ impl Shape {
         } else {
             KNOTS_OF_PRODUCT
         };
+        let count = if finer { 2 * count } else { count };
         let knots = match variable {
             Variable::Angle => (0..count)
                 .map(|j| std::f64::consts::TAU * j as f64 / count as f64)
@@ -227,7 +235,7 @@ mod tests {
     fn motion_beyond_the_fitted_is_outside_of_a_curve() {
         let fitted = [course(&[-0.3, 0.0, 1.0])];
         let inside = |variable: Variable| {
-            let shape = Shape::new(Place::Force, Factor::One, variable, &fitted);
+            let shape = Shape::new(Place::Force, Factor::One, variable, &fitted, false);
             shape.inside(&course(&[-0.45, -0.4, -0.32, 0.5, 1.05, 1.2]))
         };
         // A tenth of the fastest that way.

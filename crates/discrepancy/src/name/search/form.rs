@@ -36,7 +36,7 @@ pub(crate) fn is_form(active: &ActiveEffect) -> bool {
 }
 
 /// The axis' own dry friction as an effect; `None` where it has none.
-pub(super) fn own_friction(axis: &Axis) -> Option<ActiveEffect> {
+pub(crate) fn own_friction(axis: &Axis) -> Option<ActiveEffect> {
     let friction = &axis.friction;
     let level = friction.law.parameters().coulomb / friction.lever(axis.travel_per_radian());
     let effect = Effect::named(PLAIN)?;

@@ -122,6 +122,7 @@ impl Search<'_> {
             check_logs: self.check_logs,
             hum: self.hum,
             test: None,
+            answer: None,
         }
     }
 }

@@ -4,13 +4,9 @@ use nalgebra::{Complex, DMatrix};
 
 use super::state::Search;
 use crate::answers::Prepared;
-use crate::spectrum::waves;
 
 /// Lines that are tried.
 const LINES: usize = 3;
-
-/// Frequencies of a balance's lines that are looked at, per resolved step.
-const FINER: f64 = 2.0;
 
 /// A frequency, Hz, and how far it stands out there.
 pub(super) type Line = (f64, f64);
@@ -31,22 +27,6 @@ impl Search<'_> {
             Some((frequency, stands_out))
         };
         layout.bins(&self.fit.rest).filter_map(of_bin).collect()
-    }
-
-    /// What a wave takes of the rest by least squares, logs and channels added up.
-    pub(super) fn lines_of_balances(&self, longest: f64) -> Vec<Line> {
-        let set = &self.fit_logs;
-        let rest = set.rest(&self.fit.traces);
-        let periods = set.logs.iter().map(|l| l.period);
-        let period = periods.fold(f64::INFINITY, f64::min);
-        let length = (FINER * longest / period).ceil().max(1.0) as usize;
-        let logs = set.logs.iter().zip(&rest);
-        let channels = logs.flat_map(|(log, rest)| rest.iter().map(move |r| (log.log.time(), r)));
-        let mut lines: Vec<Line> = Vec::new();
-        for (times, rest) in channels {
-            add(&mut lines, waves(times, rest, period, length));
-        }
-        lines
     }
 }
 

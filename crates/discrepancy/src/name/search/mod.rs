@@ -1,5 +1,6 @@
 //! Stepwise search: screen, refine the best few by simulation, add, drop.
 
+mod by_probability;
 mod evidence;
 mod force;
 mod form;
@@ -24,7 +25,7 @@ use std::sync::Arc;
 use axis_sim::{Axis, ReplayError};
 
 pub use self::evidence::{MATERIAL, needed};
-pub(crate) use self::form::is_form;
+pub(crate) use self::form::{is_form, own_friction};
 pub(crate) use self::revise::ABOVE_NOISE;
 use self::state::{ANEW, Search, steady_noise};
 pub use self::types::{
@@ -164,6 +165,10 @@ fn searched(
         fit_logs,
         check_logs,
     };
+    if search.fit_logs.is_balanced() {
+        progress("explanations");
+        return search.by_probability(base, as_filed);
+    }
     let without = search.clone();
     while search.effects_named() < settings.most_effects {
         progress(&format!("effect {}", search.effects_named() + 1));
@@ -190,9 +195,6 @@ fn searched(
     }
     if let Some(refused) = search.refused(as_filed, &without)? {
         search = without.with_refused(refused);
-        intervals = search.intervals()?;
-    } else if search.lacks_evidence(&without, &intervals)? {
-        search = without.with_leftover(&search.named);
         intervals = search.intervals()?;
     }
     Ok(search.finish(base, intervals))

@@ -146,7 +146,7 @@ pub(super) fn alike(
             let more = other.basis.ncols() > own.basis.ncols();
             explains_more(other) || !(more && other.more_is_shown(own, best.gain, EQUAL))
         });
-    let mut all: Vec<Alike> = others
+    let mut all: Vec<(f64, Alike)> = others
         .filter_map(|other| {
             let fitted = fitted(other);
             let more = other.basis.ncols() > own.basis.ncols();
@@ -163,15 +163,15 @@ pub(super) fn alike(
             };
             let fitted = fitted.filter(|_| !more);
             let last = fitted.and_then(|r| r.fit.state.effects.last().cloned());
-            (sine < ONE_CLASS || equal).then(|| Alike {
-                fitted: last.unwrap_or_else(nearest),
-                sine,
+            (sine < ONE_CLASS || equal).then(|| {
+                let fitted = last.unwrap_or_else(nearest);
+                (sine, Alike { fitted })
             })
         })
-        .filter(|alike| is_other(&alike.fitted))
+        .filter(|(_, alike)| is_other(&alike.fitted))
         .collect();
-    all.sort_by(|a, b| a.sine.total_cmp(&b.sine));
-    all
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all.into_iter().map(|(_, alike)| alike).collect()
 }
 
 /// Keeps the first of those that were begun with one effect in several shapes.

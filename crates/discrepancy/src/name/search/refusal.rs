@@ -2,22 +2,15 @@
 
 use axis_sim::{ReplayError, Trace};
 
-use super::form::is_form;
-use super::intervals::Intervals;
 use super::state::Search;
 use super::types::{Named, RefusalReason, Refused, RunnerUp};
 use crate::answers::{LogSet, State};
-use crate::estimate::columns::free_parameters;
 use crate::name::gap::{Gap, gap, worsened};
 use crate::noise::{Hum, MotionAndRest, floors};
 
 /// Share of the gap above the noise, RMS on check motion, that all named effects together
 /// must take away: what leaves more than half of it explains something else.
 const LEAST_SHARE: f64 = 0.5;
-
-/// Fall of D that is asked of a balance of which no channel stood out of its noise, as a multiple of
-/// what naming takes: the noise of its motion passes through the model, and looks like evidence.
-const WITHOUT_GAP: f64 = 1.5;
 
 impl Search<'_> {
     /// The effects, where check motion is further off with them than without: than with
@@ -51,56 +44,14 @@ impl Search<'_> {
         let of_gap = gap(set, calibrated, &after, &floors);
         tracing::debug!(?of_gap, "of the gap on check motion");
         let share = of_gap.reduction;
-        let is_little = share < LEAST_SHARE;
-        // Where no channel stood out of its noise, evidence alone speaks; and what is left of a
-        // replay is no gap where it is noise of another colour. In a balance noise of the motion
-        // passes through the model, and follows it.
+        let is_little = share < LEAST_SHARE && !self.settings_ask_for_all();
+        // Where no channel stood out of its noise, evidence alone speaks; and what is left is no gap
+        // where it is noise of another colour.
         let is_gap =
             || !of_gap.may_be_noise_apart_from_motion() || self.rest_follows_motion(&of_gap);
-        let is_left = of_gap.stands_out() && (set.is_balanced() || is_gap());
+        let is_left = of_gap.stands_out() && is_gap();
         let refused = is_little && is_left;
         Ok(refused.then(|| self.refusal(RefusalReason::Little(share))))
-    }
-
-    /// Whether the effects of a balance of which no channel stood out of its noise bring less than
-    /// is asked then, or one of them may be of no size at all: as if nothing had been named.
-    pub(super) fn lacks_evidence(
-        &self,
-        without: &Self,
-        intervals: &Intervals,
-    ) -> Result<bool, ReplayError> {
-        let set = &self.check_logs;
-        if self.named.is_empty() || !set.is_balanced() || self.settings_ask_for_all() {
-            return Ok(false);
-        }
-        let after = set.rest(&self.check.traces);
-        let before = without.check_logs.rest(&without.check.traces);
-        let floors = floors(self.machine, set, &self.check.state, &after)?;
-        let fall = without.fit.deviance - self.fit.deviance;
-        let parameters = free_parameters(&self.fit.state).len();
-        let is_weak =
-            fall < WITHOUT_GAP * self.needed(parameters, 1) || self.may_be_nothing(intervals);
-        Ok(is_weak && !gap(set, &before, &after, &floors).stands_out())
-    }
-
-    /// Whether the 95 % intervals of all sizes of an effect hold zero.
-    fn may_be_nothing(&self, intervals: &Intervals) -> bool {
-        let state = &self.fit.state;
-        let free = free_parameters(state);
-        let holds_zero = |(at, &(effect, parameter)): (usize, &(usize, usize))| {
-            let value = state.effects[effect].values[parameter];
-            value.abs() <= intervals.half_width(state.shares.len() + at, value)
-        };
-        let named = (0..state.effects.len()).filter(|&e| !is_form(&state.effects[e]));
-        let mut sizes = named.map(|e| {
-            let of_it = free
-                .iter()
-                .enumerate()
-                .filter(move |(_, (effect, _))| *effect == e);
-            let is_size = move |p: usize| state.effects[e].effect.parameters[p].is_size();
-            of_it.filter(move |(_, (_, p))| is_size(*p))
-        });
-        sizes.any(|mut of_it| of_it.all(holds_zero))
     }
 
     /// Whether what is left follows the motion, in any band of a channel that stands out of

@@ -176,9 +176,6 @@ impl Search<'_> {
 
     /// Seeks the hum of the logs anew: beside a large gap a line may be hidden, or be a part of the gap.
     fn settle_hum(&mut self) {
-        if self.fit_logs.is_balanced() {
-            return;
-        }
         let [fit_logs, check_logs] = [&self.fit_logs, &self.check_logs].map(Hum::put_back);
         let Ok(checks) = check_logs.simulate(self.machine, &self.fit.state) else {
             return;

@@ -22,8 +22,7 @@ impl Search<'_> {
     pub(super) fn resonances(&self, own: &Columns, noise: &[Spectral]) -> Vec<Screened> {
         let mut library = self.library.candidates.iter();
         let known = library.find_map(|c| Some((c, c.effect.place_of(is_frequency)?)));
-        let known =
-            known.filter(|(c, _)| !self.fit_logs.is_balanced() && self.wanted(c.effect, &[]));
+        let known = known.filter(|(c, _)| self.wanted(c.effect, &[]));
         let Some((known, at)) = known else {
             return Vec::new();
         };

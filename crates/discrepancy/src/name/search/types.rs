@@ -16,6 +16,7 @@ use crate::estimate::fit::Fit;
 use crate::estimate::interval::Spread;
 use crate::name::library::{Library, applicable};
 use crate::noise::Hum;
+use crate::posterior::{Answer, Posterior};
 use crate::spectrum::Amplitudes;
 
 /// How the search is made.
@@ -31,6 +32,9 @@ pub struct Settings {
     pub accepted: Vec<String>,
     /// Probability that a clean axis is given an effect.
     pub false_alarm: f64,
+    /// Sets of effects whose odds are told beside those that are found, as of a truth that is known
+    /// ([`Posterior::supposed`]); they have no part in any choice.
+    pub supposed: Vec<Vec<ActiveEffect>>,
 }
 
 impl Default for Settings {
@@ -41,6 +45,7 @@ impl Default for Settings {
             rejected: Vec::new(),
             accepted: Vec::new(),
             false_alarm: 0.01,
+            supposed: Vec::new(),
         }
     }
 }
@@ -158,8 +163,6 @@ pub struct RunnerUp {
 pub struct Alike {
     /// With the values that come nearest.
     pub fitted: ActiveEffect,
-    /// Sine of the angle between the two fingerprints.
-    pub sine: f64,
 }
 
 /// An effect that was added.
@@ -253,6 +256,8 @@ pub struct Found {
     /// Logs that took no part, from which the figures are; `None` where these are of the
     /// check logs.
     pub test: Option<Test>,
+    /// What is probable, of logs that are answered by torque balance.
+    pub(crate) answer: Option<Answer>,
 }
 
 /// Logs that took no part in any choice.
@@ -276,6 +281,17 @@ impl Found {
             RefusalReason::OneLaw(words) => Some(words),
             _ => None,
         }
+    }
+
+    /// Probability of a named effect, or of its class.
+    pub(crate) fn probability(&self, name: &str) -> Option<f64> {
+        let mut named = self.answer.as_ref()?.named.iter();
+        named.find(|n| n.name == name).map(|n| n.probability)
+    }
+
+    /// What is how probable; `None` of logs that are replayed.
+    pub fn posterior(&self) -> Option<&Posterior> {
+        self.answer.as_ref().map(|answer| &answer.posterior)
     }
 
     /// Fall of D that naming an effect of one number took.

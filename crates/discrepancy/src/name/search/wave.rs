@@ -68,10 +68,7 @@ impl Search<'_> {
     fn lines(&self) -> Vec<Line> {
         let set = &self.fit_logs;
         let longest = set.logs.iter().map(duration).fold(0.0, f64::max);
-        let lines: Vec<Line> = match set.is_balanced() {
-            true => self.lines_of_balances(longest),
-            false => self.lines_of_replays(&set.layout.spectral_matrices(&self.fit.rest)),
-        };
+        let lines = self.lines_of_replays(&set.layout.spectral_matrices(&self.fit.rest));
         strongest(lines, OF_LINE / longest, |_| 1.0 / longest)
     }
 
