@@ -101,6 +101,10 @@ pub(super) fn refused_effects(refused: &Refused) -> RefusedEffects {
             law: Some((*law).to_owned()),
             ..told
         },
+        RefusalReason::OneCurve(over) => RefusedEffects {
+            law_over: Some(over.clone()),
+            ..told
+        },
     }
 }
 

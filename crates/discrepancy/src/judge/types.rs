@@ -107,8 +107,8 @@ pub struct ReplacedEffect {
 }
 
 /// Effects that explain something of the fitted logs, and are not given: with them check
-/// motion is further off, or they take away too little of its gap, or one law of a single
-/// number explains as much as all of them.
+/// motion is further off, or they take away too little of its gap, or one law outside the library
+/// explains as much as all of them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RefusedEffects {
     /// Names.
@@ -123,6 +123,10 @@ pub struct RefusedEffects {
     /// to this, of time t, position x and speed v.
     #[serde(default)]
     pub law: Option<String>,
+    /// What a law of any form depends on that is more probable than they are together, where they are not
+    /// named for that.
+    #[serde(default)]
+    pub law_over: Option<String>,
 }
 
 impl RefusedEffects {
@@ -146,6 +150,11 @@ impl RefusedEffects {
         if let Some(law) = &self.law {
             return format!(
                 " {names} {explains} no more than a force in proportion to {law} does with one number, so {they} {is} not named."
+            );
+        }
+        if let Some(over) = &self.law_over {
+            return format!(
+                " One law over {over} explains and predicts these logs better than {names}, so {they} {is} not named."
             );
         }
         let where_ = match self.channels.as_slice() {

@@ -26,8 +26,9 @@ const SHARE: f64 = 0.5;
 /// there do as well as any curve; the rest is for noise.
 const SHARE_OF_TWO: f64 = 0.9;
 
-/// Fall of D that a curve brings by chance, a knot.
-const BY_CHANCE: f64 = 4.0;
+/// Fall of D that a number brings by chance, a knot of a curve or a size: as S is estimated from the same
+/// data, more than the 1 of χ².
+pub(super) const BY_CHANCE: f64 = 4.0;
 
 /// Curves over what an effect depends on, the best of them, of which it is seen how much they tell of
 /// check motion.
@@ -84,6 +85,27 @@ impl<'a> FreeCurves<'a> {
             let told = told(curve);
             [gain.max(curve.gain.min(told)), most.max(told)]
         })
+    }
+
+    /// Number of curves.
+    pub(super) fn count(&self) -> usize {
+        self.all.len()
+    }
+
+    /// On what the curve depends that does most on the fitted and the check logs together, and by how much
+    /// D falls with it there beyond chance; `None` without curves.
+    pub(super) fn most_probable(&self) -> Option<(String, f64)> {
+        let (set, check) = (&self.search.check_logs, &self.search.check);
+        let together = |curve: &Solved<'_>| {
+            let values = curve.values.as_slice();
+            let told = || curve.shape.told(self.search.machine, set, check, values);
+            (
+                curve.shape.depends_on(),
+                curve.gain + curve.told.get_or_init(told),
+            )
+        };
+        let best = self.all.iter().take(TOLD).map(together);
+        best.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Whether what was refined explains about as much as the best curve over what it

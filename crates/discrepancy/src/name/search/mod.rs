@@ -6,6 +6,7 @@ mod form;
 mod free_curve;
 mod intervals;
 mod lines;
+mod one_curve;
 mod one_law;
 mod promise;
 mod refined;
@@ -181,7 +182,10 @@ fn searched(
         search.revise();
         intervals = search.intervals()?;
     }
-    if let Some(other) = search.without_pieces() {
+    for instead in [Search::without_pieces, Search::without_imitations] {
+        let Some(other) = instead(&search) else {
+            continue;
+        };
         search = match (other.named.is_empty(), &other.refused) {
             (true, Some(refused)) => without.clone().with_refused(refused.clone()),
             _ => other,

@@ -216,6 +216,8 @@ pub enum RefusalReason {
     /// A law of one number that is not in the library, this one, explains as much as all of them
     /// (more than one of them alone), and more of the check logs.
     OneLaw(&'static str),
+    /// A law over this, in any form, is more probable than all of them together.
+    OneCurve(String),
 }
 
 /// What a search found.

@@ -1,0 +1,84 @@
+//! A law outside the library in the place of all effects.
+//!
+//! Effects together imitate a law that is none of them: a load with a spring stands for a force that grows
+//! along the stroke in another way. So what is named competes as a whole with every law over one variable,
+//! whatever its form, by what each explains of the fitted logs and predicts of the check logs. Numbers count
+//! by what each brings by chance, and so does the choice: k of E effects against one of V variables.
+
+use super::form::is_form;
+use super::free_curve::{BY_CHANCE, FreeCurves};
+use super::state::Search;
+use super::types::{RefusalReason, Refused};
+use crate::estimate::columns::free_parameters;
+
+impl Search<'_> {
+    /// Without all effects, if a law over one variable is more probable than they are together; they are
+    /// said to be refused. Forms of the own friction stay in both, and so does what the engineer accepts.
+    pub(super) fn without_imitations(&self) -> Option<Self> {
+        let mut without = self.clone();
+        let mut taken = Vec::new();
+        while let Some(index) = without.first_in_question() {
+            taken.push(without.named[index].clone());
+            without = without.without(index)?;
+        }
+        if taken.is_empty() {
+            return None;
+        }
+        let own = without.own_columns();
+        let fitter = without.fitter();
+        let curves = FreeCurves::new(&without, &fitter, &own);
+        let (over, of_law) = curves.most_probable()?;
+        let numbers =
+            free_parameters(&self.fit.state).len() - free_parameters(&without.fit.state).len();
+        let of_effects = (without.fit.deviance - self.fit.deviance)
+            + (without.check.deviance - self.check.deviance)
+            - BY_CHANCE * numbers as f64;
+        let mut names: Vec<&str> = self
+            .library
+            .candidates
+            .iter()
+            .map(|c| c.effect.name)
+            .collect();
+        names.dedup();
+        let choice = 2.0 * (ln_choices(names.len(), taken.len()) - ln_choices(curves.count(), 1));
+        tracing::debug!(
+            effects = ?taken.iter().map(|n| n.name).collect::<Vec<_>>(),
+            over,
+            of_effects,
+            of_law,
+            choice,
+            "a law over one variable in their place"
+        );
+        if of_effects - choice >= of_law {
+            return None;
+        }
+        Some(without.with_refused(Refused {
+            effects: taken,
+            reason: RefusalReason::OneCurve(over),
+        }))
+    }
+
+    fn first_in_question(&self) -> Option<usize> {
+        let effects = self.fit.state.effects.iter();
+        let mut effects = effects.map(|a| !is_form(a) && !self.is_accepted(a.effect.name));
+        effects.position(|is_in_question| is_in_question)
+    }
+}
+
+/// ln of the number of ways to choose k of n.
+fn ln_choices(n: usize, k: usize) -> f64 {
+    let each = (0..k.min(n)).map(|i| ((n - i) as f64 / (i + 1) as f64).ln());
+    each.sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ln_choices;
+
+    #[test]
+    fn choices_are_counted() {
+        assert!((ln_choices(39, 2).exp() - 741.0).abs() < 1e-9);
+        assert!((ln_choices(18, 1).exp() - 18.0).abs() < 1e-12);
+        assert!(ln_choices(5, 0).abs() < 1e-15);
+    }
+}
