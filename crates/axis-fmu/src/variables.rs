@@ -28,6 +28,9 @@ pub struct Variable {
     pub kind: VariableKind,
     /// Value before anybody sets it, in its unit; none of what is computed.
     pub start: Option<f64>,
+    /// Least and greatest value, in its unit; none of what has no limits of its own. Whether values
+    /// inside fit together is checked at the end of the initialisation.
+    pub limits: Option<[f64; 2]>,
 }
 
 /// What a variable is to the unit.
@@ -106,10 +109,14 @@ impl Variables {
             all.push(&name, &parameter.valid, "", kind, Some(parameter.value));
             if let Some(last) = all.0.last_mut() {
                 last.measure = UnitDefinition::spelled(parameter.unit);
+                last.limits = parameter.limits;
             }
         }
         let kind = VariableKind::ExactBetween;
         all.push(EXACT_BETWEEN, EXACT_MEANING, "", kind, Some(0.0));
+        if let Some(last) = all.0.last_mut() {
+            last.limits = Some([0.0, 1.0]);
+        }
         Ok(all)
     }
 
@@ -128,6 +135,7 @@ impl Variables {
             measure: UnitDefinition::of_channel(unit),
             kind,
             start,
+            limits: None,
         });
     }
 

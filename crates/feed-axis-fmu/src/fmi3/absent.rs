@@ -4,7 +4,8 @@
 use axis_fmu::UnitError;
 use safer_ffi::prelude::*;
 
-use crate::call::{Address, Bool, call};
+use super::Bool;
+use crate::call::{Address, call};
 use crate::instance::Instance;
 
 /// Never looked at.

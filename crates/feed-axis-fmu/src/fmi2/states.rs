@@ -1,0 +1,32 @@
+//! States, saved and restored in memory.
+
+use safer_ffi::prelude::*;
+
+use super::{ComponentAt, of};
+use crate::call::call;
+use crate::instance::{State, StateAt};
+
+/// `fmi2GetFMUstate`: into the state that is there, or a new one.
+#[ffi_export(rename = "fmi2GetFMUstate")]
+pub fn get_fmu_state(component: ComponentAt<'_>, state: StateAt<'_>) -> i32 {
+    call(of(component), "fmi2GetFMUstate", |instance| {
+        instance.save(state)
+    })
+}
+
+/// `fmi2SetFMUstate`, also of an instance that was stopped by an error.
+#[ffi_export(rename = "fmi2SetFMUstate")]
+pub fn set_fmu_state(component: ComponentAt<'_>, state: Option<&State>) -> i32 {
+    call(of(component), "fmi2SetFMUstate", |instance| {
+        instance.restore(state)
+    })
+}
+
+/// `fmi2FreeFMUstate`; one that is null is nothing to free.
+#[ffi_export(rename = "fmi2FreeFMUstate")]
+pub fn free_fmu_state(component: ComponentAt<'_>, state: StateAt<'_>) -> i32 {
+    call(of(component), "fmi2FreeFMUstate", |_| {
+        drop(state.and_then(Option::take));
+        Ok(())
+    })
+}
