@@ -16,6 +16,7 @@ from fmu_unit import Unit, follow, log_of, run, shared
 
 PROGRAM, LIBRARY, AXES = sys.argv[1], sys.argv[2], sys.argv[3:]
 TOLERANCE = 1e-12  # of the channel's greatest value
+STEPS = {"liu2025": 1}  # internal steps of a control period; 2 of the others
 
 
 def check_validation(fmu, _):
@@ -142,6 +143,31 @@ def same_in_both(units, log):
     return f"{len(results[0])} and {len(results[2])} points, {len(outputs)} outputs, the same bits"
 
 
+def plant_beside_loop(plant, loop, steps):
+    """Under the torque of the closed loop's motor the machine moves as it does there, whatever the control."""
+    plant, loop = Unit.of(plant), Unit.of(loop)
+    loop.set("unit.exact_between_samples", 1.0)
+    assert not any(v.name.startswith(("control.", "drive.t_s")) for v in plant.description.modelVariables)
+    motor = plant.of_causality("input")[0].name
+    seen = [v.name for v in plant.of_causality("output")]
+    assert set(seen) < {v.name for v in loop.of_causality("output")}
+    reference = loop.of_causality("input")[0]
+    for unit in (plant, loop):
+        unit.begin()
+    size, count = loop.step_size / steps, 2000 * steps
+    for k in range(count):
+        if k % steps == 0:
+            loop.set(reference.name, float(reference.start) + 1e-6 * k / steps)
+        loop.fmu.doStep(k * size, size)
+        plant.set(motor, *loop.get(f"machine.{motor}"))
+        plant.fmu.doStep(k * size, size)
+        if k % steps == steps - 1:
+            assert plant.get(*seen) == loop.get(*seen), k
+    assert not plant.told, plant.told
+    plant.refuses("left its stroke", lambda: (plant.set(motor, 1e6), plant.fmu.doStep(count * size, 1.0)))
+    return f"{count} steps, {len(seen)} outputs, the same bits"
+
+
 def checks_of(*modules):
     for names in modules:
         yield from (value for name, value in names.items() if name.startswith("check_"))
@@ -166,6 +192,12 @@ def main():
                 for check in checks_of(globals(), vars(own)):
                     said = check(fmu, log)
                     show(axis, f"FMI {version}: {check.__name__[6:].replace('_', ' ')}", said)
+                plant = Path(folder) / f"{axis}-{version}-plant.fmu"
+                export = ["export", "fmu", "--plant", "--fmi", version, "--axis", file, "--out", str(plant)]
+                run(PROGRAM, *export, "--library", LIBRARY)
+                check_validation(plant, log)
+                said = plant_beside_loop(plant, fmu, STEPS.get(axis, 2))
+                show(axis, f"FMI {version}: plant", said)
             show(axis, "FMI 2 beside 3", same_in_both(units, log))
     print(f"{passed} passed, 0 failed")
 

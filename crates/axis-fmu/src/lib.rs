@@ -4,6 +4,7 @@
 //! (*Functional Mock-up Interface for Model Exchange and Co-Simulation 2.0.5*,
 //! <https://github.com/modelica/fmi-standard/releases/tag/v2.0.5>).
 //!
+//! - [`UnitKind`]: an axis in its closed loop, or the machine alone.
 //! - [`Unit`]: one instance. It takes set points and a force, makes control cycles with
 //!   [`axis_sim::ClosedLoop::step`], and shows what machine and drive do. It refuses whatever
 //!   comes in the wrong order.
@@ -33,18 +34,22 @@
 
 mod description;
 mod error;
+mod kind;
 mod measure;
 mod mode;
 mod outputs;
 mod package;
 mod parameters;
+mod plant;
 mod run;
+mod simulated;
 mod unit;
 mod variables;
 mod version;
 
 pub use description::description;
 pub use error::UnitError;
+pub use kind::UnitKind;
 pub use measure::UnitDefinition;
 pub use mode::FmiMode;
 pub use package::{

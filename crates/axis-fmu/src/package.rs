@@ -7,7 +7,6 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::description::description;
-use crate::error::UnitError;
 use crate::unit::Unit;
 use crate::version::FmiVersion;
 
@@ -26,9 +25,6 @@ pub const LIBRARY_MARK: &str = concat!(
 /// Why there is no package.
 #[derive(Debug, Error)]
 pub enum PackageError {
-    /// The axis makes no unit.
-    #[error(transparent)]
-    Unit(#[from] UnitError),
     /// The library is another program's or another version's.
     #[error(
         "the library is not the {LIBRARY_MARK}; valid: the one that `cargo build --release -p feed-axis-fmu` makes of the same sources"
@@ -75,24 +71,18 @@ pub fn library_file() -> Result<String, PackageError> {
     ))
 }
 
-/// The bytes of the unit's file in that version of FMI: of the axis file `text` (called `name` in messages) and of
-/// `library`. The same inputs give the same bytes.
+/// The bytes of the unit's file in that version of FMI, with `library`. The same inputs give the
+/// same bytes.
 ///
 /// # Errors
-/// [`PackageError`] if the axis cannot be simulated, or the library is of another version.
-pub fn package(
-    name: &str,
-    text: &str,
-    library: &[u8],
-    version: FmiVersion,
-) -> Result<Vec<u8>, PackageError> {
+/// [`PackageError`] if the library is of another version, or none is made for this system.
+pub fn package(unit: &Unit, library: &[u8], version: FmiVersion) -> Result<Vec<u8>, PackageError> {
     let (platform, end) = platform(version)?;
-    let unit = Unit::new(name, text)?;
     let mark = LIBRARY_MARK.as_bytes();
     if !library.windows(mark.len()).any(|window| window == mark) {
         return Err(PackageError::Library);
     }
-    let description = description(unit.axis(), unit.variables(), version);
+    let description = description(unit, version);
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let plain = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
@@ -104,7 +94,11 @@ pub fn package(
             description.as_bytes(),
             plain,
         ),
-        (format!("resources/{AXIS_FILE}"), text.as_bytes(), plain),
+        (
+            format!("resources/{AXIS_FILE}"),
+            unit.text().as_bytes(),
+            plain,
+        ),
         (
             format!("binaries/{platform}/{MODEL_IDENTIFIER}.{end}"),
             library,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use axis_fmu::{AXIS_FILE, LIBRARY_MARK, Unit, UnitError};
+use axis_fmu::{AXIS_FILE, LIBRARY_MARK, Unit, UnitError, UnitKind};
 use safer_ffi::prelude::*;
 
 use crate::log::Log;
@@ -47,7 +47,8 @@ pub fn unit(token: &str, resources: &str) -> Result<Unit, String> {
     let file = Path::new(resources).join(AXIS_FILE);
     let name = file.display().to_string();
     let text = std::fs::read_to_string(&file).map_err(|error| format!("{name}: {error}"))?;
-    let unit = Unit::new(&name, &text).map_err(|error: UnitError| error.to_string())?;
+    let unit = Unit::of(UnitKind::of_token(token), &name, &text)
+        .map_err(|error: UnitError| error.to_string())?;
     if token != unit.token() {
         return Err(format!(
             "the instantiation token (in FMI 2.0 the GUID) is \"{token}\"; valid: \"{}\", of {name} and the {LIBRARY_MARK}",

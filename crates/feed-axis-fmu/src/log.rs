@@ -93,7 +93,7 @@ mod tests {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
         let unit = axis_fmu::Unit::new(file, &std::fs::read_to_string(file).unwrap()).unwrap();
         for version in [axis_fmu::FmiVersion::V2, axis_fmu::FmiVersion::V3] {
-            let text = axis_fmu::description(unit.axis(), unit.variables(), version);
+            let text = axis_fmu::description(&unit, version);
             for status in [Status::Discard, Status::Error] {
                 let category = status.category().to_str().unwrap();
                 assert!(text.contains(&format!("<Category name=\"{category}\"")));

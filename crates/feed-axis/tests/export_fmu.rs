@@ -39,6 +39,12 @@ fn a_unit_is_written_whole_and_told() {
     let said = succeed(&[&export[..], &["--fmi", "2"]].concat());
     assert!(said.contains("FMI 2.0"), "{said}");
     assert_ne!(std::fs::read(&out).unwrap(), first);
+    let told = succeed(&[&export[..], &["--plant", "--format", "json"]].concat());
+    let told: Value = serde_json::from_str(&told).unwrap();
+    assert_eq!(
+        (told["kind"].as_str(), told["inputs"].as_u64()),
+        (Some("plant alone"), Some(3))
+    );
     // Nothing is left aside.
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
 }

@@ -8,8 +8,9 @@ use std::fmt::Write;
 use axis_sim::Axis;
 use trajectories::Motion;
 
+use crate::kind::UnitKind;
 use crate::measure::{BASE, UnitDefinition};
-use crate::unit::token;
+use crate::unit::Unit;
 use crate::variables::{Variable, VariableKind, Variables};
 use crate::version::FmiVersion;
 
@@ -19,9 +20,10 @@ const CATEGORIES: &str = "<LogCategories>\
      <Category name=\"logStatusDiscard\" description=\"what is asked for and not known\"/>\
      </LogCategories>\n";
 
-/// The description of an axis with these variables. The same inputs give the same text: it has no
+/// The description of a unit. The same inputs give the same text: it has no
 /// date.
-pub fn description(axis: &Axis, variables: &Variables, version: FmiVersion) -> String {
+pub fn description(unit: &Unit, version: FmiVersion) -> String {
+    let (axis, variables) = (unit.axis(), unit.variables());
     let [co_simulation, list, structure] = match version {
         FmiVersion::V2 => fmi2::parts(variables),
         FmiVersion::V3 => fmi3::parts(axis, variables),
@@ -32,16 +34,19 @@ pub fn description(axis: &Axis, variables: &Variables, version: FmiVersion) -> S
          {}=\"{}\" generationTool=\"feed-axis {}\" variableNamingConvention=\"structured\">\n\
          {co_simulation}<UnitDefinitions>\n",
         escaped(&axis.name),
-        escaped(&axis.description),
+        escaped(&match unit.kind() {
+            UnitKind::ClosedLoop => axis.description.clone(),
+            kind => format!("{} ({})", axis.description, kind.words()),
+        }),
         match version {
             FmiVersion::V2 => "guid",
             FmiVersion::V3 => "instantiationToken",
         },
-        token(axis),
+        unit.token(),
         env!("CARGO_PKG_VERSION"),
     );
     for measure in measures(variables) {
-        text += &unit(measure);
+        text += &unit_definition(measure);
     }
     text + "</UnitDefinitions>\n"
         + CATEGORIES
@@ -86,7 +91,7 @@ fn measures(variables: &Variables) -> Vec<&UnitDefinition> {
 }
 
 /// A unit, spelled the same in both versions.
-fn unit(measure: &UnitDefinition) -> String {
+fn unit_definition(measure: &UnitDefinition) -> String {
     let mut text = format!("<Unit name=\"{}\"><BaseUnit", escaped(&measure.name));
     for (symbol, power) in BASE.iter().zip(measure.powers) {
         if power != 0 {
@@ -111,7 +116,9 @@ fn naming(variable: &Variable) -> String {
         VariableKind::Output(_) => {
             "causality=\"output\" variability=\"continuous\" initial=\"calculated\""
         }
-        VariableKind::Parameter { .. } | VariableKind::ExactBetween => {
+        VariableKind::Parameter { .. }
+        | VariableKind::ExactBetween
+        | VariableKind::StartPosition => {
             "causality=\"parameter\" variability=\"fixed\" initial=\"exact\""
         }
     };

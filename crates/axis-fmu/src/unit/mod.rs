@@ -8,9 +8,10 @@ use std::sync::Arc;
 use axis_sim::{Axis, ClosedLoop};
 
 use crate::error::UnitError;
+use crate::kind::UnitKind;
 use crate::mode::FmiMode;
 use crate::parameters;
-use crate::run::Run;
+use crate::simulated::Simulated;
 use crate::variables::Variables;
 
 /// One instance of a unit. A clone is its saved state.
@@ -20,7 +21,7 @@ pub struct Unit {
     mode: FmiMode,
     /// Of inputs and parameters, by value reference.
     values: Vec<f64>,
-    run: Option<Run>,
+    run: Option<Simulated>,
     /// Start and end of the simulation, s.
     span: [f64; 2],
 }
@@ -28,6 +29,7 @@ pub struct Unit {
 /// What all instances of a file have in common.
 #[derive(Debug)]
 struct File {
+    kind: UnitKind,
     name: String,
     text: String,
     axis: Axis,
@@ -35,20 +37,30 @@ struct File {
 }
 
 impl Unit {
-    /// An instance of the axis whose file has this text; `name` stands for it in messages.
+    /// An instance of the axis in its closed loop, whose file has this text; `name` stands for it in
+    /// messages.
     ///
     /// # Errors
-    /// [`UnitError::Axis`], [`UnitError::Setup`] if it cannot be simulated.
+    /// As [`Unit::of`].
     pub fn new(name: &str, text: &str) -> Result<Self, UnitError> {
+        Self::of(UnitKind::ClosedLoop, name, text)
+    }
+
+    /// An instance of that kind.
+    ///
+    /// # Errors
+    /// [`UnitError::Axis`], [`UnitError::Setup`] if the axis cannot be simulated.
+    pub fn of(kind: UnitKind, name: &str, text: &str) -> Result<Self, UnitError> {
         let axis = Axis::parse(name, text)?;
         ClosedLoop::new(&axis)?;
-        let variables = Variables::of(&axis, name, text)?;
+        let variables = Variables::of(kind, &axis, name, text)?;
         Ok(Self {
             mode: FmiMode::Instantiated,
             values: variables.starts(),
             run: None,
             span: [0.0, f64::INFINITY],
             file: Arc::new(File {
+                kind,
                 name: name.to_owned(),
                 text: text.to_owned(),
                 axis,
@@ -62,6 +74,16 @@ impl Unit {
         &self.file.variables
     }
 
+    /// What of the axis it is.
+    pub fn kind(&self) -> UnitKind {
+        self.file.kind
+    }
+
+    /// The axis file's text.
+    pub(crate) fn text(&self) -> &str {
+        &self.file.text
+    }
+
     /// The axis, as the file has it.
     pub fn axis(&self) -> &Axis {
         &self.file.axis
@@ -72,18 +94,20 @@ impl Unit {
         self.mode
     }
 
-    /// The token that a description and its library must agree in: the axis and the program's
-    /// version.
+    /// The token that a description and its library must agree in: the axis, the program's version
+    /// and the kind.
     pub fn token(&self) -> String {
-        token(&self.file.axis)
+        format!(
+            "{}-{}{}",
+            self.file.axis.fingerprint,
+            env!("CARGO_PKG_VERSION"),
+            self.file.kind.mark()
+        )
     }
 
     /// Time that it has reached, s.
     pub fn time(&self) -> f64 {
-        let periods = self
-            .run
-            .as_ref()
-            .map_or(0.0, |run| run.cycles as f64 + run.past);
+        let periods = self.run.as_ref().map_or(0.0, Simulated::periods);
         self.span[0] + periods * self.file.axis.period
     }
 
@@ -195,7 +219,8 @@ impl Unit {
                 changed_axis = parameters::with(name, text, changed.into_iter())?;
                 &changed_axis
             };
-            self.run = Some(Run::begin(axis, &self.given())?);
+            let run = Simulated::begin(self.file.kind, axis, &self.given())?;
+            self.run = Some(run);
         }
         Ok(())
     }
@@ -216,11 +241,6 @@ impl Unit {
         let mode = self.mode;
         UnitError::Order { call, mode, valid }
     }
-}
-
-/// The token of an axis, under this version of the program.
-pub(crate) fn token(axis: &Axis) -> String {
-    format!("{}-{}", axis.fingerprint, env!("CARGO_PKG_VERSION"))
 }
 
 fn finite(what: &'static str, value: f64) -> Result<(), UnitError> {

@@ -21,7 +21,8 @@ impl Unit {
             VariableKind::Output(output) => output.0,
             VariableKind::Input(_)
             | VariableKind::Parameter { .. }
-            | VariableKind::ExactBetween => {
+            | VariableKind::ExactBetween
+            | VariableKind::StartPosition => {
                 return Ok(self
                     .values
                     .get(reference as usize)
@@ -33,7 +34,7 @@ impl Unit {
             self.settled()?;
         }
         match &self.run {
-            Some(run) => Ok(output.read(run.shown(), &run.cycle)),
+            Some(run) => Ok(run.read(output)),
             None => Err(self.order("reading an output", "from the initialization on")),
         }
     }
@@ -65,7 +66,11 @@ impl Unit {
         match &set.kind {
             VariableKind::Time => return Err(refused("the steps make it")),
             VariableKind::Output(_) => return Err(refused("it is an output")),
-            VariableKind::Parameter { .. } | VariableKind::ExactBetween if !is_before => {
+            VariableKind::Parameter { .. }
+            | VariableKind::ExactBetween
+            | VariableKind::StartPosition
+                if !is_before =>
+            {
                 return Err(refused(
                     "it is fixed; valid: before the initialization ends",
                 ));
@@ -75,6 +80,7 @@ impl Unit {
             }
             VariableKind::Parameter { .. }
             | VariableKind::ExactBetween
+            | VariableKind::StartPosition
             | VariableKind::Input(_) => {}
         }
         if !value.is_finite() {
@@ -99,21 +105,26 @@ impl Unit {
 
     /// The inputs as the loop takes them.
     pub(super) fn given(&self) -> Given {
-        let of = |input: Input| {
-            let is_it = |kind: &VariableKind| matches!(kind, VariableKind::Input(i) if *i == input);
+        let of = |is_it: &dyn Fn(&VariableKind) -> bool| {
             let mut all = self.file.variables.iter().zip(&self.values);
-            all.find(|(variable, _)| is_it(&variable.kind))
-                .map_or(0.0, |(_, value)| *value)
+            let found = all.find(|(variable, _)| is_it(&variable.kind));
+            found.map(|(_, value)| *value)
         };
+        let input = |input: Input| {
+            let is_it = |kind: &VariableKind| matches!(kind, VariableKind::Input(i) if *i == input);
+            of(&is_it).unwrap_or(0.0)
+        };
+        let start = of(&|kind| matches!(kind, VariableKind::StartPosition));
         Given {
             reference: Setpoint {
-                position: of(Input::Position),
-                velocity: of(Input::Velocity),
-                acceleration: of(Input::Acceleration),
+                position: start.unwrap_or_else(|| input(Input::Position)),
+                velocity: input(Input::Velocity),
+                acceleration: input(Input::Acceleration),
                 jerk: 0.0,
             },
-            motor: of(Input::Motor),
-            load: of(Input::Load),
+            motor: input(Input::Motor),
+            current: input(Input::Current),
+            load: input(Input::Load),
         }
     }
 

@@ -3,6 +3,7 @@
 mod orders;
 mod package;
 mod parameters;
+mod plants;
 mod runs;
 
 use std::path::{Path, PathBuf};

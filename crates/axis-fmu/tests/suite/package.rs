@@ -2,14 +2,14 @@
 
 use std::io::{Cursor, Read};
 
-use axis_fmu::{FmiVersion, LIBRARY_MARK, PackageError, package, platform};
+use axis_fmu::{FmiVersion, LIBRARY_MARK, PackageError, Unit, package, platform};
 use zip::ZipArchive;
 
 use crate::text;
 
 /// A text file of the unit of an axis.
 fn part(axis: &str, version: FmiVersion, path: &str) -> String {
-    let bytes = package(axis, &text(axis), &library(), version).unwrap();
+    let bytes = package(&crate::unit(axis), &library(), version).unwrap();
     let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
     let mut part = String::new();
     let mut file = archive.by_name(path).unwrap();
@@ -23,12 +23,9 @@ fn library() -> Vec<u8> {
 
 #[test]
 fn the_archive_holds_description_axis_file_and_library() {
-    let text = text("belt.toml");
-    let bytes = package("belt.toml", &text, &library(), FmiVersion::V3).unwrap();
-    assert_eq!(
-        bytes,
-        package("belt.toml", &text, &library(), FmiVersion::V3).unwrap()
-    );
+    let (text, unit) = (text("belt.toml"), crate::unit("belt.toml"));
+    let bytes = package(&unit, &library(), FmiVersion::V3).unwrap();
+    assert_eq!(bytes, package(&unit, &library(), FmiVersion::V3).unwrap());
     let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
     let mut content = |path: &str| {
         let mut bytes = Vec::new();
@@ -95,8 +92,9 @@ fn a_unit_of_fmi_2_describes_the_same_variables() {
             list[index - 1].clone()
         };
         let unknowns: Vec<String> = lines(&two, "Unknown").iter().map(named).collect();
-        let outputs: Vec<String> = (list.iter().cloned())
+        let outputs: Vec<String> = (list.iter())
             .filter(|line| line.contains("causality=\"output\""))
+            .cloned()
             .collect();
         assert_eq!(unknowns, [&outputs[..], &outputs].concat());
     }
@@ -105,8 +103,7 @@ fn a_unit_of_fmi_2_describes_the_same_variables() {
 #[test]
 fn another_library_is_refused() {
     let refused = package(
-        "belt.toml",
-        &text("belt.toml"),
+        &crate::unit("belt.toml"),
         b"\x7fELF of something else",
         FmiVersion::V3,
     );
@@ -123,8 +120,6 @@ fn another_library_is_refused() {
 #[test]
 fn a_file_that_is_no_axis_says_where() {
     let text = text("belt.toml").replace("carriage_mass_kg", "carriage_mass_lb");
-    let refused = package("belt.toml", &text, &library(), FmiVersion::V3)
-        .unwrap_err()
-        .to_string();
+    let refused = Unit::new("belt.toml", &text).unwrap_err().to_string();
     assert!(refused.contains("carriage_mass_lb"), "{refused}");
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use axis_fmu::{FmiVersion, Unit, VariableKind};
+use axis_fmu::{FmiVersion, Unit, UnitKind, VariableKind};
 use axis_sim::SixDigits;
 use clap::{Args, ValueEnum};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
@@ -24,6 +24,10 @@ pub struct Options {
     /// Version of FMI: most programs import 2.0, fewer 3.0
     #[arg(long, value_name = "VERSION", default_value = "3")]
     fmi: Fmi,
+    /// The machine alone, without control and current loops: motor torque, force or current in,
+    /// motion out
+    #[arg(long)]
+    plant: bool,
     /// Library of units, of the same version [default: the one beside this program]
     #[arg(long, value_name = "FILE")]
     library: Option<PathBuf>,
@@ -47,6 +51,7 @@ struct Exported<'a> {
     axis_fingerprint: &'a str,
     fmi_version: &'static str,
     interface: &'static str,
+    kind: &'static str,
     platform: String,
     step_s: f64,
     inputs: usize,
@@ -60,10 +65,11 @@ impl fmt::Display for Exported<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "FMI {} co-simulation unit of {} for {}: {} inputs, {} outputs, {} parameters, \
+            "FMI {} co-simulation unit of {} ({}) for {}: {} inputs, {} outputs, {} parameters, \
              control period {} s\nwritten to {}",
             self.fmi_version,
             self.axis,
+            self.kind,
             self.platform,
             self.inputs,
             self.outputs,
@@ -85,14 +91,18 @@ pub fn command(options: &Options) -> Result<()> {
         Fmi::Three => FmiVersion::V3,
     };
     let (platform, _) = axis_fmu::platform(version).into_diagnostic()?;
+    let kind = match options.plant {
+        true => UnitKind::Plant,
+        false => UnitKind::ClosedLoop,
+    };
     // First, so that what is wrong with the axis is told before what is missing beside it.
     let failed = || format!("no unit of {name}");
-    let unit = Unit::new(&name, &text);
+    let unit = Unit::of(kind, &name, &text);
     let unit = unit.into_diagnostic().wrap_err_with(failed)?;
     let file = library(options)?;
     let library = std::fs::read(&file).into_diagnostic();
     let library = library.wrap_err_with(|| format!("cannot read {}", file.display()))?;
-    let package = axis_fmu::package(&name, &text, &library, version);
+    let package = axis_fmu::package(&unit, &library, version);
     let bytes = package
         .into_diagnostic()
         .wrap_err_with(|| format!("no unit of {name} with {}", file.display()))?;
@@ -108,6 +118,7 @@ pub fn command(options: &Options) -> Result<()> {
             axis_fingerprint: &unit.axis().fingerprint,
             fmi_version: version.number(),
             interface: "co-simulation",
+            kind: kind.words(),
             platform,
             step_s: unit.axis().period,
             inputs: count(|kind| matches!(kind, VariableKind::Input(_))),
