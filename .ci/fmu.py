@@ -64,6 +64,22 @@ def check_restore(fmu, log):
     assert follow(unit, log, 300, 600) == first
     unit.free(state)
     unit.free(ctypes.c_void_p())
+    # As bytes, in an instance that knows nothing of the first.
+    unit.fmu.reset()
+    unit.begin()
+    follow(unit, log, 0, 300)
+    state = unit.save()
+    written = unit.to_bytes(state)
+    late = Unit.of(fmu)
+    read = late.of_bytes(written)
+    late.restore(read)
+    assert follow(late, log, 300, 600) == first
+    assert late.to_bytes(read) == written
+    late.refuses("damaged", late.of_bytes, written[:-1])
+    late.refuses("damaged", late.of_bytes, b"")
+    late.refuses("null", late.to_bytes, ctypes.c_void_p())
+    for one in (state, read):
+        late.free(one)
     unit.refuses("null", unit.restore, ctypes.c_void_p())
 
 

@@ -125,7 +125,6 @@ def check_absent(fmu, _):
     slave, p, n, library = unit.fmu, ctypes.c_void_p(), ctypes.c_size_t(1), ctypes.CDLL(unit.fmu.dll._name)
     for name, arguments in {
         **{f"{way}{kind}": [p, n, p] for way in ("Get", "Set") for kind in ("Integer", "Boolean", "String")},
-        "SerializedFMUstateSize": [p, p], "SerializeFMUstate": [p, p, n], "DeSerializeFMUstate": [p, n, p],
         "GetDirectionalDerivative": [p, n, p, n, p, p], "SetRealInputDerivatives": [p, n, p, p],
         "GetRealOutputDerivatives": [p, n, p, p], "CancelStep": [],
     }.items():
@@ -140,6 +139,7 @@ def check_absent(fmu, _):
         "SetupExperiment": [whole, number, number, whole, number], "EnterInitializationMode": [],
         "ExitInitializationMode": [], "Terminate": [], "Reset": [], "DoStep": [number, number, whole],
         "GetFMUstate": [p], "SetFMUstate": [p], "FreeFMUstate": [p],
+        "SerializedFMUstateSize": [p, p], "SerializeFMUstate": [p, p, n], "DeSerializeFMUstate": [p, n, p],
         **{f"Get{kind}Status": [whole, p] for kind in ("", "Real", "Integer", "Boolean", "String")},
     }.items():
         assert getattr(library, f"fmi2{name}")(p, *arguments) == 3, f"{name} of no instance"

@@ -70,7 +70,6 @@ def check_absent(fmu, _):
         "EnterEventMode": [], "EnterStepMode": [], "EvaluateDiscreteStates": [], "UpdateDiscreteStates": [p] * 6,
         "EnterConfigurationMode": [], "ExitConfigurationMode": [],
         "GetNumberOfVariableDependencies": [reference, p], "GetVariableDependencies": [reference, p, p, p, p, n],
-        "SerializedFMUStateSize": [p, p], "SerializeFMUState": [p, p, n], "DeserializeFMUState": [p, n, p],
         "GetDirectionalDerivative": [p, n] * 4, "GetAdjointDerivative": [p, n] * 4,
         "GetOutputDerivatives": [p, n, p, p, n], "EnterContinuousTimeMode": [],
         "CompletedIntegratorStep": [ctypes.c_bool(False), p, p], "SetTime": [number],

@@ -79,6 +79,8 @@ class Unit3(Unit):
     save = property(lambda self: self.fmu.getFMUState)
     restore = property(lambda self: self.fmu.setFMUState)
     free = property(lambda self: self.fmu.freeFMUState)
+    to_bytes = property(lambda self: self.fmu.serializeFMUState)
+    of_bytes = property(lambda self: self.fmu.deserializeFMUState)
 
     def instantiate(self, **options):
         self.fmu.instantiate(logMessage=self.log, **options)
@@ -96,6 +98,8 @@ class Unit2(Unit):
     save = property(lambda self: self.fmu.getFMUstate)
     restore = property(lambda self: self.fmu.setFMUstate)
     free = property(lambda self: self.fmu.freeFMUstate)
+    to_bytes = property(lambda self: self.fmu.serializeFMUstate)
+    of_bytes = property(lambda self: self.fmu.deSerializeFMUstate)
 
     def instantiate(self, **options):
         self.fmu.instantiate(callbacks=callbacks(self.log), **options)

@@ -59,6 +59,9 @@ pub enum UnitError {
     /// What is not there: a state, an array.
     #[error("the address of the {0} is null; valid: that of one")]
     Null(&'static str),
+    /// A state that cannot be made bytes, or bytes that are no state.
+    #[error("the state: {0}")]
+    State(String),
     /// Other numbers of values than of variables.
     #[error("{values} values of {variables} variables; valid: one of each")]
     Lengths {

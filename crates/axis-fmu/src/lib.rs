@@ -34,6 +34,7 @@
 
 mod description;
 mod error;
+mod history;
 mod kind;
 mod measure;
 mod mode;

@@ -25,11 +25,11 @@ pub(crate) struct Output {
     pub source: Source,
 }
 
-/// Name, unit, meaning, how it is read.
-type Line = (&'static str, &'static str, &'static str, fn(&Seen) -> f64);
+/// Name, unit, meaning, how it is read of `S`.
+type Line<S> = (&'static str, &'static str, &'static str, fn(&S) -> f64);
 
 #[rustfmt::skip]
-const LINEAR: &[Line] = &[
+const LINEAR: &[Line<Seen>] = &[
     ("position_m", "m", "position of the load", |s| s.position),
     ("speed_m_s", "m/s", "speed of the load", |s| s.speed),
     ("transmission_force_n", "N", "force of the transmission on the load", |s| s.transmission_force),
@@ -37,7 +37,7 @@ const LINEAR: &[Line] = &[
 ];
 
 #[rustfmt::skip]
-const ROTARY: &[Line] = &[
+const ROTARY: &[Line<Seen>] = &[
     ("position_rad", "rad", "position of the load", |s| s.position),
     ("speed_rad_s", "rad/s", "speed of the load", |s| s.speed),
     ("transmission_torque_n_m", "N·m", "torque of the transmission on the load", |s| s.transmission_force),
@@ -45,19 +45,19 @@ const ROTARY: &[Line] = &[
 ];
 
 #[rustfmt::skip]
-const MOTOR: &[Line] = &[
+const MOTOR: &[Line<Seen>] = &[
     ("motor_angle_rad", "rad", "angle of the motor", |s| s.motor_angle),
     ("motor_speed_rad_s", "rad/s", "speed of the motor", |s| s.motor_speed),
     ("motor_torque_n_m", "N·m", "torque of the motor", |s| s.torque),
 ];
 
 #[rustfmt::skip]
-const FORCE: &[Line] = &[
+const FORCE: &[Line<Seen>] = &[
     ("motor_force_n", "N", "force of the motor on the load", |s| s.torque),
 ];
 
 #[rustfmt::skip]
-const CURRENTS: &[(&str, &str, &str, fn(&LoopState) -> f64)] = &[
+const CURRENTS: &[Line<LoopState>] = &[
     ("iq_a", "A", "q current of the motor", |s| s.actuator().electrical().current.q),
     ("id_a", "A", "d current of the motor", |s| s.actuator().electrical().current.d),
 ];

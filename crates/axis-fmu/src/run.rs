@@ -56,6 +56,38 @@ pub(crate) struct Given {
     pub load: f64,
 }
 
+impl Given {
+    /// As bits, for a history.
+    pub fn bits(&self) -> [u64; 6] {
+        let reference = &self.reference;
+        [
+            reference.position,
+            reference.velocity,
+            reference.acceleration,
+            self.motor,
+            self.current,
+            self.load,
+        ]
+        .map(f64::to_bits)
+    }
+
+    /// Of such bits.
+    pub fn of_bits(bits: [u64; 6]) -> Self {
+        let [position, velocity, acceleration, motor, current, load] = bits.map(f64::from_bits);
+        Self {
+            reference: Setpoint {
+                position,
+                velocity,
+                acceleration,
+                jerk: 0.0,
+            },
+            motor,
+            current,
+            load,
+        }
+    }
+}
+
 /// Torque that the inputs ask of the motor, N·m.
 pub(crate) fn motor_torque(axis: &Axis, given: &Given) -> f64 {
     let own = match is_force(axis) {

@@ -40,6 +40,43 @@ impl Instance {
     }
 }
 
+/// Bytes of a state that are written, and that are read.
+pub type BytesOut<'a> = Option<c_slice::Mut<'a, u8>>;
+pub type BytesIn<'a> = Option<c_slice::Ref<'a, u8>>;
+
+impl State {
+    /// Tells how many bytes it takes.
+    pub fn size(state: Option<&Self>, size: Option<&mut usize>) -> Result<(), UnitError> {
+        let bytes = state.ok_or(NO_STATE)?.unit.to_bytes()?;
+        *size.ok_or(UnitError::Null("size"))? = bytes.len();
+        Ok(())
+    }
+
+    /// Writes them.
+    pub fn write(state: Option<&Self>, to: BytesOut<'_>) -> Result<(), UnitError> {
+        let bytes = state.ok_or(NO_STATE)?.unit.to_bytes()?;
+        let mut to = to.ok_or(UnitError::Null("bytes"))?;
+        let (size, least) = (to.len(), bytes.len());
+        let Some(to) = to.get_mut(..least) else {
+            return Err(UnitError::State(format!(
+                "it takes {least} bytes, and there is room for {size}; valid: as many or more"
+            )));
+        };
+        to.copy_from_slice(&bytes);
+        Ok(())
+    }
+}
+
+impl Instance {
+    /// Makes a state of bytes, in the one that is there, or a new one.
+    pub fn read(&self, from: BytesIn<'_>, state: StateAt<'_>) -> Result<(), UnitError> {
+        let from = from.ok_or(UnitError::Null("bytes"))?;
+        let unit = self.unit.from_bytes(from.as_slice())?;
+        *state.ok_or(NO_STATE)? = Some(Box::new(State { unit }).into());
+        Ok(())
+    }
+}
+
 const NO_STATE: UnitError = UnitError::Null("state");
 
 /// The unit of the resources, if it is the one that the environment means by `token`.

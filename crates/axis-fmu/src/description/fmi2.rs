@@ -9,7 +9,7 @@ const CAPABILITIES: &str = "needsExecutionTool=\"false\" canBeInstantiatedOnlyOn
      canHandleVariableCommunicationStepSize=\"true\" canInterpolateInputs=\"false\" \
      maxOutputDerivativeOrder=\"0\" canRunAsynchronuously=\"false\" \
      canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" \
-     canSerializeFMUstate=\"false\" providesDirectionalDerivative=\"false\"";
+     canSerializeFMUstate=\"true\" providesDirectionalDerivative=\"false\"";
 
 /// The co-simulation, the variables, the structure.
 pub(super) fn parts(variables: &Variables) -> [String; 3] {

@@ -8,7 +8,7 @@ use crate::variables::Variables;
 
 /// What of FMI this offers and what not, as attributes of the co-simulation.
 const CAPABILITIES: &str = "needsExecutionTool=\"false\" canBeInstantiatedOnlyOncePerProcess=\"false\" \
-     canGetAndSetFMUState=\"true\" canSerializeFMUState=\"false\" \
+     canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" \
      providesDirectionalDerivatives=\"false\" providesAdjointDerivatives=\"false\" \
      providesPerElementDependencies=\"false\" canHandleVariableCommunicationStepSize=\"true\" \
      maxOutputDerivativeOrder=\"0\" providesIntermediateUpdate=\"false\" \

@@ -1,5 +1,6 @@
 //! One instance of a unit: its modes and its run.
 
+mod bytes;
 mod steps;
 mod values;
 
@@ -8,6 +9,7 @@ use std::sync::Arc;
 use axis_sim::{Axis, ClosedLoop};
 
 use crate::error::UnitError;
+use crate::history::History;
 use crate::kind::UnitKind;
 use crate::mode::FmiMode;
 use crate::parameters;
@@ -22,6 +24,9 @@ pub struct Unit {
     /// Of inputs and parameters, by value reference.
     values: Vec<f64>,
     run: Option<Simulated>,
+    /// What the run was begun with, and what was done with it.
+    begun: Vec<f64>,
+    history: History,
     /// Start and end of the simulation, s.
     span: [f64; 2],
 }
@@ -58,6 +63,8 @@ impl Unit {
             mode: FmiMode::Instantiated,
             values: variables.starts(),
             run: None,
+            begun: variables.starts(),
+            history: History::default(),
             span: [0.0, f64::INFINITY],
             file: Arc::new(File {
                 kind,
@@ -199,6 +206,8 @@ impl Unit {
         self.mode = FmiMode::Instantiated;
         self.values = self.file.variables.starts();
         self.run = None;
+        self.begun.clone_from(&self.values);
+        self.history = History::default();
         self.span = [0.0, f64::INFINITY];
     }
 
@@ -221,6 +230,8 @@ impl Unit {
             };
             let run = Simulated::begin(self.file.kind, axis, &self.given())?;
             self.run = Some(run);
+            self.begun.clone_from(&self.values);
+            self.history = History::default();
         }
         Ok(())
     }

@@ -2,7 +2,9 @@
 
 use super::Unit;
 use crate::error::UnitError;
+use crate::history::Repeated;
 use crate::mode::FmiMode;
+use crate::run::Given;
 
 /// Share of the control period by which a communication point may be off: what rounding makes
 /// of a time that is added up.
@@ -36,7 +38,25 @@ impl Unit {
             self.mode = FmiMode::Failed;
             return Err(stopped);
         }
+        let [a, b, c, d, e, f] = given.bits();
+        self.history.push([a, b, c, d, e, f, periods.to_bits()], 1);
         Ok(self.time())
+    }
+
+    /// Makes steps of a history again.
+    pub(super) fn again(
+        &mut self,
+        step: [u64; Repeated::WORDS],
+        count: u64,
+    ) -> Result<(), UnitError> {
+        let [a, b, c, d, e, f, periods] = step;
+        let (given, periods) = (Given::of_bits([a, b, c, d, e, f]), f64::from_bits(periods));
+        let exact = self.is_exact();
+        if let (Some(run), true) = (&mut self.run, periods > 0.0 && periods <= MOST_CYCLES) {
+            (0..count).try_for_each(|_| run.run_on(periods, &given, exact))?;
+        }
+        self.history.push(step, count);
+        Ok(())
     }
 
     /// Control periods of a communication step.

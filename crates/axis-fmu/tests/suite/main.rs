@@ -5,6 +5,7 @@ mod package;
 mod parameters;
 mod plants;
 mod runs;
+mod states;
 
 use std::path::{Path, PathBuf};
 

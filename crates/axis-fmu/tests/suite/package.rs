@@ -51,7 +51,7 @@ fn the_archive_holds_description_axis_file_and_library() {
         // The log of trajectory 1 has 7814 samples, the last at the end of 7813 periods; the move
         // ends within the next.
         "<DefaultExperiment startTime=\"0\" stopTime=\"0.97675\" stepSize=\"0.000125\"/>",
-        "canSerializeFMUState=\"false\"",
+        "canSerializeFMUState=\"true\"",
         "<Unit name=\"A/(rpm.s)\">",
     ] {
         let is_there = description.contains(part);

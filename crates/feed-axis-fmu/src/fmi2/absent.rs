@@ -57,12 +57,6 @@ other_types! {
 }
 
 absent! {
-    "states are saved in memory alone (canSerializeFMUstate is false)" {
-        "fmi2SerializedFMUstateSize" serialized_fmu_state_size(_state: Address, _size: Address);
-        "fmi2SerializeFMUstate" serialize_fmu_state(_state: Address, _bytes: Address, _size: Count);
-        "fmi2DeSerializeFMUstate" deserialize_fmu_state(_bytes: Address, _size: Count, _state: Address);
-    }
-
     "there are no derivatives of variables" {
         "fmi2GetDirectionalDerivative" get_directional_derivative(_unknowns: Address, _n_unknowns: Count, _knowns: Address, _n_knowns: Count, _seed: Address, _sensitivity: Address);
         "fmi2GetRealOutputDerivatives" get_real_output_derivatives(_references: Address, _n: Count, _orders: Address, _values: Address);

@@ -1,10 +1,10 @@
-//! States, saved and restored in memory.
+//! States, in memory and as bytes.
 
 use safer_ffi::prelude::*;
 
 use super::{ComponentAt, of};
 use crate::call::call;
-use crate::instance::{State, StateAt};
+use crate::instance::{BytesIn, BytesOut, State, StateAt};
 
 /// `fmi2GetFMUstate`: into the state that is there, or a new one.
 #[ffi_export(rename = "fmi2GetFMUstate")]
@@ -28,5 +28,41 @@ pub fn free_fmu_state(component: ComponentAt<'_>, state: StateAt<'_>) -> i32 {
     call(of(component), "fmi2FreeFMUstate", |_| {
         drop(state.and_then(Option::take));
         Ok(())
+    })
+}
+
+/// `fmi2SerializedFMUstateSize`.
+#[ffi_export(rename = "fmi2SerializedFMUstateSize")]
+pub fn serialized_fmu_state_size(
+    component: ComponentAt<'_>,
+    state: Option<&State>,
+    size: Option<&mut usize>,
+) -> i32 {
+    call(of(component), "fmi2SerializedFMUstateSize", |_| {
+        State::size(state, size)
+    })
+}
+
+/// `fmi2SerializeFMUstate`.
+#[ffi_export(rename = "fmi2SerializeFMUstate")]
+pub fn serialize_fmu_state(
+    component: ComponentAt<'_>,
+    state: Option<&State>,
+    bytes: BytesOut<'_>,
+) -> i32 {
+    call(of(component), "fmi2SerializeFMUstate", |_| {
+        State::write(state, bytes)
+    })
+}
+
+/// `fmi2DeSerializeFMUstate`: simulates again what led to the state.
+#[ffi_export(rename = "fmi2DeSerializeFMUstate")]
+pub fn deserialize_fmu_state(
+    component: ComponentAt<'_>,
+    bytes: BytesIn<'_>,
+    state: StateAt<'_>,
+) -> i32 {
+    call(of(component), "fmi2DeSerializeFMUstate", |instance| {
+        instance.read(bytes, state)
     })
 }

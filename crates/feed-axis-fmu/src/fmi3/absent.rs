@@ -102,12 +102,6 @@ absent! {
         "fmi3GetVariableDependencies" get_variable_dependencies(_dependent: u32, _of_dependent: Address, _independents: Address, _of_independents: Address, _kinds: Address, _n: Count);
     }
 
-    "states are saved in memory alone (canSerializeFMUState is false)" {
-        "fmi3SerializedFMUStateSize" serialized_fmu_state_size(_state: Address, _size: Address);
-        "fmi3SerializeFMUState" serialize_fmu_state(_state: Address, _bytes: Address, _size: Count);
-        "fmi3DeserializeFMUState" deserialize_fmu_state(_bytes: Address, _size: Count, _state: Address);
-    }
-
     "there are no derivatives of variables" {
         "fmi3GetDirectionalDerivative" get_directional_derivative(_unknowns: Address, _n_unknowns: Count, _knowns: Address, _n_knowns: Count, _seed: Address, _n_seed: Count, _sensitivity: Address, _n: Count);
         "fmi3GetAdjointDerivative" get_adjoint_derivative(_unknowns: Address, _n_unknowns: Count, _knowns: Address, _n_knowns: Count, _seed: Address, _n_seed: Count, _sensitivity: Address, _n: Count);
