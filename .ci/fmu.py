@@ -16,7 +16,7 @@ from fmu_unit import Unit, follow, log_of, run, shared
 
 PROGRAM, LIBRARY, AXES = sys.argv[1], sys.argv[2], sys.argv[3:]
 TOLERANCE = 1e-12  # of the channel's greatest value
-STEPS = {"liu2025": 1}  # internal steps of a control period; 2 of the others
+STEPS = {"liu2025": 1, "liu2025-machine": 1, "joint": 1}  # internal steps of a control period; 2 of the others
 
 
 def check_validation(fmu, _):

@@ -30,9 +30,20 @@ fn go_on(unit: &mut Unit, from: u32, to: u32) {
     }
 }
 
+/// An axis whose sensor is noisy and whose friction remembers its reversals.
+fn noisy() -> String {
+    let text = text("linear-motor.toml");
+    let resolution = "resolution_um = 0.005";
+    assert!(text.contains(resolution));
+    let noisy = text.replace(resolution, &format!("{resolution}\nnoise_um = 0.1"));
+    noisy
+        + "\n[[effects]]\nname = \"maxwell-slip-hysteresis\"\nforce = 20\npresliding_distance = 1e-5\n"
+}
+
 #[test]
 fn a_state_of_bytes_goes_on_to_the_bit() {
     for name in [
+        "noisy",
         "liu2025.toml",
         "liu2025-machine.toml",
         "belt.toml",
@@ -42,7 +53,8 @@ fn a_state_of_bytes_goes_on_to_the_bit() {
         "joint.toml",
     ] {
         for kind in [UnitKind::ClosedLoop, UnitKind::Plant] {
-            let fresh = Unit::of(kind, name, &text(name)).unwrap();
+            let text = if name == "noisy" { noisy() } else { text(name) };
+            let fresh = Unit::of(kind, name, &text).unwrap();
             let mut one = fresh.clone();
             let mass = (one.variables().iter())
                 .find(|v| v.name.contains("mass") || v.name.contains("inertia"))
