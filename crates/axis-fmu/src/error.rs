@@ -56,9 +56,12 @@ pub enum UnitError {
     /// A part of FMI that this does not offer.
     #[error("not offered: {0}")]
     Absent(String),
-    /// A state that is not there.
-    #[error("the address of the state is null; valid: that of a state")]
-    NoState,
+    /// What is not there: a state, an array.
+    #[error("the address of the {0} is null; valid: that of one")]
+    Null(&'static str),
+    /// A state that cannot be made bytes, or bytes that are no state.
+    #[error("the state: {0}")]
+    State(String),
     /// Other numbers of values than of variables.
     #[error("{values} values of {variables} variables; valid: one of each")]
     Lengths {

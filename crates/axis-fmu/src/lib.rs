@@ -1,11 +1,15 @@
 //! An axis as a unit of the Functional Mock-up Interface, so that other programs simulate it
-//! beside their own models: FMI 3.0, co-simulation (Modelica Association, *Functional Mock-up
-//! Interface Specification 3.0.2*, <https://fmi-standard.org/docs/3.0.2/>).
+//! beside their own models: co-simulation by FMI 3.0 (Modelica Association, *Functional Mock-up
+//! Interface Specification 3.0.2*, <https://fmi-standard.org/docs/3.0.2/>) and by FMI 2.0
+//! (*Functional Mock-up Interface for Model Exchange and Co-Simulation 2.0.5*,
+//! <https://github.com/modelica/fmi-standard/releases/tag/v2.0.5>).
 //!
+//! - [`UnitKind`]: an axis in its closed loop, or the machine alone.
 //! - [`Unit`]: one instance. It takes set points and a force, makes control cycles with
 //!   [`axis_sim::ClosedLoop::step`], and shows what machine and drive do. It refuses whatever
 //!   comes in the wrong order.
 //! - [`Variables`]: its inputs, outputs and parameters, made of the axis file.
+//! - [`FmiVersion`]: what differs between the two, the description and the names of folders.
 //! - [`package`]: the file, a ZIP archive of description, library and axis file.
 //!
 //! The interface in C is another crate, `feed-axis-fmu`: a library that serves every axis, as it
@@ -30,17 +34,23 @@
 
 mod description;
 mod error;
+mod history;
+mod kind;
 mod measure;
 mod mode;
 mod outputs;
 mod package;
 mod parameters;
+mod plant;
 mod run;
+mod simulated;
 mod unit;
 mod variables;
+mod version;
 
 pub use description::description;
 pub use error::UnitError;
+pub use kind::UnitKind;
 pub use measure::UnitDefinition;
 pub use mode::FmiMode;
 pub use package::{
@@ -48,6 +58,7 @@ pub use package::{
 };
 pub use unit::Unit;
 pub use variables::{Variable, VariableKind, Variables};
+pub use version::FmiVersion;
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

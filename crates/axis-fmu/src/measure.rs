@@ -2,7 +2,7 @@
 
 /// A unit as FMI declares it: a factor times powers of base units.
 ///
-/// FMI has the radian among them (FMI 3.0.2, Section 2.4.3).
+/// FMI has the radian among them (FMI 3.0.2, Section 2.4.3; FMI 2.0.5, Section 2.2.2).
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnitDefinition {
     /// As people write it, `N.m/rad`.

@@ -1,24 +1,20 @@
 //! Outputs: what the machine does at the communication point, and what the drive saw last.
 
 use axis_sim::mechanism::Freedom;
+use axis_sim::plant::Seen;
 use axis_sim::{Axis, Cycle, LogChannel, LoopState, channels};
+
+use crate::kind::UnitKind;
 
 /// Where an output is read.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {
     /// The machine, now, times a number.
-    Machine(fn(&LoopState) -> f64, f64),
+    Machine(fn(&Seen) -> f64, f64),
+    /// The motor's currents, now.
+    Current(fn(&LoopState) -> f64),
     /// What the drive sampled and commanded in its last cycle.
     Drive(fn(&Cycle) -> f64),
-}
-
-impl Source {
-    pub(crate) fn read(self, state: &LoopState, cycle: &Cycle) -> f64 {
-        match self {
-            Self::Machine(read, times) => times * read(state),
-            Self::Drive(read) => read(cycle),
-        }
-    }
 }
 
 /// An output: name, unit, meaning, and where it is read.
@@ -29,50 +25,45 @@ pub(crate) struct Output {
     pub source: Source,
 }
 
-/// Name, unit, meaning, how it is read.
-type Line = (
-    &'static str,
-    &'static str,
-    &'static str,
-    fn(&LoopState) -> f64,
-);
+/// Name, unit, meaning, how it is read of `S`.
+type Line<S> = (&'static str, &'static str, &'static str, fn(&S) -> f64);
 
 #[rustfmt::skip]
-const LINEAR: &[Line] = &[
-    ("position_m", "m", "position of the load", |s| s.plant().seen().position),
-    ("speed_m_s", "m/s", "speed of the load", |s| s.plant().seen().speed),
-    ("transmission_force_n", "N", "force of the transmission on the load", |s| s.plant().seen().transmission_force),
-    ("resistance_n", "N", "friction and loads, positive against positive motion", |s| s.plant().seen().load),
+const LINEAR: &[Line<Seen>] = &[
+    ("position_m", "m", "position of the load", |s| s.position),
+    ("speed_m_s", "m/s", "speed of the load", |s| s.speed),
+    ("transmission_force_n", "N", "force of the transmission on the load", |s| s.transmission_force),
+    ("resistance_n", "N", "friction and loads, positive against positive motion", |s| s.load),
 ];
 
 #[rustfmt::skip]
-const ROTARY: &[Line] = &[
-    ("position_rad", "rad", "position of the load", |s| s.plant().seen().position),
-    ("speed_rad_s", "rad/s", "speed of the load", |s| s.plant().seen().speed),
-    ("transmission_torque_n_m", "N·m", "torque of the transmission on the load", |s| s.plant().seen().transmission_force),
-    ("resistance_n_m", "N·m", "friction and loads, positive against positive motion", |s| s.plant().seen().load),
+const ROTARY: &[Line<Seen>] = &[
+    ("position_rad", "rad", "position of the load", |s| s.position),
+    ("speed_rad_s", "rad/s", "speed of the load", |s| s.speed),
+    ("transmission_torque_n_m", "N·m", "torque of the transmission on the load", |s| s.transmission_force),
+    ("resistance_n_m", "N·m", "friction and loads, positive against positive motion", |s| s.load),
 ];
 
 #[rustfmt::skip]
-const MOTOR: &[Line] = &[
-    ("motor_angle_rad", "rad", "angle of the motor", |s| s.plant().seen().motor_angle),
-    ("motor_speed_rad_s", "rad/s", "speed of the motor", |s| s.plant().seen().motor_speed),
-    ("motor_torque_n_m", "N·m", "torque of the motor", |s| s.plant().seen().torque),
+const MOTOR: &[Line<Seen>] = &[
+    ("motor_angle_rad", "rad", "angle of the motor", |s| s.motor_angle),
+    ("motor_speed_rad_s", "rad/s", "speed of the motor", |s| s.motor_speed),
+    ("motor_torque_n_m", "N·m", "torque of the motor", |s| s.torque),
 ];
 
 #[rustfmt::skip]
-const FORCE: &[Line] = &[
-    ("motor_force_n", "N", "force of the motor on the load", |s| s.plant().seen().torque),
+const FORCE: &[Line<Seen>] = &[
+    ("motor_force_n", "N", "force of the motor on the load", |s| s.torque),
 ];
 
 #[rustfmt::skip]
-const CURRENTS: &[Line] = &[
+const CURRENTS: &[Line<LoopState>] = &[
     ("iq_a", "A", "q current of the motor", |s| s.actuator().electrical().current.q),
     ("id_a", "A", "d current of the motor", |s| s.actuator().electrical().current.d),
 ];
 
-/// The outputs of an axis.
-pub(crate) fn outputs(axis: &Axis) -> Vec<Output> {
+/// The outputs of an axis; of a plant, only those of the mechanics.
+pub(crate) fn outputs(axis: &Axis, kind: UnitKind) -> Vec<Output> {
     let load = match axis.freedom() {
         Freedom::Linear => LINEAR,
         Freedom::Rotary => ROTARY,
@@ -82,23 +73,28 @@ pub(crate) fn outputs(axis: &Axis) -> Vec<Output> {
         true => (FORCE, 1.0 / axis.travel_per_radian()),
         false => (MOTOR, 1.0),
     };
-    let currents = if axis.actuator.has_currents() {
-        CURRENTS
-    } else {
-        &[]
+    let machine = |name: &str, unit, meaning, source| Output {
+        name: format!("machine.{name}"),
+        unit,
+        meaning,
+        source,
     };
-    let groups = [(load, 1.0), (motor, per_torque), (currents, 1.0)];
-    let machine = groups.into_iter().flat_map(|(lines, times)| {
-        let output = move |(name, unit, meaning, read): &Line| Output {
-            name: format!("machine.{name}"),
-            unit,
-            meaning,
-            source: Source::Machine(*read, times),
-        };
-        lines.iter().map(output)
-    });
+    let mut all = Vec::new();
+    for (lines, times) in [(load, 1.0), (motor, per_torque)] {
+        for (name, unit, meaning, read) in lines {
+            all.push(machine(name, unit, meaning, Source::Machine(*read, times)));
+        }
+    }
+    if kind == UnitKind::Plant {
+        return all;
+    }
+    for (name, unit, meaning, read) in CURRENTS {
+        if axis.actuator.has_currents() {
+            all.push(machine(name, unit, meaning, Source::Current(*read)));
+        }
+    }
     let drive = channels(axis).into_iter().filter(|c| !is_reference(c));
-    let drive = drive.map(|channel| {
+    all.extend(drive.map(|channel| {
         let [name, unit] = channel.of_freedom(axis.freedom());
         Output {
             name: format!("drive.{name}"),
@@ -106,8 +102,8 @@ pub(crate) fn outputs(axis: &Axis) -> Vec<Output> {
             meaning: "in the drive's last control cycle, as in a log",
             source: Source::Drive(channel.read),
         }
-    });
-    machine.chain(drive).collect()
+    }));
+    all
 }
 
 /// Whether motor and load are one and move along a line, be it by the lead of a screw: what

@@ -1,4 +1,4 @@
-//! The unit's file: a ZIP archive (FMI 3.0.2, Section 2.5).
+//! The unit's file: a ZIP archive (FMI 3.0.2, Section 2.5; FMI 2.0.5, Section 2.3).
 
 use std::io::{Cursor, Write};
 
@@ -7,8 +7,8 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::description::description;
-use crate::error::UnitError;
 use crate::unit::Unit;
+use crate::version::FmiVersion;
 
 /// Name of the library's file in the archive, without its end.
 pub const MODEL_IDENTIFIER: &str = "feed_axis";
@@ -25,9 +25,6 @@ pub const LIBRARY_MARK: &str = concat!(
 /// Why there is no package.
 #[derive(Debug, Error)]
 pub enum PackageError {
-    /// The axis makes no unit.
-    #[error(transparent)]
-    Unit(#[from] UnitError),
     /// The library is another program's or another version's.
     #[error(
         "the library is not the {LIBRARY_MARK}; valid: the one that `cargo build --release -p feed-axis-fmu` makes of the same sources"
@@ -51,23 +48,16 @@ pub enum PackageError {
     Write(#[from] std::io::Error),
 }
 
-/// The platform of this program as FMI names it (FMI 3.0.2, Section 2.5.1.4.1), and how libraries
-/// end there.
+/// The platform of this program as that version of FMI names it, and how libraries end there.
 ///
 /// # Errors
 /// [`PackageError::Platform`] if the library is not made: elsewhere arrays do not pass as
 /// its functions take them.
-pub fn platform() -> Result<(String, &'static str), PackageError> {
+pub fn platform(version: FmiVersion) -> Result<(String, &'static str), PackageError> {
     let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
-    let (system, end) = match os {
-        "linux" => ("linux", "so"),
-        "macos" => ("darwin", "dylib"),
-        _ => return Err(PackageError::Platform { os, arch }),
-    };
-    if !matches!(arch, "x86_64" | "aarch64") {
-        return Err(PackageError::Platform { os, arch });
-    }
-    Ok((format!("{arch}-{system}"), end))
+    let platform = version.platform(os, arch);
+    let platform = platform.ok_or(PackageError::Platform { os, arch })?;
+    Ok((platform, if os == "macos" { "dylib" } else { "so" }))
 }
 
 /// The name of the library as cargo builds it.
@@ -75,22 +65,24 @@ pub fn platform() -> Result<(String, &'static str), PackageError> {
 /// # Errors
 /// As [`platform`].
 pub fn library_file() -> Result<String, PackageError> {
-    Ok(format!("libfeed_axis_fmu.{}", platform()?.1))
+    Ok(format!(
+        "libfeed_axis_fmu.{}",
+        platform(FmiVersion::default())?.1
+    ))
 }
 
-/// The bytes of the unit's file: of the axis file `text` (called `name` in messages) and of
-/// `library`. The same inputs give the same bytes.
+/// The bytes of the unit's file in that version of FMI, with `library`. The same inputs give the
+/// same bytes.
 ///
 /// # Errors
-/// [`PackageError`] if the axis cannot be simulated, or the library is of another version.
-pub fn package(name: &str, text: &str, library: &[u8]) -> Result<Vec<u8>, PackageError> {
-    let (platform, end) = platform()?;
-    let unit = Unit::new(name, text)?;
+/// [`PackageError`] if the library is of another version, or none is made for this system.
+pub fn package(unit: &Unit, library: &[u8], version: FmiVersion) -> Result<Vec<u8>, PackageError> {
+    let (platform, end) = platform(version)?;
     let mark = LIBRARY_MARK.as_bytes();
     if !library.windows(mark.len()).any(|window| window == mark) {
         return Err(PackageError::Library);
     }
-    let description = description(unit.axis(), unit.variables());
+    let description = description(unit, version);
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let plain = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
@@ -102,7 +94,11 @@ pub fn package(name: &str, text: &str, library: &[u8]) -> Result<Vec<u8>, Packag
             description.as_bytes(),
             plain,
         ),
-        (format!("resources/{AXIS_FILE}"), text.as_bytes(), plain),
+        (
+            format!("resources/{AXIS_FILE}"),
+            unit.text().as_bytes(),
+            plain,
+        ),
         (
             format!("binaries/{platform}/{MODEL_IDENTIFIER}.{end}"),
             library,

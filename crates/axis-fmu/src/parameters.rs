@@ -19,6 +19,8 @@ pub(crate) struct Parameter {
     pub unit: &'static str,
     /// What is valid, in words.
     pub valid: String,
+    /// Least and greatest value, in the key's unit.
+    pub limits: Option<[f64; 2]>,
 }
 
 /// The numbers of all parts that stand in tables of their own, in the order of the file.
@@ -58,9 +60,21 @@ fn of_table(table: &str, item: &dyn TableLike, keys: &[Key]) -> Vec<Parameter> {
             value,
             unit: unit.map_or("", |(unit, _)| unit),
             valid: key.valid(unit),
+            limits: limits(key, unit.map_or(1.0, |(_, factor)| factor), value),
         })
     });
     numbers.collect()
+}
+
+/// The key's limits in a unit of `factor` SI units. The file's value was taken, so where it is at a
+/// limit, the limit is that value and not one that rounding has moved.
+fn limits(key: &Key, factor: f64, value: f64) -> Option<[f64; 2]> {
+    let [least, most] = key.limits()?.map(|limit| limit / factor);
+    let limits = [least.min(value), most.max(value)];
+    limits
+        .iter()
+        .all(|limit| limit.is_finite())
+        .then_some(limits)
 }
 
 /// The axis of `text` with other numbers: table, key, number in the key's unit.

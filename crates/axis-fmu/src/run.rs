@@ -1,4 +1,4 @@
-//! A run between two communication steps.
+//! A closed loop between two communication steps.
 
 use std::sync::Arc;
 
@@ -46,11 +46,55 @@ impl Compensator for Offset {
 /// What is given to the loop in a cycle.
 #[derive(Clone, Debug)]
 pub(crate) struct Given {
+    /// Of a plant, its position is where it begins.
     pub reference: Setpoint,
     /// N·m at the motor, or N at a load that is one with it.
     pub motor: f64,
+    /// Current of the motor beside that, A.
+    pub current: f64,
     /// N or N·m.
     pub load: f64,
+}
+
+impl Given {
+    /// As bits, for a history.
+    pub fn bits(&self) -> [u64; 6] {
+        let reference = &self.reference;
+        [
+            reference.position,
+            reference.velocity,
+            reference.acceleration,
+            self.motor,
+            self.current,
+            self.load,
+        ]
+        .map(f64::to_bits)
+    }
+
+    /// Of such bits.
+    pub fn of_bits(bits: [u64; 6]) -> Self {
+        let [position, velocity, acceleration, motor, current, load] = bits.map(f64::from_bits);
+        Self {
+            reference: Setpoint {
+                position,
+                velocity,
+                acceleration,
+                jerk: 0.0,
+            },
+            motor,
+            current,
+            load,
+        }
+    }
+}
+
+/// Torque that the inputs ask of the motor, N·m.
+pub(crate) fn motor_torque(axis: &Axis, given: &Given) -> f64 {
+    let own = match is_force(axis) {
+        true => given.motor * axis.travel_per_radian(),
+        false => given.motor,
+    };
+    own + given.current * axis.torque_constant()
 }
 
 impl Run {
@@ -119,10 +163,6 @@ impl Run {
 
     fn offset(&self, given: &Given) -> Offset {
         let axis = self.closed_loop.axis();
-        let torque = match is_force(axis) {
-            true => given.motor * axis.travel_per_radian(),
-            false => given.motor,
-        };
-        Offset(torque / axis.torque_constant())
+        Offset(motor_torque(axis, given) / axis.torque_constant())
     }
 }

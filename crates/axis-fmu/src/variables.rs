@@ -4,6 +4,7 @@ use axis_sim::Axis;
 use axis_sim::mechanism::Freedom;
 
 use crate::error::UnitError;
+use crate::kind::UnitKind;
 use crate::measure::UnitDefinition;
 use crate::outputs::{Source, is_force, outputs};
 use crate::parameters::parameters;
@@ -12,6 +13,11 @@ use crate::parameters::parameters;
 const EXACT_BETWEEN: &str = "unit.exact_between_samples";
 const EXACT_MEANING: &str = "0 or 1: at a communication point between two samples of the controller, \
      machine outputs are those of the last sample (0) or of that point (1)";
+
+const START_MEANING: &str = "position of the load at the start, at rest";
+
+/// The table of the axis file that a plant does without.
+const CONTROL: &str = "control";
 
 /// A variable of a unit; all are 64-bit floating-point numbers.
 #[derive(Clone, Debug)]
@@ -28,6 +34,9 @@ pub struct Variable {
     pub kind: VariableKind,
     /// Value before anybody sets it, in its unit; none of what is computed.
     pub start: Option<f64>,
+    /// Least and greatest value, in its unit; none of what has no limits of its own. Whether values
+    /// inside fit together is checked at the end of the initialisation.
+    pub limits: Option<[f64; 2]>,
 }
 
 /// What a variable is to the unit.
@@ -50,6 +59,8 @@ pub enum VariableKind {
     /// A parameter: 1 where outputs at a point between two samples show the machine as it is there,
     /// 0 where they show it as of the last sample. Set before the initialisation ends.
     ExactBetween,
+    /// A parameter of a plant: where it begins, m or rad. Set before the initialisation ends.
+    StartPosition,
 }
 
 /// An input.
@@ -61,8 +72,10 @@ pub enum Input {
     Velocity,
     /// Of the acceleration, m/s² or rad/s².
     Acceleration,
-    /// Torque (N·m) or force (N) of the motor that is added to the controller's.
+    /// Torque (N·m) or force (N) of the motor; in a closed loop, what is added to the controller's.
     Motor,
+    /// Current of a plant's motor, A, whose torque is added.
+    Current,
     /// Force on the load, N or N·m, positive against positive motion.
     Load,
 }
@@ -83,21 +96,24 @@ impl Output {
 pub struct Variables(Vec<Variable>);
 
 impl Variables {
-    /// The variables of an axis, made of its file's text; `name` stands for it in messages.
+    /// The variables of such a unit of an axis, made of its file's text; `name` stands for it in
+    /// messages.
     ///
     /// # Errors
     /// [`UnitError::Axis`], [`UnitError::Text`] if the text is no axis file.
-    pub fn of(axis: &Axis, name: &str, text: &str) -> Result<Self, UnitError> {
+    pub fn of(kind: UnitKind, axis: &Axis, name: &str, text: &str) -> Result<Self, UnitError> {
         let mut all = Self(Vec::new());
         all.push("time", "", "s", VariableKind::Time, None);
-        for (name, meaning, unit, input, start) in inputs(axis) {
+        for (name, meaning, unit, input, start) in inputs(axis, kind) {
             all.push(name, meaning, unit, VariableKind::Input(input), Some(start));
         }
-        for output in outputs(axis) {
+        for output in outputs(axis, kind) {
             let kind = VariableKind::Output(Output(output.source));
             all.push(&output.name, output.meaning, output.unit, kind, None);
         }
-        for parameter in parameters(name, text)? {
+        let takes = |table: &str| kind == UnitKind::ClosedLoop || table != CONTROL;
+        let numbers = parameters(name, text)?;
+        for parameter in numbers.into_iter().filter(|p| takes(&p.table)) {
             let kind = VariableKind::Parameter {
                 table: parameter.table.clone(),
                 key: parameter.key.clone(),
@@ -106,11 +122,37 @@ impl Variables {
             all.push(&name, &parameter.valid, "", kind, Some(parameter.value));
             if let Some(last) = all.0.last_mut() {
                 last.measure = UnitDefinition::spelled(parameter.unit);
+                last.limits = parameter.limits;
             }
         }
-        let kind = VariableKind::ExactBetween;
-        all.push(EXACT_BETWEEN, EXACT_MEANING, "", kind, Some(0.0));
+        all.push_own(kind, axis);
         Ok(all)
+    }
+
+    /// The unit's own parameter.
+    fn push_own(&mut self, kind: UnitKind, axis: &Axis) {
+        let stroke = &axis.stroke;
+        let (name, meaning, unit, own, start, limits) = match (kind, axis.freedom()) {
+            (UnitKind::ClosedLoop, _) => {
+                let own = VariableKind::ExactBetween;
+                (EXACT_BETWEEN, EXACT_MEANING, "", own, 0.0, [0.0, 1.0])
+            }
+            (UnitKind::Plant, freedom) => {
+                let [name, unit] = match freedom {
+                    Freedom::Linear => ["unit.start_position_m", "m"],
+                    Freedom::Rotary => ["unit.start_position_rad", "rad"],
+                };
+                let (own, limits) = (
+                    VariableKind::StartPosition,
+                    [stroke.minimum, stroke.maximum],
+                );
+                (name, START_MEANING, unit, own, stroke.start, limits)
+            }
+        };
+        self.push(name, meaning, unit, own, Some(start));
+        if let Some(last) = self.0.last_mut() {
+            last.limits = Some(limits);
+        }
     }
 
     fn push(
@@ -128,6 +170,7 @@ impl Variables {
             measure: UnitDefinition::of_channel(unit),
             kind,
             start,
+            limits: None,
         });
     }
 
@@ -163,28 +206,42 @@ impl Variables {
 type Line = (&'static str, &'static str, &'static str, Input, f64);
 
 #[rustfmt::skip]
-fn inputs(axis: &Axis) -> [Line; 5] {
-    use Input::{Acceleration, Load, Motor, Position, Velocity};
+fn inputs(axis: &Axis, kind: UnitKind) -> Vec<Line> {
+    use Input::{Acceleration, Current, Load, Motor, Position, Velocity};
     const LOAD: &str = "on the load from outside, positive against positive motion";
-    let (at, motor) = (axis.stroke.start, "added to what the controller asks of the motor");
+    let at = axis.stroke.start;
+    let load = match axis.freedom() {
+        Freedom::Linear => ("load_force_n", LOAD, "N", Load, 0.0),
+        Freedom::Rotary => ("load_torque_n_m", LOAD, "N·m", Load, 0.0),
+    };
+    if kind == UnitKind::Plant {
+        let motor = match is_force(axis) {
+            true => ("motor_force_n", "force of the motor on the load", "N", Motor, 0.0),
+            false => ("motor_torque_n_m", "torque of the motor", "N·m", Motor, 0.0),
+        };
+        let current = ("motor_iq_a", "q current of the motor, whose torque is added", "A", Current, 0.0);
+        let current = axis.actuator.has_currents().then_some(current);
+        return [Some(motor), current, Some(load)].into_iter().flatten().collect();
+    }
+    let motor = "added to what the controller asks of the motor";
     let motor = match is_force(axis) {
         true => ("force_offset_n", motor, "N", Motor, 0.0),
         false => ("torque_offset_n_m", motor, "N·m", Motor, 0.0),
     };
     match axis.freedom() {
-        Freedom::Linear => [
+        Freedom::Linear => vec![
             ("position_ref_m", "reference of the position", "m", Position, at),
             ("velocity_ref_m_s", "reference of the speed", "m/s", Velocity, 0.0),
             ("acceleration_ref_m_s2", "reference of the acceleration", "m/s²", Acceleration, 0.0),
             motor,
-            ("load_force_n", LOAD, "N", Load, 0.0),
+            load,
         ],
-        Freedom::Rotary => [
+        Freedom::Rotary => vec![
             ("position_ref_rad", "reference of the position", "rad", Position, at),
             ("velocity_ref_rad_s", "reference of the speed", "rad/s", Velocity, 0.0),
             ("acceleration_ref_rad_s2", "reference of the acceleration", "rad/s²", Acceleration, 0.0),
             motor,
-            ("load_torque_n_m", LOAD, "N·m", Load, 0.0),
+            load,
         ],
     }
 }

@@ -5,20 +5,20 @@ use std::ffi::c_void;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use axis_fmu::UnitError;
+use safer_ffi::prelude::*;
 
 use crate::instance::Instance;
 
 /// An address that is only passed on, or never looked at.
 pub type Address = *mut c_void;
 
-/// `fmi3Boolean`, C's `bool`: a byte, so that a wrong one is no undefined value.
-pub type Bool = u8;
-
-/// `fmi3Status`.
+/// `fmi3Status` and `fmi2Status`, whose numbers are the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Done.
     Ok = 0,
+    /// What is asked for is not known (in FMI 2.0 alone).
+    Discard = 2,
     /// Refused or given up; the logger was told.
     Error = 3,
 }
@@ -59,4 +59,10 @@ fn words(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     text.or_else(|| panic.downcast_ref::<String>().cloned())
         .unwrap_or_default()
+}
+
+/// A string of C as UTF-8; nothing if there is none.
+pub fn text(string: Option<char_p::Ref<'_>>) -> String {
+    let bytes = string.map(|string| string.to_bytes()).unwrap_or_default();
+    String::from_utf8_lossy(bytes).into_owned()
 }

@@ -1,20 +1,13 @@
 //! An instance: a unit and the environment's logger.
 
-use std::ffi::CString;
 use std::path::Path;
 
-use axis_fmu::{AXIS_FILE, LIBRARY_MARK, Unit, UnitError};
-use safer_ffi::derive_ReprC;
+use axis_fmu::{AXIS_FILE, LIBRARY_MARK, Unit, UnitError, UnitKind};
+use safer_ffi::prelude::*;
 
-use crate::call::{Address, Status};
+use crate::log::Log;
 
-/// `fmi3LogMessageCallback`: environment, status, category, message.
-pub type LogMessage = extern "C" fn(Address, i32, *const u8, *const u8);
-
-/// The only category of messages.
-pub const CATEGORY: &str = "logStatusError";
-
-/// What `fmi3Instance` points to.
+/// What `fmi3Instance` points to, and `fmi2Component` holds.
 #[derive_ReprC]
 #[repr(opaque)]
 pub struct Instance {
@@ -22,46 +15,80 @@ pub struct Instance {
     pub(crate) log: Log,
 }
 
-/// What `fmi3FMUState` points to.
+/// What `fmi3FMUState` and `fmi2FMUstate` point to.
 #[derive_ReprC]
 #[repr(opaque)]
 pub struct State {
     pub(crate) unit: Unit,
 }
 
-/// Where messages go.
-#[derive(Clone, Copy)]
-pub struct Log {
-    pub environment: Address,
-    pub message: Option<LogMessage>,
-    /// Errors are told whether or not debugging was asked for, until they are switched off.
-    pub on: bool,
-}
+/// What `fmi3FMUState*` and `fmi2FMUstate*` point to: an address that is null before the first save.
+pub type StateAt<'a> = Option<&'a mut Option<repr_c::Box<State>>>;
 
-impl Log {
-    /// Tells the environment.
-    pub fn tell(&self, status: Status, text: &str) {
-        let Some(message) = self.message.filter(|_| self.on) else {
-            return;
-        };
-        // A text with a NUL cannot be given to C: it ends there.
-        let until = text.split('\0').next().unwrap_or_default();
-        if let (Ok(category), Ok(text)) = (CString::new(CATEGORY), CString::new(until)) {
-            let [category, text] = [&category, &text].map(|text| text.as_ptr().cast::<u8>());
-            message(self.environment, status as i32, category, text);
-        }
+impl Instance {
+    /// Saves its state into the one that is there, or a new one.
+    pub fn save(&self, state: StateAt<'_>) -> Result<(), UnitError> {
+        let unit = self.unit.clone();
+        *state.ok_or(NO_STATE)? = Some(Box::new(State { unit }).into());
+        Ok(())
+    }
+
+    /// Goes back to a state.
+    pub fn restore(&mut self, state: Option<&State>) -> Result<(), UnitError> {
+        self.unit = state.ok_or(NO_STATE)?.unit.clone();
+        Ok(())
     }
 }
+
+/// Bytes of a state that are written, and that are read.
+pub type BytesOut<'a> = Option<c_slice::Mut<'a, u8>>;
+pub type BytesIn<'a> = Option<c_slice::Ref<'a, u8>>;
+
+impl State {
+    /// Tells how many bytes it takes.
+    pub fn size(state: Option<&Self>, size: Option<&mut usize>) -> Result<(), UnitError> {
+        let bytes = state.ok_or(NO_STATE)?.unit.to_bytes()?;
+        *size.ok_or(UnitError::Null("size"))? = bytes.len();
+        Ok(())
+    }
+
+    /// Writes them.
+    pub fn write(state: Option<&Self>, to: BytesOut<'_>) -> Result<(), UnitError> {
+        let bytes = state.ok_or(NO_STATE)?.unit.to_bytes()?;
+        let mut to = to.ok_or(UnitError::Null("bytes"))?;
+        let (size, least) = (to.len(), bytes.len());
+        let Some(to) = to.get_mut(..least) else {
+            return Err(UnitError::State(format!(
+                "it takes {least} bytes, and there is room for {size}; valid: as many or more"
+            )));
+        };
+        to.copy_from_slice(&bytes);
+        Ok(())
+    }
+}
+
+impl Instance {
+    /// Makes a state of bytes, in the one that is there, or a new one.
+    pub fn read(&self, from: BytesIn<'_>, state: StateAt<'_>) -> Result<(), UnitError> {
+        let from = from.ok_or(UnitError::Null("bytes"))?;
+        let unit = self.unit.from_bytes(from.as_slice())?;
+        *state.ok_or(NO_STATE)? = Some(Box::new(State { unit }).into());
+        Ok(())
+    }
+}
+
+const NO_STATE: UnitError = UnitError::Null("state");
 
 /// The unit of the resources, if it is the one that the environment means by `token`.
 pub fn unit(token: &str, resources: &str) -> Result<Unit, String> {
     let file = Path::new(resources).join(AXIS_FILE);
     let name = file.display().to_string();
     let text = std::fs::read_to_string(&file).map_err(|error| format!("{name}: {error}"))?;
-    let unit = Unit::new(&name, &text).map_err(|error: UnitError| error.to_string())?;
+    let unit = Unit::of(UnitKind::of_token(token), &name, &text)
+        .map_err(|error: UnitError| error.to_string())?;
     if token != unit.token() {
         return Err(format!(
-            "the instantiation token is \"{token}\"; valid: \"{}\", of {name} and the {LIBRARY_MARK}",
+            "the instantiation token (in FMI 2.0 the GUID) is \"{token}\"; valid: \"{}\", of {name} and the {LIBRARY_MARK}",
             unit.token()
         ));
     }

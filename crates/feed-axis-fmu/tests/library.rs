@@ -11,6 +11,9 @@ fn a_package_takes_the_library() {
     let library = std::fs::read(&library).unwrap_or_else(|e| panic!("{}: {e}", library.display()));
     let axis = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/axes/belt.toml");
     let text = std::fs::read_to_string(axis).unwrap();
-    let package = axis_fmu::package("belt.toml", &text, &library).unwrap();
-    assert!(package.starts_with(b"PK"));
+    let unit = axis_fmu::Unit::new("belt.toml", &text).unwrap();
+    for version in [axis_fmu::FmiVersion::V2, axis_fmu::FmiVersion::V3] {
+        let package = axis_fmu::package(&unit, &library, version).unwrap();
+        assert!(package.starts_with(b"PK"));
+    }
 }

@@ -36,6 +36,15 @@ fn a_unit_is_written_whole_and_told() {
         (Some(5), Some(first.len() as u64))
     );
     assert_eq!(std::fs::read(&out).unwrap(), first);
+    let said = succeed(&[&export[..], &["--fmi", "2"]].concat());
+    assert!(said.contains("FMI 2.0"), "{said}");
+    assert_ne!(std::fs::read(&out).unwrap(), first);
+    let told = succeed(&[&export[..], &["--plant", "--format", "json"]].concat());
+    let told: Value = serde_json::from_str(&told).unwrap();
+    assert_eq!(
+        (told["kind"].as_str(), told["inputs"].as_u64()),
+        (Some("plant alone"), Some(3))
+    );
     // Nothing is left aside.
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
 }
@@ -59,5 +68,12 @@ fn what_cannot_be_exported_is_said() {
         Path::new("no-such.so"),
     ));
     assert!(message.contains("no-such.so"), "{message}");
+    let other = [
+        &export("data/axes/belt.toml", &out, &library)[..],
+        &["--fmi", "1"],
+    ]
+    .concat();
+    let message = refuse(&other);
+    assert!(message.contains("[possible values: 2, 3]"), "{message}");
     assert!(!out.exists());
 }

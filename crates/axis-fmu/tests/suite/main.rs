@@ -3,7 +3,9 @@
 mod orders;
 mod package;
 mod parameters;
+mod plants;
 mod runs;
+mod states;
 
 use std::path::{Path, PathBuf};
 

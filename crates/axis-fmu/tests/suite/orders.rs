@@ -110,6 +110,25 @@ fn a_simulation_has_a_start_and_an_end() {
     assert!(words(unit.step(unit.time(), PERIOD)).contains("stop time"));
 }
 
+/// FMI 2.0 sets the experiment up in a call of its own, which may come twice or not at all.
+#[test]
+fn an_experiment_is_set_up_before_the_initialization() {
+    let mut unit = unit("liu2025.toml");
+    unit.set_up(1.0, None).unwrap();
+    unit.set_up(5.0, Some(5.0 + PERIOD)).unwrap();
+    assert!(words(unit.set_up(0.0, Some(-1.0))).contains("stop time"));
+    unit.begin_initialization().unwrap();
+    assert!(words(unit.set_up(0.0, None)).contains("initialization mode"));
+    assert!(words(unit.begin_initialization()).contains("initialization mode"));
+    unit.exit_initialization().unwrap();
+    unit.step(5.0, PERIOD).unwrap();
+    assert!(words(unit.step(unit.time(), PERIOD)).contains("stop time"));
+    unit.reset();
+    unit.begin_initialization().unwrap();
+    unit.exit_initialization().unwrap();
+    unit.step(0.0, 1.0).unwrap();
+}
+
 #[test]
 fn values_are_set_where_they_can_be() {
     let mut unit = ready("liu2025.toml");

@@ -130,3 +130,42 @@ fn what_makes_the_unit_is_no_parameter() {
         Some(12.0)
     );
 }
+
+/// The limits of a variable are those that the file's check states in words, in the variable's unit:
+/// the value there is taken, one beyond is refused.
+#[test]
+fn limits_are_those_of_the_axis_files_check() {
+    let mut tried = 0;
+    for file in ["liu2025.toml", "belt.toml", "joint.toml"] {
+        let all = unit(file).variables().clone();
+        for variable in all.iter() {
+            let Some([least, most]) = variable.limits else {
+                assert!(!matches!(variable.kind, VariableKind::Parameter { .. }));
+                continue;
+            };
+            let start = variable.start.unwrap();
+            assert!((least..=most).contains(&start), "{}", variable.name);
+            let key = variable.name.rsplit('.').next().unwrap();
+            let range = [
+                (least - 1e-6 * least.abs().max(1e-300), true),
+                (least, false),
+                (most, false),
+                (most + 1e-6 * most.abs(), true),
+            ];
+            for (value, is_beyond) in range.into_iter().filter(|_| key != "exact_between_samples") {
+                let mut unit = unit(file);
+                set(&mut unit, &variable.name, value);
+                unit.enter_initialization(0.0, None).unwrap();
+                // Inside, other checks may refuse what does not fit together.
+                let said = unit.exit_initialization().map_err(|e| e.to_string());
+                let of_key = format!("{key}` is ");
+                let is_refused = said.is_err_and(|words| {
+                    words.contains(&of_key) && words.contains("valid: a number from")
+                });
+                assert_eq!(is_refused, is_beyond, "{} = {value}", variable.name);
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried > 200, "{tried}");
+}

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use axis_fmu::{Unit, VariableKind};
+use axis_fmu::{FmiVersion, Unit, UnitKind, VariableKind};
 use axis_sim::SixDigits;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
 
@@ -21,9 +21,27 @@ pub struct Options {
     /// The unit's file
     #[arg(long, value_name = "FILE.fmu")]
     out: PathBuf,
+    /// Version of FMI: most programs import 2.0, fewer 3.0
+    #[arg(long, value_name = "VERSION", default_value = "3")]
+    fmi: Fmi,
+    /// The machine alone, without control and current loops: motor torque, force or current in,
+    /// motion out
+    #[arg(long)]
+    plant: bool,
     /// Library of units, of the same version [default: the one beside this program]
     #[arg(long, value_name = "FILE")]
     library: Option<PathBuf>,
+}
+
+/// Versions, as they are asked for.
+#[derive(Clone, Copy, ValueEnum)]
+enum Fmi {
+    /// FMI 2.0
+    #[value(name = "2", alias = "2.0")]
+    Two,
+    /// FMI 3.0
+    #[value(name = "3", alias = "3.0")]
+    Three,
 }
 
 /// What was written.
@@ -33,6 +51,7 @@ struct Exported<'a> {
     axis_fingerprint: &'a str,
     fmi_version: &'static str,
     interface: &'static str,
+    kind: &'static str,
     platform: String,
     step_s: f64,
     inputs: usize,
@@ -46,10 +65,11 @@ impl fmt::Display for Exported<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "FMI {} co-simulation unit of {} for {}: {} inputs, {} outputs, {} parameters, \
+            "FMI {} co-simulation unit of {} ({}) for {}: {} inputs, {} outputs, {} parameters, \
              control period {} s\nwritten to {}",
             self.fmi_version,
             self.axis,
+            self.kind,
             self.platform,
             self.inputs,
             self.outputs,
@@ -66,15 +86,23 @@ pub fn command(options: &Options) -> Result<()> {
     read_axis(&options.axis)?;
     let text = read_text(&options.axis)?;
     let name = options.axis.display().to_string();
-    let (platform, _) = axis_fmu::platform().into_diagnostic()?;
+    let version = match options.fmi {
+        Fmi::Two => FmiVersion::V2,
+        Fmi::Three => FmiVersion::V3,
+    };
+    let (platform, _) = axis_fmu::platform(version).into_diagnostic()?;
+    let kind = match options.plant {
+        true => UnitKind::Plant,
+        false => UnitKind::ClosedLoop,
+    };
     // First, so that what is wrong with the axis is told before what is missing beside it.
     let failed = || format!("no unit of {name}");
-    let unit = Unit::new(&name, &text);
+    let unit = Unit::of(kind, &name, &text);
     let unit = unit.into_diagnostic().wrap_err_with(failed)?;
     let file = library(options)?;
     let library = std::fs::read(&file).into_diagnostic();
     let library = library.wrap_err_with(|| format!("cannot read {}", file.display()))?;
-    let package = axis_fmu::package(&name, &text, &library);
+    let package = axis_fmu::package(&unit, &library, version);
     let bytes = package
         .into_diagnostic()
         .wrap_err_with(|| format!("no unit of {name} with {}", file.display()))?;
@@ -88,8 +116,9 @@ pub fn command(options: &Options) -> Result<()> {
         &Exported {
             axis: &unit.axis().name,
             axis_fingerprint: &unit.axis().fingerprint,
-            fmi_version: "3.0",
+            fmi_version: version.number(),
             interface: "co-simulation",
+            kind: kind.words(),
             platform,
             step_s: unit.axis().period,
             inputs: count(|kind| matches!(kind, VariableKind::Input(_))),

@@ -4,7 +4,8 @@
 use axis_fmu::UnitError;
 use safer_ffi::prelude::*;
 
-use crate::call::{Address, Bool, call};
+use super::Bool;
+use crate::call::{Address, call};
 use crate::instance::Instance;
 
 /// Never looked at.
@@ -99,12 +100,6 @@ absent! {
     "there are no dependencies of elements (providesPerElementDependencies is false)" {
         "fmi3GetNumberOfVariableDependencies" get_number_of_variable_dependencies(_reference: u32, _n: Address);
         "fmi3GetVariableDependencies" get_variable_dependencies(_dependent: u32, _of_dependent: Address, _independents: Address, _of_independents: Address, _kinds: Address, _n: Count);
-    }
-
-    "states are saved in memory alone (canSerializeFMUState is false)" {
-        "fmi3SerializedFMUStateSize" serialized_fmu_state_size(_state: Address, _size: Address);
-        "fmi3SerializeFMUState" serialize_fmu_state(_state: Address, _bytes: Address, _size: Count);
-        "fmi3DeserializeFMUState" deserialize_fmu_state(_bytes: Address, _size: Count, _state: Address);
     }
 
     "there are no derivatives of variables" {

@@ -1,62 +1,62 @@
-//! `modelDescription.xml` (FMI 3.0.2, Section 2.4).
+//! `modelDescription.xml`: what both versions have in common.
+
+mod fmi2;
+mod fmi3;
 
 use std::fmt::Write;
 
 use axis_sim::Axis;
 use trajectories::Motion;
 
+use crate::kind::UnitKind;
 use crate::measure::{BASE, UnitDefinition};
-use crate::package::MODEL_IDENTIFIER;
-use crate::unit::token;
+use crate::unit::Unit;
 use crate::variables::{Variable, VariableKind, Variables};
+use crate::version::FmiVersion;
 
-/// What of FMI this offers and what not, as attributes of the co-simulation.
-const CAPABILITIES: &str = "needsExecutionTool=\"false\" canBeInstantiatedOnlyOncePerProcess=\"false\" \
-     canGetAndSetFMUState=\"true\" canSerializeFMUState=\"false\" \
-     providesDirectionalDerivatives=\"false\" providesAdjointDerivatives=\"false\" \
-     providesPerElementDependencies=\"false\" canHandleVariableCommunicationStepSize=\"true\" \
-     maxOutputDerivativeOrder=\"0\" providesIntermediateUpdate=\"false\" \
-     mightReturnEarlyFromDoStep=\"false\" canReturnEarlyAfterIntermediateUpdate=\"false\" \
-     hasEventMode=\"false\" providesEvaluateDiscreteStates=\"false\"";
+/// Categories of messages, and what they are.
+const CATEGORIES: &str = "<LogCategories>\
+     <Category name=\"logStatusError\" description=\"what is refused, and why\"/>\
+     <Category name=\"logStatusDiscard\" description=\"what is asked for and not known\"/>\
+     </LogCategories>\n";
 
-/// The description of an axis with these variables. The same inputs give the same text: it has no
+/// The description of a unit. The same inputs give the same text: it has no
 /// date.
-pub fn description(axis: &Axis, variables: &Variables) -> String {
-    let period = axis.period;
+pub fn description(unit: &Unit, version: FmiVersion) -> String {
+    let (axis, variables) = (unit.axis(), unit.variables());
+    let [co_simulation, list, structure] = match version {
+        FmiVersion::V2 => fmi2::parts(variables),
+        FmiVersion::V3 => fmi3::parts(axis, variables),
+    };
     let mut text = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
-         <fmiModelDescription fmiVersion=\"3.0\" modelName=\"{}\" description=\"{}\" \
-         instantiationToken=\"{}\" generationTool=\"feed-axis {}\" variableNamingConvention=\"structured\">\n\
-         <CoSimulation modelIdentifier=\"{MODEL_IDENTIFIER}\" {CAPABILITIES} fixedInternalStepSize=\"{period}\"/>\n",
+         <fmiModelDescription fmiVersion=\"{version}\" modelName=\"{}\" description=\"{}\" \
+         {}=\"{}\" generationTool=\"feed-axis {}\" variableNamingConvention=\"structured\">\n\
+         {co_simulation}<UnitDefinitions>\n",
         escaped(&axis.name),
-        escaped(&axis.description),
-        token(axis),
+        escaped(&match unit.kind() {
+            UnitKind::ClosedLoop => axis.description.clone(),
+            kind => format!("{} ({})", axis.description, kind.words()),
+        }),
+        match version {
+            FmiVersion::V2 => "guid",
+            FmiVersion::V3 => "instantiationToken",
+        },
+        unit.token(),
         env!("CARGO_PKG_VERSION"),
     );
-    text += "<UnitDefinitions>\n";
     for measure in measures(variables) {
-        text += &unit(measure);
+        text += &unit_definition(measure);
     }
-    text += "</UnitDefinitions>\n\
-             <LogCategories><Category name=\"logStatusError\" description=\"what is refused, and why\"/></LogCategories>\n";
-    text += &format!(
-        "<DefaultExperiment startTime=\"0\" stopTime=\"{}\" stepSize=\"{period}\"/>\n<ModelVariables>\n",
-        stop_time(axis)
-    );
-    for variable in variables.iter() {
-        text += &float64(variable);
-    }
-    text += "</ModelVariables>\n<ModelStructure>\n";
-    // What an output shows is past when it is read, so that no input reaches it at once; at the
-    // start it depends on all that is set.
-    for (element, depends) in [("Output", " dependencies=\"\""), ("InitialUnknown", "")] {
-        for output in variables.iter().filter(|v| is_output(v)) {
-            let reference = output.reference;
-            text += &format!("<{element} valueReference=\"{reference}\"{depends}/>\n");
-        }
-    }
-    text += "</ModelStructure>\n</fmiModelDescription>\n";
-    text
+    text + "</UnitDefinitions>\n"
+        + CATEGORIES
+        + &format!(
+            "<DefaultExperiment startTime=\"0\" stopTime=\"{}\" stepSize=\"{}\"/>\n\
+             <ModelVariables>\n{list}</ModelVariables>\n\
+             <ModelStructure>\n{structure}</ModelStructure>\n</fmiModelDescription>\n",
+            stop_time(axis),
+            axis.period
+        )
 }
 
 /// When an importer stops that was not told: after the axis' first trajectory, on a control cycle;
@@ -74,8 +74,9 @@ fn stop_time(axis: &Axis) -> f64 {
     }
 }
 
-fn is_output(variable: &Variable) -> bool {
-    matches!(variable.kind, VariableKind::Output(_))
+/// Outputs, in the order of the table.
+fn outputs(variables: &Variables) -> impl Iterator<Item = &Variable> {
+    (variables.iter()).filter(|variable| matches!(variable.kind, VariableKind::Output(_)))
 }
 
 /// The units of variables, each once, in the order in which they come.
@@ -89,7 +90,8 @@ fn measures(variables: &Variables) -> Vec<&UnitDefinition> {
     all
 }
 
-fn unit(measure: &UnitDefinition) -> String {
+/// A unit, spelled the same in both versions.
+fn unit_definition(measure: &UnitDefinition) -> String {
     let mut text = format!("<Unit name=\"{}\"><BaseUnit", escaped(&measure.name));
     for (symbol, power) in BASE.iter().zip(measure.powers) {
         if power != 0 {
@@ -103,7 +105,8 @@ fn unit(measure: &UnitDefinition) -> String {
     text + "/></Unit>\n"
 }
 
-fn float64(variable: &Variable) -> String {
+/// Name, value reference, causality, variability, meaning.
+fn naming(variable: &Variable) -> String {
     let role = match &variable.kind {
         VariableKind::Time => "causality=\"independent\" variability=\"continuous\"",
         VariableKind::Input(_) => "causality=\"input\" variability=\"continuous\"",
@@ -113,25 +116,36 @@ fn float64(variable: &Variable) -> String {
         VariableKind::Output(_) => {
             "causality=\"output\" variability=\"continuous\" initial=\"calculated\""
         }
-        VariableKind::Parameter { .. } | VariableKind::ExactBetween => {
+        VariableKind::Parameter { .. }
+        | VariableKind::ExactBetween
+        | VariableKind::StartPosition => {
             "causality=\"parameter\" variability=\"fixed\" initial=\"exact\""
         }
     };
     let mut text = format!(
-        "<Float64 name=\"{}\" valueReference=\"{}\" {role}",
+        "name=\"{}\" valueReference=\"{}\" {role}",
         escaped(&variable.name),
         variable.reference
     );
     if !variable.description.is_empty() {
         let _ = write!(text, " description=\"{}\"", escaped(&variable.description));
     }
+    text
+}
+
+/// Unit, limits, start value.
+fn numbers(variable: &Variable) -> String {
+    let mut text = String::new();
     if let Some(measure) = &variable.measure {
         let _ = write!(text, " unit=\"{}\"", escaped(&measure.name));
+    }
+    if let Some([least, most]) = variable.limits {
+        let _ = write!(text, " min=\"{least}\" max=\"{most}\"");
     }
     if let Some(start) = variable.start {
         let _ = write!(text, " start=\"{start}\"");
     }
-    text + "/>\n"
+    text
 }
 
 /// Text for an attribute; what XML cannot hold becomes a space.

@@ -2,13 +2,16 @@
 
 use safer_ffi::prelude::*;
 
-use crate::call::{Address, Bool, Status, call, caught};
-use crate::instance::{Instance, Log, LogMessage, unit};
+use super::Bool;
+use crate::call::{Address, Status, call, caught, text};
+use crate::instance::{Instance, unit};
+use crate::log::{Log, LogMessage, To};
 
-/// A string of C as UTF-8; nothing if there is none.
-fn text(string: Option<char_p::Ref<'_>>) -> String {
-    let bytes = string.map(|string| string.to_bytes()).unwrap_or_default();
-    String::from_utf8_lossy(bytes).into_owned()
+fn log(environment: Address, message: Option<LogMessage>) -> Log {
+    Log::new(message.map(|message| To::Fmi3 {
+        message,
+        environment,
+    }))
 }
 
 /// `fmi3GetVersion`.
@@ -48,11 +51,7 @@ pub fn instantiate_co_simulation(
     message: Option<LogMessage>,
     _intermediate_update: Address,
 ) -> Option<repr_c::Box<Instance>> {
-    let log = Log {
-        environment,
-        message,
-        on: true,
-    };
+    let log = log(environment, message);
     let made = caught(|| match event_mode_used {
         0 => unit(&text(token), &text(resources)),
         _ => Err("there is no event mode (hasEventMode is false)".to_owned()),
@@ -105,11 +104,7 @@ fn only_co_simulation(
     environment: Address,
     message: Option<LogMessage>,
 ) -> Option<repr_c::Box<Instance>> {
-    let log = Log {
-        environment,
-        message,
-        on: true,
-    };
+    let log = log(environment, message);
     log.tell(
         Status::Error,
         &format!("{name}: this unit is for co-simulation alone"),
@@ -188,17 +183,4 @@ pub fn do_step(
         }
         done.map(|_| ())
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::instance::CATEGORY;
-
-    #[test]
-    fn the_description_declares_the_category() {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/liu2025.toml");
-        let unit = axis_fmu::Unit::new(file, &std::fs::read_to_string(file).unwrap()).unwrap();
-        let text = axis_fmu::description(unit.axis(), unit.variables());
-        assert!(text.contains(&format!("<Category name=\"{CATEGORY}\"")));
-    }
 }

@@ -1,0 +1,162 @@
+"""Units in FMPy: an instance of either version, and what a run is compared with."""
+
+import csv
+import ctypes
+import subprocess
+from pathlib import Path
+
+from fmpy import extract, read_model_description
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import (
+    FMU2Slave,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+)
+from fmpy.fmi3 import FMU3Slave
+from fmpy.logging import addLoggerProxy
+
+
+class Unit:
+    """An instance, its variables by name, and what its logger was told."""
+
+    def __init__(self, fmu, **options):
+        self.folder = extract(str(fmu))
+        self.description = read_model_description(str(fmu))
+        self.told = []
+        self.references = {v.name: v.valueReference for v in self.description.modelVariables}
+        self.step_size = float(self.description.defaultExperiment.stepSize)
+        self.fmu = self.Slave(
+            guid=self.description.guid,
+            unzipDirectory=self.folder,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+            instanceName="one",
+        )
+        self.instantiate(**options)
+
+    @staticmethod
+    def of(fmu, **options):
+        """Of the version that the file is of."""
+        version = read_model_description(str(fmu)).fmiVersion
+        return (Unit2 if version == "2.0" else Unit3)(fmu, **options)
+
+    def of_causality(self, causality):
+        return [v for v in self.description.modelVariables if v.causality == causality]
+
+    def begin(self, **options):
+        self.enter(**options)
+        self.fmu.exitInitializationMode()
+
+    def get(self, *names):
+        return self.read([self.references[name] for name in names])
+
+    def set(self, name, value):
+        self.write([self.references[name]], [value])
+
+    def step(self, cycle, cycles=1):
+        return self.fmu.doStep(cycle * self.step_size, cycles * self.step_size)
+
+    def refuses(self, words, call, *arguments, status=3, category="logStatusError"):
+        """The call returns an error, and the logger is told these words."""
+        before = len(self.told)
+        try:
+            call(*arguments)
+        except FMICallException as error:
+            assert error.status == status, error
+        else:
+            raise AssertionError(f"{call} {arguments} was accepted")
+        new = self.told[before:]
+        assert len(new) == 1 and words in new[0][3], f"told {new} instead of {words!r}"
+        assert new[0][1:3] == (status, category), new
+
+
+class Unit3(Unit):
+    """By FMI 3.0."""
+
+    Slave = FMU3Slave
+    enter = property(lambda self: self.fmu.enterInitializationMode)
+    read = property(lambda self: self.fmu.getFloat64)
+    write = property(lambda self: self.fmu.setFloat64)
+    save = property(lambda self: self.fmu.getFMUState)
+    restore = property(lambda self: self.fmu.setFMUState)
+    free = property(lambda self: self.fmu.freeFMUState)
+    to_bytes = property(lambda self: self.fmu.serializeFMUState)
+    of_bytes = property(lambda self: self.fmu.deserializeFMUState)
+
+    def instantiate(self, **options):
+        self.fmu.instantiate(logMessage=self.log, **options)
+
+    def log(self, environment, status, category, message):
+        self.told.append((environment, status, category.decode(), message.decode()))
+
+
+class Unit2(Unit):
+    """By FMI 2.0; FMPy's logger makes the texts of the formats and what follows them."""
+
+    Slave = FMU2Slave
+    read = property(lambda self: self.fmu.getReal)
+    write = property(lambda self: self.fmu.setReal)
+    save = property(lambda self: self.fmu.getFMUstate)
+    restore = property(lambda self: self.fmu.setFMUstate)
+    free = property(lambda self: self.fmu.freeFMUstate)
+    to_bytes = property(lambda self: self.fmu.serializeFMUstate)
+    of_bytes = property(lambda self: self.fmu.deSerializeFMUstate)
+
+    def instantiate(self, **options):
+        self.fmu.instantiate(callbacks=callbacks(self.log), **options)
+
+    def enter(self, **options):
+        self.fmu.setupExperiment(**options)
+        self.fmu.enterInitializationMode()
+
+    def log(self, environment, name, status, category, message):
+        assert name == b"one"
+        self.told.append((environment, status, category.decode(), message.decode()))
+
+
+LISTENERS = {}  # by environment: FMPy's proxy knows one logger in a process
+
+
+@fmi2CallbackLoggerTYPE
+def heard(environment, *message):
+    LISTENERS[environment](environment, *message)
+
+
+def callbacks(log):
+    """fmi2CallbackFunctions with this logger; what is only for asynchronous steps is null."""
+    functions = fmi2CallbackFunctions()
+    functions.logger = heard
+    addLoggerProxy(ctypes.byref(functions))
+    functions.componentEnvironment = 0x1000 + len(LISTENERS)
+    LISTENERS[functions.componentEnvironment] = log
+    return functions
+
+
+def run(program, *arguments):
+    subprocess.run([program, *arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def log_of(program, axis, folder):
+    """The columns of what `simulate` makes of the first trajectory."""
+    file = Path(folder) / f"{axis}.csv"
+    run(program, "simulate", "--axis", f"data/axes/{axis}.toml", "--trajectory", "1", "--log", str(file))
+    with open(file, newline="") as rows:
+        rows = list(csv.reader(rows))
+    return {name: [float(row[i]) for row in rows[1:]] for i, name in enumerate(rows[0])}
+
+
+def follow(unit, log, first, last):
+    """The rows of the drive's channels that the unit makes of the log's references."""
+    inputs = [v.valueReference for v in unit.of_causality("input")[:3]]
+    references = [log[v.name] for v in unit.of_causality("input")[:3]]
+    outputs = [unit.references[name] for name in shared(unit, log)]
+    rows = []
+    for k in range(first, last):
+        unit.write(inputs, [reference[k] for reference in references])
+        unit.step(k)
+        rows.append(unit.read(outputs))
+    return rows
+
+
+def shared(unit, log):
+    names = [v.name for v in unit.of_causality("output")]
+    return [name for name in names if name.startswith("drive.") and name[6:] in log]
