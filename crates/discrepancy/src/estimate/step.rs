@@ -33,7 +33,7 @@ impl Fitter<'_> {
     }
 
     /// The same with the spectral matrices of another rest as weights.
-    pub(super) fn solve_beside(
+    pub(crate) fn solve_beside(
         &self,
         weighing: &Amplitudes,
         fit: &Fit,

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::refined::Refined;
 use super::state::Search;
 use crate::estimate::columns::Columns;
-use crate::estimate::fit::Fitter;
+use crate::estimate::fit::{Fit, Fitter};
 use crate::name::curves::{Rest, Shape};
 use crate::spectrum::Amplitudes;
 
@@ -42,9 +42,14 @@ pub(super) struct FreeCurves<'a> {
     all: Vec<Solved<'a>>,
 }
 
+/// Rounds of a law's fit, each weighed by what the last one left.
+const ROUNDS: usize = 6;
+
 /// A curve, fitted.
 struct Solved<'a> {
     shape: &'a Shape,
+    /// What its hats do.
+    columns: &'a Columns,
     values: DVector<f64>,
     /// By how much D of the fitted logs falls beyond chance, as the linearised model has it.
     gain: f64,
@@ -60,6 +65,7 @@ impl<'a> FreeCurves<'a> {
             let solved = rest.solve(columns);
             Solved {
                 shape,
+                columns,
                 gain: solved.gain - BY_CHANCE * columns.len() as f64,
                 values: solved.values,
                 told: OnceLock::new(),
@@ -92,20 +98,48 @@ impl<'a> FreeCurves<'a> {
         self.all.len()
     }
 
-    /// On what the curve depends that does most on the fitted and the check logs together, and by how much
-    /// D falls with it there beyond chance; `None` without curves.
-    pub(super) fn most_probable(&self) -> Option<(String, f64)> {
-        let (set, check) = (&self.search.check_logs, &self.search.check);
+    /// On what the law depends that does most on the fitted and the check logs together, and by how much D
+    /// falls with it there beyond chance; `None` without curves.
+    pub(super) fn most_probable(&self, own: &Columns) -> Option<(String, f64)> {
         let together = |curve: &Solved<'_>| {
-            let values = curve.values.as_slice();
-            let told = || curve.shape.told(self.search.machine, set, check, values);
-            (
-                curve.shape.depends_on(),
-                curve.gain + curve.told.get_or_init(told),
-            )
+            let by_chance = BY_CHANCE * curve.columns.len() as f64;
+            let fall = self.fall_with(curve, own)?;
+            Some((curve.shape.depends_on(), fall - by_chance))
         };
-        let best = self.all.iter().take(TOLD).map(together);
+        let best = self.all.iter().take(TOLD).filter_map(together);
         best.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// By how much D of the fitted and the check logs falls with a law over the variable of a curve, fitted to
+    /// the former together with all that is there: weighed in each round by what the last one left, as of a
+    /// large gap the first is weighed by the gap itself. `None` if the machine does not run so.
+    fn fall_with(&self, curve: &Solved<'_>, own: &Columns) -> Option<f64> {
+        let Search {
+            machine,
+            fit,
+            check,
+            ..
+        } = self.search;
+        let [fitter, checker] = [self.search.fitter(), self.search.checker()];
+        let columns: Columns = own.iter().chain(curve.columns).cloned().collect();
+        let mut left = fit.rest.clone();
+        let mut step = DVector::zeros(columns.len());
+        for _ in 0..ROUNDS {
+            step = fitter.solve_beside(&left, fit, &columns).step;
+            left.clone_from(&fit.rest);
+            for (column, by) in columns.iter().zip(step.iter()) {
+                let pairs = left.iter_mut().flatten().zip(column.iter().flatten());
+                pairs.for_each(|(l, c)| *l -= c * *by);
+            }
+        }
+        let values = &step.as_slice()[own.len()..];
+        let state = fitter.moved(&fit.state, &step, 1.0);
+        let fall = |fitter: &Fitter<'_>, before: &Fit| {
+            let moved = fitter.at(state.clone()).ok()?;
+            let of_law = curve.shape.told(machine, fitter.set, &moved, values);
+            Some(before.deviance - moved.deviance + of_law)
+        };
+        Some(fall(&fitter, fit)? + fall(&checker, check)?)
     }
 
     /// Whether what was refined explains about as much as the best curve over what it
