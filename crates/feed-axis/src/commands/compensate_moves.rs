@@ -17,6 +17,7 @@ use serde::Serialize;
 use super::simulate::{EXACT, NOISE, closed_loop, factor, program_on, trajectory};
 use super::validate;
 use crate::context::Context;
+use crate::out_file;
 use crate::output::{print, write_whole};
 use crate::progress::bar;
 use crate::strategy_name::strategy_name;
@@ -50,7 +51,7 @@ pub struct Options {
     #[arg(long, help = EXACT, requires = "strategy")]
     exact: bool,
     /// Where to write the moves' errors, and what was learned, as JSON
-    #[arg(long, value_name = "FILE", requires = "strategy")]
+    #[arg(long, value_name = "FILE", requires = "strategy", value_parser = out_file::file())]
     json: Option<PathBuf>,
 }
 

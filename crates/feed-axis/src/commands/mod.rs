@@ -5,7 +5,7 @@ pub(crate) mod campaign;
 pub(crate) mod compensate;
 mod compensate_moves;
 pub(crate) mod contour;
-mod control_table;
+pub mod control_table;
 pub mod discover;
 mod discover_words;
 pub mod export;

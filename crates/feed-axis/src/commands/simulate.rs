@@ -9,7 +9,10 @@ use axis_log::{LogFile, WriteProblem};
 use axis_pipeline::Figures;
 use axis_pipeline::measured::Errors;
 use axis_pipeline::strategies::{Build, NextMove, SharedMotion, StrategyKind};
-use axis_sim::{Axis, ClosedLoop, Cycle, FlowRecorder, Measured, Recorder, RunStopped, SixDigits};
+use axis_sim::mechanism::Freedom;
+use axis_sim::{
+    Axis, ClosedLoop, Cycle, FlowRecorder, Measured, MoveSpec, Recorder, RunStopped, SixDigits,
+};
 use clap::Args;
 use discover_matrix::hidden::{MACHINE_STEP, Noise};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
@@ -19,6 +22,7 @@ use trajectories::Program;
 use super::{learn, validate};
 use crate::context::{Common, Context, read_text};
 use crate::exit::wrong_use;
+use crate::out_file;
 use crate::output::{print, write_whole};
 use crate::page::motion::{self as motion_page, Ran, Shown};
 use crate::progress::bar;
@@ -30,12 +34,7 @@ pub struct Options {
     #[command(flatten)]
     common: Common,
     /// Trajectory of the axis file, from 1
-    #[arg(
-        long,
-        value_name = "N",
-        conflicts_with = "program",
-        required_unless_present = "program"
-    )]
+    #[arg(long, value_name = "N", conflicts_with = "program")]
     trajectory: Option<usize>,
     /// Motion program (TOML; see docs/theory/trajectories.md)
     #[arg(long, value_name = "FILE")]
@@ -52,11 +51,11 @@ pub struct Options {
     #[arg(long, help = EXACT)]
     exact: bool,
     /// Where to write the log, one row for each control cycle: .csv, .parquet or .mat (version 5)
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = out_file::file())]
     log: Option<PathBuf>,
     /// Where to write a page of the motion: position and error, speed, current or torque
     /// over time, a table of figures
-    #[arg(long, value_name = "OUT.html")]
+    #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
     report: Option<PathBuf>,
 }
 
@@ -290,18 +289,46 @@ fn motion(options: &Options, context: &Context) -> Result<SharedMotion> {
     if let Some(file) = &options.program {
         return Ok(Arc::new(program_on(file, &context.axis)?));
     }
-    trajectory("--trajectory", options.trajectory.unwrap_or(0), context)
+    match options.trajectory {
+        Some(number) => trajectory("--trajectory", number, context),
+        None => Err(wrong_use(format!(
+            "no motion is given; valid: --program FILE, or --trajectory N; the axis file has {}",
+            listed(&context.axis)
+        ))),
+    }
+}
+
+/// The trajectories of an axis, by their numbers.
+pub(super) fn listed(axis: &Axis) -> String {
+    if axis.trajectories.is_empty() {
+        return "no [[trajectory]]: add one, or give a motion program".to_owned();
+    }
+    let (unit, scale) = match axis.freedom() {
+        Freedom::Linear => ("mm", 1e3),
+        Freedom::Rotary => ("°", 180.0 / std::f64::consts::PI),
+    };
+    let one = |(i, spec): (usize, &MoveSpec)| {
+        // Of a conversion, not of the file: 0.3 m is 300 mm.
+        let shown = |value: f64| SixDigits((1e9 * scale * value).round() / 1e9);
+        let (by, speed) = (shown(spec.displacement), shown(spec.limits.velocity()));
+        format!("{} (by {by} {unit} at up to {speed} {unit}/s)", i + 1)
+    };
+    let all: Vec<String> = axis.trajectories.iter().enumerate().map(one).collect();
+    match all.len() {
+        1 => format!("trajectory {}", all[0]),
+        _ => format!("trajectories {}", all.join(", ")),
+    }
 }
 
 /// The motion of a trajectory's number, asked for by an option.
 pub(super) fn trajectory(option: &str, number: usize, context: &Context) -> Result<SharedMotion> {
-    let count = context.axis.trajectories.len();
     let spec = number
         .checked_sub(1)
         .and_then(|index| context.axis.trajectories.get(index))
         .ok_or_else(|| {
             wrong_use(format!(
-                "{option} {number}: the axis file has trajectories 1 to {count}"
+                "{option} {number}: there is no such trajectory; the axis file has {}",
+                listed(&context.axis)
             ))
         })?;
     Ok(Arc::new(context.axis.plan(spec).into_diagnostic()?))
