@@ -277,10 +277,26 @@ fn a_search_needs_no_clone() {
         ],
     );
     assert!(said.contains("The model lacks viscous-friction."), "{said}");
-    assert!(
-        folder
-            .join("runs/screw-datasheet/discover/report.html")
-            .exists()
-            || folder.join("runs/y/discover/report.html").exists()
-    );
+    assert!(folder.join("runs/y/discover/report.html").exists());
+}
+
+/// A refused feedback names a change that gives the axis one; made, it does.
+#[test]
+fn what_a_refusal_names_gives_a_feedback() {
+    let axis = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/axes/joint.toml");
+    let folder = tempfile::tempdir().unwrap();
+    let asked = [
+        "simulate",
+        "--axis",
+        axis,
+        "--trajectory",
+        "2",
+        "--compensation",
+        "feedback",
+    ];
+    let message = refuse_in(folder.path(), 1, &asked);
+    let named = "or this axis with the position controller at the rate of the control (4 kHz)";
+    assert!(message.contains(named), "{message}");
+    let changed = [&asked[..], &["--set", "control.position_rate_khz=4"]].concat();
+    succeed_in(folder.path(), &changed);
 }

@@ -10,8 +10,8 @@ const SHARES: [f64; 4] = [0.7, 0.5, 0.35, 0.25];
 /// A change in words, and the drive with it.
 type Change = (String, DriveModel);
 
-/// The changes, each by itself, with which a feedback is within its margins: of several sizes of
-/// one change the least.
+/// The first change with which a feedback is within its margins, of several sizes of it the least;
+/// none where none does.
 pub(super) fn helps(
     model: &DriveModel,
     middle: &[Mode],
@@ -22,7 +22,12 @@ pub(super) fn helps(
         FeedbackDesign::within_margins(changed, middle, elsewhere, settings).is_ok()
     };
     let least = |sizes: Vec<Change>| sizes.into_iter().find(works).map(|(words, _)| words);
-    changes(model).into_iter().filter_map(least).collect()
+    // One is enough: a search that fails takes long.
+    changes(model)
+        .into_iter()
+        .find_map(least)
+        .into_iter()
+        .collect()
 }
 
 /// All changes that this drive can have, each in its sizes.

@@ -14,7 +14,8 @@ use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 
-use super::simulate::{EXACT, NOISE, closed_loop, factor, program_on, trajectory};
+use super::motions::{program_on, trajectory};
+use super::simulate::{EXACT, NOISE, closed_loop, factor};
 use super::validate;
 use crate::context::Context;
 use crate::out_file;

@@ -15,7 +15,7 @@ use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
 use toml_edit::{DocumentMut, Item, Value};
 
 use super::discover_words::{Files, Found, FoundInSummary, summary_words};
-use super::simulate::listed;
+use super::motions::listed;
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::file_set::FileSet;
 use crate::output::{Worded, note, print, ready};

@@ -15,6 +15,7 @@ pub(crate) mod learn;
 pub(crate) mod log;
 pub mod manual;
 pub(crate) mod merge;
+pub mod motions;
 pub(crate) mod new;
 pub(crate) mod pipeline;
 pub(crate) mod report;
