@@ -89,7 +89,7 @@ const SLOW_TRIED: [SlowTry; 4] = [
 
 /// The settings that are tried, one after the other.
 fn softer_ones(settings: &FeedbackSettings) -> impl Iterator<Item = FeedbackSettings> {
-    let bandwidth = |step: usize| std::f64::consts::FRAC_1_SQRT_2.powi(step as i32);
+    let bandwidth = |step: usize| (0..step).fold(1.0, |b, _| b * std::f64::consts::FRAC_1_SQRT_2);
     let quick = (0..SOFTENINGS).flat_map(move |step| {
         TRIED.iter().map(move |&[wandering, command, stribeck]| {
             let mut softer = settings.softened(bandwidth(step), wandering, command);
