@@ -8,6 +8,8 @@ const { chromium } = require("playwright-core");
 const [work, ...pages] = process.argv.slice(2);
 const DESK = { width: 1280, height: 800 };
 const PHONE = { width: 390, height: 844 };
+// A4 between margins of 1 cm, at 96 dots an inch.
+const PAPER = { width: 718, height: 1046 };
 
 // Opens a page; whatever goes wrong on it, and any request but for itself, is collected.
 async function open(browser, file, options) {
@@ -62,7 +64,7 @@ async function use(page, figure) {
   await page.mouse.move(box.x + 0.4 * box.width, box.y + box.height / 2);
   await page.waitForTimeout(60);
   const shown = await figure.locator(".u-value").allTextContents();
-  assert.ok(shown.length >= 2 && shown.every(v => v !== "" && v !== "--"), `a hover shows values: ${shown}`);
+  assert.ok(shown.length >= 2 && shown.every(v => v !== "" && v !== "--"), `${await figure.locator(".title").first().textContent()}: a hover shows values: ${shown}`);
 
   const before = await range(figure, "x");
   await drag(page, figure, 0.3, 0.5);
@@ -141,6 +143,7 @@ async function check(browser, file) {
   const links = await linked(desk.page, figures);
   await desk.page.evaluate(() => window.scrollTo(0, 0));
   await desk.page.screenshot({ path: picture("light"), fullPage: true });
+  assert.ok(await fits(desk.page), "light: no scrolling sideways");
   await desk.page.emulateMedia({ media: "print" });
   assert.equal(await desk.page.locator(".plot:visible").count(), 0, "print shows the pictures");
   if (figures.length > 0) assert.ok(await desk.page.locator(".drawing svg:visible").count() > 0);
@@ -149,7 +152,9 @@ async function check(browser, file) {
   await desk.close();
 
   for (const [what, options] of [
+    ["desk", { viewport: DESK, colorScheme: "light" }],
     ["dark", { viewport: DESK, colorScheme: "dark" }],
+    ["phone-dark", { viewport: PHONE, deviceScaleFactor: 2, hasTouch: true, isMobile: true, colorScheme: "dark" }],
     ["phone", { viewport: PHONE, deviceScaleFactor: 2, hasTouch: true, isMobile: true }],
     ["plain", { viewport: DESK, javaScriptEnabled: false }],
   ]) {
@@ -166,6 +171,14 @@ async function check(browser, file) {
     assert.deepEqual(opened.wrong, [], what);
     await opened.close();
   }
+  // On paper: pictures in place of plots, every table whole.
+  const paper = await open(browser, file, { viewport: PAPER });
+  await paper.page.emulateMedia({ media: "print" });
+  await unfold(paper.page);
+  assert.deepEqual(await cut(paper.page), [], "print: nothing is cut off");
+  await paper.page.screenshot({ path: picture("print"), fullPage: true });
+  assert.deepEqual(paper.wrong, [], "print");
+  await paper.close();
   console.log(`browser: ${name}: ${figures.length} figures, ${links}; under the pointer: ${(values[0] ?? []).join(" | ")}`);
 }
 

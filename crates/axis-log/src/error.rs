@@ -260,6 +260,14 @@ pub(crate) fn quoted(names: &[String]) -> String {
     }
 }
 
+/// What the extension of a file's name is, in words.
+pub(crate) fn extension(found: &str) -> String {
+    match found {
+        "" => "the name has no extension".to_owned(),
+        found => format!("the extension is \"{}\"", clip(found)),
+    }
+}
+
 /// What a message shows of a text from a file: its beginning, without control characters.
 pub(crate) fn clip(text: &str) -> String {
     let mut shown: String = (text.chars().take(SHOWN))

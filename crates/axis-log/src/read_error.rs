@@ -4,7 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-use crate::error::{CsvProblem, LogError, clip, quoted};
+use crate::error::{CsvProblem, LogError, clip, extension, quoted};
 use crate::mapping::MappingError;
 
 /// A log file that cannot be read: which one, and why.
@@ -49,7 +49,8 @@ impl fmt::Display for Place {
 pub enum ReadProblem {
     /// A file of no known format.
     #[error(
-        "the extension is \"{found}\": it must be .parquet, .mat, or of text .csv, .tsv, .txt, .dat or .asc"
+        "{}: it must be .parquet, .mat, or of text .csv, .tsv, .txt, .dat or .asc",
+        extension(found)
     )]
     Extension {
         /// The extension, without the point.

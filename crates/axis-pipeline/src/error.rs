@@ -4,16 +4,31 @@ use thiserror::Error;
 
 use crate::strategies::Need;
 
-impl From<compensator::DesignError> for PipelineError {
-    fn from(error: compensator::DesignError) -> Self {
-        Self::Feedback(Box::new(error))
-    }
-}
-
 impl PipelineError {
     /// Whether a strategy cannot be made for this axis at all: another one may be.
     pub fn is_unsuited(&self) -> bool {
         matches!(self, Self::Feedback(_) | Self::Adapt(_))
+    }
+}
+
+/// Why an axis has no feedback, and what would give it one.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error(
+    "no feedback can be designed for this axis; valid: a strategy without one, such as plan or adaptive{}",
+    words(helps)
+)]
+pub struct NoFeedback {
+    /// What the nearest design falls short of.
+    #[source]
+    pub why: Box<compensator::DesignError>,
+    /// Changes of the axis, each by itself, with which one can be designed: computed, in words.
+    pub helps: Vec<String>,
+}
+
+fn words(helps: &[String]) -> String {
+    match helps {
+        [] => String::new(),
+        helps => format!("; or this axis with {}", helps.join(", or ")),
     }
 }
 
@@ -42,10 +57,8 @@ pub enum PipelineError {
     #[error(transparent)]
     AssumedModel(#[from] axis_sim::PlanModelError),
     /// No feedback can be designed for the axis.
-    #[error(
-        "no feedback can be designed for this axis; valid: a strategy without one, such as plan or adaptive"
-    )]
-    Feedback(#[source] Box<compensator::DesignError>),
+    #[error(transparent)]
+    Feedback(#[from] NoFeedback),
     /// The model cannot be adapted.
     #[error("the model of this axis cannot be adapted: {0}")]
     Adapt(#[from] compensator::AdaptError),

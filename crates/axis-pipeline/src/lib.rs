@@ -36,7 +36,7 @@ pub mod transfer;
 pub mod validation;
 pub mod vibration;
 
-pub use error::PipelineError;
+pub use error::{NoFeedback, PipelineError};
 pub use figures::Figures;
 pub use linear_map::LinearMap;
 pub use measured::ErrorUnit;

@@ -161,7 +161,7 @@ impl Numbers {
         let heading = html! { b { "Table " (self.tables) } " " (table.caption) };
         let labels = labels(table);
         let body = html! {
-            div.scroll.stack[table.columns.len() > MOST_ON_A_PHONE] tabindex="0" role="region" aria-label=(table.caption) {
+            div.scroll.stack[table.columns.len() > MOST_ON_A_PHONE].many[table.columns.len() > MOST_WITH_ROOM] tabindex="0" role="region" aria-label=(table.caption) {
                 table {
                     thead { (table_head(table)) }
                     tbody { @for row in &table.rows { (table_row(row, &labels)) } }
@@ -274,6 +274,9 @@ fn numeric(table: &Table, column: usize) -> bool {
 /// Columns that a phone's width shows beside each other. A table with more is stacked there: a row
 /// becomes a block, each value on a line of its own behind the name of its column.
 const MOST_ON_A_PHONE: usize = 4;
+
+/// Columns that have room between them at a desk's width; of more the columns stand closer.
+const MOST_WITH_ROOM: usize = 7;
 
 /// What names each column where the header is not shown: its own text behind that of its group.
 fn labels(table: &Table) -> Vec<String> {

@@ -1,8 +1,11 @@
 //! Compensators: cycle by cycle, and on simulated moves.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use axis_pipeline::strategies::{Predictors, STRATEGIES, SharedMotion, StrategyKind, named};
+use axis_pipeline::learning::StoredCorrection;
+use axis_pipeline::strategies::{
+    Build, NextMove, Predictors, STRATEGIES, SharedMotion, StrategyKind, named,
+};
 use compensator::{Compensator, Correction, Sample};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -11,6 +14,7 @@ use pyo3::types::PyTuple;
 use crate::axis::PyAxis;
 use crate::errors::{StrategyError, raise};
 use crate::identify::TransferFunctions;
+use crate::learn::MoveCorrection;
 use crate::long::Hook;
 use crate::lugre_law::PyLuGre;
 use crate::motion::AnyMotion;
@@ -23,6 +27,27 @@ use crate::value::{Value, value};
 pub(crate) struct Strategy {
     kind: &'static StrategyKind,
     predictors: Predictors,
+    /// What was learned of the move that is made.
+    learned: Option<StoredCorrection>,
+}
+
+impl Strategy {
+    /// The compensator of a motion.
+    fn compensator(&self, motion: &SharedMotion) -> PyResult<Box<dyn Compensator + Send>> {
+        let learned = self.learned.as_ref();
+        let learned = learned.map(|stored| stored.on(&self.predictors.axis, &**motion));
+        let next = NextMove {
+            motion: motion.clone(),
+            continued: None,
+            learned: learned
+                .transpose()
+                .map_err(raise::<StrategyError>)?
+                .map(Arc::new),
+        };
+        let strategy = self.kind.strategy(&self.predictors);
+        let mut strategy = strategy.map_err(raise::<StrategyError>)?;
+        strategy.compensator(&next).map_err(raise::<StrategyError>)
+    }
 }
 
 /// What `simulate` may be given.
@@ -36,9 +61,8 @@ impl Recipe {
     pub(crate) fn make(self, motion: &SharedMotion) -> PyResult<Box<dyn Compensator>> {
         match self {
             Self::Strategy(strategy) => {
-                let Strategy { kind, predictors } = *strategy;
-                let made = kind.compensator(&predictors, motion.clone());
-                Ok(made.map_err(raise::<StrategyError>)?)
+                let made: Box<dyn Compensator> = strategy.compensator(motion)?;
+                Ok(made)
             }
             Self::Function(function) => Ok(Box::new(Function(function))),
         }
@@ -117,6 +141,7 @@ impl PyCompensator {
         network: Option<&PyNetwork>,
         transfer: Option<&TransferFunctions>,
         friction: Option<&PyLuGre>,
+        correction: Option<&MoveCorrection>,
     ) -> PyResult<Self> {
         let Some(kind) = named(STRATEGIES, strategy) else {
             let names: Vec<_> = STRATEGIES.iter().map(|kind| kind.name).collect();
@@ -131,8 +156,18 @@ impl PyCompensator {
         predictors.identified = friction.map(|friction| friction.0);
         // Refused here, so that no run can be for what is missing.
         kind.strategy(&predictors).map_err(raise::<StrategyError>)?;
+        if correction.is_some() && matches!(kind.build, Build::Each(_)) {
+            return Err(StrategyError::new_err(format!(
+                "{strategy:?} does not know a motion ahead, so a correction is of no use to it; valid: a strategy that plans, such as plan"
+            )));
+        }
+        let learned = correction.map(|correction| correction.0.clone());
         Ok(Self {
-            strategy: Strategy { kind, predictors },
+            strategy: Strategy {
+                kind,
+                predictors,
+                learned,
+            },
             axis: axis.clone(),
             running: Mutex::new(None),
         })
@@ -142,14 +177,27 @@ impl PyCompensator {
 /// A copy has not begun a motion, whatever the original does.
 impl Value for PyCompensator {
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let Strategy { kind, predictors } = &self.strategy;
+        let Strategy {
+            kind,
+            predictors,
+            learned,
+        } = &self.strategy;
+        let learned = learned.clone().map(MoveCorrection);
         let network = predictors.network.clone().map(|network| PyNetwork {
             network,
             losses: Vec::new(),
         });
         let transfer = predictors.transfer.clone().map(TransferFunctions);
         let friction = predictors.identified.map(PyLuGre);
-        (self.axis.clone(), kind.name, network, transfer, friction).into_pyobject(py)
+        (
+            self.axis.clone(),
+            kind.name,
+            network,
+            transfer,
+            friction,
+            learned,
+        )
+            .into_pyobject(py)
     }
 
     fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
@@ -159,10 +207,12 @@ impl Value for PyCompensator {
             Option<PyRef<'py, PyNetwork>>,
             Option<PyRef<'py, TransferFunctions>>,
             Option<PyRef<'py, PyLuGre>>,
+            Option<PyRef<'py, MoveCorrection>>,
         );
-        let (axis, strategy, network, transfer, friction): State<'_> = state.extract()?;
+        let (axis, strategy, network, transfer, friction, learned): State<'_> = state.extract()?;
         let (network, transfer) = (network.as_deref(), transfer.as_deref());
-        Self::of(&axis, &strategy, network, transfer, friction.as_deref())
+        let (friction, learned) = (friction.as_deref(), learned.as_deref());
+        Self::of(&axis, &strategy, network, transfer, friction, learned)
     }
 }
 
@@ -172,17 +222,20 @@ value!(PyCompensator);
 impl PyCompensator {
     /// The strategy of that name (`feed_axis.STRATEGIES`) for an axis, with what it needs.
     #[new]
-    #[pyo3(signature = (axis, strategy, *, network = None, transfer = None, friction = None, motion = None))]
+    #[pyo3(signature = (axis, strategy, *, network = None, transfer = None, friction = None, correction = None, motion = None))]
+    #[allow(clippy::too_many_arguments, reason = "keywords of a Python function")]
     fn new(
         axis: PyRef<'_, PyAxis>,
         strategy: &str,
         network: Option<PyRef<'_, PyNetwork>>,
         transfer: Option<PyRef<'_, TransferFunctions>>,
         friction: Option<PyRef<'_, PyLuGre>>,
+        correction: Option<PyRef<'_, MoveCorrection>>,
         motion: Option<AnyMotion<'_>>,
     ) -> PyResult<Self> {
         let (network, transfer) = (network.as_deref(), transfer.as_deref());
-        let made = Self::of(&axis, strategy, network, transfer, friction.as_deref())?;
+        let (friction, correction) = (friction.as_deref(), correction.as_deref());
+        let made = Self::of(&axis, strategy, network, transfer, friction, correction)?;
         if let Some(motion) = motion {
             made.start(motion)?;
         }
@@ -191,9 +244,7 @@ impl PyCompensator {
 
     /// Begins a motion from rest: the next `update` is its first cycle.
     fn start(&self, motion: AnyMotion<'_>) -> PyResult<()> {
-        let Strategy { kind, predictors } = &self.strategy;
-        let made = kind.compensator(predictors, motion.on(&self.axis.axis)?);
-        let mut made = made.map_err(raise::<StrategyError>)?;
+        let mut made = self.strategy.compensator(&motion.on(&self.axis.axis)?)?;
         made.reset();
         *self.running.lock().unwrap_or_else(PoisonError::into_inner) = Some(made);
         Ok(())

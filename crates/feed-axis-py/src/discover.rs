@@ -72,7 +72,7 @@ pub(crate) fn discover(
     ];
     let [fit, check, test] = logs;
     let (text, machine) = (axis.text.clone(), Arc::new(machine));
-    let (discovery, text) = long(py, progress, move |hook| {
+    let (discovery, text, page) = long(py, progress, move |hook| {
         let evidence = Evidence::new(&machine, fit, check, test).map_err(raise::<LogError>)?;
         let mut stage = 0;
         let tell = |what: &str| {
@@ -80,13 +80,15 @@ pub(crate) fn discover(
             hook.stage(what, stage);
         };
         let searched = evidence.discover(&machine, &settings, tell);
-        let (found, told) = searched.map_err(raise::<SearchError>)?;
-        let mut told = told.discovery;
-        notes.append(&mut told.notes);
-        told.notes = notes;
-        Ok((told, with_effects(text, &machine, &found)?))
+        let (found, mut told) = searched.map_err(raise::<SearchError>)?;
+        notes.append(&mut told.discovery.notes);
+        told.discovery.notes = notes;
+        let page = feed_axis::discovery_page(&told);
+        let page = page.map_err(|error| SearchError::new_err(error.to_string()))?;
+        let text = with_effects(text, &machine, &found)?;
+        Ok((told.discovery, text, page))
     })?;
-    Discovery::new(discovery, text)
+    Discovery::new(discovery, text, page)
 }
 
 /// The text of an axis file with the effects that were found.

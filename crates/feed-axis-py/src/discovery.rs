@@ -1,11 +1,13 @@
 //! What a search found.
 
+use std::path::PathBuf;
+
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyModule, PyTuple};
 
 use crate::axis::PyAxis;
 use crate::errors::{SearchError, package, raise};
-use crate::html::table;
+use crate::html::{page_to, table};
 use crate::motion::Program;
 use crate::value::{Value, value};
 
@@ -66,11 +68,13 @@ pub(crate) struct Discovery {
     found: discrepancy::Discovery,
     effects: Vec<Effect>,
     text: String,
+    /// The page of the search, which shows more than the words and figures hold.
+    page: String,
 }
 
 impl Discovery {
-    /// With the text of the axis file that has the effects.
-    pub(crate) fn new(found: discrepancy::Discovery, text: String) -> PyResult<Self> {
+    /// With the text of the axis file that has the effects, and the page.
+    pub(crate) fn new(found: discrepancy::Discovery, text: String, page: String) -> PyResult<Self> {
         let effects = found.effects.iter().map(|e| Effect {
             name: e.name.clone(),
             summary: e.summary.clone(),
@@ -91,6 +95,7 @@ impl Discovery {
             effects,
             found,
             text,
+            page,
         })
     }
 
@@ -102,13 +107,19 @@ impl Discovery {
 impl Value for Discovery {
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let json = serde_json::to_string(&self.found).map_err(raise::<SearchError>)?;
-        (json, &self.text).into_pyobject(py)
+        (json, &self.text, &self.page).into_pyobject(py)
     }
 
     fn restored(state: &Bound<'_, PyTuple>) -> PyResult<Self> {
-        let (json, text): (String, String) = state.extract()?;
+        let (json, text, page): (String, String, String) = state.extract()?;
         let found = serde_json::from_str(&json).map_err(raise::<SearchError>)?;
-        Self::new(found, text)
+        Self::new(found, text, page)
+    }
+
+    /// The page shows the same.
+    fn key<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let json = serde_json::to_string(&self.found).map_err(raise::<SearchError>)?;
+        (json, &self.text).into_pyobject(py)
     }
 }
 
@@ -222,6 +233,12 @@ impl Discovery {
         columns.set_item("unit", texts(|(_, p)| p.unit.clone()))?;
         let pandas = package(py, "pandas", "to_pandas")?;
         pandas.getattr("DataFrame")?.call1((columns,))
+    }
+
+    /// The page of the search, as the command writes it; to a file too where one is named.
+    #[pyo3(signature = (path = None))]
+    fn to_html(&self, py: Python<'_>, path: Option<PathBuf>) -> PyResult<String> {
+        page_to(py, self.page.clone(), path)
     }
 
     /// Draws the gap before and after, and the noise, with matplotlib.

@@ -1,4 +1,18 @@
-//! Results as a notebook shows them.
+//! Results as a notebook shows them, and as pages.
+
+use std::path::PathBuf;
+
+use pyo3::prelude::*;
+
+use crate::errors::of_file;
+
+/// The text of a page, written to a file too where one is named.
+pub(crate) fn page_to(py: Python<'_>, text: String, path: Option<PathBuf>) -> PyResult<String> {
+    if let Some(path) = path {
+        std::fs::write(&path, &text).map_err(|error| of_file(py, &error, &path))?;
+    }
+    Ok(text)
+}
 
 /// A line of words above a table, as HTML.
 pub(crate) fn table(words: &str, heads: &[&str], rows: &[Vec<String>]) -> String {

@@ -7,11 +7,11 @@
 //! every equation, and every word of an error, is that of the crate below it.
 //!
 //! # Rooms
-//! - `begin`: axes to begin with. `loops`: margins and tuning of an axis' loops.
+//! - `begin`: axes to begin with. `loops`: margins and tuning of an axis' loops. `linear`: state space and frequency responses. `controller`: an unknown one, from logs.
 //! - `axis`, `motion`, `simulate`, `run`: an axis from a file or a dict, along a motion, to
 //!   arrays.
 //! - `log`, `discover`, `discovery`: what a model lacks, from files, frames or arrays.
-//! - `compensation`, `sample`, `identify`, `export`: corrections, cycle by cycle, on whole moves, and for controllers.
+//! - `compensation`, `sample`, `identify`, `learn`, `export`: corrections, cycle by cycle, on whole moves, and for controllers.
 //! - `network`, `one_cycle`: training and prediction; samples of one control cycle.
 //! - `lugre_law`, `beam`, `design`: the parts for themselves.
 //! - `arrays`, `dict`: conversion. `value`: equality, copies and pickles. `errors`: exceptions. `html`: tables of notebooks. `long`: long work.
@@ -28,6 +28,7 @@ mod axis;
 mod beam;
 mod begin;
 mod compensation;
+mod controller;
 mod design;
 mod dict;
 mod discover;
@@ -36,6 +37,8 @@ mod errors;
 mod export;
 mod html;
 mod identify;
+mod learn;
+mod linear;
 mod log;
 mod long;
 mod loops;
@@ -62,6 +65,8 @@ mod _feed_axis {
     #[pymodule_export]
     use crate::compensation::PyCompensator;
     #[pymodule_export]
+    use crate::controller::identify_control;
+    #[pymodule_export]
     use crate::design::latin_hypercube;
     #[pymodule_export]
     use crate::discover::discover;
@@ -74,6 +79,8 @@ mod _feed_axis {
     };
     #[pymodule_export]
     use crate::identify::TransferFunctions;
+    #[pymodule_export]
+    use crate::learn::{MoveCorrection, identify, learn};
     #[pymodule_export]
     use crate::lugre_law::PyLuGre;
     #[pymodule_export]

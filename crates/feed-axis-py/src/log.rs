@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use axis_log::intake::{Options, files, prepare, prepare_channels};
-use axis_log::{Channel, TIME_CHANNEL};
+use axis_log::{Channel, Log, TIME_CHANNEL};
 use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, CHANNELS, LogChannel};
 use discrepancy::logs::{NamedLog, admit, exact_channels, most_samples, needed_channels};
@@ -26,7 +26,21 @@ pub(crate) fn log_of(
     renamed: &Renamed,
     notes: &mut Vec<String>,
 ) -> PyResult<NamedLog> {
-    let (needed, exact) = (needed_channels(axis), exact_channels(axis));
+    let needed = needed_channels(axis);
+    let (name, log) = whole_log_of(given, name, axis, &needed, renamed, notes)?;
+    admit(name, log, axis, notes).map_err(raise::<LogError>)
+}
+
+/// The same with channels that it must have, and nothing asked of its motion.
+pub(crate) fn whole_log_of(
+    given: &Bound<'_, PyAny>,
+    name: &str,
+    axis: &Axis,
+    needed: &[&str],
+    renamed: &Renamed,
+    notes: &mut Vec<String>,
+) -> PyResult<(String, Log)> {
+    let exact = exact_channels(axis);
     let options = Options {
         exact: &exact,
         rate_hz: None,
@@ -40,20 +54,20 @@ pub(crate) fn log_of(
             }
             (
                 path.display().to_string(),
-                prepare(&files, &axis.log, &needed, options),
+                prepare(&files, &axis.log, needed, options),
             )
         }
         Err(_) => {
             let channels = columns(given, name, renamed)?;
             (
                 name.to_owned(),
-                prepare_channels(name, channels, &needed, options),
+                prepare_channels(name, channels, needed, options),
             )
         }
     };
     let prepared = prepared.map_err(raise::<LogError>)?;
     notes.extend(prepared.done.iter().map(ToString::to_string));
-    admit(name, prepared.log, axis, notes).map_err(raise::<LogError>)
+    Ok((name, prepared.log))
 }
 
 /// Columns of frames and dicts that have other names than their channels: column, channel, and

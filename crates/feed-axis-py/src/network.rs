@@ -6,6 +6,7 @@ use axis_pipeline::training::test;
 use cfnn::artifact::{network_from_bytes, network_to_bytes};
 use cfnn::train::{Dataset, Trainer, TrainingSettings};
 use cfnn::{Network, Shape};
+use controller_export::onnx::{self, Description, NetworkSignal};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple, PyType};
@@ -154,6 +155,35 @@ impl PyNetwork {
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let written = std::fs::write(&path, self.bytes()?);
         written.map_err(|error| of_file(py, &error, &path))
+    }
+
+    /// Writes the network as an ONNX file; its inputs and outputs are named in it.
+    #[pyo3(signature = (path, *, inputs = None, outputs = None))]
+    fn to_onnx(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        inputs: Option<Vec<String>>,
+        outputs: Option<Vec<String>>,
+    ) -> PyResult<()> {
+        let shape = self.network.shape();
+        let named = |names: Option<Vec<String>>, letter: &str, count: usize| {
+            let numbered = || (1..=count).map(|i| format!("{letter}{i}")).collect();
+            let signal = |name| NetworkSignal {
+                name,
+                unit: String::new(),
+            };
+            let names = names.unwrap_or_else(numbered).into_iter();
+            names.map(signal).collect::<Vec<_>>()
+        };
+        let description = Description {
+            summary: "a cascade-forward network".to_owned(),
+            inputs: named(inputs, "x", shape.inputs),
+            outputs: named(outputs, "y", shape.outputs),
+            metadata: Vec::new(),
+        };
+        let bytes = onnx::export(&self.network, &description).map_err(raise::<NetworkError>)?;
+        std::fs::write(&path, bytes).map_err(|error| of_file(py, &error, &path))
     }
 
     fn __repr__(&self) -> String {

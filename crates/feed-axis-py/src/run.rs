@@ -1,13 +1,17 @@
 //! What a run leaves: channels as arrays.
 
+use std::path::PathBuf;
+
+use axis_log::TIME_CHANNEL;
+use axis_report::{Cell, Figure, Page, Section, Series, Table, engineering};
 use axis_sim::{Axis, Cycle, LogChannel, channels};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::errors::package;
-use crate::html::table;
+use crate::errors::{SimulationError, package, raise};
+use crate::html::{page_to, table};
 use crate::value::{Value, value};
 
 /// The samples of a run, a column a channel.
@@ -251,6 +255,54 @@ impl Run {
     ) -> PyResult<Bound<'py, PyAny>> {
         let plots = slf.py().import("feed_axis._plot")?;
         plots.call_method1("plot_run", (slf, channels, ax))
+    }
+
+    /// A page of the run: figures of the tracking error and of every channel; to a file too where
+    /// one is named.
+    #[pyo3(signature = (path = None))]
+    fn to_html(&self, py: Python<'_>, path: Option<PathBuf>) -> PyResult<String> {
+        let all = |array: &Py<PyArray1<f64>>| array.bind(py).readonly().as_array().to_vec();
+        let time = self.channels.iter().find(|(name, ..)| name == TIME_CHANNEL);
+        let time = time.map(|(.., samples)| all(samples)).unwrap_or_default();
+        let figure = |title: &str, values: Vec<f64>, unit: &str| {
+            Figure::new(title, "time", title)
+                .units("s", unit)
+                .linked("time")
+                .series(Series::line(title, time.clone(), values))
+        };
+        let table = Table::new("Size of the tracking error", ["figure", "value"])
+            .row([
+                Cell::text("greatest"),
+                Cell::text(engineering(self.most, &self.unit, 4)),
+            ])
+            .row([
+                Cell::text("mean"),
+                Cell::text(engineering(self.mean, &self.unit, 4)),
+            ]);
+        let error = Section::new("Tracking error").table(table).figure(figure(
+            "tracking error",
+            all(&self.error),
+            &self.unit,
+        ));
+        let channels = self
+            .channels
+            .iter()
+            .filter(|(name, ..)| name != TIME_CHANNEL);
+        let channels = channels.fold(
+            Section::new("Channels"),
+            |section, (name, unit, samples)| {
+                // The unit stands at the axis: the name without it.
+                let suffix = format!("_{}", unit.replace(['·', '/'], "_").to_lowercase());
+                let title = name.strip_suffix(suffix.as_str()).unwrap_or(name);
+                section.figure(figure(&title.replace('_', " "), all(samples), unit))
+            },
+        );
+        let page = Page::new(format!("Motion of {}", self.axis))
+            .lead("Simulated, not measured.")
+            .section(error)
+            .section(channels);
+        let text = axis_report::render(&page).map_err(raise::<SimulationError>)?;
+        page_to(py, text, path)
     }
 
     fn _repr_html_(&self, py: Python<'_>) -> String {

@@ -65,6 +65,9 @@ def test_hidden_viscous_friction_is_found_in_frames(
     assert (first["value"], first["from"], first["to"]) == (found.size, *found.interval)
     again_found = pickle.loads(pickle.dumps(found))
     assert again_found == found and again_found.to_dict() == found.to_dict()
+    page = found.to_html()
+    assert "What the model of liu2025 lacks" in page and "The gap before and after" in page
+    assert again_found.to_html() == page
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     bars = found.plot()

@@ -44,6 +44,11 @@ def test_a_component_and_a_network_are_written(axis: fa.Axis, tmp_path: Path) ->
     samples = axis.sample(200)
     network = axis.train(samples, hidden=[3], epochs=3)
     (path,) = fa.Compensator(axis, "network", network=network).export(tmp_path, target="onnx", name="cycle")
+    network.to_onnx(tmp_path / "own.onnx", inputs=["position", "velocity", "acceleration", "command"])
+    own = (tmp_path / "own.onnx").read_bytes()
+    assert b"position, velocity, acceleration, command" in own and b"y1" in own
+    with pytest.raises(fa.NetworkError, match="described inputs"):
+        network.to_onnx(tmp_path / "bad.onnx", inputs=["x"])
     assert path.endswith("cycle.onnx") and axis.fingerprint.encode() in Path(path).read_bytes()
 
 

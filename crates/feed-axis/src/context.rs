@@ -1,17 +1,19 @@
 //! What every stage is told: axis, machine, folder, seed.
 
+use std::fmt;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use axis_pipeline::ErrorUnit;
-use axis_sim::Axis;
+use axis_sim::{Axis, AxisFileError};
 use campaign::Inputs;
 use clap::Args;
-use miette::{IntoDiagnostic, Result, WrapErr};
+use miette::{Diagnostic, IntoDiagnostic, LabeledSpan, Report, Result, SourceCode, WrapErr};
 
 use crate::exit::{busy, wrong_use};
 use crate::output::ready;
 use crate::set_key::{SetKey, with_keys};
+use crate::{program, shell};
 
 /// The axis file that commands take where none is given: the paper's, in the project's folder.
 pub const DEFAULT_AXIS: &str = "data/axes/liu2025.toml";
@@ -63,9 +65,38 @@ pub struct Context {
     pub threads: usize,
     /// Whether every stage is made small.
     pub quick: bool,
+    /// The options that results depend on, as a command that is to find these results needs
+    /// them.
+    pub options: Vec<String>,
 }
 
 impl Common {
+    /// The options that results depend on, where they are not those that are taken anyway.
+    fn words(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        let mut give = |option: &str, value: String| words.extend([option.to_owned(), value]);
+        let shown = |path: &Path| path.display().to_string();
+        if self.axis != Path::new(DEFAULT_AXIS) {
+            give("--axis", shown(&self.axis));
+        }
+        for key in &self.set {
+            give("--set", key.to_string());
+        }
+        if let Some(file) = &self.machine {
+            give("--machine", shown(file));
+        }
+        if let Some(folder) = &self.out {
+            give("--out", shown(folder));
+        }
+        if self.seed != 1 {
+            give("--seed", self.seed.to_string());
+        }
+        if self.quick {
+            words.push("--quick".to_owned());
+        }
+        words
+    }
+
     /// Reads the axis files and sets the number of threads.
     pub fn open(&self) -> Result<Context> {
         let mut axis = read_axis(&self.axis)?;
@@ -78,7 +109,7 @@ impl Common {
             experiment.map(|experiment| experiment.machine.clone())
         });
         let machine = match &machine_file {
-            Some(file) => Axis::read(file)?,
+            Some(file) => read_axis(file)?,
             None => axis.clone(),
         };
         // A second call finds the pool built already, with the same number.
@@ -96,6 +127,7 @@ impl Common {
             seed: self.seed,
             threads: self.threads,
             quick: self.quick,
+            options: self.words(),
         })
     }
 }
@@ -130,9 +162,15 @@ impl Context {
         ErrorUnit::of(&self.axis)
     }
 
+    /// The line of a shell that runs another command with these options.
+    pub fn line(&self, command: &str) -> String {
+        let start = [program::name(), command].map(str::to_owned);
+        shell::line(&[&start[..], &self.options].concat())
+    }
+
     /// Everything of these options that results depend on, and the program.
     pub fn inputs(&self) -> Inputs {
-        crate::program::inputs()
+        program::inputs()
             .with("axis", &self.axis.fingerprint)
             .with("machine", &self.machine.fingerprint)
             .with("seed", self.seed)
@@ -145,13 +183,56 @@ impl Context {
 /// Wrong use, where the default is meant and is not there; what is wrong with the file.
 pub fn read_axis(file: &Path) -> Result<Axis> {
     if file == Path::new(DEFAULT_AXIS) && !file.exists() {
-        let program = crate::program::name();
+        let program = program::name();
         return Err(wrong_use(format!(
             "no axis file is given, and {DEFAULT_AXIS}, which is taken then, is not in this folder; \
              give one with --axis FILE, or write one to begin with: `{program} new NAME --kind KIND`"
         )));
     }
-    Ok(Axis::read(file)?)
+    Axis::read(file).map_err(|error| match &error {
+        AxisFileError::Field { field, what, .. }
+            if field == "mechanism" && what == "is missing" =>
+        {
+            let program = program::name();
+            let help =
+                format!("`{program} new NAME --kind KIND` writes a whole axis file to begin with");
+            Report::new(Helped { error, help })
+        }
+        _ => error.into(),
+    })
+}
+
+/// The error of an axis file, with what helps.
+#[derive(Debug)]
+struct Helped {
+    error: AxisFileError,
+    help: String,
+}
+
+impl fmt::Display for Helped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.error.fmt(f)
+    }
+}
+
+impl std::error::Error for Helped {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.error.source()
+    }
+}
+
+impl Diagnostic for Helped {
+    fn help(&self) -> Option<Box<dyn fmt::Display + '_>> {
+        Some(Box::new(&self.help))
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.error.source_code()
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        self.error.labels()
+    }
 }
 
 /// Reads a text file, naming it where that fails.

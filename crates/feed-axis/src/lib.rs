@@ -11,6 +11,7 @@ mod diagnostic;
 pub mod exit;
 pub mod file_set;
 pub mod jobs;
+mod out_file;
 pub mod output;
 mod page;
 mod paper;
@@ -18,6 +19,9 @@ pub mod program;
 pub mod progress;
 mod results;
 pub mod set_key;
+mod shell;
 pub mod store;
 mod strategy_name;
 pub mod terminal;
+
+pub use page::discovery::page as discovery_page;

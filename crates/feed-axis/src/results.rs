@@ -12,7 +12,7 @@ use crate::commands::identify::{Friction, Transfer};
 use crate::commands::train::Training;
 use crate::commands::{compensate, identify, study, train, validate};
 use crate::context::Context;
-use crate::{paper, program};
+use crate::paper;
 
 /// Everything that the page shows.
 pub struct Results {
@@ -78,9 +78,9 @@ fn summarise(
     let ids = validation.trajectories.iter().map(|t| t.id);
     if let Some((id, kind)) = unfinished(ids, compensation) {
         return Err(miette!(
-            "trajectory {id} was not compensated with \"{}\", others were; run `{} compensate`",
+            "trajectory {id} was not compensated with \"{}\", others were; run `{}`",
             kind.label,
-            program::name()
+            context.line("compensate")
         ));
     }
     let unit = context.unit();

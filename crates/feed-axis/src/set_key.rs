@@ -1,5 +1,6 @@
 //! Keys of an axis file that an option sets to other values for one run.
 
+use std::fmt;
 use std::str::FromStr;
 
 use miette::{IntoDiagnostic, Result};
@@ -28,6 +29,15 @@ impl FromStr for SetKey {
         let key = tables.pop().unwrap_or_default();
         let value = value.trim().to_owned();
         Ok(Self { tables, key, value })
+    }
+}
+
+impl fmt::Display for SetKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for table in &self.tables {
+            write!(f, "{table}.")?;
+        }
+        write!(f, "{}={}", self.key, self.value)
     }
 }
 
@@ -113,6 +123,8 @@ mod tests {
             let message = wrong.parse::<SetKey>().unwrap_err();
             assert!(message.contains("mechanism.table_mass_kg=415"), "{message}");
         }
+        let spelt: SetKey = "stroke.start_mm = [1, 2]".parse().unwrap();
+        assert_eq!(spelt.to_string(), "stroke.start_mm=[1, 2]");
         let in_a_value: SetKey = "name.first=3".parse().unwrap();
         let message = with_keys(FILE, &[in_a_value]).unwrap_err().to_string();
         assert!(message.contains("`name` is no table"), "{message}");

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::context::Context;
 use crate::output::{ready, remove, sweep, write_whole};
-use crate::program;
+use crate::{program, shell};
 
 /// Layout of manifests and of the JSON files beside them.
 const SCHEMA: u32 = 1;
@@ -42,6 +42,8 @@ pub struct Stage<'a> {
     files: &'static [&'static str],
     scratch: &'static [&'static str],
     key: String,
+    /// The stages that it builds on, in their order.
+    before: Vec<&'static str>,
 }
 
 impl<'a> Stage<'a> {
@@ -68,12 +70,19 @@ impl<'a> Stage<'a> {
             put(&stage.key);
         }
         let key = hasher.finalize().to_hex().to_string();
+        let mut before: Vec<&'static str> = Vec::new();
+        for name in after.iter().flat_map(|s| s.before.iter().chain([&s.name])) {
+            if !before.contains(name) {
+                before.push(name);
+            }
+        }
         Self {
             context,
             name,
             files,
             scratch: &[],
             key,
+            before,
         }
     }
 
@@ -155,13 +164,7 @@ impl<'a> Stage<'a> {
     pub fn read(&self, file: &str) -> Result<Vec<u8>> {
         let (manifest, found) = self.manifest()?;
         let path = self.path(file);
-        let again = || {
-            format!(
-                "run `{} {}` with the same options again",
-                program::name(),
-                self.name
-            )
-        };
+        let again = || format!("run `{}` again", self.context.line(self.name));
         if manifest.axis_fingerprint != self.context.axis.fingerprint {
             return Err(miette!(
                 "{} was made from another axis file ({}); {}",
@@ -207,32 +210,39 @@ impl<'a> Stage<'a> {
             })
     }
 
+    /// The commands that make this stage: those of the stages before it that have no results
+    /// yet, and its own, each with the options that these results are found by.
+    fn missing(&self) -> String {
+        let there = |name: &str| self.context.out.join(name).join(MANIFEST).exists();
+        let before = self.before.iter().filter(|name| !there(name));
+        let commands = before.chain([&self.name]);
+        let commands = commands.map(|name| format!("`{}`", self.context.line(name)));
+        commands.collect::<Vec<_>>().join(", then ")
+    }
+
     /// The manifest as it stands, and its bytes.
     fn manifest(&self) -> Result<(Manifest, Vec<u8>)> {
         let path = self.path(MANIFEST);
         let bytes = std::fs::read(&path).map_err(|e| {
             miette!(
-                "no finished results in {} ({e}); run `{} {}` first",
+                "no finished results in {} ({e}); first run {}",
                 self.path("").display(),
-                program::name(),
-                self.name
+                self.missing()
             )
         })?;
         let manifest: Manifest = serde_json::from_slice(&bytes).map_err(|e| {
             miette!(
-                "{} is not a manifest ({e}); run `{} {}` again",
+                "{} is not a manifest ({e}); run `{}` again",
                 path.display(),
-                program::name(),
-                self.name
+                self.context.line(self.name)
             )
         })?;
         if manifest.schema != SCHEMA {
             return Err(miette!(
-                "{} has schema {}, this program reads {SCHEMA}; run `{} {}` again",
+                "{} has schema {}, this program reads {SCHEMA}; run `{}` again",
                 path.display(),
                 manifest.schema,
-                program::name(),
-                self.name
+                self.context.line(self.name)
             ));
         }
         Ok((manifest, bytes))
@@ -245,9 +255,9 @@ pub fn read_finished<T: DeserializeOwned>(run: &Path, stage: &str, file: &str) -
     let folder = run.join(stage);
     let manifest = folder.join(MANIFEST);
     let again = format!(
-        "make it with `{} pipeline --out {}`",
+        "make it with `{} pipeline --axis FILE --out {}`",
         program::name(),
-        run.display()
+        shell::word(&run.display().to_string())
     );
     let found: Manifest = serde_json::from_slice(&read(&manifest)?)
         .into_diagnostic()
@@ -296,6 +306,7 @@ mod tests {
             seed: 1,
             threads: 1,
             quick: true,
+            options: Vec::new(),
         }
     }
 

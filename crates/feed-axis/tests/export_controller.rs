@@ -99,7 +99,8 @@ fn a_trained_network_leaves_as_c_as_a_component_and_as_onnx() {
     let run = run.to_str().unwrap();
     let missing = ["--strategy", "network-lugre", "--run", run, "--out", run];
     let message = refuse(&[&["export", "c"][..], &missing].concat());
-    assert!(message.contains("run `feed-axis train`"), "{message}");
+    let hint = format!("run `feed-axis sample --out {run}`, then `feed-axis train --out {run}`");
+    assert!(message.contains(&hint), "{message}");
 
     let (context, predictors) = trained(run);
     let samples = simulated(&context, &predictors);

@@ -12,9 +12,14 @@ mod identify;
 mod identify_control;
 mod log_convert;
 mod loops;
+mod outside;
 mod pages;
+mod pipeline;
+mod refused_files;
 mod schema;
 mod schema_of;
+mod simulate;
+mod standard_output;
 mod stopped;
 #[path = "../../controller-export/tests/support/mod.rs"]
 mod support;

@@ -17,6 +17,8 @@ use std::path::Path;
 
 use thiserror::Error;
 
+use crate::error::extension;
+
 pub use csv::{CsvSink, write_csv, write_csv_to};
 pub use file::LogFile;
 
@@ -113,7 +115,7 @@ pub struct WriteError {
 #[non_exhaustive]
 pub enum WriteProblem {
     /// A file of no known format.
-    #[error("the extension is \"{found}\": it must be {valid}")]
+    #[error("{}: it must be {valid}", extension(found))]
     Extension {
         /// The extension, without the point.
         found: String,

@@ -9,6 +9,7 @@ mod adaptive;
 mod adaptive_feedback;
 mod drive_terms;
 mod feedback;
+mod feedback_helps;
 mod feedforward;
 mod iterative;
 mod learned;

@@ -16,10 +16,12 @@ use compensator::{
 };
 use trajectories::Motion;
 
+use super::feedback_helps;
 use super::plan::{Left, plan};
 use super::{DesignOnce, LearnedValues, NextMove, Predictors, SharedMotion, Strategy};
 use crate::residuals::{AnyLearner, AnyResidual};
-use crate::{ErrorUnit, PipelineError};
+
+use crate::{ErrorUnit, NoFeedback, PipelineError};
 
 /// What a strategy adds to the plan.
 #[derive(Clone, Copy, Debug, Default)]
@@ -147,7 +149,13 @@ impl PlanStrategy {
             ..FeedbackSettings::default()
         };
         let elsewhere: [&[_]; 2] = [&near, &far];
-        let design = || FeedbackDesign::within_margins(model, &middle, &elsewhere, &settings);
+        let design = || {
+            let designed = FeedbackDesign::within_margins(model, &middle, &elsewhere, &settings);
+            designed.map_err(|why| NoFeedback {
+                helps: feedback_helps::helps(model, &middle, &elsewhere, &settings),
+                why: Box::new(why),
+            })
+        };
         Ok(match *model == self.assumed_model {
             true => self.first_design.get(design)?,
             false => design()?,

@@ -5,13 +5,13 @@ use std::sync::{Arc, OnceLock};
 use axis_sim::Axis;
 use cfnn::{Network, Predictor};
 use compensator::{
-    DesignError, DriveModel, FeedbackDesign, FrictionFeedforward, MotionEstimator,
-    NetworkCompensation, ObserverGains, TransferFunction, TransferFunctionModel,
+    DriveModel, FeedbackDesign, FrictionFeedforward, MotionEstimator, NetworkCompensation,
+    ObserverGains, TransferFunction, TransferFunctionModel,
 };
 use lugre::LuGre;
 
 use super::{Feedforward, Need};
-use crate::PipelineError;
+use crate::{NoFeedback, PipelineError};
 
 /// What the strategies are made of: the axis as its file has it, and what was found from it.
 #[derive(Clone, Debug)]
@@ -32,17 +32,17 @@ pub struct Predictors {
 
 /// A feedback that is designed once, or found impossible once.
 #[derive(Clone, Debug, Default)]
-pub struct DesignOnce(Arc<OnceLock<Result<FeedbackDesign, DesignError>>>);
+pub struct DesignOnce(Arc<OnceLock<Result<FeedbackDesign, NoFeedback>>>);
 
 impl DesignOnce {
     /// The design, by `make` the first time.
     ///
     /// # Errors
-    /// [`DesignError`] as it came the first time.
+    /// [`NoFeedback`] as it came the first time.
     pub fn get(
         &self,
-        make: impl FnOnce() -> Result<FeedbackDesign, DesignError>,
-    ) -> Result<FeedbackDesign, DesignError> {
+        make: impl FnOnce() -> Result<FeedbackDesign, NoFeedback>,
+    ) -> Result<FeedbackDesign, NoFeedback> {
         self.0.get_or_init(make).clone()
     }
 }

@@ -181,10 +181,13 @@ impl Layout {
         let loads = root.unchecked("load", vec![kinds_key(&registry.loads)])?;
         let loads = loads.iter().map(|load| kind_of(load, &registry.loads));
         let loads: Vec<_> = loads.collect::<Result<_, _>>()?;
-        if !SECTIONS
-            .iter()
-            .any(|(table, ..)| *table != "control" && *table != "friction" && root.has(table))
-        {
+        let has = |places: &[Place]| {
+            let mut own = places.iter().map(|(table, ..)| *table);
+            own.any(|table| table != "control" && table != "friction" && root.has(table))
+        };
+        // A file that has neither is asked for sections, which any axis can have.
+        let short = root.has("kind") || has(BALL_SCREW) || has(RIGID_MASS);
+        if !has(SECTIONS) && short {
             let rigid = root.has("kind") && root.word("kind")? == SHORT_KINDS[1];
             let found = Self::short(SHORT_KINDS[usize::from(rigid)], registry, loads);
             return found.ok_or_else(|| {

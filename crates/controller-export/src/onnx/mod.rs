@@ -109,7 +109,9 @@ pub fn export(network: &Network, description: &Description) -> Result<Vec<u8>, E
         }
     }
     let list = |columns: &[NetworkSignal]| {
-        let each = columns.iter().map(|c| format!("{} {}", c.name, c.unit));
+        let each = columns
+            .iter()
+            .map(|c| format!("{} {}", c.name, c.unit).trim_end().to_owned());
         each.collect::<Vec<_>>().join(", ")
     };
     let (inputs, outputs) = (list(&description.inputs), list(&description.outputs));

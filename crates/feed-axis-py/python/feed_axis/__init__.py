@@ -18,6 +18,7 @@ from ._feed_axis import (
     LuGre,
     MotionError,
     Move,
+    MoveCorrection,
     Network,
     NetworkError,
     Parameter,
@@ -34,7 +35,10 @@ from ._feed_axis import (
     __version__,
     discover,
     examples,
+    identify,
+    identify_control,
     latin_hypercube,
+    learn,
     new,
 )
 
@@ -53,6 +57,7 @@ __all__ = [
     "LuGre",
     "MotionError",
     "Move",
+    "MoveCorrection",
     "Network",
     "NetworkError",
     "Parameter",
@@ -69,6 +74,9 @@ __all__ = [
     "__version__",
     "discover",
     "examples",
+    "identify",
+    "identify_control",
     "latin_hypercube",
+    "learn",
     "new",
 ]

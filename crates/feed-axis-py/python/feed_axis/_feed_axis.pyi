@@ -26,6 +26,7 @@ __all__ = [
     "LuGre",
     "MotionError",
     "Move",
+    "MoveCorrection",
     "Network",
     "NetworkError",
     "Parameter",
@@ -42,7 +43,10 @@ __all__ = [
     "__version__",
     "discover",
     "examples",
+    "identify",
+    "identify_control",
     "latin_hypercube",
+    "learn",
     "new",
 ]
 
@@ -187,6 +191,35 @@ class Axis:
 
         >>> curve = axis.analyse()["curves"][0]
         >>> response = np.array(curve["compliance"]) @ [1, 1j]
+        """
+    def state_space(self, *, position: float | None = None, stuck: bool = False) -> dict[str, Any]:
+        """The drive without its position and speed controllers, sampled once in each control period: x(k+1) = A x(k) + B u(k), y = C x + D u.
+
+        - `position`: of the load, m or rad; where motions start, if left out.
+        - `stuck`: whether the load's friction holds it by its bristles; it slides otherwise.
+
+        Keys: the arrays `A`, `B`, `C` and `D`, the period `dt_s`, and the names and units of `inputs` (the command; a force against the load, held
+        over the period) and `outputs` (position of the load, motor's angle and speed). Delays of the command and of the current loops are states.
+        States have scales of their own. Three natural modes at most.
+
+        Raises LoopError.
+
+        >>> s = axis.state_space()
+        >>> plant = control.ss(s["A"], s["B"], s["C"], s["D"], s["dt_s"])  # python-control
+        """
+    def frequency_response(
+        self, *, position: float | None = None, stuck: bool = False, delay_cycles: float = 0.0
+    ) -> dict[str, NDArray[Any]]:
+        """Frequency responses of the loops, as complex arrays over `frequency_hz` (real).
+
+        `position` and `stuck` as of `state_space`; `delay_cycles`: delay besides the file's, control cycles. Keys: `open_command` (the loop cut at
+        the command), `open_position` (the position loop, its speed loop closed), `speed_followed` (the motor's speed per set point of the speed
+        controller), `compliance` (the load's motion per force on it, m/N or rad/(N·m)). They are those of `analyse`.
+
+        Raises LoopError.
+
+        >>> r = axis.frequency_response()
+        >>> loop = control.frd(r["open_command"], 2 * np.pi * r["frequency_hz"])  # python-control
         """
     def tune(
         self,
@@ -484,6 +517,11 @@ class Run:
 
         >>> run.plot("position_ref_m", "position_m")
         """
+    def to_html(self, path: _Path | None = None) -> str:
+        """A page of the run as text, its tracking error and every channel over time; written to `path` too if given. One file, no network.
+
+        Raises OSError if the file cannot be written.
+        """
     def _repr_html_(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
 
@@ -580,6 +618,11 @@ class Discovery:
         """Draws the RMS gap before and after, and the noise, for each channel, with matplotlib, into `ax` or a new figure.
 
         Raises ImportError without matplotlib.
+        """
+    def to_html(self, path: _Path | None = None) -> str:
+        """The page that the command `discover` writes, as text; written to `path` too if given. One file, no network.
+
+        Raises OSError if the file cannot be written.
         """
     def _repr_html_(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
@@ -687,11 +730,13 @@ class Compensator:
         network: Network | None = None,
         transfer: TransferFunctions | None = None,
         friction: LuGre | None = None,
+        correction: MoveCorrection | None = None,
         motion: _Motion | None = None,
     ) -> Self:
         """The strategy of that name (a key of `STRATEGIES`), with what it needs.
 
-        `network` is of `Axis.train`, `transfer` of `Axis.identify_transfer`, `friction` of `Axis.identify_friction`. With `motion` it is started.
+        `network` is of `Axis.train`, `transfer` of `Axis.identify_transfer`, `friction` of `Axis.identify_friction` or `identify`,
+        `correction` of `learn`, for a strategy that plans. With `motion` it is started.
 
         Raises StrategyError for an unknown name or for what is missing.
         """
@@ -802,6 +847,14 @@ class Network:
 
         Raises OSError if the file cannot be written.
         """
+    def to_onnx(
+        self, path: _Path, *, inputs: Sequence[str] | None = None, outputs: Sequence[str] | None = None
+    ) -> None:
+        """Writes the network as an ONNX file, in double precision.
+
+        `inputs`, `outputs`: names for its description, one each; x1, x2 … and y1, y2 … if left out. Raises NetworkError for another number of
+        names, OSError if the file cannot be written.
+        """
     def to_bytes(self) -> bytes:
         """The network as bytes with a hash: what `save` writes."""
     @property
@@ -864,6 +917,74 @@ class LuGre:
         """
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
+
+@final
+class MoveCorrection:
+    """What was learned of a move: where its load is to be led besides, cycle by cycle. `learn` makes it, `Compensator` uses it.
+
+    >>> correction, found = fa.learn(axis, axis.simulate(move, compensation=plan))
+    >>> better = fa.Compensator(axis, "plan", correction=correction)
+    """
+
+    @classmethod
+    def load(cls, path: _Path) -> MoveCorrection:
+        """Reads a correction, also one that the command `learn` has written.
+
+        Raises StrategyError; FileNotFoundError, or another OSError, if the file cannot be read.
+        """
+    def save(self, path: _Path) -> None:
+        """Writes it to a file that `load` and the command read. Raises OSError if the file cannot be written."""
+    @property
+    def rounds(self) -> int:
+        """Rounds of learning so far."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+def learn(
+    axis: Axis, log: _Log, correction: MoveCorrection | None = None, *, columns: _Columns = ...
+) -> tuple[MoveCorrection, dict[str, Any]]:
+    """The next correction of a move, from the log of a repetition that was made with `correction`; and what was found.
+
+    The log holds time, reference and position of the load. Found are `rounds`, the tracking error in m or rad (`max_error`, of which
+    `learnable_rms` can be learned and `noise_rms` is noise), and `advice`: "again", "done", "enough" or "restarted".
+
+    Raises LogError, StrategyError.
+
+    >>> correction, found = fa.learn(axis, run)
+    """
+
+def identify(
+    axis: Axis, logs: Sequence[_Log], *, columns: _Columns = ...
+) -> tuple[LuGre, dict[str, Any]]:
+    """Identifies the friction of an axis from logs of its own runs: constant speeds in both directions, small motions about a standstill.
+
+    `parameters` of what was found has each value with its 95 % interval, `None` if the logs do not tell it; `notes` has words.
+
+    Raises LogError with what the logs lack.
+
+    >>> friction, found = fa.identify(axis, ["slow.csv", "fast.csv"])
+    """
+
+def identify_control(
+    axis: Axis,
+    fit: Sequence[_Log],
+    check: Sequence[_Log],
+    *,
+    frequency_hz: float | None = None,
+    columns: _Columns = ...,
+) -> tuple[Axis, dict[str, Any]]:
+    """Estimates structure, gains and delay of an unknown controller from logs: the axis with that controller, and what was found.
+
+    - `fit`, `check`: logs with reference, position and command, to fit to and to choose the structure by.
+    - `frequency_hz`: control frequency; required if the axis has no control.
+
+    Found are `controller` in words, `gains` with their 95 % intervals by the keys of the axis file, `command_delay_s`, the shares of the command
+    that are explained (`explained_fit`, `explained_check`), `not_determined`, `notes`.
+
+    Raises LogError, SearchError, AxisError.
+
+    >>> axis, found = fa.identify_control(axis, ["fit.csv"], ["check.csv"], frequency_hz=1000)
+    """
 
 @final
 class Beam:

@@ -10,6 +10,7 @@ use drive_loop::{CornerMargins, CutMargins, LoopAnalysis, LoopSet, MASSES};
 use miette::{IntoDiagnostic, Result};
 
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
+use crate::out_file;
 use crate::output::{Worded, print};
 use crate::page;
 use crate::set_key::{SetKey, with_keys};
@@ -29,7 +30,7 @@ pub struct Options {
     #[arg(long, value_name = "CYCLES", default_value_t = 0.0)]
     delay: f64,
     /// Page with Bode's and Nyquist's plots, sensitivities and compliance
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
     report: Option<PathBuf>,
 }
 

@@ -14,9 +14,11 @@ use discover_matrix::hidden::Noise;
 use miette::{IntoDiagnostic, Result};
 use serde::Serialize;
 
-use super::simulate::{EXACT, NOISE, closed_loop, factor, program_on, trajectory};
+use super::motions::{program_on, trajectory};
+use super::simulate::{EXACT, NOISE, closed_loop, factor};
 use super::validate;
 use crate::context::Context;
+use crate::out_file;
 use crate::output::{print, write_whole};
 use crate::progress::bar;
 use crate::strategy_name::strategy_name;
@@ -50,7 +52,7 @@ pub struct Options {
     #[arg(long, help = EXACT, requires = "strategy")]
     exact: bool,
     /// Where to write the moves' errors, and what was learned, as JSON
-    #[arg(long, value_name = "FILE", requires = "strategy")]
+    #[arg(long, value_name = "FILE", requires = "strategy", value_parser = out_file::file())]
     json: Option<PathBuf>,
 }
 

@@ -22,6 +22,7 @@ use toolpath::{FeedLimits, FeedProfile};
 use super::simulate::{NOISE, factor};
 use crate::context::read_axis;
 use crate::exit::wrong_use;
+use crate::out_file;
 use crate::output::print;
 use crate::page::contour as contour_page;
 use crate::strategy_name::strategy_name;
@@ -76,7 +77,7 @@ pub struct Options {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Where to write a page of both turns
-    #[arg(long, value_name = "OUT.html")]
+    #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
     report: Option<PathBuf>,
 }
 

@@ -15,12 +15,14 @@ use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
 use toml_edit::{DocumentMut, Item, Value};
 
 use super::discover_words::{Files, Found, FoundInSummary, summary_words};
+use super::motions::listed;
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::file_set::FileSet;
 use crate::output::{Worded, note, print, ready};
 use crate::page;
 use crate::program;
 use crate::progress::{bar, spinner};
+use crate::shell;
 
 /// Options of the command.
 #[derive(Args)]
@@ -232,7 +234,7 @@ fn with_help(error: IntakeError, paths: &[PathBuf]) -> Report {
         return Report::from_err(error);
     }
     let paths: Vec<String> = paths.iter().map(|p| p.display().to_string()).collect();
-    let (program, paths) = (program::name(), paths.join("+"));
+    let (program, paths) = (program::name(), shell::word(&paths.join("+")));
     let help =
         format!("{program} log inspect {paths} shows the columns and what their mapping could be");
     miette!(help = help, "{error}")
@@ -325,10 +327,10 @@ pub fn read_summary(path: &Path, axis: &Axis) -> Result<Vec<MeasuredError>> {
         let trajectory = value(number)?;
         if trajectory.fract() != 0.0 || trajectory > axis.trajectories.len() as f64 {
             return Err(miette!(
-                "{}, line {}: there is no trajectory {trajectory}; the axis file has 1 to {}",
+                "{}, line {}: there is no trajectory {trajectory}; the axis file has {}",
                 path.display(),
                 i + 2,
-                axis.trajectories.len()
+                listed(axis)
             ));
         }
         rows.push(MeasuredError {

@@ -13,8 +13,9 @@ use serde::Serialize;
 
 use super::control_table::{limits, spelling, tolerance, with_control};
 use super::discover::{moved, read_all};
-use crate::context::read_text;
+use crate::context::{read_axis, read_text};
 use crate::exit::wrong_use;
+use crate::out_file;
 use crate::output::{Worded, note, print, ready, write_whole};
 
 /// Options of the command.
@@ -30,8 +31,11 @@ pub struct Options {
     #[arg(long, value_name = "LOG", num_args = 1.., required = true)]
     check: Vec<PathBuf>,
     /// Axis file to write, with the gains in `[control]` and their intervals in `[tolerances]`
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = out_file::file())]
     out: PathBuf,
+    /// Overwrite an existing file
+    #[arg(long)]
+    force: bool,
     /// Control frequency, Hz; required if the axis file has no `[control]`
     #[arg(long, value_name = "HZ")]
     frequency_hz: Option<f64>,
@@ -49,7 +53,8 @@ const EXPLAINED: f64 = 0.9;
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
-    let mut machine = Axis::read(&options.axis)?;
+    out_file::spare(&options.out, options.force)?;
+    let mut machine = read_axis(&options.axis)?;
     let frequency = frequency(options, &machine)?;
     // Said before anything is computed: a file with such a `[control]` could not be read.
     let period = frequency.map_or(machine.period, f64::recip);

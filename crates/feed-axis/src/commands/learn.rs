@@ -14,6 +14,7 @@ use serde::Serialize;
 use trajectories::Motion;
 
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
+use crate::out_file;
 use crate::output::{Worded, print, write_whole};
 
 /// Options of `learn`.
@@ -27,7 +28,7 @@ pub struct Options {
     #[arg(long, value_name = "FILE")]
     log: PathBuf,
     /// The correction: read if the file exists, then written for the next repetition
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = out_file::file())]
     correction: PathBuf,
 }
 

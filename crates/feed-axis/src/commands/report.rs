@@ -14,7 +14,7 @@ use crate::file_set::FileSet;
 use crate::output::{Worded, print, ready, write_whole};
 use crate::page::compare::RunFolder;
 use crate::store::read_finished;
-use crate::{page, program, results};
+use crate::{page, program, results, shell};
 
 const SUMMARY: &str = "summary.json";
 const REPORT: &str = "report.html";
@@ -64,10 +64,10 @@ fn run_folder(folder: &Path) -> Result<RunFolder> {
         .into_diagnostic()
         .wrap_err_with(|| {
             format!(
-                "{} is no summary of a run; make it with `{} pipeline --out {}`",
+                "{} is no summary of a run; make it with `{} pipeline --axis FILE --out {}`",
                 path.display(),
                 program::name(),
-                folder.display()
+                shell::word(&folder.display().to_string())
             )
         })?;
     let fits: [identify::Transfer; 2] = read_finished(folder, "identify", identify::TRANSFER)?;

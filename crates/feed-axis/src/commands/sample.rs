@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use crate::context::{Claim, Common, Context};
 use crate::jobs::{JobOptions, Sharding, failure, whole};
+use crate::out_file;
 use crate::output::{Worded, print};
 use crate::store::Stage;
 
@@ -34,7 +35,7 @@ pub struct Options {
     #[arg(long, value_name = "N", requires = "file")]
     count: Option<usize>,
     /// Where to write them
-    #[arg(long, value_name = "FILE", requires = "count")]
+    #[arg(long, value_name = "FILE", requires = "count", value_parser = out_file::file())]
     file: Option<PathBuf>,
     #[command(flatten)]
     sharding: Sharding,

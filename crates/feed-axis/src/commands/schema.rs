@@ -13,6 +13,7 @@ use serde_json::Value;
 
 use super::manual;
 use super::tune::TuneFound;
+use crate::out_file;
 use crate::output::{note, write_whole};
 
 /// Options of `schema`.
@@ -21,7 +22,7 @@ pub struct Options {
     /// The file
     of: File,
     /// Where to write it [default: standard output]
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = out_file::file())]
     out: Option<PathBuf>,
 }
 

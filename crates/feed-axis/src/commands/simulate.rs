@@ -14,11 +14,12 @@ use clap::Args;
 use discover_matrix::hidden::{MACHINE_STEP, Noise};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
-use trajectories::Program;
 
+use super::motions::{listed, program_on, trajectory};
 use super::{learn, validate};
-use crate::context::{Common, Context, read_text};
+use crate::context::{Common, Context};
 use crate::exit::wrong_use;
+use crate::out_file;
 use crate::output::{print, write_whole};
 use crate::page::motion::{self as motion_page, Ran, Shown};
 use crate::progress::bar;
@@ -30,12 +31,7 @@ pub struct Options {
     #[command(flatten)]
     common: Common,
     /// Trajectory of the axis file, from 1
-    #[arg(
-        long,
-        value_name = "N",
-        conflicts_with = "program",
-        required_unless_present = "program"
-    )]
+    #[arg(long, value_name = "N", conflicts_with = "program")]
     trajectory: Option<usize>,
     /// Motion program (TOML; see docs/theory/trajectories.md)
     #[arg(long, value_name = "FILE")]
@@ -52,11 +48,11 @@ pub struct Options {
     #[arg(long, help = EXACT)]
     exact: bool,
     /// Where to write the log, one row for each control cycle: .csv, .parquet or .mat (version 5)
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = out_file::file())]
     log: Option<PathBuf>,
     /// Where to write a page of the motion: position and error, speed, current or torque
     /// over time, a table of figures
-    #[arg(long, value_name = "OUT.html")]
+    #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
     report: Option<PathBuf>,
 }
 
@@ -290,37 +286,13 @@ fn motion(options: &Options, context: &Context) -> Result<SharedMotion> {
     if let Some(file) = &options.program {
         return Ok(Arc::new(program_on(file, &context.axis)?));
     }
-    trajectory("--trajectory", options.trajectory.unwrap_or(0), context)
-}
-
-/// The motion of a trajectory's number, asked for by an option.
-pub(super) fn trajectory(option: &str, number: usize, context: &Context) -> Result<SharedMotion> {
-    let count = context.axis.trajectories.len();
-    let spec = number
-        .checked_sub(1)
-        .and_then(|index| context.axis.trajectories.get(index))
-        .ok_or_else(|| {
-            wrong_use(format!(
-                "{option} {number}: the axis file has trajectories 1 to {count}"
-            ))
-        })?;
-    Ok(Arc::new(context.axis.plan(spec).into_diagnostic()?))
-}
-
-/// Reads a motion program for an axis, in whose unit it must be.
-pub(super) fn program_on(file: &Path, axis: &Axis) -> Result<Program> {
-    let program = program(file)?;
-    match axis.takes(&program) {
-        Ok(()) => Ok(program),
-        Err(why) => Err(miette!("{}: {why}", file.display())),
+    match options.trajectory {
+        Some(number) => trajectory("--trajectory", number, context),
+        None => Err(wrong_use(format!(
+            "no motion is given; valid: --program FILE, or --trajectory N; the axis file has {}",
+            listed(&context.axis)
+        ))),
     }
-}
-
-/// Reads a motion program.
-pub fn program(file: &Path) -> Result<Program> {
-    toml::from_str(&read_text(file)?)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("{} is not a motion program", file.display()))
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use super::analyse::{Ranges, axis_with, place};
 use super::control_table::with_tuned;
 use super::discover::moved;
 use crate::context::{DEFAULT_AXIS, read_text};
+use crate::out_file;
 use crate::output::{Worded, print, ready, write_whole};
 use crate::page;
 use crate::set_key::{SetKey, with_keys};
@@ -30,8 +31,11 @@ pub struct Options {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<SetKey>,
     /// Axis file to write, with the new gains; all else as it was
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = out_file::file())]
     out: PathBuf,
+    /// Overwrite an existing file
+    #[arg(long)]
+    force: bool,
     #[command(flatten)]
     ranges: Ranges,
     /// Greatest sensitivity at the command and at the position, in every case
@@ -54,7 +58,7 @@ pub struct Options {
     #[arg(long)]
     current: bool,
     /// Page with the tuned loops
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
     report: Option<PathBuf>,
 }
 
@@ -71,6 +75,7 @@ pub struct TuneFound {
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
+    out_file::spare(&options.out, options.force)?;
     let axis = axis_with(&options.axis, &options.set)?;
     let folder = match options.out.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),

@@ -140,6 +140,19 @@ fn phases(values: &[[f64; 2]]) -> Vec<f64> {
     all
 }
 
+/// Least gain that is drawn, as a share of the greatest, −160 dB: a loop that is sampled more slowly
+/// than the control lets nothing through at some frequencies, and an axis down to rounding would hide
+/// the rest.
+const DRAWN: f64 = 1e-8;
+
+/// The magnitudes over the frequency; what is less than can be drawn stands at the lower edge.
+fn sized(name: impl Into<String>, frequency_hz: &[f64], values: &[[f64; 2]]) -> Series {
+    let sizes = sizes(values);
+    let most = sizes.iter().copied().fold(0.0, f64::max);
+    let drawn = sizes.iter().map(|size| size.max(DRAWN * most)).collect();
+    Series::line(name, frequency_hz.to_vec(), drawn)
+}
+
 /// Bode's plots and Nyquist's.
 fn bode(found: &LoopAnalysis) -> Section {
     let size = Figure::new("Open loop, cut at the command: gain", "frequency", "gain");
@@ -162,7 +175,7 @@ fn bode(found: &LoopAnalysis) -> Section {
             ("whole loop", &curves.open_command),
             ("position loop", &curves.open_position),
         ] {
-            size = size.series(Series::line(name(what), f(), sizes(open)));
+            size = size.series(sized(name(what), &curves.frequency_hz, open));
             phase = phase.series(Series::line(name(what), f(), phases(open)));
             let near: Vec<[f64; 2]> = open
                 .iter()
@@ -175,10 +188,10 @@ fn bode(found: &LoopAnalysis) -> Section {
                 near.iter().map(|v| v[1]).collect(),
             ));
         }
-        speed = speed.series(Series::line(
+        speed = speed.series(sized(
             state(curves),
-            f(),
-            sizes(&curves.speed_followed),
+            &curves.frequency_hz,
+            &curves.speed_followed,
         ));
     }
     Section::new("Open and closed loop")
@@ -218,10 +231,10 @@ fn compliance(found: &LoopAnalysis) -> Section {
         .log_y()
         .linked(FREQUENCY);
     for curves in &found.curves {
-        figure = figure.series(Series::line(
+        figure = figure.series(sized(
             state(curves),
-            curves.frequency_hz.clone(),
-            sizes(&curves.compliance),
+            &curves.frequency_hz,
+            &curves.compliance,
         ));
     }
     Section::new("Compliance")

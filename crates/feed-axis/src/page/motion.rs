@@ -134,7 +134,7 @@ pub fn page(ran: &Ran<'_>) -> Page {
                 .figure(speed(ran)),
         )
         .section(drive(ran))
-        .section(Section::new("Figures").table(table(ran)))
+        .section(Section::new("Values").table(table(ran)))
         .section(settings(ran))
 }
 

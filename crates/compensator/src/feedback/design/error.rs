@@ -68,3 +68,14 @@ pub enum DesignError {
         frequency: f64,
     },
 }
+
+impl DesignError {
+    /// How far a margin is from what was asked for: its share above it; infinite for any other
+    /// reason.
+    pub(super) fn excess(&self) -> f64 {
+        match self {
+            Self::Margin { value, most, .. } => value / most,
+            _ => f64::INFINITY,
+        }
+    }
+}

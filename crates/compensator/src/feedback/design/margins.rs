@@ -62,12 +62,18 @@ impl FeedbackDesign {
     /// # Errors
     /// [`DesignError`] if that has more states than there is room for.
     pub fn margins(&self, on: &Variation<'_>) -> Result<Margins, DesignError> {
-        self.worst(on, true)
+        self.worst(on, true, [f64::INFINITY; 2])
     }
 
     /// The margins; of a loop that repeats after several periods the delay takes long, and is
-    /// left out if nobody asks for it.
-    fn worst(&self, on: &Variation<'_>, with_delay: bool) -> Result<Margins, DesignError> {
+    /// left out if nobody asks for it. Where a sensitivity is above `enough`, that of the loop or
+    /// that with one more cycle of delay, the rest is left out too.
+    fn worst(
+        &self,
+        on: &Variation<'_>,
+        with_delay: bool,
+        enough: [f64; 2],
+    ) -> Result<Margins, DesignError> {
         let mut all = Margins {
             sensitivity: 0.0,
             sticking: 0.0,
@@ -82,7 +88,7 @@ impl FeedbackDesign {
             if with_delay && at.repeats() > 1 {
                 all.delay = all.delay.min(at.whole_delay(self.model.period));
             }
-            for late in [0, 1] {
+            for late in [0_usize, 1] {
                 let radius = at.radius(late);
                 let (mut sensitivity, delay) = at.frequencies(late, self.model.period);
                 if radius.is_nan() || radius >= 1.0 {
@@ -97,6 +103,9 @@ impl FeedbackDesign {
                 };
                 if sensitivity > *worst {
                     (*worst, *place) = (sensitivity, sticking);
+                }
+                if sensitivity > enough[late] {
+                    return Ok(all);
                 }
             }
         }
@@ -125,60 +134,86 @@ impl FeedbackDesign {
     }
 
     /// Refuses a design whose margins are not those that its settings ask for, with the load
-    /// where it was designed for and `elsewhere`.
-    pub(super) fn require_margins(&self, elsewhere: &[&[Mode]]) -> Result<(), DesignError> {
+    /// where it was designed for and `elsewhere`. `search` remembers where a design failed.
+    pub(super) fn require_margins(
+        &self,
+        elsewhere: &[&[Mode]],
+        search: &mut MarginSearch,
+    ) -> Result<(), DesignError> {
         let s = &self.settings;
         if s.sensitivity.is_infinite() && s.sensitivity_late.is_infinite() {
             return Ok(());
         }
         let here: &[Mode] = &self.modes;
+        let mut all = Vec::new();
         // Everything in one place first: most of what fails does so there.
         for modes in core::iter::once(&here).chain(elsewhere) {
             for stribeck in [0.0, 1.0] {
                 for mass in [1.0, s.mass[0], s.mass[1]] {
                     for friction in [1.0, s.friction[0], s.friction[1]] {
-                        let on = Variation {
+                        all.push(Variation {
                             modes,
                             mass,
                             friction,
                             stribeck,
                             ..Variation::default()
-                        };
-                        self.worst(&on, false)?.within(s, &on)?;
+                        });
                     }
                 }
+            }
+        }
+        // Where the last design failed the next one likely does.
+        let first = search.failed.min(all.len() - 1);
+        let order = core::iter::once(first).chain((0..all.len()).filter(|i| *i != first));
+        for i in order {
+            let asked = asked(s, &all[i]).map(|most| most * search.nearest);
+            let found = self.worst(&all[i], false, asked)?;
+            if let Err(error) = found.within(s, &all[i]) {
+                search.failed = i;
+                search.nearest = search.nearest.min(error.excess());
+                return Err(error);
             }
         }
         Ok(())
     }
 }
 
+/// What is known of the designs that were tried before.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MarginSearch {
+    /// The variation in which the last one failed.
+    failed: usize,
+    /// How far the nearest is from what was asked for: what is farther need not be known better.
+    nearest: f64,
+}
+
+impl Default for MarginSearch {
+    fn default() -> Self {
+        Self {
+            failed: 0,
+            nearest: f64::INFINITY,
+        }
+    }
+}
+
+/// Greatest sensitivities in a variation: of the loop, and with one more cycle of delay.
+fn asked(s: &FeedbackSettings, on: &Variation<'_>) -> [f64; 2] {
+    // Slow sliding is unstable by itself: a loop around it cannot have the same margins.
+    [s.sensitivity, s.sensitivity_late].map(|most| match on.stribeck > 0.0 {
+        true => most.max(s.sensitivity_slow),
+        false => most,
+    })
+}
+
 impl Margins {
     fn within(&self, s: &FeedbackSettings, on: &Variation<'_>) -> Result<(), DesignError> {
-        // Slow sliding is unstable by itself: a loop around it cannot have the same margins.
-        let slow = |most: f64| {
-            if on.stribeck > 0.0 {
-                most.max(s.sensitivity_slow)
-            } else {
-                most
-            }
-        };
+        let [most, most_late] = asked(s, on);
         let late = "the sensitivity with one more cycle of delay";
-        let asked = [
-            (
-                "the sensitivity",
-                self.sensitivity,
-                slow(s.sensitivity),
-                self.sticking,
-            ),
-            (
-                late,
-                self.sensitivity_late,
-                slow(s.sensitivity_late),
-                self.sticking_late,
-            ),
+        let all = [
+            ("the sensitivity", self.sensitivity, most, self.sticking),
+            (late, self.sensitivity_late, most_late, self.sticking_late),
         ];
-        for (what, value, most, sticking) in asked {
+        for (what, value, most, sticking) in all {
             if value > most {
                 return Err(DesignError::Margin {
                     what,

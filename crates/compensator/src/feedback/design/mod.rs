@@ -19,6 +19,7 @@ pub use error::DesignError;
 pub use hessenberg::SampledResponse;
 use linear::stribeck_damping;
 pub use linear::{DriveSituation, SampledDrive};
+use margins::MarginSearch;
 pub use margins::{Margins, Variation};
 pub use settings::FeedbackSettings;
 
@@ -42,6 +43,73 @@ const TRIED: [[f64; 3]; 12] = [
     [0.01, 1.0, 0.0],
     [0.01, 4.0, 1.0],
 ];
+
+/// One more attempt, for axes that none of those suits.
+struct SlowTry {
+    /// Factors of how much the force wanders, of how uncertain the command is, and of the noise of
+    /// position and speed.
+    wandering: f64,
+    command: f64,
+    noise: f64,
+    /// Share of the bristles' stiffness and damping that is relied on.
+    bristles: f64,
+}
+
+/// Bandwidths of these, in halves.
+const SLOW_HALVINGS: usize = 12;
+
+/// An observer that follows slowly where a resonance lies in the loop (noise), and one that relies
+/// on the drive's own measurements (command) where the loop is slow against its delays.
+const SLOW_TRIED: [SlowTry; 4] = [
+    SlowTry {
+        wandering: 0.01,
+        command: 64.0,
+        noise: 1.0,
+        bristles: 1.0,
+    },
+    SlowTry {
+        wandering: 0.01,
+        command: 64.0,
+        noise: 1.0,
+        bristles: 0.5,
+    },
+    SlowTry {
+        wandering: 0.01,
+        command: 1.0,
+        noise: 30.0,
+        bristles: 0.1,
+    },
+    SlowTry {
+        wandering: 0.01,
+        command: 1.0,
+        noise: 30.0,
+        bristles: 0.5,
+    },
+];
+
+/// The settings that are tried, one after the other.
+fn softer_ones(settings: &FeedbackSettings) -> impl Iterator<Item = FeedbackSettings> {
+    let bandwidth = |step: usize| (0..step).fold(1.0, |b, _| b * std::f64::consts::FRAC_1_SQRT_2);
+    let quick = (0..SOFTENINGS).flat_map(move |step| {
+        TRIED.iter().map(move |&[wandering, command, stribeck]| {
+            let mut softer = settings.softened(bandwidth(step), wandering, command);
+            softer.stribeck *= stribeck;
+            softer
+        })
+    });
+    let slow = (0..SLOW_HALVINGS).flat_map(move |halving| {
+        SLOW_TRIED.iter().map(move |tried| {
+            let softer = settings.softened(bandwidth(2 * halving), tried.wandering, tried.command);
+            FeedbackSettings {
+                position: tried.noise * softer.position,
+                speed: tried.noise * softer.speed,
+                bristles: tried.bristles,
+                ..softer
+            }
+        })
+    });
+    quick.chain(slow)
+}
 
 /// Gains at one χ.
 #[derive(Clone, Debug)]
@@ -80,39 +148,43 @@ impl FeedbackDesign {
         settings: &FeedbackSettings,
     ) -> Result<Self, DesignError> {
         let designed = Self::unchecked(model, modes, settings)?;
-        designed.require_margins(&[])?;
+        designed.require_margins(&[], &mut MarginSearch::default())?;
         Ok(designed)
     }
 
     /// The quickest feedback whose margins hold with the load anywhere: weights go down from
     /// those of `settings` in steps of √2 in bandwidth, down to a thirty-second of it, and in each
     /// the force is taken to wander less and the command as less certain, until the margins
-    /// are there. `elsewhere` has
+    /// are there. What none of these suits gets a slower one, with an observer of its own (down
+    /// to 1/2048 of the bandwidth). `elsewhere` has
     /// the modes at other positions.
     ///
     /// # Errors
-    /// As [`FeedbackDesign::new`]; where no weights do, what the softest fall short of.
+    /// As [`FeedbackDesign::new`]; where no weights do, what the nearest of them fall short of.
     pub fn within_margins(
         model: &DriveModel,
         modes: &[Mode],
         elsewhere: &[&[Mode]],
         settings: &FeedbackSettings,
     ) -> Result<Self, DesignError> {
-        let mut bandwidth = 1.0;
-        let mut refused = None;
-        for _ in 0..SOFTENINGS {
-            for [wandering, command, stribeck] in TRIED {
-                let mut softer = settings.softened(bandwidth, wandering, command);
-                softer.stribeck *= stribeck;
-                let designed = Self::unchecked(model, modes, &softer)?;
-                match designed.require_margins(elsewhere) {
-                    Ok(()) => return Ok(designed),
-                    Err(error) => refused = Some(error),
+        let mut search = MarginSearch::default();
+        let mut nearest: Option<DesignError> = None;
+        for softer in softer_ones(settings) {
+            let designed = match Self::unchecked(model, modes, &softer) {
+                Ok(designed) => designed,
+                // Weights so far apart that an equation is not solved are no answer.
+                Err(DesignError::Riccati { .. }) if nearest.is_some() => continue,
+                Err(error) => return Err(error),
+            };
+            match designed.require_margins(elsewhere, &mut search) {
+                Ok(()) => return Ok(designed),
+                Err(error) if nearest.as_ref().is_none_or(|n| error.excess() < n.excess()) => {
+                    nearest = Some(error);
                 }
+                Err(_) => {}
             }
-            bandwidth *= std::f64::consts::FRAC_1_SQRT_2;
         }
-        Err(refused.unwrap_or(DesignError::Modes("there is none")))
+        Err(nearest.unwrap_or(DesignError::Modes("there is none")))
     }
 
     /// What it was designed with.

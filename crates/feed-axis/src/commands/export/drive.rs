@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use axis_pipeline::ErrorUnit;
 use axis_pipeline::drive_terms::{self, Loss, Term, TermTable};
-use axis_sim::{Axis, SixDigits};
+use axis_sim::SixDigits;
 use clap::Args;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
@@ -59,7 +59,7 @@ pub fn command(options: &Options) -> Result<()> {
     let axis = read_axis(&options.axis)?;
     let named = axis.experiment.as_ref().map(|e| e.machine.clone());
     let machine = match options.machine.clone().or(named) {
-        Some(file) => Axis::read(&file)?,
+        Some(file) => read_axis(&file)?,
         None => axis.clone(),
     };
     let of_axis = || format!("no drive terms of {}", options.axis.display());

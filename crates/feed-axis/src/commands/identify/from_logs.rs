@@ -15,7 +15,6 @@ use super::friction::Friction;
 use crate::commands::discover::read_as_one;
 use crate::context::Context;
 use crate::output::{note, ready, write_whole};
-use crate::program;
 
 /// The file in which the logs are listed.
 pub(super) const LIST: &str = "logs.json";
@@ -65,16 +64,16 @@ pub(super) fn again(context: &Context) -> Result<Friction> {
     let text = remembered(context).unwrap_or_default();
     let listed: Vec<Listed> = serde_json::from_str(&text).map_err(|e| {
         miette!(
-            "{} is not a list of logs ({e}); run `{} identify` again, with --log or without",
+            "{} is not a list of logs ({e}); run `{}` again, with --log or without",
             list(context).display(),
-            program::name()
+            context.line("identify")
         )
     })?;
     let logs: Vec<PathBuf> = listed.into_iter().map(|log| log.path).collect();
     let found = identify(context, &logs).wrap_err_with(|| {
         format!(
-            "friction was last identified from logs; run `{0} identify --log` with others, or `{0} identify` for the simulated machine's",
-            program::name()
+            "friction was last identified from logs; run `{0} --log FILE` with others, or `{0}` for the simulated machine's",
+            context.line("identify")
         )
     })?;
     remember(context, &logs)?;

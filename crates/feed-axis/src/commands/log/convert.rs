@@ -6,15 +6,17 @@ use std::path::{Path, PathBuf};
 use axis_log::intake::{Done, Options as Intake, PreparedLog, files, prepare};
 use axis_log::quality::clock;
 use axis_log::{Log, Mapping, TIME_CHANNEL, WriteProblem, columns, write};
-use axis_sim::Axis;
 use clap::Args;
 use discrepancy::logs::exact_channels;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
 
 use super::{LACKS_TIME, lacks_time, valid_rate};
+use crate::context::read_axis;
 use crate::exit::wrong_use;
+use crate::out_file;
 use crate::output::print;
+use crate::{program, shell};
 
 /// Options of `log convert`.
 #[derive(Args)]
@@ -29,7 +31,7 @@ pub struct Options {
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     rate: Option<f64>,
     /// Where to write the log: .csv, .parquet or .mat (version 5)
-    #[arg(long, value_name = "OUT")]
+    #[arg(long, value_name = "OUT", value_parser = out_file::file())]
     out: PathBuf,
 }
 
@@ -88,7 +90,7 @@ impl fmt::Display for Converted<'_> {
 /// Runs the command.
 pub fn convert(options: &Options) -> Result<()> {
     valid_rate(options.rate)?;
-    let axis = options.axis.as_deref().map(Axis::read).transpose()?;
+    let axis = options.axis.as_deref().map(read_axis).transpose()?;
     let paths = files(&options.log);
     not_over_the_log(&options.out, &paths)?;
     let none = Mapping::default();
@@ -109,8 +111,10 @@ pub fn convert(options: &Options) -> Result<()> {
     if log.channels().len() < 2 {
         return Err(miette!(
             "{name}: no column is a channel ({}); map them by [[log.column]] in an axis file and \
-             give it with --axis: log inspect {name} proposes the lines",
-            left_out.join(", ")
+             give it with --axis: `{} log inspect {}` proposes the lines",
+            left_out.join(", "),
+            program::name(),
+            shell::word(&name)
         ));
     }
     write(&options.out, &log)

@@ -21,7 +21,9 @@ use clap::{Args, Subcommand};
 use discrepancy::logs::{exact_channels, relations};
 use miette::{IntoDiagnostic, Result, miette};
 
+use crate::context::read_axis;
 use crate::exit::wrong_use;
+use crate::out_file;
 use crate::output::{print, write_whole};
 
 /// Options of `log`: those of `log inspect`, or with a folder for a page of each log.
@@ -70,7 +72,7 @@ struct Inspect {
     #[command(flatten)]
     logs: Logs,
     /// Write one page of all logs: each channel over time, its gaps marked
-    #[arg(long, value_name = "OUT.html")]
+    #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
     report: Option<PathBuf>,
 }
 
@@ -132,7 +134,7 @@ fn write_page(path: &Path, page: &Page) -> Result<()> {
 
 fn look_at(logs: &Logs) -> Result<Vec<Seen>> {
     valid_rate(logs.rate)?;
-    let axis = logs.axis.as_deref().map(Axis::read).transpose()?;
+    let axis = logs.axis.as_deref().map(read_axis).transpose()?;
     let look = |path: &PathBuf| look(path, axis.as_ref(), logs.rate);
     logs.logs.iter().map(look).collect()
 }

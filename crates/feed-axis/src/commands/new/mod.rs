@@ -1,6 +1,7 @@
 //! `new`: a commented axis file to begin with.
 
 mod commented;
+mod programs;
 
 use std::path::PathBuf;
 
@@ -12,8 +13,9 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
 
 use crate::exit::wrong_use;
+use crate::out_file::spare;
 use crate::output::{Worded, print, write_whole};
-use crate::program;
+use crate::{program, shell};
 
 /// An example of each kind of mechanism.
 const EXAMPLES: [&str; 8] = [
@@ -38,7 +40,11 @@ pub struct Options {
     /// Folder for the file [default: the one in which the command runs]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Overwrite an existing file
+    /// Write two motion programs besides, NAME-fit.toml and NAME-check.toml: there and back, to
+    /// record logs for `discover`
+    #[arg(long)]
+    programs: bool,
+    /// Overwrite existing files
     #[arg(long)]
     force: bool,
 }
@@ -55,6 +61,8 @@ struct Written<'a> {
     file: PathBuf,
     kind: &'a str,
     trajectories: usize,
+    /// Motion programs that were asked for.
+    programs: Vec<PathBuf>,
 }
 
 /// Runs the command.
@@ -71,25 +79,33 @@ pub fn command(options: &Options) -> Result<()> {
         Some(folder) => folder.join(file),
         None => file,
     };
-    if file.exists() && !options.force {
-        return Err(miette!(
-            "{} exists already; give another name, or --force to overwrite it",
-            file.display()
-        ));
-    }
+    spare(&file, options.force)?;
     let (text, axis) = text(name, &options.kind)?;
+    let mut motions = Vec::new();
+    for (kind, purpose, shares) in programs::PROGRAMS {
+        let path = file.with_file_name(format!("{name}-{kind}.toml"));
+        if let Some(text) = programs::program(&axis, purpose, shares).filter(|_| options.programs) {
+            spare(&path, options.force)?;
+            motions.push((path, text));
+        }
+    }
     write_whole(&file, text.as_bytes())?;
+    for (path, text) in &motions {
+        write_whole(path, text.as_bytes())?;
+    }
     let words = format!(
-        "{}: {}, {} trajectories; next: {} simulate --axis {0} --trajectory 1",
+        "{}: {}, {} trajectories; next: {} simulate --axis {} --trajectory 1",
         file.display(),
         options.kind,
         axis.trajectories.len(),
-        program::name()
+        program::name(),
+        shell::word(&file.display().to_string())
     );
     let value = Written {
         file,
         kind: &options.kind,
         trajectories: axis.trajectories.len(),
+        programs: motions.into_iter().map(|(path, _)| path).collect(),
     };
     print("new", &Worded { text: words, value })
 }
@@ -97,7 +113,11 @@ pub fn command(options: &Options) -> Result<()> {
 /// The text of an axis file, which is read back.
 fn text(name: &str, kind: &str) -> Result<(String, Axis)> {
     let example = example(kind)?;
-    let made_by = format!("{} new {name} --kind {kind}", program::name());
+    let made_by = format!(
+        "{} new {} --kind {kind}",
+        program::name(),
+        shell::word(name)
+    );
     let text = commented::file(example, name, &made_by)?;
     let axis = Axis::parse(name, &text)
         .into_diagnostic()

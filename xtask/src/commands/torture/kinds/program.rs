@@ -7,7 +7,7 @@ use trajectories::Motion;
 use super::{Input, Kind, Verdict, fault, refused};
 use crate::commands::torture::random::Source;
 use crate::commands::torture::{grammar, mutate};
-use feed_axis::commands::simulate;
+use feed_axis::commands::motions;
 
 const BASE: &str = "start_mm = 600
 [[steps]]
@@ -59,7 +59,7 @@ impl Kind for ProgramFile {
     }
 
     fn judge(&self, input: &Input, desk: &Path) -> Verdict {
-        let program = match simulate::program(&desk.join(&input.file)) {
+        let program = match motions::program(&desk.join(&input.file)) {
             Ok(program) => program,
             Err(e) => return refused(e, input, std::str::from_utf8(&input.bytes).is_ok()),
         };

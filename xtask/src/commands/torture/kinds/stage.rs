@@ -47,6 +47,7 @@ pub fn kind(desk: &Path) -> Result<Box<dyn Kind>> {
         seed: 1,
         threads: 1,
         quick: true,
+        options: Vec::new(),
     };
     make(&context)?;
     let read = |file: &&str| std::fs::read(context.out.join(file)).into_diagnostic();
