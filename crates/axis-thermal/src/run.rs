@@ -25,7 +25,7 @@ pub struct ThermalAccuracy {
 
 impl Default for ThermalAccuracy {
     /// 5 mK, 300 s. Over an hour of the paper's axis the growth then differs by less than
-    /// 0.02 µm of 129 from that with a thousandth of the tolerance (`cargo xtask heat-proof`).
+    /// 0.002 µm of 134 from that with a thousandth of the tolerance (`cargo xtask heat-proof`).
     fn default() -> Self {
         Self {
             tolerance: 5e-3,

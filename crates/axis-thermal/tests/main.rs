@@ -4,4 +4,5 @@ mod brute_force;
 mod closed_forms;
 mod growth;
 mod identify;
+mod predict;
 mod refusals;
