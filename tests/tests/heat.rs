@@ -15,7 +15,7 @@ fn an_hour_of_the_example_axis_is_that_of_brute_force() {
     let rest = Step::Dwell { duration: 1.0 };
     let there = Step::Move { to, limits };
     let back = Step::Move { to: from, limits };
-    let program = Program::new(from, vec![there, rest.clone(), back, rest]).unwrap();
+    let program = Program::new(from, vec![there, rest, back, rest]).unwrap();
     let motion = there_and_back(from, to, 0.2, 1.0);
     let model = axis.thermal_model().unwrap();
     let at_work = model

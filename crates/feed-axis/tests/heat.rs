@@ -143,4 +143,16 @@ fn what_cannot_be_heated_is_refused() {
     let program = file.display().to_string();
     let message = refuse(&["heat", "--axis", SCREW, "--program", &program]);
     assert!(message.contains("ends where it begins"), "{message}");
+    let back = "[[steps]]\nmove = { to_mm = 600, velocity_mm_s = 100, acceleration_mm_s2 = 225, jerk_mm_s3 = 1200 }\n";
+    std::fs::write(&file, text.replace("800", "1800") + back).unwrap();
+    let message = refuse(&["heat", "--axis", SCREW, "--program", &program]);
+    assert!(message.contains("reaches from 0.6 to 1.8 m"), "{message}");
+    std::fs::write(&file, text.to_owned() + back).unwrap();
+    let hour = found(&["--axis", SCREW, "--program", &program]);
+    assert!(last(&hour["loss_w"]) > 50.0);
+    let message = refuse(&["heat", "--axis", "data/axes/emps.toml"]);
+    assert!(
+        message.contains("no trajectories; give a --program"),
+        "{message}"
+    );
 }

@@ -110,7 +110,7 @@ fn duty_of_the_file(axis: &Axis) -> Result<Program> {
     let (start, limits) = (axis.stroke.start, spec.limits);
     let rest = Step::Dwell { duration: 1.0 };
     let to = |to: f64| Step::Move { to, limits };
-    let steps = vec![to(start + spec.displacement), rest.clone(), to(start), rest];
+    let steps = vec![to(start + spec.displacement), rest, to(start), rest];
     Program::new(start, steps).into_diagnostic()
 }
 

@@ -11,6 +11,7 @@ use compensator::NoCompensation;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use trajectories::{Motion, Program, Step};
 
+use super::heat_time::time;
 use super::heat_words::{Heated, HeatedNode, HeatedPlace};
 use super::simulate::program_on;
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
@@ -83,9 +84,6 @@ enum LossesFrom {
 /// Intervals of what is shown, however long the duration.
 const INTERVALS: u32 = 240;
 
-/// Longest duration, s: four months.
-const LONGEST: f64 = 1e7;
-
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
     let axis = options.axis()?;
@@ -114,7 +112,7 @@ impl Options {
         if let Some(file) = &self.program {
             let program = program_on(file, axis)?;
             let (start, end) = (program.start(), program.end());
-            if (end - start).abs() > 1e-9 || !(program.duration() > 0.0) {
+            if (end - start).abs() > 1e-9 || program.duration() <= 0.0 {
                 let unit = axis.freedom().unit();
                 return Err(wrong_use(format!(
                     "--program: {} begins at {} {unit} and ends at {} {unit} after {} s; give one that takes \
@@ -125,13 +123,18 @@ impl Options {
                     SixDigits(program.duration())
                 )));
             }
+            inside(&program, axis).wrap_err("--program")?;
             return Ok(program);
         }
         let count = axis.trajectories.len();
         let spec = self.trajectory.checked_sub(1);
         let spec = spec.and_then(|i| axis.trajectories.get(i)).ok_or_else(|| {
+            let valid = match count {
+                0 => "no trajectories; give a --program".to_owned(),
+                _ => format!("{count} trajectories; give one from 1 to {count}, or a --program"),
+            };
             wrong_use(format!(
-                "--trajectory {}: the axis file has {count} trajectories; give one from 1 to {count}, or a --program",
+                "--trajectory {}: the axis file has {valid}",
                 self.trajectory
             ))
         })?;
@@ -140,7 +143,7 @@ impl Options {
             duration: self.dwell,
         };
         let to = |to: f64| Step::Move { to, limits };
-        let steps = vec![to(start + spec.displacement), rest.clone(), to(start), rest];
+        let steps = vec![to(start + spec.displacement), rest, to(start), rest];
         let program = Program::new(start, steps);
         program.into_diagnostic().wrap_err("--dwell")
     }
@@ -264,35 +267,20 @@ impl Options {
     }
 }
 
-/// Reads a duration: a number and its unit.
-fn time(text: &str) -> std::result::Result<f64, String> {
-    let units = [("min", 60.0), ("h", 3600.0), ("d", 86_400.0), ("s", 1.0)];
-    let read = |(unit, factor): &(&str, f64)| {
-        let number = text.trim().strip_suffix(unit)?.trim().parse::<f64>().ok()?;
-        Some(number * factor)
-    };
-    let seconds = units.iter().find_map(read);
-    let seconds = seconds.filter(|s| *s > 0.0 && *s <= LONGEST);
-    seconds.ok_or_else(|| {
-        "give a number above 0 and its unit, such as 600s, 90min, 1h or 1d; at most 115 days"
-            .to_owned()
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::time;
-
-    #[test]
-    fn durations_have_units() {
-        assert_eq!(time("1h"), Ok(3600.0));
-        assert_eq!(time(" 90 min"), Ok(5400.0));
-        assert_eq!(time("2.5s"), Ok(2.5));
-        assert_eq!(time("1d"), Ok(86_400.0));
-        for bad in [
-            "", "1", "h", "-1h", "0s", "nan h", "inf s", "1000d", "1 week",
-        ] {
-            assert!(time(bad).is_err(), "{bad}");
-        }
+/// A program that leaves the stroke would heat places that the nut cannot be at.
+fn inside(program: &Program, axis: &Axis) -> Result<()> {
+    let (reached, stroke) = (program.extremes(), &axis.stroke);
+    let slack = 1e-9;
+    let from = reached.position_min >= stroke.minimum - slack;
+    if from && reached.position_max <= stroke.maximum + slack {
+        return Ok(());
     }
+    Err(wrong_use(format!(
+        "the program reaches from {} to {} {unit}; give one from {} to {} {unit}, the stroke",
+        SixDigits(reached.position_min),
+        SixDigits(reached.position_max),
+        SixDigits(stroke.minimum),
+        SixDigits(stroke.maximum),
+        unit = axis.freedom().unit()
+    )))
 }

@@ -11,6 +11,7 @@ mod discover_words;
 pub mod export;
 pub(crate) mod heat;
 mod heat_course;
+mod heat_time;
 pub(crate) mod heat_words;
 pub mod identify;
 pub(crate) mod identify_control;
