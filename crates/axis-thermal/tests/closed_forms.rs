@@ -97,14 +97,11 @@ fn friction_that_falls_with_temperature_follows_its_integral() {
         let expected = 20.0 + (1.0_f64 + 0.03 * 50.0 * 3600.0 / 1000.0).ln() / 0.03;
         errors.push((state.of(HeatNode::Table) - expected).abs());
     }
-    // Measured: 0.07, 7e-3, 7e-4 K of 62: the error follows the tolerance.
+    // Measured: 4.9e-3, 5.4e-4, 5.6e-5 K of 62: the error follows the tolerance.
     let [coarse, usual, fine] = errors[..] else {
         panic!()
     };
-    assert!(
-        coarse < 0.15 && usual < 0.015 && fine < 1.5e-3,
-        "{errors:?}"
-    );
+    assert!(coarse < 0.01 && usual < 1e-3 && fine < 1e-4, "{errors:?}");
 }
 
 /// A bar heated at one end, air around it: θ = P cosh(m (L − x))/(k A m sinh(m L)), m² = 4 h/(k D)
@@ -237,7 +234,7 @@ fn heat_is_kept() {
     assert!((stored / given - 1.0).abs() < 1e-11, "{stored} {given}");
 }
 
-/// One run, or many: the same state, as far as the tolerance goes. Measured: 2 mK.
+/// One run, or many: the same state, as far as the tolerance goes. Measured: 0.13 mK.
 #[test]
 fn a_run_may_be_divided() {
     let model = ThermalModel::new(ThermalParameters::default()).unwrap();
@@ -248,7 +245,7 @@ fn a_run_may_be_divided() {
         at_work.run(&mut parts, 20.0, 10.0).unwrap();
     }
     let nut = |state: &axis_thermal::ThermalState| state.of(HeatNode::Nut);
-    assert!((nut(&whole) - nut(&parts)).abs() < 0.01);
+    assert!((nut(&whole) - nut(&parts)).abs() < 1e-3);
     // Measured: 150 steps.
     assert!(work.steps <= 200, "{work:?}");
 }
