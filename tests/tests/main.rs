@@ -4,6 +4,7 @@ mod balance;
 mod bench;
 mod contour;
 mod emps;
+mod heat;
 mod identification;
 mod independent_logs;
 #[path = "../needs.rs"]

@@ -12,7 +12,9 @@ use clap::{Parser, Subcommand};
 use feed_axis::cli::{Global, finish, parse, start};
 use feed_axis::commands::export::drive;
 
-use commands::{bench, crates, independent, layers, names, peers_cases, publish, torture, tuning};
+use commands::{
+    bench, crates, heat, independent, layers, names, peers_cases, publish, torture, tuning,
+};
 use jobs::Job;
 
 /// Feed axes: the commands of feed-axis, and those for its developers.
@@ -44,6 +46,8 @@ enum Command {
     Bench(bench::Options),
     /// Tune the example axes, and compare with the figures of an independent search
     Tuning(tuning::Options),
+    /// Errors of an hour of heat against brute force, of fitted models, and of both corrections together
+    HeatProof(heat::Options),
     /// Try damaged inputs and disturbed runs, and check how they end
     Torture(torture::Options),
     /// Check that every crate depends strictly downward
@@ -66,6 +70,7 @@ fn main() -> ExitCode {
         Command::PeersCases(options) => peers_cases::command(options),
         Command::Bench(options) => bench::command(options),
         Command::Tuning(options) => tuning::command(options),
+        Command::HeatProof(options) => heat::command(options),
         Command::Torture(options) => torture::command(options),
         Command::Layers => layers::command(),
         Command::Names => names::command(),

@@ -67,6 +67,8 @@ pub struct Axis {
     pub log: Mapping,
     /// Settings of its torque balance.
     pub balance: BalanceSettings,
+    /// What the file's `[thermal]` says, of which the rest is assumed ([`Axis::thermal_model`]).
+    pub thermal: Values,
     /// Hash of every value in SI units: the same for files that differ only
     /// in comments, units or order.
     pub fingerprint: String,

@@ -16,6 +16,9 @@ pub enum SetupError {
     /// A cycle from a given state cannot be made.
     #[error(transparent)]
     Cycle(#[from] AdvanceError),
+    /// The thermal model cannot be made, or a motion's losses.
+    #[error(transparent)]
+    Thermal(#[from] axis_thermal::ThermalError),
     /// A part refuses its values.
     #[error(transparent)]
     Part(#[from] PartError),

@@ -38,6 +38,7 @@
 //!   samples that a network learns from.
 //! - [`effects`]: what a model may lack, as changes of parameters by their role and hooks
 //!   in the loop.
+//! - [`thermal`]: the axis' thermal model from `[thermal]` of its file, and the losses of a motion.
 //! - [`Replay`]: a log's reference through an axis with effects; [`balance`]: the motor
 //!   torque that an axis with effects needs for a log's measured motion.
 //!
@@ -111,6 +112,7 @@ mod recorder;
 mod replay;
 pub mod sensor;
 mod six_digits;
+pub mod thermal;
 mod work;
 
 pub use axis::{

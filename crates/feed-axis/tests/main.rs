@@ -8,6 +8,7 @@ mod discover;
 mod export_controller;
 mod export_drive;
 mod export_fmu;
+mod heat;
 mod identify;
 mod identify_control;
 mod log_convert;

@@ -22,6 +22,8 @@
 //! F = k δ + βk δ',   δ = r n(y)ᵀ q + errors of the lead − y,   r = lead / 2π
 //! ```
 //!
+//! [`HeatedScrew`] is the same axis' heat by brute force, hour by hour.
+//!
 //! [`slide_log`] is another machine, a slide on a linear motor whose drive has more in it than its axis file
 //! says. [`bench_log`] is a motor on a bench that never rests, [`spun_log`] a small one that is spun slowly.
 //!
@@ -34,6 +36,8 @@ mod chain;
 mod drive;
 mod error;
 mod friction;
+mod heat;
+mod heat_cases;
 mod hidden;
 mod logger;
 mod machine;
@@ -50,6 +54,8 @@ mod truth;
 pub use bench::{BenchFriction, bench_log};
 pub use drive::{Command, Drive, Reading};
 pub use error::IndependentError;
+pub use heat::{HeatLaws, HeatNumbers, HeatedScrew, Viscosity};
+pub use heat_cases::{HeatHours, there_and_back};
 pub use hidden::{Bump, Cogging, Friction, Hidden, Periodic, Thermal};
 pub use logger::{Columns, Logger, Table};
 pub use machine::Machine;

@@ -164,6 +164,20 @@ impl Motion {
         self
     }
 
+    /// Then a move of seven constant jerks: displacement, greatest speed, acceleration and jerk, SI,
+    /// each of which it reaches.
+    pub fn jerks(mut self, [way, speed, acceleration, jerk]: [f64; 4]) -> Self {
+        let short = acceleration / jerk;
+        let even = speed / acceleration - short;
+        let cruise = way.abs() / speed - speed / acceleration - short;
+        let signs = [1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0];
+        let times = [short, even, short, cruise, short, even, short];
+        let jerk = jerk.copysign(way);
+        let jerks = signs.into_iter().zip(times).map(|(s, t)| [s * jerk, t]);
+        self.parts.push(Part::Jerks(jerks.collect()));
+        self
+    }
+
     /// s.
     pub fn duration(&self) -> f64 {
         self.parts.iter().map(Part::duration).sum()
@@ -198,17 +212,8 @@ impl Motion {
 
 /// The paper's S-curve from 0.6 m on: way, greatest speed, acceleration and jerk, SI, each
 /// of which it reaches.
-pub fn s_curve([way, speed, acceleration, jerk]: [f64; 4]) -> Motion {
-    let short = acceleration / jerk;
-    let even = speed / acceleration - short;
-    let cruise = way / speed - speed / acceleration - short;
-    let signs = [1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0];
-    let times = [short, even, short, cruise, short, even, short];
-    let jerks = signs.into_iter().zip(times).map(|(s, t)| [s * jerk, t]);
-    Motion {
-        start: 0.6,
-        parts: vec![Part::Jerks(jerks.collect())],
-    }
+pub fn s_curve(of: [f64; 4]) -> Motion {
+    Motion::from(0.6).jerks(of)
 }
 
 /// Two motions to fit to and two to check on, each with its name. None stays between 3 and

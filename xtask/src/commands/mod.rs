@@ -4,6 +4,8 @@ pub mod bench;
 pub mod crates;
 pub mod discover_matrix;
 mod discover_matrix2;
+pub mod heat;
+mod heat_identified;
 pub mod independent;
 pub mod layers;
 mod matrix_job;

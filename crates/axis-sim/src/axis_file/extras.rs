@@ -11,7 +11,8 @@ use crate::SixDigits;
 use crate::axis::{Axis, BalanceSettings, Stroke, Tolerances, ValueRange};
 use crate::effects::{ActiveEffect, Effect, EffectParameter, Scales};
 use crate::mechanism::Freedom;
-use crate::part::{Key, Known};
+use crate::part::{Key, Known, Values};
+use crate::thermal::{THERMAL_KEYS, is_of_screws};
 use crate::work::{MOST_SUBSTEPS, substeps_of};
 
 /// The entries of `[[effects]]`: `name`, and each parameter in SI units.
@@ -146,6 +147,26 @@ pub(super) fn balance(root: &Fields<'_>) -> Result<BalanceSettings, AxisFileErro
         cutoff: f.optional_number("cutoff")?,
         slowest: f.optional_number("slowest")?,
     })
+}
+
+/// `[thermal]`: what is known of the axis' heat. Nothing is accepted that an axis without a screw
+/// would not use.
+pub(super) fn thermal(root: &Fields<'_>, has_screw: bool) -> Result<Values, AxisFileError> {
+    let mut values = Values::default();
+    let Some(f) = root.optional_table("thermal")? else {
+        return Ok(values);
+    };
+    let of_screws = THERMAL_KEYS.iter().filter(|key| is_of_screws(key.name));
+    let given = |key: &Key| key.spellings().into_iter().find(|spelling| f.has(spelling));
+    if !has_screw && let Some(spelling) = of_screws.clone().find_map(given) {
+        let what = "is about a screw, and the mechanism has none".to_owned();
+        let others = THERMAL_KEYS.iter().filter(|key| !is_of_screws(key.name));
+        let others: Vec<&str> = others.map(|key| key.name).collect();
+        let valid = format!("{} (each with its unit)", others.join(", "));
+        return Err(f.refuse_value(&spelling, what, valid));
+    }
+    f.part(THERMAL_KEYS, &mut values)?;
+    Ok(values)
 }
 
 /// A control period has only so many internal steps.

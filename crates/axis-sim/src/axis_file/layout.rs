@@ -277,6 +277,7 @@ pub const TABLES_WITHOUT_PARTS: &[&str] = &[
     "tolerances",
     "log",
     "balance",
+    "thermal",
 ];
 
 /// What a file with a section for each part may have.

@@ -153,6 +153,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         tolerances: Tolerances::all(0.01),
         log: extras::log(&root)?,
         balance: extras::balance(&root)?,
+        thermal: extras::thermal(&root, mechanism.screw().is_some())?,
         fingerprint: String::new(),
         mechanism,
         actuator,
@@ -171,6 +172,10 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
     axis.tolerances = extras::tolerances(&root, &axis.may_be_known())?;
     fits(&root, &control_table, &axis)?;
     axis.effects = extras::effects(&root, &axis, &registry.effects)?;
+    if let Some(thermal) = root.optional_table("thermal")? {
+        axis.thermal_model()
+            .map_err(|e| thermal.refuse_table(e.to_string(), "other values"))?;
+    }
     Ok(axis)
 }
 

@@ -9,7 +9,7 @@ use feed_dynamics::{
     NutCoupling,
 };
 
-use super::{Mechanism, SolutionMethod};
+use super::{Mechanism, ScrewShape, SolutionMethod};
 use crate::axis::ValueRange;
 use crate::part::units::{DENSITY, INERTIA, LENGTH, MASS, PRESSURE, STIFFNESS, TIME, TORSION};
 use crate::part::{Known, PartError, PartKind, Role, Values, count, number, quantity, word};
@@ -58,6 +58,7 @@ pub(super) static KIND: PartKind<dyn Mechanism> = PartKind {
 struct BallScrew {
     drive: FeedDrive,
     backlash: f64,
+    screw: ScrewShape,
 }
 
 fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
@@ -70,6 +71,8 @@ fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
     .map_err(|e| PartError::together(e, "another material"))?;
     let section = CrossSection::solid_circle(v.number("diameter")?, &material)
         .map_err(|e| PartError::together(e, "another section"))?;
+    let axial = axial(v)?;
+    let rigidity = v.number("youngs_modulus")? * section.area();
     let drive = FeedDrive::new(DriveParameters {
         section,
         material,
@@ -83,10 +86,18 @@ fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
         table_mass: v.number("table_mass")?,
         nut_stiffness: v.number("nut_stiffness")?,
         stiffness_damping: v.number("stiffness_damping")?,
-        axial: axial(v)?,
+        axial,
     })
     .map_err(|e| other(&e))?;
+    let held = axial.filter(|axial| axial.mounting == Mounting::FixedFixed);
     Ok(Arc::new(BallScrew {
+        screw: ScrewShape {
+            length: v.number("length")?,
+            diameter: v.number("diameter")?,
+            density: v.number("density")?,
+            rigidity,
+            held_at_both_ends: held.map(|axial| axial.bearing_stiffness),
+        },
         drive,
         backlash: v.or("backlash", 0.0),
     }))
@@ -181,6 +192,10 @@ impl Mechanism for BallScrew {
             least: 0.0,
             most: self.drive.parameters().screw_length,
         })
+    }
+
+    fn screw(&self) -> Option<ScrewShape> {
+        Some(self.screw)
     }
 
     fn modes(&self, x: f64) -> Result<Vec<f64>, DriveError> {

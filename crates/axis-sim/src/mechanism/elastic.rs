@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use feed_dynamics::{DriveError, ElasticDrive, ElasticDriveParameters, ElasticStepper, Stiffness};
 
-use super::{Freedom, KinematicError, Mechanism, SolutionMethod};
+use super::{Freedom, KinematicError, Mechanism, ScrewShape, SolutionMethod};
 use crate::axis::ValueRange;
 use crate::part::{PartError, Values};
 use crate::plant::{Assembly, Plant};
@@ -15,6 +15,7 @@ pub(super) struct Elastic {
     pub freedom: Freedom,
     pub backlash: f64,
     pub reach: Option<ValueRange>,
+    pub screw: Option<ScrewShape>,
     pub kinematic_error: Option<KinematicError>,
     /// Amplitude, order and phase of it.
     pub harmonic: Option<[f64; 3]>,
@@ -48,6 +49,7 @@ impl Elastic {
             freedom: Freedom::Linear,
             backlash: v.or("backlash", 0.0),
             reach: None,
+            screw: None,
             kinematic_error: None,
             harmonic: None,
         })
@@ -96,6 +98,10 @@ impl Mechanism for Elastic {
 
     fn reach(&self) -> Option<ValueRange> {
         self.reach
+    }
+
+    fn screw(&self) -> Option<ScrewShape> {
+        self.screw
     }
 
     fn modes(&self, x: f64) -> Result<Vec<f64>, DriveError> {

@@ -79,6 +79,22 @@ pub enum SolutionMethod {
     Exact,
 }
 
+/// A screw as its heat and its growth know it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScrewShape {
+    /// Length that the nut may be on, m.
+    pub length: f64,
+    /// Diameter, m.
+    pub diameter: f64,
+    /// Density, kg/m³.
+    pub density: f64,
+    /// Axial rigidity E A, N.
+    pub rigidity: f64,
+    /// Axial stiffness of each bearing, N/m, of a screw that is held at both ends; none of one that
+    /// is free to grow.
+    pub held_at_both_ends: Option<f64>,
+}
+
 /// An error of a transmission's kinematics: displacement and rate at the load,
 /// m and m/s or rad and rad/s.
 pub type KinematicError = Arc<dyn Fn(&ScrewState) -> [f64; 2] + Send + Sync>;
@@ -117,6 +133,11 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
 
     /// Where the load can be at all, besides the stroke.
     fn reach(&self) -> Option<ValueRange> {
+        None
+    }
+
+    /// The screw that it has, if it has one.
+    fn screw(&self) -> Option<ScrewShape> {
         None
     }
 

@@ -15,8 +15,8 @@ use std::sync::Arc;
 
 use feed_dynamics::{InSeries, Mounting, ScrewShaft, Stiffness};
 
-use super::Mechanism;
 use super::elastic::Elastic;
+use super::{Mechanism, ScrewShape};
 use crate::axis::ValueRange;
 use crate::part::units::{DENSITY, INERTIA, LENGTH, MASS, PRESSURE, STIFFNESS, TIME, TORSION};
 use crate::part::{Known, PartError, PartKind, Role, Values, quantity, word};
@@ -88,12 +88,20 @@ fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
         parts.push(Arc::new(coupling / (travel * travel)));
     }
     // J = m d²/8 of the shaft.
-    let screw = v.or("density", STEEL[1]) * area * length * diameter * diameter / 8.0;
+    let density = v.or("density", STEEL[1]);
+    let screw = density * area * length * diameter * diameter / 8.0;
     let inertias = [v.number("motor_inertia")? + screw, v.number("table_mass")?];
     let mut drive = Elastic::new(v, inertias, travel, Arc::new(InSeries(parts)))?;
     drive.reach = Some(ValueRange {
         least: 0.0,
         most: length,
+    });
+    drive.screw = Some(ScrewShape {
+        length,
+        diameter,
+        density,
+        rigidity,
+        held_at_both_ends: (mounting == Mounting::FixedFixed).then_some(bearing),
     });
     Ok(Arc::new(drive))
 }

@@ -86,6 +86,15 @@ dimensions! {
         "v_per_m_s" 1.0, "n_per_m_s" 1.0, "n_m_per_m_s" 1.0, "n_m_per_rad_s" 1.0, "a_per_m_s" 1.0, "a_per_rad_s" 1.0;
     PID_DERIVATIVE "unit of a PID controller's derivative gain":
         "v_s_per_m" 1.0, "n_s_per_m" 1.0, "n_m_s_per_m" 1.0, "n_m_s_per_rad" 1.0, "a_s_per_m" 1.0, "a_s_per_rad" 1.0;
+    TEMPERATURE "unit of temperature": "deg_c" 1.0;
+    HEAT_CAPACITY "unit of heat capacity": "j_per_k" 1.0, "kj_per_k" 1e3;
+    SPECIFIC_HEAT "unit of specific heat": "j_per_kg_k" 1.0;
+    THERMAL_CONDUCTANCE "unit of thermal conductance": "w_per_k" 1.0;
+    THERMAL_CONDUCTIVITY "unit of thermal conductivity": "w_per_m_k" 1.0;
+    HEAT_TRANSFER "unit of heat transfer": "w_per_m2_k" 1.0;
+    EXPANSION "unit of thermal expansion": "um_per_m_k" 1e-6, "per_k" 1.0;
+    PER_KELVIN "unit of change with temperature": "percent_per_k" 1e-2, "per_k" 1.0;
+    MOTOR_CONSTANT "unit of a motor constant": "n_m_per_sqrt_w" 1.0, "n_per_sqrt_w" 1.0;
     CURRENT_PROPORTIONAL "unit of a current controller's proportional gain": "v_per_a" 1.0;
     CURRENT_INTEGRAL "unit of a current controller's integral gain": "v_per_a_s" 1.0;
 }

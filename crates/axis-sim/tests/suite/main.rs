@@ -40,6 +40,7 @@ mod rigid;
 mod sensors;
 mod slow_speed_loop;
 mod starts;
+mod thermal;
 mod vibration;
 mod weakening;
 

@@ -9,6 +9,10 @@ pub mod control_table;
 pub mod discover;
 mod discover_words;
 pub mod export;
+pub(crate) mod heat;
+mod heat_course;
+mod heat_time;
+pub(crate) mod heat_words;
 pub mod identify;
 pub(crate) mod identify_control;
 pub(crate) mod learn;
@@ -70,6 +74,8 @@ pub enum Command<J: Jobs> {
     Simulate(simulate::Options),
     /// Simulate two axes on a circle: contour error and figures in the manner of ISO 230-4
     Contour(contour::Options),
+    /// Hours of a duty: temperatures, growth by position and time, thermal force
+    Heat(heat::Options),
     /// Name what a model lacks, from logs of the real axis
     Discover(discover::Options),
     /// Inspect a log (channels, sampling, noise, a proposed mapping) or convert it
@@ -104,6 +110,7 @@ impl<J: Jobs> Command<J> {
             Self::Tune(options) => tune::command(options),
             Self::Simulate(options) => simulate::command(options),
             Self::Contour(options) => contour::command(options),
+            Self::Heat(options) => heat::command(options),
             Self::Discover(options) => discover::command(options),
             Self::Log(options) => log::command(options),
             Self::Campaign(options) => campaign::command::<J>(options),

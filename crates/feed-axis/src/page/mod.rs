@@ -7,6 +7,7 @@ mod compensation;
 pub mod contour;
 pub mod discovery;
 mod envelope;
+pub mod heat;
 pub mod loops;
 mod mechanics;
 pub mod motion;

@@ -18,6 +18,7 @@ use super::registry::Registry;
 use crate::actuator::Effort;
 use crate::mechanism::Freedom;
 use crate::part::{Key, PartKind};
+use crate::thermal::THERMAL_KEYS;
 use key::{closed, without};
 use parts::{SECTIONS, list, part_tables};
 
@@ -32,6 +33,7 @@ impl Registry {
     pub fn json_schema(&self) -> Value {
         let mut defs = Map::new();
         part_tables(self, &mut defs);
+        defs.insert("thermal".to_owned(), closed(THERMAL_KEYS));
         for freedom in FREEDOMS {
             for effort in EFFORTS {
                 self.by_movement(freedom, effort, &mut defs);
@@ -74,6 +76,7 @@ impl Registry {
         file["properties"]["effects"] = list(reference("effect"));
         file["properties"]["tolerances"] = reference("tolerances");
         file["properties"]["sensors"] = reference("sensors");
+        file["properties"]["thermal"] = reference("thermal");
         // Which of them, the movement tells.
         for name in BY_FREEDOM.iter().chain(&["samples"]) {
             file["properties"][name] = json!({});
@@ -135,6 +138,7 @@ impl Registry {
         file["properties"]["effects"] = list(reference("effect"));
         file["properties"]["tolerances"] = reference("tolerances");
         file["properties"]["sensors"] = reference("sensors");
+        file["properties"]["thermal"] = reference("thermal");
         Some(file)
     }
 

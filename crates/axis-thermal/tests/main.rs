@@ -1,0 +1,8 @@
+//! Tests of the crate, one file a feature.
+
+mod brute_force;
+mod closed_forms;
+mod growth;
+mod identify;
+mod predict;
+mod refusals;

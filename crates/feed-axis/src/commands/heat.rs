@@ -1,0 +1,286 @@
+//! `heat`: hours of a duty, what they warm, and how far the axis grows by that.
+
+use std::path::PathBuf;
+
+use axis_sim::mechanism::Freedom;
+use axis_sim::thermal::LossModel;
+use axis_sim::{Axis, ClosedLoop, SixDigits};
+use axis_thermal::{Duty, ThermalModel};
+use clap::{Args, ValueEnum};
+use compensator::NoCompensation;
+use miette::{IntoDiagnostic, Result, WrapErr};
+use trajectories::{Motion, Program, Step};
+
+use super::heat_time::time;
+use super::heat_words::{Heated, HeatedNode, HeatedPlace};
+use super::simulate::program_on;
+use crate::context::{DEFAULT_AXIS, read_axis, read_text};
+use crate::exit::wrong_use;
+use crate::output::print;
+use crate::page::heat as heat_page;
+use crate::set_key::{SetKey, with_keys};
+
+/// Options of `heat`.
+#[derive(Args)]
+pub struct Options {
+    /// Axis file; its [thermal] says what is known of the axis' heat, the rest is assumed
+    #[arg(long, value_name = "FILE", default_value = DEFAULT_AXIS)]
+    axis: PathBuf,
+    /// Set a key of the axis file to another value for this run, such as
+    /// thermal.nut_to_screw_w_per_k=20 (may be repeated)
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<SetKey>,
+    /// Trajectory of the axis file, from 1, there and back without end
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        conflicts_with = "program"
+    )]
+    trajectory: usize,
+    /// Standstill at both ends of the trajectory, s
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 1.0,
+        conflicts_with = "program",
+        allow_negative_numbers = true
+    )]
+    dwell: f64,
+    /// Motion program (TOML) that ends where it begins, without end
+    #[arg(long, value_name = "FILE")]
+    program: Option<PathBuf>,
+    /// How long, such as 1h, 90min, 600s or 1d
+    #[arg(long, value_name = "TIME", default_value = "1h", value_parser = time)]
+    duration: f64,
+    /// Temperature of the air, and of the whole axis at the start, °C
+    #[arg(
+        long,
+        value_name = "DEG_C",
+        default_value_t = 20.0,
+        allow_negative_numbers = true
+    )]
+    air: f64,
+    /// Positions of the table at which growth is shown, mm [default: five over the stroke]
+    #[arg(long, value_name = "MM", num_args = 1.., allow_negative_numbers = true)]
+    at: Vec<f64>,
+    /// Where the losses come from
+    #[arg(long, value_enum, default_value_t = LossesFrom::Reference)]
+    losses: LossesFrom,
+    /// Where to write a page: temperatures, growth and losses over time
+    #[arg(long, value_name = "OUT.html")]
+    report: Option<PathBuf>,
+}
+
+/// Where the losses come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum LossesFrom {
+    /// Friction's steady curve and the torque for the reference: no loop is simulated
+    Reference,
+    /// The motion simulated once in closed loop
+    Simulation,
+}
+
+/// Intervals of what is shown, however long the duration.
+const INTERVALS: u32 = 240;
+
+/// Runs the command.
+pub fn command(options: &Options) -> Result<()> {
+    let axis = options.axis()?;
+    let motion = options.motion(&axis)?;
+    let places = options.places(&axis)?;
+    let model = axis.thermal_model().into_diagnostic()?;
+    let duty = options.duty(&axis, &model, &motion)?;
+    let heated = options.run(&axis, &model, &duty, &places)?;
+    if let Some(path) = &options.report {
+        axis_report::write_atomic(path, &heat_page::page(&heated)).into_diagnostic()?;
+    }
+    print("heat", &heated)
+}
+
+impl Options {
+    fn axis(&self) -> Result<Axis> {
+        if self.set.is_empty() {
+            return read_axis(&self.axis);
+        }
+        let content = with_keys(&read_text(&self.axis)?, &self.set)?;
+        Ok(Axis::read_changed(&self.axis, &content)?)
+    }
+
+    /// The motion that repeats itself.
+    fn motion(&self, axis: &Axis) -> Result<Program> {
+        if let Some(file) = &self.program {
+            let program = program_on(file, axis)?;
+            let (start, end) = (program.start(), program.end());
+            if (end - start).abs() > 1e-9 || program.duration() <= 0.0 {
+                let unit = axis.freedom().unit();
+                return Err(wrong_use(format!(
+                    "--program: {} begins at {} {unit} and ends at {} {unit} after {} s; give one that takes \
+                     some time and ends where it begins, for it is repeated",
+                    file.display(),
+                    SixDigits(start),
+                    SixDigits(end),
+                    SixDigits(program.duration())
+                )));
+            }
+            inside(&program, axis).wrap_err("--program")?;
+            return Ok(program);
+        }
+        let count = axis.trajectories.len();
+        let spec = self.trajectory.checked_sub(1);
+        let spec = spec.and_then(|i| axis.trajectories.get(i)).ok_or_else(|| {
+            let valid = match count {
+                0 => "no trajectories; give a --program".to_owned(),
+                _ => format!("{count} trajectories; give one from 1 to {count}, or a --program"),
+            };
+            wrong_use(format!(
+                "--trajectory {}: the axis file has {valid}",
+                self.trajectory
+            ))
+        })?;
+        let (start, limits) = (axis.stroke.start, spec.limits);
+        let rest = Step::Dwell {
+            duration: self.dwell,
+        };
+        let to = |to: f64| Step::Move { to, limits };
+        let steps = vec![to(start + spec.displacement), rest, to(start), rest];
+        let program = Program::new(start, steps);
+        program.into_diagnostic().wrap_err("--dwell")
+    }
+
+    fn places(&self, axis: &Axis) -> Result<Vec<f64>> {
+        let stroke = &axis.stroke;
+        if axis.freedom() == Freedom::Rotary {
+            return match self.at.is_empty() {
+                true => Ok(Vec::new()),
+                false => Err(wrong_use(
+                    "--at: the load of this axis turns, and growth is along lines alone".to_owned(),
+                )),
+            };
+        }
+        if self.at.is_empty() {
+            let width = stroke.maximum - stroke.minimum;
+            let at = |i: u32| stroke.minimum + 0.25 * f64::from(i) * width;
+            return Ok((0..5).map(at).collect());
+        }
+        let slack = 1e-9;
+        let inside = stroke.minimum - slack..=stroke.maximum + slack;
+        let place = |mm: &f64| {
+            let at = 1e-3 * mm;
+            match inside.contains(&at) {
+                true => Ok(at),
+                false => Err(wrong_use(format!(
+                    "--at {mm}: the table is between {} and {} mm",
+                    SixDigits(1e3 * stroke.minimum),
+                    SixDigits(1e3 * stroke.maximum)
+                ))),
+            }
+        };
+        self.at.iter().map(place).collect()
+    }
+
+    fn duty(&self, axis: &Axis, model: &ThermalModel, motion: &Program) -> Result<Duty> {
+        let losses = LossModel::of(axis).into_diagnostic()?;
+        let mut duty = model.duty();
+        match self.losses {
+            LossesFrom::Reference => losses.add_motion(&mut duty, axis, motion),
+            LossesFrom::Simulation => {
+                let closed_loop = ClosedLoop::new(axis).into_diagnostic()?;
+                let add = |cycle: &axis_sim::Cycle| losses.add_cycle(&mut duty, axis.period, cycle);
+                let outcome = closed_loop.run(motion, &mut NoCompensation, add);
+                outcome.completed().into_diagnostic()?;
+            }
+        }
+        Ok(duty)
+    }
+
+    fn run(
+        &self,
+        axis: &Axis,
+        model: &ThermalModel,
+        duty: &Duty,
+        places: &[f64],
+    ) -> Result<Heated> {
+        let at_work = model.under(duty).into_diagnostic()?;
+        let cold = model.at_rest(self.air);
+        let mut state = cold.clone();
+        let mut heated = self.begun(axis, model, duty, places);
+        for k in 0..=INTERVALS {
+            if k > 0 {
+                let until = self.duration * f64::from(k) / f64::from(INTERVALS);
+                let by = until - state.time;
+                let work = at_work.run(&mut state, self.air, by).into_diagnostic();
+                heated.steps += work
+                    .wrap_err("the axis does not come to rest thermally")?
+                    .steps;
+            }
+            heated.push(model, &at_work, [&cold, &state]);
+        }
+        heated.screw_at_end_c = state.screw().to_vec();
+        Ok(heated)
+    }
+
+    fn begun(&self, axis: &Axis, model: &ThermalModel, duty: &Duty, places: &[f64]) -> Heated {
+        let [dry, viscous] = duty.friction_power();
+        let screw = model.parameters().screw;
+        let nodes = model.nodes().into_iter().map(|node| HeatedNode {
+            node,
+            name: node.name(),
+            temperature_c: Vec::new(),
+        });
+        let measures_at_motor = axis.drive_model().is_ok_and(|m| m.cascade.from_motor);
+        Heated {
+            axis: axis.name.clone(),
+            axis_fingerprint: axis.fingerprint.clone(),
+            motion: match &self.program {
+                Some(file) => file.display().to_string(),
+                None => format!(
+                    "trajectory {} there and back, standstills of {} s",
+                    self.trajectory,
+                    SixDigits(self.dwell)
+                ),
+            },
+            losses_from: match self.losses {
+                LossesFrom::Reference => "reference",
+                LossesFrom::Simulation => "simulation",
+            },
+            duty_s: duty.duration(),
+            duration_s: self.duration,
+            air_c: self.air,
+            keys_of_the_file: axis.thermal_keys_stated(),
+            cold_dry_friction_w: dry,
+            cold_viscous_friction_w: viscous,
+            measures_at: if measures_at_motor { "motor" } else { "load" },
+            screw_segment_mm: screw.map(|screw| 1e3 * screw.segment()),
+            steps: 0,
+            time_min: Vec::new(),
+            nodes: nodes.collect(),
+            screw_mean_c: Vec::new(),
+            loss_w: Vec::new(),
+            dry_factor: Vec::new(),
+            viscous_factor: Vec::new(),
+            places: HeatedPlace::all(places, screw.is_some()),
+            force: None,
+            screw_at_end_c: Vec::new(),
+            report: self.report.clone(),
+        }
+    }
+}
+
+/// A program that leaves the stroke would heat places that the nut cannot be at.
+fn inside(program: &Program, axis: &Axis) -> Result<()> {
+    let (reached, stroke) = (program.extremes(), &axis.stroke);
+    let slack = 1e-9;
+    let from = reached.position_min >= stroke.minimum - slack;
+    if from && reached.position_max <= stroke.maximum + slack {
+        return Ok(());
+    }
+    Err(wrong_use(format!(
+        "the program reaches from {} to {} {unit}; give one from {} to {} {unit}, the stroke",
+        SixDigits(reached.position_min),
+        SixDigits(reached.position_max),
+        SixDigits(stroke.minimum),
+        SixDigits(stroke.maximum),
+        unit = axis.freedom().unit()
+    )))
+}
