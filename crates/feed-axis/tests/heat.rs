@@ -105,7 +105,10 @@ fn every_mechanism_warms_up() {
 fn what_cannot_be_heated_is_refused() {
     for (arguments, words) in [
         (vec!["--duration", "1"], "1h"),
-        (vec!["--trajectory", "9"], "from 1 to 2"),
+        (
+            vec!["--trajectory", "9"],
+            "there is no such trajectory; the axis file has trajectories 1 (by",
+        ),
         (vec!["--at", "1600"], "between 0 and 1500 mm"),
         (vec!["--dwell", "-1"], "--dwell"),
         (
@@ -152,7 +155,7 @@ fn what_cannot_be_heated_is_refused() {
     assert!(last(&hour["loss_w"]) > 50.0);
     let message = refuse(&["heat", "--axis", "data/axes/emps.toml"]);
     assert!(
-        message.contains("no trajectories; give a --program"),
+        message.contains("no [[trajectory]]: add one, or give a motion program"),
         "{message}"
     );
 }

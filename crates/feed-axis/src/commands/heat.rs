@@ -13,9 +13,10 @@ use trajectories::{Motion, Program, Step};
 
 use super::heat_time::time;
 use super::heat_words::{Heated, HeatedNode, HeatedPlace};
-use super::simulate::program_on;
+use super::motions::{listed, program_on};
 use crate::context::{DEFAULT_AXIS, read_axis, read_text};
 use crate::exit::wrong_use;
+use crate::out_file;
 use crate::output::print;
 use crate::page::heat as heat_page;
 use crate::set_key::{SetKey, with_keys};
@@ -68,7 +69,7 @@ pub struct Options {
     #[arg(long, value_enum, default_value_t = LossesFrom::Reference)]
     losses: LossesFrom,
     /// Where to write a page: temperatures, growth and losses over time
-    #[arg(long, value_name = "OUT.html")]
+    #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
     report: Option<PathBuf>,
 }
 
@@ -126,16 +127,12 @@ impl Options {
             inside(&program, axis).wrap_err("--program")?;
             return Ok(program);
         }
-        let count = axis.trajectories.len();
         let spec = self.trajectory.checked_sub(1);
         let spec = spec.and_then(|i| axis.trajectories.get(i)).ok_or_else(|| {
-            let valid = match count {
-                0 => "no trajectories; give a --program".to_owned(),
-                _ => format!("{count} trajectories; give one from 1 to {count}, or a --program"),
-            };
             wrong_use(format!(
-                "--trajectory {}: the axis file has {valid}",
-                self.trajectory
+                "--trajectory {}: there is no such trajectory; the axis file has {}",
+                self.trajectory,
+                listed(axis)
             ))
         })?;
         let (start, limits) = (axis.stroke.start, spec.limits);

@@ -99,21 +99,22 @@ impl<'a> FreeCurves<'a> {
     }
 
     /// On what the law depends that does most on the fitted and the check logs together, and by how much D
-    /// falls with it there beyond chance; `None` without curves.
-    pub(super) fn most_probable(&self, own: &Columns) -> Option<(String, f64)> {
-        let together = |curve: &Solved<'_>| {
+    /// falls with it, beyond chance: on the former, and on the latter. `None` without curves.
+    pub(super) fn most_probable(&self, own: &Columns) -> Option<(String, [f64; 2])> {
+        let fall = |curve: &Solved<'_>| {
+            let [fit, check] = self.fall_with(curve, own)?;
             let by_chance = BY_CHANCE * curve.columns.len() as f64;
-            let fall = self.fall_with(curve, own)?;
-            Some((curve.shape.depends_on(), fall - by_chance))
+            Some((curve.shape.depends_on(), [fit - by_chance, check]))
         };
-        let best = self.all.iter().take(TOLD).filter_map(together);
-        best.max_by(|a, b| a.1.total_cmp(&b.1))
+        let together = |[fit, check]: [f64; 2]| fit + check;
+        let best = self.all.iter().take(TOLD).filter_map(fall);
+        best.max_by(|a, b| together(a.1).total_cmp(&together(b.1)))
     }
 
     /// By how much D of the fitted and the check logs falls with a law over the variable of a curve, fitted to
     /// the former together with all that is there: weighed in each round by what the last one left, as of a
     /// large gap the first is weighed by the gap itself. `None` if the machine does not run so.
-    fn fall_with(&self, curve: &Solved<'_>, own: &Columns) -> Option<f64> {
+    fn fall_with(&self, curve: &Solved<'_>, own: &Columns) -> Option<[f64; 2]> {
         let Search {
             machine,
             fit,
@@ -139,7 +140,7 @@ impl<'a> FreeCurves<'a> {
             let of_law = curve.shape.told(machine, fitter.set, &moved, values);
             Some(before.deviance - moved.deviance + of_law)
         };
-        Some(fall(&fitter, fit)? + fall(&checker, check)?)
+        Some([fall(&fitter, fit)?, fall(&checker, check)?])
     }
 
     /// Whether what was refined explains about as much as the best curve over what it

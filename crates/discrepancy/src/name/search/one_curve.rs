@@ -2,8 +2,9 @@
 //!
 //! Effects together imitate a law that is none of them: a load with a spring stands for a force that grows
 //! along the stroke in another way. So what is named competes as a whole with every law over one variable,
-//! whatever its form, by what each explains of the fitted logs and predicts of the check logs. Numbers count
-//! by what each brings by chance, and so does the choice: k of E effects against one of V variables.
+//! whatever its form, by what each explains of the fitted logs and predicts of the check logs, and by the
+//! latter alone. Numbers count by what each brings by chance, and so does the choice: k of E effects against
+//! one of V variables.
 
 use super::form::is_form;
 use super::free_curve::{BY_CHANCE, FreeCurves};
@@ -33,29 +34,29 @@ impl Search<'_> {
         let own = without.own_columns();
         let fitter = without.fitter();
         let curves = FreeCurves::new(&without, &fitter, &own);
-        let (over, of_law) = curves.most_probable(&own)?;
+        let (over, [fit, check]) = curves.most_probable(&own)?;
         let numbers =
             free_parameters(&self.fit.state).len() - free_parameters(&without.fit.state).len();
-        let of_effects = (without.fit.deviance - self.fit.deviance)
-            + (without.check.deviance - self.check.deviance)
-            - BY_CHANCE * numbers as f64;
-        let mut names: Vec<&str> = self
-            .library
-            .candidates
-            .iter()
-            .map(|c| c.effect.name)
-            .collect();
+        let held_out = without.check.deviance - self.check.deviance;
+        let of_effects =
+            without.fit.deviance - self.fit.deviance + held_out - BY_CHANCE * numbers as f64;
+        let candidates = self.library.candidates.iter();
+        let mut names: Vec<&str> = candidates.map(|c| c.effect.name).collect();
         names.dedup();
         let choice = 2.0 * (ln_choices(names.len(), taken.len()) - ln_choices(curves.count(), 1));
         tracing::debug!(
             effects = ?taken.iter().map(|n| n.name).collect::<Vec<_>>(),
             over,
             of_effects,
-            of_law,
+            of_law = fit + check,
             choice,
+            held_out,
+            of_law_held_out = check,
             "a law over one variable in their place"
         );
-        if of_effects - choice >= SHARE * of_law {
+        // Slow noise is a law over time, but one that predicts no other log.
+        let is_law = of_effects - choice < SHARE * (fit + check) && held_out < SHARE * check;
+        if !is_law {
             return None;
         }
         Some(without.with_refused(Refused {
