@@ -98,21 +98,32 @@ impl Shape {
         let Ok(mut after) = self.rest(machine, set, fit, values) else {
             return f64::NEG_INFINITY;
         };
+        let mut before = set.rest(&fit.traces);
+        self.fall_inside(machine, set, fit, [&mut before, &mut after])
+    }
+
+    /// Fall of D from one residual to another where motion is within the outermost knots.
+    pub fn fall_inside(
+        &self,
+        machine: &Axis,
+        set: &LogSet,
+        fit: &Fit,
+        [before, after]: [&mut answers::Rest; 2],
+    ) -> f64 {
         let inside: Vec<Vec<bool>> = (courses(machine, set, &fit.traces).iter())
             .map(|course| self.inside(course))
             .collect();
         let all = inside.iter().flatten();
         let (counted, samples) = (all.clone().filter(|i| **i).count(), all.count());
-        let mut before = set.rest(&fit.traces);
-        for rest in [&mut before, &mut after] {
+        let [before, after] = [before, after].map(|rest| {
             for (channels, inside) in rest.iter_mut().zip(&inside) {
                 for channel in channels {
                     let beyond = channel.iter_mut().zip(inside).filter(|(_, i)| !**i);
                     beyond.for_each(|(r, _)| *r = 0.0);
                 }
             }
-        }
-        let [before, after] = [before, after].map(|r| set.layout.deviance(&set.amplitudes(&r)));
+            set.layout.deviance(&set.amplitudes(rest))
+        });
         // As many independent values as count.
         (before - after) * counted as f64 / samples.max(1) as f64
     }

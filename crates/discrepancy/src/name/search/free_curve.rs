@@ -11,8 +11,9 @@ use rayon::prelude::*;
 
 use super::refined::Refined;
 use super::state::Search;
+use crate::answers::Rest as Residual;
 use crate::estimate::columns::Columns;
-use crate::estimate::fit::{Fit, Fitter};
+use crate::estimate::fit::Fitter;
 use crate::name::curves::{Rest, Shape};
 use crate::spectrum::Amplitudes;
 
@@ -33,6 +34,20 @@ pub(super) const BY_CHANCE: f64 = 4.0;
 /// Curves over what an effect depends on, the best of them, of which it is seen how much they tell of
 /// check motion.
 const TOLD: usize = 4;
+
+/// A law over one variable in the place of effects.
+#[derive(Debug)]
+pub(super) struct Rival {
+    /// On what it depends.
+    pub(super) over: String,
+    /// Fall of D on the fitted logs, beyond chance.
+    pub(super) fit: f64,
+    /// The same on the check logs, as far as the fitted motion went: of the law itself, not only of the
+    /// parameters that were fitted beside it.
+    pub(super) check: f64,
+    /// The same of the effects, on the same samples.
+    pub(super) of_effects: f64,
+}
 
 /// What free curves explain beside a fit.
 pub(super) struct FreeCurves<'a> {
@@ -98,23 +113,18 @@ impl<'a> FreeCurves<'a> {
         self.all.len()
     }
 
-    /// On what the law depends that does most on the fitted and the check logs together, and by how much D
-    /// falls with it, beyond chance: on the former, and on the latter. `None` without curves.
-    pub(super) fn most_probable(&self, own: &Columns) -> Option<(String, [f64; 2])> {
-        let fall = |curve: &Solved<'_>| {
-            let [fit, check] = self.fall_with(curve, own)?;
-            let by_chance = BY_CHANCE * curve.columns.len() as f64;
-            Some((curve.shape.depends_on(), [fit - by_chance, check]))
-        };
-        let together = |[fit, check]: [f64; 2]| fit + check;
-        let best = self.all.iter().take(TOLD).filter_map(fall);
-        best.max_by(|a, b| together(a.1).total_cmp(&together(b.1)))
+    /// The law over one variable that does most on the fitted and the check logs together, beside what all
+    /// effects of a search do on the same samples; `None` without curves.
+    pub(super) fn most_probable(&self, own: &Columns, effects: &Search<'_>) -> Option<Rival> {
+        let rivals = self.all.iter().take(TOLD);
+        let rivals = rivals.filter_map(|curve| self.rival(curve, own, effects));
+        rivals.max_by(|a, b| (a.fit + a.check).total_cmp(&(b.fit + b.check)))
     }
 
-    /// By how much D of the fitted and the check logs falls with a law over the variable of a curve, fitted to
-    /// the former together with all that is there: weighed in each round by what the last one left, as of a
-    /// large gap the first is weighed by the gap itself. `None` if the machine does not run so.
-    fn fall_with(&self, curve: &Solved<'_>, own: &Columns) -> Option<[f64; 2]> {
+    /// A law over the variable of a curve, fitted together with all that is there: weighed in each round by
+    /// what the last one left, as of a large gap the first is weighed by the gap itself. `None` if the machine
+    /// does not run so.
+    fn rival(&self, curve: &Solved<'_>, own: &Columns, effects: &Search<'_>) -> Option<Rival> {
         let Search {
             machine,
             fit,
@@ -135,12 +145,26 @@ impl<'a> FreeCurves<'a> {
         }
         let values = &step.as_slice()[own.len()..];
         let state = fitter.moved(&fit.state, &step, 1.0);
-        let fall = |fitter: &Fitter<'_>, before: &Fit| {
-            let moved = fitter.at(state.clone()).ok()?;
-            let of_law = curve.shape.told(machine, fitter.set, &moved, values);
-            Some(before.deviance - moved.deviance + of_law)
+        let shape = curve.shape;
+        let fitted = fitter.at(state.clone()).ok()?;
+        let on_fit =
+            fit.deviance - fitted.deviance + shape.told(machine, fitter.set, &fitted, values);
+        // Beyond the outermost knots nothing is known of the law, so nothing counts there of either.
+        let set = checker.set;
+        let moved = checker.at(state).ok()?;
+        let fall = |after: &mut Residual| {
+            let mut before = set.rest(&check.traces);
+            shape.fall_inside(machine, set, check, [&mut before, after])
         };
-        Some([fall(&fitter, fit)?, fall(&checker, check)?])
+        let mut with_law = shape.rest(machine, set, &moved, values).ok()?;
+        let mut with_effects = set.rest(&effects.check.traces);
+        Some(Rival {
+            over: shape.depends_on(),
+            fit: on_fit - BY_CHANCE * curve.columns.len() as f64,
+            // With other parameters the rest may be nearer by itself; the law must do it.
+            check: fall(&mut with_law).min(shape.told(machine, set, &moved, values)),
+            of_effects: fall(&mut with_effects),
+        })
     }
 
     /// Whether what was refined explains about as much as the best curve over what it

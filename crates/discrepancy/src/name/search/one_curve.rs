@@ -1,4 +1,4 @@
-//! A law outside the library in the place of all effects.
+//! A law outside the library in the place of all effects of a torque balance.
 //!
 //! Effects together imitate a law that is none of them: a load with a spring stands for a force that grows
 //! along the stroke in another way. So what is named competes as a whole with every law over one variable,
@@ -22,6 +22,11 @@ impl Search<'_> {
     /// Without all effects, if a law over one variable is more probable than they are together; they are
     /// said to be refused. Forms of the own friction stay in both, and so does what the engineer accepts.
     pub(super) fn without_imitations(&self) -> Option<Self> {
+        // What a loop holds when a log begins is a course in time that repeats from log to log, and in a replay
+        // nothing stands for it beside such a law.
+        if !self.fit_logs.is_balanced() {
+            return None;
+        }
         let mut without = self.clone();
         let mut taken = Vec::new();
         while let Some(index) = without.first_in_question() {
@@ -34,34 +39,32 @@ impl Search<'_> {
         let own = without.own_columns();
         let fitter = without.fitter();
         let curves = FreeCurves::new(&without, &fitter, &own);
-        let (over, [fit, check]) = curves.most_probable(&own)?;
+        let rival = curves.most_probable(&own, self)?;
         let numbers =
             free_parameters(&self.fit.state).len() - free_parameters(&without.fit.state).len();
-        let held_out = without.check.deviance - self.check.deviance;
-        let of_effects =
-            without.fit.deviance - self.fit.deviance + held_out - BY_CHANCE * numbers as f64;
+        let on_fit = without.fit.deviance - self.fit.deviance - BY_CHANCE * numbers as f64;
         let candidates = self.library.candidates.iter();
         let mut names: Vec<&str> = candidates.map(|c| c.effect.name).collect();
         names.dedup();
         let choice = 2.0 * (ln_choices(names.len(), taken.len()) - ln_choices(curves.count(), 1));
+        let of_effects = on_fit + rival.of_effects;
+        let of_law = rival.fit + rival.check;
         tracing::debug!(
             effects = ?taken.iter().map(|n| n.name).collect::<Vec<_>>(),
-            over,
             of_effects,
-            of_law = fit + check,
+            of_law,
             choice,
-            held_out,
-            of_law_held_out = check,
+            ?rival,
             "a law over one variable in their place"
         );
         // Slow noise is a law over time, but one that predicts no other log.
-        let is_law = of_effects - choice < SHARE * (fit + check) && held_out < SHARE * check;
+        let is_law = of_effects - choice < SHARE * of_law && rival.of_effects < SHARE * rival.check;
         if !is_law {
             return None;
         }
         Some(without.with_refused(Refused {
             effects: taken,
-            reason: RefusalReason::OneCurve(over),
+            reason: RefusalReason::OneCurve(rival.over),
         }))
     }
 
