@@ -156,7 +156,7 @@ fn mappings_that_make_no_sense_are_refused_before_the_file_is_opened() {
 fn unknown_extensions_and_absent_files_are_named() {
     for (path, expected) in [
         ("absent.xlsx", "absent.xlsx: the extension is \"xlsx\""),
-        ("absent", "absent: the extension is \"\""),
+        ("absent", "absent: the name has no extension"),
         ("absent.csv", "absent.csv: cannot read it"),
         #[cfg(feature = "parquet")]
         ("absent.PARQUET", "absent.PARQUET: cannot read it"),
