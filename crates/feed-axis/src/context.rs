@@ -164,8 +164,9 @@ impl Context {
 
     /// The line of a shell that runs another command with these options.
     pub fn line(&self, command: &str) -> String {
-        let start = [program::name(), command].map(str::to_owned);
-        shell::line(&[&start[..], &self.options].concat())
+        let words = [&[command.to_owned()][..], &self.options].concat();
+        // The program's name may be two words, as of `cargo xtask`.
+        format!("{} {}", program::name(), shell::line(&words))
     }
 
     /// Everything of these options that results depend on, and the program.
