@@ -55,7 +55,7 @@ fn messages_name_this_program() {
     let out = folder.path().to_str().unwrap();
     let message = refuse(&["train", "--quick", "--out", out]);
     assert!(
-        message.contains("run `cargo xtask sample` first"),
+        message.contains("first run `cargo xtask sample --out "),
         "{message}"
     );
 }
