@@ -23,6 +23,10 @@ RIGHT = {
     "drift": ["process-force"],
     "lawx": [], "x2": [], "xv": [], "vt": [], "v3": [],
 }
+# Of laws outside the library, the variable.
+OVER = {
+    "lawx": "position", "x2": "position", "xv": "the product of speed and position", "vt": "speed", "v3": "speed", "drift": "time",
+}
 KINDS = ["clean", "clean"] + list(RIGHT)
 
 

@@ -6,7 +6,7 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from cases import RIGHT
+from cases import OVER, RIGHT
 
 WEIGHED = re.compile(r"law over one variable in their place.*of_effects=(\S+) of_law=(\S+)")
 
@@ -17,7 +17,10 @@ def of_case(case, right):
     wrong = [name for alike, name in named if not alike & set(right)]
     if wrong:
         return "wrong name", wrong
-    return ("named" if named else said["verdict"]), [name for _, name in named]
+    if named:
+        return "named", [name for _, name in named]
+    over = (said["unknown"] or {}).get("depends_on") if said["verdict"] == "unknown" else None
+    return said["verdict"], [f"over {over}"] if over else []
 
 
 def main(folder):
@@ -25,6 +28,8 @@ def main(folder):
     for case in sorted(p.parent for p in Path(folder).glob("*/truth.json")):
         truth = json.loads((case / "truth.json").read_text())
         verdict, names = of_case(case, RIGHT[truth["kind"]])
+        if names == [f"over {OVER.get(truth['kind'])}"]:
+            verdict += ", the right variable"
         counts[truth["kind"], verdict] += 1
         weighed = WEIGHED.search(re.sub(r"\x1b\[[0-9;]*m", "", (case / "search.txt").read_text()))
         share = float(weighed[1]) / float(weighed[2]) if weighed else None

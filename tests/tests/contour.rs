@@ -126,7 +126,7 @@ fn two_axes_on_a_circle_leave_what_another_simulation_leaves() {
     }
     assert!((1e6 * none.h - 112.0).abs() < 0.5, "{none:?}");
     let (worst, plan) = round(named(STRATEGIES, "plan").unwrap());
-    // 0.17 µm and G 0.29: what is left is noise, whose peaks differ from draw to draw.
+    // 0.17 µm and G 0.29: the residual is noise, whose peaks differ from draw to draw.
     for worst in worst {
         assert!((0.1..0.18).contains(&worst), "{worst}");
     }

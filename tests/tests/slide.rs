@@ -108,6 +108,19 @@ fn a_step_along_the_way_is_not_put_together_from_a_spring_and_a_load() {
     assert_eq!(told.unknown.unwrap().depends_on, "position");
 }
 
+/// A load, a spring and a friction bump together imitate a force that grows with the square of the way; a law over the
+/// position explains and predicts more than they do.
+#[test]
+fn effects_do_not_imitate_a_law_over_the_position_together() {
+    let told = balanced("bend");
+    assert_eq!(told.verdict, Verdict::Unknown, "{}", told.sentence);
+    assert!(told.effects.is_empty());
+    assert_eq!(told.unknown.unwrap().depends_on, "position");
+    let refused = told.refused.unwrap();
+    assert_eq!(refused.law_over.as_deref(), Some("position"));
+    assert!(refused.effects.len() > 1, "{:?}", refused.effects);
+}
+
 /// What the file's controller does not give, one with a low pass of the speed does, whatever the
 /// machine hides.
 #[test]

@@ -1,4 +1,4 @@
-//! What is assumed of an axis of which nothing is known.
+//! Assumed values of the numbers that an axis file does not state.
 
 use crate::friction::FrictionLaws;
 use crate::parameters::{

@@ -16,7 +16,7 @@ pub type Logger = extern "C" fn(Address, *const u8, i32, *const u8, *const u8, .
 #[derive(Clone)]
 pub struct Log {
     pub to: Option<To>,
-    /// Errors are told whether or not debugging was asked for, until they are switched off.
+    /// Errors are logged whether or not debugging was asked for, until they are switched off.
     pub on: bool,
 }
 

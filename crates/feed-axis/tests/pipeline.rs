@@ -97,7 +97,7 @@ fn the_quick_pipeline_meets_its_figures_and_guards_its_results() {
     assert_eq!(std::fs::read(&samples).unwrap(), whole);
 }
 
-/// An axis that cannot have every strategy: what is left out is named, the others stand in
+/// For an axis that cannot have every strategy: the ones that were left out are named, the others stand in
 /// summary and report.
 #[test]
 fn a_pipeline_finishes_without_a_strategy_that_the_axis_cannot_have() {

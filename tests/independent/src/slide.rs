@@ -64,15 +64,18 @@ pub struct SlideHidden {
     pub drag: f64,
     /// Force (N) that turns at a place (m) along the way, over a width (m).
     pub edge: [f64; 3],
+    /// Force that grows with the square of the way from a place (N/m², m).
+    pub bend: [f64; 2],
 }
 
 /// What may be hidden in a slide, by name.
-pub const SLIDE_CASES: [(&str, SlideHidden); 5] = {
+pub const SLIDE_CASES: [(&str, SlideHidden); 6] = {
     let none = SlideHidden {
         ripple: [0.0; 3],
         cable: 0.0,
         drag: 0.0,
         edge: [0.0; 3],
+        bend: [0.0; 2],
     };
     // Two periods in an electrical one of 24 mm: one period would be an offset of a current sensor too.
     let ripple = [9.0, 0.012, 0.7];
@@ -89,6 +92,13 @@ pub const SLIDE_CASES: [(&str, SlideHidden); 5] = {
         ),
         ("drag", SlideHidden { drag: 40.0, ..none }),
         ("edge", SlideHidden { edge, ..none }),
+        (
+            "bend",
+            SlideHidden {
+                bend: [200.0, 0.55],
+                ..none
+            },
+        ),
     ]
 };
 
@@ -119,7 +129,8 @@ impl SlideHidden {
             true => turning * ((y - place) / width).tanh(),
             false => 0.0,
         };
-        ripple + self.cable * (y - 0.1) + self.drag * v * v.abs() + edge
+        let [bend, from] = self.bend;
+        ripple + self.cable * (y - 0.1) + self.drag * v * v.abs() + edge + bend * (y - from).powi(2)
     }
 }
 

@@ -1,4 +1,4 @@
-//! A thermal model fitted to another machine, and what is left of the table's error with it.
+//! A thermal model fitted to another machine, and the table's residual error with it.
 
 use std::sync::Arc;
 

@@ -211,7 +211,7 @@ impl Unit {
         self.span = [0.0, f64::INFINITY];
     }
 
-    /// Gives the instance up: what is left is to reset it, or to set it to a saved state.
+    /// Marks the instance as failed: only a reset or a saved state brings it back.
     pub fn fail(&mut self) {
         self.mode = FmiMode::Failed;
     }

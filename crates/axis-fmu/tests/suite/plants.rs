@@ -167,7 +167,7 @@ fn steps_of_any_length_are_made() {
     }
 }
 
-/// It has what the mechanics have, begins where it is told, and no step leaves its stroke unseen.
+/// It has the variables of the mechanics, begins at the position that was set, and refuses to leave its stroke.
 #[test]
 fn a_plant_has_no_control() {
     let name = "liu2025.toml";
