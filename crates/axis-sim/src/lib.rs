@@ -120,7 +120,7 @@ pub use axis::{
     Sensors, Simulation, Stroke, Tolerances, ValueRange,
 };
 pub use axis_file::{AxisFileError, Registry, TABLES_WITHOUT_PARTS};
-pub use balance::{Balance, BalanceError, BalanceQuality, CutoffReason};
+pub use balance::{Balance, BalanceError, BalanceNoise, BalanceQuality, CutoffReason};
 pub use channels::{CHANNELS, ChannelPart, LogChannel, channels, position_in, reference_in};
 pub use closed_loop::{ClosedLoop, LoopState};
 pub use cycle::{Command, Cycle, Measured, Outcome, RunStopped, Stop, StopReason};

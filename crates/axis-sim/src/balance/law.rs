@@ -16,11 +16,37 @@ pub(super) struct Motions {
     pub motor: Course,
     /// Whether the load's is the motor's times the travel per radian, and nothing else.
     pub load_is_derived: bool,
+    /// Whether the motor's is what its own encoder shows.
+    pub motor_is_measured: bool,
     /// Where one of the two was measured: what sets the other apart.
     pub wind_up: Option<WindUp>,
 }
 
 impl Motions {
+    /// Those of motor and load without the reading error of the motor's encoder; `None` if nothing shows
+    /// one.
+    fn without_encoder_error(&self, hooks: &Hooks, r: f64, h: f64) -> Option<Self> {
+        if !self.motor_is_measured || hooks.sensors.eccentricities.is_empty() {
+            return None;
+        }
+        let shown = self.motor.position.iter();
+        let error: Vec<f64> = shown.map(|a| hooks.sensors.eccentricity(*a)).collect();
+        let speed = derivative(&error, h);
+        let error = Course {
+            acceleration: derivative(&speed, h),
+            speed,
+            position: error,
+        };
+        Some(Self {
+            load: match self.load_is_derived {
+                true => self.load.plus(-r, &error),
+                false => self.load.clone(),
+            },
+            motor: self.motor.plus(-1.0, &error),
+            ..self.clone()
+        })
+    }
+
     /// Stiffness between the motion that was measured and a load that was not, N/m or N·m/rad.
     pub fn spring(&self, axis: &Axis) -> Option<f64> {
         let wind_up = self.wind_up.filter(|_| self.load_is_derived)?;
@@ -34,42 +60,61 @@ const ROUNDS: usize = 30;
 /// Motor torque, N·m, that `axis` (its effects made) needs at each sample.
 ///
 /// ```text
-/// T + T_hooks(θ, T) = Σ J_i ((1 − s_i) α + s_i a / r) + r (m a + F_friction(v, z) + F_loads(x, v, t))
+/// T + T_hooks(θ, T) = Σ J_i ((1 − s_i) α + s_i (a − ö) / r) + r (m a + F_friction(v, z) + F_loads(x, v, t))
 /// ```
-pub(super) fn torque(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> Vec<f64> {
+///
+/// with the acceleration ö of an error of the transmission's kinematics, which the load has beside the
+/// screw.
+pub(super) fn torque(axis: &Axis, hooks: &Hooks, ends: &Ends, h: f64) -> Vec<f64> {
     let Ends {
         load,
         motor,
         forces,
-    } = Ends::of(axis, hooks, motions, h);
+    } = ends;
     let r = axis.travel_per_radian();
     let mass = axis.mechanism.load_inertia();
-    // What turns along a screw lags the motor by a share of the wind-up.
-    let rotating = axis.mechanism.rotating(middle(&load.position));
-    let lagging: f64 = rotating
-        .iter()
-        .map(|[inertia, share]| inertia * share)
-        .sum();
+    let lagging = lagging(axis, load);
     let inertia = axis.mechanism.total_inertia() - mass * r * r - lagging;
+    let offset = offset_acceleration(hooks, ends, h);
     let one = |(k, force): (usize, f64)| {
         let [of_load, of_motor] = [load.acceleration[k], motor.acceleration[k]];
-        let rotation = inertia * of_motor + lagging * of_load / r;
+        let of_screw = of_load - offset.as_ref().map_or(0.0, |o| o[k]);
+        let rotation = inertia * of_motor + lagging * of_screw / r;
         let all = rotation + r * (mass * of_load + force);
         own(hooks, motor.position[k], all)
     };
-    forces.into_iter().enumerate().map(one).collect()
+    forces.iter().copied().enumerate().map(one).collect()
+}
+
+/// Acceleration of the error of the transmission's kinematics; `None` if there is none.
+fn offset_acceleration(hooks: &Hooks, ends: &Ends, h: f64) -> Option<Vec<f64>> {
+    if !hooks.has_offsets() {
+        return None;
+    }
+    let rate = |k: usize| hooks.offset_at(&screw_state(&ends.load, &ends.motor, k, h))[1];
+    let rates: Vec<f64> = (0..ends.load.position.len()).map(rate).collect();
+    Some(derivative(&rates, h))
+}
+
+/// What turns along a screw lags the motor by a share of the wind-up: its inertia by that share, kg·m².
+pub(super) fn lagging(axis: &Axis, load: &Course) -> f64 {
+    let rotating = axis.mechanism.rotating(middle(&load.position));
+    let shares = rotating.iter().map(|[inertia, share]| inertia * share);
+    shares.sum()
 }
 
 /// Where load and motor are, the end that was not measured by the other and the wind-up, and the
 /// forces on the load.
-struct Ends {
-    load: Course,
-    motor: Course,
-    forces: Vec<f64>,
+pub(super) struct Ends {
+    pub load: Course,
+    pub motor: Course,
+    pub forces: Vec<f64>,
 }
 
 impl Ends {
-    fn of(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> Self {
+    pub fn of(axis: &Axis, hooks: &Hooks, motions: &Motions, h: f64) -> Self {
+        let corrected = motions.without_encoder_error(hooks, axis.travel_per_radian(), h);
+        let motions = corrected.as_ref().unwrap_or(motions);
         let mut motor = motions.motor.clone();
         let ahead = ahead_at_start(axis, hooks, motions, h);
         motor.position.iter_mut().for_each(|angle| *angle += ahead);
@@ -141,7 +186,7 @@ fn shifted(hooks: &Hooks, motions: &Motions, motor: &Course, h: f64) -> Option<C
     })
 }
 
-fn screw_state(load: &Course, motor: &Course, k: usize, h: f64) -> ScrewState {
+pub(super) fn screw_state(load: &Course, motor: &Course, k: usize, h: f64) -> ScrewState {
     ScrewState {
         time: k as f64 * h,
         angle: motor.position[k],

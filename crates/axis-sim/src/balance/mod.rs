@@ -25,26 +25,30 @@ mod prepared;
 mod quality;
 mod shown;
 mod spectrum;
+mod transmission;
 mod wind_up;
 
 use axis_log::Log;
 
 use crate::axis::Axis;
-use crate::control::absent::sampled_inertia;
+use crate::control::absent::{encoder_skew, sampled_inertia};
 use crate::effects::ActiveEffect;
 use crate::replay::{Probe, ReplayError, Trace};
 use channel::TorqueChannel;
 pub use error::BalanceError;
 use filter::{LowPass, ahead, derivative};
-use law::{Motions, torque};
-use prepared::BalanceNoise;
+use law::{Ends, Motions, torque};
+use prepared::TorqueNoise;
 pub use quality::{BalanceQuality, CutoffReason};
 pub use shown::{FrictionCourse, ObservedMotion};
+use transmission::{Transmission, error, give};
 
 /// One log's measured motion and torque, ready to be compared with any model of the axis.
 #[derive(Clone, Debug)]
 pub struct Balance {
     channel: TorqueChannel,
+    /// Compared beside the torque where load and motor were measured.
+    transmission: Option<Transmission>,
     motions: Motions,
     /// Sampling period of the log, s.
     period: f64,
@@ -57,12 +61,22 @@ pub struct Balance {
     speed: Vec<f64>,
     compared: Log,
     quality: BalanceQuality,
-    noise: BalanceNoise,
+    noise: TorqueNoise,
+}
+
+/// Noise alone in a channel that is compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BalanceNoise {
+    /// Root mean square, in the channel's unit.
+    pub rms: f64,
+    /// Whether it is the least that is possible: nobody knows what a controller makes of its sensors'
+    /// noise.
+    pub is_least: bool,
 }
 
 impl Balance {
-    /// What the model needs at the compared samples: the one channel, and the load's
-    /// position and speed as they were measured.
+    /// What the model needs at the compared samples: the torque's channel and, where load and motor
+    /// were measured, the transmission error; and the load's position and speed as they were measured.
     ///
     /// # Errors
     /// [`ReplayError::Setup`] if an effect does not fit the axis.
@@ -83,7 +97,8 @@ impl Balance {
             let offset = sensors.and_then(|s| s.current_offset.at(angle));
             offset.map_or(0.0, |offset| offset.q)
         };
-        let mut needed = torque(&axis, &hooks, &self.motions, self.period);
+        let ends = Ends::of(&axis, &hooks, &self.motions, self.period);
+        let mut needed = torque(&axis, &hooks, &ends, self.period);
         if self.channel.is_controlled() {
             let more = sampled_inertia(&axis.control) - 1.0;
             let inertia = more * axis.mechanism.total_inertia();
@@ -98,22 +113,52 @@ impl Balance {
         let shown = pairs.map(|((t, rate), angle)| per_torque * (t + lag * rate) + zero(*angle));
         // A position that is logged late shows the motion of before.
         let by = (early + hooks.clock_offset) / self.period;
-        let smooth = self.filter.apply(&ahead(shown.collect(), by));
-        let mut compared: Vec<f64> = self.kept.iter().map(|&k| smooth[k]).collect();
+        let mut compared = self.compare(&ahead(shown.collect(), by));
         if let Some(Probe::Load(force)) = probe {
             let by = per_torque * axis.travel_per_radian();
             let pairs = compared.iter_mut().zip(force.iter());
             pairs.for_each(|(value, force)| *value += by * force);
         }
+        let mut channels = vec![(self.channel.name, compared), self.position.clone()];
+        if let Some(transmission) = &self.transmission {
+            let late = hooks.clock_offset + encoder_skew(&axis.control) * self.period;
+            let mut compared = self.compare(&error(&axis, &hooks, &ends, late, self.period));
+            self.disturb(&axis, &mut compared, probe);
+            channels.push((transmission.name, compared));
+        }
         Ok(Trace {
-            channels: vec![(self.channel.name, compared), self.position.clone()],
+            channels,
             speed: self.speed.clone(),
         })
     }
 
-    /// Name of the channel that is compared.
+    /// A series as it is compared: behind the low-pass, at the samples that are kept.
+    fn compare(&self, series: &[f64]) -> Vec<f64> {
+        let smooth = self.filter.apply(series);
+        self.kept.iter().map(|&k| smooth[k]).collect()
+    }
+
+    /// Adds what a disturbance does to the transmission error.
+    fn disturb(&self, axis: &Axis, error: &mut [f64], probe: Option<&Probe>) {
+        let (series, per_unit): (_, &dyn Fn(f64) -> f64) = match probe {
+            None => return,
+            Some(Probe::Load(force)) => (force, &|position| -give(axis, position)),
+            Some(Probe::Offset(offset)) => (offset, &|_| 1.0),
+        };
+        let pairs = error.iter_mut().zip(series.iter()).zip(&self.position.1);
+        pairs.for_each(|((value, by), position)| *value += per_unit(*position) * by);
+    }
+
+    /// Name of the torque's channel.
     pub fn channel(&self) -> &'static str {
         self.channel.name
+    }
+
+    /// Names of the channels that are compared: the torque's and, where load and motor were measured,
+    /// the transmission error.
+    pub fn channels(&self) -> Vec<&'static str> {
+        let error = self.transmission.iter().map(|t| t.name);
+        std::iter::once(self.channel.name).chain(error).collect()
     }
 
     /// The log as it is compared: low-passed, at a lower rate, without what lies at its
@@ -137,10 +182,24 @@ impl Balance {
         spectrum::correlation(self.quality.cutoff, over)
     }
 
-    /// Noise alone in the compared channel with the inertia of this axis, RMS in its unit: the
-    /// least that the upper spectra of torque and motion leave possible.
-    pub fn least_noise(&self, axis: &Axis) -> f64 {
-        self.noise.rms(axis)
+    /// Noise alone in each of [`Balance::channels`] with the inertia of this axis, RMS in its unit, with
+    /// the uncertainty of the friction. Of the torque it is the least that the upper spectra of torque
+    /// and motion leave possible; what two encoders show of one motion, they show beside each other.
+    pub fn noise(&self, axis: &Axis) -> Vec<BalanceNoise> {
+        let torque = self.noise.rms(axis).hypot(self.quality.friction);
+        let force = self.quality.friction
+            / (self.channel.per_torque(axis) * axis.travel_per_radian()).abs();
+        let middle = self.position.1.get(self.position.1.len() / 2);
+        let of_friction = middle.map_or(0.0, |&x| force * give(axis, x));
+        let error = self.transmission.iter().map(|t| BalanceNoise {
+            rms: t.noise.hypot(of_friction),
+            is_least: false,
+        });
+        let torque = BalanceNoise {
+            rms: torque,
+            is_least: true,
+        };
+        std::iter::once(torque).chain(error).collect()
     }
 
     /// What was decided for this log, and why.

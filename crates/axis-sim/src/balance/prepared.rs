@@ -13,6 +13,7 @@ use super::law::Motions;
 use super::motion::{Course, Measured, Whose};
 use super::quality::{BalanceQuality, CutoffReason, TOLERATED};
 use super::spectrum::{least_noise, passed};
+use super::transmission::Transmission;
 use super::wind_up::WindUp;
 use crate::axis::Axis;
 use crate::replay::ReplayError;
@@ -143,7 +144,7 @@ impl Balance {
         );
         let filter = LowPass::new(cutoff * period);
         let logged = log.channel(channel.name)?;
-        let noise = BalanceNoise {
+        let noise = TorqueNoise {
             channel,
             torque: (least_noise(logged, period) * passed(0, cutoff)).sqrt(),
             whose: measured[0].whose,
@@ -174,8 +175,9 @@ impl Balance {
             };
             return Err(error.into());
         }
-        let shown = filter.apply(logged);
+        let transmission = Transmission::of(measured, axis, period, cutoff);
         let pick = |series: &[f64]| -> Vec<f64> { kept.iter().map(|&k| series[k]).collect() };
+        let shown = |series: &[f64]| pick(&filter.apply(series));
         let position = pick(&motions.load.position);
         let speed = pick(&motions.load.speed);
         let quality = BalanceQuality {
@@ -193,13 +195,21 @@ impl Balance {
             unresolved: moving.len() - kept.len(),
             friction: per_force * rms(kept.iter().map(|&k| scatter[k])),
         };
-        let compared = Log::new(vec![
+        let mut compared = vec![
             Channel::new("t_s", pick(log.time()))?,
             Channel::new(axis.position_channel(), position.clone())?,
-            Channel::new(channel.name, pick(&shown))?,
-        ])?;
+            Channel::new(channel.name, shown(logged))?,
+        ];
+        if let Some(transmission) = &transmission {
+            compared.push(Channel::new(
+                transmission.name,
+                shown(&transmission.samples),
+            )?);
+        }
+        let compared = Log::new(compared)?;
         Ok(Self {
             channel,
+            transmission,
             motions,
             period,
             filter,
@@ -213,9 +223,9 @@ impl Balance {
     }
 }
 
-/// Least noise of a balance's channel, as the upper spectra of torque and motion leave it possible.
+/// Least noise of the torque's channel, as the upper spectra of torque and motion leave it possible.
 #[derive(Clone, Debug)]
-pub(super) struct BalanceNoise {
+pub(super) struct TorqueNoise {
     channel: TorqueChannel,
     /// Of the channel, RMS in its unit.
     torque: f64,
@@ -224,7 +234,7 @@ pub(super) struct BalanceNoise {
     acceleration: f64,
 }
 
-impl BalanceNoise {
+impl TorqueNoise {
     /// RMS in the channel's unit, with the inertia of this axis: a model makes torque of the
     /// acceleration's noise.
     pub(super) fn rms(&self, axis: &Axis) -> f64 {
@@ -331,6 +341,7 @@ fn motions(axis: &Axis, measured: &[Measured], period: f64, cutoff: f64) -> Moti
     let r = axis.travel_per_radian();
     let (load, motor) = (of(Whose::Load).map(course), of(Whose::Motor).map(course));
     let load_is_derived = load.is_none();
+    let motor_is_measured = motor.is_some();
     let empty = || Course {
         position: Vec::new(),
         speed: Vec::new(),
@@ -350,6 +361,7 @@ fn motions(axis: &Axis, measured: &[Measured], period: f64, cutoff: f64) -> Moti
         load,
         motor,
         load_is_derived,
+        motor_is_measured,
         wind_up: (measured.len() == 1).then(|| wind_up(axis)).flatten(),
     }
 }

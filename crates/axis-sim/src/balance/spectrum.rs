@@ -112,6 +112,11 @@ pub(super) fn least_noise(series: &[f64], period: f64) -> f64 {
     Differences::of(series, 2, period).floor()[0]
 }
 
+/// The same, the greatest: a sensor's own filter takes away of its upper spectrum.
+pub(super) fn most_noise(series: &[f64], period: f64) -> f64 {
+    Differences::of(series, 2, period).floor()[1]
+}
+
 /// The noise of a measured motion, and the power of its acceleration.
 #[derive(Clone, Debug)]
 pub(super) struct Noise {

@@ -23,6 +23,10 @@ pub(crate) static KIND: PartKind<dyn Control> = PartKind {
         // Beside nothing: the share by which it is off is the skew.
         Known::by(TORQUE_SKEW, |values, by| values.set(TORQUE_SKEW, by - 1.0))
             .with_own_tolerance(0.5, None),
+        Known::by(ENCODER_SKEW, |values, by| {
+            values.set(ENCODER_SKEW, by - 1.0)
+        })
+        .with_own_tolerance(0.5, None),
     ],
     build: |_| Ok(Arc::new(Absent)),
 };
@@ -46,6 +50,10 @@ const COMMAND_HOLD: &str = "command_hold";
 /// what is called measured may be a command that is held.
 const TORQUE_SKEW: &str = "torque_skew";
 
+/// Time by which the load's position is shown later than the motor's angle, as a share of the period of
+/// their log: two encoders are seldom read at one instant.
+const ENCODER_SKEW: &str = "encoder_skew";
+
 fn sampled(values: &Values) -> f64 {
     values.optional(SAMPLED_INERTIA).unwrap_or(1.0)
 }
@@ -68,6 +76,12 @@ pub(crate) fn command_hold(control: &Part<dyn Control>) -> f64 {
 /// not known.
 pub(crate) fn torque_skew(control: &Part<dyn Control>) -> f64 {
     control.values().optional(TORQUE_SKEW).unwrap_or(0.0)
+}
+
+/// Share of a log's period by which the load's position is shown later than the motor's angle where the
+/// control is not known.
+pub(crate) fn encoder_skew(control: &Part<dyn Control>) -> f64 {
+    control.values().optional(ENCODER_SKEW).unwrap_or(0.0)
 }
 
 /// Why nothing that needs a loop can be made of such an axis.

@@ -134,6 +134,13 @@ impl CurrentOffset {
 }
 
 impl SensorErrors {
+    /// By how much the motor's encoder shows too much at an angle, rad.
+    pub(crate) fn eccentricity(&self, angle: f64) -> f64 {
+        let all = self.eccentricities.iter();
+        all.map(|[amplitude, phase]| amplitude * (angle + phase).sin())
+            .sum()
+    }
+
     /// What these sensors make of what perfect ones would show.
     pub(crate) fn show(&self, mut m: Measured) -> Measured {
         let gain = 1.0 + self.current_gain;

@@ -278,7 +278,7 @@ fn a_command_in_step_with_the_position_controller_shows_more_inertia() {
 }
 
 /// The first trajectory there and back, at full, a third and two thirds of its speed.
-fn back_and_forth(axis: &Axis) -> Program {
+pub fn back_and_forth(axis: &Axis) -> Program {
     let (start, spec) = (axis.stroke.start, &axis.trajectories[0]);
     let rest = Step::Dwell { duration: 0.2 };
     let mut steps = vec![rest];

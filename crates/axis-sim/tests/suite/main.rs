@@ -8,6 +8,7 @@ mod axis_files;
 mod bad_files;
 mod balance;
 mod balance_noise;
+mod balance_transmission;
 mod belt;
 mod closed_loop;
 mod controls;

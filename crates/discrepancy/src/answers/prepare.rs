@@ -91,14 +91,15 @@ impl LogSet {
         })
     }
 
-    /// Logs that are answered by torque balance: of the one channel that shows it.
+    /// Logs that are answered by torque balance: of the channels that all of them compare.
     fn balanced(logs: &[(String, Log, f64)], machine: &Axis) -> Result<Self, ReplayError> {
         let only: Vec<(&Log, f64)> = logs.iter().map(|(_, log, h)| (log, *h)).collect();
         let balances = Balance::of_logs(&only, machine)?;
-        let channels: Vec<&'static str> = balances.iter().map(Balance::channel).take(1).collect();
+        let mut channels = balances.first().map_or(Vec::new(), Balance::channels);
+        channels.retain(|name| balances.iter().all(|b| b.channels().contains(name)));
         let prepare = |((name, ..), balance): (&(String, Log, f64), Balance)| {
             let log = balance.compared().clone();
-            let channel = |name: &&str| Ok(log.channel(name)?.to_vec());
+            let channel = |name: &&str| Ok(relative(name, log.channel(name)?));
             Ok(Prepared {
                 name: name.clone(),
                 period: balance.compared_period(),

@@ -53,8 +53,11 @@ pub struct LogSet {
     pub layout: Layout,
 }
 
-/// The channel that counts from wherever the encoder was.
+/// The motor's angle.
 pub(super) const ANGLE: &str = "motor_angle_rad";
+
+/// The channels that count from wherever an encoder was.
+const WITHOUT_ZERO: [&str; 3] = [ANGLE, "transmission_error_m", "transmission_error_rad"];
 
 impl LogSet {
     /// The torque balances of its logs; none of logs that are replayed.
@@ -191,7 +194,7 @@ impl LogSet {
 
     /// Whether a channel has no zero of its own.
     pub(crate) fn counts_from_its_mean(&self, channel: usize) -> bool {
-        self.channels[channel] == ANGLE
+        WITHOUT_ZERO.contains(&self.channels[channel])
     }
 
     /// Which of the fitted channels have no zero of their own.
@@ -206,10 +209,10 @@ impl LogSet {
     }
 }
 
-/// Angles count from their mean, whatever the encoder's zero; the first sample
-/// would carry its noise into all others.
+/// What has no zero of its own counts from its mean; the first sample would carry its noise into
+/// all others.
 pub(super) fn relative(name: &str, samples: &[f64]) -> Vec<f64> {
-    if name != ANGLE {
+    if !WITHOUT_ZERO.contains(&name) {
         return samples.to_vec();
     }
     let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;

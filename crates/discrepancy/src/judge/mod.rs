@@ -57,7 +57,7 @@ use crate::answers::Rest;
 use crate::answers::{LogSet, State};
 use crate::estimate::fit::Fitter;
 use crate::estimate::known::{shown, tolerances};
-use crate::name::gap::{furthest_above, gap, is_more_than_noise};
+use crate::name::gap::{furthest_above, gap, is_more_than_noise, sizes};
 use crate::name::search::{Found, MATERIAL, is_form};
 use crate::noise::{
     Excess, Hum, MotionAndRest, excess, floors, log_noise, slow_noise, stays, steady_bands,
@@ -221,11 +221,14 @@ pub fn judged(
     let coloured = excess.filter(|_| following.is_none());
     // Of a balance nobody knows what the controller makes of its sensors' noise: slow, it is above
     // the floor, and what curves take of it does not hold on other logs.
-    let slow_of_loop = set.is_balanced()
-        && effects.is_empty()
-        && lack.is_none()
-        && !check.is_at_floor()
-        && check.may_be_coloured();
+    let of_base = as_filed.rest(&base.traces);
+    let without = match effects.is_empty() {
+        true => sizes(set, &after),
+        false => sizes(set, &of_base),
+    };
+    let as_noise = check.taken_for_noise(&without).filter(|_| lack.is_none());
+    let slow_of_loop = as_noise.is_some() && !check.is_at_floor();
+    let check = as_noise.unwrap_or(check);
     let unknown = lack.or_else(|| following.map(in_frequency));
     let as_coloured = is_coloured && unknown.is_none();
     let is_noise = check.is_at_floor() || coloured.is_some() || slow_of_loop || as_coloured;
@@ -272,7 +275,7 @@ pub fn judged(
         controller: None,
     };
     let friction = friction_law(machine, set, full, &traces, &after);
-    let overlays = overlays(as_filed, &as_filed.rest(&base.traces), &after);
+    let overlays = overlays(as_filed, &of_base, &after);
     let discovery = Discovery {
         schema: Discovery::SCHEMA,
         axis: name,

@@ -45,7 +45,8 @@ const FLOOR: &str = "the noise stated for a torque balance is a lower bound from
 
 /// What must be known of a balance's rest that is taken for noise though it is above its floor.
 pub(super) fn slow_of_loop_note(check: &Gap) -> String {
-    let times = check.channels.iter().map(|c| c.after / c.floor);
+    let above = check.channels.iter().filter(|c| c.floor_is_least);
+    let times = above.map(|c| c.after / c.floor);
     let times = times.fold(0.0, f64::max);
     format!(
         "the residual is {times:.1} times that lower bound, and no curve over the motion that is fitted on some logs predicts others: it is taken for sensor noise that passed through the controller; a replay with the controller's gains would show more"

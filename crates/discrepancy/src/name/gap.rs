@@ -25,12 +25,28 @@ pub struct ChannelGap {
     pub floor: f64,
     /// The most of it in any of a few simulated runs.
     pub floor_most: f64,
+    /// Whether it is the least that noise may be, as of the torque in a torque balance.
+    #[serde(default)]
+    pub floor_is_least: bool,
 }
 
 impl ChannelGap {
     /// Whether it stood out of its noise before.
     fn stood_out(&self) -> bool {
         self.before > REST * self.floor
+    }
+
+    /// Whether it did by more than noise of any colour may.
+    fn stood_out_plainly(&self) -> bool {
+        match self.floor_is_least {
+            true => self.before > COLOURED * self.floor,
+            false => self.stood_out(),
+        }
+    }
+
+    /// Whether the residual may be noise of which only the least is known.
+    fn may_be_more_noise(&self) -> bool {
+        self.floor_is_least && self.after <= COLOURED * self.floor
     }
 
     /// Whether the residual is noise.
@@ -45,7 +61,8 @@ pub struct Gap {
     /// One entry a channel.
     pub channels: Vec<ChannelGap>,
     /// Share of the gap above the floor that is gone: of the mean square over
-    /// all channels, each against its own gap before.
+    /// all channels, each against its own gap before. Where one stood out by more than noise of
+    /// any colour may, over those that did.
     pub reduction: f64,
 }
 
@@ -71,6 +88,27 @@ impl Gap {
     /// Whether it may be such noise where it does not follow the motion.
     pub(crate) fn may_be_noise_apart_from_motion(&self) -> bool {
         self.is_within(APART_FROM_MOTION)
+    }
+
+    /// Whether the residual is noise in all channels, or may be in those of which only its least is known
+    /// and of which what was named takes nothing: without it they are `without`, RMS. What is gone
+    /// then counts above that noise.
+    pub(crate) fn taken_for_noise(&self, without: &[f64]) -> Option<Self> {
+        let mut raised = self.channels.clone();
+        let takes_nothing = |c: usize| without[c] <= TAKES_NOTHING * self.channels[c].after;
+        for (c, gap) in raised.iter_mut().enumerate() {
+            if gap.is_at_floor() {
+                continue;
+            }
+            if !(gap.may_be_more_noise() && takes_nothing(c)) {
+                return None;
+            }
+            gap.floor = gap.after;
+        }
+        Some(Self {
+            reduction: reduction(&raised),
+            channels: self.channels.clone(),
+        })
     }
 
     fn is_within(&self, floors: f64) -> bool {
@@ -143,8 +181,17 @@ pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
             after: rms(after, c),
             floor: floors[c].rms,
             floor_most: floors[c].most,
+            floor_is_least: floors[c].is_least,
         })
         .collect();
+    Gap {
+        reduction: reduction(&channels),
+        channels,
+    }
+}
+
+/// Share of the gap above the floor that is gone.
+fn reduction(channels: &[ChannelGap]) -> f64 {
     let above = |rms: f64, floor: f64| {
         if rms <= FLOOR * floor {
             0.0
@@ -152,19 +199,19 @@ pub fn gap(set: &LogSet, before: &Rest, after: &Rest, floors: &[Floor]) -> Gap {
             rms * rms - floor * floor
         }
     };
-    let shares = channels.iter().filter(|c| c.stood_out());
+    let any_plain = channels.iter().any(ChannelGap::stood_out_plainly);
+    let counts = |c: &&ChannelGap| match any_plain {
+        true => c.stood_out_plainly(),
+        false => c.stood_out(),
+    };
+    let shares = channels.iter().filter(counts);
     let ratios: Vec<f64> = shares
         .map(|c| above(c.after, c.floor) / above(c.before, c.floor))
         .collect();
-    let reduction = if ratios.is_empty() {
-        0.0
-    } else {
-        1.0 - (ratios.iter().sum::<f64>() / ratios.len() as f64).sqrt()
-    };
-    Gap {
-        channels,
-        reduction,
+    if ratios.is_empty() {
+        return 0.0;
     }
+    1.0 - (ratios.iter().sum::<f64>() / ratios.len() as f64).sqrt()
 }
 
 /// The log whose residual is furthest above its own noise in some channel: its place, and how many
@@ -202,6 +249,9 @@ const BETWEEN_LOGS: f64 = 2.0;
 /// channel's noise: left out, it would raise the RMS of the residual by 1.6 %, which no
 /// engineer would look for.
 pub const MATERIAL_OF_NOISE: f64 = 0.18;
+
+/// The same as what the RMS of a residual without it is a multiple of: √(1 + 0.18²).
+const TAKES_NOTHING: f64 = 1.016;
 
 /// Least that it must change in that channel, as a share of the gap, RMS, that there was
 /// before anything was named: a thirtieth, a thousandth of its power.

@@ -18,6 +18,8 @@ pub struct Floor {
     pub most: f64,
     /// Root mean square in each log, of several runs the greatest.
     pub by_log: Vec<f64>,
+    /// Whether that is the least that noise may be.
+    pub is_least: bool,
     /// Independent values that its samples are worth, where what is slow is averaged:
     /// their number times the variance over the spectral density at zero frequency.
     pub independent: f64,
@@ -51,6 +53,7 @@ impl Floor {
             rms: (squares / samples).sqrt(),
             most: (squares / samples).sqrt(),
             by_log: series.iter().map(rms).collect(),
+            is_least: false,
             independent: samples * worth.min(1.0),
         }
     }
@@ -71,6 +74,7 @@ impl Floor {
             rms: mean(|f| f.rms * f.rms).sqrt(),
             most: runs.iter().map(|f| f.rms).fold(0.0, f64::max),
             by_log: (0..logs).map(of_log).collect(),
+            is_least: false,
             independent: mean(|f| f.independent),
         }
     }
@@ -102,7 +106,8 @@ pub(crate) fn floors(
 ) -> Result<Vec<Floor>, ReplayError> {
     let axis = at_state(machine, state);
     if set.is_balanced() {
-        return Ok(vec![of_balances(&axis, &set.balances(), best)]);
+        let channel = |c: usize| of_balances(&axis, set, best, c);
+        return Ok((0..set.channels.len()).map(channel).collect());
     }
     if !shows_noise(&axis, set) {
         let samples: usize = set.counted().iter().map(Range::len).sum();
@@ -112,6 +117,7 @@ pub(crate) fn floors(
                 rms,
                 most: rms,
                 by_log: vec![rms; set.logs.len()],
+                is_least: false,
                 independent: samples as f64,
             };
             white.beside(set.inexactness(machine, c))
@@ -167,20 +173,30 @@ fn floors_of(
     Ok((0..set.channels.len()).map(of).collect())
 }
 
-/// Noise of a balance's channel: the least that its log leaves possible with the inertia that was
-/// fitted, and the uncertainty of its friction, or, where that is more, what its residual has from
-/// one sample to the next. Nobody knows what its controller makes of its sensors' noise, nor what a
+/// Noise of a balance's channel with the inertia that was fitted, and the uncertainty of its friction. Of
+/// the torque that is the least that its log leaves possible or, where that is more, what its residual
+/// has from one sample to the next. Nobody knows what its controller makes of its sensors' noise, nor what a
 /// current has above the rate of its log: that comes back anywhere below it. All of it is in the
 /// residual, so it is never more than that.
-fn of_balances(axis: &Axis, balances: &[&Balance], rest: &Rest) -> Floor {
+fn of_balances(axis: &Axis, set: &LogSet, rest: &Rest, channel: usize) -> Floor {
+    let balances = set.balances();
     let samples = balances.iter().map(|b| b.quality().samples[0] as f64);
+    let own = |b: &Balance| {
+        let mut all = b.channels().into_iter().zip(b.noise(axis));
+        let own = all.find(|(name, _)| *name == set.channels[channel]);
+        own.map(|(_, noise)| noise)
+    };
+    let is_least = balances.iter().filter_map(|b| own(b)).any(|n| n.is_least);
     let squares = balances.iter().zip(rest).map(|(b, log)| {
-        let least = b.least_noise(axis).powi(2) + b.quality().friction.powi(2);
-        let whole = |r: &Vec<f64>| r.iter().map(|v| v * v).sum::<f64>() / r.len().max(1) as f64;
-        let most = log.iter().map(whole).fold(f64::INFINITY, f64::min);
+        let own = own(b).map_or(0.0, |noise| noise.rms.powi(2));
+        let rest = &log[channel];
+        let most = rest.iter().map(|v| v * v).sum::<f64>() / rest.len().max(1) as f64;
         let (time, period) = (b.compared().time(), b.compared_period());
-        let unlike = |r: &Vec<f64>| unlike(r, time, period, b.correlation(period));
-        log.iter().map(unlike).fold(least, f64::max).min(most)
+        let unlike = match is_least {
+            true => unlike(rest, time, period, b.correlation(period)),
+            false => 0.0,
+        };
+        f64::max(own, unlike).min(most)
     });
     let by_log: Vec<f64> = squares.collect();
     let pairs = samples.clone().zip(&by_log);
@@ -191,6 +207,7 @@ fn of_balances(axis: &Axis, balances: &[&Balance], rest: &Rest) -> Floor {
         rms,
         most: rms,
         by_log: by_log.into_iter().map(f64::sqrt).collect(),
+        is_least,
         independent,
     }
 }

@@ -18,6 +18,7 @@ fn discovery(verdict: Verdict, effects: Vec<EffectFound>, known: Vec<Recalibrate
             after: 1.6e-8,
             floor: 1e-8,
             floor_most: 1.1e-8,
+            floor_is_least: false,
         }],
         reduction: 0.997,
     };

@@ -172,12 +172,13 @@ fn searched(
             break;
         }
     }
-    if search.named.len() > 1 {
-        search.revise();
+    match search.named.len() {
+        1 => search.simplify(),
+        _ => search.revise(),
     }
     progress("intervals");
     let mut intervals = search.intervals()?;
-    while search.drop_noise(&intervals) {
+    while search.drop_noise(&intervals) || search.drop_undetermined(&intervals) {
         // What was named together with it may be nothing without it.
         search.revise();
         intervals = search.intervals()?;
@@ -195,7 +196,7 @@ fn searched(
     if let Some(refused) = search.refused(as_filed, &without)? {
         search = without.with_refused(refused);
         intervals = search.intervals()?;
-    } else if search.lacks_evidence(&without, &intervals)? {
+    } else if search.lacks_evidence(&without)? {
         search = without.with_leftover(&search.named);
         intervals = search.intervals()?;
     }

@@ -2,7 +2,6 @@
 
 use axis_sim::{ReplayError, Trace};
 
-use super::form::is_form;
 use super::intervals::Intervals;
 use super::state::Search;
 use super::types::{Named, RefusalReason, Refused, RunnerUp};
@@ -63,12 +62,8 @@ impl Search<'_> {
     }
 
     /// Whether the effects of a balance of which no channel stood out of its noise bring less than
-    /// is asked then, or one of them may be of no size at all: as if nothing had been named.
-    pub(super) fn lacks_evidence(
-        &self,
-        without: &Self,
-        intervals: &Intervals,
-    ) -> Result<bool, ReplayError> {
+    /// is asked then: as if nothing had been named.
+    pub(super) fn lacks_evidence(&self, without: &Self) -> Result<bool, ReplayError> {
         let set = &self.check_logs;
         if self.named.is_empty() || !set.is_balanced() || self.settings_ask_for_all() {
             return Ok(false);
@@ -78,29 +73,20 @@ impl Search<'_> {
         let floors = floors(self.machine, set, &self.check.state, &after)?;
         let fall = without.fit.deviance - self.fit.deviance;
         let parameters = free_parameters(&self.fit.state).len();
-        let is_weak =
-            fall < WITHOUT_GAP * self.needed(parameters, 1) || self.may_be_nothing(intervals);
+        let is_weak = fall < WITHOUT_GAP * self.needed(parameters, 1);
         Ok(is_weak && !gap(set, &before, &after, &floors).stands_out())
     }
 
     /// Whether the 95 % intervals of all sizes of an effect hold zero.
-    fn may_be_nothing(&self, intervals: &Intervals) -> bool {
+    pub(super) fn may_be_nothing(&self, effect: usize, intervals: &Intervals) -> bool {
         let state = &self.fit.state;
-        let free = free_parameters(state);
-        let holds_zero = |(at, &(effect, parameter)): (usize, &(usize, usize))| {
-            let value = state.effects[effect].values[parameter];
+        let parameters = state.effects[effect].effect.parameters;
+        let free = free_parameters(state).into_iter().enumerate();
+        let mut sizes = free.filter(|(_, (e, p))| *e == effect && parameters[*p].is_size());
+        sizes.all(|(at, (e, p))| {
+            let value = state.effects[e].values[p];
             value.abs() <= intervals.half_width(state.shares.len() + at, value)
-        };
-        let named = (0..state.effects.len()).filter(|&e| !is_form(&state.effects[e]));
-        let mut sizes = named.map(|e| {
-            let of_it = free
-                .iter()
-                .enumerate()
-                .filter(move |(_, (effect, _))| *effect == e);
-            let is_size = move |p: usize| state.effects[e].effect.parameters[p].is_size();
-            of_it.filter(move |(_, (_, p))| is_size(*p))
-        });
-        sizes.any(|mut of_it| of_it.all(holds_zero))
+        })
     }
 
     /// Whether what is left follows the motion, in any band of a channel that stands out of

@@ -75,6 +75,41 @@ impl Search<'_> {
         }
     }
 
+    /// Puts effects that do not differ between the directions in the place of those that do, where they
+    /// explain as much.
+    pub(super) fn simplify(&mut self) {
+        for index in 0..self.named.len() {
+            let Named { name, evidence, .. } = self.named[index];
+            let simpler = (!self.is_accepted(name)).then(|| self.simplified(index, evidence));
+            if let Some(simpler) = simpler.flatten() {
+                *self = simpler;
+            }
+        }
+    }
+
+    /// Takes out the first effect of a balance of which the intervals of all sizes hold zero. Those of a
+    /// replay are of simulated noise, by which [`Search::drop_noise`] asks.
+    pub(super) fn drop_undetermined(&mut self, intervals: &Intervals) -> bool {
+        if !self.fit_logs.is_balanced() {
+            return false;
+        }
+        let undetermined = |e: &usize| {
+            let active = &self.fit.state.effects[*e];
+            let is_kept = is_form(active) || self.is_accepted(active.effect.name);
+            !is_kept && self.may_be_nothing(*e, intervals)
+        };
+        let Some(effect) = (0..self.fit.state.effects.len()).find(undetermined) else {
+            return false;
+        };
+        let Some(without) = self.without(effect) else {
+            return false;
+        };
+        let name = self.fit.state.effects[effect].effect.name;
+        tracing::debug!(name, "not determined");
+        *self = without;
+        true
+    }
+
     /// Takes out the effect that noise could best have made, if its size is not
     /// [`ABOVE_NOISE`]. Near zero frequency the noise of a loop is many times what it
     /// is on average below 25 Hz, and slow effects seem to explain it.
