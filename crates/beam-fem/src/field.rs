@@ -62,12 +62,12 @@ impl ElementMatrices {
         for (a, b) in xy.stations.iter().zip(&xz.stations) {
             // H = J Ω (0, θz, −θy): J Ω θz' acts on θy, −J Ω θy' on θz.
             let polar = density * a.section.polar_moment() * a.weight;
-            for i in 0..4 {
-                for j in 0..4 {
+            for (i, row) in XZ.into_iter().enumerate() {
+                for (j, column) in XY.into_iter().enumerate() {
                     let theta_y = -b.theta[i] * SIGNS[i];
                     let entry = polar * theta_y * a.theta[j];
-                    out.gyroscopic[(XZ[i], XY[j])] += entry;
-                    out.gyroscopic[(XY[j], XZ[i])] -= entry;
+                    out.gyroscopic[(row, column)] += entry;
+                    out.gyroscopic[(column, row)] -= entry;
                 }
             }
         }

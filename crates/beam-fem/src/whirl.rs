@@ -179,7 +179,7 @@ impl WhirlAnalysis {
         // A rigid motion is a double eigenvalue 0, which rounding of the matrix spreads
         // by √(2⁻⁵² |A| d), d its entry; 2n is room for the order.
         let order = 2.0 * n as f64;
-        let rigid = self.squares.iter().any(|s| *s == 0.0);
+        let rigid = self.squares.contains(&0.0);
         let rounding = f64::EPSILON * highest * order;
         let zero = if rigid {
             (rounding * rate).sqrt().max(rounding)

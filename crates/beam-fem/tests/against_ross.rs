@@ -152,10 +152,10 @@ fn the_rotor_of_nelson_and_mcvaugh() {
         close(found.spin, value, 1e-9);
     }
     // Nelson and McVaugh 1976 (no shear), rev/min, as Altair's verification problem OS-V:1000
-    // cites them: spin at whirl = spin; spin at whirl = 4 spins. The dimensions here are those
-    // of a public program, since the paper was not at hand; those of the overhang's end move
-    // the second pair alone, so what differs there is their last digits. Measured: 0.03,
-    // 0.02, 1.5, 1.4, 0.15 and 0.75 % at most.
+    // cites them: spin at whirl = spin; spin at whirl = 4 spins. The paper was not at hand:
+    // dimensions are those of a public program. Measured: 0.03, 0.01, 1.41, 1.40, 0.14 and
+    // 0.74 % at most. A last element 3 mm shorter raises the second pair by 1.7 %, the others
+    // by 0.3 % at most, so it is that dimension which may be another in the paper.
     let rigid_in_shear = whirl(&rotors::nelson_mcvaugh(false).unwrap());
     let published = [
         (1.0, [15470.0, 17159.0, 46612.0, 49983.0, 64752.0, 96547.0]),
@@ -164,7 +164,7 @@ fn the_rotor_of_nelson_and_mcvaugh() {
             [4015.0, 4120.20, 11989.25, 12200.0, 18184.25, 20162.25],
         ),
     ];
-    let tolerances = [4e-4, 2e-4, 1.5e-2, 1.45e-2, 1.5e-3, 8e-3];
+    let tolerances = [4e-4, 2e-4, 1.5e-2, 1.5e-2, 1.5e-3, 8e-3];
     for (ratio, speeds) in published {
         let found = rigid_in_shear.critical_speeds(ratio, 6).unwrap();
         for (index, (critical, value)) in found.iter().zip(speeds).enumerate() {
