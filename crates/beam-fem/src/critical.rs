@@ -21,7 +21,7 @@ impl WhirlAnalysis {
     /// `ratio` · ω at which a mode whirls at ω, from one eigenproblem and no diagram,
     /// K q = ω² (M − i·ratio·G) q (Nelson and McVaugh 1976, J. Eng. Ind. 98, 593, doi
     /// 10.1115/1.3438942). A ratio of 1 is synchronous, which unbalance excites; 1/2 is
-    /// an excitation at twice the spin. Damping is left out; there may be fewer than
+    /// an excitation at twice the spin. Damping is left out, that within the shaft too; there may be fewer than
     /// `count`, since discs with J_p > J_d stiffen against forward whirl.
     ///
     /// # Errors

@@ -79,9 +79,9 @@
 //!
 //! # What this crate knows nothing of
 //! Nuts, leads, motors and friction (the caller adds their springs and masses);
-//! damping within the shaft that turns with it; sections that are not axisymmetric on
-//! a shaft that spins (their coefficients would vary in time); sections whose shear
-//! centre lies off the centroid; bearings that are not linear; files.
+//! sections that are not axisymmetric on a shaft that spins (their coefficients would
+//! vary in time); sections whose shear centre lies off the centroid; bearings that are
+//! not linear; files.
 
 mod banded;
 mod beam;

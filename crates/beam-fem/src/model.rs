@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::error::{check_size, finite};
+use crate::error::{check_size, finite, not_negative};
 use crate::field::ElementMatrices;
 use crate::parts::{Bearing, Damping, LumpedMass};
 use crate::system::SystemMatrices;
@@ -39,6 +39,8 @@ pub struct Model {
     damping: Vec<(usize, usize, f64)>,
     held: Vec<bool>,
     structural: Damping,
+    /// β of the damping that turns with the shaft, s.
+    rotating: f64,
     axial: Vec<f64>,
 }
 
@@ -55,6 +57,7 @@ impl Model {
             damping: Vec::new(),
             held: vec![false; 6 * nodes],
             structural: Damping::None,
+            rotating: 0.0,
         }
     }
 
@@ -222,6 +225,18 @@ impl Model {
         Ok(())
     }
 
+    /// Damping within the shaft, which turns with it: β in s, its stress E(ε + β ε̇), so
+    /// that C_r = β K of the shaft alone acts on the rates that a turning observer sees,
+    /// q̇ − Ω R q, R the quarter turn about x. Above a critical speed it drives forward
+    /// whirl. The section of a shaft that spins is axisymmetric.
+    ///
+    /// # Errors
+    /// [`BeamError::Parameter`] unless it is finite and at least zero.
+    pub fn set_rotating_damping(&mut self, beta: f64) -> Result<(), BeamError> {
+        self.rotating = not_negative("beta", beta)?;
+        Ok(())
+    }
+
     /// Axial force in the whole shaft, N, tension positive.
     ///
     /// # Errors
@@ -280,6 +295,9 @@ impl Model {
             add(&mut gyroscopic, &part.gyroscopic, 1.0);
             add(&mut geometric, &part.geometric, self.axial[index]);
         }
+        let inner = &stiffness * self.rotating;
+        damping += &inner;
+        let circulatory = self.circulatory(&inner);
         for (node, body) in &self.masses {
             let at = |dof: Dof| dof.at(*node);
             for dof in [Dof::U, Dof::V, Dof::W] {
@@ -303,11 +321,25 @@ impl Model {
         let free = (0..order).filter(|row| !self.held[*row]).collect();
         let mut system = SystemMatrices::of(
             free,
-            [mass, stiffness, damping, gyroscopic, geometric],
+            [mass, stiffness, damping, gyroscopic, geometric, circulatory],
             self.shaft.mesh().nodes().len(),
         )?;
         system.add_damping(&self.structural)?;
         Ok(system)
+    }
+
+    /// −C_r R: R turns (v, w) and (θy, θz) of the shaft's nodes by a quarter about x.
+    fn circulatory(&self, inner: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut out = DMatrix::zeros(inner.nrows(), inner.ncols());
+        for node in (0..self.nodes).filter(|node| self.spins(*node)) {
+            for (y, z) in [(Dof::V, Dof::W), (Dof::ThetaY, Dof::ThetaZ)] {
+                let (y, z) = (y.at(node), z.at(node));
+                // R q has −z at y and y at z.
+                out.column_mut(z).copy_from(&inner.column(y));
+                out.column_mut(y).copy_from(&-inner.column(z));
+            }
+        }
+        out
     }
 
     fn spins(&self, node: usize) -> bool {

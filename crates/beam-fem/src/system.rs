@@ -7,8 +7,8 @@ use crate::parts::Damping;
 use crate::{BeamError, Dof, Modes, natural_modes};
 
 /// M, K, C, G and the geometric stiffness of
-/// `M q̈ + (C + Ω G) q̇ + (K + K_g) q = F`, Ω the spin speed about x in rad/s, for the
-/// rows that are free.
+/// `M q̈ + (C + Ω G) q̇ + (K + K_g + Ω K_c) q = F`, Ω the spin speed about x in rad/s, for
+/// the rows that are free.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SystemMatrices {
     /// Mass M: kg, kg·m, kg·m².
@@ -21,29 +21,39 @@ pub struct SystemMatrices {
     pub gyroscopic: DMatrix<f64>,
     /// Geometric stiffness K_g of the axial forces: N/m, N, N·m.
     pub geometric: DMatrix<f64>,
+    /// Circulatory matrix K_c of a spin of 1 rad/s, of damping that turns with the
+    /// shaft: N·s/m, N·s, N·m·s. Not symmetric.
+    pub circulatory: DMatrix<f64>,
     free: Vec<usize>,
     spinning: usize,
 }
 
 impl SystemMatrices {
-    /// Keeps the rows `free` of mass, stiffness, damping, gyroscopic, geometric; the
+    /// Keeps the rows `free` of mass, stiffness, damping, gyroscopic, geometric, circulatory; the
     /// first `spinning` nodes are those of the shaft.
     pub(crate) fn of(
         free: Vec<usize>,
-        whole: [DMatrix<f64>; 5],
+        whole: [DMatrix<f64>; 6],
         spinning: usize,
     ) -> Result<Self, BeamError> {
         let order = whole[0].nrows();
         if free.is_empty() {
             return Err(BeamError::ModeCount { count: 0, order });
         }
-        let names = ["mass", "stiffness", "damping", "gyroscopic", "geometric"];
+        let names = [
+            "mass",
+            "stiffness",
+            "damping",
+            "gyroscopic",
+            "geometric",
+            "circulatory",
+        ];
         for (matrix, field) in whole.iter().zip(names) {
             if !matrix.iter().all(|v| v.is_finite()) {
                 return Err(BeamError::NotFinite { field });
             }
         }
-        let [mass, stiffness, damping, gyroscopic, geometric] =
+        let [mass, stiffness, damping, gyroscopic, geometric, circulatory] =
             whole.map(|m| DMatrix::from_fn(free.len(), free.len(), |i, j| m[(free[i], free[j])]));
         Ok(Self {
             mass,
@@ -51,6 +61,7 @@ impl SystemMatrices {
             damping,
             gyroscopic,
             geometric,
+            circulatory,
             free,
             spinning,
         })
@@ -139,7 +150,7 @@ impl SystemMatrices {
     }
 
     /// The complex amplitude q of the steady motion q e^{iωt} under F e^{iωt}:
-    /// (K + K_g − ω²M + iω(C + ΩG)) q = F, all rows free ones. `spin` is Ω and
+    /// (K + K_g + ΩK_c − ω²M + iω(C + ΩG)) q = F, all rows free ones. `spin` is Ω and
     /// `frequency` ω, rad/s.
     ///
     /// # Errors
@@ -170,7 +181,8 @@ impl SystemMatrices {
         }
         let dynamic = DMatrix::from_fn(order, order, |i, j| {
             let place = (i, j);
-            let spring = self.stiffness[place] + self.geometric[place];
+            let turning = spin * self.circulatory[place];
+            let spring = self.stiffness[place] + self.geometric[place] + turning;
             let real = spring - frequency * frequency * self.mass[place];
             let rate = self.damping[place] + spin * self.gyroscopic[place];
             Complex::new(real, frequency * rate) / (scale[i] * scale[j])

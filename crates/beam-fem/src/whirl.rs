@@ -82,10 +82,11 @@ pub struct WhirlAnalysis {
     /// Undamped modes at standstill, one a column, and their ω².
     pub(crate) shapes: DMatrix<f64>,
     pub(crate) squares: Vec<f64>,
-    /// C, G and the antisymmetric part of K in those modes.
+    /// C, G, the antisymmetric part of K, and K_c in those modes.
     damping: DMatrix<f64>,
     pub(crate) gyroscopic: DMatrix<f64>,
     cross: DMatrix<f64>,
+    circulatory: DMatrix<f64>,
 }
 
 impl WhirlAnalysis {
@@ -123,6 +124,7 @@ impl WhirlAnalysis {
             // Antisymmetric to the bit, as the matrix that it comes from.
             gyroscopic: (&gyroscopic - gyroscopic.transpose()) * 0.5,
             cross: inside(&cross),
+            circulatory: inside(&system.circulatory),
             squares: squares[..modes].to_vec(),
             shapes,
             system: system.clone(),
@@ -204,7 +206,7 @@ impl WhirlAnalysis {
         Ok((oscillating, real))
     }
 
-    /// d/dt (D η, η̇) = A (D η, η̇) with D = √|ω²|: A = [0, D; −(Λ + K_a) D⁻¹, −C − ΩG].
+    /// d/dt (D η, η̇) = A (D η, η̇) with D = √|ω²|: A = [0, D; −(Λ + K_a + ΩK_c) D⁻¹, −C − ΩG].
     /// Without damping and cross stiffness A is antisymmetric, so that its low
     /// eigenvalues keep their digits beside the high ones. Also the entry of D for a
     /// rigid motion, 1 rad/s or the lowest frequency.
@@ -223,14 +225,19 @@ impl WhirlAnalysis {
             state[(i, n + i)] = rates[i];
             state[(n + i, i)] = -self.squares[i] / rates[i];
             for j in 0..n {
-                state[(n + i, j)] -= self.cross[(i, j)] / rates[j];
+                state[(n + i, j)] -= self.cross_at(spin, i, j) / rates[j];
                 state[(n + i, n + j)] = -self.damping[(i, j)] - spin * self.gyroscopic[(i, j)];
             }
         }
         (state, rate)
     }
 
-    /// Null vector of λ² + λ(C + ΩG) + Λ + K_a by inverse iteration, free of the
+    /// Entry of K_a + Ω K_c.
+    fn cross_at(&self, spin: f64, i: usize, j: usize) -> f64 {
+        self.cross[(i, j)] + spin * self.circulatory[(i, j)]
+    }
+
+    /// Null vector of λ² + λ(C + ΩG) + Λ + K_a + ΩK_c by inverse iteration, free of the
     /// vectors `same` of equal eigenvalues.
     fn vector(
         &self,
@@ -253,7 +260,7 @@ impl WhirlAnalysis {
             } else {
                 ZERO
             };
-            (diagonal + near * rate + self.cross[(i, j)]) / (scale[i] * scale[j])
+            (diagonal + near * rate + self.cross_at(spin, i, j)) / (scale[i] * scale[j])
         });
         let factor = pencil.lu();
         // A fixed start with every mode in it, real: at standstill shapes stay planar.

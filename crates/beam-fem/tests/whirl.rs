@@ -121,7 +121,8 @@ fn critical_speeds_of_a_timoshenko_shaft() {
         // 1.1e-5 and 1.8e-4 measured.
         assert!((critical.spin / exact.abs() - 1.0).abs() < 3e-4);
     }
-    // The same from the diagram, and at half the spin.
+    // The same from the diagram, and at half the spin, on a coarse mesh.
+    let whirl = WhirlAnalysis::new(&supported(8).model.matrices().unwrap()).unwrap();
     let spins: Vec<f64> = (0..=20).map(|i| 500.0 * f64::from(i)).collect();
     for ratio in [1.0, 0.5] {
         let direct = whirl.critical_speeds(ratio, 20).unwrap();
@@ -333,6 +334,87 @@ fn few_modes_of_standstill_are_enough_for_low_whirl() {
         let error = (a.eigenvalue - b.eigenvalue).norm() / a.eigenvalue.norm();
         // 1.1e-8 to 2.4e-7 measured.
         assert!(error < 1e-6);
+    }
+}
+
+#[test]
+fn damping_within_the_shaft_drives_whirl_above_a_critical_speed() {
+    // For a mode of a uniform supported shaft, u = v + iw, and θ likewise:
+    // m λ² + (c + β k) λ + k − iΩ β k = 0, which grows from Ω = ω (1 + c/(β k)) on, k the
+    // modal stiffness (m = 1: ω²).
+    let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
+    let section = CrossSection::solid_circle(0.01, &steel).unwrap();
+    let shaft = Shaft::on_mesh(&section, &steel, Mesh::uniform(1.5, 8).unwrap());
+    let mut model = Model::new(shaft);
+    for node in [0, 8] {
+        model.hold(node, Dof::V).unwrap();
+        model.hold(node, Dof::W).unwrap();
+    }
+    model.lateral_only();
+    let beta = 1e-4;
+    model.set_rotating_damping(beta).unwrap();
+    let alpha = 0.4;
+    for outer in [0.0, alpha] {
+        model
+            .set_damping(beam_fem::Damping::Rayleigh {
+                alpha: outer,
+                beta: 0.0,
+            })
+            .unwrap();
+        let system = model.matrices().unwrap();
+        let whirl = WhirlAnalysis::new(&system).unwrap();
+        let w = whirl.critical_speeds(1.0, 2).unwrap()[1].spin;
+        let threshold = w * (1.0 + outer / (beta * w * w));
+        let growth = |spin: f64| whirl.lowest(spin, 2).unwrap().modes[1].clone();
+        let (below, above) = (growth(0.999 * threshold), growth(1.001 * threshold));
+        assert!(
+            below.eigenvalue.re < 0.0 && above.eigenvalue.re > 0.0,
+            "{below:?}"
+        );
+        assert_eq!(above.direction, Whirl::Forward);
+        // λ far above the threshold, with Rayleigh's gyroscopic term −2iεΩλ, ε = (I/A)(π/L)².
+        let spin = 3.0 * threshold;
+        let rest = system.natural_modes().unwrap().frequencies_rad_s[0];
+        let share = 0.01_f64.powi(2) / 16.0 * (PI / 1.5).powi(2);
+        let k = rest * rest;
+        let b = Complex::new(outer + beta * k, -2.0 * share * spin);
+        let root = (b * b - 4.0 * Complex::new(k, -spin * beta * k)).sqrt();
+        let exact = (root - b) * 0.5;
+        let exact = if exact.im > 0.0 {
+            exact
+        } else {
+            (-root - b) * 0.5
+        };
+        let found = growth(spin).eigenvalue;
+        println!("{:e}", (found - exact).norm() / exact.norm());
+        assert!(
+            (found - exact).norm() < 1e-7 * exact.norm(),
+            "{found} {exact}"
+        );
+    }
+    assert!(model.set_rotating_damping(-1.0).is_err());
+}
+
+#[test]
+fn unbalance_in_isotropic_bearings_does_not_strain_a_damped_shaft() {
+    // A circular synchronous orbit turns with the shaft, so that damping within it rests.
+    let unbalance = Unbalance {
+        node: 2,
+        moment: 1e-3,
+        phase: 0.3,
+    };
+    let mut model = rotors::two_discs(6, Bearing::isotropic(1e6, 3e3), 0.0).unwrap();
+    let respond = |model: &Model| {
+        let system = model.matrices().unwrap();
+        system
+            .unbalance_response(&[unbalance], &[150.0, 700.0])
+            .unwrap()
+    };
+    let without = respond(&model);
+    model.set_rotating_damping(1e-3).unwrap();
+    for (a, b) in respond(&model).iter().zip(&without) {
+        let difference = (&a.amplitudes - &b.amplitudes).norm();
+        assert!(difference < 1e-11 * b.amplitudes.norm(), "{difference:e}");
     }
 }
 
