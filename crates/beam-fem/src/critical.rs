@@ -50,6 +50,14 @@ impl WhirlAnalysis {
             let one = if i == j { 1.0 } else { 0.0 };
             Complex::new(one, -ratio * self.gyroscopic[(i, j)]) / (rates[i] * rates[j])
         });
+        if !hermitian
+            .iter()
+            .all(|v| v.re.is_finite() && v.im.is_finite())
+        {
+            return Err(BeamError::NotFinite {
+                field: "gyroscopic",
+            });
+        }
         let eigen = SymmetricEigen::try_new(hermitian, f64::EPSILON, 1000 * n)
             .ok_or(BeamError::NotConverged)?;
         let mut ranks: Vec<usize> = (0..n).filter(|&k| eigen.eigenvalues[k] > 0.0).collect();

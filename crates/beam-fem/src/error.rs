@@ -146,9 +146,9 @@ pub enum BeamError {
         /// Name of the list.
         field: &'static str,
     },
-    /// A degree of freedom that is held, where a free one is needed.
+    /// A degree of freedom that is held, or that no node has, where a free one is needed.
     #[error(
-        "{field} = {row} (node {}, {:?}) is held: it must be a free degree of freedom",
+        "{field} = {row} (node {}, {:?}) is held, or no row of the model: it must be a free degree of freedom",
         row / 6,
         crate::Dof::ALL[row % 6]
     )]

@@ -151,7 +151,7 @@ impl SystemMatrices {
 
     /// The complex amplitude q of the steady motion q e^{iωt} under F e^{iωt}:
     /// (K + K_g + ΩK_c − ω²M + iω(C + ΩG)) q = F, all rows free ones. `spin` is Ω and
-    /// `frequency` ω, rad/s.
+    /// `frequency` ω, rad/s; with both 0 it is the static deflection.
     ///
     /// # Errors
     /// [`BeamError::Parameter`] for a spin or frequency that is not finite,

@@ -175,6 +175,9 @@ impl WhirlAnalysis {
         finite("spin", spin)?;
         let n = self.squares.len();
         let (state, rate) = self.state(spin);
+        if !state.iter().all(|v| v.is_finite()) {
+            return Err(BeamError::NotFinite { field: "state" });
+        }
         let highest = state.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
         let schur = Schur::try_new(state, f64::EPSILON, 300 * n).ok_or(BeamError::NotConverged)?;
         let all = schur.complex_eigenvalues();

@@ -254,6 +254,54 @@ fn a_pedestal_is_a_second_mass() {
 }
 
 #[test]
+fn springs_and_dampers_are_bearings_by_their_directions() {
+    let (k, c) = (3e6, 40.0);
+    let build = |add: &dyn Fn(&mut Model, usize) -> Result<(), BeamError>| {
+        let (mut model, _) = body(1e6, 0.0, 0.0);
+        let base = model.add_node();
+        model.add_mass(
+            base,
+            LumpedMass {
+                mass: 2.0,
+                polar_inertia: 1.0,
+                diametral_inertia: 1.0,
+            },
+        )?;
+        add(&mut model, base)?;
+        model.matrices()
+    };
+    let bearings = build(&|model, base| {
+        model.add_bearing_between([1, base], Bearing::isotropic(k, c))?;
+        model.add_bearing(base, Bearing::orthotropic([k, 2.0 * k], [c, 3.0 * c]))
+    });
+    let parts = build(&|model, base| {
+        for (dof, factors) in [(Dof::V, [1.0, 1.0]), (Dof::W, [2.0, 3.0])] {
+            let rows = [dof.at(1), dof.at(base)];
+            model.add_spring(rows, k)?;
+            model.add_damper(rows, c)?;
+            model.add_ground_spring(dof.at(base), factors[0] * k)?;
+            model.add_ground_damper(dof.at(base), factors[1] * c)?;
+        }
+        Ok(())
+    });
+    let (bearings, parts) = (bearings.unwrap(), parts.unwrap());
+    assert_eq!(bearings, parts);
+    // A node off the shaft does not spin, and 1 kg·m² there gives no moment.
+    let base = bearings.row(Dof::ThetaY.at(2)).unwrap();
+    assert_eq!(bearings.gyroscopic.row(base).amax(), 0.0);
+    // The damper between two nodes acts on their difference.
+    let (a, b) = (
+        bearings.row(Dof::V.at(1)).unwrap(),
+        bearings.row(Dof::V.at(2)).unwrap(),
+    );
+    assert_eq!(bearings.damping[(a, b)], -c);
+    assert_eq!(
+        (bearings.damping[(a, a)], bearings.damping[(b, b)]),
+        (c, 2.0 * c)
+    );
+}
+
+#[test]
 fn unbalance_of_a_rigid_body() {
     let (k, c, moment, phase) = (1e6, 300.0, 1e-3, 0.7);
     let (model, m) = body(k, c, 0.0);
