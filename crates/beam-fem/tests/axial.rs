@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use beam_fem::{
-    BeamError, Bearing, CrossSection, Damping, Dof, Material, Mesh, Model, Receptance, Shaft,
-    Unbalance, WhirlAnalysis,
+    BeamError, Bearing, CrossSection, Damping, Dof, Material, Mesh, Model, Receptance,
+    SectionProperties, Shaft, Unbalance, WhirlAnalysis,
 };
 use nalgebra::{Complex, DVector};
 use proptest::prelude::*;
@@ -90,6 +90,35 @@ fn a_column_weak_in_shear_buckles_at_engessers_load() {
     let found = model.matrices().unwrap().buckling(1).unwrap().factors[0];
     // 7.2e-6 measured.
     assert!((found / exact - 1.0).abs() < 2e-5);
+}
+
+#[test]
+fn each_plane_buckles_with_its_own_shear_coefficient() {
+    let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
+    let section = CrossSection::general(SectionProperties {
+        area: 1e-3,
+        second_moment_y: 3e-5,
+        second_moment_z: 4e-5,
+        torsion_constant: 7e-5,
+        shear_coefficient_y: 0.01,
+        shear_coefficient_z: 0.03,
+    })
+    .unwrap();
+    let shaft = Shaft::on_mesh(&section, &steel, Mesh::uniform(LENGTH, 64).unwrap());
+    let mut model = Model::new(shaft);
+    model.lateral_only();
+    let ends = [(0, Dof::V), (0, Dof::W), (64, Dof::V), (64, Dof::W)];
+    hold(&mut model, &ends);
+    model.set_axial_force(-1.0).unwrap();
+    let found = model.matrices().unwrap().buckling(400).unwrap().factors;
+    for (i, kappa) in [(4e-5, 0.01), (3e-5, 0.03)] {
+        let euler = PI * PI * 206e9 * i / (LENGTH * LENGTH);
+        let exact = euler / (1.0 + euler / (kappa * steel.shear_modulus() * 1e-3));
+        let nearest = found.iter().map(|p| (p / exact - 1.0).abs());
+        let nearest = nearest.fold(f64::MAX, f64::min);
+        // 7.2e-6 and 2.3e-5 measured.
+        assert!(nearest < 5e-5, "{exact} {nearest:e}");
+    }
 }
 
 #[test]
