@@ -119,8 +119,7 @@ impl CrossSection {
 
     /// Solid rectangle, `height` along y and `width` along z (m). Both planes have
     /// Cowper's κ = 10(1+ν)/(12+11ν) (1966, doi 10.1115/1.3625046); J is
-    /// Saint-Venant's series (Timoshenko and Goodier, *Theory of Elasticity*, 3rd
-    /// edition 1970, section 109): J = a b³/3 (1 − 192/π⁵ · b/a · Σ tanh(nπa/2b)/n⁵),
+    /// Saint-Venant's series: J = a b³/3 (1 − 192/π⁵ · b/a · Σ tanh(nπa/2b)/n⁵),
     /// n = 1, 3, 5, …, a ≥ b the sides.
     ///
     /// # Errors
