@@ -29,14 +29,23 @@ pub fn mass(section: &CrossSection, material: &Material, length: f64) -> Element
 }
 
 /// Shear parameter b = 12 E I / (κ G A l²) of one bending plane
-/// (Przemieniecki's Φ): bending over shear stiffness of an element.
+/// (Przemieniecki's Φ): bending over shear stiffness of an element. κ is that
+/// of a force along y, so give I_z where a section's two differ.
 pub fn shear_parameter(
     section: &CrossSection,
     material: &Material,
     second_moment: f64,
     length: f64,
 ) -> f64 {
-    let shear = section.shear_coefficient() * material.shear_modulus() * section.area();
+    let kappa = section.shear_coefficient();
+    shear_ratio(section, material, [second_moment, kappa], length)
+}
+
+/// The same with the second moment and κ of one plane.
+#[inline]
+fn shear_ratio(section: &CrossSection, material: &Material, plane: [f64; 2], length: f64) -> f64 {
+    let [second_moment, kappa] = plane;
+    let shear = kappa * material.shear_modulus() * section.area();
     12.0 * material.youngs_modulus() * second_moment / (shear * length * length)
 }
 
@@ -86,11 +95,13 @@ struct Bending {
 impl Coefficients {
     #[inline]
     pub fn new(section: &CrossSection, material: &Material, l: f64) -> Self {
-        let plane_z = Bending::new(section, material, section.second_moment_z(), l);
-        let plane_y = if section.second_moment_y() == section.second_moment_z() {
+        let in_xy = [section.second_moment_z(), section.shear_coefficient()];
+        let in_xz = [section.second_moment_y(), section.shear_coefficient_z()];
+        let plane_z = Bending::new(section, material, in_xy, l);
+        let plane_y = if in_xy == in_xz {
             plane_z
         } else {
-            Bending::new(section, material, section.second_moment_y(), l)
+            Bending::new(section, material, in_xz, l)
         };
         Self {
             axial: Rod {
@@ -145,8 +156,9 @@ impl Rod {
 
 impl Bending {
     #[inline]
-    fn new(section: &CrossSection, material: &Material, i: f64, l: f64) -> Self {
-        let b = shear_parameter(section, material, i, l);
+    fn new(section: &CrossSection, material: &Material, plane: [f64; 2], l: f64) -> Self {
+        let i = plane[0];
+        let b = shear_ratio(section, material, plane, l);
         let ei = material.youngs_modulus() * i / ((1.0 + b) * l);
         let m = material.density() * section.area() * l / ((1.0 + b) * (1.0 + b));
         // (r/l)² with the radius of gyration r = √(I/A).

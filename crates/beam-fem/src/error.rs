@@ -132,6 +132,56 @@ pub enum BeamError {
         /// Number of degrees of freedom.
         order: usize,
     },
+    /// A taper between two shapes of different kinds.
+    #[error("a taper from a {from} to a {to} is not valid: both ends must be of one kind")]
+    Taper {
+        /// Kind of the shape at the start.
+        from: &'static str,
+        /// Kind of the shape at the end.
+        to: &'static str,
+    },
+    /// A list that must have entries and has none.
+    #[error("{field} is empty: it must have at least one entry")]
+    Empty {
+        /// Name of the list.
+        field: &'static str,
+    },
+    /// A degree of freedom that is held, or that no node has, where a free one is needed.
+    #[error(
+        "{field} = {row} (node {}, {:?}) is held, or no row of the model: it must be a free degree of freedom",
+        row / 6,
+        crate::Dof::ALL[row % 6]
+    )]
+    Held {
+        /// Name of the argument.
+        field: &'static str,
+        /// The row, [`crate::Dof::at`].
+        row: usize,
+    },
+    /// A stiffness that leaves a motion without spring energy.
+    #[error(
+        "the stiffness matrix is not positive definite: {task} needs a spring, a bearing or a hold against every rigid motion, stretch and twist included (Model::hold_everywhere), and no load beyond buckling"
+    )]
+    Unsupported {
+        /// What was to be computed.
+        task: &'static str,
+    },
+    /// A matrix that must be symmetric.
+    #[error("the {field} matrix is not symmetric: {instead}")]
+    NotSymmetric {
+        /// Name of the matrix.
+        field: &'static str,
+        /// What would be valid.
+        instead: &'static str,
+    },
+    /// A harmonic force at an undamped resonance.
+    #[error(
+        "at {frequency} rad/s the dynamic stiffness is singular: an undamped resonance has no steady response; add damping or move the frequency"
+    )]
+    Resonance {
+        /// The frequency, rad/s.
+        frequency: f64,
+    },
     /// The eigenvalue iteration stopped at its limit.
     #[error("the eigenvalue iteration did not converge")]
     NotConverged,
@@ -170,4 +220,28 @@ pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64, BeamError
             valid,
         })
     }
+}
+
+/// Refuses what is not finite and at least zero.
+pub(crate) fn not_negative(field: &'static str, value: f64) -> Result<f64, BeamError> {
+    if value.is_finite() && value >= 0.0 {
+        return Ok(value);
+    }
+    Err(BeamError::Parameter {
+        field,
+        value,
+        valid: "finite and at least zero",
+    })
+}
+
+/// Refuses what is not finite.
+pub(crate) fn finite(field: &'static str, value: f64) -> Result<f64, BeamError> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(BeamError::Parameter {
+        field,
+        value,
+        valid: "finite",
+    })
 }

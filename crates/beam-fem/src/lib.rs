@@ -1,5 +1,5 @@
-//! Timoshenko beam finite elements: element matrices, assembly, moving-node
-//! mesh, natural modes.
+//! Timoshenko beam finite elements for shafts, screws and rotors: element matrices,
+//! assembly, natural modes, whirl, critical speeds, buckling, frequency response.
 //!
 //! # The problem
 //! A straight beam along x, from the driven end x = 0 to x = L, stretches (u),
@@ -65,35 +65,68 @@
 //! # Ok::<(), beam_fem::BeamError>(())
 //! ```
 //!
+//! # Rotors and machines
+//! [`Shape`] and [`Span`] make a [`Shaft`], stepped or tapered; a [`Model`] adds
+//! masses, springs, bearings, constraints, damping and axial load and gives M, K, C, G
+//! as [`SystemMatrices`]:
+//! - [`WhirlAnalysis`]: damped eigenvalues at a spin speed with their direction,
+//!   critical speeds, data of the Campbell diagram ([`campbell`] with bearings that
+//!   depend on the speed);
+//! - [`SystemMatrices::unbalance_response`], [`SystemMatrices::receptance`],
+//!   [`SystemMatrices::steady_response`];
+//! - [`SystemMatrices::natural_modes`] and [`SystemMatrices::buckling`] under axial
+//!   load.
+//!
 //! # What this crate knows nothing of
-//! Nuts, leads, motors, bearings and friction (the caller adds their springs
-//! and masses); damping; rotation of the shaft (no gyroscopic terms);
-//! buckling (no geometric stiffness); sections that change along the beam or
-//! whose shear centre lies off the centroid; files.
+//! Nuts, leads, motors and friction (the caller adds their springs and masses);
+//! sections that are not axisymmetric on a shaft that spins (their coefficients would
+//! vary in time); sections whose shear centre lies off the centroid; bearings that are
+//! not linear; files.
 
 mod banded;
 mod beam;
+mod buckling;
+mod critical;
 mod dense;
 pub mod element;
 mod error;
+mod field;
 mod material;
 mod mesh;
+mod model;
 mod modes;
 mod moving_node;
+mod orbit;
+mod parts;
 mod pencil;
 mod section;
+mod shaft;
+mod shape;
+mod system;
 mod torsion;
+mod unbalance;
+mod whirl;
 
 pub use banded::{BandedMatrices, SymmetricBanded};
 pub use beam::{Beam, BeamMatrices, Dof};
+pub use buckling::Buckling;
+pub use critical::{CriticalSpeed, campbell};
 pub use error::BeamError;
 pub use material::Material;
 pub use mesh::Mesh;
+pub use model::Model;
 pub use modes::{Modes, natural_modes};
 pub use moving_node::MovingNode;
+pub use orbit::Orbit;
+pub use parts::{Bearing, Damping, LumpedMass, Unbalance};
 pub use pencil::lowest_modes;
-pub use section::CrossSection;
+pub use section::{CrossSection, SectionProperties};
+pub use shaft::{Shaft, Span};
+pub use shape::Shape;
+pub use system::{Receptance, SystemMatrices};
 pub use torsion::Tridiagonal;
+pub use unbalance::UnbalanceResponse;
+pub use whirl::{Whirl, WhirlAnalysis, WhirlMode, WhirlSpectrum};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

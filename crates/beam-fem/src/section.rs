@@ -15,10 +15,29 @@ pub struct CrossSection {
     second_moment_z: f64,
     torsion_constant: f64,
     shear_coefficient: f64,
+    shear_coefficient_z: f64,
+}
+
+/// The numbers of any section, for [`CrossSection::general`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SectionProperties {
+    /// Area A, m².
+    pub area: f64,
+    /// Second moment of area about the y axis (bending in x–z), m⁴.
+    pub second_moment_y: f64,
+    /// Second moment of area about the z axis (bending in x–y), m⁴.
+    pub second_moment_z: f64,
+    /// Torsion constant J, m⁴.
+    pub torsion_constant: f64,
+    /// Shear coefficient κ of a force along y (bending in x–y).
+    pub shear_coefficient_y: f64,
+    /// Shear coefficient κ of a force along z (bending in x–z).
+    pub shear_coefficient_z: f64,
 }
 
 impl CrossSection {
-    /// Checks and makes a section from A (m²), I_y, I_z, J (m⁴) and κ.
+    /// Checks and makes a section from A (m²), I_y, I_z, J (m⁴) and κ, the
+    /// same in both planes. [`CrossSection::general`] has one for each.
     ///
     /// # Errors
     /// [`BeamError::Parameter`] for whatever is not finite and above zero.
@@ -35,6 +54,24 @@ impl CrossSection {
             second_moment_z: positive("second_moment_z", second_moment_z)?,
             torsion_constant: positive("torsion_constant", torsion_constant)?,
             shear_coefficient: positive("shear_coefficient", shear_coefficient)?,
+            shear_coefficient_z: shear_coefficient,
+        })
+    }
+
+    /// Checks and makes a section from all of its numbers, with a shear
+    /// coefficient for each plane.
+    ///
+    /// # Errors
+    /// [`BeamError::Parameter`] for whatever is not finite and above zero.
+    pub fn general(properties: SectionProperties) -> Result<Self, BeamError> {
+        let p = properties;
+        Ok(Self {
+            area: positive("area", p.area)?,
+            second_moment_y: positive("second_moment_y", p.second_moment_y)?,
+            second_moment_z: positive("second_moment_z", p.second_moment_z)?,
+            torsion_constant: positive("torsion_constant", p.torsion_constant)?,
+            shear_coefficient: positive("shear_coefficient_y", p.shear_coefficient_y)?,
+            shear_coefficient_z: positive("shear_coefficient_z", p.shear_coefficient_z)?,
         })
     }
 
@@ -73,9 +110,15 @@ impl CrossSection {
     }
 
     /// Shear coefficient κ (the paper's v), dimensionless: shear force =
-    /// κ G A × shear angle.
+    /// κ G A × shear angle. It is that of a force along y (bending in x–y);
+    /// [`CrossSection::shear_coefficient_z`] has the other plane's.
     pub fn shear_coefficient(&self) -> f64 {
         self.shear_coefficient
+    }
+
+    /// Shear coefficient κ of a force along z (bending in x–z), dimensionless.
+    pub fn shear_coefficient_z(&self) -> f64 {
+        self.shear_coefficient_z
     }
 
     /// Polar second moment of area I_y + I_z, m⁴: what carries the rotary

@@ -43,6 +43,8 @@ pub struct FeedDrive {
     parameters: DriveParameters,
     /// The shaft along its axis, on its bearings.
     shaft: Option<ScrewShaft>,
+    /// Whether a positive rotation moves the table towards the driven end.
+    left_handed: bool,
 }
 
 impl FeedDrive {
@@ -71,7 +73,27 @@ impl FeedDrive {
             });
         }
         let shaft = p.axial.map(|support| shaft(p, &support)).transpose()?;
-        Ok(Self { parameters, shaft })
+        Ok(Self {
+            parameters,
+            shaft,
+            left_handed: false,
+        })
+    }
+
+    /// The same drive with a left-handed screw: as made, a positive rotation of
+    /// the motor moves the table away from the driven end (x grows); with a left-handed
+    /// screw towards it, r < 0.
+    #[must_use]
+    pub fn left_handed(self) -> Self {
+        Self {
+            left_handed: true,
+            ..self
+        }
+    }
+
+    /// Whether the screw is left-handed.
+    pub fn is_left_handed(&self) -> bool {
+        self.left_handed
     }
 
     /// The parameters it was made from.
@@ -79,9 +101,11 @@ impl FeedDrive {
         &self.parameters
     }
 
-    /// Travel per radian of the screw, r = lead / 2π, m/rad.
+    /// Travel per radian of the screw, r = lead / 2π, m/rad; below zero for a screw that
+    /// is [`FeedDrive::left_handed`].
     pub fn travel_per_radian(&self) -> f64 {
-        self.parameters.lead / std::f64::consts::TAU
+        let r = self.parameters.lead / std::f64::consts::TAU;
+        if self.left_handed { -r } else { r }
     }
 
     /// Axial stiffness between screw and table k(x), N/m: of the nut, in series with

@@ -46,6 +46,10 @@
 //! is a choice, [`NutCoupling`]: through the element's shape functions, or on
 //! a node that moves with it (the paper's).
 //!
+//! [`FeedDrive::receptance`], `mobility` and `accelerance` are its frequency response,
+//! [`FeedDrive::state_space`] its linear state space at one position;
+//! [`FeedDrive::left_handed`] turns the screw's hand round.
+//!
 //! # Two inertias
 //!
 //! `J θ̈ = T − r F`, `m ÿ = F − load`, with the force `F = k(x) δ + βk(x) δ̇` of the
@@ -121,6 +125,7 @@ mod matrices;
 mod modes;
 mod response;
 mod rigid;
+mod state_space;
 mod stepper;
 
 pub use axial::{AxialSupport, Mounting, ScrewShaft};
@@ -134,6 +139,7 @@ pub use matrices::{DriveMatrices, NutCoupling};
 pub use modes::DriveModes;
 pub use response::Coordinate;
 pub use rigid::{ForceCourse, RigidDrive, RigidState, RigidStepper};
+pub use state_space::{Quantity, StateSpace};
 pub use stepper::{
     ImplicitState, ImplicitStepper, LoadSearch, ModalState, ModalStepper, NutErrors, Observation,
     Settled, StepReport, TableMotion, TimeStepper, find_load,

@@ -93,7 +93,7 @@ impl FeedDrive {
         motion
     }
 
-    fn checked_row(&self, coordinate: Coordinate) -> Result<usize, DriveError> {
+    pub(crate) fn checked_row(&self, coordinate: Coordinate) -> Result<usize, DriveError> {
         let node = match coordinate {
             Coordinate::Screw(node) => node as f64,
             _ => 0.0,

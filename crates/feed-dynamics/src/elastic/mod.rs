@@ -80,7 +80,7 @@ impl ElasticDrive {
     /// Angular frequency at which motor and load swing against each other without
     /// damping, √(k(x) (1/m + r²/J)), rad/s; NaN if `x` is not finite.
     pub fn resonance(&self, x: f64) -> f64 {
-        (self.stiffness_at(x) * self.mobility()).sqrt()
+        (self.stiffness_at(x) * self.inverse_inertia()).sqrt()
     }
 
     /// Angular frequency at which the load alone swings and the motor, driven,
@@ -99,13 +99,13 @@ impl ElasticDrive {
     }
 
     /// What a newton of the transmission takes from δ̈, 1/m + r²/J, 1/kg.
-    fn mobility(&self) -> f64 {
+    fn inverse_inertia(&self) -> f64 {
         let p = &self.parameters;
         1.0 / p.load_inertia + p.travel_per_radian.powi(2) / p.motor_inertia
     }
 
     /// Refuses a position that is not finite, or at which the stiffness is not valid.
-    fn check_position(&self, x: f64) -> Result<(), DriveError> {
+    pub(crate) fn check_position(&self, x: f64) -> Result<(), DriveError> {
         finite([("position", x)])?;
         positive([("stiffness", self.parameters.stiffness.at(x))])
     }

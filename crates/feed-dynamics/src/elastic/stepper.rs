@@ -76,7 +76,7 @@ impl ElasticStepper {
         let mut stepper = Self {
             step,
             load_mobility: 1.0 / p.load_inertia,
-            mobility: drive.mobility(),
+            mobility: drive.inverse_inertia(),
             radians_per_travel: 1.0 / p.travel_per_radian,
             per_torque: p.travel_per_radian / p.motor_inertia,
             constant: None,

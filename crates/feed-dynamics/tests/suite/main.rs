@@ -17,6 +17,7 @@ mod parameters;
 mod reference;
 mod rigid;
 mod settled;
+mod state_space;
 mod stepping;
 mod stiffness;
 
