@@ -114,6 +114,9 @@
 //! neither `std` nor `alloc`, and has the same results.
 #![no_std]
 
+mod current_gains;
+mod decoupling;
+mod delay;
 mod error;
 mod exact;
 mod field_weakening;
@@ -122,16 +125,21 @@ mod gains;
 pub mod inverter;
 mod math;
 mod motor;
+mod operating;
 mod pi;
 mod servo;
 mod signals;
 pub mod svpwm;
 
+pub use current_gains::CurrentGains;
+pub use decoupling::{Decoupling, DecouplingCurrent};
+pub use delay::VoltageDelay;
 pub use error::FocError;
 pub use field_weakening::{FieldWeakening, FieldWeakeningParameters, FieldWeakeningState};
 pub use frames::{AlphaBeta, Dq, Phases};
 pub use gains::{ServoGains, ServoLimits};
 pub use motor::{MotorParameters, Pmsm};
+pub use operating::{OperatingCurrents, OperatingLimits, OperatingRegion};
 pub use pi::{AntiWindup, Pi, PiOutput, PiParameters, PiState};
 pub use servo::Servo;
 pub use signals::{

@@ -5,6 +5,7 @@ mod bits;
 mod current_step;
 mod field_weakening;
 mod frames;
+mod gains;
 mod inverter;
 mod motor;
 mod operating_point;
