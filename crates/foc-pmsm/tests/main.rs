@@ -8,6 +8,7 @@ mod frames;
 mod gains;
 mod inverter;
 mod motor;
+mod operating;
 mod operating_point;
 mod pi;
 mod servo;
