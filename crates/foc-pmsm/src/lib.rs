@@ -115,6 +115,7 @@
 #![no_std]
 
 mod current_gains;
+mod dead_time;
 mod decoupling;
 mod delay;
 mod error;
@@ -123,21 +124,25 @@ mod field_weakening;
 mod frames;
 mod gains;
 pub mod inverter;
+mod linear_motor;
 mod math;
 mod motor;
 mod operating;
 mod pi;
+pub mod saturation;
 mod servo;
 mod signals;
 pub mod svpwm;
 
 pub use current_gains::CurrentGains;
+pub use dead_time::DeadTimeCompensation;
 pub use decoupling::{Decoupling, DecouplingCurrent};
 pub use delay::VoltageDelay;
 pub use error::FocError;
 pub use field_weakening::{FieldWeakening, FieldWeakeningParameters, FieldWeakeningState};
 pub use frames::{AlphaBeta, Dq, Phases};
 pub use gains::{ServoGains, ServoLimits};
+pub use linear_motor::{LinearMotor, LinearMotorParameters, LinearOperatingCurrents};
 pub use motor::{MotorParameters, Pmsm};
 pub use operating::{OperatingCurrents, OperatingLimits, OperatingRegion};
 pub use pi::{AntiWindup, Pi, PiOutput, PiParameters, PiState};
