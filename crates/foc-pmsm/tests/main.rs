@@ -11,6 +11,7 @@ mod inverter;
 mod linear_motor;
 mod modulation;
 mod motor;
+mod motulator;
 mod operating;
 mod operating_point;
 mod pi;
