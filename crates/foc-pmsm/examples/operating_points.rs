@@ -4,6 +4,7 @@
 //! `cargo run --release -p foc-pmsm --example operating_points`
 
 use foc_pmsm::saturation::{AlgebraicSaturation, AlgebraicSaturationParameters, FluxMap};
+use foc_pmsm::sensorless::{FluxObserver, FluxObserverParameters};
 use foc_pmsm::svpwm::{Overmodulation, Svpwm};
 use foc_pmsm::{AlphaBeta, Dq, FocError, MotorParameters, OperatingLimits, OperatingRegion, Pmsm};
 
@@ -103,6 +104,31 @@ fn saturated() -> Result<(), FocError> {
     Ok(())
 }
 
+/// The flux observer with constant currents at a constant speed, from a wrong angle and
+/// speed; with so short a period that the rule of integration hardly matters.
+fn observer(name: &str, m: &Pmsm) -> Result<(), FocError> {
+    const PERIOD: f64 = 1e-6;
+    let (i, omega, bandwidth) = (Dq { d: 2.0, q: 4.0 }, 300.0, 80.0);
+    let parameters = FluxObserverParameters::of(m, bandwidth, PERIOD);
+    let law = FluxObserver::new(*m, parameters)?;
+    let mut state = law.begin(0.3, 0.9 * omega);
+    let u = m.steady_voltage(i, omega / m.electrical_speed(1.0));
+    for step in 0..=40_000 {
+        let angle = omega * PERIOD * f64::from(step);
+        let estimate = law.estimate(&state, i.inverse_park(angle));
+        if step % 10_000 == 0 && step > 0 {
+            let (sin, cos) = f64::sin_cos(estimate.angle);
+            let Dq { d, q } = estimate.flux;
+            let inputs = [i.d, i.q, omega, bandwidth, PERIOD, f64::from(step)];
+            let outputs = [sin, cos, d, q, estimate.speed];
+            row("observer", name, &[&inputs[..], &outputs[..]].concat());
+        }
+        let middle = angle + 0.5 * omega * PERIOD;
+        law.advance(&mut state, &estimate, u.inverse_park(middle));
+    }
+    Ok(())
+}
+
 /// Duty cycles around the circle, up to and beyond what can be made.
 fn duties() -> Result<(), FocError> {
     for (name, mode) in [
@@ -132,6 +158,7 @@ fn main() -> Result<(), FocError> {
         row("machine", name, &numbers);
         loci(name, &m);
         most(name, &m)?;
+        observer(name, &m)?;
     }
     saturated()?;
     duties()

@@ -130,6 +130,7 @@ mod motor;
 mod operating;
 mod pi;
 pub mod saturation;
+pub mod sensorless;
 mod servo;
 mod signals;
 pub mod svpwm;

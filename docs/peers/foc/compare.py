@@ -10,13 +10,15 @@ from types import SimpleNamespace
 
 import numpy as np
 from motulator.common.control import PWM
+from motulator.drive.control.sm._common import Observer, ObserverCfg
 from motulator.drive.control.sm._torque import TorqueCharacteristics
 from motulator.drive.model import SynchronousMachine
 from motulator.drive.utils import SynchronousMachinePars
 
 # What is allowed, and why it is not less: rounding of either program, but for the largest torque, which motulator
-# interpolates between points of its loci.
-ALLOWED = {"mtpa": 1e-14, "mtpv": 1e-14, "voltage": 1e-14, "most": 1e-8, "saturated": 1e-14, "duties": 1e-14}
+# interpolates between points of its loci, and the observer, which it integrates by another rule.
+ALLOWED = {"mtpa": 1e-14, "mtpv": 1e-14, "voltage": 1e-14, "most": 1e-8, "saturated": 1e-14, "duties": 1e-14,
+           "observer": 1e-3}
 NODES = 20_001
 
 
@@ -68,6 +70,21 @@ def duties(name, alpha, beta):
     return list(pwm.output(1e-4, alpha + 1j * beta, 540.0, 0.0)[0])
 
 
+def observer(par, i_d, i_q, omega, bandwidth, period, steps):
+    """Sine and cosine of the angle, flux, speed after so many steps, as the example begins them."""
+    law = Observer(ObserverCfg(par, sensorless=True, alpha_o=bandwidth))
+    law.est.theta_m, law.est.w_m = 0.3, 0.9 * omega
+    i = i_d + 1j * i_q
+    u = par.R_s * i + 1j * omega * TorqueCharacteristics(par).flux(i)
+    for step in range(int(steps) + 1):
+        angle = omega * period * step
+        fbk = SimpleNamespace(i_ss=i * np.exp(1j * angle), u_ss=u * np.exp(1j * (angle + 0.5 * omega * period)))
+        fbk = law.output(fbk)
+        if step == steps:
+            return [np.sin(fbk.theta_m), np.cos(fbk.theta_m), fbk.psi_s.real, fbk.psi_s.imag, fbk.w_m]
+        law.update(period, fbk)
+
+
 def main():
     rows, figures = sys.argv[1], "--figures" in sys.argv[2:]
     machines, limits, theirs, ours = {}, {}, {}, {}
@@ -89,6 +106,8 @@ def main():
             if name not in limits:
                 limits[name] = TorqueCharacteristics(par).mtpv_and_current_limits(inputs[0], N=NODES)
             other = most(limits[name], inputs[1])
+        elif kind == "observer":
+            inputs, other = numbers[:6], observer(par, *numbers[:6])
         elif kind == "saturated":
             inputs, other = numbers[:2], saturated(*numbers[:2])
         else:
@@ -103,7 +122,7 @@ def main():
         other, own = np.array(other), np.array(ours[key])
         scale = np.max(np.abs(other), axis=0)
         # The d and the q part of a vector are of one scale.
-        for first in (0, 2) if other.shape[1] == 4 else (0,):
+        for first in (0, 2) if other.shape[1] > 3 else (0,):
             scale[first : first + 2] = np.max(scale[first : first + 2])
         difference = float(np.max(np.abs(other - own) / scale))
         failed |= not difference <= ALLOWED[key[0]]

@@ -1,7 +1,7 @@
 //! The currents of a torque within the limits of current and voltage.
 
 use crate::frames::Dq;
-use crate::math::clamp;
+use crate::math::{clamp, length};
 use crate::motor::Pmsm;
 use axis_scalar::Scalar;
 
@@ -152,7 +152,7 @@ impl<T: Scalar> Plane<T> {
 
     fn currents(&self, motor: &Pmsm<T>, t: T) -> (Dq<T>, OperatingRegion) {
         let (mut i, mut region) = (motor.mtpa_for(t), OperatingRegion::Mtpa);
-        let within = i.dot(i).sqrt() <= self.current;
+        let within = length(i.d, i.q) <= self.current;
         if !within {
             i = motor.mtpa(self.current);
             region = OperatingRegion::CurrentLimit;
@@ -174,7 +174,7 @@ impl<T: Scalar> Plane<T> {
             return (Dq { d, q }, OperatingRegion::FieldWeakening);
         }
         let i = Dq { d: top, q: slice.q };
-        let inside = i.dot(i).sqrt() < self.current * (T::ONE - T::EPSILON.sqrt());
+        let inside = length(i.d, i.q) < self.current * (T::ONE - T::EPSILON.sqrt());
         let region = if slice.by_voltage && inside {
             OperatingRegion::Mtpv
         } else {
@@ -187,7 +187,7 @@ impl<T: Scalar> Plane<T> {
     fn length_of_voltage(&self, i: Dq<T>) -> T {
         let d = self.resistance * i.d - self.reactance_q * i.q;
         let q = self.resistance * i.q + self.reactance_d * i.d + self.induced;
-        (d * d + q * q).sqrt()
+        length(d, q)
     }
 
     /// The i_d (A) with the least voltage at i_q = 0.
