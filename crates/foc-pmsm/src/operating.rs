@@ -6,8 +6,10 @@ mod limits;
 pub use limits::{OperatingCurrents, OperatingLimits, OperatingRegion};
 
 use crate::frames::Dq;
+use crate::math::length;
 use crate::motor::Pmsm;
 use axis_scalar::Scalar;
+use core::f64::consts::SQRT_2;
 
 /// Newton's steps for w⁴ + c w = 1. From above they converge monotonically; the sixth
 /// leaves 1e-17 at the worst c, near 1.
@@ -121,7 +123,7 @@ impl<T: Scalar> Pmsm<T> {
         let d = if q == T::ZERO {
             T::ZERO
         } else {
-            -twice * q / (psi + (psi * psi + twice * twice).sqrt())
+            -twice * q / (psi + length(psi, twice))
         };
         Dq { d, q }
     }
@@ -140,14 +142,16 @@ fn root<T: Scalar>(c: T) -> T {
 /// The point of the circle about 0 at which (ψ − Δ x) y is greatest, y ≥ 0.
 fn most_on_circle<T: Scalar>(psi: T, delta: T, radius: T) -> Dq<T> {
     let product = delta * radius;
-    let size = psi + (psi * psi + T::of(8.0) * product * product).sqrt();
-    let d = if product == T::ZERO {
-        T::ZERO
-    } else {
-        -T::TWO * product * radius / size
-    };
+    if product == T::ZERO {
+        return Dq {
+            d: T::ZERO,
+            q: radius,
+        };
+    }
+    let size = psi + length(psi, T::of(2.0 * SQRT_2) * product);
+    let cos = -T::TWO * product / size;
     Dq {
-        d,
-        q: ((radius - d) * (radius + d)).sqrt(),
+        d: radius * cos,
+        q: radius * ((T::ONE - cos) * (T::ONE + cos)).sqrt(),
     }
 }

@@ -1,6 +1,8 @@
 //! Figures of motulator 0.5.0, an independent program, on the machines of
 //! `examples/operating_points.rs`. What makes them: `docs/peers/foc/run --figures`.
 
+#![allow(clippy::approx_constant)] // figures of the other program, as printed
+
 use foc_pmsm::{Dq, MotorParameters, OperatingLimits, Pmsm};
 
 fn machine(name: &str) -> Pmsm {

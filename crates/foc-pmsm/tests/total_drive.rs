@@ -61,8 +61,8 @@ fn drives<T: Scalar>(m: Pmsm<T>, n: [T; 9]) {
     let found = m.operating_currents(f, g, &limits);
     let numbers = [d, e, f, g].iter().all(|x| !x.is_nan());
     if numbers && d.is_finite() && found.current.d.is_finite() && found.current.q.is_finite() {
-        // Whatever is found keeps the current limit.
-        let most = d.max(T::ZERO) * (T::ONE + T::of(8.0) * T::EPSILON);
+        // Whatever is found keeps the current limit, but for the rounding of subnormals.
+        let most = d.max(T::ZERO) * (T::ONE + T::of(8.0) * T::EPSILON) + T::MIN_POSITIVE;
         assert!(
             found.current.d.abs() <= most && found.current.q.abs() <= most,
             "{found:?}"

@@ -179,7 +179,7 @@ fn power<T: Scalar>(x: T, mut n: u8) -> T {
     let (mut square, mut result) = (x, T::ONE);
     while n > 0 {
         if n & 1 == 1 {
-            result = result * square;
+            result *= square;
         }
         square = square * square;
         n >>= 1;
