@@ -57,7 +57,7 @@ impl<T: Scalar> Pmsm<T> {
     /// they leave has therefore one maximum, and beside it the shortest current is where
     /// the constant-torque line leaves the ellipse towards the locus of
     /// [`Pmsm::mtpa_for_torque`]. Both are found by bisection, to the last place, in a
-    /// fixed number of steps (26 each in `f32`, 55 in `f64`); below base speed by none.
+    /// bounded number of steps (26 each in `f32`, 55 in `f64`); below base speed by none.
     /// The operating regions are those of Morimoto et al. 1990 (doi 10.1109/28.60058),
     /// for any saliency, without magnets too.
     ///
@@ -165,14 +165,13 @@ impl<T: Scalar> Plane<T> {
             return (Dq { d, q: T::ZERO }, OperatingRegion::Unreachable);
         };
         let t = if within { t } else { self.factor(i.d) * i.q };
-        let top = self.strongest(low, high);
-        let slice = self.slice(top);
-        // Not "≥": an infinite or undefined torque is not reached.
-        if t < self.factor(top) * slice.q {
+        let (top, enough) = self.strongest(low, high, t);
+        if enough {
             let d = self.nearest(top, clamp(i.d, low, high), t);
             let q = t / self.factor(d);
             return (Dq { d, q }, OperatingRegion::FieldWeakening);
         }
+        let slice = self.slice(top);
         let i = Dq { d: top, q: slice.q };
         let inside = length(i.d, i.q) < self.current * (T::ONE - T::EPSILON.sqrt());
         let region = if slice.by_voltage && inside {
@@ -263,17 +262,22 @@ impl<T: Scalar> Plane<T> {
         }
     }
 
-    /// The i_d with the most torque.
-    fn strongest(&self, mut low: T, mut high: T) -> T {
+    /// The i_d with the most torque and false, or the first one on the way there that makes
+    /// `t` and true. An infinite or undefined torque is not made.
+    fn strongest(&self, mut low: T, mut high: T, t: T) -> (T, bool) {
         for _ in 0..halvings::<T>() {
             let middle = T::HALF * low + T::HALF * high;
-            if self.slice(middle).rising {
+            let slice = self.slice(middle);
+            if t < self.factor(middle) * slice.q {
+                return (middle, true);
+            }
+            if slice.rising {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        high
+        (high, t < self.factor(high) * self.slice(high).q)
     }
 
     /// The i_d nearest to `wanted` that makes `t`; `able` does.
