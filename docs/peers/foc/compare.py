@@ -114,7 +114,7 @@ def main():
             inputs, other = numbers[:2], duties(name, *numbers[:2])
         theirs.setdefault((kind, name), []).append(other)
         ours.setdefault((kind, name), []).append(numbers[len(inputs):])
-        if figures and kind in ("mtpa", "mtpv", "most", "saturated"):
+        if figures and kind in ("mtpa", "mtpv", "most", "saturated", "observer"):
             print(kind, name, *inputs, *(repr(float(x)) for x in other), sep=",")
     print(f"{'what':10} {'machine':11} rows   largest difference, relative")
     failed = False
