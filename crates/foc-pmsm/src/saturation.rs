@@ -197,6 +197,8 @@ pub(crate) fn newton<T: Scalar>(
     step: impl Fn(Dq<T>, Dq<T>) -> Dq<T>,
     size: T,
 ) -> Dq<T> {
+    // Ten steps and two halvings were the most of a million draws in the tests; the rest is
+    // for maps and numbers beyond them.
     const STEPS: usize = 40;
     const HALVINGS: usize = 12;
     let weigh = |e: Dq<T>| e.d.abs().max(e.q.abs()) + T::ZERO * (e.d + e.q);
@@ -217,6 +219,7 @@ pub(crate) fn newton<T: Scalar>(
         };
         (x, left) = (x - change, next);
     }
+    // 2.5 ε of the size was the most that was left in these draws.
     if weigh(left) <= T::of(64.0) * T::EPSILON * size {
         return x;
     }
