@@ -7,11 +7,13 @@ use core::f64::consts::PI;
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use foc_pmsm::inverter::{Inverter, Rotor};
+use foc_pmsm::saturation::{AlgebraicSaturation, AlgebraicSaturationParameters, FluxMap};
+use foc_pmsm::sensorless::{FluxObserver, FluxObserverParameters};
 use foc_pmsm::svpwm::{Overmodulation, Svpwm};
 use foc_pmsm::{
-    AlphaBeta, Dq, FieldWeakening, FieldWeakeningParameters, FieldWeakeningState, FocError,
-    Measurement, MotorParameters, OperatingPoint, Pmsm, Servo, ServoCorrection, ServoGains,
-    ServoLimits, ServoReference, ServoState,
+    AlphaBeta, Decoupling, DecouplingCurrent, Dq, FieldWeakening, FieldWeakeningParameters,
+    FieldWeakeningState, FocError, Measurement, MotorParameters, OperatingLimits, OperatingPoint,
+    Pmsm, Servo, ServoCorrection, ServoGains, ServoLimits, ServoReference, ServoState,
 };
 
 const RPM: f64 = PI / 30.0;
@@ -132,6 +134,84 @@ fn motors<T: Scalar>(c: &mut Criterion, scalar: &str) -> Result<(), FocError> {
     Ok(())
 }
 
+/// What a drive may compute besides.
+fn additions<T: Scalar>(c: &mut Criterion, scalar: &str) -> Result<(), FocError> {
+    let (motor, servo) = (motor::<T>()?, servo::<T>()?);
+    let decoupling = Decoupling::new(motor, DecouplingCurrent::Measured);
+    let (mut state, mut current) = (ServoState::default(), Dq::ZERO);
+    let (reference, none) = (ServoReference::default(), ServoCorrection::default());
+    let point = OperatingPoint::default();
+    c.bench_function(&format!("decoupled cycle, {scalar}"), |b| {
+        b.iter(|| {
+            let m = Measurement {
+                position: T::of(1e-6),
+                motor_speed: T::of(0.02),
+                current,
+            };
+            let r = black_box(&reference);
+            let command = servo.cycle_decoupled(&mut state, &m, r, &none, &point, &decoupling);
+            current = command.voltage * T::of(1e-3);
+            command
+        })
+    });
+    let limits = OperatingLimits {
+        current: T::of(15.0),
+        voltage: T::of(312.0),
+    };
+    for (name, torque, speed) in [
+        ("least current", 10.0, 100.0),
+        ("field weakening", 6.0, 320.0),
+        ("torque beyond the limits", 30.0, 320.0),
+    ] {
+        let (torque, speed) = (T::of(torque), T::of(speed));
+        c.bench_function(&format!("operating currents, {name}, {scalar}"), |b| {
+            b.iter(|| motor.operating_currents(black_box(torque), black_box(speed), &limits))
+        });
+    }
+    let law = FluxObserverParameters::of(&motor, T::of(100.0), T::of(PERIOD));
+    let observer = FluxObserver::new(motor, law)?;
+    let mut state = observer.begin(T::ZERO, T::of(300.0));
+    let (i, u) = (
+        Dq {
+            d: T::ZERO,
+            q: T::of(3.0),
+        },
+        Dq {
+            d: T::of(-12.0),
+            q: T::of(84.0),
+        },
+    );
+    c.bench_function(&format!("flux observer, {scalar}"), |b| {
+        b.iter(|| {
+            let i = i.inverse_park_sin_cos(black_box(T::of(0.6)), black_box(T::of(0.8)));
+            let u = u.inverse_park_sin_cos(black_box(T::of(0.6)), black_box(T::of(0.8)));
+            let estimate = observer.estimate(&state, i);
+            observer.advance(&mut state, &estimate, u);
+            estimate
+        })
+    });
+    let map = AlgebraicSaturation::new(AlgebraicSaturationParameters {
+        self_d: [T::of(17.4), T::of(373.0)],
+        self_q: [T::of(52.1), T::of(658.0)],
+        cross: T::of(1120.0),
+        exponents_self: [5, 1],
+        exponents_cross: [1, 0],
+        magnets: T::ZERO,
+    })?;
+    let flux = Dq {
+        d: T::of(0.5),
+        q: T::of(0.2),
+    };
+    let current = map.current(flux);
+    c.bench_function(&format!("current of a saturated flux, {scalar}"), |b| {
+        b.iter(|| map.current(black_box(flux)))
+    });
+    c.bench_function(&format!("flux of a saturated current, {scalar}"), |b| {
+        b.iter(|| map.flux(black_box(current)))
+    });
+    Ok(())
+}
+
 /// The slow ways, for checks.
 fn checks(c: &mut Criterion) -> Result<(), FocError> {
     let motor = motor::<f64>()?;
@@ -160,6 +240,8 @@ fn benches(c: &mut Criterion) {
         .and_then(|()| cycles::<f32>(c, "f32"))
         .and_then(|()| motors::<f64>(c, "f64"))
         .and_then(|()| motors::<f32>(c, "f32"))
+        .and_then(|()| additions::<f64>(c, "f64"))
+        .and_then(|()| additions::<f32>(c, "f32"))
         .and_then(|()| checks(c));
     if let Err(error) = all {
         panic!("{error}");

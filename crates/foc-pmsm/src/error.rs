@@ -19,6 +19,27 @@ pub enum FocError {
     /// A motor needs at least one pole pair.
     #[error("pole_pairs = 0 is not valid: must be 1 or more")]
     NoPolePairs,
+    /// A table's list has the wrong number of entries.
+    #[error("{field} has {length} entries, which is not valid: must be {valid}")]
+    TableShape {
+        /// The list's name.
+        field: &'static str,
+        /// How many entries it has.
+        length: usize,
+        /// What would be valid, in words.
+        valid: &'static str,
+    },
+    /// The flux linkage of a table does not grow with the current.
+    #[error(
+        "the cell between rows {row} and {row} + 1, columns {column} and {column} + 1 is not \
+         valid: flux_d must grow with id, flux_q with iq, and both together"
+    )]
+    FoldedCell {
+        /// The cell's first row, counted from 0.
+        row: usize,
+        /// The cell's first column, counted from 0.
+        column: usize,
+    },
 }
 
 /// Subnormal numbers are refused too: their reciprocals overflow.

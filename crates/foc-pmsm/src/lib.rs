@@ -1,4 +1,5 @@
-//! Field-oriented control of a permanent-magnet synchronous motor.
+//! Field-oriented control of synchronous motors, with magnets or without, rotating or
+//! linear.
 //!
 //! # Problem
 //! A motor with p pole pairs turns at ω (mechanical, rad/s). Its currents
@@ -31,9 +32,18 @@
 //! - [`Pi`]: a sampled PI with two kinds of anti-windup.
 //! - [`Servo`]: the cascade (4) to (6) with i_d = 0; with [`OperatingPoint`]
 //!   it takes a d current reference and the DC link of each cycle.
-//! - [`FieldWeakening`]: the d current reference above base speed.
-//! - [`svpwm`]: duty cycles, linear range, overmodulation, six-step.
-//! - [`inverter`]: averaged and switched, with dead time.
+//! - [`FieldWeakening`]: the d current reference above base speed, from the voltage.
+//! - [`svpwm`]: duty cycles, linear range, overmodulation, six-step, discontinuous.
+//! - [`inverter`]: averaged and switched, with dead time; [`DeadTimeCompensation`].
+//!
+//! For the programmer of a drive, none of it used by the cascade unasked:
+//! - [`CurrentGains`]: of the current controllers, from R, L and a bandwidth.
+//! - [`VoltageDelay`]: the angle at which a voltage arrives.
+//! - [`Decoupling`]: what a cycle adds so that the axes do not disturb each other.
+//! - [`Pmsm::mtpa`], [`Pmsm::mtpv`], [`Pmsm::operating_currents`]: the currents of a torque.
+//! - [`saturation`]: flux maps, and the motor with them.
+//! - [`LinearMotor`]: metres and newtons.
+//! - [`sensorless`]: flux observer, start by a turning current.
 //!
 //! Laws are immutable and validated once; states are plain structs of the
 //! caller's. After construction nothing fails, panics or allocates. A NaN passes
@@ -106,32 +116,47 @@
 //! # What it knows nothing of
 //! Mechanics (inertia, friction, screws), trajectories, how a compensation
 //! finds its correction, the resolution and noise of sensors, files and
-//! units other than SI. It leaves out iron loss, magnetic saturation,
-//! cogging, and the delay of a real controller.
+//! units other than SI. It leaves out iron loss and cogging; [`Pmsm`], [`Servo`] and the
+//! operating points leave out saturation, and the delay of a real controller is the
+//! caller's.
 //!
 //! # Features
 //! `std` (default) changes nothing: with and without it the crate needs
 //! neither `std` nor `alloc`, and has the same results.
 #![no_std]
 
+mod current_gains;
+mod dead_time;
+mod decoupling;
+mod delay;
 mod error;
 mod exact;
 mod field_weakening;
 mod frames;
 mod gains;
 pub mod inverter;
+mod linear_motor;
 mod math;
 mod motor;
+mod operating;
 mod pi;
+pub mod saturation;
+pub mod sensorless;
 mod servo;
 mod signals;
 pub mod svpwm;
 
+pub use current_gains::CurrentGains;
+pub use dead_time::DeadTimeCompensation;
+pub use decoupling::{Decoupling, DecouplingCurrent};
+pub use delay::VoltageDelay;
 pub use error::FocError;
 pub use field_weakening::{FieldWeakening, FieldWeakeningParameters, FieldWeakeningState};
 pub use frames::{AlphaBeta, Dq, Phases};
 pub use gains::{ServoGains, ServoLimits};
+pub use linear_motor::{LinearMotor, LinearMotorParameters, LinearOperatingCurrents};
 pub use motor::{MotorParameters, Pmsm};
+pub use operating::{OperatingCurrents, OperatingLimits, OperatingRegion};
 pub use pi::{AntiWindup, Pi, PiOutput, PiParameters, PiState};
 pub use servo::Servo;
 pub use signals::{

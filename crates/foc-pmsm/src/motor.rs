@@ -1,6 +1,6 @@
 //! The permanent-magnet synchronous motor in the rotor's frame.
 
-use crate::error::{FocError, not_negative, positive};
+use crate::error::{FocError, check, not_negative, positive};
 use crate::exact::exponential_increment;
 use crate::frames::Dq;
 use axis_scalar::Scalar;
@@ -16,7 +16,8 @@ pub struct MotorParameters<T = f64> {
     pub inductance_d: T,
     /// Quadrature-axis inductance L_q, H, greater than 0.
     pub inductance_q: T,
-    /// Peak flux linkage ψ of the magnets with one phase, V·s, greater than 0.
+    /// Peak flux linkage ψ of the magnets with one phase, V·s, greater than 0; exactly 0
+    /// for a synchronous reluctance motor ([`Pmsm::reluctance`]).
     pub flux_linkage: T,
 }
 
@@ -49,7 +50,7 @@ pub struct Pmsm<T = f64> {
 }
 
 /// A count as a scalar; exact up to 2²⁴ in `f32`.
-fn number<T: Scalar>(count: u32) -> T {
+pub(crate) fn number<T: Scalar>(count: u32) -> T {
     T::of(f64::from(count))
 }
 
@@ -60,13 +61,37 @@ impl<T: Scalar> Pmsm<T> {
     /// [`FocError`] naming the first field that is NaN, infinite or out of
     /// the range its doc gives.
     pub fn new(parameters: MotorParameters<T>) -> Result<Self, FocError> {
+        let motor = Self::windings(parameters)?;
+        positive("flux_linkage", parameters.flux_linkage)?;
+        Ok(motor)
+    }
+
+    /// A synchronous reluctance motor: no magnets, ψ = 0. All of its torque is that of the
+    /// saliency, so that a cascade with i_d = 0 has none, and [`Pmsm::q_current`] is
+    /// infinite; [`Pmsm::mtpa_for_torque`] and [`Pmsm::operating_currents`] have its
+    /// currents. Which axis has the larger inductance is the caller's choice.
+    ///
+    /// # Errors
+    /// [`FocError`] as [`Pmsm::new`], and where `flux_linkage` is not 0 or the two
+    /// inductances are equal.
+    pub fn reluctance(parameters: MotorParameters<T>) -> Result<Self, FocError> {
+        let motor = Self::windings(parameters)?;
+        let (flux, lq) = (parameters.flux_linkage, parameters.inductance_q);
+        check(flux == T::ZERO, "flux_linkage", flux, "0 without magnets")?;
+        let salient = lq != parameters.inductance_d;
+        let valid = "different from inductance_d without magnets";
+        check(salient, "inductance_q", lq, valid)?;
+        Ok(motor)
+    }
+
+    /// All but the magnets.
+    fn windings(parameters: MotorParameters<T>) -> Result<Self, FocError> {
         if parameters.pole_pairs == 0 {
             return Err(FocError::NoPolePairs);
         }
         not_negative("resistance", parameters.resistance)?;
         positive("inductance_d", parameters.inductance_d)?;
         positive("inductance_q", parameters.inductance_q)?;
-        positive("flux_linkage", parameters.flux_linkage)?;
         Ok(Self {
             parameters,
             pole_pairs: number(parameters.pole_pairs),

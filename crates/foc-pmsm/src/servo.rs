@@ -2,6 +2,7 @@
 
 mod loops;
 
+use crate::decoupling::Decoupling;
 use crate::error::FocError;
 use crate::frames::Dq;
 use crate::gains::{ServoGains, ServoLimits};
@@ -99,7 +100,7 @@ impl<T: Scalar> Servo<T> {
             iq: T::INFINITY,
             voltage: self.limits.voltage,
         };
-        self.cycle_in(state, m, r, c, &bounds)
+        self.cycle_in(state, m, r, c, &bounds, |_| Dq::ZERO)
     }
 
     /// As [`Servo::cycle`], with a d current reference and this cycle's
@@ -115,16 +116,40 @@ impl<T: Scalar> Servo<T> {
         c: &ServoCorrection<T>,
         point: &OperatingPoint<T>,
     ) -> ServoCommand<T> {
+        let bounds = self.bounds(point);
+        let mut command = self.cycle_in(state, m, r, c, &bounds, |_| Dq::ZERO);
+        command.saturated.current |= point.id_ref.abs() > self.limits.current;
+        command
+    }
+
+    /// As [`Servo::cycle_with`], with the voltage of `decoupling` added to the outputs of
+    /// the current controllers, before their limit.
+    #[inline]
+    pub fn cycle_decoupled(
+        &self,
+        state: &mut ServoState<T>,
+        m: &Measurement<T>,
+        r: &ServoReference<T>,
+        c: &ServoCorrection<T>,
+        point: &OperatingPoint<T>,
+        decoupling: &Decoupling<T>,
+    ) -> ServoCommand<T> {
+        let bounds = self.bounds(point);
+        let added = |reference| decoupling.voltage(m.current, reference, m.motor_speed);
+        let mut command = self.cycle_in(state, m, r, c, &bounds, added);
+        command.saturated.current |= point.id_ref.abs() > self.limits.current;
+        command
+    }
+
+    #[inline]
+    fn bounds(&self, point: &OperatingPoint<T>) -> Bounds<T> {
         let most = self.limits.current;
         let id_ref = clamp(point.id_ref, -most, most);
-        let bounds = Bounds {
+        Bounds {
             id_ref,
             iq: self.q_current_limit(id_ref),
             voltage: self.available_voltage(point.voltage_limit),
-        };
-        let mut command = self.cycle_in(state, m, r, c, &bounds);
-        command.saturated.current |= point.id_ref.abs() > most;
-        command
+        }
     }
 
     // Called from two places, it would return its command through memory: 6 ns.
@@ -136,6 +161,7 @@ impl<T: Scalar> Servo<T> {
         r: &ServoReference<T>,
         c: &ServoCorrection<T>,
         bounds: &Bounds<T>,
+        feed_forward: impl FnOnce(Dq<T>) -> Dq<T>,
     ) -> ServoCommand<T> {
         let error = r.position - m.position + c.position_offset;
         let speed_ref = self.position_loop(error, r.motor_speed + c.speed);
@@ -148,7 +174,7 @@ impl<T: Scalar> Servo<T> {
             q: iq_ref,
         };
         let error = reference - m.current;
-        let (voltage, d, q) = self.currents(state, error, Dq::ZERO, bounds.voltage);
+        let (voltage, d, q) = self.currents(state, error, feed_forward(reference), bounds.voltage);
         ServoCommand {
             speed_ref,
             iq_ref,

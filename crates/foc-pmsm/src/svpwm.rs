@@ -6,6 +6,10 @@
 //! voltages (a, b, c); its inscribed circle, radius U_dc/√3, is the linear
 //! range, its corners are 2 U_dc/3 long.
 
+mod discontinuous;
+
+pub use discontinuous::DiscontinuousPwm;
+
 use crate::error::{FocError, check, positive};
 use crate::frames::{AlphaBeta, FRAC_1_SQRT_3, Phases};
 use crate::math::clamp;
@@ -35,6 +39,13 @@ pub enum Overmodulation {
     /// what clipping each duty to \[0, 1\] gives. The fundamental of a turning
     /// vector tends to the six-step limit 2/π U_dc = 0.6366 U_dc.
     MinimumMagnitudeError,
+    /// Up to six-step: the length is kept, up to 2 U_dc/3, and the angle held at the
+    /// nearest one at which the hexagon is that long (S. Bolognani and M. Zigliotto, "Novel
+    /// digital continuous control of SVM inverters in the overmodulation range", IEEE
+    /// Trans. Ind. Appl. 33 (1997), doi 10.1109/28.568019). With r the length and cos α =
+    /// U_dc/(√3 r), the fundamental of a turning vector is 6/π r (π/6 − α + sin α): it is
+    /// continuous in r and reaches 2/π U_dc, with six steps a turn, at r = 2 U_dc/3.
+    SixStep,
 }
 
 /// A modulator for one DC-link voltage. Immutable, without memory.
@@ -84,8 +95,11 @@ impl<T: Scalar> Svpwm<T> {
         let min = phases.a.min(phases.b).min(phases.c);
         // Half of max − min, which does not overflow where the phases do not.
         let half_range = T::HALF * max - T::HALF * min;
-        let shorten = half_range > T::HALF * self.dc_voltage
-            && self.overmodulation == Overmodulation::MinimumPhaseError;
+        let outside = half_range > T::HALF * self.dc_voltage;
+        if outside && self.overmodulation == Overmodulation::SixStep {
+            return self.held(phases, max, min);
+        }
+        let shorten = outside && self.overmodulation == Overmodulation::MinimumPhaseError;
         // A ray meets the hexagon where its range is U_dc.
         let scale = if shorten {
             T::HALF / half_range
@@ -95,6 +109,34 @@ impl<T: Scalar> Svpwm<T> {
         let centre = T::HALF * (max + min);
         // The clamp clips outside the hexagon, and takes off rounding inside.
         let duty = |x: T| clamp(T::HALF + (x - centre) * scale, T::ZERO, T::ONE);
+        Duties {
+            a: duty(phases.a),
+            b: duty(phases.b),
+            c: duty(phases.c),
+        }
+    }
+
+    /// The vector of the same length on the hexagon's edge, or its corner. Along the
+    /// normal of the edge it is U_dc/√3 long, across it as long as the middle phase.
+    #[cold]
+    fn held(&self, phases: Phases<T>, max: T, min: T) -> Duties<T> {
+        let middle = -(max + min);
+        let (a, b, c) = (
+            max * self.inverse,
+            min * self.inverse,
+            middle * self.inverse,
+        );
+        let square = T::TWO / T::of(3.0) * (a * a + b * b + c * c);
+        let across = square.min(T::of(4.0 / 9.0)) - T::of(1.0 / 3.0);
+        let side = T::of(1.5) * across.max(T::ZERO).sqrt().copysign(middle);
+        let held = clamp(T::HALF + side, T::ZERO, T::ONE);
+        let finite = phases.a.is_finite() && phases.b.is_finite() && phases.c.is_finite();
+        let duty = |x: T| match x {
+            _ if !finite => T::NAN,
+            x if x == max => T::ONE,
+            x if x == min => T::ZERO,
+            _ => held,
+        };
         Duties {
             a: duty(phases.a),
             b: duty(phases.b),
