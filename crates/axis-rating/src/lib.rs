@@ -59,3 +59,8 @@ pub use rating::{Bound, Rating};
 pub use screw::{ScrewMounting, ScrewStrength};
 pub use voltage::MotorVoltage;
 pub use winding::WindingModel;
+
+/// The README's example, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

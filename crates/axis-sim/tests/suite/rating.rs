@@ -316,13 +316,14 @@ fn a_log_tells_what_its_run_tells() {
         .cloned()
         .collect();
     let few = axis_log::Log::new(few).unwrap();
-    // Greatest forces need the motor's acceleration, which the load's is not while the transmission swings.
+    // Greatest forces need the motor's acceleration, which the load's is not while the transmission swings: 15.7 % too low
+    // by the position alone (safeties of preloaded contacts 6.6 and 5.5 % too high), as measured here.
     let forces = [
         "screw_buckling",
         "nut_static_safety",
         "bearing_static_safety",
     ];
-    for (log, share, of_forces) in [(&log, 2e-3, 2e-3), (&few, 2e-3, 0.2)] {
+    for (log, share, of_forces) in [(&log, 2e-3, 2e-3), (&few, 2e-3, 0.16)] {
         let mut duty = AxisDuty::of(&axis).unwrap();
         duty.add_log(&axis, log).unwrap();
         let found = axis.checked(&duty).unwrap();

@@ -106,6 +106,13 @@ impl Options {
         let mut notes = Vec::new();
         for path in &self.log {
             let log = read_as_one(path, axis, &[axis.position_channel()], &mut notes)?;
+            if axis.mechanism.has_motor_encoder() && !log.has("motor_angle_rad") {
+                notes.push(format!(
+                    "{}: no motor_angle_rad, so greatest forces in the transmission are from the load's position: they \
+                     come out too low while it swings",
+                    path.display()
+                ));
+            }
             let added = duty.add_log(axis, &log).into_diagnostic();
             added.wrap_err_with(|| path.display().to_string())?;
         }

@@ -10,7 +10,9 @@ use serde::Serialize;
 /// All items of an axis under a duty.
 #[derive(Serialize)]
 pub struct Checked {
+    /// Name of the axis.
     pub axis: String,
+    /// Its fingerprint.
     pub axis_fingerprint: String,
     /// What the duty is made of.
     pub duty: String,
@@ -20,20 +22,26 @@ pub struct Checked {
     pub duty_s: f64,
     /// Keys that the file's `[rating]` states.
     pub keys_of_the_file: usize,
+    /// The items, those left out that the axis cannot have.
     pub items: Vec<CheckedRow>,
+    /// Where this was written as JSON.
     pub json: Option<PathBuf>,
+    /// Where its page was written.
     pub report: Option<PathBuf>,
 }
 
 /// One item.
 #[derive(Serialize)]
 pub struct CheckedRow {
+    /// Its name, such as `motor_rms_torque`.
     pub name: &'static str,
+    /// The same in words.
     pub title: &'static str,
     /// Unit of value and limit; empty of a plain number.
     pub unit: &'static str,
     /// None if it is not known, or is not finite.
     pub value: Option<f64>,
+    /// None if it is not known.
     pub limit: Option<f64>,
     /// "at most" or "at least"; none without a limit.
     pub bound: Option<&'static str>,

@@ -3,7 +3,7 @@
 pub(crate) mod analyse;
 pub(crate) mod campaign;
 pub(crate) mod check;
-pub(crate) mod check_words;
+pub mod check_words;
 pub(crate) mod compensate;
 mod compensate_moves;
 pub(crate) mod contour;
