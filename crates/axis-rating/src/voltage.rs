@@ -1,7 +1,6 @@
 //! Voltage of a permanent-magnet synchronous motor, and the speeds that it allows.
 //!
-//! In the rotor's frame, at constant speed and currents (R. Krishnan, *Permanent Magnet Synchronous and Brushless
-//! DC Motor Drives*, CRC Press 2010; source not read, the equations are those of docs/theory/foc-pmsm.md):
+//! In the rotor's frame, at constant speed and currents (the equations of docs/theory/foc-pmsm.md without derivatives):
 //!
 //! ```text
 //! u_d = R i_d − ω_e L_q i_q          u_q = R i_q + ω_e (L_d i_d + ψ)

@@ -7,8 +7,8 @@
 //! dθ/dt = (R P_r (1 + α (T_a + θ − T_r)) − θ)/τ
 //! ```
 //!
-//! (the one-body model of IEC 60034-1, 2-parameter form; source not read in the standard). In a stretch of constant P_r it
-//! is linear, and solved exactly; over a duty that repeats itself θ comes back to where it began, which is solved for.
+//! (a balance of heat in one body; data sheets state its two numbers). In a stretch of constant P_r it is linear, and
+//! solved exactly; over a duty that repeats itself θ comes back to where it began, which is solved for.
 
 use crate::course::PowerCourse;
 use crate::error::{RatingError, finite, not_negative, positive};

@@ -27,7 +27,7 @@ def test_a_duty_is_the_files_trajectories_a_motion_or_logs(root: Path) -> None:
 def test_what_is_missing_is_named(axis: fa.Axis) -> None:
     items = {item["name"]: item for item in axis.check(motion=axis.trajectories[0])}
     assert items["motor_rms_torque"]["verdict"] == "not known"
-    assert items["motor_rms_torque"]["give"] == ["continuous_torque"]
+    assert items["motor_rms_torque"]["give"] == ["continuous_torque_n_m"]
     assert not any(name.startswith("belt") for name in items)
     with pytest.raises(fa.MotionError, match="one of them"):
         axis.check(motion=axis.trajectories[0], logs=[axis.simulate(axis.trajectories[0])])

@@ -103,7 +103,28 @@ fn an_axis_without_limits_says_what_to_give() {
         assert_eq!(found["keys_of_the_file"], 0, "{file}");
         let torque = item(&found, "motor_rms_torque");
         assert_eq!(torque["verdict"], "not known", "{file}");
-        assert_eq!(torque["give"][0], "continuous_torque", "{file}");
+        let unit = if file == "linear-motor" { "n" } else { "n_m" };
+        let key = format!("continuous_torque_{unit}");
+        assert_eq!(torque["give"][0], key.as_str(), "{file}");
+        // With what is asked for there is a verdict.
+        let set = format!("rating.{key}=1");
+        let given = [
+            "check",
+            "--axis",
+            &axis,
+            "--trajectory",
+            "1",
+            "--set",
+            &set,
+            "--format",
+            "json",
+        ];
+        let given: Value = serde_json::from_slice(&run(&given).stdout).unwrap();
+        assert_ne!(
+            item(&given, "motor_rms_torque")["verdict"],
+            "not known",
+            "{file}"
+        );
         assert!(torque["value"].as_f64().unwrap() > 0.0, "{file}");
         let items = found["items"].as_array().unwrap();
         let has = |with: &str| {
@@ -122,7 +143,7 @@ fn an_axis_without_limits_says_what_to_give() {
         "1",
     ]);
     assert!(
-        text.contains("not known: give belt_cord_limit in [rating]"),
+        text.contains("not known: give belt_cord_limit_n in [rating]"),
         "{text}"
     );
 }

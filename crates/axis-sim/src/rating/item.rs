@@ -13,7 +13,7 @@ pub enum ItemState {
         value: Option<f64>,
         /// Its unit; empty if there is none.
         unit: &'static str,
-        /// Keys that would make it known, with their tables, each with a unit.
+        /// Keys that would make it known, each with a unit that it may have: of `[rating]`, or with their table.
         keys: Vec<String>,
     },
 }

@@ -130,5 +130,7 @@ impl About {
 
 /// Whether a unit of a motor's torque or speed is that of a motor that moves along a line.
 pub(crate) fn is_linear_unit(unit: &str) -> bool {
-    unit == "n" || unit == "kn" || unit.contains("m_per")
+    ["n", "n_per_sqrt_w"].contains(&unit)
+        || unit.contains("m_per_s") && !unit.starts_with("n_m")
+        || unit == "m_per_min"
 }

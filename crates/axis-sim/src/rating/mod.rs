@@ -26,6 +26,7 @@ use crate::axis::Axis;
 use crate::cycle::RunStopped;
 use crate::error::SetupError;
 use crate::mechanism::Freedom;
+use crate::thermal::THERMAL_KEYS;
 
 /// Why an axis cannot be checked.
 #[derive(Debug, Error)]
@@ -63,6 +64,28 @@ impl Axis {
         }
     }
 
+    /// A key's name as it may stand in the file of this axis: with the first unit that fits.
+    fn spelled(&self, name: &str) -> String {
+        let (table, own) = name.rsplit_once('.').unwrap_or(("", name));
+        let keys = match table {
+            "thermal" => THERMAL_KEYS,
+            "actuator" => self.actuator.kind().keys,
+            _ => RATING_KEYS,
+        };
+        let Some(key) = keys.iter().find(|key| key.name == own) else {
+            return name.to_owned();
+        };
+        let linear = self.mechanism.motor_freedom() == Freedom::Linear;
+        // Of a motor's dimensions: others have units of one sort.
+        let of_motor =
+            ["torque", "speed"].iter().any(|end| own.ends_with(end)) || own == "motor_constant";
+        let fits = |unit: &str| !of_motor || is_linear_unit(unit) == linear;
+        match key.units().iter().find(|(unit, _)| fits(unit)) {
+            Some((unit, _)) => format!("{name}_{unit}"),
+            None => name.to_owned(),
+        }
+    }
+
     /// All items that apply to this axis, under a duty: first the motor's, then the mechanism's.
     ///
     /// # Errors
@@ -70,6 +93,11 @@ impl Axis {
     pub fn checked(&self, duty: &AxisDuty) -> Result<Vec<CheckedItem>, CheckError> {
         let mut items = motor_items::items(self, duty)?;
         items.extend(machine_items::items(self, duty)?);
+        for item in &mut items {
+            if let ItemState::NotKnown { keys, .. } = &mut item.state {
+                keys.iter_mut().for_each(|key| *key = self.spelled(key));
+            }
+        }
         Ok(items)
     }
 }

@@ -99,11 +99,13 @@ fn what_is_not_known_names_keys_that_make_it_known() {
                 };
                 assert!(!keys.is_empty(), "{file}: {}", item.name);
                 for name in keys {
-                    if name == "thermal.motor_constant" {
+                    if name.starts_with("thermal.motor_constant_n") {
                         axis.thermal.set("motor_constant", 1.0);
                         continue;
                     }
-                    let key = RATING_KEYS.iter().find(|key| key.name == name);
+                    let key = RATING_KEYS
+                        .iter()
+                        .find(|key| key.spellings().contains(&name));
                     let key =
                         key.unwrap_or_else(|| panic!("{file}: {} asks for {name}", item.name));
                     match &key.kind {
