@@ -65,7 +65,7 @@ fn an_axis_with_limits_has_a_verdict_on_every_item() {
 /// A verdict is a result: the exit code is 0.
 #[test]
 fn what_is_over_is_named() {
-    let over = ["--axis", RATED, "--set", "rating.screw_length_mm=9000"];
+    let over = ["--axis", RATED, "--set", "rating.screw_length_mm=3000"];
     let found = found(&over);
     assert_eq!(item(&found, "screw_critical_speed")["verdict"], "over");
     assert!(
