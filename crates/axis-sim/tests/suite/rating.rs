@@ -134,13 +134,11 @@ fn items_are_those_that_the_axis_can_have() {
     }
 }
 
-/// Two strokes of constant speed against the formulas by hand.
-#[test]
-fn screw_items_by_hand() {
+/// Two strokes of constant speed: 3 s at 4 kN, 1 s at 12 kN beyond the lift of the preload, against motion.
+fn two_strokes() -> Vec<CheckedItem> {
     let axis = axis(RATED);
     let mut duty = AxisDuty::of(&axis).unwrap();
     let radius = 0.01 / TAU;
-    // 3 s at 4 kN, 1 s at 12 kN beyond the lift of the preload, against motion.
     for (duration, speed, force) in [(3.0, 0.1, 4000.0), (1.0, -0.1, -12_000.0)] {
         duty.push(&DutyStretch {
             duration,
@@ -150,8 +148,13 @@ fn screw_items_by_hand() {
         })
         .unwrap();
     }
-    let items = axis.checked(&duty).unwrap();
-    let rpm = 600.0;
+    axis.checked(&duty).unwrap()
+}
+
+/// Screw, nut, bearing and guides against the formulas by hand.
+#[test]
+fn screw_items_by_hand() {
+    let (items, rpm) = (two_strokes(), 600.0);
     near(rated(&items, "motor_speed")[0], rpm, 1e-12);
     // λ₂ d/L² 10⁷ with λ₂ = 15.1: makers' printed digits.
     let critical = 15.1 * 34.4 / 1650.0_f64.powi(2) * 1e7;
@@ -195,6 +198,12 @@ fn screw_items_by_hand() {
     let guide = 1e5 * (30.0 / 3.0_f64).powi(3) / 0.1 / 3600.0;
     near(rated(&items, "guide_life")[0], guide, 1e-12);
     near(rated(&items, "guide_static_safety")[0], 20.0, 1e-12);
+}
+
+/// Motor and drive against the formulas by hand.
+#[test]
+fn motor_items_by_hand() {
+    let (items, rpm, radius) = (two_strokes(), 600.0, 0.01 / TAU);
     let torque = [4000.0 * radius, 12_000.0 * radius];
     let rms = (0.75 * torque[0].powi(2) + 0.25 * torque[1].powi(2)).sqrt();
     near(rated(&items, "motor_rms_torque")[0], rms, 1e-12);
