@@ -48,6 +48,28 @@ fn buckling_factors_of_makers() {
     }
 }
 
+/// HSK, *Screw Shaft Design*: m of the load m d⁴/L² 10³ kgf (mm) with E = 2.1e4 kgf/mm², before its share of 0.5.
+#[test]
+fn buckling_factors_of_hsk() {
+    for (mounting, printed) in [
+        (ScrewMounting::FixedFree, 1.3),
+        (ScrewMounting::SupportedSupported, 5.1),
+        (ScrewMounting::FixedSupported, 10.2),
+        (ScrewMounting::FixedFixed, 20.3),
+    ] {
+        // In kgf and mm, which the formula does not mind.
+        let strength = ScrewStrength {
+            root_diameter_m: 30.0,
+            youngs_modulus_pa: 2.1e4,
+            density_kg_per_m3: 1.0,
+            mounting,
+        };
+        let load = strength.buckling_load_n(1500.0).unwrap();
+        let factor = load * 1500.0_f64.powi(2) / 30.0_f64.powi(4) / 1e3;
+        assert!((factor - printed).abs() < 0.05, "{factor} {printed}");
+    }
+}
+
 /// THK 513-1E, page A15-32: with the share 0.8 the speed is λ₂ d/ℓ² 10⁷ rpm (mm), λ₂ = 3.4, 9.7, 15.1 and 21.9.
 #[test]
 fn critical_speed_factors_of_thk() {
