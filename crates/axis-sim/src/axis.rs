@@ -15,6 +15,7 @@ use crate::friction::Friction;
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism, SolutionMethod};
 use crate::part::{Known, Part, PartError, Role, Values};
+use crate::rating::DataSheets;
 use crate::sensor::Sensor;
 
 /// Tracking error at which a run is given up where the axis file does not say, m.
@@ -69,6 +70,8 @@ pub struct Axis {
     pub balance: BalanceSettings,
     /// What the file's `[thermal]` says, of which the rest is assumed ([`Axis::thermal_model`]).
     pub thermal: Values,
+    /// What the file's `[rating]` says ([`Axis::checked`]).
+    pub rating: DataSheets,
     /// Hash of every value in SI units: the same for files that differ only
     /// in comments, units or order.
     pub fingerprint: String,

@@ -38,6 +38,7 @@
 //!   samples that a network learns from.
 //! - [`effects`]: what a model may lack, as changes of parameters by their role and hooks
 //!   in the loop.
+//! - [`rating`]: the axis against the data sheets of its parts, `[rating]` of its file, under a duty.
 //! - [`thermal`]: the axis' thermal model from `[thermal]` of its file, and the losses of a motion.
 //! - [`Replay`]: a log's reference through an axis with effects; [`balance`]: the motor
 //!   torque that an axis with effects needs for a log's measured motion.
@@ -108,6 +109,7 @@ mod one_cycle;
 pub mod part;
 mod plan_model;
 pub mod plant;
+pub mod rating;
 mod recorder;
 mod replay;
 pub mod sensor;

@@ -10,6 +10,7 @@
 //! - `begin`: axes to begin with. `loops`: margins and tuning of an axis' loops. `linear`: state space and frequency responses. `controller`: an unknown one, from logs.
 //! - `axis`, `motion`, `simulate`, `run`: an axis from a file or a dict, along a motion, to
 //!   arrays.
+//! - `check`: an axis against the data sheets of its parts.
 //! - `log`, `discover`, `discovery`: what a model lacks, from files, frames or arrays.
 //! - `compensation`, `sample`, `identify`, `learn`, `export`: corrections, cycle by cycle, on whole moves, and for controllers.
 //! - `network`, `one_cycle`: training and prediction; samples of one control cycle.
@@ -27,6 +28,7 @@ mod arrays;
 mod axis;
 mod beam;
 mod begin;
+mod check;
 mod compensation;
 mod controller;
 mod design;

@@ -32,7 +32,7 @@ fn set_of(
 }
 
 /// What serde writes, as dicts, lists, numbers and strings.
-fn plain<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn plain<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value).map_err(raise::<LoopError>)?;
     PyModule::import(py, "json")?.call_method1("loads", (text,))
 }

@@ -1,6 +1,7 @@
 //! One test program: the commands as a user runs them.
 
 mod campaign;
+mod check;
 mod cli;
 mod common;
 mod contour;

@@ -11,7 +11,11 @@ use crate::SixDigits;
 use crate::axis::{Axis, BalanceSettings, Stroke, Tolerances, ValueRange};
 use crate::effects::{ActiveEffect, Effect, EffectParameter, Scales};
 use crate::mechanism::Freedom;
+use crate::part::units::{MOTOR_SPEED, MOTOR_TORQUE};
 use crate::part::{Key, Known, Values};
+use crate::rating::{
+    AxisDuty, DataSheets, MOTOR_CURVE, MotorPoint, RATING_KEYS, about, is_linear_unit,
+};
 use crate::thermal::{THERMAL_KEYS, is_of_screws};
 use crate::work::{MOST_SUBSTEPS, substeps_of};
 
@@ -167,6 +171,80 @@ pub(super) fn thermal(root: &Fields<'_>, has_screw: bool) -> Result<Values, Axis
     }
     f.part(THERMAL_KEYS, &mut values)?;
     Ok(values)
+}
+
+/// `[rating]`: what the data sheets of the axis' parts allow. Nothing is accepted that the axis cannot have.
+pub(super) fn rating(root: &Fields<'_>, axis: &Axis) -> Result<DataSheets, AxisFileError> {
+    let mut sheets = DataSheets::default();
+    let Some(f) = root.optional_table("rating")? else {
+        return Ok(sheets);
+    };
+    let linear = axis.mechanism.motor_freedom() == Freedom::Linear;
+    let is_had = |key: &Key| about(key.name).is_none_or(|of| axis.is_about(of));
+    for key in RATING_KEYS {
+        let Some(spelling) = key.spellings().into_iter().find(|s| f.has(s)) else {
+            continue;
+        };
+        sheets.stated += 1;
+        if let Some(of) = about(key.name).filter(|of| !axis.is_about(*of)) {
+            let what = format!("is about {}, and the axis has none", of.name());
+            let others = RATING_KEYS.iter().filter(|key| is_had(key));
+            let others: Vec<&str> = others.map(|key| key.name).collect();
+            let valid = format!("{} (each with its unit)", others.join(", "));
+            return Err(f.refuse_value(&spelling, what, valid));
+        }
+    }
+    f.part(RATING_KEYS, &mut sheets.values)?;
+    unit_of_motor(
+        &f,
+        &["continuous_torque", "peak_torque", "max_speed"],
+        linear,
+    )?;
+    for point in f.tables(MOTOR_CURVE)? {
+        unit_of_motor(
+            &point,
+            &["speed", "continuous_torque", "peak_torque"],
+            linear,
+        )?;
+        sheets.motor_curve.push(MotorPoint {
+            speed: point.number("speed")?,
+            continuous: point.optional_number("continuous_torque")?,
+            peak: point.optional_number("peak_torque")?,
+        });
+    }
+    Ok(sheets)
+}
+
+/// A motor that moves along a line has a force, and a speed in m/s.
+fn unit_of_motor(f: &Fields<'_>, keys: &[&str], linear: bool) -> Result<(), AxisFileError> {
+    let units = [MOTOR_TORQUE.units, MOTOR_SPEED.units].concat();
+    for (unit, _) in units {
+        let spellings = keys.iter().map(|key| (key, format!("{key}_{unit}")));
+        let wrong = |spelling: &String| f.has(spelling) && is_linear_unit(unit) != linear;
+        if let Some((key, spelling)) = spellings.into_iter().find(|(_, s)| wrong(s)) {
+            let (what, units) = match (linear, key.ends_with("speed")) {
+                (true, true) => ("moves along a line", "m_per_s, mm_per_s or m_per_min"),
+                (true, false) => ("moves along a line", "n"),
+                (false, true) => ("turns", "rpm or rad_per_s"),
+                (false, false) => ("turns", "n_m"),
+            };
+            let what = format!("has the unit {unit}, and the motor {what}");
+            return Err(f.refuse_value(&spelling, what, format!("{key} in {units}")));
+        }
+    }
+    Ok(())
+}
+
+/// Whether the numbers of `[rating]` go together.
+pub(super) fn check_rating(root: &Fields<'_>, axis: &Axis) -> Result<(), AxisFileError> {
+    let Some(f) = root.optional_table("rating")? else {
+        return Ok(());
+    };
+    let checked = AxisDuty::of(axis).and_then(|duty| axis.checked(&duty));
+    match checked {
+        Ok(_) => Ok(()),
+        Err(error) => Err(f.refuse_table(error.to_string(), "other values")),
+    }
 }
 
 /// A control period has only so many internal steps.

@@ -10,6 +10,7 @@ use crate::actuator::Effort;
 use crate::mechanism::Freedom;
 use crate::part::units::*;
 use crate::part::{Key, count, number, quantity, table, tables, text, text_of, word};
+use crate::rating::rating_keys;
 use crate::thermal::THERMAL_KEYS;
 use crate::work::FREQUENCIES;
 
@@ -59,6 +60,7 @@ pub(super) fn keys(layout: &Layout, freedom: Freedom, effort: Effort) -> Vec<Key
         table("log", LOG).optional(),
         Key::of_table("balance", balance(freedom)).optional(),
         table("thermal", THERMAL_KEYS).optional(),
+        Key::of_table("rating", rating_keys()).optional(),
         Key::of_tables("trajectory", trajectory(freedom)).optional(),
         tables("load", KIND).optional(),
         tables("effects", ENTRY).optional(),

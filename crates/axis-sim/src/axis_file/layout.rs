@@ -278,6 +278,7 @@ pub const TABLES_WITHOUT_PARTS: &[&str] = &[
     "log",
     "balance",
     "thermal",
+    "rating",
 ];
 
 /// What a file with a section for each part may have.

@@ -22,6 +22,7 @@ use crate::friction::FrictionPlace;
 use crate::load::Load;
 use crate::mechanism::{Freedom, Mechanism, SolutionMethod};
 use crate::part::{Key, Part, PartKind, Values};
+use crate::rating::DataSheets;
 use crate::sensor::Sensor;
 use crate::work::{MOST_STEPS, cycles_of, substeps_of};
 
@@ -153,6 +154,7 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         tolerances: Tolerances::all(0.01),
         log: extras::log(&root)?,
         balance: extras::balance(&root)?,
+        rating: DataSheets::default(),
         thermal: extras::thermal(&root, mechanism.screw().is_some())?,
         fingerprint: String::new(),
         mechanism,
@@ -176,6 +178,8 @@ pub(super) fn axis(root: Fields<'_>, registry: &Registry) -> Result<Axis, AxisFi
         axis.thermal_model()
             .map_err(|e| thermal.refuse_table(e.to_string(), "other values"))?;
     }
+    axis.rating = extras::rating(&root, &axis)?;
+    extras::check_rating(&root, &axis)?;
     Ok(axis)
 }
 

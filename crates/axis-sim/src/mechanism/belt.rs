@@ -56,6 +56,7 @@ fn build(v: &Values) -> Result<Arc<dyn Mechanism>, PartError> {
     let motor = v.number("motor_inertia")? + v.number("pulley_inertia")? / (ratio * ratio);
     let inertias = [motor, v.number("carriage_mass")?];
     let mut belt = Elastic::new(v, inertias, radius / ratio, stiffness)?;
+    belt.belt = true;
     // Both strands keep a length: at least a thousandth of them together.
     let least = 1e-3 * together;
     belt.reach = Some(ValueRange {

@@ -16,6 +16,7 @@ pub(super) struct Elastic {
     pub backlash: f64,
     pub reach: Option<ValueRange>,
     pub screw: Option<ScrewShape>,
+    pub belt: bool,
     pub kinematic_error: Option<KinematicError>,
     /// Amplitude, order and phase of it.
     pub harmonic: Option<[f64; 3]>,
@@ -50,6 +51,7 @@ impl Elastic {
             backlash: v.or("backlash", 0.0),
             reach: None,
             screw: None,
+            belt: false,
             kinematic_error: None,
             harmonic: None,
         })
@@ -64,6 +66,10 @@ impl Elastic {
 impl Mechanism for Elastic {
     fn freedom(&self) -> Freedom {
         self.freedom
+    }
+
+    fn has_belt(&self) -> bool {
+        self.belt
     }
 
     fn travel_per_radian(&self) -> f64 {

@@ -141,6 +141,11 @@ pub trait Mechanism: fmt::Debug + Send + Sync {
         None
     }
 
+    /// Whether a toothed belt moves it.
+    fn has_belt(&self) -> bool {
+        false
+    }
+
     /// Whether the motor's angle is known apart from the load's position.
     fn has_motor_encoder(&self) -> bool {
         self.stiffness().is_some()

@@ -95,6 +95,16 @@ dimensions! {
     EXPANSION "unit of thermal expansion": "um_per_m_k" 1e-6, "per_k" 1.0;
     PER_KELVIN "unit of change with temperature": "percent_per_k" 1e-2, "per_k" 1.0;
     MOTOR_CONSTANT "unit of a motor constant": "n_m_per_sqrt_w" 1.0, "n_per_sqrt_w" 1.0;
+    MOTOR_TORQUE "unit of a motor's torque or force": "n_m" 1.0, "n" 1.0;
+    MOTOR_SPEED "unit of a motor's speed":
+        "rpm" RPM, "rad_per_s" 1.0, "m_per_s" 1.0, "mm_per_s" 1e-3, "m_per_min" 1.0 / 60.0;
+    THERMAL_RESISTANCE "unit of thermal resistance": "k_per_w" 1.0;
+    CAPACITANCE "unit of capacitance": "uf" 1e-6, "mf" 1e-3, "f" 1.0;
+    ENERGY "unit of energy": "j" 1.0, "kj" 1e3;
+    POWER "unit of power": "w" 1.0, "kw" 1e3;
+    LIFE "unit of a life": "h" 1.0;
+    DN_VALUE "unit of a DN value": "mm_per_min" 1.0;
+    BELT_FORCE "unit of a tooth's force for its width": "n_per_mm" 1e3, "n_per_m" 1.0;
     CURRENT_PROPORTIONAL "unit of a current controller's proportional gain": "v_per_a" 1.0;
     CURRENT_INTEGRAL "unit of a current controller's integral gain": "v_per_a_s" 1.0;
 }

@@ -87,6 +87,11 @@ impl Values {
         }
     }
 
+    /// Whether there is a value of any sort.
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.0.contains_key(key)
+    }
+
     /// A word, where it was given.
     pub fn word(&self, key: &str) -> Option<&'static str> {
         match self.0.get(key) {

@@ -34,6 +34,7 @@ mod plain;
 mod plain_loops;
 mod plan_model;
 mod published;
+mod rating;
 mod recorder;
 mod refusals;
 mod replay;

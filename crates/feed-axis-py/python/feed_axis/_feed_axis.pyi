@@ -192,6 +192,20 @@ class Axis:
         >>> curve = axis.analyse()["curves"][0]
         >>> response = np.array(curve["compliance"]) @ [1, 1j]
         """
+    def check(self, *, motion: _Motion | None = None, logs: _Log | Sequence[_Log] | None = None) -> list[dict[str, Any]]:
+        """What a duty asks of the axis' parts, beside what the `[rating]` of its file allows: an item a dict.
+
+        - `motion`: the duty, as of `simulate`, simulated once and taken as repeated without a pause; all trajectories of the file there and
+          back, if neither this nor `logs` is given.
+        - `logs`: the duty from a log or a list of logs: position, and current, torque or force.
+
+        Keys of an item: `name`, `title`, `value`, `limit`, `unit`, `bound` ("at most" or "at least"), `margin` (1 is just kept, below 1 over),
+        `verdict` ("ok", "over", "not known"), `give` (keys that would make it known), `is_unbounded`. What is not known or not finite is None.
+
+        Raises MotionError, SimulationError, LogError; AxisError if numbers of `[rating]` contradict each other.
+
+        >>> over = [item["name"] for item in axis.check() if item["verdict"] == "over"]
+        """
     def state_space(self, *, position: float | None = None, stuck: bool = False) -> dict[str, Any]:
         """The drive without its position and speed controllers, sampled once in each control period: x(k+1) = A x(k) + B u(k), y = C x + D u.
 

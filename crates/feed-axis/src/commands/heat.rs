@@ -1,6 +1,6 @@
 //! `heat`: hours of a duty, what they warm, and how far the axis grows by that.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use axis_sim::mechanism::Freedom;
 use axis_sim::thermal::LossModel;
@@ -111,21 +111,7 @@ impl Options {
     /// The motion that repeats itself.
     fn motion(&self, axis: &Axis) -> Result<Program> {
         if let Some(file) = &self.program {
-            let program = program_on(file, axis)?;
-            let (start, end) = (program.start(), program.end());
-            if (end - start).abs() > 1e-9 || program.duration() <= 0.0 {
-                let unit = axis.freedom().unit();
-                return Err(wrong_use(format!(
-                    "--program: {} begins at {} {unit} and ends at {} {unit} after {} s; give one that takes \
-                     some time and ends where it begins, for it is repeated",
-                    file.display(),
-                    SixDigits(start),
-                    SixDigits(end),
-                    SixDigits(program.duration())
-                )));
-            }
-            inside(&program, axis).wrap_err("--program")?;
-            return Ok(program);
+            return repeated(file, axis);
         }
         let spec = self.trajectory.checked_sub(1);
         let spec = spec.and_then(|i| axis.trajectories.get(i)).ok_or_else(|| {
@@ -262,6 +248,25 @@ impl Options {
             report: self.report.clone(),
         }
     }
+}
+
+/// A program that can be repeated: it ends where it begins, and stays in the stroke.
+pub(super) fn repeated(file: &Path, axis: &Axis) -> Result<Program> {
+    let program = program_on(file, axis)?;
+    let (start, end) = (program.start(), program.end());
+    if (end - start).abs() > 1e-9 || program.duration() <= 0.0 {
+        let unit = axis.freedom().unit();
+        return Err(wrong_use(format!(
+            "--program: {} begins at {} {unit} and ends at {} {unit} after {} s; give one that takes \
+             some time and ends where it begins, for it is repeated",
+            file.display(),
+            SixDigits(start),
+            SixDigits(end),
+            SixDigits(program.duration())
+        )));
+    }
+    inside(&program, axis).wrap_err("--program")?;
+    Ok(program)
 }
 
 /// A program that leaves the stroke would heat places that the nut cannot be at.

@@ -2,6 +2,8 @@
 
 pub(crate) mod analyse;
 pub(crate) mod campaign;
+pub(crate) mod check;
+pub mod check_words;
 pub(crate) mod compensate;
 mod compensate_moves;
 pub(crate) mod contour;
@@ -76,6 +78,8 @@ pub enum Command<J: Jobs> {
     Contour(contour::Options),
     /// Hours of a duty: temperatures, growth by position and time, thermal force
     Heat(heat::Options),
+    /// Check the axis against the data sheets of its parts, under a duty: value, limit, margin
+    Check(check::Options),
     /// Name what a model lacks, from logs of the real axis
     Discover(discover::Options),
     /// Inspect a log (channels, sampling, noise, a proposed mapping) or convert it
@@ -111,6 +115,7 @@ impl<J: Jobs> Command<J> {
             Self::Simulate(options) => simulate::command(options),
             Self::Contour(options) => contour::command(options),
             Self::Heat(options) => heat::command(options),
+            Self::Check(options) => check::command(options),
             Self::Discover(options) => discover::command(options),
             Self::Log(options) => log::command(options),
             Self::Campaign(options) => campaign::command::<J>(options),

@@ -2,6 +2,7 @@
 
 mod answers;
 pub mod channel;
+pub mod check;
 pub mod compare;
 mod compensation;
 pub mod contour;

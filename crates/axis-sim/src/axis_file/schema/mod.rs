@@ -18,6 +18,7 @@ use super::registry::Registry;
 use crate::actuator::Effort;
 use crate::mechanism::Freedom;
 use crate::part::{Key, PartKind};
+use crate::rating::rating_keys;
 use crate::thermal::THERMAL_KEYS;
 use key::{closed, without};
 use parts::{SECTIONS, list, part_tables};
@@ -34,6 +35,7 @@ impl Registry {
         let mut defs = Map::new();
         part_tables(self, &mut defs);
         defs.insert("thermal".to_owned(), closed(THERMAL_KEYS));
+        defs.insert("rating".to_owned(), closed(&rating_keys()));
         for freedom in FREEDOMS {
             for effort in EFFORTS {
                 self.by_movement(freedom, effort, &mut defs);
@@ -77,6 +79,7 @@ impl Registry {
         file["properties"]["tolerances"] = reference("tolerances");
         file["properties"]["sensors"] = reference("sensors");
         file["properties"]["thermal"] = reference("thermal");
+        file["properties"]["rating"] = reference("rating");
         // Which of them, the movement tells.
         for name in BY_FREEDOM.iter().chain(&["samples"]) {
             file["properties"][name] = json!({});
@@ -139,6 +142,7 @@ impl Registry {
         file["properties"]["tolerances"] = reference("tolerances");
         file["properties"]["sensors"] = reference("sensors");
         file["properties"]["thermal"] = reference("thermal");
+        file["properties"]["rating"] = reference("rating");
         Some(file)
     }
 

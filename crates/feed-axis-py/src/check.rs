@@ -1,0 +1,78 @@
+//! An axis against the data sheets of its parts.
+
+use axis_sim::rating::AxisDuty;
+use feed_axis::commands::check_words::CheckedRow;
+use pyo3::prelude::*;
+use pyo3::types::{PyList, PyTuple};
+
+use crate::axis::PyAxis;
+use crate::errors::{AxisError, LogError, MotionError, SimulationError, raise};
+use crate::log::{Renamed, whole_log_of};
+use crate::long::long;
+use crate::loops::plain;
+use crate::motion::AnyMotion;
+
+#[pymethods]
+impl PyAxis {
+    /// What a duty asks of the parts, beside what the file's `[rating]` allows.
+    #[pyo3(signature = (*, motion = None, logs = None))]
+    fn check<'py>(
+        &self,
+        py: Python<'py>,
+        motion: Option<AnyMotion<'_>>,
+        logs: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let axis = self.axis.clone();
+        let duty = match (motion, logs) {
+            (Some(_), Some(_)) => {
+                let words = "a duty is a motion or logs; valid: one of them, or neither";
+                return Err(MotionError::new_err(words));
+            }
+            (None, Some(logs)) => self.duty_of_logs(logs)?,
+            (Some(motion), None) => {
+                let motion = motion.on(&self.axis)?;
+                let made = axis.clone();
+                long(py, None, move |_| {
+                    made.duty_of_motion(&*motion)
+                        .map_err(raise::<SimulationError>)
+                })?
+            }
+            (None, None) => {
+                if axis.trajectories.is_empty() {
+                    let words = "the axis has no [[trajectory]]; give a motion or logs";
+                    return Err(MotionError::new_err(words));
+                }
+                let motion = axis.there_and_back(&axis.trajectories, 0.0);
+                let motion = motion.map_err(raise::<MotionError>)?;
+                let made = axis.clone();
+                long(py, None, move |_| {
+                    made.duty_of_motion(&motion)
+                        .map_err(raise::<SimulationError>)
+                })?
+            }
+        };
+        let items = axis.checked(&duty).map_err(raise::<AxisError>)?;
+        let rows: Vec<CheckedRow> = items.iter().map(CheckedRow::of).collect();
+        plain(py, &rows)
+    }
+}
+
+impl PyAxis {
+    fn duty_of_logs(&self, logs: &Bound<'_, PyAny>) -> PyResult<AxisDuty> {
+        let mut duty = AxisDuty::of(&self.axis).map_err(raise::<AxisError>)?;
+        let several = logs.is_instance_of::<PyList>() || logs.is_instance_of::<PyTuple>();
+        let all: Vec<Bound<'_, PyAny>> = match several {
+            true => logs.try_iter()?.collect::<PyResult<_>>()?,
+            false => vec![logs.clone()],
+        };
+        for (i, log) in all.iter().enumerate() {
+            let name = format!("logs[{i}]");
+            let needed = [self.axis.position_channel()];
+            let renamed = Renamed::default();
+            let (_, log) =
+                whole_log_of(log, &name, &self.axis, &needed, &renamed, &mut Vec::new())?;
+            duty.add_log(&self.axis, &log).map_err(raise::<LogError>)?;
+        }
+        Ok(duty)
+    }
+}
