@@ -26,9 +26,12 @@ pub struct Options {
     /// Seed of noise and of parameter errors
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// By torque balance, as without a controller
+    #[arg(long)]
+    balance: bool,
     /// Folder for the logs, one result a case, independent.json and independent.md; cases
     /// that this program has a result of there are not run again [default:
-    /// runs/independent/seed-N]
+    /// runs/independent/seed-N, with --balance seed-N-balance]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Threads, 0 for all cores; results do not depend on it
@@ -82,7 +85,8 @@ pub fn command(options: &Options) -> Result<()> {
     if cases.is_empty() {
         cases = CASES.iter().collect();
     }
-    let default = || Path::new("runs/independent").join(format!("seed-{}", options.seed));
+    let way = if options.balance { "-balance" } else { "" };
+    let default = || Path::new("runs/independent").join(format!("seed-{}{way}", options.seed));
     let out = options.out.clone().unwrap_or_else(default);
     ready(&out)?;
     let made_by = feed_axis::program::key();
@@ -92,7 +96,7 @@ pub fn command(options: &Options) -> Result<()> {
         let outcome = match kept(&file, &made_by, options.seed) {
             Some(outcome) => outcome,
             None => {
-                let outcome = try_case(case, options.seed, &out.join(case.name), &made_by)?;
+                let outcome = try_case(case, options, &out.join(case.name), &made_by)?;
                 let json = serde_json::to_vec_pretty(&outcome).into_diagnostic()?;
                 write_whole(&file, &json)?;
                 outcome
@@ -105,7 +109,7 @@ pub fn command(options: &Options) -> Result<()> {
     write_whole(&out.join("independent.json"), &json)?;
     let right = outcomes.iter().filter(|o| o.wrong.is_empty()).count();
     let summary = format!("{right} of {} right", outcomes.len());
-    let page = page(&outcomes, options.seed, &summary);
+    let page = page(&outcomes, options, &summary);
     write_whole(&out.join("independent.md"), page.as_bytes())?;
     say(format!(
         "{summary}\n{}",
@@ -118,10 +122,10 @@ fn kept(file: &Path, made_by: &str, seed: u64) -> Option<Outcome> {
     (outcome.made_by == made_by && outcome.truth.seed == seed).then_some(outcome)
 }
 
-fn try_case(case: &Case, seed: u64, folder: &Path, made_by: &str) -> Result<Outcome> {
-    let truth = write_case(case, seed, Rough::default(), folder).into_diagnostic()?;
+fn try_case(case: &Case, options: &Options, folder: &Path, made_by: &str) -> Result<Outcome> {
+    let truth = write_case(case, options.seed, Rough::default(), folder).into_diagnostic()?;
     let start = Instant::now();
-    let found = searched(folder);
+    let found = searched(folder, options.balance);
     let seconds = start.elapsed().as_secs_f64();
     let (effects, unknown) = match &found {
         Ok(d) => (
@@ -151,8 +155,11 @@ fn try_case(case: &Case, seed: u64, folder: &Path, made_by: &str) -> Result<Outc
 }
 
 /// The search over the logs of a folder, as `discover` does it.
-fn searched(folder: &Path) -> Result<Discovery> {
-    let machine = Axis::read(&folder.join("axis.toml"))?;
+fn searched(folder: &Path, by_balance: bool) -> Result<Discovery> {
+    let mut machine = Axis::read(&folder.join("axis.toml"))?;
+    if by_balance {
+        machine = machine.without_control().into_diagnostic()?;
+    }
     let mut notes = Vec::new();
     let mut logs = |names: [&str; 2]| {
         let paths = names.map(|name| folder.join(name));
@@ -304,9 +311,11 @@ fn line(outcome: &Outcome) -> String {
     )
 }
 
-fn page(outcomes: &[Outcome], seed: u64, summary: &str) -> String {
+fn page(outcomes: &[Outcome], options: &Options, summary: &str) -> String {
+    let seed = options.seed;
+    let way = if options.balance { " --balance" } else { "" };
     let mut page = format!(
-        "# Logs of an independent simulator\n\n`cargo xtask independent --seed {seed}`: {summary}.\n\n\
+        "# Logs of an independent simulator\n\n`cargo xtask independent --seed {seed}{way}`: {summary}.\n\n\
          | case | hidden | verdict | named | right | s |\n|---|---|---|---|---|---|\n"
     );
     for o in outcomes {
