@@ -65,6 +65,7 @@
 //!     source: source.into(),
 //!     channel: channel.into(),
 //!     scale,
+//!     is_scale_stated: true,
 //!     offset: 0.0,
 //!     delay: 0.0,
 //! };

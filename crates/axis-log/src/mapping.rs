@@ -19,6 +19,9 @@ pub struct ColumnMap {
     /// Channel units per unit of the file: 1e-3 for millimetres to metres.
     /// Finite and not 0; negative where the sign is reversed.
     pub scale: f64,
+    /// Whether someone stated the scale, as a unit or a factor. Where nobody did, a unit that the
+    /// file states beside the column counts.
+    pub is_scale_stated: bool,
     /// What is added after scaling, in units of the channel. Finite.
     pub offset: f64,
     /// By how much the file shows the quantity late, s; negative where early. What
@@ -76,6 +79,7 @@ impl ColumnMap {
             source,
             channel,
             scale,
+            is_scale_stated: unit.unit.is_some() || unit.factor.is_some(),
             offset: 0.0,
             delay: 0.0,
         })

@@ -4,15 +4,16 @@ use std::path::Path;
 
 use crate::channel::Channel;
 use crate::csv_table::CsvTable;
+use crate::import::stated_unit;
 use crate::log::{Log, TIME_CHANNEL};
-use crate::mapping::Mapping;
+use crate::mapping::{ColumnMap, Mapping};
 #[cfg(feature = "mat")]
 use crate::mat_table::MatTable;
 #[cfg(feature = "parquet")]
 use crate::parquet_table::ParquetTable;
 use crate::read_error::{ReadError, ReadProblem};
 use crate::select::{Pick, select};
-use crate::table::{Holes, Note, Table};
+use crate::table::{Head, Holes, Note, Table};
 
 /// Reads a log from a table of text, a Parquet or a MAT file, by its extension (`.csv`,
 /// `.tsv`, `.txt`, `.dat`, `.asc`; `.parquet`; `.mat`, in any case), renaming and scaling
@@ -84,6 +85,8 @@ pub(crate) struct Read {
     pub channels: Vec<Channel>,
     /// What is to be told of it.
     pub notes: Vec<Note>,
+    /// How each channel was read.
+    pub maps: Vec<ColumnMap>,
 }
 
 pub(crate) fn read(
@@ -171,6 +174,7 @@ fn channels(
     let at = |pick: &Pick| wanted.partition_point(|&c| c < pick.column);
     let samples = length(&mut picks, |pick| &columns[at(pick)])?;
     let mut notes = table.notes();
+    notes.extend(notes_of_mapping(table.heads(), mapping, &picks));
     let time = picks.first().filter(|p| p.map.channel == TIME_CHANNEL);
     let kept = match time.map(|pick| (at(pick), pick.map.clone())) {
         Some((time, map)) => {
@@ -203,7 +207,42 @@ fn channels(
         };
         channels.push(channel(&table, pick, values, &kept, holes)?);
     }
-    Ok(Read { channels, notes })
+    let maps = picks.into_iter().map(|pick| pick.map).collect();
+    Ok(Read {
+        channels,
+        notes,
+        maps,
+    })
+}
+
+/// What is to be told of how a mapping fits a file.
+fn notes_of_mapping<'a>(
+    heads: &'a [Head],
+    mapping: &'a Mapping,
+    picks: &'a [Pick],
+) -> impl Iterator<Item = Note> + 'a {
+    let there = |name: &str| heads.iter().any(|head| head.name == name);
+    let absent = mapping.columns.iter().filter(move |m| !there(&m.source));
+    let absent = absent.map(|m| Note::NoColumn {
+        column: m.source.clone(),
+        there: heads.iter().map(|head| head.name.clone()).collect(),
+    });
+    let by_file = picks.iter().filter(|p| {
+        let is_mapped = mapping.columns.iter().any(|m| m.channel == p.map.channel);
+        is_mapped && !p.map.is_scale_stated && p.map.scale != 1.0
+    });
+    let by_file = by_file.map(|p| {
+        let head = &heads[p.column];
+        let unit = head.stored.or(head.unit.as_deref());
+        Note::UnitOfFile {
+            column: head.name.clone(),
+            unit: unit
+                .or_else(|| stated_unit(&head.name))
+                .unwrap_or_default()
+                .to_owned(),
+        }
+    });
+    absent.chain(by_file)
 }
 
 /// Takes out of the columns what is in the table twice: rows with the time of the one before that

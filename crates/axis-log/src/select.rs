@@ -1,5 +1,6 @@
 //! Which columns of a table become which channels.
 
+use crate::import::stated_unit;
 use crate::log::TIME_CHANNEL;
 use crate::mapping::{ColumnMap, Mapping};
 use crate::read_error::ReadProblem;
@@ -63,19 +64,27 @@ fn own(name: &str) -> ColumnMap {
         source: name.to_owned(),
         channel: name.to_owned(),
         scale: 1.0,
+        is_scale_stated: false,
         // Adding −0 keeps every bit, the sign of a zero too.
         offset: -0.0,
         delay: 0.0,
     }
 }
 
-/// The mapping of a column whose type says its unit: where no scale is given it is that unit's.
-fn in_its_unit(mut map: ColumnMap, head: &Head) -> ColumnMap {
-    let own = unit_of(&map.channel).and_then(size_of);
-    if let Some((own, stored)) = own.zip(head.stored.and_then(size_of))
-        && map.scale == 1.0
+/// The mapping of a column whose file states its unit, by its type, beside its name or in it: where no
+/// scale is stated it is that unit's, if that is of the channel's dimension.
+pub(crate) fn in_its_unit(mut map: ColumnMap, head: &Head) -> ColumnMap {
+    if map.is_scale_stated {
+        return map;
+    }
+    let of = |unit: &str| Some((known(unit)?.1, size_of(unit)?));
+    let stored = head.stored.and_then(of);
+    let stated = || of(head.unit.as_deref().or_else(|| stated_unit(&head.name))?);
+    let own = unit_of(&map.channel).and_then(of);
+    if let Some(((dimension, own), (of_file, size))) = own.zip(stored.or_else(stated))
+        && dimension == of_file
     {
-        map.scale = stored / own;
+        map.scale = size / own;
     }
     map
 }

@@ -62,6 +62,10 @@ pub(crate) enum Note {
     NoLineEnd,
     /// Rows that the program left out because nothing changed; values were held.
     Held { rows: usize },
+    /// A column whose mapping states no unit was read in that which the file states.
+    UnitOfFile { column: String, unit: String },
+    /// A column that a mapping names is not there.
+    NoColumn { column: String, there: Vec<String> },
     /// Rows that were there twice; the second was dropped.
     Repeated { rows: usize, first: f64 },
 }

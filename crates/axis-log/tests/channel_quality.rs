@@ -178,6 +178,7 @@ fn mapped() -> Mapping {
         source: source.into(),
         channel: channel.into(),
         scale: 1.0,
+        is_scale_stated: false,
         offset: 0.0,
         delay: 0.0,
     };
@@ -315,6 +316,7 @@ fn measured(file: &str) -> Option<Log> {
         source: source.into(),
         channel: channel.into(),
         scale: 1.0,
+        is_scale_stated: false,
         offset: 0.0,
         delay: 0.0,
     };

@@ -5,7 +5,7 @@ use nalgebra::{Complex, DMatrix, DVector, SymmetricEigen};
 use crate::error::{finite, positive};
 use crate::system::SystemMatrices;
 use crate::whirl::{WhirlAnalysis, WhirlMode, WhirlSpectrum};
-use crate::{BeamError, Model};
+use crate::{BeamError, BeamModel};
 
 /// A speed at which a mode whirls in a fixed ratio to the spin.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,11 +122,11 @@ impl WhirlAnalysis {
 /// speed: `model` gives it for each, with the bearing coefficients of that speed.
 ///
 /// # Errors
-/// Those of `model`, [`Model::matrices`] and [`WhirlAnalysis::at`].
+/// Those of `model`, [`BeamModel::matrices`] and [`WhirlAnalysis::at`].
 pub fn campbell(
     spins: &[f64],
     count: usize,
-    mut model: impl FnMut(f64) -> Result<Model, BeamError>,
+    mut model: impl FnMut(f64) -> Result<BeamModel, BeamError>,
 ) -> Result<Vec<WhirlSpectrum>, BeamError> {
     let mut at = |spin: &f64| -> Result<WhirlSpectrum, BeamError> {
         let system: SystemMatrices = model(*spin)?.matrices()?;

@@ -160,7 +160,7 @@ pub enum BeamError {
     },
     /// A stiffness that leaves a motion without spring energy.
     #[error(
-        "the stiffness matrix is not positive definite: {task} needs a spring, a bearing or a hold against every rigid motion, stretch and twist included (Model::hold_everywhere), and no load beyond buckling"
+        "the stiffness matrix is not positive definite: {task} needs a spring, a bearing or a hold against every rigid motion, stretch and twist included (BeamModel::hold_everywhere), and no load beyond buckling"
     )]
     Unsupported {
         /// What was to be computed.

@@ -66,7 +66,7 @@
 //! ```
 //!
 //! # Rotors and machines
-//! [`Shape`] and [`Span`] make a [`Shaft`], stepped or tapered; a [`Model`] adds
+//! [`SectionShape`] and [`Span`] make a [`Shaft`], stepped or tapered; a [`BeamModel`] adds
 //! masses, springs, bearings, constraints, damping and axial load and gives M, K, C, G
 //! as [`SystemMatrices`]:
 //! - [`WhirlAnalysis`]: damped eigenvalues at a spin speed with their direction,
@@ -114,7 +114,7 @@ pub use critical::{CriticalSpeed, campbell};
 pub use error::BeamError;
 pub use material::Material;
 pub use mesh::Mesh;
-pub use model::Model;
+pub use model::BeamModel;
 pub use modes::{Modes, natural_modes};
 pub use moving_node::MovingNode;
 pub use orbit::Orbit;
@@ -122,7 +122,7 @@ pub use parts::{Bearing, Damping, LumpedMass, Unbalance};
 pub use pencil::lowest_modes;
 pub use section::{CrossSection, SectionProperties};
 pub use shaft::{Shaft, Span};
-pub use shape::Shape;
+pub use shape::SectionShape;
 pub use system::{Receptance, SystemMatrices};
 pub use torsion::Tridiagonal;
 pub use unbalance::UnbalanceResponse;

@@ -9,15 +9,15 @@ use crate::system::SystemMatrices;
 use crate::{BeamError, Dof, Shaft};
 
 /// A shaft with what it carries and what carries it. Rows of its matrices before
-/// constraints are [`Dof::at`] of nodes 0..[`Model::nodes`]: those of the shaft, then
-/// those that [`Model::add_node`] made.
+/// constraints are [`Dof::at`] of nodes 0..[`BeamModel::nodes`]: those of the shaft, then
+/// those that [`BeamModel::add_node`] made.
 ///
 /// ```
-/// use beam_fem::{Bearing, Dof, LumpedMass, Material, Model, Shaft, Shape, Span, WhirlAnalysis};
+/// use beam_fem::{Bearing, Dof, LumpedMass, Material, BeamModel, Shaft, SectionShape, Span, WhirlAnalysis};
 ///
 /// let steel = Material::new(211e9, 0.3, 7810.0)?;
-/// let round = Shape::solid(0.05).section(&steel)?;
-/// let mut rotor = Model::new(Shaft::new(&[Span::uniform(1.5, 6, round, steel.clone())?])?);
+/// let round = SectionShape::solid(0.05).section(&steel)?;
+/// let mut rotor = BeamModel::new(Shaft::new(&[Span::uniform(1.5, 6, round, steel.clone())?])?);
 /// rotor.add_mass(2, LumpedMass::disc([0.28, 0.05], 0.07, &steel)?)?;
 /// rotor.add_mass(4, LumpedMass::disc([0.35, 0.05], 0.07, &steel)?)?;
 /// rotor.add_bearing(0, Bearing::isotropic(1e6, 0.0))?;
@@ -30,7 +30,7 @@ use crate::{BeamError, Dof, Shaft};
 /// # Ok::<(), beam_fem::BeamError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Model {
+pub struct BeamModel {
     shaft: Shaft,
     nodes: usize,
     masses: Vec<(usize, LumpedMass)>,
@@ -44,7 +44,7 @@ pub struct Model {
     axial: Vec<f64>,
 }
 
-impl Model {
+impl BeamModel {
     /// The free shaft alone.
     pub fn new(shaft: Shaft) -> Self {
         let nodes = shaft.mesh().nodes().len();
@@ -72,7 +72,7 @@ impl Model {
     }
 
     /// Adds a node off the shaft, which does not spin: a pedestal or a casing. Its
-    /// degrees of freedom need mass ([`Model::add_mass`]) or [`Model::hold`]. Returns
+    /// degrees of freedom need mass ([`BeamModel::add_mass`]) or [`BeamModel::hold`]. Returns
     /// its number.
     pub fn add_node(&mut self) -> usize {
         self.nodes += 1;
@@ -108,7 +108,7 @@ impl Model {
     /// N·m·s/rad.
     ///
     /// # Errors
-    /// As [`Model::add_ground_spring`].
+    /// As [`BeamModel::add_ground_spring`].
     pub fn add_ground_damper(&mut self, row: usize, damping: f64) -> Result<(), BeamError> {
         self.check_row(row)?;
         let value = finite("damping", damping)?;
@@ -120,7 +120,7 @@ impl Model {
     /// their difference.
     ///
     /// # Errors
-    /// As [`Model::add_ground_spring`].
+    /// As [`BeamModel::add_ground_spring`].
     pub fn add_spring(&mut self, rows: [usize; 2], stiffness: f64) -> Result<(), BeamError> {
         self.check_row(rows[0])?;
         self.check_row(rows[1])?;
@@ -132,7 +132,7 @@ impl Model {
     /// Adds a viscous damper between two rows ([`Dof::at`]).
     ///
     /// # Errors
-    /// As [`Model::add_ground_spring`].
+    /// As [`BeamModel::add_ground_spring`].
     pub fn add_damper(&mut self, rows: [usize; 2], damping: f64) -> Result<(), BeamError> {
         self.check_row(rows[0])?;
         self.check_row(rows[1])?;
@@ -162,7 +162,7 @@ impl Model {
     /// Adds a bearing between two nodes: shaft and pedestal, or two shafts' nodes.
     ///
     /// # Errors
-    /// As [`Model::add_bearing`].
+    /// As [`BeamModel::add_bearing`].
     pub fn add_bearing_between(
         &mut self,
         nodes: [usize; 2],

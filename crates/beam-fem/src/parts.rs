@@ -98,7 +98,7 @@ impl Bearing {
 
 /// Damping of the structure, added to that of bearings and dampers. It does not turn
 /// with the shaft: damping within the shaft, which drives forward whirl above a
-/// critical speed, is [`crate::Model::set_rotating_damping`].
+/// critical speed, is [`crate::BeamModel::set_rotating_damping`].
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Damping {

@@ -2,13 +2,16 @@
 
 use crate::error::positive;
 use crate::mesh::check_elements;
-use crate::{BeamError, CrossSection, Material, Mesh, Shape};
+use crate::{BeamError, CrossSection, Material, Mesh, SectionShape};
 
 /// Section along a span or an element.
 #[derive(Clone, Debug, PartialEq)]
 enum Profile {
     Uniform(CrossSection),
-    Tapered { from: Shape, to: Shape },
+    Tapered {
+        from: SectionShape,
+        to: SectionShape,
+    },
 }
 
 /// A piece of shaft of one material, cut into equal elements.
@@ -47,12 +50,12 @@ impl Span {
     /// taper, so deflections of nodes under forces at nodes are exact on any mesh.
     ///
     /// # Errors
-    /// As [`Span::uniform`] and [`Shape::section`]; [`BeamError::Taper`] for ends
+    /// As [`Span::uniform`] and [`SectionShape::section`]; [`BeamError::Taper`] for ends
     /// of different kinds.
     pub fn tapered(
         length: f64,
         elements: usize,
-        ends: [Shape; 2],
+        ends: [SectionShape; 2],
         material: Material,
     ) -> Result<Self, BeamError> {
         let [from, to] = ends;

@@ -8,7 +8,7 @@ use crate::{BeamError, CrossSection, Material, SectionProperties};
 /// The outline of a section by its dimensions in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Shape {
+pub enum SectionShape {
     /// A circle, with a concentric hole unless `inner` is 0.
     Circle {
         /// Outer diameter, m.
@@ -25,7 +25,7 @@ pub enum Shape {
     },
 }
 
-impl Shape {
+impl SectionShape {
     /// A solid circle of `diameter` metres.
     pub fn solid(diameter: f64) -> Self {
         Self::Circle {

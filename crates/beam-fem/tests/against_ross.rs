@@ -2,19 +2,19 @@
 //! differences of all ten rotors and writes ROSS's values to target/campbell-ross.csv,
 //! from which those here are taken.
 
-use beam_fem::{Bearing, Model, Unbalance, Whirl, WhirlAnalysis};
+use beam_fem::{BeamModel, Bearing, Unbalance, Whirl, WhirlAnalysis};
 
 use crate::rotors;
 
 /// 4000 rev/min.
 const SPIN: f64 = 418.879_020_478_639_1;
 
-fn whirl(model: &Model) -> WhirlAnalysis {
+fn whirl(model: &BeamModel) -> WhirlAnalysis {
     WhirlAnalysis::new(&model.matrices().unwrap()).unwrap()
 }
 
 /// Damped frequencies, rad/s, and damping ratios.
-fn spectrum(model: &Model) -> Vec<(f64, f64)> {
+fn spectrum(model: &BeamModel) -> Vec<(f64, f64)> {
     let modes = whirl(model).lowest(SPIN, 6).unwrap().modes;
     let pair = |m: &beam_fem::WhirlMode| (m.frequency_rad_s(), m.damping_ratio());
     modes.iter().map(pair).collect()
@@ -29,7 +29,7 @@ fn close(found: f64, theirs: f64, tolerance: f64) {
 fn whirl_speeds_are_those_of_ross() {
     let plain = Bearing::isotropic(1e6, 0.0);
     let anisotropic = Bearing::orthotropic([1e6, 8e5], [0.0; 2]);
-    let cases: [(Model, [f64; 6]); 4] = [
+    let cases: [(BeamModel, [f64; 6]); 4] = [
         (
             rotors::two_discs(6, plain, 0.0).unwrap(),
             [

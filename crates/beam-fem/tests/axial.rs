@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use beam_fem::{
-    BeamError, Bearing, CrossSection, Damping, Dof, Material, Mesh, Model, Receptance,
+    BeamError, BeamModel, Bearing, CrossSection, Damping, Dof, Material, Mesh, Receptance,
     SectionProperties, Shaft, Unbalance, WhirlAnalysis,
 };
 use nalgebra::{Complex, DVector};
@@ -15,24 +15,24 @@ const LENGTH: f64 = 2.0;
 
 /// A column without stretch, twist and motion in x–z. Slender (no shear, no rotary
 /// inertia) unless `kappa` is small. Also its EI and κGA.
-fn column(elements: usize, kappa: f64, radius: f64) -> (Model, f64, f64) {
+fn column(elements: usize, kappa: f64, radius: f64) -> (BeamModel, f64, f64) {
     let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
     let (area, i) = (1e-3, 1e-3 * radius * radius);
     let section = CrossSection::new(area, i, i, 2.0 * i, kappa).unwrap();
     let shaft = Shaft::on_mesh(&section, &steel, Mesh::uniform(LENGTH, elements).unwrap());
-    let mut model = Model::new(shaft);
+    let mut model = BeamModel::new(shaft);
     model.lateral_only();
     model.hold_everywhere(Dof::W);
     model.hold_everywhere(Dof::ThetaY);
     (model, 206e9 * i, kappa * steel.shear_modulus() * area)
 }
 
-fn slender(elements: usize) -> (Model, f64) {
+fn slender(elements: usize) -> (BeamModel, f64) {
     let (model, ei, _) = column(elements, 1e9, 1e-5);
     (model, ei)
 }
 
-fn hold(model: &mut Model, held: &[(usize, Dof)]) {
+fn hold(model: &mut BeamModel, held: &[(usize, Dof)]) {
     for (node, dof) in held {
         model.hold(*node, *dof).unwrap();
     }
@@ -105,7 +105,7 @@ fn each_plane_buckles_with_its_own_shear_coefficient() {
     })
     .unwrap();
     let shaft = Shaft::on_mesh(&section, &steel, Mesh::uniform(LENGTH, 64).unwrap());
-    let mut model = Model::new(shaft);
+    let mut model = BeamModel::new(shaft);
     model.lateral_only();
     let ends = [(0, Dof::V), (0, Dof::W), (64, Dof::V), (64, Dof::W)];
     hold(&mut model, &ends);

@@ -1,7 +1,7 @@
 //! Rotors of books and papers, for the example `campbell` and the tests.
 #![allow(dead_code)] // Each user takes some of them.
 
-use beam_fem::{BeamError, Bearing, LumpedMass, Material, Model, Shaft, Shape, Span};
+use beam_fem::{BeamError, BeamModel, Bearing, LumpedMass, Material, SectionShape, Shaft, Span};
 
 /// The steel of Friswell, Penny, Garvey and Lees, *Dynamics of Rotating Machines*,
 /// Cambridge 2010, section 5.9: E = 211 GPa, G = 81.2 GPa, 7810 kg/m³.
@@ -11,11 +11,11 @@ pub fn steel() -> Result<Material, BeamError> {
 
 /// Example 5.9.1 and its variants: a shaft of 1.5 m and 50 mm in `elements`, a multiple of
 /// three, discs at its thirds.
-pub fn two_discs(elements: usize, bearing: Bearing, axial: f64) -> Result<Model, BeamError> {
+pub fn two_discs(elements: usize, bearing: Bearing, axial: f64) -> Result<BeamModel, BeamError> {
     let steel = steel()?;
-    let round = Shape::solid(0.05).section(&steel)?;
+    let round = SectionShape::solid(0.05).section(&steel)?;
     let span = Span::uniform(1.5, elements, round, steel.clone())?;
-    let mut rotor = Model::new(Shaft::new(&[span])?);
+    let mut rotor = BeamModel::new(Shaft::new(&[span])?);
     for (node, outer) in [(elements / 3, 0.28), (2 * elements / 3, 0.35)] {
         rotor.add_mass(node, LumpedMass::disc([outer, 0.05], 0.07, &steel)?)?;
     }
@@ -27,10 +27,10 @@ pub fn two_discs(elements: usize, bearing: Bearing, axial: f64) -> Result<Model,
 }
 
 /// Example 5.9.9: overhung disc.
-pub fn overhung() -> Result<Model, BeamError> {
+pub fn overhung() -> Result<BeamModel, BeamError> {
     let steel = steel()?;
-    let round = Shape::solid(0.05).section(&steel)?;
-    let mut rotor = Model::new(Shaft::new(&[Span::uniform(1.5, 6, round, steel.clone())?])?);
+    let round = SectionShape::solid(0.05).section(&steel)?;
+    let mut rotor = BeamModel::new(Shaft::new(&[Span::uniform(1.5, 6, round, steel.clone())?])?);
     rotor.add_mass(6, LumpedMass::disc([0.35, 0.05], 0.07, &steel)?)?;
     rotor.add_bearing(0, Bearing::isotropic(1e7, 0.0))?;
     rotor.add_bearing(4, Bearing::isotropic(1e7, 0.0))?;
@@ -39,11 +39,11 @@ pub fn overhung() -> Result<Model, BeamError> {
 }
 
 /// Like example 5.9.10: a shaft that tapers from 25 to 40 mm, a disc in its middle.
-pub fn tapered(elements: usize) -> Result<Model, BeamError> {
+pub fn tapered(elements: usize) -> Result<BeamModel, BeamError> {
     let steel = steel()?;
-    let ends = [Shape::solid(0.025), Shape::solid(0.040)];
+    let ends = [SectionShape::solid(0.025), SectionShape::solid(0.040)];
     let span = Span::tapered(1.5, elements, ends, steel.clone())?;
-    let mut rotor = Model::new(Shaft::new(&[span])?);
+    let mut rotor = BeamModel::new(Shaft::new(&[span])?);
     rotor.add_mass(elements / 2, LumpedMass::disc([0.28, 0.05], 0.07, &steel)?)?;
     rotor.add_bearing(0, Bearing::isotropic(1e7, 1e3))?;
     rotor.add_bearing(elements, Bearing::isotropic(1e7, 1e3))?;
@@ -76,12 +76,12 @@ const STEPS: [(f64, f64, f64); 18] = [
 
 /// The rotor of Nelson and McVaugh with isotropic bearings of 43.78 MN/m. They take
 /// shear as infinitely stiff; `shear` = false does so.
-pub fn nelson_mcvaugh(shear: bool) -> Result<Model, BeamError> {
+pub fn nelson_mcvaugh(shear: bool) -> Result<BeamModel, BeamError> {
     let steel = Material::new(207.8e9, 0.3, 7806.0)?;
     let mut spans = Vec::new();
     let mut start = 0.0;
     for (end, outer, inner) in STEPS {
-        let shape = Shape::Circle {
+        let shape = SectionShape::Circle {
             outer: 0.02 * outer,
             inner: 0.02 * inner,
         };
@@ -103,7 +103,7 @@ pub fn nelson_mcvaugh(shear: bool) -> Result<Model, BeamError> {
         )?);
         start = end;
     }
-    let mut rotor = Model::new(Shaft::new(&spans)?);
+    let mut rotor = BeamModel::new(Shaft::new(&spans)?);
     rotor.add_mass(
         4,
         LumpedMass {
@@ -127,7 +127,7 @@ pub fn cross_coupled() -> Bearing {
 }
 
 /// Every rotor that is compared with ROSS, by the name that both sides use.
-pub fn all() -> Result<Vec<(&'static str, Model)>, BeamError> {
+pub fn all() -> Result<Vec<(&'static str, BeamModel)>, BeamError> {
     let plain = Bearing::isotropic(1e6, 0.0);
     Ok(vec![
         ("isotropic", two_discs(6, plain, 0.0)?),

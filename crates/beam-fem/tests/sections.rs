@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use beam_fem::{
-    Beam, BeamError, CrossSection, Dof, LumpedMass, Material, Mesh, Model, SectionProperties,
-    Shaft, Shape, Span,
+    Beam, BeamError, BeamModel, CrossSection, Dof, LumpedMass, Material, Mesh, SectionProperties,
+    SectionShape, Shaft, Span,
 };
 use nalgebra::DVector;
 use proptest::prelude::*;
@@ -86,7 +86,7 @@ fn each_plane_has_its_own_shear_coefficient() {
 
 /// Compliance of the end of a shaft whose start is clamped.
 fn tip(spans: &[Span], dof: Dof) -> f64 {
-    let mut model = Model::new(Shaft::new(spans).unwrap());
+    let mut model = BeamModel::new(Shaft::new(spans).unwrap());
     model.clamp(0).unwrap();
     let system = model.matrices().unwrap();
     let row = system.row(dof.at(model.nodes() - 1)).unwrap();
@@ -104,7 +104,7 @@ fn a_cone_bends_twists_and_stretches_exactly_on_any_mesh() {
     let kappa = CrossSection::solid_circle(a, &steel())
         .unwrap()
         .shear_coefficient();
-    let ends = [Shape::solid(a), Shape::solid(b)];
+    let ends = [SectionShape::solid(a), SectionShape::solid(b)];
     let stretch = l / (0.25 * PI * a * b);
     let bend = l.powi(3) / (3.0 * e * PI * a.powi(4) / 64.0) * a / b;
     let twist = 32.0 * l / (3.0 * PI * g) * (b.powi(-3) - a.powi(-3)) / (a - b);
@@ -143,7 +143,7 @@ fn a_taper_is_the_limit_of_steps() {
     // an error of order 2: extrapolated from 48 and 96 steps.
     let ends = [0.025, 0.040];
     let natural = |spans: &[Span], middle: usize| {
-        let mut model = Model::new(Shaft::new(spans).unwrap());
+        let mut model = BeamModel::new(Shaft::new(spans).unwrap());
         model.add_mass(middle, LumpedMass::point(5.0)).unwrap();
         let last = model.nodes() - 1;
         for node in [0, last] {
@@ -164,7 +164,7 @@ fn a_taper_is_the_limit_of_steps() {
         natural(&(0..n).map(span).collect::<Vec<_>>(), n / 2)
     };
     let taper = |n: usize| {
-        let shapes = ends.map(Shape::solid);
+        let shapes = ends.map(SectionShape::solid);
         natural(&[Span::tapered(1.5, n, shapes, steel()).unwrap()], n / 2)
     };
     let (coarse, fine, exact) = (steps(48), steps(96), taper(48));
@@ -186,10 +186,10 @@ proptest! {
     fn a_taper_of_equal_ends_is_uniform(
         height in 0.01..0.2_f64, width in 0.01..0.2_f64, length in 0.05..2.0_f64, force in -1e5..1e5_f64,
     ) {
-        let shape = Shape::Rectangle { height, width };
+        let shape = SectionShape::Rectangle { height, width };
         let section = shape.section(&steel()).unwrap();
         let build = |span| {
-            let mut model = Model::new(Shaft::new(&[span]).unwrap());
+            let mut model = BeamModel::new(Shaft::new(&[span]).unwrap());
             model.set_axial_force(force).unwrap();
             model.matrices().unwrap()
         };
@@ -210,9 +210,9 @@ proptest! {
     fn a_taper_moves_rigidly(
         a in 0.01..0.2_f64, b in 0.01..0.2_f64, share in 0.0..0.9_f64, length in 0.05..2.0_f64,
     ) {
-        let circle = |outer: f64| Shape::Circle { outer, inner: share * outer };
+        let circle = |outer: f64| SectionShape::Circle { outer, inner: share * outer };
         let span = Span::tapered(length, 1, [circle(a), circle(b)], steel()).unwrap();
-        let system = Model::new(Shaft::new(&[span]).unwrap()).matrices().unwrap();
+        let system = BeamModel::new(Shaft::new(&[span]).unwrap()).matrices().unwrap();
         let (k, m) = (&system.stiffness, &system.mass);
         let volume = PI * length * (1.0 - share * share) * (a * a + a * b + b * b) / 12.0;
         for dof in [Dof::U, Dof::V, Dof::W] {
@@ -239,16 +239,16 @@ fn bad_shapes_and_spans_are_named() {
     assert!(CrossSection::rectangle(0.0, 0.1, &steel()).is_err());
     assert!(CrossSection::rectangle(f64::NAN, 0.1, &steel()).is_err());
     let mixed = [
-        Shape::solid(0.05),
-        Shape::Rectangle {
+        SectionShape::solid(0.05),
+        SectionShape::Rectangle {
             height: 0.1,
             width: 0.1,
         },
     ];
     let taper = Span::tapered(1.0, 3, mixed, steel()).unwrap_err();
     assert!(message(taper).contains("a taper from a circle to a rectangle"));
-    assert!(Span::tapered(1.0, 0, [Shape::solid(0.1); 2], steel()).is_err());
-    assert!(Span::tapered(-1.0, 1, [Shape::solid(0.1); 2], steel()).is_err());
+    assert!(Span::tapered(1.0, 0, [SectionShape::solid(0.1); 2], steel()).is_err());
+    assert!(Span::tapered(-1.0, 1, [SectionShape::solid(0.1); 2], steel()).is_err());
     let none = Shaft::new(&[]).unwrap_err();
     assert!(message(none).contains("spans is empty"));
     let section = CrossSection::solid_circle(0.1, &steel()).unwrap();

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use beam_fem::{
-    BeamError, Bearing, CrossSection, Dof, LumpedMass, Material, Mesh, Model, Shaft, Unbalance,
+    BeamError, BeamModel, Bearing, CrossSection, Dof, LumpedMass, Material, Mesh, Shaft, Unbalance,
     Whirl, WhirlAnalysis, campbell,
 };
 use nalgebra::Complex;
@@ -13,7 +13,7 @@ use crate::rotors;
 
 /// A thick simply supported shaft, L/D = 8, spinning.
 struct Supported {
-    model: Model,
+    model: BeamModel,
     /// EI, κGA, ρA, ρI.
     numbers: [f64; 4],
     length: f64,
@@ -24,7 +24,7 @@ fn supported(elements: usize) -> Supported {
     let section = CrossSection::solid_circle(0.1, &steel).unwrap();
     let length = 0.8;
     let shaft = Shaft::on_mesh(&section, &steel, Mesh::uniform(length, elements).unwrap());
-    let mut model = Model::new(shaft);
+    let mut model = BeamModel::new(shaft);
     for node in [0, elements] {
         model.hold(node, Dof::V).unwrap();
         model.hold(node, Dof::W).unwrap();
@@ -136,12 +136,12 @@ fn critical_speeds_of_a_timoshenko_shaft() {
 
 /// Two nodes on equal bearings that move as one body of `mass` kg: k, c and cross
 /// stiffness q (k_yz = q, k_zy = −q) are sums of both.
-fn body(k: f64, c: f64, q: f64) -> (Model, f64) {
+fn body(k: f64, c: f64, q: f64) -> (BeamModel, f64) {
     let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
     let section = CrossSection::solid_circle(0.05, &steel).unwrap();
     let own = 7850.0 * section.area() * 0.1;
     let shaft = Shaft::on_mesh(&section, &steel, Mesh::uniform(0.1, 1).unwrap());
-    let mut model = Model::new(shaft);
+    let mut model = BeamModel::new(shaft);
     for node in [0, 1] {
         let bearing = Bearing {
             stiffness: [[0.5 * k, 0.5 * q], [-0.5 * q, 0.5 * k]],
@@ -256,7 +256,7 @@ fn a_pedestal_is_a_second_mass() {
 #[test]
 fn springs_and_dampers_are_bearings_by_their_directions() {
     let (k, c) = (3e6, 40.0);
-    let build = |add: &dyn Fn(&mut Model, usize) -> Result<(), BeamError>| {
+    let build = |add: &dyn Fn(&mut BeamModel, usize) -> Result<(), BeamError>| {
         let (mut model, _) = body(1e6, 0.0, 0.0);
         let base = model.add_node();
         model.add_mass(
@@ -393,7 +393,7 @@ fn damping_within_the_shaft_drives_whirl_above_a_critical_speed() {
     let steel = Material::new(206e9, 0.3, 7850.0).unwrap();
     let section = CrossSection::solid_circle(0.01, &steel).unwrap();
     let shaft = Shaft::on_mesh(&section, &steel, Mesh::uniform(1.5, 8).unwrap());
-    let mut model = Model::new(shaft);
+    let mut model = BeamModel::new(shaft);
     for node in [0, 8] {
         model.hold(node, Dof::V).unwrap();
         model.hold(node, Dof::W).unwrap();
@@ -452,7 +452,7 @@ fn unbalance_in_isotropic_bearings_does_not_strain_a_damped_shaft() {
         phase: 0.3,
     };
     let mut model = rotors::two_discs(6, Bearing::isotropic(1e6, 3e3), 0.0).unwrap();
-    let respond = |model: &Model| {
+    let respond = |model: &BeamModel| {
         let system = model.matrices().unwrap();
         system
             .unbalance_response(&[unbalance], &[150.0, 700.0])

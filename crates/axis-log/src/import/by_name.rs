@@ -150,6 +150,11 @@ fn one(head: &Head) -> Option<Found> {
     let said = head.unit.as_deref().or(parts.unit);
     let words = words(parts.stem);
     let has = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
+    // German joins words: Sollposition, Istdrehmoment.
+    let names = |list: &[&str]| {
+        let ends = |word: &String| list.iter().any(|l| l.len() > 3 && word.ends_with(l));
+        has(list) || words.iter().any(ends)
+    };
     // A unit that is said and not known is not one of these.
     let said = match said {
         Some(unit) => Some(known(unit)?),
@@ -158,7 +163,7 @@ fn one(head: &Head) -> Option<Found> {
     if has(OTHER) {
         return None;
     }
-    let mut candidates = QUANTITIES.iter().filter(|quantity| has(quantity.words));
+    let mut candidates = QUANTITIES.iter().filter(|quantity| names(quantity.words));
     let (quantity, channels, unit) = candidates.find_map(|quantity| {
         let (unit, dimension) = said.or_else(|| known(quantity.usual))?;
         let mut channels = quantity.channels.iter();
@@ -213,6 +218,12 @@ struct Parts<'a> {
     unit: Option<&'a str>,
     /// What stands in brackets and is no unit, as `[u1, 2]` behind the signals of a control.
     axis: Option<&'a str>,
+}
+
+/// The unit that a column's name states plainly: in brackets, behind a stroke, or at its end.
+pub(crate) fn stated_unit(name: &str) -> Option<&str> {
+    // An input is no inch.
+    parts(name).unit.filter(|unit| *unit != "in")
 }
 
 /// A name without its unit, and the unit: in brackets, behind a stroke, or as its end.

@@ -14,6 +14,8 @@ mod sinumerik;
 mod sinumerik_trace;
 mod twincat;
 
+pub(crate) use by_name::stated_unit;
+
 use std::path::Path;
 
 use crate::read_error::{ReadError, ReadProblem};

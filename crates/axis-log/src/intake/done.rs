@@ -40,6 +40,24 @@ pub enum Done {
         /// Rows.
         rows: usize,
     },
+    /// A column whose mapping states no unit; it was read in that which the file states.
+    UnitOfFile {
+        /// The file.
+        file: String,
+        /// The column.
+        column: String,
+        /// Its unit.
+        unit: String,
+    },
+    /// A column that the mapping names and the file has not.
+    NoColumn {
+        /// The file.
+        file: String,
+        /// The column.
+        column: String,
+        /// Those that there are.
+        there: Vec<String>,
+    },
     /// Rows that were there twice, the same in every column; taken once.
     Repeated {
         /// The file.
@@ -184,6 +202,12 @@ impl Done {
             Note::NoNames { columns } => Self::NoNames { file, columns },
             Note::NoLineEnd => Self::NoLineEnd { file },
             Note::Held { rows } => Self::Held { file, rows },
+            Note::UnitOfFile { column, unit } => Self::UnitOfFile { file, column, unit },
+            Note::NoColumn { column, there } => Self::NoColumn {
+                file,
+                column,
+                there,
+            },
             Note::Repeated { rows, first } => Self::Repeated { file, rows, first },
         }
     }
@@ -203,6 +227,19 @@ impl fmt::Display for Done {
             Self::Held { file, rows } => write!(
                 f,
                 "{file}: {rows} rows that the control left out because nothing changed; the last values are held there"
+            ),
+            Self::UnitOfFile { file, column, unit } => write!(
+                f,
+                "{file}: column \"{column}\" is read in {unit}, the unit that the file states, as its mapping states none (unit or factor)"
+            ),
+            Self::NoColumn {
+                file,
+                column,
+                there,
+            } => write!(
+                f,
+                "{file}: the mapping names a column \"{column}\" (source), which is not there; the file has: {}",
+                there.join(", ")
             ),
             Self::Repeated { file, rows, first } => write!(
                 f,

@@ -66,8 +66,9 @@ pub fn prepare<P: AsRef<Path>>(
     required: &[&str],
     options: Options<'_>,
 ) -> Result<PreparedLog, IntakeError> {
-    let alone: &[&str] = if paths.len() == 1 { required } else { &[] };
-    let read = |path: &P| Recording::read(path.as_ref(), mapping, alone);
+    let is_alone = paths.len() == 1;
+    let alone: &[&str] = if is_alone { required } else { &[] };
+    let read = |path: &P| Recording::read(path.as_ref(), mapping, alone, is_alone);
     let parts: Result<_, _> = paths.iter().map(read).collect();
     prepared(parts?, required, options)
 }

@@ -11,7 +11,7 @@ use crate::mapping::Mapping;
 use crate::numeric::grid::Grid;
 use crate::read::read;
 use crate::read_error::ReadError;
-use crate::table::Holes;
+use crate::table::{Holes, Note};
 
 /// Channels on one clock; NaN if there is no value.
 pub(super) struct Recording {
@@ -49,6 +49,7 @@ impl Recording {
         path: &Path,
         mapping: &Mapping,
         required: &[&str],
+        is_alone: bool,
     ) -> Result<Self, IntakeError> {
         let name = path.display().to_string();
         let refused = |problem| ReadError {
@@ -56,17 +57,15 @@ impl Recording {
             problem,
         };
         let read = read(path, mapping, required, Holes::Kept).map_err(refused)?;
-        let delay = |c: &Channel| {
-            let map = mapping.columns.iter().find(|m| m.channel == c.name);
-            map.map_or(0.0, |m| m.delay)
-        };
+        let map = |c: &Channel| read.maps.iter().find(|m| m.channel == c.name);
+        let delay = |c: &Channel| map(c).map_or(0.0, |m| m.delay);
         let told = |note| Done::of(note, name.clone());
-        let mut done: Vec<Done> = read.notes.into_iter().map(told).collect();
+        // Of several files each has some of the columns.
+        let is_told = |note: &Note| is_alone || !matches!(note, Note::NoColumn { .. });
+        let notes = read.notes.into_iter().filter(is_told);
+        let mut done: Vec<Done> = notes.map(told).collect();
         let mut channels = read.channels;
-        let scale = |c: &Channel| {
-            let map = mapping.columns.iter().find(|m| m.channel == c.name);
-            map.map_or(1.0, |m| m.scale)
-        };
+        let scale = |c: &Channel| map(c).map_or(1.0, |m| m.scale);
         done.extend(unwrapped(&mut channels, scale));
         Ok(Self {
             done,

@@ -8,7 +8,9 @@ use super::relation::{Relation, RelationLaw};
 use crate::log::{Log, TIME_CHANNEL};
 use crate::mapping::{ColumnMap, Mapping};
 use crate::numeric::align::{Fit, Free, align, integral};
+use crate::select::in_its_unit;
 use crate::source_unit::slipped_unit;
+use crate::table::Head;
 
 /// What a cross-check says of a channel's mapping.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -238,10 +240,12 @@ fn counts_per_turn(symbol: &str, factor: f64) -> Option<f64> {
 /// How a channel is read now.
 fn of(mapping: &Mapping, channel: &str) -> ColumnMap {
     let found = mapping.columns.iter().find(|m| m.channel == channel);
-    found.cloned().unwrap_or_else(|| ColumnMap {
+    let as_named = |map: &ColumnMap| in_its_unit(map.clone(), &Head::new(map.source.as_str()));
+    found.map(as_named).unwrap_or_else(|| ColumnMap {
         source: channel.to_owned(),
         channel: channel.to_owned(),
         scale: 1.0,
+        is_scale_stated: false,
         offset: 0.0,
         delay: 0.0,
     })

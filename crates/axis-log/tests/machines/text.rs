@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use axis_log::{Mapping, read_log};
+use axis_log::{ColumnMap, ColumnUnit, Mapping, read_log};
 
 use super::{assert_near, given, rate, told};
 use crate::reading::mapping;
@@ -303,4 +303,76 @@ fn a_recording_has_its_time_and_a_choice_of_axes() {
         None,
     );
     assert!((rate(&given.mapped(&mapped)) - 500.0).abs() < 1e-9);
+}
+
+/// A unit in a name, or below the names, counts where the mapping states none; a unit or a factor in the
+/// mapping goes before it, and a source that is not there is told.
+#[test]
+fn a_column_is_read_in_the_unit_that_the_file_states() {
+    let in_names =
+        "Zeit [ms];Istposition [mm];Istweg (mm);cur [mA]\n0;100;100;1000\n1;101;101;1100\n";
+    let below = "Zeit [ms];Istposition [mm];Istweg (mm);cur [mA]\n";
+    let below = in_names.replace(below, "Zeit;Istposition;Istweg;cur\nms;mm;mm;mA\n");
+    for (text, names) in [
+        (
+            in_names.to_owned(),
+            ["Zeit [ms]", "Istposition [mm]", "cur [mA]", "Istweg (mm)"],
+        ),
+        (below, ["Zeit", "Istposition", "cur", "Istweg"]),
+    ] {
+        let file = given("drive.csv", text);
+        let plain = |source: &str, channel: &str| {
+            ColumnMap::in_unit(source, channel, ColumnUnit::default()).unwrap()
+        };
+        let metre = ColumnUnit {
+            unit: Some("m"),
+            ..Default::default()
+        };
+        let columns = vec![
+            plain(names[0], "t_s"),
+            plain(names[1], "position_m"),
+            plain(names[2], "iq_a"),
+            ColumnMap::in_unit(names[3], "position_ref_m", metre).unwrap(),
+            plain("elsewhere", "iq_ref_a"),
+        ];
+        let log = file.mapped(&Mapping {
+            columns,
+            sample_rate_hz: None,
+        });
+        assert_eq!(log.log.time(), [0.0, 1e-3]);
+        assert_near(
+            log.log.channel("position_m").unwrap(),
+            |k| 0.1 + 1e-3 * k as f64,
+            1e-15,
+        );
+        assert_near(
+            log.log.channel("iq_a").unwrap(),
+            |k| 1.0 + 0.1 * k as f64,
+            1e-15,
+        );
+        assert_eq!(log.log.channel("position_ref_m").unwrap(), [100.0, 101.0]);
+        let told = told(&log);
+        for words in [
+            format!("\"{}\" is read in mm", names[1]),
+            format!("\"{}\" is read in mA", names[2]),
+            "\"elsewhere\" (source), which is not there; the file has: ".to_owned(),
+        ] {
+            assert!(told.contains(&words), "{words}: {told}");
+        }
+        assert!(
+            !told.contains(&format!("\"{}\" is read", names[3])),
+            "{told}"
+        );
+    }
+}
+
+/// German joins words.
+#[test]
+fn joined_words_are_known() {
+    let file = given(
+        "drive.csv",
+        "Zeit [s];Sollposition [mm];Istposition [mm];Iststrom [A]\n0;0;0;0\n0.001;1;1;1\n",
+    );
+    let found: Vec<&str> = file.proposal().columns.iter().map(|c| c.channel).collect();
+    assert_eq!(found, ["t_s", "position_ref_m", "position_m", "iq_a"]);
 }

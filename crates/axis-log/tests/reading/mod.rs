@@ -11,6 +11,7 @@ pub fn map(source: &str, channel: &str, scale: f64, offset: f64) -> ColumnMap {
         source: source.into(),
         channel: channel.into(),
         scale,
+        is_scale_stated: scale != 1.0,
         offset,
         delay: 0.0,
     }

@@ -40,7 +40,7 @@ pub enum BalanceError {
     },
     /// Hardly any sample in which the axis moves.
     #[error(
-        "only {kept} of {samples} samples are left for a torque balance: in at least {least} of them the axis must move faster than {speed:.3e} {unit}, the least that its sensor distinguishes from standstill, and farther than its friction's pre-sliding displacement; both sides are low-passed at {cutoff:.3} Hz, set by {reason}: valid is a longer log, a faster motion or a higher [balance] cutoff_hz in the axis file"
+        "only {kept} of {samples} samples are left for a torque balance: in at least {least} of them the axis must move faster than {speed:.3e} {unit}, the least that its sensor distinguishes from standstill, and farther than its friction's pre-sliding displacement; both sides are low-passed at {cutoff:.3} Hz, set by {reason}: valid is a longer log, a faster or longer motion, or another [balance] cutoff_hz in the axis file: lower against noise, higher against short motions"
     )]
     Standstill {
         /// Samples left.

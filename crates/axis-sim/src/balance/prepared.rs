@@ -392,15 +392,29 @@ fn resolved(
     kept.copied().collect()
 }
 
-/// Whether the load goes, `near` to either side of a sample, less than the way on which its contact
-/// begins to slide. Friction then is whatever holds the load, however well its speed is told from rest.
+/// Whether the load has gone, since it last turned and within `near` to either side of a sample, less than
+/// the way on which its contact begins to slide. Friction then is whatever holds the load, however well its speed is told from rest.
 fn creeps(axis: &Axis, load: &Course, period: f64, near: usize) -> impl Fn(usize) -> bool {
     let friction = axis.friction.share();
     let lever = friction.lever(axis.travel_per_radian());
     let slides = SLIDES * (friction.law.bristle_limit() * lever).abs();
+    let mut run = 0.0;
+    let mut before = 0.0_f64;
+    // Way since the load last turned or stood.
+    let runs: Vec<f64> = (load.speed.iter())
+        .map(|v| {
+            run = if before * v > 0.0 {
+                run + period * v.abs()
+            } else {
+                0.0
+            };
+            before = *v;
+            run
+        })
+        .collect();
     move |k| {
         let window = &load.speed[k.saturating_sub(near)..(k + near + 1).min(load.speed.len())];
-        period * window.iter().map(|v| v.abs()).sum::<f64>() < slides
+        runs[k] < slides && period * window.iter().map(|v| v.abs()).sum::<f64>() < slides
     }
 }
 

@@ -141,3 +141,23 @@ fn a_position_that_is_read_late_is_in_the_transmission_error() {
     println!("{known:.2e} of {without:.2e}");
     assert!(known < 0.01 * without, "{known} of {without}");
 }
+
+/// At 10 kHz without noise the low-pass lies so high that a load goes less than friction's pre-sliding
+/// displacement within its period: what has slid since the load last turned slides yet.
+#[test]
+fn a_fast_log_of_a_short_move_is_balanced() {
+    let [bare, _] = machine("screw-datasheet.toml", &[]);
+    let mut recorder = Recorder::new(&bare);
+    let motion = bare.plan(&bare.trajectories[0]).unwrap();
+    ClosedLoop::new(&bare)
+        .unwrap()
+        .without_noise()
+        .run(&motion, &mut NoCompensation, |c| recorder.push(c))
+        .completed()
+        .unwrap();
+    let log = recorder.log().unwrap();
+    let balance = Balance::new(&log, bare.period, &bare).unwrap();
+    let [kept, all] = balance.quality().samples;
+    println!("{kept} of {all} at {} Hz", balance.quality().cutoff);
+    assert!(2 * kept > all, "{kept} of {all}");
+}

@@ -285,7 +285,7 @@ pub fn judged(
             let slow_of_loop = slow_of_loop.then(|| slow_of_loop_note(&check));
             let faster = faster_notes(machine, found, set, &traces);
             let known = [
-                notes(machine, found),
+                notes(machine, found)?,
                 faster,
                 slow.notes(set),
                 found.hum.notes(),

@@ -2,29 +2,84 @@
 
 use axis_log::quality::sample_jitter;
 use axis_sim::effects::Measure;
-use axis_sim::{Axis, Trace};
+use axis_sim::{Axis, ReplayError, Trace};
 
-use super::units::ReadUnit;
-use crate::answers::{LogSet, Prepared};
+use super::units::{ReadUnit, channel_unit};
+use crate::answers::{LogSet, Prepared, State};
 use crate::name::gap::Gap;
 use crate::name::search::Found;
 
 /// Notes on the logs.
-pub(super) fn notes(machine: &Axis, found: &Found) -> Vec<String> {
+///
+/// # Errors
+/// [`ReplayError`] if the machine as its file says does not run the logs.
+pub(super) fn notes(machine: &Axis, found: &Found) -> Result<Vec<String>, ReplayError> {
     let mut notes: Vec<String> = sets(found).flat_map(|set| set.notes()).collect();
     if !notes.is_empty() {
         notes.push(FLOOR.to_owned());
     }
+    notes.extend(balance_notes(machine, found)?);
     notes.extend(slack_notes(machine, found));
     notes.extend(sets(found).flat_map(jitter_notes));
-    notes
+    Ok(notes)
+}
+
+/// What a torque balance does not show of this axis, and a torque that is not that of this axis file.
+fn balance_notes(machine: &Axis, found: &Found) -> Result<Vec<String>, ReplayError> {
+    let set = &found.fit_logs;
+    let mut notes = Vec::new();
+    let has_transmission = machine.mechanism.stiffness().is_some();
+    let is_torque_alone = set.channels.len() == 1 && !set.balances().is_empty();
+    if is_torque_alone && has_transmission {
+        notes.push("backlash, lead errors, thermal growth and wind-up lie between motor and load, and do not show in this balance: log both the motor's angle and the load's position to see them".to_owned());
+    }
+    if let Some(times) = times_the_model(machine, set)? {
+        notes.push(format!(
+            "{} is {times:.3} times what the axis file makes of the motion: check the column's unit, factor and sign, and the torque constant, before anything else that stands here",
+            set.channels[0]
+        ));
+    }
+    Ok(notes)
+}
+
+/// Multiple of the model's torque beyond which, one way or the other, a unit is more likely than a machine.
+const ANOTHER_UNIT: f64 = 30.0;
+
+/// Correlation from which on a log shows the model's torque in another unit or with another sign.
+const SAME_COURSE: f64 = 0.8;
+
+/// By how much the measured torque of a balance is a multiple of that of the axis file, if it has its course and
+/// another sign, or another unit's size.
+fn times_the_model(machine: &Axis, set: &LogSet) -> Result<Option<f64>, ReplayError> {
+    if set.balances().is_empty() {
+        return Ok(None);
+    }
+    let traces = set.simulate(machine, &State::initial(machine))?;
+    let [mut both, mut model, mut logged] = [0.0; 3];
+    for (log, simulated) in set.logs.iter().zip(set.simulated_all(&traces)) {
+        let mean = |series: &[f64]| series.iter().sum::<f64>() / series.len().max(1) as f64;
+        let (m, s) = (&log.measured[0], &simulated[0]);
+        let [m_mean, s_mean] = [mean(m), mean(s)];
+        for (m, s) in m.iter().zip(s) {
+            let [m, s] = [m - m_mean, s - s_mean];
+            both += m * s;
+            model += s * s;
+            logged += m * m;
+        }
+    }
+    let times = both / model;
+    let has_its_course = both.abs() >= SAME_COURSE * (model * logged).sqrt();
+    let is_of_its_size = (ANOTHER_UNIT.recip()..=ANOTHER_UNIT).contains(&times);
+    Ok((model > 0.0 && has_its_course && !is_of_its_size).then_some(times))
 }
 
 /// Of logs whose samples are off their even time stamps: what that adds to a channel is noise that
 /// grows with its speed, and the noise that the residual is compared with holds it.
 fn jitter_notes(set: &LogSet) -> impl Iterator<Item = String> {
     let of_log = |log: &Prepared| {
-        let channels = set.channels.iter();
+        // Only what has a mass behind it moves smoothly from sample to sample.
+        let is_motion = |name: &&&str| ["m", "rad"].contains(&channel_unit(name));
+        let channels = set.channels.iter().filter(is_motion);
         let jitter = channels.filter_map(|name| Some((*name, sample_jitter(&log.log, name)?)));
         let largest = jitter.max_by(|(_, a), (_, b)| a.rms.total_cmp(&b.rms));
         largest.map(|(channel, jitter)| {

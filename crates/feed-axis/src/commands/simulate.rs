@@ -20,7 +20,7 @@ use super::{learn, validate};
 use crate::context::{Common, Context};
 use crate::exit::wrong_use;
 use crate::out_file;
-use crate::output::{print, write_whole};
+use crate::output::{note, print, write_whole};
 use crate::page::motion::{self as motion_page, Ran, Shown};
 use crate::progress::bar;
 use crate::strategy_name::strategy_name;
@@ -96,6 +96,7 @@ pub fn command(options: &Options) -> Result<()> {
     let mut tracking = Tracking::default();
     let observe = |cycle: &Cycle| {
         tracking.push(cycle.error());
+        tracking.limited += u64::from(cycle.command.saturated);
         if let Some(rows) = &mut rows {
             rows.push(cycle);
         }
@@ -150,6 +151,13 @@ pub fn command(options: &Options) -> Result<()> {
             report: options.report.as_deref(),
         },
     )?;
+    // No motion that an axis can follow is at a limit for most of its time.
+    if 2 * tracking.limited > tracking.cycles {
+        note(format!(
+            "note: a limit of the controller or the drive was active in {} of {} cycles: the loop may be unstable, or a limit too low for this motion; `feed-axis analyse` shows the loop's margins",
+            tracking.limited, tracking.cycles
+        ));
+    }
     match stopped {
         Some(stopped) => Err(stopped).into_diagnostic(),
         None => Ok(()),
@@ -255,6 +263,8 @@ pub(super) fn closed_loop(axis: &Axis, exact: bool) -> Result<ClosedLoop> {
 #[derive(Default)]
 struct Tracking {
     cycles: u64,
+    /// Cycles in which a limit was active.
+    limited: u64,
     most: f64,
     sum: f64,
 }

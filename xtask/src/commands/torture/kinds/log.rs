@@ -56,6 +56,7 @@ fn mapping() -> Mapping {
         source: source.to_owned(),
         channel: channel.to_owned(),
         scale: 1.0,
+        is_scale_stated: false,
         offset: 0.0,
         delay: 0.0,
     };
