@@ -41,11 +41,23 @@ fn discovered(case: &str) -> Discovery {
 }
 
 fn discovered_on(axis: Axis, case: &str) -> Discovery {
+    discovered_in(axis, case, 1.0)
+}
+
+/// With the current of the logs in another unit, or with another sign.
+fn discovered_in(axis: Axis, case: &str, current: f64) -> Discovery {
     let case = named(case).unwrap();
     let set = |name: &str, motion: &Motion, seed: u64| {
         let (p, mut random) = (Parameters::paper(), Random::new(seed, case.stream));
         let table = log(&p, case, Rough::default(), motion, &mut random).unwrap();
-        LogSet::new(vec![(name.to_owned(), as_log(&table), 1e-3)], &axis).unwrap()
+        let scaled = |c: &Channel| {
+            let by = if c.name == "iq_a" { current } else { 1.0 };
+            let samples = c.samples.iter().map(|v| by * v).collect();
+            Channel::new(c.name.clone(), samples).unwrap()
+        };
+        let log = as_log(&table);
+        let log = Log::new(log.channels().iter().map(scaled).collect()).unwrap();
+        LogSet::new(vec![(name.to_owned(), log, 1e-3)], &axis).unwrap()
     };
     let fit = set("fit", &motion(0.6, 0.12, 0.1), 1);
     let check = set("check", &motion(0.66, -0.1, 0.12), 2);
@@ -99,6 +111,19 @@ fn what_lies_between_motor_and_load_is_named_by_balance() {
         let is_explained = told.verdict == Verdict::Explained;
         assert!(is_explained || name == "backlash", "{}", told.sentence);
     }
+}
+
+/// A current in mA, or counted the other way, is no machine.
+#[test]
+fn a_current_in_another_unit_or_direction_is_said() {
+    let says = |current: f64| {
+        let told = discovered_in(axis().without_control().unwrap(), "loop-viscous", current);
+        println!("{current}: {:?} {}", told.notes, told.sentence);
+        let mut notes = told.notes.iter();
+        notes.any(|note| note.contains("check the column's unit, factor and sign"))
+    };
+    assert!(says(-1.0) && says(1e-3) && says(1e3));
+    assert!(!says(1.0));
 }
 
 /// By balance as well: what two simulations of one machine make of torque and transmission error. Measured:

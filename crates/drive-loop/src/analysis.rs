@@ -184,7 +184,7 @@ fn notes(axis: &Axis, loops: &AxisLoops) -> Vec<String> {
     let passage = loops.model.passage();
     if passage.speed_every > 1 || passage.position_every > 1 {
         all.push(
-            "a loop that is slower than the control counts by its mean delay; the stability is that of the loops at their own rates"
+            "margins take a loop that is slower than the control by its mean delay; stability is checked at the loops' own rates"
                 .to_owned(),
         );
     }

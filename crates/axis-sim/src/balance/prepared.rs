@@ -190,6 +190,7 @@ impl Balance {
                 .map(|m| m.noise.attenuation(cutoff))
                 .fold(0.0, f64::max),
             standstill,
+            speed_unit: axis.freedom().speed_unit(),
             compared_period,
             samples: [kept.len(), all],
             unresolved: moving.len() - kept.len(),

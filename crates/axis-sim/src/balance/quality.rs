@@ -18,6 +18,8 @@ pub struct BalanceQuality {
     /// Speed up to which nothing is compared, m/s or rad/s: that which the sensor distinguishes
     /// from standstill, or the axis file's `slowest`.
     pub standstill: f64,
+    /// Unit of that speed.
+    pub speed_unit: &'static str,
     /// Period of the compared samples, s.
     pub compared_period: f64,
     /// Samples compared, and how many there were at that rate.
@@ -32,20 +34,22 @@ impl BalanceQuality {
     /// In words, of the log of that name.
     pub fn sentence(&self, name: &str) -> String {
         let [kept, all] = self.samples;
-        let drawn = 100.0 * self.attenuation;
         let beware = match self.attenuation > TOLERATED {
-            true => ", more than 0.1 %: inertia and friction come out too small by about that",
-            false => "",
+            true => format!(
+                "; noise of the acceleration makes inertia and friction too small by about {:.2} %",
+                100.0 * self.attenuation
+            ),
+            false => String::new(),
         };
         format!(
-            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz, set by {} (motion at {:.3} Hz); noise of the acceleration lowers an inertia by {drawn:.2e} %{beware}; {:.1} % of the samples are left out, at speeds below {:.2e} (the least that the sensor distinguishes from standstill, or the axis file's slowest), at the ends, and ({} samples) where friction depends on motion finer than the sensor resolves",
+            "{name}: torque balance of {} along {}, both sides low-passed at {:.3} Hz (set by {}); {:.1} % of the samples are left out: slower than {:.2e} {}, at the ends, or ({} samples) where friction depends on motion finer than the sensor resolves{beware}",
             self.channel,
             self.motion.join(" and "),
             self.cutoff,
             self.reason,
-            self.motion_cutoff,
             100.0 * (all - kept) as f64 / all.max(1) as f64,
             self.standstill,
+            self.speed_unit,
             self.unresolved,
         )
     }

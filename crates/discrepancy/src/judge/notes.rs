@@ -34,8 +34,12 @@ fn balance_notes(machine: &Axis, found: &Found) -> Result<Vec<String>, ReplayErr
         notes.push("backlash, lead errors, thermal growth and wind-up lie between motor and load, and do not show in this balance: log both the motor's angle and the load's position to see them".to_owned());
     }
     if let Some(times) = times_the_model(machine, set)? {
+        let times = match times.abs() < 0.01 {
+            true => format!("{times:.2e}"),
+            false => format!("{times:.3}"),
+        };
         notes.push(format!(
-            "{} is {times:.3} times what the axis file makes of the motion: check the column's unit, factor and sign, and the torque constant, before anything else that stands here",
+            "{} is {times} times what the axis file makes of the motion: check the column's unit, factor and sign, and the torque constant, before anything else that stands here",
             set.channels[0]
         ));
     }
@@ -112,7 +116,7 @@ pub(super) fn slow_of_loop_note(check: &Gap) -> String {
 pub(super) fn above_noise_note(set: &LogSet, log: usize, times: f64) -> String {
     let name = set.logs.get(log).map_or("a log", |log| log.name.as_str());
     format!(
-        "{name}: the residual is {times:.1} times its noise, and no effect explains it: the verdict \"nothing is missing\" must hold for every log, the fitted ones included"
+        "{name}: the residual is {times:.1} times its noise and no effect explains it, so \"nothing is missing\" is ruled out"
     )
 }
 

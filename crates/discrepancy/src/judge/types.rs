@@ -143,7 +143,7 @@ impl RefusedEffects {
         };
         if let Some(share) = self.takes_away {
             return format!(
-                " {names} would take away {:.0} % of the gap, which explains nothing, so {they} {is} not named.",
+                " {names} would take away {:.0} % of the gap, too little for a name, so {they} {is} not named.",
                 100.0 * share.max(0.0)
             );
         }

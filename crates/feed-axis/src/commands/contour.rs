@@ -108,6 +108,7 @@ pub fn command(options: &Options) -> Result<()> {
         compensation: options.compensation.name,
         radius_mm: options.radius,
         feed_m_per_min: options.feed,
+        fastest_m_per_min: turns[1].fastest,
         duration_s: turns[1].duration,
         clockwise: Turned::of(&turns[0], &figures.clockwise, &nominal)?,
         counterclockwise: Turned::of(&turns[1], &figures.counterclockwise, &nominal)?,
@@ -151,9 +152,17 @@ impl Options {
     }
 }
 
+/// Instants at which the greatest speed of a turn is looked for.
+const INSTANTS: u32 = 2000;
+
+/// Share of the feed from which on it counts as reached.
+const REACHED: f64 = 0.99;
+
 /// One direction, as it was run.
 struct Turn {
     duration: f64,
+    /// Greatest speed along the path, m/min.
+    fastest: f64,
     /// Greatest contour error of the counted turn, m.
     worst: f64,
     /// Positions of it, m.
@@ -189,8 +198,11 @@ fn turn(options: &Options, axes: &[Axis; 2], direction: Direction) -> Result<Tur
     };
     let traced = trace(&profile, [driven(0)?, driven(1)?]).into_diagnostic()?;
     let errors = traced.contour_error_between(circle.counted);
+    let at = |k: u32| profile.at(profile.duration() * f64::from(k) / f64::from(INSTANTS));
+    let speeds = (0..=INSTANTS).map(|k| 60.0 * at(k).feed);
     Ok(Turn {
         duration: profile.duration(),
+        fastest: speeds.fold(0.0, f64::max),
         worst: errors.map(|foot| foot.length()).fold(0.0, f64::max),
         counted: traced.between(circle.counted).to_vec(),
     })
@@ -205,6 +217,8 @@ pub struct Contoured<'a> {
     pub compensation: &'a str,
     pub radius_mm: f64,
     pub feed_m_per_min: f64,
+    /// Greatest speed along the path.
+    pub fastest_m_per_min: f64,
     /// Of one direction, run-in and run-out included.
     pub duration_s: f64,
     pub clockwise: Turned,
@@ -278,8 +292,15 @@ impl Both {
 impl Contoured<'_> {
     /// What was run, in one line.
     pub fn title(&self) -> String {
+        let reached = match self.fastest_m_per_min < REACHED * self.feed_m_per_min {
+            true => format!(
+                " (not reached: {:.1} m/min at most within acceleration and jerk)",
+                self.fastest_m_per_min
+            ),
+            false => String::new(),
+        };
         format!(
-            "X {}, Y {}: circle of {} mm at {} m/min, compensation {} (simulated)",
+            "X {}, Y {}: circle of {} mm at {} m/min{reached}, compensation {} (simulated)",
             self.x,
             self.y,
             self.radius_mm,

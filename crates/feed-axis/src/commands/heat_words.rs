@@ -89,7 +89,7 @@ impl Heated {
         match self.keys_of_the_file {
             0 => "All thermal numbers are assumed: the axis file has no [thermal].".to_owned(),
             n => format!(
-                "{n} thermal numbers are those of the axis file's [thermal], the others are assumed."
+                "{n} thermal numbers are from the axis file's [thermal]; the others are assumed defaults."
             ),
         }
     }
@@ -162,11 +162,12 @@ impl fmt::Display for Heated {
         self.growth(f)?;
         if let Some(force) = &self.force {
             let last = |all: &[f64]| all.last().copied().unwrap_or(0.0);
+            let (heat, left) = (last(&force.compression_n), last(&force.tension_n));
+            let state = if left < 0.0 { "compression" } else { "tension" };
             writeln!(
                 f,
-                "Screw held at both ends: compressed by {:.0} N in the end, tension left {:.0} N",
-                last(&force.compression_n),
-                last(&force.tension_n)
+                "Screw held at both ends: in the end heat takes {heat:.0} N off its pretension, which leaves {:.0} N of {state}",
+                left.abs()
             )?;
         }
         match &self.report {
