@@ -1,6 +1,6 @@
 //! Parquet and MAT as other programs write them.
 
-use axis_log::{Mapping, read_log};
+use axis_log::{ColumnMap, ColumnUnit, Mapping, read_log};
 
 use super::{assert_near, given, told};
 use crate::parquet_file::by_hand::{Codec, Stored, file};
@@ -73,7 +73,13 @@ fn typed_time_stamps_are_read_with_their_unit() {
             ];
             let given = given("log.parquet", file(&columns, Codec::Plain, false));
             let log = match (mapped, name) {
-                (true, _) => given.mapped(&mapping(&[(name, "t_s", 1.0)], None)),
+                (true, _) => {
+                    let unit = ColumnUnit::default();
+                    given.mapped(&Mapping {
+                        columns: vec![ColumnMap::in_unit(name, "t_s", unit).unwrap()],
+                        sample_rate_hz: None,
+                    })
+                }
                 (_, "t_s") => given.plain(),
                 _ => given.accepted(),
             };

@@ -11,7 +11,7 @@ pub fn map(source: &str, channel: &str, scale: f64, offset: f64) -> ColumnMap {
         source: source.into(),
         channel: channel.into(),
         scale,
-        is_scale_stated: scale != 1.0,
+        is_scale_stated: true,
         offset,
         delay: 0.0,
     }

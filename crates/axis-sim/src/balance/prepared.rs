@@ -393,8 +393,8 @@ fn resolved(
     kept.copied().collect()
 }
 
-/// Whether the load has gone, since it last turned and within `near` to either side of a sample, less than
-/// the way on which its contact begins to slide. Friction then is whatever holds the load, however well its speed is told from rest.
+/// Whether the load goes, `near` to either side of a sample, or has gone since it last turned where it goes
+/// so far nowhere, less than the way on which its contact begins to slide. Friction then is whatever holds the load, however well its speed is told from rest.
 fn creeps(axis: &Axis, load: &Course, period: f64, near: usize) -> impl Fn(usize) -> bool {
     let friction = axis.friction.share();
     let lever = friction.lever(axis.travel_per_radian());
@@ -413,9 +413,15 @@ fn creeps(axis: &Axis, load: &Course, period: f64, near: usize) -> impl Fn(usize
             run
         })
         .collect();
-    move |k| {
+    let about = move |k: usize| {
         let window = &load.speed[k.saturating_sub(near)..(k + near + 1).min(load.speed.len())];
-        runs[k] < slides && period * window.iter().map(|v| v.abs()).sum::<f64>() < slides
+        period * window.iter().map(|v| v.abs()).sum::<f64>()
+    };
+    // At a cut-off so high that no load goes so far within its period, what has slid slides yet.
+    let is_short = (0..load.speed.len()).all(|k| about(k) < slides);
+    move |k| match is_short {
+        true => runs[k] < slides,
+        false => about(k) < slides,
     }
 }
 
