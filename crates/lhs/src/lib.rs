@@ -76,26 +76,38 @@
 
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
+mod augment;
+mod correlation;
+mod coverage;
 pub mod criteria;
 mod design;
+mod discrepancies;
 mod error;
 mod hypercube;
 mod kernel;
 mod lattice;
 mod marginals;
 mod optimise;
+mod orthogonal;
 mod permutation;
 mod power;
+mod sliced;
+#[cfg(feature = "serde")]
+mod stored;
 mod stratum;
 
+pub use augment::{Augmentation, Augmented};
+pub use correlation::{CorrelationMatrix, RankCorrelated, rank_correlated, rank_correlation};
 pub use design::{Design, MAX_DIMS};
 pub use error::LhsError;
 pub use hypercube::{LatinHypercube, Placement};
 pub use marginals::{
-    Cumulative, LogUniform, Marginal, Mixture, Normal, Tabulated, Triangular, Truncated, Uniform,
-    map,
+    Cumulative, Integers, Levels, LogUniform, Marginal, Mixture, Normal, Tabulated, Triangular,
+    Truncated, Uniform, Variable, map, map_balanced,
 };
 pub use optimise::{Budget, Criterion, MAXIMIN_P, OptimisationHistory, optimise};
+pub use orthogonal::{MAX_PRIME, OrthogonalArray};
+pub use sliced::{Sliced, SlicedHypercube};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]
