@@ -20,7 +20,12 @@
 //!
 //! The combination can also be chosen, so that the points are spread well in
 //! all variables together: low centred discrepancy or a large minimum
-//! distance.
+//! distance ([`LatinHypercube::optimised`]), even in every two variables
+//! ([`OrthogonalArray`]), Latin in parts as well ([`SlicedHypercube`]), with
+//! given rank correlations ([`rank_correlated`]), or around points that are
+//! there already ([`Augmentation`]). [`criteria`] has the figures to judge
+//! designs by, [`map`] and [`map_balanced`] bring them to physical values,
+//! integers and categories among them.
 //!
 //! # Shapes and units
 //! A [`Design`] is n × m, one row a point. Designs of probabilities have no
@@ -68,11 +73,12 @@
 //!
 //! # Features
 //! `simd` (on by default) makes designs with the vector instructions that the processor has,
-//! the same bits somewhat faster.
+//! the same bits somewhat faster. `serde` writes and reads designs and the options that they
+//! are made from.
 //!
 //! # What it knows nothing of
-//! What the variables mean, the model that is run at the points, correlated
-//! inputs, constraints between variables, adding points to a finished design.
+//! What the variables mean, the model that is run at the points, constraints
+//! between variables, low-discrepancy sequences (Sobol, Halton).
 
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
