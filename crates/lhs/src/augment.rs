@@ -8,6 +8,17 @@ use crate::{Design, LhsError, Placement};
 use rand_chacha::rand_core::Rng;
 
 /// What is added to a design.
+///
+/// ```
+/// use lhs::{Augmentation, LatinHypercube, Placement};
+///
+/// let first = LatinHypercube::new(20, 3, 1)?.design()?;
+/// let more = Augmentation { points: 20, placement: Placement::Random, candidates: 50, seed: 2 };
+/// let whole = more.of(&first)?;
+/// assert_eq!(whole.design.len(), 40);
+/// assert!(whole.is_latin()); // 40 is a multiple of 20
+/// # Ok::<(), lhs::LhsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Augmentation {

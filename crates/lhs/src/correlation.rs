@@ -108,9 +108,20 @@ pub fn rank_correlation(design: &Design) -> Vec<f64> {
 /// (6/π) asin(ρ/2) (Pearson 1907), scores get 2 sin(π/6 · target); what the
 /// ranks then lack is added to it in 15 rounds, each kept only if it is better.
 ///
+/// ```
+/// use lhs::{CorrelationMatrix, LatinHypercube, rank_correlated};
+///
+/// let design = LatinHypercube::new(200, 2, 1)?.design()?;
+/// let target = CorrelationMatrix::new(2, &[1.0, -0.6, -0.6, 1.0])?;
+/// let made = rank_correlated(&design, &target)?;
+/// assert!((made.correlation[1] + 0.6).abs() < 1e-3);
+/// # Ok::<(), lhs::LhsError>(())
+/// ```
+///
 /// No random number is drawn: the result depends on `design` and `target`
 /// alone. The remaining difference is in `deviation`; it falls with n, and is
-/// larger for targets that are nearly singular.
+/// larger for targets that are nearly singular. O(n m (m + log n)) time for
+/// each round.
 ///
 /// # Errors
 /// The target is of another number of variables; n ≤ m; a column is

@@ -60,7 +60,7 @@ pub fn l2_star_discrepancy(design: &Design) -> f64 {
     let points = mean_of_points(design, |x| 0.5 * (1.0 - x * x));
     let pairs = mean_of_pairs(design, |x, y| 1.0 - x.max(y));
     let square = power(1.0 / 3.0, design.dims()) - 2.0 * points + pairs;
-    square.max(0.0).sqrt()
+    if square < 0.0 { 0.0 } else { square.sqrt() }
 }
 
 /// (1/n) Σᵢ Πⱼ factor(xᵢⱼ).

@@ -13,6 +13,17 @@ pub const MAX_PRIME: usize = 65_521;
 /// A Latin hypercube of p² points, p a prime, in up to p + 1 variables, that
 /// is even in every two variables too: each cell of the p × p grid over two
 /// variables holds exactly one point.
+///
+/// ```
+/// use lhs::{OrthogonalArray, Placement};
+///
+/// let array = OrthogonalArray { prime: 7, dims: 4, placement: Placement::Random, seed: 1 };
+/// let design = array.design()?;
+/// assert_eq!((design.len(), design.dims()), (49, 4));
+/// let low = design.rows().filter(|x| x[0] < 2.0 / 7.0 && x[3] < 3.0 / 7.0).count();
+/// assert_eq!(low, 2 * 3);
+/// # Ok::<(), lhs::LhsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OrthogonalArray {

@@ -12,6 +12,16 @@ use rand_chacha::rand_core::Rng;
 /// different levels of a categorical variable; and, taking the first slice
 /// alone, as a nested design: few points for an expensive model within many
 /// for a cheap one (Qian 2009, doi 10.1093/biomet/asp045).
+///
+/// ```
+/// use lhs::{Placement, SlicedHypercube};
+///
+/// let shape = SlicedHypercube { slices: 3, points: 8, dims: 2, placement: Placement::Centred, seed: 1 };
+/// let made = shape.design()?;
+/// assert_eq!(made.design.len(), 24);
+/// assert_eq!(made.slice(2).map(|slice| slice.len()), Some(8));
+/// # Ok::<(), lhs::LhsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SlicedHypercube {
@@ -72,20 +82,18 @@ impl SlicedHypercube {
         let mut values = zeros(strata.count(), dims)?;
         for dim in 0..dims {
             let mut rng = stream(self.seed, Purpose::Sliced, dim as u64);
-            let order: Vec<Permutation> = (0..slices)
-                .map(|_| Permutation::draw(points, &mut rng))
-                .collect();
-            // Row i of slice t has coarse stratum π_t(i); its fine one is dealt.
             let mut dealt = Dealer::new(strata.count(), slices)?;
             dealt.deal(&mut rng);
-            for (row, value) in values[dim..].iter_mut().step_by(dims).enumerate() {
-                let (t, i) = (row / points, row % points);
-                let coarse = order[t].apply(i as u64) as usize;
-                let cell = (coarse * slices + dealt.fine(coarse, t)) as u64;
-                *value = match self.placement {
-                    Placement::Centred => strata.middle(cell),
-                    Placement::Random => strata.point(cell, rng.next_u64()),
-                };
+            for (t, slice) in values.chunks_exact_mut(points * dims).enumerate() {
+                let order = Permutation::draw(points, &mut rng);
+                for (i, value) in slice[dim..].iter_mut().step_by(dims).enumerate() {
+                    let coarse = order.apply(i as u64) as usize;
+                    let cell = (coarse * slices + dealt.fine(coarse, t)) as u64;
+                    *value = match self.placement {
+                        Placement::Centred => strata.middle(cell),
+                        Placement::Random => strata.point(cell, rng.next_u64()),
+                    };
+                }
             }
         }
         let design = Design::from_valid(dims, values);

@@ -1,5 +1,6 @@
 //! One test program: designs, marginals, criteria and their optimisation.
 
+mod any_input;
 mod augment;
 mod correlation;
 mod coverage;
