@@ -1,5 +1,8 @@
 //! How evenly a design fills the unit cube.
 
+pub use crate::coverage::{SpanningTree, coverage, mesh_ratio, spanning_tree};
+pub use crate::discrepancies::{l2_star_discrepancy, mixture_discrepancy, wrap_around_discrepancy};
+
 use crate::Design;
 use crate::kernel::Kernel;
 use crate::power::power;
@@ -95,7 +98,7 @@ fn any_power(x: f64, e: f64) -> f64 {
 
 /// Euclidean distance; in units of the greatest difference where squares would leave
 /// the range of f64, or the digits of its least numbers.
-fn distance(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
     let sum_of_squares = |unit: f64| -> f64 {
         let square = |(x, y): (&f64, &f64)| ((x - y) / unit) * ((x - y) / unit);
         a.iter().zip(b).map(square).sum()

@@ -13,7 +13,12 @@ pub const MAX_DIMS: usize = 1024;
 /// cumulative probabilities, the matrix Q of Eq. (23); [`map`](crate::map)
 /// turns it into physical values, the matrix V of Eq. (25), whose columns
 /// then carry the units of their marginals.
+///
+/// With the feature `serde` it is written as `{dims, values}` and checked by
+/// [`from_rows`](Self::from_rows) when it is read.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::stored::Stored"))]
 pub struct Design {
     dims: usize,
     values: Vec<f64>,

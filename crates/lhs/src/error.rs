@@ -124,4 +124,58 @@ pub enum LhsError {
         /// Entries needed.
         least: usize,
     },
+    /// A number that a design cannot be made with.
+    #[error("{what} = {found}: must be {valid}")]
+    Argument {
+        /// Name of the number.
+        what: &'static str,
+        /// The number found.
+        found: usize,
+        /// What would be valid.
+        valid: &'static str,
+    },
+    /// An entry of a correlation matrix is not valid.
+    #[error("correlation matrix, row {row}, column {column}: {value}: must be {valid}")]
+    Correlation {
+        /// Row, from 0.
+        row: usize,
+        /// Column, from 0.
+        column: usize,
+        /// The entry.
+        value: f64,
+        /// What would be valid.
+        valid: &'static str,
+    },
+    /// A correlation matrix that no variables can have together.
+    #[error(
+        "correlation matrix: the correlations of variable {variable} with those before it contradict \
+         theirs: the matrix must be positive definite, as it is with all entries off the diagonal \
+         multiplied by {factor}"
+    )]
+    NotPositiveDefinite {
+        /// The first variable, from 0, whose pivot of the Cholesky factor is
+        /// not positive.
+        variable: usize,
+        /// A factor of the entries off the diagonal that would be valid.
+        factor: f64,
+    },
+    /// The columns of a design depend on each other linearly.
+    #[error(
+        "column {column}: its ranks are a linear combination of those of columns before it: \
+         must be independent, as in a random Latin hypercube"
+    )]
+    DependentColumns {
+        /// The column, from 0.
+        column: usize,
+    },
+    /// The strata of a value that must lie in [0, 1) are not known.
+    #[error("row {row}, column {dim}: {value} lies in no stratum: must be in [0, 1)")]
+    NoStratum {
+        /// Row, from 0.
+        row: usize,
+        /// Column, from 0.
+        dim: usize,
+        /// The value.
+        value: f64,
+    },
 }

@@ -17,6 +17,7 @@ const PARALLEL_FROM: usize = 8 * ROWS_PER_TASK;
 
 /// Where in its stratum a point lies: u of Eq. (23).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Placement {
     /// u uniform on (0, 1), drawn for each row and column.
     #[default]

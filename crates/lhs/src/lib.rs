@@ -20,7 +20,12 @@
 //!
 //! The combination can also be chosen, so that the points are spread well in
 //! all variables together: low centred discrepancy or a large minimum
-//! distance.
+//! distance ([`LatinHypercube::optimised`]), even in every two variables
+//! ([`OrthogonalArray`]), Latin in parts as well ([`SlicedHypercube`]), with
+//! given rank correlations ([`rank_correlated`]), or around points that are
+//! there already ([`Augmentation`]). [`criteria`] has the figures to judge
+//! designs by, [`map`] and [`map_balanced`] bring them to physical values,
+//! integers and categories among them.
 //!
 //! # Shapes and units
 //! A [`Design`] is n × m, one row a point. Designs of probabilities have no
@@ -68,34 +73,47 @@
 //!
 //! # Features
 //! `simd` (on by default) makes designs with the vector instructions that the processor has,
-//! the same bits somewhat faster.
+//! the same bits somewhat faster. `serde` writes and reads designs and the options that they
+//! are made from.
 //!
 //! # What it knows nothing of
-//! What the variables mean, the model that is run at the points, correlated
-//! inputs, constraints between variables, adding points to a finished design.
+//! What the variables mean, the model that is run at the points, constraints
+//! between variables, low-discrepancy sequences (Sobol, Halton).
 
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
+mod augment;
+mod correlation;
+mod coverage;
 pub mod criteria;
 mod design;
+mod discrepancies;
 mod error;
 mod hypercube;
 mod kernel;
 mod lattice;
 mod marginals;
 mod optimise;
+mod orthogonal;
 mod permutation;
 mod power;
+mod sliced;
+#[cfg(feature = "serde")]
+mod stored;
 mod stratum;
 
+pub use augment::{Augmentation, Augmented};
+pub use correlation::{CorrelationMatrix, RankCorrelated, rank_correlated, rank_correlation};
 pub use design::{Design, MAX_DIMS};
 pub use error::LhsError;
 pub use hypercube::{LatinHypercube, Placement};
 pub use marginals::{
-    Cumulative, LogUniform, Marginal, Mixture, Normal, Tabulated, Triangular, Truncated, Uniform,
-    map,
+    Cumulative, Integers, Levels, LogUniform, Marginal, Mixture, Normal, Tabulated, Triangular,
+    Truncated, Uniform, Variable, map, map_balanced,
 };
 pub use optimise::{Budget, Criterion, MAXIMIN_P, OptimisationHistory, optimise};
+pub use orthogonal::{MAX_PRIME, OrthogonalArray};
+pub use sliced::{Sliced, SlicedHypercube};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

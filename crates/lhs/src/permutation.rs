@@ -30,6 +30,9 @@ pub(crate) enum Purpose {
     Column = 1,
     Optimiser = 2,
     Lattice = 3,
+    Augment = 4,
+    Sliced = 5,
+    Orthogonal = 6,
 }
 
 /// The random stream of (`seed`, `purpose`, `index`). ChaCha8 is fixed by its

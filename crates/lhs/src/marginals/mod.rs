@@ -1,11 +1,13 @@
 //! Step 3: from cumulative probabilities to physical values.
 
+mod levels;
 mod mixture;
 mod normal;
 mod simple;
 mod tabulated;
 mod truncated;
 
+pub use levels::{Integers, Levels, Variable, map_balanced};
 pub use mixture::Mixture;
 pub use normal::Normal;
 pub use simple::{LogUniform, Triangular, Uniform};

@@ -21,6 +21,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// What an optimised design is to be good at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Criterion {
     /// Low [`centred_discrepancy`]: even in every projection.
     CentredDiscrepancy,
@@ -35,6 +36,7 @@ pub const MAXIMIN_P: f64 = 20.0;
 /// How much work an optimisation may do. Its result depends on this number,
 /// never on the time that the work takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Budget {
     /// Pairs of points tried, each in all columns; O(n m) time for each.
     pub iterations: usize,
@@ -42,6 +44,7 @@ pub struct Budget {
 
 /// What an optimisation did.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OptimisationHistory {
     /// The criterion used.
     pub criterion: Criterion,
