@@ -108,8 +108,8 @@ pub use design::{Design, MAX_DIMS};
 pub use error::LhsError;
 pub use hypercube::{LatinHypercube, Placement};
 pub use marginals::{
-    Cumulative, Integers, Levels, LogUniform, Marginal, Mixture, Normal, Tabulated, Triangular,
-    Truncated, Uniform, Variable, map, map_balanced,
+    Cumulative, DesignVariable, Integers, Levels, LogUniform, Marginal, Mixture, Normal, Tabulated,
+    Triangular, Truncated, Uniform, map, map_balanced,
 };
 pub use optimise::{Budget, Criterion, MAXIMIN_P, OptimisationHistory, optimise};
 pub use orthogonal::{MAX_PRIME, OrthogonalArray};

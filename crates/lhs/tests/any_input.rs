@@ -6,8 +6,8 @@ use lhs::criteria::{
     wrap_around_discrepancy,
 };
 use lhs::{
-    Augmentation, CorrelationMatrix, Design, Integers, LhsError, OrthogonalArray, Placement,
-    SlicedHypercube, Variable, map_balanced, rank_correlated, rank_correlation,
+    Augmentation, CorrelationMatrix, Design, DesignVariable, Integers, LhsError, OrthogonalArray,
+    Placement, SlicedHypercube, map_balanced, rank_correlated, rank_correlation,
 };
 use proptest::prelude::*;
 
@@ -72,7 +72,7 @@ proptest! {
             prop_assert_eq!(made.design.len(), rows + points);
             prop_assert!(made.design.values()[rows * dims..].iter().all(|v| *v > 0.0 && *v < 1.0));
         }
-        let level = Variable::Integers(Integers::new(1, 1 + (seed >> 12) as i64).unwrap());
+        let level = DesignVariable::Integers(Integers::new(1, 1 + (seed >> 12) as i64).unwrap());
         says_what_is_valid(map_balanced(&design, &vec![level; dims]));
     }
 

@@ -1,6 +1,6 @@
 //! Integers and categories as marginals.
 
-use lhs::{Integers, LatinHypercube, Levels, Marginal, Uniform, Variable, map, map_balanced};
+use lhs::{DesignVariable, Integers, LatinHypercube, Levels, Marginal, Uniform, map, map_balanced};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ proptest! {
         let integers = Integers::new(lo, lo + k - 1).unwrap();
         let levels = Levels::categories(k as u32).unwrap();
         let uniform = Uniform::new(2.0, 3.0).unwrap();
-        let variables = [Variable::Continuous(&uniform), Variable::Integers(integers), Variable::Levels(&levels)];
+        let variables = [DesignVariable::Continuous(&uniform), DesignVariable::Integers(integers), DesignVariable::Levels(&levels)];
         let balanced = map_balanced(&design, &variables).unwrap();
         let plain = map(&design, &[&uniform, &integers, &levels]).unwrap();
         prop_assert!(balanced.column(0).eq(plain.column(0)));
@@ -79,5 +79,5 @@ fn ends_and_refusals() {
     }
     assert!(Levels::categories(0).is_err());
     let design = LatinHypercube::new(4, 2, 1).unwrap().design().unwrap();
-    assert!(map_balanced(&design, &[Variable::Integers(die)]).is_err());
+    assert!(map_balanced(&design, &[DesignVariable::Integers(die)]).is_err());
 }

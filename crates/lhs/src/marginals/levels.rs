@@ -91,7 +91,7 @@ impl Marginal for Levels {
 
 /// One variable of a design with variables of different kinds.
 #[derive(Clone, Copy)]
-pub enum Variable<'a> {
+pub enum DesignVariable<'a> {
     /// A variable by its inverse distribution function.
     Continuous(&'a dyn Marginal),
     /// Whole numbers, each as often as the others.
@@ -111,12 +111,12 @@ pub enum Variable<'a> {
 ///
 /// # Errors
 /// As [`map`].
-pub fn map_balanced(design: &Design, variables: &[Variable<'_>]) -> Result<Design, LhsError> {
+pub fn map_balanced(design: &Design, variables: &[DesignVariable<'_>]) -> Result<Design, LhsError> {
     let identity = |p: f64| p;
     let marginals: Vec<&dyn Marginal> = variables
         .iter()
         .map(|variable| match variable {
-            Variable::Continuous(marginal) => *marginal,
+            DesignVariable::Continuous(marginal) => *marginal,
             _ => &identity,
         })
         .collect();
@@ -125,18 +125,18 @@ pub fn map_balanced(design: &Design, variables: &[Variable<'_>]) -> Result<Desig
     let mut values = mapped.into_values();
     for (dim, variable) in variables.iter().enumerate() {
         let count = match variable {
-            Variable::Continuous(_) => continue,
-            Variable::Integers(integers) => integers.count,
-            Variable::Levels(levels) => levels.values.len(),
+            DesignVariable::Continuous(_) => continue,
+            DesignVariable::Integers(integers) => integers.count,
+            DesignVariable::Levels(levels) => levels.values.len(),
         };
         let mut rows: Vec<usize> = (0..n).collect();
         rows.sort_by(|&a, &b| values[a * dims + dim].total_cmp(&values[b * dims + dim]));
         for (rank, row) in rows.into_iter().enumerate() {
             let index = (rank as u128 * count as u128 / n as u128) as usize;
             values[row * dims + dim] = match variable {
-                Variable::Continuous(_) => continue,
-                Variable::Integers(integers) => integers.value(index),
-                Variable::Levels(levels) => levels.values[index],
+                DesignVariable::Continuous(_) => continue,
+                DesignVariable::Integers(integers) => integers.value(index),
+                DesignVariable::Levels(levels) => levels.values[index],
             };
         }
     }

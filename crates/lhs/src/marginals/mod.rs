@@ -7,7 +7,7 @@ mod simple;
 mod tabulated;
 mod truncated;
 
-pub use levels::{Integers, Levels, Variable, map_balanced};
+pub use levels::{DesignVariable, Integers, Levels, map_balanced};
 pub use mixture::Mixture;
 pub use normal::Normal;
 pub use simple::{LogUniform, Triangular, Uniform};
