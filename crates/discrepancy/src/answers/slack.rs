@@ -14,7 +14,9 @@ impl LogSet {
         let gaps = effects.iter().filter(|a| is_gap(a.effect));
         let gap: f64 = gaps.map(|a| a.values[0]).sum();
         let least = |a: &&Prepared, b: &&Prepared| a.taken_up.total_cmp(&b.taken_up);
-        let least = self.logs.iter().min_by(least)?;
+        // A balance begins with the measured motion, wherever the motor stood before.
+        let replayed = self.logs.iter().filter(|log| log.answer.replay().is_some());
+        let least = replayed.min_by(least)?;
         (gap > least.taken_up).then_some((gap, least))
     }
 }

@@ -6,7 +6,7 @@ use super::cost::{Cost, EffortCost, Size, TrackingCost};
 use super::form::FormFound;
 use super::told::{RemedyTold, Told};
 use super::types::{Discovery, EffectFound, ParameterFound, RefusedEffects, Verdict};
-use super::units::ReadUnit;
+use super::units::{ReadUnit, channel_unit};
 use super::unknown::Unknown;
 use crate::controller::OwnController;
 
@@ -119,7 +119,18 @@ fn costs(discovery: &Discovery) -> Vec<String> {
                 .to_owned(),
         );
     }
-    if let Some(e) = cost.effort.as_ref().filter(|_| named) {
+    let mut channels = discovery.gap.check.channels.iter();
+    let between = channels.find(|c| c.channel.starts_with("transmission_error"));
+    if let Some(gap) = between.filter(|_| named) {
+        let unit = ReadUnit::of(channel_unit(&gap.channel), gap.before);
+        lines.push(format!(
+            "Between motor and load the log is {} RMS from the model without it, {} with it.",
+            unit.said(gap.before),
+            unit.said(gap.after)
+        ));
+    }
+    // What lies between motor and load alone takes nothing of the drive.
+    if let Some(e) = cost.effort.as_ref().filter(|e| named && e.force.rms > 0.0) {
         lines.push(effort(e));
     }
     lines.extend(each.iter().map(|(name, cost)| share(name, cost)));
