@@ -26,8 +26,8 @@ def test_other_threads_go_on_meanwhile(axis: fa.Axis) -> None:
     after = counted
     done.set()
     other.join()
-    # Of many hundred milliseconds; with the lock held it would be 0 or 1.
-    assert after - before > 10
+    # With the lock held it would be 0 or 1, however long it takes.
+    assert after - before > 1
 
 
 def test_progress_comes_to_its_end_and_may_raise(axis: fa.Axis) -> None:
