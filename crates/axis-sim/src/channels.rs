@@ -107,6 +107,24 @@ pub const CHANNELS: &[LogChannel] = &[
     same(["iq_feedforward_a", "A"], has_currents, Shown, |c| c.correction.command),
 ];
 
+/// Channels that a log may have beside those of a simulation.
+const OF_LOGS: [&str; 5] = [
+    "velocity_m_s",
+    "velocity_rad_s",
+    "torque_n_m",
+    "force_n",
+    "drive_command_added_v",
+];
+
+/// Names of all channels that mean something to the programs that read logs.
+pub fn known_channels() -> impl Iterator<Item = &'static str> {
+    let simulated = CHANNELS.iter().flat_map(|c| [c.linear[0], c.rotary[0]]);
+    let mut names: Vec<&'static str> = simulated.chain(OF_LOGS).collect();
+    names.sort_unstable();
+    names.dedup();
+    names.into_iter()
+}
+
 fn has_motor_encoder(axis: &Axis) -> bool {
     axis.mechanism.has_motor_encoder()
 }

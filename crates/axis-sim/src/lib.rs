@@ -123,7 +123,9 @@ pub use axis::{
 };
 pub use axis_file::{AxisFileError, Registry, TABLES_WITHOUT_PARTS};
 pub use balance::{Balance, BalanceError, BalanceNoise, BalanceQuality, CutoffReason};
-pub use channels::{CHANNELS, ChannelPart, LogChannel, channels, position_in, reference_in};
+pub use channels::{
+    CHANNELS, ChannelPart, LogChannel, channels, known_channels, position_in, reference_in,
+};
 pub use closed_loop::{ClosedLoop, LoopState};
 pub use cycle::{Command, Cycle, Measured, Outcome, RunStopped, Stop, StopReason};
 pub use effect_forces::EffectForces;

@@ -114,6 +114,36 @@ fn a_table_that_lacks_its_mapping_is_shown_with_one() {
     assert_eq!(found["logs"][0]["columns"][1]["greatest"], 619.5);
 }
 
+/// A name that ends in a unit and means nothing is said, with those that do.
+#[test]
+fn a_mapped_channel_that_nothing_knows_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    std::fs::write(
+        at("drive.csv"),
+        "t_s,Strom,x\n0,1,0\n0.001,2,1\n0.002,3,2\n",
+    )
+    .unwrap();
+    let axis = std::fs::read_to_string(root().join("data/axes/rack.toml")).unwrap();
+    let mapped = "\n[[log.column]]\nsource = \"Strom\"\nchannel = \"strom_a\"\n[[log.column]]\nsource = \"x\"\nchannel = \"position_m\"\n";
+    std::fs::write(at("axis.toml"), axis + mapped).unwrap();
+    let text = succeed(&[
+        "log",
+        "inspect",
+        &at("drive.csv"),
+        "--axis",
+        &at("axis.toml"),
+    ]);
+    assert!(
+        text.contains("\"strom_a\" of the mapping (source \"Strom\") is not used: known are "),
+        "{text}"
+    );
+    assert!(
+        text.contains("iq_a, ") && !text.contains("\"position_m\" of the mapping"),
+        "{text}"
+    );
+}
+
 /// One that lacks its time is shown with the mapping that would correct that, as JSON too.
 #[test]
 fn log_inspect_proposes_a_mapping_of_what_cannot_be_read_yet() {

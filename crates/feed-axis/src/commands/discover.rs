@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use axis_log::intake::{IntakeError, Options as Intake, files, prepare};
-use axis_log::{Log, ReadError, ReadProblem};
+use axis_log::{Log, Mapping, ReadError, ReadProblem};
 use axis_pipeline::ErrorUnit;
-use axis_sim::Axis;
 use axis_sim::effects::Scales;
+use axis_sim::{Axis, known_channels};
 use clap::Args;
 use discrepancy::logs::{NamedLog, admit, exact_channels, most_samples, needed_channels};
 use discrepancy::summary::{MeasuredError, rank, tried};
@@ -218,7 +218,29 @@ pub(super) fn read_as_one(
     let prepared =
         prepare(&paths, &machine.log, needed, options).map_err(|error| with_help(error, &paths))?;
     notes.extend(prepared.done.iter().map(ToString::to_string));
+    for note in unused(&machine.log) {
+        if !notes.contains(&note) {
+            notes.push(note);
+        }
+    }
     Ok(prepared.log)
+}
+
+/// Channels of a mapping that mean nothing to any command.
+pub(super) fn unused(mapping: &Mapping) -> impl Iterator<Item = String> {
+    let known: Vec<&str> = known_channels().collect();
+    let columns = mapping.columns.iter();
+    columns.filter_map(move |column| {
+        let is_known = known.contains(&column.channel.as_str());
+        (!is_known).then(|| {
+            format!(
+                "the channel \"{}\" of the mapping (source \"{}\") is not used: known are {}",
+                column.channel,
+                column.source,
+                known.join(", ")
+            )
+        })
+    })
 }
 
 /// What helps where only a mapping is missing.

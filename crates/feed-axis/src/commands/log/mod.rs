@@ -21,6 +21,7 @@ use clap::{Args, Subcommand};
 use discrepancy::logs::{exact_channels, relations};
 use miette::{IntoDiagnostic, Result, miette};
 
+use super::discover::unused;
 use crate::context::read_axis;
 use crate::exit::wrong_use;
 use crate::out_file;
@@ -215,6 +216,7 @@ fn seen(
     let names = log.channels()[1..].iter().map(|c| c.name.as_str());
     let channels = names.map(|name| channel_quality(&log, name, against(name)));
     let mut done: Vec<String> = done.iter().map(ToString::to_string).collect();
+    done.extend(unused(mapping));
     done.extend(rate_words(&clock));
     Ok(SeenLog {
         channels: channels.collect::<Result<_, _>>().into_diagnostic()?,
