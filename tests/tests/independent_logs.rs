@@ -137,7 +137,7 @@ fn two_simulations_of_one_machine_balance_alike() {
         (all.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / all.len() as f64).sqrt()
     };
     assert_eq!(set.channels, ["iq_a", "transmission_error_m"]);
-    for (c, most) in [2e-3, 5e-4].into_iter().enumerate() {
+    for (c, most) in [8e-4, 1.5e-4].into_iter().enumerate() {
         let [rest, all] =
             [&rest[0][c], &set.logs[0].measured[c]].map(|series| about_the_mean(series));
         println!("{}: {:.1e}", set.channels[c], rest / all);

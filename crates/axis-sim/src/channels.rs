@@ -6,8 +6,10 @@ use axis_log::{Log, LogError};
 
 use crate::actuator::Effort;
 use crate::axis::Axis;
+use crate::balance::torque_channels;
 use crate::cycle::Cycle;
 use crate::mechanism::Freedom;
+use crate::replay::ADDED;
 
 /// A channel of a log.
 #[derive(Clone, Copy, Debug)]
@@ -107,19 +109,14 @@ pub const CHANNELS: &[LogChannel] = &[
     same(["iq_feedforward_a", "A"], has_currents, Shown, |c| c.correction.command),
 ];
 
-/// Channels that a log may have beside those of a simulation.
-const OF_LOGS: [&str; 5] = [
-    "velocity_m_s",
-    "velocity_rad_s",
-    "torque_n_m",
-    "force_n",
-    "drive_command_added_v",
-];
+/// Channels that a log may have beside those of a simulation and those that show a torque.
+const OF_LOGS: [&str; 3] = ["velocity_m_s", "velocity_rad_s", ADDED];
 
 /// Names of all channels that mean something to the programs that read logs.
 pub fn known_channels() -> impl Iterator<Item = &'static str> {
     let simulated = CHANNELS.iter().flat_map(|c| [c.linear[0], c.rotary[0]]);
-    let mut names: Vec<&'static str> = simulated.chain(OF_LOGS).collect();
+    let of_logs = torque_channels().chain(OF_LOGS);
+    let mut names: Vec<&'static str> = simulated.chain(of_logs).collect();
     names.sort_unstable();
     names.dedup();
     names.into_iter()

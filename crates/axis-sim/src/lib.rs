@@ -122,7 +122,9 @@ pub use axis::{
     Sensors, Simulation, Stroke, Tolerances, ValueRange,
 };
 pub use axis_file::{AxisFileError, Registry, TABLES_WITHOUT_PARTS};
-pub use balance::{Balance, BalanceError, BalanceNoise, BalanceQuality, CutoffReason};
+pub use balance::{
+    Balance, BalanceError, BalanceNoise, BalanceQuality, CutoffReason, TRANSMISSION_ERROR,
+};
 pub use channels::{
     CHANNELS, ChannelPart, LogChannel, channels, known_channels, position_in, reference_in,
 };

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::error::{finite, not_negative, positive};
+use crate::shape::ring;
 use crate::{BeamError, Material};
 
 /// A rigid body on a node: a disc, a pulley, a pedestal.
@@ -34,15 +35,8 @@ impl LumpedMass {
     /// [`BeamError::Parameter`] unless 0 ≤ inner < outer and width > 0, all finite.
     pub fn disc(diameters: [f64; 2], width: f64, material: &Material) -> Result<Self, BeamError> {
         let [outer, inner] = diameters;
-        let (d, w) = (positive("outer", outer)?, positive("width", width)?);
-        let hole = not_negative("inner", inner)?;
-        if hole >= d {
-            return Err(BeamError::Parameter {
-                field: "inner",
-                value: inner,
-                valid: "at least zero and below the outer diameter",
-            });
-        }
+        let [d, hole] = ring(outer, inner)?;
+        let w = positive("width", width)?;
         let mass = material.density() * 0.25 * PI * (d - hole) * (d + hole) * w;
         let polar_inertia = mass * (d * d + hole * hole) / 8.0;
         Ok(Self {

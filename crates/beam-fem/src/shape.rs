@@ -89,6 +89,20 @@ impl SectionShape {
     }
 }
 
+/// Outer and inner diameter of a circle with a concentric hole.
+pub(crate) fn ring(outer: f64, inner: f64) -> Result<[f64; 2], BeamError> {
+    let d = positive("outer", outer)?;
+    let hole = not_negative("inner", inner)?;
+    match hole < d {
+        true => Ok([d, hole]),
+        false => Err(BeamError::Parameter {
+            field: "inner",
+            value: inner,
+            valid: "at least zero and below the outer diameter",
+        }),
+    }
+}
+
 impl CrossSection {
     /// Circle of diameter `outer` with a concentric hole of diameter `inner`
     /// (m; 0 for none). With m = inner/outer, Cowper 1966 (doi 10.1115/1.3625046):
@@ -97,15 +111,7 @@ impl CrossSection {
     /// # Errors
     /// [`BeamError::Parameter`] unless 0 ≤ inner < outer, both finite.
     pub fn hollow_circle(outer: f64, inner: f64, material: &Material) -> Result<Self, BeamError> {
-        let d = positive("outer", outer)?;
-        let hole = not_negative("inner", inner)?;
-        if hole >= d {
-            return Err(BeamError::Parameter {
-                field: "inner",
-                value: inner,
-                valid: "at least zero and below the outer diameter",
-            });
-        }
+        let [d, hole] = ring(outer, inner)?;
         let (d2, h2) = (d * d, hole * hole);
         // Differences of squares as products: a thin wall keeps its digits.
         let area = 0.25 * PI * (d - hole) * (d + hole);

@@ -144,6 +144,22 @@ fn a_mapped_channel_that_nothing_knows_is_said() {
     );
 }
 
+/// The page of logs has every channel that means something, and no other.
+#[test]
+fn the_page_of_logs_lists_the_known_channels() {
+    let page = std::fs::read_to_string(root().join("docs/logs.md")).unwrap();
+    let section = page.split("## Channels").nth(1).unwrap();
+    let section = section.split("\n## ").next().unwrap();
+    let rows = section.lines().filter(|line| line.starts_with("| `"));
+    let first = rows.map(|row| row.split('|').nth(1).unwrap());
+    let mut listed: Vec<&str> = first
+        .flat_map(|cell| cell.split('`').skip(1).step_by(2))
+        .collect();
+    listed.sort_unstable();
+    let known: Vec<&str> = axis_sim::known_channels().collect();
+    assert_eq!(listed, known);
+}
+
 /// One that lacks its time is shown with the mapping that would correct that, as JSON too.
 #[test]
 fn log_inspect_proposes_a_mapping_of_what_cannot_be_read_yet() {

@@ -116,10 +116,7 @@ impl<T: Scalar> Servo<T> {
         c: &ServoCorrection<T>,
         point: &OperatingPoint<T>,
     ) -> ServoCommand<T> {
-        let bounds = self.bounds(point);
-        let mut command = self.cycle_in(state, m, r, c, &bounds, |_| Dq::ZERO);
-        command.saturated.current |= point.id_ref.abs() > self.limits.current;
-        command
+        self.cycle_at(state, m, r, c, point, |_| Dq::ZERO)
     }
 
     /// As [`Servo::cycle_with`], with the voltage of `decoupling` added to the outputs of
@@ -134,8 +131,22 @@ impl<T: Scalar> Servo<T> {
         point: &OperatingPoint<T>,
         decoupling: &Decoupling<T>,
     ) -> ServoCommand<T> {
-        let bounds = self.bounds(point);
         let added = |reference| decoupling.voltage(m.current, reference, m.motor_speed);
+        self.cycle_at(state, m, r, c, point, added)
+    }
+
+    /// At an operating point, with the voltage that is `added` for a current reference.
+    #[inline]
+    fn cycle_at(
+        &self,
+        state: &mut ServoState<T>,
+        m: &Measurement<T>,
+        r: &ServoReference<T>,
+        c: &ServoCorrection<T>,
+        point: &OperatingPoint<T>,
+        added: impl FnOnce(Dq<T>) -> Dq<T>,
+    ) -> ServoCommand<T> {
+        let bounds = self.bounds(point);
         let mut command = self.cycle_in(state, m, r, c, &bounds, added);
         command.saturated.current |= point.id_ref.abs() > self.limits.current;
         command

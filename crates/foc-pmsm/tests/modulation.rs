@@ -1,6 +1,7 @@
 //! Discontinuous modulation, and overmodulation up to six steps.
 
 use crate::axis::{DC_VOLTAGE, drawn_dc_voltage};
+use crate::svpwm::{distance, modulator, vector};
 use foc_pmsm::AlphaBeta;
 use foc_pmsm::svpwm::{DiscontinuousPwm, Duties, Overmodulation, Svpwm};
 use proptest::prelude::*;
@@ -18,21 +19,6 @@ const PWMS: [DiscontinuousPwm; 5] = [
     DiscontinuousPwm::Max,
     DiscontinuousPwm::Min,
 ];
-
-fn modulator(mode: Overmodulation) -> Svpwm {
-    Svpwm::new(DC_VOLTAGE, mode).unwrap()
-}
-
-fn vector(length: f64, angle: f64) -> AlphaBeta {
-    AlphaBeta {
-        alpha: length * angle.cos(),
-        beta: length * angle.sin(),
-    }
-}
-
-fn distance(a: AlphaBeta, b: AlphaBeta) -> f64 {
-    (a.alpha - b.alpha).hypot(a.beta - b.beta)
-}
 
 fn legs(d: Duties) -> [f64; 3] {
     [d.a(), d.b(), d.c()]

@@ -337,8 +337,8 @@ fn reluctance_motors() {
     assert_eq!(Pmsm::reluctance(none), Err(FocError::NoPolePairs));
 }
 
-/// In the closed loop the currents settle at the operating point beyond base speed, with
-/// the voltage that was promised: from 1 A beside it, with what is left to the limit.
+/// In the closed loop the currents settle from 1 A away at the operating point beyond base speed, at the
+/// predicted voltage, within the voltage that is left to the limit.
 #[test]
 fn the_controllers_reach_the_point() {
     let m = motor();

@@ -68,7 +68,7 @@ proptest! {
     }
 }
 
-/// A motor with a load of 2 N·m, of which nothing is measured but the currents.
+/// A motor with a load of 2 N·m; only its currents are measured.
 struct Drive {
     motor: Pmsm,
     current: Dq,

@@ -11,18 +11,18 @@ const MODES: [Overmodulation; 2] = [
     Overmodulation::MinimumMagnitudeError,
 ];
 
-fn modulator(mode: Overmodulation) -> Svpwm {
+pub fn modulator(mode: Overmodulation) -> Svpwm {
     Svpwm::new(DC_VOLTAGE, mode).unwrap()
 }
 
-fn vector(length: f64, angle: f64) -> AlphaBeta {
+pub fn vector(length: f64, angle: f64) -> AlphaBeta {
     AlphaBeta {
         alpha: length * angle.cos(),
         beta: length * angle.sin(),
     }
 }
 
-fn distance(a: AlphaBeta, b: AlphaBeta) -> f64 {
+pub fn distance(a: AlphaBeta, b: AlphaBeta) -> f64 {
     (a.alpha - b.alpha).hypot(a.beta - b.beta)
 }
 

@@ -85,8 +85,8 @@ pub fn command(options: &Options) -> Result<()> {
     if cases.is_empty() {
         cases = CASES.iter().collect();
     }
-    let way = if options.balance { "-balance" } else { "" };
-    let default = || Path::new("runs/independent").join(format!("seed-{}{way}", options.seed));
+    let by = if options.balance { "-balance" } else { "" };
+    let default = || Path::new("runs/independent").join(format!("seed-{}{by}", options.seed));
     let out = options.out.clone().unwrap_or_else(default);
     ready(&out)?;
     let made_by = feed_axis::program::key();
@@ -313,9 +313,9 @@ fn line(outcome: &Outcome) -> String {
 
 fn page(outcomes: &[Outcome], options: &Options, summary: &str) -> String {
     let seed = options.seed;
-    let way = if options.balance { " --balance" } else { "" };
+    let by = if options.balance { " --balance" } else { "" };
     let mut page = format!(
-        "# Logs of an independent simulator\n\n`cargo xtask independent --seed {seed}{way}`: {summary}.\n\n\
+        "# Logs of an independent simulator\n\n`cargo xtask independent --seed {seed}{by}`: {summary}.\n\n\
          | case | hidden | verdict | named | right | s |\n|---|---|---|---|---|---|\n"
     );
     for o in outcomes {

@@ -305,8 +305,8 @@ fn a_recording_has_its_time_and_a_choice_of_axes() {
     assert!((rate(&given.mapped(&mapped)) - 500.0).abs() < 1e-9);
 }
 
-/// A unit in a name, or below the names, counts where the mapping states none; a unit or a factor in the
-/// mapping goes before it, and a source that is not there is told.
+/// A unit in a column's name, or in the line below the names, is used if the mapping states none; a unit or
+/// factor in the mapping takes precedence. A source that the file lacks is reported.
 #[test]
 fn a_column_is_read_in_the_unit_that_the_file_states() {
     let in_names =

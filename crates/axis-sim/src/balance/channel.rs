@@ -69,6 +69,11 @@ const TORQUES: &[TorqueChannel] = &[
     },
 ];
 
+/// Names of all of them.
+pub(crate) fn torque_channels() -> impl Iterator<Item = &'static str> {
+    TORQUES.iter().map(|channel| channel.name)
+}
+
 impl TorqueChannel {
     /// The first that all of these logs have.
     pub fn of(logs: &[&Log], axis: &Axis) -> Result<Self, BalanceError> {

@@ -35,12 +35,14 @@ use crate::control::absent::{encoder_skew, sampled_inertia};
 use crate::effects::ActiveEffect;
 use crate::replay::{Probe, ReplayError, Trace};
 use channel::TorqueChannel;
+pub(crate) use channel::torque_channels;
 pub use error::BalanceError;
 use filter::{LowPass, ahead, derivative};
 use law::{Ends, Motions, torque};
 use prepared::TorqueNoise;
 pub use quality::{BalanceQuality, CutoffReason};
 pub use shown::{FrictionCourse, ObservedMotion};
+pub use transmission::TRANSMISSION_ERROR;
 use transmission::{Transmission, error, give};
 
 /// One log's measured motion and torque, ready to be compared with any model of the axis.

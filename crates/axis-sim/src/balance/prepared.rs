@@ -393,8 +393,10 @@ fn resolved(
     kept.copied().collect()
 }
 
-/// Whether the load goes, `near` to either side of a sample, or has gone since it last turned where it goes
-/// so far nowhere, less than the way on which its contact begins to slide. Friction then is whatever holds the load, however well its speed is told from rest.
+/// Whether the contact may still be in pre-sliding at a sample: the load travels, within `near` samples to
+/// either side, less than the displacement at which the contact slides. If it travels that far within no such
+/// window, the travel since its last reversal counts instead. In pre-sliding, friction is whatever holds the
+/// load, however well its speed is distinguished from standstill.
 fn creeps(axis: &Axis, load: &Course, period: f64, near: usize) -> impl Fn(usize) -> bool {
     let friction = axis.friction.share();
     let lever = friction.lever(axis.travel_per_radian());

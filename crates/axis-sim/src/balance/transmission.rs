@@ -29,11 +29,14 @@ pub(super) struct Transmission {
     pub noise: f64,
 }
 
-/// Names of the channel by the load's freedom.
-pub(super) fn name(freedom: Freedom) -> &'static str {
+/// Names of the channel, of a load that moves along a line and of one that turns. It has no zero of its own.
+pub const TRANSMISSION_ERROR: [&str; 2] = ["transmission_error_m", "transmission_error_rad"];
+
+fn name(freedom: Freedom) -> &'static str {
+    let [linear, rotary] = TRANSMISSION_ERROR;
     match freedom {
-        Freedom::Linear => "transmission_error_m",
-        Freedom::Rotary => "transmission_error_rad",
+        Freedom::Linear => linear,
+        Freedom::Rotary => rotary,
     }
 }
 

@@ -1,4 +1,4 @@
-//! A duty from a log: position, and current, torque or force.
+//! A duty from a log: position, and the current or the command of torque or force.
 
 use axis_log::Log;
 

@@ -92,7 +92,7 @@ pub struct Replay {
 }
 
 /// What a log shows of a command that was added to the controller's.
-const ADDED: &str = "drive_command_added_v";
+pub(crate) const ADDED: &str = "drive_command_added_v";
 
 impl Replay {
     /// The reference of a uniformly sampled log.

@@ -39,11 +39,11 @@ fn without(log: &Log, names: &[&str]) -> Log {
     Log::new(kept.cloned().collect()).unwrap()
 }
 
-fn rms(series: &[f64]) -> f64 {
+pub fn rms(series: &[f64]) -> f64 {
     (series.iter().map(|v| v * v).sum::<f64>() / series.len() as f64).sqrt()
 }
 
-fn active(name: &str, values: &[f64]) -> ActiveEffect {
+pub fn active(name: &str, values: &[f64]) -> ActiveEffect {
     ActiveEffect {
         effect: Effect::named(name).unwrap(),
         values: values.to_vec(),

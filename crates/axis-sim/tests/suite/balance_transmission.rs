@@ -1,21 +1,12 @@
 //! Torque balance where load and motor are measured: what lies between them.
 
 use axis_log::{Channel, Log};
-use axis_sim::effects::{ActiveEffect, Effect};
-use axis_sim::{Axis, Balance, ClosedLoop, Recorder, Sensors};
+use axis_sim::effects::ActiveEffect;
+use axis_sim::{Axis, Balance, ClosedLoop, Recorder, Sensors, TRANSMISSION_ERROR};
 use compensator::NoCompensation;
 
 use crate::axis;
-use crate::balance::back_and_forth;
-
-const CHANNELS: [&str; 2] = ["transmission_error_m", "transmission_error_rad"];
-
-fn active(name: &str, values: &[f64]) -> ActiveEffect {
-    ActiveEffect {
-        effect: Effect::named(name).unwrap(),
-        values: values.to_vec(),
-    }
-}
+use crate::balance::{active, back_and_forth, rms};
 
 /// The machine on a motion there and back, sensors without errors, at about 1 kHz.
 fn simulated(machine: &Axis) -> (Log, f64) {
@@ -38,14 +29,10 @@ fn about_the_mean(series: &[f64]) -> Vec<f64> {
     series.iter().map(|v| v - mean).collect()
 }
 
-fn rms(series: &[f64]) -> f64 {
-    (series.iter().map(|v| v * v).sum::<f64>() / series.len() as f64).sqrt()
-}
-
 /// Transmission error as measured, and what a model leaves of it, RMS.
 fn left(machine: &Axis, effects: &[ActiveEffect], log: &(Log, f64)) -> [f64; 2] {
     let balance = Balance::new(&log.0, log.1, machine).unwrap();
-    let name = *CHANNELS
+    let name = *TRANSMISSION_ERROR
         .iter()
         .find(|name| balance.channels().contains(name))
         .unwrap();

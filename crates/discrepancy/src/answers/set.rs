@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use axis_log::Log;
-use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, Trace};
+use axis_sim::{Axis, Balance, Probe, Replay, ReplayError, TRANSMISSION_ERROR, Trace};
 use rayon::prelude::*;
 
 use super::{Answer, State};
@@ -56,8 +56,10 @@ pub struct LogSet {
 /// The motor's angle.
 pub(super) const ANGLE: &str = "motor_angle_rad";
 
-/// The channels that count from wherever an encoder was.
-const WITHOUT_ZERO: [&str; 3] = [ANGLE, "transmission_error_m", "transmission_error_rad"];
+/// Whether a channel counts from wherever an encoder was.
+fn has_no_zero(channel: &str) -> bool {
+    channel == ANGLE || TRANSMISSION_ERROR.contains(&channel)
+}
 
 impl LogSet {
     /// The torque balances of its logs; none of logs that are replayed.
@@ -194,7 +196,7 @@ impl LogSet {
 
     /// Whether a channel has no zero of its own.
     pub(crate) fn counts_from_its_mean(&self, channel: usize) -> bool {
-        WITHOUT_ZERO.contains(&self.channels[channel])
+        has_no_zero(self.channels[channel])
     }
 
     /// Which of the fitted channels have no zero of their own.
@@ -212,7 +214,7 @@ impl LogSet {
 /// What has no zero of its own counts from its mean; the first sample would carry its noise into
 /// all others.
 pub(super) fn relative(name: &str, samples: &[f64]) -> Vec<f64> {
-    if !WITHOUT_ZERO.contains(&name) {
+    if !has_no_zero(name) {
         return samples.to_vec();
     }
     let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;

@@ -1,5 +1,6 @@
 //! A discovery in sentences and in the units of engineers, alike on every screen.
 
+use axis_sim::TRANSMISSION_ERROR;
 use axis_sim::effects::Effect;
 
 use super::cost::{Cost, EffortCost, Size, TrackingCost};
@@ -120,7 +121,7 @@ fn costs(discovery: &Discovery) -> Vec<String> {
         );
     }
     let mut channels = discovery.gap.check.channels.iter();
-    let between = channels.find(|c| c.channel.starts_with("transmission_error"));
+    let between = channels.find(|c| TRANSMISSION_ERROR.contains(&c.channel.as_str()));
     if let Some(gap) = between.filter(|_| named) {
         let unit = ReadUnit::of(channel_unit(&gap.channel), gap.before);
         lines.push(format!(

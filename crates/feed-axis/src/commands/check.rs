@@ -45,7 +45,7 @@ pub struct Options {
     /// Motion program (TOML) that ends where it begins
     #[arg(long, value_name = "FILE", conflicts_with = "log")]
     program: Option<PathBuf>,
-    /// Logs instead of a simulation: position, and current, torque or force; a log in several
+    /// Logs instead of a simulation: position, and the current or the command of torque or force; a log in several
     /// files as their paths with + between
     #[arg(long, value_name = "LOG", num_args = 1..)]
     log: Vec<PathBuf>,
