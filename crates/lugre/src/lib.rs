@@ -66,6 +66,7 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 mod exponential;
+mod family;
 #[cfg(feature = "identify")]
 pub mod identify;
 mod law;
@@ -75,6 +76,12 @@ mod sliding;
 mod step;
 
 pub use exponential::{Decays, Exponential};
+pub use family::{
+    BoucWen, BoucWenOnset, Bristle, BristleParameters, ClassicBoucWen, Dahl, DahlOnset,
+    ElastoPlastic, ElastoPlasticOnset, FrictionError, FrictionLaw, GeneralLuGre, Level,
+    LinearOnset, MaxwellSlip, MaxwellSlipParameters, MaxwellState, Onset, Regularisation,
+    StaticFriction, StaticFrictionParameters, SteadyState,
+};
 pub use law::{Constants, LuGre};
 pub use parameters::{LugreError, Parameters};
 
