@@ -1,6 +1,6 @@
 //! [`LuGre`] as one of the family. Its own functions stay as they are.
 
-use super::{FrictionLaw, pressing, sound};
+use super::{FrictionLaw, halves, pressing, sound};
 use crate::exponential::Exponential;
 use crate::law::LuGre;
 
@@ -12,12 +12,13 @@ impl<T: Exponential> FrictionLaw<T> for LuGre<T> {
 
     fn step(&self, z: T, v0: T, v1: T, h: T) -> T {
         let limit = self.bristle_limit();
-        let z = sound(z, [-limit, limit]);
-        let at_rest = v0 == T::ZERO && v1 == T::ZERO && !h.is_nan();
-        if at_rest || (h <= T::ZERO && !v0.is_nan() && !v1.is_nan()) {
-            return z;
-        }
-        LuGre::step(self, z, v0, v1, h)
+        halves(sound(z, [-limit, limit]), [v0, v1], h, |z, speed, h| {
+            let still = speed == T::ZERO || h <= T::ZERO;
+            if still && !(speed.is_nan() || h.is_nan()) {
+                return z;
+            }
+            LuGre::step(self, z, speed, speed, h)
+        })
     }
 
     fn force_at_load(&self, z: &T, speed: T, load: T) -> T {

@@ -75,7 +75,8 @@ impl<T: Exponential, const N: usize> MaxwellSlip<T, N> {
             check("stiffness", stiffness, POSITIVE, false)?;
         }
         check("attraction", parameters.attraction, POSITIVE, false)?;
-        let sum: T = parameters.shares.into_iter().sum();
+        // Not −0 of no elements.
+        let sum = T::ZERO + parameters.shares.into_iter().sum();
         let close = if T::EPSILON > T::of(1e-10) {
             1e-4
         } else {

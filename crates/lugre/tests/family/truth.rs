@@ -33,10 +33,6 @@ impl Curve {
     }
 }
 
-pub fn viscous(v: f64) -> f64 {
-    300.0 * v + 200.0 * v * v.abs() + 50.0 * v.powi(3)
-}
-
 pub fn motion(t: f64) -> f64 {
     0.012 * (8.2 * t).sin() + 0.007 * (19.5 * t + 0.4).sin()
 }
