@@ -248,7 +248,8 @@ fn levels_of_zero_carry_nothing() {
     assert_eq!(maxwell.force(&state, 3.0), 0.0);
 }
 
-/// A run in `f32` against one in `f64` of the same `f32` numbers; of 85 N.
+/// A run in `f32` against one in `f64` of the same `f32` numbers, in ε of 85 N. Measured:
+/// 5.1, 10.5, 7.3, 4.9.
 #[test]
 fn single_precision_follows_double() {
     fn deviation<A, B>(wide: &A, narrow: &B) -> f64
@@ -312,6 +313,5 @@ fn single_precision_follows_double() {
             }
         ),
     ];
-    println!("{found:?}");
-    assert!(found.iter().all(|units| *units < 100.0), "{found:?}");
+    assert!(found.iter().all(|units| *units < 30.0), "{found:?}");
 }

@@ -42,7 +42,7 @@ fn dahl_is_its_closed_form() {
     }
 }
 
-/// n = 1: exponentials; n = 2: tangents.
+/// n = 1: exponentials; n = 2: tangents. Measured: 4.5e-8.
 #[test]
 fn bouc_wen_is_its_closed_form_where_there_is_one() {
     let mut worst = 0.0_f64;
@@ -81,12 +81,11 @@ fn bouc_wen_is_its_closed_form_where_there_is_one() {
                     };
                     let off = (moved(onset, y, xi) - expected).abs();
                     worst = worst.max(off);
-                    assert!(off < 1e-6, "{n} {extra} {y} {xi}: {off}");
                 }
             }
         }
     }
-    println!("{worst}");
+    assert!(worst < 1.3e-7, "{worst}");
 }
 
 /// ∫ dy/Y from `a` to `b` by Simpson's rule.
@@ -98,7 +97,8 @@ fn displacement(slope: impl Fn(f64) -> f64, a: f64, b: f64) -> f64 {
     h / 3.0 * (at(0) + inner + at(PARTS))
 }
 
-/// The displacement that a deflection needs is a quadrature; a step of it must come there.
+/// The displacement that a deflection needs is a quadrature; a step of it must come there. Measured:
+/// 1.7e-8 and 2.7e-6, the latter of n = 1.3.
 #[test]
 fn long_steps_follow_the_quadrature() {
     let mut worst = [0.0_f64; 2];
@@ -130,8 +130,7 @@ fn long_steps_follow_the_quadrature() {
             worst[1] = worst[1].max((moved(onset, -1.0, xi) - end).abs());
         }
     }
-    println!("{worst:?}");
-    assert!(worst[0] < 1e-6 && worst[1] < 1e-6, "{worst:?}");
+    assert!(worst[0] < 5e-8 && worst[1] < 8e-6, "{worst:?}");
 }
 
 /// Exact at constant speed: many steps are one.
@@ -149,12 +148,12 @@ fn parts_of_a_step_make_the_whole() {
             assert!(off < most, "{off}");
         }
     }
-    // Rounding of 100 additions to 85 N; the fourth-order solutions as above.
-    parts(&general(CURVE, 0.0), 1e-12);
-    parts(&dahl(CURVE, 2.0), 1e-12);
-    parts(&maxwell(CURVE), 1e-12);
-    parts(&elasto_plastic(CURVE, 0.0, 0.5), 1e-4);
-    parts(&bouc_wen(CURVE, 4.0, 0.9), 1e-4);
+    // Measured: 1.1e-13 N of rounding; 2e-6 N of the fourth-order solutions.
+    parts(&general(CURVE, 0.0), 4e-13);
+    parts(&dahl(CURVE, 2.0), 4e-13);
+    parts(&maxwell(CURVE), 4e-13);
+    parts(&elasto_plastic(CURVE, 0.0, 0.5), 6e-6);
+    parts(&bouc_wen(CURVE, 4.0, 0.9), 6e-6);
 }
 
 #[test]
@@ -219,6 +218,7 @@ fn the_general_law_is_lugre_on_its_curve() {
 }
 
 /// Bouc and Wen's own parameters: ζ as they write it, by Euler's method.
+/// Measured: 1.1e-3 N of 39 N.
 #[test]
 fn classic_parameters_are_the_same_law() {
     let classic = lugre::ClassicBoucWen {
@@ -238,6 +238,5 @@ fn classic_parameters_are_the_same_law() {
         zeta += h * slope;
         worst = worst.max((law.force(&z, v) - 30.0 * zeta).abs());
     }
-    println!("{worst}");
-    assert!(worst < 0.05, "{worst}");
+    assert!(worst < 3e-3, "{worst}");
 }

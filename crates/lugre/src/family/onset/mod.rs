@@ -55,8 +55,9 @@ impl<T: Exponential> Onset<T> for LinearOnset {
     }
 }
 
-/// What a step of [`approach`] advances the logarithm by. Of the fourth order: a quarter of
-/// it would change a result by less than 1e-8 (tests).
+/// What a step of [`approach`] advances the logarithm by. Whole loops in one step are then off
+/// by 1.7e-8 steady deflections in the elasto-plastic law and by 4.5e-8 in Bouc and Wen's; by
+/// 2.7e-6 with an exponent of 1.3, whose power is not smooth at y = 0 (tests).
 const LOGARITHM: f64 = 0.0625;
 
 /// Solves `dp/dξ = −r(p) p` for the distance `p = 1 − y` from the steady state, over `xi`;
