@@ -2,6 +2,7 @@
 
 mod bits;
 mod family;
+mod identify_family;
 mod identify_presliding;
 mod identify_record;
 mod identify_static;

@@ -26,8 +26,8 @@ fn greatest<L: FrictionLaw<f64>>(law: &L, truth: &[f64], per: usize) -> f64 {
 
 /// Forces by integration of a deflection's rate.
 fn forces(rate: impl Fn(f64, f64) -> f64) -> Vec<f64> {
-    let steps = 2000 * SAMPLES;
-    let z = truth::integrate(rate, SECONDS, steps, 2000);
+    let steps = 1000 * SAMPLES;
+    let z = truth::integrate(rate, SECONDS, steps, 1000);
     z.into_iter().map(|z| STIFFNESS * z).collect()
 }
 
