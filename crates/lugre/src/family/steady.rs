@@ -37,7 +37,8 @@ pub struct Level<T = f64> {
 /// let curve = SteadyState {
 ///     forward: Level { coulomb: 60.0, stiction: 80.0 }, // N
 ///     backward: Level { coulomb: 70.0, stiction: 85.0 },
-///     viscous: 200.0, // N·s/m
+///     stribeck_speed: 4e-3, // m/s
+///     viscous: 200.0,       // N·s/m
 ///     ..SteadyState::coulomb(60.0)
 /// };
 /// curve.validate()?;

@@ -118,7 +118,7 @@ impl<T: Exponential> BoucWenOnset<T> {
             if left <= whole {
                 return (u, T::ZERO);
             }
-            left = left - h;
+            left -= h;
         }
         (u, T::ZERO)
     }
@@ -148,14 +148,14 @@ impl<T: Exponential> Onset<T> for BoucWenOnset<T> {
         }
     }
 
-    fn advance(&self, y: T, xi: T, coulomb: T) -> T {
+    fn advance(&self, y: T, xi: T, _: T) -> T {
         if self.exponent == T::ONE && y >= T::ZERO {
             return (T::ONE - y) * xi.one_minus_exp();
         }
         let most = self.most(y);
         if y.abs() > most * T::of(1.001) {
             let within = most.copysign(y);
-            return (within - y) + self.advance(within, xi, coulomb);
+            return (within - y) + self.advance(within, xi, T::ONE);
         }
         let (unloaded, p, left) = if y < T::ZERO {
             let (u, left) = self.unload(-y, xi);

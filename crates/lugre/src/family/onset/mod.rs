@@ -85,8 +85,8 @@ fn approach<T: Exponential>(p: T, xi: T, last: T, rate: impl Fn(T) -> T) -> T {
         if left <= whole {
             return start - p + p * q.one_minus_exp();
         }
-        p = p * q.exp_minus();
-        left = left - step;
+        p *= q.exp_minus();
+        left -= step;
     }
     start - p + p * (last * left).one_minus_exp()
 }
