@@ -138,7 +138,7 @@ pub fn identify_law<L: Identifiable>(
     records: &[FrictionRecord<'_>],
     unknown: &Unknown,
 ) -> Result<LawFit<L>, FrictionIdentifyError> {
-    let mut trial = Trial::new(start, records, unknown)?;
+    let trial = Trial::new(start, records, unknown)?;
     let x = trial.search();
     let residuals = |x: &[f64; MOST], out: &mut [f64]| trial.residuals(x, out);
     let mut lower = [f64::NEG_INFINITY; MOST];
@@ -273,7 +273,7 @@ impl<'a, L: Identifiable> Trial<'a, L> {
 
     /// The best of a grid of factors on levels and stiffnesses. Positive numbers enter by
     /// their logarithm, so that a factor is a sum.
-    fn search(&mut self) -> [f64; MOST] {
+    fn search(&self) -> [f64; MOST] {
         let begin = self.coordinates();
         let mut out = vec![0.0; self.samples];
         let (mut best, mut least) = (begin, f64::INFINITY);
