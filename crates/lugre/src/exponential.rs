@@ -68,6 +68,10 @@ pub trait Exponential: Scalar {
     /// `(1 − e^{−a}) / a` of `a ≥ 0`, continued to 1 at `a = 0`; NaN for NaN.
     #[must_use]
     fn mean_decay(self) -> Self;
+
+    /// Arctangent of any number, rad, as [`libm`] has it.
+    #[must_use]
+    fn arctan(self) -> Self;
 }
 
 /// Coefficients of the decaying exponentials in one precision.
@@ -82,7 +86,7 @@ pub struct Decays<T: 'static> {
 }
 
 macro_rules! exponential {
-    ($t:ident, $module:ident, $bits:literal, $margin:literal, $least:literal, $greatest:literal) => {
+    ($t:ident, $module:ident, $arctan:ident, $bits:literal, $margin:literal, $least:literal, $greatest:literal) => {
         impl Exponential for $t {
             const LOST: Self = $bits * core::$t::consts::LN_2;
             const MARGIN: Self = $margin;
@@ -113,13 +117,17 @@ macro_rules! exponential {
             fn mean_decay(self) -> Self {
                 $module::mean_decay(self)
             }
+
+            fn arctan(self) -> Self {
+                libm::$arctan(self)
+            }
         }
     };
 }
 
 // Margins: u is rounded twice, to 2 units in the last place of at most 750 and 105.
-exponential!(f64, double, 54.0, 1e-6, 1e-150, 1e150);
-exponential!(f32, single, 25.0, 1e-4, 1e-18, 1e18);
+exponential!(f64, double, atan, 54.0, 1e-6, 1e-150, 1e150);
+exponential!(f32, single, atanf, 25.0, 1e-4, 1e-18, 1e18);
 
 /// The two functions that one source serves, on `q_short`, `q_long`,
 /// `exp_minus` and `SATURATED` of the module that it is used in.

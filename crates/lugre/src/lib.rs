@@ -1,5 +1,18 @@
-//! LuGre friction: the law, its steady-state curve, its exact stiff step, and
-//! its identification from measurements.
+//! Friction laws that stick, creep and slide: LuGre with its exact stiff step, and behind one
+//! trait, [`FrictionLaw`], a family of others; with their identification from measurements.
+//!
+//! | law | type |
+//! |---|---|
+//! | LuGre, one level in both directions | [`LuGre`] |
+//! | LuGre with levels by direction, any Stribeck exponent, viscous friction up to v³ | [`GeneralLuGre`] |
+//! | Dahl | [`Dahl`] |
+//! | elasto-plastic | [`ElastoPlastic`] |
+//! | Bouc and Wen | [`BoucWen`] |
+//! | generalised Maxwell slip | [`MaxwellSlip`] |
+//! | Stribeck curve without memory | [`StaticFriction`] |
+//!
+//! All but the first take the same [`SteadyState`], and a normal load with each force. The
+//! rest of this page is about LuGre.
 //!
 //! # The problem
 //! Two surfaces touch through elastic bristles of mean deflection `z`. With
@@ -55,9 +68,9 @@
 //!
 //! # Features
 //! Without features the crate is `no_std` and allocates nothing. `identify`
-//! (on by default, needs `std`) finds the six parameters from records, see
-//! the module `identify`. `serde` reads and writes [`Parameters`], plain data, and
-//! [`LuGre`], which is validated on the way in.
+//! (on by default, needs `std`) finds LuGre's six parameters and those of any law of the
+//! family from records, see the module `identify`. `serde` reads and writes [`Parameters`]
+//! and those of the family, plain data, and [`LuGre`], which is validated on the way in.
 //!
 //! # What this crate does not know
 //! Nothing of machines, of where friction acts, of transmissions, control,
@@ -66,6 +79,7 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 mod exponential;
+mod family;
 #[cfg(feature = "identify")]
 pub mod identify;
 mod law;
@@ -75,6 +89,12 @@ mod sliding;
 mod step;
 
 pub use exponential::{Decays, Exponential};
+pub use family::{
+    BoucWen, BoucWenOnset, Bristle, BristleParameters, ClassicBoucWen, Dahl, DahlOnset,
+    ElastoPlastic, ElastoPlasticOnset, FrictionError, FrictionLaw, GeneralLuGre, Level,
+    LinearOnset, MaxwellSlip, MaxwellSlipParameters, MaxwellState, Onset, Regularisation,
+    StaticFriction, StaticFrictionParameters, SteadyState,
+};
 pub use law::{Constants, LuGre};
 pub use parameters::{LugreError, Parameters};
 

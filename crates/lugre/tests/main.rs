@@ -1,6 +1,8 @@
 //! One test program: the law, its step and its identification.
 
 mod bits;
+mod family;
+mod identify_family;
 mod identify_presliding;
 mod identify_record;
 mod identify_static;

@@ -24,17 +24,21 @@ pub(super) static KIND: PartKind<Friction> = PartKind {
     build: |v| build(v, FrictionPlace::Motor),
 };
 
-/// The known parameters of every LuGre friction. Each of the two levels may be off by its own
-/// tolerance; the break-away is never below the Coulomb level.
+/// The levels, each of which may be off by its own tolerance; the break-away is never below the
+/// Coulomb level.
+pub(super) const COULOMB_LEVEL: Known = Known::by("coulomb_level", |v, by| {
+    v.scale("coulomb", by);
+    v.set("stiction", v.or("stiction", 0.0).max(v.or("coulomb", 0.0)));
+});
+pub(super) const BREAK_AWAY: Known = Known::by("break_away", |v, by| {
+    let stiction = by * v.or("stiction", 0.0);
+    v.set("stiction", stiction.max(v.or("coulomb", 0.0)));
+});
+
+/// The known parameters of every LuGre friction.
 pub(super) const KNOWN: &[Known] = &[
-    Known::by("coulomb_level", |v, by| {
-        v.scale("coulomb", by);
-        v.set("stiction", v.or("stiction", 0.0).max(v.or("coulomb", 0.0)));
-    }),
-    Known::by("break_away", |v, by| {
-        let stiction = by * v.or("stiction", 0.0);
-        v.set("stiction", stiction.max(v.or("coulomb", 0.0)));
-    }),
+    COULOMB_LEVEL,
+    BREAK_AWAY,
     Known::key("stribeck_speed"),
     Known::key("bristle_stiffness"),
     Known::key("viscous"),

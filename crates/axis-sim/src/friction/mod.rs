@@ -1,11 +1,21 @@
-//! Friction at the load: kinds of parameters for one law, LuGre.
+//! Friction at the load, by kind: LuGre, of which Coulomb's friction with a pre-sliding distance
+//! and a viscous part are parameters, and other laws of the crate `lugre`.
 //!
-//! One law serves all: Coulomb's friction with a pre-sliding distance and a
-//! viscous part are parameters of it. Other laws are effects ([`crate::effects`]).
+//! The simulated machine has the law of its kind. Plans, feed-forward and the search for what a
+//! model lacks know LuGre alone: they take the LuGre law with the same levels, stiffness and
+//! viscous part. What friction may have besides are effects ([`crate::effects`]).
 
+mod bouc_wen;
+mod contact;
 mod coulomb;
+mod dahl;
+mod elasto_plastic;
+mod keys;
 mod lugre_at_load;
 mod lugre_at_motor;
+mod maxwell_slip;
+
+pub(crate) use contact::{Contact, ContactState};
 
 use lugre::{LuGre, Parameters};
 
@@ -19,18 +29,28 @@ pub const FRICTIONS: &[&PartKind<Friction>] = &[
     &lugre_at_load::ROTARY,
     &coulomb::LINEAR,
     &coulomb::ROTARY,
+    &dahl::LINEAR,
+    &dahl::ROTARY,
+    &elasto_plastic::LINEAR,
+    &elasto_plastic::ROTARY,
+    &bouc_wen::LINEAR,
+    &bouc_wen::ROTARY,
+    &maxwell_slip::LINEAR,
+    &maxwell_slip::ROTARY,
 ];
 
 /// Friction between the load and its guides.
 #[derive(Clone, Copy, Debug)]
 pub struct Friction {
-    /// The law, in its own coordinate.
+    /// The law, in its own coordinate; of a kind that is not LuGre, the LuGre law nearest to it.
     pub law: LuGre,
     /// The coordinate.
     pub at: FrictionPlace,
     /// Unit element that effects act through: Coulomb level 1, the same
     /// pre-sliding distance.
     pub unit: LuGre,
+    /// The law of a kind that is not LuGre.
+    pub(crate) contact: Option<Contact>,
 }
 
 /// The coordinate of a friction law.
@@ -107,6 +127,11 @@ impl Friction {
             viscous: 0.0,
         };
         let unit = LuGre::new(unit).map_err(|e| PartError::together(e, "another stiffness"))?;
-        Ok(Self { law, at, unit })
+        Ok(Self {
+            law,
+            at,
+            unit,
+            contact: None,
+        })
     }
 }

@@ -9,7 +9,7 @@ use lugre::LuGre;
 use super::state::State;
 use super::{Plant, Running, Seen, Start};
 use crate::effects::{Hooks, ScrewState, Steepness, TableState};
-use crate::friction::Friction;
+use crate::friction::{ContactState, Friction};
 use crate::load::Load;
 
 /// What is put around a mechanism to make a machine of it.
@@ -51,7 +51,11 @@ impl Assembly {
     /// `h` seconds, N·s/m, where the load moves by `travel` a radian.
     pub(super) fn steepness(&self, h: f64, travel: f64) -> f64 {
         let (friction, lever) = (&self.friction, self.friction.lever(travel));
-        let own = friction.law.steepness(h) / (lever * lever);
+        let own = match friction.contact {
+            // Not known of the other laws.
+            Some(_) => f64::INFINITY,
+            None => friction.law.steepness(h) / (lever * lever),
+        };
         let others = self.beside_friction();
         let bristle = friction.unit.steepness(h) / lever;
         // The position at the end of a step changes by at most h times what the speed does.
@@ -117,6 +121,13 @@ impl<S: TimeStepper> Law<S> {
         [law, unit].map(|law| share * coulomb_bristle(law))
     }
 
+    /// What a law that is not LuGre remembers at the start.
+    fn contact(&self, start: &Start) -> Option<ContactState> {
+        let share = start.friction.clamp(-1.0, 1.0);
+        let contact = self.assembly.friction.contact;
+        contact.map(|law| law.settled(start.speed / self.lever, share))
+    }
+
     /// The table as loads see it at the start, under that force of the transmission.
     fn table(start: &Start, transmitted: f64) -> TableState {
         TableState {
@@ -159,7 +170,11 @@ impl<S: TimeStepper> Law<S> {
     fn settled_under(&self, start: &Start, transmitted: f64) -> Settled {
         let friction = &self.assembly.friction.law;
         let [bristle, _] = self.bristles(start);
-        let own = friction.torque(bristle, start.speed / self.lever) / self.lever;
+        let speed = start.speed / self.lever;
+        let own = match (&self.assembly.friction.contact, self.contact(start)) {
+            (Some(law), Some(state)) => law.force(&state, speed),
+            _ => friction.torque(bristle, speed),
+        } / self.lever;
         let table = Self::table(start, transmitted);
         let mut load = own + self.loads_at(&table);
         if Self::is_loaded(start) {
@@ -206,6 +221,7 @@ where
             motor_origin: start.position / self.travel,
             offset_origin: 0.0,
             bristle,
+            contact: self.contact(start),
             unit_bristle,
             memory: self.assembly.hooks.memories().settled(start).0,
             travelled: 0.0,

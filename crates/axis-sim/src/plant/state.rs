@@ -9,6 +9,7 @@ use super::law::{Law, coulomb_bristle};
 use super::{AdvanceError, Running, Seen};
 use crate::actuator::{Actuating, MotorMotion};
 use crate::effects::{Memory, TableState, TableStep};
+use crate::friction::ContactState;
 
 /// Time over which a constant load comes up, s.
 const STANDING_LOAD_RISE: f64 = 0.02;
@@ -24,6 +25,8 @@ pub(super) struct State<S: TimeStepper> {
     pub(super) offset_origin: f64,
     /// Bristle deflection z, in the friction's coordinate.
     pub(super) bristle: f64,
+    /// What a law that is not LuGre remembers.
+    pub(super) contact: Option<ContactState>,
     /// That of the unit element.
     pub(super) unit_bristle: f64,
     /// What forces with a memory remember.
@@ -98,10 +101,22 @@ impl<S: TimeStepper> State<S> {
             let outer_load = self.outer_load;
             let loaded = (time / rise).min(1.0);
             let (mut z1, mut u1, mut end_load) = (z0, u0, 0.0);
+            let contact = self.contact;
+            let mut next_contact = contact;
             let report = stepper.step_through(&mut self.drive, torque, &errors, |table| {
                 let w1 = law.by_lever(table.speed);
-                let (z, own) = friction.law.step_torque(z0, w0, w1, h);
-                z1 = z;
+                let own = match (&friction.contact, contact) {
+                    (Some(law), Some(state)) => {
+                        let (state, own) = law.step(state, [w0, w1], h);
+                        next_contact = Some(state);
+                        own
+                    }
+                    _ => {
+                        let (z, own) = friction.law.step_torque(z0, w0, w1, h);
+                        z1 = z;
+                        own
+                    }
+                };
                 let mut load = law.by_lever(own) + outer_load;
                 if has_loads {
                     let mut bristle = 0.0;
@@ -139,6 +154,7 @@ impl<S: TimeStepper> State<S> {
                 });
             }
             self.bristle = z1;
+            self.contact = next_contact;
             self.unit_bristle = u1;
             let origins = [self.origin, self.motor_origin];
             self.seen = Seen::of(
@@ -201,8 +217,15 @@ where
     }
 
     fn friction(&self) -> [f64; 2] {
-        let law = &self.law.assembly.friction.law;
-        let force = law.torque(self.bristle, self.seen.speed / self.law.lever) / self.law.lever;
-        [force, self.bristle / coulomb_bristle(law)]
+        let friction = &self.law.assembly.friction;
+        let (law, speed) = (&friction.law, self.seen.speed / self.law.lever);
+        let [force, share] = match (&friction.contact, &self.contact) {
+            (Some(contact), Some(state)) => [contact.force(state, speed), contact.share(state)],
+            _ => [
+                law.torque(self.bristle, speed),
+                self.bristle / coulomb_bristle(law),
+            ],
+        };
+        [force / self.law.lever, share]
     }
 }

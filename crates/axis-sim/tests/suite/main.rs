@@ -21,6 +21,7 @@ mod energy;
 mod feedback;
 mod files;
 mod fingerprint;
+mod friction_kinds;
 mod golden;
 mod hostile;
 mod limits;

@@ -11,7 +11,7 @@ use trajectories::{Limits, Motion, SCurve};
 use crate::{RIGID, change, number};
 
 /// Friction in N, m/s and m: 20 N on a bristle of 10 µm, damped.
-const FRICTION: Parameters = Parameters {
+pub const FRICTION: Parameters = Parameters {
     coulomb: 20.0,
     stiction: 25.0,
     stribeck_speed: 5e-3,
@@ -22,7 +22,7 @@ const FRICTION: Parameters = Parameters {
 
 /// The benchmark's machine with another mass and the same loop gain, so that a
 /// friction of 2e4 N·s/m over 50 µs asks for 1 N back per newton at 1 kg.
-fn machine(mass: f64) -> Axis {
+pub fn machine(mass: f64) -> Axis {
     let mut axis = crate::axis(RIGID);
     let gain = number(&axis.control, "speed_gain") * mass / number(&axis.mechanism, "mass");
     change(&mut axis.control, &[("speed_gain", gain)]);
@@ -67,23 +67,18 @@ fn replay() -> Replay {
     Replay::new(&log, PERIOD).unwrap()
 }
 
-/// Positions at the samples: P-P control, and between them Runge-Kutta of
-/// fourth order with steps of `h` on mass and LuGre friction.
-fn by_runge_kutta(axis: &Axis, h: f64) -> Vec<f64> {
-    let p = FRICTION;
-    let mass = number(&axis.mechanism, "mass");
+/// Positions at the samples: P-P control, and between them `advance(motion, force, h)` of
+/// position and speed in steps of `h`.
+pub fn controlled(
+    axis: &Axis,
+    h: f64,
+    mut advance: impl FnMut([f64; 2], f64, f64) -> [f64; 2],
+) -> Vec<f64> {
     let [position_gain, speed_gain] =
         ["position_gain", "speed_gain"].map(|key| number(&axis.control, key));
     let [force_gain, limit] =
         ["force_gain", "command_limit"].map(|key| number(&axis.actuator, key));
-    let rate = |[_, v, z]: [f64; 3], force: f64| {
-        let level = p.coulomb + (p.stiction - p.coulomb) * (-(v / p.stribeck_speed).powi(2)).exp();
-        let slip = v - p.stiffness * v.abs() * z / level;
-        let rub = p.stiffness * z + p.damping * slip + p.viscous * v;
-        [v, (force - rub) / mass, slip]
-    };
-    let moved = |s: [f64; 3], r: [f64; 3], h: f64| [0, 1, 2].map(|i| s[i] + h * r[i]);
-    let (mut s, mut before, mut seen) = ([0.0; 3], [0.0; 2], Vec::new());
+    let (mut s, mut before, mut seen) = ([0.0; 2], [0.0; 2], Vec::new());
     for k in 0..CYCLES {
         let filtered = [0.5 * (s[0] + before[0]), 0.5 * (before[0] + before[1])];
         let speed = (filtered[0] - filtered[1]) / PERIOD;
@@ -93,16 +88,54 @@ fn by_runge_kutta(axis: &Axis, h: f64) -> Vec<f64> {
         seen.push(s[0]);
         let force = force_gain * command;
         for _ in 0..(PERIOD / h).round() as usize {
-            let a = rate(s, force);
-            let b = rate(moved(s, a, 0.5 * h), force);
-            let c = rate(moved(s, b, 0.5 * h), force);
-            let d = rate(moved(s, c, h), force);
-            for (r, part) in [(a, 1.0), (b, 2.0), (c, 2.0), (d, 1.0)] {
-                s = moved(s, r, h * part / 6.0);
-            }
+            s = advance(s, force, h);
         }
     }
     seen
+}
+
+/// A step of Runge-Kutta of fourth order on mass and a bristle whose deflection `z` changes by
+/// `slip(v, z)`; the friction is that of `FRICTION`.
+pub fn runge_kutta(
+    mass: f64,
+    damping: f64,
+    slip: impl Fn(f64, f64) -> f64,
+) -> impl FnMut([f64; 2], f64, f64) -> [f64; 2] {
+    let p = FRICTION;
+    let mut deflection = 0.0;
+    move |[x, v], force, h| {
+        let rate = |[_, v, z]: [f64; 3]| {
+            let slip = slip(v, z);
+            let rub = p.stiffness * z + damping * slip + p.viscous * v;
+            [v, (force - rub) / mass, slip]
+        };
+        let moved = |s: [f64; 3], r: [f64; 3], h: f64| [0, 1, 2].map(|i| s[i] + h * r[i]);
+        let mut s = [x, v, deflection];
+        let a = rate(s);
+        let b = rate(moved(s, a, 0.5 * h));
+        let c = rate(moved(s, b, 0.5 * h));
+        let d = rate(moved(s, c, h));
+        for (r, part) in [(a, 1.0), (b, 2.0), (c, 2.0), (d, 1.0)] {
+            s = moved(s, r, h * part / 6.0);
+        }
+        deflection = s[2];
+        [s[0], s[1]]
+    }
+}
+
+/// G(v) of `FRICTION`, N.
+pub fn level(v: f64) -> f64 {
+    let p = FRICTION;
+    p.coulomb + (p.stiction - p.coulomb) * (-(v / p.stribeck_speed).powi(2)).exp()
+}
+
+/// Greatest distance of the axis' motion from one by another program, m.
+pub fn apart(axis: &Axis, truth: &[f64]) -> f64 {
+    let trace = replay().run(axis, &[], None).unwrap();
+    let seen = trace.channel("position_m").unwrap();
+    assert!(truth.iter().copied().fold(0.0, f64::max) > 0.01);
+    let apart = seen.iter().zip(truth).map(|(a, b)| (a - b).abs());
+    apart.fold(0.0, f64::max)
 }
 
 #[test]
@@ -113,13 +146,10 @@ fn heavy_and_light_masses_move_as_in_the_obvious_integration() {
         for step in [5e-5, 5e-6] {
             let mut axis = machine(mass);
             axis.simulation.step = step;
-            let truth = by_runge_kutta(&axis, 1e-6);
-            let trace = replay().run(&axis, &[], None).unwrap();
-            let seen = trace.channel("position_m").unwrap();
-            let apart = seen.iter().zip(&truth).map(|(a, b)| (a - b).abs());
-            let apart = apart.fold(0.0, f64::max);
+            let slip = |v: f64, z: f64| v - FRICTION.stiffness * v.abs() * z / level(v);
+            let moves = runge_kutta(mass, FRICTION.damping, slip);
+            let apart = apart(&axis, &controlled(&axis, 1e-6, moves));
             println!("{mass} kg: {apart:.2e} m");
-            assert!(truth.iter().copied().fold(0.0, f64::max) > 0.01);
             assert!(apart < tolerance * step / 5e-5, "{mass} kg: {apart:e}");
         }
     }

@@ -101,6 +101,14 @@ pub enum FrictionIdentifyError {
         /// Its standard error (infinite if the data say nothing).
         standard_error: f64,
     },
+    /// The law has more numbers than a fit holds.
+    #[error("the law has {found} numbers, at most {most} can be fitted: fewer elements")]
+    TooManyNumbers {
+        /// Numbers of the law.
+        found: usize,
+        /// The most that are possible.
+        most: usize,
+    },
     /// Parameters that make no law were given or found.
     #[error(transparent)]
     Law(#[from] LugreError),

@@ -1,4 +1,5 @@
-//! Identification of the six parameters, in two experiments.
+//! Identification from records: of LuGre's six parameters in two experiments, and of any
+//! law of the family by [`identify_law`].
 //!
 //! 1. Constant speeds, both directions, many speeds on either side of `Ω_S`:
 //!    [`ConstantSpeedRun::from_record`] condenses each record,
@@ -16,7 +17,9 @@ mod coulomb;
 mod curve;
 mod error;
 mod estimate;
+mod law_fit;
 mod least_squares;
+mod numbers;
 mod presliding;
 mod record;
 mod report;
@@ -28,7 +31,9 @@ mod trial;
 pub use coulomb::identify_coulomb;
 pub use error::FrictionIdentifyError;
 pub use estimate::ParameterEstimate;
+pub use law_fit::{Before, FrictionRecord, LawEstimate, LawFit, identify_law};
 pub use least_squares::FitOutcome;
+pub use numbers::{Identifiable, IdentifiableOnset, Kind, Number, Unknown};
 pub use presliding::{MeasuredMotion, PreslidingFit, PreslidingRecord, identify_presliding};
 pub use record::ConstantSpeedRun;
 pub use static_fit::{LeftOut, Reason, StaticFit, StaticKnowledge, StaticParameters};

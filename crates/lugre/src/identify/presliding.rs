@@ -158,7 +158,7 @@ fn check(
 }
 
 /// Central differences, one-sided of second order at the ends.
-fn central_speeds(x: &[f64], h: f64) -> Vec<f64> {
+pub(super) fn central_speeds(x: &[f64], h: f64) -> Vec<f64> {
     let n = x.len();
     (0..n)
         .map(|i| {

@@ -1,0 +1,57 @@
+//! `dahl` and `dahl-rotary`: Dahl's friction on a Stribeck curve.
+
+use std::sync::Arc;
+
+use lugre::DahlOnset;
+
+use super::contact::of_bristle;
+use super::keys::{linear, rotary};
+use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
+use super::{Contact, Friction};
+use crate::mechanism::Freedom;
+use crate::part::{Known, PartError, PartKind, Values, number};
+
+pub(super) static LINEAR: PartKind<Friction> = PartKind {
+    name: "dahl",
+    summary: "Dahl's friction, as force over speed of a load that moves along a line",
+    keys: &[
+        linear::COULOMB,
+        linear::STICTION,
+        linear::STRIBECK_SPEED,
+        linear::STIFFNESS_OF_BRISTLE,
+        linear::VISCOUS,
+        number("exponent", 0.0, 10.0),
+    ],
+    known: KNOWN,
+    build: |v| build(v, Freedom::Linear),
+};
+
+pub(super) static ROTARY: PartKind<Friction> = PartKind {
+    name: "dahl-rotary",
+    summary: "Dahl's friction, as torque over speed of a load that turns",
+    keys: &[
+        rotary::COULOMB,
+        rotary::STICTION,
+        rotary::STRIBECK_SPEED,
+        rotary::STIFFNESS_OF_BRISTLE,
+        rotary::VISCOUS,
+        number("exponent", 0.0, 10.0),
+    ],
+    known: KNOWN,
+    build: |v| build(v, Freedom::Rotary),
+};
+
+const KNOWN: &[Known] = &[
+    COULOMB_LEVEL,
+    BREAK_AWAY,
+    Known::key("stribeck_speed"),
+    Known::key("bristle_stiffness"),
+    Known::key("viscous"),
+];
+
+fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {
+    let onset = DahlOnset {
+        exponent: v.number("exponent")?,
+    };
+    of_bristle(v, freedom, onset, Contact::Dahl)
+}

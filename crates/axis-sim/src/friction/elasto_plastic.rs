@@ -1,0 +1,60 @@
+//! `elasto-plastic` and `elasto-plastic-rotary`: friction that does not creep at standstill.
+
+use std::sync::Arc;
+
+use lugre::ElastoPlasticOnset;
+
+use super::contact::of_bristle;
+use super::keys::{linear, rotary};
+use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
+use super::{Contact, Friction};
+use crate::mechanism::Freedom;
+use crate::part::{Known, PartError, PartKind, Values, number};
+
+pub(super) static LINEAR: PartKind<Friction> = PartKind {
+    name: "elasto-plastic",
+    summary: "elasto-plastic friction, as force over speed of a load that moves along a line",
+    keys: &[
+        linear::COULOMB,
+        linear::STICTION,
+        linear::STRIBECK_SPEED,
+        linear::STIFFNESS_OF_BRISTLE,
+        linear::DAMPING,
+        linear::VISCOUS,
+        number("elastic_share", 0.0, 0.99),
+    ],
+    known: KNOWN,
+    build: |v| build(v, Freedom::Linear),
+};
+
+pub(super) static ROTARY: PartKind<Friction> = PartKind {
+    name: "elasto-plastic-rotary",
+    summary: "elasto-plastic friction, as torque over speed of a load that turns",
+    keys: &[
+        rotary::COULOMB,
+        rotary::STICTION,
+        rotary::STRIBECK_SPEED,
+        rotary::STIFFNESS_OF_BRISTLE,
+        rotary::DAMPING,
+        rotary::VISCOUS,
+        number("elastic_share", 0.0, 0.99),
+    ],
+    known: KNOWN,
+    build: |v| build(v, Freedom::Rotary),
+};
+
+const KNOWN: &[Known] = &[
+    COULOMB_LEVEL,
+    BREAK_AWAY,
+    Known::key("stribeck_speed"),
+    Known::key("bristle_stiffness"),
+    Known::key("viscous"),
+    Known::key("bristle_damping"),
+];
+
+fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {
+    let onset = ElastoPlasticOnset {
+        elastic_share: v.number("elastic_share")?,
+    };
+    of_bristle(v, freedom, onset, Contact::ElastoPlastic)
+}
