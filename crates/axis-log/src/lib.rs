@@ -143,6 +143,7 @@ pub use log::{Log, TIME_CHANNEL};
 pub use mapping::{ColumnMap, ColumnUnit, Mapping, MappingError};
 pub use read::read_log;
 pub use read_error::{Place, ReadError, ReadProblem};
+pub use table::OtherUnit;
 pub use unit::{unit_of, unit_suffixes};
 pub use write::{
     CsvSink, LAYOUT, LogFile, LogSink, WriteError, WriteProblem, write, write_csv, write_csv_to,

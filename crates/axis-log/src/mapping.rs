@@ -160,7 +160,7 @@ pub enum MappingError {
     /// A unit that is not known.
     #[error(
         "channel \"{channel}\": unit is \"{unit}\": it must be one of {}",
-        source_units()
+        source_units(channel)
     )]
     Unit {
         /// Name of the channel.
@@ -171,7 +171,8 @@ pub enum MappingError {
     /// A unit of another dimension than the channel's.
     #[error(
         "channel \"{channel}\" cannot be read from a column in {unit}: that is another \
-         dimension; give a factor without unit, or a channel of that dimension"
+         dimension; give one of {}, a factor without unit, or a channel of that dimension",
+        source_units(channel)
     )]
     UnitDimension {
         /// Name of the channel.

@@ -12,7 +12,7 @@ use crate::mat_table::MatTable;
 #[cfg(feature = "parquet")]
 use crate::parquet_table::ParquetTable;
 use crate::read_error::{ReadError, ReadProblem};
-use crate::select::{Pick, select};
+use crate::select::{Pick, other_unit, select};
 use crate::table::{Head, Holes, Note, Table};
 
 /// Reads a log from a table of text, a Parquet or a MAT file, by its extension (`.csv`,
@@ -242,7 +242,11 @@ fn notes_of_mapping<'a>(
                 .to_owned(),
         }
     });
-    absent.chain(by_file)
+    let other = picks.iter().filter_map(|p| {
+        let other = other_unit(&p.map, &heads[p.column])?;
+        Some(Note::OtherUnit(other))
+    });
+    absent.chain(by_file).chain(other)
 }
 
 /// Takes out of the columns what is in the table twice: rows with the time of the one before that

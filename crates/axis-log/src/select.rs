@@ -5,7 +5,7 @@ use crate::log::TIME_CHANNEL;
 use crate::mapping::{ColumnMap, Mapping};
 use crate::read_error::ReadProblem;
 use crate::source_unit::{known, size_of};
-use crate::table::{Head, Table};
+use crate::table::{Head, OtherUnit, Table};
 use crate::unit::unit_of;
 
 /// A column that becomes a channel.
@@ -77,17 +77,39 @@ pub(crate) fn in_its_unit(mut map: ColumnMap, head: &Head) -> ColumnMap {
     if map.is_scale_stated {
         return map;
     }
-    let of = |unit: &str| Some((known(unit)?.1, size_of(unit)?));
-    let stored = head.stored.and_then(of);
-    let stated = || of(head.unit.as_deref().or_else(|| stated_unit(&head.name))?);
-    let own = unit_of(&map.channel).and_then(of);
-    if let Some(((dimension, own), (of_file, size))) = own.zip(stored.or_else(stated))
-        && dimension == of_file
-    {
-        map.scale = size / own;
+    if let Some((_, scale)) = scale_of_file(&map.channel, head) {
+        map.scale = scale;
     }
     map
 }
+
+/// The unit that the file states for a column, and how many of the channel's one is; `None` if it states
+/// none, or one of another dimension.
+fn scale_of_file<'a>(channel: &str, head: &'a Head) -> Option<(&'a str, f64)> {
+    let of = |unit: &str| Some((known(unit)?.1, size_of(unit)?));
+    let stored = head.stored.filter(|unit| of(unit).is_some());
+    let stated = || head.unit.as_deref().or_else(|| stated_unit(&head.name));
+    let unit = stored.or_else(stated)?;
+    let (dimension, own) = of(unit_of(channel)?)?;
+    let (of_file, size) = of(unit)?;
+    (dimension == of_file).then_some((unit, size / own))
+}
+
+/// What to say of a column whose mapping states another scale than the unit that the file states has,
+/// whatever the sign.
+pub(crate) fn other_unit(map: &ColumnMap, head: &Head) -> Option<OtherUnit> {
+    let (unit, scale) = scale_of_file(&map.channel, head).filter(|_| map.is_scale_stated)?;
+    let differs = (map.scale.abs() / scale - 1.0).abs() > SAME_SCALE;
+    differs.then(|| OtherUnit {
+        column: head.name.clone(),
+        channel: map.channel.clone(),
+        unit: unit.to_owned(),
+        scales: [scale, map.scale],
+    })
+}
+
+/// Share of a scale by which a factor that was written with a few digits is off.
+const SAME_SCALE: f64 = 1e-3;
 
 /// Refuses a column whose name says another unit than the line below the names.
 fn agrees(head: &Head) -> Result<(), ReadProblem> {

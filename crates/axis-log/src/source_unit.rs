@@ -82,10 +82,15 @@ pub(crate) fn size_of(name: &str) -> Option<f64> {
     row(name).map(|(_, _, size)| *size)
 }
 
-/// Names of the units that a column may be given in, as error messages list them.
-pub(crate) fn source_units() -> String {
-    let names = UNITS.iter().map(|(names, ..)| names[0]);
-    let all: Vec<&str> = names.chain(COUNTS.map(|c| c.0)).chain([PERCENT]).collect();
+/// Names of the units that a column may be given in to be this channel, as error messages list them;
+/// of all dimensions, where the channel's is not known.
+pub(crate) fn source_units(channel: &str) -> String {
+    let own = unit_of(channel).and_then(row).map(|(_, of, _)| *of);
+    let units = UNITS.iter().map(|(names, of, _)| (names[0], *of));
+    let fits = units
+        .chain(COUNTS)
+        .filter(|(_, of)| own.is_none_or(|own| own == *of));
+    let all: Vec<&str> = fits.map(|(name, _)| name).chain([PERCENT]).collect();
     all.join(" ")
 }
 

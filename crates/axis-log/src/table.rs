@@ -64,10 +64,25 @@ pub(crate) enum Note {
     Held { rows: usize },
     /// A column whose mapping states no unit was read in that which the file states.
     UnitOfFile { column: String, unit: String },
+    /// A column that a mapping reads in another unit than that which the file states.
+    OtherUnit(OtherUnit),
     /// A column that a mapping names is not there.
     NoColumn { column: String, there: Vec<String> },
     /// Rows that were there twice; the second was dropped.
     Repeated { rows: usize, first: f64 },
+}
+
+/// A column that a mapping reads in another unit than that which the file states.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OtherUnit {
+    /// The column.
+    pub column: String,
+    /// The channel that it becomes.
+    pub channel: String,
+    /// The unit that the file states.
+    pub unit: String,
+    /// Units of the channel for one of the file's numbers: as the file says, and as the mapping does.
+    pub scales: [f64; 2],
 }
 
 impl Table for Box<dyn Table + '_> {

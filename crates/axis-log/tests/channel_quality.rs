@@ -310,6 +310,23 @@ fn a_factor_that_no_unit_explains_is_unclear_and_proposes_nothing() {
     );
 }
 
+/// A drive that shows its current as RMS and takes its command as an amplitude, or the other way round.
+#[test]
+fn rms_values_beside_amplitudes_are_recognised_and_nothing_is_proposed() {
+    for factor in [2.0f64.sqrt(), 0.5f64.sqrt()] {
+        let mut n = noise(41);
+        let pair = log(&[
+            ("iq_ref_a", of(motion)),
+            ("iq_a", of(|t| factor * motion(t) + 1e-4 * n())),
+        ]);
+        let follows = [Relation::new("iq_a", "iq_ref_a", RelationLaw::Follows)];
+        let found = cross_check(&pair, &mapped(), &follows);
+        assert_eq!(found[0].verdict, CrossCheckVerdict::Unclear, "{found:?}");
+        assert!(found[0].looks_like.contains("RMS"), "{found:?}");
+        assert_eq!(found[0].repair, None);
+    }
+}
+
 fn measured(file: &str) -> Option<Log> {
     let path = crate::needs::shared(&format!("data/{file}"))?;
     let map = |source: &str, channel: &str| ColumnMap {

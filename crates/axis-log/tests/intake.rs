@@ -325,7 +325,7 @@ fn units_are_exact_and_wrong_ones_are_refused() {
     assert!(refused(scale("motor_angle_rad", "counts", None, None)).contains("counts_per_turn"));
     assert!(refused(scale("motor_angle_rad", "deg", Some(4.0), None)).contains("counts_per_turn"));
     assert!(refused(scale("position_m", "deg", None, None)).contains("another dimension"));
-    assert!(refused(scale("position_m", "furlong", None, None)).contains("one of s ms"));
+    assert!(refused(scale("position_m", "furlong", None, None)).contains("one of m mm um nm in %"));
 }
 
 proptest! {

@@ -23,7 +23,7 @@ impl EffectForces {
             position,
             speed: self.travel * speed,
             bristle: direction,
-            pressed: 1.0,
+            loaded: 1.0,
             ..TableState::default()
         });
         // The hook gives what the rotor feels of a motor that makes no torque.

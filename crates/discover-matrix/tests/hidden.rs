@@ -9,7 +9,7 @@ use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, Scales};
 use discover_matrix::hidden::{Exercise, Hidden, Noise, OUTSIDE, exercise};
 use discrepancy::{
-    Discovery, Fitter, Foresight, Library, LogSet, Settings, State, Verdict, discovery, search,
+    Discovery, Fitter, Library, LogSet, Prediction, Settings, State, Verdict, discovery, search,
     search_with,
 };
 use trajectories::{Limits, Program, Step};
@@ -70,7 +70,7 @@ fn library_on(motion: &Program) -> Option<Arc<Library>> {
     let made = LIBRARIES[place].get_or_init(|| {
         let set = logs(&hide(None, 1), motion, false);
         let noise = Noise::good(&axis()).into();
-        Foresight::new(&axis(), &set, noise).unwrap().library()
+        Prediction::new(&axis(), &set, noise).unwrap().library()
     });
     Some(made.clone())
 }

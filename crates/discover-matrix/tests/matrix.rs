@@ -89,7 +89,7 @@ fn some_hidden_effects_of_every_kind_are_found_or_honestly_not() {
 fn what_the_library_imitates_is_foreseen() {
     let root = case(CaseKind::Outside, &[("root-friction", &[24.0])], &[]);
     let bench = Bench::new(&axis(), Exercise::ThereAndBack).unwrap();
-    let root = bench.foresee(&root).remove(0).unwrap();
+    let root = bench.predict(&root).remove(0).unwrap();
     assert!(root.imitation.unwrap().complete);
 }
 

@@ -141,7 +141,7 @@ fn a_clean_machine_and_one_effect_are_told_and_counted() {
     // Alone, from what is kept of it, a case gives the same to the bit.
     assert_eq!(bench.try_case(&outcomes[0].case), outcomes[0]);
     let single = &outcomes[1];
-    assert!(single.is_seen(), "{:?}", single.foreseen);
+    assert!(single.is_seen(), "{:?}", single.predicted);
     let rate = |start: &str| {
         let target = TARGETS.iter().find(|t| t.name.starts_with(start));
         target.unwrap().rate(&outcomes)
@@ -152,10 +152,10 @@ fn a_clean_machine_and_one_effect_are_told_and_counted() {
     // Sizes are where they are to be, known parameters fitted out. So large, as the joint's
     // noise lies at high frequencies: at thirty times the fall of D that naming takes, the
     // effect is below the part of a channel's noise that is asked as well.
-    let gain = single.foreseen[0].gain;
+    let gain = single.predicted[0].gain;
     let mut less = both[1].clone();
     less.visible = vec![300.0];
-    let smaller = bench.try_case(&less).foreseen[0].gain;
+    let smaller = bench.try_case(&less).predicted[0].gain;
     assert!(
         (gain / smaller / 10.0 - 1.0).abs() < 0.2,
         "{gain} {smaller}"

@@ -81,7 +81,7 @@ impl Evidence {
         if !self.fit.is_balanced() && matches!(verdict, Verdict::Unknown | Verdict::PartlyExplained)
         {
             progress("controller");
-            discovered.discovery.told.controller = self.other_controller(machine, &found);
+            discovered.discovery.assessment.controller = self.other_controller(machine, &found);
         }
         Ok((found, discovered))
     }

@@ -31,7 +31,7 @@
 //! [`Evidence`] goes all this way for logs that were looked at, as the command `discover` does.
 //!
 //! [`controller`] estimates an unknown controller, before any of this.
-//! [`Foresight`] says before any search what it could see and tell apart on a motion;
+//! [`Prediction`] says before any search what it could see and tell apart on a motion;
 //! [`summary`] is for where only a table of errors was measured.
 //!
 //! # What this crate knows nothing of
@@ -41,11 +41,11 @@ mod answers;
 pub mod controller;
 mod estimate;
 mod evidence;
-mod foresight;
 mod judge;
 pub mod logs;
 mod name;
 mod noise;
+mod prediction;
 mod spectrum;
 pub mod summary;
 
@@ -55,12 +55,11 @@ pub use estimate::fit::{Fit, Fitter};
 pub use estimate::interval::Spread;
 pub use estimate::known::{known_deviations, tolerances};
 pub use evidence::{Evidence, EvidenceError};
-pub use foresight::{Foreseen, Foresight, Hypothesis, Imitation};
 pub use judge::{
-    Against, Answered, AtScrew, Confidence, Cost, Curve, Discovered, Discovery, DriveFunction,
-    EffectFound, EffortCost, FigureLogs, FormFound, FrictionLaw, Gaps, Level, Likeness,
-    NextExperiment, Overlay, ParameterFound, Proposal, REMEDIES, ReadUnit, Recalibrated,
-    RefusedEffects, Remedy, RemedyTold, ReplacedEffect, Shown, Size, Told, TrackingCost, Unknown,
+    Against, Answered, Assessment, AtScrew, Confidence, Cost, Curve, Discovered, Discovery,
+    DriveFunction, EffectFound, EffortCost, FigureLogs, FormFound, FrictionLaw, Gaps, Level,
+    Likeness, NextExperiment, Overlay, ParameterFound, Proposal, REMEDIES, ReadUnit, Recalibrated,
+    RefusedEffects, Remedy, RemedyFound, ReplacedEffect, Shown, Size, TrackingCost, Unknown,
     Verdict, discovery, judged,
 };
 pub use name::gap::{ChannelGap, Gap, MATERIAL_OF_NOISE};
@@ -70,6 +69,7 @@ pub use name::search::{
     Settings, SettingsError, Test, search, search_with,
 };
 pub use noise::SensorNoise;
+pub use prediction::{Hypothesis, Imitation, Predicted, Prediction};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

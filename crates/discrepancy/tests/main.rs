@@ -2,10 +2,10 @@
 
 mod controller;
 mod fit;
-mod foresight;
 mod logs;
 #[path = "../../../tests/needs.rs"]
 mod needs;
 mod nothing_missing;
+mod prediction;
 mod settings;
 mod starts;

@@ -51,6 +51,43 @@ impl SetKey {
     }
 }
 
+impl SetKey {
+    /// The table of the file that the key is in, made where it is not there; of several of one name, as
+    /// `[[trajectory]]`, the one of the number that follows the name, from 1.
+    fn table_of<'a>(&self, document: &'a mut DocumentMut) -> Result<&'a mut dyn TableLike> {
+        let wrong = |what: String| {
+            let place = self.tables.join(".");
+            wrong_use(format!("--set {place}.{}: {what}", self.key))
+        };
+        let mut table: &mut dyn TableLike = document.as_table_mut();
+        let mut names = self.tables.iter();
+        while let Some(name) = names.next() {
+            let item = table
+                .entry(name)
+                .or_insert_with(|| Item::Table(Table::new()));
+            if let Item::ArrayOfTables(all) = item {
+                let (number, count) = (names.next(), all.len());
+                let index = number.and_then(|n| n.parse::<usize>().ok()?.checked_sub(1));
+                let one = index.and_then(|index| all.get_mut(index));
+                table = one.ok_or_else(|| {
+                    wrong(format!(
+                        "which [[{name}]] is meant is not said; valid: {name}.1 to {name}.{count}, a point, \
+                         and one of its keys"
+                    ))
+                })?;
+                continue;
+            }
+            table = item.as_table_like_mut().ok_or_else(|| {
+                wrong(format!(
+                    "`{name}` is no table of the axis file; valid: a table such as mechanism, actuator, \
+                     control, friction or stroke, or trajectory.1, a point, and one of its keys"
+                ))
+            })?;
+        }
+        Ok(table)
+    }
+}
+
 /// The text of an axis file with keys set. A key that the file leaves out is added; whether there is
 /// such a key, and whether the value is valid, is for the reader of the file to say.
 ///
@@ -59,20 +96,7 @@ impl SetKey {
 pub fn with_keys(content: &str, keys: &[SetKey]) -> Result<String> {
     let mut document: DocumentMut = content.parse().into_diagnostic()?;
     for set in keys {
-        let mut table: &mut dyn TableLike = document.as_table_mut();
-        for name in &set.tables {
-            let item = table
-                .entry(name)
-                .or_insert_with(|| Item::Table(Table::new()));
-            table = item.as_table_like_mut().ok_or_else(|| {
-                wrong_use(format!(
-                    "--set {}.{}: `{name}` is no table of the axis file; valid: a table such as \
-                     mechanism, actuator, control, friction or stroke, a point, and one of its keys",
-                    set.tables.join("."),
-                    set.key
-                ))
-            })?;
-        }
+        let table = set.table_of(&mut document)?;
         match table.get_mut(&set.key).and_then(Item::as_value_mut) {
             // What stands around a value, its comment among it, stays.
             Some(value) => {
@@ -108,6 +132,24 @@ mod tests {
             FILE.replace("fixed-free", "fixed-fixed")
                 .replace("\"a\"", "\"b\"")
         );
+    }
+
+    #[test]
+    fn one_of_several_tables_is_named_by_its_number() {
+        let file = "[[trajectory]]\nspeed = 1\n[[trajectory]]\nspeed = 2\n";
+        let with = |key: &str| with_keys(file, &[key.parse().unwrap()]);
+        assert_eq!(
+            with("trajectory.2.speed=3").unwrap(),
+            file.replace("= 2", "= 3")
+        );
+        for key in [
+            "trajectory.speed=3",
+            "trajectory.0.speed=3",
+            "trajectory.3.speed=3",
+        ] {
+            let error = with(key).unwrap_err().to_string();
+            assert!(error.contains("trajectory.1 to trajectory.2"), "{error}");
+        }
     }
 
     #[test]

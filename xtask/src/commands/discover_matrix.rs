@@ -243,7 +243,7 @@ mod tests {
     fn outcome_of(case: &Case) -> CaseOutcome {
         CaseOutcome {
             case: case.clone(),
-            foreseen: Vec::new(),
+            predicted: Vec::new(),
             failed: None,
             verdict: None,
             named: Vec::new(),

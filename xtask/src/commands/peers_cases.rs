@@ -237,8 +237,8 @@ fn truth(axis: &Axis, given: &Given) -> TruthFile {
     let hidden = case
         .hidden
         .iter()
-        .zip(&given.foreseen)
-        .map(|(hidden, foreseen)| {
+        .zip(&given.predicted)
+        .map(|(hidden, predicted)| {
             let effect = Effect::named(&hidden.name);
             let parameters = effect.map_or(&[][..], |e| e.parameters);
             let numbers = parameters
@@ -257,8 +257,8 @@ fn truth(axis: &Axis, given: &Given) -> TruthFile {
                 law: case.law.as_ref().map(|law| law.name()),
                 depends_on: effect.map_or(of_law.join(", "), |e| e.depends_on.to_owned()),
                 numbers: numbers.collect(),
-                seen: foreseen.as_ref().is_some_and(|f| f.detectable),
-                alike: foreseen.as_ref().map_or(Vec::new(), |f| f.class.clone()),
+                seen: predicted.as_ref().is_some_and(|f| f.detectable),
+                alike: predicted.as_ref().map_or(Vec::new(), |f| f.class.clone()),
             }
         });
     TruthFile {
@@ -293,7 +293,7 @@ mod tests {
         ))
     }
 
-    /// A torque balance of the slide, which takes no foresight in a loop.
+    /// A torque balance of the slide, which takes no prediction in a loop.
     fn written(out: &Path) -> (Axis, Case, Given) {
         let (text, axis) = (read_text(&file()).unwrap(), Axis::read(&file()).unwrap());
         let all = peer_cases(std::slice::from_ref(&axis), 4, 3).unwrap();

@@ -220,12 +220,12 @@ fn row(outcome: &CaseOutcome) -> String {
         let values: Vec<String> = h.values.iter().map(|v| format!("{v:.3e}")).collect();
         format!("{} {}", h.name, values.join(" "))
     });
-    let gains = outcome.foreseen.iter().map(|f| match f.detectable {
+    let gains = outcome.predicted.iter().map(|f| match f.detectable {
         true => format!("{:.0}", f.gain),
         false => format!("({:.0})", f.gain),
     });
-    let classes = outcome.foreseen.iter().flat_map(|f| f.class.clone());
-    let imitated = outcome.foreseen.iter().filter_map(|f| {
+    let classes = outcome.predicted.iter().flat_map(|f| f.class.clone());
+    let imitated = outcome.predicted.iter().filter_map(|f| {
         let imitation = f.imitation.as_ref().filter(|i| i.complete)?;
         Some(format!("imitated by {}", imitation.by.join(" + ")))
     });

@@ -139,7 +139,7 @@ fn row(outcome: &CaseOutcome) -> String {
     let (case, setting) = (&outcome.case, &outcome.case.setting);
     let hidden = case.hidden.iter().enumerate().map(|(i, h)| {
         let law = case.law.as_ref().map(|law| law.name());
-        let gain = outcome.foreseen.get(i).map_or(0.0, |f| f.gain);
+        let gain = outcome.predicted.get(i).map_or(0.0, |f| f.gain);
         format!("{} ({gain:.0})", law.unwrap_or_else(|| h.name.clone()))
     });
     let hidden: Vec<String> = hidden.collect();

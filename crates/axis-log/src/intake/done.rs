@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use crate::table::Note;
+use crate::table::{Note, OtherUnit};
+use crate::unit::unit_of;
 
 /// The delay of one file's clock against another's, found from their channels.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,6 +49,13 @@ pub enum Done {
         column: String,
         /// Its unit.
         unit: String,
+    },
+    /// A column that its mapping reads in another unit than that which the file states.
+    OtherUnit {
+        /// The file.
+        file: String,
+        /// The column.
+        what: OtherUnit,
     },
     /// A column that the mapping names and the file has not.
     NoColumn {
@@ -203,6 +211,7 @@ impl Done {
             Note::NoLineEnd => Self::NoLineEnd { file },
             Note::Held { rows } => Self::Held { file, rows },
             Note::UnitOfFile { column, unit } => Self::UnitOfFile { file, column, unit },
+            Note::OtherUnit(what) => Self::OtherUnit { file, what },
             Note::NoColumn { column, there } => Self::NoColumn {
                 file,
                 column,
@@ -232,6 +241,15 @@ impl fmt::Display for Done {
                 f,
                 "{file}: column \"{column}\" is read in {unit}, the unit that the file states, as its mapping states none (unit or factor)"
             ),
+            Self::OtherUnit { file, what } => {
+                let [stated, taken] = what.scales;
+                let of_channel = unit_of(&what.channel).unwrap_or_default();
+                let (column, unit) = (&what.column, &what.unit);
+                write!(
+                    f,
+                    "{file}: column \"{column}\": the file states {unit} ({stated} {of_channel}), and its mapping takes 1 of it for {taken} {of_channel}; it is read as the mapping says"
+                )
+            }
             Self::NoColumn {
                 file,
                 column,

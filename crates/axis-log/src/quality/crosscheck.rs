@@ -1,6 +1,6 @@
 //! Whether channels agree with each other, and what mapping would make them.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
 use std::fmt;
 
 use super::clock;
@@ -214,6 +214,13 @@ fn slip(relation: &Relation, factor: f64, near: f64, mapping: &Mapping) -> Judge
             words,
             Some(scaled(channel, factor.signum() / exact)),
         ),
+        None if is_rms(relation, size) => (
+            CrossCheckVerdict::Unclear,
+            format!(
+                "{factor:.5} times the expected value, which is near \u{221a}2: one of the two may be an RMS value, the other an amplitude"
+            ),
+            None,
+        ),
         None => (
             CrossCheckVerdict::Unclear,
             format!("{factor:.5} times the expected value, which no unit explains"),
@@ -221,6 +228,14 @@ fn slip(relation: &Relation, factor: f64, near: f64, mapping: &Mapping) -> Judge
             None,
         ),
     }
+}
+
+/// Whether of two currents one looks like the RMS value of the other's sine.
+fn is_rms(relation: &Relation, size: f64) -> bool {
+    let both = [&relation.channel, &relation.from];
+    let are_currents = both.iter().all(|c| crate::unit_of(c) == Some("A"));
+    let near = |value: f64| (size / value - 1.0).abs() <= NEAR;
+    are_currents && (near(SQRT_2) || near(1.0 / SQRT_2))
 }
 
 /// Counts of an encoder in a turn: a power of two from 256 on, or 1, 1.2, 1.6, 2, 2.5, 3.6, 4,

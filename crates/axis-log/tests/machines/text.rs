@@ -306,7 +306,8 @@ fn a_recording_has_its_time_and_a_choice_of_axes() {
 }
 
 /// A unit in a column's name, or in the line below the names, is used if the mapping states none; a unit or
-/// factor in the mapping takes precedence. A source that the file lacks is reported.
+/// factor in the mapping takes precedence, and is reported if it is another. A source that the file lacks is
+/// reported.
 #[test]
 fn a_column_is_read_in_the_unit_that_the_file_states() {
     let in_names =
@@ -356,6 +357,10 @@ fn a_column_is_read_in_the_unit_that_the_file_states() {
             format!("\"{}\" is read in mm", names[1]),
             format!("\"{}\" is read in mA", names[2]),
             "\"elsewhere\" (source), which is not there; the file has: ".to_owned(),
+            format!(
+                "\"{}\": the file states mm (0.001 m), and its mapping takes 1 of it for 1 m",
+                names[3]
+            ),
         ] {
             assert!(told.contains(&words), "{words}: {told}");
         }

@@ -37,9 +37,9 @@ pub struct SpeedRun {
     pub run: ConstantSpeedRun,
     /// Whether the speed is constant; else friction is the torque less what inertia takes.
     pub steady: bool,
-    /// Way since the load last turned, where the stretch begins, in the law's coordinate; infinite
+    /// Distance since the load last turned, where the stretch begins, in the law's coordinate; infinite
     /// for one that slid for longer than that by its nature.
-    pub way: f64,
+    pub distance: f64,
     /// Why it was left out, if it was.
     pub left_out: Option<String>,
 }

@@ -70,8 +70,11 @@ impl Speeds {
             return Ok(false);
         };
         let least = SLIDES * self.fitted.statics.coulomb.value / stiffness;
-        let (slid, unslid): (Vec<_>, Vec<_>) =
-            self.runs.iter().cloned().partition(|run| run.way >= least);
+        let (slid, unslid): (Vec<_>, Vec<_>) = self
+            .runs
+            .iter()
+            .cloned()
+            .partition(|run| run.distance >= least);
         if unslid.is_empty() || different(&slid) < LEAST_SPEEDS {
             return Ok(false);
         }
@@ -79,7 +82,7 @@ impl Speeds {
         let told = unslid.into_iter().map(|run| SpeedRun {
             left_out: Some(format!(
                 "its bristles still bend: {:.2e} since the last turn, sliding begins after {least:.2e}",
-                run.way
+                run.distance
             )),
             ..run
         });

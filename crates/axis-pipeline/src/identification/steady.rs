@@ -242,7 +242,7 @@ fn run(record: &Record<'_>, stretch: &Range<usize>) -> Option<SpeedRun> {
         time: record.time(&settled),
         run,
         steady: true,
-        way: record.way_before(settled.start) / lever,
+        distance: record.way_before(settled.start) / lever,
         left_out: None,
     })
 }

@@ -196,7 +196,7 @@ fn run(bin: &[&Window], inertia: f64, lever: f64) -> SpeedRun {
         },
         steady: false,
         // In the window before it slid already.
-        way: f64::INFINITY,
+        distance: f64::INFINITY,
         left_out: None,
     }
 }

@@ -63,11 +63,11 @@ pub struct Contest {
     seed: u64,
 }
 
-/// What one way left on one machine.
+/// What one method left on one machine.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Compared {
     /// How it was learned.
-    pub way: ResidualMethod,
+    pub method: ResidualMethod,
     /// Without compensation, the counted moves: greatest error.
     #[serde(flatten)]
     pub none: WithoutCompensation<Vec<f64>>,
@@ -119,8 +119,8 @@ pub fn contests(
     (0..count).map(contest).collect()
 }
 
-/// Every way on every machine; `sense` gives the sensors' noise, `each` is called once a
-/// machine and way.
+/// Every method on every machine; `sense` gives the sensors' noise, `each` is called once a
+/// machine and method.
 ///
 /// # Errors
 /// [`PipelineError`] if a move does not come to its end.
@@ -133,10 +133,10 @@ pub fn compare(
 ) -> Result<Vec<Vec<Compared>>, PipelineError> {
     let all: Vec<(&Contest, ResidualMethod)> = contests
         .iter()
-        .flat_map(|contest| ResidualMethod::ALL.map(|way| (contest, way)))
+        .flat_map(|contest| ResidualMethod::ALL.map(|method| (contest, method)))
         .collect();
-    let made = all.par_iter().map(|(contest, way)| {
-        let made = contest.make(axis, *way, network, sense);
+    let made = all.par_iter().map(|(contest, method)| {
+        let made = contest.make(axis, *method, network, sense);
         each();
         made
     });
@@ -151,13 +151,13 @@ impl Contest {
     fn learner(
         &self,
         axis: &Axis,
-        way: ResidualMethod,
+        method: ResidualMethod,
         network: &NetworkBasis,
     ) -> Result<Option<AnyLearner>, PipelineError> {
         let b = &self.assumed_model;
         let level = b.friction.parameters().coulomb * b.travel / b.lever;
         let stroke = [axis.stroke.minimum, axis.stroke.maximum];
-        Ok(match way {
+        Ok(match method {
             ResidualMethod::Adapted => None,
             ResidualMethod::Tables => Some(AnyLearner::Tables(ResidualLearner::new(
                 stroke, b.travel, level,
@@ -178,7 +178,7 @@ impl Contest {
     fn make(
         &self,
         axis: &Axis,
-        way: ResidualMethod,
+        method: ResidualMethod,
         network: &NetworkBasis,
         sense: Sense<'_>,
     ) -> Result<Compared, PipelineError> {
@@ -189,7 +189,7 @@ impl Contest {
         };
         let mut moves = Moves::new(&closed_loop, sense(self.seed));
         let none = self.count(&mut moves, &mut *NONE.strategy(&predictors)?)?;
-        let mut strategy = adapted(&predictors, self.learner(axis, way, network)?)?;
+        let mut strategy = adapted(&predictors, self.learner(axis, method, network)?)?;
         let (mut left, mut used) = (Vec::new(), Vec::new());
         for (k, program) in self.programs.iter().enumerate() {
             let made = moves.make(&mut *strategy, program)?;
@@ -199,7 +199,7 @@ impl Contest {
             }
         }
         Ok(Compared {
-            way,
+            method,
             none: WithoutCompensation::new(unit, none),
             left: Left::new(unit, left),
             used,

@@ -81,17 +81,17 @@ pub fn random_program(
     })
 }
 
-/// A pre-roll: `way` (m) forward from `start` and back, at 20 mm/s at most. From its log the
+/// A pre-roll: `travel` (m) forward from `start` and back, at 20 mm/s at most. From its log the
 /// friction of the first move that counts can be learned.
 ///
 /// # Errors
 /// [`PipelineError::Trajectory`] if it cannot be planned.
-pub fn pre_roll(start: f64, way: f64) -> Result<NamedMotion, PipelineError> {
+pub fn pre_roll(start: f64, travel: f64) -> Result<NamedMotion, PipelineError> {
     let failed = |source| PipelineError::Trajectory { index: 0, source };
     let limits = Limits::new(0.02, 0.2, 5.0).map_err(failed)?;
     let steps = vec![
         Step::Move {
-            to: start + way,
+            to: start + travel,
             limits,
         },
         Step::Move { to: start, limits },
@@ -105,14 +105,14 @@ pub fn pre_roll(start: f64, way: f64) -> Result<NamedMotion, PipelineError> {
     })
 }
 
-/// A move over `way` (m) from `start` at the constant speed `speed` (m/s).
+/// A move over `travel` (m) from `start` at the constant speed `speed` (m/s).
 ///
 /// # Errors
 /// [`PipelineError::Trajectory`] if it cannot be planned.
-pub fn constant_speed(start: f64, way: f64, speed: f64) -> Result<NamedMotion, PipelineError> {
+pub fn constant_speed(start: f64, travel: f64, speed: f64) -> Result<NamedMotion, PipelineError> {
     let failed = |source| PipelineError::Trajectory { index: 0, source };
     let limits = Limits::new(speed, 0.1, 1.0).map_err(failed)?;
-    let curve = SCurve::plan(start, start + way, &limits).map_err(failed)?;
+    let curve = SCurve::plan(start, start + travel, &limits).map_err(failed)?;
     Ok(NamedMotion {
         name: "constant speed".to_owned(),
         motion: Arc::new(curve),

@@ -1,11 +1,14 @@
 //! What can be wrong with an axis file, said with file, line and field.
 
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use thiserror::Error;
+
+use super::slips::files_near;
+use super::syntax::toml_hint;
 
 /// The text of an axis file and where it came from.
 #[derive(Clone, Debug)]
@@ -42,10 +45,12 @@ impl Source {
 pub enum AxisFileError {
     /// The file could not be read.
     #[error("cannot read the axis file {path}: {reason}")]
-    #[diagnostic(help("give a readable TOML file, such as data/axes/liu2025.toml"))]
+    #[diagnostic(help("{meant}"))]
     Read {
         /// Path that was tried.
         path: PathBuf,
+        /// What to give instead.
+        meant: String,
         /// The system's reason.
         reason: std::io::Error,
     },
@@ -88,6 +93,21 @@ pub enum AxisFileError {
 }
 
 impl AxisFileError {
+    pub(super) fn read(path: &Path, reason: std::io::Error) -> Self {
+        let near = match reason.kind() {
+            std::io::ErrorKind::NotFound => files_near(path),
+            _ => Vec::new(),
+        };
+        Self::Read {
+            path: path.into(),
+            meant: match near.is_empty() {
+                true => "give a readable TOML file, such as data/axes/liu2025.toml".to_owned(),
+                false => format!("did you mean {}?", near.join(" or ")),
+            },
+            reason,
+        }
+    }
+
     pub(super) fn field(
         source: &Source,
         span: Range<usize>,
@@ -108,10 +128,14 @@ impl AxisFileError {
 
     pub(super) fn syntax(source: &Source, error: &toml::de::Error) -> Self {
         let span = error.span().unwrap_or(0..0);
+        let what = match toml_hint(&source.content, span.start) {
+            Some(hint) => format!("{}; {hint}", error.message()),
+            None => error.message().to_owned(),
+        };
         Self::Syntax {
             file: source.name.as_str().into(),
             line: source.line(span.start),
-            what: error.message().to_owned(),
+            what,
             source_code: Arc::new(source.named()),
             span: span.into(),
         }

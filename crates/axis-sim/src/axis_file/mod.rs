@@ -11,6 +11,7 @@ mod read;
 mod registry;
 mod schema;
 mod slips;
+mod syntax;
 
 use std::cell::RefCell;
 use std::io::Read;
@@ -26,6 +27,7 @@ use error::Source;
 use fields::{Fields, Record};
 pub use layout::TABLES_WITHOUT_PARTS;
 pub use registry::Registry;
+pub use syntax::toml_hint;
 
 /// Size beyond which a file is no axis file, bytes.
 const MOST_BYTES: u64 = 1 << 20;
@@ -41,10 +43,7 @@ fn content(path: &Path) -> Result<String, AxisFileError> {
         }
         Ok(content)
     };
-    read().map_err(|reason| AxisFileError::Read {
-        path: path.to_owned(),
-        reason,
-    })
+    read().map_err(|reason| AxisFileError::read(path, reason))
 }
 
 impl Registry {

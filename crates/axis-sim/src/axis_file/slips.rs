@@ -1,5 +1,7 @@
 //! What to say about a key or a word that does not exist.
 
+use std::path::{Path, PathBuf};
+
 use crate::part::{Key, Kind};
 
 /// What is wrong with the key `given` in a table of `keys`.
@@ -59,6 +61,36 @@ fn wrong_unit(given: &str, key: &Key) -> Option<String> {
     Some(format!(
         "has the unit suffix `{unit}`, which is no {unit_of}; there are {units}"
     ))
+}
+
+/// TOML files beside a path that does not exist, of names like its own.
+pub(super) fn files_near(path: &Path) -> Vec<String> {
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let is_toml = |file: &PathBuf| file.extension().is_some_and(|end| end == "toml");
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let files = entries.map(|entry| entry.path()).filter(is_toml);
+    let stem = |file: &Path| Some(file.file_stem()?.to_str()?.to_owned());
+    let mut named: Vec<(PathBuf, String)> =
+        files.filter_map(|f| stem(&f).map(|s| (f, s))).collect();
+    named.sort();
+    // Whether the path ends in `.toml` or was left without.
+    let given = match path.extension() {
+        Some(end) if end == "toml" => stem(path),
+        _ => path
+            .file_name()
+            .and_then(|name| Some(name.to_str()?.to_owned())),
+    };
+    let near = given.map(|given| nearest(&given, named, |(_, stem)| stem));
+    let shown = |(file, _): &(PathBuf, String)| match path.parent() == Some(Path::new("")) {
+        true => file
+            .file_name()
+            .map_or_else(String::new, |n| n.display().to_string()),
+        false => file.display().to_string(),
+    };
+    near.unwrap_or_default().iter().map(shown).collect()
 }
 
 fn hint(near: &[String]) -> String {

@@ -247,18 +247,18 @@ fn forces(axis: &Axis, hooks: &Hooks, load: &Course, spring: Option<f64>, h: f64
                 position: load.position[k],
                 speed: load.speed[k],
                 bristle: unit_law.torque(unit, now),
-                pressed: 1.0,
+                loaded: 1.0,
                 transmitted,
                 travelled,
             };
             let last = k.saturating_sub(1);
             let step = TableStep {
                 length: h,
-                way: load.position[k] - load.position[last],
+                travel: load.position[k] - load.position[last],
                 speed_before: load.speed[last],
                 speed: load.speed[k],
             };
-            travelled += step.way.abs();
+            travelled += step.travel.abs();
             force += hooks.loads_at(&at) + hooks.memories().step(&step, &mut memory);
             memory.accept();
             force += axis.loads.iter().map(|l| l.force(&at)).sum::<f64>();

@@ -234,7 +234,7 @@ mod tests {
 
     /// Of 2·10⁵ numbers some 2·10⁴ are independent behind the filter: 0.02 is three deviations.
     #[test]
-    fn white_noise_behind_the_filter_is_correlated_as_foretold() {
+    fn white_noise_behind_the_filter_is_correlated_as_predicted() {
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let white = (0..200_000).map(|_| random.random::<f64>() - 0.5);
         let shown = LowPass::new(0.04).apply(&white.collect::<Vec<f64>>());

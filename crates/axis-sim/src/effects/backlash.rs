@@ -10,7 +10,7 @@ pub(super) const EFFECT: Effect = Effect {
     channel: EffectChannel::Kinematics,
     depends_on: "sign of the transmitted force",
     shown_over: EffectVariable::Acceleration,
-    parameters: &[positive("gap", Measure::Way, 4e-6, 1e-3)],
+    parameters: &[positive("gap", Measure::Displacement, 4e-6, 1e-3)],
     needs: &[EffectNeed::Role(Role::Backlash)],
     install,
 };

@@ -25,7 +25,7 @@ pub struct TableState {
     pub bristle: f64,
     /// Share of a constant load that acts: it comes up over 20 ms, so that a
     /// log may start with the machine at rest under it.
-    pub pressed: f64,
+    pub loaded: f64,
     /// Force of the transmission on the load at the start of the step, N or N·m.
     ///
     /// It is that of one step before, as the one at the end is not known before the load

@@ -17,6 +17,6 @@ pub(super) const EFFECT: Effect = Effect {
 fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError> {
     let v: [f64; 1] = super::changes::array(values);
     let steepness = super::Steepness::default();
-    to.load_within(steepness, move |t| v[0] * t.pressed);
+    to.load_within(steepness, move |t| v[0] * t.loaded);
     Ok(())
 }

@@ -33,7 +33,7 @@ fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError
     let v: [f64; 3] = super::changes::array(values);
     let steepness = super::Steepness::default();
     to.load_within(steepness, move |t| {
-        v[0] * (TAU * t.time / v[1] + v[2]).sin() * t.pressed
+        v[0] * (TAU * t.time / v[1] + v[2]).sin() * t.loaded
     });
     Ok(())
 }

@@ -42,7 +42,7 @@ fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError
         ..super::Steepness::default()
     };
     to.load_within(steepness, move |t| {
-        amplitude * (wave * t.position + phase).sin() * t.pressed
+        amplitude * (wave * t.position + phase).sin() * t.loaded
     });
     Ok(())
 }

@@ -25,7 +25,7 @@ fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError
         ..super::Steepness::default()
     };
     to.load_within(steepness, move |t| {
-        v[0] * (t.position + v[1]).sin() * t.pressed
+        v[0] * (t.position + v[1]).sin() * t.loaded
     });
     Ok(())
 }

@@ -17,7 +17,7 @@ pub(super) const EFFECT: Effect = Effect {
     depends_on: "motor angle",
     shown_over: EffectVariable::MotorAngle,
     parameters: &[
-        size("amplitude", Measure::Way, 2e-6, 1e-3),
+        size("amplitude", Measure::Displacement, 2e-6, 1e-3),
         shape(
             "order",
             Measure::Ratio,

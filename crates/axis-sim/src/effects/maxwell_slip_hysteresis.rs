@@ -7,7 +7,7 @@
 //! ζᵢ ← clamp(ζᵢ + Δy, −dᵢ, dᵢ),   force = Σ (F/4) ζᵢ / dᵢ,   dᵢ = D · (1/8, 1/4, 1/2, 1)
 //! ```
 //!
-//! F is the force where all slide, D the way from rest until they do. A way back inside of
+//! F is the force where all slide, D the travel from rest until they do. A travel back inside of
 //! another closes its own loop, which one bristle does not. It is the generalised
 //! Maxwell-slip model (Al-Bender, Lampaert and Swevers, IEEE Trans. Automat. Contr. 50
 //! (2005) 1883–1887, doi:10.1109/TAC.2005.858676) with a constant Stribeck curve and an
@@ -40,7 +40,7 @@ pub(super) const EFFECT: Effect = Effect {
         size("force", Measure::Force, 60.0, 5e3),
         shape(
             "presliding_distance",
-            Measure::Way,
+            Measure::Displacement,
             Nature::Extent(&[3e-5, 2e-4], [2e-5, 2e-4]),
             1e-4,
             [1e-6, LONGEST],
@@ -69,12 +69,12 @@ struct Slip {
 }
 
 impl Slip {
-    /// Moves every element by `way` and gives the force.
-    fn moved(&self, way: f64, memory: &mut [f64]) -> f64 {
+    /// Moves every element by `travel` and gives the force.
+    fn moved(&self, travel: f64, memory: &mut [f64]) -> f64 {
         let mut sum = 0.0;
         for (deflection, reach) in memory.iter_mut().zip(REACHES) {
             // In units of the distance, so that the force needs one division.
-            *deflection = (*deflection + way / self.distance).clamp(-reach, reach);
+            *deflection = (*deflection + travel / self.distance).clamp(-reach, reach);
             sum += *deflection / reach;
         }
         SHARE * self.force * sum
@@ -98,7 +98,7 @@ impl MemoryLaw for Slip {
     }
 
     fn step(&self, step: &TableStep, memory: &mut [f64]) -> f64 {
-        self.moved(step.way, memory)
+        self.moved(step.travel, memory)
     }
 }
 
@@ -111,10 +111,10 @@ mod tests {
         distance: 1e-4,
     };
 
-    /// Force and work over a way in small steps.
-    fn along(way: f64, memory: &mut [f64]) -> [f64; 2] {
+    /// Force and work over a travel in small steps.
+    fn along(travel: f64, memory: &mut [f64]) -> [f64; 2] {
         const STEPS: usize = 4000;
-        let by = way / STEPS as f64;
+        let by = travel / STEPS as f64;
         let mut work = 0.0;
         let mut force = SLIP.moved(0.0, memory);
         for _ in 0..STEPS {
@@ -125,7 +125,7 @@ mod tests {
         [force, work]
     }
 
-    /// From one sliding to the other each element gives F/4 over the way less the 2d in
+    /// From one sliding to the other each element gives F/4 over the travel less the 2d in
     /// which it turns over: F (L − 2 · 1.875 D / 4).
     #[test]
     fn a_closed_loop_takes_what_its_area_says() {

@@ -10,8 +10,8 @@ use crate::plant::Start;
 pub struct TableStep {
     /// Length of the step, s.
     pub length: f64,
-    /// Way of the load in it, m or rad.
-    pub way: f64,
+    /// Travel of the load in it, m or rad.
+    pub travel: f64,
     /// Speed of the load at its start, m/s or rad/s.
     pub speed_before: f64,
     /// Speed of the load at its end, m/s or rad/s.

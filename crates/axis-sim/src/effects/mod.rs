@@ -117,7 +117,7 @@ pub enum EffectVariable {
     /// q current, if there is one; time otherwise.
     Current,
     /// Distance travelled to and fro since the log began.
-    Way,
+    Distance,
     /// Time since the log began: also for what depends on nothing, or on no single number.
     Time,
 }

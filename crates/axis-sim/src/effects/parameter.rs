@@ -74,9 +74,9 @@ pub enum Measure {
     Ratio,
     /// Force on the load.
     Force,
-    /// Way of the load by which something gives way.
-    Way,
-    /// Way of the load that is as long as its motions.
+    /// Displacement of the load by which something gives way.
+    Displacement,
+    /// Travel of the load, as long as its motions.
     Travel,
     /// Speed of the load.
     Speed,
@@ -84,9 +84,9 @@ pub enum Measure {
     Acceleration,
     /// Force per speed of the load.
     Damping,
-    /// Force per way of the load by which something gives way.
+    /// Force per displacement of the load by which something gives way.
     Stiffness,
-    /// Force per way of the load along its stroke.
+    /// Force per displacement of the load along its stroke.
     SpringRate,
     /// Inertia of the load.
     Inertia,
@@ -114,7 +114,7 @@ impl Measure {
         match self {
             Self::Ratio => "",
             Self::Force => of("N", "N*m"),
-            Self::Way | Self::Travel => of("m", "rad"),
+            Self::Displacement | Self::Travel => of("m", "rad"),
             Self::Speed => of("m/s", "rad/s"),
             Self::Acceleration => of("m/s^2", "rad/s^2"),
             Self::Damping => of("N*s/m", "N*m*s/rad"),
@@ -139,7 +139,7 @@ pub struct Scales {
     /// Greatest force of the actuator at the load.
     force: f64,
     /// Way by which that force winds the transmission up.
-    way: f64,
+    displacement: f64,
     /// Speed of its fastest trajectory.
     speed: f64,
     /// Load inertia that the force moves as fast.
@@ -186,7 +186,7 @@ impl Scales {
         Self {
             freedom: axis.freedom(),
             force: force / paper_force,
-            way: stiffness.map_or(1.0, |k| (force / k) / (paper_force / PAPER_STIFFNESS)),
+            displacement: stiffness.map_or(1.0, |k| (force / k) / (paper_force / PAPER_STIFFNESS)),
             speed: fastest / PAPER_SPEED,
             inertia: load / PAPER_MASS,
             motor_inertia: axis.mechanism.total_inertia() / PAPER_INERTIA,
@@ -204,12 +204,12 @@ impl Scales {
     pub fn ratio(&self, measure: Measure) -> f64 {
         let ratio = match measure {
             Measure::Force => self.force,
-            Measure::Way => self.way,
+            Measure::Displacement => self.displacement,
             Measure::Travel => self.motion / PAPER_MOTION,
             Measure::Speed => self.speed,
             Measure::Acceleration => self.acceleration,
             Measure::Damping => self.force / self.speed,
-            Measure::Stiffness => self.force / self.way,
+            Measure::Stiffness => self.force / self.displacement,
             Measure::SpringRate => self.force / (self.motion / PAPER_MOTION),
             Measure::Inertia => self.inertia,
             Measure::MotorInertia => self.motor_inertia,

@@ -10,7 +10,7 @@ pub(super) const EFFECT: Effect = Effect {
     channel: EffectChannel::Kinematics,
     depends_on: "motor angle",
     shown_over: EffectVariable::MotorAngle,
-    parameters: &[size("amplitude", Measure::Way, 2e-6, 1e-3), PHASE],
+    parameters: &[size("amplitude", Measure::Displacement, 2e-6, 1e-3), PHASE],
     needs: &[EffectNeed::Transmission],
     install,
 };

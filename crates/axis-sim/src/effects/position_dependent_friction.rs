@@ -13,14 +13,14 @@ pub(super) const EFFECT: Effect = Effect {
         size("peak", Measure::Force, 60.0, 5e3),
         shape(
             "centre",
-            Measure::Way,
+            Measure::Displacement,
             Nature::Place([0.15, 0.75]),
             0.75,
             [0.0, 2.0],
         ),
         shape(
             "width",
-            Measure::Way,
+            Measure::Displacement,
             Nature::Width([0.05, 0.2]),
             0.03,
             [5e-3, 0.3],

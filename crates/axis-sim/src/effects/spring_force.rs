@@ -24,6 +24,6 @@ fn install(values: &[f64], to: &mut super::Changes<'_>) -> Result<(), SetupError
         position: v[0].abs(),
         ..super::Steepness::default()
     };
-    to.load_within(steepness, move |t| v[0] * (t.position - zero) * t.pressed);
+    to.load_within(steepness, move |t| v[0] * (t.position - zero) * t.loaded);
     Ok(())
 }

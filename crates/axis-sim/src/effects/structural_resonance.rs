@@ -165,7 +165,7 @@ mod tests {
             for _ in 0..(2.0 * TAU / at / step) as usize {
                 let swung = TableStep {
                     length: step,
-                    way: 0.0,
+                    travel: 0.0,
                     speed_before: speed(time),
                     speed: speed(time + step),
                 };

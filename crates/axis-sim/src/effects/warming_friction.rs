@@ -17,7 +17,7 @@ pub(super) const EFFECT: Effect = Effect {
     summary: "dry friction that falls with the distance travelled, as by warming up",
     channel: EffectChannel::Torque,
     depends_on: "distance travelled and sign of speed",
-    shown_over: EffectVariable::Way,
+    shown_over: EffectVariable::Distance,
     parameters: &[
         size("force", Measure::Force, 120.0, 5e3),
         shape(

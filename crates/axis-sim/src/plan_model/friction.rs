@@ -39,7 +39,7 @@ impl Added<'_> {
                 position,
                 speed,
                 bristle: direction,
-                pressed: 1.0,
+                loaded: 1.0,
                 ..TableState::default()
             };
             let start = Start {

@@ -118,7 +118,7 @@ impl Axis {
             let rotating = self.mechanism.rotating(x);
             let at_rest = TableState {
                 position: x,
-                pressed: 1.0,
+                loaded: 1.0,
                 ..TableState::default()
             };
             DriveSection {

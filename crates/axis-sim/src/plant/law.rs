@@ -138,7 +138,7 @@ impl<S: TimeStepper> Law<S> {
                 0.0 => start.friction.clamp(-1.0, 1.0),
                 speed => speed.signum(),
             },
-            pressed: if Self::is_loaded(start) { 1.0 } else { 0.0 },
+            loaded: if Self::is_loaded(start) { 1.0 } else { 0.0 },
             transmitted,
             travelled: 0.0,
         }
@@ -228,7 +228,7 @@ where
             outer_load: 0.0,
             force_change: 0.0,
             motor_acceleration: start.acceleration / self.travel,
-            pressed: Self::is_loaded(start),
+            loaded: Self::is_loaded(start),
             seen: Seen::default(),
             law: self,
             drive,

@@ -40,7 +40,7 @@ pub(super) struct State<S: TimeStepper> {
     /// Motor acceleration over the last step, rad/s².
     pub(super) motor_acceleration: f64,
     /// Whether constant loads act from the start on.
-    pub(super) pressed: bool,
+    pub(super) loaded: bool,
     pub(super) seen: Seen,
 }
 
@@ -74,11 +74,7 @@ impl<S: TimeStepper> State<S> {
         let (friction, hooks) = (&assembly.friction, &assembly.hooks);
         let h = stepper.step_length();
         let has_loads = hooks.has_loads() || !assembly.loads.is_empty();
-        let rise = if self.pressed {
-            0.0
-        } else {
-            STANDING_LOAD_RISE
-        };
+        let rise = if self.loaded { 0.0 } else { STANDING_LOAD_RISE };
         let mut errors = NutErrors::new(0.0, 0.0, assembly.backlash)?;
         for _ in 0..steps {
             // The actuator, over the mean motor speed of the step.
@@ -103,7 +99,7 @@ impl<S: TimeStepper> State<S> {
             let (z0, u0, w0) = (self.bristle, self.unit_bristle, law.by_lever(start.speed));
             let (origin, travelled, memory) = (self.origin, self.travelled, &mut self.memory);
             let outer_load = self.outer_load;
-            let pressed = (time / rise).min(1.0);
+            let loaded = (time / rise).min(1.0);
             let (mut z1, mut u1, mut end_load) = (z0, u0, 0.0);
             let contact = self.contact;
             let mut next_contact = contact;
@@ -133,7 +129,7 @@ impl<S: TimeStepper> State<S> {
                         position: origin + table.displacement,
                         speed: table.speed,
                         bristle,
-                        pressed,
+                        loaded,
                         transmitted: start.transmission_force,
                         travelled,
                     };
@@ -141,7 +137,7 @@ impl<S: TimeStepper> State<S> {
                     if !hooks.memories().is_empty() {
                         let step = TableStep {
                             length: h,
-                            way: table.displacement - start.displacement,
+                            travel: table.displacement - start.displacement,
                             speed_before: start.speed,
                             speed: table.speed,
                         };

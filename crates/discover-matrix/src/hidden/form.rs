@@ -74,7 +74,10 @@ impl Form {
     ) -> Option<Vec<ActiveEffect>> {
         let scales = Scales::of(axis);
         let between = |low: f64, high: f64, share: f64| low * (high / low).powf(share);
-        let (speed, way) = (scales.ratio(Measure::Speed), scales.ratio(Measure::Way));
+        let (speed, way) = (
+            scales.ratio(Measure::Speed),
+            scales.ratio(Measure::Displacement),
+        );
         let dry = dry_friction(axis, hidden);
         let active = |effect, values| ActiveEffect { effect, values };
         match self {

@@ -87,7 +87,7 @@ const END_CUSHION: Effect = outside(
     ],
     |v, to| {
         let (k, begin) = (v[0], v[1]);
-        to.load(move |t| k * (t.position - begin).max(0.0).powi(2) * t.pressed);
+        to.load(move |t| k * (t.position - begin).max(0.0).powi(2) * t.loaded);
         Ok(())
     },
 );
@@ -98,13 +98,16 @@ const WAVE_LOAD: Effect = outside(
     ("position", EffectVariable::Position),
     &[
         size("amplitude", Measure::Force, 30.0),
-        shape("pitch", Measure::Way, Nature::Width([0.15, 0.4]), 0.045),
+        shape(
+            "pitch",
+            Measure::Displacement,
+            Nature::Width([0.15, 0.4]),
+            0.045,
+        ),
     ],
     |v, to| {
         let (amplitude, pitch) = (v[0], v[1]);
-        to.load(move |t| {
-            amplitude * (std::f64::consts::TAU * t.position / pitch).sin() * t.pressed
-        });
+        to.load(move |t| amplitude * (std::f64::consts::TAU * t.position / pitch).sin() * t.loaded);
         Ok(())
     },
 );
@@ -164,7 +167,7 @@ impl MemoryLaw for Creep {
     }
 
     fn step(&self, step: &TableStep, memory: &mut [f64]) -> f64 {
-        memory[0] = (memory[0] + step.way) / (1.0 + step.length / self.time);
+        memory[0] = (memory[0] + step.travel) / (1.0 + step.length / self.time);
         self.stiffness * memory[0]
     }
 }
@@ -191,7 +194,12 @@ const fn size(name: &'static str, measure: Measure, typical: f64) -> EffectParam
 
 /// A place, from a motion's start on.
 const fn place(name: &'static str, typical: f64) -> EffectParameter {
-    shape(name, Measure::Way, Nature::Place([0.0, 1.0]), typical)
+    shape(
+        name,
+        Measure::Displacement,
+        Nature::Place([0.0, 1.0]),
+        typical,
+    )
 }
 
 const fn outside(

@@ -149,7 +149,7 @@ impl Rough {
         };
         let log = Log::new(log.channels().iter().enumerate().map(one).collect())?;
         match self.colour {
-            NoiseColour::Outliers => mended(&log, &base),
+            NoiseColour::Outliers => corrected(&log, &base),
             _ => Ok(log),
         }
     }
@@ -168,7 +168,7 @@ fn deviation_in(noise: &Noise, channel: &str) -> Option<f64> {
 }
 
 /// The log with isolated outliers of its measured channels bridged and marked as missing.
-fn mended(log: &Log, noise: &Noise) -> Result<Log, LogError> {
+fn corrected(log: &Log, noise: &Noise) -> Result<Log, LogError> {
     let mut marks = Vec::new();
     let mut one = |channel: &Channel| {
         let mut channel = channel.clone();

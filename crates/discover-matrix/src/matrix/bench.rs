@@ -3,7 +3,7 @@
 
 use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Scales};
 use axis_sim::{Axis, ReplayError};
-use discrepancy::{Foreseen, Foresight, Hypothesis, LogSet};
+use discrepancy::{Hypothesis, LogSet, Predicted, Prediction};
 use thiserror::Error;
 use trajectories::TrajectoryError;
 
@@ -30,7 +30,7 @@ pub struct Bench {
     /// Logs of the clean machine without noise, to fit to and to check on.
     pub(super) templates: [LogSet; 2],
     /// Of the first of them, with good sensors.
-    pub(super) foresight: Foresight,
+    pub(super) prediction: Prediction,
 }
 
 /// Sizes between which one is sought at which an effect is just so visible, as
@@ -64,7 +64,7 @@ impl Bench {
         Ok(Self {
             axis: axis.clone(),
             exercise: kind,
-            foresight: Foresight::new(&machine, &templates[0], good)?,
+            prediction: Prediction::new(&machine, &templates[0], good)?,
             templates,
             machine,
         })
@@ -77,9 +77,9 @@ impl Bench {
 
     /// What can be known of a case's effects; `None` for one that does not run
     /// on the nominal machine, and for all where one is unknown.
-    pub fn foresee(&self, case: &Case) -> Vec<Option<Foreseen>> {
+    pub fn predict(&self, case: &Case) -> Vec<Option<Predicted>> {
         match self.supposed(case) {
-            Some(supposed) => self.foresight.foresee(&supposed),
+            Some(supposed) => self.prediction.predict(&supposed),
             None => vec![None; case.hidden.len()],
         }
     }
@@ -99,7 +99,7 @@ impl Bench {
         };
         let seen_in = |case: &Case| {
             let supposed = self.supposed(case);
-            supposed.map_or(f64::INFINITY, |s| self.foresight.gain_over_needed(&s))
+            supposed.map_or(f64::INFINITY, |s| self.prediction.gain_over_needed(&s))
         };
         times(scale_at(SCALES, |by| seen_in(&times(by)) >= visible))
     }

@@ -1,6 +1,6 @@
 //! What could be known of a case, and what came out of it.
 
-use discrepancy::{ChannelGap, Foreseen, Unknown, Verdict};
+use discrepancy::{ChannelGap, Predicted, Unknown, Verdict};
 use serde::{Deserialize, Serialize};
 
 use super::case::Case;
@@ -47,7 +47,7 @@ pub struct Split {
     /// The pair that it was to separate, the hidden one first.
     pub pair: [String; 2],
     /// Predicted fall of D between the two.
-    pub foreseen: f64,
+    pub predicted: f64,
     /// What that search named, in the order of evidence.
     pub named: Vec<NamedEffect>,
 }
@@ -69,7 +69,7 @@ pub struct CaseOutcome {
     /// The case.
     pub case: Case,
     /// What could be known beforehand, one entry a hidden effect.
-    pub foreseen: Vec<Foreseen>,
+    pub predicted: Vec<Predicted>,
     /// Why there is no verdict, where there is none.
     pub failed: Option<String>,
     /// Verdict.
@@ -96,7 +96,7 @@ mod tests {
     fn a_class_is_split_when_only_the_hidden_one_is_left_of_it() {
         let named = |all: &[(&str, &[&str])]| Split {
             pair: ["constant-load", "process-force"].map(str::to_owned),
-            foreseen: 40.0,
+            predicted: 40.0,
             named: (all.iter())
                 .map(|(name, alike)| NamedEffect {
                     name: (*name).to_owned(),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use axis_sim::ReplayError;
 use axis_sim::effects::{ActiveEffect, Nature};
 use discrepancy::{
-    Foreseen, Found, Library, LogSet, Named, Proposal, SearchError, Settings, free_parameters,
+    Found, Library, LogSet, Named, Predicted, Proposal, SearchError, Settings, free_parameters,
     judged, search_with,
 };
 
@@ -18,9 +18,9 @@ impl Bench {
     /// Runs a case of this bench's motion.
     pub fn try_case(&self, case: &Case) -> CaseOutcome {
         let case = &self.scaled(case);
-        let foreseen = self.foresee(case);
-        let runs = foreseen.iter().all(Option::is_some);
-        let nothing = Foreseen {
+        let predicted = self.predict(case);
+        let runs = predicted.iter().all(Option::is_some);
+        let nothing = Predicted {
             gain: 0.0,
             above_noise: 0.0,
             detectable: false,
@@ -29,7 +29,7 @@ impl Bench {
         };
         let mut outcome = CaseOutcome {
             case: case.clone(),
-            foreseen: foreseen
+            predicted: predicted
                 .into_iter()
                 .map(|f| f.unwrap_or_else(|| nothing.clone()))
                 .collect(),
@@ -60,7 +60,7 @@ impl Bench {
             rejected: case.rejected.clone(),
             ..Settings::default()
         };
-        let library = self.foresight.library();
+        let library = self.prediction.library();
         let found = search_with(&self.machine, fit, check, &settings, library, |_| ())?;
         let told = judged(&self.machine, fit, check, &found)?;
         if let Some(proposal) = &told.proposal {
@@ -106,7 +106,7 @@ impl Bench {
         let found = search_with(&self.machine, &both, check, &settings, library, |_| ())?;
         Ok(Some(Split {
             pair: pair.map(str::to_owned),
-            foreseen: proposal.separation,
+            predicted: proposal.separation,
             named: named(&found),
         }))
     }

@@ -3,7 +3,7 @@
 use axis_log::Log;
 use axis_sim::effects::{ActiveEffect, Scales};
 use axis_sim::{Axis, ReplayError};
-use discrepancy::{Foreseen, Foresight, Hypothesis, LogSet, State};
+use discrepancy::{Hypothesis, LogSet, Predicted, Prediction, State};
 use trajectories::Program;
 
 use super::case::{Case, CaseSetting, Channels};
@@ -26,7 +26,7 @@ pub struct Bench {
     /// Logs of the clean machine on them, without noise where they are replayed.
     pub(super) templates: [LogSet; 2],
     /// Of the first of them; `None` for a torque balance.
-    pub(super) foresight: Option<Foresight>,
+    pub(super) prediction: Option<Prediction>,
 }
 
 /// Sizes between which one is sought, as multiples of the typical.
@@ -76,9 +76,9 @@ impl Bench {
         };
         let templates = [template(0)?, template(1)?];
         let good = Noise::good(&axis).into();
-        let foresight = match setting.channels {
+        let prediction = match setting.channels {
             Channels::Balance => None,
-            _ => Some(Foresight::new(&machine, &templates[0], good)?),
+            _ => Some(Prediction::new(&machine, &templates[0], good)?),
         };
         Ok(Self {
             setting: setting.clone(),
@@ -87,7 +87,7 @@ impl Bench {
             motions,
             every,
             templates,
-            foresight,
+            prediction,
         })
     }
 
@@ -119,10 +119,10 @@ impl Bench {
 
     /// The case with its sizes where they are to be, and what can be known of each of its
     /// effects beforehand; `None` of one that does not run on the nominal machine.
-    pub(super) fn foreseen(
+    pub(super) fn predicted(
         &self,
         case: &Case,
-    ) -> Result<(Case, Vec<Option<Foreseen>>), ReplayError> {
+    ) -> Result<(Case, Vec<Option<Predicted>>), ReplayError> {
         let mut case = case.clone();
         if case.hidden.is_empty() {
             return Ok((case, Vec::new()));
@@ -130,8 +130,8 @@ impl Bench {
         let noise = self
             .truth(&case)
             .noise_logs(&self.axis, &self.motions[0], self.every)?;
-        match &self.foresight {
-            Some(foresight) => {
+        match &self.prediction {
+            Some(prediction) => {
                 let (loud, of_channels) = self.loudness(&case, &noise)?;
                 let supposed = |effects: Vec<ActiveEffect>| Hypothesis {
                     effects,
@@ -140,18 +140,18 @@ impl Bench {
                     of_channels: of_channels.clone(),
                     rejected: case.rejected.clone(),
                 };
-                let gain = |effect| foresight.gain_over_needed(&supposed(vec![effect]));
+                let gain = |effect| prediction.gain_over_needed(&supposed(vec![effect]));
                 let sized = self.sized(&case, gain);
                 let all = supposed(sized.iter().filter_map(active).collect());
                 case.hidden = sized;
-                Ok((case, foresight.foresee(&all)))
+                Ok((case, prediction.predict(&all)))
             }
             None => {
                 let sight = Sight::new(&self.machine, &self.set(0, &noise[0])?)?;
                 case.hidden = self.sized(&case, |e| sight.gain_over_needed(&e));
                 let all: Vec<ActiveEffect> = case.hidden.iter().filter_map(active).collect();
-                let foreseen = sight.foresee(&all, &case.rejected);
-                Ok((case, foreseen))
+                let predicted = sight.predict(&all, &case.rejected);
+                Ok((case, predicted))
             }
         }
     }

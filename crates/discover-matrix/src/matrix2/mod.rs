@@ -16,8 +16,8 @@ mod design;
 mod outcome;
 mod peers;
 mod score;
+mod scored;
 mod sight;
-mod told;
 mod trial;
 
 pub use bench::Bench;

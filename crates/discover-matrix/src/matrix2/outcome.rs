@@ -1,6 +1,6 @@
 //! What came out of a case.
 
-use discrepancy::{Foreseen, Unknown, Verdict};
+use discrepancy::{Predicted, Unknown, Verdict};
 use serde::{Deserialize, Serialize};
 
 use super::case::Case;
@@ -12,7 +12,7 @@ pub struct CaseOutcome {
     /// The case, its sizes scaled.
     pub case: Case,
     /// What could be known beforehand, one entry a hidden effect.
-    pub foreseen: Vec<Foreseen>,
+    pub predicted: Vec<Predicted>,
     /// Why there is no verdict, where there is none.
     pub failed: Option<String>,
     /// Verdict.
@@ -47,7 +47,7 @@ impl CaseOutcome {
     pub(super) fn of(case: &Case) -> Self {
         Self {
             case: case.clone(),
-            foreseen: Vec::new(),
+            predicted: Vec::new(),
             failed: None,
             verdict: None,
             named: Vec::new(),

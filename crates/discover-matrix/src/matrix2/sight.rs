@@ -1,4 +1,4 @@
-//! What can be seen in a torque balance, beforehand: [`discrepancy::Foresight`] asks how
+//! What can be seen in a torque balance, beforehand: [`discrepancy::Prediction`] asks how
 //! noise goes round a loop, and a balance has none.
 //!
 //! The noise is that of the log of the clean machine. Responses are linear, sizes of known
@@ -8,7 +8,7 @@
 use axis_sim::effects::{ActiveEffect, Nature, Scales};
 use axis_sim::{Axis, ReplayError};
 use discrepancy::{
-    Fitter, Foreseen, Imitation, LogSet, MATERIAL_OF_NOISE, ONE_CLASS, State, known_deviations,
+    Fitter, Imitation, LogSet, MATERIAL_OF_NOISE, ONE_CLASS, Predicted, State, known_deviations,
 };
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -99,11 +99,11 @@ impl Sight {
     }
 
     /// What can be known of each of these effects.
-    pub(super) fn foresee(
+    pub(super) fn predict(
         &self,
         all: &[ActiveEffect],
         rejected: &[String],
-    ) -> Vec<Option<Foreseen>> {
+    ) -> Vec<Option<Predicted>> {
         let responses: Vec<Option<Response>> = all.iter().map(|a| (self.response)(a)).collect();
         let one = |i: usize| {
             let own = responses[i].as_ref()?;
@@ -120,7 +120,7 @@ impl Sight {
         own: &Response,
         others: &[&Response],
         rejected: &[String],
-    ) -> Foreseen {
+    ) -> Predicted {
         let name = active.effect.name;
         let (left, needed) = (self.beside(others).left(own), self.needed(active));
         let gain = left.gain;
@@ -133,7 +133,7 @@ impl Sight {
         let others_of = || self.library.iter().filter(|(n, _)| is_other(n));
         let class = others_of().filter(|(_, columns)| alike(left_by(columns)));
         let absent = !self.library.iter().any(|(n, _)| *n == name) || !is_known(name, rejected);
-        Foreseen {
+        Predicted {
             gain,
             above_noise: gain.max(0.0).sqrt(),
             detectable: gain >= 2.0 * needed && self.material(&left) >= 2.0,

@@ -3,7 +3,7 @@
 use axis_log::Log;
 use axis_sim::ReplayError;
 use discrepancy::{
-    Discovered, Fitter, Foreseen, Found, LogSet, Proposal, SearchError, Settings, State, judged,
+    Discovered, Fitter, Found, LogSet, Predicted, Proposal, SearchError, Settings, State, judged,
     search, search_with,
 };
 
@@ -20,7 +20,7 @@ pub struct Given {
     pub case: Case,
     /// What can be known of each hidden effect beforehand; `None` of one that does not run on
     /// the machine as its file says.
-    pub foreseen: Vec<Option<Foreseen>>,
+    pub predicted: Vec<Option<Predicted>>,
     /// Shares by which known parameters are off, in the order of [`axis_sim::Axis::known`].
     pub shares: Vec<f64>,
     /// Logs to fit to and to check on, with the channels that the case shows.
@@ -35,7 +35,7 @@ impl Bench {
     /// # Errors
     /// [`ReplayError`] where the machine does not run.
     pub fn given(&self, case: &Case) -> Result<Given, ReplayError> {
-        let (case, foreseen) = self.foreseen(case)?;
+        let (case, predicted) = self.predicted(case)?;
         let truth = self.truth(&case);
         let shown = |place: usize| -> Result<Log, ReplayError> {
             Ok(self.setting.channels.of(&self.log(&truth, place)?)?)
@@ -45,7 +45,7 @@ impl Bench {
             shares: truth.shares,
             period: self.every as f64 * self.axis.period,
             case,
-            foreseen,
+            predicted,
         })
     }
 
@@ -60,14 +60,14 @@ impl Bench {
     }
 
     fn run(&self, case: &Case, outcome: &mut CaseOutcome) -> Result<(), SearchError> {
-        let (case, foreseen) = self.foreseen(case)?;
+        let (case, predicted) = self.predicted(case)?;
         outcome.case = case.clone();
-        let runs: Option<Vec<_>> = foreseen.into_iter().collect();
-        let Some(foreseen) = runs else {
+        let runs: Option<Vec<_>> = predicted.into_iter().collect();
+        let Some(predicted) = runs else {
             outcome.failed = Some("the axis does not run with the hidden effect".to_owned());
             return Ok(());
         };
-        outcome.foreseen = foreseen;
+        outcome.predicted = predicted;
         let truth = self.truth(&case);
         let logs = [self.logs(&truth, 0)?, self.logs(&truth, 1)?];
         let [fit, check] = &logs;
@@ -75,9 +75,9 @@ impl Bench {
             rejected: case.rejected.clone(),
             ..Settings::default()
         };
-        let found = match &self.foresight {
-            Some(foresight) => {
-                let library = foresight.library();
+        let found = match &self.prediction {
+            Some(prediction) => {
+                let library = prediction.library();
                 search_with(&self.machine, fit, check, &settings, library, |_| ())?
             }
             None => search(&self.machine, fit, check, &settings, |_| ())?,
@@ -193,7 +193,7 @@ impl Bench {
         let found = search(&self.machine, &both, check, &settings, |_| ())?;
         Ok(Some(Split {
             pair: pair.map(str::to_owned),
-            foreseen: proposal.separation,
+            predicted: proposal.separation,
             named: named(&found),
         }))
     }

@@ -140,7 +140,7 @@ fn variable(
             EffectVariable::Position => trace.position().to_vec(),
             EffectVariable::Acceleration => slope(&trace.speed, period),
             EffectVariable::Current => trace.channel("iq_a").unwrap_or_default().to_vec(),
-            EffectVariable::Way => way(trace.position()),
+            EffectVariable::Distance => way(trace.position()),
             EffectVariable::Time => (0..trace.speed.len()).map(|k| k as f64 * period).collect(),
         }
     };
@@ -151,7 +151,7 @@ fn variable(
         EffectVariable::Position => ["position", of(Measure::Travel)],
         EffectVariable::Acceleration => ["acceleration", of(Measure::Acceleration)],
         EffectVariable::Current => ["current iq", "A"],
-        EffectVariable::Way => ["distance travelled", of(Measure::Travel)],
+        EffectVariable::Distance => ["distance travelled", of(Measure::Travel)],
         EffectVariable::Time => ["time", "s"],
     };
     let courses = traces.iter().enumerate().map(course).collect();

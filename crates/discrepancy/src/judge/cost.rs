@@ -131,7 +131,7 @@ fn tracking(machine: &Axis, set: &LogSet, without: &Rest, with: &Rest) -> Option
         Some(all)
     };
     Some(TrackingCost {
-        unit: Measure::Way.unit(machine.freedom()).to_owned(),
+        unit: Measure::Displacement.unit(machine.freedom()).to_owned(),
         measured: Size::of(&errors(None)?),
         with: Size::of(&errors(Some(with))?),
         without: Size::of(&errors(Some(without))?),

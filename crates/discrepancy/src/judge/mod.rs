@@ -1,6 +1,7 @@
 //! What a discovery says: verdict, effects with intervals, gap before and after.
 
 mod against;
+mod assessment;
 mod cost;
 mod experiment;
 mod form;
@@ -14,7 +15,6 @@ mod overlay;
 mod remedy;
 mod sentence;
 mod term;
-mod told;
 mod types;
 mod units;
 mod unknown;
@@ -27,6 +27,8 @@ use axis_sim::{Axis, ReplayError};
 
 pub use self::against::Against;
 use self::against::against;
+use self::assessment::remedies;
+pub use self::assessment::{Assessment, Confidence, Level, RemedyFound};
 pub use self::cost::{Cost, EffortCost, Size, TrackingCost};
 use self::cost::{cost, whole_cost};
 pub use self::experiment::Proposal;
@@ -43,8 +45,6 @@ pub use self::overlay::Overlay;
 use self::overlay::overlays;
 pub use self::remedy::{DriveFunction, REMEDIES, Remedy};
 use self::sentence::sentence;
-use self::told::remedies;
-pub use self::told::{Confidence, Level, RemedyTold, Told};
 pub use self::types::{
     AtScrew, Discovery, EffectFound, FigureLogs, Gaps, NextExperiment, ParameterFound,
     Recalibrated, RefusedEffects, ReplacedEffect, Verdict,
@@ -267,7 +267,7 @@ pub fn judged(
         })
         .collect();
     let refused = refused.map(refused_effects);
-    let told = Told {
+    let assessment = Assessment {
         cost: whole_cost(machine, set, full, &after, &each)?,
         each: if each.len() > 1 { each } else { Vec::new() },
         confidence: Confidence::new(verdict, &effects, &recalibrated, slow_of_loop),
@@ -323,7 +323,7 @@ pub fn judged(
         gap: Gaps { fit, check },
         figures: FigureLogs::of(found, set),
         recalibrated,
-        told,
+        assessment,
         likenesses: Vec::new(),
         next_experiment: proposal.as_ref().map(NextExperiment::new),
     };

@@ -5,6 +5,19 @@ use super::types::{EffectFound, RefusedEffects, Verdict};
 use super::unknown::Unknown;
 use crate::name::gap::Gap;
 
+/// Names of effects, with the order of each that is named more than once: only what repeats with a turn is,
+/// with another order each time.
+pub(super) fn names(effects: &[EffectFound]) -> Vec<String> {
+    let own_name = |e: &EffectFound| {
+        let is_again = effects.iter().filter(|o| o.name == e.name).count() > 1;
+        let order = e.parameters.iter().find(|p| is_again && p.name == "order");
+        order.map_or(e.name.clone(), |order| {
+            format!("{} of order {:.0}", e.name, order.value)
+        })
+    };
+    effects.iter().map(own_name).collect()
+}
+
 /// A verdict in words, with what was named, the residual, and where.
 pub(super) fn sentence(
     verdict: Verdict,
@@ -14,23 +27,11 @@ pub(super) fn sentence(
     refused: Option<&RefusedEffects>,
     own_form: Option<&FormFound>,
 ) -> String {
-    // Only what repeats is named more than once, with another order each time.
-    let own_name = |e: &EffectFound| {
-        let is_again = effects.iter().filter(|o| o.name == e.name).count() > 1;
-        let order = e.parameters.iter().find(|p| is_again && p.name == "order");
-        order.map_or(e.name.clone(), |order| {
-            format!("{} of order {:.0}", e.name, order.value)
-        })
+    let name = |(e, own): (&EffectFound, String)| match e.indistinguishable_from.as_slice() {
+        [] => own,
+        others => format!("{own} (or {}: these logs cannot tell)", others.join(", ")),
     };
-    let name = |e: &EffectFound| match e.indistinguishable_from.as_slice() {
-        [] => own_name(e),
-        others => format!(
-            "{} (or {}: these logs cannot tell)",
-            own_name(e),
-            others.join(", ")
-        ),
-    };
-    let names: Vec<String> = effects.iter().map(name).collect();
+    let names: Vec<String> = effects.iter().zip(names(effects)).map(name).collect();
     let forms = effects
         .iter()
         .filter_map(|e| e.form.as_ref())

@@ -4,10 +4,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use trajectories::Program;
 
+use super::assessment::Assessment;
 use super::experiment::Proposal;
 use super::form::FormFound;
 use super::likeness::Likeness;
-use super::told::Told;
 use super::unknown::Unknown;
 use crate::answers::LogSet;
 use crate::name::gap::Gap;
@@ -278,7 +278,7 @@ pub struct Discovery {
     pub recalibrated: Vec<Recalibrated>,
     /// What a first screen says beside: costs, confidence, remedies.
     #[serde(default)]
-    pub told: Told,
+    pub assessment: Assessment,
     /// What these logs can show of each effect of the library.
     pub likenesses: Vec<Likeness>,
     /// What to run next, where effects look alike.

@@ -3,9 +3,10 @@
 use axis_sim::TRANSMISSION_ERROR;
 use axis_sim::effects::Effect;
 
+use super::assessment::{Assessment, RemedyFound};
 use super::cost::{Cost, EffortCost, Size, TrackingCost};
 use super::form::FormFound;
-use super::told::{RemedyTold, Told};
+use super::sentence::names;
 use super::types::{Discovery, EffectFound, ParameterFound, RefusedEffects, Verdict};
 use super::units::{ReadUnit, channel_unit};
 use super::unknown::Unknown;
@@ -109,7 +110,7 @@ fn unknown(unknown: &Unknown, beside: bool) -> String {
 }
 
 fn costs(discovery: &Discovery) -> Vec<String> {
-    let Told { cost, each, .. } = &discovery.told;
+    let Assessment { cost, each, .. } = &discovery.assessment;
     let named = !discovery.effects.is_empty();
     let mut lines = Vec::new();
     if let Some(t) = &cost.tracking {
@@ -134,7 +135,7 @@ fn costs(discovery: &Discovery) -> Vec<String> {
     if let Some(e) = cost.effort.as_ref().filter(|e| named && e.force.rms > 0.0) {
         lines.push(effort(e));
     }
-    lines.extend(each.iter().map(|(name, cost)| share(name, cost)));
+    lines.extend(shares(&discovery.effects, each));
     lines
 }
 
@@ -166,6 +167,21 @@ fn effort(e: &EffortCost) -> String {
     )
 }
 
+/// What each costs alone. Costs are by name: those of one name stand in the order of the effects.
+fn shares(effects: &[EffectFound], each: &[(String, Cost)]) -> Vec<String> {
+    let own = |k: usize| {
+        let (name, cost) = &each[k];
+        let before = each[..k].iter().filter(|(other, _)| other == name).count();
+        let named = effects.iter().zip(names(effects));
+        let mut same = named.filter(|(e, _)| e.name == *name);
+        let own = same
+            .nth(before)
+            .map_or_else(|| name.clone(), |(_, own)| own);
+        share(&own, cost)
+    };
+    (0..each.len()).map(own).collect()
+}
+
 fn share(name: &str, cost: &Cost) -> String {
     let error = cost.tracking.as_ref().map(|t| {
         let unit = ReadUnit::of(&t.unit, t.with.peak);
@@ -181,7 +197,7 @@ fn share(name: &str, cost: &Cost) -> String {
 }
 
 fn sure(discovery: &Discovery) -> Vec<String> {
-    let confidence = &discovery.told.confidence;
+    let confidence = &discovery.assessment.confidence;
     let mut lines = vec![format!(
         "Confidence: {} ({}).",
         confidence.level.word(),
@@ -236,21 +252,16 @@ fn answer(answer: &str) -> &'static str {
 }
 
 fn alike(effects: &[EffectFound]) -> Vec<String> {
-    let one = |effect: &EffectFound| {
+    let one = |(effect, own): (&EffectFound, String)| {
         let plain = |name: &String| {
             let summary = Effect::named(name).map_or("", |e| e.summary);
             format!("{name} ({summary})")
         };
         let others: Vec<String> = effect.indistinguishable_from.iter().map(plain).collect();
-        (!others.is_empty()).then(|| {
-            format!(
-                "These logs cannot tell {} from {}.",
-                effect.name,
-                others.join(", ")
-            )
-        })
+        (!others.is_empty())
+            .then(|| format!("These logs cannot tell {own} from {}.", others.join(", ")))
     };
-    effects.iter().filter_map(one).collect()
+    effects.iter().zip(names(effects)).filter_map(one).collect()
 }
 
 fn next(discovery: &Discovery) -> Vec<String> {
@@ -262,9 +273,15 @@ fn next(discovery: &Discovery) -> Vec<String> {
             next.what
         ));
     }
-    lines.extend(discovery.told.controller.as_ref().map(other_controller));
+    lines.extend(
+        discovery
+            .assessment
+            .controller
+            .as_ref()
+            .map(other_controller),
+    );
     lines.extend(discovery.unknown.as_ref().and_then(of_unknown));
-    let one = |r: &RemedyTold| {
+    let one = |r: &RemedyFound| {
         format!(
             "{}: {}. {}.",
             r.effect,
@@ -272,8 +289,31 @@ fn next(discovery: &Discovery) -> Vec<String> {
             capital(&r.parameter)
         )
     };
-    lines.extend(discovery.told.remedies.iter().map(one));
+    // Of effects of one kind, of which each has its order, it is one and the same.
+    let mut remedies: Vec<String> = discovery.assessment.remedies.iter().map(one).collect();
+    let mut seen = Vec::new();
+    remedies.retain(|line| {
+        let new = !seen.contains(line);
+        seen.push(line.clone());
+        new
+    });
+    lines.extend(remedies);
+    if discovery.verdict == Verdict::Unknown && lines.is_empty() {
+        lines.extend(of_a_gap_without_name(discovery).map(str::to_owned));
+    }
     lines
+}
+
+/// What shows more of a gap that nothing explains.
+fn of_a_gap_without_name(discovery: &Discovery) -> impl Iterator<Item = &'static str> {
+    let by_forces = (discovery.answer != "torque-balance").then_some(
+        "Compare forces alone (--balance): this leaves the controller, its settings and its noise out of the comparison.",
+    );
+    let motions = [
+        "Log motions that show one thing at a time: several constant speeds in both directions (friction over speed), one slow travel over the stroke and back (what depends on position, lost motion), and a standstill with the drive on (noise).",
+        "Check what the file states as exact: units and signs of the columns (log inspect), torque constant, inertias; [tolerances] lets the search move what is not known.",
+    ];
+    by_forces.into_iter().chain(motions)
 }
 
 /// What a curve that has no name is good for.

@@ -271,7 +271,7 @@ fn install(values: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
     to.load(move |t: &TableState| {
         let of =
             |(law, by): &(Value, f64)| by * law(t.time, t.position - middle, t.speed, t.bristle);
-        t.pressed * parts.iter().map(of).sum::<f64>()
+        t.loaded * parts.iter().map(of).sum::<f64>()
     });
     Ok(())
 }

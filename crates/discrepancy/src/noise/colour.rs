@@ -66,7 +66,7 @@ pub(crate) fn coloured_noise(
     let rest = set.rest(traces);
     let spectra = Spectra::of(&axis, set, &rest, traces);
     let mut noise = spectra.white();
-    let foreseen = spectra.foreseen(&noise);
+    let predicted = spectra.predicted(&noise);
     let of_motion = MotionAndRest::new(fit, check);
     let steadiness = Steadiness::new(set, &rest, traces);
     // Filters take bins of all channels: bands are wider then.
@@ -75,7 +75,7 @@ pub(crate) fn coloured_noise(
         bands.find(|edges| 0.5 * (low + high) < edges[1])
     };
     let is_noise = |(b, band): (usize, [f64; 2])| {
-        let white: Vec<f64> = foreseen.iter().map(|channel| channel[b]).collect();
+        let white: Vec<f64> = predicted.iter().map(|channel| channel[b]).collect();
         b >= TOLD.start
             && steadiness.holds(band, &white)
             && wider(band).is_some_and(|edges| !of_motion.follows(edges))
@@ -85,7 +85,7 @@ pub(crate) fn coloured_noise(
         return Ok(None);
     }
     let answers = spectra.answers_in_bands(&axis, traces);
-    let deviations = coloured(&spectra, &answers, &foreseen, &is_noise);
+    let deviations = coloured(&spectra, &answers, &predicted, &is_noise);
     noise.colour = Colour {
         ends: spectra.bands.edges().map(|[_, high]| high).collect(),
         deviations,
@@ -105,10 +105,10 @@ pub(crate) fn steady_bands(
 ) -> impl Fn([f64; 2]) -> bool {
     let rest = set.rest(traces);
     let spectra = Spectra::of(&at_state(machine, state), set, &rest, traces);
-    let foreseen = spectra.foreseen(&spectra.white());
+    let predicted = spectra.predicted(&spectra.white());
     let steadiness = Steadiness::new(set, &rest, traces);
     let holds = |(b, band): (usize, [f64; 2])| {
-        let white: Vec<f64> = foreseen.iter().map(|channel| channel[b]).collect();
+        let white: Vec<f64> = predicted.iter().map(|channel| channel[b]).collect();
         (band, steadiness.holds(band, &white))
     };
     let bands: Vec<([f64; 2], bool)> = spectra.bands.edges().enumerate().map(holds).collect();
@@ -128,14 +128,14 @@ pub(crate) fn steady_bands(
 fn coloured(
     spectra: &Spectra,
     answers: &[Powers],
-    foreseen: &Powers,
+    predicted: &Powers,
     is_noise: &[bool],
 ) -> Vec<[f64; 4]> {
     let one = |(b, is_noise): (usize, &bool)| {
         if !is_noise {
             return [0.0; 4];
         }
-        let cells = spectra.observed.iter().zip(foreseen);
+        let cells = spectra.observed.iter().zip(predicted);
         let above: Vec<Vec<f64>> = cells
             .map(|(seen, white)| vec![(seen[b] - white[b]).max(LEAST * white[b])])
             .collect();
@@ -143,7 +143,7 @@ fn coloured(
         let shown = |answer: f64, white: f64| if answer > HARDLY * white { answer } else { 0.0 };
         let of_sensors: Vec<Powers> = (answers.iter())
             .map(|channels| {
-                let pairs = channels.iter().zip(foreseen);
+                let pairs = channels.iter().zip(predicted);
                 pairs
                     .map(|(c, white)| vec![shown(c[b], white[b])])
                     .collect()

@@ -104,7 +104,7 @@ impl<'a> Spectra<'a> {
     }
 
     /// Powers of white noise.
-    pub(super) fn foreseen(&self, noise: &LogNoise) -> Powers {
+    pub(super) fn predicted(&self, noise: &LogNoise) -> Powers {
         let (mut own, mut guess) = (noise.sensors, self.guess);
         let share = |sensor: &Sensor| match *sensor.of(&mut guess) {
             0.0 => 0.0,

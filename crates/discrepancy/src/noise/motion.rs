@@ -65,7 +65,7 @@ impl MotionAndRest {
     /// The same of some of the channels, by their places among those that are fitted.
     pub(crate) fn follows_in(&self, band: [f64; 2], wanted: impl Fn(usize) -> bool) -> bool {
         let [fit, check] = [&self.fit, &self.check].map(|bins| equations(bins, band));
-        let shares = foretold_either_way(&fit, &check);
+        let shares = predicted_in_both_directions(&fit, &check);
         let least = |c: usize| {
             let bins = [&fit, &check].map(|of| of.bins_with_power(c));
             match band[0] > 0.0 {
@@ -132,7 +132,7 @@ fn equations(bins: &[Bin], [low, high]: [f64; 2]) -> Equations {
 
 /// Share of the power of one rest that filters found on the other predicts, one a channel; none
 /// if there are fewer bins than coefficients.
-fn foretold(fit: &Equations, check: &Equations) -> Option<Vec<f64>> {
+fn predicted(fit: &Equations, check: &Equations) -> Option<Vec<f64>> {
     let unknowns = fit.motion.ncols();
     if fit.rest.nrows() <= unknowns || check.rest.nrows() == 0 {
         return None;
@@ -157,8 +157,8 @@ fn foretold(fit: &Equations, check: &Equations) -> Option<Vec<f64>> {
 
 /// The lesser of what either rest's filters predicts of the other; none if one set has too few
 /// bins to find any.
-fn foretold_either_way(a: &Equations, b: &Equations) -> Option<Vec<f64>> {
-    let pairs = foretold(a, b)?.into_iter().zip(foretold(b, a)?);
+fn predicted_in_both_directions(a: &Equations, b: &Equations) -> Option<Vec<f64>> {
+    let pairs = predicted(a, b)?.into_iter().zip(predicted(b, a)?);
     Some(pairs.map(|(there, back)| there.min(back)).collect())
 }
 
@@ -169,7 +169,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::{Distribution, StandardNormal};
 
-    use super::{BY_CHANCE, Equations, FOLLOWS, foretold_either_way};
+    use super::{BY_CHANCE, Equations, FOLLOWS, predicted_in_both_directions};
 
     const BINS: usize = 120;
     const REGRESSORS: usize = 6;
@@ -199,7 +199,7 @@ mod tests {
         let mut follow = |share: f64| {
             let pairs = (0..200).filter(|_| {
                 let [fit, check] = [(); 2].map(|()| equations(share, &mut random));
-                let shares = foretold_either_way(&fit, &check).unwrap();
+                let shares = predicted_in_both_directions(&fit, &check).unwrap();
                 shares.iter().any(|share| *share >= FOLLOWS)
             });
             pairs.count()
@@ -227,7 +227,7 @@ mod tests {
         let (mut passed, mut followed) = (0, 0);
         for _ in 0..200 {
             let [fit, check] = hums();
-            let shares = foretold_either_way(&fit, &check).unwrap();
+            let shares = predicted_in_both_directions(&fit, &check).unwrap();
             assert!(fit.bins_with_power(0) < 1.01);
             passed += usize::from(shares.iter().any(|share| *share >= FOLLOWS));
             followed += usize::from(shares.iter().any(|share| *share >= BY_CHANCE));
@@ -241,7 +241,7 @@ mod tests {
         let [mut fit, check] = [(); 2].map(|()| equations(0.5, &mut random));
         fit.motion = fit.motion.rows(0, REGRESSORS).into_owned();
         fit.rest = fit.rest.rows(0, REGRESSORS).into_owned();
-        assert_eq!(foretold_either_way(&fit, &check), None);
-        assert_eq!(foretold_either_way(&check, &fit), None);
+        assert_eq!(predicted_in_both_directions(&fit, &check), None);
+        assert_eq!(predicted_in_both_directions(&check, &fit), None);
     }
 }

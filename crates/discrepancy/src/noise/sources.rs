@@ -57,11 +57,11 @@ pub(super) fn variances(
     };
     let mut all: Vec<f64> = sources.iter().enumerate().map(begin).collect();
     for _ in 0..ROUNDS {
-        let foreseen = |&(c, b): &(usize, usize)| -> f64 {
+        let predicted = |&(c, b): &(usize, usize)| -> f64 {
             let each = all.iter().zip(sources).map(|(p, s)| p * s[c][b]);
             each.sum::<f64>().max(1e-12 * observed[c][b])
         };
-        let foreseen: Vec<f64> = cells.iter().map(foreseen).collect();
+        let predicted: Vec<f64> = cells.iter().map(predicted).collect();
         let weight = |(&(c, b), &by): (&(usize, usize), &f64)| {
             let may_be = b < upper && by < SCATTER * observed[c][b];
             if may_be {
@@ -70,10 +70,10 @@ pub(super) fn variances(
                 values[b]
             }
         };
-        let weights: Vec<f64> = cells.iter().zip(&foreseen).map(weight).collect();
+        let weights: Vec<f64> = cells.iter().zip(&predicted).map(weight).collect();
         for (p, source) in all.iter_mut().zip(sources) {
             let (mut asked, mut given) = (0.0, 0.0);
-            for ((&(c, b), by), w) in cells.iter().zip(&foreseen).zip(&weights) {
+            for ((&(c, b), by), w) in cells.iter().zip(&predicted).zip(&weights) {
                 // Far more than predicted is of no noise, and asks for nothing.
                 let seen = match b < upper && observed[c][b] > BEYOND * by {
                     true => *by,
@@ -148,8 +148,8 @@ mod tests {
             [1.0, 0.0, 0.0, 9.0, 0.0],
         ] {
             let found = variances(&powers(&truth), &sources(), &VALUES, 2, 2);
-            let foreseen = powers(&found);
-            for (asked, given) in powers(&truth).iter().zip(&foreseen) {
+            let predicted = powers(&found);
+            for (asked, given) in powers(&truth).iter().zip(&predicted) {
                 // Nothing is asked of a channel without any power.
                 for (b, (a, g)) in asked
                     .iter()
@@ -171,10 +171,10 @@ mod tests {
         observed[0][0] *= 1e4;
         observed[1][0] *= 1e4;
         let found = variances(&observed, &sources(), &VALUES, 2, 2);
-        let foreseen = powers(&found);
-        assert!(foreseen[0][0] < 1.2 * truth[0][0], "{found:?}");
-        assert!(foreseen[1][0] < 1.05 * truth[1][0], "{found:?}");
-        for (asked, given) in truth.iter().zip(&foreseen) {
+        let predicted = powers(&found);
+        assert!(predicted[0][0] < 1.2 * truth[0][0], "{found:?}");
+        assert!(predicted[1][0] < 1.05 * truth[1][0], "{found:?}");
+        for (asked, given) in truth.iter().zip(&predicted) {
             for (a, g) in asked.iter().zip(given).skip(2) {
                 assert!((a - g).abs() <= 0.002 * a, "{found:?}");
             }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use axis_pipeline::strategies::SharedMotion;
 use axis_sim::mechanism::Freedom;
-use axis_sim::{Axis, MoveSpec, SixDigits};
+use axis_sim::{Axis, MoveSpec, SixDigits, toml_hint};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use trajectories::Program;
 
@@ -59,7 +59,13 @@ pub(super) fn program_on(file: &Path, axis: &Axis) -> Result<Program> {
 
 /// Reads a motion program.
 pub fn program(file: &Path) -> Result<Program> {
-    toml::from_str(&read_text(file)?)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("{} is not a motion program", file.display()))
+    let text = read_text(file)?;
+    let program = toml::from_str(&text).map_err(|error: toml::de::Error| {
+        let at = error.span().map_or(0, |span| span.start);
+        match toml_hint(&text, at) {
+            Some(hint) => miette!(help = hint, "{error}"),
+            None => miette!("{error}"),
+        }
+    });
+    program.wrap_err_with(|| format!("{} is not a motion program", file.display()))
 }

@@ -81,7 +81,7 @@ fn words(made: &[Vec<Compared>], unit: ErrorUnit) -> String {
         after.join(" | "),
         "---|".repeat(AFTER.len())
     );
-    for (w, way) in ResidualMethod::ALL.iter().enumerate() {
+    for (w, method) in ResidualMethod::ALL.iter().enumerate() {
         let cells = (0..AFTER.len()).map(|i| {
             let of_way = made.iter().map(|machine| &machine[w]);
             let mut left: Vec<f64> = of_way.clone().flat_map(|c| c.left[i].clone()).collect();
@@ -89,7 +89,7 @@ fn words(made: &[Vec<Compared>], unit: ErrorUnit) -> String {
             let used = of_way.clone().filter(|c| c.used[i]).count();
             let worst = left.last().copied().unwrap_or(0.0);
             let middle = left.get(left.len() / 2).copied().unwrap_or(0.0);
-            match way {
+            match method {
                 ResidualMethod::Adapted => format!("{middle:.2} / {worst:.2}"),
                 _ => format!(
                     "{middle:.2} / {worst:.2} (used on {used} of {})",
@@ -98,7 +98,7 @@ fn words(made: &[Vec<Compared>], unit: ErrorUnit) -> String {
             }
         });
         let cells: Vec<String> = cells.collect();
-        text += &format!("| {} | {} |\n", way.name(), cells.join(" | "));
+        text += &format!("| {} | {} |\n", method.name(), cells.join(" | "));
     }
     text
 }

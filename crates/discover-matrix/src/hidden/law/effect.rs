@@ -168,7 +168,7 @@ fn install(values: &[f64], to: &mut Changes<'_>) -> Result<(), SetupError> {
             force: t.transmitted,
             ..Point::default()
         };
-        size * law.at(&at) * t.pressed
+        size * law.at(&at) * t.loaded
     });
     Ok(())
 }
@@ -195,7 +195,7 @@ impl MemoryLaw for Remembered {
     fn step(&self, step: &TableStep, memory: &mut [f64]) -> f64 {
         let share = step.length / LAG;
         memory[0] += step.length;
-        memory[1] += step.way;
+        memory[1] += step.travel;
         memory[2] = (memory[2] + share * step.speed) / (1.0 + share);
         let at = Point {
             time: memory[0],

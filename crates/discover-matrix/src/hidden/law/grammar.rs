@@ -57,7 +57,7 @@ impl LawVariable {
             Shown::MotorAngle => Self::Angle,
             Shown::Acceleration => Self::Acceleration,
             Shown::Current => Self::Current,
-            Shown::Way | Shown::Time => Self::Time,
+            Shown::Distance | Shown::Time => Self::Time,
         }
     }
 }

@@ -1,11 +1,11 @@
 //! What a first screen says of made discoveries.
 
 use crate::controller::OwnController;
+use crate::judge::assessment::{Confidence, Level, remedies};
 use crate::judge::sentence::sentence;
-use crate::judge::told::{Confidence, Level, remedies};
 use crate::judge::{
-    Cost, Discovery, EffectFound, EffortCost, FigureLogs, FormFound, Gaps, ParameterFound,
-    Recalibrated, RefusedEffects, Size, Told, TrackingCost, Verdict,
+    Assessment, Cost, Discovery, EffectFound, EffortCost, FigureLogs, FormFound, Gaps,
+    ParameterFound, Recalibrated, RefusedEffects, Size, TrackingCost, Verdict,
 };
 use crate::judge::{Curve, Unknown};
 use crate::name::gap::{ChannelGap, Gap};
@@ -29,7 +29,7 @@ fn discovery(verdict: Verdict, effects: Vec<EffectFound>, known: Vec<Recalibrate
         notes: Vec::new(),
         verdict,
         sentence: String::new(),
-        told: Told {
+        assessment: Assessment {
             cost: cost(),
             each: Vec::new(),
             confidence: Confidence::new(verdict, &effects, &known, false),
@@ -210,6 +210,39 @@ fn what_is_named_twice_is_told_apart_by_its_order() {
         "cogging-torque of order 72; viscous-friction; cogging-torque of order 12. With them";
     assert!(two.contains(names), "{two}");
     assert!(said(&[cogging(72.0)]).contains("lacks cogging-torque. With it"));
+    let mut made = discovery(Verdict::Explained, Vec::new(), Vec::new());
+    made.effects = vec![cogging(72.0), viscous(), cogging(12.0)];
+    made.effects[2].indistinguishable_from = vec!["structural-resonance".to_owned()];
+    let names = made.effects.iter().map(|e| e.name.clone());
+    made.assessment.each = names.map(|name| (name, Cost::default())).collect();
+    let shares = lines(&made, "What it costs");
+    let of = |k: usize| shares[shares.len() - 3 + k].split(" alone").next().unwrap();
+    assert_eq!(
+        [of(0), of(1), of(2)],
+        [
+            "cogging-torque of order 72",
+            "viscous-friction",
+            "cogging-torque of order 12"
+        ]
+    );
+    let alike = lines(&made, "What else");
+    assert!(alike[0].starts_with("These logs cannot tell cogging-torque of order 12 from"));
+}
+
+/// A gap without a name ends with what would show more of it.
+#[test]
+fn what_to_do_next_is_said_of_a_gap_that_nothing_explains() {
+    let mut made = discovery(Verdict::Unknown, Vec::new(), Vec::new());
+    made.answer = "closed-loop-replay".to_owned();
+    let next = lines(&made, "What to do next");
+    assert!(next[0].contains("--balance"), "{next:?}");
+    made.answer = "torque-balance".to_owned();
+    let next = lines(&made, "What to do next");
+    assert!(
+        next.iter().all(|line| !line.contains("--balance")),
+        "{next:?}"
+    );
+    assert!(next[0].contains("constant speeds"), "{next:?}");
 }
 
 #[test]
@@ -312,7 +345,7 @@ fn effects_that_look_alike_are_named_in_plain_words() {
 fn a_torque_balance_has_no_tracking_error() {
     let mut made = discovery(Verdict::Explained, vec![viscous()], Vec::new());
     made.answer = "torque-balance".to_owned();
-    made.told.cost.tracking = None;
+    made.assessment.cost.tracking = None;
     assert!(lines(&made, "What it costs")[0].starts_with("The tracking error is not known"));
     assert!(lines(&made, "How sure")[2].starts_with("Compared by torque balance"));
 }
@@ -320,7 +353,7 @@ fn a_torque_balance_has_no_tracking_error() {
 #[test]
 fn another_controller_is_told_before_remedies() {
     let mut found = discovery(Verdict::PartlyExplained, vec![viscous()], vec![]);
-    found.told.controller = Some(OwnController {
+    found.assessment.controller = Some(OwnController {
         left: 2.083,
         better: "p-pi, speed_lowpass".to_owned(),
         better_left: 1.512e-6,

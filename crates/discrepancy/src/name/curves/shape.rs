@@ -161,7 +161,7 @@ impl Shape {
         match (self.place, self.factor) {
             (Place::Force, Factor::Speed) => Measure::Damping.unit(freedom),
             (Place::Force, _) => Measure::Force.unit(freedom),
-            (Place::Offset, _) => Measure::Way.unit(freedom),
+            (Place::Offset, _) => Measure::Displacement.unit(freedom),
         }
     }
 

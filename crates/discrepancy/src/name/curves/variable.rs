@@ -65,7 +65,7 @@ impl Variable {
     pub fn unit(self, freedom: Freedom) -> &'static str {
         match self {
             Self::Speed => Measure::Speed.unit(freedom),
-            Self::Position => Measure::Way.unit(freedom),
+            Self::Position => Measure::Displacement.unit(freedom),
             Self::Time => "s",
             Self::Angle => "rad",
             Self::Acceleration => Measure::Acceleration.unit(freedom),
@@ -94,6 +94,6 @@ pub fn is_over((own, factor): Over, variable: EffectVariable) -> bool {
         EffectVariable::MotorAngle => own == Variable::Angle,
         EffectVariable::Acceleration => own == Variable::Acceleration,
         EffectVariable::Current => own == Variable::Effort,
-        EffectVariable::Way | EffectVariable::Time => own == Variable::Time,
+        EffectVariable::Distance | EffectVariable::Time => own == Variable::Time,
     }
 }

@@ -266,8 +266,8 @@ impl Search<'_> {
         let mut state = self.fit.state.clone();
         state.effects.push(ActiveEffect { effect, values });
         let fit = self.fitter().at(state).ok()?;
-        let [foreseen, gain] = [stretch.deviance, fit.deviance].map(|d| self.fit.deviance - d);
-        tracing::debug!(size, from, to, foreseen, gain, "force in time");
+        let [predicted, gain] = [stretch.deviance, fit.deviance].map(|d| self.fit.deviance - d);
+        tracing::debug!(size, from, to, predicted, gain, "force in time");
         Some(fit)
     }
 }

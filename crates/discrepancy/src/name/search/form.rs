@@ -184,8 +184,9 @@ impl Refined {
 }
 
 impl Search<'_> {
-    /// Whether a candidate leaves the axis less than no dry friction, sliding or at break-away, in
-    /// one direction: no contact does that, but an onset of another form may look like it.
+    /// Whether a candidate leaves the axis less than no dry friction, sliding or at break-away, or
+    /// less than no viscous friction, in one direction: no contact does that, but an onset of another
+    /// form may look like it, and a fall with speed like viscous friction that drives.
     /// Break-away below sliding friction does occur, as on plastic guideways, but not where the
     /// axis file tells of a fall.
     pub(super) fn leaves_no_friction(&self, candidate: &Refined) -> bool {
@@ -197,18 +198,23 @@ impl Search<'_> {
         let own = friction.law.parameters();
         // The lesser of the directions, where an effect tells them apart.
         let of = |name: &str| -> f64 {
-            let there = effects.iter().filter(|a| a.effect.name == name);
-            let values = |a: &ActiveEffect| match name == BY_DIRECTION {
-                true => a.values[0].min(a.values[1]),
-                false => a.values[0],
-            };
+            let all = self.machine.effects.iter().chain(effects);
+            let there = all.filter(|a| a.effect.name == name);
+            let values =
+                |a: &ActiveEffect| match [BY_DIRECTION, VISCOUS_BY_DIRECTION].contains(&name) {
+                    true => a.values[0].min(a.values[1]),
+                    false => a.values[0],
+                };
             there.map(values).sum()
         };
         let sliding = own.coulomb / lever + of(PLAIN) + of(BY_DIRECTION) + of(WITH_MEMORY);
         let own_fall = (own.stiction - own.coulomb) / lever;
         let fall = own_fall + of(FALL);
         let rises = own_fall > 0.0 && fall < 0.0;
-        (has(PLAIN) || has(BY_DIRECTION)) && sliding < 0.0
+        let viscous = own.viscous / lever.powi(2) + of(VISCOUS) + of(VISCOUS_BY_DIRECTION);
+        let is_viscous = has(VISCOUS) || has(VISCOUS_BY_DIRECTION);
+        is_viscous && viscous < 0.0
+            || (has(PLAIN) || has(BY_DIRECTION)) && sliding < 0.0
             || has(FALL) && (rises || sliding + fall < 0.0)
     }
 
@@ -231,6 +237,10 @@ const DRY: [&str; 2] = [PLAIN, BY_DIRECTION];
 
 /// Dry friction of one level a direction.
 const BY_DIRECTION: &str = "asymmetric-friction";
+
+/// Viscous friction of one coefficient, and of one a direction.
+const VISCOUS: &str = "viscous-friction";
+const VISCOUS_BY_DIRECTION: &str = "asymmetric-viscous-friction";
 
 /// Dry friction that falls with speed.
 const FALL: &str = "stribeck-friction";

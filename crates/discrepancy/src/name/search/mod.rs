@@ -6,6 +6,7 @@ mod form;
 mod free_curve;
 mod intervals;
 mod lines;
+mod look_alikes;
 mod one_curve;
 mod one_law;
 mod promise;
@@ -200,6 +201,7 @@ fn searched(
         search = without.with_leftover(&search.named);
         intervals = search.intervals()?;
     }
+    search.find_look_alikes();
     Ok(search.finish(base, intervals))
 }
 

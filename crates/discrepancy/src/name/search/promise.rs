@@ -1,6 +1,6 @@
 //! What is worth a simulation: what the linearised model promises.
 
-use axis_sim::effects::Effect;
+use axis_sim::effects::{Effect, Scales};
 use rayon::prelude::*;
 
 use super::evidence::enough;
@@ -196,11 +196,16 @@ impl Search<'_> {
     pub(super) fn begun_at(&self, known: &Candidate, shape: usize, value: f64) -> Candidate {
         let mut values = known.values.clone();
         values[shape] = value;
+        self.candidate(known.effect, values)
+    }
+
+    /// An effect with these shapes as a candidate, simulated at the fit.
+    pub(super) fn candidate(&self, effect: &'static Effect, values: Vec<f64>) -> Candidate {
         Candidate {
-            columns: responses(&self.fitter(), &self.fit, known.effect, &values),
-            effect: known.effect,
+            columns: responses(&self.fitter(), &self.fit, effect, &values),
+            effect,
             values,
-            scales: known.scales,
+            scales: Scales::of(self.machine),
         }
     }
 

@@ -3,10 +3,9 @@
 use axis_sim::Axis;
 use axis_sim::effects::{ActiveEffect, Effect, Nature};
 
-use super::evidence::{EQUAL, enough};
-use super::types::{Alike, ONE_CLASS, RunnerUp};
+use super::evidence::enough;
+use super::types::RunnerUp;
 use crate::estimate::fit::Fit;
-use crate::estimate::projector::sine;
 use crate::name::screen::Screened;
 
 /// One effect, or two, after refinement by simulation.
@@ -109,69 +108,6 @@ impl Refined {
             .filter(|a| NEVER_BELOW_NONE.contains(&a.effect.name));
         never.any(|a| a.values[0] < 0.0)
     }
-}
-
-/// Share of what an effect explains by which another must explain more to speak against it:
-/// friction of two directions always explains a little more than friction of one.
-const CLEARLY: f64 = 0.05;
-
-/// Effects that do nearly the same as the best, or explain as much: the logs
-/// cannot tell. What can do more is not among them, unless these logs would not
-/// show the more, or show it and not clearly enough to take it. `refined` are those that were
-/// not tried before it: what was tried did not hold on other motion. What is no other than a simpler effect
-/// is no second explanation: `is_other` says so of a rival as it would be.
-pub(super) fn alike(
-    own: &Screened,
-    best: &Refined,
-    refined: &[Refined],
-    all: &[Screened],
-    is_other: impl Fn(&ActiveEffect) -> bool,
-) -> Vec<Alike> {
-    let pair = best.parts.iter().map(|p| p.effect.name);
-    let pair: Vec<&str> = pair.collect();
-    let fitted = |other: &Screened| {
-        refined.iter().find(|r| match r.parts.as_slice() {
-            [one] => one.effect.name == other.effect.name,
-            _ => false,
-        })
-    };
-    let explains_more = |other: &Screened| {
-        let clearly = EQUAL.max(CLEARLY * best.gain);
-        fitted(other).is_some_and(|r| r.gain > best.gain + clearly)
-    };
-    let others = all
-        .iter()
-        .filter(|other| !pair.contains(&other.effect.name))
-        .filter(|other| {
-            let more = other.basis.ncols() > own.basis.ncols();
-            explains_more(other) || !(more && other.more_is_shown(own, best.gain, EQUAL))
-        });
-    let mut all: Vec<Alike> = others
-        .filter_map(|other| {
-            let fitted = fitted(other);
-            let more = other.basis.ncols() > own.basis.ncols();
-            let equal =
-                fitted.is_some_and(|r| (r.gain - best.gain).abs() < EQUAL) || explains_more(other);
-            let sine = sine(&own.fingerprint, &other.basis);
-            let nearest = || ActiveEffect {
-                effect: other.effect,
-                // A fit drives what the logs do not show wherever noise points.
-                values: match more {
-                    true => other.nearest(&own.fingerprint),
-                    false => other.values.clone(),
-                },
-            };
-            let fitted = fitted.filter(|_| !more);
-            let last = fitted.and_then(|r| r.fit.state.effects.last().cloned());
-            (sine < ONE_CLASS || equal).then(|| Alike {
-                fitted: last.unwrap_or_else(nearest),
-                sine,
-            })
-        })
-        .filter(|alike| is_other(&alike.fitted))
-        .collect();
-    all.sort_by(|a, b| a.sine.total_cmp(&b.sine));
-    all
 }
 
 /// Keeps the first of those that were begun with one effect in several shapes.

@@ -8,8 +8,7 @@ use super::form::own_before_directions;
 use super::free_curve::FreeCurves;
 use super::promise::{PROMISING, Promises, WORTH};
 use super::refined::{
-    Refined, Refinement, alike, best_of_each, inside_before_bound, simplest_first,
-    single_before_pair,
+    Refined, Refinement, best_of_each, inside_before_bound, simplest_first, single_before_pair,
 };
 use super::state::Search;
 use super::types::{Named, RunnerUp};
@@ -76,12 +75,7 @@ impl Search<'_> {
         // Where the best does not hold on other motion, the next may.
         let proven = refined.iter().enumerate().find_map(|(place, candidate)| {
             let is_effect = awaited.is_empty() && !candidate.is_form();
-            let is_nothing = candidate.is_below_none(self.machine)
-                || candidate.bends_own_friction()
-                || self.leaves_no_friction(candidate)
-                || self.hardly_repeats(candidate)
-                || self.repeats_with_the_drive(candidate);
-            if is_effect && is_nothing {
+            if is_effect && self.cannot_be(candidate) {
                 return None;
             }
             let check = self.checker().at(candidate.fit.state.clone()).ok()?;
@@ -142,6 +136,7 @@ impl Search<'_> {
         let others = refined.iter().enumerate();
         let others = others.filter(|(i, r)| *i != place && r.parts.len() == 1 && !r.is_form());
         let others: Vec<RunnerUp> = others.map(|(_, r)| r.runner_up()).collect();
+        let beside: Vec<&'static str> = self.named.iter().map(|n| n.name).collect();
         for part in &best.parts {
             self.named.push(Named {
                 name: part.effect.name,
@@ -149,10 +144,9 @@ impl Search<'_> {
                 held_out: self.check.deviance - check.deviance,
                 alike: match best.is_form() {
                     true => Vec::new(),
-                    false => alike(part, best, &refined[place..], screened, |rival| {
-                        !(self.is_unseen(rival) || of_all.ended_unseen(rival.effect.name))
-                    }),
+                    false => self.alike(part, of_all, place, screened),
                 },
+                beside: beside.clone(),
                 when_named: Vec::new(),
                 runners_up: others.clone(),
             });
@@ -266,7 +260,7 @@ impl Search<'_> {
         for r in &refined {
             tracing::debug!(
                 name = r.parts.iter().map(|p| p.effect.name).collect::<Vec<_>>().join(" and "),
-                foreseen = r.parts[0].gain,
+                predicted = r.parts[0].gain,
                 gain = r.gain,
                 screened = ?r.parts.iter().map(|p| &p.values).collect::<Vec<_>>(),
                 found = ?r.added().iter().map(|a| &a.values).collect::<Vec<_>>(),
@@ -275,6 +269,25 @@ impl Search<'_> {
         }
         let kept = simplest_first(refined);
         Refinement { kept, unseen }
+    }
+
+    /// Whether a candidate is no effect of this machine: with its sizes there would be less than none of
+    /// something, or it repeats as no such effect does.
+    pub(super) fn cannot_be(&self, candidate: &Refined) -> bool {
+        candidate.is_below_none(self.machine)
+            || candidate.bends_own_friction()
+            || self.leaves_no_friction(candidate)
+            || self.hardly_repeats(candidate)
+            || self.repeats_with_the_drive(candidate)
+    }
+
+    /// Whether a candidate proves itself on the check logs, and leaves no channel of them worse.
+    pub(super) fn holds(&self, candidate: &Refined) -> bool {
+        let check = self.checker().at(candidate.fit.state.clone());
+        check.is_ok_and(|check| {
+            let held_out = self.check.deviance - check.deviance;
+            self.proves_itself(candidate, held_out) && self.worsens_none(&check)
+        })
     }
 
     fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {

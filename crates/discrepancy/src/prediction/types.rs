@@ -11,7 +11,7 @@ pub struct Hypothesis {
     /// Shares by which its known parameters are off, in the order of
     /// [`axis_sim::Axis::known`]; what is missing is 0.
     pub shares: Vec<f64>,
-    /// Noise of its sensors, as a multiple above 0 of that of the [`super::Foresight`].
+    /// Noise of its sensors, as a multiple above 0 of that of the [`super::Prediction`].
     pub noise: f64,
     /// Noise of each channel that is fitted, RMS, likewise: what is too small beside it is
     /// not named. Empty if that is as `noise` says.
@@ -22,7 +22,7 @@ pub struct Hypothesis {
 
 /// What can be known of an effect beforehand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Foreseen {
+pub struct Predicted {
     /// Expected fall of D on the fit log, known parameters and the other effects
     /// fitted out.
     pub gain: f64,

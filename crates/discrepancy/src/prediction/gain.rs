@@ -3,7 +3,7 @@
 use axis_sim::effects::{ActiveEffect, Effect};
 use nalgebra::{DMatrix, DVector};
 
-use super::{Foresight, Hypothesis};
+use super::{Hypothesis, Prediction};
 use crate::answers::State;
 use crate::estimate::bounded::bounded;
 use crate::estimate::known::{known_deviations, tolerances};
@@ -11,7 +11,7 @@ use crate::name::gap::MATERIAL_OF_NOISE;
 use crate::name::search::needed;
 use crate::spectrum::Amplitudes;
 
-impl Foresight {
+impl Prediction {
     /// Fall of D that naming an effect takes.
     pub(super) fn needed(&self, effect: &Effect) -> f64 {
         let tried = self.library.candidates.len();

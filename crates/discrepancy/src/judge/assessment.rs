@@ -57,7 +57,7 @@ pub struct Confidence {
 
 /// What the first screen says beside the numbers of a discovery.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Told {
+pub struct Assessment {
     /// What all that was named costs together on check motion.
     pub cost: Cost,
     /// What each effect costs alone, by name, where there are several.
@@ -65,7 +65,7 @@ pub struct Told {
     /// How sure all of it is.
     pub confidence: Confidence,
     /// What compensates each named effect.
-    pub remedies: Vec<RemedyTold>,
+    pub remedies: Vec<RemedyFound>,
     /// Where a replay leaves a residual: another controller than the file's, which gives the logged
     /// commands better.
     #[serde(default)]
@@ -74,7 +74,7 @@ pub struct Told {
 
 /// What compensates an effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct RemedyTold {
+pub struct RemedyFound {
     /// The effect.
     pub effect: String,
     /// The function of the drive.
@@ -148,9 +148,9 @@ fn wide(effect: &EffectFound) -> Vec<[String; 2]> {
 }
 
 /// The remedies of named effects, in their order.
-pub(super) fn remedies(effects: &[EffectFound]) -> Vec<RemedyTold> {
+pub(super) fn remedies(effects: &[EffectFound]) -> Vec<RemedyFound> {
     let lines = effects.iter().filter_map(|e| Remedy::of(&e.name));
-    let one = |remedy: &Remedy| RemedyTold {
+    let one = |remedy: &Remedy| RemedyFound {
         effect: remedy.effect.to_owned(),
         function: remedy.function,
         parameter: remedy.parameter.to_owned(),

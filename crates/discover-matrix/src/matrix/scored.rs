@@ -1,6 +1,6 @@
 //! What was said in a case, beside what was hidden.
 
-use discrepancy::{Foreseen, Verdict};
+use discrepancy::{Predicted, Verdict};
 
 use super::case::CaseKind;
 use super::outcome::CaseOutcome;
@@ -8,12 +8,12 @@ use super::outcome::CaseOutcome;
 impl CaseOutcome {
     /// Whether all that is hidden can be seen, by what was known beforehand.
     pub fn is_detectable(&self) -> bool {
-        self.foreseen.iter().all(|f| f.detectable)
+        self.predicted.iter().all(|f| f.detectable)
     }
 
     /// Whether each can be told from all other effects, likewise.
     pub(super) fn is_separable(&self) -> bool {
-        self.foreseen.iter().all(|f| f.class.is_empty())
+        self.predicted.iter().all(|f| f.class.is_empty())
     }
 
     /// Whether all that is hidden is in the library that is searched.
@@ -55,22 +55,22 @@ impl CaseOutcome {
     pub(super) fn has_wrong_name(&self) -> bool {
         self.named.iter().any(|n| {
             let alike = n.alike.iter().any(|name| self.hides(name));
-            let foretold = self.foreseen.iter().any(|f| f.class.contains(&n.name));
-            !self.hides(&n.name) && !alike && !foretold
+            let predicted = self.predicted.iter().any(|f| f.class.contains(&n.name));
+            !self.hides(&n.name) && !alike && !predicted
         })
     }
 
     /// Whether the library's effects can imitate what is outside the library.
     pub(super) fn is_imitated(&self) -> bool {
-        let complete = |f: &Foreseen| f.imitation.as_ref().is_some_and(|i| i.complete);
-        self.foreseen.iter().any(complete)
+        let complete = |f: &Predicted| f.imitation.as_ref().is_some_and(|i| i.complete);
+        self.predicted.iter().any(complete)
     }
 
     /// Not called explained; or by an effect that was predicted to look the same.
     pub(super) fn is_honest(&self) -> bool {
         match self.verdict {
             Some(Verdict::Unknown | Verdict::PartlyExplained) => true,
-            Some(Verdict::Explained) => self.first_is_foretold(),
+            Some(Verdict::Explained) => self.first_is_predicted(),
             _ => false,
         }
     }
@@ -124,12 +124,12 @@ impl CaseOutcome {
         self.case.hidden.iter().any(|h| h.name == name)
     }
 
-    fn first_is_foretold(&self) -> bool {
-        let foretold = |f: &Foreseen, name: &String| {
+    fn first_is_predicted(&self) -> bool {
+        let predicted = |f: &Predicted, name: &String| {
             let imitation = f.imitation.as_ref().filter(|i| i.complete);
             f.class.contains(name) || imitation.is_some_and(|i| i.by.contains(name))
         };
         let first = self.named.first();
-        first.is_some_and(|n| self.foreseen.iter().any(|f| foretold(f, &n.name)))
+        first.is_some_and(|n| self.predicted.iter().any(|f| predicted(f, &n.name)))
     }
 }

@@ -11,7 +11,7 @@ use axis_sim::{Axis, ReplayError};
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-pub use self::types::{Foreseen, Hypothesis, Imitation};
+pub use self::types::{Hypothesis, Imitation, Predicted};
 use crate::answers::{LogSet, State};
 use crate::estimate::columns::Columns;
 use crate::estimate::fit::{Fit, Fitter};
@@ -27,7 +27,7 @@ use crate::spectrum::{Amplitudes, Whitener};
 
 /// What a set of logs will show of effects: what is the same for all of them.
 #[derive(Debug)]
-pub struct Foresight {
+pub struct Prediction {
     machine: Axis,
     logs: LogSet,
     nominal: Fit,
@@ -48,7 +48,7 @@ const RUNS: u64 = 16;
 /// other: it takes the simpler of two within 25.
 const TELLS_APART: f64 = 40.0;
 
-impl Foresight {
+impl Prediction {
     /// Simulates what these logs need: known parameters, the library, and sensors with
     /// this noise. Of the logs only motion, length and channels count.
     ///
@@ -88,7 +88,7 @@ impl Foresight {
 
     /// What can be known of each effect that is supposed; `None` for one that does not
     /// run on the nominal machine, and where the noise is no number above 0.
-    pub fn foresee(&self, supposed: &Hypothesis) -> Vec<Option<Foreseen>> {
+    pub fn predict(&self, supposed: &Hypothesis) -> Vec<Option<Predicted>> {
         let effects = &supposed.effects;
         let responses: Vec<Option<Amplitudes>> = match is_above_zero(supposed.noise) {
             true => effects.par_iter().map(|e| self.response(e)).collect(),
@@ -130,7 +130,7 @@ impl Foresight {
         active: &ActiveEffect,
         own: &Amplitudes,
         others: &[&Amplitudes],
-    ) -> Foreseen {
+    ) -> Predicted {
         let (noise, effect) = (supposed.noise, active.effect);
         let beside = self.beside(supposed, own, others);
         let pinned = pinned(&self.machine, &beside.shares);
@@ -141,7 +141,7 @@ impl Foresight {
         let above_noise = size_over_noise(&seen, &self.noise);
         let seen_above = above_noise >= 2f64.sqrt() * ABOVE_NOISE;
         let enough = beside.gain >= 2.0 * needed && beside.material >= 2.0;
-        Foreseen {
+        Predicted {
             gain: beside.gain,
             above_noise,
             detectable: enough && seen_above,

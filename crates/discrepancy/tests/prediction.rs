@@ -6,7 +6,7 @@ use axis_sim::effects::{ActiveEffect, Effect, Scales};
 use axis_sim::{Axis, ClosedLoop, Recorder};
 use compensator::NoCompensation;
 use discrepancy::{
-    Foresight, Hypothesis, Library, LogSet, SearchError, SensorNoise, Settings, search_with,
+    Hypothesis, Library, LogSet, Prediction, SearchError, SensorNoise, Settings, search_with,
 };
 use trajectories::{Limits, Program, Step};
 
@@ -63,8 +63,8 @@ fn supposed(machine: &Axis, name: &str, by: f64) -> Hypothesis {
 fn what_is_foreseen_follows_size_noise_and_what_the_search_has() {
     let machine = machine();
     let set = log_of(&machine, 0.03);
-    let foresight = Foresight::new(&machine, &set, NOISE).unwrap();
-    let one = |supposed: &Hypothesis| foresight.foresee(supposed).remove(0).unwrap();
+    let prediction = Prediction::new(&machine, &set, NOISE).unwrap();
+    let one = |supposed: &Hypothesis| prediction.predict(supposed).remove(0).unwrap();
 
     let nothing = one(&supposed(&machine, "constant-load", 0.0));
     assert!(
@@ -121,8 +121,8 @@ fn what_is_foreseen_follows_size_noise_and_what_the_search_has() {
             noise,
             ..load.clone()
         };
-        assert_eq!(foresight.foresee(&silent), [None], "{noise}");
-        assert_eq!(foresight.gain_over_needed(&silent), f64::INFINITY);
+        assert_eq!(prediction.predict(&silent), [None], "{noise}");
+        assert_eq!(prediction.gain_over_needed(&silent), f64::INFINITY);
     }
 }
 

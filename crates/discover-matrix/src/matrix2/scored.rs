@@ -1,7 +1,7 @@
 //! What was said in a case, beside what was hidden.
 
 use axis_sim::effects::Effect;
-use discrepancy::{Foreseen, Verdict};
+use discrepancy::{Predicted, Verdict};
 
 use super::outcome::{CaseOutcome, Deviance};
 use crate::hidden::{Form, LawVariable};
@@ -13,19 +13,19 @@ impl CaseOutcome {
     /// parameters inside their tolerance do.
     pub fn is_seen(&self) -> bool {
         let better = |d: Deviance| d.calibrated - d.truth >= d.needed;
-        let foreseen = self.foreseen.iter().all(|f| f.detectable);
-        self.failed.is_none() && foreseen && self.deviance.is_none_or(better)
+        let predicted = self.predicted.iter().all(|f| f.detectable);
+        self.failed.is_none() && predicted && self.deviance.is_none_or(better)
     }
 
     /// Whether each of it can be told from every other effect, likewise.
     pub fn is_told_apart(&self) -> bool {
-        self.foreseen.iter().all(|f| f.class.is_empty())
+        self.predicted.iter().all(|f| f.class.is_empty())
     }
 
     /// Whether effects of the library can do what is hidden outside of it.
     pub fn is_imitated(&self) -> bool {
-        let complete = |f: &Foreseen| f.imitation.as_ref().is_some_and(|i| i.complete);
-        self.foreseen.iter().any(complete)
+        let complete = |f: &Predicted| f.imitation.as_ref().is_some_and(|i| i.complete);
+        self.predicted.iter().any(complete)
     }
 
     /// Names of effects that are not there, whatever the verdict. A name beside which the

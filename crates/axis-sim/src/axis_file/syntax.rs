@@ -1,0 +1,81 @@
+//! What to write instead, where a text is not TOML.
+
+/// What is meant by the line at `offset` of a text that is no TOML for what stands there: a number with a
+/// decimal comma or with separators of thousands, or a text without quotes. `None` for any other mistake.
+///
+/// ```
+/// let text = "mass_kg = 12,5\n";
+/// let hint = axis_sim::toml_hint(text, 12).unwrap();
+/// assert_eq!(hint, "numbers are written with a decimal point: mass_kg = 12.5");
+/// ```
+#[must_use]
+pub fn toml_hint(text: &str, offset: usize) -> Option<String> {
+    let before = text.get(..offset.min(text.len()))?;
+    let line = text.lines().nth(before.matches('\n').count())?;
+    let (key, value) = line.split_once('=')?;
+    let (key, value) = (key.trim(), value.split('#').next()?.trim());
+    if let Some(number) = with_point(value) {
+        return Some(format!(
+            "numbers are written with a decimal point: {key} = {number}"
+        ));
+    }
+    let is_word = |c: char| c.is_alphanumeric() || "-_. /\\".contains(c);
+    let is_text = value.starts_with(char::is_alphabetic) && value.chars().all(is_word);
+    is_text.then(|| format!("a text stands in quotes: {key} = \"{value}\""))
+}
+
+/// A number that was written with a decimal comma, or with points or commas between thousands, as TOML
+/// has it; `None` for what is none.
+fn with_point(value: &str) -> Option<String> {
+    let (sign, digits) = match value.strip_prefix('-') {
+        Some(digits) => ("-", digits),
+        None => ("", value),
+    };
+    let is_number = digits.starts_with(|c: char| c.is_ascii_digit())
+        && digits.ends_with(|c: char| c.is_ascii_digit())
+        && digits
+            .chars()
+            .all(|c| c.is_ascii_digit() || ".,".contains(c));
+    let last = digits.rfind(['.', ','])?;
+    if !is_number || !digits.contains(',') && digits.matches('.').count() < 2 {
+        return None;
+    }
+    let separator = digits[last..].chars().next()?;
+    let is_repeated = digits.matches(separator).count() > 1;
+    let (whole, fraction) = match is_repeated {
+        true => (digits, ""),
+        false => (&digits[..last], &digits[last + 1..]),
+    };
+    let whole: String = whole.chars().filter(char::is_ascii_digit).collect();
+    Some(match fraction {
+        "" => format!("{sign}{whole}"),
+        fraction => format!("{sign}{whole}.{fraction}"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::toml_hint;
+
+    #[test]
+    fn numbers_of_other_countries_and_texts_without_quotes_are_shown_as_they_should_be() {
+        let hint = |line: &str| toml_hint(&format!("a = 1\n{line}\n"), 6 + line.len());
+        let number = "numbers are written with a decimal point: ";
+        for (line, meant) in [
+            ("mass_kg = 20,5 # of the table", "mass_kg = 20.5"),
+            ("x = -0,25", "x = -0.25"),
+            ("x = 1.000,5", "x = 1000.5"),
+            ("x = 1,000.5", "x = 1000.5"),
+            ("x = 1.000.000", "x = 1000000"),
+        ] {
+            assert_eq!(hint(line), Some(format!("{number}{meant}")), "{line}");
+        }
+        assert_eq!(
+            hint("kind = ball-screw"),
+            Some("a text stands in quotes: kind = \"ball-screw\"".to_owned())
+        );
+        for line in ["x = [1, 2", "x = \"a", "x == 3", "[control", "x = 1.5"] {
+            assert_eq!(hint(line), None, "{line}");
+        }
+    }
+}
