@@ -47,8 +47,8 @@ pub struct Bristle<T, O> {
 
 /// LuGre friction with levels by direction, Stribeck exponent and viscous friction of higher
 /// order (C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky, IEEE Trans. Automatic
-/// Control 40(3), 1995, doi 10.1109/9.376053). Where one level and a Gaussian curve do,
-/// [`LuGre`](crate::LuGre) is the same law and faster.
+/// Control 40(3), 1995, doi 10.1109/9.376053). [`LuGre`](crate::LuGre) is the same law with
+/// one level and a Gaussian curve.
 pub type GeneralLuGre<T = f64> = Bristle<T, LinearOnset>;
 
 /// Dahl's friction (P. R. Dahl, "Solid friction damping of mechanical vibrations", AIAA
