@@ -48,6 +48,16 @@ impl Fitter<'_> {
         (fit, known)
     }
 
+    /// The sum of squares of a fit's residual, weighed by the spectral matrices of this `noise`, with
+    /// the departures of known parameters.
+    pub fn squares(&self, noise: &Amplitudes) -> impl Fn(&Fit) -> f64 {
+        let layout = &self.set.layout;
+        let whitener = layout.whitener(&layout.spectral_matrices(noise));
+        move |fit: &Fit| {
+            layout.whiten(&whitener, &fit.rest).norm_squared() + self.departure(&fit.state)
+        }
+    }
+
     /// Fitted by least squares, the residual weighed by the spectral matrices of this `noise`,
     /// which do not change: D is flat where a residual is large, as the residual is then its own
     /// weight,
@@ -61,11 +71,7 @@ impl Fitter<'_> {
         noise: &Amplitudes,
         anew: usize,
     ) -> Fit {
-        let layout = &self.set.layout;
-        let whitener = layout.whitener(&layout.spectral_matrices(noise));
-        let squares = |fit: &Fit| {
-            layout.whiten(&whitener, &fit.rest).norm_squared() + self.departure(&fit.state)
-        };
+        let squares = self.squares(noise);
         let descent = Descent {
             rounds: 4,
             lengths: 4,

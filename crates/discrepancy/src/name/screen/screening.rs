@@ -144,6 +144,11 @@ impl Screening {
         }
     }
 
+    /// Share of the residual's whitened power that a screened effect explains.
+    pub fn share(&self, screened: &Screened) -> f64 {
+        1.0 - (-screened.gain / self.rest.len() as f64).exp()
+    }
+
     /// Fall of D where this much of the residual's whitened power goes.
     fn gain_of(&self, explained: f64) -> f64 {
         let share = (explained / self.rest.norm_squared()).clamp(0.0, 0.999_999);

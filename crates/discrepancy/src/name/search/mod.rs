@@ -28,7 +28,7 @@ use axis_sim::{Axis, ReplayError};
 pub use self::evidence::{MATERIAL, needed};
 pub(crate) use self::form::is_form;
 pub(crate) use self::revise::ABOVE_NOISE;
-use self::state::{ANEW, Search, steady_noise};
+use self::state::{ANEW, Search, steady_noise, steady_noise_beside};
 pub use self::types::{
     Alike, Found, Named, ONE_CLASS, RefusalReason, Refused, Replaced, RunnerUp, SearchError,
     Settings, SettingsError, Test,
@@ -154,7 +154,7 @@ fn searched(
         library,
         gap_before: sizes(&check_logs, &check_logs.rest(&check.traces)),
         check,
-        steady: steady_noise(&fitter, &base),
+        steady: steady_noise_beside(&fitter, &base),
         fit: base.clone(),
         known,
         named: Vec::new(),

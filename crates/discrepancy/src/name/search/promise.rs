@@ -22,6 +22,11 @@ pub(super) const WORTH: f64 = 0.1;
 /// Most pairs that are simulated.
 const PAIRS: usize = 3;
 
+/// Share of a residual far above noise that an effect explains to be simulated whatever it promises of D,
+/// and the most of these.
+const MOST: f64 = 0.5;
+const FEW: usize = 4;
+
 /// The linearised model of a fit and all candidates.
 pub(super) struct Promises<'a> {
     search: &'a Search<'a>,
@@ -118,6 +123,27 @@ impl<'a> Promises<'a> {
         let few = others.into_iter().take(settings.refined);
         let few = few.filter(|s| s.gain >= least).chain(force);
         few.map(|s| vec![s.clone()]).collect()
+    }
+
+    /// Effects that explain most of a residual far above noise, weighed by noise alone, which does not
+    /// change with the residual. D of the linearised model does not show them: what is not linear of a large
+    /// effect is above noise too.
+    pub(super) fn of_most(&self, screenings: &[Screening]) -> Vec<Vec<Screened>> {
+        let Some(by_noise) = screenings.get(1).filter(|_| self.search.steady.is_some()) else {
+            return Vec::new();
+        };
+        let mut all = by_noise.one_by_one();
+        all.retain(|s| !is_force_in_time(s.effect) && by_noise.share(s) >= MOST);
+        all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let mut seen: Vec<&str> = Vec::new();
+        all.retain(|s| {
+            let new = !seen.contains(&s.effect.name);
+            seen.push(s.effect.name);
+            new
+        });
+        all.truncate(FEW);
+        tracing::debug!(effects = ?all.iter().map(|s| (s.effect.name, &s.values, by_noise.share(s))).collect::<Vec<_>>(), "explain most, by noise");
+        all.into_iter().map(|s| vec![s]).collect()
     }
 
     /// Pairs of which the linearised model promises more than twice as much as the

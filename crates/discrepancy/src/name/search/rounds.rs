@@ -26,7 +26,8 @@ const KEPT: f64 = 0.8;
 /// The force that acts all along.
 const STANDING: &str = "constant-load";
 
-/// Candidates of which it is tried whether least squares lead further.
+/// Candidates of which it is tried whether least squares lead further: so many of least D, and as many of
+/// the least sum of squares.
 const LED_FURTHER: usize = 4;
 
 impl Search<'_> {
@@ -40,6 +41,7 @@ impl Search<'_> {
         let screened = promises.one_by_one(&screenings[0]);
         let candidates = if awaited.is_empty() {
             let mut worth = promises.worth_refining(&screened);
+            worth.extend(promises.of_most(&screenings));
             let most = screened.first().map_or(0.0, |s| s.gain);
             if self.effects_named() + 2 <= self.settings.most_effects {
                 worth.extend(promises.pairs(&screenings, most));
@@ -203,9 +205,14 @@ impl Search<'_> {
         // Where known parameters may be far off, they have made up for what is not named yet,
         // and D may be flat from there on.
         if let Some(noise) = &self.steady {
-            let gain = |r: &Refined| self.fit.deviance - r.fit.deviance;
-            refined.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
-            refined.par_iter_mut().take(LED_FURTHER).for_each(|r| {
+            let squares = fitter.squares(noise);
+            refined.sort_by(|a, b| a.fit.deviance.total_cmp(&b.fit.deviance));
+            let first = LED_FURTHER.min(refined.len());
+            let (led, others) = refined.split_at_mut(first);
+            let mut others: Vec<&mut Refined> = others.iter_mut().collect();
+            others.sort_by(|a, b| squares(&a.fit).total_cmp(&squares(&b.fit)));
+            let led = led.iter_mut().chain(others.into_iter().take(LED_FURTHER));
+            led.collect::<Vec<_>>().into_par_iter().for_each(|r| {
                 let near = fitter.by_least_squares(r.fit.clone(), self.known.clone(), noise, 0);
                 let near = fitter.refine(near, own, 2);
                 r.fit = r.fit.clone().better(near);

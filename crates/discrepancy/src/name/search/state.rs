@@ -50,12 +50,28 @@ pub(super) struct Search<'a> {
 /// astray.
 const WIDE: f64 = 0.02;
 
+/// How many times the power of noise a residual has from which it is its own weight rather than noise is:
+/// log |r|² is far from its parabola there.
+const FAR: f64 = 10.0;
+
 /// Noise alone, as the logs of a fit show it, where a known parameter may be far off.
 pub(super) fn steady_noise(fitter: &Fitter<'_>, fit: &Fit) -> Option<Arc<Amplitudes>> {
     let (machine, set) = (fitter.machine, fitter.set);
-    let wide = tolerances(machine).into_iter().any(|t| t > WIDE);
-    let noise = wide.then(|| noise_of(machine, set, fit))??;
+    let noise = is_wide(machine).then(|| noise_of(machine, set, fit))??;
     Some(Arc::new(noise))
+}
+
+/// Noise alone, as the logs of a fit show it, where a known parameter may be far off or the residual is
+/// far above it.
+pub(super) fn steady_noise_beside(fitter: &Fitter<'_>, fit: &Fit) -> Option<Arc<Amplitudes>> {
+    let noise = noise_of(fitter.machine, fitter.set, fit)?;
+    let power = fitter.squares(&noise)(fit) / fitter.set.layout.size() as f64;
+    tracing::debug!(power, "residual over noise");
+    (is_wide(fitter.machine) || power > FAR).then(|| Arc::new(noise))
+}
+
+fn is_wide(machine: &Axis) -> bool {
+    tolerances(machine).into_iter().any(|t| t > WIDE)
 }
 
 /// Noise alone, as of sensors like those of the logs; `None` where these do not show it.
@@ -172,6 +188,9 @@ impl Search<'_> {
         self.settle_hum();
         self.settle_starts();
         self.settle_check();
+        if !is_wide(self.machine) && self.steady.is_some() {
+            self.steady = steady_noise_beside(&self.fitter(), &self.fit);
+        }
     }
 
     /// Seeks the hum of the logs anew: beside a large gap a line may be hidden, or be a part of the gap.
