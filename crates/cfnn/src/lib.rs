@@ -79,8 +79,13 @@ extern crate alloc;
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+#[cfg(feature = "alloc")]
+mod architecture;
 #[cfg(feature = "artifact")]
 pub mod artifact;
+mod backward;
+#[cfg(feature = "alloc")]
+mod derivatives;
 mod error;
 mod fixed;
 mod forward;
@@ -98,7 +103,10 @@ mod simd;
 mod tansig;
 #[cfg(feature = "train")]
 pub mod train;
+mod transfer;
 
+#[cfg(feature = "alloc")]
+pub use architecture::{Architecture, Links};
 pub use error::Error;
 pub use fixed::FixedNetwork;
 #[cfg(feature = "alloc")]
@@ -110,6 +118,7 @@ pub use real::NetworkScalar;
 pub use scaling::Scaling;
 #[cfg(feature = "alloc")]
 pub use shape::{Layer, MAX_PARAMETERS, Shape};
+pub use transfer::{AllTansig, Transfer, Transfers};
 
 /// The README's example, run as a test.
 #[cfg(all(doctest, feature = "alloc"))]

@@ -97,12 +97,12 @@ fn each_fault_has_its_own_error() {
 
     // Another schema, with a hash that fits it.
     let mut other = bytes[..bytes.len() - 32].to_vec();
-    other[12] = 2;
+    other[12] = 3;
     other.extend_from_slice(blake3::hash(&other).as_bytes());
     let refused = network_from_bytes(&other).unwrap_err();
     let expected = ArtifactError::OtherSchema {
-        found: 2,
-        expected: 1,
+        found: 3,
+        expected: 2,
     };
     assert_eq!(refused, expected);
 

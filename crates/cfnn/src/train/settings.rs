@@ -53,6 +53,23 @@ pub struct EarlyStopping {
     pub patience: usize,
 }
 
+/// Bayesian regularisation, MATLAB's `trainbr`: the training minimises
+/// `β Σ r² + α Σ w²` and estimates α and β from the data (see
+/// [`super::Hyperparameters`]). Samples set apart are not needed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bayesian {
+    /// Training stops when α, β and the effective number of parameters have
+    /// changed by this, relative, or less in each of five epochs; 0: never
+    /// for this reason, as in MATLAB.
+    pub tolerance: f64,
+}
+
+impl Default for Bayesian {
+    fn default() -> Self {
+        Self { tolerance: 1e-6 }
+    }
+}
+
 /// Settings of a training. The defaults are MATLAB's `trainlm` ones, with its
 /// validation switched off.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,7 +90,8 @@ pub struct TrainingSettings {
     /// Training stops at or below this mean square of the scaled residuals.
     pub goal: f64,
     /// Training stops at or below this Euclidean norm of `Jᵀr` (divided by
-    /// the number of residuals under [`Normalisation::Mean`]).
+    /// the number of residuals under [`Normalisation::Mean`]; of
+    /// `β Jᵀr + α w` with Bayesian regularisation).
     pub min_gradient: f64,
     /// Early stopping, or none.
     pub validation: Option<EarlyStopping>,
@@ -84,11 +102,18 @@ pub struct TrainingSettings {
     /// Solve the output layer exactly, by least squares, in every trial step
     /// (the step of the hidden layers still comes from all parameters).
     pub resolve_output: bool,
+    /// Bayesian regularisation, or none. Only with [`Normalisation::Sum`] and
+    /// without `resolve_output`.
+    pub bayesian: Option<Bayesian>,
     /// Seed of the starting weights and of the validation split.
     pub seed: u64,
     /// Worker threads, at most 1024; 0 takes all cores. No influence on the
     /// result's bits.
     pub threads: usize,
+    /// Start no threads, but work in those of the caller: the pool whose
+    /// `install` calls the trainer, or else rayon's global one. `threads` has
+    /// no meaning then. No influence on the result's bits either.
+    pub caller_pool: bool,
 }
 
 impl Default for TrainingSettings {
@@ -105,8 +130,10 @@ impl Default for TrainingSettings {
             normalisation: Normalisation::Sum,
             initialisation: Initialisation::NguyenWidrow,
             resolve_output: false,
+            bayesian: None,
             seed: 0,
             threads: 0,
+            caller_pool: false,
         }
     }
 }
@@ -152,6 +179,13 @@ impl TrainingSettings {
         }
         let v = self.threads;
         check("threads", v as f64, v <= MAX_THREADS, "at most 1024")?;
+        if let Some(Bayesian { tolerance: v }) = self.bayesian {
+            check("bayesian.tolerance", v, v >= 0.0, "0 or above")?;
+            let (name, valid) = ("resolve_output", "false with Bayesian regularisation");
+            check(name, 1.0, !self.resolve_output, valid)?;
+            let (name, valid) = ("normalisation", "the sum with Bayesian regularisation");
+            check(name, 1.0, self.normalisation == Normalisation::Sum, valid)?;
+        }
         Ok(())
     }
 }

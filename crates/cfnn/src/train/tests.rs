@@ -8,7 +8,7 @@ use super::cholesky::Symmetric;
 use super::dataset::blocks;
 use super::engine::Engine;
 use super::{Dataset, nguyen_widrow};
-use crate::{Scaling, Shape};
+use crate::{Architecture, Scaling, Shape};
 
 fn samples(shape: &Shape, count: usize) -> (Dataset, Scaling) {
     let fraction = |x: f64| x - libm::floor(x);
@@ -70,12 +70,12 @@ proptest! {
         let (data, scaling) = samples(&shape, 7);
         let chosen: Vec<usize> = (0..data.len()).collect();
         let block = &blocks(&data, &chosen, &scaling)[0];
-        let engine = Engine::new(&shape, 1);
+        let engine = Engine::new(&Architecture::from(shape.clone()), 1);
         let mut work = BlockWork::new(&engine.layout);
         let weights = nguyen_widrow(&shape, seed).unwrap();
         work.forward_hidden(&engine.layout, &weights, block);
         work.residuals(&engine.layout, &weights, block);
-        work.backward(&engine.layout, &weights);
+        work.backward(&engine.layout, &weights, block);
         let jacobian = analytic_jacobian(&engine, &work);
         let h = 1e-5;
         for c in 0..shape.parameters() {
@@ -108,7 +108,7 @@ proptest! {
         prop_assert_eq!(blocks.len(), 3);
         let weights = nguyen_widrow(&shape, seed).unwrap();
         // Room for two blocks only, so that they come in two groups.
-        let mut engine = Engine::new(&shape, 2);
+        let mut engine = Engine::new(&Architecture::from(shape.clone()), 2);
         engine.normal_equations(&blocks, &weights);
         let n = shape.parameters();
         let (mut square, mut gradient) = (vec![0.0; n * n], vec![0.0; n]);
@@ -116,7 +116,7 @@ proptest! {
             let mut work = BlockWork::new(&engine.layout);
             work.forward_hidden(&engine.layout, &weights, block);
             work.residuals(&engine.layout, &weights, block);
-            work.backward(&engine.layout, &weights);
+            work.backward(&engine.layout, &weights, block);
             for (row, r) in analytic_jacobian(&engine, &work).iter().zip(&work.residuals) {
                 for c in 0..n {
                     gradient[c] += row[c] * r;
@@ -151,7 +151,7 @@ fn tiled_normal_equations_equal_dense_ones() {
     let weights = nguyen_widrow(&shape, 1).unwrap();
     let on_threads = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let mut engine = Engine::new(&shape, 1);
+        let mut engine = Engine::new(&Architecture::from(shape.clone()), 1);
         pool.build().unwrap().install(|| {
             engine.normal_equations(&blocks, &weights);
             engine.dense()
@@ -164,11 +164,11 @@ fn tiled_normal_equations_equal_dense_ones() {
     let n = shape.parameters();
     let mut plain = vec![0.0; n * n];
     for block in &blocks {
-        let engine = Engine::new(&shape, 1);
+        let engine = Engine::new(&Architecture::from(shape.clone()), 1);
         let mut work = BlockWork::new(&engine.layout);
         work.forward_hidden(&engine.layout, &weights, block);
         work.residuals(&engine.layout, &weights, block);
-        work.backward(&engine.layout, &weights);
+        work.backward(&engine.layout, &weights, block);
         for row in analytic_jacobian(&engine, &work) {
             for (column, x) in plain.chunks_exact_mut(n).zip(&row) {
                 for (sum, y) in column.iter_mut().zip(&row) {
