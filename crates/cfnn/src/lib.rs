@@ -96,6 +96,8 @@ mod range;
 mod real;
 #[cfg(feature = "alloc")]
 mod scaling;
+#[cfg(feature = "serde")]
+mod serialised;
 #[cfg(feature = "alloc")]
 mod shape;
 #[cfg(feature = "alloc")]

@@ -60,8 +60,8 @@ struct EpochV1 {
 struct CheckpointV2 {
     architecture: ArchitectureV2,
     caller_pool: bool,
-    /// Tolerance.
-    bayesian: Option<f64>,
+    /// Tolerance, and the share below which there are new estimates.
+    bayesian: Option<(f64, f64)>,
     hyperparameters: Option<HyperparametersV2>,
     /// One for each epoch.
     history: Vec<Option<HyperparametersV2>>,
@@ -126,7 +126,10 @@ impl From<&Checkpoint> for CheckpointV2 {
         Self {
             architecture: checkpoint.current.architecture().into(),
             caller_pool: checkpoint.settings.caller_pool,
-            bayesian: checkpoint.settings.bayesian.map(|b| b.tolerance),
+            bayesian: checkpoint
+                .settings
+                .bayesian
+                .map(|b| (b.tolerance, b.estimate_below)),
             hyperparameters: checkpoint.hyperparameters.map(stored),
             history: reports.map(|r| r.hyperparameters.map(stored)).collect(),
             plain: CheckpointV1::from(checkpoint),
@@ -178,7 +181,10 @@ impl TryFrom<CheckpointV2> for Checkpoint {
         }
         whole.hyperparameters = hyperparameters(stored.hyperparameters)?;
         whole.settings.caller_pool = stored.caller_pool;
-        whole.settings.bayesian = stored.bayesian.map(|tolerance| Bayesian { tolerance });
+        whole.settings.bayesian = stored.bayesian.map(|(tolerance, estimate_below)| Bayesian {
+            tolerance,
+            estimate_below,
+        });
         whole.settings.validate()?;
         Ok(whole)
     }

@@ -2,11 +2,10 @@
 //!
 //! Training minimises `F = β E_D + α E_W` with `E_D = Σ r²` over the residuals
 //! and `E_W = Σ w²` over the weights: the most probable weights if residuals
-//! and weights are normal with variances `1/(2β)` and `1/(2α)`. After each
-//! step α and β become the most probable ones (MacKay 1992,
+//! and weights are normal with variances `1/(2β)` and `1/(2α)`. At a minimum
+//! of `F` α and β become the most probable ones (MacKay 1992,
 //! doi 10.1162/neco.1992.4.3.415), with the Gauss–Newton approximation of the
-//! Hessian that the step used (Foresee and Hagan 1997,
-//! doi 10.1109/ICNN.1997.614194):
+//! Hessian (Foresee and Hagan 1997, doi 10.1109/ICNN.1997.614194):
 //!
 //! ```text
 //! γ = N - α tr (β JᵀJ + α I)⁻¹,   α = γ / (2 E_W),   β = (n - γ) / (2 E_D)
@@ -14,6 +13,11 @@
 //!
 //! for `N` parameters and `n` residuals. `γ`, from 0 to `N`, is the number of
 //! parameters that the data determine.
+//!
+//! Foresee and Hagan estimate after each step. Far from a minimum that can
+//! take large residuals for noise, and α then draws all weights of the hidden
+//! layers to zero, from where no gradient leads back. So here a step must
+//! lower `F` by less than a share ([`super::Bayesian::estimate_below`]) first.
 
 use super::report::EpochReport;
 
@@ -49,7 +53,7 @@ pub(super) struct Fit {
 }
 
 impl Hyperparameters {
-    /// With all parameters effective, as `trainbr` begins.
+    /// With all parameters effective.
     pub(super) fn initial(fit: Fit) -> Self {
         Self::of(fit.parameters, fit)
     }
@@ -61,7 +65,7 @@ impl Hyperparameters {
     }
 
     fn of(gamma: f64, fit: Fit) -> Self {
-        // 1 where there is no estimate, as `trainbr` has it.
+        // 1 where there is no estimate, as at first with fewer residuals than parameters.
         let ratio = |above: f64, below: f64| {
             if above > 0.0 && below > 0.0 {
                 (above / (2.0 * below)).clamp(1.0 / LARGEST, LARGEST)
@@ -82,7 +86,7 @@ impl Hyperparameters {
     }
 
     /// Whether all three are those before, to a relative tolerance.
-    fn near(&self, before: &Self, tolerance: f64) -> bool {
+    pub(super) fn near(&self, before: &Self, tolerance: f64) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() <= tolerance * b.abs();
         near(self.alpha, before.alpha)
             && near(self.beta, before.beta)
@@ -90,7 +94,8 @@ impl Hyperparameters {
     }
 }
 
-/// Whether the estimates have come to a standstill.
+/// Whether the estimates have come to a standstill; an epoch without new ones
+/// says nothing about that.
 pub(super) fn settled(history: &[EpochReport], tolerance: f64) -> bool {
     let Some(last) = history.len().checked_sub(CALM + 1) else {
         return false;
@@ -98,7 +103,7 @@ pub(super) fn settled(history: &[EpochReport], tolerance: f64) -> bool {
     tolerance > 0.0
         && history[last..].windows(2).all(|pair| {
             match (pair[0].hyperparameters, pair[1].hyperparameters) {
-                (Some(before), Some(after)) => after.near(&before, tolerance),
+                (Some(before), Some(after)) => after != before && after.near(&before, tolerance),
                 _ => false,
             }
         })

@@ -36,11 +36,11 @@ pub fn nguyen_widrow(shape: &Shape, seed: u64) -> Result<Vec<f64>, Error> {
 }
 
 /// Starting weights of any architecture: those of [`nguyen_widrow`], with
-/// neurons that look along the links that there are. Logsig neurons are
-/// twice as steep, as in MATLAB's `initnw`, since their active part is twice
-/// as wide (net input -4 to 4). Purelin and poslin have no active part: their
-/// weights are uniform with the variance `2/R` for `R` links (He et al. 2015,
-/// doi 10.1109/ICCV.2015.123, eq. 10), their biases in `[-1, 1]`.
+/// neurons that look along the links that there are. Logsig neurons have
+/// twice the weights, since `logsig n = (1 + tanh(n/2))/2`. Purelin and poslin
+/// have no active part: their weights are uniform with the variance `2/R` for
+/// `R` links (He et al. 2015, doi 10.1109/ICCV.2015.123), their biases in
+/// `[-1, 1]`.
 ///
 /// # Errors
 /// What [`Architecture::validate`] refuses.

@@ -16,22 +16,22 @@
 //! number of threads: work is cut by sizes alone, and every sum has a fixed
 //! order.
 //!
-//! With [`TrainingSettings::bayesian`] the weights are kept small by as much
+//! With [`TrainingSettings::regularised`] the weights are kept small by as much
 //! as the data ask for, without samples set apart (MATLAB's `trainbr`): for
 //! few, noisy samples.
 //!
 //! ```
-//! use cfnn::train::{Bayesian, Dataset, Trainer, TrainingSettings};
+//! use cfnn::train::{Dataset, Trainer, TrainingSettings};
 //! use cfnn::Shape;
 //! // A line with an error that alternates: two parameters' worth.
 //! let x: Vec<f64> = (0..20).map(f64::from).collect();
 //! let y = x.iter().enumerate().map(|(i, x)| x + if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
 //! let data = Dataset::new(1, 1, x, y)?;
-//! let settings = TrainingSettings { bayesian: Some(Bayesian::default()), ..TrainingSettings::default() };
+//! let settings = TrainingSettings::regularised();
 //! let shape = Shape { inputs: 1, hidden: vec![8], outputs: 1 };
 //! let mut trainer = Trainer::new(shape, data.scaling()?, &data, settings)?;
 //! trainer.run(|_| ());
-//! let found = trainer.hyperparameters().ok_or("with `bayesian`")?;
+//! let found = trainer.hyperparameters().ok_or("no regularisation")?;
 //! assert!(found.effective_parameters < 5.0, "of 26: {found:?}");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -8,6 +8,11 @@ const MAX_THREADS: usize = 1024;
 
 /// Starting weights.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case", deny_unknown_fields)
+)]
 #[non_exhaustive]
 pub enum Initialisation {
     /// Nguyen and Widrow (1990), doi 10.1109/IJCNN.1990.137819, as MATLAB's
@@ -33,6 +38,11 @@ pub enum Initialisation {
 
 /// What the damping is added to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 #[non_exhaustive]
 pub enum Normalisation {
     /// `JᵀJ + μ I` of the sum of squares, as the paper prints it.
@@ -44,6 +54,11 @@ pub enum Normalisation {
 
 /// Early stopping on samples set apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct EarlyStopping {
     /// Share of the samples set apart, above 0 and below 1; drawn from the
     /// seed.
@@ -57,22 +72,40 @@ pub struct EarlyStopping {
 /// `β Σ r² + α Σ w²` and estimates α and β from the data (see
 /// [`super::Hyperparameters`]). Samples set apart are not needed.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Bayesian {
     /// Training stops when α, β and the effective number of parameters have
     /// changed by this, relative, or less in each of five epochs; 0: never
-    /// for this reason, as in MATLAB.
+    /// for this reason.
     pub tolerance: f64,
+    /// α and β are estimated anew after a step that lowers `β Σ r² + α Σ w²`
+    /// by less than this share; above 0, at most 1: after each step
+    /// (Foresee and Hagan 1997), with which a training of few samples can end
+    /// at a map that is almost linear.
+    pub estimate_below: f64,
 }
 
 impl Default for Bayesian {
     fn default() -> Self {
-        Self { tolerance: 1e-6 }
+        Self {
+            tolerance: 1e-6,
+            estimate_below: 0.01,
+        }
     }
 }
 
 /// Settings of a training. The defaults are MATLAB's `trainlm` ones, with its
 /// validation switched off.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(remote = "Self", default, deny_unknown_fields)
+)]
 pub struct TrainingSettings {
     /// Number of epochs after which to stop.
     pub epochs: usize,
@@ -139,6 +172,18 @@ impl Default for TrainingSettings {
 }
 
 impl TrainingSettings {
+    /// The defaults with [`Bayesian`] regularisation, and an initial damping of
+    /// 1: weights that the data leave open then shrink over some epochs, not
+    /// at once.
+    #[must_use]
+    pub fn regularised() -> Self {
+        Self {
+            bayesian: Some(Bayesian::default()),
+            initial_damping: 1.0,
+            ..Self::default()
+        }
+    }
+
     /// Checks every field.
     ///
     /// # Errors
@@ -179,8 +224,12 @@ impl TrainingSettings {
         }
         let v = self.threads;
         check("threads", v as f64, v <= MAX_THREADS, "at most 1024")?;
-        if let Some(Bayesian { tolerance: v }) = self.bayesian {
+        if let Some(bayesian) = self.bayesian {
+            let v = bayesian.tolerance;
             check("bayesian.tolerance", v, v >= 0.0, "0 or above")?;
+            let v = bayesian.estimate_below;
+            let good = v > 0.0 && v <= 1.0;
+            check("bayesian.estimate_below", v, good, "above 0 and at most 1")?;
             let (name, valid) = ("resolve_output", "false with Bayesian regularisation");
             check(name, 1.0, !self.resolve_output, valid)?;
             let (name, valid) = ("normalisation", "the sum with Bayesian regularisation");

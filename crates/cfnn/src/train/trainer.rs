@@ -213,19 +213,24 @@ impl Trainer {
         let (engine, training, weights) = (&mut self.engine, &self.training, &self.weights);
         self.pool
             .install(|| engine.normal_equations(training, weights));
-        let gradient = self.engine.gradient_norm(self.factor(), self.decay());
+        let mut gradient = self.engine.gradient_norm(self.factor(), self.decay());
+        if gradient <= self.settings.min_gradient && self.hyperparameters.is_some() {
+            // The minimum for these α and β: there may be others.
+            self.estimate();
+            gradient = self.engine.gradient_norm(self.factor(), self.decay());
+        }
 
         // Trial steps, eq. of the paper: Δ = -(JᵀJ + μI)⁻¹ Jᵀr.
         let mut trials = 0;
         while gradient > self.settings.min_gradient && self.damping <= self.settings.max_damping {
             trials += 1;
             if self.try_step() {
-                self.estimate();
                 self.damping = (self.damping * self.settings.damping_decrease).max(MIN_DAMPING);
                 break;
             }
             self.damping *= self.settings.damping_increase;
         }
+        self.estimate_where_no_step_is_left();
 
         // Validation, report, verdict.
         let validation_loss = self.validate();
@@ -293,15 +298,35 @@ impl Trainer {
             Some((trial, sum))
                 if performance(sum, &trial) < present && trial.iter().all(|w| w.is_finite()) =>
             {
+                let after = performance(sum, &trial);
                 self.weights = trial;
                 self.sum_of_squares = sum;
+                let bayesian = self.settings.bayesian;
+                if bayesian.is_some_and(|b| present - after < b.estimate_below * present) {
+                    self.estimate();
+                }
                 true
             }
             _ => false,
         }
     }
 
-    /// α, β and γ after a step.
+    /// Where damping has passed its limit: if that changes α or β, the training
+    /// goes on from the initial damping.
+    fn estimate_where_no_step_is_left(&mut self) {
+        let (Some(bayesian), Some(before)) = (self.settings.bayesian, self.hyperparameters) else {
+            return;
+        };
+        if self.damping > self.settings.max_damping {
+            self.estimate();
+            let after = self.hyperparameters.unwrap_or(before);
+            if !after.near(&before, bayesian.tolerance) {
+                self.damping = self.settings.initial_damping;
+            }
+        }
+    }
+
+    /// New α, β and γ, with the `JᵀJ` of this epoch.
     fn estimate(&mut self) {
         let Some(before) = self.hyperparameters else {
             return;
