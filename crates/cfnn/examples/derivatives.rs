@@ -5,6 +5,7 @@
 //! `cargo run --release -p cfnn --features train --example derivatives`
 //!
 //! Lines of `name,quantity,numbers...`; tables row by row.
+#![allow(clippy::disallowed_methods, reason = "truth needs no promised bits")]
 
 use cfnn::train::{
     Bayesian, Dataset, Hyperparameters, Trainer, TrainingSettings, starting_weights,
@@ -55,9 +56,18 @@ fn describe(name: &str, network: &Network) {
     line(name, "weights", network.weights());
 }
 
+/// Name, hidden layers, their transfer functions, links, dropped inputs.
+type Case = (
+    &'static str,
+    &'static [usize],
+    &'static [Transfer],
+    Links,
+    &'static [usize],
+);
+
 fn networks() -> Result<(), Error> {
     use Transfer::{Logsig, Poslin, Purelin, Tansig};
-    let cases: [(&str, &[usize], &[Transfer], Links, &[usize]); 5] = [
+    let cases: [Case; 5] = [
         ("paper", &[34, 19, 8], &[Tansig; 3], Links::Cascade, &[]),
         ("plain", &[34, 19, 8], &[Tansig; 3], Links::FeedForward, &[]),
         ("logistic", &[12, 5], &[Logsig; 2], Links::Cascade, &[]),

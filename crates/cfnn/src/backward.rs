@@ -49,7 +49,7 @@ impl<T: NetworkScalar, X: Transfers> Evaluated<'_, T, X> {
 #[inline(always)]
 fn slopes<T: NetworkScalar>(transfer: Transfer, values: &[T], delta: &mut [T]) {
     for (d, &a) in delta.iter_mut().zip(values) {
-        *d = *d * transfer.slope(a);
+        *d *= transfer.slope(a);
     }
 }
 

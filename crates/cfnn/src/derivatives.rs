@@ -42,7 +42,7 @@ impl Network {
         let expected = rows.saturating_mul(self.shape().outputs);
         same_length("output values", outputs.len(), expected)?;
         self.check_scratch(scratch)?;
-        self.run(inputs, scratch, outputs);
+        self.run::<true>(inputs, scratch, outputs);
         Ok(())
     }
 
@@ -110,7 +110,7 @@ impl Network {
         let mut adjoint = scratch.activations.clone();
         let tables = table.chunks_exact_mut(self.shape().outputs * columns);
         for (input, table) in inputs.chunks_exact(self.shape().inputs).zip(tables) {
-            self.run(input, &mut scratch, &mut output);
+            self.run::<false>(input, &mut scratch, &mut output);
             for (o, row) in table.chunks_exact_mut(columns).enumerate() {
                 self.adjoint(o, &scratch, &mut adjoint);
                 match of {

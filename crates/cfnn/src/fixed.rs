@@ -119,7 +119,7 @@ impl<T: NetworkScalar, const I: usize, const O: usize, const A: usize, X: Transf
     /// The outputs, in the caller's units, for one vector of inputs in theirs.
     #[must_use]
     pub fn evaluate(&self, input: &[T; I]) -> [T; O] {
-        self.run(input).1
+        self.run(input, &mut [T::ZERO; A])
     }
 
     /// The outputs and their derivatives by the inputs, all in the caller's
@@ -127,7 +127,8 @@ impl<T: NetworkScalar, const I: usize, const O: usize, const A: usize, X: Transf
     /// for a controller or an observer, without finite differences.
     #[must_use]
     pub fn sensitivities(&self, input: &[T; I]) -> ([T; O], [[T; I]; O]) {
-        let (activations, out) = self.run(input);
+        let mut activations = [T::ZERO; A];
+        let out = self.run(input, &mut activations);
         let evaluated = Evaluated {
             hidden: self.hidden,
             outputs: O,
@@ -147,8 +148,7 @@ impl<T: NetworkScalar, const I: usize, const O: usize, const A: usize, X: Transf
     }
 
     #[inline(always)]
-    fn run(&self, input: &[T; I]) -> ([T; A], [T; O]) {
-        let mut activations = [T::ZERO; A];
+    fn run(&self, input: &[T; I], activations: &mut [T; A]) -> [T; O] {
         activations[0] = T::ONE;
         for i in 0..I {
             activations[1 + i] = self.input[i].to_unit(input[i]);
@@ -159,12 +159,12 @@ impl<T: NetworkScalar, const I: usize, const O: usize, const A: usize, X: Transf
             self.hidden,
             self.transfers,
             self.weights,
-            &mut activations,
+            activations,
             &mut out,
         );
         for (value, range) in out.iter_mut().zip(&self.output) {
             *value = range.from_unit(*value);
         }
-        (activations, out)
+        out
     }
 }

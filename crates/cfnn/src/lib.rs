@@ -1,6 +1,6 @@
 #![no_std]
-//! Cascade-forward neural networks: evaluation, and Levenberg–Marquardt training
-//! with exact derivatives.
+//! Cascade-forward and feed-forward networks: evaluation, derivatives, and
+//! Levenberg–Marquardt training, plain or with Bayesian regularisation.
 //!
 //! # The problem
 //!
@@ -22,6 +22,9 @@
 //! ```text
 //! Δ = -(JᵀJ + μ I)⁻¹ Jᵀ r .
 //! ```
+//!
+//! An [`Architecture`] has fewer links (plain feed-forward, inputs left out)
+//! or other transfer functions than this.
 //!
 //! The network as Liu, Guo, Liu and Niu use it: Machines 2025, 13(5), 433,
 //! section 4.3, doi 10.3390/machines13050433.
@@ -64,8 +67,10 @@
 //!
 //! Without features the crate is `no_std` without an allocator:
 //! [`FixedNetwork`] borrows its weights and evaluates in `f64` or `f32`.
-//! `alloc` adds [`Network`]; `train` (needs std) adds training on faer;
-//! `artifact` (needs std) adds networks and checkpoints as bytes with a hash.
+//! `alloc` adds [`Network`]; `simd` (needs std) finds the processor's vector
+//! instructions at run time; `train` (needs std) adds training on faer;
+//! `serde` adds networks and settings in any of its formats; `artifact`
+//! (needs std) adds networks and checkpoints as bytes with a hash.
 //!
 //! # What this crate knows nothing of
 //!
@@ -122,7 +127,7 @@ pub use scaling::Scaling;
 pub use shape::{Layer, MAX_PARAMETERS, Shape};
 pub use transfer::{AllTansig, Transfer, Transfers};
 
-/// The README's example, run as a test.
-#[cfg(all(doctest, feature = "alloc"))]
+/// The README's examples, run as tests.
+#[cfg(all(doctest, feature = "train"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

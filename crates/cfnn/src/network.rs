@@ -131,7 +131,7 @@ impl Network {
         same_length("input", input.len(), shape.inputs)?;
         same_length("output", output.len(), shape.outputs)?;
         self.check_scratch(scratch)?;
-        self.run(input, scratch, output);
+        self.run::<false>(input, scratch, output);
         Ok(())
     }
 
@@ -150,28 +150,43 @@ impl Network {
         same_length("scratch", scratch.activations.len(), expected)
     }
 
-    /// One row of inputs, or several, with as many rows of outputs.
+    /// One row of inputs, or with `MANY` several and as many rows of outputs.
     #[inline(always)]
-    pub(crate) fn run(&self, input: &[f64], scratch: &mut Scratch, output: &mut [f64]) {
-        let activations = &mut *scratch.activations;
-        let transfers = self.architecture.transfers();
-        if transfers.is_empty() {
-            scratch.vectors.run(Evaluation {
+    pub(crate) fn run<const MANY: bool>(
+        &self,
+        input: &[f64],
+        scratch: &mut Scratch,
+        output: &mut [f64],
+    ) {
+        if self.architecture.transfers().is_empty() {
+            scratch.vectors.run(Evaluation::<_, MANY> {
                 network: self,
                 transfers: AllTansig,
                 input,
-                activations,
+                activations: &mut scratch.activations,
                 output,
             });
         } else {
-            scratch.vectors.run(Evaluation {
-                network: self,
-                transfers,
-                input,
-                activations,
-                output,
-            });
+            self.run_listed::<MANY>(input, scratch, output);
         }
+    }
+
+    /// [`Network::run`] for other transfer functions; apart, so that the usual
+    /// one stays small.
+    #[inline(never)]
+    fn run_listed<const MANY: bool>(
+        &self,
+        input: &[f64],
+        scratch: &mut Scratch,
+        output: &mut [f64],
+    ) {
+        scratch.vectors.run(Evaluation::<_, MANY> {
+            network: self,
+            transfers: self.architecture.transfers(),
+            input,
+            activations: &mut scratch.activations,
+            output,
+        });
     }
 }
 
@@ -189,7 +204,7 @@ fn absent_are_zero(architecture: &Architecture, weights: &[f64]) -> Result<(), E
     Ok(())
 }
 
-struct Evaluation<'a, X> {
+struct Evaluation<'a, X, const MANY: bool> {
     network: &'a Network,
     transfers: X,
     input: &'a [f64],
@@ -197,40 +212,55 @@ struct Evaluation<'a, X> {
     output: &'a mut [f64],
 }
 
-impl<X: Transfers> Kernel for Evaluation<'_, X> {
+impl<X: Transfers, const MANY: bool> Kernel for Evaluation<'_, X, MANY> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let Network {
-            architecture,
-            scaling,
-            packed,
-            ..
-        } = self.network;
-        let shape = architecture.shape();
         let (activations, transfers) = (self.activations, self.transfers);
+        if !MANY {
+            // Without the divisions that a number of rows takes.
+            self.network
+                .evaluate_row(transfers, self.input, activations, self.output);
+            return;
+        }
+        let shape = self.network.shape();
         let rows = self.output.chunks_exact_mut(shape.outputs);
         for (input, output) in self.input.chunks_exact(shape.inputs).zip(rows) {
-            let scaled = &mut activations[1..=shape.inputs];
-            for ((to, &from), range) in scaled.iter_mut().zip(input).zip(scaling.input()) {
-                *to = range.to_unit(from);
-            }
-            for &dropped in architecture.dropped_inputs() {
-                // Whatever it is, NaN too: nothing looks at it.
-                scaled[dropped] = 0.0;
-            }
-            forward(
-                shape.inputs,
-                &shape.hidden,
-                transfers,
-                packed,
-                activations,
-                output,
-            );
-            for (value, range) in output.iter_mut().zip(scaling.output()) {
-                *value = range.from_unit(*value);
-            }
+            self.network
+                .evaluate_row(transfers, input, activations, output);
+        }
+    }
+}
+
+impl Network {
+    #[inline(always)]
+    fn evaluate_row(
+        &self,
+        transfers: impl Transfers,
+        input: &[f64],
+        activations: &mut [f64],
+        output: &mut [f64],
+    ) {
+        let shape = self.architecture.shape();
+        let scaled = &mut activations[1..=shape.inputs];
+        for ((to, &from), range) in scaled.iter_mut().zip(input).zip(self.scaling.input()) {
+            *to = range.to_unit(from);
+        }
+        for &dropped in self.architecture.dropped_inputs() {
+            // Whatever it is, NaN too: nothing looks at it.
+            scaled[dropped] = 0.0;
+        }
+        forward(
+            shape.inputs,
+            &shape.hidden,
+            transfers,
+            &self.packed,
+            activations,
+            output,
+        );
+        for (value, range) in output.iter_mut().zip(self.scaling.output()) {
+            *value = range.from_unit(*value);
         }
     }
 }
@@ -259,7 +289,8 @@ impl<const I: usize, const O: usize> Predictor<I, O> {
     #[must_use]
     pub fn predict(&mut self, input: &[f64; I]) -> [f64; O] {
         let mut output = [0.0; O];
-        self.network.run(input, &mut self.scratch, &mut output);
+        self.network
+            .run::<false>(input, &mut self.scratch, &mut output);
         output
     }
 

@@ -51,8 +51,9 @@ fn evidence(rows: &[Vec<f64>], targets: &[f64], alpha: f64, beta: f64) -> (f64, 
         logarithm += libm::log(c[k][k]);
         for i in k + 1..n {
             let factor = c[i][k] / c[k][k];
-            for j in k..n {
-                c[i][j] -= factor * c[k][j];
+            let (above, below) = c.split_at_mut(i);
+            for (to, from) in below[0].iter_mut().zip(&above[k]).skip(k) {
+                *to -= factor * from;
             }
             t[i] -= factor * t[k];
         }

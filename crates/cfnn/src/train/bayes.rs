@@ -5,7 +5,8 @@
 //! and weights are normal with variances `1/(2β)` and `1/(2α)`. At a minimum
 //! of `F` α and β become the most probable ones (MacKay 1992,
 //! doi 10.1162/neco.1992.4.3.415), with the Gauss–Newton approximation of the
-//! Hessian (Foresee and Hagan 1997, doi 10.1109/ICNN.1997.614194):
+//! Hessian ("Gauss-Newton approximation to Bayesian learning", 1997,
+//! doi 10.1109/ICNN.1997.614194):
 //!
 //! ```text
 //! γ = N - α tr (β JᵀJ + α I)⁻¹,   α = γ / (2 E_W),   β = (n - γ) / (2 E_D)
@@ -14,10 +15,10 @@
 //! for `N` parameters and `n` residuals. `γ`, from 0 to `N`, is the number of
 //! parameters that the data determine.
 //!
-//! Foresee and Hagan estimate after each step. Far from a minimum that can
-//! take large residuals for noise, and α then draws all weights of the hidden
-//! layers to zero, from where no gradient leads back. So here a step must
-//! lower `F` by less than a share ([`super::Bayesian::estimate_below`]) first.
+//! Estimates after each step, far from a minimum, can take large residuals for
+//! noise; α then draws all weights of the hidden layers to zero, from where no
+//! gradient leads back. So a step must lower `F` by less than a share
+//! ([`super::Bayesian::estimate_below`]) first.
 
 use super::report::EpochReport;
 

@@ -83,9 +83,9 @@ pub struct Bayesian {
     /// for this reason.
     pub tolerance: f64,
     /// α and β are estimated anew after a step that lowers `β Σ r² + α Σ w²`
-    /// by less than this share; above 0, at most 1: after each step
-    /// (Foresee and Hagan 1997), with which a training of few samples can end
-    /// at a map that is almost linear.
+    /// by less than this share; above 0, at most 1: after each
+    /// step, with which a training of few samples can end at a map that is
+    /// almost linear.
     pub estimate_below: f64,
 }
 
