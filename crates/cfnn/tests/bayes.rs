@@ -176,8 +176,8 @@ fn errors_on_a_sine(seed: u64) -> [f64; 2] {
     })
 }
 
-/// Of ten seeds all are better, by a factor of 3.2 at least and of 8.5 in the middle (measured); with a
-/// closed form that cannot be, so the limits are a third of that.
+/// Of ten seeds all are better, by a factor of 3.2 at least and of 8.5 in the middle (measured); the limits
+/// are a third of that.
 #[test]
 fn noisy_samples_are_smoothed() {
     let mut gains: Vec<f64> = (0..10)
