@@ -181,6 +181,7 @@ fn prediction(c: &mut Criterion) {
     let network = Network::new(shape(), scaling, weights).expect("a valid network");
     let packed = network.packed_weights().to_vec();
     let mut predictor = Predictor::<4, 1>::new(network).expect("four inputs, one output");
+    rows(c, predictor.network());
     let mut x = [0.1, -0.2, 0.3, 0.4];
     c.bench_function("prediction f64, Predictor", |b| {
         b.iter(|| {
@@ -207,6 +208,25 @@ fn prediction(c: &mut Criterion) {
         .expect("a valid network");
     c.bench_function("prediction f32, FixedNetwork", |b| {
         b.iter(|| fixed.evaluate(black_box(&[0.1, -0.2, 0.3, 0.4])));
+    });
+}
+
+/// A thousand rows at once, their derivatives by the inputs, and those by the weights.
+fn rows(c: &mut Criterion, network: &Network) {
+    let inputs: Vec<f64> = (0..4000).map(|k| (f64::from(k) * 0.618).fract()).collect();
+    let mut outputs = vec![0.0; 1000];
+    let mut scratch = network.scratch();
+    c.bench_function("1000 rows at once", |b| {
+        b.iter(|| {
+            let done = network.evaluate_rows(black_box(&inputs), &mut scratch, &mut outputs);
+            done.expect("a thousand rows");
+        });
+    });
+    c.bench_function("1000 rows, sensitivities", |b| {
+        b.iter(|| network.sensitivities(black_box(&inputs)));
+    });
+    c.bench_function("1000 rows, Jacobian", |b| {
+        b.iter(|| network.jacobian(black_box(&inputs)));
     });
 }
 

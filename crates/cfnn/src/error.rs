@@ -45,9 +45,50 @@ pub enum Error {
         /// Most bytes accepted.
         limit: u64,
     },
+    /// A table of derivatives would need too much memory.
+    #[error("these derivatives take {bytes} bytes: must be at most {limit}, so fewer rows at once")]
+    DerivativeMemory {
+        /// Bytes of the table; `u64::MAX` stands for that many or more.
+        bytes: u64,
+        /// Most bytes accepted.
+        limit: u64,
+    },
     /// A number that is NaN or infinite.
     #[error("{what}[{index}] is {value}: must be finite")]
     NotFinite {
+        /// Which list of numbers.
+        what: &'static str,
+        /// Position in that list.
+        index: usize,
+        /// The number found.
+        value: f64,
+    },
+    /// A weight of a link that the architecture does not have.
+    #[error("weights[{index}] is {value}: must be 0, since the architecture has no such link")]
+    AbsentLink {
+        /// Index of the weight.
+        index: usize,
+        /// The weight found.
+        value: f64,
+    },
+    /// Inputs of which none would be left, or that do not exist.
+    #[error("dropped inputs: {found} of {inputs}, must be other than all, each below {inputs}")]
+    DroppedInputs {
+        /// Number of inputs to be dropped.
+        found: usize,
+        /// Inputs of the shape.
+        inputs: usize,
+    },
+    /// Hidden layers of another transfer function than tansig, where only
+    /// that is possible.
+    #[error("hidden layer {layer} is not tansig: must be tansig here")]
+    NotTansig {
+        /// The layer, counted from 0.
+        layer: usize,
+    },
+    /// A number below zero, or a list in which none is above it.
+    #[error("{what}[{index}] is {value}: must be 0 or above, and one of them above 0")]
+    Negative {
         /// Which list of numbers.
         what: &'static str,
         /// Position in that list.

@@ -5,8 +5,8 @@
 //! therefore always a prefix, which is what the cascade links mean, and the
 //! bias needs no special case.
 
-use crate::NetworkScalar;
 use crate::pack::{padded, strip_width};
+use crate::{NetworkScalar, Transfer, Transfers};
 
 /// Fills the hidden part of `activations` and writes the scaled outputs.
 ///
@@ -15,41 +15,32 @@ use crate::pack::{padded, strip_width};
 pub(crate) fn forward<T: NetworkScalar>(
     inputs: usize,
     hidden: &[usize],
+    transfers: impl Transfers,
     weights: &[T],
     activations: &mut [T],
     output: &mut [T],
 ) {
     let mut seen = 1 + inputs;
     let mut rest = weights;
-    for &neurons in hidden {
+    for (number, &neurons) in hidden.iter().enumerate() {
         let (layer, later) = rest.split_at(seen * padded(neurons));
         let (input, free) = activations.split_at_mut(seen);
         // With the filling where there is room: what lies behind the layer is
         // overwritten next, and whole strips are faster.
         let whole = padded(neurons).min(free.len());
-        affine(layer, input, &mut free[..whole], Transfer::Tansig);
+        let transfer = transfers.of_layer(number);
+        affine(layer, input, &mut free[..whole], transfer);
         seen += neurons;
         rest = later;
     }
-    affine(rest, &activations[..seen], output, Transfer::Linear);
+    affine(rest, &activations[..seen], output, Transfer::Purelin);
 }
 
-/// What becomes of a layer's sums.
-#[derive(Clone, Copy)]
-enum Transfer {
-    Tansig,
-    Linear,
-}
-
-/// `out = Wᵀ input`, with `W` packed in strips.
+/// `out = f(Wᵀ input)`, with `W` packed in strips.
 #[inline(always)]
 fn affine<T: NetworkScalar>(weights: &[T], input: &[T], out: &mut [T], transfer: Transfer) {
     if let [single] = out {
-        let sum = dot(weights, input);
-        *single = match transfer {
-            Transfer::Tansig => sum.tansig(),
-            Transfer::Linear => sum,
-        };
+        [*single] = transfer.of([dot(weights, input)]);
         return;
     }
     let (mut weights, mut out) = (weights, out);
@@ -75,9 +66,7 @@ fn affine<T: NetworkScalar>(weights: &[T], input: &[T], out: &mut [T], transfer:
 /// overlap with it.
 #[inline(always)]
 fn write<T: NetworkScalar, const C: usize>(to: &mut [T], mut sums: [T; C], transfer: Transfer) {
-    if let Transfer::Tansig = transfer {
-        sums = T::tansig_of(sums);
-    }
+    sums = transfer.of(sums);
     // The usual case as one copy of known length.
     if let Some(whole) = to.first_chunk_mut::<C>() {
         for (to, sum) in whole.iter_mut().zip(sums) {
@@ -128,7 +117,7 @@ fn narrow<T: NetworkScalar, const C: usize>(weights: &[T], input: &[T]) -> [T; C
 
 /// Scalar product with eight partial sums, added pairwise.
 #[inline(always)]
-fn dot<T: NetworkScalar>(a: &[T], b: &[T]) -> T {
+pub(crate) fn dot<T: NetworkScalar>(a: &[T], b: &[T]) -> T {
     let (a_chunks, a_rest) = a.as_chunks::<8>();
     let (b_chunks, b_rest) = b.as_chunks::<8>();
     let mut sum = [T::ZERO; 8];

@@ -1,6 +1,6 @@
 #![no_std]
-//! Cascade-forward neural networks: evaluation, and Levenberg–Marquardt training
-//! with exact derivatives.
+//! Cascade-forward and feed-forward networks: evaluation, derivatives, and
+//! Levenberg–Marquardt training, plain or with Bayesian regularisation.
 //!
 //! # The problem
 //!
@@ -22,6 +22,9 @@
 //! ```text
 //! Δ = -(JᵀJ + μ I)⁻¹ Jᵀ r .
 //! ```
+//!
+//! An [`Architecture`] has fewer links (plain feed-forward, inputs left out)
+//! or other transfer functions than this.
 //!
 //! The network as Liu, Guo, Liu and Niu use it: Machines 2025, 13(5), 433,
 //! section 4.3, doi 10.3390/machines13050433.
@@ -64,8 +67,10 @@
 //!
 //! Without features the crate is `no_std` without an allocator:
 //! [`FixedNetwork`] borrows its weights and evaluates in `f64` or `f32`.
-//! `alloc` adds [`Network`]; `train` (needs std) adds training on faer;
-//! `artifact` (needs std) adds networks and checkpoints as bytes with a hash.
+//! `alloc` adds [`Network`]; `simd` (needs std) finds the processor's vector
+//! instructions at run time; `train` (needs std) adds training on faer;
+//! `serde` adds networks and settings in any of its formats; `artifact`
+//! (needs std) adds networks and checkpoints as bytes with a hash.
 //!
 //! # What this crate knows nothing of
 //!
@@ -79,8 +84,13 @@ extern crate alloc;
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+#[cfg(feature = "alloc")]
+mod architecture;
 #[cfg(feature = "artifact")]
 pub mod artifact;
+mod backward;
+#[cfg(feature = "alloc")]
+mod derivatives;
 mod error;
 mod fixed;
 mod forward;
@@ -91,6 +101,8 @@ mod range;
 mod real;
 #[cfg(feature = "alloc")]
 mod scaling;
+#[cfg(feature = "serde")]
+mod serialised;
 #[cfg(feature = "alloc")]
 mod shape;
 #[cfg(feature = "alloc")]
@@ -98,7 +110,10 @@ mod simd;
 mod tansig;
 #[cfg(feature = "train")]
 pub mod train;
+mod transfer;
 
+#[cfg(feature = "alloc")]
+pub use architecture::{Architecture, Links};
 pub use error::Error;
 pub use fixed::FixedNetwork;
 #[cfg(feature = "alloc")]
@@ -110,8 +125,9 @@ pub use real::NetworkScalar;
 pub use scaling::Scaling;
 #[cfg(feature = "alloc")]
 pub use shape::{Layer, MAX_PARAMETERS, Shape};
+pub use transfer::{AllTansig, Transfer, Transfers};
 
-/// The README's example, run as a test.
-#[cfg(all(doctest, feature = "alloc"))]
+/// The README's examples, run as tests.
+#[cfg(all(doctest, feature = "train"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

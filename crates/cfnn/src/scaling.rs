@@ -36,25 +36,54 @@ impl Scaling {
     /// [`Error::EmptyLayer`] for zero inputs, outputs or samples,
     /// [`Error::Length`] when a slice does not divide into rows or the row
     /// counts differ, [`Error::Range`] for a column that is constant or not
-    /// finite (a constant input carries nothing: leave it out).
+    /// finite (a constant input carries nothing: [`Scaling::fit_varying`]).
     pub fn fit(
         inputs: usize,
         input_rows: &[f64],
         outputs: usize,
         output_rows: &[f64],
     ) -> Result<Self, Error> {
-        for (what, width) in [("inputs", inputs), ("outputs", outputs)] {
-            if width == 0 {
-                return Err(Error::EmptyLayer { what, index: 0 });
-            }
-        }
-        let rows = rows_of("input values", input_rows, inputs)?;
-        let expected = rows.saturating_mul(outputs);
-        same_length("output values", output_rows.len(), expected)?;
+        check_tables(inputs, input_rows, outputs, output_rows)?;
         Self::from_ranges(
             &extremes(inputs, input_rows),
             &extremes(outputs, output_rows),
         )
+    }
+
+    /// As [`Scaling::fit`] where some inputs do not vary: with the inputs whose
+    /// values are all the same, which [`crate::Architecture::without_inputs`]
+    /// takes (MATLAB's `removeconstantrows` before `mapminmax`). Such an input
+    /// gets a range around its value; the network takes 0 for it, whatever comes.
+    ///
+    /// ```
+    /// use cfnn::Scaling;
+    /// let (scaling, constant) = Scaling::fit_varying(2, &[1.0, 7.0, 3.0, 7.0], 1, &[0.0, 1.0])?;
+    /// assert_eq!(constant, [1]);
+    /// assert_eq!(scaling.input()[0].maximum(), 3.0);
+    /// # Ok::<(), cfnn::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Scaling::fit`], but for constant inputs; their values must be
+    /// below half of the largest `f64`.
+    pub fn fit_varying(
+        inputs: usize,
+        input_rows: &[f64],
+        outputs: usize,
+        output_rows: &[f64],
+    ) -> Result<(Self, Vec<usize>), Error> {
+        check_tables(inputs, input_rows, outputs, output_rows)?;
+        let mut ranges = extremes(inputs, input_rows);
+        let mut constant = Vec::new();
+        for (index, (low, high)) in ranges.iter_mut().enumerate() {
+            if low == high {
+                constant.push(index);
+                let half = low.abs().max(1.0);
+                (*low, *high) = (*low - half, *high + half);
+            }
+        }
+        let scaling = Self::from_ranges(&ranges, &extremes(outputs, output_rows))?;
+        Ok((scaling, constant))
     }
 
     /// One range for each input.
@@ -68,6 +97,23 @@ impl Scaling {
     pub fn output(&self) -> &[ScalingRange<f64>] {
         &self.output
     }
+}
+
+/// Refuses tables that are not as many whole rows each, at least one.
+fn check_tables(
+    inputs: usize,
+    input_rows: &[f64],
+    outputs: usize,
+    output_rows: &[f64],
+) -> Result<(), Error> {
+    for (what, width) in [("inputs", inputs), ("outputs", outputs)] {
+        if width == 0 {
+            return Err(Error::EmptyLayer { what, index: 0 });
+        }
+    }
+    let rows = rows_of("input values", input_rows, inputs)?;
+    let expected = rows.saturating_mul(outputs);
+    same_length("output values", output_rows.len(), expected)
 }
 
 /// Smallest and largest value of each column; a NaN makes both ends NaN.

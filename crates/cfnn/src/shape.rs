@@ -15,6 +15,11 @@ pub const MAX_PARAMETERS: usize = 1 << 19;
 /// assert_eq!(shape.parameters(), 1441);
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(remote = "Self", deny_unknown_fields)
+)]
 pub struct Shape {
     /// Number of inputs, at least 1.
     pub inputs: usize,

@@ -4,9 +4,13 @@
 use cfnn::artifact::{
     ArtifactError, checkpoint_from_bytes, checkpoint_to_bytes, network_from_bytes, network_to_bytes,
 };
-use cfnn::train::{Dataset, EarlyStopping, Trainer, TrainingSettings, nguyen_widrow};
-use cfnn::{Network, Scaling, Shape};
+use cfnn::train::{
+    Bayesian, Dataset, EarlyStopping, Trainer, TrainingSettings, nguyen_widrow, starting_weights,
+};
+use cfnn::{Architecture, Links, Network, Scaling, Shape, Transfer};
 use proptest::prelude::*;
+
+use crate::support::architectures;
 
 fn network() -> Network {
     let shape = Shape {
@@ -59,6 +63,98 @@ fn round_trips() {
     assert_eq!(one.epoch(), two.epoch());
 }
 
+/// Bytes that version 0.1.0 wrote, before there was a second schema: they are read, and written the same.
+#[test]
+fn artifacts_of_the_first_schema_are_read() {
+    let bytes = include_bytes!("golden/network_schema1.cfnn");
+    let (network, provenance) = network_from_bytes(bytes).unwrap();
+    assert_eq!(provenance, "axis 1");
+    let shape = Shape {
+        inputs: 2,
+        hidden: vec![3, 2],
+        outputs: 2,
+    };
+    let weights: Vec<f64> = (0..37).map(|k| (f64::from(k) - 12.0) / 16.0).collect();
+    assert_eq!(network.architecture(), &Architecture::from(shape));
+    assert_eq!(network.weights(), weights);
+    assert_eq!(network.scaling().output()[0].maximum(), 3e-9);
+    assert_eq!(network_to_bytes(&network, "axis 1").unwrap(), bytes);
+
+    let bytes = include_bytes!("golden/checkpoint_schema1.cfnn");
+    let (checkpoint, _) = checkpoint_from_bytes(bytes).unwrap();
+    assert_eq!(checkpoint.epochs_done(), 2);
+    assert_eq!(checkpoint.shape().hidden, [1]);
+    assert_eq!(checkpoint.settings.epochs, 2);
+    assert_eq!(checkpoint_to_bytes(&checkpoint, "axis 1").unwrap(), bytes);
+    let x: Vec<f64> = (0..8).map(|i| f64::from(i) / 8.0).collect();
+    let data = Dataset::new(1, 1, x.clone(), x).unwrap();
+    Trainer::resume(&data, checkpoint).unwrap();
+}
+
+/// A state of the second schema: plain feed-forward, an input dropped, Bayesian regularisation.
+fn bayesian() -> (Dataset, cfnn::train::Checkpoint) {
+    let input: Vec<f64> = (0..40).flat_map(|i| [f64::from(i) / 39.0, 5.0]).collect();
+    let target = input.chunks(2).map(|x| (6.0 * x[0]).sin()).collect();
+    let data = Dataset::new(2, 1, input, target).unwrap();
+    let (scaling, constant) = data.scaling_of_varying().unwrap();
+    let shape = Shape {
+        inputs: 2,
+        hidden: vec![4, 2],
+        outputs: 1,
+    };
+    let architecture = Architecture::from(shape)
+        .with_links(Links::FeedForward)
+        .with_transfers(&[Transfer::Logsig, Transfer::Tansig])
+        .unwrap()
+        .without_inputs(&constant)
+        .unwrap();
+    let settings = TrainingSettings {
+        bayesian: Some(Bayesian {
+            tolerance: 1e-4,
+            ..Bayesian::default()
+        }),
+        validation: Some(EarlyStopping {
+            fraction: 0.25,
+            patience: 9,
+        }),
+        threads: 1,
+        ..TrainingSettings::default()
+    };
+    let mut trainer = Trainer::new(architecture, scaling, &data, settings).unwrap();
+    trainer.epoch();
+    trainer.epoch();
+    (data, trainer.checkpoint())
+}
+
+#[test]
+fn a_state_of_the_second_schema_comes_back() {
+    let (data, checkpoint) = bayesian();
+    let bytes = checkpoint_to_bytes(&checkpoint, "axis").unwrap();
+    assert_eq!(bytes[12], 2);
+    let (again, _) = checkpoint_from_bytes(&bytes).unwrap();
+    assert_eq!(again, checkpoint);
+    let mut one = Trainer::resume(&data, checkpoint).unwrap();
+    let mut two = Trainer::resume(&data, again).unwrap();
+    assert_eq!(one.epoch(), two.epoch());
+}
+
+proptest! {
+    #[test]
+    fn any_architecture_comes_back(architecture in architectures(), seed in 0..100u64) {
+        let shape = architecture.shape();
+        let scaling = Scaling::from_ranges(
+            &vec![(-0.1, 1.3); shape.inputs],
+            &vec![(1e-9, 3e-9); shape.outputs],
+        ).unwrap();
+        let plain = architecture == Architecture::from(shape.clone());
+        let weights = starting_weights(&architecture, seed).unwrap();
+        let network = Network::new(architecture, scaling, weights).unwrap();
+        let bytes = network_to_bytes(&network, "p").unwrap();
+        prop_assert_eq!(bytes[12], if plain { 1 } else { 2 });
+        prop_assert_eq!(network_from_bytes(&bytes).unwrap().0, network);
+    }
+}
+
 #[test]
 fn every_flipped_bit_is_refused() {
     let mut bytes = network_to_bytes(&network(), "p").unwrap();
@@ -97,12 +193,12 @@ fn each_fault_has_its_own_error() {
 
     // Another schema, with a hash that fits it.
     let mut other = bytes[..bytes.len() - 32].to_vec();
-    other[12] = 2;
+    other[12] = 3;
     other.extend_from_slice(blake3::hash(&other).as_bytes());
     let refused = network_from_bytes(&other).unwrap_err();
     let expected = ArtifactError::OtherSchema {
-        found: 2,
-        expected: 1,
+        found: 3,
+        expected: 2,
     };
     assert_eq!(refused, expected);
 
@@ -159,9 +255,13 @@ proptest! {
     fn changed_payloads_are_refused_or_sound(
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
         cut in prop::option::of(any::<prop::sample::Index>()),
+        second: bool,
     ) {
-        let (data, checkpoint) = checkpoint();
-        let network = network_to_bytes(&network(), "provenance").unwrap();
+        let (data, checkpoint) = if second { bayesian() } else { checkpoint() };
+        let network = match second {
+            true => network_to_bytes(&Trainer::resume(&data, checkpoint.clone()).unwrap().network(), "provenance"),
+            false => network_to_bytes(&network(), "provenance"),
+        }.unwrap();
         let state = checkpoint_to_bytes(&checkpoint, "provenance").unwrap();
         let changed = |mut bytes: Vec<u8>| {
             bytes.truncate(bytes.len() - 32);

@@ -179,7 +179,11 @@ proptest! {
         let damping = TrainingSettings { resolve_output, initialisation, threads: 1, ..settings.clone() };
         prop_assert!(settings.threads <= 1024 || settings.validate().is_err());
         // Few settings are valid: those that are not give way to the usual ones.
-        let chosen = [damping, TrainingSettings { epochs: 2, resolve_output, initialisation, threads: 1, ..TrainingSettings::default() }];
+        let chosen = [
+            damping,
+            TrainingSettings { epochs: 2, resolve_output, initialisation, threads: 1, ..TrainingSettings::default() },
+            TrainingSettings { epochs: 2, initialisation, threads: 1, ..TrainingSettings::regularised() },
+        ];
         for settings in chosen {
             let Ok(mut trainer) = Trainer::new(shape(&hidden), scaling.clone(), &data, settings) else {
                 continue;

@@ -171,6 +171,30 @@ fn bits_do_not_depend_on_the_threads() {
     assert_eq!(one, run(4));
 }
 
+/// In a pool of the caller's, and in rayon's global one.
+#[test]
+fn bits_do_not_depend_on_the_pool() {
+    let data = data(1000, smooth);
+    let run = |caller_pool| {
+        let settings = TrainingSettings {
+            epochs: 2,
+            threads: 1,
+            caller_pool,
+            resolve_output: true,
+            ..TrainingSettings::default()
+        };
+        let mut trainer = trainer(&[17, 9, 5], &data, settings);
+        trainer.run(|_| ());
+        bits(trainer.network().weights())
+    };
+    let own = run(false);
+    assert_eq!(own, run(true));
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        assert_eq!(own, pool.build().unwrap().install(|| run(true)));
+    }
+}
+
 #[test]
 fn resumed_training_gives_the_same_bits() {
     let data = data(300, smooth);

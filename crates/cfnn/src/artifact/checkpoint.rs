@@ -3,17 +3,18 @@ use std::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use super::frame::Format;
-use super::{ArtifactError, NetworkV1, decode, encode};
+use super::frame::{self, Format};
+use super::{ArchitectureV2, ArtifactError, NetworkV1, content, encode, plain, size};
 use crate::error::{all_finite, same_length};
 use crate::train::{
-    Best, Checkpoint, EarlyStopping, EpochReport, Initialisation, Normalisation, TrainingSettings,
+    Bayesian, Best, Checkpoint, EarlyStopping, EpochReport, Hyperparameters, Initialisation,
+    Normalisation, TrainingSettings,
 };
 use crate::{Error, Network};
 
 const CHECKPOINT: Format = Format {
     kind: *b"CHKP",
-    schema: 1,
+    schema: 2,
 };
 
 /// Schema 1 of a checkpoint. Field order is the format.
@@ -54,6 +55,22 @@ struct EpochV1 {
     trials: u64,
 }
 
+/// Schema 2: what schema 1 cannot hold, and that.
+#[derive(Debug, Serialize, Deserialize)]
+struct CheckpointV2 {
+    architecture: ArchitectureV2,
+    caller_pool: bool,
+    /// Tolerance, and the share below which there are new estimates.
+    bayesian: Option<(f64, f64)>,
+    hyperparameters: Option<HyperparametersV2>,
+    /// One for each epoch.
+    history: Vec<Option<HyperparametersV2>>,
+    plain: CheckpointV1,
+}
+
+/// α, β, γ.
+type HyperparametersV2 = (f64, f64, f64);
+
 /// The bytes of a checkpoint.
 ///
 /// # Errors
@@ -62,16 +79,19 @@ pub fn checkpoint_to_bytes(
     checkpoint: &Checkpoint,
     provenance: &str,
 ) -> Result<Vec<u8>, ArtifactError> {
-    let best = checkpoint.best.as_ref();
-    let stored = CheckpointV1 {
-        settings: SettingsV1::from(&checkpoint.settings),
-        current: NetworkV1::from(&checkpoint.current),
-        damping: checkpoint.damping,
-        best: best.map(|b| (b.weights.clone(), b.loss, b.age as u64)),
-        history: checkpoint.history.iter().map(EpochV1::from).collect(),
-        fingerprint: checkpoint.fingerprint,
-    };
-    encode(CHECKPOINT, stored, provenance)
+    let settings = &checkpoint.settings;
+    let usual = settings.bayesian.is_none() && !settings.caller_pool;
+    let estimated = checkpoint.hyperparameters.is_some()
+        || (checkpoint.history.iter()).any(|report| report.hyperparameters.is_some());
+    if plain(&checkpoint.current) && usual && !estimated {
+        encode(
+            CHECKPOINT.older(1),
+            CheckpointV1::from(checkpoint),
+            provenance,
+        )
+    } else {
+        encode(CHECKPOINT, CheckpointV2::from(checkpoint), provenance)
+    }
 }
 
 /// A checkpoint and its provenance from bytes.
@@ -79,8 +99,95 @@ pub fn checkpoint_to_bytes(
 /// # Errors
 /// As [`super::network_from_bytes`].
 pub fn checkpoint_from_bytes(bytes: &[u8]) -> Result<(Checkpoint, String), ArtifactError> {
-    let (stored, provenance) = decode::<CheckpointV1>(CHECKPOINT, bytes)?;
-    Ok((Checkpoint::try_from(stored)?, provenance))
+    match frame::unwrap(CHECKPOINT, bytes)? {
+        (1, payload) => content::<CheckpointV1, _>(payload),
+        (_, payload) => content::<CheckpointV2, _>(payload),
+    }
+}
+
+impl From<&Checkpoint> for CheckpointV1 {
+    fn from(checkpoint: &Checkpoint) -> Self {
+        let best = checkpoint.best.as_ref();
+        Self {
+            settings: SettingsV1::from(&checkpoint.settings),
+            current: NetworkV1::from(&checkpoint.current),
+            damping: checkpoint.damping,
+            best: best.map(|b| (b.weights.clone(), b.loss, b.age as u64)),
+            history: checkpoint.history.iter().map(EpochV1::from).collect(),
+            fingerprint: checkpoint.fingerprint,
+        }
+    }
+}
+
+impl From<&Checkpoint> for CheckpointV2 {
+    fn from(checkpoint: &Checkpoint) -> Self {
+        let stored = |h: Hyperparameters| (h.alpha, h.beta, h.effective_parameters);
+        let reports = checkpoint.history.iter();
+        Self {
+            architecture: checkpoint.current.architecture().into(),
+            caller_pool: checkpoint.settings.caller_pool,
+            bayesian: checkpoint
+                .settings
+                .bayesian
+                .map(|b| (b.tolerance, b.estimate_below)),
+            hyperparameters: checkpoint.hyperparameters.map(stored),
+            history: reports.map(|r| r.hyperparameters.map(stored)).collect(),
+            plain: CheckpointV1::from(checkpoint),
+        }
+    }
+}
+
+/// Finite and above zero (the number of parameters may be zero), as an update
+/// leaves them.
+fn hyperparameters(stored: Option<HyperparametersV2>) -> Result<Option<Hyperparameters>, Error> {
+    let Some((alpha, beta, effective_parameters)) = stored else {
+        return Ok(None);
+    };
+    for (name, value, least) in [
+        ("alpha", alpha, f64::MIN_POSITIVE),
+        ("beta", beta, f64::MIN_POSITIVE),
+        ("effective_parameters", effective_parameters, 0.0),
+    ] {
+        if !(value >= least && value.is_finite()) {
+            return Err(Error::Setting {
+                name,
+                value,
+                valid: "finite and above 0 (the number of parameters: 0 or above)",
+            });
+        }
+    }
+    Ok(Some(Hyperparameters {
+        alpha,
+        beta,
+        effective_parameters,
+    }))
+}
+
+impl TryFrom<CheckpointV2> for Checkpoint {
+    type Error = Error;
+
+    fn try_from(stored: CheckpointV2) -> Result<Self, Error> {
+        let mut whole = Self::try_from(stored.plain)?;
+        whole.current = stored.architecture.applied_to(&whole.current)?;
+        if let Some(best) = &whole.best {
+            // Refused if a link that is not there has a weight.
+            let Checkpoint { current, .. } = &whole;
+            let (architecture, scaling) = (current.architecture().clone(), current.scaling());
+            Network::new(architecture, scaling.clone(), best.weights.clone())?;
+        }
+        same_length("history", stored.history.len(), whole.history.len())?;
+        for (report, estimated) in whole.history.iter_mut().zip(stored.history) {
+            report.hyperparameters = hyperparameters(estimated)?;
+        }
+        whole.hyperparameters = hyperparameters(stored.hyperparameters)?;
+        whole.settings.caller_pool = stored.caller_pool;
+        whole.settings.bayesian = stored.bayesian.map(|(tolerance, estimate_below)| Bayesian {
+            tolerance,
+            estimate_below,
+        });
+        whole.settings.validate()?;
+        Ok(whole)
+    }
 }
 
 impl TryFrom<CheckpointV1> for Checkpoint {
@@ -104,6 +211,7 @@ impl TryFrom<CheckpointV1> for Checkpoint {
             settings,
             current,
             damping: stored.damping,
+            hyperparameters: None,
             best: stored.best.map(|(weights, loss, age)| Best {
                 weights,
                 loss,
@@ -175,8 +283,10 @@ impl TryFrom<SettingsV1> for TrainingSettings {
                 (other, _) => return Err(unknown("initialisation", other, "0, 1 or 2")),
             },
             resolve_output: s.resolve_output,
+            bayesian: None,
             seed: s.seed,
             threads: size(s.threads),
+            caller_pool: false,
         };
         settings.validate()?;
         Ok(settings)
@@ -205,11 +315,7 @@ impl From<EpochV1> for EpochReport {
             gradient: r.gradient,
             damping: r.damping,
             trials: size(r.trials),
+            hyperparameters: None,
         }
     }
-}
-
-/// Counts beyond this machine's words saturate.
-fn size(n: u64) -> usize {
-    usize::try_from(n).unwrap_or(usize::MAX)
 }

@@ -18,11 +18,19 @@ const MAGIC: [u8; 8] = *b"CFNN\r\n\x1a\n";
 const HEADER: usize = 24;
 const HASH: usize = 32;
 
-/// Kind and schema of an artifact.
+/// Kind of an artifact, and a schema of it: the one to be written, or the newest
+/// that can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Format {
     pub kind: [u8; 4],
     pub schema: u32,
+}
+
+impl Format {
+    /// The same kind in an older schema.
+    pub fn older(self, schema: u32) -> Self {
+        Self { schema, ..self }
+    }
 }
 
 pub(super) fn wrap(format: Format, payload: &[u8]) -> Vec<u8> {
@@ -37,9 +45,9 @@ pub(super) fn wrap(format: Format, payload: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The payload, after length, hash, kind and schema have been checked, in an
+/// Schema and payload, after length, hash, kind and schema have been checked, in an
 /// order that gives the most telling error.
-pub(super) fn unwrap(format: Format, bytes: &[u8]) -> Result<&[u8], ArtifactError> {
+pub(super) fn unwrap(newest: Format, bytes: &[u8]) -> Result<(u32, &[u8]), ArtifactError> {
     let truncated = |expected: u64| ArtifactError::Truncated {
         found: bytes.len() as u64,
         expected,
@@ -71,20 +79,20 @@ pub(super) fn unwrap(format: Format, bytes: &[u8]) -> Result<&[u8], ArtifactErro
         return Err(ArtifactError::Damaged);
     }
     let kind: [u8; 4] = part(header, 8);
-    if kind != format.kind {
+    if kind != newest.kind {
         return Err(ArtifactError::WrongKind {
             found: name(kind),
-            expected: name(format.kind),
+            expected: name(newest.kind),
         });
     }
     let schema = u32::from_le_bytes(part(header, 12));
-    if schema != format.schema {
+    if !(1..=newest.schema).contains(&schema) {
         return Err(ArtifactError::OtherSchema {
             found: schema,
-            expected: format.schema,
+            expected: newest.schema,
         });
     }
-    Ok(payload)
+    Ok((schema, payload))
 }
 
 fn part<const N: usize>(header: &[u8; HEADER], start: usize) -> [u8; N] {

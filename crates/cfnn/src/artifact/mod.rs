@@ -9,6 +9,14 @@
 //! instance the hash of the parameter file that the samples came from. This
 //! module stores it and gives it back; the caller compares.
 //!
+//! A network or checkpoint is written in the oldest schema that can hold it, so
+//! that older versions of this crate read what they can evaluate:
+//!
+//! | schema | holds |
+//! |---|---|
+//! | 1 | the cascade of tansig layers; training without Bayesian regularisation in threads of its own |
+//! | 2 | other links and transfer functions, dropped inputs; all settings |
+//!
 //! bincode is unmaintained (RUSTSEC-2025-0141) and pinned; the plain data
 //! structs that it sees are listed in this module, one for each schema number.
 
@@ -28,7 +36,7 @@ use thiserror::Error as ThisError;
 pub use checkpoint::{checkpoint_from_bytes, checkpoint_to_bytes};
 use frame::Format;
 
-use crate::{Error, Network, Scaling, Shape};
+use crate::{Architecture, Error, Links, Network, Scaling, Shape, Transfer};
 
 /// Why an artifact was refused or could not be written.
 #[derive(Debug, Clone, PartialEq, ThisError)]
@@ -65,11 +73,11 @@ pub enum ArtifactError {
         expected: String,
     },
     /// An artifact in another version of the format.
-    #[error("artifact has schema {found}, this version reads {expected}")]
+    #[error("artifact has schema {found}, this version reads 1 to {expected}")]
     OtherSchema {
         /// Schema number found.
         found: u32,
-        /// Schema number that can be read.
+        /// The newest schema that can be read.
         expected: u32,
     },
     /// The payload does not decode although its hash is right.
@@ -85,7 +93,7 @@ pub enum ArtifactError {
 
 const NETWORK: Format = Format {
     kind: *b"NETW",
-    schema: 1,
+    schema: 2,
 };
 
 /// At most 1 GB of decoded data. Memory is bounded by the bytes given: every
@@ -108,6 +116,21 @@ struct NetworkV1 {
     input_ranges: Vec<(f64, f64)>,
     output_ranges: Vec<(f64, f64)>,
     weights: Vec<f64>,
+}
+
+/// What schema 2 adds to the cascade of schema 1.
+#[derive(Debug, Serialize, Deserialize)]
+struct ArchitectureV2 {
+    links: u8,
+    transfers: Vec<u8>,
+    dropped_inputs: Vec<u64>,
+}
+
+/// Schema 2 of a network.
+#[derive(Debug, Serialize, Deserialize)]
+struct NetworkV2 {
+    architecture: ArchitectureV2,
+    cascade: NetworkV1,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -137,8 +160,6 @@ impl TryFrom<NetworkV1> for Network {
     type Error = Error;
 
     fn try_from(stored: NetworkV1) -> Result<Self, Error> {
-        // A size beyond this machine's words is refused as too large below.
-        let size = |n: u64| usize::try_from(n).unwrap_or(usize::MAX);
         let shape = Shape {
             inputs: size(stored.inputs),
             hidden: stored.hidden.into_iter().map(size).collect(),
@@ -146,6 +167,77 @@ impl TryFrom<NetworkV1> for Network {
         };
         let scaling = Scaling::from_ranges(&stored.input_ranges, &stored.output_ranges)?;
         Network::new(shape, scaling, stored.weights)
+    }
+}
+
+/// Counts beyond this machine's words saturate; a size is then refused as too
+/// large.
+fn size(n: u64) -> usize {
+    usize::try_from(n).unwrap_or(usize::MAX)
+}
+
+/// Whether schema 1 can hold the network.
+fn plain(network: &Network) -> bool {
+    *network.architecture() == Architecture::from(network.shape().clone())
+}
+
+impl From<&Architecture> for ArchitectureV2 {
+    fn from(architecture: &Architecture) -> Self {
+        let code = |layer| match architecture.transfer(layer) {
+            Transfer::Tansig => 0,
+            Transfer::Logsig => 1,
+            Transfer::Purelin => 2,
+            Transfer::Poslin => 3,
+        };
+        let layers = 0..architecture.shape().hidden.len();
+        let dropped = architecture.dropped_inputs().iter();
+        Self {
+            links: match architecture.links() {
+                Links::Cascade => 0,
+                Links::FeedForward => 1,
+            },
+            transfers: layers.map(code).collect(),
+            dropped_inputs: dropped.map(|&i| i as u64).collect(),
+        }
+    }
+}
+
+impl ArchitectureV2 {
+    /// The network with the links and transfer functions stored here.
+    fn applied_to(self, cascade: &Network) -> Result<Network, Error> {
+        let unknown = |name, value: u8, valid| Error::Setting {
+            name,
+            value: f64::from(value),
+            valid,
+        };
+        let links = match self.links {
+            0 => Links::Cascade,
+            1 => Links::FeedForward,
+            other => return Err(unknown("links", other, "0 or 1")),
+        };
+        let transfer = |&code: &u8| match code {
+            0 => Ok(Transfer::Tansig),
+            1 => Ok(Transfer::Logsig),
+            2 => Ok(Transfer::Purelin),
+            3 => Ok(Transfer::Poslin),
+            other => Err(unknown("transfer", other, "0, 1, 2 or 3")),
+        };
+        let transfers = (self.transfers.iter().map(transfer)).collect::<Result<Vec<_>, _>>()?;
+        let dropped: Vec<usize> = self.dropped_inputs.into_iter().map(size).collect();
+        let architecture = Architecture::from(cascade.shape().clone())
+            .with_links(links)
+            .with_transfers(&transfers)?
+            .without_inputs(&dropped)?;
+        let (scaling, weights) = (cascade.scaling().clone(), cascade.weights().to_vec());
+        Network::new(architecture, scaling, weights)
+    }
+}
+
+impl TryFrom<NetworkV2> for Network {
+    type Error = Error;
+
+    fn try_from(stored: NetworkV2) -> Result<Self, Error> {
+        stored.architecture.applied_to(&stored.cascade.try_into()?)
     }
 }
 
@@ -167,7 +259,15 @@ impl TryFrom<NetworkV1> for Network {
 /// [`ArtifactError::Payload`] when encoding fails, which memory alone can
 /// cause.
 pub fn network_to_bytes(network: &Network, provenance: &str) -> Result<Vec<u8>, ArtifactError> {
-    encode(NETWORK, NetworkV1::from(network), provenance)
+    if plain(network) {
+        encode(NETWORK.older(1), NetworkV1::from(network), provenance)
+    } else {
+        let stored = NetworkV2 {
+            architecture: network.architecture().into(),
+            cascade: network.into(),
+        };
+        encode(NETWORK, stored, provenance)
+    }
 }
 
 /// A network and its provenance from bytes.
@@ -175,8 +275,10 @@ pub fn network_to_bytes(network: &Network, provenance: &str) -> Result<Vec<u8>, 
 /// # Errors
 /// Any [`ArtifactError`]: every truncation and every flipped bit is refused.
 pub fn network_from_bytes(bytes: &[u8]) -> Result<(Network, String), ArtifactError> {
-    let (stored, provenance) = decode::<NetworkV1>(NETWORK, bytes)?;
-    Ok((stored.try_into()?, provenance))
+    match frame::unwrap(NETWORK, bytes)? {
+        (1, payload) => content::<NetworkV1, _>(payload),
+        (_, payload) => content::<NetworkV2, _>(payload),
+    }
 }
 
 fn encode<T: Serialize>(
@@ -195,16 +297,20 @@ fn encode<T: Serialize>(
     Ok(frame::wrap(format, &payload))
 }
 
-fn decode<T: DeserializeOwned>(format: Format, bytes: &[u8]) -> Result<(T, String), ArtifactError> {
-    let payload = frame::unwrap(format, bytes)?;
-    let (whole, used): (WithProvenance<'_, T>, usize) =
+/// What a payload of the stored form `S` holds, with its provenance.
+fn content<S, T>(payload: &[u8]) -> Result<(T, String), ArtifactError>
+where
+    S: DeserializeOwned,
+    T: TryFrom<S, Error = Error>,
+{
+    let (whole, used): (WithProvenance<'_, S>, usize) =
         bincode::serde::borrow_decode_from_slice(payload, config()).map_err(payload_error)?;
     if used != payload.len() {
         return Err(ArtifactError::Payload {
             reason: std::format!("{used} of {} bytes used", payload.len()),
         });
     }
-    Ok((whole.content, whole.provenance.into()))
+    Ok((whole.content.try_into()?, whole.provenance.into()))
 }
 
 /// bincode's own words are those of its types.

@@ -8,7 +8,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 
 use super::dataset::{BLOCK, SampleBlock};
 use crate::simd::{Kernel, Vectors};
-use crate::{Layer, NetworkScalar, Shape};
+use crate::{Architecture, Layer, Transfer};
 
 /// Rows of delta products that are formed together.
 pub(super) const LANES: usize = 8;
@@ -24,12 +24,25 @@ pub(super) struct Layout {
     pub activations: usize,
     pub neurons: usize,
     pub parameters: usize,
+    /// One for each hidden layer.
+    pub transfers: Vec<Transfer>,
+    /// Parameters that the architecture has; none if all.
+    pub free: Option<Vec<usize>>,
+    /// Activations that the output layer sees.
+    pub output_links: Vec<usize>,
 }
 
 impl Layout {
-    pub fn new(shape: &Shape) -> Self {
+    /// For a valid architecture.
+    pub fn new(architecture: &Architecture) -> Self {
+        let shape = architecture.shape();
         let neurons = shape.neurons();
+        let hidden = shape.hidden.len();
+        let seen = architecture.seen(hidden);
         Self {
+            transfers: (0..hidden).map(|l| architecture.transfer(l)).collect(),
+            free: architecture.free(),
+            output_links: (0..seen.len()).filter(|&i| seen[i]).collect(),
             layers: shape.layers(),
             output: Layer {
                 seen: shape.activations(),
@@ -43,6 +56,11 @@ impl Layout {
             neurons,
             parameters: shape.parameters(),
         }
+    }
+
+    /// Number of parameters that are trained.
+    pub fn trained(&self) -> usize {
+        self.free.as_ref().map_or(self.parameters, Vec::len)
     }
 
     /// The layers before the output layer.
@@ -72,21 +90,32 @@ pub(super) struct BlockWork {
     vectors: Vectors,
 }
 
-/// tansig of every element in place.
-struct Tansig<'a>(&'a mut [f64]);
+/// The transfer function of every element in place.
+struct Apply<'a>(Transfer, &'a mut [f64]);
 
-impl Kernel for Tansig<'_> {
+impl Kernel for Apply<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let (eights, rest) = self.0.as_chunks_mut::<8>();
-        for eight in eights {
-            *eight = f64::tansig_of(*eight);
+        let Self(transfer, values) = self;
+        if transfer == Transfer::Tansig {
+            // Known to the compiler: this is the usual one.
+            apply(Transfer::Tansig, values);
+        } else {
+            apply(transfer, values);
         }
-        for value in rest {
-            *value = value.tansig();
-        }
+    }
+}
+
+#[inline(always)]
+fn apply(transfer: Transfer, values: &mut [f64]) {
+    let (eights, rest) = values.as_chunks_mut::<8>();
+    for eight in eights {
+        *eight = transfer.of(*eight);
+    }
+    for value in rest {
+        [*value] = transfer.of([*value]);
     }
 }
 
@@ -110,32 +139,41 @@ impl BlockWork {
         self.rows = rows;
         self.activations[..rows].fill(1.0);
         self.activations[rows..rows * (1 + layout.inputs)].copy_from_slice(&samples.inputs);
-        for layer in layout.hidden() {
+        for (layer, &transfer) in layout.hidden().iter().zip(&layout.transfers) {
             let (input, free) = self.activations.split_at_mut(rows * layer.seen);
             let out = &mut free[..rows * layer.neurons];
             affine(layer, weights, rows, input, out);
-            self.vectors.run(Tansig(out));
+            self.vectors.run(Apply(transfer, out));
         }
     }
 
-    /// Residuals from the activations; returns the sum of their squares.
+    /// Residuals from the activations, each times the root of its sample's
+    /// weight; returns the sum of their squares.
     pub fn residuals(&mut self, layout: &Layout, weights: &[f64], samples: &SampleBlock) -> f64 {
         let rows = self.rows;
         let input = &self.activations[..rows * layout.activations];
         let out = &mut self.residuals[..rows * layout.outputs];
         affine(&layout.output, weights, rows, input, out);
         let mut sum = 0.0;
-        for (r, t) in out.iter_mut().zip(&samples.targets) {
-            *r -= t;
+        let Some(roots) = &samples.roots else {
+            for (r, t) in out.iter_mut().zip(&samples.targets) {
+                *r -= t;
+                sum += *r * *r;
+            }
+            return sum;
+        };
+        let roots = roots.iter().cycle();
+        for ((r, t), root) in out.iter_mut().zip(&samples.targets).zip(roots) {
+            *r = (*r - t) * root;
             sum += *r * *r;
         }
         sum
     }
 
     /// Deltas by backpropagation through the cascade, and the gradient.
-    pub fn backward(&mut self, layout: &Layout, weights: &[f64]) {
+    pub fn backward(&mut self, layout: &Layout, weights: &[f64], samples: &SampleBlock) {
         for k in 0..layout.outputs {
-            self.deltas_of_output(layout, weights, k);
+            self.deltas_of_output(layout, weights, k, samples.roots.as_deref());
         }
         self.weigh_deltas(layout);
         self.turn_deltas(layout);
@@ -155,13 +193,25 @@ impl BlockWork {
         }
     }
 
-    fn deltas_of_output(&mut self, layout: &Layout, weights: &[f64], k: usize) {
+    /// Deltas of one output, times the roots of the samples' weights: so are
+    /// the rows of the Jacobian.
+    fn deltas_of_output(
+        &mut self,
+        layout: &Layout,
+        weights: &[f64],
+        k: usize,
+        roots: Option<&[f64]>,
+    ) {
         let rows = self.rows;
         let (hidden, output) = (layout.hidden(), layout.output);
         let table = &mut self.deltas[k * rows * layout.neurons..][..rows * layout.neurons];
         let own = &mut table[rows * output.first_neuron..];
         own.fill(0.0);
-        own[k * rows..(k + 1) * rows].fill(1.0);
+        let first = &mut own[k * rows..(k + 1) * rows];
+        match roots {
+            Some(roots) => first.copy_from_slice(roots),
+            None => first.fill(1.0),
+        }
         for (index, layer) in hidden.iter().enumerate().rev() {
             let (before, later) = table.split_at_mut(rows * (layer.first_neuron + layer.neurons));
             let delta = &mut before[rows * layer.first_neuron..];
@@ -185,8 +235,18 @@ impl BlockWork {
                 place = Accum::Add;
             }
             let values = &self.activations[rows * layer.seen..][..rows * layer.neurons];
-            for (d, a) in delta.iter_mut().zip(values) {
-                *d *= (1.0 - a) * (1.0 + a);
+            // Tansig apart, so that its loop has no choice in it.
+            match layout.transfers[index] {
+                Transfer::Tansig => {
+                    for (d, a) in delta.iter_mut().zip(values) {
+                        *d *= Transfer::Tansig.slope(*a);
+                    }
+                }
+                other => {
+                    for (d, a) in delta.iter_mut().zip(values) {
+                        *d *= other.slope(*a);
+                    }
+                }
             }
         }
     }

@@ -1,5 +1,6 @@
 use std::vec::Vec;
 
+use super::bayes::Hyperparameters;
 use super::report::{EpochReport, History};
 use super::settings::TrainingSettings;
 use crate::{Network, Scaling, Shape};
@@ -14,6 +15,8 @@ pub struct Checkpoint {
     pub(crate) current: Network,
     /// Damping for the next epoch.
     pub(crate) damping: f64,
+    /// Under Bayesian regularisation what is estimated.
+    pub(crate) hyperparameters: Option<Hyperparameters>,
     /// Weights and loss at the best validation loss.
     pub(crate) best: Option<Best>,
     /// Reports of the epochs done.

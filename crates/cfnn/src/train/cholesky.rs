@@ -76,6 +76,59 @@ impl Symmetric {
         b.iter().all(|v| v.is_finite())
     }
 
+    /// Trace of the inverse; the matrix is overwritten. None unless the matrix
+    /// is positive definite to working precision.
+    ///
+    /// With `A = L Lᵀ` it is the sum of the squares of the entries of `L⁻¹`,
+    /// in which nothing cancels.
+    pub fn trace_of_inverse(&mut self) -> Option<f64> {
+        if !self.factorise() {
+            return None;
+        }
+        let columns: Vec<f64> = (0..self.columns.len())
+            .into_par_iter()
+            .with_max_len(1)
+            .map(|k| self.squares_of_inverse(k))
+            .collect();
+        let trace = columns.iter().fold(0.0, |sum, s| sum + s);
+        trace.is_finite().then_some(trace)
+    }
+
+    /// Sum of the squares of column `k` of tiles of `L⁻¹`: `L X = E_k` solved
+    /// forward, tile by tile.
+    fn squares_of_inverse(&self, k: usize) -> f64 {
+        let (n, width) = (self.n, size(self.n, k));
+        let mut x: Vec<Vec<f64>> = (k..self.columns.len())
+            .map(|i| vec![0.0; size(n, i) * width])
+            .collect();
+        x[0].iter_mut()
+            .step_by(width + 1)
+            .for_each(|diagonal| *diagonal = 1.0);
+        let mut sum = 0.0;
+        for i in 0..x.len() {
+            let rows = size(n, k + i);
+            let tiles = &self.columns[k + i];
+            let (own, below) = x[i..].split_at_mut(1);
+            let l = tile_ref(&tiles[0], rows, rows);
+            solve_lower_triangular_in_place(l, tile_mut(&mut own[0], rows, width), Par::Seq);
+            sum = own[0].iter().fold(sum, |sum, v| sum + v * v);
+            let own = tile_ref(&own[0], rows, width);
+            for (tile, to) in tiles[1..].iter().zip(below) {
+                let height = tile.len() / rows;
+                let to = tile_mut(to, height, width);
+                matmul(
+                    to,
+                    Accum::Add,
+                    tile_ref(tile, height, rows),
+                    own,
+                    -1.0,
+                    Par::Seq,
+                );
+            }
+        }
+        sum
+    }
+
     fn factorise(&mut self) -> bool {
         let n = self.n;
         for k in 0..self.columns.len() {

@@ -10,6 +10,7 @@ pub struct Dataset {
     outputs: usize,
     input_rows: Vec<f64>,
     target_rows: Vec<f64>,
+    weights: Option<Vec<f64>>,
 }
 
 impl Dataset {
@@ -41,7 +42,48 @@ impl Dataset {
             outputs,
             input_rows,
             target_rows,
+            weights: None,
         })
+    }
+
+    /// With a weight for each sample: training minimises `Σ w r²` (MATLAB's
+    /// error weights `EW`). Loss and normalisation divide by the number of
+    /// samples, whatever their weights. A sample of weight 0 does not count.
+    ///
+    /// ```
+    /// use cfnn::train::Dataset;
+    /// let data = Dataset::new(1, 1, vec![0.0, 1.0, 2.0], vec![0.0, 1.0, 9.0])?;
+    /// // The third is known to a tenth of the others' deviation only: its variance is 100 times theirs.
+    /// let data = data.with_weights(vec![1.0, 1.0, 0.01])?;
+    /// assert_eq!(data.weights(), Some(&[1.0, 1.0, 0.01][..]));
+    /// # Ok::<(), cfnn::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Length`] for another number than samples, [`Error::NotFinite`],
+    /// [`Error::Negative`] for one below zero or if all are zero.
+    pub fn with_weights(mut self, weights: Vec<f64>) -> Result<Self, Error> {
+        same_length("sample weights", weights.len(), self.len())?;
+        all_finite("sample weights", &weights)?;
+        let wrong = match weights.iter().position(|&w| w < 0.0) {
+            None if weights.iter().all(|&w| w == 0.0) => Some(0),
+            found => found,
+        };
+        if let Some(index) = wrong {
+            return Err(Error::Negative {
+                what: "sample weights",
+                index,
+                value: weights[index],
+            });
+        }
+        self.weights = Some(weights);
+        Ok(self)
+    }
+
+    /// The weights of the samples, if they have any.
+    #[must_use]
+    pub fn weights(&self) -> Option<&[f64]> {
+        self.weights.as_deref()
     }
 
     /// Number of samples.
@@ -103,12 +145,44 @@ impl Dataset {
         )
     }
 
+    /// The same where some inputs do not vary, with those inputs.
+    ///
+    /// ```
+    /// use cfnn::train::{Dataset, Trainer, TrainingSettings};
+    /// use cfnn::{Architecture, Shape};
+    /// // The second input does not vary.
+    /// let x = vec![0.0, 7.0, 1.0, 7.0, 2.0, 7.0, 3.0, 7.0];
+    /// let data = Dataset::new(2, 1, x, vec![0.0, 1.0, 4.0, 9.0])?;
+    /// let (scaling, constant) = data.scaling_of_varying()?;
+    /// let shape = Shape { inputs: 2, hidden: vec![2], outputs: 1 };
+    /// let architecture = Architecture::from(shape).without_inputs(&constant)?;
+    /// let trainer = Trainer::new(architecture, scaling, &data, TrainingSettings::default())?;
+    /// let network = trainer.network();
+    /// let mut scratch = network.scratch();
+    /// let y = network.predict_one(&[1.5, 7.0], &mut scratch)?;
+    /// assert_eq!(y, network.predict_one(&[1.5, f64::NAN], &mut scratch)?);
+    /// # Ok::<(), cfnn::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Scaling::fit_varying`].
+    pub fn scaling_of_varying(&self) -> Result<(Scaling, Vec<usize>), Error> {
+        Scaling::fit_varying(
+            self.inputs,
+            &self.input_rows,
+            self.outputs,
+            &self.target_rows,
+        )
+    }
+
     /// A hash of sizes and bits (64-bit FNV-1a over words), by which a
     /// checkpoint recognises its data. Not proof against intent.
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
         let sizes = [self.inputs as u64, self.outputs as u64];
+        let weights = self.weights.iter().flatten();
         let values = self.input_rows.iter().chain(&self.target_rows);
+        let values = values.chain(weights);
         sizes.into_iter().chain(values.map(|v| v.to_bits())).fold(
             0xcbf2_9ce4_8422_2325,
             |hash, word| {
@@ -131,6 +205,8 @@ pub(super) struct SampleBlock {
     pub inputs: Vec<f64>,
     /// `rows x outputs`, column-major.
     pub targets: Vec<f64>,
+    /// Square roots of the samples' weights; none if all are 1.
+    pub roots: Option<Vec<f64>>,
 }
 
 /// Cuts the chosen samples into scaled blocks.
@@ -149,6 +225,8 @@ pub(super) fn blocks(data: &Dataset, chosen: &[usize], scaling: &Scaling) -> Vec
             targets: column_major(chosen, data.outputs, &|s, c| {
                 data.scaled_target(scaling, s, c)
             }),
+            roots: (data.weights.as_ref())
+                .map(|weights| chosen.iter().map(|&s| libm::sqrt(weights[s])).collect()),
         })
         .collect()
 }

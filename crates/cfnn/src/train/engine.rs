@@ -10,7 +10,7 @@ use super::cholesky::Symmetric;
 use super::dataset::{BLOCK, SampleBlock};
 use super::gram::Gram;
 use super::output_fit::{Triangles, block_triangle};
-use crate::{Error, Shape};
+use crate::{Architecture, Error};
 
 /// Most bytes that a training may take beside its samples. The largest tables
 /// are the triangle and the distinct entries of `JᵀJ`, about `4 n²` bytes each
@@ -33,11 +33,21 @@ pub(super) struct Engine {
     matrix: Symmetric,
 }
 
+/// What a step of [`Engine::step`] adds to the normal equations.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step<'a> {
+    /// On `JᵀJ` and `Jᵀr`.
+    pub factor: f64,
+    pub damping: f64,
+    /// Factor `α` of the squares of the weights, with the weights.
+    pub decay: Option<(f64, &'a [f64])>,
+}
+
 impl Engine {
     /// Refuses a shape, itself valid, whose tables would pass
     /// [`MAX_TRAINING_BYTES`].
-    pub fn check_memory(shape: &Shape, blocks: usize) -> Result<(), Error> {
-        let bytes = bytes(&Layout::new(shape), blocks);
+    pub fn check_memory(architecture: &Architecture, blocks: usize) -> Result<(), Error> {
+        let bytes = bytes(&Layout::new(architecture), blocks);
         if bytes <= MAX_TRAINING_BYTES {
             return Ok(());
         }
@@ -48,13 +58,13 @@ impl Engine {
     }
 
     /// For a shape that [`Engine::check_memory`] accepts.
-    pub fn new(shape: &Shape, blocks: usize) -> Self {
-        let layout = Layout::new(shape);
+    pub fn new(architecture: &Architecture, blocks: usize) -> Self {
+        let layout = Layout::new(architecture);
         Self {
             works: vec![BlockWork::new(&layout); blocks.clamp(1, GROUP)],
             gram: Gram::new(&layout),
             gradient: vec![0.0; layout.parameters],
-            matrix: Symmetric::new(layout.parameters),
+            matrix: Symmetric::new(layout.trained()),
             layout,
         }
     }
@@ -84,7 +94,7 @@ impl Engine {
             (self.works.par_iter_mut().zip(group)).for_each(|(work, samples)| {
                 work.forward_hidden(layout, weights, samples);
                 work.residuals(layout, weights, samples);
-                work.backward(layout, weights);
+                work.backward(layout, weights, samples);
             });
             let works = &self.works[..group.len()];
             self.gram.add(layout, works);
@@ -96,17 +106,77 @@ impl Engine {
         }
     }
 
-    /// Solves `(factor JᵀJ + damping I) step = -factor Jᵀ r`; none if the
-    /// matrix is not positive definite to working precision.
-    pub fn step(&mut self, factor: f64, damping: f64) -> Option<Vec<f64>> {
-        self.gram
-            .write_lower(&self.layout, factor, damping, &mut self.matrix);
-        let mut step: Vec<f64> = self.gradient.iter().map(|g| -factor * g).collect();
-        self.matrix.solve(&mut step).then_some(step)
+    /// Solves `(factor JᵀJ + (damping + α) I) step = -(factor Jᵀr + α w)`, of
+    /// the parameters that are trained; none if the matrix is not positive
+    /// definite to working precision.
+    pub fn step(&mut self, step: Step<'_>) -> Option<Vec<f64>> {
+        let Step {
+            factor,
+            damping,
+            decay,
+        } = step;
+        let damping = decay.map_or(damping, |(alpha, _)| damping + alpha);
+        self.write(factor, damping);
+        let mut whole: Vec<f64> = self.gradient.iter().map(|g| -factor * g).collect();
+        if let Some((alpha, weights)) = decay {
+            for (s, w) in whole.iter_mut().zip(weights) {
+                *s -= alpha * w;
+            }
+        }
+        let Some(free) = &self.layout.free else {
+            return self.matrix.solve(&mut whole).then_some(whole);
+        };
+        let mut own: Vec<f64> = free.iter().map(|&c| whole[c]).collect();
+        if !self.matrix.solve(&mut own) {
+            return None;
+        }
+        whole.fill(0.0);
+        for (&c, s) in free.iter().zip(own) {
+            whole[c] = s;
+        }
+        Some(whole)
     }
 
-    /// Sets the output layer's weights from the first `unknowns` activations
-    /// by least squares, its other weights to zero.
+    /// Trace of `(factor JᵀJ + α I)⁻¹`; none if the matrix is not positive
+    /// definite to working precision.
+    pub fn trace_of_inverse(&mut self, factor: f64, alpha: f64) -> Option<f64> {
+        self.write(factor, alpha);
+        self.matrix.trace_of_inverse()
+    }
+
+    /// The lower triangle of `factor JᵀJ + diagonal I`.
+    fn write(&mut self, factor: f64, diagonal: f64) {
+        let Self {
+            layout,
+            gram,
+            matrix,
+            ..
+        } = self;
+        match &layout.free {
+            None => gram.write_lower(layout, factor, diagonal, matrix),
+            Some(free) => gram.write_lower_of(free, layout, factor, diagonal, matrix),
+        }
+    }
+
+    /// Euclidean norm of `factor Jᵀr + α w` over the parameters that are trained.
+    pub fn gradient_norm(&self, factor: f64, decay: Option<(f64, &[f64])>) -> f64 {
+        let entry = |c: usize| match decay {
+            Some((alpha, weights)) => self.gradient[c] + alpha / factor * weights[c],
+            None => self.gradient[c],
+        };
+        let square = |c: usize| {
+            let g = entry(c);
+            g * g
+        };
+        let sum: f64 = match &self.layout.free {
+            None => (0..self.layout.parameters).map(square).sum(),
+            Some(free) => free.iter().map(|&c| square(c)).sum(),
+        };
+        factor * libm::sqrt(sum)
+    }
+
+    /// Sets the output layer's weights from its links to the first `unknowns`
+    /// activations by least squares, its other weights to zero.
     pub fn fit_output(
         &mut self,
         blocks: &[SampleBlock],
@@ -115,22 +185,25 @@ impl Engine {
         ridge: f64,
     ) {
         let layout = &self.layout;
-        let mut triangles = Triangles::new(unknowns + layout.outputs);
+        let links = &layout.output_links;
+        let links = &links[..links.partition_point(|&link| link < unknowns)];
+        let mut triangles = Triangles::new(links.len() + layout.outputs);
         for group in blocks.chunks(self.works.len()) {
             let parts: Vec<Vec<f64>> = (self.works.par_iter_mut().zip(group))
                 .map(|(work, samples)| {
                     work.forward_hidden(layout, weights, samples);
-                    let seen = &work.activations[..work.rows * unknowns];
-                    block_triangle(work.rows, [seen, &samples.targets])
+                    block_triangle(&work.activations, links, samples)
                 })
                 .collect();
             parts.iter().for_each(|part| triangles.push(part));
             triangles.reduce();
         }
-        let fitted = triangles.solve(unknowns, ridge);
+        let fitted = triangles.solve(links.len(), ridge);
         let own = &mut weights[layout.output.first_parameter..];
         own.fill(0.0);
-        own[..fitted.len()].copy_from_slice(&fitted);
+        for (&link, fitted) in links.iter().zip(fitted.chunks_exact(layout.outputs)) {
+            own[link * layout.outputs..][..layout.outputs].copy_from_slice(fitted);
+        }
     }
 
     /// `JᵀJ` as a full symmetric matrix, column-major (for checks).

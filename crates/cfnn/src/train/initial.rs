@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::dataset::Dataset;
-use crate::{Error, Layer, Scaling, Shape};
+use crate::{Architecture, Error, Layer, Scaling, Shape, Transfer};
 
 /// Random numbers for one purpose, independent of the other purposes.
 pub(super) fn generator(seed: u64, purpose: u64) -> ChaCha8Rng {
@@ -30,16 +30,42 @@ pub(super) fn generator(seed: u64, purpose: u64) -> ChaCha8Rng {
 /// # Errors
 /// What [`Shape::validate`] refuses.
 pub fn nguyen_widrow(shape: &Shape, seed: u64) -> Result<Vec<f64>, Error> {
+    // Before the clone, which an invalid shape may be too large for.
     shape.validate()?;
+    starting_weights(&Architecture::from(shape.clone()), seed)
+}
+
+/// Starting weights of any architecture: those of [`nguyen_widrow`], with
+/// neurons that look along the links that there are. Logsig neurons have
+/// twice the weights, since `logsig n = (1 + tanh(n/2))/2`. Purelin and poslin
+/// have no active part: their weights are uniform with the variance `2/R` for
+/// `R` links (He et al. 2015, doi 10.1109/ICCV.2015.123), their biases in
+/// `[-1, 1]`.
+///
+/// # Errors
+/// What [`Architecture::validate`] refuses.
+pub fn starting_weights(architecture: &Architecture, seed: u64) -> Result<Vec<f64>, Error> {
+    architecture.validate()?;
+    let shape = architecture.shape();
     let mut rng = generator(seed, 0);
     let layers = shape.layers();
     let mut weights = vec![0.0; shape.parameters()];
     for (index, layer) in layers.iter().enumerate() {
         let own = &mut weights[layer.first_parameter..][..layer.parameters()];
+        let seen = architecture.seen(index);
+        let links: Vec<usize> = (1..layer.seen).filter(|&i| seen[i]).collect();
         if index + 1 == layers.len() {
-            own.fill_with(|| symmetric(&mut rng));
-        } else {
-            nguyen_widrow_layer(layer, own, &mut rng);
+            for (&sees, row) in seen.iter().zip(own.chunks_exact_mut(layer.neurons)) {
+                if sees {
+                    row.fill_with(|| symmetric(&mut rng));
+                }
+            }
+            continue;
+        }
+        match architecture.transfer(index) {
+            Transfer::Tansig => nguyen_widrow_layer(1.4, layer, &links, own, &mut rng),
+            Transfer::Logsig => nguyen_widrow_layer(2.8, layer, &links, own, &mut rng),
+            Transfer::Purelin | Transfer::Poslin => uniform_layer(layer, &links, own, &mut rng),
         }
     }
     Ok(weights)
@@ -49,14 +75,30 @@ fn symmetric(rng: &mut ChaCha8Rng) -> f64 {
     2.0 * rng.random::<f64>() - 1.0
 }
 
-fn nguyen_widrow_layer(layer: &Layer, own: &mut [f64], rng: &mut ChaCha8Rng) {
+fn uniform_layer(layer: &Layer, links: &[usize], own: &mut [f64], rng: &mut ChaCha8Rng) {
+    let bound = libm::sqrt(6.0 / links.len() as f64);
+    for j in 0..layer.neurons {
+        own[j] = symmetric(rng);
+        for &i in links {
+            own[i * layer.neurons + j] = bound * symmetric(rng);
+        }
+    }
+}
+
+/// `active` is half the width of the active part, times 0.7.
+fn nguyen_widrow_layer(
+    active: f64,
+    layer: &Layer,
+    links: &[usize],
+    own: &mut [f64],
+    rng: &mut ChaCha8Rng,
+) {
     let neurons = layer.neurons;
-    let inputs = layer.seen - 1;
-    let magnitude = 1.4 * libm::pow(neurons as f64, 1.0 / inputs as f64);
+    let magnitude = active * libm::pow(neurons as f64, 1.0 / links.len() as f64);
     for j in 0..neurons {
-        let direction = direction(inputs, rng);
-        for (i, u) in direction.iter().enumerate() {
-            own[(i + 1) * neurons + j] = magnitude * u;
+        let direction = direction(links.len(), rng);
+        for (&i, u) in links.iter().zip(&direction) {
+            own[i * neurons + j] = magnitude * u;
         }
         let place = if neurons == 1 {
             0.0
@@ -78,40 +120,46 @@ fn direction(dimensions: usize, rng: &mut ChaCha8Rng) -> Vec<f64> {
     }
 }
 
+/// What [`adapt_first_layer`] looks at.
+pub(super) struct Placement<'a> {
+    pub data: &'a Dataset,
+    /// Training samples.
+    pub chosen: &'a [usize],
+    pub scaling: &'a Scaling,
+    /// Inputs that the layer sees.
+    pub inputs: &'a [usize],
+    pub axis_aligned: f64,
+    pub seed: u64,
+}
+
 /// Replaces the first hidden layer by neurons placed by the samples: see
 /// [`super::Initialisation::DataAdapted`].
-pub(super) fn adapt_first_layer(
-    weights: &mut [f64],
-    layer: &Layer,
-    data: &Dataset,
-    chosen: &[usize],
-    scaling: &Scaling,
-    axis_aligned: f64,
-    seed: u64,
-) {
-    let mut rng = generator(seed, 2);
-    let inputs = layer.seen - 1;
-    let scaled = |s: usize, i: usize| data.scaled_input(scaling, s, i);
-    let sorted: Vec<Vec<f64>> = (0..inputs)
-        .map(|i| {
+pub(super) fn adapt_first_layer(weights: &mut [f64], layer: &Layer, place: &Placement<'_>) {
+    let (chosen, inputs) = (place.chosen, place.inputs);
+    let mut rng = generator(place.seed, 2);
+    let scaled = |s: usize, i: usize| place.data.scaled_input(place.scaling, s, i);
+    let sorted: Vec<Vec<f64>> = (inputs.iter())
+        .map(|&i| {
             let mut column: Vec<f64> = chosen.iter().map(|&s| scaled(s, i)).collect();
             column.sort_by(f64::total_cmp);
             column
         })
         .collect();
-    let aligned = libm::round(axis_aligned * layer.neurons as f64) as usize;
+    let aligned = libm::round(place.axis_aligned * layer.neurons as f64) as usize;
     for j in 0..layer.neurons {
         let centre = chosen[rng.random_range(0..chosen.len())];
         let share = scale(layer.neurons, &mut rng);
         let direction = if j < aligned {
-            (0..inputs).map(|i| f64::from(i == j % inputs)).collect()
+            (0..inputs.len())
+                .map(|i| f64::from(i == j % inputs.len()))
+                .collect()
         } else {
-            direction(inputs, &mut rng)
+            direction(inputs.len(), &mut rng)
         };
         let mut bias = 0.0;
-        for (i, u) in direction.iter().enumerate() {
+        for ((&i, u), sorted) in inputs.iter().zip(&direction).zip(&sorted) {
             let c = scaled(centre, i);
-            let w = 1.4 * u / half_spread(&sorted[i], c, share);
+            let w = 1.4 * u / half_spread(sorted, c, share);
             weights[(i + 1) * layer.neurons + j] = w;
             bias -= w * c;
         }

@@ -1,4 +1,4 @@
-//! Levenberg–Marquardt training of a cascade-forward network.
+//! Levenberg–Marquardt training, plain or with Bayesian regularisation.
 //!
 //! All work is in `f64` on scaled data. An epoch forms `JᵀJ` once and then
 //! tries steps at rising damping `μ` until one lowers the loss: `μ` times
@@ -15,6 +15,26 @@
 //! The bits of the result depend on data, settings and seed, not on the
 //! number of threads: work is cut by sizes alone, and every sum has a fixed
 //! order.
+//!
+//! With [`TrainingSettings::regularised`] the weights are kept small by as much
+//! as the data ask for, without samples set apart (MATLAB's `trainbr`): for
+//! few, noisy samples.
+//!
+//! ```
+//! use cfnn::train::{Dataset, Trainer, TrainingSettings};
+//! use cfnn::Shape;
+//! // A line with an error that alternates: two parameters' worth.
+//! let x: Vec<f64> = (0..20).map(f64::from).collect();
+//! let y = x.iter().enumerate().map(|(i, x)| x + if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
+//! let data = Dataset::new(1, 1, x, y)?;
+//! let settings = TrainingSettings::regularised();
+//! let shape = Shape { inputs: 1, hidden: vec![8], outputs: 1 };
+//! let mut trainer = Trainer::new(shape, data.scaling()?, &data, settings)?;
+//! trainer.run(|_| ());
+//! let found = trainer.hyperparameters().ok_or("no regularisation")?;
+//! assert!(found.effective_parameters < 5.0, "of 26: {found:?}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! For a map that is almost linear, start with
 //! [`Initialisation::LinearStart`] or [`Initialisation::DataAdapted`] and set
@@ -47,6 +67,7 @@
 //! # Ok::<(), cfnn::Error>(())
 //! ```
 
+mod bayes;
 mod block;
 mod checkpoint;
 mod cholesky;
@@ -62,12 +83,13 @@ mod split;
 mod tests;
 mod trainer;
 
+pub use bayes::Hyperparameters;
 #[cfg(feature = "artifact")]
 pub(crate) use checkpoint::Best;
 pub use checkpoint::Checkpoint;
 pub use dataset::Dataset;
 pub use engine::MAX_TRAINING_BYTES;
-pub use initial::nguyen_widrow;
+pub use initial::{nguyen_widrow, starting_weights};
 pub use report::{EpochReport, History, TrainingOutcome};
-pub use settings::{EarlyStopping, Initialisation, Normalisation, TrainingSettings};
+pub use settings::{Bayesian, EarlyStopping, Initialisation, Normalisation, TrainingSettings};
 pub use trainer::Trainer;

@@ -12,6 +12,8 @@ use faer::linalg::qr::no_pivoting::factor::{qr_in_place, qr_in_place_scratch};
 use faer::linalg::triangular_solve::solve_upper_triangular_in_place;
 use faer::{Mat, MatMut, Par};
 
+use super::dataset::SampleBlock;
+
 /// Upper triangles of blocks of `[activations | targets]`, collected.
 #[derive(Debug, Clone)]
 pub(super) struct Triangles {
@@ -76,17 +78,26 @@ impl Triangles {
     }
 }
 
-/// The triangle of one block whose columns come as slices of `rows` numbers.
-pub(super) fn block_triangle(rows: usize, tables: [&[f64]; 2]) -> Vec<f64> {
-    let left = tables[0].len() / rows;
-    let right = tables[1].len() / rows;
-    let table = Mat::from_fn(rows, left + right, |i, j| {
-        if j < left {
-            tables[0][j * rows + i]
-        } else {
-            tables[1][(j - left) * rows + i]
-        }
+/// The triangle of the activations that `links` name beside the targets, each
+/// row times the root of its sample's weight.
+pub(super) fn block_triangle(
+    activations: &[f64],
+    links: &[usize],
+    samples: &SampleBlock,
+) -> Vec<f64> {
+    let rows = samples.rows;
+    let targets = samples.targets.len() / rows;
+    let mut table = Mat::from_fn(rows, links.len() + targets, |i, j| match links.get(j) {
+        Some(link) => activations[link * rows + i],
+        None => samples.targets[(j - links.len()) * rows + i],
     });
+    if let Some(roots) = &samples.roots {
+        for mut column in table.col_iter_mut() {
+            for (i, root) in roots.iter().enumerate() {
+                column[i] *= root;
+            }
+        }
+    }
     triangle(table)
 }
 

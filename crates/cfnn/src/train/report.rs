@@ -1,5 +1,7 @@
 use std::vec::Vec;
 
+use super::bayes::Hyperparameters;
+
 /// Why a training ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -15,6 +17,9 @@ pub enum TrainingOutcome {
     /// The loss or the gradient is no finite number, so there is no step to
     /// take: data lie too far outside the scaling's ranges for `f64`.
     NotFinite,
+    /// Bayesian regularisation: α, β and the effective number of parameters
+    /// have changed by less than the tolerance in each of five epochs.
+    Settled,
     /// The validation loss has not improved for as long as the patience.
     ValidationStopped,
 }
@@ -35,6 +40,8 @@ pub struct EpochReport {
     pub damping: f64,
     /// Trial steps, the one taken included.
     pub trials: usize,
+    /// Under Bayesian regularisation what is estimated, after the epoch.
+    pub hyperparameters: Option<Hyperparameters>,
 }
 
 /// The reports of all epochs so far.

@@ -8,6 +8,11 @@ const MAX_THREADS: usize = 1024;
 
 /// Starting weights.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case", deny_unknown_fields)
+)]
 #[non_exhaustive]
 pub enum Initialisation {
     /// Nguyen and Widrow (1990), doi 10.1109/IJCNN.1990.137819, as MATLAB's
@@ -33,6 +38,11 @@ pub enum Initialisation {
 
 /// What the damping is added to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
 #[non_exhaustive]
 pub enum Normalisation {
     /// `JᵀJ + μ I` of the sum of squares, as the paper prints it.
@@ -44,6 +54,11 @@ pub enum Normalisation {
 
 /// Early stopping on samples set apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct EarlyStopping {
     /// Share of the samples set apart, above 0 and below 1; drawn from the
     /// seed.
@@ -53,9 +68,44 @@ pub struct EarlyStopping {
     pub patience: usize,
 }
 
+/// Bayesian regularisation, MATLAB's `trainbr`: the training minimises
+/// `β Σ r² + α Σ w²` and estimates α and β from the data (see
+/// [`super::Hyperparameters`]). Samples set apart are not needed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct Bayesian {
+    /// Training stops when α, β and the effective number of parameters have
+    /// changed by this, relative, or less in each of five epochs; 0: never
+    /// for this reason.
+    pub tolerance: f64,
+    /// α and β are estimated anew after a step that lowers `β Σ r² + α Σ w²`
+    /// by less than this share; above 0, at most 1: after each
+    /// step, with which a training of few samples can end at a map that is
+    /// almost linear.
+    pub estimate_below: f64,
+}
+
+impl Default for Bayesian {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-6,
+            estimate_below: 0.01,
+        }
+    }
+}
+
 /// Settings of a training. The defaults are MATLAB's `trainlm` ones, with its
 /// validation switched off.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(remote = "Self", default, deny_unknown_fields)
+)]
 pub struct TrainingSettings {
     /// Number of epochs after which to stop.
     pub epochs: usize,
@@ -73,7 +123,8 @@ pub struct TrainingSettings {
     /// Training stops at or below this mean square of the scaled residuals.
     pub goal: f64,
     /// Training stops at or below this Euclidean norm of `Jᵀr` (divided by
-    /// the number of residuals under [`Normalisation::Mean`]).
+    /// the number of residuals under [`Normalisation::Mean`]; of
+    /// `β Jᵀr + α w` with Bayesian regularisation).
     pub min_gradient: f64,
     /// Early stopping, or none.
     pub validation: Option<EarlyStopping>,
@@ -84,11 +135,18 @@ pub struct TrainingSettings {
     /// Solve the output layer exactly, by least squares, in every trial step
     /// (the step of the hidden layers still comes from all parameters).
     pub resolve_output: bool,
+    /// Bayesian regularisation, or none. Only with [`Normalisation::Sum`] and
+    /// without `resolve_output`.
+    pub bayesian: Option<Bayesian>,
     /// Seed of the starting weights and of the validation split.
     pub seed: u64,
     /// Worker threads, at most 1024; 0 takes all cores. No influence on the
     /// result's bits.
     pub threads: usize,
+    /// Start no threads, but work in those of the caller: the pool whose
+    /// `install` calls the trainer, or else rayon's global one. `threads` has
+    /// no meaning then. No influence on the result's bits either.
+    pub caller_pool: bool,
 }
 
 impl Default for TrainingSettings {
@@ -105,13 +163,27 @@ impl Default for TrainingSettings {
             normalisation: Normalisation::Sum,
             initialisation: Initialisation::NguyenWidrow,
             resolve_output: false,
+            bayesian: None,
             seed: 0,
             threads: 0,
+            caller_pool: false,
         }
     }
 }
 
 impl TrainingSettings {
+    /// The defaults with [`Bayesian`] regularisation, and an initial damping of
+    /// 1: weights that the data leave open then shrink over some epochs, not
+    /// at once.
+    #[must_use]
+    pub fn regularised() -> Self {
+        Self {
+            bayesian: Some(Bayesian::default()),
+            initial_damping: 1.0,
+            ..Self::default()
+        }
+    }
+
     /// Checks every field.
     ///
     /// # Errors
@@ -152,6 +224,17 @@ impl TrainingSettings {
         }
         let v = self.threads;
         check("threads", v as f64, v <= MAX_THREADS, "at most 1024")?;
+        if let Some(bayesian) = self.bayesian {
+            let v = bayesian.tolerance;
+            check("bayesian.tolerance", v, v >= 0.0, "0 or above")?;
+            let v = bayesian.estimate_below;
+            let good = v > 0.0 && v <= 1.0;
+            check("bayesian.estimate_below", v, good, "above 0 and at most 1")?;
+            let (name, valid) = ("resolve_output", "false with Bayesian regularisation");
+            check(name, 1.0, !self.resolve_output, valid)?;
+            let (name, valid) = ("normalisation", "the sum with Bayesian regularisation");
+            check(name, 1.0, self.normalisation == Normalisation::Sum, valid)?;
+        }
         Ok(())
     }
 }

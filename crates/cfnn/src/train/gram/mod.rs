@@ -91,6 +91,26 @@ impl Gram {
         });
     }
 
+    /// The same of some rows and columns alone, which rise.
+    pub fn write_lower_of(
+        &self,
+        free: &[usize],
+        layout: &Layout,
+        factor: f64,
+        damping: f64,
+        into: &mut Symmetric,
+    ) {
+        into.fill(|c, column| {
+            // Beside the square of the parameters an allocation is nothing.
+            let mut whole = vec![0.0; layout.parameters];
+            self.write_column(layout, factor, free[c], &mut whole);
+            for (to, &row) in column.iter_mut().zip(free).skip(c) {
+                *to = whole[row];
+            }
+            column[c] += damping;
+        });
+    }
+
     fn write_column(&self, layout: &Layout, factor: f64, c: usize, out: &mut [f64]) {
         let l = layout
             .layers
