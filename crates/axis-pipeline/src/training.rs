@@ -139,6 +139,7 @@ fn fold(
     linear: &LinearMap,
     samples: &SampleSet,
 ) -> Result<Network, PipelineError> {
+    residual.architecture().require_tansig()?;
     let scaling = residual.scaling();
     let (least, most) =
         (samples.increments.iter()).fold((f64::MAX, f64::MIN), |(l, m), y| (l.min(*y), m.max(*y)));

@@ -102,9 +102,10 @@ impl NetworkLaw {
     ///
     /// # Errors
     /// [`ExportError::Compensator`] for a network that does not take four inputs and give one
-    /// output.
+    /// output; [`ExportError::Network`] for one with layers that are not tansig.
     pub fn of(strategy: &NetworkStrategy) -> Result<Self, ExportError> {
         let network = strategy.model().network();
+        network.architecture().require_tansig()?;
         let scaling = network.scaling();
         let input = <[ScalingRange<f64>; 4]>::try_from(scaling.input());
         let (Ok(input), [output]) = (input, scaling.output()) else {

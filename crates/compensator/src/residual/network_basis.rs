@@ -35,6 +35,7 @@ struct Seen {
 impl Seen {
     /// A network with the hidden layers of `trained` whose outputs are its activations.
     fn of(trained: &Network) -> Result<Self, cfnn::Error> {
+        trained.architecture().require_tansig()?;
         let count = trained.shape().activations();
         let mut weights = hidden(trained).to_vec();
         for i in 0..count {

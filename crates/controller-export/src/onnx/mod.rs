@@ -87,8 +87,10 @@ pub fn one_cycle(predictors: &Predictors) -> Result<Vec<u8>, ExportError> {
 /// A network as the bytes of an ONNX file.
 ///
 /// # Errors
-/// [`ExportError::Network`] if the description has another number of inputs or outputs.
+/// [`ExportError::Network`] if the description has another number of inputs or outputs, or a layer is not
+/// tansig.
 pub fn export(network: &Network, description: &Description) -> Result<Vec<u8>, ExportError> {
+    network.architecture().require_tansig()?;
     let shape = network.shape();
     let counts = [
         ("described inputs", description.inputs.len(), shape.inputs),

@@ -4,22 +4,22 @@ use axis_sim::effects::ActiveEffect;
 
 use super::evidence::EQUAL;
 use super::form::is_form;
-use super::promise::Promises;
+use super::promise::{Promises, best_first};
 use super::refined::{Refined, Refinement};
 use super::revise::RIVAL;
-use super::state::Search;
+use super::state::{Search, steady_noise_beside};
 use super::types::{Alike, ONE_CLASS};
 use crate::estimate::projector::sine;
-use crate::name::screen::Screened;
+use crate::name::screen::{Screened, Screening};
 
 impl Search<'_> {
-    /// Seeks the look-alikes of each effect anew that was named beside others than stand beside it now:
-    /// what was not named yet, or has been taken out since, may have made two effects look alike, or
-    /// hidden that they do.
+    /// Seeks the look-alikes of each effect anew that was named beside others than stand beside it now, or
+    /// beside a residual far above noise: what was not named yet, or has been taken out since, may have made
+    /// two effects look alike, or hidden that they do.
     pub(super) fn find_look_alikes(&mut self) {
         for index in 0..self.named.len() {
             let beside = self.named_beside(index);
-            let is_of_now = self.named[index].beside == beside;
+            let is_of_now = self.named[index].beside.as_ref() == Some(&beside);
             if is_of_now || is_form(&self.fit.state.effects[index]) {
                 continue;
             }
@@ -30,7 +30,7 @@ impl Search<'_> {
                 };
                 tracing::debug!(name = named.name, before = ?names(&named.alike), now = ?names(&alike), "look-alikes");
                 named.alike = alike;
-                named.beside = beside;
+                named.beside = Some(beside);
             }
         }
     }
@@ -42,34 +42,46 @@ impl Search<'_> {
     }
 
     /// The look-alikes of an effect beside all others that are named; `None` where these cannot be
-    /// simulated without it.
+    /// simulated without it. Where the residual without it is far above noise, all are weighed by noise.
     fn look_alikes_of(&self, index: usize) -> Option<Vec<Alike>> {
-        let without = self.without(index)?;
+        let mut without = self.without(index)?;
         let ActiveEffect { effect, values } = self.fit.state.effects[index].clone();
         let gain = without.fit.deviance - self.fit.deviance;
+        without.steady = steady_noise_beside(&without.fitter(), &without.fit);
         let own_columns = without.own_columns();
         let promises = Promises::new(&without, &own_columns);
         let screenings = promises.screenings(&own_columns, |effect| without.wanted(effect, &[]));
-        let screened = promises.one_by_one(screenings.first()?);
+        let is_rival = |s: &Screened| s.effect.name != effect.name;
+        let (screened, mut rivals) = match (&without.steady, screenings.as_slice()) {
+            (Some(_), [_, by_noise]) => (best_first(by_noise), promises.of_most(&screenings)),
+            _ => {
+                let screened = promises.one_by_one(screenings.first()?);
+                let rivals = screened.iter().filter(|s| s.gain >= RIVAL * gain);
+                let rivals = rivals.map(|s| vec![s.clone()]).collect();
+                (screened, rivals)
+            }
+        };
+        rivals.retain(|parts: &Vec<Screened>| is_rival(&parts[0]));
+        rivals.truncate(self.settings.refined);
         // Its shapes, as the order of a torque, may not be the library's.
+        let matrices = match &without.steady {
+            Some(_) => promises.of_noise().to_vec(),
+            None => without.fit_logs.layout.spectral_matrices(&without.fit.rest),
+        };
         let itself = [without.candidate(effect, values)];
-        let own = without.screened_beside(&own_columns, &itself, effect.parameters.len());
-        let own = own.first()?;
-        let rivals = screened.iter().filter(|s| s.effect.name != effect.name);
-        let rivals = rivals.filter(|s| s.gain >= RIVAL * gain);
-        let rivals = rivals.take(self.settings.refined);
-        let mut of_all = without.refine(rivals.map(|s| vec![s.clone()]).collect(), &own_columns);
+        let (fitter, fit) = (without.fitter(), &without.fit);
+        let own = Screening::new(&fitter, fit, &own_columns, &itself, &matrices, |_| true);
+        let own = own.one_by_one().pop()?;
+        let mut of_all = without.refine(rivals, &own_columns);
         // What does not hold on other motion is no second explanation.
         of_all.kept.retain(|rival| without.holds(rival));
-        of_all.kept.insert(
-            0,
-            Refined {
-                parts: vec![own.clone()],
-                fit: self.fit.clone(),
-                gain,
-            },
-        );
-        Some(without.alike(own, &of_all, 0, &screened))
+        let itself = Refined {
+            parts: vec![own.clone()],
+            fit: self.fit.clone(),
+            gain,
+        };
+        of_all.kept.insert(0, itself);
+        Some(without.alike(&own, &of_all, 0, &screened))
     }
 
     /// Effects that do nearly the same as `own`, a part of the best, or explain as much: the logs

@@ -100,15 +100,7 @@ impl<'a> Promises<'a> {
     pub(super) fn one_by_one(&self, screening: &Screening) -> Vec<Screened> {
         let promised = |s: Screened| self.promised(&[&s]).map_or(vec![s], |p| p.parts).remove(0);
         let all = screening.one_by_one().into_par_iter().map(promised);
-        let mut all: Vec<Screened> = all.collect();
-        all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        let mut seen: Vec<&str> = Vec::new();
-        all.retain(|s| {
-            let new = !seen.contains(&s.effect.name);
-            seen.push(s.effect.name);
-            new
-        });
-        all
+        one_each(all.collect())
     }
 
     /// Of these effects, the first few, but none that promises less than a
@@ -132,15 +124,8 @@ impl<'a> Promises<'a> {
         let Some(by_noise) = screenings.get(1).filter(|_| self.search.steady.is_some()) else {
             return Vec::new();
         };
-        let mut all = by_noise.one_by_one();
+        let mut all = best_first(by_noise);
         all.retain(|s| !is_force_in_time(s.effect) && by_noise.share(s) >= MOST);
-        all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        let mut seen: Vec<&str> = Vec::new();
-        all.retain(|s| {
-            let new = !seen.contains(&s.effect.name);
-            seen.push(s.effect.name);
-            new
-        });
         all.truncate(FEW);
         tracing::debug!(effects = ?all.iter().map(|s| (s.effect.name, &s.values, by_noise.share(s))).collect::<Vec<_>>(), "explain most, by noise");
         all.into_iter().map(|s| vec![s]).collect()
@@ -252,6 +237,23 @@ impl Search<'_> {
         screened.retain(|s| s.gain >= least);
         screened
     }
+}
+
+/// What each effect explains alone by a screening, best first, one entry an effect.
+pub(super) fn best_first(screening: &Screening) -> Vec<Screened> {
+    one_each(screening.one_by_one())
+}
+
+/// The best of each effect, best first.
+fn one_each(mut all: Vec<Screened>) -> Vec<Screened> {
+    all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    let mut seen: Vec<&str> = Vec::new();
+    all.retain(|s| {
+        let new = !seen.contains(&s.effect.name);
+        seen.push(s.effect.name);
+        new
+    });
+    all
 }
 
 /// What some effects together promise.

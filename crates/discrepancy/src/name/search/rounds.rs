@@ -138,13 +138,16 @@ impl Search<'_> {
         let others = refined.iter().enumerate();
         let others = others.filter(|(i, r)| *i != place && r.parts.len() == 1 && !r.is_form());
         let others: Vec<RunnerUp> = others.map(|(_, r)| r.runner_up()).collect();
-        let beside: Vec<&'static str> = self.named.iter().map(|n| n.name).collect();
+        let beside = self.steady.is_none().then(|| {
+            let names = self.named.iter().map(|n| n.name);
+            names.collect::<Vec<_>>()
+        });
         for part in &best.parts {
             self.named.push(Named {
                 name: part.effect.name,
                 evidence: best.gain,
                 held_out: self.check.deviance - check.deviance,
-                alike: match best.is_form() {
+                alike: match best.is_form() || beside.is_none() {
                     true => Vec::new(),
                     false => self.alike(part, of_all, place, screened),
                 },

@@ -173,8 +173,8 @@ pub struct Named {
     pub held_out: f64,
     /// Effects that these logs cannot tell from it, the nearest first.
     pub alike: Vec<Alike>,
-    /// What was named when these were sought.
-    pub beside: Vec<&'static str>,
+    /// What was named when these were sought; `None` where they were not.
+    pub beside: Option<Vec<&'static str>>,
     /// Its values when it had just been added: as a model without the effects
     /// that were added later has them.
     pub when_named: Vec<f64>,
