@@ -105,33 +105,62 @@ impl FrequencyResponse {
         estimator: Estimator,
         averaging: Averaging,
     ) -> Result<Self, ResponseError> {
+        Self::of_all(std::slice::from_ref(record), estimator, averaging)
+    }
+
+    /// Estimates one response from several records of the same machine: segments are cut within each.
+    ///
+    /// # Errors
+    /// As [`FrequencyResponse::of`]; [`ResponseError::Setting`] where their sampling periods differ.
+    pub fn of_all(
+        records: &[Record<'_>],
+        estimator: Estimator,
+        averaging: Averaging,
+    ) -> Result<Self, ResponseError> {
+        let Some(first) = records.first() else {
+            let (found, wanted) = (0, 2);
+            return Err(ResponseError::TooShort { found, wanted });
+        };
         let valid = "from 1e-9 to 1e9 s";
-        let period_s = check("the sampling period", record.period_s, [1e-9, 1e9], valid)?;
-        let excitation = match (record.excitation, estimator) {
-            (Some(r), Estimator::ThreeSignals) => ("excitation", r),
-            _ => ("input", record.input),
-        };
-        checked("input", record.input, record.input.len())?;
-        checked(excitation.0, excitation.1, record.input.len())?;
-        checked("output", record.output, record.input.len())?;
-        let differences;
-        // The first sample has no difference: it is left out of all three.
-        let (from, output) = match record.differenced {
-            true => {
-                let pairs = record.output.windows(2);
-                differences = pairs.map(|w| (w[1] - w[0]) / period_s).collect::<Vec<_>>();
-                (1, differences.as_slice())
+        let period_s = check("the sampling period", first.period_s, [1e-9, 1e9], valid)?;
+        let valid = "that of the first record, with the output differenced as there";
+        let mut differences = Vec::with_capacity(records.len());
+        for record in records {
+            check("the sampling period", record.period_s, [period_s; 2], valid)?;
+            if record.differenced != first.differenced {
+                let (name, value) = ("whether the output is differenced", f64::NAN);
+                return Err(ResponseError::Setting { name, value, valid });
             }
-            false => (0, record.output),
-        };
-        let signals = [excitation.1, record.input].map(|signal| &signal[from.min(signal.len())..]);
-        let averaged = averaging.average([signals[0], signals[1], output])?;
+            let (name, r) = excitation(record, estimator);
+            checked("input", record.input, record.input.len())?;
+            checked(name, r, record.input.len())?;
+            checked("output", record.output, record.input.len())?;
+            let pairs = record.output.windows(2).filter(|_| record.differenced);
+            differences.push(pairs.map(|w| (w[1] - w[0]) / period_s).collect::<Vec<_>>());
+        }
+        let signals: Vec<[&[f64]; 3]> = records
+            .iter()
+            .zip(&differences)
+            .map(|(record, differences)| {
+                let r = excitation(record, estimator).1;
+                // The first sample has no difference: it is left out of all three.
+                match record.differenced {
+                    true => [
+                        &r[1.min(r.len())..],
+                        &record.input[1.min(r.len())..],
+                        differences,
+                    ],
+                    false => [r, record.input, record.output],
+                }
+            })
+            .collect();
+        let averaged = averaging.average(&signals)?;
         let step_hz = 1.0 / (averaged.segment as f64 * period_s);
         let n = averaged.averages;
         let powers = averaged.powers.iter().map(|p| p.rr);
         let strongest = powers.skip(averaged.lowest).fold(0.0, f64::max);
         if strongest <= 0.0 {
-            return Err(ResponseError::Constant(excitation.0));
+            return Err(ResponseError::Constant(excitation(first, estimator).0));
         }
         let mut lines = Vec::new();
         for (i, p) in averaged.powers.iter().enumerate().skip(averaged.lowest) {
@@ -158,7 +187,7 @@ impl FrequencyResponse {
                 }
             };
             let frequency_hz = i as f64 * step_hz;
-            if record.differenced {
+            if first.differenced {
                 let by = of_difference(frequency_hz, period_s);
                 value /= by;
                 variance /= by.norm_sqr();
@@ -237,6 +266,14 @@ impl FrequencyResponse {
         let value = low.value * Complex::from_polar(ratio.norm().powf(part), ratio.arg() * part);
         let deviation = low.deviation + part * (high.deviation - low.deviation);
         value.is_finite().then_some((value, deviation))
+    }
+}
+
+/// What stands for the excitation, and its name.
+fn excitation<'a>(record: &Record<'a>, estimator: Estimator) -> (&'static str, &'a [f64]) {
+    match (record.excitation, estimator) {
+        (Some(r), Estimator::ThreeSignals) => ("excitation", r),
+        _ => ("input", record.input),
     }
 }
 

@@ -1,8 +1,9 @@
 //! A record in segments: their transforms, averaged.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
-use axis_fourier::Complex;
+use axis_fourier::{Complex, RealToComplex};
 
 use crate::error::ResponseError;
 
@@ -77,56 +78,44 @@ impl Averaging {
         }
     }
 
-    /// Averages over a record of three signals of equal length.
-    pub(crate) fn average(self, signals: [&[f64]; 3]) -> Result<Averaged, ResponseError> {
+    /// Averages over records of three signals, each of equal length; those that hold no segment are
+    /// left out.
+    pub(crate) fn average(self, records: &[[&[f64]; 3]]) -> Result<Averaged, ResponseError> {
         let [n, hop, from] = self.cut()?;
-        let found = signals[0].len();
-        let count = match found.checked_sub(from.saturating_add(n)) {
-            Some(left) => left / hop + 1,
-            None => 0,
+        let count_of = |record: &[&[f64]; 3]| {
+            let left = record[0].len().checked_sub(from.saturating_add(n));
+            left.map_or(0, |left| left / hop + 1)
         };
-        if count < 2 {
-            let wanted = from.saturating_add(n).saturating_add(hop);
-            return Err(ResponseError::TooShort { found, wanted });
+        let total: usize = records.iter().map(count_of).sum();
+        if total < 2 {
+            let found = records.iter().map(|record| record[0].len()).max();
+            return Err(ResponseError::TooShort {
+                found: found.unwrap_or(0),
+                wanted: from.saturating_add(n).saturating_add(hop),
+            });
         }
         let window = self.window(n);
-        let plan = axis_fourier::forward(n);
-        let mut powers = vec![Powers::default(); n / 2 + 1];
-        let mut part = vec![0.0; n];
-        let mut lines = [0; 3].map(|_| plan.make_output_vec());
-        let slopes = signals.map(|signal| match self {
-            Self::Welch { .. } => vec![0.0; count],
-            Self::Periods { .. } => drifts(signal, from, n, count),
-        });
-        for k in 0..count {
-            for ((signal, slopes), lines) in signals.iter().zip(&slopes).zip(&mut lines) {
+        let mut sums = Sums::new(n);
+        let mut averages = 0.0;
+        for record in records {
+            let count = count_of(record);
+            let drifts = record.map(|signal| match self {
+                Self::Periods { .. } if count > 1 => drifts(signal, from, n, count),
+                _ => vec![0.0; count],
+            });
+            let [r, u, y] = &drifts;
+            for (k, ((r, u), y)) in r.iter().zip(u).zip(y).enumerate() {
                 let begin = from + k * hop;
-                trendless(&signal[begin..begin + n], slopes[k], &window, &mut part);
-                // Its lengths are those of the plan.
-                let _ = plan.process(&mut part, lines);
+                let parts = record.map(|signal| &signal[begin..begin + n]);
+                sums.add(parts, [*r, *u, *y], &window);
             }
-            let [r, u, y] = &lines;
-            for (i, p) in powers.iter_mut().enumerate() {
-                p.rr += r[i].norm_sqr();
-                p.uu += u[i].norm_sqr();
-                p.yy += y[i].norm_sqr();
-                p.ru += r[i].conj() * u[i];
-                p.ry += r[i].conj() * y[i];
-                p.uy += u[i].conj() * y[i];
+            if count > 0 {
+                averages += independent(&window, hop, count);
             }
-        }
-        let scale = 1.0 / count as f64;
-        for p in &mut powers {
-            p.rr *= scale;
-            p.uu *= scale;
-            p.yy *= scale;
-            p.ru *= scale;
-            p.ry *= scale;
-            p.uy *= scale;
         }
         Ok(Averaged {
-            powers,
-            averages: independent(&window, hop, count),
+            powers: sums.means(total),
+            averages,
             segment: n,
             // Hann's window brings line 0 into line 1.
             lowest: match self {
@@ -134,6 +123,56 @@ impl Averaging {
                 Self::Periods { .. } => 1,
             },
         })
+    }
+}
+
+/// Sums of powers over segments.
+struct Sums {
+    plan: Arc<dyn RealToComplex<f64>>,
+    part: Vec<f64>,
+    lines: [Vec<Complex<f64>>; 3],
+    powers: Vec<Powers>,
+}
+
+impl Sums {
+    fn new(n: usize) -> Self {
+        let plan = axis_fourier::forward(n);
+        Self {
+            part: vec![0.0; n],
+            lines: [0; 3].map(|_| plan.make_output_vec()),
+            powers: vec![Powers::default(); n / 2 + 1],
+            plan,
+        }
+    }
+
+    fn add(&mut self, parts: [&[f64]; 3], slopes: [f64; 3], window: &[f64]) {
+        for ((part, slope), lines) in parts.iter().zip(slopes).zip(&mut self.lines) {
+            trendless(part, slope, window, &mut self.part);
+            // Its lengths are those of the plan.
+            let _ = self.plan.process(&mut self.part, lines);
+        }
+        let [r, u, y] = &self.lines;
+        for (i, p) in self.powers.iter_mut().enumerate() {
+            p.rr += r[i].norm_sqr();
+            p.uu += u[i].norm_sqr();
+            p.yy += y[i].norm_sqr();
+            p.ru += r[i].conj() * u[i];
+            p.ry += r[i].conj() * y[i];
+            p.uy += u[i].conj() * y[i];
+        }
+    }
+
+    fn means(mut self, count: usize) -> Vec<Powers> {
+        let scale = 1.0 / count as f64;
+        for p in &mut self.powers {
+            p.rr *= scale;
+            p.uu *= scale;
+            p.yy *= scale;
+            p.ru *= scale;
+            p.ry *= scale;
+            p.uy *= scale;
+        }
+        self.powers
     }
 }
 

@@ -221,7 +221,13 @@ impl ModalFit {
         let delays = delays(settings.most_delay_s * target.plane.scale);
         let mut best: Option<(f64, Parameters, f64)> = None;
         for order in 1..=most {
-            let fits = delays.iter().filter_map(|delay| {
+            // Once a fit is near, it knows the delay: another order changes it by little.
+            let near = best.as_ref().map(|(_, parameters, _)| parameters.delay());
+            let tried: Vec<f64> = match near.filter(|_| order > SEARCHED) {
+                Some(near) => vec![0.0, near.max(0.0)],
+                None => delays.clone(),
+            };
+            let fits = tried.iter().filter_map(|delay| {
                 let poles = vector::poles(&target, order, *delay)?;
                 let start = vector::start(&target, &poles, *delay)?;
                 Some(refine::refined(&target, start))
@@ -296,6 +302,9 @@ fn target(response: &FrequencyResponse, settings: &FitSettings) -> (Target, Vec<
     };
     (target, lines.into_iter().map(|line| line.0).collect())
 }
+
+/// Most poles for which all delays are tried.
+const SEARCHED: usize = 4;
 
 /// Delays from which a fit starts: near enough to one another that the phase at the highest line
 /// differs by less than a radian.

@@ -30,7 +30,7 @@ impl Parameters {
         self.values.len()
     }
 
-    fn delay(&self) -> f64 {
+    pub fn delay(&self) -> f64 {
         self.values[self.count() - 1]
     }
 
