@@ -62,7 +62,7 @@ fn log(axis: &Axis, slide: Slide) -> Log {
         },
     };
     let dwell = Step::Dwell { duration: 0.1 };
-    let program = Program::new(slide.from, vec![dwell.clone(), step, dwell]).unwrap();
+    let program = Program::new(slide.from, vec![dwell, step, dwell]).unwrap();
     let h = axis.period;
     let start = (0.5 / h) as usize;
     let count = (slide.seconds / h) as usize - (0.5 / h) as usize;

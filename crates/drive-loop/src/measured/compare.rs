@@ -136,6 +136,7 @@ pub(crate) fn comparison(
     at: &ModelAt,
     plant: &MeasuredPlant,
     fit: Option<&ModalFit>,
+    step_hz: f64,
 ) -> Option<Comparison> {
     let speed = |line: &PlantLine| {
         let model = at.shown(line.frequency_hz)?[1];
@@ -168,7 +169,7 @@ pub(crate) fn comparison(
         said: Vec::new(),
     };
     if let Some(fit) = fit {
-        compare_modes(at, fit, &mut found);
+        compare_modes(at, fit, step_hz, &mut found);
     }
     say(&mut found, at.model.period());
     Some(found)
@@ -228,14 +229,10 @@ fn delay_and_gain(ratios: &[(f64, Number, f64)]) -> (WithDeviation, f64) {
     )
 }
 
-fn compare_modes(at: &ModelAt, fit: &ModalFit, found: &mut Comparison) {
+fn compare_modes(at: &ModelAt, fit: &ModalFit, step_hz: f64, found: &mut Comparison) {
     let [low, high] = fit.band_hz;
     let mut used = vec![false; at.modes_hz.len()];
-    for mode in fit
-        .modes
-        .iter()
-        .filter(|mode| mode.damping.value.abs() < super::DAMPED)
-    {
+    for mode in super::machine_modes(fit, step_hz) {
         let measured = mode.frequency_hz.value;
         let distance = |f: &f64| (f / measured).ln().abs();
         let nearest = (0..used.len())

@@ -90,7 +90,8 @@ pub struct MeasuredMode {
 /// What was fitted to the response of the motor's speed.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MeasuredModes {
-    /// Pairs of poles with a damping below 0.5, from low to high frequency.
+    /// Pairs of poles with a damping below 0.5 and a frequency within the lines that is known to 5 %, from
+    /// low to high frequency.
     pub modes: Vec<MeasuredMode>,
     /// Delay behind the hold of the command, s. It stands for lags that are faster than the lines too.
     pub delay_s: WithDeviation,
@@ -231,7 +232,7 @@ impl Measurement {
             false => None,
         };
         let comparison = match is_usable {
-            true => compare::comparison(&at, &plant, fit.as_ref()),
+            true => compare::comparison(&at, &plant, fit.as_ref(), shown.step_hz),
             false => None,
         };
         let lines = |of: &FrequencyResponse| {
@@ -266,7 +267,7 @@ impl Measurement {
                 .map(|l| at.speed(l.frequency_hz))
                 .collect(),
             load: lines(&load),
-            fit: fit.map(|fit| modes(&fit)),
+            fit: fit.map(|fit| modes(&fit, shown.step_hz)),
             margins,
             comparison,
             traps,
@@ -387,9 +388,26 @@ fn method(by: Estimator, averaging: Averaging, period: f64) -> String {
 
 /// Damping from which on a pair of poles is a lag of the drive, no mode of the machine.
 const DAMPED: f64 = 0.5;
+/// Lines below a mode that are needed to tell it from an error of the lowest ones.
+const BELOW: f64 = 6.0;
+/// Deviation of a frequency, as a share of it, from which on it is no mode.
+const VAGUE: f64 = 0.05;
 
-fn modes(fit: &ModalFit) -> MeasuredModes {
-    let is_mode = |mode: &&frequency_response::FittedMode| mode.damping.value.abs() < DAMPED;
+/// Pairs of poles that are modes of a machine, of a fit to lines `step_hz` apart.
+fn machine_modes(
+    fit: &ModalFit,
+    step_hz: f64,
+) -> impl Iterator<Item = &frequency_response::FittedMode> {
+    fit.modes.iter().filter(move |mode| {
+        let frequency = mode.frequency_hz;
+        mode.damping.value.abs() < DAMPED
+            && frequency.value > BELOW * step_hz
+            && frequency.value < fit.band_hz[1]
+            && frequency.deviation < VAGUE * frequency.value
+    })
+}
+
+fn modes(fit: &ModalFit, step_hz: f64) -> MeasuredModes {
     let mode = |mode: &frequency_response::FittedMode| MeasuredMode {
         frequency_hz: mode.frequency_hz.into(),
         damping: mode.damping.into(),
@@ -397,7 +415,7 @@ fn modes(fit: &ModalFit) -> MeasuredModes {
         residue_deviation: mode.residue_deviation,
     };
     MeasuredModes {
-        modes: fit.modes.iter().filter(is_mode).map(mode).collect(),
+        modes: machine_modes(fit, step_hz).map(mode).collect(),
         delay_s: fit.delay_s.into(),
         misfit: fit.misfit,
         relative_error: fit.relative_error,
