@@ -29,7 +29,7 @@ use axis_fourier::Complex;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::error::{ResponseError, check};
-use crate::segments::{Averaging, of_difference};
+use crate::segments::{Averaging, Powers, of_difference};
 
 /// Share of the strongest line's power below which a line is not excited.
 const EXCITED: f64 = 1e-9;
@@ -121,23 +121,12 @@ impl FrequencyResponse {
             let (found, wanted) = (0, 2);
             return Err(ResponseError::TooShort { found, wanted });
         };
-        let valid = "from 1e-9 to 1e9 s";
-        let period_s = check("the sampling period", first.period_s, [1e-9, 1e9], valid)?;
-        let valid = "that of the first record, with the output differenced as there";
-        let mut differences = Vec::with_capacity(records.len());
-        for record in records {
-            check("the sampling period", record.period_s, [period_s; 2], valid)?;
-            if record.differenced != first.differenced {
-                let (name, value) = ("whether the output is differenced", f64::NAN);
-                return Err(ResponseError::Setting { name, value, valid });
-            }
-            let (name, r) = excitation(record, estimator);
-            checked("input", record.input, record.input.len())?;
-            checked(name, r, record.input.len())?;
-            checked("output", record.output, record.input.len())?;
+        let period_s = checked_records(records, estimator)?;
+        let of_record = |record: &Record<'_>| -> Vec<f64> {
             let pairs = record.output.windows(2).filter(|_| record.differenced);
-            differences.push(pairs.map(|w| (w[1] - w[0]) / period_s).collect::<Vec<_>>());
-        }
+            pairs.map(|w| (w[1] - w[0]) / period_s).collect()
+        };
+        let differences: Vec<Vec<f64>> = records.iter().map(of_record).collect();
         let signals: Vec<[&[f64]; 3]> = records
             .iter()
             .zip(&differences)
@@ -164,40 +153,18 @@ impl FrequencyResponse {
         }
         let mut lines = Vec::new();
         for (i, p) in averaged.powers.iter().enumerate().skip(averaged.lowest) {
-            let is_excited = p.rr > EXCITED * strongest && p.ru.norm() > 0.0;
-            if !is_excited || estimator == Estimator::H2 && p.uy.norm() == 0.0 {
-                continue;
-            }
-            let share = |cross: Complex<f64>, a: f64, b: f64| match a * b > 0.0 {
-                true => (cross.norm_sqr() / (a * b)).min(1.0),
-                false => 0.0,
-            };
-            let coherence = share(p.ry, p.rr, p.yy).min(share(p.ru, p.rr, p.uu));
-            let (mut value, mut variance) = match estimator {
-                Estimator::H2 => {
-                    let value = p.uy * (p.yy / p.uy.norm_sqr());
-                    let lost = (1.0 - coherence) / coherence.max(f64::MIN_POSITIVE);
-                    (value, value.norm_sqr() * lost / n)
-                }
-                _ => {
-                    let value = p.ry / p.ru;
-                    let fitted = value.norm_sqr() * p.uu - 2.0 * (value.conj() * p.uy).re;
-                    let noise = (p.yy + fitted).max(0.0) * n / (n - 1.0);
-                    (value, noise * p.rr / (n * p.ru.norm_sqr()))
-                }
-            };
             let frequency_hz = i as f64 * step_hz;
+            let is_excited = p.rr > EXCITED * strongest && p.ru.norm() > 0.0;
+            let mut line = line(frequency_hz, p, estimator, n);
             if first.differenced {
                 let by = of_difference(frequency_hz, period_s);
-                value /= by;
-                variance /= by.norm_sqr();
+                line.value /= by;
+                line.deviation /= by.norm();
             }
-            lines.push(ResponseLine {
-                frequency_hz,
-                value,
-                deviation: (0.5 * variance).sqrt(),
-                coherence,
-            });
+            let sum = line.value.norm() + line.deviation;
+            if is_excited && sum.is_finite() {
+                lines.push(line);
+            }
         }
         Ok(Self {
             lines,
@@ -267,6 +234,54 @@ impl FrequencyResponse {
         let deviation = low.deviation + part * (high.deviation - low.deviation);
         value.is_finite().then_some((value, deviation))
     }
+}
+
+/// The estimate from powers that are means of `n` independent ones.
+fn line(frequency_hz: f64, p: &Powers, estimator: Estimator, n: f64) -> ResponseLine {
+    let share = |cross: Complex<f64>, a: f64, b: f64| match a * b > 0.0 {
+        true => (cross.norm_sqr() / (a * b)).min(1.0),
+        false => 0.0,
+    };
+    let coherence = share(p.ry, p.rr, p.yy).min(share(p.ru, p.rr, p.uu));
+    let (value, variance) = match estimator {
+        Estimator::H2 => {
+            let value = p.uy * (p.yy / p.uy.norm_sqr());
+            let lost = (1.0 - coherence) / coherence.max(f64::MIN_POSITIVE);
+            (value, value.norm_sqr() * lost / n)
+        }
+        _ => {
+            let value = p.ry / p.ru;
+            let fitted = value.norm_sqr() * p.uu - 2.0 * (value.conj() * p.uy).re;
+            let noise = (p.yy + fitted).max(0.0) * n / (n - 1.0);
+            (value, noise * p.rr / (n * p.ru.norm_sqr()))
+        }
+    };
+    ResponseLine {
+        frequency_hz,
+        value,
+        deviation: (0.5 * variance).sqrt(),
+        coherence,
+    }
+}
+
+/// Refuses records that do not go together or hold what is no number; their sampling period.
+fn checked_records(records: &[Record<'_>], estimator: Estimator) -> Result<f64, ResponseError> {
+    let first = records.first().map_or(f64::NAN, |record| record.period_s);
+    let valid = "from 1e-9 to 1e9 s";
+    let period_s = check("the sampling period", first, [1e-9, 1e9], valid)?;
+    let valid = "as of the first record";
+    for record in records {
+        check("the sampling period", record.period_s, [period_s; 2], valid)?;
+        if record.differenced != records[0].differenced {
+            let (name, value) = ("whether the output is differenced", f64::NAN);
+            return Err(ResponseError::Setting { name, value, valid });
+        }
+        let (name, r) = excitation(record, estimator);
+        checked("input", record.input, record.input.len())?;
+        checked(name, r, record.input.len())?;
+        checked("output", record.output, record.input.len())?;
+    }
+    Ok(period_s)
 }
 
 /// What stands for the excitation, and its name.

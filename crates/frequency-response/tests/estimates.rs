@@ -239,3 +239,49 @@ fn between_lines_it_goes_straight_in_phase_and_size() {
     assert!((value - truth).norm() < 1e-9);
     assert!(found.at(0.1).is_none() && found.at(600.0).is_none());
 }
+
+fn record<'a>([u, y]: &'a [Vec<f64>; 2], r: &'a [f64]) -> Record<'a> {
+    Record {
+        period_s: 1e-3,
+        excitation: Some(r),
+        input: &u[..r.len()],
+        output: &y[..r.len()],
+        differenced: false,
+    }
+}
+
+/// Two records of six periods are worth twelve, and a record too short for one is left out.
+#[test]
+fn records_are_put_together() {
+    let machine = Machine::default();
+    let r = prbs(9, 1, 511 * 7, 3);
+    let all: Vec<[Vec<f64>; 2]> = (0..2).map(|seed| closed(machine, &r, 0.1, seed)).collect();
+    let averaging = Averaging::Periods {
+        period: 511,
+        skip: 1,
+    };
+    let records = [
+        record(&all[0], &r),
+        record(&all[1], &r),
+        record(&all[0], &r[..600]),
+    ];
+    let of = |records: &[Record<'_>]| {
+        FrequencyResponse::of_all(records, Estimator::ThreeSignals, averaging).unwrap()
+    };
+    let [one, both] = [of(&records[..1]), of(&records)];
+    assert_eq!((one.averages, both.averages), (6.0, 12.0));
+    let error = |found: &FrequencyResponse| {
+        let error = |l: &frequency_response::ResponseLine| {
+            (l.value - machine.response(l.frequency_hz)).norm_sqr()
+        };
+        found
+            .lines
+            .iter()
+            .filter(|l| l.frequency_hz > 90.0)
+            .map(error)
+            .sum::<f64>()
+    };
+    let ratio = error(&both) / error(&one);
+    println!("{ratio}");
+    assert!((ratio - 0.5).abs() < 0.12, "{ratio}");
+}

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use axis_sim::Axis;
-use frequency_response::ModalFit;
+use frequency_response::{FrequencyResponse, ModalFit};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -103,12 +103,12 @@ impl ModelAt {
         Some(crate::law::shown(&self.model, &plant))
     }
 
-    /// The motor's speed of those, as real and imaginary part.
-    pub fn speed(&self, frequency_hz: f64) -> [f64; 2] {
-        let speed = self
-            .shown(frequency_hz)
-            .map_or(Number::new(0.0, 0.0), |all| all[1]);
-        [speed.re, speed.im]
+    /// The motor's speed of those on the lines of a response, as real and imaginary parts.
+    pub fn speeds(&self, lines: &FrequencyResponse) -> Vec<[f64; 2]> {
+        let zero = Number::new(0.0, 0.0);
+        let of = |hz: f64| self.shown(hz).map_or(zero, |all| all[1]);
+        let all = lines.lines.iter().map(|line| of(line.frequency_hz));
+        all.map(|speed| [speed.re, speed.im]).collect()
     }
 
     /// Size of the filters and the hold that the excitation passes on its way to the command.

@@ -194,19 +194,17 @@ impl Measurement {
             true => Estimator::ThreeSignals,
             false => Estimator::H1,
         };
-        let estimate = |output: &[f64], differenced| {
-            let all: Vec<Record<'_>> = recorded.records(output, differenced).collect();
-            FrequencyResponse::of_all(&all, by, averaging)
+        let estimate = |output: Option<&[f64]>, differenced| {
+            let all = output.map(|output| -> Vec<Record<'_>> {
+                recorded.records(output, differenced).collect()
+            });
+            let found = all.map(|all| FrequencyResponse::of_all(&all, by, averaging));
+            found.transpose()
         };
-        let angle = recorded
-            .angle
-            .map(|angle| estimate(angle, true))
-            .transpose()?;
-        let speed = match recorded.speed {
-            Some(speed) => Some(estimate(speed, false)?),
-            None => None,
-        };
-        let load = estimate(recorded.load, true)?;
+        let angle = estimate(recorded.angle, true)?;
+        let speed = estimate(recorded.speed, false)?;
+        let all: Vec<Record<'_>> = recorded.records(recorded.load, true).collect();
+        let load = FrequencyResponse::of_all(&all, by, averaging)?;
         let at = compare::ModelAt::new(axis, recorded.position)?;
         let plant = MeasuredPlant::new(
             &at,
@@ -235,15 +233,6 @@ impl Measurement {
             true => compare::comparison(&at, &plant, fit.as_ref(), shown.step_hz),
             false => None,
         };
-        let lines = |of: &FrequencyResponse| {
-            let line = |l: &frequency_response::ResponseLine| MeasuredLine {
-                frequency_hz: l.frequency_hz,
-                value: [l.value.re, l.value.im],
-                deviation: l.deviation,
-                coherence: l.coherence,
-            };
-            of.lines.iter().map(line).collect::<Vec<_>>()
-        };
         Ok(Self {
             schema: Self::SCHEMA,
             axis: axis.name.clone(),
@@ -261,11 +250,7 @@ impl Measurement {
             coherence: settings.coherence,
             band_hz: plant.band_hz(),
             motor_speed: lines(&shown),
-            motor_speed_model: shown
-                .lines
-                .iter()
-                .map(|l| at.speed(l.frequency_hz))
-                .collect(),
+            motor_speed_model: at.speeds(&shown),
             load: lines(&load),
             fit: fit.map(|fit| modes(&fit, shown.step_hz)),
             margins,
@@ -309,6 +294,16 @@ impl LoopSet {
         }
         Ok(self)
     }
+}
+
+fn lines(of: &FrequencyResponse) -> Vec<MeasuredLine> {
+    let line = |l: &frequency_response::ResponseLine| MeasuredLine {
+        frequency_hz: l.frequency_hz,
+        value: [l.value.re, l.value.im],
+        deviation: l.deviation,
+        coherence: l.coherence,
+    };
+    of.lines.iter().map(line).collect()
 }
 
 /// Margins with the gains of the file: by what the command makes of the excitation, and by the

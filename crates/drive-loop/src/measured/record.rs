@@ -79,6 +79,19 @@ impl<'a> Recorded<'a> {
         let load = position_in(log).map_err(missing)?;
         let angle = log.channel("motor_angle_rad").ok();
         let speed = log.channel("motor_speed_rad_s").ok();
+        for name in [
+            name,
+            "motor_speed_rad_s",
+            "motor_angle_rad",
+            axis.position_channel(),
+        ] {
+            let missing: usize = log.missing(name).iter().map(|range| range.len()).sum();
+            if missing > 0 {
+                notes.push(format!(
+                    "{missing} samples of {name} were not measured: straight lines stand in their place"
+                ));
+            }
+        }
         let excitation = excitation_in(log);
         let windows = match excitation {
             Some(r) => windows(r),

@@ -64,19 +64,39 @@ pub(crate) fn traps(
     }
     friction(axis, recorded, at, &mut add);
     limits(axis, recorded, &mut add);
-    if let Some(m) = margins {
-        let apart = (m.sensitivity.value - m.by_response.value).abs();
-        let deviation = m.sensitivity.deviation.hypot(m.by_response.deviation);
-        if apart > APART.max(4.0 * deviation) {
-            add(
-                false,
-                format!(
-                    "the greatest sensitivity is {:.2} from the command and {:.2} from the responses: lines too coarse, something at a limit, or a controller on the machine that is not that of the axis file",
-                    m.sensitivity.value, m.by_response.value
-                ),
-            );
-        }
+    differing(margins, &mut add);
+    lines(axis, recorded, shown, at, settings, &mut add);
+    moving(axis, recorded, &mut add)?;
+    Ok(all)
+}
+
+/// Two ways to the greatest sensitivity that differ.
+fn differing(margins: Option<&MeasuredMargins>, add: &mut impl FnMut(bool, String)) {
+    let Some(m) = margins else {
+        return;
+    };
+    let apart = (m.sensitivity.value - m.by_response.value).abs();
+    let deviation = m.sensitivity.deviation.hypot(m.by_response.deviation);
+    if apart > APART.max(4.0 * deviation) {
+        add(
+            false,
+            format!(
+                "the greatest sensitivity is {:.2} from the command and {:.2} from the responses: lines too coarse, something at a limit, or a controller on the machine that is not that of the axis file",
+                m.sensitivity.value, m.by_response.value
+            ),
+        );
     }
+}
+
+/// A log that is too slow, lines that are too coarse, or too few that count.
+fn lines(
+    axis: &Axis,
+    recorded: &Recorded<'_>,
+    shown: &FrequencyResponse,
+    at: &ModelAt,
+    settings: &MeasureSettings,
+    add: &mut impl FnMut(bool, String),
+) {
     if (recorded.period / axis.period - 1.0).abs() > 1e-3 {
         add(
             true,
@@ -100,53 +120,45 @@ pub(crate) fn traps(
             ),
         );
     }
-    let needed = || {
-        shown
-            .lines
-            .iter()
-            .filter(|l| (NEEDED[0]..=NEEDED[1]).contains(&l.frequency_hz))
-    };
-    let trusted = needed()
-        .filter(|l| l.coherence >= settings.coherence)
-        .count();
-    if recorded.is_excited() && (trusted as f64) < TRUSTED * needed().count().max(1) as f64 {
+    let [low, high] = NEEDED;
+    let needed = shown.trusted(NEEDED, 0.0).count();
+    let trusted = shown.trusted(NEEDED, settings.coherence).count();
+    if recorded.is_excited() && (trusted as f64) < TRUSTED * needed.max(1) as f64 {
         add(
             true,
             format!(
-                "{trusted} of {} lines from {} to {} Hz have a coherence of {}; valid: a longer slide, or a greater amplitude",
-                needed().count(),
-                NEEDED[0],
-                NEEDED[1],
+                "{trusted} of {needed} lines from {low} to {high} Hz have a coherence of {}; valid: a longer slide, or a greater amplitude",
                 settings.coherence
             ),
         );
     }
+}
+
+/// Modes that are not where they were at the end of the slide.
+fn moving(
+    axis: &Axis,
+    recorded: &Recorded<'_>,
+    add: &mut impl FnMut(bool, String),
+) -> Result<(), LoopError> {
     let modes = |position: f64| -> Result<Vec<f64>, LoopError> {
         let modes = modes_at(axis, position)?;
         let all = modes.iter().map(|mode| hertz(mode.frequency));
         Ok(all.filter(|f| *f > 1e-3).take(MODES).collect())
     };
-    let [low, high] = recorded.stretch;
-    let (low, high) = (modes(low)?, modes(high)?);
-    let moved = low.iter().zip(&high).enumerate();
-    if let Some((i, (low, high))) = moved
-        .filter(|(_, (low, high))| (*high / *low - 1.0).abs() > MOVED)
-        .max_by(|a, b| {
-            (a.1.1 / a.1.0)
-                .ln()
-                .abs()
-                .total_cmp(&(b.1.1 / b.1.0).ln().abs())
-        })
-    {
-        add(
-            false,
-            format!(
-                "over the stretch of the log the model's mode {} moves from {low:.1} to {high:.1} Hz: what is measured is a mean; valid: a shorter stretch (40 mm), and several places",
-                i + 1
-            ),
-        );
+    let [first, last] = recorded.stretch;
+    let (first, last) = (modes(first)?, modes(last)?);
+    for (i, (from, to)) in first.iter().zip(&last).enumerate() {
+        if (to / from - 1.0).abs() > MOVED {
+            add(
+                false,
+                format!(
+                    "over the stretch of the log the model's mode {} moves from {from:.1} to {to:.1} Hz: what is measured is a mean; valid: a shorter stretch (40 mm), and several places",
+                    i + 1
+                ),
+            );
+        }
     }
-    Ok(all)
+    Ok(())
 }
 
 /// Friction that sticks follows the excitation with a coherence of 1, and with another response.

@@ -11,7 +11,7 @@ pub use prbs::Prbs;
 use crate::error::{ResponseError, check};
 
 /// Longest signal, samples.
-pub(crate) const MOST_SAMPLES: usize = 1 << 27;
+const MOST_SAMPLES: usize = 1 << 27;
 
 /// A signal that is added to the command; its amplitude is in the command's unit.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,9 +6,11 @@ use axis_fourier::Complex;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::{MOST_SAMPLES, check_amplitude};
+use super::check_amplitude;
 use crate::error::ResponseError;
 
+/// Longest period, samples.
+const LONGEST: usize = 1 << 22;
 /// Rounds in which the peak is lowered, and the shares of it above which the signal is clipped in the
 /// first and in the last.
 const ROUNDS: usize = 300;
@@ -53,8 +55,8 @@ impl Multisine {
     pub fn lines(&self, rate_hz: f64) -> Result<Vec<usize>, ResponseError> {
         let refused = |name, value, valid| Err(ResponseError::Setting { name, value, valid });
         super::check_rate(rate_hz)?;
-        if !(8..=MOST_SAMPLES).contains(&self.period) {
-            let valid = "8 samples to 134 million";
+        if !(8..=LONGEST).contains(&self.period) {
+            let valid = "8 to 4194304 samples";
             return refused("the period", self.period as f64, valid);
         }
         if !(1.0..=10.0).contains(&self.ratio) {

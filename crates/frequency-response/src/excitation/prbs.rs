@@ -59,7 +59,7 @@ impl Prbs {
     #[must_use]
     pub fn period(&self) -> usize {
         let bits = self.register.clamp(REGISTERS[0], REGISTERS[1]);
-        ((1usize << bits) - 1) * self.clock.max(1)
+        ((1usize << bits) - 1).saturating_mul(self.clock.max(1))
     }
 
     pub(super) fn samples(&self, count: usize) -> Result<Vec<f64>, ResponseError> {

@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 
 use axis_fourier::Complex;
 
-use self::refine::Parameters;
+use self::refine::{Described, Parameters};
 use crate::error::{ResponseError, check};
 use crate::estimate::FrequencyResponse;
 
@@ -62,6 +62,24 @@ impl Default for FitSettings {
             held: true,
             floor: 2e-3,
         }
+    }
+}
+
+impl FitSettings {
+    fn check(&self) -> Result<(), ResponseError> {
+        let poles = self.most_poles as f64;
+        check("the coherence", self.coherence, [0.0, 1.0], "from 0 to 1")?;
+        check("the number of poles", poles, [1.0, 16.0], "from 1 to 16")?;
+        let delay = self.most_delay_s;
+        check("the greatest delay", delay, [0.0, 1e6], "from 0 to 1e6 s")?;
+        let floor = self.floor;
+        check(
+            "the floor of the error",
+            floor,
+            [1e-9, 1.0],
+            "from 1e-9 to 1",
+        )?;
+        Ok(())
     }
 }
 
@@ -187,68 +205,21 @@ impl ModalFit {
     /// # Errors
     /// [`ResponseError`] for settings that are not valid, too few lines, or no fit.
     pub fn of(response: &FrequencyResponse, settings: &FitSettings) -> Result<Self, ResponseError> {
-        check(
-            "the coherence",
-            settings.coherence,
-            [0.0, 1.0],
-            "from 0 to 1",
-        )?;
-        let most = settings.most_poles;
-        check(
-            "the number of poles",
-            most as f64,
-            [1.0, 16.0],
-            "from 1 to 16",
-        )?;
-        check(
-            "the greatest delay",
-            settings.most_delay_s,
-            [0.0, 1e6],
-            "from 0 to 1e6 s",
-        )?;
-        check(
-            "the floor of the error",
-            settings.floor,
-            [1e-9, 1.0],
-            "from 1e-9 to 1",
-        )?;
+        settings.check()?;
         let (target, frequencies) = target(response, settings);
-        let found = frequencies.len();
-        let wanted = 2 * most + 4;
+        let (found, wanted) = (frequencies.len(), 2 * settings.most_poles + 4);
         if found < wanted {
             return Err(ResponseError::TooFewLines { found, wanted });
         }
-        let delays = delays(settings.most_delay_s * target.plane.scale);
-        let mut best: Option<(f64, Parameters, f64)> = None;
-        for order in 1..=most {
-            // Once a fit is near, it knows the delay: another order changes it by little.
-            let near = best.as_ref().map(|(_, parameters, _)| parameters.delay());
-            let tried: Vec<f64> = match near.filter(|_| order > SEARCHED) {
-                Some(near) => vec![0.0, near.max(0.0)],
-                None => delays.clone(),
-            };
-            let fits = tried.iter().filter_map(|delay| {
-                let poles = vector::poles(&target, order, *delay)?;
-                let start = vector::start(&target, &poles, *delay)?;
-                Some(refine::refined(&target, start))
-            });
-            let least = fits.min_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((parameters, squares)) = least else {
-                continue;
-            };
-            let numbers = 2.0 * found as f64;
-            let unknown = parameters.count() as f64;
-            // Below what the floor allows no order is better than another.
-            let mean = (squares / numbers).max(1e-6);
-            let criterion = numbers * mean.ln() + unknown * numbers.ln();
-            if best.as_ref().is_none_or(|(least, ..)| criterion < *least) {
-                best = Some((criterion, parameters, squares));
-            }
-        }
-        let (_, parameters, squares) = best.ok_or(ResponseError::NoFit)?;
+        let best = best_order(&target, settings).ok_or(ResponseError::NoFit)?;
+        let (parameters, squares) = best;
         let correlation = response.correlation;
         let fitted = refine::described(&target, &parameters, squares, correlation);
-        let (modes, poles, delay_s) = fitted.ok_or(ResponseError::NoFit)?;
+        let Described {
+            modes,
+            poles,
+            delay,
+        } = fitted.ok_or(ResponseError::NoFit)?;
         let errors = target.places.iter().zip(&target.value).map(|(at, value)| {
             let error = (parameters.at(at) - value).norm() / value.norm();
             error * error
@@ -257,7 +228,7 @@ impl ModalFit {
             relative_error: (errors.sum::<f64>() / found as f64).sqrt(),
             modes,
             poles,
-            delay_s,
+            delay_s: delay,
             misfit: (squares / (2.0 * found as f64)).sqrt(),
             lines: found,
             band_hz: [frequencies[0], frequencies[found - 1]],
@@ -303,11 +274,43 @@ fn target(response: &FrequencyResponse, settings: &FitSettings) -> (Target, Vec<
     (target, lines.into_iter().map(|line| line.0).collect())
 }
 
+/// The unknowns of the order with the least of Schwarz' criterion (G. Schwarz, Annals of Statistics 6
+/// (1978) 461–464, doi:10.1214/aos/1176344136), for errors of unknown size, and their weighted squares.
+fn best_order(target: &Target, settings: &FitSettings) -> Option<(Parameters, f64)> {
+    let delays = delays(settings.most_delay_s * target.plane.scale);
+    let mut best: Option<(f64, Parameters, f64)> = None;
+    for order in 1..=settings.most_poles {
+        // Once a fit is near, it knows the delay: another order changes it by little.
+        let near = best.as_ref().map(|(_, parameters, _)| parameters.delay());
+        let tried: Vec<f64> = match near.filter(|_| order > SEARCHED) {
+            Some(near) => vec![0.0, near.max(0.0)],
+            None => delays.clone(),
+        };
+        let fits = tried.iter().filter_map(|delay| {
+            let poles = vector::poles(target, order, *delay)?;
+            let start = vector::start(target, &poles, *delay)?;
+            Some(refine::refined(target, start))
+        });
+        let least = fits.min_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((parameters, squares)) = least else {
+            continue;
+        };
+        let numbers = 2.0 * target.places.len() as f64;
+        let unknown = parameters.count() as f64;
+        // Below what the floor allows no order is better than another.
+        let mean = (squares / numbers).max(1e-6);
+        let criterion = numbers * mean.ln() + unknown * numbers.ln();
+        if best.as_ref().is_none_or(|(least, ..)| criterion < *least) {
+            best = Some((criterion, parameters, squares));
+        }
+    }
+    best.map(|(_, parameters, squares)| (parameters, squares))
+}
+
 /// Most poles for which all delays are tried.
 const SEARCHED: usize = 4;
 
-/// Delays from which a fit starts: near enough to one another that the phase at the highest line
-/// differs by less than a radian.
+/// Delays from which a fit starts: a radian apart at the highest line, 8 at most.
 fn delays(most: f64) -> Vec<f64> {
     let count = (most.ceil() as usize).clamp(1, 8);
     (0..=count)

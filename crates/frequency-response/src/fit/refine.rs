@@ -143,15 +143,21 @@ pub(crate) fn refined(target: &Target, start: Parameters) -> (Parameters, f64) {
     best
 }
 
+/// What the unknowns are to a machine.
+pub(crate) struct Described {
+    pub modes: Vec<FittedMode>,
+    pub poles: Vec<FittedPole>,
+    pub delay: Uncertain,
+}
+
 /// Modes, real poles and delay with their deviations: the inverse of JᵀJ, times the mean square of the
 /// residual where that is above 1, times `correlation` as neighbouring lines err together.
-#[allow(clippy::type_complexity)]
 pub(crate) fn described(
     target: &Target,
     parameters: &Parameters,
     squares: f64,
     correlation: f64,
-) -> Option<(Vec<FittedMode>, Vec<FittedPole>, Uncertain)> {
+) -> Option<Described> {
     let (matrix, _) = normal(target, parameters);
     let free = 2.0 * target.places.len() as f64 - parameters.count() as f64;
     let widened = correlation * (squares / free.max(1.0)).max(1.0);
@@ -159,11 +165,6 @@ pub(crate) fn described(
     let plane = &target.plane;
     let scale = plane.scale;
     let deviation = |i: usize| covariance[(i, i)].max(0.0).sqrt();
-    // What a residue in the plane is to that of the machine: (e^{pT} − 1)/pT of a held input.
-    let factor = |x: Complex<f64>, p: Complex<f64>| match x.norm() > 0.0 {
-        true => p / x,
-        false => Complex::new(1.0, 0.0),
-    };
     let real = |i: usize| {
         // A negative z is no pole of a machine: as fast as can be.
         let least = match plane.held > 0.0 {
@@ -223,7 +224,19 @@ pub(crate) fn described(
     };
     let mut modes: Vec<FittedMode> = (0..parameters.pairs).map(mode).collect();
     modes.sort_by(|a, b| a.frequency_hz.value.total_cmp(&b.frequency_hz.value));
-    Some((modes, poles, delay))
+    Some(Described {
+        modes,
+        poles,
+        delay,
+    })
+}
+
+/// What a residue in the plane is to that of the machine: pT/(e^{pT} − 1) of a held input.
+fn factor(x: Complex<f64>, p: Complex<f64>) -> Complex<f64> {
+    match x.norm() > 0.0 {
+        true => p / x,
+        false => Complex::new(1.0, 0.0),
+    }
 }
 
 /// Inverse of a positive matrix, its rows and columns scaled to a diagonal of 1 first.
