@@ -18,6 +18,8 @@ use crate::plant::{Corner, LoopModel, Number, PlantAt, modes_at};
 const SAME: f64 = 1.25;
 /// Delays that are tried, as shares of a control cycle, before the best is refined.
 const TRIED: usize = 200;
+/// Share of the distance that delay and factor must leave at most to be said.
+const EXPLAINED: f64 = 0.6;
 /// Greatest delay that is looked for, s.
 const MOST_DELAY: f64 = 5e-3;
 
@@ -258,7 +260,9 @@ fn compare_modes(at: &ModelAt, fit: &ModalFit, step_hz: f64, found: &mut Compari
 fn say(found: &mut Comparison, period: f64) {
     let delay = found.delay_s;
     let is_sure = delay.value.abs() > 4.0 * delay.deviation;
-    if is_sure && delay.value.abs() > 0.2 * period {
+    // Where neither explains the difference, both are what a missing mode makes of them.
+    let explains = found.distance_corrected < EXPLAINED * found.distance;
+    if is_sure && explains && delay.value.abs() > 0.2 * period {
         found.said.push(match delay.value > 0.0 {
             true => format!(
                 "the response comes {:.3} ms later than the model's: a delay that the axis file does not have (command_delay, current_delay_periods, a filter of the drive); `discover` can name it",
@@ -270,7 +274,7 @@ fn say(found: &mut Comparison, period: f64) {
             ),
         });
     }
-    if (found.gain - 1.0).abs() > 0.05 {
+    if explains && (found.gain - 1.0).abs() > 0.05 {
         found.said.push(format!(
             "the response is {:.2} times the model's: another inertia, another torque constant, or a command in another unit",
             found.gain

@@ -38,7 +38,7 @@ impl Default for MeasureSettings {
         Self {
             step_hz: None,
             coherence: 0.9,
-            most_poles: 8,
+            most_poles: 10,
         }
     }
 }

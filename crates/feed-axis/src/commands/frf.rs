@@ -42,7 +42,7 @@ pub struct Options {
     #[arg(long, value_name = "SHARE", default_value_t = 0.9)]
     coherence: f64,
     /// Most poles of the fit; a mode has two
-    #[arg(long, value_name = "N", default_value_t = 8)]
+    #[arg(long, value_name = "N", default_value_t = 10)]
     poles: usize,
     /// Page with Bode's plots of the responses and the model's, coherence, modes and margins
     #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
