@@ -12,7 +12,7 @@
 //!   eigenvalues; in each [`Corner`] of a [`LoopSet`], with curves for Bode's and Nyquist's plots.
 //! - [`Tuning`]: gains of an axis under limits of the sensitivity over a set, checked by simulation,
 //!   with what limits them and what would help.
-//! - [`Measurement`]: frequency responses of the axis from its log, with deviations, modes and
+//! - [`MeasuredDrive`]: frequency responses of the axis from its log, with deviations, modes and
 //!   margins, against the model; [`LoopSet::with_measured`] tunes on them.
 //!
 //! The equations and where they are from are in docs/theory/drive-loop.md.
@@ -59,8 +59,8 @@ pub use helps::Help;
 pub use keys::TunedKey;
 pub use margins::{CornerMargins, CutMargins};
 pub use measured::{
-    ComparedMode, Comparison, MeasureSettings, MeasuredLine, MeasuredMargins, MeasuredMode,
-    MeasuredModes, MeasuredPlant, Measurement, Trap, WithDeviation,
+    ComparedMode, Comparison, MeasureSettings, MeasuredDrive, MeasuredLine, MeasuredMargins,
+    MeasuredMode, MeasuredModes, MeasuredPlant, Trap, WithDeviation,
 };
 pub use moves::{MoveFigures, moves};
 pub use plant::Corner;

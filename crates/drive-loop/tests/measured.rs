@@ -4,7 +4,7 @@
 use axis_log::Log;
 use axis_sim::{Axis, ClosedLoop, Measured, Recorder, excitation_channel};
 use compensator::NoCompensation;
-use drive_loop::{LoopAnalysis, LoopSet, MeasureSettings, Measurement, TuneSettings, Tuning};
+use drive_loop::{LoopAnalysis, LoopSet, MeasureSettings, MeasuredDrive, TuneSettings, Tuning};
 use frequency_response::{Excitation, Prbs};
 use trajectories::{Limits, Motion, Program, Step};
 
@@ -97,12 +97,12 @@ fn log(axis: &Axis, slide: Slide) -> Log {
     recorder.log().unwrap()
 }
 
-fn measured(axis: &Axis, log: &Log) -> Measurement {
-    Measurement::of(axis, log, &MeasureSettings::default()).unwrap()
+fn measured(axis: &Axis, log: &Log) -> MeasuredDrive {
+    MeasuredDrive::of(axis, log, &MeasureSettings::default()).unwrap()
 }
 
 /// Relative errors of the motor's speed over the lines up to a frequency whose coherence is above 0.9.
-fn errors(found: &Measurement, band: [f64; 2]) -> Vec<f64> {
+fn errors(found: &MeasuredDrive, band: [f64; 2]) -> Vec<f64> {
     let lines = found.motor_speed.iter().zip(&found.motor_speed_model);
     let mut all: Vec<f64> = lines
         .filter(|(line, _)| line.coherence > 0.9 && (band[0]..band[1]).contains(&line.frequency_hz))
@@ -119,16 +119,16 @@ fn quantile(of: &[f64], share: f64) -> f64 {
     of[((of.len() - 1) as f64 * share) as usize]
 }
 
-fn margins(found: &Measurement) -> drive_loop::MeasuredMargins {
+fn margins(found: &MeasuredDrive) -> drive_loop::MeasuredMargins {
     found.margins.unwrap()
 }
 
-fn refused(found: &Measurement) -> Vec<&str> {
+fn refused(found: &MeasuredDrive) -> Vec<&str> {
     let traps = found.traps.iter().filter(|trap| trap.refused);
     traps.map(|trap| trap.what.as_str()).collect()
 }
 
-fn warned(found: &Measurement) -> Vec<&str> {
+fn warned(found: &MeasuredDrive) -> Vec<&str> {
     let traps = found.traps.iter().filter(|trap| !trap.refused);
     traps.map(|trap| trap.what.as_str()).collect()
 }
@@ -257,7 +257,7 @@ fn what_looks_right_and_is_wrong_is_told() {
         step_hz: Some(5.0),
         ..MeasureSettings::default()
     };
-    let coarse = Measurement::of(&axis, &log, &settings).unwrap();
+    let coarse = MeasuredDrive::of(&axis, &log, &settings).unwrap();
     assert!(
         warned(&coarse)
             .iter()
@@ -352,7 +352,7 @@ fn hidden_delay(name: &str, places: &[f64], slide: Slide) -> [Option<f64>; 2] {
         };
         measured(&file, &log(&machine, slide))
     };
-    let all: Vec<Measurement> = places.iter().map(one).collect();
+    let all: Vec<MeasuredDrive> = places.iter().map(one).collect();
     for found in &all {
         assert!(found.is_usable(), "{name}: {:?}", found.traps);
         let compared = found.comparison.as_ref().unwrap();

@@ -41,7 +41,7 @@ mod segments;
 pub use axis_fourier::Complex;
 pub use error::ResponseError;
 pub use estimate::{Estimator, FrequencyResponse, Record, ResponseLine};
-pub use excitation::{Chirp, ChirpSweep, Excitation, Multisine, Prbs, period_of};
+pub use excitation::{ChirpExcitation, ChirpSweep, Excitation, Multisine, Prbs, period_of};
 pub use fit::{FitSettings, FittedMode, FittedPole, ModalFit, Uncertain};
 pub use margins::{LoopLine, LoopMargins, SensitivityPeak};
 pub use segments::Averaging;

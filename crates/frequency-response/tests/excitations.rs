@@ -1,6 +1,6 @@
 use std::f64::consts::TAU;
 
-use frequency_response::{Chirp, ChirpSweep, Excitation, Multisine, Prbs, period_of};
+use frequency_response::{ChirpExcitation, ChirpSweep, Excitation, Multisine, Prbs, period_of};
 
 /// Every register runs through all of its states, has one value more of one sign, and an autocorrelation
 /// of two values: N, and −1 elsewhere (S. W. Golomb, Shift Register Sequences, 1967).
@@ -43,7 +43,7 @@ fn a_clock_holds_each_value() {
 fn chirps_sweep_as_they_say() {
     let (rate, n) = (1e4, 20_000);
     for sweep in [ChirpSweep::Linear, ChirpSweep::Logarithmic] {
-        let chirp = Chirp {
+        let chirp = ChirpExcitation {
             amplitude: 3.0,
             from_hz: 5.0,
             to_hz: 500.0,

@@ -1,6 +1,6 @@
 use frequency_response::{
-    Averaging, Chirp, Complex, Estimator, Excitation, FitSettings, FrequencyResponse, LoopLine,
-    LoopMargins, ModalFit, Multisine, Prbs, Record,
+    Averaging, ChirpExcitation, Complex, Estimator, Excitation, FitSettings, FrequencyResponse,
+    LoopLine, LoopMargins, ModalFit, Multisine, Prbs, Record,
 };
 use proptest::prelude::*;
 
@@ -49,7 +49,7 @@ proptest! {
     fn no_excitation_panics(a in anything(), b in anything(), c in anything(), r in anything(), n in 0usize..200, register in 0u32..40) {
         for excitation in [
             Excitation::Prbs(Prbs { amplitude: a, register, clock: n, seed: u64::MAX }),
-            Excitation::Chirp(Chirp { amplitude: a, from_hz: b, to_hz: c, ..Chirp::default() }),
+            Excitation::Chirp(ChirpExcitation { amplitude: a, from_hz: b, to_hz: c, ..ChirpExcitation::default() }),
             Excitation::Multisine(Multisine { amplitude: a, period: n, from_hz: b, to_hz: c, ratio: r, seed: 1 }),
         ] {
             let _ = excitation.period();

@@ -126,7 +126,7 @@ pub struct MeasuredMargins {
 
 /// Frequency responses of an axis at one place, measured.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct Measurement {
+pub struct MeasuredDrive {
     /// Of this form.
     pub schema: u32,
     /// Name of the axis.
@@ -179,7 +179,7 @@ pub struct Measurement {
     pub plant: MeasuredPlant,
 }
 
-impl Measurement {
+impl MeasuredDrive {
     /// Number of this form.
     pub const SCHEMA: u32 = 1;
 
@@ -273,7 +273,7 @@ impl LoopSet {
     ///
     /// # Errors
     /// [`LoopError::Measured`] where one of them must not be tuned on.
-    pub fn with_measured(mut self, axis: &Axis, all: &[Measurement]) -> Result<Self, LoopError> {
+    pub fn with_measured(mut self, axis: &Axis, all: &[MeasuredDrive]) -> Result<Self, LoopError> {
         for (i, one) in all.iter().enumerate() {
             if let Some(trap) = one.traps.iter().find(|trap| trap.refused) {
                 return Err(LoopError::Measured {

@@ -2,7 +2,7 @@
 
 use axis_sim::Axis;
 use axis_sim::actuator::Effort;
-use frequency_response::{Chirp, ChirpSweep, Excitation, Multisine, Prbs};
+use frequency_response::{ChirpExcitation, ChirpSweep, Excitation, Multisine, Prbs};
 use miette::{IntoDiagnostic, Result, miette};
 use serde::Deserialize;
 use trajectories::{Motion, Program};
@@ -131,10 +131,12 @@ impl Asked {
                 clock: self.clock_cycles.unwrap_or(Prbs::default().clock),
                 seed: self.seed,
             }),
-            Signal::Chirp => Excitation::Chirp(Chirp {
+            Signal::Chirp => Excitation::Chirp(ChirpExcitation {
                 amplitude,
-                from_hz: self.from_hz.unwrap_or(Chirp::default().from_hz),
-                to_hz: self.to_hz.unwrap_or(Chirp::default().to_hz.min(top)),
+                from_hz: self.from_hz.unwrap_or(ChirpExcitation::default().from_hz),
+                to_hz: self
+                    .to_hz
+                    .unwrap_or(ChirpExcitation::default().to_hz.min(top)),
                 sweep: match self.sweep {
                     Some(Sweep::Logarithmic) => ChirpSweep::Logarithmic,
                     _ => ChirpSweep::Linear,

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use axis_log::intake::Options as Intake;
 use axis_sim::{Axis, SixDigits, known_channels};
 use clap::Args;
-use drive_loop::{MeasureSettings, Measurement, WithDeviation};
+use drive_loop::{MeasureSettings, MeasuredDrive, WithDeviation};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 
@@ -53,7 +53,7 @@ pub struct Options {
 #[derive(Serialize)]
 struct Found {
     /// One for each log.
-    measurements: Vec<Measurement>,
+    measurements: Vec<MeasuredDrive>,
 }
 
 /// Runs the command.
@@ -84,7 +84,7 @@ pub fn measured(
     axis: &Axis,
     logs: &[PathBuf],
     settings: &MeasureSettings,
-) -> Result<Vec<Measurement>> {
+) -> Result<Vec<MeasuredDrive>> {
     let mut notes = Vec::new();
     let mut one = |path: &PathBuf| {
         // Short pulses of the command look like outliers, and another rate has another response.
@@ -94,7 +94,7 @@ pub fn measured(
             ..Intake::default()
         };
         let log = read_with(path, axis, &[axis.position_channel()], options, &mut notes)?;
-        Measurement::of(axis, &log, settings)
+        MeasuredDrive::of(axis, &log, settings)
             .into_diagnostic()
             .wrap_err_with(|| path.display().to_string())
     };
@@ -112,7 +112,7 @@ fn pair(of: WithDeviation, scale: f64, digits: usize) -> String {
 }
 
 /// A measurement as people read it.
-fn words(found: &Measurement) -> String {
+fn words(found: &MeasuredDrive) -> String {
     let mut text = String::new();
     let unit = &found.position_unit;
     let _ = writeln!(
@@ -189,7 +189,7 @@ fn words(found: &Measurement) -> String {
 }
 
 /// Lines next to the frequencies that are shown.
-fn table(found: &Measurement) -> String {
+fn table(found: &MeasuredDrive) -> String {
     let mut text = format!(
         "  {:>8}  {:>11}  {:>8}  {:>7}  {:>9}  {:>11}\n",
         "Hz", "size", "± %", "phase°", "coherence", "model"
@@ -218,7 +218,7 @@ fn table(found: &Measurement) -> String {
     text
 }
 
-fn fitted(found: &Measurement) -> String {
+fn fitted(found: &MeasuredDrive) -> String {
     let mut text = String::new();
     let Some(fit) = &found.fit else {
         return text;

@@ -2,7 +2,7 @@
 
 use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table};
 use axis_sim::Axis;
-use drive_loop::{Measurement, WithDeviation};
+use drive_loop::{MeasuredDrive, WithDeviation};
 
 use super::loops::{phases, sentence, sized};
 
@@ -10,7 +10,7 @@ use super::loops::{phases, sentence, sized};
 const FREQUENCY: &str = "frequency";
 
 /// The page.
-pub fn page(axis: &Axis, all: &[Measurement]) -> Page {
+pub fn page(axis: &Axis, all: &[MeasuredDrive]) -> Page {
     let page = Page::new(format!("Frequency responses of {}", axis.name)).lead(
         "Estimated from logs of the excited axis, beside the model of the axis file with its load sliding at the same place.",
     );
@@ -19,7 +19,7 @@ pub fn page(axis: &Axis, all: &[Measurement]) -> Page {
         .fold(page, |page, found| page.section(response(found)))
 }
 
-fn place(found: &Measurement) -> String {
+fn place(found: &MeasuredDrive) -> String {
     format!(
         "{} {}",
         axis_sim::SixDigits(found.position),
@@ -32,7 +32,7 @@ fn pair(of: WithDeviation, scale: f64, digits: usize) -> Cell {
     Cell::text(format!("{value:.digits$} ± {deviation:.digits$}"))
 }
 
-fn margins(all: &[Measurement]) -> Section {
+fn margins(all: &[MeasuredDrive]) -> Section {
     let mut table = Table::new(
         "Greatest sensitivity with the gains of the file, and delay beside the model's",
         ["load at", "from the command", "from the responses", "model", "position loop", "delay, ms"],
@@ -63,7 +63,7 @@ fn margins(all: &[Measurement]) -> Section {
     section.table(table)
 }
 
-fn modes(all: &[Measurement]) -> Section {
+fn modes(all: &[MeasuredDrive]) -> Section {
     let mut table = Table::new(
         "Modes of the motor's speed",
         ["load at", "frequency, Hz", "damping, %", "model, Hz"],
@@ -86,7 +86,7 @@ fn modes(all: &[Measurement]) -> Section {
     Section::new("Modes").table(table)
 }
 
-fn response(found: &Measurement) -> Section {
+fn response(found: &MeasuredDrive) -> Section {
     let lines: Vec<_> = found.motor_speed.iter().collect();
     let counted: Vec<_> = lines
         .iter()

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::check_amplitude;
 use crate::error::{ResponseError, check};
 
-/// How the frequency of a [`Chirp`] goes over time.
+/// How the frequency of a [`ChirpExcitation`] goes over time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ChirpSweep {
     /// f = f₀ + (f₁ − f₀) t/T: the same power for each Hz.
@@ -17,7 +17,7 @@ pub enum ChirpSweep {
 
 /// A sine whose frequency goes once from one end to the other; it begins with 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Chirp {
+pub struct ChirpExcitation {
     /// In the unit of the command.
     pub amplitude: f64,
     /// Frequency at the start, Hz.
@@ -28,7 +28,7 @@ pub struct Chirp {
     pub sweep: ChirpSweep,
 }
 
-impl Default for Chirp {
+impl Default for ChirpExcitation {
     fn default() -> Self {
         Self {
             amplitude: 1.0,
@@ -39,7 +39,7 @@ impl Default for Chirp {
     }
 }
 
-impl Chirp {
+impl ChirpExcitation {
     pub(super) fn samples(&self, rate_hz: f64, count: usize) -> Result<Vec<f64>, ResponseError> {
         check_amplitude(self.amplitude)?;
         let valid = "above 0 and at most half the sampling rate, Hz";

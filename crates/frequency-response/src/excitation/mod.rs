@@ -4,7 +4,7 @@ mod chirp;
 mod multisine;
 mod prbs;
 
-pub use chirp::{Chirp, ChirpSweep};
+pub use chirp::{ChirpExcitation, ChirpSweep};
 pub use multisine::Multisine;
 pub use prbs::Prbs;
 
@@ -19,13 +19,13 @@ pub enum Excitation {
     /// Pseudo-random binary sequence: all lines, the whole amplitude at every instant.
     Prbs(Prbs),
     /// Sine of rising frequency.
-    Chirp(Chirp),
+    Chirp(ChirpExcitation),
     /// Sum of sines on chosen lines.
     Multisine(Multisine),
 }
 
 impl Excitation {
-    /// `count` samples at `rate_hz`. A [`Chirp`] sweeps once over all of them, the others repeat.
+    /// `count` samples at `rate_hz`. A [`ChirpExcitation`] sweeps once over all of them, the others repeat.
     ///
     /// # Errors
     /// [`ResponseError::Setting`] for a number that is not valid.
@@ -43,7 +43,7 @@ impl Excitation {
         }
     }
 
-    /// Samples after which it repeats; none for a [`Chirp`].
+    /// Samples after which it repeats; none for a [`ChirpExcitation`].
     #[must_use]
     pub fn period(&self) -> Option<usize> {
         match self {
