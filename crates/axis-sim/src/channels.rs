@@ -9,7 +9,6 @@ use crate::axis::Axis;
 use crate::balance::torque_channels;
 use crate::cycle::Cycle;
 use crate::mechanism::Freedom;
-use crate::replay::ADDED;
 
 /// A channel of a log.
 #[derive(Clone, Copy, Debug)]
@@ -109,13 +108,38 @@ pub const CHANNELS: &[LogChannel] = &[
     same(["iq_feedforward_a", "A"], has_currents, Shown, |c| c.correction.command),
 ];
 
+/// Channels of what an excitation added to the command, by the unit of that; a log has one of them where
+/// there was one.
+pub const EXCITATIONS: [(Effort, [&str; 2]); 4] = [
+    (Effort::Current, ["excitation_a", "A"]),
+    (Effort::Torque, ["excitation_n_m", "N·m"]),
+    (Effort::Force, ["excitation_n", "N"]),
+    (Effort::Voltage, ["drive_command_added_v", "V"]),
+];
+
+/// The channel of an excitation of this axis.
+pub fn excitation_channel(axis: &Axis) -> LogChannel {
+    let own = EXCITATIONS
+        .iter()
+        .find(|(effort, _)| *effort == axis.actuator.effort());
+    let name = own.map_or(EXCITATIONS[0].1, |(_, name)| *name);
+    same(name, |_| true, Given, |c| c.excitation)
+}
+
+/// What a log shows of an excitation, in the unit of the command; none where it has no such channel.
+pub fn excitation_in(log: &Log) -> Option<&[f64]> {
+    let mut names = EXCITATIONS.iter().map(|(_, [name, _])| *name);
+    names.find_map(|name| log.channel(name).ok())
+}
+
 /// Channels that a log may have beside those of a simulation and those that show a torque.
-const OF_LOGS: [&str; 3] = ["velocity_m_s", "velocity_rad_s", ADDED];
+const OF_LOGS: [&str; 2] = ["velocity_m_s", "velocity_rad_s"];
 
 /// Names of all channels that mean something to the programs that read logs.
 pub fn known_channels() -> impl Iterator<Item = &'static str> {
     let simulated = CHANNELS.iter().flat_map(|c| [c.linear[0], c.rotary[0]]);
-    let of_logs = torque_channels().chain(OF_LOGS);
+    let excitations = EXCITATIONS.iter().map(|(_, [name, _])| *name);
+    let of_logs = torque_channels().chain(OF_LOGS).chain(excitations);
     let mut names: Vec<&'static str> = simulated.chain(of_logs).collect();
     names.sort_unstable();
     names.dedup();

@@ -34,6 +34,9 @@ pub struct Cycle {
     pub command: Command,
     /// What the compensator added.
     pub correction: Correction,
+    /// What an excitation added to the command, in the command's unit
+    /// ([`ClosedLoop::with_excitation`](crate::ClosedLoop::with_excitation)).
+    pub excitation: f64,
 }
 
 /// What controller and actuator ask for in a cycle.

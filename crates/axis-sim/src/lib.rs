@@ -126,7 +126,8 @@ pub use balance::{
     Balance, BalanceError, BalanceNoise, BalanceQuality, CutoffReason, TRANSMISSION_ERROR,
 };
 pub use channels::{
-    CHANNELS, ChannelPart, LogChannel, channels, known_channels, position_in, reference_in,
+    CHANNELS, ChannelPart, EXCITATIONS, LogChannel, channels, excitation_channel, excitation_in,
+    known_channels, position_in, reference_in,
 };
 pub use closed_loop::{ClosedLoop, LoopState};
 pub use cycle::{Command, Cycle, Measured, Outcome, RunStopped, Stop, StopReason};

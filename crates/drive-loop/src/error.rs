@@ -2,6 +2,7 @@
 
 use axis_sim::{PlanModelError, SetupError};
 use feed_dynamics::DriveError;
+use frequency_response::ResponseError;
 use thiserror::Error;
 
 /// Why a loop cannot be analysed or tuned.
@@ -65,6 +66,20 @@ pub enum LoopError {
         found: f64,
         /// With one more cycle.
         found_late: f64,
+    },
+    /// A log has not what a response is estimated from.
+    #[error("the log cannot be used for a frequency response: {0}")]
+    Log(String),
+    /// A response cannot be estimated.
+    #[error("no frequency response: {0}")]
+    Response(#[from] ResponseError),
+    /// A measured response must not be tuned on.
+    #[error("gains cannot be tuned on measured response {number}: {what}")]
+    Measured {
+        /// Of the response, from 1.
+        number: usize,
+        /// What is wrong with it.
+        what: String,
     },
     /// The nonlinear simulation shows what the linear model does not.
     #[error(

@@ -191,7 +191,12 @@ impl AxisLoops {
     /// Mean over the file's mass of the logarithm of the compliance.
     fn compliance(&self, gains: &LoopGains) -> f64 {
         let own = |at: &Corner| at.mass == self.corners[0].at.mass;
-        let corners: Vec<_> = self.corners.iter().filter(|c| own(&c.at)).collect();
+        // Measured corners have limits to keep; what a force does to them the model alone knows.
+        let corners = self
+            .corners
+            .iter()
+            .filter(|c| own(&c.at) && !c.is_measured());
+        let corners: Vec<_> = corners.collect();
         let all: Vec<f64> = corners
             .par_iter()
             .map(|corner| corner.compliance_rms(gains).ln())

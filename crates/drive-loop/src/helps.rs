@@ -10,7 +10,7 @@ use crate::error::LoopError;
 use crate::gains::Limits;
 use crate::law::LoopGains;
 use crate::plant::LoopModel;
-use crate::set::AxisLoops;
+use crate::set::{AxisLoops, LoopSet};
 use crate::tune::{TuneSettings, with_quick_current};
 
 /// Share by which a change must improve the loop to be told.
@@ -64,7 +64,11 @@ pub(crate) fn helps(
 
 /// The axis with each change, its loops not tuned.
 fn changes(axis: &Axis, settings: &TuneSettings) -> Result<Vec<(String, AxisLoops)>, LoopError> {
-    let set = &settings.set;
+    // A change of the axis would change what was measured too.
+    let set = &LoopSet {
+        measured: Vec::new(),
+        ..settings.set.clone()
+    };
     let own = LoopModel::new(axis)?;
     let mut all = Vec::new();
     let mut model = |what: &str, change: &dyn Fn(&mut LoopModel)| -> Result<(), LoopError> {

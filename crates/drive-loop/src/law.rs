@@ -14,7 +14,7 @@
 
 use compensator::{DriveFilter, Passage};
 
-use crate::plant::{LoopModel, Number, PlantAt};
+use crate::plant::{LoopModel, Number, PlantAt, Sensing};
 
 /// Gains of the two controllers, in the units of the motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +54,23 @@ const ONE: Number = Number::new(1.0, 0.0);
 
 impl LoopAt {
     pub fn new(model: &LoopModel, plant: &PlantAt) -> Self {
+        Self::through(model, &model.sensing, plant)
+    }
+
+    /// With responses to the command that were measured, as the sensors show them, in the place of the
+    /// model's.
+    pub fn of_measured(model: &LoopModel, measured: &PlantAt, plant: &PlantAt) -> Self {
+        let seen = Self::through(model, &Sensing::AS_SHOWN, measured);
+        Self {
+            speed: seen.speed,
+            position: seen.position,
+            load: seen.load,
+            motor_speed: seen.motor_speed,
+            ..Self::new(model, plant)
+        }
+    }
+
+    fn through(model: &LoopModel, sensing: &Sensing, plant: &PlantAt) -> Self {
         let (passage, period) = (model.passage(), model.period());
         let z = Number::from_polar(1.0, plant.frequency * period);
         let back = |cycles: f64| Number::from_polar(1.0, -plant.frequency * period * cycles);
@@ -69,21 +86,8 @@ impl LoopAt {
         let speed_filter = filter(&passage.speed);
 
         let travel = model.model.travel;
-        let sensing = &model.sensing;
-        let seen = |[angle, speed, load]: [Number; 3]| {
-            let mut angle = angle * late_by(sensing.motor_delay, back);
-            let mut load = load * late_by(sensing.load_delay, back);
-            if sensing.motor_from_load {
-                angle = load / travel;
-            }
-            if sensing.load_from_motor {
-                load = angle * travel;
-            }
-            let speed = match (passage.speed_of_position, sensing.by_differences) {
-                (true, _) => load * (ONE - back(2.0)) / (2.0 * period * travel),
-                (false, true) => angle * differences,
-                (false, false) => speed,
-            };
+        let seen = |command: [Number; 3]| {
+            let [angle, speed, load] = shown_at(model, sensing, command, back);
             let motor = angle * travel;
             let position = match (&passage.blend, model.cascade().from_motor) {
                 (Some(blend), _) => {
@@ -147,6 +151,40 @@ impl LoopAt {
         let l = c * (self.speed + self.position * gains.position);
         c * self.passed * self.per_angle / (l + 1.0)
     }
+}
+
+/// What the sensors show of a drive's response to the command: motor's angle, its speed as the speed
+/// controller goes by it, load's position.
+pub(crate) fn shown(model: &LoopModel, plant: &PlantAt) -> [Number; 3] {
+    let turn = plant.frequency * model.period();
+    shown_at(model, &model.sensing, plant.command, |cycles| {
+        Number::from_polar(1.0, -turn * cycles)
+    })
+}
+
+fn shown_at(
+    model: &LoopModel,
+    sensing: &Sensing,
+    [angle, speed, load]: [Number; 3],
+    back: impl Fn(f64) -> Number,
+) -> [Number; 3] {
+    let passage = model.passage();
+    let (travel, period) = (model.model.travel, model.period());
+    let mut angle = angle * late_by(sensing.motor_delay, &back);
+    let mut load = load * late_by(sensing.load_delay, &back);
+    if sensing.motor_from_load {
+        angle = load / travel;
+    }
+    if sensing.load_from_motor {
+        load = angle * travel;
+    }
+    let every = f64::from(passage.speed_every.max(1));
+    let speed = match (passage.speed_of_position, sensing.by_differences) {
+        (true, _) => load * (ONE - back(2.0)) / (2.0 * period * travel),
+        (false, true) => angle * (ONE - back(every)) / (every * period),
+        (false, false) => speed,
+    };
+    [angle, speed, load]
 }
 
 /// Ages of the speed set point, in cycles, at the executions of the speed controller.

@@ -12,6 +12,8 @@
 //!   eigenvalues; in each [`Corner`] of a [`LoopSet`], with curves for Bode's and Nyquist's plots.
 //! - [`Tuning`]: gains of an axis under limits of the sensitivity over a set, checked by simulation,
 //!   with what limits them and what would help.
+//! - [`MeasuredDrive`]: frequency responses of the axis from its log, with deviations, modes and
+//!   margins, against the model; [`LoopSet::with_measured`] tunes on them.
 //!
 //! The equations and where they are from are in docs/theory/drive-loop.md.
 //!
@@ -32,7 +34,7 @@
 //! ```
 //!
 //! # What this crate knows nothing of
-//! Files, options, terminals, pages; measured responses.
+//! Files, options, terminals, pages; how a response is estimated from samples (`frequency-response` does).
 
 mod analysis;
 mod error;
@@ -42,6 +44,7 @@ mod keys;
 mod law;
 mod loops;
 mod margins;
+mod measured;
 mod moves;
 mod plant;
 mod report;
@@ -55,6 +58,10 @@ pub use error::LoopError;
 pub use helps::Help;
 pub use keys::TunedKey;
 pub use margins::{CornerMargins, CutMargins};
+pub use measured::{
+    ComparedMode, Comparison, MeasureSettings, MeasuredDrive, MeasuredLine, MeasuredMargins,
+    MeasuredMode, MeasuredModes, MeasuredPlant, Trap, WithDeviation,
+};
 pub use moves::{MoveFigures, moves};
 pub use plant::Corner;
 pub use set::{LoopSet, MASSES};

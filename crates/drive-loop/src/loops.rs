@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use compensator::{Mode, SampledDrive};
 
 use crate::law::{LoopAt, LoopGains};
+use crate::measured::MeasuredPlant;
 use crate::plant::{Corner, LoopModel, Number, PlantAt, PlantResponse};
 
 /// Lowest frequency, of half the sampling rate: where a double integrator is still far above the
@@ -26,6 +27,8 @@ pub(crate) struct CornerLoop {
     pub points: Vec<LoopAt>,
     pub drive: SampledDrive,
     response: PlantResponse,
+    /// What was measured there, in the model's place within its band.
+    measured: Option<MeasuredPlant>,
     /// Integrators of the loop cut at the command at low frequency.
     pub integrators: u32,
 }
@@ -53,14 +56,60 @@ impl CornerLoop {
             points,
             drive,
             response,
+            measured: None,
             integrators: u32::from(model.integrates()) + u32::from(!at.stuck),
         }
+    }
+
+    /// The same with a measured response in the model's place: on its own lines within its band. Its
+    /// answer to forces is the model's.
+    pub fn measured(model: &LoopModel, modes: &[Mode], measured: &MeasuredPlant) -> Self {
+        let at = Corner {
+            position: measured.position,
+            mass: 1.0,
+            friction: 1.0,
+            stuck: false,
+        };
+        let mut corner = Self::new(model, modes, &at);
+        let Some([low, high]) = measured.band_hz() else {
+            return corner;
+        };
+        corner.measured = Some(measured.clone());
+        corner
+            .points
+            .retain(|p| !(low..=high).contains(&hertz(p.frequency)));
+        let lines = measured.lines.iter();
+        let own: Vec<LoopAt> = lines
+            .filter_map(|line| corner.at(model, TAU * line.frequency_hz))
+            .collect();
+        corner.points.extend(own);
+        corner
+            .points
+            .sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+        corner
+    }
+
+    /// Whether a measured response stands in the model's place.
+    pub fn is_measured(&self) -> bool {
+        self.measured.is_some()
+    }
+
+    /// The model's drive at an angular frequency.
+    pub fn plant(&self, frequency: f64) -> Option<PlantAt> {
+        self.response.at(frequency)
     }
 
     /// The loop at an angular frequency that is not on the grid.
     pub fn at(&self, model: &LoopModel, frequency: f64) -> Option<LoopAt> {
         let plant = self.response.at(frequency)?;
-        Some(LoopAt::new(model, &plant))
+        let measured = self.measured.as_ref().and_then(|m| m.at(frequency));
+        Some(match measured {
+            Some(command) => {
+                let measured = PlantAt { command, ..plant };
+                LoopAt::of_measured(model, &measured, &plant)
+            }
+            None => LoopAt::new(model, &plant),
+        })
     }
 
     /// Peaks of the sensitivities on the grid.

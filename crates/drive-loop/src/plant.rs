@@ -54,6 +54,16 @@ pub(crate) struct Sensing {
 }
 
 impl Sensing {
+    /// Of responses that hold what sensors do already.
+    pub const AS_SHOWN: Self = Self {
+        load_delay: 0.0,
+        motor_delay: 0.0,
+        motor_from_load: false,
+        load_from_motor: false,
+        by_differences: false,
+        step: 0.0,
+    };
+
     fn of(axis: &Axis) -> Self {
         let cycles = |seconds: f64| seconds / axis.period;
         let load = match &axis.sensors.load {

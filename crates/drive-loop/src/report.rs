@@ -50,6 +50,13 @@ pub(crate) fn report(
             said(before.sensitivity_late)
         ));
     }
+    if !settings.set.measured.is_empty() {
+        notes.push(format!(
+            "limits hold for {} measured responses too, and the model's loops have {:.2} cycles of delay more than the file's, as these show; the simulated moves have not",
+            settings.set.measured.len(),
+            settings.set.delay
+        ));
+    }
     if axis.trajectories.is_empty() {
         notes.push("the axis file has no [[trajectory]], so no move was simulated".to_owned());
     }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::error::LoopError;
 use crate::law::LoopGains;
 use crate::loops::CornerLoop;
+use crate::measured::MeasuredPlant;
 use crate::plant::{Corner, LoopModel, modes_at};
 
 /// Ranges over which margins are computed and must hold.
@@ -20,6 +21,8 @@ pub struct LoopSet {
     pub frictions: Vec<f64>,
     /// Cycles of delay besides the file's.
     pub delay: f64,
+    /// Responses that were measured ([`LoopSet::with_measured`]): limits hold for their loops too.
+    pub measured: Vec<MeasuredPlant>,
 }
 
 /// Shares of the load's mass by default: 10 % less, as it is, 40 % more.
@@ -32,6 +35,7 @@ impl Default for LoopSet {
             masses: MASSES.to_vec(),
             frictions: vec![1.0],
             delay: 0.0,
+            measured: Vec::new(),
         }
     }
 }
@@ -142,10 +146,14 @@ impl AxisLoops {
         // The file's own first.
         let own = |at: &Corner| at.position == modes[0].0 && at.mass == 1.0 && at.friction == 1.0;
         all.sort_by_key(|(at, _)| !own(at));
-        let corners = all
+        let mut corners: Vec<CornerLoop> = all
             .par_iter()
             .map(|(at, modes)| CornerLoop::new(&model, modes, at))
             .collect();
+        for measured in &set.measured {
+            let modes = modes_at(axis, measured.position)?;
+            corners.push(CornerLoop::measured(&model, &modes, measured));
+        }
         // The rigid motion, normalised: φ² = 1/J.
         let inertia = modes[0].1[0].motor.powi(-2);
         let modes = modes[0].1.iter().map(|mode| mode.frequency);

@@ -85,6 +85,7 @@ impl PyAxis {
             masses: vec![1.0],
             frictions: vec![1.0],
             delay: delay_cycles,
+            ..LoopSet::default()
         };
         let axis = self.axis.clone();
         let found = long(py, None, move |_| {

@@ -28,6 +28,7 @@ fn set_of(
         masses: or(masses, "masses", set.masses)?,
         frictions: or(frictions, "frictions", set.frictions)?,
         delay,
+        measured: set.measured,
     })
 }
 

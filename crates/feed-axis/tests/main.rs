@@ -9,6 +9,7 @@ mod discover;
 mod export_controller;
 mod export_drive;
 mod export_fmu;
+mod frf;
 mod heat;
 mod identify;
 mod identify_control;

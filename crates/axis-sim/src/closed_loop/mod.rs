@@ -6,7 +6,7 @@ mod start;
 
 use std::sync::Arc;
 
-use compensator::{Compensator, Reference, Sample};
+use compensator::{Compensator, Correction, Reference, Sample};
 use trajectories::{Motion, Setpoint};
 
 use self::limits::{reason_of, reason_of_drive};
@@ -32,6 +32,8 @@ pub struct ClosedLoop {
     sampling: Sampling,
     /// Seed of the sensors' noise, where they have some.
     noise: Option<u64>,
+    /// What is added to the command in each cycle from the start of a motion.
+    excitation: Option<Arc<[f64]>>,
 }
 
 /// A run between two cycles: everything that the next one depends on.
@@ -134,6 +136,15 @@ impl ClosedLoop {
         self
     }
 
+    /// The loop with an excitation: a value for each cycle from the start of a motion, in the unit
+    /// of the actuator's command, 0 after the last. It is added to the command of the speed
+    /// controller, before its filters and its limit, and stands in [`Cycle::excitation`].
+    #[must_use]
+    pub fn with_excitation(mut self, samples: Vec<f64>) -> Self {
+        self.excitation = Some(samples.into());
+        self
+    }
+
     /// As [`ClosedLoop::new`], with hooks beside those of the effects.
     pub(crate) fn disturbed(
         axis: &Axis,
@@ -171,6 +182,7 @@ impl ClosedLoop {
             axis,
             hooks,
             noise: Some(0),
+            excitation: None,
         })
     }
 
@@ -272,10 +284,15 @@ impl ClosedLoop {
         });
 
         // Control: position and speed, then the actuator's own.
+        let samples = self.excitation.as_deref().unwrap_or_default();
+        let excitation = samples.get(state.cycles as usize).copied().unwrap_or(0.0);
         let demand = state.controller.cycle(&Situation {
             reference,
             measured: &measured,
-            correction: &correction,
+            correction: &Correction {
+                command: correction.command + excitation,
+                ..correction
+            },
             limit: state.actuator.available().min(self.axis.actuator.limit()),
         });
         state.actuator.command(demand.effort, &measured);
@@ -298,6 +315,7 @@ impl ClosedLoop {
                 saturated: demand.saturated || electrical.saturated,
             },
             correction,
+            excitation,
         };
         match self.stop_reason(cycle) {
             Some(reason) => Err(self.stopped(reason, cycle)),

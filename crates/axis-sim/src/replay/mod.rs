@@ -18,7 +18,7 @@ use compensator::{Compensator, Correction, Sample};
 use trajectories::Motion;
 
 use crate::axis::Axis;
-use crate::channels::{ChannelPart, LogChannel, channels, position_in};
+use crate::channels::{ChannelPart, LogChannel, channels, excitation_in, position_in};
 use crate::effects::{ActiveEffect, Hooks, Steepness};
 use crate::plant::Start;
 use crate::work::cycles_of;
@@ -91,9 +91,6 @@ pub struct Replay {
     stored: Stored,
 }
 
-/// What a log shows of a command that was added to the controller's.
-pub(crate) const ADDED: &str = "drive_command_added_v";
-
 impl Replay {
     /// The reference of a uniformly sampled log.
     ///
@@ -111,7 +108,7 @@ impl Replay {
             reference: LoggedReference::new(log, period)?,
             samples: log.len(),
             start: [position[0], speed],
-            added: log.channel(ADDED).ok().map(<[f64]>::to_vec),
+            added: excitation_in(log).map(<[f64]>::to_vec),
             stored: Stored::Nothing,
         })
     }

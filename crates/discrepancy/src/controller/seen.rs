@@ -2,7 +2,7 @@
 
 use axis_log::Log;
 use axis_sim::actuator::Effort;
-use axis_sim::{Axis, LoggedReference, Measured, SampledCurve, Trace, position_in};
+use axis_sim::{Axis, LoggedReference, Measured, SampledCurve, Trace, excitation_in, position_in};
 use trajectories::{Motion, Setpoint};
 
 use super::error::ControllerError;
@@ -36,8 +36,6 @@ pub fn command_channel(axis: &Axis) -> &'static str {
     }
 }
 
-/// What was added to the command, where a log has it.
-const ADDED: &str = "drive_command_added_v";
 const ANGLE: &str = "motor_angle_rad";
 
 /// Samples of what a controller reads.
@@ -130,7 +128,7 @@ impl Seen {
                 ..Measured::default()
             }
         };
-        let added = shown.log.channel(ADDED).ok();
+        let added = excitation_in(shown.log);
         let added = |k: usize| {
             let along = (k as f64 * h / shown.period).round() as usize;
             added.and_then(|added| added.get(along)).copied()

@@ -3,7 +3,7 @@
 use axis_log::quality::{CrossCheckVerdict, Finding, Relation, RelationLaw, cross_check};
 use axis_log::{Log, unit_of};
 use axis_sim::mechanism::Freedom;
-use axis_sim::{Axis, ChannelPart, channels};
+use axis_sim::{Axis, ChannelPart, EXCITATIONS, channels};
 
 use super::error::LogSetError;
 
@@ -58,8 +58,8 @@ pub fn relations(log: &Log, machine: &Axis) -> Vec<Relation> {
 pub fn exact_channels(machine: &Axis) -> Vec<&'static str> {
     let given = channels(machine).into_iter();
     let given = given.filter(|c| c.part == ChannelPart::Given);
-    let added = "drive_command_added_v";
-    given.map(|c| c.name(machine)).chain([added]).collect()
+    let excitations = EXCITATIONS.iter().map(|(_, [name, _])| *name);
+    given.map(|c| c.name(machine)).chain(excitations).collect()
 }
 
 /// Refuses a log whose channels say that one of them is in another unit, turned, or from

@@ -56,6 +56,7 @@ impl Ranges {
             masses: self.mass.clone(),
             frictions: self.friction.clone(),
             delay,
+            ..LoopSet::default()
         }
     }
 }

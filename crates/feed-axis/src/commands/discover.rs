@@ -214,6 +214,17 @@ pub(super) fn read_as_one(
         rate_hz: None,
         most_samples: most_samples(machine),
     };
+    read_with(path, machine, needed, options, notes)
+}
+
+/// The same, with what is to be done to it.
+pub(super) fn read_with(
+    path: &Path,
+    machine: &Axis,
+    needed: &[&str],
+    options: Intake,
+    notes: &mut Vec<String>,
+) -> Result<Log> {
     let paths = files(path);
     let prepared =
         prepare(&paths, &machine.log, needed, options).map_err(|error| with_help(error, &paths))?;

@@ -10,7 +10,9 @@ pub(crate) mod contour;
 pub mod control_table;
 pub mod discover;
 mod discover_words;
+mod excitation;
 pub mod export;
+pub(crate) mod frf;
 pub(crate) mod heat;
 mod heat_course;
 mod heat_time;
@@ -72,6 +74,8 @@ pub enum Command<J: Jobs> {
     Analyse(analyse::Options),
     /// Gains of the drive's loops within limits of the sensitivity; writes an axis file
     Tune(tune::Options),
+    /// Frequency responses from logs of an excited axis: coherence, modes, margins, against the model
+    Frf(frf::Options),
     /// Simulate one motion, write its log and a page of figures
     Simulate(simulate::Options),
     /// Simulate two axes on a circle: contour error and figures in the manner of ISO 230-4
@@ -112,6 +116,7 @@ impl<J: Jobs> Command<J> {
             Self::Learn(options) => learn::command(options),
             Self::Analyse(options) => analyse::command(options),
             Self::Tune(options) => tune::command(options),
+            Self::Frf(options) => frf::command(options),
             Self::Simulate(options) => simulate::command(options),
             Self::Contour(options) => contour::command(options),
             Self::Heat(options) => heat::command(options),

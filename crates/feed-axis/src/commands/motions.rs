@@ -9,6 +9,7 @@ use axis_sim::{Axis, MoveSpec, SixDigits, toml_hint};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use trajectories::Program;
 
+use super::excitation;
 use crate::context::{Context, read_text};
 use crate::exit::wrong_use;
 
@@ -50,11 +51,29 @@ pub(super) fn trajectory(option: &str, number: usize, context: &Context) -> Resu
 
 /// Reads a motion program for an axis, in whose unit it must be.
 pub(super) fn program_on(file: &Path, axis: &Axis) -> Result<Program> {
-    let program = program(file)?;
+    taken(file, program(file)?, axis)
+}
+
+/// A motion program, if its unit is the axis'.
+fn taken(file: &Path, program: Program, axis: &Axis) -> Result<Program> {
     match axis.takes(&program) {
         Ok(()) => Ok(program),
         Err(why) => Err(miette!("{}: {why}", file.display())),
     }
+}
+
+/// Reads a motion program that may excite the axis, and what it adds to the command in each cycle.
+pub(super) fn excited_program(file: &Path, axis: &Axis) -> Result<(Program, Option<Vec<f64>>)> {
+    let text = read_text(file)?;
+    let what = || format!("{} is not a motion program", file.display());
+    let (rest, asked) = excitation::split(&text).wrap_err_with(what)?;
+    let program = toml::from_str(&rest)
+        .into_diagnostic()
+        .wrap_err_with(what)?;
+    let program = taken(file, program, axis)?;
+    let samples = asked.map(|asked| asked.samples(axis, &program)).transpose();
+    let samples = samples.wrap_err_with(|| format!("{}: [excitation]", file.display()))?;
+    Ok((program, samples))
 }
 
 /// Reads a motion program.

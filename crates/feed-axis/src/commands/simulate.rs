@@ -9,13 +9,16 @@ use axis_log::{LogFile, WriteProblem};
 use axis_pipeline::Figures;
 use axis_pipeline::measured::Errors;
 use axis_pipeline::strategies::{Build, NextMove, SharedMotion, StrategyKind};
-use axis_sim::{Axis, ClosedLoop, Cycle, FlowRecorder, Measured, Recorder, RunStopped, SixDigits};
+use axis_sim::{
+    Axis, ClosedLoop, Cycle, FlowRecorder, Measured, Recorder, RunStopped, SixDigits,
+    excitation_channel,
+};
 use clap::Args;
 use discover_matrix::hidden::{MACHINE_STEP, Noise};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
 
-use super::motions::{listed, program_on, trajectory};
+use super::motions::{excited_program, listed, trajectory};
 use super::{learn, validate};
 use crate::context::{Common, Context};
 use crate::exit::wrong_use;
@@ -65,8 +68,12 @@ pub(super) const EXACT: &str = "Simulate by the mechanism's slow, exact method, 
 /// Runs the command: the axis file itself is simulated, not its machine.
 pub fn command(options: &Options) -> Result<()> {
     let context = options.common.open()?;
-    let motion = motion(options, &context)?;
-    let closed_loop = closed_loop(&context.axis, options.exact)?;
+    let (motion, excitation) = motion(options, &context)?;
+    let mut closed_loop = closed_loop(&context.axis, options.exact)?;
+    let is_excited = excitation.is_some();
+    if let Some(samples) = excitation {
+        closed_loop = closed_loop.with_excitation(samples);
+    }
     let strategy = options.compensation;
     let predictors = validate::predictors(&context, strategy.needs)?;
     if options.correction.is_some() && matches!(strategy.build, Build::Each(_)) {
@@ -87,7 +94,9 @@ pub fn command(options: &Options) -> Result<()> {
     };
     let mut law = law.compensator(&next).into_diagnostic()?;
     let log = options.log.as_deref();
-    let mut rows = log.map(|path| begun(path, &context.axis)).transpose()?;
+    let mut rows = log
+        .map(|path| begun(path, &context.axis, is_excited))
+        .transpose()?;
     if let Some(path) = &options.report {
         check_writable(path)?;
     }
@@ -278,13 +287,16 @@ impl Tracking {
 }
 
 /// A log that is written aside while the run goes on, and put in place whole.
-fn begun(path: &Path, axis: &Axis) -> Result<FlowRecorder<LogFile>> {
+fn begun(path: &Path, axis: &Axis, is_excited: bool) -> Result<FlowRecorder<LogFile>> {
     let file = LogFile::create(path).map_err(|e| match e.problem {
         WriteProblem::Extension { .. } => wrong_use(format!("--log {e}")),
         _ => miette!(e),
     });
     let file = file.wrap_err_with(|| unwritten(path))?;
-    let recorder = Recorder::as_logged(axis, axis.period).into_diagnostic()?;
+    let mut recorder = Recorder::as_logged(axis, axis.period).into_diagnostic()?;
+    if is_excited {
+        recorder = recorder.with(excitation_channel(axis));
+    }
     Ok(FlowRecorder::to(file, recorder))
 }
 
@@ -292,12 +304,14 @@ fn unwritten(path: &Path) -> String {
     format!("cannot write the log {}", path.display())
 }
 
-fn motion(options: &Options, context: &Context) -> Result<SharedMotion> {
+/// The motion, and what its program adds to the command.
+fn motion(options: &Options, context: &Context) -> Result<(SharedMotion, Option<Vec<f64>>)> {
     if let Some(file) = &options.program {
-        return Ok(Arc::new(program_on(file, &context.axis)?));
+        let (program, excitation) = excited_program(file, &context.axis)?;
+        return Ok((Arc::new(program), excitation));
     }
     match options.trajectory {
-        Some(number) => trajectory("--trajectory", number, context),
+        Some(number) => Ok((trajectory("--trajectory", number, context)?, None)),
         None => Err(wrong_use(format!(
             "no motion is given; valid: --program FILE, or --trajectory N; the axis file has {}",
             listed(&context.axis)

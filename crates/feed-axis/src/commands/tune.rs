@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use axis_report::{Cell, Page, Section, Table, engineering};
 use axis_sim::{Axis, SixDigits};
 use clap::Args;
-use drive_loop::{LoopAnalysis, TuneSettings, TunedKey, Tuning};
+use drive_loop::{LoopAnalysis, MeasureSettings, TuneSettings, TunedKey, Tuning};
 use miette::{IntoDiagnostic, Result};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -14,6 +14,7 @@ use serde::Serialize;
 use super::analyse::{Ranges, axis_with, place};
 use super::control_table::with_tuned;
 use super::discover::moved;
+use super::frf;
 use crate::context::{DEFAULT_AXIS, read_text};
 use crate::out_file;
 use crate::output::{Worded, print, ready, write_whole};
@@ -57,6 +58,10 @@ pub struct Options {
     /// Set the current controllers too, to the magnitude optimum
     #[arg(long)]
     current: bool,
+    /// Logs of the excited axis (docs/frequency-response.md): limits hold for the loops with these measured
+    /// responses too, and the delay that they show is in the model's
+    #[arg(long, value_name = "LOG", num_args = 1..)]
+    frf: Vec<PathBuf>,
     /// Page with the tuned loops
     #[arg(long, value_name = "OUT.html", value_parser = out_file::page())]
     report: Option<PathBuf>,
@@ -82,11 +87,14 @@ pub fn command(options: &Options) -> Result<()> {
         _ => PathBuf::from("."),
     };
     ready(&folder)?;
+    let measured = frf::measured(&axis, &options.frf, &MeasureSettings::default())?;
+    let set = options.ranges.set(0.0);
+    let set = set.with_measured(&axis, &measured).into_diagnostic()?;
     let settings = TuneSettings {
         sensitivity: options.sensitivity,
         sensitivity_late: options.sensitivity_late,
         ripple: 1e-2 * options.ripple,
-        set: options.ranges.set(0.0),
+        set,
         acceleration: !options.no_acceleration,
         notch: !options.no_notch,
         current: options.current,

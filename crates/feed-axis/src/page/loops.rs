@@ -125,7 +125,7 @@ fn sizes(values: &[[f64; 2]]) -> Vec<f64> {
 }
 
 /// Phases in degrees, without jumps.
-fn phases(values: &[[f64; 2]]) -> Vec<f64> {
+pub fn phases(values: &[[f64; 2]]) -> Vec<f64> {
     let mut turns = 0.0;
     let mut before: Option<f64> = None;
     let mut all = Vec::with_capacity(values.len());
@@ -146,7 +146,7 @@ fn phases(values: &[[f64; 2]]) -> Vec<f64> {
 const DRAWN: f64 = 1e-8;
 
 /// The magnitudes over the frequency; what is less than can be drawn stands at the lower edge.
-fn sized(name: impl Into<String>, frequency_hz: &[f64], values: &[[f64; 2]]) -> Series {
+pub fn sized(name: impl Into<String>, frequency_hz: &[f64], values: &[[f64; 2]]) -> Series {
     let sizes = sizes(values);
     let most = sizes.iter().copied().fold(0.0, f64::max);
     let drawn = sizes.iter().map(|size| size.max(DRAWN * most)).collect();

@@ -8,6 +8,7 @@ mod compensation;
 pub mod contour;
 pub mod discovery;
 mod envelope;
+pub mod frf;
 pub mod heat;
 pub mod loops;
 mod mechanics;

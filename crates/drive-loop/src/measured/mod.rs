@@ -1,0 +1,419 @@
+//! Frequency responses that were measured on an axis: estimated from its logs, compared with its model.
+
+mod compare;
+mod plant;
+mod record;
+mod traps;
+
+use axis_log::Log;
+use axis_sim::Axis;
+use frequency_response::{
+    Averaging, Estimator, FitSettings, FrequencyResponse, LoopLine, LoopMargins, ModalFit, Record,
+};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::error::LoopError;
+use crate::set::LoopSet;
+use record::Recorded;
+
+pub use compare::{ComparedMode, Comparison};
+pub use plant::MeasuredPlant;
+pub use traps::Trap;
+
+/// How a response is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasureSettings {
+    /// Distance of two lines, Hz, where the excitation is not periodic; none: 1.2 Hz, or a quarter of
+    /// the excited time, whichever is coarser. A periodic one has lines of its own.
+    pub step_hz: Option<f64>,
+    /// Least coherence of a line that counts.
+    pub coherence: f64,
+    /// Most poles of the fit; a mode has two.
+    pub most_poles: usize,
+}
+
+impl Default for MeasureSettings {
+    fn default() -> Self {
+        Self {
+            step_hz: None,
+            coherence: 0.9,
+            most_poles: 10,
+        }
+    }
+}
+
+/// One line of a response.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct MeasuredLine {
+    /// Hz.
+    pub frequency_hz: f64,
+    /// Real and imaginary part, in the output's unit per unit of the command.
+    pub value: [f64; 2],
+    /// Standard deviation of the error in each direction of the complex plane.
+    pub deviation: f64,
+    /// From 0 to 1.
+    pub coherence: f64,
+}
+
+/// A number with its standard deviation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct WithDeviation {
+    /// The number.
+    pub value: f64,
+    /// Standard deviation of its error.
+    pub deviation: f64,
+}
+
+impl From<frequency_response::Uncertain> for WithDeviation {
+    fn from(of: frequency_response::Uncertain) -> Self {
+        Self {
+            value: of.value,
+            deviation: of.deviation,
+        }
+    }
+}
+
+/// A mode in the response of the motor's speed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct MeasuredMode {
+    /// Natural frequency, Hz.
+    pub frequency_hz: WithDeviation,
+    /// Damping ratio.
+    pub damping: WithDeviation,
+    /// Size of its residue, motor speed per command and s.
+    pub residue: f64,
+    /// Standard deviation of the residue.
+    pub residue_deviation: f64,
+}
+
+/// What was fitted to the response of the motor's speed.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct MeasuredModes {
+    /// Pairs of poles with a damping below 0.5 and a frequency within the lines that is known to 5 %, from
+    /// low to high frequency.
+    pub modes: Vec<MeasuredMode>,
+    /// Delay behind the hold of the command, s. It stands for lags that are faster than the lines too.
+    pub delay_s: WithDeviation,
+    /// Root mean square of the residual in deviations of the lines; 1 for a fit as good as they are.
+    pub misfit: f64,
+    /// Root mean square of the relative error over the lines.
+    pub relative_error: f64,
+    /// Lowest and highest line that was fitted, Hz.
+    pub band_hz: [f64; 2],
+}
+
+/// Margins of the loop with the gains of the file, measured.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct MeasuredMargins {
+    /// Greatest sensitivity of the loop cut at the command, as the command answers to the excitation.
+    pub sensitivity: WithDeviation,
+    /// Its frequency, Hz.
+    pub sensitivity_at_hz: f64,
+    /// The same from the controller of the file and the measured response of what it controls.
+    pub by_response: WithDeviation,
+    /// The same of the model at this position.
+    pub model: Option<f64>,
+    /// Greatest sensitivity of the position loop, its speed loop closed.
+    pub position: f64,
+    /// Least phase margin of all crossings of gain 1, degrees, cut at the command.
+    pub phase_deg: Option<f64>,
+    /// Delay that the loop takes, s.
+    pub delay_s: Option<f64>,
+    /// Highest frequency at which the gain is 1, Hz.
+    pub crossover_hz: Option<f64>,
+}
+
+/// Frequency responses of an axis at one place, measured.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct MeasuredDrive {
+    /// Of this form.
+    pub schema: u32,
+    /// Name of the axis.
+    pub axis: String,
+    /// Its fingerprint.
+    pub axis_fingerprint: String,
+    /// Version of the program.
+    pub version: String,
+    /// Unit of the load's position: "m" or "rad".
+    pub position_unit: String,
+    /// Unit of the command.
+    pub command_unit: String,
+    /// Mean position of the load while it was excited, and the stretch, m or rad.
+    pub position: f64,
+    /// From there to there.
+    pub stretch: [f64; 2],
+    /// Mean speed of the load, m/s or rad/s.
+    pub speed: f64,
+    /// Excited time, s.
+    pub excited_s: f64,
+    /// How it was estimated, in words.
+    pub method: String,
+    /// Independent averages.
+    pub averages: f64,
+    /// Distance of two lines, Hz.
+    pub step_hz: f64,
+    /// Least coherence of a line that counts.
+    pub coherence: f64,
+    /// First and last line that counts, Hz; none where there is no such line.
+    pub band_hz: Option<[f64; 2]>,
+    /// From the command to the motor's measured speed, rad/s.
+    pub motor_speed: Vec<MeasuredLine>,
+    /// The model's, on the same lines.
+    pub motor_speed_model: Vec<[f64; 2]>,
+    /// From the command to the load's measured position.
+    pub load: Vec<MeasuredLine>,
+    /// What was fitted to the first; none where nothing could be, or the measurement is not usable.
+    pub fit: Option<MeasuredModes>,
+    /// Margins with the gains of the file; none without excitation.
+    pub margins: Option<MeasuredMargins>,
+    /// Against the model; none of a measurement that is not usable.
+    pub comparison: Option<Comparison>,
+    /// What is wrong with the measurement.
+    pub traps: Vec<Trap>,
+    /// What else is to be known, in words.
+    pub notes: Vec<String>,
+    /// For the search.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub plant: MeasuredPlant,
+}
+
+impl MeasuredDrive {
+    /// Number of this form.
+    pub const SCHEMA: u32 = 1;
+
+    /// From a log of this axis.
+    ///
+    /// # Errors
+    /// [`LoopError`] where the axis has no loops, or the log no command and no response.
+    pub fn of(axis: &Axis, log: &Log, settings: &MeasureSettings) -> Result<Self, LoopError> {
+        let recorded = Recorded::of(axis, log)?;
+        let averaging = recorded.averaging(settings)?;
+        let by = match recorded.is_excited() {
+            true => Estimator::ThreeSignals,
+            false => Estimator::H1,
+        };
+        let estimate = |output: Option<&[f64]>, differenced| {
+            let all = output.map(|output| -> Vec<Record<'_>> {
+                recorded.records(output, differenced).collect()
+            });
+            let found = all.map(|all| FrequencyResponse::of_all(&all, by, averaging));
+            found.transpose()
+        };
+        let angle = estimate(recorded.angle, true)?;
+        let speed = estimate(recorded.speed, false)?;
+        let all: Vec<Record<'_>> = recorded.records(recorded.load, true).collect();
+        let load = FrequencyResponse::of_all(&all, by, averaging)?;
+        let at = compare::ModelAt::new(axis, recorded.position)?;
+        let plant = MeasuredPlant::new(
+            &at,
+            [angle.as_ref(), speed.as_ref(), Some(&load)],
+            settings.coherence,
+        );
+        let shown = speed.unwrap_or_else(|| plant.speed_of(&at, &load));
+        let margins = match recorded.is_excited() {
+            true => margins(&recorded, averaging, &at, &plant)?,
+            false => None,
+        };
+        let traps = traps::traps(axis, &recorded, &shown, &at, margins.as_ref(), settings)?;
+        // What is wrong anyhow is not explained.
+        let is_usable = !traps.iter().any(|trap| trap.refused);
+        let fitted = FitSettings {
+            band_hz: plant.band_hz().unwrap_or_default(),
+            coherence: settings.coherence,
+            most_poles: settings.most_poles,
+            ..FitSettings::default()
+        };
+        let fit = match is_usable {
+            true => ModalFit::of(&shown, &fitted).ok(),
+            false => None,
+        };
+        let comparison = match is_usable {
+            true => compare::comparison(&at, &plant, fit.as_ref(), shown.step_hz),
+            false => None,
+        };
+        Ok(Self {
+            schema: Self::SCHEMA,
+            axis: axis.name.clone(),
+            axis_fingerprint: axis.fingerprint.clone(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            position_unit: axis.freedom().unit().to_owned(),
+            command_unit: recorded.command_unit.to_owned(),
+            position: recorded.position,
+            stretch: recorded.stretch,
+            speed: recorded.mean_speed,
+            excited_s: recorded.seconds(),
+            method: method(by, averaging, shown.period_s),
+            averages: shown.averages,
+            step_hz: shown.step_hz,
+            coherence: settings.coherence,
+            band_hz: plant.band_hz(),
+            motor_speed: lines(&shown),
+            motor_speed_model: at.speeds(&shown),
+            load: lines(&load),
+            fit: fit.map(|fit| modes(&fit, shown.step_hz)),
+            margins,
+            comparison,
+            traps,
+            notes: recorded.notes.clone(),
+            plant,
+        })
+    }
+
+    /// Whether nothing is so wrong with it that gains must not be tuned on it.
+    pub fn is_usable(&self) -> bool {
+        self.traps.iter().all(|trap| !trap.refused)
+    }
+}
+
+impl LoopSet {
+    /// The set with measured responses in it: limits of the sensitivity hold for their loops too, and
+    /// the delay that they show beside the model's is added to the model.
+    ///
+    /// # Errors
+    /// [`LoopError::Measured`] where one of them must not be tuned on.
+    pub fn with_measured(mut self, axis: &Axis, all: &[MeasuredDrive]) -> Result<Self, LoopError> {
+        for (i, one) in all.iter().enumerate() {
+            if let Some(trap) = one.traps.iter().find(|trap| trap.refused) {
+                return Err(LoopError::Measured {
+                    number: i + 1,
+                    what: trap.what.clone(),
+                });
+            }
+            self.measured.push(one.plant.clone());
+        }
+        let mut delays: Vec<f64> = all
+            .iter()
+            .filter_map(|one| one.comparison.as_ref().map(|c| c.delay_s.value))
+            .collect();
+        delays.sort_by(f64::total_cmp);
+        // Late commands only: a response that comes sooner than the model's leaves the model as it is.
+        if let Some(median) = delays.get(delays.len() / 2) {
+            self.delay += median.max(0.0) / axis.period;
+        }
+        Ok(self)
+    }
+}
+
+fn lines(of: &FrequencyResponse) -> Vec<MeasuredLine> {
+    let line = |l: &frequency_response::ResponseLine| MeasuredLine {
+        frequency_hz: l.frequency_hz,
+        value: [l.value.re, l.value.im],
+        deviation: l.deviation,
+        coherence: l.coherence,
+    };
+    of.lines.iter().map(line).collect()
+}
+
+/// Margins with the gains of the file: by what the command makes of the excitation, and by the
+/// controller with the measured responses.
+fn margins(
+    recorded: &Recorded<'_>,
+    averaging: Averaging,
+    at: &compare::ModelAt,
+    plant: &MeasuredPlant,
+) -> Result<Option<MeasuredMargins>, LoopError> {
+    // u = S F r: open loop from r to u, so H1 has no bias.
+    let all: Vec<Record<'_>> = recorded.sensitivity_records().collect();
+    let answered = FrequencyResponse::of_all(&all, Estimator::H1, averaging)?;
+    let (mut peak, mut frequency) = (
+        WithDeviation {
+            value: 0.0,
+            deviation: 0.0,
+        },
+        0.0,
+    );
+    // Above the band noise is in phase with itself from period to period, such as a scale's.
+    let top = plant.band_hz().map_or(0.0, |[_, high]| high);
+    for line in answered.trusted([0.0, top], 0.0) {
+        let Some(passed) = at.passed(line.frequency_hz) else {
+            continue;
+        };
+        let size = line.value.norm() / passed;
+        let deviation = line.deviation / passed;
+        // The greatest of many noisy lines is too high: one that is uncertain says nothing.
+        if deviation < CERTAIN * size && size > peak.value {
+            peak = WithDeviation {
+                value: size,
+                deviation,
+            };
+            frequency = line.frequency_hz;
+        }
+    }
+    let [command, position] = plant.loops(at);
+    if command.len() < 2 {
+        return Ok(None);
+    }
+    let of = |lines: &[LoopLine]| LoopMargins::of(lines);
+    let (found, outer) = (of(&command)?, of(&position)?);
+    Ok(Some(MeasuredMargins {
+        sensitivity: peak,
+        sensitivity_at_hz: frequency,
+        by_response: WithDeviation {
+            value: found.sensitivity.value,
+            deviation: found.sensitivity.deviation,
+        },
+        model: at.sensitivity(),
+        position: outer.sensitivity.value,
+        phase_deg: found.phase_deg(),
+        delay_s: found.delay_s,
+        crossover_hz: found.crossover_hz,
+    }))
+}
+
+/// Deviation of a line of the sensitivity, as a share of it, from which on the line does not count.
+const CERTAIN: f64 = 0.08;
+
+fn method(by: Estimator, averaging: Averaging, period: f64) -> String {
+    let how = match by {
+        Estimator::ThreeSignals => "by the excitation, without bias in closed loop",
+        _ => "from command and response alone (H1), biased in closed loop",
+    };
+    match averaging {
+        Averaging::Welch { segment } => format!(
+            "{how}; segments of {:.3} s under Hann's window, half over one another",
+            segment as f64 * period
+        ),
+        Averaging::Periods { period: n, .. } => {
+            format!("{how}; whole periods of {:.3} s", n as f64 * period)
+        }
+    }
+}
+
+/// Damping from which on a pair of poles is a lag of the drive, no mode of the machine.
+const DAMPED: f64 = 0.5;
+/// Lines below a mode that are needed to tell it from an error of the lowest ones.
+const BELOW: f64 = 6.0;
+/// Deviation of a frequency, as a share of it, from which on it is no mode.
+const VAGUE: f64 = 0.05;
+
+/// Pairs of poles that are modes of a machine, of a fit to lines `step_hz` apart.
+fn machine_modes(
+    fit: &ModalFit,
+    step_hz: f64,
+) -> impl Iterator<Item = &frequency_response::FittedMode> {
+    fit.modes.iter().filter(move |mode| {
+        let frequency = mode.frequency_hz;
+        mode.damping.value.abs() < DAMPED
+            && frequency.value > BELOW * step_hz
+            && frequency.value < fit.band_hz[1]
+            && frequency.deviation < VAGUE * frequency.value
+    })
+}
+
+fn modes(fit: &ModalFit, step_hz: f64) -> MeasuredModes {
+    let mode = |mode: &frequency_response::FittedMode| MeasuredMode {
+        frequency_hz: mode.frequency_hz.into(),
+        damping: mode.damping.into(),
+        residue: mode.residue.norm(),
+        residue_deviation: mode.residue_deviation,
+    };
+    MeasuredModes {
+        modes: machine_modes(fit, step_hz).map(mode).collect(),
+        delay_s: fit.delay_s.into(),
+        misfit: fit.misfit,
+        relative_error: fit.relative_error,
+        band_hz: fit.band_hz,
+    }
+}

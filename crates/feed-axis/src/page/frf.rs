@@ -1,0 +1,134 @@
+//! The page of measured frequency responses.
+
+use axis_report::{Cell, Figure, Notice, Page, Section, Series, Table};
+use axis_sim::Axis;
+use drive_loop::{MeasuredDrive, WithDeviation};
+
+use super::loops::{phases, sentence, sized};
+
+/// Figures share the frequency.
+const FREQUENCY: &str = "frequency";
+
+/// The page.
+pub fn page(axis: &Axis, all: &[MeasuredDrive]) -> Page {
+    let page = Page::new(format!("Frequency responses of {}", axis.name)).lead(
+        "Estimated from logs of the excited axis, beside the model of the axis file with its load sliding at the same place.",
+    );
+    let page = page.section(margins(all)).section(modes(all));
+    all.iter()
+        .fold(page, |page, found| page.section(response(found)))
+}
+
+fn place(found: &MeasuredDrive) -> String {
+    format!(
+        "{} {}",
+        axis_sim::SixDigits(found.position),
+        found.position_unit
+    )
+}
+
+fn pair(of: WithDeviation, scale: f64, digits: usize) -> Cell {
+    let (value, deviation) = (scale * of.value, scale * of.deviation);
+    Cell::text(format!("{value:.digits$} ± {deviation:.digits$}"))
+}
+
+fn margins(all: &[MeasuredDrive]) -> Section {
+    let mut table = Table::new(
+        "Greatest sensitivity with the gains of the file, and delay beside the model's",
+        ["load at", "from the command", "from the responses", "model", "position loop", "delay, ms"],
+    )
+    .note("From the command: its answer to the excitation is 1/(1 + L). From the responses: the file's controller with the measured drive. ± is a standard deviation.");
+    let mut section = Section::new("Margins");
+    for found in all {
+        let m = found.margins.as_ref();
+        let number = |value: Option<f64>| value.map_or(Cell::Missing, |v| Cell::number(v, 3));
+        let delay = found.comparison.as_ref().map(|c| c.delay_s);
+        table = table.row([
+            Cell::text(place(found)),
+            m.map_or(Cell::Missing, |m| pair(m.sensitivity, 1.0, 3)),
+            m.map_or(Cell::Missing, |m| pair(m.by_response, 1.0, 3)),
+            number(m.and_then(|m| m.model)),
+            number(m.map(|m| m.position)),
+            delay.map_or(Cell::Missing, |d| pair(d, 1e3, 4)),
+        ]);
+        for trap in &found.traps {
+            let text = format!("At {}: {}.", place(found), trap.what);
+            section = section.notice(Notice::Warn, text);
+        }
+        let said = found.comparison.iter().flat_map(|c| &c.said);
+        for line in said.chain(&found.notes) {
+            section = section.paragraph(sentence(line));
+        }
+    }
+    section.table(table)
+}
+
+fn modes(all: &[MeasuredDrive]) -> Section {
+    let mut table = Table::new(
+        "Modes of the motor's speed",
+        ["load at", "frequency, Hz", "damping, %", "model, Hz"],
+    );
+    for found in all {
+        let compared = found.comparison.as_ref();
+        for mode in found.fit.iter().flat_map(|fit| &fit.modes) {
+            let same = compared.and_then(|c| {
+                let mut modes = c.modes.iter();
+                modes.find(|m| m.measured_hz == mode.frequency_hz)?.model_hz
+            });
+            table = table.row([
+                Cell::text(place(found)),
+                pair(mode.frequency_hz, 1.0, 2),
+                pair(mode.damping, 100.0, 2),
+                same.map_or(Cell::Missing, |f| Cell::number(f, 2)),
+            ]);
+        }
+    }
+    Section::new("Modes").table(table)
+}
+
+fn response(found: &MeasuredDrive) -> Section {
+    let lines: Vec<_> = found.motor_speed.iter().collect();
+    let counted: Vec<_> = lines
+        .iter()
+        .filter(|l| l.coherence >= found.coherence)
+        .collect();
+    let f: Vec<f64> = counted.iter().map(|l| l.frequency_hz).collect();
+    let values: Vec<[f64; 2]> = counted.iter().map(|l| l.value).collect();
+    let all_f: Vec<f64> = lines.iter().map(|l| l.frequency_hz).collect();
+    let unit = format!("rad/s/{}", found.command_unit);
+    let size = Figure::new("Command to motor speed: size", "frequency", "size")
+        .units("Hz", unit)
+        .log_x()
+        .log_y()
+        .linked(FREQUENCY)
+        .series(sized("measured", &f, &values))
+        .series(sized("model", &all_f, &found.motor_speed_model).dashed());
+    let phase = Figure::new("Command to motor speed: phase", "frequency", "phase")
+        .units("Hz", "°")
+        .log_x()
+        .linked(FREQUENCY)
+        .series(Series::line("measured", f, phases(&values)))
+        .series(Series::line("model", all_f.clone(), phases(&found.motor_speed_model)).dashed());
+    let coherence = lines.iter().map(|l| l.coherence).collect();
+    let share = lines
+        .iter()
+        .map(|l| (100.0 * l.deviation / l.value[0].hypot(l.value[1])).min(1e3))
+        .collect();
+    let coherence = Figure::new("Coherence", "frequency", "coherence")
+        .units("Hz", "")
+        .log_x()
+        .linked(FREQUENCY)
+        .series(Series::line("coherence", all_f.clone(), coherence));
+    let deviation = Figure::new("Standard deviation", "frequency", "deviation")
+        .units("Hz", "%")
+        .log_x()
+        .log_y()
+        .linked(FREQUENCY)
+        .series(Series::line("deviation", all_f, share));
+    Section::new(format!("Response with the load at {}", place(found)))
+        .paragraph(sentence(&found.method))
+        .figure(size)
+        .figure(phase)
+        .figure(coherence)
+        .figure(deviation)
+}
