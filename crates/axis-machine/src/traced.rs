@@ -10,18 +10,24 @@ use toolpath::{FeedProfile, Follower, Foot};
 pub struct Traced<const D: usize> {
     profile: Arc<FeedProfile<D>>,
     period: f64,
+    /// By which the motion began later than the profile, s.
+    delay: f64,
     positions: Vec<[f64; D]>,
 }
 
 impl<const D: usize> Traced<D> {
-    pub(crate) fn new(profile: Arc<FeedProfile<D>>, period: f64, columns: &[Vec<f64>; D]) -> Self {
-        let count = columns.iter().map(Vec::len).min().unwrap_or(0);
-        let at = |k: usize| std::array::from_fn(|axis| columns[axis][k]);
+    pub(crate) fn new(profile: Arc<FeedProfile<D>>, period: f64, positions: Vec<[f64; D]>) -> Self {
         Self {
             profile,
             period,
-            positions: (0..count).map(at).collect(),
+            delay: 0.0,
+            positions,
         }
+    }
+
+    /// The same of a motion that began so much later (s) than the profile.
+    pub(crate) fn delayed(self, delay: f64) -> Self {
+        Self { delay, ..self }
     }
 
     /// The motion along the path that was asked for.
@@ -32,6 +38,11 @@ impl<const D: usize> Traced<D> {
     /// Time between two positions, s.
     pub fn period(&self) -> f64 {
         self.period
+    }
+
+    /// Time of the profile at position number `index` (from 0), s; below 0 before it begins.
+    pub fn time(&self, index: usize) -> f64 {
+        index as f64 * self.period - self.delay
     }
 
     /// Where the machine was, m, in the path's coordinates.
@@ -63,7 +74,7 @@ impl<const D: usize> Traced<D> {
             let (mut low, mut high) = (0, self.positions.len());
             while low < high {
                 let middle = low.midpoint(high);
-                match self.profile.at(middle as f64 * self.period).s < s {
+                match self.profile.at(self.time(middle)).s < s {
                     true => low = middle + 1,
                     false => high = middle,
                 }

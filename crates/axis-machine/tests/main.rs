@@ -1,5 +1,10 @@
 //! Stages of a kind along paths.
 
+mod coupled;
+mod file;
+mod identify;
+mod moving;
+
 use axis_machine::{AxisMotion, Driven, MachineError, trace};
 use axis_sim::{Axis, ClosedLoop};
 use compensator::NoCompensation;
