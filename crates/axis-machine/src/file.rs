@@ -238,6 +238,30 @@ impl MachineFile {
         })
     }
 
+    /// Two axes with nothing between them, as if a file named them.
+    pub fn of_axes(x: Axis, y: Axis) -> Self {
+        let names = [&x, &y].map(|axis| axis.name.clone());
+        let [first, second] = names.each_ref().map(PathBuf::from);
+        Self {
+            text: MachineText {
+                schema: 1,
+                name: format!("X {}, Y {}", names[0], names[1]),
+                description: String::new(),
+                axes: MachineAxes {
+                    x: first,
+                    y: second,
+                    z: None,
+                },
+                coupling: Vec::new(),
+                base: Vec::new(),
+                gantry: Vec::new(),
+            },
+            path: PathBuf::from(names.join(", ")),
+            axes: vec![x, y],
+            seconds: Vec::new(),
+        }
+    }
+
     /// How many coordinates it has: 2 or 3.
     pub fn dimensions(&self) -> usize {
         self.axes.len()

@@ -20,12 +20,14 @@ pub type DriveSensors<'a> = Box<dyn FnMut(&mut Measured) + 'a>;
 /// A machine on which laps are run one after the other.
 ///
 /// A lap that begins where the one before has ended goes on from the state that the machine was left in; before any other
-/// the machine is settled anew.
+/// the machine is settled anew. Paths of later laps lie where the first one's coordinates put them.
 pub struct Laps<'a, const D: usize> {
     machine: &'a Machine<D>,
     strategies: Vec<Box<dyn Strategy + 'a>>,
     sensors: Vec<DriveSensors<'a>>,
     correction: Option<Arc<Coupling>>,
+    /// Where the first path begins, m.
+    origin: Option<[f64; D]>,
     left: Option<Left>,
 }
 
@@ -70,6 +72,7 @@ impl<'a, const D: usize> Laps<'a, D> {
             strategies,
             sensors: (0..drives).map(own).collect(),
             correction: None,
+            origin: None,
             left: None,
         })
     }
@@ -97,7 +100,11 @@ impl<'a, const D: usize> Laps<'a, D> {
     /// # Errors
     /// [`MachineError`] of the run, and what a strategy refuses.
     pub fn lap(&mut self, profile: &Arc<FeedProfile<D>>) -> Result<LearnedLap<D>, MachineError> {
-        let motions = self.machine.motions(profile, self.correction.as_ref());
+        let begin = profile.path().at(0.0).position;
+        let origin = *self.origin.get_or_insert(begin);
+        let motions = self
+            .machine
+            .motions(profile, &origin, self.correction.as_ref());
         let axis = |d: usize| self.machine.drives()[d].axis + 1;
         let place = |motion: &Arc<AxisMotion<D>>, t| motion.at(t).position;
         let goes_on = |left: &Left| {

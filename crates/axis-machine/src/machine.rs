@@ -41,7 +41,7 @@ pub struct Machine<const D: usize> {
     pub(crate) coupling: Coupling,
     pub(crate) bases: [Option<BaseMode>; D],
     pub(crate) beams: [Option<GantryBeam>; D],
-    /// Control period of the slowest drive, s.
+    /// The shortest time of which all control periods are whole parts, s: the slowest of them, if the others are parts of it.
     pub(crate) period: f64,
 }
 
@@ -50,9 +50,11 @@ pub struct Machine<const D: usize> {
 pub struct MachineDrive {
     /// Coordinate that it moves, from 0.
     pub axis: usize,
+    /// The axis as its file has it.
+    pub nominal: Axis,
     /// Its closed loop.
     pub closed_loop: ClosedLoop,
-    /// Its control periods in one of the slowest drive.
+    /// Its control periods in that time.
     pub(crate) parts: u64,
 }
 
@@ -61,7 +63,7 @@ impl<const D: usize> Machine<D> {
     ///
     /// # Errors
     /// [`MachineError::Setup`] for an axis without a closed loop, [`MachineError::Rotary`] for one that turns,
-    /// [`MachineError::Periods`] if control periods share no instants.
+    /// [`MachineError::Periods`] if control periods have no instant in common every 16 of the slowest.
     pub fn new(axes: [&Axis; D]) -> Result<Self, MachineError> {
         let mut machine = Self {
             drives: Vec::new(),
@@ -130,25 +132,24 @@ impl<const D: usize> Machine<D> {
         &self.coupling
     }
 
-    /// Positions of the axes where the coordinates of `profile` are 0, m.
-    pub(crate) fn zeros(&self, profile: &FeedProfile<D>) -> [f64; D] {
-        let begin = profile.path().at(0.0).position;
-        std::array::from_fn(|axis| {
-            let first = self.drives.iter().find(|drive| drive.axis == axis);
-            first.map_or(0.0, |d| d.closed_loop.axis().stroke.start) - begin[axis]
-        })
-    }
-
-    /// What each drive has to do along a profile; with `correction`, less what that does to the tool.
+    /// What each drive has to do along a profile. Each stands where its motions begin where the path's coordinates are
+    /// `origin` (m): the begin of the first path that is run. With `correction`, less what that does to the tool.
     pub fn motions(
         &self,
         profile: &Arc<FeedProfile<D>>,
+        origin: &[f64; D],
         correction: Option<&Arc<Coupling>>,
     ) -> Vec<Arc<AxisMotion<D>>> {
-        let zeros = self.zeros(profile);
+        let begin = profile.path().at(0.0).position;
+        let start = |drive: &MachineDrive| drive.closed_loop.axis().stroke.start;
+        let zeros: [f64; D] = std::array::from_fn(|axis| {
+            let first = self.drives.iter().find(|drive| drive.axis == axis);
+            first.map_or(0.0, start) - origin[axis]
+        });
         let motion = |drive: &MachineDrive| {
-            let start = drive.closed_loop.axis().stroke.start;
-            let motion = AxisMotion::new(profile.clone(), drive.axis, start);
+            let axis = drive.axis;
+            let at = start(drive) + begin[axis] - origin[axis];
+            let motion = AxisMotion::new(profile.clone(), axis, at);
             Arc::new(match correction {
                 Some(coupling) => motion.correcting(coupling.clone(), zeros),
                 None => motion,
@@ -157,17 +158,35 @@ impl<const D: usize> Machine<D> {
         self.drives.iter().map(motion).collect()
     }
 
-    /// Finds the slowest control period, of which all others are whole parts.
+    /// Finds the shortest time of which all control periods are whole parts.
     fn share_instants(&mut self) -> Result<(), MachineError> {
         let periods = self.drives.iter().map(|d| d.closed_loop.axis().period);
         let longest = periods.fold(0.0, f64::max);
-        for drive in &mut self.drives {
-            drive.parts = whole_parts(drive.axis, drive.closed_loop.axis().period, longest)?;
+        let mut refused = None;
+        for times in 1..=MOST_PERIODS {
+            let shared = f64::from(times) * longest;
+            let parts = self
+                .drives
+                .iter()
+                .map(|drive| whole_parts(drive.axis, drive.closed_loop.axis().period, shared));
+            match parts.collect::<Result<Vec<_>, _>>() {
+                Ok(parts) => {
+                    for (drive, parts) in self.drives.iter_mut().zip(parts) {
+                        drive.parts = parts;
+                    }
+                    self.period = shared;
+                    return Ok(());
+                }
+                Err(error) => refused = refused.or(Some(error)),
+            }
         }
-        self.period = longest;
-        Ok(())
+        refused.map_or(Ok(()), Err)
     }
 }
+
+/// Control periods of the slowest drive within which all drives must have an instant in common: 8 and 10 kHz have one every
+/// 0.5 ms, 4 of 8 kHz.
+const MOST_PERIODS: u32 = 16;
 
 impl MachineDrive {
     /// Mass of its load, kg.
@@ -201,6 +220,7 @@ fn drive(coordinate: usize, axis: &Axis) -> Result<MachineDrive, MachineError> {
     })?;
     Ok(MachineDrive {
         axis: coordinate,
+        nominal: axis.clone(),
         closed_loop,
         parts: 1,
     })

@@ -9,7 +9,7 @@ use trajectories::{Motion, Setpoint};
 use crate::base::BaseState;
 use crate::error::{MOST_SAMPLES, MachineError};
 use crate::machine::Machine;
-use crate::motion::AxisMotion;
+use crate::motion::{AxisMotion, HALF_WINDOW};
 use crate::traced::Traced;
 
 /// What corrects a drive, and what its sensors make of what they see.
@@ -34,7 +34,7 @@ pub struct Lap<const D: usize> {
     pub traced: Traced<D>,
     /// What each drive's controller saw in each of its cycles.
     pub records: Vec<Vec<Sample>>,
-    /// Displacement of each axis' base at the control periods of the slowest, m; empty without one.
+    /// Displacement of each axis' base at the instants of the positions, m; empty without one.
     pub bases: Vec<Vec<f64>>,
     /// What each compensator added last, and how the drive was homed.
     pub(crate) left: Vec<(Correction, Homed)>,
@@ -73,10 +73,12 @@ impl<const D: usize> Machine<D> {
     }
 
     /// Runs all drives along their motions ([`Machine::motions`]) from `state`, which is left as the machine is at the end.
-    /// Positions of the tool are taken at the control periods of the slowest drive.
+    /// Positions of the tool are taken where all drives have an instant in common: at the control periods of the slowest, if
+    /// those of the others are whole parts of it.
     ///
     /// Forces between drives (base, beam) are those in the middle of each of these periods, and held for it. The acceleration
-    /// that cross-talk acts by is the central difference of the load's speed over two periods.
+    /// that cross-talk acts by is the mean over 5 ms to both sides: a structure that gives way by k a does so below its own modes
+    /// alone, and is not moved by what noise makes of a at some 100 Hz.
     ///
     /// # Errors
     /// [`MachineError`] if a drive stops on its way, for a motion that is too long, or not one law for each drive.
@@ -206,7 +208,7 @@ impl<const D: usize> Machine<D> {
         }
     }
 
-    /// One period of the slowest drive.
+    /// From one common instant to the next.
     fn go(
         &self,
         d: usize,
@@ -247,11 +249,15 @@ impl<const D: usize> Machine<D> {
     /// What became of it.
     fn lap(&self, first: &AxisMotion<D>, going: Vec<Going<'_, D>>, bases: Vec<Vec<f64>>) -> Lap<D> {
         let count = going.iter().map(|g| g.columns[0].len()).min().unwrap_or(0);
-        let zeros = self.zeros(first.profile());
+        let zeros: [f64; D] = std::array::from_fn(|axis| {
+            let of = self.drives().iter().position(|drive| drive.axis == axis);
+            of.map_or(0.0, |d| going[d].motion.zero())
+        });
+        let beside = ((HALF_WINDOW / self.period).round() as usize).max(1);
         let tool = |k: usize| -> [f64; D] {
             let positions = self.of_coordinates(|d| going[d].columns[0][k]);
             // Central difference, one-sided at the ends.
-            let (from, to) = (k.saturating_sub(1), (k + 1).min(count - 1));
+            let (from, to) = (k.saturating_sub(beside), (k + beside).min(count - 1));
             let over = (to - from).max(1) as f64 * self.period;
             let accelerations = self.of_coordinates(|d| {
                 let speeds = &going[d].columns[1];

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use toolpath::{FeedProfile, Follower, Foot};
+use toolpath::{FeedProfile, Follower, Foot, Path};
 
 /// Positions of a machine along a path, at even times from 0 on.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,9 +51,14 @@ impl<const D: usize> Traced<D> {
     }
 
     /// The feet of all positions on the path, one after the other: each has the contour error.
+    ///
+    /// A [`Follower`] that came to a corner sharper than a right angle would go back along the line it came from, as the tool goes on
+    /// along the next one: distances to both fall. From the instant at which the reference stands in the corner, a second one looks
+    /// at the path behind it, and takes over once it is as near.
     pub fn contour_error(&self) -> impl Iterator<Item = Foot<D>> {
-        let mut follower = Follower::new(self.profile.path(), 0.0);
-        self.positions.iter().map(move |p| follower.follow(*p))
+        let mut feet = Feet::of(&self.profile);
+        let positions = self.positions.iter().enumerate();
+        positions.map(move |(k, p)| feet.next(self.time(k), p))
     }
 
     /// Those of the positions while the reference is between two arc lengths (m): of the counted turn of a circle, for
@@ -83,5 +88,49 @@ impl<const D: usize> Traced<D> {
         };
         let (first, last) = (passed(from), passed(to));
         first..last.max(first)
+    }
+}
+
+/// Follows a position from foot to foot, also around sharp corners.
+struct Feet<'a, const D: usize> {
+    follower: Follower<'a, D>,
+    /// Time at which the reference stands in each corner, and its arc length, those to come last first.
+    corners: Vec<(f64, f64)>,
+    /// At each corner that was passed and is not taken over yet: a follower that stands there, and its arc length.
+    beyond: Option<(Follower<'a, D>, f64)>,
+    path: &'a Path<D>,
+}
+
+impl<'a, const D: usize> Feet<'a, D> {
+    fn of(profile: &'a FeedProfile<D>) -> Self {
+        let path = profile.path();
+        let at_corner = |s: f64| path.corners().iter().any(|c| (c - s).abs() < 1e-9);
+        let stops = profile.stops().iter().rev().map(|&t| (t, profile.at(t).s));
+        Self {
+            follower: Follower::new(path, 0.0),
+            corners: stops.filter(|&(_, s)| at_corner(s)).collect(),
+            beyond: None,
+            path,
+        }
+    }
+
+    fn next(&mut self, time: f64, position: &[f64; D]) -> Foot<D> {
+        while let Some(&(_, s)) = self.corners.last().filter(|corner| corner.0 <= time) {
+            self.corners.pop();
+            self.beyond = Some((Follower::new(self.path, s), s));
+        }
+        let foot = self.follower.follow(*position);
+        let Some((standing, corner)) = &self.beyond else {
+            return foot;
+        };
+        // From the corner anew each time: until the tool has passed it, the way back to the line before is the nearer one.
+        let mut ahead = standing.clone();
+        let next = ahead.follow(*position);
+        if next.s >= *corner && next.length() <= foot.length() {
+            self.follower = ahead;
+            self.beyond = None;
+            return next;
+        }
+        foot
     }
 }

@@ -51,6 +51,29 @@ fn equal_axes_stay_on_a_diagonal() {
     assert!(most > 1e-6, "{most}");
 }
 
+/// Around corners of 135° and of 180° the error is that of the line on which the tool is.
+#[test]
+fn sharp_corners_are_passed() {
+    let stage = stage(same);
+    let zigzag = [
+        [0.0, 0.0],
+        [0.0, 0.02],
+        [0.01, 0.01],
+        [0.01, 0.03],
+        [0.01, 0.01],
+    ];
+    let path = Path::polyline(&zigzag).unwrap();
+    let profile = FeedProfile::plan(&path, &FeedLimits::equal(0.05, 1.0, 2.0, 50.0)).unwrap();
+    let driven = [0, 1].map(|_| Driven::new(&stage, Box::new(NoCompensation)));
+    let traced = trace(&profile, driven).unwrap();
+    let feet: Vec<_> = traced.contour_error().collect();
+    let worst = feet.iter().map(|f| f.length()).fold(0.0, f64::max);
+    // 15 µm: what the stage is late by in a corner.
+    assert!(worst < 5e-5, "{worst}");
+    let end = feet[feet.len() - 1].s;
+    assert!((end - path.length()).abs() < 1e-4, "{end}");
+}
+
 /// With one period twice the other, positions are those of the same axis alone.
 #[test]
 fn a_slower_axis_sets_the_instants() {
