@@ -12,7 +12,7 @@
 //! ```
 //!
 //! and a cross-talk k by the second: at one feed the two cannot be told apart ([`crate::fit_circles`]). The form of
-//! the cross-talk, Δs_i = Σ k_ij a_j, is that of HEIDENHAIN's CTC (Compensation of Position Errors Due to Inertial Forces); the
+//! the cross-talk, Δs_i = Σ k_ij a_j, is that of HEIDENHAIN's CTC (Cross Talk Compensation); the
 //! equations above are written down from the geometry.
 
 use crate::error::MachineError;

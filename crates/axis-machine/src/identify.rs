@@ -204,8 +204,8 @@ fn refuse(circles: &[MeasuredCircle<'_>], rank: usize, unknowns: usize) -> Circl
     }
 }
 
-/// Eigenvalues and eigenvectors (columns) of a symmetric matrix, by Jacobi's rotations in fixed order (Golub and Van Loan,
-/// Matrix Computations, 8.5, cyclic by row).
+/// Eigenvalues and eigenvectors (columns) of a symmetric matrix, by Jacobi's rotations in fixed order, row by row
+/// (Golub and Van Loan, Matrix Computations).
 fn eigen(mut a: [[f64; MOST]; MOST]) -> ([f64; MOST], [[f64; MOST]; MOST]) {
     let mut v: [[f64; MOST]; MOST] =
         std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));

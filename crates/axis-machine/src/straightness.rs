@@ -6,8 +6,8 @@ use crate::error::MachineError;
 /// beyond them.
 ///
 /// Its first two derivatives are continuous, so that a reference that takes it away has no jump of speed or acceleration.
-/// Tridiagonal system of the second derivatives: de Boor, A Practical Guide to Splines (1978), chapter IV ("free-end" or
-/// natural conditions), written down from continuity of the first derivative.
+/// Natural spline (de Boor, A Practical Guide to Splines, 1978); its tridiagonal system is written down from the continuity of
+/// the first derivative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Straightness {
     /// Position and deviation, m.
