@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use toolpath::{FeedProfile, Follower, Foot, Path};
+use toolpath::{FeedProfile, Follower, Foot, PathPoint, PathSegment};
 
 /// Positions of a machine along a path, at even times from 0 on.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,9 +52,10 @@ impl<const D: usize> Traced<D> {
 
     /// The feet of all positions on the path, one after the other: each has the contour error.
     ///
-    /// A [`Follower`] that came to a corner sharper than a right angle would go back along the line it came from, as the tool goes on
-    /// along the next one: distances to both fall. From the instant at which the reference stands in the corner, a second one looks
-    /// at the path behind it, and takes over once it is as near.
+    /// A [`Follower`] that comes to a corner sharper than a right angle, or to a tip of a smaller radius than the error, would stay on
+    /// the line it came from, as the tool goes on along the next one: there too the distance has a minimum. Therefore the places that the
+    /// reference has passed (corners, and points of a NURBS every 0.25 mm or radius of curvature) are kept until the tool
+    /// has passed them too; a foot from there takes over if it is as near.
     pub fn contour_error(&self) -> impl Iterator<Item = Foot<D>> {
         let mut feet = Feet::of(&self.profile);
         let positions = self.positions.iter().enumerate();
@@ -91,15 +92,21 @@ impl<const D: usize> Traced<D> {
     }
 }
 
-/// Follows a position from foot to foot, also around sharp corners.
+/// Follows a position from foot to foot, also around sharp corners and tips.
 struct Feet<'a, const D: usize> {
+    profile: &'a FeedProfile<D>,
     follower: Follower<'a, D>,
     /// Time at which the reference stands in each corner, and its arc length, those to come last first.
     corners: Vec<(f64, f64)>,
-    /// At each corner that was passed and is not taken over yet: a follower that stands there, and its arc length.
-    beyond: Option<(Follower<'a, D>, f64)>,
-    path: &'a Path<D>,
+    has_curves: bool,
+    /// Where the reference was last kept, m.
+    kept: f64,
+    /// Places that the reference has passed and the tool has not.
+    passed: Vec<(f64, PathPoint<D>)>,
 }
+
+/// Arc lengths between two places of the reference on a curve, m: its radius of curvature, within these.
+const APART: (f64, f64) = (5e-6, 2.5e-4);
 
 impl<'a, const D: usize> Feet<'a, D> {
     fn of(profile: &'a FeedProfile<D>) -> Self {
@@ -107,30 +114,60 @@ impl<'a, const D: usize> Feet<'a, D> {
         let at_corner = |s: f64| path.corners().iter().any(|c| (c - s).abs() < 1e-9);
         let stops = profile.stops().iter().rev().map(|&t| (t, profile.at(t).s));
         Self {
+            profile,
             follower: Follower::new(path, 0.0),
             corners: stops.filter(|&(_, s)| at_corner(s)).collect(),
-            beyond: None,
-            path,
+            has_curves: (path.segments().iter()).any(|s| matches!(s, PathSegment::Nurbs(_))),
+            kept: 0.0,
+            passed: Vec::new(),
         }
     }
 
     fn next(&mut self, time: f64, position: &[f64; D]) -> Foot<D> {
-        while let Some(&(_, s)) = self.corners.last().filter(|corner| corner.0 <= time) {
-            self.corners.pop();
-            self.beyond = Some((Follower::new(self.path, s), s));
-        }
+        self.keep(time);
         let foot = self.follower.follow(*position);
-        let Some((standing, corner)) = &self.beyond else {
-            return foot;
+        // The last that the tool has passed is the nearest behind it.
+        let ahead = |at: &PathPoint<D>| -> f64 {
+            (0..D)
+                .map(|i| (position[i] - at.position[i]) * at.tangent[i])
+                .sum()
         };
-        // From the corner anew each time: until the tool has passed it, the way back to the line before is the nearer one.
-        let mut ahead = standing.clone();
-        let next = ahead.follow(*position);
-        if next.s >= *corner && next.length() <= foot.length() {
-            self.follower = ahead;
-            self.beyond = None;
-            return next;
+        for i in (0..self.passed.len()).rev() {
+            let (s, at) = self.passed[i];
+            if ahead(&at) < 0.0 {
+                continue;
+            }
+            let mut from_there = self.follower.from(s);
+            let next = from_there.follow(*position);
+            // Two descents to one foot differ by rounding.
+            if next.s >= s && next.length() <= foot.length() + 1e-12 {
+                self.follower = from_there;
+                self.passed.drain(..=i);
+                return next;
+            }
         }
         foot
+    }
+
+    /// Keeps where the reference is, if it has gone far enough.
+    fn keep(&mut self, time: f64) {
+        let path = self.profile.path();
+        while let Some(&(_, s)) = self.corners.last().filter(|corner| corner.0 <= time) {
+            self.corners.pop();
+            self.passed.push((s, path.at(s)));
+            self.kept = s;
+        }
+        if !self.has_curves {
+            return;
+        }
+        let s = self.profile.at(time).s;
+        if s - self.kept < APART.0 {
+            return;
+        }
+        let at = path.at(s);
+        if s - self.kept >= (1.0 / at.curvature_size()).clamp(APART.0, APART.1) {
+            self.passed.push((s, at));
+            self.kept = s;
+        }
     }
 }

@@ -53,8 +53,9 @@ fn brute(path: &toolpath::Path<2>, p: [f64; 2], s: f64) -> f64 {
             if d < best.1 { (s, d) } else { best }
         })
     };
-    let (near, _) = search(s, 25e-9, 800);
-    search(near, 0.25e-9, 100).1
+    // Beside `s`, so that no point of the search is the foot itself.
+    let (near, _) = search(s + 9.3e-9, 25e-9, 800);
+    search(near + 0.09e-9, 0.25e-9, 100).1
 }
 
 /// The butterfly at 3 m/min: time, and how far any limit is passed.
@@ -79,7 +80,10 @@ pub fn profile(_: &Bench) -> Result<Measured> {
         what: "feed profile of the butterfly, 3 m/min, 1 m/s², 20 m/s³, at 2 million instants"
             .to_owned(),
         goal: "over no limit by more than 1e-9 of it; ≤ 9 s".to_owned(),
-        found: format!("{over:.1e} of a limit; {duration:.2} s"),
+        found: match over > 0.0 {
+            true => format!("over by {over:.1e}; {duration:.2} s"),
+            false => format!("never over; {duration:.2} s"),
+        },
         met: Some(over <= 1e-9 && duration <= 9.0),
         note: String::new(),
     })
