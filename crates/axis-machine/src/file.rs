@@ -11,7 +11,7 @@ use crate::base::BaseMode;
 use crate::coupling::{AxisCoupling, Coupling};
 use crate::error::MachineError;
 use crate::gantry::GantryBeam;
-use crate::machine::Machine;
+use crate::machine::CoupledMachine;
 use crate::straightness::Straightness;
 
 /// Why a machine file was refused.
@@ -300,12 +300,12 @@ impl MachineFile {
     ///
     /// # Errors
     /// [`MachineFileError::Machine`] for axes that do not go together, and values out of their ranges.
-    pub fn machine<const D: usize>(&self) -> Result<Option<Machine<D>>, MachineFileError> {
+    pub fn machine<const D: usize>(&self) -> Result<Option<CoupledMachine<D>>, MachineFileError> {
         if self.axes.len() < D {
             return Ok(None);
         }
         let coupling = self.coupling()?;
-        let made = Machine::new(std::array::from_fn(|axis| &self.axes[axis]));
+        let made = CoupledMachine::new(std::array::from_fn(|axis| &self.axes[axis]));
         let mut machine = made.map_err(|e| self.refused(e))?.with_coupling(coupling);
         for base in &self.text.base {
             let mode = BaseMode {

@@ -10,9 +10,9 @@ use trajectories::Motion;
 
 use crate::coupling::Coupling;
 use crate::error::MachineError;
-use crate::machine::Machine;
+use crate::machine::CoupledMachine;
 use crate::motion::AxisMotion;
-use crate::run::{Lap, Law, MachineState};
+use crate::run::{DriveLaw, Lap, MachineState};
 
 /// What the sensors of a drive make of what they see.
 pub type DriveSensors<'a> = Box<dyn FnMut(&mut Measured) + 'a>;
@@ -22,7 +22,7 @@ pub type DriveSensors<'a> = Box<dyn FnMut(&mut Measured) + 'a>;
 /// A lap that begins where the one before has ended goes on from the state that the machine was left in; before any other
 /// the machine is settled anew. Paths of later laps lie where the first one's coordinates put them.
 pub struct Laps<'a, const D: usize> {
-    machine: &'a Machine<D>,
+    machine: &'a CoupledMachine<D>,
     strategies: Vec<Box<dyn Strategy + 'a>>,
     sensors: Vec<DriveSensors<'a>>,
     correction: Option<Arc<Coupling>>,
@@ -56,7 +56,7 @@ impl<'a, const D: usize> Laps<'a, D> {
     /// # Errors
     /// [`MachineError::Laws`] if there is not one for each.
     pub fn new(
-        machine: &'a Machine<D>,
+        machine: &'a CoupledMachine<D>,
         strategies: Vec<Box<dyn Strategy + 'a>>,
     ) -> Result<Self, MachineError> {
         let drives = machine.drives().len();
@@ -132,8 +132,8 @@ impl<'a, const D: usize> Laps<'a, D> {
             })?);
         }
         let both = laws.iter_mut().zip(&mut self.sensors);
-        let mut driven: Vec<Law<'_>> = both
-            .map(|(law, sense)| Law {
+        let mut driven: Vec<DriveLaw<'_>> = both
+            .map(|(law, sense)| DriveLaw {
                 compensator: &mut **law,
                 sense: &mut **sense,
             })

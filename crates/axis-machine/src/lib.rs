@@ -28,7 +28,7 @@
 //! ```
 //!
 //! # What lies between axes
-//! A [`Machine`] runs its drives in lockstep. [`Coupling`]: squareness, straightness and cross-talk, by which one axis moves the
+//! A [`CoupledMachine`] runs its drives in lockstep. [`Coupling`]: squareness, straightness and cross-talk, by which one axis moves the
 //! tool along another; [`BaseMode`]: a base on a spring under an axis; [`GantryBeam`]: two drives that carry one beam. Its
 //! references may take the coupling away ([`AxisMotion::correcting`]); [`fit_circles`] finds squareness and cross-talk from
 //! circles at two feeds. [`Laps`] keeps a strategy of compensation for each drive from lap to lap, and [`MachineFile`] is the
@@ -62,9 +62,9 @@ pub use file::{
 pub use gantry::GantryBeam;
 pub use identify::{CircleEstimate, CirclesFound, MeasuredCircle, fit_circles};
 pub use laps::{DriveSensors, Laps, LearnedLap};
-pub use machine::{Machine, MachineDrive};
+pub use machine::{CoupledMachine, MachineDrive};
 pub use motion::AxisMotion;
-pub use run::{Lap, Law, MachineState};
+pub use run::{DriveLaw, Lap, MachineState};
 pub use straightness::Straightness;
 pub use traced::Traced;
 

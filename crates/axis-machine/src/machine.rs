@@ -16,7 +16,7 @@ use crate::motion::AxisMotion;
 /// that moves, a beam on two drives.
 ///
 /// ```
-/// use axis_machine::{AxisCoupling, Coupling, Machine};
+/// use axis_machine::{AxisCoupling, Coupling, CoupledMachine};
 /// use axis_sim::Axis;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -30,13 +30,13 @@ use crate::motion::AxisMotion;
 ///     crosstalk: 20e-6,
 ///     ..AxisCoupling::default()
 /// }])?;
-/// let machine = Machine::new([&stage, &stage])?.with_coupling(coupling);
+/// let machine = CoupledMachine::new([&stage, &stage])?.with_coupling(coupling);
 /// assert_eq!(machine.drives().len(), 2);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Clone, Debug)]
-pub struct Machine<const D: usize> {
+pub struct CoupledMachine<const D: usize> {
     drives: Vec<MachineDrive>,
     pub(crate) coupling: Coupling,
     pub(crate) bases: [Option<BaseMode>; D],
@@ -58,7 +58,7 @@ pub struct MachineDrive {
     pub(crate) parts: u64,
 }
 
-impl<const D: usize> Machine<D> {
+impl<const D: usize> CoupledMachine<D> {
     /// One drive for each coordinate, and nothing between them.
     ///
     /// # Errors
@@ -100,7 +100,7 @@ impl<const D: usize> Machine<D> {
     /// With a second drive at coordinate `axis` (from 0; one that is not there is passed over), which carries one beam with the first.
     ///
     /// # Errors
-    /// As [`Machine::new`], and [`MachineError::Invalid`] for a value of the beam that is out of its range.
+    /// As [`CoupledMachine::new`], and [`MachineError::Invalid`] for a value of the beam that is out of its range.
     pub fn with_gantry(
         mut self,
         axis: usize,

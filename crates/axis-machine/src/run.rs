@@ -8,12 +8,12 @@ use trajectories::{Motion, Setpoint};
 
 use crate::base::BaseState;
 use crate::error::{MOST_SAMPLES, MachineError};
-use crate::machine::Machine;
+use crate::machine::CoupledMachine;
 use crate::motion::{AxisMotion, HALF_WINDOW};
 use crate::traced::Traced;
 
 /// What corrects a drive, and what its sensors make of what they see.
-pub struct Law<'a> {
+pub struct DriveLaw<'a> {
     /// The corrections.
     pub compensator: &'a mut dyn Compensator,
     /// Makes of what the axis' sensors read what the drive gets to read, as [`axis_sim::ClosedLoop::run_sensed`] takes it.
@@ -51,7 +51,7 @@ struct Going<'a, const D: usize> {
     columns: [Vec<f64>; 2],
 }
 
-impl<const D: usize> Machine<D> {
+impl<const D: usize> CoupledMachine<D> {
     /// The machine at standstill, settled where each motion begins.
     ///
     /// # Errors
@@ -72,7 +72,7 @@ impl<const D: usize> Machine<D> {
         })
     }
 
-    /// Runs all drives along their motions ([`Machine::motions`]) from `state`, which is left as the machine is at the end.
+    /// Runs all drives along their motions ([`CoupledMachine::motions`]) from `state`, which is left as the machine is at the end.
     /// Positions of the tool are taken where all drives have an instant in common: at the control periods of the slowest, if
     /// those of the others are whole parts of it.
     ///
@@ -85,7 +85,7 @@ impl<const D: usize> Machine<D> {
     pub fn run(
         &self,
         motions: &[Arc<AxisMotion<D>>],
-        laws: &mut [Law<'_>],
+        laws: &mut [DriveLaw<'_>],
         state: &mut MachineState,
     ) -> Result<Lap<D>, MachineError> {
         self.one_each(motions.len())?;
@@ -213,7 +213,7 @@ impl<const D: usize> Machine<D> {
         &self,
         d: usize,
         going: &mut Going<'_, D>,
-        law: &mut Law<'_>,
+        law: &mut DriveLaw<'_>,
         state: &mut LoopState,
     ) -> Result<(), MachineError> {
         let drive = &self.drives()[d];

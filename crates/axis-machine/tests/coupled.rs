@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axis_machine::{
-    AxisCoupling, AxisMotion, Coupling, Lap, Laps, Machine, MachineError, Straightness,
+    AxisCoupling, AxisMotion, CoupledMachine, Coupling, Lap, Laps, MachineError, Straightness,
 };
 use axis_pipeline::strategies::{NONE, Predictors};
 use axis_sim::Axis;
@@ -41,7 +41,7 @@ pub fn x_by_y(squareness: f64, crosstalk: f64) -> Coupling {
 
 /// A lap without compensation.
 pub fn bare(
-    machine: &Machine<2>,
+    machine: &CoupledMachine<2>,
     profile: &Arc<FeedProfile<2>>,
     correction: Option<Coupling>,
 ) -> Lap<2> {
@@ -65,7 +65,7 @@ pub fn radial(lap: &Lap<2>, counted: (f64, f64), radius: f64) -> Vec<(f64, f64)>
 #[test]
 fn without_anything_between_them_axes_run_as_alone() {
     let stage = stage();
-    let machine = Machine::new([&stage, &stage]).unwrap();
+    let machine = CoupledMachine::new([&stage, &stage]).unwrap();
     let (profile, _) = circle(0.01, 0.05);
     let lap = bare(&machine, &profile, None);
     let loops = axis_sim::ClosedLoop::new(&stage).unwrap();
@@ -81,7 +81,7 @@ fn without_anything_between_them_axes_run_as_alone() {
 #[test]
 fn squareness_and_crosstalk_deform_a_circle_as_the_closed_form_says() {
     let stage = stage();
-    let bare_machine = Machine::new([&stage, &stage]).unwrap();
+    let bare_machine = CoupledMachine::new([&stage, &stage]).unwrap();
     let (radius, feed) = (0.02, 0.1);
     let (profile, counted) = circle(radius, feed);
     let reference = radial(&bare(&bare_machine, &profile, None), counted, radius);

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use axis_machine::{BaseMode, GantryBeam, Laps, Machine};
+use axis_machine::{BaseMode, CoupledMachine, GantryBeam, Laps};
 use axis_pipeline::strategies::{Predictors, STRATEGIES, named};
 use axis_sim::Axis;
 use toolpath::{FeedLimits, FeedProfile, Path};
@@ -20,11 +20,11 @@ fn a_base_on_a_spring_widens_a_circle() {
         damping: 0.5,
         ..BaseMode::default()
     };
-    let still = Machine::new([&stage, &stage]).unwrap();
+    let still = CoupledMachine::new([&stage, &stage]).unwrap();
     let machine = [0, 1]
         .into_iter()
         .fold(still.clone(), |m, axis| m.with_base(axis, base).unwrap());
-    let mean = |machine: &Machine<2>| {
+    let mean = |machine: &CoupledMachine<2>| {
         let all = radial(&bare(machine, &profile, None), counted, radius);
         all.iter().map(|p| p.1).sum::<f64>() / all.len() as f64
     };
@@ -124,7 +124,7 @@ fn a_base_rings_down_as_the_closed_form_says() {
         damping: 0.03,
         ..BaseMode::default()
     };
-    let machine = Machine::new([&smooth, &stage])
+    let machine = CoupledMachine::new([&smooth, &stage])
         .unwrap()
         .with_base(0, base)
         .unwrap();
@@ -175,7 +175,7 @@ fn halves(second: impl Fn(String) -> String) -> [Axis; 2] {
 fn a_beam_holds_two_drives_together() {
     let [one, other] = halves(|text| text);
     let (profile, _) = circle(0.01, 0.05);
-    let plain = Machine::new([&one, &one]).unwrap();
+    let plain = CoupledMachine::new([&one, &one]).unwrap();
     let gantry = plain
         .clone()
         .with_gantry(1, &other, GantryBeam::default())
@@ -198,7 +198,7 @@ fn a_beam_holds_two_drives_together() {
             damping: 0.0,
             tool: 0.5,
         };
-        let machine = Machine::new([&one, &one])
+        let machine = CoupledMachine::new([&one, &one])
             .unwrap()
             .with_gantry(1, &other, beam)
             .unwrap();
@@ -220,7 +220,7 @@ fn a_second_lap_knows_what_the_first_has_shown() {
         text.replace("coulomb_n = 4", "coulomb_n = 2")
             .replace("stiction_n = 5", "stiction_n = 2.5")
     });
-    let machine = Machine::new([&machine_axis, &machine_axis]).unwrap();
+    let machine = CoupledMachine::new([&machine_axis, &machine_axis]).unwrap();
     let (profile, counted) = circle(0.02, 0.05);
     let kind = named(STRATEGIES, "adaptive").unwrap();
     let strategies = [0, 1].map(|_| kind.strategy(&Predictors::of(&model)).unwrap());

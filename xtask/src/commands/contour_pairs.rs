@@ -1,6 +1,6 @@
 //! Pairs of axes of different kinds on a circle.
 
-use axis_machine::Machine;
+use axis_machine::CoupledMachine;
 use axis_pipeline::strategies::NONE;
 use axis_sim::Axis;
 use miette::Result;
@@ -48,7 +48,7 @@ fn one(bench: &Bench, [x, y]: [&str; 2]) -> (bool, String) {
         (Ok(x), Ok(y)) => [x, y],
         (Err(error), _) | (_, Err(error)) => return (false, format!("{name}: {error}")),
     };
-    let machine = match Machine::new([&axes[0], &axes[1]]) {
+    let machine = match CoupledMachine::new([&axes[0], &axes[1]]) {
         Ok(machine) => machine,
         Err(error) => return (false, format!("{name}: refused, {error}")),
     };

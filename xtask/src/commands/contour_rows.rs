@@ -4,7 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axis_machine::{
-    AxisCoupling, BaseMode, Coupling, DriveSensors, Laps, Machine, MeasuredCircle, fit_circles,
+    AxisCoupling, BaseMode, CoupledMachine, Coupling, DriveSensors, Laps, MeasuredCircle,
+    fit_circles,
 };
 use axis_pipeline::robustness::wrong_model;
 use axis_pipeline::strategies::{NONE, Predictors, STRATEGIES, StrategyKind, named};
@@ -97,7 +98,7 @@ pub fn strategy(name: &str) -> Result<&'static StrategyKind> {
 
 /// Laps with sensors as noisy as good ones.
 pub fn laps<const D: usize>(
-    machine: &Machine<D>,
+    machine: &CoupledMachine<D>,
     models: &[Option<DriveModel>],
     kind: &StrategyKind,
     task: &Task<D>,
@@ -109,7 +110,7 @@ pub fn laps<const D: usize>(
 
 /// The same, of several paths one after the other.
 fn series<const D: usize>(
-    machine: &Machine<D>,
+    machine: &CoupledMachine<D>,
     models: &[Option<DriveModel>],
     kind: &StrategyKind,
     tasks: &[&Task<D>],
@@ -186,8 +187,8 @@ impl Bench {
         )
     }
 
-    fn machine(&self) -> Result<Machine<2>> {
-        Machine::new([&self.x, &self.y]).into_diagnostic()
+    fn machine(&self) -> Result<CoupledMachine<2>> {
+        CoupledMachine::new([&self.x, &self.y]).into_diagnostic()
     }
 
     /// Models of X and Y that are off: the corners, then draws.
@@ -260,7 +261,7 @@ impl Bench {
     }
 
     fn tilted(&self) -> Result<Measured> {
-        let machine = Machine::new([&self.x, &self.y, &self.y]).into_diagnostic()?;
+        let machine = CoupledMachine::new([&self.x, &self.y, &self.y]).into_diagnostic()?;
         let circle = CircleTest {
             start: std::f64::consts::FRAC_PI_4,
             ..CircleTest::new(0.05)
@@ -301,21 +302,29 @@ impl Bench {
         let all: Vec<Left<2>> = (models[..3].par_iter())
             .map(|models| laps(&machine, models, kind, &task, (3, None)))
             .collect::<Result<_>>()?;
+        let circle = Task::circle(0.05, 3.0, Direction::Counterclockwise)?;
+        let after: Vec<Left<2>> = (models[..3].par_iter())
+            .map(|models| series(&machine, models, kind, &[&circle, &task], None))
+            .collect::<Result<_>>()?;
+        let after = after.iter().map(|laps| laps[1].0).fold(0.0, f64::max);
+        let fixed = laps(&machine, &[], strategy("feedback")?, &task, (2, None))?;
         let right = laps(&machine, &[], kind, &task, (2, None))?;
         let worst = |lap: usize| all.iter().map(|laps| laps[lap].0).fold(0.0, f64::max);
         Ok(Measured {
             what: "butterfly, 3 m/min, adaptive feedback, three wrong models".to_owned(),
             goal: "second lap ≤ 3".to_owned(),
             found: format!(
-                "none {:.0}; model right: {}; worst of three {:.2}, then {:.2}, then {:.2}",
+                "none {:.0}; model right: {} (without adaptation {}); worst of three {:.2}, then {:.2}, then {:.2}; after one lap of the circle of 50 mm {after:.2}",
                 none[0].0,
                 errors(&right),
+                errors(&fixed),
                 worst(0),
                 worst(1),
                 worst(2)
             ),
             met: Some(worst(1) <= 3.0),
-            note: String::new(),
+            note: "what feedback leaves of a right model is 2.3, at tips of 0.02 to 0.06 mm radius; what adaptation finds on this path is off by so much that 0.9 is added, without noise too"
+                .to_owned(),
         })
     }
 
@@ -340,7 +349,7 @@ impl Bench {
             axis
         };
         let [x, y] = [hidden(&self.x), hidden(&self.y)];
-        let machine = Machine::new([&x, &y]).into_diagnostic()?;
+        let machine = CoupledMachine::new([&x, &y]).into_diagnostic()?;
         let task = Task::circle(0.05, 3.0, Direction::Counterclockwise)?;
         let none = laps(&machine, &[], &NONE, &task, (1, None))?;
         let mut words = Vec::new();

@@ -4,7 +4,8 @@ use std::fmt;
 use std::path::{Path as FilePath, PathBuf};
 
 use axis_machine::{
-    CirclesFound, Coupling, DriveSensors, Laps, Machine, MachineFile, MeasuredCircle, fit_circles,
+    CirclesFound, CoupledMachine, Coupling, DriveSensors, Laps, MachineFile, MeasuredCircle,
+    fit_circles,
 };
 use axis_pipeline::strategies::{Predictors, StrategyKind};
 use axis_sim::Measured;
@@ -312,7 +313,7 @@ fn laps<const D: usize>(
     correction: Option<&Coupling>,
     plane: impl Fn([f64; D]) -> [f64; 2],
 ) -> Result<Contoured> {
-    let machine: Machine<D> = run.file.machine().into_diagnostic()?.ok_or_else(|| {
+    let machine: CoupledMachine<D> = run.file.machine().into_diagnostic()?.ok_or_else(|| {
         miette!(
             "the path has {D} coordinates, and {} has {} axes; valid: a machine file with x, y and z, or a path in the plane",
             run.file.path.display(),
