@@ -13,7 +13,7 @@ use feed_axis::cli::{Global, finish, parse, start};
 use feed_axis::commands::export::drive;
 
 use commands::{
-    bench, crates, heat, independent, layers, names, peers_cases, publish, torture, tuning,
+    bench, contour, crates, heat, independent, layers, names, peers_cases, publish, torture, tuning,
 };
 use jobs::Job;
 
@@ -48,6 +48,8 @@ enum Command {
     Tuning(tuning::Options),
     /// Errors of an hour of heat against brute force, of fitted models, and of both corrections together
     HeatProof(heat::Options),
+    /// Contour errors of machines beside what was set as a goal: a Markdown table; rows that are there are kept
+    ContourTable(contour::Options),
     /// Try damaged inputs and disturbed runs, and check how they end
     Torture(torture::Options),
     /// Check that every crate depends strictly downward
@@ -71,6 +73,7 @@ fn main() -> ExitCode {
         Command::Bench(options) => bench::command(options),
         Command::Tuning(options) => tuning::command(options),
         Command::HeatProof(options) => heat::command(options),
+        Command::ContourTable(options) => contour::command(options),
         Command::Torture(options) => torture::command(options),
         Command::Layers => layers::command(),
         Command::Names => names::command(),

@@ -1,53 +1,15 @@
-//! Axes with what drives and corrects them, and their run along a path.
+//! Axes with what drives and corrects them, and their run along a path one after the other: nothing lies between them.
 
 use std::sync::Arc;
 
-use axis_sim::{ClosedLoop, Measured, RunStopped};
+use axis_sim::{ClosedLoop, Measured};
 use compensator::Compensator;
-use thiserror::Error;
 use toolpath::FeedProfile;
 
+use crate::error::{MOST_SAMPLES, MachineError};
+use crate::machine::whole_parts;
 use crate::motion::AxisMotion;
 use crate::traced::Traced;
-
-/// Why a machine did not run along a path.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum MachineError {
-    /// An axis stopped on its way.
-    #[error("axis {axis} (from 1): {why}")]
-    Stopped {
-        /// Which axis, from 1.
-        axis: usize,
-        /// When and why.
-        why: RunStopped,
-    },
-    /// Control periods that share no instants.
-    #[error(
-        "axis {axis} (from 1) has a control period of {period} s, and the slowest of all has {longest} s; valid: whole parts of the slowest"
-    )]
-    Periods {
-        /// Which axis, from 1.
-        axis: usize,
-        /// Its period, s.
-        period: f64,
-        /// The longest of all, s.
-        longest: f64,
-    },
-    /// So long that its positions are not held.
-    #[error(
-        "the motion lasts {duration} s, {samples:.0} control periods; valid: at most {MOST_SAMPLES}"
-    )]
-    TooLong {
-        /// Of the motion, s.
-        duration: f64,
-        /// Control periods of the slowest axis.
-        samples: f64,
-    },
-}
-
-/// Most positions that are held of a run: 160 MB for two axes.
-const MOST_SAMPLES: f64 = 5e6;
 
 type Sense<'a> = Box<dyn FnMut(&mut Measured) + 'a>;
 
@@ -91,14 +53,9 @@ pub fn trace<const D: usize>(
         .each_ref()
         .map(|driven| driven.closed_loop.axis().period);
     let longest = periods.iter().copied().fold(0.0, f64::max);
-    let parts = periods.map(|period| longest / period);
-    let is_whole = |&(_, part): &(usize, &f64)| (part - part.round()).abs() > 1e-9 * part;
-    if let Some((axis, _)) = parts.iter().enumerate().find(is_whole) {
-        return Err(MachineError::Periods {
-            axis: axis + 1,
-            period: periods[axis],
-            longest,
-        });
+    let mut parts = [1; D];
+    for (axis, period) in periods.into_iter().enumerate() {
+        parts[axis] = whole_parts(axis, period, longest)?;
     }
     let (duration, samples) = (profile.duration(), profile.duration() / longest);
     if samples > MOST_SAMPLES {
@@ -109,7 +66,7 @@ pub fn trace<const D: usize>(
     for (axis, mut driven) in axes.into_iter().enumerate() {
         let start = driven.closed_loop.axis().stroke.start;
         let motion = AxisMotion::new(shared.clone(), axis, start);
-        let (every, mut cycle) = (parts[axis].round() as usize, 0);
+        let (every, mut cycle) = (parts[axis], 0);
         let column = &mut columns[axis];
         let observe = |seen: &axis_sim::Cycle| {
             if cycle % every == 0 {
@@ -129,5 +86,7 @@ pub fn trace<const D: usize>(
         };
         outcome.completed().map_err(stopped)?;
     }
-    Ok(Traced::new(shared, longest, &columns))
+    let count = columns.iter().map(Vec::len).min().unwrap_or(0);
+    let at = |k: usize| std::array::from_fn(|axis| columns[axis][k]);
+    Ok(Traced::new(shared, longest, (0..count).map(at).collect()))
 }

@@ -27,16 +27,45 @@
 //! # }
 //! ```
 //!
+//! # What lies between axes
+//! A [`CoupledMachine`] runs its drives in lockstep. [`Coupling`]: squareness, straightness and cross-talk, by which one axis moves the
+//! tool along another; [`BaseMode`]: a base on a spring under an axis; [`GantryBeam`]: two drives that carry one beam. Its
+//! references may take the coupling away ([`AxisMotion::correcting`]); [`fit_circles`] finds squareness and cross-talk from
+//! circles at two feeds. [`Laps`] keeps a strategy of compensation for each drive from lap to lap, and [`MachineFile`] is the
+//! file that names axis files and all of that. Equations: docs/theory/axis-machine.md.
+//!
 //! # What it deliberately knows nothing of
-//! Files, how corrections are found, pages. Axes do not act on one another yet: no squareness, no cross-talk, no
-//! base that moves.
+//! How a correction is found ([`axis_pipeline::strategies`]), pages, the command line; cutting forces and heat.
 
+mod base;
+mod coupling;
 mod driven;
+mod error;
+mod file;
+mod gantry;
+mod identify;
+mod laps;
+mod machine;
 mod motion;
+mod run;
+mod straightness;
 mod traced;
 
-pub use driven::{Driven, MachineError, trace};
+pub use base::BaseMode;
+pub use coupling::{AxisCoupling, Coupling};
+pub use driven::{Driven, trace};
+pub use error::{CircleFitError, MachineError};
+pub use file::{
+    AxisName, BaseText, CouplingText, GantryText, MachineAxes, MachineFile, MachineFileError,
+    MachineText,
+};
+pub use gantry::GantryBeam;
+pub use identify::{CircleEstimate, CirclesFound, MeasuredCircle, fit_circles};
+pub use laps::{DriveSensors, Laps, LearnedLap};
+pub use machine::{CoupledMachine, MachineDrive};
 pub use motion::AxisMotion;
+pub use run::{DriveLaw, Lap, MachineState};
+pub use straightness::Straightness;
 pub use traced::Traced;
 
 /// The README's example, run as a test.

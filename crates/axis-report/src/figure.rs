@@ -25,6 +25,8 @@ pub struct Figure {
     pub x_scale: Scale,
     /// Scale of the vertical axis.
     pub y_scale: Scale,
+    /// Whether both axes have one scale and one length, as in a picture of a plane. For a grid of figures: over the width of a page it would be higher than a screen.
+    pub square: bool,
     /// Names of the places 0, 1, 2, … of the vertical axis, from the top down; empty if
     /// it is one of numbers. A narrow drawing shows each up to its first space.
     pub rows: Vec<String>,
@@ -137,6 +139,7 @@ impl Figure {
             linked: String::new(),
             x_scale: Scale::Linear,
             y_scale: Scale::Linear,
+            square: false,
             rows: Vec::new(),
             series: Vec::new(),
             caption: String::new(),
@@ -185,6 +188,12 @@ impl Figure {
     /// that its vertical coordinate is nearest to, a little above or below its middle.
     pub fn rows<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
         self.rows = names.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// Gives both axes one scale and one length: circles are round.
+    pub fn square(mut self) -> Self {
+        self.square = true;
         self
     }
 

@@ -67,7 +67,14 @@ pub(crate) fn draw(figure: &Figure, mut canvas: Canvas, id: &str) -> String {
     if !figure.rows.is_empty() {
         canvas.height = AROUND + ROW * figure.rows.len() as f64;
     }
+    if figure.square {
+        canvas = NARROW;
+    }
     let (x, y) = fit(figure, canvas);
+    if figure.square {
+        let [left, right, above, below] = margins(figure, canvas, &x, &y);
+        canvas.height = canvas.width - left - right + above + below;
+    }
     let plots = figure
         .series
         .iter()
@@ -86,6 +93,10 @@ pub(crate) fn fit(figure: &Figure, canvas: Canvas) -> (Fitted, Fitted) {
             .iter()
             .flat_map(move |s| pick(s).iter().copied())
     };
+    if figure.square {
+        let [x, y] = [all(|s| &s.x).collect(), all(|s| &s.y).collect()];
+        return square(figure, canvas, [x, y]);
+    }
     // Dots on the frame would be cut in half, so only lines end at the frame.
     let tight = figure.series.iter().all(|s| s.style != Style::Dots);
     let y = match &figure.rows[..] {
@@ -98,6 +109,24 @@ pub(crate) fn fit(figure: &Figure, canvas: Canvas) -> (Fitted, Fitted) {
     let (unit, ticks) = (Unit::parse(&figure.x_unit), canvas.width / 90.0);
     let x = Fitted::new(figure.x_scale, unit, all(|s| &s.x), ticks, tight);
     (x, y)
+}
+
+/// Both axes of a picture of a plane: of one length, that of the longer, and a little more.
+fn square(figure: &Figure, canvas: Canvas, values: [Vec<f64>; 2]) -> (Fitted, Fitted) {
+    let ends = values.map(|all| {
+        let ends = (f64::MAX, f64::MIN);
+        all.iter().fold(ends, |(a, b), v| (a.min(*v), b.max(*v)))
+    });
+    let half = 0.53 * ends.iter().map(|(a, b)| b - a).fold(0.0, f64::max);
+    let [x, y] = ends.map(|(a, b)| 0.5 * (a + b));
+    let fitted = |unit: &str, scale, middle: f64| {
+        let values = [middle - half, middle + half].into_iter();
+        Fitted::new(scale, Unit::parse(unit), values, canvas.width / 90.0, true)
+    };
+    (
+        fitted(&figure.x_unit, figure.x_scale, x),
+        fitted(&figure.y_unit, figure.y_scale, y),
+    )
 }
 
 /// The name of a row as far as there is room for it.
@@ -142,23 +171,35 @@ fn layout(figure: &Figure, canvas: Canvas, x: &Fitted, y: &Fitted) -> Layout {
 /// that they and the tick labels need. kuva would measure its own labels of a
 /// logarithmic axis, not these.
 fn with_labels(layout: Layout, figure: &Figure, canvas: Canvas, x: &Fitted, y: &Fitted) -> Layout {
-    let font = f64::from(canvas.font);
-    let (character, line) = (0.56 * font, 1.2 * font);
-    let x_label = format!("{}{}", figure.x_label, x.label_suffix());
-    let y_label = format!("{}{}", figure.y_label, y.label_suffix());
-    let x_wrap = ((canvas.width - 90.0) / character) as usize;
-    let y_wrap = ((canvas.height - 60.0) / character) as usize;
-    let lines = |label: &str, wrap| wrap_text(label, wrap).len() as f64;
-    let left = line * lines(&y_label, y_wrap) + 0.58 * font * y.widest_label() as f64 + 20.0;
-    let right = (0.3 * font * x.widest_label() as f64).max(12.0);
-    let bottom = line * lines(&x_label, x_wrap) + font + 18.0;
+    let [left, right, above, below] = margins(figure, canvas, x, y);
+    let [x_wrap, y_wrap] = wraps(canvas);
     layout
-        .with_x_label(x_label)
-        .with_y_label(y_label)
+        .with_x_label(format!("{}{}", figure.x_label, x.label_suffix()))
+        .with_y_label(format!("{}{}", figure.y_label, y.label_suffix()))
         .with_x_label_wrap(x_wrap)
         .with_y_label_wrap(y_wrap)
         .with_force_margins(left, right)
-        .with_force_margins_y(10.0, bottom)
+        .with_force_margins_y(above, below)
+}
+
+/// Characters of a label on one line.
+fn wraps(canvas: Canvas) -> [usize; 2] {
+    let character = 0.56 * f64::from(canvas.font);
+    [canvas.width - 90.0, canvas.height - 60.0].map(|room| (room / character) as usize)
+}
+
+/// Margins left, right, above and below.
+fn margins(figure: &Figure, canvas: Canvas, x: &Fitted, y: &Fitted) -> [f64; 4] {
+    let font = f64::from(canvas.font);
+    let line = 1.2 * font;
+    let x_label = format!("{}{}", figure.x_label, x.label_suffix());
+    let y_label = format!("{}{}", figure.y_label, y.label_suffix());
+    let [x_wrap, y_wrap] = wraps(canvas);
+    let lines = |label: &str, wrap| wrap_text(label, wrap).len() as f64;
+    let left = line * lines(&y_label, y_wrap) + 0.58 * font * y.widest_label() as f64 + 20.0;
+    let right = (0.3 * font * x.widest_label() as f64).max(12.0);
+    let below = line * lines(&x_label, x_wrap) + font + 18.0;
+    [left, right, 10.0, below]
 }
 
 /// The points of a series on a canvas.

@@ -63,3 +63,120 @@ fn what_cannot_run_a_circle_is_refused() {
         "{message}"
     );
 }
+
+const XY: &str = "data/machines/liu2025-xy.toml";
+
+#[test]
+fn two_feeds_tell_squareness_from_crosstalk_and_correct_both() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("machine.html").display().to_string();
+    let output = run(&[
+        "contour",
+        "--machine",
+        XY,
+        "--compensation",
+        "plan",
+        "--radius",
+        "25",
+        "--identify",
+        "2,6",
+        "--correct",
+        "--report",
+        &page,
+        "--format",
+        "json",
+    ]);
+    assert!(output.status.success(), "{output:?}");
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    for of in ["squareness_um_per_m", "crosstalk_um_per_m_per_s2"] {
+        let value = found["identified"][of][0].as_f64().unwrap();
+        // Measured: 20.0 and 20.0.
+        assert!((value - 20.0).abs() < 0.5, "{found}");
+    }
+    assert_eq!(found["directions"].as_array().unwrap().len(), 2);
+    let html = std::fs::read_to_string(&page).unwrap();
+    assert!(html.contains("magnified") && html.contains("Found from circles at two feeds"));
+    let message = refuse(&[
+        "contour",
+        "--machine",
+        XY,
+        "--compensation",
+        "plan",
+        "--radius",
+        "25",
+        "--identify",
+        "3",
+    ]);
+    assert!(message.contains("5 of 6 unknowns"), "{message}");
+}
+
+#[test]
+fn a_program_is_run_in_laps() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("part.ngc");
+    std::fs::write(
+        &program,
+        "G21 G90\nG0 X2 Y0\nF1500\nG1 X8\nG3 X10 Y2 I0 J2\nG1 Y8\nG1 X2 Y0\nF3000\nG1 X0\n",
+    )
+    .unwrap();
+    let program = program.display().to_string();
+    let page = folder.path().join("part.html").display().to_string();
+    let text = succeed(&[
+        "contour",
+        "--x",
+        STAGE,
+        "--y",
+        STAGE,
+        "--program",
+        &program,
+        "--laps",
+        "2",
+        "--report",
+        &page,
+    ]);
+    assert!(
+        text.contains("lap 2") && text.contains("corner at 15.142 mm, 135.0°"),
+        "{text}"
+    );
+    assert!(text.contains("radius 2.0000 mm"), "{text}");
+    let html = std::fs::read_to_string(&page).unwrap();
+    assert!(html.contains("Path and tool, last lap") && html.contains("Tightest curves"));
+}
+
+#[test]
+fn what_a_machine_cannot_run_is_said() {
+    let message = refuse(&["contour", "--machine", "data/machines/none.toml"]);
+    assert!(message.contains("none.toml"), "{message}");
+    let message = refuse(&["contour", "--machine", XY, "--tilt", "35"]);
+    assert!(
+        message.contains("3 coordinates") && message.contains("has 2 axes"),
+        "{message}"
+    );
+    let message = refuse(&["contour", "--machine", XY, "--laps", "0"]);
+    assert!(message.contains("--laps"), "{message}");
+    let message = refuse(&[
+        "contour",
+        "--machine",
+        XY,
+        "--butterfly",
+        "--identify",
+        "3,10",
+    ]);
+    assert!(message.contains("--identify takes circles"), "{message}");
+    let message = refuse(&["contour", "--machine", XY, "--x", STAGE, "--y", STAGE]);
+    assert!(message.contains("--machine"), "{message}");
+    let message = refuse(&["contour", "--x", STAGE]);
+    assert!(message.contains("--y"), "{message}");
+    let message = refuse(&[
+        "contour",
+        "--machine",
+        XY,
+        "--program",
+        "data/axes/rack.toml",
+    ]);
+    assert!(message.contains("line 1"), "{message}");
+    let message = refuse(&["contour", "--machine", XY, "--nurbs", "data/axes/rack.toml"]);
+    assert!(message.contains("--nurbs"), "{message}");
+    let message = refuse(&["contour", "--machine", XY, "--feeds", "nan"]);
+    assert!(message.contains("feed"), "{message}");
+}

@@ -1,5 +1,7 @@
 //! Contour error: the distance of a position from the path.
 
+use std::sync::Arc;
+
 use crate::vector::{add_scaled, dot, norm, sub};
 use crate::{Path, PathPoint, PathSegment};
 
@@ -100,7 +102,8 @@ pub(crate) struct Cell {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Follower<'a, const D: usize> {
     path: &'a Path<D>,
-    cells: Vec<Cell>,
+    /// Shared by copies.
+    cells: Arc<[Cell]>,
     s: f64,
 }
 
@@ -113,8 +116,22 @@ impl<'a, const D: usize> Follower<'a, D> {
         let s = if s > 0.0 { s.min(path.length()) } else { 0.0 };
         Self {
             path,
-            cells: cells(path),
+            cells: cells(path).into(),
             s,
+        }
+    }
+
+    /// One of the same path whose first foot is near arc length `s` (m); NaN is taken as 0. Nothing is computed anew.
+    #[must_use]
+    pub fn from(&self, s: f64) -> Self {
+        Self {
+            path: self.path,
+            cells: self.cells.clone(),
+            s: if s > 0.0 {
+                s.min(self.path.length())
+            } else {
+                0.0
+            },
         }
     }
 

@@ -1,6 +1,10 @@
 //! One file a command.
 
 pub mod bench;
+pub mod contour;
+mod contour_geometry;
+mod contour_pairs;
+mod contour_rows;
 pub mod crates;
 pub mod discover_matrix;
 mod discover_matrix2;

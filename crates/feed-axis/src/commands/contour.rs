@@ -1,11 +1,11 @@
-//! `contour`: two axes on a circle, in both directions.
+//! `contour`: two axes on a circle, in both directions; a machine on any path.
 
 use std::f64::consts::FRAC_PI_4;
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use axis_machine::{AxisMotion, Driven, trace};
+use axis_machine::{AxisMotion, Driven, MachineFile, MachineFileError, trace};
 use axis_pipeline::strategies::{Predictors, StrategyKind};
 use axis_sim::mechanism::Freedom;
 use axis_sim::{Axis, ClosedLoop, Measured};
@@ -19,23 +19,39 @@ use toolpath::iso230_4::{
 use toolpath::named::{CirclePath, CircleTest, Direction};
 use toolpath::{FeedLimits, FeedProfile};
 
+use super::contour_laps::{self, LapOptions, Run};
+use super::contour_paths::{PathOptions, Wanted};
 use super::simulate::{NOISE, factor};
 use crate::context::read_axis;
 use crate::exit::wrong_use;
 use crate::out_file;
 use crate::output::print;
-use crate::page::contour as contour_page;
+use crate::page::{contour as contour_page, contour_laps as laps_page};
 use crate::strategy_name::strategy_name;
 
 /// Options of `contour`.
 #[derive(Args)]
 pub struct Options {
     /// Axis file of X
-    #[arg(long, value_name = "FILE")]
-    x: PathBuf,
+    #[arg(
+        long,
+        value_name = "FILE",
+        required_unless_present = "machine",
+        requires = "y"
+    )]
+    x: Option<PathBuf>,
     /// Axis file of Y
-    #[arg(long, value_name = "FILE")]
-    y: PathBuf,
+    #[arg(
+        long,
+        value_name = "FILE",
+        required_unless_present = "machine",
+        requires = "x"
+    )]
+    y: Option<PathBuf>,
+    #[command(flatten)]
+    laps: LapOptions,
+    #[command(flatten)]
+    path: PathOptions,
     /// Radius of the circle, mm
     #[arg(
         long,
@@ -82,7 +98,7 @@ pub struct Options {
 }
 
 /// Window after a reversal in which its glitch is sought, rad.
-const AFTER_REVERSAL: f64 = 0.35;
+pub const AFTER_REVERSAL: f64 = 0.35;
 
 /// Runs the command.
 pub fn command(options: &Options) -> Result<()> {
@@ -93,7 +109,13 @@ pub fn command(options: &Options) -> Result<()> {
             need.name()
         )));
     }
-    let axes = [read(&options.x, "--x")?, read(&options.y, "--y")?];
+    let (Some(x), Some(y)) = (&options.x, &options.y) else {
+        return on_machine(options);
+    };
+    if options.laps.are_given() || options.path.are_given() {
+        return on_machine(options);
+    }
+    let axes = [read(x, "--x")?, read(y, "--y")?];
     let turns = [Direction::Clockwise, Direction::Counterclockwise];
     let turns = turns.map(|direction| turn(options, &axes, direction));
     let [clockwise, counterclockwise] = turns;
@@ -120,6 +142,44 @@ pub fn command(options: &Options) -> Result<()> {
         axis_report::write_atomic(path, &page).into_diagnostic()?;
     }
     print("contour", &value)
+}
+
+/// A machine, or another path than a circle.
+fn on_machine(options: &Options) -> Result<()> {
+    let file = match (&options.laps.machine, &options.x, &options.y) {
+        (Some(file), ..) => MachineFile::read(file),
+        (_, Some(x), Some(y)) => Ok(MachineFile::of_axes(read(x, "--x")?, read(y, "--y")?)),
+        _ => {
+            return Err(wrong_use(
+                "give --machine FILE, or --x FILE and --y FILE".to_owned(),
+            ));
+        }
+    };
+    let file = file.map_err(|error| match error {
+        MachineFileError::Axis(error) => miette::Report::new(*error),
+        other => miette::miette!("{other}"),
+    })?;
+    let run = Run {
+        file: &file,
+        paths: &options.path,
+        laps: &options.laps,
+        wanted: Wanted {
+            radius: 1e-3 * options.radius,
+            feed: options.feed / 60.0,
+            acceleration: options.acceleration,
+            jerk: options.jerk,
+        },
+        compensation: options.compensation,
+        noise: options.noise,
+        seed: options.seed,
+    };
+    let found = contour_laps::run(&run)?.reported(options.report.as_deref());
+    if let Some(path) = &options.report {
+        let radius = options.path.is_circle().then_some(run.wanted.radius);
+        let page = laps_page::page(&found, radius);
+        axis_report::write_atomic(path, &page).into_diagnostic()?;
+    }
+    print("contour", &found)
 }
 
 fn read(file: &Path, option: &str) -> Result<Axis> {
@@ -261,26 +321,37 @@ pub struct Both {
     pub d_um: f64,
 }
 
-impl Turned {
-    fn of(turn: &Turn, found: &DirectionFigures, nominal: &NominalCircle) -> Result<Self> {
-        let glitches = quadrant_glitches(nominal, &turn.counted, AFTER_REVERSAL);
-        let reversal = |glitch: &toolpath::iso230_4::QuadrantGlitch| Reversal {
+impl Reversal {
+    /// Of a peak that was found.
+    pub fn of(glitch: &toolpath::iso230_4::QuadrantGlitch) -> Self {
+        Self {
             axis: ["X", "Y"][glitch.axis.min(1)],
             angle_deg: glitch.angle.to_degrees(),
             peak_um: 1e6 * glitch.peak,
-        };
+        }
+    }
+}
+
+impl Turned {
+    fn of(turn: &Turn, found: &DirectionFigures, nominal: &NominalCircle) -> Result<Self> {
+        let glitches = quadrant_glitches(nominal, &turn.counted, AFTER_REVERSAL);
         Ok(Self {
             contour_error_um: 1e6 * turn.worst,
             g_um: 1e6 * found.g,
             f_max_um: 1e6 * found.f_max,
             f_min_um: 1e6 * found.f_min,
-            reversals: glitches.into_diagnostic()?.iter().map(reversal).collect(),
+            reversals: glitches
+                .into_diagnostic()?
+                .iter()
+                .map(Reversal::of)
+                .collect(),
         })
     }
 }
 
 impl Both {
-    fn of(found: &CircleFigures) -> Self {
+    /// Of figures in m.
+    pub fn of(found: &CircleFigures) -> Self {
         Self {
             g_um: 1e6 * found.g_bidirectional,
             h_um: 1e6 * found.h,

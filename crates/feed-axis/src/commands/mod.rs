@@ -7,6 +7,9 @@ pub mod check_words;
 pub(crate) mod compensate;
 mod compensate_moves;
 pub(crate) mod contour;
+pub(crate) mod contour_laps;
+mod contour_paths;
+mod contour_places;
 pub mod control_table;
 pub mod discover;
 mod discover_words;
@@ -78,7 +81,8 @@ pub enum Command<J: Jobs> {
     Frf(frf::Options),
     /// Simulate one motion, write its log and a page of figures
     Simulate(simulate::Options),
-    /// Simulate two axes on a circle: contour error and figures in the manner of ISO 230-4
+    /// Simulate a machine of two or three axes on a circle or another path: contour error, figures in the manner of ISO
+    /// 230-4, laps
     Contour(contour::Options),
     /// Hours of a duty: temperatures, growth by position and time, thermal force
     Heat(heat::Options),

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use axis_machine::MachineText;
 use axis_pipeline::summary::Summary;
 use axis_sim::Registry;
 use clap::{Args, ValueEnum};
@@ -35,6 +36,8 @@ pub enum File {
     Summary,
     /// discovery.json of `discover`
     Discovery,
+    /// The machine file, TOML
+    Machine,
     /// What `analyse --format json` writes
     Loops,
     /// What `tune --format json` writes
@@ -48,6 +51,14 @@ impl File {
         let generator = settings.into_generator();
         match self {
             Self::Axis => Registry::default().json_schema(),
+            Self::Machine => {
+                // What a reader must give: keys with a default may be left out.
+                let settings = SchemaSettings::draft2020_12().for_deserialize();
+                settings
+                    .into_generator()
+                    .into_root_schema_for::<MachineText>()
+                    .to_value()
+            }
             Self::Summary => generator.into_root_schema_for::<Summary>().to_value(),
             Self::Loops => generator.into_root_schema_for::<LoopAnalysis>().to_value(),
             Self::Tuning => generator.into_root_schema_for::<TuneFound>().to_value(),

@@ -6,6 +6,7 @@ pub mod check;
 pub mod compare;
 mod compensation;
 pub mod contour;
+pub mod contour_laps;
 pub mod discovery;
 mod envelope;
 pub mod frf;
