@@ -10,7 +10,7 @@
 use cfnn::train::{
     Bayesian, Dataset, Hyperparameters, Trainer, TrainingSettings, starting_weights,
 };
-use cfnn::{Architecture, Error, Links, Network, Scaling, Shape, Transfer};
+use cfnn::{Architecture, Error, Links, Network, Scaling, Shape, TransferFunction};
 
 fn line(name: &str, quantity: &str, values: &[f64]) {
     let values: Vec<String> = values.iter().map(|v| format!("{v:e}")).collect();
@@ -26,9 +26,9 @@ fn describe(name: &str, network: &Network) {
     let architecture = network.architecture();
     let shape = architecture.shape();
     let code = |layer| match architecture.transfer(layer) {
-        Transfer::Tansig => 0.0,
-        Transfer::Logsig => 1.0,
-        Transfer::Purelin => 2.0,
+        TransferFunction::Tansig => 0.0,
+        TransferFunction::Logsig => 1.0,
+        TransferFunction::Purelin => 2.0,
         _ => 3.0,
     };
     let sizes = [shape.inputs]
@@ -60,13 +60,13 @@ fn describe(name: &str, network: &Network) {
 type Case = (
     &'static str,
     &'static [usize],
-    &'static [Transfer],
+    &'static [TransferFunction],
     Links,
     &'static [usize],
 );
 
 fn networks() -> Result<(), Error> {
-    use Transfer::{Logsig, Poslin, Purelin, Tansig};
+    use TransferFunction::{Logsig, Poslin, Purelin, Tansig};
     let cases: [Case; 5] = [
         ("paper", &[34, 19, 8], &[Tansig; 3], Links::Cascade, &[]),
         ("plain", &[34, 19, 8], &[Tansig; 3], Links::FeedForward, &[]),

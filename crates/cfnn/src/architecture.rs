@@ -2,7 +2,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::error::same_length;
-use crate::{Error, Shape, Transfer};
+use crate::{Error, Shape, TransferFunction};
 
 /// Which earlier activations a layer sees.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -29,11 +29,11 @@ pub enum Links {
 /// apart.
 ///
 /// ```
-/// use cfnn::{Architecture, Links, Shape, Transfer};
+/// use cfnn::{Architecture, Links, Shape, TransferFunction};
 /// let shape = Shape { inputs: 4, hidden: vec![34, 19, 8], outputs: 1 };
 /// let plain = Architecture::from(shape)
 ///     .with_links(Links::FeedForward)
-///     .with_transfer(Transfer::Logsig)
+///     .with_transfer(TransferFunction::Logsig)
 ///     .without_inputs(&[2])?;
 /// // Without the third input: 4 x 34, 35 x 19, 20 x 8, 9.
 /// assert_eq!(plain.parameters(), 970);
@@ -45,7 +45,7 @@ pub struct Architecture {
     shape: Shape,
     links: Links,
     /// One for each hidden layer, or none at all: tansig everywhere.
-    transfers: Vec<Transfer>,
+    transfers: Vec<TransferFunction>,
     /// Rising.
     dropped: Vec<usize>,
 }
@@ -72,9 +72,9 @@ impl Architecture {
 
     /// With one transfer function in all hidden layers.
     #[must_use]
-    pub fn with_transfer(mut self, transfer: Transfer) -> Self {
+    pub fn with_transfer(mut self, transfer: TransferFunction) -> Self {
         self.transfers = match transfer {
-            Transfer::Tansig => Vec::new(),
+            TransferFunction::Tansig => Vec::new(),
             other => vec![other; self.shape.hidden.len()],
         };
         self
@@ -84,10 +84,10 @@ impl Architecture {
     ///
     /// # Errors
     /// [`Error::Length`] for another number of them than hidden layers.
-    pub fn with_transfers(mut self, transfers: &[Transfer]) -> Result<Self, Error> {
+    pub fn with_transfers(mut self, transfers: &[TransferFunction]) -> Result<Self, Error> {
         let layers = self.shape.hidden.len();
         same_length("transfer functions", transfers.len(), layers)?;
-        let plain = transfers.iter().all(|&t| t == Transfer::Tansig);
+        let plain = transfers.iter().all(|&t| t == TransferFunction::Tansig);
         self.transfers = if plain {
             Vec::new()
         } else {
@@ -131,10 +131,10 @@ impl Architecture {
         self.links
     }
 
-    /// Transfer function of a hidden layer, counted from 0; tansig for one
+    /// TransferFunction function of a hidden layer, counted from 0; tansig for one
     /// that does not exist.
     #[must_use]
-    pub fn transfer(&self, layer: usize) -> Transfer {
+    pub fn transfer(&self, layer: usize) -> TransferFunction {
         self.transfers.get(layer).copied().unwrap_or_default()
     }
 
@@ -149,7 +149,11 @@ impl Architecture {
     /// # Errors
     /// [`Error::NotTansig`] with the first layer that is not.
     pub fn require_tansig(&self) -> Result<(), Error> {
-        match self.transfers.iter().position(|&t| t != Transfer::Tansig) {
+        match self
+            .transfers
+            .iter()
+            .position(|&t| t != TransferFunction::Tansig)
+        {
             Some(layer) => Err(Error::NotTansig { layer }),
             None => Ok(()),
         }
@@ -218,7 +222,7 @@ impl Architecture {
     }
 
     /// Empty where all are tansig.
-    pub(crate) fn transfers(&self) -> &[Transfer] {
+    pub(crate) fn transfers(&self) -> &[TransferFunction] {
         &self.transfers
     }
 }

@@ -6,7 +6,7 @@
 //! bias needs no special case.
 
 use crate::pack::{padded, strip_width};
-use crate::{NetworkScalar, Transfer, Transfers};
+use crate::{NetworkScalar, TransferFunction, Transfers};
 
 /// Fills the hidden part of `activations` and writes the scaled outputs.
 ///
@@ -33,12 +33,17 @@ pub(crate) fn forward<T: NetworkScalar>(
         seen += neurons;
         rest = later;
     }
-    affine(rest, &activations[..seen], output, Transfer::Purelin);
+    affine(
+        rest,
+        &activations[..seen],
+        output,
+        TransferFunction::Purelin,
+    );
 }
 
 /// `out = f(Wᵀ input)`, with `W` packed in strips.
 #[inline(always)]
-fn affine<T: NetworkScalar>(weights: &[T], input: &[T], out: &mut [T], transfer: Transfer) {
+fn affine<T: NetworkScalar>(weights: &[T], input: &[T], out: &mut [T], transfer: TransferFunction) {
     if let [single] = out {
         [*single] = transfer.of([dot(weights, input)]);
         return;
@@ -65,7 +70,11 @@ fn affine<T: NetworkScalar>(weights: &[T], input: &[T], out: &mut [T], transfer:
 /// is known, so the compiler needs no remainder, and the next strip's products
 /// overlap with it.
 #[inline(always)]
-fn write<T: NetworkScalar, const C: usize>(to: &mut [T], mut sums: [T; C], transfer: Transfer) {
+fn write<T: NetworkScalar, const C: usize>(
+    to: &mut [T],
+    mut sums: [T; C],
+    transfer: TransferFunction,
+) {
     sums = transfer.of(sums);
     // The usual case as one copy of known length.
     if let Some(whole) = to.first_chunk_mut::<C>() {

@@ -1,7 +1,7 @@
 use crate::NetworkScalar;
 
 /// What a neuron of a hidden layer makes of its net input `n`; the names are
-/// MATLAB's. The output layer is always [`Transfer::Purelin`].
+/// MATLAB's. The output layer is always [`TransferFunction::Purelin`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -9,7 +9,7 @@ use crate::NetworkScalar;
     serde(rename_all = "lowercase")
 )]
 #[non_exhaustive]
-pub enum Transfer {
+pub enum TransferFunction {
     /// `tanh n`, see [`NetworkScalar::tansig`].
     #[default]
     Tansig,
@@ -23,7 +23,7 @@ pub enum Transfer {
     Poslin,
 }
 
-impl Transfer {
+impl TransferFunction {
     /// The value for each net input; NaN gives NaN.
     #[inline(always)]
     pub fn of<T: NetworkScalar, const C: usize>(self, net: [T; C]) -> [T; C] {
@@ -36,7 +36,7 @@ impl Transfer {
     }
 
     /// The derivative by the net input, from the value `a` that
-    /// [`Transfer::of`] gave: `1 - a²`, `a (1 - a)`, 1, and for `poslin` 1
+    /// [`TransferFunction::of`] gave: `1 - a²`, `a (1 - a)`, 1, and for `poslin` 1
     /// where `a > 0` (0 at the corner).
     #[inline(always)]
     pub fn slope<T: NetworkScalar>(self, a: T) -> T {
@@ -53,14 +53,14 @@ impl Transfer {
 mod sealed {
     pub trait Sealed {}
     impl Sealed for super::AllTansig {}
-    impl Sealed for &[super::Transfer] {}
+    impl Sealed for &[super::TransferFunction] {}
 }
 
 /// The transfer functions of the hidden layers of a [`crate::FixedNetwork`]:
 /// [`AllTansig`], or a list with one for each layer.
 pub trait Transfers: sealed::Sealed + Copy {
     /// That of a hidden layer, counted from 0.
-    fn of_layer(self, layer: usize) -> Transfer;
+    fn of_layer(self, layer: usize) -> TransferFunction;
 }
 
 /// Tansig in all hidden layers, known to the compiler.
@@ -69,15 +69,15 @@ pub struct AllTansig;
 
 impl Transfers for AllTansig {
     #[inline(always)]
-    fn of_layer(self, _: usize) -> Transfer {
-        Transfer::Tansig
+    fn of_layer(self, _: usize) -> TransferFunction {
+        TransferFunction::Tansig
     }
 }
 
 /// As listed; tansig beyond the end of the list.
-impl Transfers for &[Transfer] {
+impl Transfers for &[TransferFunction] {
     #[inline(always)]
-    fn of_layer(self, layer: usize) -> Transfer {
+    fn of_layer(self, layer: usize) -> TransferFunction {
         self.get(layer).copied().unwrap_or_default()
     }
 }

@@ -4,7 +4,8 @@ use cfnn::train::{
     Dataset, EarlyStopping, Initialisation, Trainer, TrainingSettings, starting_weights,
 };
 use cfnn::{
-    Architecture, Error, FixedNetwork, Links, Network, Scaling, ScalingRange, Shape, Transfer,
+    Architecture, Error, FixedNetwork, Links, Network, Scaling, ScalingRange, Shape,
+    TransferFunction,
 };
 use proptest::prelude::*;
 
@@ -95,13 +96,24 @@ fn parameters_are_counted() {
             Err(Error::DroppedInputs { inputs: 4, .. })
         ));
     }
-    assert!(cascade.clone().with_transfers(&[Transfer::Poslin]).is_err());
-    let mixed = [Transfer::Tansig, Transfer::Poslin, Transfer::Tansig];
+    assert!(
+        cascade
+            .clone()
+            .with_transfers(&[TransferFunction::Poslin])
+            .is_err()
+    );
+    let mixed = [
+        TransferFunction::Tansig,
+        TransferFunction::Poslin,
+        TransferFunction::Tansig,
+    ];
     let mixed = cascade.clone().with_transfers(&mixed).unwrap();
     assert_eq!(mixed.require_tansig(), Err(Error::NotTansig { layer: 1 }));
     assert_eq!(cascade.require_tansig(), Ok(()));
     assert_eq!(
-        cascade.clone().with_transfers(&[Transfer::Tansig; 3]),
+        cascade
+            .clone()
+            .with_transfers(&[TransferFunction::Tansig; 3]),
         Ok(cascade)
     );
 }
@@ -111,20 +123,26 @@ fn parameters_are_counted() {
 #[test]
 fn transfer_functions_have_their_values() {
     let e = std::f64::consts::E;
-    let at = |transfer: Transfer, n: f64| transfer.of([n])[0];
+    let at = |transfer: TransferFunction, n: f64| transfer.of([n])[0];
     let near = |a: f64, b: f64| assert!((a - b).abs() <= 2.0 * f64::EPSILON, "{a} against {b}");
-    near(at(Transfer::Tansig, 1.0), (e * e - 1.0) / (e * e + 1.0));
-    near(at(Transfer::Logsig, 1.0), e / (e + 1.0));
-    near(at(Transfer::Logsig, -1.0), 1.0 / (e + 1.0));
-    near(Transfer::Logsig.slope(0.25), 0.1875);
-    assert_eq!(at(Transfer::Logsig, 0.0), 0.5);
-    assert_eq!(at(Transfer::Logsig, f64::NEG_INFINITY), 0.0);
-    assert_eq!(at(Transfer::Logsig, f64::INFINITY), 1.0);
+    near(
+        at(TransferFunction::Tansig, 1.0),
+        (e * e - 1.0) / (e * e + 1.0),
+    );
+    near(at(TransferFunction::Logsig, 1.0), e / (e + 1.0));
+    near(at(TransferFunction::Logsig, -1.0), 1.0 / (e + 1.0));
+    near(TransferFunction::Logsig.slope(0.25), 0.1875);
+    assert_eq!(at(TransferFunction::Logsig, 0.0), 0.5);
+    assert_eq!(at(TransferFunction::Logsig, f64::NEG_INFINITY), 0.0);
+    assert_eq!(at(TransferFunction::Logsig, f64::INFINITY), 1.0);
     assert_eq!(
-        (at(Transfer::Poslin, -2.0), at(Transfer::Poslin, 2.0)),
+        (
+            at(TransferFunction::Poslin, -2.0),
+            at(TransferFunction::Poslin, 2.0)
+        ),
         (0.0, 2.0)
     );
-    assert_eq!(at(Transfer::Purelin, -2.0), -2.0);
+    assert_eq!(at(TransferFunction::Purelin, -2.0), -2.0);
     for transfer in TRANSFERS {
         assert!(at(transfer, f64::NAN).is_nan());
         assert!(transfer.of([f32::NAN])[0].is_nan());
@@ -139,7 +157,11 @@ fn borrowed_networks_have_transfer_functions_too() {
         hidden: vec![21, 1, 7],
         outputs: 2,
     };
-    let transfers = [Transfer::Logsig, Transfer::Purelin, Transfer::Poslin];
+    let transfers = [
+        TransferFunction::Logsig,
+        TransferFunction::Purelin,
+        TransferFunction::Poslin,
+    ];
     let architecture = Architecture::from(shape)
         .with_transfers(&transfers)
         .unwrap();
@@ -238,8 +260,8 @@ fn any_architecture_is_trained() {
                 // Measured: 1.4e-4 and, with the output layer resolved, 6.4e-6 at most; corners 2.2e-4. Linear
                 // neurons are a linear map, whose least squares are 6.16669e-2 for all starts and links.
                 let (least, most) = match (transfer, settings.resolve_output) {
-                    (Transfer::Purelin, _) => (6.1666e-2, 6.1668e-2),
-                    (Transfer::Poslin, _) => (0.0, 6e-4),
+                    (TransferFunction::Purelin, _) => (6.1666e-2, 6.1668e-2),
+                    (TransferFunction::Poslin, _) => (0.0, 6e-4),
                     (_, true) => (0.0, 2e-5),
                     (_, false) => (0.0, 4e-4),
                 };

@@ -7,7 +7,7 @@ use cfnn::artifact::{
 use cfnn::train::{
     Bayesian, Dataset, EarlyStopping, Trainer, TrainingSettings, nguyen_widrow, starting_weights,
 };
-use cfnn::{Architecture, Links, Network, Scaling, Shape, Transfer};
+use cfnn::{Architecture, Links, Network, Scaling, Shape, TransferFunction};
 use proptest::prelude::*;
 
 use crate::support::architectures;
@@ -104,7 +104,7 @@ fn bayesian() -> (Dataset, cfnn::train::Checkpoint) {
     };
     let architecture = Architecture::from(shape)
         .with_links(Links::FeedForward)
-        .with_transfers(&[Transfer::Logsig, Transfer::Tansig])
+        .with_transfers(&[TransferFunction::Logsig, TransferFunction::Tansig])
         .unwrap()
         .without_inputs(&constant)
         .unwrap();

@@ -1,13 +1,13 @@
 //! What several tests need: any architecture, and a network written out by its definition.
 
-use cfnn::{Architecture, Links, Shape, Transfer};
+use cfnn::{Architecture, Links, Shape, TransferFunction};
 use proptest::prelude::*;
 
-pub const TRANSFERS: [Transfer; 4] = [
-    Transfer::Tansig,
-    Transfer::Logsig,
-    Transfer::Purelin,
-    Transfer::Poslin,
+pub const TRANSFERS: [TransferFunction; 4] = [
+    TransferFunction::Tansig,
+    TransferFunction::Logsig,
+    TransferFunction::Purelin,
+    TransferFunction::Poslin,
 ];
 
 /// A sequence that fills [-1, 1] evenly.
@@ -20,7 +20,8 @@ pub fn architectures() -> impl Strategy<Value = Architecture> {
     let hidden = prop::collection::vec((1..25usize, 0..4usize), 0..4);
     (1..4usize, hidden, 1..4usize, any::<bool>(), any::<bool>()).prop_map(
         |(inputs, hidden, outputs, plain, drop)| {
-            let transfers: Vec<Transfer> = hidden.iter().map(|&(_, t)| TRANSFERS[t]).collect();
+            let transfers: Vec<TransferFunction> =
+                hidden.iter().map(|&(_, t)| TRANSFERS[t]).collect();
             let shape = Shape {
                 inputs,
                 hidden: hidden.iter().map(|&(n, _)| n).collect(),
@@ -70,12 +71,12 @@ pub fn reference(architecture: &Architecture, weights: &[f64], scaled: &[f64]) -
             return (net, corner);
         }
         let value = |n: f64| match architecture.transfer(layer) {
-            Transfer::Tansig => libm::tanh(n),
-            Transfer::Logsig => 1.0 / (1.0 + libm::exp(-n)),
-            Transfer::Poslin => n.max(0.0),
+            TransferFunction::Tansig => libm::tanh(n),
+            TransferFunction::Logsig => 1.0 / (1.0 + libm::exp(-n)),
+            TransferFunction::Poslin => n.max(0.0),
             _ => n,
         };
-        if architecture.transfer(layer) == Transfer::Poslin {
+        if architecture.transfer(layer) == TransferFunction::Poslin {
             corner = net.iter().fold(corner, |least, n| least.min(n.abs()));
         }
         earlier.push(net.into_iter().map(value).collect());

@@ -57,7 +57,7 @@ pub use estimate::known::{known_deviations, tolerances};
 pub use evidence::{Evidence, EvidenceError};
 pub use judge::{
     Against, Answered, Assessment, AtScrew, Confidence, Cost, Curve, Discovered, Discovery,
-    DriveFunction, EffectFound, EffortCost, FigureLogs, FormFound, FrictionLaw, Gaps, Level,
+    DriveFunction, EffectFound, EffortCost, FigureLogs, FormFound, FrictionCurve, Gaps, Level,
     Likeness, NextExperiment, Overlay, ParameterFound, Proposal, REMEDIES, ReadUnit, Recalibrated,
     RefusedEffects, Remedy, RemedyFound, ReplacedEffect, Shown, Size, TrackingCost, Unknown,
     Verdict, discovery, judged,
@@ -69,7 +69,7 @@ pub use name::search::{
     Settings, SettingsError, Test, search, search_with,
 };
 pub use noise::SensorNoise;
-pub use prediction::{Hypothesis, Imitation, Predicted, Prediction};
+pub use prediction::{Hypothesis, Imitation, PredictedEffect, Prediction};
 
 /// The README's example, run as a test.
 #[cfg(doctest)]

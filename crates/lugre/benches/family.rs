@@ -5,12 +5,12 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use lugre::{
-    BoucWenOnset, Bristle, BristleParameters, DahlOnset, ElastoPlasticOnset, FrictionLaw, Level,
-    LinearOnset, LuGre, MaxwellSlip, MaxwellSlipParameters, Onset, Parameters, Regularisation,
-    StaticFriction, StaticFrictionParameters, SteadyState,
+    BoucWenOnset, Bristle, BristleParameters, DahlOnset, ElastoPlasticOnset, FrictionLaw,
+    FrictionLevel, LinearOnset, LuGre, MaxwellSlip, MaxwellSlipParameters, Onset, Parameters,
+    Regularisation, StaticFriction, StaticFrictionParameters, SteadyState,
 };
 
-const LEVEL: Level = Level {
+const LEVEL: FrictionLevel = FrictionLevel {
     coulomb: 60.0,
     stiction: 85.0,
 };

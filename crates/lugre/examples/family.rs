@@ -5,17 +5,17 @@
 
 use lugre::{
     BoucWenOnset, Bristle, BristleParameters, DahlOnset, ElastoPlasticOnset, FrictionError,
-    FrictionLaw, Level, LinearOnset, MaxwellSlip, MaxwellSlipParameters, Onset, Regularisation,
-    StaticFriction, StaticFrictionParameters, SteadyState,
+    FrictionLaw, FrictionLevel, LinearOnset, MaxwellSlip, MaxwellSlipParameters, Onset,
+    Regularisation, StaticFriction, StaticFrictionParameters, SteadyState,
 };
 
 /// A linear guide.
 const GUIDE: SteadyState = SteadyState {
-    forward: Level {
+    forward: FrictionLevel {
         coulomb: 60.0,
         stiction: 85.0,
     },
-    backward: Level {
+    backward: FrictionLevel {
         coulomb: 70.0,
         stiction: 80.0,
     },

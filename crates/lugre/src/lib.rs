@@ -91,7 +91,7 @@ mod step;
 pub use exponential::{Decays, Exponential};
 pub use family::{
     BoucWen, BoucWenOnset, Bristle, BristleParameters, ClassicBoucWen, Dahl, DahlOnset,
-    ElastoPlastic, ElastoPlasticOnset, FrictionError, FrictionLaw, GeneralLuGre, Level,
+    ElastoPlastic, ElastoPlasticOnset, FrictionError, FrictionLaw, FrictionLevel, GeneralLuGre,
     LinearOnset, MaxwellSlip, MaxwellSlipParameters, MaxwellState, Onset, Regularisation,
     StaticFriction, StaticFrictionParameters, SteadyState,
 };

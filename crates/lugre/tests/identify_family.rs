@@ -3,12 +3,12 @@
 
 use crate::rig::Noise;
 use lugre::identify::{
-    Before, FrictionIdentifyError, FrictionRecord, Identifiable, MeasuredMotion, Unknown,
+    Before, FrictionIdentifyError, FrictionRecord, Identifiable, MeasuredMotion, UnknownNumbers,
     identify_law,
 };
 use lugre::{
-    BoucWenOnset, Bristle, BristleParameters, DahlOnset, ElastoPlasticOnset, Level, LinearOnset,
-    MaxwellSlip, MaxwellSlipParameters, Onset, Regularisation, StaticFriction,
+    BoucWenOnset, Bristle, BristleParameters, DahlOnset, ElastoPlasticOnset, FrictionLevel,
+    LinearOnset, MaxwellSlip, MaxwellSlipParameters, Onset, Regularisation, StaticFriction,
     StaticFrictionParameters, SteadyState,
 };
 use proptest::prelude::*;
@@ -79,7 +79,7 @@ fn elements() -> Vec<f64> {
 }
 
 fn start(viscous: f64) -> SteadyState {
-    let level = Level {
+    let level = FrictionLevel {
         coulomb: 75.0,
         stiction: 90.0,
     };
@@ -107,7 +107,7 @@ fn law<O: Onset<f64>>(damping: f64, onset: O) -> Bristle<f64, O> {
 fn covers<L: Identifiable>(
     start: &L,
     clean: &[f64],
-    unknown: Unknown,
+    unknown: UnknownNumbers,
     truth: &[(&str, usize, f64)],
 ) {
     let speeds: Vec<f64> = (0..SAMPLES).map(|k| speed(k as f64 * STEP)).collect();
@@ -164,10 +164,10 @@ fn with(more: &[(&'static str, usize, f64)]) -> Vec<(&'static str, usize, f64)> 
 #[test]
 fn lugre_with_levels_by_direction_and_damping() {
     let clean = bristle(|z, v| v - STIFFNESS * v.abs() * z / level(v, 66.0), 1500.0);
-    let unknown = Unknown {
+    let unknown = UnknownNumbers {
         directions: true,
         damping: true,
-        ..Unknown::default()
+        ..UnknownNumbers::default()
     };
     let truth = with(&[
         ("backward.coulomb", 0, 66.0),
@@ -187,9 +187,9 @@ fn dahl_with_an_offset() {
         },
         0.0,
     );
-    let unknown = Unknown {
+    let unknown = UnknownNumbers {
         offset: true,
-        ..Unknown::default()
+        ..UnknownNumbers::default()
     };
     let truth = with(&[("stiffness", 0, STIFFNESS), ("exponent", 0, 1.7)]);
     covers(
@@ -219,7 +219,7 @@ fn elasto_plastic() {
     );
     let truth = with(&[("stiffness", 0, STIFFNESS), ("elastic_share", 0, 0.6)]);
     let onset = ElastoPlasticOnset { elastic_share: 0.4 };
-    covers(&law(0.0, onset), &clean, Unknown::default(), &truth);
+    covers(&law(0.0, onset), &clean, UnknownNumbers::default(), &truth);
 }
 
 #[test]
@@ -240,7 +240,7 @@ fn bouc_wen() {
         exponent: 1.4,
         loading_share: 0.9,
     };
-    covers(&law(0.0, onset), &clean, Unknown::default(), &truth);
+    covers(&law(0.0, onset), &clean, UnknownNumbers::default(), &truth);
 }
 
 #[test]
@@ -259,7 +259,7 @@ fn maxwell_slip() {
         ("stiffness", 1, 1e5),
         ("attraction", 0, 800.0),
     ]);
-    covers(&law, &elements(), Unknown::default(), &truth);
+    covers(&law, &elements(), UnknownNumbers::default(), &truth);
 }
 
 #[test]
@@ -275,7 +275,7 @@ fn without_memory() {
     })
     .unwrap();
     let truth = with(&[("transition_speed", 0, 4e-4)]);
-    covers(&law, &clean, Unknown::default(), &truth);
+    covers(&law, &clean, UnknownNumbers::default(), &truth);
 }
 
 /// A displacement with noise of 10 nm, in two records, of which one begins otherwise than it says.
@@ -302,7 +302,12 @@ fn several_records_of_displacement() {
         record(0..220, Before::Backward, 0.3),
         record(180..400, Before::Forward, 0.3),
     ];
-    let fit = identify_law(&law(0.0, LinearOnset {}), &records, &Unknown::default()).unwrap();
+    let fit = identify_law(
+        &law(0.0, LinearOnset {}),
+        &records,
+        &UnknownNumbers::default(),
+    )
+    .unwrap();
     assert_eq!(fit.samples, 320);
     for (name, element, value) in with(&[("stiffness", 0, STIFFNESS)]) {
         let found = fit.estimate(name, element).unwrap().estimate;
@@ -323,8 +328,8 @@ fn what_keeps_a_fit_from_being_one_is_said() {
         before: Before::Unloaded,
         skip: 10,
     };
-    let fit = |record| identify_law(&start, &[record], &Unknown::default());
-    let none = identify_law(&start, &[], &Unknown::default());
+    let fit = |record| identify_law(&start, &[record], &UnknownNumbers::default());
+    let none = identify_law(&start, &[], &UnknownNumbers::default());
     assert!(matches!(
         none,
         Err(FrictionIdentifyError::TooFewSamples { .. })
@@ -374,7 +379,7 @@ fn what_keeps_a_fit_from_being_one_is_said() {
         stiffness: [1e5; 20],
         attraction: 1.0,
     });
-    let many = identify_law(&many.unwrap(), &[good], &Unknown::default());
+    let many = identify_law(&many.unwrap(), &[good], &UnknownNumbers::default());
     assert!(matches!(
         many,
         Err(FrictionIdentifyError::TooManyNumbers { .. })
@@ -420,13 +425,13 @@ proptest! {
             before: Before::Forward,
             skip,
         };
-        let unknown = Unknown {
+        let unknown = UnknownNumbers {
             directions: a,
             stribeck_exponent: b,
             viscous_terms: skip % 4,
             damping: true,
             offset: quantised,
-            ..Unknown::default()
+            ..UnknownNumbers::default()
         };
         let start = Bristle::new(BristleParameters {
             steady: SteadyState::coulomb(10_f64.powf(level)),

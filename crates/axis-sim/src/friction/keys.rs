@@ -1,6 +1,6 @@
 //! Keys that the laws beside LuGre share, of a load that moves along a line or turns.
 
-use lugre::{Level, SteadyState};
+use lugre::{FrictionLevel, SteadyState};
 
 use crate::part::units::{
     ANGULAR_SPEED, FORCE, LINEAR_DAMPING, ROTARY_DAMPING, SPEED, STIFFNESS, TORQUE, TORSION,
@@ -36,7 +36,7 @@ pub(super) mod rotary {
 
 /// The curve over speed that all of them have.
 pub(super) fn steady(v: &Values) -> Result<SteadyState, PartError> {
-    let level = Level {
+    let level = FrictionLevel {
         coulomb: v.number("coulomb")?,
         stiction: v.number("stiction")?,
     };

@@ -3,7 +3,7 @@
 
 use axis_sim::effects::{ActiveEffect, EFFECTS, Effect, Scales};
 use axis_sim::{Axis, ReplayError};
-use discrepancy::{Hypothesis, LogSet, Predicted, Prediction};
+use discrepancy::{Hypothesis, LogSet, PredictedEffect, Prediction};
 use thiserror::Error;
 use trajectories::TrajectoryError;
 
@@ -77,7 +77,7 @@ impl Bench {
 
     /// What can be known of a case's effects; `None` for one that does not run
     /// on the nominal machine, and for all where one is unknown.
-    pub fn predict(&self, case: &Case) -> Vec<Option<Predicted>> {
+    pub fn predict(&self, case: &Case) -> Vec<Option<PredictedEffect>> {
         match self.supposed(case) {
             Some(supposed) => self.prediction.predict(&supposed),
             None => vec![None; case.hidden.len()],

@@ -4,7 +4,7 @@
 //! [`cases`] lays out the machines: Latin hypercubes over effect, size, noise
 //! and motion. A [`Bench`] holds what is the same for all cases on one motion;
 //! [`Bench::try_case`] makes a case's logs, says beforehand what can be seen in
-//! them ([`discrepancy::Predicted`]), runs the search without that knowledge, and keeps
+//! them ([`discrepancy::PredictedEffect`]), runs the search without that knowledge, and keeps
 //! both. [`Score`] counts.
 
 mod bench;

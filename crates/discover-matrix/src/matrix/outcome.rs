@@ -1,6 +1,6 @@
 //! What could be known of a case, and what came out of it.
 
-use discrepancy::{ChannelGap, Predicted, Unknown, Verdict};
+use discrepancy::{ChannelGap, PredictedEffect, Unknown, Verdict};
 use serde::{Deserialize, Serialize};
 
 use super::case::Case;
@@ -46,7 +46,7 @@ pub struct NamedEffect {
 pub struct Split {
     /// The pair that it was to separate, the hidden one first.
     pub pair: [String; 2],
-    /// Predicted fall of D between the two.
+    /// PredictedEffect fall of D between the two.
     pub predicted: f64,
     /// What that search named, in the order of evidence.
     pub named: Vec<NamedEffect>,
@@ -69,7 +69,7 @@ pub struct CaseOutcome {
     /// The case.
     pub case: Case,
     /// What could be known beforehand, one entry a hidden effect.
-    pub predicted: Vec<Predicted>,
+    pub predicted: Vec<PredictedEffect>,
     /// Why there is no verdict, where there is none.
     pub failed: Option<String>,
     /// Verdict.

@@ -1,6 +1,6 @@
 //! What was said in a case, beside what was hidden.
 
-use discrepancy::{Predicted, Verdict};
+use discrepancy::{PredictedEffect, Verdict};
 
 use super::case::CaseKind;
 use super::outcome::CaseOutcome;
@@ -62,7 +62,7 @@ impl CaseOutcome {
 
     /// Whether the library's effects can imitate what is outside the library.
     pub(super) fn is_imitated(&self) -> bool {
-        let complete = |f: &Predicted| f.imitation.as_ref().is_some_and(|i| i.complete);
+        let complete = |f: &PredictedEffect| f.imitation.as_ref().is_some_and(|i| i.complete);
         self.predicted.iter().any(complete)
     }
 
@@ -125,7 +125,7 @@ impl CaseOutcome {
     }
 
     fn first_is_predicted(&self) -> bool {
-        let predicted = |f: &Predicted, name: &String| {
+        let predicted = |f: &PredictedEffect, name: &String| {
             let imitation = f.imitation.as_ref().filter(|i| i.complete);
             f.class.contains(name) || imitation.is_some_and(|i| i.by.contains(name))
         };

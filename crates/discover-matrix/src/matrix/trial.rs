@@ -5,8 +5,8 @@ use std::sync::Arc;
 use axis_sim::ReplayError;
 use axis_sim::effects::{ActiveEffect, Nature};
 use discrepancy::{
-    Found, Library, LogSet, Named, Predicted, Proposal, SearchError, Settings, free_parameters,
-    judged, search_with,
+    Found, Library, LogSet, Named, PredictedEffect, Proposal, SearchError, Settings,
+    free_parameters, judged, search_with,
 };
 
 use super::bench::{Bench, active};
@@ -20,7 +20,7 @@ impl Bench {
         let case = &self.scaled(case);
         let predicted = self.predict(case);
         let runs = predicted.iter().all(Option::is_some);
-        let nothing = Predicted {
+        let nothing = PredictedEffect {
             gain: 0.0,
             above_noise: 0.0,
             detectable: false,

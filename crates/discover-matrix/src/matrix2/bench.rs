@@ -3,7 +3,7 @@
 use axis_log::Log;
 use axis_sim::effects::{ActiveEffect, Scales};
 use axis_sim::{Axis, ReplayError};
-use discrepancy::{Hypothesis, LogSet, Predicted, Prediction, State};
+use discrepancy::{Hypothesis, LogSet, PredictedEffect, Prediction, State};
 use trajectories::Program;
 
 use super::case::{Case, CaseSetting, Channels};
@@ -122,7 +122,7 @@ impl Bench {
     pub(super) fn predicted(
         &self,
         case: &Case,
-    ) -> Result<(Case, Vec<Option<Predicted>>), ReplayError> {
+    ) -> Result<(Case, Vec<Option<PredictedEffect>>), ReplayError> {
         let mut case = case.clone();
         if case.hidden.is_empty() {
             return Ok((case, Vec::new()));

@@ -1,6 +1,6 @@
 //! What came out of a case.
 
-use discrepancy::{Predicted, Unknown, Verdict};
+use discrepancy::{PredictedEffect, Unknown, Verdict};
 use serde::{Deserialize, Serialize};
 
 use super::case::Case;
@@ -12,7 +12,7 @@ pub struct CaseOutcome {
     /// The case, its sizes scaled.
     pub case: Case,
     /// What could be known beforehand, one entry a hidden effect.
-    pub predicted: Vec<Predicted>,
+    pub predicted: Vec<PredictedEffect>,
     /// Why there is no verdict, where there is none.
     pub failed: Option<String>,
     /// Verdict.

@@ -1,7 +1,7 @@
 //! What was said in a case, beside what was hidden.
 
 use axis_sim::effects::Effect;
-use discrepancy::{Predicted, Verdict};
+use discrepancy::{PredictedEffect, Verdict};
 
 use super::outcome::{CaseOutcome, Deviance};
 use crate::hidden::{Form, LawVariable};
@@ -24,7 +24,7 @@ impl CaseOutcome {
 
     /// Whether effects of the library can do what is hidden outside of it.
     pub fn is_imitated(&self) -> bool {
-        let complete = |f: &Predicted| f.imitation.as_ref().is_some_and(|i| i.complete);
+        let complete = |f: &PredictedEffect| f.imitation.as_ref().is_some_and(|i| i.complete);
         self.predicted.iter().any(complete)
     }
 

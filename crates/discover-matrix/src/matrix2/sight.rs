@@ -8,7 +8,8 @@
 use axis_sim::effects::{ActiveEffect, Nature, Scales};
 use axis_sim::{Axis, ReplayError};
 use discrepancy::{
-    Fitter, Imitation, LogSet, MATERIAL_OF_NOISE, ONE_CLASS, Predicted, State, known_deviations,
+    Fitter, Imitation, LogSet, MATERIAL_OF_NOISE, ONE_CLASS, PredictedEffect, State,
+    known_deviations,
 };
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -103,7 +104,7 @@ impl Sight {
         &self,
         all: &[ActiveEffect],
         rejected: &[String],
-    ) -> Vec<Option<Predicted>> {
+    ) -> Vec<Option<PredictedEffect>> {
         let responses: Vec<Option<Response>> = all.iter().map(|a| (self.response)(a)).collect();
         let one = |i: usize| {
             let own = responses[i].as_ref()?;
@@ -120,7 +121,7 @@ impl Sight {
         own: &Response,
         others: &[&Response],
         rejected: &[String],
-    ) -> Predicted {
+    ) -> PredictedEffect {
         let name = active.effect.name;
         let (left, needed) = (self.beside(others).left(own), self.needed(active));
         let gain = left.gain;
@@ -133,7 +134,7 @@ impl Sight {
         let others_of = || self.library.iter().filter(|(n, _)| is_other(n));
         let class = others_of().filter(|(_, columns)| alike(left_by(columns)));
         let absent = !self.library.iter().any(|(n, _)| *n == name) || !is_known(name, rejected);
-        Predicted {
+        PredictedEffect {
             gain,
             above_noise: gain.max(0.0).sqrt(),
             detectable: gain >= 2.0 * needed && self.material(&left) >= 2.0,

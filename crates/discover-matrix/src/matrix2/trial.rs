@@ -3,8 +3,8 @@
 use axis_log::Log;
 use axis_sim::ReplayError;
 use discrepancy::{
-    Discovered, Fitter, Found, LogSet, Predicted, Proposal, SearchError, Settings, State, judged,
-    search, search_with,
+    Discovered, Fitter, Found, LogSet, PredictedEffect, Proposal, SearchError, Settings, State,
+    judged, search, search_with,
 };
 
 use super::bench::Bench;
@@ -20,7 +20,7 @@ pub struct Given {
     pub case: Case,
     /// What can be known of each hidden effect beforehand; `None` of one that does not run on
     /// the machine as its file says.
-    pub predicted: Vec<Option<Predicted>>,
+    pub predicted: Vec<Option<PredictedEffect>>,
     /// Shares by which known parameters are off, in the order of [`axis_sim::Axis::known`].
     pub shares: Vec<f64>,
     /// Logs to fit to and to check on, with the channels that the case shows.

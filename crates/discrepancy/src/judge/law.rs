@@ -9,7 +9,7 @@ use crate::answers::{LogSet, State};
 
 /// Steady friction of an axis over the speed of its load.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FrictionLaw {
+pub struct FrictionCurve {
     /// SI unit of the speeds.
     pub speed_unit: String,
     /// SI unit of the forces, on the load and against its motion.
@@ -90,7 +90,7 @@ pub(super) fn friction_law(
     state: &State,
     traces: &[Trace],
     rest: &Rest,
-) -> Option<FrictionLaw> {
+) -> Option<FrictionCurve> {
     let is_form = |active: &ActiveEffect| FrictionForm::of(active).is_some();
     let has_form = state.effects.iter().any(is_form);
     if !has_form && state.effects.iter().all(|a| steady(a, 1.0).is_none()) {
@@ -109,7 +109,7 @@ pub(super) fn friction_law(
     };
     let freedom = machine.freedom();
     let low = |a: &ActiveEffect| is_form(a) || a.effect.name == "stribeck-friction";
-    Some(FrictionLaw {
+    Some(FrictionCurve {
         speed_unit: Measure::Speed.unit(freedom).to_owned(),
         force_unit: Measure::Force.unit(freedom).to_owned(),
         own: column(0),

@@ -35,7 +35,7 @@ pub use self::experiment::Proposal;
 use self::experiment::propose;
 pub use self::form::FormFound;
 use self::found::{effect_found, form_of_own, refused_effects, replaced};
-pub use self::law::FrictionLaw;
+pub use self::law::FrictionCurve;
 use self::law::{friction_law, steady};
 use self::left::Left;
 use self::likeness::likenesses;
@@ -73,7 +73,7 @@ pub struct Discovered {
     /// The check logs' rest against what each named effect depends on.
     pub against: Vec<Against>,
     /// Friction over speed; `None` if none was named.
-    pub friction: Option<FrictionLaw>,
+    pub friction: Option<FrictionCurve>,
     /// The next experiment, with the values of both rivals.
     pub proposal: Option<Proposal>,
 }

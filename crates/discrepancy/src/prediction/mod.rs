@@ -11,7 +11,7 @@ use axis_sim::{Axis, ReplayError};
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-pub use self::types::{Hypothesis, Imitation, Predicted};
+pub use self::types::{Hypothesis, Imitation, PredictedEffect};
 use crate::answers::{LogSet, State};
 use crate::estimate::columns::Columns;
 use crate::estimate::fit::{Fit, Fitter};
@@ -88,7 +88,7 @@ impl Prediction {
 
     /// What can be known of each effect that is supposed; `None` for one that does not
     /// run on the nominal machine, and where the noise is no number above 0.
-    pub fn predict(&self, supposed: &Hypothesis) -> Vec<Option<Predicted>> {
+    pub fn predict(&self, supposed: &Hypothesis) -> Vec<Option<PredictedEffect>> {
         let effects = &supposed.effects;
         let responses: Vec<Option<Amplitudes>> = match is_above_zero(supposed.noise) {
             true => effects.par_iter().map(|e| self.response(e)).collect(),
@@ -130,7 +130,7 @@ impl Prediction {
         active: &ActiveEffect,
         own: &Amplitudes,
         others: &[&Amplitudes],
-    ) -> Predicted {
+    ) -> PredictedEffect {
         let (noise, effect) = (supposed.noise, active.effect);
         let beside = self.beside(supposed, own, others);
         let pinned = pinned(&self.machine, &beside.shares);
@@ -141,7 +141,7 @@ impl Prediction {
         let above_noise = size_over_noise(&seen, &self.noise);
         let seen_above = above_noise >= 2f64.sqrt() * ABOVE_NOISE;
         let enough = beside.gain >= 2.0 * needed && beside.material >= 2.0;
-        Predicted {
+        PredictedEffect {
             gain: beside.gain,
             above_noise,
             detectable: enough && seen_above,

@@ -22,7 +22,7 @@ pub struct Hypothesis {
 
 /// What can be known of an effect beforehand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Predicted {
+pub struct PredictedEffect {
     /// Expected fall of D on the fit log, known parameters and the other effects
     /// fitted out.
     pub gain: f64,

@@ -4,7 +4,7 @@ use axis_report::{Block, Cell, Figure, Notice, Page, Section, Series, Table, ren
 use axis_sim::Axis;
 use discrepancy::summary::SummaryFound;
 use discrepancy::{
-    Against, Discovered, Discovery, EffectFound, FrictionLaw, Gap, NextExperiment, Overlay,
+    Against, Discovered, Discovery, EffectFound, FrictionCurve, Gap, NextExperiment, Overlay,
     ReadUnit, Unknown, Verdict,
 };
 use miette::{IntoDiagnostic, Result};
@@ -76,7 +76,7 @@ fn unit_of(values: &[f64], si: &str) -> ReadUnit {
 }
 
 /// Friction over speed, to both sides, and where it counts from low speed on.
-fn friction(law: &FrictionLaw) -> Section {
+fn friction(law: &FrictionCurve) -> Section {
     let both = friction_over(law, |_| true, "Friction over speed");
     let low = friction_over(law, |v| v > 0.0, "The same from low speed on").log_x();
     let figures = match law.at_low_speed {
@@ -90,7 +90,7 @@ fn friction(law: &FrictionLaw) -> Section {
     }
 }
 
-fn friction_over(law: &FrictionLaw, kept: fn(f64) -> bool, title: &str) -> Figure {
+fn friction_over(law: &FrictionCurve, kept: fn(f64) -> bool, title: &str) -> Figure {
     let [speed_unit, force_unit] = [
         unit_of(&law.speed, &law.speed_unit),
         unit_of(&law.with, &law.force_unit),

@@ -2,7 +2,7 @@
 
 use super::error::FrictionError;
 use super::onset::{BoucWenOnset, DahlOnset, ElastoPlasticOnset, LinearOnset, Onset};
-use super::steady::{Level, SteadyState, check};
+use super::steady::{FrictionLevel, SteadyState, check};
 use super::{FrictionLaw, halves, pressing, sound};
 use crate::exponential::Exponential;
 
@@ -85,7 +85,7 @@ impl<T: Exponential, O: Onset<T>> Bristle<T, O> {
         let (least, greatest) = T::DEFLECTIONS;
         let deflects =
             |level: T| level == T::ZERO || (least..=greatest).contains(&(level / stiffness));
-        let Level { coulomb, stiction } = steady.forward;
+        let FrictionLevel { coulomb, stiction } = steady.forward;
         let back = steady.backward;
         if ![coulomb, stiction, back.coulomb, back.stiction]
             .into_iter()
@@ -239,12 +239,12 @@ impl<T: Exponential, O: Onset<T>> FrictionLaw<T> for Bristle<T, O> {
         if p.damping == T::ZERO {
             return true;
         }
-        [p.steady.forward, p.steady.backward]
-            .into_iter()
-            .all(|Level { coulomb, stiction }| {
+        [p.steady.forward, p.steady.backward].into_iter().all(
+            |FrictionLevel { coulomb, stiction }| {
                 coulomb == T::ZERO
                     || p.steady.viscous + p.damping * p.onset.slope(stiction / coulomb, T::ONE)
                         >= T::ZERO
-            })
+            },
+        )
     }
 }

@@ -17,7 +17,7 @@ pub use error::FrictionError;
 pub use maxwell::{MaxwellSlip, MaxwellSlipParameters, MaxwellState};
 pub use onset::{BoucWenOnset, ClassicBoucWen, DahlOnset, ElastoPlasticOnset, LinearOnset, Onset};
 pub use statics::{Regularisation, StaticFriction, StaticFrictionParameters};
-pub use steady::{Level, SteadyState};
+pub use steady::{FrictionLevel, SteadyState};
 
 /// A friction law: a force or torque that depends on the sliding speed and on a state.
 ///

@@ -9,7 +9,7 @@ use crate::exponential::Exponential;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-pub struct Level<T = f64> {
+pub struct FrictionLevel<T = f64> {
     /// `F_C`, the level at high speed.
     pub coulomb: T,
     /// `F_S`, the level at vanishing speed (break-away); at least `F_C`.
@@ -32,11 +32,11 @@ pub struct Level<T = f64> {
 /// conversion.
 ///
 /// ```
-/// use lugre::{Level, SteadyState};
+/// use lugre::{FrictionLevel, SteadyState};
 ///
 /// let curve = SteadyState {
-///     forward: Level { coulomb: 60.0, stiction: 80.0 }, // N
-///     backward: Level { coulomb: 70.0, stiction: 85.0 },
+///     forward: FrictionLevel { coulomb: 60.0, stiction: 80.0 }, // N
+///     backward: FrictionLevel { coulomb: 70.0, stiction: 85.0 },
 ///     stribeck_speed: 4e-3, // m/s
 ///     viscous: 200.0,       // N·s/m
 ///     ..SteadyState::coulomb(60.0)
@@ -51,9 +51,9 @@ pub struct Level<T = f64> {
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct SteadyState<T = f64> {
     /// Levels at positive speed.
-    pub forward: Level<T>,
+    pub forward: FrictionLevel<T>,
     /// Levels at negative speed, as positive numbers.
-    pub backward: Level<T>,
+    pub backward: FrictionLevel<T>,
     /// `v_S`, the Stribeck speed, at which 37 % of `F_S − F_C` is left, m/s or rad/s.
     pub stribeck_speed: T,
     /// `δ`, the exponent, 0.1 to 10.
@@ -71,7 +71,7 @@ impl<T: Scalar> SteadyState<T> {
     /// curve does not need.
     #[must_use]
     pub fn coulomb(level: T) -> Self {
-        let level = Level {
+        let level = FrictionLevel {
             coulomb: level,
             stiction: level,
         };
@@ -90,7 +90,7 @@ impl<T: Scalar> SteadyState<T> {
     #[must_use]
     pub fn cast<U: Scalar>(&self) -> SteadyState<U> {
         let cast = |value: T| U::of(value.to_f64());
-        let level = |level: Level<T>| Level {
+        let level = |level: FrictionLevel<T>| FrictionLevel {
             coulomb: cast(level.coulomb),
             stiction: cast(level.stiction),
         };
@@ -164,7 +164,7 @@ impl<T: Scalar> SteadyState<T> {
 
     /// The levels of the direction of `speed`; forward at 0.
     #[inline]
-    pub(super) fn of_direction(&self, speed: T) -> Level<T> {
+    pub(super) fn of_direction(&self, speed: T) -> FrictionLevel<T> {
         if speed < T::ZERO {
             self.backward
         } else {
@@ -186,7 +186,7 @@ impl<T: Exponential> SteadyState<T> {
     #[must_use]
     #[inline]
     pub fn level(&self, speed: T) -> T {
-        let Level { coulomb, stiction } = self.of_direction(speed);
+        let FrictionLevel { coulomb, stiction } = self.of_direction(speed);
         let u = power(speed.abs() / self.stribeck_speed, self.stribeck_exponent);
         let level = coulomb + (stiction - coulomb) * u.exp_minus();
         // May round to above F_S. Written so that NaN stays.

@@ -5,7 +5,7 @@ use nalgebra::SMatrix;
 use super::error::{FrictionIdentifyError, check_finite, check_positive};
 use super::estimate::ParameterEstimate;
 use super::least_squares::{FitOutcome, Minimum, Problem, dot, square};
-use super::numbers::{Identifiable, Number, Unknown};
+use super::numbers::{Identifiable, Number, UnknownNumbers};
 use super::presliding::{MeasuredMotion, central_speeds};
 use super::series::correlation_time;
 
@@ -104,7 +104,7 @@ impl<L> LawFit<L> {
 /// that the records leave open.
 ///
 /// ```
-/// use lugre::identify::{Before, FrictionRecord, MeasuredMotion, Unknown, identify_law};
+/// use lugre::identify::{Before, FrictionRecord, MeasuredMotion, UnknownNumbers, identify_law};
 /// use lugre::{BristleParameters, Dahl, DahlOnset, FrictionLaw, SteadyState};
 ///
 /// let dahl = |level, stiffness, exponent| Dahl::new(BristleParameters {
@@ -128,7 +128,7 @@ impl<L> LawFit<L> {
 ///     before: Before::Unloaded,
 ///     skip: 0,
 /// };
-/// let unknown = Unknown { stribeck: false, viscous_terms: 0, ..Unknown::default() };
+/// let unknown = UnknownNumbers { stribeck: false, viscous_terms: 0, ..UnknownNumbers::default() };
 /// let fit = identify_law(&dahl(40.0, 1e6, 1.0)?, &[record], &unknown)?;
 /// assert!((fit.law.parameters().onset.exponent - 1.5).abs() < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -136,7 +136,7 @@ impl<L> LawFit<L> {
 pub fn identify_law<L: Identifiable>(
     start: &L,
     records: &[FrictionRecord<'_>],
-    unknown: &Unknown,
+    unknown: &UnknownNumbers,
 ) -> Result<LawFit<L>, FrictionIdentifyError> {
     let trial = Trial::new(start, records, unknown)?;
     let x = trial.search();
@@ -167,7 +167,7 @@ struct Run<'a> {
 
 struct Trial<'a, L> {
     start: &'a L,
-    unknown: &'a Unknown,
+    unknown: &'a UnknownNumbers,
     runs: Vec<Run<'a>>,
     numbers: Vec<Number>,
     /// Size of the offset, N or N·m.
@@ -179,7 +179,7 @@ impl<'a, L: Identifiable> Trial<'a, L> {
     fn new(
         start: &'a L,
         records: &[FrictionRecord<'a>],
-        unknown: &'a Unknown,
+        unknown: &'a UnknownNumbers,
     ) -> Result<Self, FrictionIdentifyError> {
         const NEEDED: usize = 32;
         let runs = records
@@ -237,7 +237,7 @@ impl<'a, L: Identifiable> Trial<'a, L> {
         let mut values = Vec::with_capacity(MOST);
         for (number, &x) in self.numbers.iter().zip(x) {
             // What is known keeps its bits, but for a break-away level above one that is not.
-            let bound = number.kind == super::numbers::Kind::Above;
+            let bound = number.kind == super::numbers::NumberKind::Above;
             before = if number.free || bound {
                 number.at(x, before)
             } else {

@@ -33,7 +33,7 @@ pub use error::FrictionIdentifyError;
 pub use estimate::ParameterEstimate;
 pub use law_fit::{Before, FrictionRecord, LawEstimate, LawFit, identify_law};
 pub use least_squares::FitOutcome;
-pub use numbers::{Identifiable, IdentifiableOnset, Kind, Number, Unknown};
+pub use numbers::{Identifiable, IdentifiableOnset, Number, NumberKind, UnknownNumbers};
 pub use presliding::{MeasuredMotion, PreslidingFit, PreslidingRecord, identify_presliding};
 pub use record::ConstantSpeedRun;
 pub use static_fit::{LeftOut, Reason, StaticFit, StaticKnowledge, StaticParameters};

@@ -1,14 +1,14 @@
 //! The numbers of a law of the family, as a fit moves them.
 
 use crate::family::{
-    BoucWenOnset, Bristle, BristleParameters, DahlOnset, ElastoPlasticOnset, FrictionLaw, Level,
-    LinearOnset, MaxwellSlip, MaxwellSlipParameters, Onset, StaticFriction,
+    BoucWenOnset, Bristle, BristleParameters, DahlOnset, ElastoPlasticOnset, FrictionLaw,
+    FrictionLevel, LinearOnset, MaxwellSlip, MaxwellSlipParameters, Onset, StaticFriction,
     StaticFrictionParameters, SteadyState,
 };
 
 /// What of a law is unknown besides its level and stiffness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Unknown {
+pub struct UnknownNumbers {
     /// Levels of each direction for itself; otherwise those forward are those backward.
     pub directions: bool,
     /// Break-away level and Stribeck speed; of [`MaxwellSlip`] the attraction too.
@@ -25,7 +25,7 @@ pub struct Unknown {
     pub offset: bool,
 }
 
-impl Default for Unknown {
+impl Default for UnknownNumbers {
     /// Stribeck curve, linear viscous friction and shape; the rest known.
     fn default() -> Self {
         Self {
@@ -42,7 +42,7 @@ impl Default for Unknown {
 
 /// How a number enters a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum NumberKind {
     /// By its logarithm.
     Positive,
     /// As what it exceeds the number before by, over that one; not negative.
@@ -66,7 +66,7 @@ pub struct Number {
     /// Its value.
     pub value: f64,
     /// How it enters.
-    pub kind: Kind,
+    pub kind: NumberKind,
     /// Whether it is fitted.
     pub free: bool,
 }
@@ -75,27 +75,27 @@ impl Number {
     /// As a coordinate, `before` the value of the number before.
     pub(super) fn coordinate(&self, before: f64) -> f64 {
         match self.kind {
-            Kind::Positive => self.value.ln(),
-            Kind::Above => self.value / before - 1.0,
-            Kind::AtLeast { size, .. } => self.value / size,
+            NumberKind::Positive => self.value.ln(),
+            NumberKind::Above => self.value / before - 1.0,
+            NumberKind::AtLeast { size, .. } => self.value / size,
         }
     }
 
     /// The value of a coordinate.
     pub(super) fn at(&self, coordinate: f64, before: f64) -> f64 {
         match self.kind {
-            Kind::Positive => coordinate.exp(),
-            Kind::Above => before * (1.0 + coordinate.max(0.0)),
-            Kind::AtLeast { least, size } => (coordinate * size).max(least),
+            NumberKind::Positive => coordinate.exp(),
+            NumberKind::Above => before * (1.0 + coordinate.max(0.0)),
+            NumberKind::AtLeast { least, size } => (coordinate * size).max(least),
         }
     }
 
     /// The least coordinate.
     pub(super) fn lower(&self) -> f64 {
         match self.kind {
-            Kind::Positive => f64::NEG_INFINITY,
-            Kind::Above => 0.0,
-            Kind::AtLeast { least, size } => least / size,
+            NumberKind::Positive => f64::NEG_INFINITY,
+            NumberKind::Above => 0.0,
+            NumberKind::AtLeast { least, size } => least / size,
         }
     }
 }
@@ -105,18 +105,18 @@ pub trait Identifiable: FrictionLaw<f64> + Sized {
     /// All numbers of the law; those of the backward direction are not free where the
     /// directions are alike. `fastest` is the greatest speed of the records, m/s or rad/s.
     #[must_use]
-    fn numbers(&self, unknown: &Unknown, fastest: f64) -> Vec<Number>;
+    fn numbers(&self, unknown: &UnknownNumbers, fastest: f64) -> Vec<Number>;
 
     /// The law with other values, in the order of [`numbers`](Self::numbers); `None` if they
     /// make none.
     #[must_use]
-    fn with(&self, unknown: &Unknown, values: &[f64]) -> Option<Self>;
+    fn with(&self, unknown: &UnknownNumbers, values: &[f64]) -> Option<Self>;
 }
 
 /// Numbers of a Stribeck curve.
 const CURVE: usize = 9;
 
-fn of_curve(steady: &SteadyState, unknown: &Unknown, fastest: f64) -> Vec<Number> {
+fn of_curve(steady: &SteadyState, unknown: &UnknownNumbers, fastest: f64) -> Vec<Number> {
     let number = |name, value, kind, free| Number {
         name,
         element: 0,
@@ -126,7 +126,7 @@ fn of_curve(steady: &SteadyState, unknown: &Unknown, fastest: f64) -> Vec<Number
     };
     let level = steady.forward.coulomb;
     let viscous = |name, value, term: usize| {
-        let kind = Kind::AtLeast {
+        let kind = NumberKind::AtLeast {
             least: 0.0,
             size: level / fastest.powi(term as i32),
         };
@@ -135,30 +135,35 @@ fn of_curve(steady: &SteadyState, unknown: &Unknown, fastest: f64) -> Vec<Number
     let (directions, stribeck) = (unknown.directions, unknown.stribeck);
     let (forward, backward) = (steady.forward, steady.backward);
     vec![
-        number("forward.coulomb", level, Kind::Positive, true),
-        number("forward.stiction", forward.stiction, Kind::Above, stribeck),
+        number("forward.coulomb", level, NumberKind::Positive, true),
+        number(
+            "forward.stiction",
+            forward.stiction,
+            NumberKind::Above,
+            stribeck,
+        ),
         number(
             "backward.coulomb",
             backward.coulomb,
-            Kind::Positive,
+            NumberKind::Positive,
             directions,
         ),
         number(
             "backward.stiction",
             backward.stiction,
-            Kind::Above,
+            NumberKind::Above,
             directions && stribeck,
         ),
         number(
             "stribeck_speed",
             steady.stribeck_speed,
-            Kind::Positive,
+            NumberKind::Positive,
             stribeck,
         ),
         number(
             "stribeck_exponent",
             steady.stribeck_exponent,
-            Kind::Positive,
+            NumberKind::Positive,
             unknown.stribeck_exponent,
         ),
         viscous("viscous", steady.viscous, 1),
@@ -167,7 +172,7 @@ fn of_curve(steady: &SteadyState, unknown: &Unknown, fastest: f64) -> Vec<Number
     ]
 }
 
-fn curve_of(values: &[f64], unknown: &Unknown) -> Option<SteadyState> {
+fn curve_of(values: &[f64], unknown: &UnknownNumbers) -> Option<SteadyState> {
     let &[
         fc,
         fs,
@@ -179,7 +184,7 @@ fn curve_of(values: &[f64], unknown: &Unknown) -> Option<SteadyState> {
         k2,
         k3,
     ] = values.first_chunk::<CURVE>()?;
-    let level = |coulomb, stiction| Level { coulomb, stiction };
+    let level = |coulomb, stiction| FrictionLevel { coulomb, stiction };
     let forward = level(fc, fs);
     Some(SteadyState {
         forward,
@@ -201,7 +206,7 @@ fn positive(name: &'static str, element: usize, value: f64, free: bool) -> Numbe
         name,
         element,
         value,
-        kind: Kind::Positive,
+        kind: NumberKind::Positive,
         free,
     }
 }
@@ -266,7 +271,7 @@ impl IdentifiableOnset for BoucWenOnset {
 }
 
 impl<O: IdentifiableOnset> Identifiable for Bristle<f64, O> {
-    fn numbers(&self, unknown: &Unknown, fastest: f64) -> Vec<Number> {
+    fn numbers(&self, unknown: &UnknownNumbers, fastest: f64) -> Vec<Number> {
         let p = self.parameters();
         let mut numbers = of_curve(&p.steady, unknown, fastest);
         numbers.push(positive("stiffness", 0, p.stiffness, true));
@@ -274,7 +279,7 @@ impl<O: IdentifiableOnset> Identifiable for Bristle<f64, O> {
             name: "damping",
             element: 0,
             value: p.damping,
-            kind: Kind::AtLeast {
+            kind: NumberKind::AtLeast {
                 least: 0.0,
                 size: p.steady.forward.coulomb / fastest,
             },
@@ -288,14 +293,14 @@ impl<O: IdentifiableOnset> Identifiable for Bristle<f64, O> {
                     name,
                     element: 0,
                     value,
-                    kind: Kind::AtLeast { least, size: 1.0 },
+                    kind: NumberKind::AtLeast { least, size: 1.0 },
                     free: unknown.shape,
                 }),
         );
         numbers
     }
 
-    fn with(&self, unknown: &Unknown, values: &[f64]) -> Option<Self> {
+    fn with(&self, unknown: &UnknownNumbers, values: &[f64]) -> Option<Self> {
         let steady = curve_of(values, unknown)?;
         let [stiffness, damping] = *values.get(CURVE..)?.first_chunk()?;
         let onset = self.parameters().onset.reshaped(&values[CURVE + 2..])?;
@@ -311,7 +316,7 @@ impl<O: IdentifiableOnset> Identifiable for Bristle<f64, O> {
 
 impl<const N: usize> Identifiable for MaxwellSlip<f64, N> {
     /// The last share is what the others leave.
-    fn numbers(&self, unknown: &Unknown, fastest: f64) -> Vec<Number> {
+    fn numbers(&self, unknown: &UnknownNumbers, fastest: f64) -> Vec<Number> {
         let p = self.parameters();
         let mut numbers = of_curve(&p.steady, unknown, fastest);
         for (i, share) in p.shares.into_iter().enumerate() {
@@ -325,7 +330,7 @@ impl<const N: usize> Identifiable for MaxwellSlip<f64, N> {
         numbers
     }
 
-    fn with(&self, unknown: &Unknown, values: &[f64]) -> Option<Self> {
+    fn with(&self, unknown: &UnknownNumbers, values: &[f64]) -> Option<Self> {
         let steady = curve_of(values, unknown)?;
         let rest = values.get(CURVE..)?;
         let shares: [f64; N] = *rest.first_chunk()?;
@@ -342,7 +347,7 @@ impl<const N: usize> Identifiable for MaxwellSlip<f64, N> {
 }
 
 impl Identifiable for StaticFriction {
-    fn numbers(&self, unknown: &Unknown, fastest: f64) -> Vec<Number> {
+    fn numbers(&self, unknown: &UnknownNumbers, fastest: f64) -> Vec<Number> {
         let p = self.parameters();
         let mut numbers = of_curve(&p.steady, unknown, fastest);
         let speed = p.transition_speed;
@@ -350,7 +355,7 @@ impl Identifiable for StaticFriction {
         numbers
     }
 
-    fn with(&self, unknown: &Unknown, values: &[f64]) -> Option<Self> {
+    fn with(&self, unknown: &UnknownNumbers, values: &[f64]) -> Option<Self> {
         Self::new(StaticFrictionParameters {
             steady: curve_of(values, unknown)?,
             transition_speed: *values.get(CURVE)?,

@@ -15,10 +15,10 @@ fn any_number() -> impl Strategy<Value = f64> {
     ]
 }
 
-fn level() -> impl Strategy<Value = Level> {
+fn level() -> impl Strategy<Value = FrictionLevel> {
     (-12.0..12.0f64, 0.0..3.0f64).prop_map(|(size, rise)| {
         let coulomb = 10_f64.powf(size);
-        Level {
+        FrictionLevel {
             coulomb,
             stiction: coulomb * (1.0 + rise),
         }
@@ -181,8 +181,8 @@ proptest! {
     fn parameters_of_any_kind(numbers in prop::array::uniform14(any_number())) {
         let [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = numbers;
         let steady = SteadyState {
-            forward: Level { coulomb: a, stiction: b },
-            backward: Level { coulomb: c, stiction: d },
+            forward: FrictionLevel { coulomb: a, stiction: b },
+            backward: FrictionLevel { coulomb: c, stiction: d },
             stribeck_speed: e, stribeck_exponent: f,
             viscous: g, viscous_quadratic: h, viscous_cubic: i,
         };
@@ -234,7 +234,7 @@ fn errors_say_what_would_be_valid() {
 #[test]
 fn levels_of_zero_carry_nothing() {
     let mut steady = FLAT;
-    steady.backward = Level {
+    steady.backward = FrictionLevel {
         coulomb: 0.0,
         stiction: 0.0,
     };

@@ -192,7 +192,7 @@ fn the_general_law_is_lugre_on_its_curve() {
         damping: 900.0,
         viscous: 300.0,
     };
-    let level = Level {
+    let level = FrictionLevel {
         coulomb: p.coulomb,
         stiction: p.stiction,
     };

@@ -9,17 +9,18 @@ mod truth;
 
 use lugre::{
     BoucWen, BoucWenOnset, Bristle, BristleParameters, Dahl, DahlOnset, ElastoPlastic,
-    ElastoPlasticOnset, GeneralLuGre, Level, LinearOnset, MaxwellSlip, MaxwellSlipParameters,
-    Onset, Regularisation, StaticFriction, StaticFrictionParameters, SteadyState,
+    ElastoPlasticOnset, FrictionLevel, GeneralLuGre, LinearOnset, MaxwellSlip,
+    MaxwellSlipParameters, Onset, Regularisation, StaticFriction, StaticFrictionParameters,
+    SteadyState,
 };
 
 /// A linear guide, other levels in either direction.
 pub const CURVE: SteadyState = SteadyState {
-    forward: Level {
+    forward: FrictionLevel {
         coulomb: 60.0,
         stiction: 85.0,
     },
-    backward: Level {
+    backward: FrictionLevel {
         coulomb: 70.0,
         stiction: 80.0,
     },
@@ -32,11 +33,11 @@ pub const CURVE: SteadyState = SteadyState {
 
 /// The same without a fall.
 pub const FLAT: SteadyState = SteadyState {
-    forward: Level {
+    forward: FrictionLevel {
         coulomb: 60.0,
         stiction: 60.0,
     },
-    backward: Level {
+    backward: FrictionLevel {
         coulomb: 70.0,
         stiction: 70.0,
     },
