@@ -154,20 +154,6 @@ fn a_slide_shows_the_machine() {
         [160.0, 500.0],
         [500.0, 1000.0],
     ];
-    for band in bands {
-        let all = errors(&found, band);
-        println!(
-            "{band:?}: {} lines, median {:.4} 95 % {:.4} most {:.4}",
-            all.len(),
-            quantile(&all, 0.5),
-            quantile(&all, 0.95),
-            quantile(&all, 1.0)
-        );
-    }
-    println!(
-        "{:?}\n{:?}\n{:?}\n{:?}",
-        found.margins, found.comparison, found.traps, found.band_hz
-    );
     assert!(
         found.is_usable() && found.traps.is_empty(),
         "{:?}",
@@ -204,11 +190,6 @@ fn what_looks_right_and_is_wrong_is_told() {
         ..Slide::default()
     });
     let all = errors(&still, [4.0, 40.0]);
-    println!(
-        "standstill: {} lines above 0.9, median error {}",
-        all.len(),
-        quantile(&all, 0.5)
-    );
     assert!(quantile(&all, 0.5) > 0.5);
     assert!(
         refused(&still)[0].contains("the load stands"),
@@ -220,7 +201,6 @@ fn what_looks_right_and_is_wrong_is_told() {
         speed: 0.004,
         ..Slide::default()
     });
-    println!("slow: {:?}", slow.traps);
     assert!(
         slow.traps
             .iter()
@@ -266,7 +246,6 @@ fn what_looks_right_and_is_wrong_is_told() {
         coarse.traps
     );
     let m = margins(&coarse);
-    println!("5 Hz: {m:?}");
     assert!(m.by_response.value < m.model.unwrap() - 0.05, "{m:?}");
 
     let belt = example("belt");
@@ -281,7 +260,6 @@ fn what_looks_right_and_is_wrong_is_told() {
             },
         ),
     );
-    println!("belt: {:?}", long.traps);
     assert!(
         warned(&long)
             .iter()
@@ -298,7 +276,6 @@ fn what_looks_right_and_is_wrong_is_told() {
         ..Slide::default()
     };
     let quick = measured(&motor, &self::log(&motor, quick));
-    println!("linear motor: {:?}", quick.traps);
     assert!(
         refused(&quick)
             .iter()
@@ -356,14 +333,6 @@ fn hidden_delay(name: &str, places: &[f64], slide: Slide) -> [Option<f64>; 2] {
     for found in &all {
         assert!(found.is_usable(), "{name}: {:?}", found.traps);
         let compared = found.comparison.as_ref().unwrap();
-        println!(
-            "{name}: {:?} {:?} {:?} {:?} {:?}",
-            compared.delay_s,
-            compared.gain,
-            compared.distance_corrected,
-            found.band_hz,
-            found.traps
-        );
         let late = compared.delay_s.value;
         assert!((late - 3e-4).abs() < 9e-6, "{name}: {late:e}");
         assert!(
@@ -388,12 +357,7 @@ fn hidden_delay(name: &str, places: &[f64], slide: Slide) -> [Option<f64>; 2] {
     let blind = Tuning::of(&file, &settings(LoopSet::nominal())).unwrap();
     let set = LoopSet::nominal().with_measured(&file, &all).unwrap();
     let seeing = Tuning::of(&file, &settings(set)).unwrap();
-    let found = [blind, seeing].map(|t| greatest(&t.axis));
-    println!(
-        "{name}: greatest sensitivity of the machine: model's gains {:?}, measured {:?}",
-        found[0], found[1]
-    );
-    found
+    [blind, seeing].map(|t| greatest(&t.axis))
 }
 
 /// Found: 2.32 and 1.60 (liu2025), 2.86 and 1.60 (rack), 4.72 and 1.60 (linear motor), 3.52 and 1.59 (belt).
@@ -453,9 +417,7 @@ fn a_body_on_the_table_is_said() {
         ..Slide::default()
     };
     let found = measured(&file, &log(&machine, slide));
-    println!("{:?}", found.fit.as_ref().map(|fit| fit.misfit));
     let compared = found.comparison.as_ref().unwrap();
-    println!("{:?} {:?}", compared.modes, compared.said);
     let new = compared.modes.iter().find(|mode| mode.model_hz.is_none());
     let at = new.unwrap().measured_hz.value;
     assert!((29.0..31.0).contains(&at), "{at}");
@@ -464,4 +426,31 @@ fn a_body_on_the_table_is_said() {
         said.iter().any(|s| s.contains("the model has no mode at")),
         "{said:?}"
     );
+}
+
+#[test]
+fn settings_that_are_none_are_refused() {
+    let axis = example("liu2025");
+    let log = log(
+        &axis,
+        Slide {
+            seconds: 1.5,
+            ..Slide::default()
+        },
+    );
+    let said = |settings| {
+        let found = MeasuredDrive::of(&axis, &log, &settings);
+        found.map(|found| found.method).unwrap_err().to_string()
+    };
+    let own = MeasureSettings::default();
+    let coherence = f64::NAN;
+    assert!(said(MeasureSettings { coherence, ..own }).contains("valid: from 0 to 1"));
+    let most_poles = 0;
+    assert!(said(MeasureSettings { most_poles, ..own }).contains("from 1 to 16"));
+    for step in [0.0, -1.0, f64::INFINITY] {
+        let step_hz = Some(step);
+        assert!(said(MeasureSettings { step_hz, ..own }).contains("above 0 Hz"));
+    }
+    let step_hz = Some(0.1);
+    assert!(said(MeasureSettings { step_hz, ..own }).contains("valid: a longer record"));
 }

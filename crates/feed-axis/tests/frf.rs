@@ -220,7 +220,6 @@ fn chirps_and_multisines_measure_too() {
         );
         let distance = one["comparison"]["distance"].as_f64().unwrap();
         let late = one["comparison"]["delay_s"]["value"].as_f64().unwrap();
-        println!("{signal}: {distance} {late}");
         assert!(
             distance < 0.06 && late.abs() < 1e-5,
             "{signal}: {distance} {late}"

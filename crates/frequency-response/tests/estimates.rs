@@ -49,7 +49,6 @@ fn whole_periods_have_no_error_but_noise() {
         worst = worst.max((line.value - truth).norm() / truth.norm());
         assert!(line.coherence > 0.999_999);
     }
-    println!("worst {worst:e}");
     assert!(worst < 2.5e-8 && found.lines.len() == 511, "{worst}");
 }
 
@@ -94,7 +93,6 @@ fn deviations_are_what_the_errors_are() {
             }
         }
         let (square, share) = (squares / count, inside / count);
-        println!("{averaging:?}: mean square {square}, inside {share}");
         assert!((square - 1.0).abs() < 0.08, "{averaging:?} {square}");
         assert!((share - 0.95).abs() < 0.012, "{averaging:?} {share}");
     }
@@ -210,7 +208,6 @@ fn positions_are_differenced() {
             let truth = 1e-3 / (z - 1.0);
             worst = worst.max((line.value - truth).norm() / truth.norm());
         }
-        println!("{averaging:?} {worst:e}");
         assert!(worst < most, "{averaging:?} {worst}");
     }
 }
@@ -282,6 +279,5 @@ fn records_are_put_together() {
             .sum::<f64>()
     };
     let ratio = error(&both) / error(&one);
-    println!("{ratio}");
     assert!((ratio - 0.5).abs() < 0.12, "{ratio}");
 }

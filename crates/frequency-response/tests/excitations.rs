@@ -99,7 +99,6 @@ fn multisines_are_flat_and_low() {
         let peak = x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let rms = (x.iter().map(|v| v * v).sum::<f64>() / 2000.0).sqrt();
         assert!((peak - 2.0).abs() < 1e-12);
-        println!("crest {}", peak / rms);
         assert!(peak / rms < most, "{}", peak / rms);
         let size = |line: usize| {
             let at = |k: usize| TAU * (line * k % 1000) as f64 / 1000.0;

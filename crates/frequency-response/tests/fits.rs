@@ -101,7 +101,6 @@ fn deviations_of_modes_are_what_the_errors_are() {
                 *sum += over * over / records as f64;
             }
         }
-        println!("{averaging:?} {squares:?}");
         assert!(
             squares.iter().all(|s| (0.35..1.9).contains(s)),
             "{averaging:?} {squares:?}"

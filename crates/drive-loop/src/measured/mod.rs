@@ -43,6 +43,20 @@ impl Default for MeasureSettings {
     }
 }
 
+impl MeasureSettings {
+    fn check(&self) -> Result<(), LoopError> {
+        let refused = |name, value, valid| Err(LoopError::Setting { name, value, valid });
+        if !(0.0..=1.0).contains(&self.coherence) {
+            return refused("the coherence", self.coherence, "from 0 to 1");
+        }
+        if !(1..=16).contains(&self.most_poles) {
+            let value = self.most_poles as f64;
+            return refused("the number of poles", value, "from 1 to 16");
+        }
+        Ok(())
+    }
+}
+
 /// One line of a response.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MeasuredLine {
@@ -188,6 +202,7 @@ impl MeasuredDrive {
     /// # Errors
     /// [`LoopError`] where the axis has no loops, or the log no command and no response.
     pub fn of(axis: &Axis, log: &Log, settings: &MeasureSettings) -> Result<Self, LoopError> {
+        settings.check()?;
         let recorded = Recorded::of(axis, log)?;
         let averaging = recorded.averaging(settings)?;
         let by = match recorded.is_excited() {
@@ -211,7 +226,11 @@ impl MeasuredDrive {
             [angle.as_ref(), speed.as_ref(), Some(&load)],
             settings.coherence,
         );
-        let shown = speed.unwrap_or_else(|| plant.speed_of(&at, &load));
+        let shown = match (speed, &angle) {
+            (Some(speed), _) => speed,
+            (None, Some(angle)) => MeasuredPlant::speed_of(&at, angle, 0),
+            (None, None) => MeasuredPlant::speed_of(&at, &load, 2),
+        };
         let margins = match recorded.is_excited() {
             true => margins(&recorded, averaging, &at, &plant)?,
             false => None,
@@ -219,12 +238,7 @@ impl MeasuredDrive {
         let traps = traps::traps(axis, &recorded, &shown, &at, margins.as_ref(), settings)?;
         // What is wrong anyhow is not explained.
         let is_usable = !traps.iter().any(|trap| trap.refused);
-        let fitted = FitSettings {
-            band_hz: plant.band_hz().unwrap_or_default(),
-            coherence: settings.coherence,
-            most_poles: settings.most_poles,
-            ..FitSettings::default()
-        };
+        let fitted = fit_settings(settings, plant.band_hz());
         let fit = match is_usable {
             true => ModalFit::of(&shown, &fitted).ok(),
             false => None,
@@ -293,6 +307,15 @@ impl LoopSet {
             self.delay += median.max(0.0) / axis.period;
         }
         Ok(self)
+    }
+}
+
+fn fit_settings(settings: &MeasureSettings, band_hz: Option<[f64; 2]>) -> FitSettings {
+    FitSettings {
+        band_hz: band_hz.unwrap_or_default(),
+        coherence: settings.coherence,
+        most_poles: settings.most_poles,
+        ..FitSettings::default()
     }
 }
 

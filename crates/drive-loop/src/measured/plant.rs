@@ -113,15 +113,19 @@ impl MeasuredPlant {
         ])
     }
 
-    /// The motor's speed where the log has none: that of the load's measured position, in the manner
-    /// in which the drive derives it.
-    pub(crate) fn speed_of(&self, at: &ModelAt, load: &FrequencyResponse) -> FrequencyResponse {
-        let mut speed = load.clone();
+    /// The motor's speed where the log has none: from the response of the motor's angle (0) or the load's
+    /// position (2), in the manner in which the drive derives it.
+    pub(crate) fn speed_of(
+        at: &ModelAt,
+        response: &FrequencyResponse,
+        which: usize,
+    ) -> FrequencyResponse {
+        let mut speed = response.clone();
         for line in &mut speed.lines {
             let Some(model) = at.shown(line.frequency_hz) else {
                 continue;
             };
-            let by = model[1] / model[2];
+            let by = model[1] / model[which];
             line.value *= by;
             line.deviation *= by.norm();
         }

@@ -78,7 +78,10 @@ impl<'a> Recorded<'a> {
         let command = log.channel(name).map_err(missing)?;
         let load = position_in(log).map_err(missing)?;
         let angle = log.channel("motor_angle_rad").ok();
-        let speed = log.channel("motor_speed_rad_s").ok();
+        // A speed loop that is slower than the control holds its speed over cycles, which the law of the
+        // loop counts by itself: the angle shows the motor then.
+        let is_held = axis.control.speed_every(axis.period) > 1 && angle.is_some();
+        let speed = log.channel("motor_speed_rad_s").ok().filter(|_| !is_held);
         for name in [
             name,
             "motor_speed_rad_s",
