@@ -2,7 +2,7 @@
 
 use axis_report::{Cell, Figure, Page, Section, Series, Table};
 
-use crate::commands::contour_laps::{Contoured, MachineContoured};
+use crate::commands::contour_found::{Contoured, MachineContoured};
 
 /// Points of a line in a figure at most: more than a screen has.
 const MOST_POINTS: usize = 4000;
@@ -288,7 +288,7 @@ fn feeds(found: &MachineContoured) -> Section {
     }
     let mut rows: Vec<_> = found.feeds.iter().collect();
     rows.sort_by(|a, b| a.feed_m_per_min.total_cmp(&b.feed_m_per_min));
-    let of = |pick: fn(&crate::commands::contour_laps::FeedRow) -> f64| -> Vec<f64> {
+    let of = |pick: fn(&crate::commands::contour_found::FeedRow) -> f64| -> Vec<f64> {
         rows.iter().map(|r| pick(r)).collect()
     };
     let figure = Figure::new(
