@@ -10,7 +10,7 @@
 use cfnn::train::{
     Bayesian, Dataset, Hyperparameters, Trainer, TrainingSettings, starting_weights,
 };
-use cfnn::{Architecture, Error, Links, Network, Scaling, Shape, TransferFunction};
+use cfnn::{Activation, Architecture, Error, Links, Network, Scaling, Shape};
 
 fn line(name: &str, quantity: &str, values: &[f64]) {
     let values: Vec<String> = values.iter().map(|v| format!("{v:e}")).collect();
@@ -26,9 +26,9 @@ fn describe(name: &str, network: &Network) {
     let architecture = network.architecture();
     let shape = architecture.shape();
     let code = |layer| match architecture.transfer(layer) {
-        TransferFunction::Tansig => 0.0,
-        TransferFunction::Logsig => 1.0,
-        TransferFunction::Purelin => 2.0,
+        Activation::Tansig => 0.0,
+        Activation::Logsig => 1.0,
+        Activation::Purelin => 2.0,
         _ => 3.0,
     };
     let sizes = [shape.inputs]
@@ -60,13 +60,13 @@ fn describe(name: &str, network: &Network) {
 type Case = (
     &'static str,
     &'static [usize],
-    &'static [TransferFunction],
+    &'static [Activation],
     Links,
     &'static [usize],
 );
 
 fn networks() -> Result<(), Error> {
-    use TransferFunction::{Logsig, Poslin, Purelin, Tansig};
+    use Activation::{Logsig, Poslin, Purelin, Tansig};
     let cases: [Case; 5] = [
         ("paper", &[34, 19, 8], &[Tansig; 3], Links::Cascade, &[]),
         ("plain", &[34, 19, 8], &[Tansig; 3], Links::FeedForward, &[]),

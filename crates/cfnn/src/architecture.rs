@@ -2,7 +2,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::error::same_length;
-use crate::{Error, Shape, TransferFunction};
+use crate::{Activation, Error, Shape};
 
 /// Which earlier activations a layer sees.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -29,11 +29,11 @@ pub enum Links {
 /// apart.
 ///
 /// ```
-/// use cfnn::{Architecture, Links, Shape, TransferFunction};
+/// use cfnn::{Architecture, Links, Shape, Activation};
 /// let shape = Shape { inputs: 4, hidden: vec![34, 19, 8], outputs: 1 };
 /// let plain = Architecture::from(shape)
 ///     .with_links(Links::FeedForward)
-///     .with_transfer(TransferFunction::Logsig)
+///     .with_transfer(Activation::Logsig)
 ///     .without_inputs(&[2])?;
 /// // Without the third input: 4 x 34, 35 x 19, 20 x 8, 9.
 /// assert_eq!(plain.parameters(), 970);
@@ -45,7 +45,7 @@ pub struct Architecture {
     shape: Shape,
     links: Links,
     /// One for each hidden layer, or none at all: tansig everywhere.
-    transfers: Vec<TransferFunction>,
+    transfers: Vec<Activation>,
     /// Rising.
     dropped: Vec<usize>,
 }
@@ -72,9 +72,9 @@ impl Architecture {
 
     /// With one transfer function in all hidden layers.
     #[must_use]
-    pub fn with_transfer(mut self, transfer: TransferFunction) -> Self {
+    pub fn with_transfer(mut self, transfer: Activation) -> Self {
         self.transfers = match transfer {
-            TransferFunction::Tansig => Vec::new(),
+            Activation::Tansig => Vec::new(),
             other => vec![other; self.shape.hidden.len()],
         };
         self
@@ -84,10 +84,10 @@ impl Architecture {
     ///
     /// # Errors
     /// [`Error::Length`] for another number of them than hidden layers.
-    pub fn with_transfers(mut self, transfers: &[TransferFunction]) -> Result<Self, Error> {
+    pub fn with_transfers(mut self, transfers: &[Activation]) -> Result<Self, Error> {
         let layers = self.shape.hidden.len();
         same_length("transfer functions", transfers.len(), layers)?;
-        let plain = transfers.iter().all(|&t| t == TransferFunction::Tansig);
+        let plain = transfers.iter().all(|&t| t == Activation::Tansig);
         self.transfers = if plain {
             Vec::new()
         } else {
@@ -131,10 +131,10 @@ impl Architecture {
         self.links
     }
 
-    /// TransferFunction function of a hidden layer, counted from 0; tansig for one
+    /// Activation function of a hidden layer, counted from 0; tansig for one
     /// that does not exist.
     #[must_use]
-    pub fn transfer(&self, layer: usize) -> TransferFunction {
+    pub fn transfer(&self, layer: usize) -> Activation {
         self.transfers.get(layer).copied().unwrap_or_default()
     }
 
@@ -149,11 +149,7 @@ impl Architecture {
     /// # Errors
     /// [`Error::NotTansig`] with the first layer that is not.
     pub fn require_tansig(&self) -> Result<(), Error> {
-        match self
-            .transfers
-            .iter()
-            .position(|&t| t != TransferFunction::Tansig)
-        {
+        match self.transfers.iter().position(|&t| t != Activation::Tansig) {
             Some(layer) => Err(Error::NotTansig { layer }),
             None => Ok(()),
         }
@@ -222,7 +218,7 @@ impl Architecture {
     }
 
     /// Empty where all are tansig.
-    pub(crate) fn transfers(&self) -> &[TransferFunction] {
+    pub(crate) fn transfers(&self) -> &[Activation] {
         &self.transfers
     }
 }

@@ -7,7 +7,7 @@
 
 use crate::forward::dot;
 use crate::pack::{padded, strip_width};
-use crate::{NetworkScalar, TransferFunction, Transfers};
+use crate::{Activation, NetworkScalar, Transfers};
 
 /// What an evaluation leaves behind.
 #[derive(Clone, Copy)]
@@ -47,7 +47,7 @@ impl<T: NetworkScalar, X: Transfers> Evaluated<'_, T, X> {
 }
 
 #[inline(always)]
-fn slopes<T: NetworkScalar>(transfer: TransferFunction, values: &[T], delta: &mut [T]) {
+fn slopes<T: NetworkScalar>(transfer: Activation, values: &[T], delta: &mut [T]) {
     for (d, &a) in delta.iter_mut().zip(values) {
         *d *= transfer.slope(a);
     }

@@ -2,7 +2,7 @@ use crate::backward::Evaluated;
 use crate::error::same_length;
 use crate::forward::forward;
 use crate::pack::count;
-use crate::{AllTansig, Error, NetworkScalar, ScalingRange, TransferFunction, Transfers};
+use crate::{Activation, AllTansig, Error, NetworkScalar, ScalingRange, Transfers};
 
 /// A network that borrows its weights, for use without an allocator.
 ///
@@ -84,13 +84,13 @@ impl<'a, T: NetworkScalar, const I: usize, const O: usize, const A: usize>
     /// The same network with these transfer functions, one for each hidden layer.
     ///
     /// ```
-    /// use cfnn::{FixedNetwork, ScalingRange, TransferFunction};
+    /// use cfnn::{FixedNetwork, ScalingRange, Activation};
     /// // y = max(0, 2 x - 1), the links from bias and input to the output zero.
     /// let mut packed = [0.0; cfnn::packed_len(1, &[1], 1)];
     /// cfnn::pack(1, &[1], 1, &[-1.0, 2.0, 0.0, 0.0, 1.0], &mut packed)?;
     /// let unit = ScalingRange::new("input", -1.0, 1.0)?;
     /// let network = FixedNetwork::<f64, 1, 1, 3>::new(&[1], &packed, [unit], [unit])?
-    ///     .with_transfers(&[TransferFunction::Poslin])?;
+    ///     .with_transfers(&[Activation::Poslin])?;
     /// assert_eq!(network.evaluate(&[0.25]), [0.0]);
     /// assert_eq!(network.evaluate(&[0.75]), [0.5]);
     /// # Ok::<(), cfnn::Error>(())
@@ -100,8 +100,8 @@ impl<'a, T: NetworkScalar, const I: usize, const O: usize, const A: usize>
     /// [`Error::Length`] for another number of them than hidden layers.
     pub fn with_transfers(
         self,
-        transfers: &'a [TransferFunction],
-    ) -> Result<FixedNetwork<'a, T, I, O, A, &'a [TransferFunction]>, Error> {
+        transfers: &'a [Activation],
+    ) -> Result<FixedNetwork<'a, T, I, O, A, &'a [Activation]>, Error> {
         same_length("transfer functions", transfers.len(), self.hidden.len())?;
         Ok(FixedNetwork {
             hidden: self.hidden,

@@ -6,7 +6,7 @@
 //! bias needs no special case.
 
 use crate::pack::{padded, strip_width};
-use crate::{NetworkScalar, TransferFunction, Transfers};
+use crate::{Activation, NetworkScalar, Transfers};
 
 /// Fills the hidden part of `activations` and writes the scaled outputs.
 ///
@@ -33,17 +33,12 @@ pub(crate) fn forward<T: NetworkScalar>(
         seen += neurons;
         rest = later;
     }
-    affine(
-        rest,
-        &activations[..seen],
-        output,
-        TransferFunction::Purelin,
-    );
+    affine(rest, &activations[..seen], output, Activation::Purelin);
 }
 
 /// `out = f(Wᵀ input)`, with `W` packed in strips.
 #[inline(always)]
-fn affine<T: NetworkScalar>(weights: &[T], input: &[T], out: &mut [T], transfer: TransferFunction) {
+fn affine<T: NetworkScalar>(weights: &[T], input: &[T], out: &mut [T], transfer: Activation) {
     if let [single] = out {
         [*single] = transfer.of([dot(weights, input)]);
         return;
@@ -70,11 +65,7 @@ fn affine<T: NetworkScalar>(weights: &[T], input: &[T], out: &mut [T], transfer:
 /// is known, so the compiler needs no remainder, and the next strip's products
 /// overlap with it.
 #[inline(always)]
-fn write<T: NetworkScalar, const C: usize>(
-    to: &mut [T],
-    mut sums: [T; C],
-    transfer: TransferFunction,
-) {
+fn write<T: NetworkScalar, const C: usize>(to: &mut [T], mut sums: [T; C], transfer: Activation) {
     sums = transfer.of(sums);
     // The usual case as one copy of known length.
     if let Some(whole) = to.first_chunk_mut::<C>() {

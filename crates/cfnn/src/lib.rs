@@ -125,7 +125,7 @@ pub use real::NetworkScalar;
 pub use scaling::Scaling;
 #[cfg(feature = "alloc")]
 pub use shape::{Layer, MAX_PARAMETERS, Shape};
-pub use transfer::{AllTansig, TransferFunction, Transfers};
+pub use transfer::{Activation, AllTansig, Transfers};
 
 /// The README's examples, run as tests.
 #[cfg(all(doctest, feature = "train"))]

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::{Architecture, Links, Network, Scaling, ScalingRange, Shape, TransferFunction};
+use crate::{Activation, Architecture, Links, Network, Scaling, ScalingRange, Shape};
 
 impl Serialize for Shape {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -75,7 +75,7 @@ struct StoredArchitecture {
     #[serde(default)]
     links: Links,
     #[serde(default)]
-    transfers: Vec<TransferFunction>,
+    transfers: Vec<Activation>,
     #[serde(default)]
     dropped_inputs: Vec<usize>,
 }

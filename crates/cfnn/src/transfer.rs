@@ -1,7 +1,7 @@
 use crate::NetworkScalar;
 
 /// What a neuron of a hidden layer makes of its net input `n`; the names are
-/// MATLAB's. The output layer is always [`TransferFunction::Purelin`].
+/// MATLAB's. The output layer is always [`Activation::Purelin`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -9,7 +9,7 @@ use crate::NetworkScalar;
     serde(rename_all = "lowercase")
 )]
 #[non_exhaustive]
-pub enum TransferFunction {
+pub enum Activation {
     /// `tanh n`, see [`NetworkScalar::tansig`].
     #[default]
     Tansig,
@@ -23,7 +23,7 @@ pub enum TransferFunction {
     Poslin,
 }
 
-impl TransferFunction {
+impl Activation {
     /// The value for each net input; NaN gives NaN.
     #[inline(always)]
     pub fn of<T: NetworkScalar, const C: usize>(self, net: [T; C]) -> [T; C] {
@@ -36,7 +36,7 @@ impl TransferFunction {
     }
 
     /// The derivative by the net input, from the value `a` that
-    /// [`TransferFunction::of`] gave: `1 - a²`, `a (1 - a)`, 1, and for `poslin` 1
+    /// [`Activation::of`] gave: `1 - a²`, `a (1 - a)`, 1, and for `poslin` 1
     /// where `a > 0` (0 at the corner).
     #[inline(always)]
     pub fn slope<T: NetworkScalar>(self, a: T) -> T {
@@ -53,14 +53,14 @@ impl TransferFunction {
 mod sealed {
     pub trait Sealed {}
     impl Sealed for super::AllTansig {}
-    impl Sealed for &[super::TransferFunction] {}
+    impl Sealed for &[super::Activation] {}
 }
 
 /// The transfer functions of the hidden layers of a [`crate::FixedNetwork`]:
 /// [`AllTansig`], or a list with one for each layer.
 pub trait Transfers: sealed::Sealed + Copy {
     /// That of a hidden layer, counted from 0.
-    fn of_layer(self, layer: usize) -> TransferFunction;
+    fn of_layer(self, layer: usize) -> Activation;
 }
 
 /// Tansig in all hidden layers, known to the compiler.
@@ -69,15 +69,15 @@ pub struct AllTansig;
 
 impl Transfers for AllTansig {
     #[inline(always)]
-    fn of_layer(self, _: usize) -> TransferFunction {
-        TransferFunction::Tansig
+    fn of_layer(self, _: usize) -> Activation {
+        Activation::Tansig
     }
 }
 
 /// As listed; tansig beyond the end of the list.
-impl Transfers for &[TransferFunction] {
+impl Transfers for &[Activation] {
     #[inline(always)]
-    fn of_layer(self, layer: usize) -> TransferFunction {
+    fn of_layer(self, layer: usize) -> Activation {
         self.get(layer).copied().unwrap_or_default()
     }
 }

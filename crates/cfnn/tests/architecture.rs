@@ -4,8 +4,7 @@ use cfnn::train::{
     Dataset, EarlyStopping, Initialisation, Trainer, TrainingSettings, starting_weights,
 };
 use cfnn::{
-    Architecture, Error, FixedNetwork, Links, Network, Scaling, ScalingRange, Shape,
-    TransferFunction,
+    Activation, Architecture, Error, FixedNetwork, Links, Network, Scaling, ScalingRange, Shape,
 };
 use proptest::prelude::*;
 
@@ -99,21 +98,15 @@ fn parameters_are_counted() {
     assert!(
         cascade
             .clone()
-            .with_transfers(&[TransferFunction::Poslin])
+            .with_transfers(&[Activation::Poslin])
             .is_err()
     );
-    let mixed = [
-        TransferFunction::Tansig,
-        TransferFunction::Poslin,
-        TransferFunction::Tansig,
-    ];
+    let mixed = [Activation::Tansig, Activation::Poslin, Activation::Tansig];
     let mixed = cascade.clone().with_transfers(&mixed).unwrap();
     assert_eq!(mixed.require_tansig(), Err(Error::NotTansig { layer: 1 }));
     assert_eq!(cascade.require_tansig(), Ok(()));
     assert_eq!(
-        cascade
-            .clone()
-            .with_transfers(&[TransferFunction::Tansig; 3]),
+        cascade.clone().with_transfers(&[Activation::Tansig; 3]),
         Ok(cascade)
     );
 }
@@ -123,26 +116,20 @@ fn parameters_are_counted() {
 #[test]
 fn transfer_functions_have_their_values() {
     let e = std::f64::consts::E;
-    let at = |transfer: TransferFunction, n: f64| transfer.of([n])[0];
+    let at = |transfer: Activation, n: f64| transfer.of([n])[0];
     let near = |a: f64, b: f64| assert!((a - b).abs() <= 2.0 * f64::EPSILON, "{a} against {b}");
-    near(
-        at(TransferFunction::Tansig, 1.0),
-        (e * e - 1.0) / (e * e + 1.0),
-    );
-    near(at(TransferFunction::Logsig, 1.0), e / (e + 1.0));
-    near(at(TransferFunction::Logsig, -1.0), 1.0 / (e + 1.0));
-    near(TransferFunction::Logsig.slope(0.25), 0.1875);
-    assert_eq!(at(TransferFunction::Logsig, 0.0), 0.5);
-    assert_eq!(at(TransferFunction::Logsig, f64::NEG_INFINITY), 0.0);
-    assert_eq!(at(TransferFunction::Logsig, f64::INFINITY), 1.0);
+    near(at(Activation::Tansig, 1.0), (e * e - 1.0) / (e * e + 1.0));
+    near(at(Activation::Logsig, 1.0), e / (e + 1.0));
+    near(at(Activation::Logsig, -1.0), 1.0 / (e + 1.0));
+    near(Activation::Logsig.slope(0.25), 0.1875);
+    assert_eq!(at(Activation::Logsig, 0.0), 0.5);
+    assert_eq!(at(Activation::Logsig, f64::NEG_INFINITY), 0.0);
+    assert_eq!(at(Activation::Logsig, f64::INFINITY), 1.0);
     assert_eq!(
-        (
-            at(TransferFunction::Poslin, -2.0),
-            at(TransferFunction::Poslin, 2.0)
-        ),
+        (at(Activation::Poslin, -2.0), at(Activation::Poslin, 2.0)),
         (0.0, 2.0)
     );
-    assert_eq!(at(TransferFunction::Purelin, -2.0), -2.0);
+    assert_eq!(at(Activation::Purelin, -2.0), -2.0);
     for transfer in TRANSFERS {
         assert!(at(transfer, f64::NAN).is_nan());
         assert!(transfer.of([f32::NAN])[0].is_nan());
@@ -157,11 +144,7 @@ fn borrowed_networks_have_transfer_functions_too() {
         hidden: vec![21, 1, 7],
         outputs: 2,
     };
-    let transfers = [
-        TransferFunction::Logsig,
-        TransferFunction::Purelin,
-        TransferFunction::Poslin,
-    ];
+    let transfers = [Activation::Logsig, Activation::Purelin, Activation::Poslin];
     let architecture = Architecture::from(shape)
         .with_transfers(&transfers)
         .unwrap();
@@ -260,8 +243,8 @@ fn any_architecture_is_trained() {
                 // Measured: 1.4e-4 and, with the output layer resolved, 6.4e-6 at most; corners 2.2e-4. Linear
                 // neurons are a linear map, whose least squares are 6.16669e-2 for all starts and links.
                 let (least, most) = match (transfer, settings.resolve_output) {
-                    (TransferFunction::Purelin, _) => (6.1666e-2, 6.1668e-2),
-                    (TransferFunction::Poslin, _) => (0.0, 6e-4),
+                    (Activation::Purelin, _) => (6.1666e-2, 6.1668e-2),
+                    (Activation::Poslin, _) => (0.0, 6e-4),
                     (_, true) => (0.0, 2e-5),
                     (_, false) => (0.0, 4e-4),
                 };

@@ -7,7 +7,7 @@ use cfnn::artifact::{
 use cfnn::train::{
     Bayesian, Dataset, EarlyStopping, Trainer, TrainingSettings, nguyen_widrow, starting_weights,
 };
-use cfnn::{Architecture, Links, Network, Scaling, Shape, TransferFunction};
+use cfnn::{Activation, Architecture, Links, Network, Scaling, Shape};
 use proptest::prelude::*;
 
 use crate::support::architectures;
@@ -104,7 +104,7 @@ fn bayesian() -> (Dataset, cfnn::train::Checkpoint) {
     };
     let architecture = Architecture::from(shape)
         .with_links(Links::FeedForward)
-        .with_transfers(&[TransferFunction::Logsig, TransferFunction::Tansig])
+        .with_transfers(&[Activation::Logsig, Activation::Tansig])
         .unwrap()
         .without_inputs(&constant)
         .unwrap();

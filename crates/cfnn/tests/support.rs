@@ -1,13 +1,13 @@
 //! What several tests need: any architecture, and a network written out by its definition.
 
-use cfnn::{Architecture, Links, Shape, TransferFunction};
+use cfnn::{Activation, Architecture, Links, Shape};
 use proptest::prelude::*;
 
-pub const TRANSFERS: [TransferFunction; 4] = [
-    TransferFunction::Tansig,
-    TransferFunction::Logsig,
-    TransferFunction::Purelin,
-    TransferFunction::Poslin,
+pub const TRANSFERS: [Activation; 4] = [
+    Activation::Tansig,
+    Activation::Logsig,
+    Activation::Purelin,
+    Activation::Poslin,
 ];
 
 /// A sequence that fills [-1, 1] evenly.
@@ -20,8 +20,7 @@ pub fn architectures() -> impl Strategy<Value = Architecture> {
     let hidden = prop::collection::vec((1..25usize, 0..4usize), 0..4);
     (1..4usize, hidden, 1..4usize, any::<bool>(), any::<bool>()).prop_map(
         |(inputs, hidden, outputs, plain, drop)| {
-            let transfers: Vec<TransferFunction> =
-                hidden.iter().map(|&(_, t)| TRANSFERS[t]).collect();
+            let transfers: Vec<Activation> = hidden.iter().map(|&(_, t)| TRANSFERS[t]).collect();
             let shape = Shape {
                 inputs,
                 hidden: hidden.iter().map(|&(n, _)| n).collect(),
@@ -71,12 +70,12 @@ pub fn reference(architecture: &Architecture, weights: &[f64], scaled: &[f64]) -
             return (net, corner);
         }
         let value = |n: f64| match architecture.transfer(layer) {
-            TransferFunction::Tansig => libm::tanh(n),
-            TransferFunction::Logsig => 1.0 / (1.0 + libm::exp(-n)),
-            TransferFunction::Poslin => n.max(0.0),
+            Activation::Tansig => libm::tanh(n),
+            Activation::Logsig => 1.0 / (1.0 + libm::exp(-n)),
+            Activation::Poslin => n.max(0.0),
             _ => n,
         };
-        if architecture.transfer(layer) == TransferFunction::Poslin {
+        if architecture.transfer(layer) == Activation::Poslin {
             corner = net.iter().fold(corner, |least, n| least.min(n.abs()));
         }
         earlier.push(net.into_iter().map(value).collect());

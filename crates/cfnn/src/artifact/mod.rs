@@ -36,7 +36,7 @@ use thiserror::Error as ThisError;
 pub use checkpoint::{checkpoint_from_bytes, checkpoint_to_bytes};
 use frame::Format;
 
-use crate::{Architecture, Error, Links, Network, Scaling, Shape, TransferFunction};
+use crate::{Activation, Architecture, Error, Links, Network, Scaling, Shape};
 
 /// Why an artifact was refused or could not be written.
 #[derive(Debug, Clone, PartialEq, ThisError)]
@@ -184,10 +184,10 @@ fn plain(network: &Network) -> bool {
 impl From<&Architecture> for ArchitectureV2 {
     fn from(architecture: &Architecture) -> Self {
         let code = |layer| match architecture.transfer(layer) {
-            TransferFunction::Tansig => 0,
-            TransferFunction::Logsig => 1,
-            TransferFunction::Purelin => 2,
-            TransferFunction::Poslin => 3,
+            Activation::Tansig => 0,
+            Activation::Logsig => 1,
+            Activation::Purelin => 2,
+            Activation::Poslin => 3,
         };
         let layers = 0..architecture.shape().hidden.len();
         let dropped = architecture.dropped_inputs().iter();
@@ -216,10 +216,10 @@ impl ArchitectureV2 {
             other => return Err(unknown("links", other, "0 or 1")),
         };
         let transfer = |&code: &u8| match code {
-            0 => Ok(TransferFunction::Tansig),
-            1 => Ok(TransferFunction::Logsig),
-            2 => Ok(TransferFunction::Purelin),
-            3 => Ok(TransferFunction::Poslin),
+            0 => Ok(Activation::Tansig),
+            1 => Ok(Activation::Logsig),
+            2 => Ok(Activation::Purelin),
+            3 => Ok(Activation::Poslin),
             other => Err(unknown("transfer", other, "0, 1, 2 or 3")),
         };
         let transfers = (self.transfers.iter().map(transfer)).collect::<Result<Vec<_>, _>>()?;

@@ -8,7 +8,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 
 use super::dataset::{BLOCK, SampleBlock};
 use crate::simd::{Kernel, Vectors};
-use crate::{Architecture, Layer, TransferFunction};
+use crate::{Activation, Architecture, Layer};
 
 /// Rows of delta products that are formed together.
 pub(super) const LANES: usize = 8;
@@ -25,7 +25,7 @@ pub(super) struct Layout {
     pub neurons: usize,
     pub parameters: usize,
     /// One for each hidden layer.
-    pub transfers: Vec<TransferFunction>,
+    pub transfers: Vec<Activation>,
     /// Parameters that the architecture has; none if all.
     pub free: Option<Vec<usize>>,
     /// Activations that the output layer sees.
@@ -91,7 +91,7 @@ pub(super) struct BlockWork {
 }
 
 /// The transfer function of every element in place.
-struct Apply<'a>(TransferFunction, &'a mut [f64]);
+struct Apply<'a>(Activation, &'a mut [f64]);
 
 impl Kernel for Apply<'_> {
     type Output = ();
@@ -99,9 +99,9 @@ impl Kernel for Apply<'_> {
     #[inline(always)]
     fn run(self) {
         let Self(transfer, values) = self;
-        if transfer == TransferFunction::Tansig {
+        if transfer == Activation::Tansig {
             // Known to the compiler: this is the usual one.
-            apply(TransferFunction::Tansig, values);
+            apply(Activation::Tansig, values);
         } else {
             apply(transfer, values);
         }
@@ -109,7 +109,7 @@ impl Kernel for Apply<'_> {
 }
 
 #[inline(always)]
-fn apply(transfer: TransferFunction, values: &mut [f64]) {
+fn apply(transfer: Activation, values: &mut [f64]) {
     let (eights, rest) = values.as_chunks_mut::<8>();
     for eight in eights {
         *eight = transfer.of(*eight);
@@ -237,9 +237,9 @@ impl BlockWork {
             let values = &self.activations[rows * layer.seen..][..rows * layer.neurons];
             // Tansig apart, so that its loop has no choice in it.
             match layout.transfers[index] {
-                TransferFunction::Tansig => {
+                Activation::Tansig => {
                     for (d, a) in delta.iter_mut().zip(values) {
-                        *d *= TransferFunction::Tansig.slope(*a);
+                        *d *= Activation::Tansig.slope(*a);
                     }
                 }
                 other => {

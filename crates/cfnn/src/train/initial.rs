@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::dataset::Dataset;
-use crate::{Architecture, Error, Layer, Scaling, Shape, TransferFunction};
+use crate::{Activation, Architecture, Error, Layer, Scaling, Shape};
 
 /// Random numbers for one purpose, independent of the other purposes.
 pub(super) fn generator(seed: u64, purpose: u64) -> ChaCha8Rng {
@@ -63,11 +63,9 @@ pub fn starting_weights(architecture: &Architecture, seed: u64) -> Result<Vec<f6
             continue;
         }
         match architecture.transfer(index) {
-            TransferFunction::Tansig => nguyen_widrow_layer(1.4, layer, &links, own, &mut rng),
-            TransferFunction::Logsig => nguyen_widrow_layer(2.8, layer, &links, own, &mut rng),
-            TransferFunction::Purelin | TransferFunction::Poslin => {
-                uniform_layer(layer, &links, own, &mut rng)
-            }
+            Activation::Tansig => nguyen_widrow_layer(1.4, layer, &links, own, &mut rng),
+            Activation::Logsig => nguyen_widrow_layer(2.8, layer, &links, own, &mut rng),
+            Activation::Purelin | Activation::Poslin => uniform_layer(layer, &links, own, &mut rng),
         }
     }
     Ok(weights)

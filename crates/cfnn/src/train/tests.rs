@@ -8,7 +8,7 @@ use super::cholesky::Symmetric;
 use super::dataset::blocks;
 use super::engine::Engine;
 use super::{Dataset, nguyen_widrow, starting_weights};
-use crate::{Architecture, Links, Network, Scaling, Shape, TransferFunction};
+use crate::{Activation, Architecture, Links, Network, Scaling, Shape};
 
 fn samples(shape: &Shape, count: usize) -> (Dataset, Scaling) {
     let fraction = |x: f64| x - libm::floor(x);
@@ -193,11 +193,7 @@ fn training_has_the_jacobian_of_the_network() {
         hidden: vec![7, 1, 5],
         outputs: 2,
     };
-    let transfers = [
-        TransferFunction::Logsig,
-        TransferFunction::Tansig,
-        TransferFunction::Poslin,
-    ];
+    let transfers = [Activation::Logsig, Activation::Tansig, Activation::Poslin];
     for links in [Links::Cascade, Links::FeedForward] {
         let architecture = Architecture::from(shape.clone())
             .with_links(links)

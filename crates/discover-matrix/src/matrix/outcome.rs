@@ -47,6 +47,7 @@ pub struct Split {
     /// The pair that it was to separate, the hidden one first.
     pub pair: [String; 2],
     /// PredictedEffect fall of D between the two.
+    #[serde(alias = "foreseen")]
     pub predicted: f64,
     /// What that search named, in the order of evidence.
     pub named: Vec<NamedEffect>,
@@ -69,6 +70,7 @@ pub struct CaseOutcome {
     /// The case.
     pub case: Case,
     /// What could be known beforehand, one entry a hidden effect.
+    #[serde(alias = "foreseen")]
     pub predicted: Vec<PredictedEffect>,
     /// Why there is no verdict, where there is none.
     pub failed: Option<String>,

@@ -12,6 +12,7 @@ pub struct CaseOutcome {
     /// The case, its sizes scaled.
     pub case: Case,
     /// What could be known beforehand, one entry a hidden effect.
+    #[serde(alias = "foreseen")]
     pub predicted: Vec<PredictedEffect>,
     /// Why there is no verdict, where there is none.
     pub failed: Option<String>,
