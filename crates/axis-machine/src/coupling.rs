@@ -25,7 +25,7 @@ pub struct AxisCoupling {
     pub of: usize,
     /// By the motion of which, from 0.
     pub by: usize,
-    /// Squareness error φ, rad (m/m): the tool moves so far along `of` per way of `by`.
+    /// Squareness error φ, rad (m/m): the tool moves so far along `of` per travel of `by`.
     pub squareness: f64,
     /// Cross-talk k, m/(m/s²) = s²: the tool moves so far along `of` per acceleration of `by`.
     pub crosstalk: f64,

@@ -95,7 +95,7 @@ pub(crate) const MOST_SAMPLES: f64 = 5e6;
 #[non_exhaustive]
 pub enum CircleFitError {
     /// Circles that cannot tell the unknowns apart.
-    #[error("the circles tell {rank} of {unknowns} unknowns: {why}; valid: {valid}")]
+    #[error("the circles determine {rank} of {unknowns} unknowns: {why}; valid: {valid}")]
     Rank {
         /// How many combinations of the unknowns they tell.
         rank: usize,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use axis_sim::{Axis, AxisFileError};
+use axis_sim::{Axis, AxisFileError, toml_message};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -197,7 +197,7 @@ impl MachineFile {
         let text: MachineText =
             toml::from_str(&content).map_err(|error| MachineFileError::Text {
                 file: file.clone(),
-                what: error.to_string().trim_end().to_owned(),
+                what: toml_message(&content, &error),
             })?;
         if text.schema != 1 {
             return Err(MachineFileError::Value {

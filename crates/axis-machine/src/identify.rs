@@ -1,5 +1,6 @@
 //! Squareness and cross-talk from circular tests.
 
+use nalgebra::{SMatrix, SymmetricEigen};
 use toolpath::iso230_4::NominalCircle;
 use toolpath::named::Direction;
 
@@ -27,16 +28,16 @@ pub struct CircleEstimate {
     pub standard_error: f64,
 }
 
-/// What circles tell of two axes.
+/// What circular tests show of two axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CirclesFound {
     /// Centre, less the nominal one, m.
     pub centre: [CircleEstimate; 2],
     /// Radius, less the nominal one, m.
     pub radius: CircleEstimate,
-    /// Squareness error φ of both axes, rad: X moves so far per way of Y.
+    /// Squareness error φ of both axes, rad: X moves so far per travel of Y.
     pub squareness: CircleEstimate,
-    /// Cross-talk k, m/(m/s²): of X by the acceleration of Y and of Y by that of X together, which no circle tells apart.
+    /// Cross-talk k, m/(m/s²): of X by the acceleration of Y and of Y by that of X together, which no circle distinguishes.
     pub crosstalk: CircleEstimate,
     /// Lag of Y less that of X, s; none if all circles had one direction.
     pub lag: Option<CircleEstimate>,
@@ -60,7 +61,7 @@ const RANK: f64 = 1e-11;
 /// ```
 ///
 /// (a lag Δτ of Y moves the tool by −Δτ v_y = −Δτ σ v cos θ in Y; the sign above is that of a lag of X less that of Y, so that
-/// the value returned is its negative). At one v/R the columns of φ and k are one: 5 of 6 unknowns are told. What friction leaves
+/// the value returned is its negative). At one v/R the columns of φ and k are one: only 5 of 6 unknowns can be determined. What friction leaves
 /// after reversals is opposite in the two directions, as the lag is, and falls out of φ and k where both were run.
 ///
 /// # Errors
@@ -85,21 +86,23 @@ pub fn fit_circles(circles: &[MeasuredCircle<'_>]) -> Result<CirclesFound, Circl
         }
     }
     let scale: [f64; MOST] = std::array::from_fn(|i| normal[i][i].max(f64::MIN_POSITIVE).sqrt());
-    let scaled: [[f64; MOST]; MOST] = std::array::from_fn(|i| {
-        std::array::from_fn(|j| match i == j {
-            true => 1.0,
-            false => normal[i][j] / (scale[i] * scale[j]),
-        })
+    // An unknown that is not asked for is one that is determined, apart from the others.
+    let scaled = SMatrix::<f64, MOST, MOST>::from_fn(|i, j| match i == j {
+        true => 1.0,
+        false => normal[i][j] / (scale[i] * scale[j]),
     });
-    let (values, vectors) = eigen(scaled);
-    let told = |k: &usize| values[*k] > RANK;
-    let rank = (0..MOST).filter(told).count() - (MOST - unknowns);
+    let SymmetricEigen {
+        eigenvalues: values,
+        eigenvectors: vectors,
+    } = scaled.symmetric_eigen();
+    let determined = values.iter().filter(|value| **value > RANK).count();
+    let rank = determined - (MOST - unknowns);
     if rank < unknowns {
         return Err(refuse(circles, rank, unknowns));
     }
     let inverse = |i: usize, j: usize| -> f64 {
         let sum: f64 = (0..MOST)
-            .map(|k| vectors[i][k] * vectors[j][k] / values[k])
+            .map(|k| vectors[(i, k)] * vectors[(j, k)] / values[k])
             .sum();
         sum / (scale[i] * scale[j])
     };
@@ -202,33 +205,4 @@ fn refuse(circles: &[MeasuredCircle<'_>], rank: usize, unknowns: usize) -> Circl
         why,
         valid,
     }
-}
-
-/// Eigenvalues and eigenvectors (columns) of a symmetric matrix, by Jacobi's rotations in fixed order, row by row
-/// (Golub and Van Loan, Matrix Computations).
-fn eigen(mut a: [[f64; MOST]; MOST]) -> ([f64; MOST], [[f64; MOST]; MOST]) {
-    let mut v: [[f64; MOST]; MOST] =
-        std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
-    for _ in 0..30 {
-        for p in 0..MOST {
-            for q in p + 1..MOST {
-                if a[p][q] == 0.0 {
-                    continue;
-                }
-                let tau = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-                let t = 1f64.copysign(tau) / (tau.abs() + (1.0 + tau * tau).sqrt());
-                let c = 1.0 / (1.0 + t * t).sqrt();
-                let s = t * c;
-                for row in a.iter_mut().chain(&mut v) {
-                    let (x, y) = (row[p], row[q]);
-                    (row[p], row[q]) = (c * x - s * y, s * x + c * y);
-                }
-                let (above, below) = a.split_at_mut(q);
-                for (x, y) in above[p].iter_mut().zip(&mut below[0]) {
-                    (*x, *y) = (c * *x - s * *y, s * *x + c * *y);
-                }
-            }
-        }
-    }
-    (std::array::from_fn(|i| a[i][i]), v)
 }

@@ -121,7 +121,7 @@ fn one_feed_does_not() {
     .unwrap_err();
     assert_eq!(
         error.to_string(),
-        "the circles tell 5 of 6 unknowns: at one feed squareness and cross-talk deform a circle alike; valid: circles of at least two feeds, or radii, so that feed/radius differs"
+        "the circles determine 5 of 6 unknowns: at one feed squareness and cross-talk deform a circle alike; valid: circles of at least two feeds, or radii, so that feed/radius differs"
     );
     assert!(matches!(
         found(&[(0.05, Clockwise)], 0.0, 0.0, 0.0, 0.0),
@@ -157,7 +157,7 @@ fn what_cannot_be_is_refused() {
     }
     assert!(fit_circles(&[circle(0.05, RADIUS, &[[0.0; 2]; 3])]).is_err());
     assert!(fit_circles(&[circle(0.05, RADIUS, &[[f64::NAN; 2]; 9])]).is_err());
-    // All in one place: not one of the unknowns of angle is told.
+    // All in one place: none of the unknowns that depend on the angle can be determined.
     let same = [[RADIUS, 0.0]; 9];
     let error =
         fit_circles(&[circle(0.05, RADIUS, &same), circle(0.1, RADIUS, &same)]).unwrap_err();

@@ -121,7 +121,7 @@ pub use axis::{
     Axis, BalanceSettings, Experiment, FOLLOWING_ERROR_LIMIT, LoadSensor, MoveSpec, SampleRanges,
     Sensors, Simulation, Stroke, Tolerances, ValueRange,
 };
-pub use axis_file::{AxisFileError, Registry, TABLES_WITHOUT_PARTS, toml_hint};
+pub use axis_file::{AxisFileError, Registry, TABLES_WITHOUT_PARTS, toml_message};
 pub use balance::{
     Balance, BalanceError, BalanceNoise, BalanceQuality, CutoffReason, TRANSMISSION_ERROR,
 };

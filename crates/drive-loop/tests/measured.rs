@@ -168,8 +168,9 @@ fn a_slide_shows_the_machine() {
     let m = margins(&found);
     let model = m.model.unwrap();
     assert!((model - 1.51).abs() < 0.01, "{model}");
-    assert!((m.by_response.value - model).abs() < 0.03, "{m:?}");
-    assert!((m.sensitivity.value - model).abs() < 0.05, "{m:?}");
+    // Found: 0.007 too low, both.
+    assert!((m.by_response.value - model).abs() < 0.02, "{m:?}");
+    assert!((m.sensitivity.value - model).abs() < 0.02, "{m:?}");
     let compared = found.comparison.as_ref().unwrap();
     assert!(compared.delay_s.value.abs() < 3e-6 && (compared.gain - 1.0).abs() < 0.005);
     assert_eq!(compared.modes.len(), 2);

@@ -289,7 +289,8 @@ pub(crate) struct Program {
 
 impl Program {
     fn parsed(text: String) -> PyResult<Self> {
-        let program = toml::from_str(&text).map_err(raise::<MotionError>)?;
+        let program = toml::from_str(&text)
+            .map_err(|error| MotionError::new_err(axis_sim::toml_message(&text, &error)))?;
         Ok(Self { program, text })
     }
 

@@ -43,6 +43,8 @@ def test_a_file_that_is_not_there_is_python_s_own_error(axis: fa.Axis, tmp_path:
     gone.write_bytes(b"\xff\xfe\x00")
     refused(fa.AxisError, "is no text in UTF-8", lambda: fa.Axis.load(gone))
     refused(fa.MotionError, "is no text in UTF-8", lambda: fa.Program.load(gone))
+    gone.write_text("start_mm = 600,5\n")
+    refused(fa.MotionError, r"decimal point: start_mm = 600\.5", lambda: fa.Program.load(gone))
 
 
 def test_a_motion_of_a_wrong_kind_is_named(axis: fa.Axis) -> None:

@@ -5,10 +5,13 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use axis_pipeline::ErrorUnit;
-use axis_sim::{Axis, AxisFileError};
+use axis_sim::{Axis, AxisFileError, toml_message};
 use campaign::Inputs;
 use clap::Args;
-use miette::{Diagnostic, IntoDiagnostic, LabeledSpan, Report, Result, SourceCode, WrapErr};
+use miette::{
+    Diagnostic, IntoDiagnostic, LabeledSpan, Report, Result, SourceCode, WrapErr, miette,
+};
+use serde::de::DeserializeOwned;
 
 use crate::exit::{busy, wrong_use};
 use crate::output::ready;
@@ -234,6 +237,11 @@ impl Diagnostic for Helped {
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         self.error.labels()
     }
+}
+
+/// A text in TOML as what it describes.
+pub fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T> {
+    toml::from_str(text).map_err(|error| miette!("{}", toml_message(text, &error)))
 }
 
 /// Reads a text file, naming it where that fails.

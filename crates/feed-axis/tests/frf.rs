@@ -162,6 +162,10 @@ fn what_cannot_be_measured_is_said() {
             "are no part of the program",
         ),
         (
+            "signal = \"prbs\"\namplitude_n_m = 2,5",
+            "decimal point: amplitude_n_m = 2.5",
+        ),
+        (
             "signal = \"noise\"\namplitude_n_m = 1",
             "unknown variant `noise`",
         ),

@@ -94,6 +94,26 @@ pub fn peak(figure: &Value) -> f64 {
 
 /// The page shows the peak that the command prints, in words and in its figure.
 #[test]
+fn a_decimal_comma_in_a_program_is_answered_with_the_line_as_it_should_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("comma.toml").display().to_string();
+    std::fs::write(&file, "start_mm = 600,5\n").unwrap();
+    for command in ["simulate", "heat"] {
+        let message = refuse(&[
+            command,
+            "--axis",
+            "data/axes/screw-heat.toml",
+            "--program",
+            &file,
+        ]);
+        assert!(
+            message.contains("decimal point: start_mm = 600.5"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
 fn simulate_shows_its_motion() {
     let folder = tempfile::tempdir().unwrap();
     let page = folder.path().join("motion.html");

@@ -30,8 +30,8 @@ fn estimate(
     FrequencyResponse::of(&record, by, averaging).unwrap()
 }
 
-/// Whole periods in the steady state: the closed form to rounding (found: 8e-9, what is left of the
-/// transient), on every line.
+/// Whole periods in the steady state: the closed form on every line. Found: 8e-9, the rest of the transient
+/// after the period that is skipped.
 #[test]
 fn whole_periods_have_no_error_but_noise() {
     let machine = Machine::default();
@@ -98,7 +98,7 @@ fn deviations_are_what_the_errors_are() {
     }
 }
 
-/// Without excitation H1 in closed loop is −1/C, the controller turned over, however long the record:
+/// Without excitation H1 in closed loop is −1/C, the negative inverse of the controller, however long the record:
 /// here with a twelfth of excitation, where the estimate by the excitation is the machine still.
 #[test]
 fn h1_in_closed_loop_is_the_controller_turned_over() {

@@ -29,13 +29,12 @@ fn an_integrator_with_delay() {
     assert!(found.gain_down.is_none());
 }
 
-/// k/(s(s + 1)): |1 + L|² = (w² − 2kw + k² + w)/(w² + w) with w = ω², so its least is at the root of
-/// (1 + 2k) w² − 2k² w − k² … found here on its own fine grid; the deviation is |S|² that of L.
+/// k/(s(s + 1)): |1 + L|² = (w² − 2kw + k² + w)/(w² + w) with w = ω², so its least is at the positive root of
+/// k w² − k² w − k²/2; the standard deviation is |S|² times that of L.
 #[test]
 fn the_greatest_sensitivity() {
     let k = 2.0;
     let found = LoopMargins::of(&lines(|s| k / (s * (s + 1.0)), 1e-3, 10.0)).unwrap();
-    // d/dw of (w² − 2kw + k² + w)/(w² + w) = 0: k w² − k² w − k²/2 = 0.
     let w = 0.5 * (k + (k * k + 2.0 * k).sqrt());
     let least = (w * w - 2.0 * k * w + k * k + w) / (w * w + w);
     let truth = 1.0 / least.sqrt();
@@ -48,7 +47,7 @@ fn the_greatest_sensitivity() {
     assert!((found.sensitivity.deviation - deviation).abs() < 1e-12);
 }
 
-/// k(s + 1)²/s³ is stable for k above 1/2 alone: at ω = 1 it is −2k … real, so the gain may fall to 1/(2k).
+/// k(s + 1)²/s³ is stable for k above 1/2 alone: at ω = 1 it is −2k, so the gain may fall to 1/(2k).
 #[test]
 fn a_conditionally_stable_loop_has_a_lower_margin() {
     let k = 2.0;

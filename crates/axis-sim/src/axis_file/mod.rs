@@ -27,7 +27,7 @@ use error::Source;
 use fields::{Fields, Record};
 pub use layout::TABLES_WITHOUT_PARTS;
 pub use registry::Registry;
-pub use syntax::toml_hint;
+pub use syntax::toml_message;
 
 /// Size beyond which a file is no axis file, bytes.
 const MOST_BYTES: u64 = 1 << 20;

@@ -1,15 +1,26 @@
 //! What to write instead, where a text is not TOML.
 
-/// What is meant by the line at `offset` of a text that is no TOML for what stands there: a number with a
-/// decimal comma or with separators of thousands, or a text without quotes. `None` for any other mistake.
+/// What the reader of TOML says of a text that is none, and what to write instead where that is plain: of a
+/// number with a decimal comma or with separators of thousands, and of a text without quotes.
 ///
 /// ```
 /// let text = "mass_kg = 12,5\n";
-/// let hint = axis_sim::toml_hint(text, 12).unwrap();
-/// assert_eq!(hint, "numbers are written with a decimal point: mass_kg = 12.5");
+/// let error = toml::from_str::<toml::Table>(text).unwrap_err();
+/// let message = axis_sim::toml_message(text, &error);
+/// assert!(message.ends_with("numbers are written with a decimal point: mass_kg = 12.5"));
 /// ```
 #[must_use]
-pub fn toml_hint(text: &str, offset: usize) -> Option<String> {
+pub fn toml_message(text: &str, error: &toml::de::Error) -> String {
+    let at = error.span().map_or(0, |span| span.start);
+    let said = error.to_string();
+    match toml_hint(text, at) {
+        Some(hint) => format!("{}\n{hint}", said.trim_end()),
+        None => said.trim_end().to_owned(),
+    }
+}
+
+/// What is meant by the line at `offset` of a text that is no TOML; `None` where that is not plain.
+pub(super) fn toml_hint(text: &str, offset: usize) -> Option<String> {
     let before = text.get(..offset.min(text.len()))?;
     let line = text.lines().nth(before.matches('\n').count())?;
     let (key, value) = line.split_once('=')?;

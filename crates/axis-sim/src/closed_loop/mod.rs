@@ -158,7 +158,7 @@ impl ClosedLoop {
         disturb(&mut hooks);
         let substeps = substeps(&axis);
         let assembly = Assembly {
-            friction: *axis.friction.share(),
+            friction: axis.friction.share().as_ref().clone(),
             loads: axis.loads.iter().map(|load| load.share()).collect(),
             hooks: hooks.clone(),
             backlash: axis.mechanism.backlash(),

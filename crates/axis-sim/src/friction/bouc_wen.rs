@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use lugre::BoucWenOnset;
 
+use super::Friction;
 use super::contact::of_bristle;
 use super::keys::{linear, rotary};
 use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
-use super::{Contact, Friction};
 use crate::mechanism::Freedom;
 use crate::part::{Known, PartError, PartKind, Values, number};
 
@@ -56,5 +56,5 @@ fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {
         exponent: v.number("exponent")?,
         loading_share: v.number("loading_share")?,
     };
-    of_bristle(v, freedom, onset, Contact::BoucWen)
+    of_bristle(v, freedom, onset)
 }

@@ -1,10 +1,11 @@
 //! Friction laws beside LuGre, as the simulated machine steps them.
 
+use std::fmt::Debug;
 use std::sync::Arc;
 
 use lugre::{
-    BoucWen, Bristle, BristleParameters, Dahl, ElastoPlastic, FrictionError, FrictionLaw,
-    MaxwellSlip, MaxwellState, Onset, Parameters,
+    Bristle, BristleParameters, FrictionError, FrictionLaw, MaxwellSlip, MaxwellState, Onset,
+    Parameters,
 };
 
 use super::keys::steady;
@@ -15,116 +16,111 @@ use crate::part::{PartError, Values};
 /// How many elements a Maxwell-slip friction has.
 pub(super) const ELEMENTS: usize = 4;
 
-/// A law that is not LuGre.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Contact {
-    Dahl(Dahl),
-    ElastoPlastic(ElastoPlastic),
-    BoucWen(BoucWen),
-    MaxwellSlip(MaxwellSlip<f64, ELEMENTS>),
-}
+/// What a law remembers, as numbers: a deflection, m or rad, or the elements' forces and whether each slips.
+pub(crate) type ContactState = [f64; 2 * ELEMENTS];
 
-/// What it remembers.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum ContactState {
-    /// A deflection, m or rad.
-    Bristle(f64),
-    Elements(MaxwellState<f64, ELEMENTS>),
-}
-
-/// Deflection of a bristle in settled motion, or at standstill under a share of its Coulomb level.
-fn bristle<O: Onset<f64>>(law: &Bristle<f64, O>, speed: f64, share: f64) -> ContactState {
-    ContactState::Bristle(if speed == 0.0 {
-        share * law.parameters().steady.forward.coulomb / law.stiffness()
-    } else {
-        law.settled(speed)
-    })
-}
-
-impl Contact {
+/// A law that is not LuGre, in its own coordinate.
+pub(crate) trait Contact: Debug + Send + Sync {
     /// The state of settled motion at a speed; at 0 under that share of the Coulomb level.
-    pub(crate) fn settled(&self, speed: f64, share: f64) -> ContactState {
-        match self {
-            Self::Dahl(law) => bristle(law, speed, share),
-            Self::ElastoPlastic(law) => bristle(law, speed, share),
-            Self::BoucWen(law) => bristle(law, speed, share),
-            Self::MaxwellSlip(law) if speed == 0.0 => {
-                let level = share * law.parameters().steady.forward.coulomb;
-                ContactState::Elements(MaxwellState {
-                    force: law.parameters().shares.map(|part| part * level),
-                    slips: [false; ELEMENTS],
-                })
-            }
-            Self::MaxwellSlip(law) => ContactState::Elements(law.settled(speed)),
-        }
-    }
+    fn settled(&self, speed: f64, share: f64) -> ContactState;
 
     /// State and force at the end of a step of `h` seconds between two speeds.
-    pub(crate) fn step(
-        &self,
-        state: ContactState,
-        speeds: [f64; 2],
-        h: f64,
-    ) -> (ContactState, f64) {
-        let [v0, v1] = speeds;
-        let next = match (self, state) {
-            (Self::Dahl(law), ContactState::Bristle(z)) => {
-                ContactState::Bristle(law.step(z, v0, v1, h))
-            }
-            (Self::ElastoPlastic(law), ContactState::Bristle(z)) => {
-                ContactState::Bristle(law.step(z, v0, v1, h))
-            }
-            (Self::BoucWen(law), ContactState::Bristle(z)) => {
-                ContactState::Bristle(law.step(z, v0, v1, h))
-            }
-            (Self::MaxwellSlip(law), ContactState::Elements(elements)) => {
-                ContactState::Elements(law.step(elements, v0, v1, h))
-            }
-            // A state comes from the law's own `settled`.
-            (_, state) => state,
-        };
-        (next, self.force(&next, v1))
-    }
+    fn step(&self, state: &ContactState, speeds: [f64; 2], h: f64) -> (ContactState, f64);
 
-    /// The force at a speed, in the law's coordinate.
-    pub(crate) fn force(&self, state: &ContactState, speed: f64) -> f64 {
-        match (self, state) {
-            (Self::Dahl(law), ContactState::Bristle(z)) => law.force(z, speed),
-            (Self::ElastoPlastic(law), ContactState::Bristle(z)) => law.force(z, speed),
-            (Self::BoucWen(law), ContactState::Bristle(z)) => law.force(z, speed),
-            (Self::MaxwellSlip(law), ContactState::Elements(elements)) => {
-                law.force(elements, speed)
-            }
-            _ => 0.0,
-        }
-    }
+    /// The force at a speed.
+    fn force(&self, state: &ContactState, speed: f64) -> f64;
 
     /// The springs' force over the Coulomb level.
-    pub(crate) fn share(&self, state: &ContactState) -> f64 {
-        let [force, level] = match (self, state) {
-            (Self::Dahl(law), ContactState::Bristle(z)) => share(law, z),
-            (Self::ElastoPlastic(law), ContactState::Bristle(z)) => share(law, z),
-            (Self::BoucWen(law), ContactState::Bristle(z)) => share(law, z),
-            (Self::MaxwellSlip(law), ContactState::Elements(elements)) => [
-                law.spring_force(elements),
-                law.parameters().steady.forward.coulomb,
-            ],
-            _ => [0.0, 1.0],
-        };
-        force / level
+    fn share(&self, state: &ContactState) -> f64;
+}
+
+/// A law whose state goes into numbers and back, to the bit.
+trait Remembers: FrictionLaw<f64> {
+    fn kept(state: &Self::State) -> ContactState;
+
+    fn recalled(state: &ContactState) -> Self::State;
+
+    /// At standstill, its springs under that force.
+    fn held(&self, force: f64) -> Self::State;
+
+    /// The Coulomb level.
+    fn level(&self) -> f64;
+}
+
+impl<O: Onset<f64>> Remembers for Bristle<f64, O> {
+    fn kept(state: &f64) -> ContactState {
+        let mut kept = ContactState::default();
+        kept[0] = *state;
+        kept
+    }
+
+    fn recalled(state: &ContactState) -> f64 {
+        state[0]
+    }
+
+    fn held(&self, force: f64) -> f64 {
+        force / self.stiffness()
+    }
+
+    fn level(&self) -> f64 {
+        self.parameters().steady.forward.coulomb
     }
 }
 
-fn share<O: Onset<f64>>(law: &Bristle<f64, O>, z: &f64) -> [f64; 2] {
-    [law.spring_force(z), law.parameters().steady.forward.coulomb]
+impl Remembers for MaxwellSlip<f64, ELEMENTS> {
+    fn kept(state: &Self::State) -> ContactState {
+        std::array::from_fn(|i| match i.checked_sub(ELEMENTS) {
+            Some(element) => f64::from(u8::from(state.slips[element])),
+            None => state.force[i],
+        })
+    }
+
+    fn recalled(state: &ContactState) -> Self::State {
+        MaxwellState {
+            force: std::array::from_fn(|i| state[i]),
+            slips: std::array::from_fn(|i| state[ELEMENTS + i] != 0.0),
+        }
+    }
+
+    fn held(&self, force: f64) -> Self::State {
+        MaxwellState {
+            force: self.parameters().shares.map(|part| part * force),
+            slips: [false; ELEMENTS],
+        }
+    }
+
+    fn level(&self) -> f64 {
+        self.parameters().steady.forward.coulomb
+    }
+}
+
+impl<L: Remembers + Debug + Send + Sync> Contact for L {
+    fn settled(&self, speed: f64, share: f64) -> ContactState {
+        L::kept(&match speed == 0.0 {
+            true => self.held(share * self.level()),
+            false => FrictionLaw::settled(self, speed),
+        })
+    }
+
+    fn step(&self, state: &ContactState, [v0, v1]: [f64; 2], h: f64) -> (ContactState, f64) {
+        let next = FrictionLaw::step(self, L::recalled(state), v0, v1, h);
+        (L::kept(&next), FrictionLaw::force(self, &next, v1))
+    }
+
+    fn force(&self, state: &ContactState, speed: f64) -> f64 {
+        FrictionLaw::force(self, &L::recalled(state), speed)
+    }
+
+    fn share(&self, state: &ContactState) -> f64 {
+        self.spring_force(&L::recalled(state)) / self.level()
+    }
 }
 
 /// Friction of one bristle with that onset.
-pub(super) fn of_bristle<O: Onset<f64>>(
+pub(super) fn of_bristle<O: Onset<f64> + Debug + Send + Sync + 'static>(
     v: &Values,
     freedom: Freedom,
     onset: O,
-    contact: impl Fn(Bristle<f64, O>) -> Contact,
 ) -> Result<Arc<Friction>, PartError> {
     let stiffness = v.number("bristle_stiffness")?;
     let damping = v.or("bristle_damping", 0.0);
@@ -134,7 +130,7 @@ pub(super) fn of_bristle<O: Onset<f64>>(
         damping,
         onset,
     });
-    with_contact(v, freedom, [stiffness, damping], law.map(contact))
+    with_contact(v, freedom, [stiffness, damping], law)
 }
 
 /// Friction with that law, and the LuGre law beside it.
@@ -142,10 +138,10 @@ pub(super) fn with_contact(
     v: &Values,
     freedom: Freedom,
     [stiffness, damping]: [f64; 2],
-    contact: Result<Contact, FrictionError>,
+    law: Result<impl Contact + 'static, FrictionError>,
 ) -> Result<Arc<Friction>, PartError> {
     let contact =
-        contact.map_err(|e| PartError::together(e, "the other parameters smaller or larger"))?;
+        law.map_err(|e| PartError::together(e, "the other parameters smaller or larger"))?;
     let curve = steady(v)?;
     let parameters = Parameters {
         coulomb: curve.forward.coulomb,
@@ -157,7 +153,7 @@ pub(super) fn with_contact(
     };
     let place = FrictionPlace::Load(freedom);
     let mut friction = Friction::new(parameters, stiffness / parameters.coulomb, place)?;
-    friction.contact = Some(contact);
+    friction.contact = Some(Arc::new(contact));
     Ok(Arc::new(friction))
 }
 
@@ -197,7 +193,7 @@ mod tests {
                 &[("presliding", 1e-5), ("lag", 1e-3)],
             ),
         ] {
-            let contact = friction.contact.unwrap();
+            let contact = friction.contact.as_ref().unwrap();
             for (speed, share) in [(0.0, 0.5), (0.0, -1.0), (0.02, 0.0), (-4e-3, 0.0)] {
                 let state = contact.settled(speed, share);
                 let expected: f64 = match speed {
@@ -207,7 +203,7 @@ mod tests {
                 let force = contact.force(&state, speed);
                 assert!((force - expected).abs() < 1e-10, "{force} {expected}");
                 // A step at that speed changes nothing.
-                let (next, after) = contact.step(state, [speed; 2], 1e-4);
+                let (next, after) = contact.step(&state, [speed; 2], 1e-4);
                 assert!((after - expected).abs() < 1e-10, "{after}");
                 let own = (expected - 300.0 * speed) / 60.0;
                 assert!((contact.share(&next) - own).abs() < 1e-12);

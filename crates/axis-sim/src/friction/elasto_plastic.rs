@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use lugre::ElastoPlasticOnset;
 
+use super::Friction;
 use super::contact::of_bristle;
 use super::keys::{linear, rotary};
 use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
-use super::{Contact, Friction};
 use crate::mechanism::Freedom;
 use crate::part::{Known, PartError, PartKind, Values, number};
 
@@ -56,5 +56,5 @@ fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {
     let onset = ElastoPlasticOnset {
         elastic_share: v.number("elastic_share")?,
     };
-    of_bristle(v, freedom, onset, Contact::ElastoPlastic)
+    of_bristle(v, freedom, onset)
 }

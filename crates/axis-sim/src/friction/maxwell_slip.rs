@@ -7,10 +7,10 @@ use std::sync::Arc;
 
 use lugre::{MaxwellSlip, MaxwellSlipParameters};
 
+use super::Friction;
 use super::contact::{ELEMENTS, with_contact};
 use super::keys::{linear, rotary, steady};
 use super::lugre_at_motor::{BREAK_AWAY, COULOMB_LEVEL};
-use super::{Contact, Friction};
 use crate::mechanism::Freedom;
 use crate::part::units::{ANGLE, LENGTH, TIME};
 use crate::part::{Known, PartError, PartKind, Values, quantity};
@@ -71,5 +71,5 @@ fn build(v: &Values, freedom: Freedom) -> Result<Arc<Friction>, PartError> {
         attraction: coulomb / v.number("lag")?,
     });
     let whole = stiffness.iter().sum();
-    with_contact(v, freedom, [whole, 0.0], law.map(Contact::MaxwellSlip))
+    with_contact(v, freedom, [whole, 0.0], law)
 }

@@ -17,6 +17,8 @@ mod maxwell_slip;
 
 pub(crate) use contact::{Contact, ContactState};
 
+use std::sync::Arc;
+
 use lugre::{LuGre, Parameters};
 
 use crate::mechanism::Freedom;
@@ -40,7 +42,7 @@ pub const FRICTIONS: &[&PartKind<Friction>] = &[
 ];
 
 /// Friction between the load and its guides.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Friction {
     /// The law, in its own coordinate; of a kind that is not LuGre, the LuGre law nearest to it.
     pub law: LuGre,
@@ -50,7 +52,7 @@ pub struct Friction {
     /// pre-sliding distance.
     pub unit: LuGre,
     /// The law of a kind that is not LuGre.
-    pub(crate) contact: Option<Contact>,
+    pub(crate) contact: Option<Arc<dyn Contact>>,
 }
 
 /// The coordinate of a friction law.

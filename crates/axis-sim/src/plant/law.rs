@@ -51,7 +51,7 @@ impl Assembly {
     /// `h` seconds, N·s/m, where the load moves by `travel` a radian.
     pub(super) fn steepness(&self, h: f64, travel: f64) -> f64 {
         let (friction, lever) = (&self.friction, self.friction.lever(travel));
-        let own = match friction.contact {
+        let own = match &friction.contact {
             // Not known of the other laws.
             Some(_) => f64::INFINITY,
             None => friction.law.steepness(h) / (lever * lever),
@@ -124,7 +124,7 @@ impl<S: TimeStepper> Law<S> {
     /// What a law that is not LuGre remembers at the start.
     fn contact(&self, start: &Start) -> Option<ContactState> {
         let share = start.friction.clamp(-1.0, 1.0);
-        let contact = self.assembly.friction.contact;
+        let contact = self.assembly.friction.contact.as_ref();
         contact.map(|law| law.settled(start.speed / self.lever, share))
     }
 

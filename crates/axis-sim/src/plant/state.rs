@@ -107,7 +107,7 @@ impl<S: TimeStepper> State<S> {
                 let w1 = law.by_lever(table.speed);
                 let own = match (&friction.contact, contact) {
                     (Some(law), Some(state)) => {
-                        let (state, own) = law.step(state, [w0, w1], h);
+                        let (state, own) = law.step(&state, [w0, w1], h);
                         next_contact = Some(state);
                         own
                     }

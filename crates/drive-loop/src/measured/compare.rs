@@ -265,7 +265,7 @@ fn say(found: &mut Comparison, period: f64) {
     if is_sure && explains && delay.value.abs() > 0.2 * period {
         found.said.push(match delay.value > 0.0 {
             true => format!(
-                "the response comes {:.3} ms later than the model's: a delay that the axis file does not have (command_delay, current_delay_periods, a filter of the drive); `discover` can name it",
+                "the response comes {:.3} ms later than the model's: a delay that the axis file does not have (command_delay, current_delay_periods, a filter of the drive); discover can name it",
                 1e3 * delay.value
             ),
             false => format!(
@@ -283,7 +283,7 @@ fn say(found: &mut Comparison, period: f64) {
     for mode in &found.modes {
         match mode.model_hz {
             None => found.said.push(format!(
-                "the model has no mode at {:.1} Hz: a body on the table or in the frame; `discover` can name it",
+                "the model has no mode at {:.1} Hz: a body on the table or in the frame; discover can name it",
                 mode.measured_hz.value
             )),
             Some(model) if (mode.measured_hz.value / model - 1.0).abs() > 0.03 => {

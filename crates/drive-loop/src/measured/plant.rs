@@ -139,6 +139,7 @@ impl MeasuredPlant {
             self.lines.iter().filter_map(line).collect()
         })
     }
+
     /// At an angular frequency (rad/s) between its lines: straight in phase and logarithm of the size.
     pub(crate) fn at(&self, frequency: f64) -> Option<[Number; 3]> {
         let hz = frequency / TAU;

@@ -23,6 +23,9 @@ pub struct Shown {
 pub struct MachineContoured {
     pub machine: String,
     pub path: String,
+    /// The path and its feed, in words.
+    #[serde(skip)]
+    pub path_at_feed: String,
     pub compensation: &'static str,
     pub feed_m_per_min: f64,
     /// What was found from circles at two feeds.
@@ -112,15 +115,9 @@ impl MachineContoured {
             ""
         };
         format!(
-            "{}: {}, {} m/min{}, compensation {}{corrected} (simulated)",
+            "{}: {}, compensation {}{corrected} (simulated)",
             self.machine,
-            self.path,
-            self.feed_m_per_min,
-            if self.path.starts_with("program") {
-                " before its first F"
-            } else {
-                ""
-            },
+            self.path_at_feed,
             self.compensation.replace('_', "-")
         )
     }

@@ -94,7 +94,8 @@ pub fn run(run: &Run<'_>) -> Result<MachineContoured> {
         .collect::<Result<_>>()?;
     Ok(MachineContoured {
         machine: run.file.text.name.clone(),
-        path: run.paths.title(&run.wanted),
+        path: run.paths.name(&run.wanted),
+        path_at_feed: run.paths.title(&run.wanted),
         compensation: run.compensation.name,
         feed_m_per_min: 60.0 * run.wanted.feed,
         identified: identified.map(|found| IdentifiedCoupling {

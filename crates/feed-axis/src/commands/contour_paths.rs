@@ -12,6 +12,8 @@ use toolpath::{
     FeedLimits, FeedProfile, Line, Nurbs, NurbsData, Path, PathSegment, PathTolerances, gcode,
 };
 
+use crate::context::from_toml;
+
 /// Options that name another path than a circle.
 #[derive(Args)]
 pub struct PathOptions {
@@ -97,8 +99,21 @@ impl PathOptions {
         !self.is_circle() || self.tilt.is_some() || self.acceleration_step != 0.0
     }
 
-    /// What the path is called.
+    /// What the path is called, and at which feed it is run.
     pub fn title(&self, wanted: &Wanted) -> String {
+        let before = match self.program {
+            Some(_) => " before its first F",
+            None => "",
+        };
+        format!(
+            "{}, {} m/min{before}",
+            self.name(wanted),
+            60.0 * wanted.feed
+        )
+    }
+
+    /// What the path is called.
+    pub fn name(&self, wanted: &Wanted) -> String {
         let file = |path: &FilePath| path.display().to_string();
         match (&self.program, &self.nurbs) {
             (Some(path), _) => format!("program {}", file(path)),
@@ -179,9 +194,7 @@ impl PathOptions {
         let text = std::fs::read_to_string(file)
             .into_diagnostic()
             .wrap_err_with(shown)?;
-        let data: NurbsFile = toml::from_str(&text)
-            .into_diagnostic()
-            .wrap_err_with(shown)?;
+        let data: NurbsFile = from_toml(&text).wrap_err_with(shown)?;
         fn points<const D: usize>(data: &NurbsFile) -> Option<Vec<[f64; D]>> {
             let point = |p: &Vec<f64>| {
                 <[f64; D]>::try_from(p.as_slice())

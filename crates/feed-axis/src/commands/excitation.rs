@@ -7,6 +7,8 @@ use miette::{IntoDiagnostic, Result, miette};
 use serde::Deserialize;
 use trajectories::{Motion, Program};
 
+use crate::context::from_toml;
+
 /// Acceleration below which a motion has a constant speed, as a share of its greatest: rounding.
 const STEADY: f64 = 1e-9;
 
@@ -70,7 +72,7 @@ pub fn split(text: &str) -> Result<(String, Option<Asked>)> {
         excitation: Asked,
     }
     let asked = match found {
-        true => Some(toml::from_str::<Only>(&own).into_diagnostic()?.excitation),
+        true => Some(from_toml::<Only>(&own)?.excitation),
         false => None,
     };
     Ok((rest, asked))

@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use axis_pipeline::strategies::SharedMotion;
 use axis_sim::mechanism::Freedom;
-use axis_sim::{Axis, MoveSpec, SixDigits, toml_hint};
+use axis_sim::{Axis, MoveSpec, SixDigits};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use trajectories::Program;
 
 use super::excitation;
-use crate::context::{Context, read_text};
+use crate::context::{Context, from_toml, read_text};
 use crate::exit::wrong_use;
 
 /// The trajectories of an axis, by their numbers.
@@ -65,11 +65,8 @@ fn taken(file: &Path, program: Program, axis: &Axis) -> Result<Program> {
 /// Reads a motion program that may excite the axis, and what it adds to the command in each cycle.
 pub(super) fn excited_program(file: &Path, axis: &Axis) -> Result<(Program, Option<Vec<f64>>)> {
     let text = read_text(file)?;
-    let what = || format!("{} is not a motion program", file.display());
-    let (rest, asked) = excitation::split(&text).wrap_err_with(what)?;
-    let program = toml::from_str(&rest)
-        .into_diagnostic()
-        .wrap_err_with(what)?;
+    let (rest, asked) = excitation::split(&text).wrap_err_with(|| no_program(file))?;
+    let program = from_toml(&rest).wrap_err_with(|| no_program(file))?;
     let program = taken(file, program, axis)?;
     let samples = asked.map(|asked| asked.samples(axis, &program)).transpose();
     let samples = samples.wrap_err_with(|| format!("{}: [excitation]", file.display()))?;
@@ -78,13 +75,9 @@ pub(super) fn excited_program(file: &Path, axis: &Axis) -> Result<(Program, Opti
 
 /// Reads a motion program.
 pub fn program(file: &Path) -> Result<Program> {
-    let text = read_text(file)?;
-    let program = toml::from_str(&text).map_err(|error: toml::de::Error| {
-        let at = error.span().map_or(0, |span| span.start);
-        match toml_hint(&text, at) {
-            Some(hint) => miette!(help = hint, "{error}"),
-            None => miette!("{error}"),
-        }
-    });
-    program.wrap_err_with(|| format!("{} is not a motion program", file.display()))
+    from_toml(&read_text(file)?).wrap_err_with(|| no_program(file))
+}
+
+fn no_program(file: &Path) -> String {
+    format!("{} is not a motion program", file.display())
 }

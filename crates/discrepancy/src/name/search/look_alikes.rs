@@ -74,7 +74,10 @@ impl Search<'_> {
         let own = own.one_by_one().pop()?;
         let mut of_all = without.refine(rivals, &own_columns);
         // What does not hold on other motion is no second explanation.
-        of_all.kept.retain(|rival| without.holds(rival));
+        of_all.kept.retain(|rival| {
+            let check = without.checker().at(rival.fit.state.clone());
+            check.is_ok_and(|check| without.holds(rival, &check))
+        });
         let itself = Refined {
             parts: vec![own.clone()],
             fit: self.fit.clone(),

@@ -90,8 +90,7 @@ impl Search<'_> {
                 return None;
             }
             if awaited.is_empty() {
-                let holds = self.proves_itself(candidate, held_out) && self.worsens_none(&check);
-                if !holds {
+                if !self.holds(candidate, &check) {
                     return None;
                 }
                 let falls = [candidate.gain, held_out];
@@ -291,13 +290,11 @@ impl Search<'_> {
             || self.repeats_with_the_drive(candidate)
     }
 
-    /// Whether a candidate proves itself on the check logs, and leaves no channel of them worse.
-    pub(super) fn holds(&self, candidate: &Refined) -> bool {
-        let check = self.checker().at(candidate.fit.state.clone());
-        check.is_ok_and(|check| {
-            let held_out = self.check.deviance - check.deviance;
-            self.proves_itself(candidate, held_out) && self.worsens_none(&check)
-        })
+    /// Whether a candidate, with `check` its fit of the check logs, proves itself there and leaves no channel
+    /// of them worse.
+    pub(super) fn holds(&self, candidate: &Refined, check: &Fit) -> bool {
+        let held_out = self.check.deviance - check.deviance;
+        self.proves_itself(candidate, held_out) && self.worsens_none(check)
     }
 
     fn proves_itself(&self, best: &Refined, held_out: f64) -> bool {
