@@ -34,7 +34,7 @@ pub struct LoopAnalysis {
     /// Frequencies of the natural modes at the first position, Hz, the rigid motion left out, up to
     /// half the sampling rate.
     pub modes_hz: Vec<f64>,
-    /// Greatest sensitivities of all corners.
+    /// Maximum sensitivities of all corners.
     pub worst: WorstMargins,
     /// All corners; the axis as its file says first, sliding, then stuck.
     pub corners: Vec<CornerMargins>,
@@ -48,7 +48,7 @@ pub struct LoopAnalysis {
 /// stable.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct WorstMargins {
-    /// Greatest sensitivity at either cut.
+    /// Maximum sensitivity at either cut.
     pub sensitivity: Option<f64>,
     /// Its corner.
     pub sensitivity_corner: usize,

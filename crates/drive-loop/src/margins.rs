@@ -20,7 +20,7 @@ const SECTIONS: u32 = 40;
 /// Margins of a loop that is cut at one place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct CutMargins {
-    /// Greatest sensitivity, max 1/|1 + L|; none where the loop is not stable.
+    /// Maximum sensitivity, max 1/|1 + L|; none where the loop is not stable.
     pub sensitivity: Option<f64>,
     /// Frequency of that, Hz.
     pub sensitivity_at_hz: f64,
@@ -163,7 +163,7 @@ impl CornerLoop {
         found
     }
 
-    /// Greatest sensitivity at either cut, and with one more cycle of delay; infinite where the loop
+    /// Maximum sensitivity at either cut, and with one more cycle of delay; infinite where the loop
     /// is unstable.
     pub(crate) fn peaks(&self, model: &LoopModel, gains: &LoopGains) -> [f64; 2] {
         let on_grid = self.sensitivities(gains);

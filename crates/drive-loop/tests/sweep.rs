@@ -186,7 +186,7 @@ fn greatest(axis: &Axis, speed: f64, place: Place, size: f64, every: usize) -> f
     heights.into_iter().fold(0.0, f64::max)
 }
 
-/// 0.02 in the greatest sensitivity: asked of the analysis.
+/// 0.02 in the maximum sensitivity: asked of the analysis.
 #[test]
 fn sensitivities_are_those_of_a_sweep_of_the_simulated_axis() {
     let cases = [

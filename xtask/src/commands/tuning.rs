@@ -21,7 +21,7 @@ pub struct Options {
     names: Vec<String>,
 }
 
-/// An axis, and what an independent search under the same constraints (greatest sensitivity 1.6, 2
+/// An axis, and what an independent search under the same constraints (maximum sensitivity 1.6, 2
 /// with one more cycle, over stroke ends, mass −10 and +40 %, sliding and stuck) left of its peak error
 /// on the first trajectory: without and with the acceleration fed forward, µm or µrad.
 const AXES: [(&str, [f64; 2]); 7] = [

@@ -140,7 +140,7 @@ impl MeasuredPlant {
         })
     }
 
-    /// At an angular frequency (rad/s) between its lines: straight in phase and logarithm of the size.
+    /// At an angular frequency (rad/s) between its lines: straight in phase and logarithm of the magnitude.
     pub(crate) fn at(&self, frequency: f64) -> Option<[Number; 3]> {
         let hz = frequency / TAU;
         let above = self.lines.partition_point(|line| line.frequency_hz < hz);

@@ -183,7 +183,7 @@ class Axis:
         - `frictions`: as shares of the file's; 1, if left out.
         - `delay_cycles`: delay besides the file's, control cycles.
 
-        Its keys are those of `feed-axis analyse --format json`: `worst` has the greatest sensitivities, `corners` the margins of each case,
+        Its keys are those of `feed-axis analyse --format json`: `worst` has the maximum sensitivities, `corners` the margins of each case,
         `curves` the frequency responses of the first two cases: `frequency_hz`, and pairs of real and imaginary part in `open_command`,
         `open_position`, `speed_followed` and `compliance` (the load's motion per force on it).
 
@@ -250,7 +250,7 @@ class Axis:
     ) -> tuple[Axis, dict[str, Any]]:
         """Gains of the loops that hold the load best within limits of the sensitivity: the axis that has them, and what was found.
 
-        - `sensitivity`: greatest sensitivity at the command and at the position, in every case.
+        - `sensitivity`: maximum sensitivity at the command and at the position, in every case.
         - `sensitivity_late`: the same with one more cycle of delay.
         - `ripple`: greatest ripple of the command by the steps of the speed's sensor, as a share of the greatest command (RMS).
         - `positions`, `masses`, `frictions`: the cases, as of `analyse`.

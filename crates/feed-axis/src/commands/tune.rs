@@ -39,7 +39,7 @@ pub struct Options {
     force: bool,
     #[command(flatten)]
     ranges: Ranges,
-    /// Greatest sensitivity at the command and at the position, in every case
+    /// Maximum sensitivity at the command and at the position, in every case
     #[arg(long, value_name = "MS", default_value_t = 1.6)]
     sensitivity: f64,
     /// The same with one more cycle of delay
@@ -151,7 +151,7 @@ fn words(found: &TuneFound) -> String {
 fn lines(t: &Tuning) -> Vec<String> {
     let sensitivity = |s: Option<f64>| s.map_or("not stable".to_owned(), |s| format!("{s:.2}"));
     let mut all = vec![format!(
-        "greatest sensitivity {} (was {}), with one more cycle of delay {} (was {})",
+        "maximum sensitivity {} (was {}), with one more cycle of delay {} (was {})",
         sensitivity(t.tuned.sensitivity),
         sensitivity(t.file.sensitivity),
         sensitivity(t.tuned.sensitivity_late),
