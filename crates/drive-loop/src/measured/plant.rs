@@ -57,6 +57,12 @@ impl MeasuredPlant {
         responses: [Option<&FrequencyResponse>; 3],
         coherence: f64,
     ) -> Self {
+        // Where the speed that counts is derived from the load's position, the motor's says nothing.
+        let [angle, speed, load] = responses;
+        let responses = match at.model.is_pid && at.model.sensing.motor_from_load {
+            true => [None, None, load],
+            false => [angle, speed, load],
+        };
         let main = if responses[1].is_some() {
             1
         } else if responses[0].is_some() {

@@ -102,8 +102,7 @@ pub fn command(options: &Options) -> Result<()> {
     };
     let tuned = Tuning::of(&axis, &settings).into_diagnostic()?;
     let text = with_keys(&read_text(&options.axis)?, &options.set)?;
-    let text = moved(&text, &options.axis, &folder)?;
-    let (text, keys) = with_tuned(&text, tuned.keys(&axis))?;
+    let (text, keys) = file_of(&text, &options.axis, &folder, tuned.keys(&axis))?;
     let written = Axis::parse(&options.out.display().to_string(), &text)?;
     write_whole(&options.out, text.as_bytes())?;
     let found = TuneFound {
@@ -119,6 +118,17 @@ pub fn command(options: &Options) -> Result<()> {
     }
     text += &shown(&options.out);
     print("tune", &Worded { text, value: found })
+}
+
+/// The text of an axis file `from`, with the keys of its tuned axis, for a file in another folder; and
+/// the keys as they stand there.
+pub fn file_of(
+    text: &str,
+    from: &Path,
+    folder: &Path,
+    keys: Vec<TunedKey>,
+) -> Result<(String, Vec<TunedKey>)> {
+    with_tuned(&moved(text, from, folder)?, from, keys)
 }
 
 fn shown(path: &Path) -> String {

@@ -96,13 +96,17 @@ fn response(found: &MeasuredDrive) -> Section {
     let values: Vec<[f64; 2]> = counted.iter().map(|l| l.value).collect();
     let all_f: Vec<f64> = lines.iter().map(|l| l.frequency_hz).collect();
     let unit = format!("rad/s/{}", found.command_unit);
-    let magnitude = Figure::new("Command to motor speed: magnitude", "frequency", "magnitude")
-        .units("Hz", unit)
-        .log_x()
-        .log_y()
-        .linked(FREQUENCY)
-        .series(sized("measured", &f, &values))
-        .series(sized("model", &all_f, &found.motor_speed_model).dashed());
+    let magnitude = Figure::new(
+        "Command to motor speed: magnitude",
+        "frequency",
+        "magnitude",
+    )
+    .units("Hz", unit)
+    .log_x()
+    .log_y()
+    .linked(FREQUENCY)
+    .series(sized("measured", &f, &values))
+    .series(sized("model", &all_f, &found.motor_speed_model).dashed());
     let phase = Figure::new("Command to motor speed: phase", "frequency", "phase")
         .units("Hz", "°")
         .log_x()

@@ -207,6 +207,7 @@ fn bode(found: &LoopAnalysis) -> Section {
     let mut size = size.units("Hz", "").log_x().log_y().linked(FREQUENCY);
     let mut phase = phase.units("Hz", "°").log_x().linked(FREQUENCY);
     let mut speed = speed.units("Hz", "").log_x().log_y().linked(FREQUENCY);
+    let mut has_speed = false;
     let mut nyquist = nyquist.series(Series::dots("−1", vec![-1.0], vec![0.0]));
     for curves in &found.curves {
         let f = || curves.frequency_hz.clone();
@@ -228,17 +229,23 @@ fn bode(found: &LoopAnalysis) -> Section {
                 near.iter().map(|v| v[1]).collect(),
             ));
         }
-        speed = speed.series(sized(
-            state(curves),
-            &curves.frequency_hz,
-            &curves.speed_followed,
-        ));
+        if !curves.speed_followed.is_empty() {
+            has_speed = true;
+            speed = speed.series(sized(
+                state(curves),
+                &curves.frequency_hz,
+                &curves.speed_followed,
+            ));
+        }
     }
-    Section::new("Open and closed loop")
+    let section = Section::new("Open and closed loop")
         .figure(size)
         .figure(phase)
-        .figure(nyquist)
-        .figure(speed)
+        .figure(nyquist);
+    match has_speed {
+        true => section.figure(speed),
+        false => section,
+    }
 }
 
 fn sensitivity(found: &LoopAnalysis) -> Section {

@@ -107,7 +107,7 @@ impl<'a> Loop<'a> {
         cycles as f64 * period
     }
 
-    /// Maximum sensitivity; and the delay margin in s of a loop that does the same in each
+    /// Greatest sensitivity; and the delay margin in s of a loop that does the same in each
     /// period, infinite of others.
     pub fn frequencies(&self, late: usize, period: f64) -> (f64, f64) {
         let (mut greatest, mut delay) = (0.0f64, f64::INFINITY);

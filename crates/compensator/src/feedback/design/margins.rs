@@ -41,7 +41,7 @@ impl Default for Variation<'_> {
 /// How far a loop is from instability; the worst over χ of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margins {
-    /// Maximum sensitivity at the plant's input; infinite if the loop is not stable.
+    /// Greatest sensitivity at the plant's input; infinite if the loop is not stable.
     pub sensitivity: f64,
     /// χ where that is.
     pub sticking: f64,
@@ -196,7 +196,7 @@ impl Default for MarginSearch {
     }
 }
 
-/// Maximum sensitivities in a variation: of the loop, and with one more cycle of delay.
+/// Greatest sensitivities in a variation: of the loop, and with one more cycle of delay.
 fn asked(s: &FeedbackSettings, on: &Variation<'_>) -> [f64; 2] {
     // Slow sliding is unstable by itself: a loop around it cannot have the same margins.
     [s.sensitivity, s.sensitivity_late].map(|most| match on.stribeck > 0.0 {

@@ -41,7 +41,7 @@ pub struct FeedbackSettings {
     pub speed: f64,
     /// Noise of the q current, in greatest commands; 1/3000 [5 mA].
     pub current: f64,
-    /// Maximum sensitivity that is accepted; 1.3. Infinite: not checked.
+    /// Greatest sensitivity that is accepted; 1.3. Infinite: not checked.
     pub sensitivity: f64,
     /// The same with one more cycle of delay; 1.6.
     pub sensitivity_late: f64,
