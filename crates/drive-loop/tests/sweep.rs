@@ -195,11 +195,9 @@ fn the_sensitivity_of_a_pid_controller_is_that_of_a_sweep() {
         assert_eq!(found.own().command, found.own().position);
         found.own().command
     };
-    // The figures that the file states of its loop.
+    // The crossover that the file states of its loop.
     let file = own(&axis);
-    assert!((file.sensitivity.unwrap() - 1.2).abs() < 0.05, "{file:?}");
-    assert!((file.crossover_hz.unwrap() - 48.0).abs() < 1.0, "{file:?}");
-    assert!((file.phase_deg.unwrap() - 58.0).abs() < 1.0, "{file:?}");
+    assert!((file.crossover_hz.unwrap() - 48.0).abs() < 0.5, "{file:?}");
     // With less derivative it has a peak to sweep.
     axis.control
         .change(|values| values.set("derivative", 1100.0))
