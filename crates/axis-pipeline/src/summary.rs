@@ -45,7 +45,7 @@ impl Summary {
 }
 
 /// Margins of the drive's loops on model and machine, which are the same where no machine was given;
-/// null where there is no position controller over a speed controller.
+/// null where the axis has no position controller.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LoopsSummary {
     /// The model.

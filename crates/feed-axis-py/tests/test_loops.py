@@ -118,7 +118,7 @@ def test_logs_without_excitation_are_no_responses_to_tune_on(root: Path) -> None
     assert found["margins"] is None and any(trap["refused"] for trap in found["traps"])
     with pytest.raises(fa.LoopError, match="measured response 1: the log has no excitation"):
         axis.tune(frf=run)
-    with pytest.raises(fa.LoopError, match=r"logs\[0\]: the coherence is 2.0?; valid: from 0 to 1"):
+    with pytest.raises(fa.LoopError, match=r"logs\[0\]: the coherence is 2; valid: from 0 to 1"):
         axis.frf(run, coherence=2.0)
     with pytest.raises(fa.SimulationError, match=r"excitation has \d+ values and the motion \d+ control cycles"):
         axis.simulate(axis.trajectories[0], excitation=np.zeros(10**6))

@@ -17,7 +17,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[3]
 RPM = 2 * math.pi / 60
-POINTS = 40_000
+POINTS = 4000
 LIMITS = {"sensitivity": 0.003, "gain": 0.003, "phase": 0.1, "delay": 0.003, "radius": 1e-5, "frf": 0.05}
 
 
@@ -64,7 +64,7 @@ CASES = {
 
 
 def closed(axis, stuck, speed_by, position_by, gains):
-    """Frequencies, the loops cut at the command and at the position, and the greatest pole of the closed loop."""
+    """The loop cut at the command and the speed loop in it, and the greatest pole of the closed loop."""
     s = axis.state_space(stuck=stuck)
     dt, n, (kp, ki, p) = s["dt_s"], len(s["A"]), gains
     rows = dict(zip(s["outputs"], s["C"], strict=True))
@@ -83,13 +83,46 @@ def closed(axis, stuck, speed_by, position_by, gains):
         return ct.series(ct.ss(a, b, [row], [[0.0]], dt), controller)
 
     whole = loop(speed + p * position)
-    radius = float(np.abs(ct.feedback(whole, 1).poles()).max())
-    omega = np.geomspace(1.0, math.pi / dt * (1 - 1e-9), POINTS)
-    total, inner = (ct.frequency_response(one, omega).frdata[0, 0] for one in (whole, loop(speed)))
-    return omega, dt, {"command": total, "position": (total - inner) / (1 + inner)}, radius
+    return whole, loop(speed), radius(whole)
 
 
-def margins(omega, dt, loop):
+def radius(whole):
+    """Greatest modulus of the poles of a loop that is closed."""
+    return float(np.abs(ct.feedback(whole, 1).poles()).max())
+
+
+def closed_pid(axis, stuck, values):
+    """The same of a PID controller of the position, whose derivative is a difference behind its low pass; no speed loop."""
+    s = axis.state_space(stuck=stuck)
+    dt, k = s["dt_s"], values["control"]
+    pole = math.exp(-2 * math.pi * k["derivative_lowpass_hz"] * dt)
+    derivative = k["derivative_n_s_per_m"] * (1 - pole) / dt * ct.tf([1, -1], [1, -pole], dt)
+    integral = k["integral_n_per_m_s"] * dt * ct.tf([1, 0], [1, -1], dt)
+    plant = ct.ss(s["A"], s["B"][:, :1], [dict(zip(s["outputs"], s["C"], strict=True))["position"]], [[0.0]], dt)
+    whole = ct.series(plant, ct.ss(k["proportional_n_per_m"] + integral + derivative))
+    return whole, None, radius(whole)
+
+
+def loops(axis, name, stuck):
+    """The same with the gains of the axis."""
+    values = axis.to_dict()
+    if values["control"].get("kind") == "pid":
+        return closed_pid(axis, stuck, values)
+    speed, position, of = CASES[name]
+    return closed(axis, stuck, speed, position, of(values["control"]))
+
+
+def cuts(whole, speed):
+    """Frequencies, and the loops cut at the command and at the position on them."""
+    omega = np.geomspace(1.0, math.pi / whole.dt * (1 - 1e-9), POINTS)
+    total = ct.frequency_response(whole, omega).frdata[0, 0]
+    if speed is None:
+        return omega, {"command": total, "position": total}
+    inner = ct.frequency_response(speed, omega).frdata[0, 0]
+    return omega, {"command": total, "position": (total - inner) / (1 + inner)}
+
+
+def margins(omega, loop):
     """Maximum sensitivity, also with a cycle of delay, gains at which it is unstable, phase and delay."""
     found = ct.stability_margins(ct.frd(loop, omega, smooth=True), returnall=True)
     gains, phases, _, _, at, _ = found
@@ -107,17 +140,17 @@ def margins(omega, dt, loop):
 def compare_margins(worst):
     """Of each axis, sliding and stuck, at both cuts."""
     print("axis, state, cut: maximum sensitivity, gain up, gain down, phase, delay: ours, python-control")
-    for name, (speed, position, of) in CASES.items():
+    for name in (*CASES, "linear-stage"):
         axis = fa.Axis.load(ROOT / f"data/axes/{name}.toml")
-        gains = of(axis.to_dict()["control"])
         corners = axis.analyse(positions=[axis.stroke[2]], masses=1.0)["corners"]
         for corner in corners:
             stuck = corner["at"]["stuck"]
-            omega, dt, cuts, radius = closed(axis, stuck, speed, position, gains)
+            whole, inner, greatest = loops(axis, name, stuck)
+            omega, both = cuts(whole, inner)
             state = "stuck" if stuck else "sliding"
-            worst["radius"] = max(worst["radius"], abs(radius - corner["radius"]))
-            for cut, loop in cuts.items():
-                other, own = margins(omega, dt, loop), corner[cut]
+            worst["radius"] = max(worst["radius"], abs(greatest - corner["radius"]))
+            for cut, loop in both.items():
+                other, own = margins(omega, loop), corner[cut]
                 ours = {
                     "sensitivity": own["sensitivity"],
                     "gain_up": own["gain_up"],
@@ -135,7 +168,7 @@ def compare_margins(worst):
                         worst[kind] = max(worst[kind], error)
                     elif (value is None) != (other[key] is None):
                         print(f"  {name} {state} {cut} {key}: one has none")
-                print(f"{name}, {state}, {cut}: " + ", ".join(cells))
+                print(f"{name}, {state}, {cut}: " + ", ".join(cells), flush=True)
 
 
 def show(value):
@@ -146,19 +179,18 @@ def compare_stability(count):
     """Verdicts on gains that are random multiples of the file's."""
     draw = np.random.default_rng(51)
     same = unstable = total = 0
-    for name, (speed, position, of) in CASES.items():
+    for name in (*CASES, "linear-stage"):
         text = fa.Axis.load(ROOT / f"data/axes/{name}.toml").to_dict()
-        keys = [k for k in text["control"] if k.startswith(("kv", "position_gain", "speed_proportional"))]
+        keys = [k for k in text["control"] if k.startswith(("kv", "position_gain", "speed_proportional", "proportional", "derivative_n"))]
         for _ in range(count):
             values = {part: dict(v) if isinstance(v, dict) else v for part, v in text.items()}
             for key in keys:
                 values["control"][key] *= float(10 ** draw.uniform(-0.3, 1.5))
             values.pop("experiment", None)
             axis = fa.Axis.from_dict(values)
-            gains = of(values["control"])
             corner = axis.analyse(positions=[axis.stroke[2]], masses=1.0)["corners"][0]
-            *_, radius = closed(axis, False, speed, position, gains)
-            same += (radius < 1) == corner["stable"]
+            *_, greatest = loops(axis, name, False)
+            same += (greatest < 1) == corner["stable"]
             unstable += not corner["stable"]
             total += 1
     print(f"stability: {same} of {total} verdicts the same, {unstable} of them unstable")
