@@ -112,9 +112,9 @@ fn a_pipeline_finishes_without_a_strategy_that_the_axis_cannot_have() {
         "{said}"
     );
     let summary = read(out);
-    // Of its only loop its file says 58°; the least is with the heaviest load.
+    // Of its only loop its file says 60°, which python-control agrees with; the least is with the heaviest load.
     let phase = summary["loops"]["model"]["phase_deg"].as_f64().unwrap();
-    assert!((54.0..58.0).contains(&phase), "{phase}");
+    assert!((54.0..59.0).contains(&phase), "{phase}");
     let trajectories = &summary["trajectories"];
     for trajectory in trajectories.as_array().unwrap() {
         let compensated = &trajectory["errors_um"]["compensated"];

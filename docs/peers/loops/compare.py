@@ -18,7 +18,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[3]
 RPM = 2 * math.pi / 60
 POINTS = 4000
-LIMITS = {"sensitivity": 0.003, "gain": 0.003, "phase": 0.1, "delay": 0.003, "radius": 1e-5, "frf": 0.05}
+LIMITS = {"sensitivity": 0.0005, "gain": 0.006, "phase": 0.002, "delay": 4e-5, "radius": 1e-10, "frf": 0.05}
 
 
 # What the speed controller sees, what the position controller sees, and k_p, k_i, P from the file's [control]; P is speed per
